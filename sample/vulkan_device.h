@@ -1,0 +1,90 @@
+#ifndef ALCOVE_SAMPLE_VULKAN_DEVICE_H_
+#define ALCOVE_SAMPLE_VULKAN_DEVICE_H_
+
+#include <vulkan/vulkan.h>
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <tl/expected.hpp>
+#include <vector>
+
+namespace alcove::sample {
+
+// How a device is to be made.
+struct DeviceOptions {
+  // Khronos validation with synchronisation validation, across queue submits too. Fails where the
+  // layer is not installed.
+  bool validation = false;
+  // Which physical device, in the loader's order; -1 takes the first discrete GPU, then the first
+  // integrated one, then whatever is there (lavapipe).
+  int index = -1;
+  // Instance extensions a window system asks for; the swapchain extension comes with them.
+  std::vector<const char*> surface_extensions;
+};
+
+// A physical device as `alcove doctor` lists it.
+struct DeviceSummary {
+  std::string name;
+  std::string driver;    // name and version, as the driver gives them
+  uint32_t api_version;  // VK_MAKE_API_VERSION
+  VkPhysicalDeviceType type;
+  std::string missing;  // what Alcove needs and this device lacks; empty when it will do
+};
+
+// The instance, the device and one queue that does graphics and compute, all owned. The library
+// never makes a device: this is the sample's and the tests' own.
+class VulkanDevice {
+ public:
+  // Errors say in one sentence what is missing and what to do about it.
+  [[nodiscard]] static tl::expected<std::unique_ptr<VulkanDevice>, std::string> create(
+      const DeviceOptions& options = {});
+  ~VulkanDevice();
+  VulkanDevice(const VulkanDevice&) = delete;
+  VulkanDevice& operator=(const VulkanDevice&) = delete;
+
+  VkInstance instance() const { return instance_; }
+  VkPhysicalDevice physical_device() const { return physical_device_; }
+  VkDevice device() const { return device_; }
+  VkQueue queue() const { return queue_; }
+  uint32_t queue_family() const { return queue_family_; }
+  const VkPhysicalDeviceProperties& properties() const { return properties_; }
+  const std::string& driver() const { return driver_; }
+
+  // What the validation layers said so far, errors and warnings, each message once as it came.
+  const std::vector<std::string>& validation_messages() const { return messages_; }
+
+  // The first memory type allowed by `type_bits` with all of `flags`; UINT32_MAX when there is
+  // none.
+  uint32_t memory_type(uint32_t type_bits, VkMemoryPropertyFlags flags) const;
+
+ private:
+  VulkanDevice() = default;
+  static VKAPI_ATTR VkBool32 VKAPI_CALL receive_message(
+      VkDebugUtilsMessageSeverityFlagBitsEXT severity, VkDebugUtilsMessageTypeFlagsEXT types,
+      const VkDebugUtilsMessengerCallbackDataEXT* data, void* self);
+  tl::expected<void, std::string> create_instance(const DeviceOptions& options);
+  tl::expected<void, std::string> choose_physical_device(int index);
+  tl::expected<void, std::string> create_device(bool presentation);
+
+  VkInstance instance_ = VK_NULL_HANDLE;
+  VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
+  VkPhysicalDevice physical_device_ = VK_NULL_HANDLE;
+  VkDevice device_ = VK_NULL_HANDLE;
+  VkQueue queue_ = VK_NULL_HANDLE;
+  uint32_t queue_family_ = 0;
+  VkPhysicalDeviceProperties properties_{};
+  VkPhysicalDeviceMemoryProperties memory_{};
+  std::string driver_;
+  std::vector<std::string> messages_;
+};
+
+// Every Vulkan device of the machine, usable or not.
+[[nodiscard]] tl::expected<std::vector<DeviceSummary>, std::string> list_devices();
+
+// `VK_ERROR_DEVICE_LOST` and the like, for sentences.
+[[nodiscard]] std::string_view result_name(VkResult result);
+
+}  // namespace alcove::sample
+
+#endif  // ALCOVE_SAMPLE_VULKAN_DEVICE_H_
