@@ -1,0 +1,67 @@
+// Ground-truth ambient occlusion within a slice (Jimenez et al. 2016, ATVI-TR-16-01, section 4).
+//
+// The memo's arc J(h) = (-cos(2h - g) + cos g + 2 h sin g) / 4, times the length of the projected
+// normal, is written here in the cosine of the horizon and the components of the normal: with c and
+// s the cosine and sine of the horizon and h its angle, each positive,
+//     length J = (s (s <n,v> - c <n,d>) + h <n,d>) / 2
+// on the positive side, and with -<n,d> on the negative. One square root and one arc cosine are all
+// the transcendentals, and gamma itself is never needed.
+//
+// Visibility: 1 is open. A = sum over slices of slice_visibility() / sum of open_slice(), or over
+// the number of slices where they are many.
+#ifndef ALCOVE_MATHS_GTAO_H
+#define ALCOVE_MATHS_GTAO_H
+
+#include "arc_cosine.h"
+#include "language.h"
+#include "slice.h"
+
+ALCOVE_MATHS_BEGIN
+
+// Cosine of the angle to the view vector `view` (unit) at which an occluder stands, `delta` away
+// from the surface. An occluder at the surface itself stands nowhere: -1.
+ALCOVE_INLINE float horizon_cosine(vec3 delta, vec3 view) {
+  float squared = dot(delta, delta);
+  return squared > 0.0f ? dot(delta, view) * inversesqrt(squared) : -1.0f;
+}
+
+// Cosine-weighted visibility of one side up to a horizon, times the projected normal's length.
+// `horizon` is a cosine; one below the tangent plane, or out of [-1,1], is raised or cut to it.
+// The arc cosine's error gives at most 4e-5.
+ALCOVE_INLINE float slice_arc(Slice s, float side, float horizon) {
+  float c = clamp(horizon, tangent_horizon(s, side), 1.0f);
+  float along = side * s.along;
+  float sine_squared = 1.0f - c * c;
+  return 0.5f * (sine_squared * s.toward + (arc_cosine(c) - c * sqrt(sine_squared)) * along);
+}
+
+// Both sides together: the slice's part of the visibility. `ahead` is the horizon's cosine on the
+// positive side, `behind` on the negative. In [0, open_slice(s)], at most 1.571.
+ALCOVE_INLINE float slice_visibility(Slice s, float ahead, float behind) {
+  return max(slice_arc(s, 1.0f, ahead) + slice_arc(s, -1.0f, behind), 0.0f);
+}
+
+// The slice's visibility with nothing in it: length (cos gamma + gamma sin gamma). Its mean over
+// uniformly spaced slices is exactly 1, so it is both what a slice weighs and what normalises them.
+ALCOVE_INLINE float open_slice(Slice s) { return s.toward + slice_gamma(s) * s.along; }
+
+// Sum of visibilities over sum of weights, in [0,1]. Nothing weighed means nothing known: open.
+ALCOVE_INLINE float mean_visibility(float visibility_sum, float weight_sum) {
+  return weight_sum > 0.0f ? clamp(visibility_sum / weight_sum, 0.0f, 1.0f) : 1.0f;
+}
+
+// The same slice without the cosine of the normal (the memo's appendix A), averaged over the slice
+// count: uniform visibility of the hemisphere around the view vector, in [0,1].
+ALCOVE_INLINE float uniform_slice_visibility(float ahead, float behind) {
+  return 1.0f - 0.5f * (max(ahead, 0.0f) + max(behind, 0.0f));
+}
+
+// The memo's heuristic for occluders of unknown thickness: a sample above the horizon replaces it,
+// one below pulls it down by `blend` (0: infinitely thick; 0.05 is already much). Cosines.
+ALCOVE_INLINE float raise_horizon(float horizon, float found, float blend) {
+  return found > horizon ? found : mix(horizon, found, blend);
+}
+
+ALCOVE_MATHS_END
+
+#endif

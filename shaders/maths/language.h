@@ -1,0 +1,26 @@
+// What lets one text be both GLSL (460, GL_GOOGLE_include_directive) and C++20 over GLM.
+//
+// In C++ everything stands in namespace alcove::maths and GLSL's types and functions come from GLM.
+// The text itself keeps to what both languages read alike: `f` on literals, no swizzles, structs
+// filled field by field and returned. Every function is pure and may be called from any thread.
+#ifndef ALCOVE_MATHS_LANGUAGE_H
+#define ALCOVE_MATHS_LANGUAGE_H
+
+#ifdef __cplusplus
+#include <glm/glm.hpp>
+#include <glm/integer.hpp>
+
+#define ALCOVE_INLINE inline
+#define ALCOVE_MATHS_BEGIN namespace alcove::maths {
+#define ALCOVE_MATHS_END }
+
+namespace alcove::maths {
+using namespace glm;
+}
+#else
+#define ALCOVE_INLINE
+#define ALCOVE_MATHS_BEGIN
+#define ALCOVE_MATHS_END
+#endif
+
+#endif

@@ -1,0 +1,115 @@
+// Where to look: directions of slices, offsets and distances of steps, and mips to read.
+//
+// Each noise gives a pixel two numbers in [0,1): `direction`, a fraction of half a turn (slice k of
+// n lies at phi = pi (k + direction) / n), and `offset`, a fraction of a step.
+#ifndef ALCOVE_MATHS_SAMPLING_H
+#define ALCOVE_MATHS_SAMPLING_H
+
+#include "constants.h"
+#include "language.h"
+
+ALCOVE_MATHS_BEGIN
+
+struct SliceNoise {
+  float direction;
+  float offset;
+};
+
+ALCOVE_INLINE float slice_angle(uint slice, uint slice_count, float direction) {
+  return kPi * (float(slice) + direction) / float(slice_count);
+}
+
+// The memo's layout (section 4.4): a 4x4 block of pixels holds 16 directions and 4 offsets, and six
+// frames turn every one of them, 96 directions in all, each once. A pixel's own six lie a sixth of
+// half a turn apart, neighbours in time far apart; every second one is shifted by 1/96 so that no
+// two of the 96 coincide.
+ALCOVE_INLINE SliceNoise spatial_pattern(uvec2 pixel, uint frame) {
+  uint x = pixel.x & 3u;
+  uint y = pixel.y & 3u;
+  uint cell = (((x + y) & 3u) << 2u) + x;
+  // Sixths in the order 1, 5, 3, 4, 2, 0, four bits each.
+  uint sixth = (0x024351u >> ((frame % 6u) * 4u)) & 15u;
+  uint step_of_96 = (cell * 6u + sixth * 16u + (sixth & 1u)) % 96u;
+  // Quarters in the order 0, 2, 1, 3, two bits each, held for a whole turn of the directions.
+  uint quarter = (0xD8u >> (((frame / 6u) & 3u) * 2u)) & 3u;
+  uint offset = ((y + 4u - x) & 3u) * 4u + quarter;
+  SliceNoise noise;
+  noise.direction = float(step_of_96) * (1.0f / 96.0f);
+  noise.offset = (float(offset) + 0.5f) * (1.0f / 16.0f);
+  return noise;
+}
+
+// Position along a Hilbert curve through a 64x64 block; takes x and y modulo 64. In [0,4096).
+ALCOVE_INLINE uint hilbert_index(uvec2 pixel) {
+  uint x = pixel.x & 63u;
+  uint y = pixel.y & 63u;
+  uint index = 0u;
+  for (uint size = 32u; size > 0u; size >>= 1u) {
+    uint right = (x & size) != 0u ? 1u : 0u;
+    uint below = (y & size) != 0u ? 1u : 0u;
+    index += size * size * ((3u * right) ^ below);
+    if (below == 0u) {
+      uint mirror = right * 63u;
+      uint swapped = x ^ mirror;
+      x = y ^ mirror;
+      y = swapped;
+    }
+  }
+  return index;
+}
+
+// The R2 sequence (Roberts 2018) in 32-bit fixed point, exact for every index.
+ALCOVE_INLINE SliceNoise r2_sequence(uint index) {
+  SliceNoise noise;
+  noise.direction = float((0x80000000u + index * 3242174889u) >> 8u) * (1.0f / 16777216.0f);
+  noise.offset = float((0x80000000u + index * 2447445414u) >> 8u) * (1.0f / 16777216.0f);
+  return noise;
+}
+
+// Hilbert index through the R2 sequence, 64 frames before it repeats: low discrepancy over any
+// neighbourhood of pixels and over frames, for a spatial filter with a temporal one behind it.
+ALCOVE_INLINE SliceNoise hilbert_noise(uvec2 pixel, uint frame) {
+  return r2_sequence(hilbert_index(pixel) + 288u * (frame & 63u));
+}
+
+// A hash of 32 bits, each output bit depending on each input bit (PCG-RXS-M-XS, O'Neill 2014).
+ALCOVE_INLINE uint hash(uint seed) {
+  uint state = seed * 747796405u + 2891336453u;
+  uint word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
+  return (word >> 22u) ^ word;
+}
+
+// The top 24 bits of a hash as a number in [0,1).
+ALCOVE_INLINE float unit_float(uint bits) { return float(bits >> 8u) * (1.0f / 16777216.0f); }
+
+// The nearest distance in pixels at which a step can find another texel in every direction.
+const float kNearestStep = 1.3f;
+
+// Distance in pixels of step k of n at `offset` in [0,1): from kNearestStep to radius_px, growing
+// with `power` so that near occluders, which matter most, are searched most finely. A radius below
+// kNearestStep takes every step there.
+ALCOVE_INLINE float step_distance(uint k, uint n, float offset, float radius_px, float power) {
+  float t = (float(k) + offset) / float(n);
+  return kNearestStep + max(radius_px - kNearestStep, 0.0f) * pow(max(t, 1e-6f), power);
+}
+
+// step_distance() with power 2, which needs no pow.
+ALCOVE_INLINE float step_distance_squared(uint k, uint n, float offset, float radius_px) {
+  float t = (float(k) + offset) / float(n);
+  return kNearestStep + max(radius_px - kNearestStep, 0.0f) * t * t;
+}
+
+// The mip of the depth pyramid to read at a distance: texels as wide as about a tenth of it (bias
+// 3.3, a power of two). In [0, last].
+ALCOVE_INLINE float depth_mip(float distance_px, float bias, float last) {
+  return clamp(log2(max(distance_px, 1.0f)) - bias, 0.0f, last);
+}
+
+// The centre of the texel of mip 0 that holds `position_px` (pixels, centres at halves).
+ALCOVE_INLINE vec2 snap_to_texel(vec2 position_px) {
+  return vec2(floor(position_px.x) + 0.5f, floor(position_px.y) + 0.5f);
+}
+
+ALCOVE_MATHS_END
+
+#endif

@@ -1,0 +1,82 @@
+// Slices: planes through the view vector, in which occlusion is searched and integrated.
+//
+// A slice is spanned by the view vector v (unit, from the surface to the eye) and a unit direction
+// d perpendicular to it. Angles in it are measured from v, positive towards d. Its `side` is +1
+// towards d and -1 away from it. A horizon is held as the cosine of its angle to v, on either side.
+#ifndef ALCOVE_MATHS_SLICE_H
+#define ALCOVE_MATHS_SLICE_H
+
+#include "arc_cosine.h"
+#include "constants.h"
+#include "language.h"
+
+ALCOVE_MATHS_BEGIN
+
+// Two unit vectors that with the view vector form a right-handed orthonormal basis: (x, y, view).
+// Both turn smoothly with the view vector wherever view.z > -1, which is all that an eye can see.
+struct ViewBasis {
+  vec3 x;
+  vec3 y;
+};
+
+// `view` is unit, in view space. (Frisvad 2012, for the half space before the eye.)
+ALCOVE_INLINE ViewBasis make_view_basis(vec3 view) {
+  float a = -1.0f / (1.0f + max(view.z, -0.9999f));
+  float b = view.x * view.y * a;
+  ViewBasis basis;
+  basis.x = vec3(1.0f + view.x * view.x * a, b, -view.x);
+  basis.y = vec3(b, 1.0f + view.y * view.y * a, -view.y);
+  return basis;
+}
+
+// The direction of the slice at angle phi around the view vector: phi in [0,pi) passes each slice
+// once, [0,2pi) each side of each once.
+ALCOVE_INLINE vec3 slice_direction(ViewBasis basis, float phi) {
+  float c = cos(phi);
+  float s = sin(phi);
+  return vec3(basis.x.x * c + basis.y.x * s, basis.x.y * c + basis.y.y * s,
+              basis.x.z * c + basis.y.z * s);
+}
+
+// A normal seen within a slice: projected into its plane, the length of the projection kept.
+// gamma is the signed angle from v to the projected normal, in [-pi/2,pi/2].
+struct Slice {
+  float along;   // <n,d> = scale * sin(gamma)
+  float toward;  // <n,v> = scale * cos(gamma), at least 0
+  float scale;   // length of the projected normal, [0,1]; 0 where it stands on the slice's plane
+  float sine;    // sin(gamma)
+  float cosine;  // cos(gamma); 1 where scale is 0
+};
+
+// `normal`, `direction` and `view` are unit and of one space, the last two perpendicular. A normal
+// that points away from the eye is taken as perpendicular to the view vector; see facing_normal().
+ALCOVE_INLINE Slice make_slice(vec3 normal, vec3 direction, vec3 view) {
+  Slice s;
+  s.along = dot(normal, direction);
+  s.toward = max(dot(normal, view), 0.0f);
+  float squared = s.along * s.along + s.toward * s.toward;
+  float inverse = squared > 1e-12f ? inversesqrt(squared) : 0.0f;
+  s.scale = squared * inverse;
+  s.sine = s.along * inverse;
+  s.cosine = inverse > 0.0f ? s.toward * inverse : 1.0f;
+  return s;
+}
+
+// The signed angle from the view vector to the projected normal, in [-pi/2,pi/2].
+ALCOVE_INLINE float slice_gamma(Slice s) { return kHalfPi - arc_cosine(s.sine); }
+
+// `normal` if the eye can see its side, else the nearest normal that the eye sees edge-on.
+// Interpolated and mapped normals turn away from the eye near silhouettes.
+ALCOVE_INLINE vec3 facing_normal(vec3 normal, vec3 view) {
+  float away = min(dot(normal, view), 0.0f);
+  vec3 turned = normal - view * away;
+  float squared = dot(turned, turned);
+  return squared > 1e-12f ? turned * inversesqrt(squared) : view;
+}
+
+// Cosine of the horizon that the surface's own tangent plane makes on a side: no horizon is lower.
+ALCOVE_INLINE float tangent_horizon(Slice s, float side) { return -side * s.sine; }
+
+ALCOVE_MATHS_END
+
+#endif
