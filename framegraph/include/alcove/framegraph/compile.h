@@ -1,0 +1,85 @@
+// Turns a declared frame into a plan: a pure function, no device. The phases, each in a file of its
+// own: validate, cull, order, lifetimes, place, synchronise.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <tl/expected.hpp>
+
+#include "alcove/framegraph/description.h"
+#include "alcove/framegraph/error.h"
+#include "alcove/framegraph/graph.h"
+#include "alcove/framegraph/plan.h"
+
+namespace alcove::framegraph {
+
+struct MemoryRequirements {
+  VkDeviceSize size = 0;
+  VkDeviceSize alignment = 1;        // a power of two
+  std::uint32_t memory_types = ~0u;  // allowed types, as a mask
+};
+
+// Asked for each live transient; `usage` is what its live passes need. Must be a pure function.
+struct MemoryOracle {
+  MemoryRequirements (*query)(const void* context, const ResourceRecord& record,
+                              VkFlags usage) = nullptr;
+  const void* context = nullptr;
+};
+// Width times height times texel size, mips summed, aligned to 256 bytes: what the default oracle
+// gives, for plans without a device.
+MemoryRequirements estimate_requirements(const ResourceRecord& record);
+
+// What a format can be used for: 0 refuses the format. Must be pure.
+struct FormatOracle {
+  VkImageUsageFlags (*query)(const void* context, VkFormat format) = nullptr;  // null: anything
+  const void* context = nullptr;
+};
+
+enum class Ordering : std::uint8_t {
+  program,     // as declared
+  lower_peak,  // reordered where that lowers the memory peak; never a higher one
+};
+
+// What the device allows and what the caller wants. The defaults are those of any desktop device.
+struct Limits {
+  std::uint32_t max_extent_2d = 16384;
+  std::uint32_t max_extent_3d = 2048;
+  std::uint32_t max_layers = 2048;
+  VkDeviceSize max_buffer_size = VkDeviceSize{1} << 32;
+  std::uint32_t max_samples = 64;  // mask of VkSampleCountFlagBits is (2 * max_samples - 1)
+  // Bytes between a buffer and an image (optimal tiling) that share memory.
+  VkDeviceSize buffer_image_granularity = 1;
+  // Queue family of each class, kNone where there is none: its passes then run on graphics.
+  std::uint32_t queue_families[kQueueClasses] = {0, kNone, kNone};
+  MemoryOracle memory;
+  FormatOracle formats;
+  Ordering ordering = Ordering::lower_peak;
+  bool alias = true;            // false gives each transient bytes of its own
+  bool split_barriers = false;  // vkCmdSetEvent2 where other work lies between
+};
+
+// Everything that compiling needs beside its input: kept from call to call, so that no memory is
+// allocated once it has grown. One thread at a time.
+class Compiler {
+ public:
+  Compiler();
+  ~Compiler();
+  Compiler(const Compiler&) = delete;
+  Compiler& operator=(const Compiler&) = delete;
+
+  // Overwrites `plan`. All errors of the declaration, or none and the plan is right.
+  [[nodiscard]] tl::expected<void, Errors> compile(const GraphDescription& graph,
+                                                   const Limits& limits, Plan& plan);
+
+ private:
+  std::unique_ptr<struct Workspace> workspace_;
+};
+
+[[nodiscard]] tl::expected<Plan, Errors> compile(const GraphDescription& graph,
+                                                 const Limits& limits = {});
+[[nodiscard]] inline tl::expected<Plan, Errors> compile(const Graph& graph,
+                                                        const Limits& limits = {}) {
+  return compile(graph.description(), limits);
+}
+
+}  // namespace alcove::framegraph

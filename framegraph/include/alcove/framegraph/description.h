@@ -1,0 +1,130 @@
+// A declared frame as plain data: what Graph writes, and what compile, verify and print read.
+// The records have no padding: equal bytes mean equal declarations, which is the plan cache's key.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "alcove/framegraph/types.h"
+
+namespace alcove::framegraph {
+
+enum class ResourceKind : std::uint8_t { texture, buffer };
+enum class Origin : std::uint8_t { transient, imported, history };
+
+struct ResourceRecord {
+  std::uint64_t size = 0;  // bytes, of a buffer
+  VkFormat format = VK_FORMAT_UNDEFINED;
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  std::uint32_t depth = 1;
+  std::uint32_t mips = 1;
+  std::uint32_t layers = 1;
+  std::uint32_t samples = 1;
+  std::uint32_t external = kNone;  // index into externals, of an import or a history slot
+  ResourceKind kind = ResourceKind::texture;
+  Origin origin = Origin::transient;
+  std::uint8_t slot = 0;    // of a history: 0 is this frame's, k is that of k frames ago
+  std::uint8_t slots = 1;   // of a history
+  std::uint32_t flags = 0;  // ResourceFlags
+};
+static_assert(std::has_unique_object_representations_v<ResourceRecord>);
+
+enum ResourceFlags : std::uint32_t {
+  kRelativeToNothing = 1,  // a relative extent of a dead handle
+};
+
+// What is known of a resource that lives outside the frame.
+struct ExternalRecord {
+  State arrival;
+  State departure;
+  VkFlags usage = 0;
+  std::uint32_t has_contents = 0;                     // 0 or 1
+  std::uint32_t has_departure = 0;                    // 0 or 1
+  HistoryValidity validity = HistoryValidity::valid;  // of a history slot
+  QueueClass queue = QueueClass::graphics;            // that used it last
+  std::uint16_t has_handle = 0;                       // 0 or 1: its Vulkan handle was given
+};
+static_assert(std::has_unique_object_representations_v<ExternalRecord>);
+
+enum AccessFlags : std::uint32_t {
+  kWrite = 1,
+  kDiscard = 2,
+  kOptional = 4,
+  kForeign = 8,  // the handle was of another graph or frame
+  kNull = 16,    // the handle was never made
+  kClosed = 32,  // declared on a pass that is not the last
+};
+
+struct AccessRecord {
+  VkPipelineStageFlags2 stages = 0;
+  VkAccessFlags2 access = 0;
+  VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
+  VkFlags usage = 0;
+  std::uint32_t resource = kNone;
+  std::uint32_t version = 0;                  // that the access names: a write makes the next one
+  Range range;                                // resolved: kAll only where the base is out of range
+  std::uint32_t flags = 0;                    // AccessFlags
+  ResourceKind kind = ResourceKind::texture;  // of the handle
+  std::uint8_t reserved[3] = {};
+};
+static_assert(std::has_unique_object_representations_v<AccessRecord>);
+
+enum PassFlags : std::uint8_t { kSideEffect = 1, kHasCallback = 2 };
+
+struct PassRecord {
+  std::uint32_t first_access = 0;
+  QueueClass queue = QueueClass::graphics;
+  std::uint8_t flags = 0;
+  std::uint16_t reserved = 0;
+};
+static_assert(std::has_unique_object_representations_v<PassRecord>);
+
+// A version that is wanted after the frame.
+struct OutputRecord {
+  std::uint32_t resource = kNone;
+  std::uint32_t version = 0;
+  std::uint32_t flags = 0;  // kForeign, kNull
+};
+static_assert(std::has_unique_object_representations_v<OutputRecord>);
+
+struct GraphDescription {
+  std::vector<PassRecord> passes;
+  std::vector<AccessRecord> accesses;  // in order of passes
+  std::vector<ResourceRecord> resources;
+  std::vector<ExternalRecord> externals;
+  std::vector<OutputRecord> outputs;
+
+  // Names are for people: they are no part of the key.
+  struct Name {
+    std::uint32_t offset = 0;
+    std::uint32_t size = 0;
+  };
+  std::vector<char> text;
+  std::vector<Name> pass_names;
+  std::vector<Name> resource_names;
+
+  std::span<const AccessRecord> pass_accesses(std::uint32_t pass) const {
+    const std::uint32_t first = passes[pass].first_access;
+    const std::uint32_t last = pass + 1 < passes.size()
+                                   ? passes[pass + 1].first_access
+                                   : static_cast<std::uint32_t>(accesses.size());
+    return {accesses.data() + first, last - first};
+  }
+  std::string_view pass_name(std::uint32_t pass) const {
+    return {text.data() + pass_names[pass].offset, pass_names[pass].size};
+  }
+  std::string_view resource_name(std::uint32_t resource) const {
+    return {text.data() + resource_names[resource].offset, resource_names[resource].size};
+  }
+};
+
+// Whether two frames were declared the same, names aside.
+bool same_declaration(const GraphDescription& a, const GraphDescription& b);
+// A hash of what same_declaration compares.
+std::uint64_t hash(const GraphDescription& description);
+
+}  // namespace alcove::framegraph

@@ -1,0 +1,49 @@
+// What went wrong, in a sentence that a stranger can act on.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "alcove/framegraph/types.h"
+
+namespace alcove::framegraph {
+
+enum class ErrorCode : std::uint8_t {
+  stale_handle,           // a version that a later write replaced
+  foreign_handle,         // of another graph, or of a frame before reset
+  null_handle,            // never created
+  read_before_write,      // nothing wrote what is read
+  read_and_write,         // one pass reads and writes one subresource in two accesses
+  two_writers,            // one pass writes one subresource twice
+  missing_usage,          // an import was not created for this use
+  unsupported_format,     // the format cannot be used so
+  bad_range,              // mips or layers that the texture does not have
+  bad_access,             // an access that contradicts itself or the pass's queue
+  bad_description,        // zero size, undefined format, or over a device limit
+  bad_import,             // an import without its Vulkan handle, or with a relative extent
+  history_never_written,  // a history slot is read that no frame wrote and none writes
+  history_cycle,          // a history's slots form a cycle within the frame
+  closed_pass,            // an access declared after the next pass was begun
+  missing_callback,       // a live pass has nothing to record
+  undeclared_use,         // a recording callback touched what its pass did not declare
+  no_queue,               // no queue for the pass
+  verification,           // the verifier found the plan wrong: an error of the compiler
+  vulkan,                 // a Vulkan call failed; see `result`
+};
+
+struct Error {
+  ErrorCode code = ErrorCode::vulkan;
+  std::string message;
+  VkResult result = VK_SUCCESS;    // with ErrorCode::vulkan
+  std::uint32_t pass = kNone;      // declaration index, kNone where none is concerned
+  std::uint32_t resource = kNone;  // index as in the handles
+  std::uint32_t version = 0;
+};
+
+using Errors = std::vector<Error>;
+
+// One line for each error.
+std::string to_string(const Errors& errors);
+
+}  // namespace alcove::framegraph

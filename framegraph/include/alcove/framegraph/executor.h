@@ -1,0 +1,118 @@
+// Runs graphs on a Vulkan 1.3 device (synchronization2, dynamic rendering and, for several queues,
+// timeline semaphores). Never creates a device.
+//
+//   frame:  wait for the fence of slot s;  graph.reset(); declare;  begin commands
+//           executor.record(graph, commands, {s});  end commands, submit with the fence of slot s
+//
+// Plans and physical resources are cached: a frame that was declared before compiles nothing and
+// allocates nothing. One thread at a time.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <tl/expected.hpp>
+
+#include "alcove/framegraph/compile.h"
+#include "alcove/framegraph/error.h"
+#include "alcove/framegraph/graph.h"
+#include "alcove/framegraph/plan.h"
+#include "alcove/framegraph/vulkan_functions.h"
+
+namespace alcove::framegraph {
+
+struct QueueHandle {
+  VkQueue queue = VK_NULL_HANDLE;
+  std::uint32_t family = kNone;
+};
+
+// The caller's device: outlives the executor. `queues` by QueueClass; graphics must be there (only
+// its family when the executor just records), the others may be null.
+struct DeviceHandles {
+  VkInstance instance = VK_NULL_HANDLE;
+  VkPhysicalDevice physical_device = VK_NULL_HANDLE;
+  VkDevice device = VK_NULL_HANDLE;
+  PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr;
+  QueueHandle queues[kQueueClasses];
+  bool debug_utils = false;  // VK_EXT_debug_utils is enabled on the instance
+};
+
+struct ExecutorOptions {
+  std::uint32_t frames_in_flight = 2;  // frame slots, 1 to 8
+  bool timestamps = true;              // GPU time of each pass
+  Ordering ordering = Ordering::lower_peak;
+  bool alias = true;
+  bool split_barriers = false;
+#ifdef NDEBUG
+  bool verify = false;      // every new plan goes through verify()
+  bool check_uses = false;  // undeclared uses in callbacks are errors
+#else
+  bool verify = true;
+  bool check_uses = true;
+#endif
+};
+
+struct FrameInfo {
+  // Which frame in flight: the device must have finished what was last recorded with this slot.
+  std::uint32_t slot = 0;
+};
+
+// Bytes of the transients of a frame, over all heaps.
+struct MemoryStatistics {
+  VkDeviceSize aliased = 0;      // as placed
+  VkDeviceSize unaliased = 0;    // were each given bytes of its own
+  VkDeviceSize lower_bound = 0;  // most bytes live at once
+  VkDeviceSize history = 0;      // of all history slots
+  VkDeviceSize allocated = 0;    // device memory that the executor holds
+};
+
+struct FrameReport {
+  const Plan* plan = nullptr;  // valid until the next record
+  MemoryStatistics memory;
+  bool compiled = false;  // false when the plan came from the cache
+};
+
+struct PassTiming {
+  std::string_view name;
+  double milliseconds = 0.0;
+};
+
+class Executor {
+ public:
+  [[nodiscard]] static tl::expected<Executor, Errors> create(const DeviceHandles& device,
+                                                             const ExecutorOptions& options = {});
+  Executor(Executor&&) noexcept;
+  Executor& operator=(Executor&&) noexcept;
+  // The device must have finished all that was recorded.
+  ~Executor();
+
+  // Records the frame into `commands`, a primary command buffer of the graphics family in the
+  // recording state, outside a render pass. All passes run on its queue. On an error nothing of the
+  // graph is recorded, except that an undeclared use is found while recording.
+  [[nodiscard]] tl::expected<FrameReport, Errors> record(Graph& graph, VkCommandBuffer commands,
+                                                         const FrameInfo& frame = {});
+
+  // Records and submits on as many queues as there are. Waits itself for what was last submitted
+  // with this slot. `signal` may be null; it is signalled (a timeline semaphore, to `value`) when
+  // the whole frame is done.
+  [[nodiscard]] tl::expected<FrameReport, Errors> submit(Graph& graph, const FrameInfo& frame = {});
+  // Waits for what was submitted with this slot.
+  [[nodiscard]] tl::expected<void, Errors> wait(std::uint32_t slot = 0);
+
+  // GPU time of each pass of the frame last recorded with this slot, in order of execution. Only
+  // after the device has finished it; empty where there is nothing or timestamps are off. The names
+  // are valid until the slot is recorded again.
+  [[nodiscard]] std::span<const PassTiming> timings(std::uint32_t slot = 0);
+
+  const VulkanFunctions& functions() const;
+  // What compile is given.
+  const Limits& limits() const;
+
+ private:
+  struct Implementation;
+  explicit Executor(std::unique_ptr<Implementation> implementation);
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace alcove::framegraph

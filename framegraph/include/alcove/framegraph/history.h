@@ -1,0 +1,54 @@
+// What a graph remembers of its history resources from frame to frame.
+//
+// A history has N slots. Each frame slot 0 ("current") may be written and slots 1..N-1 hold what
+// was current 1..N-1 frames ago. Slots rotate at the end of a frame in which a live pass wrote slot
+// 0, and only then: a frame that culls the writer leaves all contents where they are. A change of
+// description or a reset makes every slot invalid, with the reason; a slot becomes valid again when
+// it was written. A frame that does not declare the history leaves it untouched.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "alcove/framegraph/description.h"
+#include "alcove/framegraph/types.h"
+
+namespace alcove::framegraph {
+
+inline constexpr std::uint32_t kMaxHistorySlots = 8;
+
+struct HistorySlot {
+  State state;  // how the last frame that touched it left it
+  QueueClass queue = QueueClass::graphics;
+  HistoryValidity validity = HistoryValidity::first_frame;
+};
+
+struct HistoryEntry {
+  std::string name;
+  ResourceRecord record;                // of slot 0, with `external` cleared
+  HistorySlot slots[kMaxHistorySlots];  // by physical position
+  std::uint32_t head = 0;               // physical position of slot 0
+  std::uint32_t generation = 0;         // changes when new physical resources are needed
+  bool declared = false;                // in the frame that is being declared
+
+  std::uint32_t physical(std::uint32_t slot) const { return (head + slot) % record.slots; }
+};
+
+class HistoryTable {
+ public:
+  // Finds or makes the entry; a changed record invalidates it.
+  std::uint32_t declare(std::string_view name, const ResourceRecord& record);
+  void invalidate(std::string_view name);
+  void invalidate_all();
+  void begin_frame();
+
+  const std::vector<HistoryEntry>& entries() const { return entries_; }
+  HistoryEntry& entry(std::uint32_t index) { return entries_[index]; }
+
+ private:
+  std::vector<HistoryEntry> entries_;
+};
+
+}  // namespace alcove::framegraph

@@ -1,0 +1,122 @@
+// A compiled frame as plain data: which passes run, in which order and on which queue, where each
+// transient lies in memory, and every dependency between them.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "alcove/framegraph/types.h"
+
+namespace alcove::framegraph {
+
+// Why a pass is in the plan, or is not.
+enum class Fate : std::uint8_t {
+  side_effect,    // live: it says that it has effects outside the graph
+  output,         // live: it writes what is wanted after the frame
+  feeds_pass,     // live: `witness` reads what it writes
+  feeds_history,  // live: its history slot is read by `witness` in later frames
+  unread,         // culled: nothing live reads any of what it writes
+  writes_nothing  // culled: it writes nothing and has no side effect
+};
+
+struct PassFate {
+  Fate fate = Fate::unread;
+  std::uint32_t witness = kNone;   // the pass that keeps it
+  std::uint32_t resource = kNone;  // by which resource
+};
+
+// One dependency within a batch. With a resource it is an image barrier over `range`; without one
+// it is a memory barrier over everything. A texture whose layout and owner stay, and every buffer
+// that stays on its queue family, is served by memory barriers.
+struct Transition {
+  VkPipelineStageFlags2 src_stages = 0;
+  VkAccessFlags2 src_access = 0;
+  VkPipelineStageFlags2 dst_stages = 0;
+  VkAccessFlags2 dst_access = 0;
+  std::uint32_t resource = kNone;
+  VkImageLayout old_layout = VK_IMAGE_LAYOUT_UNDEFINED;
+  VkImageLayout new_layout = VK_IMAGE_LAYOUT_UNDEFINED;
+  Range range;
+  // Queue classes of an ownership transfer; equal where there is none.
+  QueueClass src_queue = QueueClass::graphics;
+  QueueClass dst_queue = QueueClass::graphics;
+};
+
+// Transitions that are recorded by one command, just before a pass of a queue (or after its last).
+struct Batch {
+  std::uint32_t first = 0;  // into Plan::transitions
+  std::uint32_t count = 0;
+  // The position whose end signals a split barrier, kNone for one that is not split: vkCmdSetEvent2
+  // after that position, vkCmdWaitEvents2 here.
+  std::uint32_t split_after = kNone;
+};
+
+// A pass in execution order. Positions index Plan::passes; within a submission they run in order.
+struct PlannedPass {
+  std::uint32_t pass = kNone;  // declaration index
+  QueueClass queue = QueueClass::graphics;
+  std::uint32_t submission = 0;   // into Plan::submissions
+  std::uint32_t first_batch = 0;  // batches that come before it
+  std::uint32_t batch_count = 0;
+};
+
+// Work handed to one queue in one piece. Submissions are in an order in which each waits only on
+// earlier ones; signals are counted per queue.
+struct Submission {
+  QueueClass queue = QueueClass::graphics;
+  std::uint32_t first_pass = 0;  // positions [first_pass, first_pass + pass_count)
+  std::uint32_t pass_count = 0;
+  std::uint32_t first_wait = 0;  // into Plan::waits
+  std::uint32_t wait_count = 0;
+  std::uint32_t first_batch = 0;  // batches after its last pass
+  std::uint32_t batch_count = 0;
+};
+
+// A timeline wait: before `stages` of the submission, all of `submission`.
+struct Wait {
+  std::uint32_t submission = 0;
+  VkPipelineStageFlags2 stages = 0;
+};
+
+// Where a transient lies. A resource that no live pass uses has heap == kNone.
+struct Placement {
+  std::uint32_t heap = kNone;
+  VkDeviceSize offset = 0;
+  VkDeviceSize size = 0;
+  VkDeviceSize alignment = 1;
+  std::uint32_t first = kNone;  // positions of first and last use
+  std::uint32_t last = kNone;
+  VkFlags usage = 0;  // of all live accesses
+};
+
+struct Heap {
+  std::uint32_t memory_types = 0;  // allowed memory types, as a mask
+  VkDeviceSize size = 0;           // the peak
+  VkDeviceSize lower_bound = 0;    // most bytes live at once
+  VkDeviceSize unaliased = 0;      // sum of the sizes
+};
+
+// How an import or history slot is left, for whoever uses it next.
+struct FinalState {
+  std::uint32_t resource = kNone;
+  State state;
+  QueueClass queue = QueueClass::graphics;
+  std::uint32_t written = 0;  // 0 or 1: by a live pass
+};
+
+struct Plan {
+  std::vector<PlannedPass> passes;
+  std::vector<Batch> batches;
+  std::vector<Transition> transitions;
+  std::vector<Submission> submissions;
+  std::vector<Wait> waits;
+  std::vector<Placement> placements;  // by resource
+  std::vector<Heap> heaps;
+  std::vector<PassFate> fates;              // by declared pass
+  std::vector<std::uint8_t> live_accesses;  // by declared access: 0 or 1
+  std::vector<FinalState> finals;
+  bool reordered = false;  // whether the order differs from the declaration's
+};
+
+}  // namespace alcove::framegraph

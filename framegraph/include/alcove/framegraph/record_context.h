@@ -1,0 +1,57 @@
+// What a recording callback is given: the command buffer and the physical side of its handles.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "alcove/framegraph/types.h"
+#include "alcove/framegraph/vulkan_functions.h"
+
+namespace alcove::framegraph {
+
+// Valid only during the callback. Any version of a handle finds the same image or buffer.
+//
+// Views and buffers are stable: as long as the declarations do not change they are the same handles
+// every frame, so descriptor sets made from them may be kept; `resources_id` changes when they do.
+// Imports are as the caller gave them this frame.
+//
+// A texture or buffer that the pass did not declare gives a null handle where uses are checked
+// (ExecutorOptions::check_uses, on in debug builds), and Executor::record returns the error.
+class RecordContext {
+ public:
+  VkCommandBuffer commands = VK_NULL_HANDLE;
+  const VulkanFunctions& vk;
+  // Changes whenever a transient or history handle that passes can see may have changed.
+  std::uint64_t resources_id = 0;
+  // Frame slot as in FrameInfo: for what a pass keeps per frame in flight.
+  std::uint32_t frame_slot = 0;
+
+  // A view of the range that the pass declared for this texture (the first access that names it),
+  // or of `range`, which must lie within what is declared. 2D, 2D array when more than one layer is
+  // covered, or 3D. Depth formats give the depth aspect.
+  VkImageView view(Texture texture) const;
+  VkImageView view(Texture texture, Range range) const;
+  VkImage image(Texture texture) const;
+  VkBuffer buffer(Buffer buffer) const;
+  // Size of a mip in texels.
+  VkExtent3D extent(Texture texture, std::uint32_t mip = 0) const;
+  VkDeviceSize size(Buffer buffer) const;
+  VkFormat format(Texture texture) const;
+  // Whether an optional write takes place; false also for what was culled altogether.
+  bool is_used(Texture texture) const;
+  bool is_used(Buffer buffer) const;
+  // Of a slot of a history resource.
+  HistoryValidity validity(Texture texture) const;
+  HistoryValidity validity(Buffer buffer) const;
+  std::string_view pass_name() const;
+
+ private:
+  friend class Recorder;
+  RecordContext(VkCommandBuffer command_buffer, const VulkanFunctions& functions,
+                const class Recorder& recorder, std::uint32_t pass)
+      : commands(command_buffer), vk(functions), recorder_(recorder), pass_(pass) {}
+  const class Recorder& recorder_;
+  std::uint32_t pass_;
+};
+
+}  // namespace alcove::framegraph

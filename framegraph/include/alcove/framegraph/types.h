@@ -1,0 +1,141 @@
+// What a frame is declared with: handles, descriptions, accesses and ranges. Plain data, no device:
+// Vulkan's own enums are used as they are, and nothing of Vulkan is called.
+#pragma once
+
+#include <vulkan/vulkan_core.h>
+
+#include <cstdint>
+
+namespace alcove::framegraph {
+
+inline constexpr std::uint32_t kNone = ~std::uint32_t{0};
+// In a Range: all mips or layers from the base on.
+inline constexpr std::uint16_t kAll = 0xffff;
+
+// One version of a texture of one frame of one graph. A write gives the next version and the graph
+// refuses the old one from then on. A handle is dead after Graph::reset.
+struct Texture {
+  std::uint32_t index = kNone;
+  std::uint32_t version = 0;
+  std::uint32_t graph = 0;
+  explicit operator bool() const { return index != kNone; }
+  bool operator==(const Texture&) const = default;
+};
+
+// The same for a buffer.
+struct Buffer {
+  std::uint32_t index = kNone;
+  std::uint32_t version = 0;
+  std::uint32_t graph = 0;
+  explicit operator bool() const { return index != kNone; }
+  bool operator==(const Buffer&) const = default;
+};
+
+// A size in texels, or a share of another texture's size: each side divided, rounded up, at
+// least 1.
+struct Extent {
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  std::uint32_t depth = 1;  // over 1 makes a 3D image
+  Texture relative_to = {};
+  std::uint32_t divisor = 1;
+
+  static Extent absolute(std::uint32_t width, std::uint32_t height, std::uint32_t depth = 1) {
+    return {width, height, depth, {}, 1};
+  }
+  static Extent relative(Texture to, std::uint32_t divisor = 1) { return {0, 0, 1, to, divisor}; }
+};
+
+struct TextureDesc {
+  VkFormat format = VK_FORMAT_UNDEFINED;
+  Extent extent;
+  std::uint32_t mips = 1;
+  std::uint32_t layers = 1;  // over 1 makes an array
+  VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
+};
+
+struct BufferDesc {
+  VkDeviceSize size = 0;  // bytes
+};
+
+// How a pass touches a resource. `layout` is for textures only. `usage` is VkImageUsageFlags for a
+// texture and VkBufferUsageFlags for a buffer; the graph creates a resource with all that its live
+// passes ask for. access.h names the common ones.
+struct Access {
+  VkPipelineStageFlags2 stages = 0;
+  VkAccessFlags2 access = 0;
+  VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
+  VkFlags usage = 0;
+};
+
+// The mips and layers of one access; the default is all of them.
+struct Range {
+  std::uint16_t base_mip = 0;
+  std::uint16_t mips = kAll;
+  std::uint16_t base_layer = 0;
+  std::uint16_t layers = kAll;
+
+  static Range mip(std::uint32_t mip) { return {static_cast<std::uint16_t>(mip), 1, 0, kAll}; }
+  static Range layer(std::uint32_t layer) {
+    return {0, kAll, static_cast<std::uint16_t>(layer), 1};
+  }
+  bool operator==(const Range&) const = default;
+};
+
+// Where an imported resource comes from, or is to be left: the last (or next) stages and accesses
+// outside the graph and, for a texture, the layout. An arrival in VK_IMAGE_LAYOUT_UNDEFINED (for a
+// buffer: with no access) has no contents.
+struct State {
+  VkPipelineStageFlags2 stages = 0;
+  VkAccessFlags2 access = 0;
+  VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
+  std::uint32_t reserved = 0;
+};
+
+// An image of the caller's. The graph never owns or outlives it; `view` may be null, then the
+// executor makes the views that passes ask for. `usage` is what the image was created with.
+struct ImportedTexture {
+  VkImage image = VK_NULL_HANDLE;
+  VkImageView view = VK_NULL_HANDLE;  // of the whole image
+  TextureDesc desc;                   // the extent must be absolute
+  VkImageUsageFlags usage = 0;
+  State arrival;
+  // With a departure the graph leaves the image so, and a write to it is an output of the frame.
+  // Without one (layout undefined and no stages) a write that nobody reads is culled.
+  State departure;
+};
+
+struct ImportedBuffer {
+  VkBuffer buffer = VK_NULL_HANDLE;
+  BufferDesc desc;
+  VkBufferUsageFlags usage = 0;
+  // A buffer that arrives with contents that need no barrier has has_contents and no stages.
+  bool has_contents = true;
+  State arrival;
+  State departure;
+};
+
+// What a write does to what was there in its range.
+enum class Contents : std::uint8_t {
+  keep,     // the write may be partial: earlier contents stay, and so do the passes that made them
+  discard,  // every texel is written: earlier contents may be thrown away
+};
+
+// Whether a write has to take place.
+enum class Need : std::uint8_t {
+  required,  // takes place whenever its pass runs
+  optional,  // costs nothing when nobody reads it: RecordContext::is_used tells the pass
+};
+
+enum class QueueClass : std::uint8_t { graphics, compute, transfer };
+inline constexpr std::uint32_t kQueueClasses = 3;
+
+// Why a slot of a history resource has no contents, or that it has.
+enum class HistoryValidity : std::uint8_t {
+  valid,
+  first_frame,  // never written so far
+  resized,      // the description changed: extent, format, mips, layers, samples or slot count
+  reset,        // Graph::reset_history was called
+};
+
+}  // namespace alcove::framegraph

@@ -1,0 +1,137 @@
+// The Vulkan functions that the executor and recording callbacks call, fetched from the caller's
+// vkGetInstanceProcAddr: the library defines no Vulkan symbol and links no loader.
+#pragma once
+
+#include <vulkan/vulkan_core.h>
+
+namespace alcove::framegraph {
+
+// X(name) for each function of the device (or, the first group, of the instance).
+#define ALCOVE_FRAMEGRAPH_INSTANCE_FUNCTIONS(X) \
+  X(vkGetDeviceProcAddr)                        \
+  X(vkGetPhysicalDeviceProperties)              \
+  X(vkGetPhysicalDeviceMemoryProperties)        \
+  X(vkGetPhysicalDeviceQueueFamilyProperties)   \
+  X(vkGetPhysicalDeviceFormatProperties)        \
+  X(vkGetPhysicalDeviceImageFormatProperties)
+
+#define ALCOVE_FRAMEGRAPH_DEVICE_FUNCTIONS(X) \
+  X(vkAllocateCommandBuffers)                 \
+  X(vkAllocateDescriptorSets)                 \
+  X(vkAllocateMemory)                         \
+  X(vkBeginCommandBuffer)                     \
+  X(vkBindBufferMemory)                       \
+  X(vkBindImageMemory)                        \
+  X(vkCmdBeginQuery)                          \
+  X(vkCmdBeginRendering)                      \
+  X(vkCmdBindDescriptorSets)                  \
+  X(vkCmdBindIndexBuffer)                     \
+  X(vkCmdBindPipeline)                        \
+  X(vkCmdBindVertexBuffers)                   \
+  X(vkCmdBlitImage2)                          \
+  X(vkCmdClearColorImage)                     \
+  X(vkCmdClearDepthStencilImage)              \
+  X(vkCmdCopyBuffer)                          \
+  X(vkCmdCopyBufferToImage)                   \
+  X(vkCmdCopyImage)                           \
+  X(vkCmdCopyImageToBuffer)                   \
+  X(vkCmdDispatch)                            \
+  X(vkCmdDispatchIndirect)                    \
+  X(vkCmdDraw)                                \
+  X(vkCmdDrawIndexed)                         \
+  X(vkCmdDrawIndexedIndirect)                 \
+  X(vkCmdDrawIndirect)                        \
+  X(vkCmdEndQuery)                            \
+  X(vkCmdEndRendering)                        \
+  X(vkCmdExecuteCommands)                     \
+  X(vkCmdFillBuffer)                          \
+  X(vkCmdPipelineBarrier2)                    \
+  X(vkCmdPushConstants)                       \
+  X(vkCmdResetEvent2)                         \
+  X(vkCmdResetQueryPool)                      \
+  X(vkCmdSetCullMode)                         \
+  X(vkCmdSetEvent2)                           \
+  X(vkCmdSetFrontFace)                        \
+  X(vkCmdSetScissor)                          \
+  X(vkCmdSetViewport)                         \
+  X(vkCmdUpdateBuffer)                        \
+  X(vkCmdWaitEvents2)                         \
+  X(vkCmdWriteTimestamp2)                     \
+  X(vkCreateBuffer)                           \
+  X(vkCreateCommandPool)                      \
+  X(vkCreateComputePipelines)                 \
+  X(vkCreateDescriptorPool)                   \
+  X(vkCreateDescriptorSetLayout)              \
+  X(vkCreateEvent)                            \
+  X(vkCreateFence)                            \
+  X(vkCreateGraphicsPipelines)                \
+  X(vkCreateImage)                            \
+  X(vkCreateImageView)                        \
+  X(vkCreatePipelineCache)                    \
+  X(vkCreatePipelineLayout)                   \
+  X(vkCreateQueryPool)                        \
+  X(vkCreateSampler)                          \
+  X(vkCreateSemaphore)                        \
+  X(vkCreateShaderModule)                     \
+  X(vkDestroyBuffer)                          \
+  X(vkDestroyCommandPool)                     \
+  X(vkDestroyDescriptorPool)                  \
+  X(vkDestroyDescriptorSetLayout)             \
+  X(vkDestroyEvent)                           \
+  X(vkDestroyFence)                           \
+  X(vkDestroyImage)                           \
+  X(vkDestroyImageView)                       \
+  X(vkDestroyPipeline)                        \
+  X(vkDestroyPipelineCache)                   \
+  X(vkDestroyPipelineLayout)                  \
+  X(vkDestroyQueryPool)                       \
+  X(vkDestroySampler)                         \
+  X(vkDestroySemaphore)                       \
+  X(vkDestroyShaderModule)                    \
+  X(vkDeviceWaitIdle)                         \
+  X(vkEndCommandBuffer)                       \
+  X(vkFlushMappedMemoryRanges)                \
+  X(vkFreeCommandBuffers)                     \
+  X(vkFreeDescriptorSets)                     \
+  X(vkFreeMemory)                             \
+  X(vkGetBufferMemoryRequirements)            \
+  X(vkGetDeviceBufferMemoryRequirements)      \
+  X(vkGetDeviceImageMemoryRequirements)       \
+  X(vkGetDeviceQueue)                         \
+  X(vkGetFenceStatus)                         \
+  X(vkGetImageMemoryRequirements)             \
+  X(vkGetQueryPoolResults)                    \
+  X(vkGetSemaphoreCounterValue)               \
+  X(vkInvalidateMappedMemoryRanges)           \
+  X(vkMapMemory)                              \
+  X(vkQueueSubmit2)                           \
+  X(vkQueueWaitIdle)                          \
+  X(vkResetCommandBuffer)                     \
+  X(vkResetCommandPool)                       \
+  X(vkResetDescriptorPool)                    \
+  X(vkResetFences)                            \
+  X(vkUnmapMemory)                            \
+  X(vkUpdateDescriptorSets)                   \
+  X(vkWaitForFences)                          \
+  X(vkWaitSemaphores)
+
+// Extensions: null where the device does not have them enabled.
+#define ALCOVE_FRAMEGRAPH_OPTIONAL_FUNCTIONS(X) \
+  X(vkCmdBeginDebugUtilsLabelEXT)               \
+  X(vkCmdEndDebugUtilsLabelEXT)                 \
+  X(vkSetDebugUtilsObjectNameEXT)               \
+  X(vkCmdPushDescriptorSetKHR)
+
+struct VulkanFunctions {
+#define ALCOVE_DECLARE(name) PFN_##name name = nullptr;
+  ALCOVE_FRAMEGRAPH_INSTANCE_FUNCTIONS(ALCOVE_DECLARE)
+  ALCOVE_FRAMEGRAPH_DEVICE_FUNCTIONS(ALCOVE_DECLARE)
+  ALCOVE_FRAMEGRAPH_OPTIONAL_FUNCTIONS(ALCOVE_DECLARE)
+#undef ALCOVE_DECLARE
+};
+
+// Fetches everything; the name of the first function that is missing, or null when all are there.
+const char* load(VulkanFunctions& functions, PFN_vkGetInstanceProcAddr get_instance_proc_addr,
+                 VkInstance instance, VkDevice device);
+
+}  // namespace alcove::framegraph

@@ -1,0 +1,56 @@
+#include "alcove/framegraph/history.h"
+
+#include <cstring>
+
+namespace alcove::framegraph {
+namespace {
+
+void invalidate_slots(HistoryEntry& entry, HistoryValidity reason) {
+  for (HistorySlot& slot : entry.slots) {
+    // What never held anything keeps the first reason.
+    if (slot.validity == HistoryValidity::valid) slot.validity = reason;
+  }
+}
+
+}  // namespace
+
+std::uint32_t HistoryTable::declare(std::string_view name, const ResourceRecord& record) {
+  for (std::uint32_t i = 0; i < entries_.size(); ++i) {
+    HistoryEntry& entry = entries_[i];
+    // Two histories of one name in one frame are two histories.
+    if (entry.declared || entry.name != name) continue;
+    entry.declared = true;
+    if (std::memcmp(&entry.record, &record, sizeof record) == 0) return i;
+    entry.record = record;
+    entry.head = 0;
+    ++entry.generation;
+    for (HistorySlot& slot : entry.slots) {
+      const bool held = slot.validity != HistoryValidity::first_frame;
+      slot = {};
+      if (held) slot.validity = HistoryValidity::resized;
+    }
+    return i;
+  }
+  entries_.push_back({});
+  HistoryEntry& entry = entries_.back();
+  entry.name = name;
+  entry.record = record;
+  entry.declared = true;
+  return static_cast<std::uint32_t>(entries_.size() - 1);
+}
+
+void HistoryTable::invalidate(std::string_view name) {
+  for (HistoryEntry& entry : entries_) {
+    if (entry.name == name) invalidate_slots(entry, HistoryValidity::reset);
+  }
+}
+
+void HistoryTable::invalidate_all() {
+  for (HistoryEntry& entry : entries_) invalidate_slots(entry, HistoryValidity::reset);
+}
+
+void HistoryTable::begin_frame() {
+  for (HistoryEntry& entry : entries_) entry.declared = false;
+}
+
+}  // namespace alcove::framegraph
