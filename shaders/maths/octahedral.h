@@ -1,0 +1,34 @@
+// Unit vectors as two numbers: the octahedral map (Cigolle et al. 2014). It has no pole and no seam
+// inside a hemisphere, and spends its bits evenly.
+#ifndef ALCOVE_MATHS_OCTAHEDRAL_H
+#define ALCOVE_MATHS_OCTAHEDRAL_H
+
+#include "language.h"
+
+ALCOVE_MATHS_BEGIN
+
+// 1 or -1, never 0.
+ALCOVE_INLINE float sign_not_zero(float x) { return x < 0.0f ? -1.0f : 1.0f; }
+
+// `direction` of any length but 0 to the square [-1,1]^2; the zero vector goes where +Z does.
+ALCOVE_INLINE vec2 octahedral_encode(vec3 direction) {
+  float length_1 = abs(direction.x) + abs(direction.y) + abs(direction.z);
+  if (!(length_1 > 0.0f)) return vec2(0.0f, 0.0f);
+  float x = direction.x / length_1;
+  float y = direction.y / length_1;
+  if (direction.z >= 0.0f) return vec2(x, y);
+  return vec2((1.0f - abs(y)) * sign_not_zero(x), (1.0f - abs(x)) * sign_not_zero(y));
+}
+
+// The unit vector of a point of the square; one outside of it still gives a unit vector.
+ALCOVE_INLINE vec3 octahedral_decode(vec2 encoded) {
+  float z = 1.0f - abs(encoded.x) - abs(encoded.y);
+  float fold = max(-z, 0.0f);
+  float x = encoded.x - sign_not_zero(encoded.x) * fold;
+  float y = encoded.y - sign_not_zero(encoded.y) * fold;
+  return normalize(vec3(x, y, z));
+}
+
+ALCOVE_MATHS_END
+
+#endif
