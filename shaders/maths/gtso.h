@@ -1,0 +1,82 @@
+// Specular occlusion from visibility and bent normal (Jimenez et al. 2016, section 6: GTSO).
+//
+// What the surface sees is taken as a cone around the bent normal, what it reflects as a cone
+// around the mirror direction; the part of the second that the first holds is the specular
+// visibility S, 1 for open. The memo divides by the whole lobe's cone, which darkens an open
+// surface at grazing angles; here it is divided by the part of the lobe's cone above the surface.
+// Names: `alpha` is the GGX width (perceptual roughness squared); every vector is unit.
+#ifndef ALCOVE_MATHS_GTSO_H
+#define ALCOVE_MATHS_GTSO_H
+
+#include "constants.h"
+#include "language.h"
+#include "spherical_cap.h"
+
+ALCOVE_MATHS_BEGIN
+
+// The angle whose sine and cosine are given up to a common factor, from arguments that rounding may
+// have pushed under 0.
+ALCOVE_INLINE float angle_of(float sine_squared, float cosine) {
+  return atan(sqrt(max(sine_squared, 0.0f)), cosine);
+}
+
+// The angle between two unit vectors, [0,pi], good at both ends where acos is not.
+ALCOVE_INLINE float angle_between(vec3 a, vec3 b) {
+  vec3 normal = cross(a, b);
+  return atan(sqrt(dot(normal, normal)), dot(a, b));
+}
+
+// Half-angle of the cone, around the normal, whose cosine-weighted visibility is `visibility`.
+ALCOVE_INLINE float visibility_cone(float visibility) {
+  float v = clamp(visibility, 0.0f, 1.0f);
+  return angle_of(v, sqrt(1.0f - v));
+}
+
+// The same where visibility was not weighted by the cosine.
+ALCOVE_INLINE float uniform_visibility_cone(float visibility) {
+  float v = clamp(visibility, 0.0f, 1.0f);
+  return angle_of(v * (2.0f - v), 1.0f - v);
+}
+
+// The same for a cone that is tilted from the normal, by the cosine between bent normal and normal:
+// it must be wider to let in as much.
+ALCOVE_INLINE float tilted_visibility_cone(float visibility, float bent_dot_normal) {
+  return visibility_cone(clamp(visibility / max(bent_dot_normal, 1e-4f), 0.0f, 1.0f));
+}
+
+// Half-angle of the cone that stands for the lobe: its cosine is 10^(-alpha^2).
+ALCOVE_INLINE float lobe_cone(float alpha) {
+  float x = alpha * alpha * 2.302585f;
+  // 1 - cosine, by its series where the subtraction would lose it.
+  float rise = x < 0.02f ? x * (1.0f - x * (0.5f - x * (1.0f / 6.0f))) : 1.0f - exp(-x);
+  return angle_of(rise * (2.0f - rise), 1.0f - rise);
+}
+
+// S of a visibility cone around `bent_normal` for the lobe cone around `reflection`. A lobe that
+// lies under the surface as a whole sees as much as the surface does: 1 where it is open.
+ALCOVE_INLINE float cone_specular_occlusion(float visibility_angle, float lobe_angle,
+                                            vec3 bent_normal, vec3 normal, vec3 reflection) {
+  float above = cap_intersection(kHalfPi, lobe_angle, angle_between(normal, reflection));
+  float seen =
+      cap_intersection(visibility_angle, lobe_angle, angle_between(bent_normal, reflection));
+  if (above > 1e-12f) return clamp(seen / above, 0.0f, 1.0f);
+  return angle_between(bent_normal, reflection) <= visibility_angle ? 1.0f : 0.0f;
+}
+
+// S from visibility, bent normal and width, by the exact intersection of cones.
+ALCOVE_INLINE float specular_occlusion(float visibility, vec3 bent_normal, vec3 normal,
+                                       vec3 reflection, float alpha) {
+  return cone_specular_occlusion(visibility_cone(visibility), lobe_cone(alpha), bent_normal, normal,
+                                 reflection);
+}
+
+// Lagarde and de Rousiers 2014: from visibility and the cosine of the view alone. Open stays open.
+ALCOVE_INLINE float lagarde_specular_occlusion(float n_dot_v, float visibility, float alpha) {
+  float v = clamp(visibility, 0.0f, 1.0f);
+  float base = clamp(n_dot_v, 0.0f, 1.0f) + v;
+  return clamp(pow(max(base, 1e-6f), exp2(-16.0f * alpha - 1.0f)) - 1.0f + v, 0.0f, 1.0f);
+}
+
+ALCOVE_MATHS_END
+
+#endif

@@ -1,0 +1,59 @@
+// Accumulation over frames: a mean while samples are few, an exponential average once they are
+// many.
+#ifndef ALCOVE_MATHS_HISTORY_H
+#define ALCOVE_MATHS_HISTORY_H
+
+#include "language.h"
+
+ALCOVE_MATHS_BEGIN
+
+// What this frame weighs when `count` frames are held already (0: none) and at most `longest`
+// count: 1 / (count + 1), never less than 1 / longest. So the first frame stands alone, equal
+// frames weigh the same, and an old error fades however long the history.
+ALCOVE_INLINE float accumulation_weight(float count, float longest) {
+  return 1.0f / min(max(count, 0.0f) + 1.0f, max(longest, 1.0f));
+}
+
+// The count to store beside the blend: never above `longest`, so that it cannot drift or overflow.
+ALCOVE_INLINE float next_count(float count, float longest) {
+  return min(max(count, 0.0f) + 1.0f, max(longest, 1.0f));
+}
+
+// history + (now - history) weight, and `now` where history is not a number.
+ALCOVE_INLINE float accumulate(float history, float now, float weight) {
+  if (!(history >= 0.0f || history < 0.0f)) return now;
+  return mix(history, now, clamp(weight, 0.0f, 1.0f));
+}
+
+// Mean and spread of a neighbourhood of this frame, from sums over `count` values and their
+// squares.
+struct Spread {
+  float mean;
+  float deviation;  // standard deviation of the values, at least 0
+};
+
+ALCOVE_INLINE Spread spread_of_sums(float sum, float sum_of_squares, float count) {
+  Spread spread;
+  spread.mean = sum / max(count, 1.0f);
+  float variance = sum_of_squares / max(count, 1.0f) - spread.mean * spread.mean;
+  spread.deviation = sqrt(max(variance, 0.0f));
+  return spread;
+}
+
+// History brought within `width` deviations of the neighbourhood's mean. Noise keeps the deviation
+// wide and the history free; a change of light or of occluders pulls it along.
+ALCOVE_INLINE float clamp_to_spread(float history, Spread now, float width) {
+  float reach = width * now.deviation;
+  return clamp(history, now.mean - reach, now.mean + reach);
+}
+
+// The count to go on with after clamping moved history from `before` to `after`: all of it when
+// nothing moved, a single frame when it moved by `whole` or more.
+ALCOVE_INLINE float count_after_clamp(float count, float before, float after, float whole) {
+  float moved = clamp(abs(after - before) / max(whole, 1e-6f), 0.0f, 1.0f);
+  return mix(count, min(count, 1.0f), moved);
+}
+
+ALCOVE_MATHS_END
+
+#endif

@@ -1,0 +1,58 @@
+// Areas of spherical caps and of what two of them share.
+//
+// Angles in radians: `a` and `b` the half-angles of two caps, in [0,pi/2], `d` the angle between
+// their axes, in [0,pi]. Areas in steradians.
+#ifndef ALCOVE_MATHS_SPHERICAL_CAP_H
+#define ALCOVE_MATHS_SPHERICAL_CAP_H
+
+#include "constants.h"
+#include "language.h"
+
+ALCOVE_MATHS_BEGIN
+
+// 2 pi (1 - cos a), without the cancellation at small caps.
+ALCOVE_INLINE float cap_area(float a) {
+  float s = sin(0.5f * a);
+  return 4.0f * kPi * s * s;
+}
+
+// The angle at the centre of cap `b` between the axis to `a` and a crossing of the two rims; both
+// rims must cross. (The spherical law of cosines, in half-angle form for small caps.)
+ALCOVE_INLINE float rim_angle(float a, float b, float d) {
+  float numerator = max(sin(0.5f * (a + d - b)) * sin(0.5f * (a + b - d)), 0.0f);
+  float denominator = max(sin(0.5f * (a + b + d)) * sin(0.5f * (b + d - a)), 0.0f);
+  return 2.0f * atan(sqrt(numerator), sqrt(denominator));
+}
+
+// Twice the area of the spherical triangle with two sides and the angle between them.
+ALCOVE_INLINE float twice_triangle_area(float side_1, float side_2, float angle) {
+  float t = tan(0.5f * side_1) * tan(0.5f * side_2);
+  return 4.0f * atan(t * sin(angle), 1.0f + t * cos(angle));
+}
+
+// The area that two caps share, exact: the two sectors that the crossings of the rims cut from the
+// caps, less the kite that both sectors cover. Every term is of the size of the smaller cap, so a
+// small one keeps its digits.
+ALCOVE_INLINE float cap_intersection(float a, float b, float d) {
+  float small = min(a, b);
+  float large = max(a, b);
+  if (d >= small + large) return 0.0f;
+  if (d <= large - small) return cap_area(small);
+  float at_small = rim_angle(large, small, d);
+  float at_large = rim_angle(small, large, d);
+  float sectors = (at_small * cap_area(small) + at_large * cap_area(large)) / kPi;
+  float area = sectors - twice_triangle_area(small, d, at_small);
+  return clamp(area, 0.0f, cap_area(small));
+}
+
+// The common approximation (Oat and Sander 2007): the smaller cap's area times a smooth step of the
+// angle between the axes. Off by up to 0.16 of the smaller cap.
+ALCOVE_INLINE float cap_intersection_smooth(float a, float b, float d) {
+  float inside = abs(a - b);
+  float t = clamp((d - inside) / max(a + b - inside, 1e-6f), 0.0f, 1.0f);
+  return cap_area(min(a, b)) * (1.0f - t * t * (3.0f - 2.0f * t));
+}
+
+ALCOVE_MATHS_END
+
+#endif
