@@ -1,0 +1,333 @@
+#include "maths/projection.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "maths/make_projection.h"
+#include "random_input.h"
+
+namespace alcove::maths_test {
+namespace {
+
+using glm::mat4;
+using glm::vec2;
+using glm::vec3;
+using maths::Projection;
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+// A view frustum by its planes: left to top are at distance 1 for a perspective.
+struct Frustum {
+  double left = -1, right = 1, bottom = -1, top = 1, near = 0.1, far = 100;
+  bool perspective = true, infinite = false, reversed = false, flipped = false;
+  glm::dvec2 jitter{0};  // in clip space over w
+};
+
+// The Vulkan projection matrix of a frustum, from the definition of each kind.
+mat4 matrix_of(const Frustum& f) {
+  glm::dmat4 m(0.0);
+  const double width = f.right - f.left, height = f.top - f.bottom;
+  m[0][0] = 2 / width;
+  m[1][1] = -2 / height;
+  const glm::dvec2 centre(-(f.right + f.left) / width, (f.top + f.bottom) / height);
+  if (f.perspective) {
+    m[2] = glm::dvec4(-centre.x - f.jitter.x, -centre.y - f.jitter.y, 0, -1);
+    if (f.infinite) {
+      m[2][2] = -1;
+      m[3][2] = -f.near;
+    } else {
+      m[2][2] = f.far / (f.near - f.far);
+      m[3][2] = f.far * f.near / (f.near - f.far);
+    }
+  } else {
+    m[3] = glm::dvec4(centre.x + f.jitter.x, centre.y + f.jitter.y, 0, 1);
+    m[2][2] = -1 / (f.far - f.near);
+    m[3][2] = -f.near / (f.far - f.near);
+  }
+  if (f.flipped)
+    for (int column = 0; column < 4; ++column) m[column][1] = -m[column][1];
+  if (f.reversed)
+    for (int column = 0; column < 4; ++column) m[column][2] = m[column][3] - m[column][2];
+  return mat4(m);
+}
+
+Frustum random_frustum(RandomInput& random) {
+  Frustum f;
+  f.perspective = random.bits() % 3 != 0;
+  f.infinite = f.perspective && random.bits() % 2 == 0;
+  f.reversed = random.bits() % 2 == 0;
+  f.flipped = random.bits() % 2 == 0;
+  f.left = random.uniform(-2.0f, 0.4f);
+  f.right = f.left + random.uniform(0.1f, 3.0f);
+  f.bottom = random.uniform(-2.0f, 0.4f);
+  f.top = f.bottom + random.uniform(0.1f, 3.0f);
+  f.near = random.log_uniform(1e-3f, 10.0f);
+  if (!f.perspective && random.bits() % 2 == 0) f.near = -f.near;
+  f.far = std::max(f.near, 0.0) + random.log_uniform(1.0f, 1e5f);
+  f.jitter = glm::dvec2(random.uniform(-1e-3f, 1e-3f), random.uniform(-1e-3f, 1e-3f));
+  return f;
+}
+
+std::string describe(const Frustum& f) {
+  return std::string(f.perspective ? "perspective" : "orthographic") +
+         (f.infinite ? " infinite" : "") + (f.reversed ? " reversed" : "") +
+         (f.flipped ? " flipped" : "") + " near " + std::to_string(f.near) + " far " +
+         std::to_string(f.far);
+}
+
+Projection projection_of(const Frustum& f, unsigned width = 960, unsigned height = 540) {
+  const auto p = maths::make_projection(matrix_of(f), width, height);
+  EXPECT_TRUE(p.has_value()) << (p ? "" : p.error()) << ": " << describe(f);
+  return p.value_or(Projection{});
+}
+
+struct Imaged {
+  glm::dvec2 uv;
+  double depth_ndc;
+};
+
+// What the matrix itself does to a view-space point.
+Imaged image_of(const mat4& matrix, vec3 position) {
+  const glm::dvec4 clip = glm::dmat4(matrix) * glm::dvec4(position, 1.0);
+  return {glm::dvec2(clip.x, clip.y) / clip.w * 0.5 + 0.5, clip.z / clip.w};
+}
+
+TEST(Projection, PositionsLandWhereTheMatrixPutsThem) {
+  RandomInput random;
+  for (int i = 0; i < 20000; ++i) {
+    const Frustum f = random_frustum(random);
+    const Projection p = projection_of(f);
+    const float depth =
+        float(f.perspective ? f.near * random.log_uniform(1.01f, 1e4f)
+                            : f.near + random.uniform(0.01f, 0.99f) * (f.far - f.near));
+    const vec2 uv(random.uniform(0, 1), random.uniform(0, 1));
+    const vec3 position = maths::position_vs(p, uv, depth);
+    EXPECT_EQ(position.z, -depth);
+    const Imaged imaged = image_of(matrix_of(f), position);
+    EXPECT_NEAR(imaged.uv.x, uv.x, 3e-4) << describe(f);
+    EXPECT_NEAR(imaged.uv.y, uv.y, 3e-4) << describe(f);
+    const vec2 back = maths::uv_of_position(p, position);
+    EXPECT_NEAR(back.x, uv.x, 1e-4) << describe(f);
+    EXPECT_NEAR(back.y, uv.y, 1e-4) << describe(f);
+  }
+}
+
+TEST(Projection, RawDepthComesBackAsTheDistanceItWasMadeFrom) {
+  RandomInput random;
+  for (int i = 0; i < 20000; ++i) {
+    const Frustum f = random_frustum(random);
+    const Projection p = projection_of(f);
+    const mat4 matrix = matrix_of(f);
+    const double reach = f.infinite ? 1e3 * f.near : f.far;
+    const double depth = f.near + random.uniform(0.001f, 0.999f) * (reach - f.near);
+    const double exact = image_of(matrix, vec3(0, 0, float(-depth))).depth_ndc;
+    const float ndc = float(exact);
+    // A raw depth and the matrix are floats: neither can tell depths apart that are nearer than
+    // this, the change of depth over a few steps of the raw depth.
+    const double step = 4e-7;
+    const double slope =
+        std::abs(image_of(matrix, vec3(0, 0, float(-depth * 1.001))).depth_ndc - exact) /
+        (std::abs(depth) * 0.001);
+    const double tolerance = step / std::max(slope, 1e-30) + 1e-5 * std::abs(depth);
+    if (tolerance > 0.1 * std::abs(depth)) continue;
+    EXPECT_NEAR(maths::linear_depth(p, ndc), depth, 2 * tolerance) << describe(f);
+    EXPECT_NEAR(maths::ndc_depth(p, float(depth)), exact, 1e-5) << describe(f);
+    EXPECT_FALSE(maths::is_sky_ndc(p, ndc)) << describe(f) << " depth " << depth;
+  }
+}
+
+TEST(Projection, ReversedInfiniteDepthKeepsItsDigitsFarAway) {
+  Frustum f;
+  f.infinite = f.reversed = true;
+  const Projection p = projection_of(f);
+  for (const float depth : {0.1f, 1.0f, 1e3f, 1e5f, 1e7f}) {
+    EXPECT_NEAR(maths::linear_depth(p, 0.1f / depth) / depth, 1.0f, 1e-6f);
+  }
+}
+
+TEST(Projection, NearAndFarPlanesAreThoseOfTheFrustum) {
+  RandomInput random;
+  for (int i = 0; i < 2000; ++i) {
+    const Frustum f = random_frustum(random);
+    const Projection p = projection_of(f);
+    // The far plane of a finite perspective hangs on a difference of nearly equal numbers.
+    const double slack = f.perspective ? 2e-7 * f.far / f.near : 2e-6;
+    if (slack > 0.1) continue;
+    EXPECT_NEAR(p.near_far.x, f.near, 1e-5 * std::max(std::abs(f.near), f.far * 0.1));
+    if (f.infinite)
+      EXPECT_EQ(p.near_far.y, maths::kSkyDepth);
+    else
+      EXPECT_NEAR(p.near_far.y / f.far, 1.0, slack) << describe(f);
+  }
+}
+
+TEST(Projection, SkyAndBrokenDepthsAreTheSky) {
+  for (const bool infinite : {false, true}) {
+    for (const bool perspective : {false, true}) {
+      Frustum f;
+      f.perspective = perspective;
+      f.infinite = infinite && perspective;
+      const Projection standard = projection_of(f);
+      for (const float ndc : {1.0f, 1.5f, kInfinity, kNan}) {
+        EXPECT_TRUE(maths::is_sky_ndc(standard, ndc)) << ndc;
+        EXPECT_EQ(maths::linear_depth(standard, ndc), maths::kSkyDepth);
+      }
+      f.reversed = true;
+      const Projection reversed = projection_of(f);
+      for (const float ndc : {0.0f, -0.0f, -1.0f, -kInfinity, kNan}) {
+        EXPECT_TRUE(maths::is_sky_ndc(reversed, ndc)) << ndc;
+        EXPECT_EQ(maths::linear_depth(reversed, ndc), maths::kSkyDepth);
+      }
+      EXPECT_TRUE(maths::is_sky_depth(maths::kSkyDepth));
+      EXPECT_TRUE(maths::is_sky_depth(kNan));
+      EXPECT_FALSE(maths::is_sky_depth(1e7f));
+    }
+  }
+}
+
+TEST(Projection, EveryOtherDepthIsFiniteAndNoNearerThanTheNearPlane) {
+  RandomInput random;
+  for (int i = 0; i < 500; ++i) {
+    const Frustum f = random_frustum(random);
+    const Projection p = projection_of(f);
+    for (const float ndc :
+         {0.0f, 1e-45f, 1e-38f, 1e-20f, 0.5f, 1.0f - 6e-8f, -kInfinity, kInfinity, -3.0f, 3.0f}) {
+      const float depth = maths::linear_depth(p, ndc);
+      EXPECT_TRUE(std::isfinite(depth)) << describe(f) << " ndc " << ndc;
+      EXPECT_GE(depth, f.near - 1e-5 * std::max(std::abs(f.near), f.far * 0.1)) << describe(f);
+      EXPECT_LE(depth, maths::kSkyDepth);
+    }
+  }
+}
+
+TEST(Projection, ViewVectorPointsAgainstTheRayThatSeesThePoint) {
+  RandomInput random;
+  for (int i = 0; i < 5000; ++i) {
+    const Frustum f = random_frustum(random);
+    const Projection p = projection_of(f);
+    const vec2 uv(random.uniform(0, 1), random.uniform(0, 1));
+    const float depth = float(std::abs(f.near)) * random.uniform(2.0f, 50.0f);
+    const vec3 near = maths::position_vs(p, uv, depth);
+    const vec3 behind = maths::position_vs(p, uv, depth * 3.0f);
+    EXPECT_LT(distance(maths::view_vector(p, near), normalize(near - behind)), 2e-4f)
+        << describe(f);
+  }
+}
+
+TEST(Projection, ViewVectorIsConstantOnlyWhereRaysAreParallel) {
+  Frustum f;
+  f.perspective = false;
+  const Projection orthographic = projection_of(f);
+  EXPECT_EQ(maths::view_vector(orthographic, vec3(3, 4, -5)), vec3(0, 0, 1));
+  f.perspective = true;
+  EXPECT_LT(
+      distance(maths::view_vector(projection_of(f), vec3(3, 4, -5)), normalize(vec3(-3, -4, 5))),
+      1e-6f);
+}
+
+TEST(Projection, FarNarrowPerspectiveNearsTheOrthographic) {
+  Frustum narrow;
+  const double distance_away = 1e4;
+  narrow.left = narrow.bottom = -1 / distance_away;
+  narrow.right = narrow.top = 1 / distance_away;
+  narrow.near = distance_away - 10;
+  narrow.far = distance_away + 10;
+  Frustum orthographic;
+  orthographic.perspective = false;
+  const Projection a = projection_of(narrow), b = projection_of(orthographic);
+  const vec2 uv(0.9f, 0.2f);
+  const vec3 from_a = maths::position_vs(a, uv, float(distance_away));
+  const vec3 from_b = maths::position_vs(b, uv, 0.0f);
+  EXPECT_NEAR(from_a.x, from_b.x, 1e-3f);
+  EXPECT_NEAR(from_a.y, from_b.y, 1e-3f);
+  EXPECT_LT(distance(maths::view_vector(a, from_a), maths::view_vector(b, from_b)), 2e-4f);
+  const float pixels_a = maths::pixels_per_unit(a, float(distance_away)).x;
+  EXPECT_NEAR(pixels_a / maths::pixels_per_unit(b, 0.0f).x, 1.0f, 1e-5f);
+}
+
+TEST(Projection, PixelsAlongIsTheMotionOfTheImage) {
+  RandomInput random;
+  for (int i = 0; i < 5000; ++i) {
+    const Frustum f = random_frustum(random);
+    const Projection p = projection_of(f);
+    const vec2 uv(random.uniform(0, 1), random.uniform(0, 1));
+    const float depth = float(std::abs(f.near)) * random.uniform(2.0f, 50.0f);
+    const vec3 position = maths::position_vs(p, uv, depth);
+    const vec3 view = maths::view_vector(p, position);
+    const vec3 direction = normalize(cross(view, random.unit_vector()));
+    const vec2 predicted = maths::pixels_along(p, direction, view, depth);
+    const mat4 matrix = matrix_of(f);
+    const float step = 1e-3f * depth;
+    const glm::dvec2 before = image_of(matrix, position - direction * step).uv;
+    const glm::dvec2 after = image_of(matrix, position + direction * step).uv;
+    const glm::dvec2 moved = (after - before) * glm::dvec2(960, 540) / (2.0 * step);
+    EXPECT_LT(distance(glm::dvec2(predicted), moved), 0.02 * length(moved) + 1e-2)
+        << describe(f) << " " << predicted.x << "," << predicted.y << " against " << moved.x << ","
+        << moved.y;
+  }
+}
+
+TEST(Projection, ARadiusCoversAsManyPixelsAsItsImage) {
+  Frustum f;
+  f.left = -2;
+  f.right = 2;
+  const Projection p = projection_of(f, 400, 200);
+  EXPECT_NEAR(maths::pixels_per_unit(p, 1.0f).x, 100.0f, 1e-3f);
+  EXPECT_NEAR(maths::pixels_per_unit(p, 1.0f).y, 100.0f, 1e-3f);
+  EXPECT_NEAR(maths::pixels_per_unit(p, 10.0f).x, 10.0f, 1e-4f);
+}
+
+TEST(Projection, PixelCentresLieHalfATexelIn) {
+  const Projection p = projection_of(Frustum{}, 5, 3);
+  EXPECT_FLOAT_EQ(maths::pixel_centre_uv(p, glm::uvec2(0, 0)).x, 0.1f);
+  EXPECT_FLOAT_EQ(maths::pixel_centre_uv(p, glm::uvec2(4, 2)).y, 2.5f / 3.0f);
+}
+
+TEST(Projection, TopOfTheImageIsTheTopOfTheView) {
+  const Projection p = projection_of(Frustum{});
+  EXPECT_GT(maths::position_vs(p, vec2(0.5f, 0.0f), 1.0f).y, 0.9f);
+  Frustum upside_down;
+  upside_down.flipped = true;
+  EXPECT_LT(maths::position_vs(projection_of(upside_down), vec2(0.5f, 0.0f), 1.0f).y, -0.9f);
+}
+
+TEST(MakeProjection, RefusesWhatIsNoProjectionAndSaysWhy) {
+  const mat4 good = matrix_of(Frustum{});
+  const auto fault = [](const mat4& m) {
+    const auto p = maths::make_projection(m, 16, 16);
+    return p ? std::string() : std::string(p.error());
+  };
+  EXPECT_EQ(fault(good), "");
+  mat4 m = good;
+  m[1][2] = kNan;
+  EXPECT_NE(fault(m).find("not finite"), std::string::npos);
+  m = good;
+  m[0][0] = 0;
+  EXPECT_NE(fault(m).find("flattens"), std::string::npos);
+  m = good;
+  m[0][1] = 0.5f;
+  EXPECT_NE(fault(m).find("mixes x and y"), std::string::npos);
+  m = good;
+  m[0][3] = 0.5f;
+  EXPECT_NE(fault(m).find("tilts"), std::string::npos);
+  m = good;
+  m[1][2] = 0.5f;
+  EXPECT_NE(fault(m).find("oblique"), std::string::npos);
+  m = good;
+  m[2][3] = 1.0f;
+  EXPECT_NE(fault(m).find("+Z"), std::string::npos);
+  m = good;
+  m[3][2] = 0.0f;
+  EXPECT_NE(fault(m).find("same depth"), std::string::npos);
+  EXPECT_NE(fault(mat4(0.0f)), "");
+  EXPECT_FALSE(maths::make_projection(good, 0, 16).has_value());
+  EXPECT_FALSE(maths::make_projection(good, 16, 0).has_value());
+}
+
+}  // namespace
+}  // namespace alcove::maths_test

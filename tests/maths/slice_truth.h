@@ -1,0 +1,59 @@
+// A slice in double, straight from its definition, to hold the shaders' closed forms against.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <glm/glm.hpp>
+
+#include "maths/slice.h"
+#include "quadrature.h"
+
+namespace alcove::maths_test {
+
+struct SliceTruth {
+  double scale;  // length of the projected normal
+  double gamma;  // signed angle from the view vector to it
+
+  // Of a shader's slice, from the components that it was made of.
+  explicit SliceTruth(const maths::Slice& s)
+      : scale(std::hypot(double(s.along), double(s.toward))),
+        gamma(scale > 0.0 ? std::atan2(double(s.along), double(s.toward)) : 0.0) {}
+  SliceTruth(double projected_scale, double projected_gamma)
+      : scale(projected_scale), gamma(projected_gamma) {}
+
+  double lowest() const { return gamma - kPi / 2; }
+  double highest() const { return gamma + kPi / 2; }
+
+  // The integrand of visibility over the angle t from the view vector.
+  double density(double t) const { return scale * std::cos(t - gamma) * std::abs(std::sin(t)); }
+
+  // Visibility between two angles, cut to the hemisphere of the normal; split at the view vector.
+  double visibility(double from, double to) const {
+    const double a = std::max(from, lowest()), b = std::min(to, highest());
+    if (a >= b) return 0.0;
+    const auto f = [this](double t) { return density(t); };
+    const double split = std::clamp(0.0, a, b);
+    return integrate(f, a, split) + integrate(f, split, b);
+  }
+
+  // The same with the direction as a vector: x along the slice, y along the view vector.
+  glm::dvec2 bent(double from, double to) const {
+    const double a = std::max(from, lowest()), b = std::min(to, highest());
+    if (a >= b) return glm::dvec2(0.0);
+    const auto f = [this](double t) { return density(t) * glm::dvec2(std::sin(t), std::cos(t)); };
+    const double split = std::clamp(0.0, a, b);
+    return integrate(f, a, split) + integrate(f, split, b);
+  }
+
+  double open() const { return scale * (std::cos(gamma) + gamma * std::sin(gamma)); }
+};
+
+// A slice whose projected normal has the given length and angle.
+inline maths::Slice slice_of(double scale, double gamma) {
+  const glm::vec3 view(0, 0, 1), direction(1, 0, 0);
+  const double y = std::sqrt(std::max(0.0, 1.0 - scale * scale));
+  const glm::vec3 normal(scale * std::sin(gamma), y, scale * std::cos(gamma));
+  return maths::make_slice(normal, direction, view);
+}
+
+}  // namespace alcove::maths_test
