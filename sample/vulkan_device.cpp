@@ -58,8 +58,6 @@ std::string missing_features(VkPhysicalDevice device, uint32_t api_version) {
       {has.v12.hostQueryReset, "hostQueryReset"},
       {has.all.features.shaderStorageImageWriteWithoutFormat,
        "shaderStorageImageWriteWithoutFormat"},
-      {has.all.features.shaderSampledImageArrayDynamicIndexing,
-       "shaderSampledImageArrayDynamicIndexing"},
   };
   std::string missing;
   for (const auto& [present, name] : needed) {
@@ -272,7 +270,6 @@ tl::expected<void, std::string> VulkanDevice::create_device(bool presentation) {
   enabled.v12.timelineSemaphore = VK_TRUE;
   enabled.v12.hostQueryReset = VK_TRUE;
   enabled.all.features.shaderStorageImageWriteWithoutFormat = VK_TRUE;
-  enabled.all.features.shaderSampledImageArrayDynamicIndexing = VK_TRUE;
   std::vector<const char*> extensions;
   if (presentation) {
     extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);

@@ -105,6 +105,10 @@ class Executor {
   // are valid until the slot is recorded again.
   [[nodiscard]] std::span<const PassTiming> timings(std::uint32_t slot = 0);
 
+  // To be called before the caller destroys an image that it imported, if passes asked for views of
+  // it other than the one imported: a new image may have the same handle.
+  void forget(VkImage image);
+
   const VulkanFunctions& functions() const;
   // What compile is given.
   const Limits& limits() const;

@@ -1,0 +1,133 @@
+// Culling: one walk backwards over the passes, from what is wanted after the frame, by subresource.
+// Program order is a valid order of dependence, so that one walk suffices; only a history that is
+// found to be read makes its writer wanted, and the walk is repeated.
+#include "workspace.h"
+
+namespace alcove::framegraph {
+namespace {
+
+constexpr std::uint32_t kUnneeded = kNone;
+constexpr std::uint32_t kByOutput = kNone - 1;
+// Reader of a history slot, kept for later frames: the pass is below this bit.
+constexpr std::uint32_t kHistoryBit = 0x4000'0000;
+
+class Culler {
+ public:
+  Culler(const GraphDescription& graph, Workspace& workspace, Plan& plan)
+      : graph_(graph), workspace_(workspace), plan_(plan) {}
+
+  void run() {
+    workspace_.cull.history_reader.assign(graph_.resources.size(), kNone);
+    do {
+      found_history_ = false;
+      walk();
+    } while (found_history_);
+  }
+
+ private:
+  void walk() {
+    plan_.fates.assign(graph_.passes.size(), PassFate{});
+    plan_.live_accesses.assign(graph_.accesses.size(), 0);
+    workspace_.pass_live.assign(graph_.passes.size(), 0);
+    workspace_.cull.needed_by.assign(workspace_.first_sub.back(), kUnneeded);
+    seed();
+    for (std::uint32_t pass = static_cast<std::uint32_t>(graph_.passes.size()); pass-- > 0;)
+      visit(pass);
+  }
+
+  void seed() {
+    for (const OutputRecord& output : graph_.outputs) need_all(output.resource, kByOutput);
+    if (graph_.externals.empty()) return;
+    for (std::uint32_t r = 0; r < graph_.resources.size(); ++r) {
+      const ResourceRecord& resource = graph_.resources[r];
+      if (resource.external == kNone) continue;
+      if (resource.origin == Origin::imported && graph_.externals[resource.external].has_departure)
+        need_all(r, kByOutput);
+      if (workspace_.cull.history_reader[r] != kNone)
+        need_all(r, workspace_.cull.history_reader[r] | kHistoryBit);
+    }
+  }
+
+  void need_all(std::uint32_t resource, std::uint32_t why) {
+    for (std::uint32_t sub = workspace_.first_sub[resource];
+         sub < workspace_.first_sub[resource + 1]; ++sub)
+      workspace_.cull.needed_by[sub] = why;
+  }
+
+  void visit(std::uint32_t pass) {
+    const PassRecord& record = graph_.passes[pass];
+    const auto accesses = graph_.pass_accesses(pass);
+    std::uint8_t* live = plan_.live_accesses.data() + record.first_access;
+    bool pass_is_live = (record.flags & kSideEffect) != 0;
+    bool writes = false;
+    PassFate fate{pass_is_live ? Fate::side_effect : Fate::unread, kNone, kNone};
+    for (std::size_t i = 0; i < accesses.size(); ++i) {
+      const AccessRecord& access = accesses[i];
+      if (!(access.flags & kWrite)) continue;
+      writes = true;
+      const std::uint32_t why = first_need(access);
+      if (why == kUnneeded) continue;
+      live[i] = 1;
+      if (!pass_is_live) fate = explain(why, access.resource);
+      pass_is_live = true;
+    }
+    if (!writes && !pass_is_live) fate.fate = Fate::writes_nothing;
+    plan_.fates[pass] = fate;
+    if (!pass_is_live) return;
+    workspace_.pass_live[pass] = 1;
+    for (std::size_t i = 0; i < accesses.size(); ++i) {
+      if (!(accesses[i].flags & kOptional)) live[i] = 1;
+      if (live[i] && (accesses[i].flags & kWrite)) end_need(accesses[i]);
+    }
+    for (const AccessRecord& access : accesses) {
+      if (!(access.flags & kWrite)) begin_need(access, pass);
+    }
+  }
+
+  std::uint32_t first_need(const AccessRecord& access) const {
+    std::uint32_t why = kUnneeded;
+    for_each_sub(graph_.resources[access.resource], workspace_.first_sub[access.resource],
+                 access.range, [&](std::uint32_t sub) {
+                   if (why == kUnneeded) why = workspace_.cull.needed_by[sub];
+                 });
+    return why;
+  }
+
+  // A write that discards is where the need ends; one that keeps passes it on to earlier writers.
+  void end_need(const AccessRecord& access) {
+    if (!(access.flags & kDiscard)) return;
+    for_each_sub(graph_.resources[access.resource], workspace_.first_sub[access.resource],
+                 access.range,
+                 [&](std::uint32_t sub) { workspace_.cull.needed_by[sub] = kUnneeded; });
+  }
+
+  void begin_need(const AccessRecord& access, std::uint32_t pass) {
+    const ResourceRecord& resource = graph_.resources[access.resource];
+    for_each_sub(resource, workspace_.first_sub[access.resource], access.range,
+                 [&](std::uint32_t sub) { workspace_.cull.needed_by[sub] = pass; });
+    if (resource.origin != Origin::history || resource.slot == 0) return;
+    std::uint32_t& reader = workspace_.cull.history_reader[access.resource - resource.slot];
+    if (reader != kNone) return;
+    reader = pass;
+    found_history_ = true;
+  }
+
+  static PassFate explain(std::uint32_t why, std::uint32_t resource) {
+    if (why == kByOutput) return {Fate::output, kNone, resource};
+    if (why & kHistoryBit) return {Fate::feeds_history, why & ~kHistoryBit, resource};
+    return {Fate::feeds_pass, why, resource};
+  }
+
+  const GraphDescription& graph_;
+  Workspace& workspace_;
+  Plan& plan_;
+  bool found_history_ = false;
+};
+
+}  // namespace
+
+void cull(const GraphDescription& graph, Workspace& workspace, Plan& plan) {
+  Culler(graph, workspace, plan).run();
+}
+
+}  // namespace alcove::framegraph

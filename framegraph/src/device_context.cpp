@@ -1,0 +1,147 @@
+#include "device_context.h"
+
+namespace alcove::framegraph {
+namespace {
+
+MemoryRequirements device_requirements(const void* context, const ResourceRecord& record,
+                                       VkFlags usage) {
+  const auto& device = *static_cast<const DeviceContext*>(context);
+  VkMemoryRequirements2 found{VK_STRUCTURE_TYPE_MEMORY_REQUIREMENTS_2, nullptr, {}};
+  if (record.kind == ResourceKind::texture) {
+    const VkImageCreateInfo info = image_info(record, usage);
+    const VkDeviceImageMemoryRequirements query{VK_STRUCTURE_TYPE_DEVICE_IMAGE_MEMORY_REQUIREMENTS,
+                                                nullptr, &info, VK_IMAGE_ASPECT_COLOR_BIT};
+    device.vk.vkGetDeviceImageMemoryRequirements(device.handles.device, &query, &found);
+  } else {
+    const VkBufferCreateInfo info = buffer_info(record, usage);
+    const VkDeviceBufferMemoryRequirements query{
+        VK_STRUCTURE_TYPE_DEVICE_BUFFER_MEMORY_REQUIREMENTS, nullptr, &info};
+    device.vk.vkGetDeviceBufferMemoryRequirements(device.handles.device, &query, &found);
+  }
+  const VkMemoryRequirements& r = found.memoryRequirements;
+  return {r.size, r.alignment, r.memoryTypeBits};
+}
+
+VkImageUsageFlags format_usage(const void* context, VkFormat format) {
+  const auto& device = *static_cast<const DeviceContext*>(context);
+  VkFormatProperties properties{};
+  device.vk.vkGetPhysicalDeviceFormatProperties(device.handles.physical_device, format,
+                                                &properties);
+  struct Pair {
+    VkFormatFeatureFlags feature;
+    VkImageUsageFlags usage;
+  };
+  constexpr Pair kPairs[] = {
+      {VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT, VK_IMAGE_USAGE_SAMPLED_BIT},
+      {VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT, VK_IMAGE_USAGE_STORAGE_BIT},
+      {VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT},
+      {VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT},
+      {VK_FORMAT_FEATURE_TRANSFER_SRC_BIT, VK_IMAGE_USAGE_TRANSFER_SRC_BIT},
+      {VK_FORMAT_FEATURE_TRANSFER_DST_BIT, VK_IMAGE_USAGE_TRANSFER_DST_BIT},
+  };
+  // Input and transient attachments follow from the attachment bits, which are asked for as well.
+  VkImageUsageFlags usage =
+      VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSIENT_ATTACHMENT_BIT;
+  for (const Pair& pair : kPairs) {
+    if (properties.optimalTilingFeatures & pair.feature) usage |= pair.usage;
+  }
+  return usage;
+}
+
+void read_limits(DeviceContext& context) {
+  Limits& limits = context.limits;
+  const VkPhysicalDeviceLimits& device = context.properties.limits;
+  limits.max_extent_2d = device.maxImageDimension2D;
+  limits.max_extent_3d = device.maxImageDimension3D;
+  limits.max_layers = device.maxImageArrayLayers;
+  limits.buffer_image_granularity = device.bufferImageGranularity;
+  limits.memory = {device_requirements, &context};
+  limits.formats = {format_usage, &context};
+  for (std::size_t i = 0; i < kQueueClasses; ++i) {
+    const QueueHandle& queue = context.handles.queues[i];
+    limits.queue_families[i] = queue.queue == VK_NULL_HANDLE && i != 0 ? kNone : queue.family;
+  }
+}
+
+Errors missing(std::string what) {
+  Errors errors(1);
+  errors[0].message = std::move(what);
+  errors[0].result = VK_ERROR_FEATURE_NOT_PRESENT;
+  return errors;
+}
+
+}  // namespace
+
+tl::expected<void, Errors> open(DeviceContext& context, const DeviceHandles& handles) {
+  context.handles = handles;
+  if (handles.instance == VK_NULL_HANDLE || handles.physical_device == VK_NULL_HANDLE ||
+      handles.device == VK_NULL_HANDLE || handles.get_instance_proc_addr == nullptr ||
+      handles.queues[0].family == kNone)
+    return tl::unexpected(
+        missing("DeviceHandles lacks the instance, physical device, device, get_instance_proc_addr "
+                "or the graphics queue's family: set them all"));
+  if (const char* name =
+          load(context.vk, handles.get_instance_proc_addr, handles.instance, handles.device))
+    return tl::unexpected(missing(std::string("the device has no ") + name +
+                                  ": create instance and device for Vulkan 1.3"));
+  context.vk.vkGetPhysicalDeviceProperties(handles.physical_device, &context.properties);
+  if (context.properties.apiVersion < VK_API_VERSION_1_3)
+    return tl::unexpected(missing(std::string("the device '") + context.properties.deviceName +
+                                  "' is below Vulkan 1.3: choose another or update its driver"));
+  context.vk.vkGetPhysicalDeviceMemoryProperties(handles.physical_device, &context.memory);
+  read_limits(context);
+  return {};
+}
+
+VkImageCreateInfo image_info(const ResourceRecord& record, VkFlags usage) {
+  VkImageCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
+  info.imageType = record.depth > 1 ? VK_IMAGE_TYPE_3D : VK_IMAGE_TYPE_2D;
+  info.format = record.format;
+  info.extent = {record.width, record.height, record.depth};
+  info.mipLevels = record.mips;
+  info.arrayLayers = record.layers;
+  info.samples = static_cast<VkSampleCountFlagBits>(record.samples);
+  info.tiling = VK_IMAGE_TILING_OPTIMAL;
+  info.usage = usage;
+  info.sharingMode = VK_SHARING_MODE_EXCLUSIVE;
+  info.initialLayout = VK_IMAGE_LAYOUT_UNDEFINED;
+  return info;
+}
+
+VkBufferCreateInfo buffer_info(const ResourceRecord& record, VkFlags usage) {
+  VkBufferCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
+  info.size = record.size;
+  info.usage = usage;
+  info.sharingMode = VK_SHARING_MODE_EXCLUSIVE;
+  return info;
+}
+
+Errors vulkan_error(VkResult result, std::string what) {
+  Errors errors(1);
+  errors[0].message = std::move(what) + ": " + result_name(result);
+  errors[0].result = result;
+  return errors;
+}
+
+const char* result_name(VkResult result) {
+  switch (result) {
+    case VK_ERROR_OUT_OF_HOST_MEMORY:
+      return "VK_ERROR_OUT_OF_HOST_MEMORY";
+    case VK_ERROR_OUT_OF_DEVICE_MEMORY:
+      return "VK_ERROR_OUT_OF_DEVICE_MEMORY";
+    case VK_ERROR_DEVICE_LOST:
+      return "VK_ERROR_DEVICE_LOST";
+    case VK_ERROR_TOO_MANY_OBJECTS:
+      return "VK_ERROR_TOO_MANY_OBJECTS";
+    case VK_ERROR_FEATURE_NOT_PRESENT:
+      return "VK_ERROR_FEATURE_NOT_PRESENT";
+    case VK_TIMEOUT:
+      return "VK_TIMEOUT";
+    default:
+      return "VK_ERROR_UNKNOWN";
+  }
+}
+
+}  // namespace alcove::framegraph

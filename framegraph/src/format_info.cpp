@@ -1,0 +1,86 @@
+#include "format_info.h"
+
+#include <algorithm>
+
+#include "alcove/framegraph/compile.h"
+
+namespace alcove::framegraph {
+
+std::uint32_t texel_size(VkFormat format) {
+  const auto in = [format](VkFormat first, VkFormat last) {
+    return format >= first && format <= last;
+  };
+  if (in(VK_FORMAT_R4G4_UNORM_PACK8, VK_FORMAT_R4G4_UNORM_PACK8)) return 1;
+  if (in(VK_FORMAT_R4G4B4A4_UNORM_PACK16, VK_FORMAT_A1R5G5B5_UNORM_PACK16)) return 2;
+  if (in(VK_FORMAT_R8_UNORM, VK_FORMAT_R8_SRGB)) return 1;
+  if (in(VK_FORMAT_R8G8_UNORM, VK_FORMAT_R8G8_SRGB)) return 2;
+  if (in(VK_FORMAT_R8G8B8_UNORM, VK_FORMAT_B8G8R8_SRGB)) return 3;
+  if (in(VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_A2B10G10R10_SINT_PACK32)) return 4;
+  if (in(VK_FORMAT_R16_UNORM, VK_FORMAT_R16_SFLOAT)) return 2;
+  if (in(VK_FORMAT_R16G16_UNORM, VK_FORMAT_R16G16_SFLOAT)) return 4;
+  if (in(VK_FORMAT_R16G16B16_UNORM, VK_FORMAT_R16G16B16_SFLOAT)) return 6;
+  if (in(VK_FORMAT_R16G16B16A16_UNORM, VK_FORMAT_R16G16B16A16_SFLOAT)) return 8;
+  if (in(VK_FORMAT_R32_UINT, VK_FORMAT_R32_SFLOAT)) return 4;
+  if (in(VK_FORMAT_R32G32_UINT, VK_FORMAT_R32G32_SFLOAT)) return 8;
+  if (in(VK_FORMAT_R32G32B32_UINT, VK_FORMAT_R32G32B32_SFLOAT)) return 12;
+  if (in(VK_FORMAT_B10G11R11_UFLOAT_PACK32, VK_FORMAT_E5B9G9R9_UFLOAT_PACK32)) return 4;
+  switch (format) {
+    case VK_FORMAT_D16_UNORM:
+      return 2;
+    case VK_FORMAT_X8_D24_UNORM_PACK32:
+    case VK_FORMAT_D32_SFLOAT:
+    case VK_FORMAT_D24_UNORM_S8_UINT:
+      return 4;
+    case VK_FORMAT_S8_UINT:
+      return 1;
+    case VK_FORMAT_D16_UNORM_S8_UINT:
+      return 3;
+    case VK_FORMAT_D32_SFLOAT_S8_UINT:
+      return 5;
+    default:
+      break;
+  }
+  if (in(VK_FORMAT_BC1_RGB_UNORM_BLOCK, VK_FORMAT_ASTC_12x12_SRGB_BLOCK)) return 1;
+  return 16;
+}
+
+VkImageAspectFlags aspects(VkFormat format) {
+  switch (format) {
+    case VK_FORMAT_D16_UNORM:
+    case VK_FORMAT_X8_D24_UNORM_PACK32:
+    case VK_FORMAT_D32_SFLOAT:
+      return VK_IMAGE_ASPECT_DEPTH_BIT;
+    case VK_FORMAT_S8_UINT:
+      return VK_IMAGE_ASPECT_STENCIL_BIT;
+    case VK_FORMAT_D16_UNORM_S8_UINT:
+    case VK_FORMAT_D24_UNORM_S8_UINT:
+    case VK_FORMAT_D32_SFLOAT_S8_UINT:
+      return VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT;
+    default:
+      return VK_IMAGE_ASPECT_COLOR_BIT;
+  }
+}
+
+VkImageAspectFlags view_aspect(VkFormat format) {
+  const VkImageAspectFlags all = aspects(format);
+  return (all & VK_IMAGE_ASPECT_DEPTH_BIT) ? VkImageAspectFlags{VK_IMAGE_ASPECT_DEPTH_BIT} : all;
+}
+
+MemoryRequirements estimate_requirements(const ResourceRecord& record) {
+  constexpr VkDeviceSize kAlignment = 256;
+  VkDeviceSize size = record.size;
+  if (record.kind == ResourceKind::texture) {
+    size = 0;
+    for (std::uint32_t mip = 0; mip < record.mips; ++mip) {
+      const auto side = [mip](std::uint32_t length) {
+        return VkDeviceSize{mip < 32 ? std::max(1u, length >> mip) : 1u};
+      };
+      size +=
+          side(record.width) * side(record.height) * side(record.depth) * texel_size(record.format);
+    }
+    size *= VkDeviceSize{record.layers} * record.samples;
+  }
+  return {(size + kAlignment - 1) & ~(kAlignment - 1), kAlignment, ~0u};
+}
+
+}  // namespace alcove::framegraph

@@ -1,0 +1,58 @@
+// Which resource last used which bytes of a heap.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "alcove/framegraph/types.h"
+
+namespace alcove::framegraph {
+
+struct Segment {
+  VkDeviceSize begin = 0;
+  VkDeviceSize end = 0;
+  std::uint32_t resource = kNone;
+  bool before = false;  // in the frame before
+};
+
+// Segments in order, none overlapping.
+using MemoryMap = std::vector<Segment>;
+
+// Calls f for each owner of bytes in [begin, end), then makes them `owner`'s.
+template <typename Function>
+void take_over(MemoryMap& map, const Segment& owner, Function&& f) {
+  std::size_t first = 0;
+  for (std::size_t count = map.size(); count > 0;) {
+    const std::size_t half = count / 2;
+    if (map[first + half].end <= owner.begin) {
+      first += half + 1;
+      count -= half + 1;
+    } else {
+      count = half;
+    }
+  }
+  std::size_t last = first;
+  for (; last < map.size() && map[last].begin < owner.end; ++last) f(map[last]);
+  // What is left of the first and the last of those on either side.
+  Segment kept[3];
+  std::size_t keep = 0;
+  if (last > first && map[first].begin < owner.begin) {
+    kept[keep] = map[first];
+    kept[keep++].end = owner.begin;
+  }
+  kept[keep++] = owner;
+  if (last > first && map[last - 1].end > owner.end) {
+    kept[keep] = map[last - 1];
+    kept[keep++].begin = owner.end;
+  }
+  const std::size_t old = last - first;
+  if (keep > old) {
+    map.insert(map.begin() + static_cast<std::ptrdiff_t>(last), keep - old, Segment{});
+  } else {
+    map.erase(map.begin() + static_cast<std::ptrdiff_t>(first + keep),
+              map.begin() + static_cast<std::ptrdiff_t>(last));
+  }
+  for (std::size_t i = 0; i < keep; ++i) map[first + i] = kept[i];
+}
+
+}  // namespace alcove::framegraph

@@ -1,0 +1,261 @@
+#include "pool.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "format_info.h"
+
+namespace alcove::framegraph {
+namespace {
+
+// Frames after which what is unused is destroyed.
+constexpr std::uint64_t kPatience = 120;
+
+bool same(const ResourceRecord& a, const ResourceRecord& b) {
+  // Where a resource came from does not matter to what it is.
+  return a.kind == b.kind && a.size == b.size && a.format == b.format && a.width == b.width &&
+         a.height == b.height && a.depth == b.depth && a.mips == b.mips && a.layers == b.layers &&
+         a.samples == b.samples;
+}
+
+}  // namespace
+
+Pool::~Pool() {
+  for (auto& physical : transients_) destroy(*physical);
+  for (auto& history : histories_) destroy(*history.physical);
+  for (auto& physical : imports_) destroy(*physical);
+  for (auto& retired : retired_) {
+    if (retired.physical) destroy(*retired.physical);
+    device_.vk.vkFreeMemory(device_.handles.device, retired.memory, nullptr);
+  }
+  for (HeapMemory& heap : heaps_)
+    device_.vk.vkFreeMemory(device_.handles.device, heap.memory, nullptr);
+}
+
+VkResult Pool::reserve(const Plan& plan, std::uint64_t frame) {
+  for (const Heap& wanted : plan.heaps) {
+    auto heap = std::find_if(heaps_.begin(), heaps_.end(), [&](const HeapMemory& h) {
+      return h.memory_types == wanted.memory_types;
+    });
+    if (heap == heaps_.end()) {
+      heaps_.push_back({wanted.memory_types, VK_NULL_HANDLE, 0});
+      heap = heaps_.end() - 1;
+    }
+    if (heap->size >= wanted.size) continue;
+    VkDeviceMemory memory = VK_NULL_HANDLE;
+    if (const VkResult result = allocate(wanted.memory_types, wanted.size, memory)) return result;
+    // Everything in the old memory goes with it; other heaps' transients are cheap to make again.
+    for (auto& physical : transients_) retired_.push_back({frame, std::move(physical), {}});
+    transients_.clear();
+    if (heap->memory) retired_.push_back({frame, nullptr, heap->memory});
+    heap->memory = memory;
+    heap->size = wanted.size;
+    ++generation_;
+  }
+  return VK_SUCCESS;
+}
+
+VkResult Pool::transient(const ResourceRecord& record, const Plan& plan, const Placement& placement,
+                         std::string_view name, Physical*& found) {
+  const std::uint32_t types = plan.heaps[placement.heap].memory_types;
+  const auto heap = std::find_if(heaps_.begin(), heaps_.end(),
+                                 [types](const HeapMemory& h) { return h.memory_types == types; });
+  const auto index = static_cast<std::uint32_t>(heap - heaps_.begin());
+  for (auto& physical : transients_) {
+    if (physical->heap == index && physical->offset == placement.offset &&
+        physical->usage == placement.usage && same(physical->record, record)) {
+      found = physical.get();
+      return VK_SUCCESS;
+    }
+  }
+  auto made = std::make_unique<Physical>();
+  made->record = record;
+  made->usage = placement.usage;
+  made->heap = index;
+  made->offset = placement.offset;
+  const VkResult result = create(*made, name);
+  if (result != VK_SUCCESS) {
+    destroy(*made);
+    return result;
+  }
+  transients_.push_back(std::move(made));
+  found = transients_.back().get();
+  return VK_SUCCESS;
+}
+
+VkResult Pool::history(std::uint32_t entry, std::uint32_t generation, std::uint32_t position,
+                       const ResourceRecord& record, VkFlags usage, std::string_view name,
+                       std::uint64_t frame, Physical*& found) {
+  auto there = std::find_if(histories_.begin(), histories_.end(), [&](const HistoryImage& h) {
+    return h.entry == entry && h.position == position;
+  });
+  if (there != histories_.end() && there->generation == generation) {
+    found = there->physical.get();
+    return VK_SUCCESS;
+  }
+  auto made = std::make_unique<Physical>();
+  made->record = record;
+  made->usage = usage;
+  const VkResult result = create(*made, name);
+  if (result != VK_SUCCESS) {
+    destroy(*made);
+    return result;
+  }
+  if (there == histories_.end()) {
+    histories_.push_back({entry, generation, position, std::move(made)});
+    there = histories_.end() - 1;
+  } else {
+    retired_.push_back({frame, std::move(there->physical), {}});
+    there->generation = generation;
+    there->physical = std::move(made);
+  }
+  ++generation_;
+  found = there->physical.get();
+  return VK_SUCCESS;
+}
+
+Physical& Pool::import(const ResourceRecord& record, const ImportHandles& handles) {
+  for (auto& physical : imports_) {
+    if (physical->image == handles.image && physical->buffer == handles.buffer &&
+        same(physical->record, record))
+      return *physical;
+  }
+  auto made = std::make_unique<Physical>();
+  made->record = record;
+  made->image = handles.image;
+  made->buffer = handles.buffer;
+  made->owned = false;
+  imports_.push_back(std::move(made));
+  return *imports_.back();
+}
+
+void Pool::forget(VkImage image, std::uint64_t frame) {
+  std::erase_if(imports_, [&](std::unique_ptr<Physical>& physical) {
+    if (physical->image != image) return false;
+    retired_.push_back({frame, std::move(physical), {}});
+    ++generation_;
+    return true;
+  });
+}
+
+VkImageView Pool::view(Physical& physical, const Range& range) {
+  for (const CachedView& cached : physical.views) {
+    if (cached.range == range) return cached.view;
+  }
+  VkImageViewCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
+  info.image = physical.image;
+  info.viewType = physical.record.depth > 1 ? VK_IMAGE_VIEW_TYPE_3D
+                  : range.layers > 1        ? VK_IMAGE_VIEW_TYPE_2D_ARRAY
+                                            : VK_IMAGE_VIEW_TYPE_2D;
+  info.format = physical.record.format;
+  info.subresourceRange = {view_aspect(physical.record.format), range.base_mip, range.mips,
+                           range.base_layer, range.layers};
+  VkImageView view = VK_NULL_HANDLE;
+  if (device_.vk.vkCreateImageView(device_.handles.device, &info, nullptr, &view) != VK_SUCCESS)
+    return VK_NULL_HANDLE;
+  physical.views.push_back({range, view});
+  return view;
+}
+
+void Pool::collect(std::uint64_t finished, std::uint64_t frame) {
+  std::erase_if(retired_, [&](Retired& retired) {
+    if (retired.frame > finished) return false;
+    if (retired.physical) destroy(*retired.physical);
+    device_.vk.vkFreeMemory(device_.handles.device, retired.memory, nullptr);
+    return true;
+  });
+  const auto unused = [&](std::unique_ptr<Physical>& physical) {
+    if (physical->last_frame + kPatience > frame || physical->last_frame > finished) return false;
+    destroy(*physical);
+    return true;
+  };
+  if (std::erase_if(transients_, unused) != 0) ++generation_;
+  if (std::erase_if(imports_, unused) != 0) ++generation_;
+}
+
+VkDeviceSize Pool::allocated() const {
+  VkDeviceSize sum = history_size();
+  for (const HeapMemory& heap : heaps_) sum += heap.size;
+  return sum;
+}
+
+VkDeviceSize Pool::history_size() const {
+  VkDeviceSize sum = 0;
+  for (const HistoryImage& history : histories_) sum += history.physical->own_size;
+  return sum;
+}
+
+VkResult Pool::create(Physical& physical, std::string_view name) {
+  const VkDevice device = device_.handles.device;
+  VkMemoryRequirements needed{};
+  VkResult result = VK_SUCCESS;
+  if (physical.record.kind == ResourceKind::texture) {
+    const VkImageCreateInfo info = image_info(physical.record, physical.usage);
+    result = device_.vk.vkCreateImage(device, &info, nullptr, &physical.image);
+    if (result != VK_SUCCESS) return result;
+    device_.vk.vkGetImageMemoryRequirements(device, physical.image, &needed);
+  } else {
+    const VkBufferCreateInfo info = buffer_info(physical.record, physical.usage);
+    result = device_.vk.vkCreateBuffer(device, &info, nullptr, &physical.buffer);
+    if (result != VK_SUCCESS) return result;
+    device_.vk.vkGetBufferMemoryRequirements(device, physical.buffer, &needed);
+  }
+  set_name(physical, name);
+  VkDeviceMemory memory = VK_NULL_HANDLE;
+  if (physical.heap != kNone) {
+    memory = heaps_[physical.heap].memory;
+  } else {
+    result = allocate(needed.memoryTypeBits, needed.size, physical.own_memory);
+    if (result != VK_SUCCESS) return result;
+    physical.own_size = needed.size;
+    memory = physical.own_memory;
+  }
+  return physical.image
+             ? device_.vk.vkBindImageMemory(device, physical.image, memory, physical.offset)
+             : device_.vk.vkBindBufferMemory(device, physical.buffer, memory, physical.offset);
+}
+
+VkResult Pool::allocate(std::uint32_t memory_types, VkDeviceSize size, VkDeviceMemory& memory) {
+  std::uint32_t type = kNone;
+  for (std::uint32_t i = device_.memory.memoryTypeCount; i-- > 0;) {
+    if (!(memory_types & (1u << i))) continue;
+    const bool local =
+        device_.memory.memoryTypes[i].propertyFlags & VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
+    if (type == kNone || local) type = i;
+  }
+  if (type == kNone) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+  VkMemoryAllocateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
+  info.allocationSize = size;
+  info.memoryTypeIndex = type;
+  return device_.vk.vkAllocateMemory(device_.handles.device, &info, nullptr, &memory);
+}
+
+void Pool::destroy(Physical& physical) {
+  const VkDevice device = device_.handles.device;
+  for (const CachedView& cached : physical.views)
+    device_.vk.vkDestroyImageView(device, cached.view, nullptr);
+  if (!physical.owned) return;
+  device_.vk.vkDestroyImage(device, physical.image, nullptr);
+  device_.vk.vkDestroyBuffer(device, physical.buffer, nullptr);
+  device_.vk.vkFreeMemory(device, physical.own_memory, nullptr);
+}
+
+void Pool::set_name(const Physical& physical, std::string_view name) {
+  if (!device_.handles.debug_utils || device_.vk.vkSetDebugUtilsObjectNameEXT == nullptr) return;
+  char text[64];
+  const std::size_t length = std::min(name.size(), sizeof text - 1);
+  std::memcpy(text, name.data(), length);
+  text[length] = '\0';
+  VkDebugUtilsObjectNameInfoEXT info{};
+  info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT;
+  info.objectType = physical.image ? VK_OBJECT_TYPE_IMAGE : VK_OBJECT_TYPE_BUFFER;
+  // Handles are pointers or integers, by platform: only this cast does for both.
+  info.objectHandle =
+      physical.image ? (std::uint64_t)physical.image : (std::uint64_t)physical.buffer;
+  info.pObjectName = text;
+  device_.vk.vkSetDebugUtilsObjectNameEXT(device_.handles.device, &info);
+}
+
+}  // namespace alcove::framegraph

@@ -1,0 +1,101 @@
+// The physical side: device memory, images, buffers and views, kept from frame to frame and shared
+// by all cached plans.
+//
+// Transients of every plan lie in the same heaps, one for each set of memory types, which only
+// grow. A transient is found again by description, usage and offset, so that a plan that comes back
+// finds its very images. What no frame used for a while is destroyed once the device is done with
+// it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "device_context.h"
+
+namespace alcove::framegraph {
+
+struct CachedView {
+  Range range;
+  VkImageView view = VK_NULL_HANDLE;
+};
+
+struct Physical {
+  ResourceRecord record;
+  VkFlags usage = 0;
+  VkDeviceSize offset = 0;
+  std::uint32_t heap = kNone;  // into the pool's heaps; kNone with memory of its own
+  VkImage image = VK_NULL_HANDLE;
+  VkBuffer buffer = VK_NULL_HANDLE;
+  VkDeviceMemory own_memory = VK_NULL_HANDLE;
+  VkDeviceSize own_size = 0;
+  bool owned = true;  // false for imports: only the views are the pool's
+  std::vector<CachedView> views;
+  std::uint64_t last_frame = 0;
+};
+
+class Pool {
+ public:
+  explicit Pool(const DeviceContext& device) : device_(device) {}
+  ~Pool();
+  Pool(const Pool&) = delete;
+  Pool& operator=(const Pool&) = delete;
+
+  // Makes the heaps of a plan large enough. When one had to grow, all transients are retired and
+  // `generation` changes.
+  [[nodiscard]] VkResult reserve(const Plan& plan, std::uint64_t frame);
+  // The transient of this description at this place.
+  [[nodiscard]] VkResult transient(const ResourceRecord& record, const Plan& plan,
+                                   const Placement& placement, std::string_view name,
+                                   Physical*& found);
+  // One slot of a history, with memory of its own.
+  [[nodiscard]] VkResult history(std::uint32_t entry, std::uint32_t generation,
+                                 std::uint32_t position, const ResourceRecord& record,
+                                 VkFlags usage, std::string_view name, std::uint64_t frame,
+                                 Physical*& found);
+  // A stand-in for an import: its views are cached by image.
+  Physical& import(const ResourceRecord& record, const ImportHandles& handles);
+  void forget(VkImage image, std::uint64_t frame);
+  // The view of a range, made on first use; null when the device is out of memory.
+  VkImageView view(Physical& physical, const Range& range);
+
+  // Destroys what is unused since long or retired, up to a frame that the device has finished.
+  void collect(std::uint64_t finished, std::uint64_t frame);
+
+  std::uint64_t generation() const { return generation_; }
+  VkDeviceSize allocated() const;
+  VkDeviceSize history_size() const;
+
+ private:
+  struct HeapMemory {
+    std::uint32_t memory_types = 0;
+    VkDeviceMemory memory = VK_NULL_HANDLE;
+    VkDeviceSize size = 0;
+  };
+  struct HistoryImage {
+    std::uint32_t entry = 0;
+    std::uint32_t generation = 0;
+    std::uint32_t position = 0;
+    std::unique_ptr<Physical> physical;
+  };
+  struct Retired {
+    std::uint64_t frame = 0;
+    std::unique_ptr<Physical> physical;
+    VkDeviceMemory memory = VK_NULL_HANDLE;
+  };
+
+  VkResult create(Physical& physical, std::string_view name);
+  VkResult allocate(std::uint32_t memory_types, VkDeviceSize size, VkDeviceMemory& memory);
+  void destroy(Physical& physical);
+  void set_name(const Physical& physical, std::string_view name);
+
+  const DeviceContext& device_;
+  std::vector<HeapMemory> heaps_;
+  std::vector<std::unique_ptr<Physical>> transients_;
+  std::vector<HistoryImage> histories_;
+  std::vector<std::unique_ptr<Physical>> imports_;
+  std::vector<Retired> retired_;
+  std::uint64_t generation_ = 1;
+};
+
+}  // namespace alcove::framegraph

@@ -1,0 +1,212 @@
+#include "recorder.h"
+
+#include <cstring>
+
+#include "format_info.h"
+
+namespace alcove::framegraph {
+
+void Recorder::begin(const Graph& graph, const Plan& plan, const std::vector<Physical*>& physical,
+                     bool check_uses, std::uint32_t slot) {
+  graph_ = &graph;
+  plan_ = &plan;
+  physical_ = &physical;
+  check_uses_ = check_uses;
+  slot_ = slot;
+  errors_.clear();
+}
+
+void Recorder::full_barrier(VkCommandBuffer commands) {
+  VkMemoryBarrier2 all{};
+  all.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2;
+  all.srcStageMask = all.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+  all.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
+  all.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+  VkDependencyInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
+  info.memoryBarrierCount = 1;
+  info.pMemoryBarriers = &all;
+  device_.vk.vkCmdPipelineBarrier2(commands, &info);
+}
+
+void Recorder::submission(const Submission& submission, VkCommandBuffer commands,
+                          Timestamps* timestamps) {
+  for (std::uint32_t i = 0; i < submission.pass_count; ++i)
+    pass(plan_->passes[submission.first_pass + i], commands, timestamps);
+  batches(submission.first_batch, submission.batch_count, commands);
+}
+
+void Recorder::pass(const PlannedPass& planned, VkCommandBuffer commands, Timestamps* timestamps) {
+  batches(planned.first_batch, planned.batch_count, commands);
+  const std::string_view name = graph_->description().pass_name(planned.pass);
+  const bool label = device_.handles.debug_utils && device_.vk.vkCmdBeginDebugUtilsLabelEXT;
+  if (label) {
+    char text[64];
+    const std::size_t length = name.size() < sizeof text ? name.size() : sizeof text - 1;
+    std::memcpy(text, name.data(), length);
+    text[length] = '\0';
+    VkDebugUtilsLabelEXT info{};
+    info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT;
+    info.pLabelName = text;
+    device_.vk.vkCmdBeginDebugUtilsLabelEXT(commands, &info);
+  }
+  if (timestamps) timestamps->begin_pass(commands, name);
+  RecordContext context(commands, device_.vk, *this, planned.pass);
+  context.resources_id = pool_.generation();
+  context.frame_slot = slot_;
+  graph_->call(planned.pass, context);
+  if (timestamps) timestamps->end_pass(commands);
+  if (label) device_.vk.vkCmdEndDebugUtilsLabelEXT(commands);
+}
+
+void Recorder::batches(std::uint32_t first, std::uint32_t count, VkCommandBuffer commands) {
+  for (std::uint32_t b = first; b < first + count; ++b) {
+    const Batch& batch = plan_->batches[b];
+    images_.clear();
+    memories_.clear();
+    for (std::uint32_t i = batch.first; i < batch.first + batch.count; ++i) {
+      const Transition& t = plan_->transitions[i];
+      if (t.resource != kNone) {
+        images_.push_back(image_barrier(t));
+      } else {
+        memories_.push_back({VK_STRUCTURE_TYPE_MEMORY_BARRIER_2, nullptr, t.src_stages,
+                             t.src_access, t.dst_stages, t.dst_access});
+      }
+    }
+    VkDependencyInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
+    info.memoryBarrierCount = static_cast<std::uint32_t>(memories_.size());
+    info.pMemoryBarriers = memories_.data();
+    info.imageMemoryBarrierCount = static_cast<std::uint32_t>(images_.size());
+    info.pImageMemoryBarriers = images_.data();
+    device_.vk.vkCmdPipelineBarrier2(commands, &info);
+  }
+}
+
+VkImageMemoryBarrier2 Recorder::image_barrier(const Transition& t) const {
+  const Physical& physical = *(*physical_)[t.resource];
+  VkImageMemoryBarrier2 barrier{};
+  barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
+  barrier.srcStageMask = t.src_stages;
+  barrier.srcAccessMask = t.src_access;
+  barrier.dstStageMask = t.dst_stages;
+  barrier.dstAccessMask = t.dst_access;
+  barrier.oldLayout = t.old_layout;
+  barrier.newLayout = t.new_layout;
+  barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+  barrier.image = physical.image;
+  barrier.subresourceRange = {aspects(physical.record.format), t.range.base_mip, t.range.mips,
+                              t.range.base_layer, t.range.layers};
+  return barrier;
+}
+
+const AccessRecord* Recorder::declared(std::uint32_t pass, std::uint32_t resource) const {
+  const GraphDescription& graph = graph_->description();
+  for (const AccessRecord& access : graph.pass_accesses(pass)) {
+    if (access.resource == resource) return &access;
+  }
+  if (check_uses_) {
+    Error error;
+    error.code = ErrorCode::undeclared_use;
+    error.pass = pass;
+    error.resource = resource;
+    error.message = std::string("pass '").append(graph.pass_name(pass));
+    if (resource < graph.resources.size()) {
+      error.message.append("' uses '").append(graph.resource_name(resource));
+      error.message += "' while it records, which it did not declare: add a read or a write";
+    } else {
+      error.message += "' uses a null handle while it records: check is_used for optional outputs";
+    }
+    errors_.push_back(std::move(error));
+  }
+  return nullptr;
+}
+
+// The side of RecordContext that callbacks see.
+
+VkImageView RecordContext::view(Texture texture) const {
+  const AccessRecord* access = recorder_.declared(pass_, texture.index);
+  return access ? view(texture, access->range) : VK_NULL_HANDLE;
+}
+
+VkImageView RecordContext::view(Texture texture, Range range) const {
+  if (!recorder_.declared(pass_, texture.index)) return VK_NULL_HANDLE;
+  Physical* physical = (*recorder_.physical_)[texture.index];
+  if (physical == nullptr || physical->image == VK_NULL_HANDLE) return VK_NULL_HANDLE;
+  const GraphDescription& graph = recorder_.graph_->description();
+  const ResourceRecord& record = graph.resources[texture.index];
+  if (range.mips == kAll) range.mips = static_cast<std::uint16_t>(record.mips - range.base_mip);
+  if (range.layers == kAll)
+    range.layers = static_cast<std::uint16_t>(record.layers - range.base_layer);
+  if (record.origin == Origin::imported && range.mips == record.mips &&
+      range.layers == record.layers) {
+    const VkImageView given = recorder_.graph_->imports()[record.external].view;
+    if (given != VK_NULL_HANDLE) return given;
+  }
+  return recorder_.pool_.view(*physical, range);
+}
+
+VkImage RecordContext::image(Texture texture) const {
+  if (!recorder_.declared(pass_, texture.index)) return VK_NULL_HANDLE;
+  const Physical* physical = (*recorder_.physical_)[texture.index];
+  return physical ? physical->image : VK_NULL_HANDLE;
+}
+
+VkBuffer RecordContext::buffer(Buffer buffer) const {
+  if (!recorder_.declared(pass_, buffer.index)) return VK_NULL_HANDLE;
+  const Physical* physical = (*recorder_.physical_)[buffer.index];
+  return physical ? physical->buffer : VK_NULL_HANDLE;
+}
+
+VkExtent3D RecordContext::extent(Texture texture, std::uint32_t mip) const {
+  const auto& resources = recorder_.graph_->description().resources;
+  if (texture.index >= resources.size()) return {0, 0, 0};
+  const ResourceRecord& record = resources[texture.index];
+  const auto side = [mip](std::uint32_t size) {
+    const std::uint32_t reduced = mip < 32 ? size >> mip : 0;
+    return reduced != 0 ? reduced : 1u;
+  };
+  return {side(record.width), side(record.height), side(record.depth)};
+}
+
+VkDeviceSize RecordContext::size(Buffer buffer) const {
+  const auto& resources = recorder_.graph_->description().resources;
+  return buffer.index < resources.size() ? resources[buffer.index].size : 0;
+}
+
+VkFormat RecordContext::format(Texture texture) const {
+  const auto& resources = recorder_.graph_->description().resources;
+  return texture.index < resources.size() ? resources[texture.index].format : VK_FORMAT_UNDEFINED;
+}
+
+bool RecordContext::is_used(Texture texture) const {
+  const GraphDescription& graph = recorder_.graph_->description();
+  const auto accesses = graph.pass_accesses(pass_);
+  const std::uint8_t* live =
+      recorder_.plan_->live_accesses.data() + graph.passes[pass_].first_access;
+  for (std::size_t i = 0; i < accesses.size(); ++i) {
+    if (accesses[i].resource == texture.index && live[i]) return true;
+  }
+  return false;
+}
+
+bool RecordContext::is_used(Buffer buffer) const {
+  return is_used(Texture{buffer.index, buffer.version, buffer.graph});
+}
+
+HistoryValidity RecordContext::validity(Texture texture) const {
+  const GraphDescription& graph = recorder_.graph_->description();
+  if (texture.index >= graph.resources.size()) return HistoryValidity::first_frame;
+  const std::uint32_t external = graph.resources[texture.index].external;
+  return external == kNone ? HistoryValidity::valid : graph.externals[external].validity;
+}
+
+HistoryValidity RecordContext::validity(Buffer buffer) const {
+  return validity(Texture{buffer.index, buffer.version, buffer.graph});
+}
+
+std::string_view RecordContext::pass_name() const {
+  return recorder_.graph_->description().pass_name(pass_);
+}
+
+}  // namespace alcove::framegraph

@@ -1,0 +1,49 @@
+// Records a plan into a command buffer.
+#pragma once
+
+#include <vector>
+
+#include "alcove/framegraph/graph.h"
+#include "alcove/framegraph/plan.h"
+#include "device_context.h"
+#include "pool.h"
+#include "timestamps.h"
+
+namespace alcove::framegraph {
+
+class Recorder {
+ public:
+  Recorder(const DeviceContext& device, Pool& pool) : device_(device), pool_(pool) {}
+
+  // What the next calls record. `physical` is by resource, null where a resource is not used.
+  void begin(const Graph& graph, const Plan& plan, const std::vector<Physical*>& physical,
+             bool check_uses, std::uint32_t slot);
+  // Orders everything after all that the queue did before.
+  void full_barrier(VkCommandBuffer commands);
+  void submission(const Submission& submission, VkCommandBuffer commands, Timestamps* timestamps);
+  // What callbacks touched undeclared, and what ran out while recording.
+  Errors& errors() { return errors_; }
+
+ private:
+  friend class RecordContext;
+  void batches(std::uint32_t first, std::uint32_t count, VkCommandBuffer commands);
+  void pass(const PlannedPass& planned, VkCommandBuffer commands, Timestamps* timestamps);
+  VkImageMemoryBarrier2 image_barrier(const Transition& transition) const;
+
+  // The access of the running pass that names this resource; null, and an error where uses are
+  // checked, when there is none.
+  const AccessRecord* declared(std::uint32_t pass, std::uint32_t resource) const;
+
+  const DeviceContext& device_;
+  Pool& pool_;
+  const Graph* graph_ = nullptr;
+  const Plan* plan_ = nullptr;
+  const std::vector<Physical*>* physical_ = nullptr;
+  bool check_uses_ = false;
+  std::uint32_t slot_ = 0;
+  std::vector<VkImageMemoryBarrier2> images_;
+  std::vector<VkMemoryBarrier2> memories_;
+  mutable Errors errors_;
+};
+
+}  // namespace alcove::framegraph

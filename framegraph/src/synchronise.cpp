@@ -1,0 +1,347 @@
+// Synchronisation: follows every subresource through the passes in execution order and puts each
+// dependency into the batch before the pass that needs it, or into the last batch before that if it
+// lies after the work waited for. A dependency is an interval of positions; choosing the end of the
+// interval that ends first is the least number of batches that meets them all.
+#include "synchronise.h"
+
+#include <algorithm>
+
+#include "access_bits.h"
+
+namespace alcove::framegraph {
+namespace {
+
+constexpr std::int32_t kBeforeFrame = -1;
+
+std::int32_t pass_time(std::uint32_t position) {
+  return static_cast<std::int32_t>(2 * position + 1);
+}
+
+// Records a use in a state, with no regard to dependencies.
+void note(UseState& state, const AccessRecord& access, std::int32_t time) {
+  if (access.flags & kWrite) {
+    state.write_stages = access.stages;
+    state.write_access = access.access & kWriteBits;
+    state.write_time = time;
+    state.read_stages = 0;
+    state.read_time = -2;
+    state.seen_stages = 0;
+    state.seen_access = 0;
+    state.transition = kNone;
+    state.handed_over = 0;
+  } else {
+    state.read_stages |= access.stages;
+    state.read_time = time;
+  }
+  state.layout = access.layout;
+}
+
+void note_external(UseState& state, const ExternalRecord& external) {
+  const State& arrival = external.arrival;
+  if (arrival.access & kWriteBits) {
+    state.write_stages = arrival.stages;
+    state.write_access = arrival.access & kWriteBits;
+    state.write_time = kBeforeFrame;
+  } else {
+    state.read_stages = arrival.stages;
+    state.read_time = kBeforeFrame;
+  }
+  if (external.has_contents) state.layout = arrival.layout;
+}
+
+// Makes `last` cover the mips of `next` too, if the two are neighbours that change alike.
+bool extend(Transition& last, const Transition& next) {
+  const Range& a = last.range;
+  const Range& b = next.range;
+  const bool alike = last.src_stages == next.src_stages && last.src_access == next.src_access &&
+                     last.dst_stages == next.dst_stages && last.dst_access == next.dst_access &&
+                     last.old_layout == next.old_layout && last.new_layout == next.new_layout;
+  const bool neighbours =
+      a.base_layer == b.base_layer && a.layers == b.layers && a.base_mip + a.mips == b.base_mip;
+  if (!alike || !neighbours) return false;
+  last.range.mips = static_cast<std::uint16_t>(a.mips + b.mips);
+  return true;
+}
+
+}  // namespace
+
+void Synchroniser::run() {
+  s_.states.assign(workspace_.first_sub.back(), UseState{});
+  arrive();
+  find_last_uses();
+  const auto& transients = workspace_.transients;
+  std::size_t started = 0;
+  for (std::uint32_t position = 0; position < plan_.passes.size(); ++position) {
+    PlannedPass& planned = plan_.passes[position];
+    const auto accesses = graph_.pass_accesses(planned.pass);
+    const std::uint8_t* live =
+        plan_.live_accesses.data() + graph_.passes[planned.pass].first_access;
+    for (; started < transients.size() && plan_.placements[transients[started]].first == position;
+         ++started)
+      take_over_memory(transients[started]);
+    for (std::size_t i = 0; i < accesses.size(); ++i) {
+      if (live[i]) use(position, accesses[i]);
+    }
+    if (batch_position_ == position) {
+      planned.first_batch = static_cast<std::uint32_t>(plan_.batches.size() - 1);
+      planned.batch_count = 1;
+    }
+  }
+  depart();
+}
+
+void Synchroniser::arrive() {
+  if (graph_.externals.empty()) return;
+  const auto& first = workspace_.first_sub;
+  for (std::uint32_t r = 0; r < graph_.resources.size(); ++r) {
+    if (graph_.resources[r].external == kNone) continue;
+    const ExternalRecord& external = graph_.externals[graph_.resources[r].external];
+    for (std::uint32_t sub = first[r]; sub < first[r + 1]; ++sub)
+      note_external(s_.states[sub], external);
+  }
+}
+
+// The frame before used memory as this one will: with what, and who had which bytes last.
+void Synchroniser::find_last_uses() {
+  s_.last_uses.assign(workspace_.first_sub.back(), UseState{});
+  for (const PlannedPass& planned : plan_.passes) {
+    const auto accesses = graph_.pass_accesses(planned.pass);
+    const std::uint8_t* live =
+        plan_.live_accesses.data() + graph_.passes[planned.pass].first_access;
+    for (std::size_t i = 0; i < accesses.size(); ++i) {
+      if (!live[i]) continue;
+      const AccessRecord& access = accesses[i];
+      for_each_sub(graph_.resources[access.resource], workspace_.first_sub[access.resource],
+                   access.range,
+                   [&](std::uint32_t sub) { note(s_.last_uses[sub], access, kBeforeFrame); });
+    }
+  }
+  s_.memory.resize(std::max(s_.memory.size(), plan_.heaps.size()));
+  for (MemoryMap& map : s_.memory) map.clear();
+  for (std::uint32_t r : workspace_.transients) {
+    const Placement& placed = plan_.placements[r];
+    take_over(s_.memory[placed.heap], {placed.offset, placed.offset + placed.size, r, true},
+              [](const Segment&) {});
+  }
+}
+
+// A transient's first use comes after the last uses of all that had its bytes before.
+void Synchroniser::take_over_memory(std::uint32_t resource) {
+  const Placement& placed = plan_.placements[resource];
+  const auto& first = workspace_.first_sub;
+  UseState merged;
+  const auto merge = [&](const Segment& segment) {
+    const auto& states = segment.before ? s_.last_uses : s_.states;
+    for (std::uint32_t sub = first[segment.resource]; sub < first[segment.resource + 1]; ++sub) {
+      const UseState& state = states[sub];
+      if (state.read_stages != 0) {
+        merged.read_stages |= state.read_stages;
+        merged.read_time = std::max(merged.read_time, state.read_time);
+      } else {
+        merged.write_stages |= state.write_stages;
+        merged.write_access |= state.write_access;
+        merged.write_time = std::max(merged.write_time, state.write_time);
+      }
+    }
+  };
+  take_over(s_.memory[placed.heap], {placed.offset, placed.offset + placed.size, resource, false},
+            merge);
+  merged.handed_over = 1;
+  std::fill(s_.states.begin() + first[resource], s_.states.begin() + first[resource + 1], merged);
+}
+
+void Synchroniser::use(std::uint32_t position, const AccessRecord& access) {
+  const ResourceRecord& resource = graph_.resources[access.resource];
+  const std::uint32_t first = workspace_.first_sub[access.resource];
+  UseState* const states = s_.states.data() + first;
+  UseState* const lead = states + access.range.base_layer * resource.mips + access.range.base_mip;
+  bool alike = true;
+  for_each_sub(resource, first, access.range,
+               [&](std::uint32_t sub) { alike = alike && s_.states[sub] == *lead; });
+  if (alike) {
+    use_range(position, access, *lead, access.range);
+    for_each_sub(resource, first, access.range, [&](std::uint32_t sub) { s_.states[sub] = *lead; });
+    return;
+  }
+  for_each_sub(resource, first, access.range, [&](std::uint32_t sub) {
+    const std::uint32_t index = sub - first;
+    const Range range{static_cast<std::uint16_t>(index % resource.mips), 1,
+                      static_cast<std::uint16_t>(index / resource.mips), 1};
+    use_range(position, access, s_.states[sub], range);
+  });
+}
+
+void Synchroniser::use_range(std::uint32_t position, const AccessRecord& access, UseState& state,
+                             const Range& range) {
+  const bool texture = graph_.resources[access.resource].kind == ResourceKind::texture;
+  if (texture && state.layout != access.layout)
+    change_layout(position, access, state, range);
+  else if (access.flags & kWrite)
+    write_again(position, access, state);
+  else
+    read_again(position, access, state);
+}
+
+void Synchroniser::change_layout(std::uint32_t position, const AccessRecord& access,
+                                 UseState& state, const Range& range) {
+  Transition wanted;
+  // Reads come after the write that they saw; a memory hand-over may have both.
+  wanted.src_stages = state.read_stages | state.write_stages;
+  wanted.src_access = state.write_access;
+  if (state.read_stages != 0 && !state.handed_over) {
+    wanted.src_stages = state.read_stages;
+    wanted.src_access = 0;
+  }
+  wanted.dst_stages = access.stages;
+  wanted.dst_access = access.access;
+  wanted.resource = access.resource;
+  wanted.old_layout = access.flags & kDiscard ? VK_IMAGE_LAYOUT_UNDEFINED : state.layout;
+  wanted.new_layout = access.layout;
+  wanted.range = range;
+  const std::int32_t time = std::max(state.read_time, state.write_time);
+  const std::uint32_t transition = add_image(time, position, wanted);
+  state = {};
+  state.write_stages = access.stages;
+  state.write_time = static_cast<std::int32_t>(2 * batch_position_);
+  state.seen_stages = access.stages;
+  state.seen_access = access.access;
+  note(state, access, pass_time(position));
+  if (!(access.flags & kWrite)) state.transition = transition;
+}
+
+void Synchroniser::read_again(std::uint32_t position, const AccessRecord& access, UseState& state) {
+  const bool seen =
+      (access.stages & ~state.seen_stages) == 0 && (access.access & ~state.seen_access) == 0;
+  if (!seen && state.write_time != -2) {
+    if (state.transition != kNone) {
+      plan_.transitions[state.transition].dst_stages |= access.stages;
+      plan_.transitions[state.transition].dst_access |= access.access;
+    } else {
+      Transition wanted;
+      wanted.src_stages = state.write_stages;
+      wanted.src_access = state.write_access;
+      wanted.dst_stages = access.stages;
+      wanted.dst_access = access.access;
+      add_memory(state.write_time, position, wanted);
+    }
+    state.seen_stages |= access.stages;
+    state.seen_access |= access.access;
+  }
+  note(state, access, pass_time(position));
+}
+
+void Synchroniser::write_again(std::uint32_t position, const AccessRecord& access,
+                               UseState& state) {
+  Transition wanted;
+  wanted.src_stages = state.read_stages | state.write_stages;
+  wanted.src_access = state.write_access;
+  if (state.read_stages != 0 && !state.handed_over) {
+    wanted.src_stages = state.read_stages;
+    wanted.src_access = 0;
+  }
+  wanted.dst_stages = access.stages;
+  wanted.dst_access = access.access;
+  if (wanted.src_stages != 0)
+    add_memory(std::max(state.read_time, state.write_time), position, wanted);
+  note(state, access, pass_time(position));
+}
+
+void Synchroniser::depart() {
+  const auto end = static_cast<std::uint32_t>(plan_.passes.size());
+  for (std::uint32_t r = 0; r < graph_.resources.size() && !graph_.externals.empty(); ++r) {
+    const ResourceRecord& resource = graph_.resources[r];
+    if (resource.external == kNone) continue;
+    const ExternalRecord& external = graph_.externals[resource.external];
+    const bool used = plan_.placements[r].first != kNone;
+    if (external.has_departure && (used || external.departure.layout != external.arrival.layout))
+      use(end, outside_use(r, external.departure));
+    if (used && resource.origin == Origin::history) leave(r);
+  }
+  Submission all;
+  all.pass_count = end;
+  if (batch_position_ == end && !plan_.batches.empty()) {
+    all.first_batch = static_cast<std::uint32_t>(plan_.batches.size() - 1);
+    all.batch_count = 1;
+  }
+  plan_.submissions.push_back(all);
+}
+
+AccessRecord Synchroniser::outside_use(std::uint32_t resource, const State& state) const {
+  const ResourceRecord& record = graph_.resources[resource];
+  AccessRecord access;
+  access.stages = state.stages;
+  access.access = state.access;
+  access.layout = state.layout;
+  access.resource = resource;
+  access.range = {0, static_cast<std::uint16_t>(record.mips), 0,
+                  static_cast<std::uint16_t>(record.layers)};
+  return access;
+}
+
+// How a history slot is left: all of it in one layout.
+void Synchroniser::leave(std::uint32_t resource) {
+  const std::uint32_t first = workspace_.first_sub[resource];
+  const std::uint32_t last = workspace_.first_sub[resource + 1];
+  FinalState final{resource, {}, QueueClass::graphics, 0};
+  bool one_layout = true;
+  for (std::uint32_t sub = first; sub < last; ++sub) {
+    const UseState& state = s_.states[sub];
+    one_layout = one_layout && state.layout == s_.states[first].layout;
+    final.state.stages |= state.read_stages != 0 ? state.read_stages : state.write_stages;
+    if (state.read_stages == 0) final.state.access |= state.write_access;
+    final.written |= s_.last_uses[sub].write_stages != 0;
+  }
+  final.state.layout = s_.states[first].layout;
+  if (!one_layout) {
+    final.state.layout = VK_IMAGE_LAYOUT_GENERAL;
+    final.state.access = 0;
+    use(static_cast<std::uint32_t>(plan_.passes.size()), outside_use(resource, final.state));
+  }
+  plan_.finals.push_back(final);
+}
+
+// The dependencies go into the last batch if that comes after `time`, else into a new one.
+Batch& Synchroniser::batch_after(std::int32_t time, std::uint32_t position) {
+  if (batch_position_ == kNone || static_cast<std::int32_t>(2 * batch_position_) < time) {
+    batch_position_ = position;
+    plan_.batches.push_back({static_cast<std::uint32_t>(plan_.transitions.size()), 0, kNone});
+  }
+  return plan_.batches.back();
+}
+
+std::uint32_t Synchroniser::add_image(std::int32_t time, std::uint32_t position,
+                                      const Transition& wanted) {
+  Batch& batch = batch_after(time, position);
+  // Neighbouring mips and layers that change alike become one barrier.
+  if (batch.count > 0) {
+    Transition& last = plan_.transitions.back();
+    if (last.resource == wanted.resource && extend(last, wanted))
+      return static_cast<std::uint32_t>(plan_.transitions.size() - 1);
+  }
+  plan_.transitions.push_back(wanted);
+  ++batch.count;
+  return static_cast<std::uint32_t>(plan_.transitions.size() - 1);
+}
+
+void Synchroniser::add_memory(std::int32_t time, std::uint32_t position, const Transition& wanted) {
+  Batch& batch = batch_after(time, position);
+  for (std::uint32_t i = batch.first; i < batch.first + batch.count; ++i) {
+    Transition& there = plan_.transitions[i];
+    if (there.resource != kNone) continue;
+    if (there.src_stages != wanted.src_stages && there.dst_stages != wanted.dst_stages) continue;
+    there.src_stages |= wanted.src_stages;
+    there.src_access |= wanted.src_access;
+    there.dst_stages |= wanted.dst_stages;
+    there.dst_access |= wanted.dst_access;
+    return;
+  }
+  plan_.transitions.push_back(wanted);
+  ++batch.count;
+}
+
+void synchronise(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
+                 Plan& plan) {
+  Synchroniser(graph, limits, workspace, plan).run();
+}
+
+}  // namespace alcove::framegraph

@@ -1,0 +1,47 @@
+// The synchroniser: see synchronise.cpp.
+#pragma once
+
+#include "memory_map.h"
+#include "workspace.h"
+
+namespace alcove::framegraph {
+
+class Synchroniser {
+ public:
+  Synchroniser(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
+               Plan& plan)
+      : graph_(graph),
+        limits_(limits),
+        workspace_(workspace),
+        plan_(plan),
+        s_(workspace.synchronise) {}
+  void run();
+
+ private:
+  void arrive();
+  void find_last_uses();
+  void take_over_memory(std::uint32_t resource);
+  void use(std::uint32_t position, const AccessRecord& access);
+  void use_range(std::uint32_t position, const AccessRecord& access, UseState& state,
+                 const Range& range);
+  void change_layout(std::uint32_t position, const AccessRecord& access, UseState& state,
+                     const Range& range);
+  void read_again(std::uint32_t position, const AccessRecord& access, UseState& state);
+  void write_again(std::uint32_t position, const AccessRecord& access, UseState& state);
+  void depart();
+  AccessRecord outside_use(std::uint32_t resource, const State& state) const;
+  void leave(std::uint32_t resource);
+
+  Batch& batch_after(std::int32_t time, std::uint32_t position);
+  std::uint32_t add_image(std::int32_t time, std::uint32_t position, const Transition& wanted);
+  void add_memory(std::int32_t time, std::uint32_t position, const Transition& wanted);
+
+  const GraphDescription& graph_;
+  const Limits& limits_;
+  Workspace& workspace_;
+  Plan& plan_;
+  Workspace::Synchronise& s_;
+  std::uint32_t batch_position_ = kNone;  // of the last batch
+};
+
+}  // namespace alcove::framegraph

@@ -1,0 +1,62 @@
+#include "timestamps.h"
+
+#include <algorithm>
+
+namespace alcove::framegraph {
+
+Timestamps::~Timestamps() { device_.vk.vkDestroyQueryPool(device_.handles.device, pool_, nullptr); }
+
+VkResult Timestamps::begin_frame(VkCommandBuffer commands, std::uint32_t passes) {
+  count_ = 0;
+  read_ = false;
+  if (passes > capacity_) {
+    device_.vk.vkDestroyQueryPool(device_.handles.device, pool_, nullptr);
+    pool_ = VK_NULL_HANDLE;
+    capacity_ = 0;
+    VkQueryPoolCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
+    info.queryType = VK_QUERY_TYPE_TIMESTAMP;
+    info.queryCount = 2 * passes;
+    const VkResult result =
+        device_.vk.vkCreateQueryPool(device_.handles.device, &info, nullptr, &pool_);
+    if (result != VK_SUCCESS) return result;
+    capacity_ = passes;
+    names_.resize(std::max<std::size_t>(names_.size(), passes));
+    ticks_.resize(2 * std::size_t{passes});
+    timings_.reserve(passes);
+  }
+  if (passes > 0) device_.vk.vkCmdResetQueryPool(commands, pool_, 0, 2 * passes);
+  return VK_SUCCESS;
+}
+
+void Timestamps::begin_pass(VkCommandBuffer commands, std::string_view name) {
+  names_[count_].assign(name);
+  device_.vk.vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pool_,
+                                  2 * count_);
+}
+
+void Timestamps::end_pass(VkCommandBuffer commands) {
+  device_.vk.vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pool_,
+                                  2 * count_ + 1);
+  ++count_;
+}
+
+std::span<const PassTiming> Timestamps::read() {
+  if (count_ == 0) return {};
+  if (!read_) {
+    const VkResult result = device_.vk.vkGetQueryPoolResults(
+        device_.handles.device, pool_, 0, 2 * count_, 2 * count_ * sizeof(std::uint64_t),
+        ticks_.data(), sizeof(std::uint64_t), VK_QUERY_RESULT_64_BIT);
+    if (result != VK_SUCCESS) return {};
+    const double milliseconds = device_.properties.limits.timestampPeriod * 1e-6;
+    timings_.clear();
+    for (std::uint32_t i = 0; i < count_; ++i) {
+      const std::uint64_t ticks = ticks_[2 * i + 1] - ticks_[2 * i];
+      timings_.push_back({names_[i], static_cast<double>(ticks) * milliseconds});
+    }
+    read_ = true;
+  }
+  return timings_;
+}
+
+}  // namespace alcove::framegraph

@@ -1,0 +1,37 @@
+// GPU time of passes: two timestamps each, a query pool for each frame slot.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "device_context.h"
+
+namespace alcove::framegraph {
+
+class Timestamps {
+ public:
+  explicit Timestamps(const DeviceContext& device) : device_(device) {}
+  ~Timestamps();
+  Timestamps(const Timestamps&) = delete;
+  Timestamps& operator=(const Timestamps&) = delete;
+
+  // Starts a frame of so many passes; the device has finished the last one.
+  [[nodiscard]] VkResult begin_frame(VkCommandBuffer commands, std::uint32_t passes);
+  void begin_pass(VkCommandBuffer commands, std::string_view name);
+  void end_pass(VkCommandBuffer commands);
+  // Empty when the device has not finished.
+  std::span<const PassTiming> read();
+
+ private:
+  const DeviceContext& device_;
+  VkQueryPool pool_ = VK_NULL_HANDLE;
+  std::uint32_t capacity_ = 0;
+  std::uint32_t count_ = 0;
+  bool read_ = false;
+  std::vector<std::string> names_;
+  std::vector<std::uint64_t> ticks_;
+  std::vector<PassTiming> timings_;
+};
+
+}  // namespace alcove::framegraph

@@ -1,0 +1,182 @@
+// Validation: replays the declaration in program order, following versions and contents.
+#include "validate.h"
+
+#include <algorithm>
+
+namespace alcove::framegraph {
+namespace {
+
+class Replay {
+ public:
+  explicit Replay(Validation& validation) : v_(validation), s_(validation.workspace.validate) {}
+
+  void run() {
+    begin();
+    for (std::uint32_t pass = 0; pass < v_.graph.passes.size(); ++pass) {
+      for (const AccessRecord& access : v_.graph.pass_accesses(pass)) visit(pass, access);
+    }
+    for (const OutputRecord& output : v_.graph.outputs) check_output(output);
+  }
+
+ private:
+  void begin() {
+    const auto& first = v_.workspace.first_sub;
+    s_.versions.assign(v_.graph.resources.size(), 0);
+    s_.written.assign(first.back(), 0);
+    s_.read_stamp.assign(first.back(), 0);
+    s_.write_stamp.assign(first.back(), 0);
+    s_.layout.resize(first.back());
+    if (v_.graph.externals.empty()) return;
+    for (std::uint32_t r = 0; r < v_.graph.resources.size(); ++r) {
+      const std::uint32_t external = v_.graph.resources[r].external;
+      if (external == kNone || !v_.graph.externals[external].has_contents) continue;
+      std::fill(s_.written.begin() + first[r], s_.written.begin() + first[r + 1], 1);
+    }
+  }
+
+  void visit(std::uint32_t pass, const AccessRecord& access) {
+    if (!validate_access(v_, pass, access)) return;
+    std::uint32_t& version = s_.versions[access.resource];
+    if (access.version != version) stale(pass, access, version);
+    if (access.flags & kWrite) ++version;
+    const auto& first = v_.workspace.first_sub;
+    if (first[access.resource] == first[access.resource + 1]) return;  // a wrong description
+    unwritten_ = conflict_ = false;
+    for_each_sub(v_.graph.resources[access.resource], first[access.resource], access.range,
+                 [&](std::uint32_t sub) { touch(pass, access, sub); });
+    if (conflict_) report_conflict(pass, access);
+    if (unwritten_) report_unwritten(pass, access);
+  }
+
+  void touch(std::uint32_t pass, const AccessRecord& access, std::uint32_t sub) {
+    const std::uint32_t stamp = pass + 1;
+    const bool read_before = s_.read_stamp[sub] == stamp;
+    const bool written_before = s_.write_stamp[sub] == stamp;
+    if (access.flags & kWrite) {
+      conflict_ |= read_before || written_before;
+      s_.write_stamp[sub] = stamp;
+      s_.written[sub] = 1;
+    } else {
+      conflict_ |= written_before || (read_before && s_.layout[sub] != access.layout);
+      unwritten_ |= s_.written[sub] == 0;
+      s_.read_stamp[sub] = stamp;
+    }
+    s_.layout[sub] = access.layout;
+  }
+
+  void report_conflict(std::uint32_t pass, const AccessRecord& access) {
+    const bool writes = (access.flags & kWrite) != 0;
+    bool other_writes = false;
+    for_each_sub(
+        v_.graph.resources[access.resource], v_.workspace.first_sub[access.resource], access.range,
+        [&](std::uint32_t sub) { other_writes |= !writes || s_.read_stamp[sub] != pass + 1; });
+    if (writes && other_writes) {
+      v_.fail(ErrorCode::two_writers,
+              v_.pass_text(pass) + " writes a subresource of " + v_.resource_text(access.resource) +
+                  " twice: declare one write that does both",
+              pass, access.resource, access.version);
+    } else {
+      v_.fail(ErrorCode::read_and_write,
+              v_.pass_text(pass) + " uses a subresource of " + v_.resource_text(access.resource) +
+                  " in two accesses that exclude each other: read and write it in one access that "
+                  "does both, or in disjoint mips or layers, and read it in one layout",
+              pass, access.resource, access.version);
+    }
+  }
+
+  void report_unwritten(std::uint32_t pass, const AccessRecord& access) {
+    const ResourceRecord& resource = v_.graph.resources[access.resource];
+    if (resource.origin == Origin::history && resource.slot != 0) {
+      if (history_is_written(access.resource - resource.slot)) return;
+      v_.fail(ErrorCode::history_never_written,
+              v_.pass_text(pass) + " reads " + v_.resource_text(access.resource) + " of " +
+                  std::to_string(resource.slot) +
+                  " frame(s) ago, but no frame wrote it and no pass of this one writes it: write "
+                  "its current slot",
+              pass, access.resource, access.version);
+      return;
+    }
+    v_.fail(ErrorCode::read_before_write,
+            v_.pass_text(pass) + " reads " + v_.resource_text(access.resource) + " version " +
+                std::to_string(access.version) +
+                ", parts of which nothing has written: write it in an earlier pass" +
+                (resource.origin == Origin::imported ? ", or import it with its contents" : ""),
+            pass, access.resource, access.version);
+  }
+
+  bool history_is_written(std::uint32_t current) const {
+    return std::any_of(v_.graph.accesses.begin(), v_.graph.accesses.end(),
+                       [current](const AccessRecord& access) {
+                         return access.resource == current && (access.flags & kWrite);
+                       });
+  }
+
+  // The pass that made version `version` + 1, kNone when there is none.
+  std::uint32_t writer_of(std::uint32_t resource, std::uint32_t version) const {
+    for (std::uint32_t pass = 0; pass < v_.graph.passes.size(); ++pass) {
+      for (const AccessRecord& access : v_.graph.pass_accesses(pass)) {
+        if (access.resource == resource && access.version == version && (access.flags & kWrite))
+          return pass;
+      }
+    }
+    return kNone;
+  }
+
+  void stale(std::uint32_t pass, const AccessRecord& access, std::uint32_t expected) {
+    const std::uint32_t writer = writer_of(access.resource, access.version);
+    const bool writes = (access.flags & kWrite) != 0;
+    v_.fail(
+        ErrorCode::stale_handle,
+        v_.pass_text(pass) + (writes ? " writes " : " reads ") + v_.resource_text(access.resource) +
+            " version " + std::to_string(access.version) + ", but the version then is " +
+            std::to_string(expected) +
+            (writer != kNone && writer != pass
+                 ? ": " + v_.pass_text(writer) + " consumed it, use the handle its write returned"
+                 : ": use the handle that the last write returned"),
+        pass, access.resource, access.version);
+  }
+
+  void check_output(const OutputRecord& output) {
+    if (output.flags != 0) {
+      v_.fail(output.flags & kNull ? ErrorCode::null_handle : ErrorCode::foreign_handle,
+              "an output is given by a handle that is null, or of another graph or frame: pass one "
+              "that the graph gave in this frame");
+      return;
+    }
+    const std::uint32_t version = s_.versions[output.resource];
+    if (output.version != version) {
+      v_.fail(ErrorCode::stale_handle,
+              "output " + v_.resource_text(output.resource) + " is given as version " +
+                  std::to_string(output.version) + ", but the last is " + std::to_string(version) +
+                  ": pass the handle that the last write returned",
+              kNone, output.resource, output.version);
+      return;
+    }
+    const auto& first = v_.workspace.first_sub;
+    const auto begin = s_.written.begin();
+    if (std::find(begin + first[output.resource], begin + first[output.resource + 1], 1) ==
+            begin + first[output.resource + 1] &&
+        first[output.resource] != first[output.resource + 1])
+      v_.fail(ErrorCode::read_before_write,
+              "output " + v_.resource_text(output.resource) +
+                  " is written by no pass: write it, or do not ask for it",
+              kNone, output.resource, output.version);
+  }
+
+  Validation& v_;
+  Workspace::Validate& s_;
+  bool unwritten_ = false;
+  bool conflict_ = false;
+};
+
+}  // namespace
+
+bool validate(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
+              Errors& errors) {
+  Validation validation{graph, limits, workspace, errors};
+  validate_resources(validation);
+  Replay(validation).run();
+  return errors.empty();
+}
+
+}  // namespace alcove::framegraph

@@ -1,0 +1,37 @@
+// The parts of validation, and what they collect errors with.
+#pragma once
+
+#include <string>
+#include <utility>
+
+#include "workspace.h"
+
+namespace alcove::framegraph {
+
+struct Validation {
+  const GraphDescription& graph;
+  const Limits& limits;
+  Workspace& workspace;
+  Errors& errors;
+
+  void fail(ErrorCode code, std::string message, std::uint32_t pass = kNone,
+            std::uint32_t resource = kNone, std::uint32_t version = 0) {
+    errors.push_back({code, std::move(message), VK_SUCCESS, pass, resource, version});
+  }
+  std::string pass_text(std::uint32_t pass) const {
+    return std::string("pass '").append(graph.pass_name(pass)).append("'");
+  }
+  std::string resource_text(std::uint32_t resource) const {
+    const bool texture = graph.resources[resource].kind == ResourceKind::texture;
+    return std::string(texture ? "texture '" : "buffer '")
+        .append(graph.resource_name(resource))
+        .append("'");
+  }
+};
+
+// Descriptions, imports and histories; numbers the subresources of what is right.
+void validate_resources(Validation& validation);
+// One access by itself: its handle, range, usage and masks. False when it cannot be followed.
+bool validate_access(Validation& validation, std::uint32_t pass, const AccessRecord& access);
+
+}  // namespace alcove::framegraph

@@ -1,0 +1,99 @@
+#include <algorithm>
+#include <bit>
+
+#include "validate.h"
+
+namespace alcove::framegraph {
+namespace {
+
+std::string size_text(const ResourceRecord& r) {
+  std::string text = std::to_string(r.width) + "x" + std::to_string(r.height);
+  if (r.depth > 1) text.append("x").append(std::to_string(r.depth));
+  return text;
+}
+
+bool check_extent(Validation& v, std::uint32_t index, const ResourceRecord& r) {
+  const auto bad = [&](const std::string& what) {
+    v.fail(ErrorCode::bad_description, v.resource_text(index) + " " + what, kNone, index);
+    return false;
+  };
+  if (r.flags & kRelativeToNothing)
+    return bad(
+        "has an extent relative to a handle of another graph or frame: make it relative to a "
+        "texture declared in this frame");
+  if (r.width == 0 || r.height == 0 || r.depth == 0)
+    return bad("has size " + size_text(r) +
+               ": every side must be at least 1 (a divisor of 0 also gives 0)");
+  const std::uint32_t limit = r.depth > 1 ? v.limits.max_extent_3d : v.limits.max_extent_2d;
+  const std::uint32_t longest = std::max({r.width, r.height, r.depth});
+  if (longest > limit)
+    return bad("has size " + size_text(r) + ": the device allows at most " + std::to_string(limit) +
+               " on a side");
+  const auto most_mips = static_cast<std::uint32_t>(std::bit_width(longest));
+  if (r.mips == 0 || r.mips > most_mips)
+    return bad("has " + std::to_string(r.mips) + " mips: a " + size_text(r) + " texture has 1 to " +
+               std::to_string(most_mips));
+  return true;
+}
+
+bool check_texture(Validation& v, std::uint32_t index, const ResourceRecord& r) {
+  const auto bad = [&](const std::string& what) {
+    v.fail(ErrorCode::bad_description, v.resource_text(index) + " " + what, kNone, index);
+    return false;
+  };
+  if (r.format == VK_FORMAT_UNDEFINED) return bad("has no format: give TextureDesc::format");
+  if (!check_extent(v, index, r)) return false;
+  if (r.layers == 0 || r.layers > v.limits.max_layers)
+    return bad("has " + std::to_string(r.layers) + " layers: the device allows 1 to " +
+               std::to_string(v.limits.max_layers));
+  if (r.depth > 1 && r.layers > 1) return bad("is 3D and an array: it can be one of the two");
+  if (!std::has_single_bit(r.samples) || r.samples > v.limits.max_samples)
+    return bad("has " + std::to_string(r.samples) + " samples: a power of two up to " +
+               std::to_string(v.limits.max_samples) + " is allowed");
+  if (r.samples > 1 && (r.mips > 1 || r.depth > 1))
+    return bad("has several samples and several mips or slices: a multisampled texture has one");
+  return true;
+}
+
+bool check_buffer(Validation& v, std::uint32_t index, const ResourceRecord& r) {
+  if (r.size != 0 && r.size <= v.limits.max_buffer_size) return true;
+  v.fail(ErrorCode::bad_description,
+         v.resource_text(index) + " has " + std::to_string(r.size) +
+             " bytes: the device allows 1 to " + std::to_string(v.limits.max_buffer_size),
+         kNone, index);
+  return false;
+}
+
+void check_external(Validation& v, std::uint32_t index, const ResourceRecord& r) {
+  if (!v.graph.externals[r.external].has_handle)
+    v.fail(
+        ErrorCode::bad_import,
+        v.resource_text(index) + " is imported without a Vulkan handle: set " +
+            (r.kind == ResourceKind::texture ? "ImportedTexture::image" : "ImportedBuffer::buffer"),
+        kNone, index);
+  if (r.origin == Origin::history && r.slot == 0 && r.slots < 2)
+    v.fail(
+        ErrorCode::history_cycle,
+        v.resource_text(index) +
+            " is a history of one slot, whose last frame is this frame: give it at least 2 slots",
+        kNone, index);
+}
+
+}  // namespace
+
+void validate_resources(Validation& v) {
+  const auto& resources = v.graph.resources;
+  v.workspace.first_sub.resize(resources.size() + 1);
+  std::uint32_t next = 0;
+  for (std::uint32_t i = 0; i < resources.size(); ++i) {
+    const ResourceRecord& r = resources[i];
+    const bool right =
+        r.kind == ResourceKind::texture ? check_texture(v, i, r) : check_buffer(v, i, r);
+    if (r.external != kNone) check_external(v, i, r);
+    v.workspace.first_sub[i] = next;
+    if (right) next += r.kind == ResourceKind::texture ? r.mips * r.layers : 1;
+  }
+  v.workspace.first_sub[resources.size()] = next;
+}
+
+}  // namespace alcove::framegraph

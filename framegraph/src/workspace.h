@@ -1,0 +1,99 @@
+// What the phases of compile hand to each other, kept between calls for its memory.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "alcove/framegraph/compile.h"
+#include "alcove/framegraph/description.h"
+#include "alcove/framegraph/error.h"
+#include "alcove/framegraph/plan.h"
+#include "memory_map.h"
+
+namespace alcove::framegraph {
+
+// What was last done to a subresource, or to bytes of memory. Time runs in half positions: the
+// batch before position p is at 2p, the pass at 2p + 1, everything before the frame at -1.
+struct UseState {
+  VkPipelineStageFlags2 write_stages = 0;  // of the last write or layout change
+  VkAccessFlags2 write_access = 0;         // 0 after a layout change: it is available by itself
+  VkPipelineStageFlags2 read_stages = 0;   // of the reads since
+  VkPipelineStageFlags2 seen_stages = 0;   // by which the write can be seen
+  VkAccessFlags2 seen_access = 0;
+  std::int32_t write_time = -2;
+  std::int32_t read_time = -2;
+  VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
+  std::uint32_t transition = kNone;  // the image barrier that made this layout
+  // Memory that others had before: its reads do not stand for its writes.
+  std::uint32_t handed_over = 0;
+  bool operator==(const UseState&) const = default;
+};
+
+struct Workspace {
+  // Subresources are numbered through: those of resource r begin at first_sub[r]; mips run faster
+  // than layers. A resource whose description is wrong has none.
+  std::vector<std::uint32_t> first_sub;
+
+  // cull -> all: live passes in declaration order.
+  std::vector<std::uint8_t> pass_live;
+  // order -> all: live passes in execution order, and each pass's queue.
+  std::vector<std::uint32_t> order;
+
+  // lifetimes -> place: live transients in order of first use.
+  std::vector<std::uint32_t> transients;
+  std::vector<MemoryRequirements> requirements;  // by resource
+
+  // Scratch of the single phases.
+  struct Validate {
+    std::vector<std::uint32_t> versions;
+    std::vector<std::uint8_t> written;  // by subresource
+    std::vector<std::uint32_t> read_stamp;
+    std::vector<std::uint32_t> write_stamp;
+    std::vector<VkImageLayout> layout;
+  } validate;
+  struct Cull {
+    std::vector<std::uint32_t> needed_by;  // by subresource
+    std::vector<std::uint32_t>
+        history_reader;  // by resource: of slot 0, the pass that reads an older one
+  } cull;
+  struct Synchronise {
+    std::vector<UseState> states;     // by subresource
+    std::vector<UseState> last_uses;  // by subresource, at the end of a frame
+    std::vector<MemoryMap> memory;    // by heap
+  } synchronise;
+};
+
+// Calls f(subresource index) for each subresource of an access.
+template <typename Function>
+inline void for_each_sub(const ResourceRecord& resource, std::uint32_t first, const Range& range,
+                         Function&& f) {
+  if (resource.mips * resource.layers <= 1) {
+    f(first);
+    return;
+  }
+  for (std::uint32_t layer = range.base_layer; layer < range.base_layer + range.layers; ++layer) {
+    for (std::uint32_t mip = range.base_mip; mip < range.base_mip + range.mips; ++mip)
+      f(first + layer * resource.mips + mip);
+  }
+}
+
+// The phases, in order.
+
+// Numbers the subresources and finds every error of the declaration. False when there are any.
+bool validate(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
+              Errors& errors);
+// Which passes and accesses are needed; fills fates and live_accesses.
+void cull(const GraphDescription& graph, Workspace& workspace, Plan& plan);
+// The order of execution.
+void order(const GraphDescription& graph, const Limits& limits, Workspace& workspace, Plan& plan);
+// First and last position of each resource, its usage and its memory requirements.
+void lifetimes(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
+               Plan& plan);
+// Offsets in heaps.
+void place(const GraphDescription& graph, const Limits& limits, Workspace& workspace, Plan& plan);
+// Barriers, submissions and waits.
+void synchronise(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
+                 Plan& plan);
+
+}  // namespace alcove::framegraph

@@ -1,0 +1,97 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdint>
+
+#include "gpu.h"
+
+namespace alcove::framegraph {
+namespace {
+
+void clear_image(RecordContext& context, VkImage image, std::uint32_t value, std::uint32_t mips) {
+  VkClearColorValue color{};
+  color.uint32[0] = value;
+  const VkImageSubresourceRange range{VK_IMAGE_ASPECT_COLOR_BIT, 0, mips, 0, 1};
+  context.vk.vkCmdClearColorImage(context.commands, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                                  &color, 1, &range);
+}
+
+void copy_texel(RecordContext& context, VkImage image, VkBuffer buffer, VkDeviceSize offset) {
+  VkBufferImageCopy copy{};
+  copy.bufferOffset = offset;
+  copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+  copy.imageExtent = {1, 1, 1};
+  context.vk.vkCmdCopyImageToBuffer(context.commands, image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                                    buffer, 1, &copy);
+}
+
+class ExecutorTest : public testing::Test {
+ protected:
+  void SetUp() override { ASSERT_EQ(gpu_.problem(), ""); }
+  void TearDown() override { EXPECT_EQ(gpu_.messages(), ""); }
+
+  Executor make(const ExecutorOptions& options = {}) {
+    auto made = Executor::create(gpu_.handles(), options);
+    EXPECT_TRUE(made.has_value());
+    return std::move(*made);
+  }
+  Gpu gpu_;
+};
+
+// A chain of clears into textures that share memory, each copied out before the next.
+void declare_chain(Graph& graph, const HostBuffer& host, std::uint32_t length) {
+  graph.reset();
+  Buffer out = graph.import_buffer("out", Gpu::imported(host));
+  for (std::uint32_t i = 0; i < length; ++i) {
+    Texture texture =
+        graph.create_texture("texture", {VK_FORMAT_R32_UINT, Extent::absolute(16 + i, 16)});
+    PassBuilder clear = graph.add_pass("clear");
+    texture = clear.write(texture, access::clear);
+    clear.record([=](RecordContext& c) { clear_image(c, c.image(texture), 100 + i, 1); });
+    PassBuilder copy = graph.add_pass("copy");
+    copy.read(texture, access::transfer_source);
+    out = copy.write(out, buffer_access::transfer_destination);
+    copy.record([=](RecordContext& c) {
+      copy_texel(c, c.image(texture), c.buffer(out), i * sizeof(std::uint32_t));
+    });
+  }
+}
+
+TEST_F(ExecutorTest, TransientsThatShareMemoryKeepTheirContents) {
+  Executor executor = make();
+  const HostBuffer host = gpu_.make_host_buffer(8 * sizeof(std::uint32_t));
+  Graph graph;
+  for (int frame = 0; frame < 3; ++frame) {
+    declare_chain(graph, host, 8);
+    const auto report = gpu_.run(executor, graph);
+    ASSERT_TRUE(report) << to_string(report.error());
+    EXPECT_EQ(report->compiled, frame == 0);
+    EXPECT_LT(report->memory.aliased, report->memory.unaliased);
+    const auto* values = static_cast<const std::uint32_t*>(host.mapped);
+    for (std::uint32_t i = 0; i < 8; ++i) EXPECT_EQ(values[i], 100 + i);
+    EXPECT_EQ(executor.timings().size(), 16u);
+  }
+}
+
+TEST_F(ExecutorTest, AnUndeclaredUseIsNamedWhereUsesAreChecked) {
+  ExecutorOptions options;
+  options.check_uses = true;
+  Executor executor = make(options);
+  const HostBuffer host = gpu_.make_host_buffer(4);
+  Graph graph;
+  Texture secret = graph.create_texture("secret", {VK_FORMAT_R32_UINT, Extent::absolute(4, 4)});
+  PassBuilder pass = graph.add_pass("nosy");
+  Buffer out = graph.import_buffer("out", Gpu::imported(host));
+  out = pass.write(out, buffer_access::fill);
+  pass.record([=](RecordContext& c) {
+    EXPECT_EQ(c.image(secret), VkImage{VK_NULL_HANDLE});
+    c.vk.vkCmdFillBuffer(c.commands, c.buffer(out), 0, VK_WHOLE_SIZE, 0);
+  });
+  const auto report = gpu_.run(executor, graph);
+  ASSERT_FALSE(report);
+  EXPECT_EQ(report.error()[0].code, ErrorCode::undeclared_use);
+  EXPECT_THAT(report.error()[0].message, testing::HasSubstr("'nosy' uses 'secret'"));
+}
+
+}  // namespace
+}  // namespace alcove::framegraph

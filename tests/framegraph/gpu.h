@@ -1,0 +1,130 @@
+// A device under the validation layers, and enough of a command buffer to run frames on it.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "alcove/framegraph/framegraph.h"
+#include "vulkan_device.h"
+
+namespace alcove::framegraph {
+
+// A host-visible buffer that passes copy results into.
+struct HostBuffer {
+  VkBuffer buffer = VK_NULL_HANDLE;
+  VkDeviceMemory memory = VK_NULL_HANDLE;
+  VkDeviceSize size = 0;
+  void* mapped = nullptr;
+};
+
+class Gpu {
+ public:
+  Gpu() {
+    sample::DeviceOptions options;
+    options.validation = true;
+    auto made = sample::VulkanDevice::create(options);
+    if (!made) {
+      problem_ = made.error();
+      return;
+    }
+    device_ = std::move(*made);
+    VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO, nullptr,
+                                 VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
+                                 device_->queue_family()};
+    vkCreateCommandPool(device_->device(), &pool, nullptr, &pool_);
+    VkCommandBufferAllocateInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, nullptr, pool_,
+                                     VK_COMMAND_BUFFER_LEVEL_PRIMARY, 1};
+    vkAllocateCommandBuffers(device_->device(), &info, &commands_);
+  }
+  ~Gpu() {
+    if (!device_) return;
+    vkDeviceWaitIdle(device_->device());
+    for (HostBuffer& host : buffers_) {
+      vkDestroyBuffer(device_->device(), host.buffer, nullptr);
+      vkFreeMemory(device_->device(), host.memory, nullptr);
+    }
+    vkDestroyCommandPool(device_->device(), pool_, nullptr);
+  }
+
+  const std::string& problem() const { return problem_; }
+  sample::VulkanDevice& device() { return *device_; }
+  DeviceHandles handles() const {
+    DeviceHandles handles;
+    handles.instance = device_->instance();
+    handles.physical_device = device_->physical_device();
+    handles.device = device_->device();
+    handles.get_instance_proc_addr = vkGetInstanceProcAddr;
+    handles.queues[0] = {device_->queue(), device_->queue_family()};
+    handles.debug_utils = true;
+    return handles;
+  }
+
+  HostBuffer make_host_buffer(VkDeviceSize size) {
+    HostBuffer host;
+    host.size = size;
+    VkBufferCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
+    info.size = size;
+    info.usage = VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
+    vkCreateBuffer(device_->device(), &info, nullptr, &host.buffer);
+    VkMemoryRequirements needed{};
+    vkGetBufferMemoryRequirements(device_->device(), host.buffer, &needed);
+    VkMemoryAllocateInfo allocate{};
+    allocate.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
+    allocate.allocationSize = needed.size;
+    allocate.memoryTypeIndex =
+        device_->memory_type(needed.memoryTypeBits, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |
+                                                        VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
+    vkAllocateMemory(device_->device(), &allocate, nullptr, &host.memory);
+    vkBindBufferMemory(device_->device(), host.buffer, host.memory, 0);
+    vkMapMemory(device_->device(), host.memory, 0, VK_WHOLE_SIZE, 0, &host.mapped);
+    std::memset(host.mapped, 0, size);
+    buffers_.push_back(host);
+    return host;
+  }
+  static ImportedBuffer imported(const HostBuffer& host) {
+    ImportedBuffer import;
+    import.buffer = host.buffer;
+    import.desc.size = host.size;
+    import.usage = VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
+    import.has_contents = false;
+    import.departure = buffer_access::host_read;
+    return import;
+  }
+
+  // Records one frame, runs it and waits.
+  tl::expected<FrameReport, Errors> run(Executor& executor, Graph& graph) {
+    VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO, nullptr,
+                                   VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT, nullptr};
+    vkBeginCommandBuffer(commands_, &begin);
+    auto report = executor.record(graph, commands_);
+    vkEndCommandBuffer(commands_);
+    VkSubmitInfo submit{};
+    submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
+    submit.commandBufferCount = 1;
+    submit.pCommandBuffers = &commands_;
+    vkQueueSubmit(device_->queue(), 1, &submit, VK_NULL_HANDLE);
+    vkQueueWaitIdle(device_->queue());
+    return report;
+  }
+
+  // What the validation layers said, one line each.
+  std::string messages() const {
+    std::string text;
+    for (const std::string& message : device_->validation_messages()) text += message + '\n';
+    return text;
+  }
+
+ private:
+  std::unique_ptr<sample::VulkanDevice> device_;
+  VkCommandPool pool_ = VK_NULL_HANDLE;
+  VkCommandBuffer commands_ = VK_NULL_HANDLE;
+  std::vector<HostBuffer> buffers_;
+  std::string problem_;
+};
+
+}  // namespace alcove::framegraph
