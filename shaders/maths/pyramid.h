@@ -15,14 +15,19 @@ ALCOVE_INLINE float sky_to_nearest(float depth) { return depth < kSkyDepth ? dep
 // Weight of `depth` in a mean that keeps to within `range` of the farthest surface.
 ALCOVE_INLINE float pyramid_weight(float depth, float farthest, float range) {
   if (!(depth < kSkyDepth)) return 0.0f;
-  return clamp(1.0f - (farthest - depth) / range, 0.0f, 1.0f);
+  return clamp(2.0f - 2.0f * (farthest - depth) / range, 0.0f, 1.0f);
 }
 
-// The mean of those of four linear depths that lie within `range` (a length, positive: how deep one
-// surface may run across four texels) of the farthest that is not sky, nearer ones counting less.
-// It leans to the far side because a near side that is lost costs a little occlusion, and a far
-// side that is lost darkens everything behind the edge. kSkyDepth where three of the four are sky.
-// Depths within `range` of one another are averaged to within range / 4 of their mean.
+// Depth relative to the farthest, so that a large one loses no digits; 0 for the sky.
+ALCOVE_INLINE float pyramid_step(float depth, float farthest) {
+  return depth < kSkyDepth ? depth - farthest : 0.0f;
+}
+
+// The mean of those of four linear depths that lie within `range` (a length, positive: twice how
+// deep one surface may run across four texels) of the farthest that is not sky: a plain mean within
+// half of `range`, so that slopes keep their depth, fading to nothing at all of it. It leans to the
+// far side because a near side that is lost costs a little occlusion, and a far side that is lost
+// darkens everything behind the edge. kSkyDepth where three of the four are sky.
 ALCOVE_INLINE float average_depth(vec4 depths, float range) {
   float sky = (depths.x < kSkyDepth ? 0.0f : 1.0f) + (depths.y < kSkyDepth ? 0.0f : 1.0f) +
               (depths.z < kSkyDepth ? 0.0f : 1.0f) + (depths.w < kSkyDepth ? 0.0f : 1.0f);
@@ -32,10 +37,8 @@ ALCOVE_INLINE float average_depth(vec4 depths, float range) {
   vec4 weights =
       vec4(pyramid_weight(depths.x, farthest, range), pyramid_weight(depths.y, farthest, range),
            pyramid_weight(depths.z, farthest, range), pyramid_weight(depths.w, farthest, range));
-  // Relative to the farthest, so that a large depth loses no digits and sky is multiplied by 0 only
-  // after it is bounded.
-  vec4 steps = vec4(min(depths.x, farthest) - farthest, min(depths.y, farthest) - farthest,
-                    min(depths.z, farthest) - farthest, min(depths.w, farthest) - farthest);
+  vec4 steps = vec4(pyramid_step(depths.x, farthest), pyramid_step(depths.y, farthest),
+                    pyramid_step(depths.z, farthest), pyramid_step(depths.w, farthest));
   float weight_sum = weights.x + weights.y + weights.z + weights.w;
   return farthest + dot(weights, steps) / weight_sum;
 }

@@ -1,0 +1,154 @@
+#include "maths/sampling.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <set>
+#include <vector>
+
+namespace alcove::maths_test {
+namespace {
+
+using glm::uvec2;
+using maths::SliceNoise;
+
+TEST(SpatialPattern, BlockHoldsSixteenDirectionsAndFourOffsets) {
+  for (unsigned frame = 0; frame < 24; ++frame) {
+    std::set<float> directions, offsets;
+    for (unsigned y = 0; y < 4; ++y) {
+      for (unsigned x = 0; x < 4; ++x) {
+        const SliceNoise noise = maths::spatial_pattern(uvec2(x, y), frame);
+        directions.insert(noise.direction);
+        offsets.insert(noise.offset);
+        EXPECT_GE(noise.direction, 0.0f);
+        EXPECT_LT(noise.direction, 1.0f);
+        EXPECT_GE(noise.offset, 0.0f);
+        EXPECT_LT(noise.offset, 1.0f);
+      }
+    }
+    EXPECT_EQ(directions.size(), 16u);
+    EXPECT_EQ(offsets.size(), 4u);
+  }
+}
+
+TEST(SpatialPattern, SixFramesTurnTheBlockThroughNinetySixDirections) {
+  std::set<int> directions;
+  for (unsigned frame = 0; frame < 6; ++frame)
+    for (unsigned y = 0; y < 4; ++y)
+      for (unsigned x = 0; x < 4; ++x)
+        directions.insert(
+            int(std::lround(maths::spatial_pattern(uvec2(x, y), frame).direction * 96.0f)));
+  EXPECT_EQ(directions.size(), 96u);
+}
+
+TEST(SpatialPattern, APixelsOwnSixDirectionsSpreadOverHalfATurn) {
+  for (unsigned pixel = 0; pixel < 16; ++pixel) {
+    std::vector<float> directions;
+    for (unsigned frame = 0; frame < 6; ++frame)
+      directions.push_back(maths::spatial_pattern(uvec2(pixel & 3u, pixel >> 2u), frame).direction);
+    std::sort(directions.begin(), directions.end());
+    for (std::size_t k = 0; k < 6; ++k) {
+      const float next = k == 5 ? directions[0] + 1.0f : directions[k + 1];
+      EXPECT_NEAR(next - directions[k], 1.0f / 6, 1.0f / 90);
+    }
+  }
+}
+
+TEST(SpatialPattern, RepeatsEveryFourPixelsAndTwentyFourFrames) {
+  const SliceNoise a = maths::spatial_pattern(uvec2(5, 6), 7);
+  const SliceNoise b = maths::spatial_pattern(uvec2(1, 2), 31);
+  EXPECT_EQ(a.direction, b.direction);
+  EXPECT_EQ(a.offset, b.offset);
+}
+
+TEST(HilbertNoise, CurveVisitsEveryPixelOnceInUnitSteps) {
+  std::vector<uvec2> path(4096, uvec2(64));
+  for (unsigned y = 0; y < 64; ++y)
+    for (unsigned x = 0; x < 64; ++x) {
+      const unsigned index = maths::hilbert_index(uvec2(x, y));
+      ASSERT_LT(index, 4096u);
+      EXPECT_EQ(path[index].x, 64u) << "index " << index << " twice";
+      path[index] = uvec2(x, y);
+    }
+  for (std::size_t k = 1; k < path.size(); ++k) {
+    const int dx = int(path[k].x) - int(path[k - 1].x), dy = int(path[k].y) - int(path[k - 1].y);
+    EXPECT_EQ(std::abs(dx) + std::abs(dy), 1) << "index " << k;
+  }
+}
+
+TEST(HilbertNoise, IsTheR2SequenceInExactArithmetic) {
+  for (unsigned index : {0u, 1u, 17u, 4095u, 22527u}) {
+    const SliceNoise noise = maths::r2_sequence(index);
+    const long double x = 0.5L + index * 0.75487766624669276005L;
+    const long double y = 0.5L + index * 0.56984029099805326591L;
+    EXPECT_NEAR(noise.direction, double(x - std::floor(x)), 1e-5);
+    EXPECT_NEAR(noise.offset, double(y - std::floor(y)), 1e-5);
+  }
+}
+
+TEST(HilbertNoise, IsSpreadEvenlyOverABlockAndOverFrames) {
+  const auto largest_gap = [](std::vector<float> values) {
+    std::sort(values.begin(), values.end());
+    float gap = values.front() + 1.0f - values.back();
+    for (std::size_t k = 1; k < values.size(); ++k) gap = std::max(gap, values[k] - values[k - 1]);
+    return gap;
+  };
+  std::vector<float> block, frames;
+  for (unsigned k = 0; k < 16; ++k)
+    block.push_back(maths::hilbert_noise(uvec2(8 + (k & 3u), 12 + (k >> 2u)), 0).direction);
+  for (unsigned frame = 0; frame < 64; ++frame)
+    frames.push_back(maths::hilbert_noise(uvec2(3, 5), frame).direction);
+  EXPECT_LT(largest_gap(block), 4.0f / 16);
+  EXPECT_LT(largest_gap(frames), 4.0f / 64);
+}
+
+TEST(Hash, FlipsHalfOfItsBitsForEachInputBit) {
+  for (unsigned bit = 0; bit < 32; ++bit) {
+    double flipped = 0.0;
+    for (unsigned seed = 0; seed < 1000; ++seed)
+      flipped += std::popcount(maths::hash(seed * 977u) ^ maths::hash((seed * 977u) ^ (1u << bit)));
+    EXPECT_NEAR(flipped / 1000.0, 16.0, 1.5) << "bit " << bit;
+  }
+  EXPECT_LT(maths::unit_float(0xffffffffu), 1.0f);
+  EXPECT_EQ(maths::unit_float(0u), 0.0f);
+}
+
+TEST(Steps, GrowFromTheNearestToTheRadius) {
+  float before = 0.0f;
+  for (unsigned k = 0; k < 12; ++k) {
+    const float d = maths::step_distance_squared(k, 12, 0.5f, 80.0f);
+    EXPECT_GT(d, before);
+    EXPECT_NEAR(d, maths::step_distance(k, 12, 0.5f, 80.0f, 2.0f), 1e-4f * d);
+    before = d;
+  }
+  EXPECT_EQ(maths::step_distance_squared(0, 12, 0.0f, 80.0f), maths::kNearestStep);
+  EXPECT_LE(maths::step_distance_squared(11, 12, 1.0f, 80.0f), 80.0f);
+}
+
+TEST(Steps, OfASmallRadiusStillLeaveTheirOwnTexel) {
+  for (const float radius : {0.0f, 0.5f, 1.3f})
+    EXPECT_EQ(maths::step_distance_squared(3, 4, 0.9f, radius), maths::kNearestStep);
+}
+
+TEST(Steps, MipFollowsDistanceAndStaysInThePyramid) {
+  EXPECT_EQ(maths::depth_mip(1.3f, 3.3f, 4.0f), 0.0f);
+  EXPECT_EQ(maths::depth_mip(0.0f, 3.3f, 4.0f), 0.0f);
+  EXPECT_NEAR(maths::depth_mip(64.0f, 3.3f, 4.0f), 2.7f, 1e-5f);
+  EXPECT_EQ(maths::depth_mip(1e6f, 3.3f, 4.0f), 4.0f);
+}
+
+TEST(Steps, SnapToTheCentreOfTheirTexel) {
+  EXPECT_EQ(maths::snap_to_texel(glm::vec2(3.99f, 7.0f)), glm::vec2(3.5f, 7.5f));
+  EXPECT_EQ(maths::snap_to_texel(glm::vec2(-0.2f, 0.0f)), glm::vec2(-0.5f, 0.5f));
+}
+
+TEST(Slices, OfAllPixelsTileHalfATurn) {
+  EXPECT_FLOAT_EQ(maths::slice_angle(0, 3, 0.0f), 0.0f);
+  EXPECT_FLOAT_EQ(maths::slice_angle(2, 4, 0.0f), maths::kHalfPi);
+  EXPECT_LT(maths::slice_angle(2, 3, 0.99f), maths::kPi);
+}
+
+}  // namespace
+}  // namespace alcove::maths_test

@@ -1,0 +1,131 @@
+// What is stored between passes: octahedral vectors, packed visibility, the depth pyramid.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "maths/octahedral.h"
+#include "maths/packing.h"
+#include "maths/pyramid.h"
+#include "random_input.h"
+
+namespace alcove::maths_test {
+namespace {
+
+using glm::vec2;
+using glm::vec3;
+using glm::vec4;
+
+TEST(Octahedral, RoundTripsEveryDirection) {
+  RandomInput random;
+  for (int i = 0; i < 100000; ++i) {
+    const vec3 direction = random.unit_vector();
+    const vec2 encoded = maths::octahedral_encode(direction);
+    EXPECT_LE(std::max(std::abs(encoded.x), std::abs(encoded.y)), 1.0f + 1e-6f);
+    EXPECT_LT(distance(maths::octahedral_decode(encoded), direction), 6e-7f);
+  }
+}
+
+TEST(Octahedral, AxesAndFoldsAreExact) {
+  for (const vec3 axis : {vec3(1, 0, 0), vec3(-1, 0, 0), vec3(0, 1, 0), vec3(0, -1, 0),
+                          vec3(0, 0, 1), vec3(0, 0, -1)})
+    EXPECT_EQ(maths::octahedral_decode(maths::octahedral_encode(axis)), axis);
+}
+
+TEST(Octahedral, LengthDoesNotMatterAndZeroIsSafe) {
+  EXPECT_LT(distance(maths::octahedral_encode(vec3(3, -4, 5)),
+                     maths::octahedral_encode(vec3(3, -4, 5) * 1e-20f)),
+            1e-6f);
+  EXPECT_EQ(maths::octahedral_decode(maths::octahedral_encode(vec3(0))), vec3(0, 0, 1));
+}
+
+TEST(Octahedral, DecodesAnyPointToAUnitVector) {
+  RandomInput random;
+  for (int i = 0; i < 10000; ++i) {
+    const vec2 point(random.uniform(-2, 2), random.uniform(-2, 2));
+    EXPECT_NEAR(length(maths::octahedral_decode(point)), 1.0f, 1e-5f);
+  }
+}
+
+TEST(Packing, UnormRoundsToNearestAndKeepsItsEnds) {
+  for (const unsigned bits : {1u, 8u, 12u, 16u}) {
+    const float step = 1.0f / float((1u << bits) - 1u);
+    for (float x = 0.0f; x <= 1.0f; x += 0.001f)
+      EXPECT_NEAR(maths::unpack_unorm(maths::pack_unorm(x, bits), bits), x, 0.5001f * step);
+    EXPECT_EQ(maths::unpack_unorm(maths::pack_unorm(0.0f, bits), bits), 0.0f);
+    EXPECT_EQ(maths::unpack_unorm(maths::pack_unorm(1.0f, bits), bits), 1.0f);
+    EXPECT_EQ(maths::pack_unorm(-5.0f, bits), 0u);
+    EXPECT_EQ(maths::pack_unorm(5.0f, bits), (1u << bits) - 1u);
+  }
+}
+
+TEST(Packing, PairKeepsBothHalvesApart) {
+  const vec2 pair = maths::unpack_unorm_pair(maths::pack_unorm_pair(vec2(0.2f, 0.9f)));
+  EXPECT_NEAR(pair.x, 0.2f, 0.5001f / 255);
+  EXPECT_NEAR(pair.y, 0.9f, 0.5001f / 255);
+}
+
+TEST(Packing, DitherIsUnbiasedAndKeepsOpenOpen) {
+  for (const float x : {0.0f, 0.1f, 0.5f, 0.777f, 1.0f}) {
+    double sum = 0.0;
+    for (int k = 0; k < 1000; ++k) sum += maths::dither_unorm8(x, (float(k) + 0.5f) / 1000.0f);
+    EXPECT_NEAR(sum / 1000.0, x, 1e-5);
+  }
+  EXPECT_EQ(maths::dither_unorm8(1.0f, 0.999f), 1.0f);
+  EXPECT_EQ(maths::dither_unorm8(0.0f, 0.999f), 0.0f);
+}
+
+TEST(Packing, OcclusionHoldsVisibilityAndBentNormalInOneWord) {
+  RandomInput random;
+  double worst = 0.0;
+  for (int i = 0; i < 100000; ++i) {
+    const vec3 bent = random.unit_vector();
+    const float visibility = random.uniform(0, 1);
+    const unsigned word = maths::pack_occlusion(visibility, bent);
+    EXPECT_NEAR(maths::unpack_occlusion_visibility(word), visibility, 0.5001f / 255);
+    const vec3 back = maths::unpack_occlusion_bent_normal(word);
+    worst = std::max(worst, double(length(cross(back, bent))));
+  }
+  EXPECT_LT(std::asin(worst) * 180 / 3.14159265, 0.06);
+}
+
+TEST(Pyramid, FlatDepthStaysWhatItIs) {
+  for (const float depth : {-50.0f, 1e-6f, 1.0f, 1e7f, 1e11f})
+    EXPECT_EQ(maths::average_depth(vec4(depth), 0.1f), depth);
+}
+
+TEST(Pyramid, AveragesOneSurfaceAndKeepsTwoApart) {
+  RandomInput random;
+  for (int i = 0; i < 10000; ++i) {
+    const float base = random.log_uniform(0.1f, 100.0f), range = 0.2f;
+    const vec4 slope =
+        base + vec4(random.uniform(0, 0.5f * range), random.uniform(0, 0.5f * range),
+                    random.uniform(0, 0.5f * range), random.uniform(0, 0.5f * range));
+    const float mean = 0.25f * (slope.x + slope.y + slope.z + slope.w);
+    EXPECT_NEAR(maths::average_depth(slope, range), mean, 1e-6f * base);
+    // Two surfaces: the result lies on the farther one, not between.
+    const vec4 edge(base, base + 10 * range, base, base + 10 * range + 0.1f * range);
+    EXPECT_GE(maths::average_depth(edge, range), edge.y - 1e-5f * edge.y);
+    EXPECT_LE(maths::average_depth(edge, range), edge.w);
+  }
+}
+
+TEST(Pyramid, SkyIsNeitherAveragedInNorInvented) {
+  const float sky = maths::kSkyDepth;
+  EXPECT_EQ(maths::average_depth(vec4(sky), 0.1f), sky);
+  EXPECT_EQ(maths::average_depth(vec4(sky, sky, 3, sky), 0.1f), sky);
+  EXPECT_EQ(maths::average_depth(vec4(sky, 3, 3, sky), 0.1f), 3.0f);
+  EXPECT_EQ(maths::average_depth(vec4(3, 3, 3, sky), 0.1f), 3.0f);
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(maths::average_depth(vec4(3, 3, 3, nan), 0.1f), 3.0f);
+}
+
+TEST(Pyramid, OrderOfTexelsDoesNotMatter) {
+  const vec4 d(1.0f, 1.05f, 2.0f, 1.9f);
+  const float a = maths::average_depth(d, 0.3f);
+  EXPECT_FLOAT_EQ(maths::average_depth(vec4(d.w, d.z, d.y, d.x), 0.3f), a);
+  EXPECT_FLOAT_EQ(maths::average_depth(vec4(d.y, d.x, d.w, d.z), 0.3f), a);
+}
+
+}  // namespace
+}  // namespace alcove::maths_test
