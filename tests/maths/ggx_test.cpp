@@ -1,0 +1,141 @@
+#include "maths/ggx.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "quadrature.h"
+#include "random_input.h"
+
+namespace alcove::maths_test {
+namespace {
+
+using glm::vec3;
+
+const vec3 kNormal(0, 0, 1);
+
+vec3 at_angle(double angle) { return {float(std::sin(angle)), 0.0f, float(std::cos(angle))}; }
+
+// Integral over the hemisphere of f(light), in half-vector coordinates where the lobe is wide
+// enough for plain ones.
+template <typename Function>
+double over_hemisphere(Function f, int panels = 60) {
+  return integrate(
+      [&](double phi) {
+        return integrate(
+            [&](double theta) {
+              const vec3 light(float(std::sin(theta) * std::cos(phi)),
+                               float(std::sin(theta) * std::sin(phi)), float(std::cos(theta)));
+              return double(f(light)) * std::sin(theta);
+            },
+            0.0, kPi / 2, panels);
+      },
+      0.0, 2 * kPi, panels);
+}
+
+TEST(Ggx, ProjectedAreaOfTheMicrofacetsIsOne) {
+  for (const float alpha : {1e-3f, 0.01f, 0.1f, 0.5f, 1.0f}) {
+    // tan as the variable: the density is spread over many powers of it.
+    const double sum = integrate(
+        [&](double log_tan) {
+          const double tan = std::exp(log_tan), cos = 1.0 / std::hypot(1.0, tan);
+          const double n_dot_h = cos;
+          // d(theta) = cos^2 d(tan) and d(tan) = tan d(log tan).
+          return 2 * kPi * maths::ggx_distribution(float(n_dot_h), alpha) * cos * (tan * cos) *
+                 cos * cos * tan;
+        },
+        std::log(1e-6), std::log(1e6), 200);
+    // The cosine is a float: near 1 it cannot tell a narrow lobe's angles apart.
+    EXPECT_NEAR(sum, 1.0, alpha < 0.005f ? 0.03 : 1e-3) << "alpha " << alpha;
+  }
+}
+
+TEST(Ggx, MaskingIsOneFromAboveAndFallsTowardsGrazing) {
+  for (const float alpha : {0.01f, 0.3f, 1.0f}) {
+    EXPECT_FLOAT_EQ(maths::ggx_masking(1.0f, alpha), 1.0f);
+    float before = 1.0f;
+    for (float c = 1.0f; c >= 0.0f; c -= 0.01f) {
+      const float g = maths::ggx_masking(c, alpha);
+      EXPECT_LE(g, before + 1e-6f);
+      EXPECT_GE(g, 0.0f);
+      EXPECT_LE(maths::ggx_shadowing(c, 0.5f, alpha), g + 1e-6f);
+      before = g;
+    }
+  }
+}
+
+TEST(Ggx, WhiteFurnaceNeverGainsEnergy) {
+  for (const float alpha : {0.2f, 0.5f, 1.0f}) {
+    for (double angle : {0.0, 0.7, 1.2, 1.5}) {
+      const double sum = over_hemisphere(
+          [&](vec3 light) { return maths::ggx_lobe(kNormal, at_angle(angle), light, alpha); });
+      EXPECT_LE(sum, 1.001) << alpha << " " << angle;
+      EXPECT_GE(sum, 0.3) << alpha << " " << angle;
+    }
+  }
+}
+
+TEST(Ggx, LobeIsReciprocal) {
+  RandomInput random;
+  for (int i = 0; i < 2000; ++i) {
+    const vec3 view = random.facing(kNormal), light = random.facing(kNormal);
+    const float alpha = random.uniform(0.1f, 1.0f);
+    const float there = maths::ggx_lobe(kNormal, view, light, alpha) * view.z;
+    const float back = maths::ggx_lobe(kNormal, light, view, alpha) * light.z;
+    EXPECT_NEAR(there, back, 1e-4f * there + 1e-6f);
+  }
+}
+
+TEST(Ggx, SamplesFollowTheirDensity) {
+  RandomInput random;
+  for (const float alpha : {0.1f, 0.4f, 1.0f}) {
+    for (double angle : {0.0, 0.8, 1.4}) {
+      const vec3 view = at_angle(angle);
+      // The mean of a function over samples, weighed by lobe / density, is its lobe integral.
+      double sampled = 0.0, sampled_x = 0.0, squares = 0.0;
+      constexpr int kSamples = 100000;
+      for (int i = 0; i < kSamples; ++i) {
+        const vec3 h =
+            maths::sample_ggx_normal(view, alpha, random.uniform(0, 1), random.uniform(0, 1));
+        EXPECT_GE(h.z, 0.0f);
+        const vec3 light = reflect(-view, h);
+        if (light.z <= 0.0f) continue;
+        const double weight = maths::ggx_lobe(kNormal, view, light, alpha) /
+                              maths::ggx_reflection_density(kNormal, view, light, alpha);
+        EXPECT_LE(weight, 1.0001);
+        sampled += weight;
+        squares += weight * weight;
+        sampled_x += weight * light.x;
+      }
+      const double total = over_hemisphere(
+          [&](vec3 light) { return maths::ggx_lobe(kNormal, view, light, alpha); }, 120);
+      const double total_x = over_hemisphere(
+          [&](vec3 light) { return light.x * maths::ggx_lobe(kNormal, view, light, alpha); }, 120);
+      const double mean = sampled / kSamples;
+      const double spread = std::sqrt((squares / kSamples - mean * mean) / kSamples);
+      EXPECT_NEAR(mean, total, 5 * spread + 2e-3) << alpha << " " << angle;
+      EXPECT_NEAR(sampled_x / kSamples, total_x, 5.0 / std::sqrt(kSamples) + 2e-3);
+    }
+  }
+}
+
+TEST(Ggx, MirrorSamplesReflectTheView) {
+  const vec3 view = at_angle(1.0);
+  const vec3 light = reflect(-view, maths::sample_ggx_normal(view, 0.0f, 0.3f, 0.4f));
+  EXPECT_LT(distance(light, at_angle(-1.0)), 0.01f);
+}
+
+TEST(Ggx, ExtremesStayFinite) {
+  for (const float alpha : {0.0f, 1e-30f, 1.0f}) {
+    for (double angle : {0.0, kPi / 2 - 1e-4, kPi / 2}) {
+      const vec3 view = at_angle(angle);
+      EXPECT_TRUE(std::isfinite(maths::ggx_lobe(kNormal, view, at_angle(-angle), alpha)));
+      EXPECT_TRUE(std::isfinite(maths::ggx_reflection_density(kNormal, view, kNormal, alpha)));
+      const vec3 h = maths::sample_ggx_normal(view, alpha, 0.999999f, 0.999999f);
+      EXPECT_NEAR(length(h), 1.0f, 1e-4f);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace alcove::maths_test

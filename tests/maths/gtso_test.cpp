@@ -1,0 +1,145 @@
+#include "maths/gtso.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "quadrature.h"
+#include "random_input.h"
+
+namespace alcove::maths_test {
+namespace {
+
+using glm::vec3;
+
+const vec3 kNormal(0, 0, 1);
+
+// The area two caps share, by rings around the axis of `a`: of a ring at angle t, the arc inside
+// `b`.
+double shared_area(double a, double b, double d) {
+  const auto ring = [&](double t) {
+    const double across = std::sin(t) * std::sin(d), along = std::cos(t) * std::cos(d);
+    double half_arc = 0.0;
+    if (across < 1e-15) {
+      half_arc = along >= std::cos(b) ? kPi : 0.0;
+    } else {
+      half_arc = std::acos(std::clamp((std::cos(b) - along) / across, -1.0, 1.0));
+    }
+    return 2 * half_arc * std::sin(t);
+  };
+  // Split where the ring enters and leaves the rim of b.
+  const double k1 = std::clamp(std::abs(d - b), 0.0, a), k2 = std::clamp(d + b, k1, a);
+  return integrate(ring, 0.0, k1, 200) + integrate(ring, k1, k2, 2000) +
+         integrate(ring, k2, a, 200);
+}
+
+TEST(SphericalCap, SharedAreaAgreesWithQuadrature) {
+  RandomInput random;
+  for (int i = 0; i < 1500; ++i) {
+    const double a = random.log_uniform(1e-3f, 1.5707f), b = random.log_uniform(1e-3f, 1.5707f);
+    const double d = i % 2 == 0 ? random.uniform(0.0f, 3.14f)
+                                : random.uniform(float(std::abs(a - b)), float(a + b));
+    const double expected = shared_area(a, b, d);
+    const double whole = 2 * kPi * (1 - std::cos(std::min(a, b)));
+    EXPECT_NEAR(maths::cap_intersection(float(a), float(b), float(d)) / whole, expected / whole,
+                1e-6 / std::min(a, b) + 1e-5)
+        << "a " << a << " b " << b << " d " << d;
+  }
+}
+
+TEST(SphericalCap, SharedAreaIsContinuousAtItsEnds) {
+  for (const float a : {0.01f, 0.3f, 1.2f, 1.5707f}) {
+    for (const float b : {0.02f, 0.5f, 1.5707f}) {
+      const float whole = maths::cap_area(std::min(a, b));
+      EXPECT_NEAR(maths::cap_intersection(a, b, std::abs(a - b) + 1e-5f * (a + b)) / whole, 1.0f,
+                  0.01f);
+      EXPECT_NEAR(maths::cap_intersection(a, b, (a + b) * (1 - 1e-5f)) / whole, 0.0f, 0.01f);
+      EXPECT_EQ(maths::cap_intersection(a, b, a + b + 1e-4f), 0.0f);
+      EXPECT_EQ(maths::cap_intersection(a, b, 0.0f), whole);
+    }
+  }
+}
+
+TEST(SphericalCap, SmoothApproximationStaysWithinItsStatedError) {
+  double worst = 0.0;
+  for (float a = 0.05f; a < 1.57f; a += 0.05f)
+    for (float b = 0.05f; b < 1.57f; b += 0.05f)
+      for (float d = 0.0f; d < 3.14f; d += 0.02f)
+        worst = std::max(worst, std::abs(double(maths::cap_intersection_smooth(a, b, d)) -
+                                         double(maths::cap_intersection(a, b, d))) /
+                                    maths::cap_area(std::min(a, b)));
+  EXPECT_LT(worst, 0.16);
+}
+
+TEST(Gtso, VisibilityConeHoldsAsMuchAsTheVisibilitySays) {
+  for (float v = 0.0f; v <= 1.0f; v += 0.01f) {
+    const double angle = maths::visibility_cone(v);
+    const double cosine_weighted =
+        integrate([](double t) { return 2 * std::sin(t) * std::cos(t); }, 0.0, angle);
+    EXPECT_NEAR(cosine_weighted, v, 1e-5);
+    const double uniform_angle = maths::uniform_visibility_cone(v);
+    EXPECT_NEAR(integrate([](double t) { return std::sin(t); }, 0.0, uniform_angle), v, 1e-5);
+  }
+  EXPECT_NEAR(maths::tilted_visibility_cone(0.3f, 0.6f), maths::visibility_cone(0.5f), 1e-6f);
+  EXPECT_NEAR(maths::tilted_visibility_cone(0.3f, 0.0f), kPi / 2, 1e-6);
+}
+
+TEST(Gtso, LobeConeFollowsItsCosine) {
+  for (float alpha = 0.0f; alpha <= 1.0f; alpha += 0.001f) {
+    const double expected = std::acos(std::pow(10.0, -double(alpha) * alpha));
+    EXPECT_NEAR(maths::lobe_cone(alpha), expected, 1e-5 + 2e-5 * expected);
+  }
+}
+
+TEST(Gtso, OpenSurfaceStaysOpenForEveryLobeAndView) {
+  for (float alpha : {0.0f, 1e-3f, 0.01f, 0.1f, 0.3f, 1.0f})
+    for (double angle = 0.0; angle <= 89.9; angle += 0.7) {
+      const double t = angle * kPi / 180;
+      const vec3 reflection(float(std::sin(t)), 0, float(std::cos(t)));
+      EXPECT_NEAR(maths::specular_occlusion(1.0f, kNormal, kNormal, reflection, alpha), 1.0f, 1e-4f)
+          << alpha << " " << angle;
+    }
+}
+
+TEST(Gtso, FullyOccludedIsBlack) {
+  RandomInput random;
+  for (int i = 0; i < 1000; ++i) {
+    const vec3 bent = random.facing(kNormal), reflection = random.facing(kNormal);
+    EXPECT_NEAR(
+        maths::specular_occlusion(0.0f, bent, kNormal, reflection, random.uniform(0.01f, 1.0f)),
+        0.0f, 1e-5f);
+  }
+}
+
+TEST(Gtso, MirrorSeesWhatTheConeHolds) {
+  const vec3 inside(0.3f, 0, std::sqrt(1 - 0.09f)), outside(0.9f, 0, std::sqrt(1 - 0.81f));
+  EXPECT_EQ(maths::specular_occlusion(0.5f, kNormal, kNormal, inside, 0.0f), 1.0f);
+  EXPECT_EQ(maths::specular_occlusion(0.5f, kNormal, kNormal, outside, 0.0f), 0.0f);
+}
+
+TEST(Gtso, GrowsWithVisibilityAndStaysInRange) {
+  RandomInput random;
+  for (int i = 0; i < 500; ++i) {
+    const vec3 bent = random.facing(kNormal), reflection = random.facing(kNormal);
+    const float alpha = random.uniform(0.0f, 1.0f);
+    float before = 0.0f;
+    for (float v = 0.0f; v <= 1.0f; v += 0.02f) {
+      const float s = maths::specular_occlusion(v, bent, kNormal, reflection, alpha);
+      EXPECT_GE(s, before - 1e-3f);
+      EXPECT_LE(s, 1.0f);
+      before = s;
+    }
+  }
+}
+
+TEST(Gtso, LagardesFormKeepsOpenOpenAndClosedClosed) {
+  for (float alpha = 0.0f; alpha <= 1.0f; alpha += 0.05f)
+    for (float n_dot_v = 0.0f; n_dot_v <= 1.0f; n_dot_v += 0.05f) {
+      EXPECT_NEAR(maths::lagarde_specular_occlusion(n_dot_v, 1.0f, alpha), 1.0f, 1e-5f);
+      EXPECT_NEAR(maths::lagarde_specular_occlusion(n_dot_v, 0.0f, alpha), 0.0f, 1e-5f);
+    }
+}
+
+}  // namespace
+}  // namespace alcove::maths_test
