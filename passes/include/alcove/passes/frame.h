@@ -1,0 +1,40 @@
+// What every pass of a frame is given: the graph it is added to, the kernels, and the view.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "alcove/framegraph/graph.h"
+#include "alcove/passes/kernels.h"
+
+namespace alcove::passes {
+
+// 4x4 matrices, column-major: element (row r, column c) at 4 * c + r.
+using Matrix = std::array<float, 16>;
+
+inline constexpr Matrix kIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+
+// View space is right-handed with the camera along -Z. `clip_from_view` leads to Vulkan clip space:
+// any perspective or orthographic projection, finite or infinite, reversed, off-centre, jittered or
+// flipped in Y.
+struct View {
+  Matrix clip_from_view = kIdentity;
+  Matrix view_from_world = kIdentity;  // rotation and translation only
+};
+
+// How many bits the results have. Between passes there are never fewer than 16.
+enum class Precision : std::uint8_t {
+  unorm8,   // visibility R8_UNORM, bent normals RGBA8_SNORM
+  float16,  // R16_SFLOAT, RGBA16_SFLOAT: visibility within 2^-12
+  float32,  // R32_SFLOAT, RGBA32_SFLOAT
+};
+
+// Where the passes of one frame go. Borrowed, all of it, until the frame is recorded.
+struct Frame {
+  framegraph::Graph& graph;
+  Kernels& kernels;
+  View view;
+  std::uint32_t index = 0;  // counts frames: it turns the noise
+};
+
+}  // namespace alcove::passes

@@ -1,0 +1,47 @@
+// Ground-truth ambient occlusion: Jimenez, Wu, Pesce and Jarabo 2016, section 4.
+#pragma once
+
+#include <cstdint>
+
+#include "alcove/passes/frame.h"
+
+namespace alcove::passes {
+
+// What stands behind an occluder's front, which is all that a depth buffer shows.
+enum class Estimator : std::uint8_t {
+  // Everything: occluders are infinitely thick (the memo's horizons).
+  horizons,
+  // A thickness, where samples do not lie on one surface; a share of the rest (Therrien et al. 2023
+  // with exact cosine weighting; see shaders/maths/connected_samples.h).
+  bitmask,
+};
+
+struct GtaoSettings {
+  float radius = 0.5f;       // scene units, over 0: occluders beyond it do not count
+  std::uint32_t slices = 1;  // a pixel, 1 to 64; with the noise of a 4x4 block, 16 times as many
+  std::uint32_t steps = 12;  // a side of a slice, 1 to 64: 2 * slices * steps depth fetches a pixel
+  Estimator estimator = Estimator::bitmask;
+  float thickness = 0.15f;   // of an occluder, in parts of the radius, at least 0 (bitmask)
+  float fill = 0.4f;         // share of what is hidden behind it that occludes, [0,1] (bitmask)
+  bool bent_normal = false;  // also write the mean visible direction
+  Precision precision = Precision::float16;  // unorm8 counts as float16
+};
+
+struct GtaoInputs {
+  framegraph::Texture depth;    // linear, as add_depth_pyramid makes it
+  framegraph::Texture normals;  // xyz unit, in world space unless `normals_in_view_space`
+  bool normals_in_view_space = false;
+};
+
+// What filters and history work on: sums over slices, as large as the depth.
+struct OcclusionSignal {
+  framegraph::Texture signal;  // two channels: the visible part of the slices, and all of it
+  framegraph::Texture bent;  // xyz: the mean visible direction weighted by the cosine, view space,
+                             // not normalised; null where none is wanted
+};
+
+[[nodiscard]] tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame,
+                                                            const GtaoInputs& inputs,
+                                                            const GtaoSettings& settings);
+
+}  // namespace alcove::passes

@@ -1,0 +1,52 @@
+// The passes in their usual order: from a depth buffer to visibility and bent normals.
+#pragma once
+
+#include <cstdint>
+
+#include "alcove/passes/depth_pyramid.h"
+#include "alcove/passes/gtao.h"
+#include "alcove/passes/normals.h"
+#include "alcove/passes/spatial_filter.h"
+
+namespace alcove::passes {
+
+enum class Quality : std::uint8_t { low, medium, high, ultra, reference };
+
+// Everything that can be chosen, in scene units. quality_settings() gives a start.
+struct OcclusionSettings {
+  float radius = 0.5f;       // scene units, over 0: occluders beyond it do not count
+  std::uint32_t slices = 1;  // a pixel, 1 to 64
+  std::uint32_t steps = 12;  // a side of a slice, 1 to 64
+  Estimator estimator = Estimator::bitmask;
+  float thickness = 0.15f;       // of an occluder, in parts of the radius, at least 0 (bitmask)
+  float fill = 0.4f;             // share of what is hidden behind it that occludes, [0,1] (bitmask)
+  std::uint32_t depth_mips = 1;  // levels of the depth pyramid, 1 to 5
+  std::uint32_t filter_reach = 2;  // neighbours on each side, 0 to 3; 0 leaves the filter out
+  float filter_tolerance = 0.05f;  // distance from the tangent plane, in parts of the radius
+  bool bent_normal = false;
+  Precision precision = Precision::unorm8;
+};
+
+// The settings of a quality at a radius; all of them suit every scene.
+[[nodiscard]] OcclusionSettings quality_settings(Quality quality, float radius);
+
+struct OcclusionInputs {
+  framegraph::Texture depth_ndc;       // as the view's projection wrote it
+  framegraph::Texture normals;         // xyz unit; null: they are made from depth
+  bool normals_in_view_space = false;  // else in world space
+};
+
+struct OcclusionOutputs {
+  framegraph::Texture visibility;  // one channel, [0,1], 1 open
+  framegraph::Texture
+      bent_normal;  // xyz unit, in the space of `normals`; null where none was asked for
+  framegraph::Texture linear_depth;  // as add_depth_pyramid makes it
+  framegraph::Texture normals;       // those given, or those made from depth, in view space
+};
+
+// What is not read afterwards is culled by the graph, with all that only leads there. Bent normals
+// are in the space of the given normals, in view space where none are given.
+[[nodiscard]] tl::expected<OcclusionOutputs, Error> add_occlusion(
+    const Frame& frame, const OcclusionInputs& inputs, const OcclusionSettings& settings);
+
+}  // namespace alcove::passes

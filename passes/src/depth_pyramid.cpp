@@ -1,0 +1,65 @@
+#include "alcove/passes/depth_pyramid.h"
+
+#include <algorithm>
+#include <array>
+
+#include "depth_pyramid_parameters.h"
+#include "view_parameters.h"
+
+namespace alcove::passes {
+
+using framegraph::Range;
+using framegraph::RecordContext;
+using framegraph::Texture;
+
+namespace {
+
+constexpr std::uint32_t kMaxMips = 5;
+
+std::uint32_t mips_that_fit(VkExtent3D extent, std::uint32_t wanted) {
+  std::uint32_t mips = 1;
+  while (mips < wanted && std::max(extent.width, extent.height) >> mips != 0) {
+    ++mips;
+  }
+  return mips;
+}
+
+}  // namespace
+
+tl::expected<Texture, Error> add_depth_pyramid(const Frame& frame, Texture depth_ndc,
+                                               std::uint32_t mips, float reach) {
+  const VkExtent3D extent = frame.graph.extent(depth_ndc);
+  const auto projection = projection_of(frame, depth_ndc);
+  if (!projection) {
+    return tl::unexpected(projection.error());
+  }
+  mips = mips_that_fit(extent, std::clamp(mips, 1u, kMaxMips));
+  const std::array constants{mips};
+  const auto kernel = frame.kernels.get(Shader::depth_pyramid, constants);
+  if (!kernel) {
+    return tl::unexpected(kernel.error());
+  }
+
+  Texture depth = frame.graph.create_texture(
+      "linear depth",
+      {VK_FORMAT_R32_SFLOAT, framegraph::Extent::absolute(extent.width, extent.height), mips});
+  auto pass = frame.graph.add_pass("depth pyramid");
+  pass.read(depth_ndc, framegraph::access::sampled_compute);
+  depth = pass.write(depth, framegraph::access::storage_write_compute, {},
+                     framegraph::Contents::discard);
+  const maths::DepthPyramidParameters parameters{*projection, reach};
+  pass.record([&kernels = frame.kernels, kernel = *kernel, depth_ndc, depth, mips, extent,
+               parameters](RecordContext& context) {
+    std::array<VkImageView, kMaxMips + 1> views;
+    views[0] = context.view(depth_ndc);
+    for (std::uint32_t mip = 0; mip < kMaxMips; ++mip) {
+      views[mip + 1] = context.view(depth, Range::mip(std::min(mip, mips - 1)));
+    }
+    // One thread for two by two pixels.
+    kernels.dispatch(context, kernel, views, bytes_of(parameters),
+                     {(extent.width + 1) / 2, (extent.height + 1) / 2, 1});
+  });
+  return depth;
+}
+
+}  // namespace alcove::passes

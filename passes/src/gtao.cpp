@@ -1,0 +1,94 @@
+#include "alcove/passes/gtao.h"
+
+#include <array>
+#include <cmath>
+
+#include "gtao_parameters.h"
+#include "view_parameters.h"
+
+namespace alcove::passes {
+
+using framegraph::Range;
+using framegraph::RecordContext;
+using framegraph::Texture;
+
+namespace {
+
+tl::expected<void, Error> check(const GtaoSettings& settings) {
+  if (!(settings.radius > 0.0f) || !std::isfinite(settings.radius)) {
+    return tl::unexpected(Error{"The occlusion radius is " + std::to_string(settings.radius) +
+                                "; it must be a length over 0 in the scene's units."});
+  }
+  if (settings.slices < 1 || settings.slices > 64 || settings.steps < 1 || settings.steps > 64) {
+    return tl::unexpected(Error{"There are " + std::to_string(settings.slices) + " slices of " +
+                                std::to_string(settings.steps) +
+                                " steps; each number must be 1 to 64."});
+  }
+  if (!(settings.thickness >= 0.0f) || !(settings.fill >= 0.0f && settings.fill <= 1.0f)) {
+    return tl::unexpected(Error{"The thickness is " + std::to_string(settings.thickness) +
+                                " radii and the fill " + std::to_string(settings.fill) +
+                                "; the first must be at least 0, the second 0 to 1."});
+  }
+  return {};
+}
+
+// The textures that the pass writes, made for the graph but not yet written.
+OcclusionSignal create_signal(const Frame& frame, Texture depth, const GtaoSettings& settings) {
+  const bool precise = settings.precision == Precision::float32;
+  const auto size = framegraph::Extent::relative(depth);
+  OcclusionSignal result;
+  result.signal = frame.graph.create_texture(
+      "occlusion signal", {precise ? VK_FORMAT_R32G32_SFLOAT : VK_FORMAT_R16G16_SFLOAT, size});
+  if (settings.bent_normal) {
+    result.bent = frame.graph.create_texture(
+        "bent signal",
+        {precise ? VK_FORMAT_R32G32B32A32_SFLOAT : VK_FORMAT_R16G16B16A16_SFLOAT, size});
+  }
+  return result;
+}
+
+}  // namespace
+
+tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame, const GtaoInputs& inputs,
+                                              const GtaoSettings& settings) {
+  if (auto good = check(settings); !good) {
+    return tl::unexpected(good.error());
+  }
+  const auto projection = projection_of(frame, inputs.depth);
+  if (!projection) {
+    return tl::unexpected(projection.error());
+  }
+  const std::array constants{settings.slices, settings.steps,
+                             static_cast<std::uint32_t>(settings.bent_normal),
+                             static_cast<std::uint32_t>(settings.estimator == Estimator::bitmask)};
+  const auto kernel = frame.kernels.get(Shader::gtao, constants);
+  if (!kernel) {
+    return tl::unexpected(kernel.error());
+  }
+
+  OcclusionSignal result = create_signal(frame, inputs.depth, settings);
+  auto pass = frame.graph.add_pass("gtao");
+  pass.read(inputs.depth, framegraph::access::sampled_compute);
+  pass.read(inputs.normals, framegraph::access::sampled_compute);
+  const auto& stored = framegraph::access::storage_write_compute;
+  result.signal = pass.write(result.signal, stored, {}, framegraph::Contents::discard);
+  if (settings.bent_normal) {
+    result.bent = pass.write(result.bent, stored, {}, framegraph::Contents::discard);
+  }
+  const maths::GtaoParameters parameters{*projection,
+                                         view_from_normal(frame, inputs.normals_in_view_space),
+                                         settings.radius,
+                                         frame.index,
+                                         settings.thickness * settings.radius,
+                                         settings.fill};
+  pass.record([&kernels = frame.kernels, kernel = *kernel, inputs, result,
+               parameters](RecordContext& context) {
+    const VkImageView signal = context.view(result.signal);
+    const std::array views{context.view(inputs.depth), context.view(inputs.normals), signal,
+                           result.bent ? context.view(result.bent) : signal};
+    kernels.dispatch(context, kernel, views, bytes_of(parameters), context.extent(result.signal));
+  });
+  return result;
+}
+
+}  // namespace alcove::passes

@@ -1,0 +1,347 @@
+#include "alcove/passes/kernels.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cstring>
+#include <utility>
+#include <vector>
+
+#include "shader_table.h"
+
+namespace alcove::passes {
+namespace {
+
+constexpr std::size_t kShaderCount = static_cast<std::size_t>(Shader::count);
+constexpr std::size_t kMaxConstants = 16;
+constexpr std::size_t kMaxBindings = 12;
+constexpr std::uint32_t kGroupSize = 8;
+
+tl::unexpected<Error> failure(std::string_view what, VkResult result) {
+  return tl::unexpected(
+      Error{"The occlusion passes could not create " + std::string(what) + ".", result});
+}
+
+struct Pipeline {
+  Shader shader = Shader::count;
+  std::vector<std::uint32_t> constants;
+  VkPipeline pipeline = VK_NULL_HANDLE;
+};
+
+// The set that one dispatch of one frame slot wrote last.
+struct Set {
+  Shader shader = Shader::count;
+  VkDescriptorSet set = VK_NULL_HANDLE;
+};
+
+struct FrameSlot {
+  VkDescriptorPool pool = VK_NULL_HANDLE;
+  std::array<Set, Kernels::kMaxDispatches> sets;
+};
+
+}  // namespace
+
+struct Kernels::State {
+  framegraph::VulkanFunctions vk;
+  VkPhysicalDevice physical_device = VK_NULL_HANDLE;
+  VkDevice device = VK_NULL_HANDLE;
+  std::array<VkShaderModule, kShaderCount> modules{};
+  std::array<VkDescriptorSetLayout, kShaderCount> set_layouts{};
+  std::array<VkPipelineLayout, kShaderCount> pipeline_layouts{};
+  std::vector<Pipeline> pipelines;
+  std::vector<FrameSlot> slots;
+  VkBuffer parameters = VK_NULL_HANDLE;
+  VkDeviceMemory parameter_memory = VK_NULL_HANDLE;
+  std::byte* mapped = nullptr;
+  std::size_t slot = 0;
+  std::uint32_t dispatches = 0;
+
+  State() = default;
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+  ~State();
+
+  tl::expected<void, Error> create_layouts();
+  tl::expected<void, Error> create_slots(std::uint32_t count);
+  tl::expected<void, Error> create_parameters(std::uint32_t slot_count);
+  tl::expected<void, Error> create_module(std::size_t shader);
+  VkDescriptorSet next_set(Shader shader);
+  VkDeviceSize write_parameters(std::span<const std::byte> bytes);
+  void write_set(VkDescriptorSet set, std::string_view bindings, std::span<const VkImageView> views,
+                 VkDeviceSize offset, VkDeviceSize size);
+};
+
+Kernels::State::~State() {
+  if (device == VK_NULL_HANDLE) {
+    return;
+  }
+  for (const Pipeline& pipeline : pipelines) {
+    vk.vkDestroyPipeline(device, pipeline.pipeline, nullptr);
+  }
+  for (std::size_t i = 0; i < kShaderCount; ++i) {
+    vk.vkDestroyShaderModule(device, modules[i], nullptr);
+    vk.vkDestroyPipelineLayout(device, pipeline_layouts[i], nullptr);
+    vk.vkDestroyDescriptorSetLayout(device, set_layouts[i], nullptr);
+  }
+  for (const FrameSlot& frame : slots) {
+    vk.vkDestroyDescriptorPool(device, frame.pool, nullptr);
+  }
+  vk.vkDestroyBuffer(device, parameters, nullptr);
+  vk.vkFreeMemory(device, parameter_memory, nullptr);
+}
+
+tl::expected<void, Error> Kernels::State::create_layouts() {
+  for (std::size_t i = 0; i < kShaderCount; ++i) {
+    const std::string_view bindings = shader_source(static_cast<Shader>(i)).bindings;
+    std::array<VkDescriptorSetLayoutBinding, kMaxBindings> described{};
+    assert(bindings.size() < kMaxBindings);
+    described[0] = {0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr};
+    for (std::uint32_t b = 0; b < bindings.size(); ++b) {
+      described[b + 1] = {
+          b + 1,
+          bindings[b] == 's' ? VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE : VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
+          1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr};
+    }
+    const VkDescriptorSetLayoutCreateInfo set_info{
+        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+        .bindingCount = static_cast<std::uint32_t>(bindings.size() + 1),
+        .pBindings = described.data()};
+    VkResult result = vk.vkCreateDescriptorSetLayout(device, &set_info, nullptr, &set_layouts[i]);
+    if (result != VK_SUCCESS) {
+      return failure("a descriptor set layout", result);
+    }
+    const VkPipelineLayoutCreateInfo info{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
+                                          .setLayoutCount = 1,
+                                          .pSetLayouts = &set_layouts[i]};
+    result = vk.vkCreatePipelineLayout(device, &info, nullptr, &pipeline_layouts[i]);
+    if (result != VK_SUCCESS) {
+      return failure("a pipeline layout", result);
+    }
+  }
+  return {};
+}
+
+tl::expected<void, Error> Kernels::State::create_slots(std::uint32_t count) {
+  const std::array<VkDescriptorPoolSize, 3> sizes{
+      {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, kMaxDispatches},
+       {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, kMaxDispatches * 8},
+       {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, kMaxDispatches * 6}}};
+  const VkDescriptorPoolCreateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+                                        .flags = VK_DESCRIPTOR_POOL_CREATE_FREE_DESCRIPTOR_SET_BIT,
+                                        .maxSets = kMaxDispatches,
+                                        .poolSizeCount = static_cast<std::uint32_t>(sizes.size()),
+                                        .pPoolSizes = sizes.data()};
+  slots.resize(count);
+  for (FrameSlot& frame : slots) {
+    if (const VkResult result = vk.vkCreateDescriptorPool(device, &info, nullptr, &frame.pool);
+        result != VK_SUCCESS) {
+      return failure("a descriptor pool", result);
+    }
+  }
+  return {};
+}
+
+tl::expected<void, Error> Kernels::State::create_parameters(std::uint32_t slot_count) {
+  const VkBufferCreateInfo info{
+      .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
+      .size = VkDeviceSize{slot_count} * kMaxDispatches * kMaxParameterBytes,
+      .usage = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT};
+  if (const VkResult result = vk.vkCreateBuffer(device, &info, nullptr, &parameters);
+      result != VK_SUCCESS) {
+    return failure("the buffer of parameters", result);
+  }
+  VkMemoryRequirements needs;
+  vk.vkGetBufferMemoryRequirements(device, parameters, &needs);
+  VkPhysicalDeviceMemoryProperties memory;
+  vk.vkGetPhysicalDeviceMemoryProperties(physical_device, &memory);
+  constexpr VkMemoryPropertyFlags kWanted =
+      VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+  std::uint32_t type = 0;
+  while (type < memory.memoryTypeCount &&
+         ((needs.memoryTypeBits >> type & 1u) == 0 ||
+          (memory.memoryTypes[type].propertyFlags & kWanted) != kWanted)) {
+    ++type;
+  }
+  const VkMemoryAllocateInfo allocation{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                                        .allocationSize = needs.size,
+                                        .memoryTypeIndex = type};
+  VkResult result = vk.vkAllocateMemory(device, &allocation, nullptr, &parameter_memory);
+  void* pointer = nullptr;
+  if (result == VK_SUCCESS) {
+    result = vk.vkBindBufferMemory(device, parameters, parameter_memory, 0);
+  }
+  if (result == VK_SUCCESS) {
+    result = vk.vkMapMemory(device, parameter_memory, 0, VK_WHOLE_SIZE, 0, &pointer);
+  }
+  if (result != VK_SUCCESS) {
+    return failure("the memory of parameters", result);
+  }
+  mapped = static_cast<std::byte*>(pointer);
+  return {};
+}
+
+tl::expected<void, Error> Kernels::State::create_module(std::size_t shader) {
+  if (modules[shader] != VK_NULL_HANDLE) {
+    return {};
+  }
+  const std::span<const std::uint32_t> code = shader_source(static_cast<Shader>(shader)).code;
+  const VkShaderModuleCreateInfo info{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
+                                      .codeSize = code.size_bytes(),
+                                      .pCode = code.data()};
+  if (const VkResult result = vk.vkCreateShaderModule(device, &info, nullptr, &modules[shader]);
+      result != VK_SUCCESS) {
+    return failure("a shader module", result);
+  }
+  return {};
+}
+
+// The set of this dispatch: the one it had last time where the shader is the same, else a new one.
+// The pools are sized for the worst frame, so an allocation can fail only for lack of memory.
+VkDescriptorSet Kernels::State::next_set(Shader shader) {
+  FrameSlot& frame = slots[slot];
+  Set& found = frame.sets[dispatches];
+  if (found.shader == shader) {
+    return found.set;
+  }
+  if (found.set != VK_NULL_HANDLE) {
+    vk.vkFreeDescriptorSets(device, frame.pool, 1, &found.set);
+  }
+  const VkDescriptorSetAllocateInfo info{
+      .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
+      .descriptorPool = frame.pool,
+      .descriptorSetCount = 1,
+      .pSetLayouts = &set_layouts[static_cast<std::size_t>(shader)]};
+  found = {shader, VK_NULL_HANDLE};
+  if (vk.vkAllocateDescriptorSets(device, &info, &found.set) != VK_SUCCESS) {
+    found = {};
+  }
+  return found.set;
+}
+
+VkDeviceSize Kernels::State::write_parameters(std::span<const std::byte> bytes) {
+  assert(bytes.size() <= kMaxParameterBytes);
+  const VkDeviceSize offset = (slot * kMaxDispatches + dispatches) * kMaxParameterBytes;
+  std::memcpy(mapped + offset, bytes.data(), bytes.size());
+  return offset;
+}
+
+void Kernels::State::write_set(VkDescriptorSet set, std::string_view bindings,
+                               std::span<const VkImageView> views, VkDeviceSize offset,
+                               VkDeviceSize size) {
+  assert(views.size() == bindings.size());
+  const VkDescriptorBufferInfo buffer{parameters, offset, size};
+  std::array<VkDescriptorImageInfo, kMaxBindings> images;
+  std::array<VkWriteDescriptorSet, kMaxBindings> writes;
+  writes[0] = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+               .dstSet = set,
+               .dstBinding = 0,
+               .descriptorCount = 1,
+               .descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,
+               .pBufferInfo = &buffer};
+  for (std::uint32_t i = 0; i < views.size(); ++i) {
+    const bool sampled = bindings[i] == 's';
+    images[i] = {VK_NULL_HANDLE, views[i],
+                 sampled ? VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL : VK_IMAGE_LAYOUT_GENERAL};
+    writes[i + 1] = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                     .dstSet = set,
+                     .dstBinding = i + 1,
+                     .descriptorCount = 1,
+                     .descriptorType = sampled ? VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE
+                                               : VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
+                     .pImageInfo = &images[i]};
+  }
+  vk.vkUpdateDescriptorSets(device, static_cast<std::uint32_t>(views.size() + 1), writes.data(), 0,
+                            nullptr);
+}
+
+Kernels::Kernels(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Kernels::Kernels(Kernels&&) noexcept = default;
+Kernels& Kernels::operator=(Kernels&&) noexcept = default;
+Kernels::~Kernels() = default;
+
+tl::expected<Kernels, Error> Kernels::create(const framegraph::DeviceHandles& device,
+                                             std::uint32_t frames_in_flight) {
+  auto state = std::make_unique<State>();
+  if (const char* missing = framegraph::load(state->vk, device.get_instance_proc_addr,
+                                             device.instance, device.device)) {
+    return tl::unexpected(
+        Error{std::string("The device has no function ") + missing + ": Vulkan 1.3 is needed."});
+  }
+  state->physical_device = device.physical_device;
+  state->device = device.device;
+  const std::uint32_t slot_count = std::max(frames_in_flight, 1u);
+  auto done = state->create_layouts()
+                  .and_then([&] { return state->create_slots(slot_count); })
+                  .and_then([&] { return state->create_parameters(slot_count); });
+  if (!done) {
+    return tl::unexpected(std::move(done.error()));
+  }
+  return Kernels(std::move(state));
+}
+
+void Kernels::begin_frame() {
+  state_->slot = (state_->slot + 1) % state_->slots.size();
+  state_->dispatches = 0;
+}
+
+tl::expected<Kernel, Error> Kernels::get(Shader shader, std::span<const std::uint32_t> constants) {
+  State& s = *state_;
+  for (const Pipeline& made : s.pipelines) {
+    if (made.shader == shader && std::ranges::equal(made.constants, constants)) {
+      return Kernel{made.pipeline, shader};
+    }
+  }
+  const auto index = static_cast<std::size_t>(shader);
+  if (auto made = s.create_module(index); !made) {
+    return tl::unexpected(std::move(made.error()));
+  }
+  assert(constants.size() <= kMaxConstants);
+  std::array<VkSpecializationMapEntry, kMaxConstants> entries;
+  for (std::uint32_t i = 0; i < constants.size(); ++i) {
+    entries[i] = {i, i * 4, 4};
+  }
+  const VkSpecializationInfo specialisation{static_cast<std::uint32_t>(constants.size()),
+                                            entries.data(), constants.size_bytes(),
+                                            constants.data()};
+  const VkComputePipelineCreateInfo info{
+      .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+      .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                .stage = VK_SHADER_STAGE_COMPUTE_BIT,
+                .module = s.modules[index],
+                .pName = "main",
+                .pSpecializationInfo = &specialisation},
+      .layout = s.pipeline_layouts[index]};
+  Pipeline made{shader, {constants.begin(), constants.end()}, VK_NULL_HANDLE};
+  if (const VkResult result = s.vk.vkCreateComputePipelines(s.device, VK_NULL_HANDLE, 1, &info,
+                                                            nullptr, &made.pipeline);
+      result != VK_SUCCESS) {
+    return failure("a compute pipeline", result);
+  }
+  s.pipelines.push_back(std::move(made));
+  return Kernel{s.pipelines.back().pipeline, shader};
+}
+
+void Kernels::dispatch(framegraph::RecordContext& context, Kernel kernel,
+                       std::span<const VkImageView> views, std::span<const std::byte> parameters,
+                       VkExtent3D size) {
+  State& s = *state_;
+  assert(s.dispatches < kMaxDispatches);
+  const VkDescriptorSet set = s.next_set(kernel.shader);
+  if (set == VK_NULL_HANDLE) {
+    return;
+  }
+  const VkDeviceSize offset = s.write_parameters(parameters);
+  s.write_set(set, shader_source(kernel.shader).bindings, views, offset, parameters.size());
+  const VkCommandBuffer commands = context.commands;
+  const VkPipelineLayout layout = s.pipeline_layouts[static_cast<std::size_t>(kernel.shader)];
+  s.vk.vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline);
+  s.vk.vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout, 0, 1, &set, 0,
+                               nullptr);
+  s.vk.vkCmdDispatch(commands, (size.width + kGroupSize - 1) / kGroupSize,
+                     (size.height + kGroupSize - 1) / kGroupSize, size.depth);
+  ++s.dispatches;
+}
+
+std::size_t Kernels::pipeline_count() const { return state_->pipelines.size(); }
+
+}  // namespace alcove::passes

@@ -1,0 +1,78 @@
+#include "alcove/passes/occlusion.h"
+
+#include <utility>
+
+namespace alcove::passes {
+namespace {
+
+// How deep one surface may run across two texels of the depth pyramid, in parts of the radius.
+constexpr float kPyramidReach = 0.1f;
+
+}  // namespace
+
+OcclusionSettings quality_settings(Quality quality, float radius) {
+  OcclusionSettings settings;
+  settings.radius = radius;
+  switch (quality) {
+    case Quality::low:
+      settings.steps = 6;
+      break;
+    case Quality::medium:
+      settings.steps = 12;
+      break;
+    case Quality::high:
+      settings.slices = 2;
+      settings.steps = 12;
+      break;
+    case Quality::ultra:
+      settings.slices = 4;
+      settings.steps = 16;
+      break;
+    case Quality::reference:
+      settings.estimator = Estimator::horizons;
+      settings.slices = 32;
+      settings.steps = 64;
+      settings.filter_reach = 0;
+      settings.precision = Precision::float32;
+      break;
+  }
+  return settings;
+}
+
+tl::expected<OcclusionOutputs, Error> add_occlusion(const Frame& frame,
+                                                    const OcclusionInputs& inputs,
+                                                    const OcclusionSettings& settings) {
+  const auto depth = add_depth_pyramid(frame, inputs.depth_ndc, settings.depth_mips,
+                                       kPyramidReach * settings.radius);
+  if (!depth) {
+    return tl::unexpected(depth.error());
+  }
+  framegraph::Texture normals = inputs.normals;
+  const bool in_view_space = inputs.normals_in_view_space || !normals;
+  if (!normals) {
+    auto made = add_normals(frame, *depth);
+    if (!made) {
+      return tl::unexpected(std::move(made.error()));
+    }
+    normals = *made;
+  }
+  const GtaoSettings gtao{.radius = settings.radius,
+                          .slices = settings.slices,
+                          .steps = settings.steps,
+                          .estimator = settings.estimator,
+                          .thickness = settings.thickness,
+                          .fill = settings.fill,
+                          .bent_normal = settings.bent_normal,
+                          .precision = settings.precision};
+  const auto signal = add_gtao(frame, {*depth, normals, in_view_space}, gtao);
+  if (!signal) {
+    return tl::unexpected(signal.error());
+  }
+  return add_spatial_filter(frame, {*signal, *depth, normals, in_view_space},
+                            {.reach = settings.filter_reach, .precision = settings.precision})
+      .map([&](const Occlusion& filtered) {
+        return OcclusionOutputs{filtered.visibility, filtered.bent_normal, *depth, normals};
+      });
+}
+
+}  // namespace alcove::passes

@@ -1,0 +1,42 @@
+// What the passes' C++ needs of a View, in the types that the shaders share.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <type_traits>
+
+#include "alcove/passes/frame.h"
+#include "maths/make_projection.h"
+
+namespace alcove::passes {
+
+[[nodiscard]] inline maths::mat4 to_mat4(const Matrix& matrix) {
+  maths::mat4 result;
+  for (int i = 0; i < 16; ++i) {
+    result[i / 4][i % 4] = matrix[static_cast<std::size_t>(i)];
+  }
+  return result;
+}
+
+// The projection of the view over the whole of `texture`, or what is wrong with it.
+[[nodiscard]] inline tl::expected<maths::Projection, Error> projection_of(
+    const Frame& frame, framegraph::Texture texture) {
+  const VkExtent3D extent = frame.graph.extent(texture);
+  return maths::make_projection(to_mat4(frame.view.clip_from_view), extent.width, extent.height)
+      .map_error([](const char* why) {
+        return Error{"The view cannot be used: " + std::string(why) + "."};
+      });
+}
+
+// The rotation that turns normals into view space.
+[[nodiscard]] inline maths::mat4 view_from_normal(const Frame& frame, bool normals_in_view_space) {
+  return normals_in_view_space ? maths::mat4(1.0f) : to_mat4(frame.view.view_from_world);
+}
+
+template <typename Parameters>
+[[nodiscard]] std::span<const std::byte> bytes_of(const Parameters& parameters) {
+  static_assert(std::is_trivially_copyable_v<Parameters>);
+  return std::as_bytes(std::span(&parameters, 1));
+}
+
+}  // namespace alcove::passes

@@ -1,0 +1,19 @@
+#ifndef ALCOVE_GTAO_PARAMETERS_H
+#define ALCOVE_GTAO_PARAMETERS_H
+
+#include "maths/projection.h"
+
+ALCOVE_MATHS_BEGIN
+
+struct GtaoParameters {
+  Projection projection;
+  mat4 view_from_normal;  // rotation from the space of the normals to view space
+  float radius;           // scene units
+  uint frame;             // turns the noise
+  float thickness;        // of what is joined to nothing, scene units (bitmask)
+  float fill;             // share of what lies behind an occluder that counts as occluded, [0,1]
+};
+
+ALCOVE_MATHS_END
+
+#endif

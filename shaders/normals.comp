@@ -1,0 +1,69 @@
+#version 460
+#extension GL_EXT_samplerless_texture_functions : require
+#extension GL_GOOGLE_include_directive : require
+
+// Normals from depth. On each axis the neighbour is taken from the side whose two depths continue to
+// the pixel's own better: across a silhouette the other side belongs to another surface.
+
+#include "maths/projection.h"
+#include "maths/slice.h"
+#include "normals_parameters.h"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(set = 0, binding = 0) uniform Parameters { NormalsParameters parameters; };
+layout(set = 0, binding = 1) uniform texture2D depth_image;  // linear
+layout(set = 0, binding = 2) uniform writeonly image2D normal_image;
+
+float fetch_depth(ivec2 pixel) {
+  ivec2 last = ivec2(parameters.projection.size_px) - 1;
+  return texelFetch(depth_image, clamp(pixel, ivec2(0), last), 0).r;
+}
+
+vec3 fetch_position(ivec2 pixel, float depth) {
+  return position_vs(parameters.projection, pixel_centre_uv(parameters.projection, uvec2(pixel)),
+                     depth);
+}
+
+// How badly the line through the depths one and two pixels away misses the pixel's own. Depth itself
+// is no line on the image of a plane; its inverse is, in perspective, so that is compared there.
+float miss(float depth, float one, float two) {
+  if (parameters.projection.eye.w > 0.0) {
+    return abs(2.0 / one - 1.0 / two - 1.0 / depth);
+  }
+  return abs(2.0 * one - two - depth);
+}
+
+// From the pixel to its better neighbour along an axis, pointing along +axis of the image.
+vec3 tangent(ivec2 pixel, ivec2 axis, float depth) {
+  ivec2 last = ivec2(parameters.projection.size_px) - 1;
+  float before = fetch_depth(pixel - axis);
+  float after = fetch_depth(pixel + axis);
+  float miss_before = miss(depth, before, fetch_depth(pixel - 2 * axis));
+  float miss_after = miss(depth, after, fetch_depth(pixel + 2 * axis));
+  bool first = any(lessThan(pixel - axis, ivec2(0)));
+  bool final = any(greaterThan(pixel + axis, last));
+  bool take_after = first || (!final && miss_after < miss_before);
+  vec3 here = fetch_position(pixel, depth);
+  return take_after ? fetch_position(pixel + axis, after) - here
+                    : here - fetch_position(pixel - axis, before);
+}
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(pixel, ivec2(parameters.projection.size_px)))) {
+    return;
+  }
+  float depth = fetch_depth(pixel);
+  vec3 view = view_vector(parameters.projection, fetch_position(pixel, min(depth, 1e6)));
+  if (is_sky_depth(depth)) {
+    imageStore(normal_image, pixel, vec4(view, 0.0));
+    return;
+  }
+  // Image y points down; where a projection is flipped the facing test turns the normal back.
+  vec3 normal = cross(tangent(pixel, ivec2(0, 1), depth), tangent(pixel, ivec2(1, 0), depth));
+  float squared = dot(normal, normal);
+  normal = squared > 0.0 ? normal * inversesqrt(squared) : view;
+  normal = dot(normal, view) < 0.0 ? -normal : normal;
+  imageStore(normal_image, pixel, vec4(normal, 0.0));
+}

@@ -1,0 +1,56 @@
+#ifndef ALCOVE_TESTS_PASSES_PASS_FIXTURE_H_
+#define ALCOVE_TESTS_PASSES_PASS_FIXTURE_H_
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "alcove/passes/occlusion.h"
+#include "gpu.h"
+
+namespace alcove::passes {
+
+// A float image of the host, row by row from the top.
+struct HostImage {
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  std::vector<float> texels;  // `channels` a pixel
+  std::uint32_t channels = 1;
+
+  float at(std::uint32_t x, std::uint32_t y, std::uint32_t channel = 0) const {
+    return texels[(std::size_t{y} * width + x) * channels + channel];
+  }
+};
+
+// Runs passes on the machine's device under the validation layers; a message of theirs fails the
+// test.
+class PassTest : public testing::Test {
+ protected:
+  void SetUp() override;
+  void TearDown() override;
+
+  // Adds a texture of 32-bit floats (1 or 4 channels) that holds `image`.
+  framegraph::Texture upload(framegraph::Graph& graph, const HostImage& image);
+  // Has `texture`, of 32-bit floats, read back: result() gives it once the frame has run.
+  void read_back(framegraph::Graph& graph, framegraph::Texture texture, std::uint32_t mip = 0);
+  // The images read back by the last frame, in order.
+  const HostImage& result(std::size_t index = 0) const { return results_[index]; }
+
+  // Runs one frame that `declare` declares; fails the test where it cannot.
+  void run(const std::function<void(framegraph::Graph&)>& declare);
+
+  sample::Gpu& gpu() { return *gpu_; }
+
+ private:
+  std::unique_ptr<sample::Gpu> gpu_;
+  std::vector<std::unique_ptr<sample::HostBuffer>> uploads_;
+  std::vector<std::unique_ptr<sample::HostBuffer>> downloads_;
+  std::vector<HostImage> results_;
+};
+
+}  // namespace alcove::passes
+
+#endif  // ALCOVE_TESTS_PASSES_PASS_FIXTURE_H_

@@ -1,0 +1,31 @@
+// Views of every kind, and depth buffers of planes as they would draw them, in double precision.
+#ifndef ALCOVE_TESTS_PASSES_VIEWS_H_
+#define ALCOVE_TESTS_PASSES_VIEWS_H_
+
+#include <string>
+#include <vector>
+
+#include "pass_fixture.h"
+
+namespace alcove::passes {
+
+struct TestView {
+  std::string name;
+  View view;
+  bool orthographic = false;
+};
+
+// Perspective: finite, infinite, reversed, off-centre, jittered, flipped in Y; orthographic.
+std::vector<TestView> test_views();
+
+// A plane through the point 4 units before the eye, tilted about the image's diagonal.
+struct PlaneScene {
+  HostImage depth_ndc;
+  HostImage normal_vs;  // four channels
+};
+PlaneScene plane_scene(const TestView& view, std::uint32_t width, std::uint32_t height,
+                       float tilt_degrees);
+
+}  // namespace alcove::passes
+
+#endif  // ALCOVE_TESTS_PASSES_VIEWS_H_
