@@ -62,8 +62,13 @@ ALCOVE_INLINE Slice make_slice(vec3 normal, vec3 direction, vec3 view) {
   return s;
 }
 
-// The signed angle from the view vector to the projected normal, in [-pi/2,pi/2].
-ALCOVE_INLINE float slice_gamma(Slice s) { return kHalfPi - arc_cosine(s.sine); }
+// The signed angle from the view vector to the projected normal, in [-pi/2,pi/2]. Taken from the
+// smaller of sine and cosine, where the angle does not hang on the last digit.
+ALCOVE_INLINE float slice_gamma(Slice s) {
+  bool steep = abs(s.sine) > s.cosine;
+  float angle = arc_cosine(steep ? s.cosine : s.sine);
+  return steep ? (s.sine < 0.0f ? -angle : angle) : kHalfPi - angle;
+}
 
 // `normal` if the eye can see its side, else the nearest normal that the eye sees edge-on.
 // Interpolated and mapped normals turn away from the eye near silhouettes.

@@ -1,0 +1,54 @@
+// The least that runs one compute shader over buffers and reads the results back.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "vulkan_device.h"
+
+namespace alcove::maths_test {
+
+// A pipeline whose set 0 has a uniform buffer at binding 0 and storage buffers after it, all in
+// host-visible memory. Vulkan errors fail the running test and leave zeros.
+class ComputeRun {
+ public:
+  // Sizes in bytes; the device must outlive this.
+  ComputeRun(const sample::VulkanDevice& device, std::span<const std::uint32_t> spirv,
+             std::vector<std::uint32_t> buffer_sizes);
+  ~ComputeRun();
+  ComputeRun(const ComputeRun&) = delete;
+  ComputeRun& operator=(const ComputeRun&) = delete;
+
+  // The memory of a buffer, mapped; read it after dispatch().
+  void* data(std::size_t buffer) const { return buffers_[buffer].mapped; }
+
+  // Runs `groups` workgroups with two words of push constants and waits for them.
+  void dispatch(std::uint32_t groups, std::uint32_t push_0, std::uint32_t push_1);
+
+ private:
+  struct Buffer {
+    VkBuffer buffer = VK_NULL_HANDLE;
+    VkDeviceMemory memory = VK_NULL_HANDLE;
+    void* mapped = nullptr;
+  };
+
+  Buffer make_buffer(std::uint32_t size, VkBufferUsageFlags usage) const;
+  void make_descriptors(const std::vector<std::uint32_t>& sizes);
+  void make_pipeline(std::span<const std::uint32_t> spirv);
+  void make_commands();
+
+  const sample::VulkanDevice& owner_;
+  VkDevice device_;
+  std::vector<Buffer> buffers_;
+  VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;
+  VkDescriptorPool descriptor_pool_ = VK_NULL_HANDLE;
+  VkDescriptorSet set_ = VK_NULL_HANDLE;
+  VkPipelineLayout layout_ = VK_NULL_HANDLE;
+  VkPipeline pipeline_ = VK_NULL_HANDLE;
+  VkCommandPool command_pool_ = VK_NULL_HANDLE;
+  VkCommandBuffer commands_ = VK_NULL_HANDLE;
+};
+
+}  // namespace alcove::maths_test

@@ -1,0 +1,179 @@
+// Every function of shaders/maths, called in one way from both languages, so that the device's
+// results can be laid beside the CPU's. Written in the shared subset of GLSL and C++.
+#ifndef ALCOVE_TESTS_PARITY_CASES_H
+#define ALCOVE_TESTS_PARITY_CASES_H
+
+#include "maths/bent_normal.h"
+#include "maths/filter_weights.h"
+#include "maths/ggx.h"
+#include "maths/gtao.h"
+#include "maths/gtso.h"
+#include "maths/history.h"
+#include "maths/multi_bounce.h"
+#include "maths/packing.h"
+#include "maths/projection.h"
+#include "maths/pyramid.h"
+#include "maths/reprojection.h"
+#include "maths/sampling.h"
+#include "maths/visibility_bitmask.h"
+
+ALCOVE_MATHS_BEGIN
+
+ALCOVE_INLINE vec3 parity_direction(float x, float y) {
+  return octahedral_decode(vec2(x * 2.0f - 1.0f, y * 2.0f - 1.0f));
+}
+
+// A unit vector before the eye.
+ALCOVE_INLINE vec3 parity_view(float x, float y) {
+  vec3 v = parity_direction(x, y);
+  return vec3(v.x, v.y, abs(v.z));
+}
+
+ALCOVE_INLINE Slice parity_slice(vec4 a) {
+  vec3 view = parity_view(a.x, a.y);
+  vec3 normal = facing_normal(parity_direction(a.z, a.w), view);
+  return make_slice(normal, slice_direction(make_view_basis(view), a.z * kPi), view);
+}
+
+ALCOVE_INLINE uvec2 parity_pixel(vec4 a) { return uvec2(uint(a.x * 960.0f), uint(a.y * 540.0f)); }
+
+ALCOVE_INLINE vec4 parity_of_slices(uint which, vec4 a, vec4 b) {
+  Slice s = parity_slice(a);
+  SectorScale scale = make_sector_scale(s);
+  float ahead = b.x * 2.0f - 1.0f;
+  float behind = b.y * 2.0f - 1.0f;
+  switch (which) {
+    case 0u:
+      return vec4(s.along, s.toward, s.scale, slice_gamma(s));
+    case 1u:
+      return vec4(slice_arc(s, 1.0f, ahead), slice_arc(s, -1.0f, behind),
+                  slice_visibility(s, ahead, behind), open_slice(s));
+    case 2u: {
+      vec3 view = parity_view(a.x, a.y);
+      vec3 direction = slice_direction(make_view_basis(view), a.z * kPi);
+      vec3 bent = slice_bent_normal(s, direction, view, ahead, behind);
+      return vec4(bent.x, bent.y, bent.z, uniform_slice_visibility(ahead, behind));
+    }
+    case 3u:
+      return vec4(sector_position(s, scale, 1.0f, ahead), sector_position(s, scale, -1.0f, behind),
+                  scale.open, bitmask_visibility(scale, 0x00ff00f0u));
+    case 4u:
+      return vec4(arc_cosine(ahead), arc_cosine_cheap(ahead), raise_horizon(ahead, behind, b.z),
+                  horizon_cosine(parity_direction(b.z, b.w) * 3.0f, parity_view(a.x, a.y)));
+  }
+  return vec4(0.0f);
+}
+
+ALCOVE_INLINE vec4 parity_of_cameras(uint which, vec4 a, vec4 b, Projection p) {
+  vec2 uv = vec2(a.x, a.y);
+  float depth = 0.2f + a.z * 50.0f;
+  vec3 position = position_vs(p, uv, depth);
+  vec3 view = view_vector(p, position);
+  switch (which) {
+    case 5u:
+      return vec4(position.x, position.y, position.z, linear_depth(p, b.x));
+    case 6u:
+      return vec4(uv_of_position(p, position).x, uv_of_position(p, position).y,
+                  pixels_per_unit(p, depth).x, pixels_per_unit(p, depth).y);
+    case 7u: {
+      vec2 along = pixels_along(p, slice_direction(make_view_basis(view), b.y * kPi), view, depth);
+      return vec4(view.x, view.y, along.x, along.y);
+    }
+    case 8u: {
+      mat4 moved = mat4(1.0f);
+      moved[3] = vec4(b.x, b.y, -b.z, 1.0f);
+      Reprojected r = reproject_camera(p, moved, position);
+      return vec4(r.uv.x, r.uv.y, r.depth,
+                  history_weight(depth, depth * (1.0f + b.w * 0.01f), 0.02f, view.z));
+    }
+  }
+  return vec4(0.0f);
+}
+
+ALCOVE_INLINE vec4 parity_of_light(uint which, vec4 a, vec4 b) {
+  vec3 normal = vec3(0.0f, 0.0f, 1.0f);
+  vec3 view = parity_view(a.x, a.y);
+  vec3 light = parity_view(a.z, a.w);
+  float alpha = 0.05f + 0.95f * b.x;
+  switch (which) {
+    case 9u: {
+      vec3 h = sample_ggx_normal(view, alpha, b.y, b.z);
+      return vec4(h.x, h.y, h.z, ggx_shadowing(view.z, light.z, alpha));
+    }
+    case 10u:
+      return vec4(ggx_lobe(normal, view, light, alpha),
+                  ggx_reflection_density(normal, view, light, alpha), ggx_masking(view.z, alpha),
+                  ggx_distribution(light.z, alpha));
+    case 11u:
+      return vec4(cap_intersection(b.x * kHalfPi, b.y * kHalfPi, b.z * kPi),
+                  cap_intersection_smooth(b.x * kHalfPi, b.y * kHalfPi, b.z * kPi),
+                  visibility_cone(b.w), lobe_cone(b.x));
+    case 12u:
+      return vec4(specular_occlusion(b.y, view, normal, light, alpha),
+                  lagarde_specular_occlusion(view.z, b.y, alpha), multi_bounce_channel(b.y, b.z),
+                  tilted_visibility_cone(b.y, view.z));
+  }
+  return vec4(0.0f);
+}
+
+ALCOVE_INLINE vec4 parity_of_storage(uint which, vec4 a, vec4 b) {
+  switch (which) {
+    case 13u: {
+      vec2 encoded = octahedral_encode(parity_direction(a.x, a.y));
+      vec3 decoded = octahedral_decode(encoded);
+      return vec4(encoded.x, encoded.y, decoded.x, decoded.z);
+    }
+    case 14u: {
+      uint word = pack_occlusion(a.x, parity_direction(a.y, a.z));
+      vec3 bent = unpack_occlusion_bent_normal(word);
+      return vec4(unpack_occlusion_visibility(word), bent.x, bent.y, bent.z);
+    }
+    case 15u:
+      return vec4(
+          average_depth(vec4(1.0f + a.x, 1.0f + a.y, 1.0f + a.z, 1.0f + a.w), 0.1f + b.x),
+          depth_slope(a.x, a.y, a.z),
+          plane_weight(vec3(a.x, a.y, a.z), parity_direction(b.x, b.y), vec3(b.z, b.w, a.w), 0.7f),
+          normal_weight(parity_view(a.x, a.y), parity_view(b.x, b.y), 0.2f));
+    case 16u: {
+      Spread spread = spread_of_sums(a.x + a.y + a.z, a.x * a.x + a.y * a.y + a.z * a.z, 3.0f);
+      return vec4(spread.mean, spread.deviation, clamp_to_spread(a.w, spread, 1.0f),
+                  accumulate(b.x, b.y, accumulation_weight(floor(b.z * 40.0f), 32.0f)));
+    }
+  }
+  return vec4(0.0f);
+}
+
+ALCOVE_INLINE vec4 parity_of_sampling(uint which, vec4 a, vec4 b) {
+  uvec2 pixel = parity_pixel(a);
+  uint frame = uint(a.z * 1000.0f);
+  switch (which) {
+    case 17u:
+      return vec4(spatial_pattern(pixel, frame).direction, spatial_pattern(pixel, frame).offset,
+                  hilbert_noise(pixel, frame).direction, hilbert_noise(pixel, frame).offset);
+    case 18u:
+      return vec4(unit_float(hash(pixel.x + pixel.y * 960u)), float(hilbert_index(pixel)),
+                  float(bitCount(cover_sectors(floor(b.x * 64.0f) / 64.0f + 0.005f,
+                                               floor(b.y * 64.0f) / 64.0f + 0.005f, 0.5f))),
+                  snap_to_texel(vec2(b.z * 99.0f, b.w)).x);
+    case 19u:
+      return vec4(step_distance(3u, 7u, b.x, 90.0f * b.y, 1.5f),
+                  step_distance_squared(3u, 7u, b.x, 90.0f * b.y),
+                  depth_mip(b.z * 99.0f, 3.3f, 4.0f), slice_angle(1u, 3u, b.w));
+  }
+  return vec4(0.0f);
+}
+
+const uint kParityCases = 20u;
+
+// Four results of case `which` for eight numbers in [0,1).
+ALCOVE_INLINE vec4 parity_case(uint which, vec4 a, vec4 b, Projection p) {
+  if (which < 5u) return parity_of_slices(which, a, b);
+  if (which < 9u) return parity_of_cameras(which, a, b, p);
+  if (which < 13u) return parity_of_light(which, a, b);
+  if (which < 17u) return parity_of_storage(which, a, b);
+  return parity_of_sampling(which, a, b);
+}
+
+ALCOVE_MATHS_END
+
+#endif

@@ -1,0 +1,155 @@
+// The same functions on the device and on the CPU, and the same structs.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "compute_run.h"
+#include "maths/make_projection.h"
+#include "parity_cases.h"
+#include "parity_spirv.h"
+#include "random_input.h"
+#include "spirv_layout.h"
+#include "vulkan_device.h"
+
+namespace alcove::maths_test {
+namespace {
+
+using glm::vec4;
+
+constexpr std::uint32_t kInputs = 1u << 14;
+
+struct Bound {
+  const char* name;
+  double absolute, relative;  // their sum is allowed
+};
+
+// What the two may differ by: rounding, and the device's own sine, arc tangent, power and root.
+constexpr Bound kBounds[] = {
+    {"slice", 2e-4, 1e-5},
+    {"visibility", 2e-5, 1e-5},
+    {"bent normal", 2e-5, 1e-5},
+    {"sectors", 1e-4, 1e-5},
+    {"arc cosine", 2e-5, 1e-5},
+    {"position and depth", 1e-5, 1e-5},
+    {"pixels", 1e-5, 1e-5},
+    {"view vector and pixels along", 1e-3, 1e-4},
+    {"reprojection", 2e-4, 1e-4},
+    {"ggx normal", 1e-4, 1e-5},
+    {"ggx lobe", 1e-3, 2e-3},
+    {"caps", 1e-4, 1e-4},
+    {"specular occlusion", 1e-3, 1e-4},
+    {"octahedral", 1e-5, 1e-5},
+    {"packed occlusion", 4.1e-3, 0.0},
+    {"pyramid and weights", 5e-5, 1e-5},
+    {"history", 3e-4, 1e-5},
+    {"patterns", 0.0, 0.0},
+    {"integers", 0.0, 0.0},
+    {"steps", 1e-5, 1e-4},
+};
+static_assert(std::size(kBounds) == maths::kParityCases);
+
+maths::Projection off_centre_projection() {
+  glm::mat4 m(0.0f);
+  m[0][0] = 0.9f;
+  m[1][1] = -1.6f;
+  m[2] = vec4(0.1f, -0.05f, -1.0f, -1.0f);
+  m[3][2] = -0.1f;
+  return maths::make_projection(m, 960, 540).value();
+}
+
+class Parity : public ::testing::TestWithParam<std::uint32_t> {
+ protected:
+  static void SetUpTestSuite() {
+    sample::DeviceOptions options;
+    options.validation = true;
+    auto made = sample::VulkanDevice::create(options);
+    ASSERT_TRUE(made.has_value()) << made.error();
+    device_ = std::move(*made);
+    run_ = std::make_unique<ComputeRun>(
+        *device_, kParitySpirv,
+        std::vector<std::uint32_t>{sizeof(maths::Projection), kInputs * 32, kInputs * 16, 256});
+    const maths::Projection projection = off_centre_projection();
+    std::memcpy(run_->data(0), &projection, sizeof projection);
+    std::memcpy(run_->data(3), &projection, sizeof projection);
+  }
+  static void TearDownTestSuite() {
+    run_.reset();
+    device_.reset();
+  }
+
+  static inline std::unique_ptr<sample::VulkanDevice> device_;
+  static inline std::unique_ptr<ComputeRun> run_;
+};
+
+TEST_P(Parity, DeviceComputesWhatTheCpuComputes) {
+  ASSERT_NE(run_, nullptr);
+  RandomInput random;
+  std::vector<vec4> inputs(2 * kInputs);
+  for (vec4& input : inputs)
+    for (int k = 0; k < 4; ++k) input[k] = random.uniform(0.0f, 0.99999f);
+  std::memcpy(run_->data(1), inputs.data(), inputs.size() * sizeof(vec4));
+  run_->dispatch(kInputs / 64, GetParam(), kInputs);
+  std::vector<vec4> results(kInputs);
+  std::memcpy(results.data(), run_->data(2), results.size() * sizeof(vec4));
+
+  const maths::Projection projection = off_centre_projection();
+  const Bound& bound = kBounds[GetParam()];
+  int failures = 0;
+  for (std::uint32_t i = 0; i < kInputs && failures < 4; ++i) {
+    const vec4 expected =
+        maths::parity_case(GetParam(), inputs[2 * i], inputs[2 * i + 1], projection);
+    for (int k = 0; k < 4; ++k) {
+      const double allowed = bound.absolute + bound.relative * std::abs(double(expected[k]));
+      if (std::abs(double(results[i][k]) - expected[k]) <= allowed) continue;
+      ADD_FAILURE() << bound.name << ": component " << k << " is " << results[i][k]
+                    << " on the device and " << expected[k] << " on the CPU, input " << i;
+      ++failures;
+    }
+  }
+  EXPECT_TRUE(device_->validation_messages().empty()) << device_->validation_messages().front();
+}
+
+INSTANTIATE_TEST_SUITE_P(EveryFunction, Parity, ::testing::Range(0u, maths::kParityCases),
+                         [](const auto& instance) {
+                           std::string name = kBounds[instance.param].name;
+                           for (char& c : name)
+                             if (c == ' ') c = '_';
+                           return name;
+                         });
+
+using Offsets = std::map<std::string, std::uint32_t>;
+
+#define ALCOVE_OFFSET(type, member) \
+  { #member, std::uint32_t(offsetof(maths::type, member)) }
+
+TEST(ParameterStructs, LieOnTheDeviceWhereTheyLieInCpp) {
+  const std::map<std::string, Offsets> expected = {
+      {"Projection",
+       {ALCOVE_OFFSET(Projection, uv_to_slope), ALCOVE_OFFSET(Projection, uv_to_origin),
+        ALCOVE_OFFSET(Projection, position_to_uv), ALCOVE_OFFSET(Projection, depth_to_uv),
+        ALCOVE_OFFSET(Projection, depth_unproject), ALCOVE_OFFSET(Projection, eye),
+        ALCOVE_OFFSET(Projection, size_px), ALCOVE_OFFSET(Projection, texel_uv),
+        ALCOVE_OFFSET(Projection, sky), ALCOVE_OFFSET(Projection, near_far)}},
+      {"Thickness",
+       {ALCOVE_OFFSET(Thickness, constant), ALCOVE_OFFSET(Thickness, per_radius),
+        ALCOVE_OFFSET(Thickness, per_depth)}},
+  };
+  std::map<std::string, int> seen;
+  for (const StructLayout& layout : struct_layouts(kParitySpirv)) {
+    const auto match = expected.find(layout.name);
+    if (match == expected.end()) continue;
+    EXPECT_EQ(layout.offsets, match->second) << layout.name;
+    ++seen[layout.name];
+  }
+  EXPECT_EQ(seen["Projection"], 2) << "as std140 and as std430";
+  EXPECT_EQ(seen["Thickness"], 1);
+  EXPECT_EQ(sizeof(maths::Projection) % 16, 0u) << "so that std140 and C++ agree on arrays of it";
+}
+
+}  // namespace
+}  // namespace alcove::maths_test
