@@ -44,7 +44,8 @@ ALCOVE_INLINE vec4 parity_of_slices(uint which, vec4 a, vec4 b) {
   float behind = b.y * 2.0f - 1.0f;
   switch (which) {
     case 0u:
-      return vec4(s.along, s.toward, s.scale, slice_gamma(s));
+      // A slice that the normal stands on has no angle to speak of.
+      return vec4(s.along, s.toward, s.scale, slice_gamma(s) * s.scale);
     case 1u:
       return vec4(slice_arc(s, 1.0f, ahead), slice_arc(s, -1.0f, behind),
                   slice_visibility(s, ahead, behind), open_slice(s));
@@ -55,8 +56,10 @@ ALCOVE_INLINE vec4 parity_of_slices(uint which, vec4 a, vec4 b) {
       return vec4(bent.x, bent.y, bent.z, uniform_slice_visibility(ahead, behind));
     }
     case 3u:
-      return vec4(sector_position(s, scale, 1.0f, ahead), sector_position(s, scale, -1.0f, behind),
-                  scale.open, bitmask_visibility(scale, 0x00ff00f0u));
+      // Times the open slice: a slice that holds next to nothing has sectors of noise.
+      return vec4(sector_position(s, scale, 1.0f, ahead) * scale.open,
+                  sector_position(s, scale, -1.0f, behind) * scale.open, scale.open,
+                  bitmask_visibility(scale, 0x00ff00f0u));
     case 4u:
       return vec4(arc_cosine(ahead), arc_cosine_cheap(ahead), raise_horizon(ahead, behind, b.z),
                   horizon_cosine(parity_direction(b.z, b.w) * 3.0f, parity_view(a.x, a.y)));

@@ -30,7 +30,7 @@ struct Bound {
 
 // What the two may differ by: rounding, and the device's own sine, arc tangent, power and root.
 constexpr Bound kBounds[] = {
-    {"slice", 2e-4, 1e-5},
+    {"slice", 1e-4, 1e-5},
     {"visibility", 2e-5, 1e-5},
     {"bent normal", 2e-5, 1e-5},
     {"sectors", 1e-4, 1e-5},
