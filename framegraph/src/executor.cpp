@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "alcove/framegraph/verify.h"
 #include "plan_cache.h"
 #include "recorder.h"
 
@@ -86,6 +87,10 @@ tl::expected<CachedPlan*, Errors> Executor::Implementation::plan_for(const Graph
                       VK_SUCCESS, planned.pass, kNone, 0});
   }
   if (!errors.empty()) return tl::unexpected(std::move(errors));
+  if (options.verify) {
+    if (auto right = verify(description, limits, room.plan); !right)
+      return tl::unexpected(std::move(right.error()));
+  }
   plans.keep(room, description);
   compiled = true;
   return &room;

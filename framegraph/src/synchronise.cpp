@@ -273,6 +273,7 @@ AccessRecord Synchroniser::outside_use(std::uint32_t resource, const State& stat
   access.access = state.access;
   access.layout = state.layout;
   access.resource = resource;
+  access.flags = state.access & kWriteBits ? kWrite : 0u;
   access.range = {0, static_cast<std::uint16_t>(record.mips), 0,
                   static_cast<std::uint16_t>(record.layers)};
   return access;

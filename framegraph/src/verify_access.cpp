@@ -1,0 +1,195 @@
+// The verifier's checks of single accesses, and of how a frame ends.
+#include <algorithm>
+
+#include "verify_replay.h"
+
+namespace alcove::framegraph::verifier {
+namespace {
+
+template <typename Subs, typename Function>
+void for_each_of_range(Subs& subs, const ResourceRecord& record, const Range& range,
+                       Function&& f) {
+  std::uint32_t index = 0;
+  if (record.kind == ResourceKind::buffer) {
+    f(subs[0], index);
+    return;
+  }
+  for (std::uint32_t layer = 0; layer < range.layers; ++layer) {
+    for (std::uint32_t mip = 0; mip < range.mips; ++mip)
+      f(subs[(range.base_layer + layer) * record.mips + range.base_mip + mip], index++);
+  }
+}
+
+}  // namespace
+
+void Replay::check_access(std::uint32_t position, std::uint32_t access_index) {
+  const AccessRecord& access = graph_.accesses[access_index];
+  const auto queue = static_cast<std::uint8_t>(plan_.passes[position].queue);
+  check_shared_memory(access.resource, queue, access.stages);
+  for_each_of_range(resources_[access.resource].subs, graph_.resources[access.resource],
+                    access.range, [&](Sub& sub, std::uint32_t i) {
+                      const std::uint32_t expected = expected_[access_index][i];
+                      check_state(access, sub, queue);
+                      if (access.flags & kWrite)
+                        check_write(access, expected, sub, queue);
+                      else
+                        check_read(access, expected, sub, queue);
+                    });
+}
+
+void Replay::check_state(const AccessRecord& access, const Sub& sub, std::uint8_t queue) {
+  const ResourceRecord& record = graph_.resources[access.resource];
+  if (record.kind == ResourceKind::texture && sub.layout != access.layout)
+    fail(name(access.resource) + " is in layout " + std::to_string(sub.layout) + ", needed is " +
+         std::to_string(access.layout));
+  if (sub.released) fail(name(access.resource) + " is used between release and acquire");
+  if (sub.family != kNone && sub.family != family(queue))
+    fail(name(access.resource) + " is used by a queue family that does not own it");
+}
+
+void Replay::check_read(const AccessRecord& access, std::uint32_t expected, const Sub& sub,
+                        std::uint8_t queue) {
+  const ResourceRecord& record = graph_.resources[access.resource];
+  // What a history slot holds before it was ever written is nobody's business.
+  const bool any = record.origin == Origin::history && expected == kGarbage;
+  if (!any && (sub.content != expected || sub.spoiled))
+    fail("the read of " + name(access.resource) + " does not find what was written for it");
+  for (const Piece& piece : sub.writes) {
+    if (!ordered(piece, queue, access.stages))
+      fail("the read of " + name(access.resource) + " does not come after its write");
+    else if (!visible(piece, queue, access.stages, access.access))
+      fail("the read of " + name(access.resource) + " comes after its write, but cannot see it");
+  }
+}
+
+void Replay::check_write(const AccessRecord& access, std::uint32_t expected, Sub& sub,
+                         std::uint8_t queue) {
+  for (const Piece& piece : sub.reads) {
+    if (!ordered(piece, queue, access.stages))
+      fail("the write of " + name(access.resource) + " overtakes a read");
+  }
+  for (const Piece& piece : sub.writes) {
+    if (!available(piece, queue, access.stages))
+      fail("the write of " + name(access.resource) + " overtakes a write");
+    else if (!(access.flags & kDiscard) && expected != kGarbage &&
+             !visible(piece, queue, access.stages, access.access))
+      fail("the write of " + name(access.resource) + " cannot see what it keeps");
+  }
+  if (access.flags & kDiscard) {
+    sub.spoiled = false;
+    return;
+  }
+  if (expected != kGarbage && (sub.content != expected || expected == kMissing)) sub.spoiled = true;
+}
+
+// Whoever had these bytes before must be done.
+void Replay::check_shared_memory(std::uint32_t resource, std::uint8_t queue, Stages stages) {
+  for (std::uint32_t other : resources_[resource].overlapping) {
+    for (const Sub& theirs : resources_[other].subs) {
+      for (const Piece& piece : theirs.reads) {
+        if (!ordered(piece, queue, stages))
+          fail(name(resource) + " takes the memory of " + name(other) + " before its last read");
+      }
+      for (const Piece& piece : theirs.writes) {
+        if (!available(piece, queue, stages))
+          fail(name(resource) + " takes the memory of " + name(other) +
+               " before its last write is done");
+      }
+    }
+  }
+}
+
+void Replay::apply_access(std::uint32_t position, std::uint32_t access_index) {
+  const AccessRecord& access = graph_.accesses[access_index];
+  const auto queue = static_cast<std::uint8_t>(plan_.passes[position].queue);
+  for_each_of_range(resources_[access.resource].subs, graph_.resources[access.resource],
+                    access.range, [&](Sub& sub, std::uint32_t) {
+                      if (access.flags & kWrite) {
+                        sub.reads.clear();
+                        sub.writes.clear();
+                        sub.content = access_index;
+                        sub.family = family(queue);
+                        append_pieces(sub.writes, queue, access.stages, access.access);
+                      } else {
+                        append_pieces(sub.reads, queue, access.stages, 0);
+                      }
+                    });
+  if (!(access.flags & kWrite)) return;
+  // Its bytes are nobody else's now.
+  for (std::uint32_t other : resources_[access.resource].overlapping) {
+    for (Sub& theirs : resources_[other].subs) theirs.content = kGarbage;
+  }
+}
+
+void Replay::end_frame() {
+  where_ = "at the end of the frame";
+  for (std::uint32_t r = 0; r < resources_.size(); ++r) {
+    const ResourceRecord& record = graph_.resources[r];
+    if (record.external != kNone && graph_.externals[record.external].has_departure)
+      check_departure(r);
+  }
+  for (const OutputRecord& output : graph_.outputs) {
+    const auto& subs = resources_[output.resource].subs;
+    for (std::size_t i = 0; i < subs.size(); ++i) {
+      const std::uint32_t expected = last_[output.resource][i];
+      if (expected == kGarbage) continue;
+      if (subs[i].content != expected || subs[i].spoiled)
+        fail("output " + name(output.resource) + " does not hold what was written for it");
+    }
+  }
+  for (const FinalState& final : plan_.finals) check_final(final);
+}
+
+void Replay::check_departure(std::uint32_t resource) {
+  const ResourceRecord& record = graph_.resources[resource];
+  const State& departure = graph_.externals[record.external].departure;
+  const auto queue = static_cast<std::uint8_t>(QueueClass::graphics);
+  for (std::size_t i = 0; i < resources_[resource].subs.size(); ++i) {
+    const Sub& sub = resources_[resource].subs[i];
+    const std::uint32_t expected = last_[resource][i];
+    if (record.kind == ResourceKind::texture && sub.layout != departure.layout)
+      fail(name(resource) + " is left in layout " + std::to_string(sub.layout) +
+           ", its departure is " + std::to_string(departure.layout));
+    if (expected != kGarbage && (sub.content != expected || sub.spoiled))
+      fail(name(resource) + " does not leave with what was written for it");
+    if (sub.released || (sub.family != kNone && sub.family != family(queue)))
+      fail(name(resource) + " is left with another queue family than it came with");
+    if (plan_.placements[resource].first == kNone) continue;
+    for (const Piece& piece : sub.reads) {
+      if (is_write(departure.access) && !ordered(piece, queue, departure.stages))
+        fail(name(resource) + " leaves before its last read is done");
+    }
+    for (const Piece& piece : sub.writes) {
+      if (!ordered(piece, queue, departure.stages) ||
+          !visible(piece, queue, departure.stages, departure.access))
+        fail(name(resource) + " leaves before its last write can be seen");
+    }
+  }
+}
+
+// The next frame arrives in what this one claims to leave.
+void Replay::check_final(const FinalState& final) {
+  if (final.resource >= resources_.size()) {
+    fail("the final state of a resource that was not declared");
+    return;
+  }
+  const Stages stages = expand_stages(final.state.stages);
+  for (const Sub& sub : resources_[final.resource].subs) {
+    if (graph_.resources[final.resource].kind == ResourceKind::texture &&
+        sub.layout != final.state.layout)
+      fail(name(final.resource) + " is said to be left in another layout than it is");
+    for (const Piece& piece : sub.reads) {
+      if (piece.stage & ~stages) fail(name(final.resource) + " is read by a stage not told of");
+    }
+    if (!sub.reads.empty()) continue;
+    for (const Piece& piece : sub.writes) {
+      if ((piece.stage & ~stages) ||
+          (piece.writes & ~expand_accesses(final.state.access)))
+        fail(name(final.resource) + " is written in a way not told of");
+    }
+    if (sub.family != kNone && sub.family != family(static_cast<std::uint8_t>(final.queue)))
+      fail(name(final.resource) + " is said to be owned by another queue than it is");
+  }
+}
+
+}  // namespace alcove::framegraph::verifier

@@ -1,0 +1,36 @@
+// Random graphs through compile and verify. rapidcheck prints the seed of the run, and the seed of a
+// graph that fails; RC_PARAMS="seed=..." replays it.
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+#include <rapidcheck/gtest.h>
+
+#include "alcove/framegraph/compile.h"
+#include "alcove/framegraph/verify.h"
+#include "random_graph.h"
+
+namespace alcove::framegraph {
+namespace {
+
+// rapidcheck runs a property 100 times: 10,000 graphs a property.
+constexpr std::uint64_t kGraphsPerRun = 100;
+
+void expect_verified(std::uint64_t seed, const RandomOptions& options, const Limits& limits) {
+  static Graph graph;
+  for (std::uint64_t i = 0; i < kGraphsPerRun; ++i) {
+    graph.reset();
+    graph.reset_histories();
+    Dice dice(seed + i * 7919);
+    declare_random(graph, dice, options);
+    const auto plan = compile(graph, limits);
+    if (!plan) RC_FAIL("graph " + std::to_string(i) + ": " + to_string(plan.error()));
+    const auto verified = verify(graph.description(), limits, *plan);
+    if (!verified) RC_FAIL("graph " + std::to_string(i) + ": " + to_string(verified.error()));
+  }
+}
+
+RC_GTEST_PROP(Fuzz, EveryPlanOfARightGraphIsVerified, (std::uint64_t seed)) {
+  expect_verified(seed, {}, {});
+}
+
+}  // namespace
+}  // namespace alcove::framegraph

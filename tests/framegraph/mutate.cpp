@@ -1,0 +1,147 @@
+#include "mutate.h"
+
+#include <cstdint>
+#include <utility>
+
+namespace alcove::framegraph {
+namespace {
+
+class Mutator {
+ public:
+  Mutator(const GraphDescription& graph, const Plan& plan,
+          const std::function<void(const std::string&, const Plan&)>& visit)
+      : graph_(graph), plan_(plan), visit_(visit) {}
+
+  void run() {
+    for (std::uint32_t i = 0; i < plan_.transitions.size(); ++i) {
+      drop_transition(i);
+      narrow(i);
+      change_layouts(i);
+      if (plan_.transitions[i].src_queue != plan_.transitions[i].dst_queue) skip_transfer(i);
+    }
+    for (std::uint32_t i = 0; i < plan_.batches.size(); ++i) drop_batch(i);
+    for (std::uint32_t i = 0; i < plan_.placements.size(); ++i) {
+      shrink_lifetime(i);
+      collide(i);
+    }
+    for (std::uint32_t i = 0; i < plan_.submissions.size(); ++i) drop_waits(i);
+  }
+
+ private:
+  void drop_transition(std::uint32_t index) {
+    Plan mutant = plan_;
+    // Out of every batch: the others of its batch stay.
+    mutant.transitions.erase(mutant.transitions.begin() + index);
+    for (Batch& batch : mutant.batches) {
+      if (index < batch.first)
+        --batch.first;
+      else if (index < batch.first + batch.count)
+        --batch.count;
+    }
+    visit_("drop a barrier", mutant);
+  }
+
+  template <typename Mask>
+  void narrow_mask(const char* kind, std::uint32_t index, Mask Transition::*mask) {
+    for (Mask left = plan_.transitions[index].*mask; left != 0; left &= left - 1) {
+      Plan mutant = plan_;
+      mutant.transitions[index].*mask &= ~(left & (~left + 1));
+      visit_(kind, mutant);
+    }
+  }
+
+  void narrow(std::uint32_t index) {
+    narrow_mask("narrow a source stage", index, &Transition::src_stages);
+    narrow_mask("narrow a destination stage", index, &Transition::dst_stages);
+    narrow_mask("narrow a source access", index, &Transition::src_access);
+    narrow_mask("narrow a destination access", index, &Transition::dst_access);
+  }
+
+  void change_layouts(std::uint32_t index) {
+    const Transition& t = plan_.transitions[index];
+    if (t.resource == kNone || t.old_layout == t.new_layout) return;
+    Plan mutant = plan_;
+    std::swap(mutant.transitions[index].old_layout, mutant.transitions[index].new_layout);
+    visit_("swap the layouts", mutant);
+    mutant.transitions[index] = t;
+    mutant.transitions[index].new_layout = t.new_layout == VK_IMAGE_LAYOUT_GENERAL
+                                               ? VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL
+                                               : VK_IMAGE_LAYOUT_GENERAL;
+    visit_("change to another layout", mutant);
+    if (t.range.mips > 1) {
+      mutant.transitions[index] = t;
+      --mutant.transitions[index].range.mips;
+      visit_("leave out a mip", mutant);
+    }
+  }
+
+  void skip_transfer(std::uint32_t index) {
+    Plan mutant = plan_;
+    mutant.transitions[index].dst_queue = mutant.transitions[index].src_queue;
+    visit_("skip an ownership transfer", mutant);
+  }
+
+  void drop_batch(std::uint32_t index) {
+    if (plan_.batches[index].count < 2) return;
+    Plan mutant = plan_;
+    mutant.batches[index].count = 0;
+    visit_("drop a batch", mutant);
+  }
+
+  void shrink_lifetime(std::uint32_t resource) {
+    const Placement& placement = plan_.placements[resource];
+    if (placement.heap == kNone || placement.first == placement.last) return;
+    Plan mutant = plan_;
+    --mutant.placements[resource].last;
+    visit_("end a lifetime early", mutant);
+    mutant = plan_;
+    ++mutant.placements[resource].first;
+    visit_("begin a lifetime late", mutant);
+  }
+
+  // Moves a resource onto one that is live at the same time, and out of its heap.
+  void collide(std::uint32_t resource) {
+    const Placement& placement = plan_.placements[resource];
+    if (placement.heap == kNone) return;
+    for (std::uint32_t other = 0; other < plan_.placements.size(); ++other) {
+      const Placement& there = plan_.placements[other];
+      if (other == resource || there.heap != placement.heap || there.first > placement.last ||
+          placement.first > there.last)
+        continue;
+      Plan mutant = plan_;
+      mutant.placements[resource].offset = there.offset;
+      mutant.heaps[placement.heap].size *= 2;
+      visit_("shift an offset", mutant);
+      break;
+    }
+    Plan mutant = plan_;
+    mutant.placements[resource].offset = mutant.heaps[placement.heap].size;
+    visit_("shift an offset out of the heap", mutant);
+  }
+
+  void drop_waits(std::uint32_t index) {
+    for (std::uint32_t w = 0; w < plan_.submissions[index].wait_count; ++w) {
+      Plan mutant = plan_;
+      const std::uint32_t at = mutant.submissions[index].first_wait + w;
+      mutant.waits.erase(mutant.waits.begin() + at);
+      --mutant.submissions[index].wait_count;
+      for (Submission& submission : mutant.submissions) {
+        if (submission.first_wait > at) --submission.first_wait;
+      }
+      visit_("drop a semaphore", mutant);
+    }
+  }
+
+  const GraphDescription& graph_;
+  const Plan& plan_;
+  const std::function<void(const std::string&, const Plan&)>& visit_;
+};
+
+}  // namespace
+
+void for_each_mutant(const GraphDescription& graph, const Plan& plan,
+                     const std::function<void(const std::string&, const Plan&)>& visit) {
+  Mutator(graph, plan, visit).run();
+}
+
+}  // namespace alcove::framegraph

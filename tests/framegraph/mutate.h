@@ -1,0 +1,16 @@
+// All the ways to spoil a right plan by one change, each of which the verifier has to find.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "alcove/framegraph/description.h"
+#include "alcove/framegraph/plan.h"
+
+namespace alcove::framegraph {
+
+// Calls `visit` with each mutant and the kind of change, for instance "narrow source stage".
+void for_each_mutant(const GraphDescription& graph, const Plan& plan,
+                     const std::function<void(const std::string& kind, const Plan& mutant)>& visit);
+
+}  // namespace alcove::framegraph

@@ -1,0 +1,246 @@
+#include "random_graph.h"
+
+#include <algorithm>
+
+namespace alcove::framegraph {
+namespace {
+
+constexpr Access kReads[] = {access::sampled_compute, access::storage_read_compute,
+                             access::sampled_fragment, access::transfer_source,
+                             access::sampled_general_compute};
+constexpr Access kWrites[] = {access::storage_write_compute, access::storage_read_write_compute,
+                              access::color_attachment, access::transfer_destination,
+                              access::clear};
+constexpr Access kBufferReads[] = {buffer_access::storage_read_compute,
+                                   buffer_access::uniform_graphics, buffer_access::vertex_buffer,
+                                   buffer_access::transfer_source, buffer_access::indirect};
+constexpr Access kBufferWrites[] = {buffer_access::storage_write_compute,
+                                    buffer_access::storage_read_write_compute,
+                                    buffer_access::transfer_destination, buffer_access::fill};
+
+// Indices of the tables above that each queue class can run.
+std::uint32_t pick(Dice& dice, QueueClass queue, std::initializer_list<std::uint32_t> graphics,
+                   std::initializer_list<std::uint32_t> compute,
+                   std::initializer_list<std::uint32_t> transfer) {
+  const auto& list = queue == QueueClass::graphics  ? graphics
+                     : queue == QueueClass::compute ? compute
+                                                    : transfer;
+  return *(list.begin() + dice.roll(static_cast<std::uint32_t>(list.size())));
+}
+
+std::string numbered(char letter, std::size_t number) {
+  return std::string(1, letter).append(std::to_string(number));
+}
+
+struct Known {
+  bool texture = true;
+  Texture handle;
+  Buffer buffer;
+  std::uint32_t mips = 1;
+  std::uint32_t layers = 1;
+  std::vector<bool> written;  // mips within layers
+  bool read_only = false;     // an older history slot
+  std::uint32_t last_pass = kNone;
+};
+
+class Declarer {
+ public:
+  Declarer(Graph& graph, Dice& dice, const RandomOptions& options)
+      : graph_(graph), dice_(dice), options_(options) {}
+
+  void run() {
+    const std::uint32_t passes = 1 + dice_.roll(options_.most_passes);
+    if (options_.imports && dice_.chance(160)) add_import();
+    if (options_.imports && dice_.chance(90)) add_import();
+    if (options_.histories && dice_.chance(100)) add_history();
+    for (std::uint32_t i = 0; i < passes; ++i) add_pass(i);
+    for (Known& known : known_) {
+      const bool all = std::find(known.written.begin(), known.written.end(), false) ==
+                       known.written.end();
+      if (known.read_only || !all || !dice_.chance(90)) continue;
+      if (known.texture)
+        graph_.output(known.handle);
+      else
+        graph_.output(known.buffer);
+    }
+  }
+
+ private:
+  std::uint32_t side() { return 1 + dice_.roll(options_.most_side); }
+
+  TextureDesc texture_desc() {
+    TextureDesc desc;
+    constexpr VkFormat kFormats[] = {VK_FORMAT_R8_UNORM, VK_FORMAT_R16G16B16A16_SFLOAT,
+                                     VK_FORMAT_R32_SFLOAT, VK_FORMAT_R8G8B8A8_UNORM};
+    desc.format = kFormats[dice_.roll(4)];
+    desc.extent = Extent::absolute(side(), side());
+    if (dice_.chance(40) && !known_.empty() && known_[0].texture)
+      desc.extent = Extent::relative(known_[0].handle, 1 + dice_.roll(3));
+    if (dice_.chance(60)) {
+      desc.extent = Extent::absolute(16 + side(), 16 + side());
+      desc.mips = 1 + dice_.roll(4);
+    }
+    if (dice_.chance(30)) desc.layers = 1 + dice_.roll(3);
+    if (options_.mistakes && dice_.chance(6)) desc.extent.width = dice_.roll(2) * 70000;
+    if (options_.mistakes && dice_.chance(6)) desc.mips = dice_.roll(40);
+    return desc;
+  }
+
+  void keep(Known known, bool full) {
+    known.written.assign(std::size_t{known.mips} * known.layers, full);
+    known_.push_back(std::move(known));
+  }
+
+  void add_transient() {
+    Known known;
+    known.texture = !dice_.chance(70);
+    if (known.texture) {
+      const TextureDesc desc = texture_desc();
+      known.mips = std::clamp(desc.mips, 1u, 64u);
+      known.layers = desc.layers;
+      known.handle = graph_.create_texture(numbered('t', known_.size()), desc);
+    } else {
+      known.buffer = graph_.create_buffer(numbered('b', known_.size()),
+                                          {4u * (1 + dice_.roll(5000))});
+    }
+    keep(std::move(known), false);
+  }
+
+  void add_import() {
+    const bool full = dice_.chance(128);
+    const bool departs = dice_.chance(140);
+    Known known;
+    known.texture = dice_.chance(160);
+    if (known.texture) {
+      ImportedTexture import;
+      import.image = reinterpret_cast<VkImage>(std::uintptr_t{16});
+      import.desc = {VK_FORMAT_R8G8B8A8_UNORM, Extent::absolute(side(), side()), 1, 1,
+                     VK_SAMPLE_COUNT_1_BIT};
+      import.usage = ~VkImageUsageFlags{0};
+      if (full)
+        import.arrival = {VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                          VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
+                          VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
+      if (departs)
+        import.departure = {VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
+                            VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
+                            VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+      known.handle = graph_.import_texture(numbered('i', known_.size()), import);
+    } else {
+      ImportedBuffer import;
+      import.buffer = reinterpret_cast<VkBuffer>(std::uintptr_t{16});
+      import.desc.size = 1024;
+      import.usage = ~VkBufferUsageFlags{0};
+      import.has_contents = full;
+      if (full)
+        import.arrival = {VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                          VK_IMAGE_LAYOUT_UNDEFINED};
+      if (departs) import.departure = buffer_access::host_read;
+      known.buffer = graph_.import_buffer(numbered('i', known_.size()), import);
+    }
+    keep(std::move(known), full);
+  }
+
+  void add_history() {
+    TextureDesc desc{VK_FORMAT_R32_SFLOAT, Extent::absolute(side(), side())};
+    const TextureHistory history = graph_.create_texture_history("h", desc, 2 + dice_.roll(2));
+    Known current;
+    current.handle = history.current;
+    keep(current, false);
+    Known previous;
+    previous.handle = history.previous(1);
+    previous.read_only = true;
+    history_ = known_.size();
+    keep(previous, false);
+  }
+
+  void add_pass(std::uint32_t index) {
+    QueueClass queue = QueueClass::graphics;
+    if (options_.queues) queue = static_cast<QueueClass>(dice_.roll(3));
+    PassBuilder pass = graph_.add_pass(numbered('p', index), queue);
+    pass.record([](RecordContext&) {});
+    const std::uint32_t reads = dice_.roll(4);
+    for (std::uint32_t i = 0; i < reads && !known_.empty(); ++i) read(pass, index, queue);
+    const std::uint32_t writes = 1 + dice_.roll(2);
+    for (std::uint32_t i = 0; i < writes; ++i) write(pass, index, queue);
+    if (dice_.chance(20)) pass.side_effect();
+  }
+
+  // Half of the time one of the last few, else any.
+  std::size_t choose() {
+    const auto count = static_cast<std::uint32_t>(known_.size());
+    const std::uint32_t window = dice_.chance(128) ? std::min(count, 4u) : count;
+    return count - 1 - dice_.roll(window);
+  }
+
+  void read(PassBuilder& pass, std::uint32_t index, QueueClass queue) {
+    const std::size_t chosen = choose();
+    Known& known = known_[chosen];
+    if (known.last_pass == index) return;
+    const bool old = known.read_only;
+    // A history is read only in frames that write it, which its writer must do first here.
+    if (old && !known_[history_ - 1].written[0]) return;
+    Range range;
+    const bool all =
+        std::find(known.written.begin(), known.written.end(), false) == known.written.end();
+    if (!old && (!all || (known.written.size() > 1 && dice_.chance(100)))) {
+      const auto start = dice_.roll(static_cast<std::uint32_t>(known.written.size()));
+      if (!known.written[start]) return;
+      range = {static_cast<std::uint16_t>(start % known.mips), 1,
+               static_cast<std::uint16_t>(start / known.mips), 1};
+    }
+    known.last_pass = index;
+    if (options_.mistakes && dice_.chance(4)) range.base_mip = 40;
+    if (known.texture) {
+      Texture handle = known.handle;
+      if (options_.mistakes && dice_.chance(4)) handle.version += 1;
+      if (options_.mistakes && dice_.chance(4)) handle.graph += 1;
+      pass.read(handle, kReads[pick(dice_, queue, {0, 1, 2, 3, 4}, {0, 1, 3, 4}, {3})], range);
+    } else {
+      pass.read(known.buffer, kBufferReads[pick(dice_, queue, {0, 1, 2, 3, 4}, {0, 3, 4}, {3})]);
+    }
+  }
+
+  void write(PassBuilder& pass, std::uint32_t index, QueueClass queue) {
+    if (known_.empty() || dice_.chance(150)) add_transient();
+    const std::size_t chosen = choose();
+    Known& known = known_[chosen];
+    if (known.read_only || known.last_pass == index) return;
+    known.last_pass = index;
+    const Contents contents = dice_.chance(80) ? Contents::discard : Contents::keep;
+    const Need need = dice_.chance(40) ? Need::optional : Need::required;
+    if (!known.texture) {
+      known.buffer = pass.write(
+          known.buffer, kBufferWrites[pick(dice_, queue, {0, 1, 2, 3}, {0, 1, 2, 3}, {2})],
+          contents, need);
+      known.written[0] = true;
+      return;
+    }
+    Range range;
+    if (known.written.size() > 1 && dice_.chance(150)) {
+      const auto start = dice_.roll(static_cast<std::uint32_t>(known.written.size()));
+      range = {static_cast<std::uint16_t>(start % known.mips), 1,
+               static_cast<std::uint16_t>(start / known.mips), 1};
+      known.written[start] = true;
+    } else {
+      known.written.assign(known.written.size(), true);
+    }
+    known.handle = pass.write(
+        known.handle, kWrites[pick(dice_, queue, {0, 1, 2, 3, 4}, {0, 1, 3, 4}, {3})], range,
+        contents, need);
+  }
+
+  Graph& graph_;
+  Dice& dice_;
+  const RandomOptions& options_;
+  std::vector<Known> known_;
+  std::size_t history_ = 0;
+};
+
+}  // namespace
+
+void declare_random(Graph& graph, Dice& dice, const RandomOptions& options) {
+  Declarer(graph, dice, options).run();
+}
+
+}  // namespace alcove::framegraph

@@ -1,0 +1,60 @@
+// Random frames for tests: right ones, of every kind of resource and access that a pass can have.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "alcove/framegraph/graph.h"
+
+namespace alcove::framegraph {
+
+// Where choices come from: a seed, or bytes (a fuzzer's).
+class Dice {
+ public:
+  explicit Dice(std::uint64_t seed) : state_(seed) {}
+  explicit Dice(std::span<const std::uint8_t> bytes) : bytes_(bytes), from_bytes_(true) {}
+
+  // 0 to sides - 1; always 0 when the bytes are used up.
+  std::uint32_t roll(std::uint32_t sides) {
+    if (sides <= 1) return 0;
+    if (from_bytes_) {
+      if (bytes_.empty()) return 0;
+      std::uint32_t value = bytes_[0];
+      bytes_ = bytes_.subspan(1);
+      if (sides > 256 && !bytes_.empty()) {
+        value = value << 8 | bytes_[0];
+        bytes_ = bytes_.subspan(1);
+      }
+      return value % sides;
+    }
+    state_ += 0x9e3779b97f4a7c15u;
+    std::uint64_t value = state_;
+    value = (value ^ (value >> 30)) * 0xbf58476d1ce4e5b9u;
+    value = (value ^ (value >> 27)) * 0x94d049bb133111ebu;
+    return static_cast<std::uint32_t>((value >> 32) % sides);
+  }
+  bool chance(std::uint32_t of_256) { return roll(256) < of_256; }
+  bool empty() const { return from_bytes_ && bytes_.empty(); }
+
+ private:
+  std::uint64_t state_ = 1;
+  std::span<const std::uint8_t> bytes_;
+  bool from_bytes_ = false;
+};
+
+struct RandomOptions {
+  std::uint32_t most_passes = 14;
+  std::uint32_t most_side = 256;
+  bool imports = true;
+  bool histories = true;
+  bool queues = false;      // passes on compute and transfer queues too
+  bool mistakes = false;    // stale and foreign handles, wrong ranges and sizes
+};
+
+// Declares a frame. The callbacks record nothing.
+void declare_random(Graph& graph, Dice& dice, const RandomOptions& options = {});
+
+}  // namespace alcove::framegraph
