@@ -241,6 +241,12 @@ void Synchroniser::write_again(std::uint32_t position, const AccessRecord& acces
   }
   wanted.dst_stages = access.stages;
   wanted.dst_access = access.access;
+  if (state.read_stages != 0 && !state.handed_over) {
+    // Coming after the reads is enough, but for what this access reads itself.
+    wanted.dst_access &= access.flags & kDiscard ? 0 : ~kWriteBits;
+    if ((wanted.dst_access & ~state.seen_access) == 0 && (access.stages & ~state.seen_stages) == 0)
+      wanted.dst_access = 0;
+  }
   if (wanted.src_stages != 0)
     add_memory(std::max(state.read_time, state.write_time), position, wanted);
   note(state, access, pass_time(position));

@@ -7,8 +7,7 @@ namespace alcove::framegraph::verifier {
 namespace {
 
 template <typename Subs, typename Function>
-void for_each_of_range(Subs& subs, const ResourceRecord& record, const Range& range,
-                       Function&& f) {
+void for_each_of_range(Subs& subs, const ResourceRecord& record, const Range& range, Function&& f) {
   std::uint32_t index = 0;
   if (record.kind == ResourceKind::buffer) {
     f(subs[0], index);
@@ -25,7 +24,7 @@ void for_each_of_range(Subs& subs, const ResourceRecord& record, const Range& ra
 void Replay::check_access(std::uint32_t position, std::uint32_t access_index) {
   const AccessRecord& access = graph_.accesses[access_index];
   const auto queue = static_cast<std::uint8_t>(plan_.passes[position].queue);
-  check_shared_memory(access.resource, queue, access.stages);
+  check_shared_memory(access, queue);
   for_each_of_range(resources_[access.resource].subs, graph_.resources[access.resource],
                     access.range, [&](Sub& sub, std::uint32_t i) {
                       const std::uint32_t expected = expected_[access_index][i];
@@ -68,12 +67,14 @@ void Replay::check_write(const AccessRecord& access, std::uint32_t expected, Sub
     if (!ordered(piece, queue, access.stages))
       fail("the write of " + name(access.resource) + " overtakes a read");
   }
+  // A write right after a write must see it; after reads it comes after those, and what it reads
+  // itself it must see.
+  const Accesses seen = sub.reads.empty()         ? access.access
+                        : access.flags & kDiscard ? Accesses{0}
+                                                  : reads_of(access.access);
   for (const Piece& piece : sub.writes) {
-    if (!available(piece, queue, access.stages))
-      fail("the write of " + name(access.resource) + " overtakes a write");
-    else if (!(access.flags & kDiscard) && expected != kGarbage &&
-             !visible(piece, queue, access.stages, access.access))
-      fail("the write of " + name(access.resource) + " cannot see what it keeps");
+    if (!available(piece, queue, access.stages) || !visible(piece, queue, access.stages, seen))
+      fail("the write of " + name(access.resource) + " overtakes a write, or cannot see it");
   }
   if (access.flags & kDiscard) {
     sub.spoiled = false;
@@ -83,16 +84,22 @@ void Replay::check_write(const AccessRecord& access, std::uint32_t expected, Sub
 }
 
 // Whoever had these bytes before must be done.
-void Replay::check_shared_memory(std::uint32_t resource, std::uint8_t queue, Stages stages) {
-  for (std::uint32_t other : resources_[resource].overlapping) {
+void Replay::check_shared_memory(const AccessRecord& access, std::uint8_t queue) {
+  const auto& own = resources_[access.resource].subs;
+  const bool first =
+      std::all_of(own.begin(), own.end(), [](const Sub& sub) { return sub.content == kGarbage; });
+  const Accesses writes = first ? access.access & ~reads_of(access.access) : Accesses{0};
+  for (std::uint32_t other : resources_[access.resource].overlapping) {
     for (const Sub& theirs : resources_[other].subs) {
       for (const Piece& piece : theirs.reads) {
-        if (!ordered(piece, queue, stages))
-          fail(name(resource) + " takes the memory of " + name(other) + " before its last read");
+        if (!ordered(piece, queue, access.stages))
+          fail(name(access.resource) + " takes the memory of " + name(other) +
+               " before its last read");
       }
       for (const Piece& piece : theirs.writes) {
-        if (!available(piece, queue, stages))
-          fail(name(resource) + " takes the memory of " + name(other) +
+        if (!available(piece, queue, access.stages) ||
+            (theirs.reads.empty() && !visible(piece, queue, access.stages, writes)))
+          fail(name(access.resource) + " takes the memory of " + name(other) +
                " before its last write is done");
       }
     }
@@ -183,8 +190,7 @@ void Replay::check_final(const FinalState& final) {
     }
     if (!sub.reads.empty()) continue;
     for (const Piece& piece : sub.writes) {
-      if ((piece.stage & ~stages) ||
-          (piece.writes & ~expand_accesses(final.state.access)))
+      if ((piece.stage & ~stages) || (piece.writes & ~expand_accesses(final.state.access)))
         fail(name(final.resource) + " is written in a way not told of");
     }
     if (sub.family != kNone && sub.family != family(static_cast<std::uint8_t>(final.queue)))

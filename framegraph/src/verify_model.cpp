@@ -24,10 +24,10 @@ constexpr Stages kMeta =
     VK_PIPELINE_STAGE_2_PRE_RASTERIZATION_SHADERS_BIT | VK_PIPELINE_STAGE_2_TOP_OF_PIPE_BIT |
     VK_PIPELINE_STAGE_2_BOTTOM_OF_PIPE_BIT;
 
-constexpr Accesses kWrites =
-    VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT |
-    VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT |
-    VK_ACCESS_2_HOST_WRITE_BIT;
+constexpr Accesses kWrites = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT |
+                             VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT |
+                             VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT |
+                             VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_HOST_WRITE_BIT;
 constexpr Accesses kReads =
     VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT | VK_ACCESS_2_INDEX_READ_BIT |
     VK_ACCESS_2_VERTEX_ATTRIBUTE_READ_BIT | VK_ACCESS_2_UNIFORM_READ_BIT |
@@ -59,6 +59,8 @@ Accesses expand_accesses(Accesses accesses) {
 }
 
 bool is_write(Accesses accesses) { return (expand_accesses(accesses) & kWrites) != 0; }
+
+Accesses reads_of(Accesses accesses) { return expand_accesses(accesses) & kReads; }
 
 void append_pieces(std::vector<Piece>& pieces, std::uint8_t queue, Stages stages,
                    Accesses accesses) {

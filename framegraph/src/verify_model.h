@@ -20,6 +20,7 @@ using Accesses = VkAccessFlags2;
 Stages expand_stages(Stages stages);
 Accesses expand_accesses(Accesses accesses);
 bool is_write(Accesses accesses);
+Accesses reads_of(Accesses accesses);
 
 struct Grant {
   std::uint8_t queue = 0;
@@ -29,8 +30,8 @@ struct Grant {
 
 struct Piece {
   std::uint8_t queue = 0;
-  Stages stage = 0;          // one bit; 0 for a layout change, which is ordered by `after` alone
-  Accesses writes = 0;       // 0 for a read, and for what is available by itself
+  Stages stage = 0;     // one bit; 0 for a layout change, which is ordered by `after` alone
+  Accesses writes = 0;  // 0 for a read, and for what is available by itself
   Stages after[kQueueClasses] = {};
   Stages available[kQueueClasses] = {};
   std::vector<Grant> grants;

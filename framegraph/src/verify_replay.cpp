@@ -12,8 +12,8 @@ void Replay::run() {
   resources_.resize(graph_.resources.size());
   for (std::uint32_t r = 0; r < graph_.resources.size(); ++r) {
     const ResourceRecord& record = graph_.resources[r];
-    resources_[r].subs.resize(
-        record.kind == ResourceKind::texture ? record.mips * record.layers : 1);
+    resources_[r].subs.resize(record.kind == ResourceKind::texture ? record.mips * record.layers
+                                                                   : 1);
   }
   find_overlaps();
   find_expected();
@@ -31,7 +31,8 @@ void Replay::find_overlaps() {
     if (x.heap == kNone) continue;
     for (std::uint32_t b = 0; b < graph_.resources.size(); ++b) {
       const Placement& y = plan_.placements[b];
-      if (a != b && x.heap == y.heap && x.offset < y.offset + y.size && y.offset < x.offset + x.size)
+      if (a != b && x.heap == y.heap && x.offset < y.offset + y.size &&
+          y.offset < x.offset + x.size)
         resources_[a].overlapping.push_back(b);
     }
   }
@@ -50,7 +51,8 @@ void Replay::find_expected() {
     const AccessRecord& access = graph_.accesses[i];
     for_each_sub(access.resource, access.range, [&](Sub& sub) {
       std::uint32_t& there =
-          content[access.resource][static_cast<std::size_t>(&sub - resources_[access.resource].subs.data())];
+          content[access.resource]
+                 [static_cast<std::size_t>(&sub - resources_[access.resource].subs.data())];
       expected_[i].push_back(there);
       if (!(access.flags & kWrite)) return;
       there = plan_.live_accesses[i] ? i : kMissing;
@@ -63,10 +65,9 @@ void Replay::find_expected() {
 // all of the frame before is done; with one, commands just follow each other.
 void Replay::begin_frame(bool first) {
   where_ = first ? "at the start of the frame" : "at the start of the next frame";
-  const bool several = std::any_of(plan_.submissions.begin(), plan_.submissions.end(),
-                                   [this](const Submission& s) {
-                                     return s.queue != plan_.submissions.front().queue;
-                                   });
+  const bool several = std::any_of(
+      plan_.submissions.begin(), plan_.submissions.end(),
+      [this](const Submission& s) { return s.queue != plan_.submissions.front().queue; });
   if (several) for_each_piece([](Piece& piece) { join(piece); });
   for (std::uint32_t r = 0; r < resources_.size(); ++r) {
     const ResourceRecord& record = graph_.resources[r];
@@ -94,9 +95,8 @@ void Replay::submission(std::uint32_t index) {
   const auto queue = static_cast<std::uint8_t>(submission.queue);
   for (std::uint32_t w = 0; w < submission.wait_count; ++w) {
     const Wait& wait_for = plan_.waits[submission.first_wait + w];
-    for_each_piece([&](Piece& piece) {
-      wait(piece, queue, signals_ + wait_for.submission, wait_for.stages);
-    });
+    for_each_piece(
+        [&](Piece& piece) { wait(piece, queue, signals_ + wait_for.submission, wait_for.stages); });
   }
   for (std::uint32_t p = 0; p < submission.pass_count; ++p) {
     const PlannedPass& planned = plan_.passes[submission.first_pass + p];
@@ -165,11 +165,13 @@ void Replay::change_sub(const Transition& t, const Scopes& scopes, Sub& sub) {
   const bool acquires = transfer && queue == static_cast<std::uint8_t>(t.dst_queue);
   const bool texture = graph_.resources[t.resource].kind == ResourceKind::texture;
   for (const Piece& piece : sub.reads) {
-    if (!comes_before(piece, scopes)) fail("a layout change of " + name(t.resource) + " overtakes a read");
+    if (!comes_before(piece, scopes))
+      fail("a layout change of " + name(t.resource) + " overtakes a read");
   }
   for (const Piece& piece : sub.writes) {
     if (!comes_before(piece, scopes) || !is_made_available(piece, scopes, true))
-      fail("a layout change of " + name(t.resource) + " overtakes a write, or does not make it available");
+      fail("a layout change of " + name(t.resource) +
+           " overtakes a write, or does not make it available");
   }
   for (std::uint32_t other : resources_[t.resource].overlapping) {
     for (const Sub& theirs : resources_[other].subs) {
@@ -179,7 +181,8 @@ void Replay::change_sub(const Transition& t, const Scopes& scopes, Sub& sub) {
       }
       for (const Piece& piece : theirs.writes) {
         if (!comes_before(piece, scopes) || !is_made_available(piece, scopes, true))
-          fail(name(t.resource) + " takes the memory of " + name(other) + " before its last write is done");
+          fail(name(t.resource) + " takes the memory of " + name(other) +
+               " before its last write is done");
       }
     }
   }

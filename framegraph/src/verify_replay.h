@@ -10,8 +10,8 @@
 namespace alcove::framegraph::verifier {
 
 // What a subresource holds: the access that wrote it last, by index, or one of these.
-inline constexpr std::uint32_t kGarbage = kNone;       // nothing, or somebody else's bytes
-inline constexpr std::uint32_t kInitial = kNone - 1;   // what an import arrived with
+inline constexpr std::uint32_t kGarbage = kNone;      // nothing, or somebody else's bytes
+inline constexpr std::uint32_t kInitial = kNone - 1;  // what an import arrived with
 // Where an expected writer does not run.
 inline constexpr std::uint32_t kMissing = kNone - 2;
 
@@ -20,7 +20,7 @@ struct Sub {
   std::vector<Piece> reads;   // since
   VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
   std::uint32_t content = kGarbage;
-  bool spoiled = false;       // a partial write fell on contents that were not the expected ones
+  bool spoiled = false;          // a partial write fell on contents that were not the expected ones
   std::uint32_t family = kNone;  // owner; kNone: anybody may take it
   bool released = false;         // on its way to `released_to`
   std::uint32_t released_to = kNone;
@@ -34,7 +34,7 @@ class Replay {
 
  private:
   struct Resource {
-    std::vector<Sub> subs;  // mips within layers
+    std::vector<Sub> subs;                   // mips within layers
     std::vector<std::uint32_t> overlapping;  // resources on some of the same bytes
   };
 
@@ -54,7 +54,7 @@ class Replay {
   void check_write(const AccessRecord& access, std::uint32_t expected, Sub& sub,
                    std::uint8_t queue);
   void check_state(const AccessRecord& access, const Sub& sub, std::uint8_t queue);
-  void check_shared_memory(std::uint32_t resource, std::uint8_t queue, Stages stages);
+  void check_shared_memory(const AccessRecord& access, std::uint8_t queue);
   void apply_access(std::uint32_t position, std::uint32_t access_index);
   void end_frame();
   void check_departure(std::uint32_t resource);

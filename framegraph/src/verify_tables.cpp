@@ -54,8 +54,7 @@ class Tables {
       const std::uint32_t first = graph_.passes[pass].first_access;
       for (std::uint32_t i = 0; i < graph_.pass_accesses(pass).size(); ++i) {
         const bool must = seen[pass] && !(graph_.accesses[first + i].flags & kOptional);
-        if (must != (plan_.live_accesses[first + i] != 0) &&
-            (must || !seen[pass]))
+        if (must != (plan_.live_accesses[first + i] != 0) && (must || !seen[pass]))
           fail("an access is live where its pass is not, or the reverse");
       }
     }

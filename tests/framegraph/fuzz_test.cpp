@@ -1,5 +1,5 @@
-// Random graphs through compile and verify. rapidcheck prints the seed of the run, and the seed of a
-// graph that fails; RC_PARAMS="seed=..." replays it.
+// Random graphs through compile and verify. rapidcheck prints the seed of the run, and the seed of
+// a graph that fails; RC_PARAMS="seed=..." replays it.
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>

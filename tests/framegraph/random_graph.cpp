@@ -55,8 +55,8 @@ class Declarer {
     if (options_.histories && dice_.chance(100)) add_history();
     for (std::uint32_t i = 0; i < passes; ++i) add_pass(i);
     for (Known& known : known_) {
-      const bool all = std::find(known.written.begin(), known.written.end(), false) ==
-                       known.written.end();
+      const bool all =
+          std::find(known.written.begin(), known.written.end(), false) == known.written.end();
       if (known.read_only || !all || !dice_.chance(90)) continue;
       if (known.texture)
         graph_.output(known.handle);
@@ -100,8 +100,8 @@ class Declarer {
       known.layers = desc.layers;
       known.handle = graph_.create_texture(numbered('t', known_.size()), desc);
     } else {
-      known.buffer = graph_.create_buffer(numbered('b', known_.size()),
-                                          {4u * (1 + dice_.roll(5000))});
+      known.buffer =
+          graph_.create_buffer(numbered('b', known_.size()), {4u * (1 + dice_.roll(5000))});
     }
     keep(std::move(known), false);
   }
@@ -210,9 +210,9 @@ class Declarer {
     const Contents contents = dice_.chance(80) ? Contents::discard : Contents::keep;
     const Need need = dice_.chance(40) ? Need::optional : Need::required;
     if (!known.texture) {
-      known.buffer = pass.write(
-          known.buffer, kBufferWrites[pick(dice_, queue, {0, 1, 2, 3}, {0, 1, 2, 3}, {2})],
-          contents, need);
+      known.buffer = pass.write(known.buffer,
+                                kBufferWrites[pick(dice_, queue, {0, 1, 2, 3}, {0, 1, 2, 3}, {2})],
+                                contents, need);
       known.written[0] = true;
       return;
     }
@@ -225,9 +225,9 @@ class Declarer {
     } else {
       known.written.assign(known.written.size(), true);
     }
-    known.handle = pass.write(
-        known.handle, kWrites[pick(dice_, queue, {0, 1, 2, 3, 4}, {0, 1, 3, 4}, {3})], range,
-        contents, need);
+    known.handle =
+        pass.write(known.handle, kWrites[pick(dice_, queue, {0, 1, 2, 3, 4}, {0, 1, 3, 4}, {3})],
+                   range, contents, need);
   }
 
   Graph& graph_;

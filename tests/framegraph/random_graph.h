@@ -50,8 +50,8 @@ struct RandomOptions {
   std::uint32_t most_side = 256;
   bool imports = true;
   bool histories = true;
-  bool queues = false;      // passes on compute and transfer queues too
-  bool mistakes = false;    // stale and foreign handles, wrong ranges and sizes
+  bool queues = false;    // passes on compute and transfer queues too
+  bool mistakes = false;  // stale and foreign handles, wrong ranges and sizes
 };
 
 // Declares a frame. The callbacks record nothing.
