@@ -1,16 +1,16 @@
 // The image line of a slice, and depth samples near it as points of the slice's plane.
 //
-// A sample snapped to a texel's centre does not lie in the plane. It is carried there parallel to the
-// surface's tangent plane, which keeps its height above that plane, so an open plane stays exactly
-// open at any tilt and any snapping. (The memo projects nothing; others use the sample as it is, and
-// see a tilted plane occlude itself.)
+// A sample snapped to a texel's centre does not lie in the plane. It is carried there parallel to
+// the surface's tangent plane, which keeps its height above that plane, so an open plane stays
+// exactly open at any tilt and any snapping. (The memo projects nothing; others use the sample as
+// it is, and see a tilted plane occlude itself.)
 //
-// Where the slice hardly meets the tangent plane the way is long and may end on the other side of the
-// point: such a sample says nothing of its side and is to be passed over.
+// Where the slice hardly meets the tangent plane the way is long and may end on the other side of
+// the point: such a sample says nothing of its side and is to be passed over.
 //
 // In the plane a point is (x, y): x along the slice's direction, y along the view vector, in scene
-// units from the shaded point. Both are linear in the texel offset (i, j) once it is scaled by s, the
-// sample's linear depth in perspective and 1 in orthographic views, so a sample costs six
+// units from the shaded point. Both are linear in the texel offset (i, j) once it is scaled by s,
+// the sample's linear depth in perspective and 1 in orthographic views, so a sample costs six
 // multiply-adds and no position in space is ever formed.
 #ifndef ALCOVE_MATHS_SLICE_LINE_H
 #define ALCOVE_MATHS_SLICE_LINE_H
@@ -28,8 +28,8 @@ struct SliceLine {
   float x_per_step;   // x of the point one pixel along direction_px, for s = 1; positive
 };
 
-// Keeps the carry finite where a slice and the tangent plane do not meet at all and the slice weighs
-// nothing.
+// Keeps the carry finite where a slice and the tangent plane do not meet at all and the slice
+// weighs nothing.
 const float kSmallestCarry = 1e-5f;
 
 // Change of the view ray's x and y from one pixel to the next, to be scaled by s.
@@ -39,7 +39,9 @@ ALCOVE_INLINE vec2 ray_per_px(Projection p) {
 }
 
 // The factor s of a sample at linear depth `depth`.
-ALCOVE_INLINE float sample_scale(Projection p, float depth) { return p.eye.w > 0.0f ? depth : 1.0f; }
+ALCOVE_INLINE float sample_scale(Projection p, float depth) {
+  return p.eye.w > 0.0f ? depth : 1.0f;
+}
 
 // The line of the slice through a point along `direction` (unit, perpendicular to `view`). `normal`
 // and `view` are unit, in view space; `per_px` is ray_per_px() of the projection.
@@ -71,8 +73,9 @@ ALCOVE_INLINE vec2 slice_point(SliceLine line, vec2 offset_px, float depth, floa
               scale * dot(offset_px, line.y_per_px) + (centre_depth - depth) * line.y_per_depth);
 }
 
-// Pixels along the line that a sphere of radius `radius` (scene units) around the point spans on one
-// side. In perspective the sphere bulges towards the eye, and one around the eye spans everything.
+// Pixels along the line that a sphere of radius `radius` (scene units) around the point spans on
+// one side. In perspective the sphere bulges towards the eye, and one around the eye spans
+// everything.
 ALCOVE_INLINE float slice_radius_px(Projection p, SliceLine line, float radius,
                                     float centre_depth) {
   float across = radius / max(sample_scale(p, centre_depth) * line.x_per_step, 1e-30f);

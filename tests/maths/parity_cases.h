@@ -4,6 +4,7 @@
 #define ALCOVE_TESTS_PARITY_CASES_H
 
 #include "maths/bent_normal.h"
+#include "maths/bitmask_bent_normal.h"
 #include "maths/filter_weights.h"
 #include "maths/ggx.h"
 #include "maths/gtao.h"
@@ -162,11 +163,17 @@ ALCOVE_INLINE vec4 parity_of_sampling(uint which, vec4 a, vec4 b) {
       return vec4(step_distance(3u, 7u, b.x, 90.0f * b.y, 1.5f),
                   step_distance_squared(3u, 7u, b.x, 90.0f * b.y),
                   depth_mip(b.z * 99.0f, 3.3f, 4.0f), slice_angle(1u, 3u, b.w));
+    case 20u: {
+      Slice s = parity_slice(a);
+      SectorScale scale = make_sector_scale(s);
+      vec2 bent = bitmask_bent(s, scale, hash(pixel.x));
+      return vec4(bent.x, bent.y, slice_arc(s, 1.0f, horizon_of_arc(s, 1.0f, b.x)), 0.0f);
+    }
   }
   return vec4(0.0f);
 }
 
-const uint kParityCases = 20u;
+const uint kParityCases = 21u;
 
 // Four results of case `which` for eight numbers in [0,1).
 ALCOVE_INLINE vec4 parity_case(uint which, vec4 a, vec4 b, Projection p) {

@@ -50,6 +50,7 @@ constexpr Bound kBounds[] = {
     {"patterns", 0.0, 0.0},
     {"integers", 0.0, 0.0},
     {"steps", 1e-5, 1e-4},
+    {"bent normal of sectors", 2e-4, 1e-5},
 };
 static_assert(std::size(kBounds) == maths::kParityCases);
 
