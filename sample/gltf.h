@@ -1,0 +1,37 @@
+#ifndef ALCOVE_SAMPLE_GLTF_H_
+#define ALCOVE_SAMPLE_GLTF_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <tl/expected.hpp>
+
+#include "scene.h"
+
+namespace alcove::sample {
+
+// Reads a .gltf or .glb file (by its content, not its name) into world-space triangles.
+//
+// Taken: node transforms (matrix or TRS, any hierarchy; mirrored ones turn the winding), triangle
+// lists, strips and fans with and without indices, every accessor type (normalised, interleaved,
+// sparse), embedded, binary and external buffers and images, metal-roughness materials, alpha mask,
+// cameras. Missing normals are made from the faces. Left out, with a warning in the scene: points
+// and lines, morph targets, skins, animation, texture coordinate sets other than the base colour's,
+// normal maps (shading normals are the vertices'). Alpha blend counts as mask with cutoff 0.5.
+//
+// The file may be hostile: every index, offset, stride and count is checked before it is used,
+// nothing is allocated beyond a small multiple of the bytes of the files, and external files must
+// lie in the scene's folder. Errors are one sentence with the file's name. Thread-safe.
+[[nodiscard]] tl::expected<Scene, std::string> load_gltf(const std::filesystem::path& file);
+
+// The same from memory. `name` stands in messages; external files are looked for in `folder`, or
+// refused when it is empty.
+[[nodiscard]] tl::expected<Scene, std::string> parse_gltf(std::span<const uint8_t> bytes,
+                                                          const std::string& name,
+                                                          const std::filesystem::path& folder);
+
+}  // namespace alcove::sample
+
+#endif  // ALCOVE_SAMPLE_GLTF_H_

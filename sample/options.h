@@ -1,0 +1,73 @@
+#ifndef ALCOVE_SAMPLE_OPTIONS_H_
+#define ALCOVE_SAMPLE_OPTIONS_H_
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <tl/expected.hpp>
+#include <utility>
+#include <vector>
+
+#include "camera.h"
+#include "scene.h"
+
+namespace alcove::sample {
+
+enum class Command { kRender, kCompare, kGraph, kDoctor };
+enum class Quality { kLow, kMedium, kHigh, kUltra, kReference };
+enum class NormalSource { kShading, kGeometric, kDepth };
+enum class GraphFormat { kText, kJson, kDot };
+
+// Only what was typed; the camera of the scene fills the rest. Angles already in radians.
+struct ViewOptions {
+  std::string camera;  // name of a scene's camera; empty: the default one
+  std::optional<glm::vec3> eye_ws, target_ws, up_ws;
+  std::optional<float> fov_y, ortho_height, near_plane, far_plane;
+  bool reversed_z = false;
+  uint32_t width = 960;
+  uint32_t height = 540;
+  uint32_t frames = 1;
+  float orbit = 0.0f;  // radians per frame
+};
+
+struct OcclusionOptions {
+  Quality quality = Quality::kHigh;
+  std::optional<float> radius;  // scene units; none: default_radius(scene)
+  NormalSource normals = NormalSource::kShading;
+  std::vector<std::pair<std::string, std::string>> set;  // --set name=value, in order
+  std::vector<float> roughness;                          // overrides the materials; perceptual
+  uint32_t spp = 256;                                    // rays per pixel of the truth
+};
+
+struct Options {
+  Command command = Command::kRender;
+  std::string scene;  // empty: the built-in one
+  ViewOptions view;
+  OcclusionOptions occlusion;
+  std::filesystem::path out = "out";
+  GraphFormat graph_format = GraphFormat::kText;
+  int device = -1;
+  bool validation = false;
+  bool use_cache = true;
+};
+
+// A command line that asks for no run: help (status 0, for stdout) or a mistake (status 2, one
+// sentence for stderr).
+struct Stop {
+  int status = 0;
+  std::string text;
+};
+
+// Never exits and never prints. Each value is checked alone and against the others here; what needs
+// the scene is checked by camera_of.
+[[nodiscard]] tl::expected<Options, Stop> parse_options(int argc, const char* const* argv);
+
+// The camera that the options ask of this scene. Errors: a camera the scene does not have (its
+// names are listed), an eye at the target, near not before far.
+[[nodiscard]] tl::expected<Camera, std::string> camera_of(const ViewOptions& view,
+                                                          const Scene& scene);
+
+}  // namespace alcove::sample
+
+#endif  // ALCOVE_SAMPLE_OPTIONS_H_

@@ -1,0 +1,16 @@
+#ifndef ALCOVE_SAMPLE_PROGRESS_H_
+#define ALCOVE_SAMPLE_PROGRESS_H_
+
+#include <string>
+
+#include "truth.h"
+
+namespace alcove::sample {
+
+// A Progress that prints `name 42 %, 12 s left` to stderr: nothing in the first second, then at
+// most four times a second on a terminal (one line, rewritten) and every five seconds elsewhere.
+[[nodiscard]] Progress print_progress(std::string name);
+
+}  // namespace alcove::sample
+
+#endif  // ALCOVE_SAMPLE_PROGRESS_H_

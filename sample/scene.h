@@ -1,0 +1,100 @@
+#ifndef ALCOVE_SAMPLE_SCENE_H_
+#define ALCOVE_SAMPLE_SCENE_H_
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "camera.h"
+#include "glm.h"
+
+namespace alcove::sample {
+
+// 8-bit RGBA, top row first. Base colour and emission are sRGB, roughness and metal linear: the
+// material says which by where it uses the image.
+struct TextureImage {
+  std::string name;
+  uint32_t width = 0;
+  uint32_t height = 0;
+  std::vector<uint8_t> rgba;  // 4 * width * height
+};
+
+enum class Wrap : uint8_t { kRepeat, kClamp, kMirror };
+
+// An image as a material uses it. `image` indexes Scene::images; -1 is none, and reads white.
+struct TextureUse {
+  int32_t image = -1;
+  Wrap wrap_u = Wrap::kRepeat;
+  Wrap wrap_v = Wrap::kRepeat;
+};
+
+// kBlend hides like kMask with a cutoff of 0.5, in the rasteriser and in the ray tracer alike: an
+// occluder either blocks or does not.
+enum class AlphaMode : uint8_t { kOpaque, kMask, kBlend };
+
+// Metal and roughness, after glTF 2.0 section 3.9. Factors are linear and multiply the texture.
+struct Material {
+  std::string name;
+  glm::vec4 base_color{1.0f};  // 0..1
+  TextureUse base_color_texture;
+  float metallic = 0.0f;               // 0..1
+  float roughness = 1.0f;              // perceptual, 0..1
+  TextureUse metal_roughness_texture;  // green: roughness, blue: metal
+  glm::vec3 emissive{0.0f};            // >= 0
+  TextureUse emissive_texture;
+  AlphaMode alpha_mode = AlphaMode::kOpaque;
+  float alpha_cutoff = 0.5f;  // kept where alpha >= cutoff; 0.5 for kBlend
+  bool double_sided = false;
+};
+
+// Triangles of one material in world space, counter-clockwise from the front. The three vertex
+// arrays have one length; every index is below it. Normals are unit, uvs zero where there were
+// none.
+struct Mesh {
+  std::string name;
+  uint32_t material = 0;  // indexes Scene::materials
+  std::vector<glm::vec3> positions_ws;
+  std::vector<glm::vec3> normals_ws;
+  std::vector<glm::vec2> uvs;
+  std::vector<uint32_t> indices;  // 3 per triangle
+};
+
+struct Bounds {
+  glm::vec3 low{0.0f};
+  glm::vec3 high{0.0f};
+};
+
+// Everything that is drawn and traced, ready for both: no transforms, no instances. Materials hold
+// at least one entry wherever there is a mesh.
+struct Scene {
+  std::string name;
+  std::vector<Mesh> meshes;
+  std::vector<Material> materials;
+  std::vector<TextureImage> images;
+  std::vector<Camera> cameras;  // the first is the default view; may be empty
+  Bounds bounds_ws;
+  float suggested_radius = 0.0f;      // 0: take a twentieth of the bounds' diagonal
+  std::vector<std::string> warnings;  // one sentence each: what of the file was left out
+};
+
+[[nodiscard]] Bounds bounds_of(const std::vector<Mesh>& meshes);
+[[nodiscard]] uint64_t triangle_count(const Scene& scene);
+
+// A view from above and to the side that holds the whole of `bounds`.
+[[nodiscard]] Camera framing_camera(const Bounds& bounds);
+
+// The camera of that name, or for an empty name the first. Null when there is none.
+[[nodiscard]] const Camera* find_camera(const Scene& scene, const std::string& name);
+
+// The radius where none is given, in scene units.
+[[nodiscard]] float default_radius(const Scene& scene);
+
+// An image's texel by wrapped coordinates, 0..1 as stored (no sRGB decoding), bilinear, mip 0.
+[[nodiscard]] glm::vec4 sample_texture(const Scene& scene, const TextureUse& use, glm::vec2 uv);
+
+// sRGB to linear, per channel.
+[[nodiscard]] float srgb_to_linear(float encoded);
+
+}  // namespace alcove::sample
+
+#endif  // ALCOVE_SAMPLE_SCENE_H_
