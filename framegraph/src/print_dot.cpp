@@ -31,7 +31,9 @@ class DotPrinter {
   }
 
  private:
-  static std::string id(std::uint32_t pass) { return std::string("p").append(std::to_string(pass)); }
+  static std::string id(std::uint32_t pass) {
+    return std::string("p").append(std::to_string(pass));
+  }
 
   void node(std::uint32_t pass) {
     std::string label(graph_.pass_name(pass));

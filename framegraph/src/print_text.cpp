@@ -50,8 +50,8 @@ class TextPrinter {
   void submission(std::uint32_t index) {
     const Submission& submission = plan_.submissions[index];
     if (plan_.submissions.size() > 1) {
-      std::string text = "submission " + std::to_string(index) + " on " +
-                         queue_name(submission.queue);
+      std::string text =
+          "submission " + std::to_string(index) + " on " + queue_name(submission.queue);
       for (std::uint32_t w = 0; w < submission.wait_count; ++w)
         text += (w ? ", " : " waits for ") +
                 std::to_string(plan_.waits[submission.first_wait + w].submission);
@@ -65,7 +65,8 @@ class TextPrinter {
   void pass(std::uint32_t position) {
     const PlannedPass& planned = plan_.passes[position];
     batches(planned.first_batch, planned.batch_count);
-    std::string text = padded(std::to_string(position), 4) + padded(graph_.pass_name(planned.pass), kNameWidth);
+    std::string text =
+        padded(std::to_string(position), 4) + padded(graph_.pass_name(planned.pass), kNameWidth);
     const std::uint32_t first = graph_.passes[planned.pass].first_access;
     const auto accesses = graph_.pass_accesses(planned.pass);
     for (std::size_t i = 0; i < accesses.size(); ++i) {
@@ -96,12 +97,16 @@ class TextPrinter {
       text.append(": ").append(name(t.resource));
       text.append(range_name(t.range, record.mips, record.layers));
       if (record.kind == ResourceKind::texture)
-        text.append(" ").append(layout_name(t.old_layout)).append(" -> ").append(
-            layout_name(t.new_layout));
+        text.append(" ")
+            .append(layout_name(t.old_layout))
+            .append(" -> ")
+            .append(layout_name(t.new_layout));
     }
     if (t.src_queue != t.dst_queue)
-      text.append(", ").append(queue_name(t.src_queue)).append(" gives to ").append(
-          queue_name(t.dst_queue));
+      text.append(", ")
+          .append(queue_name(t.src_queue))
+          .append(" gives to ")
+          .append(queue_name(t.dst_queue));
     line(text);
   }
 
