@@ -22,6 +22,8 @@ layout(constant_id = 0) const uint kSliceCount = 1;
 layout(constant_id = 1) const uint kStepCount = 12;
 layout(constant_id = 2) const bool kBentNormal = false;
 layout(constant_id = 3) const bool kBitmask = false;
+layout(constant_id = 4) const int kDivisor = 1;  // one search a block of so many pixels a side
+layout(constant_id = 5) const uint kPattern = 0;  // 0 golden, 1 Hilbert and R2, 2 the memo's
 
 layout(set = 0, binding = 0) uniform Parameters { GtaoParameters parameters; };
 layout(set = 0, binding = 1) uniform texture2D depth_image;   // linear
@@ -179,23 +181,36 @@ SideOcclusion find_occluders(Surface surface, SliceLine line, Slice slice, Secto
   return found;
 }
 
+SliceNoise noise_at(uvec2 block) {
+  switch (kPattern) {
+    case 1:
+      return hilbert_noise(block, parameters.frame);
+    case 2:
+      return spatial_pattern(block, parameters.frame);
+    default:
+      return golden_pattern(block, parameters.frame);
+  }
+}
+
 void main() {
-  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, ivec2(parameters.projection.size_px)))) {
+  ivec2 block = ivec2(gl_GlobalInvocationID.xy);
+  ivec2 size = ivec2(parameters.projection.size_px);
+  if (any(greaterThanEqual(block * kDivisor, size))) {
     return;
   }
+  ivec2 pixel = min(block * kDivisor + ivec2(parameters.phase), size - 1);
   float depth = texelFetch(depth_image, pixel, 0).r;
   if (is_sky_depth(depth)) {
-    imageStore(signal_image, pixel, vec4(1.0));
+    imageStore(signal_image, block, vec4(1.0));
     if (kBentNormal) {
-      imageStore(bent_image, pixel, vec4(0.0));
+      imageStore(bent_image, block, vec4(0.0));
     }
     return;
   }
   Surface surface = fetch_surface(pixel, depth);
   ViewBasis basis = make_view_basis(surface.view);
   vec2 per_px = ray_per_px(parameters.projection);
-  SliceNoise noise = spatial_pattern(uvec2(pixel), parameters.frame);
+  SliceNoise noise = noise_at(uvec2(block));
 
   float visibility = 0.0;
   float weight = 0.0;
@@ -223,8 +238,8 @@ void main() {
     }
   }
   float mean = 1.0 / float(kSliceCount);
-  imageStore(signal_image, pixel, vec4(visibility * mean, weight * mean, 0.0, 0.0));
+  imageStore(signal_image, block, vec4(visibility * mean, weight * mean, 0.0, 0.0));
   if (kBentNormal) {
-    imageStore(bent_image, pixel, vec4(bent * mean, 0.0));
+    imageStore(bent_image, block, vec4(bent * mean, 0.0));
   }
 }

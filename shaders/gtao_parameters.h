@@ -8,6 +8,7 @@ ALCOVE_MATHS_BEGIN
 struct GtaoParameters {
   Projection projection;
   mat4 view_from_normal;  // rotation from the space of the normals to view space
+  vec2 phase;             // which pixel of a block is searched
   float radius;           // scene units
   uint frame;             // turns the noise
   float thickness;        // of what is joined to nothing, scene units (bitmask)

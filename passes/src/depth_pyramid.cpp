@@ -29,7 +29,7 @@ std::uint32_t mips_that_fit(VkExtent3D extent, std::uint32_t wanted) {
 tl::expected<Texture, Error> add_depth_pyramid(const Frame& frame, Texture depth_ndc,
                                                std::uint32_t mips, float reach) {
   const VkExtent3D extent = frame.graph.extent(depth_ndc);
-  const auto projection = projection_of(frame, depth_ndc);
+  const auto projection = projection_of(frame, frame.view, depth_ndc);
   if (!projection) {
     return tl::unexpected(projection.error());
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "gtao_parameters.h"
+#include "search_phase.h"
 #include "view_parameters.h"
 
 namespace alcove::passes {
@@ -24,6 +25,10 @@ tl::expected<void, Error> check(const GtaoSettings& settings) {
                                 std::to_string(settings.steps) +
                                 " steps; each number must be 1 to 64."});
   }
+  if (settings.divisor != 1 && settings.divisor != 2 && settings.divisor != 4) {
+    return tl::unexpected(Error{"The resolution is divided by " + std::to_string(settings.divisor) +
+                                "; it must be 1, 2 or 4."});
+  }
   if (!(settings.thickness >= 0.0f) || !(settings.fill >= 0.0f && settings.fill <= 1.0f)) {
     return tl::unexpected(Error{"The thickness is " + std::to_string(settings.thickness) +
                                 " radii and the fill " + std::to_string(settings.fill) +
@@ -35,8 +40,8 @@ tl::expected<void, Error> check(const GtaoSettings& settings) {
 // The textures that the pass writes, made for the graph but not yet written.
 OcclusionSignal create_signal(const Frame& frame, Texture depth, const GtaoSettings& settings) {
   const bool precise = settings.precision == Precision::float32;
-  const auto size = framegraph::Extent::relative(depth);
-  OcclusionSignal result;
+  const auto size = framegraph::Extent::relative(depth, settings.divisor);
+  OcclusionSignal result{.divisor = settings.divisor};
   result.signal = frame.graph.create_texture(
       "occlusion signal", {precise ? VK_FORMAT_R32G32_SFLOAT : VK_FORMAT_R16G16_SFLOAT, size});
   if (settings.bent_normal) {
@@ -54,13 +59,16 @@ tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame, const GtaoInpu
   if (auto good = check(settings); !good) {
     return tl::unexpected(good.error());
   }
-  const auto projection = projection_of(frame, inputs.depth);
+  const auto projection = projection_of(frame, frame.view, inputs.depth);
   if (!projection) {
     return tl::unexpected(projection.error());
   }
-  const std::array constants{settings.slices, settings.steps,
+  const std::array constants{settings.slices,
+                             settings.steps,
                              static_cast<std::uint32_t>(settings.bent_normal),
-                             static_cast<std::uint32_t>(settings.estimator == Estimator::bitmask)};
+                             static_cast<std::uint32_t>(settings.estimator == Estimator::bitmask),
+                             settings.divisor,
+                             static_cast<std::uint32_t>(settings.pattern)};
   const auto kernel = frame.kernels.get(Shader::gtao, constants);
   if (!kernel) {
     return tl::unexpected(kernel.error());
@@ -75,12 +83,15 @@ tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame, const GtaoInpu
   if (settings.bent_normal) {
     result.bent = pass.write(result.bent, stored, {}, framegraph::Contents::discard);
   }
-  const maths::GtaoParameters parameters{*projection,
-                                         view_from_normal(frame, inputs.normals_in_view_space),
-                                         settings.radius,
-                                         frame.index,
-                                         settings.thickness * settings.radius,
-                                         settings.fill};
+  const SearchPhase phase = search_phase(settings.divisor, frame.index);
+  const maths::GtaoParameters parameters{
+      *projection,
+      view_from_normal(frame, inputs.normals_in_view_space),
+      maths::vec2(static_cast<float>(phase.x), static_cast<float>(phase.y)),
+      settings.radius,
+      frame.index,
+      settings.thickness * settings.radius,
+      settings.fill};
   pass.record([&kernels = frame.kernels, kernel = *kernel, inputs, result,
                parameters](RecordContext& context) {
     const VkImageView signal = context.view(result.signal);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kShaderCount = static_cast<std::size_t>(Shader::count);
 constexpr std::size_t kMaxConstants = 16;
-constexpr std::size_t kMaxBindings = 12;
+constexpr std::size_t kMaxBindings = 16;
 constexpr std::uint32_t kGroupSize = 8;
 
 tl::unexpected<Error> failure(std::string_view what, VkResult result) {

@@ -12,7 +12,7 @@ using framegraph::RecordContext;
 using framegraph::Texture;
 
 tl::expected<Texture, Error> add_normals(const Frame& frame, Texture depth) {
-  const auto projection = projection_of(frame, depth);
+  const auto projection = projection_of(frame, frame.view, depth);
   if (!projection) {
     return tl::unexpected(projection.error());
   }

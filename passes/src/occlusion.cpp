@@ -15,18 +15,25 @@ OcclusionSettings quality_settings(Quality quality, float radius) {
   settings.radius = radius;
   switch (quality) {
     case Quality::low:
-      settings.steps = 6;
+      settings.divisor = 2;
+      settings.steps = 5;
+      settings.filter_reach = 1;
+      settings.history_frames = 32;
       break;
     case Quality::medium:
-      settings.steps = 12;
+      settings.divisor = 2;
+      settings.steps = 8;
+      settings.filter_reach = 1;
+      settings.history_frames = 32;
       break;
     case Quality::high:
-      settings.slices = 2;
       settings.steps = 12;
+      settings.history_frames = 32;
       break;
     case Quality::ultra:
-      settings.slices = 4;
-      settings.steps = 16;
+      settings.slices = 2;
+      settings.steps = 18;
+      settings.history_frames = 32;
       break;
     case Quality::reference:
       settings.estimator = Estimator::horizons;
@@ -41,7 +48,8 @@ OcclusionSettings quality_settings(Quality quality, float radius) {
 
 tl::expected<OcclusionOutputs, Error> add_occlusion(const Frame& frame,
                                                     const OcclusionInputs& inputs,
-                                                    const OcclusionSettings& settings) {
+                                                    const OcclusionSettings& settings,
+                                                    std::string_view history_name) {
   const auto depth = add_depth_pyramid(frame, inputs.depth_ndc, settings.depth_mips,
                                        kPyramidReach * settings.radius);
   if (!depth) {
@@ -62,14 +70,21 @@ tl::expected<OcclusionOutputs, Error> add_occlusion(const Frame& frame,
                           .estimator = settings.estimator,
                           .thickness = settings.thickness,
                           .fill = settings.fill,
+                          .divisor = settings.divisor,
+                          .pattern = settings.pattern,
                           .bent_normal = settings.bent_normal,
                           .precision = settings.precision};
   const auto signal = add_gtao(frame, {*depth, normals, in_view_space}, gtao);
   if (!signal) {
     return tl::unexpected(signal.error());
   }
-  return add_spatial_filter(frame, {*signal, *depth, normals, in_view_space},
-                            {.reach = settings.filter_reach, .precision = settings.precision})
+  const ReconstructSettings reconstruct{.reach = settings.filter_reach,
+                                        .tolerance_px = settings.filter_tolerance_px,
+                                        .history_frames = settings.history_frames,
+                                        .clamp_width = settings.clamp_width,
+                                        .precision = settings.precision};
+  return add_reconstruct(frame, {*signal, *depth, normals, in_view_space, inputs.motion},
+                         reconstruct, history_name)
       .map([&](const Occlusion& filtered) {
         return OcclusionOutputs{filtered.visibility, filtered.bent_normal, *depth, normals};
       });

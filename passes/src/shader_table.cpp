@@ -5,7 +5,8 @@
 #include "spirv/depth_pyramid.h"
 #include "spirv/gtao.h"
 #include "spirv/normals.h"
-#include "spirv/spatial_filter.h"
+#include "spirv/reconstruct.h"
+#include "spirv/reconstruct_history.h"
 
 namespace alcove::passes {
 
@@ -14,7 +15,10 @@ const ShaderSource& shader_source(Shader shader) {
       {kDepthPyramid, "sttttt"},
       {kNormals, "st"},
       {kGtao, "sstt"},
-      {kSpatialFilter, "sssstt"},
+      {kReconstruct, "sssstt"},
+      {kReconstructHistory,
+       "sssstt"
+       "ssstt"},
   }};
   return sources[static_cast<std::size_t>(shader)];
 }

@@ -18,11 +18,11 @@ namespace alcove::passes {
   return result;
 }
 
-// The projection of the view over the whole of `texture`, or what is wrong with it.
+// The projection of a view over the whole of `texture`, or what is wrong with it.
 [[nodiscard]] inline tl::expected<maths::Projection, Error> projection_of(
-    const Frame& frame, framegraph::Texture texture) {
+    const Frame& frame, const View& view, framegraph::Texture texture) {
   const VkExtent3D extent = frame.graph.extent(texture);
-  return maths::make_projection(to_mat4(frame.view.clip_from_view), extent.width, extent.height)
+  return maths::make_projection(to_mat4(view.clip_from_view), extent.width, extent.height)
       .map_error([](const char* why) {
         return Error{"The view cannot be used: " + std::string(why) + "."};
       });

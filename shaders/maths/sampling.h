@@ -39,6 +39,23 @@ ALCOVE_INLINE SliceNoise spatial_pattern(uvec2 pixel, uint frame) {
   return noise;
 }
 
+// The memo's 4x4 block, turned from frame to frame by the golden ratio (directions) and the first R2
+// number (offsets): no frame repeats, and any run of frames covers both evenly, so that it goes with
+// searches that move through a block of pixels, whose own period the memo's six rotations would meet.
+ALCOVE_INLINE SliceNoise golden_pattern(uvec2 pixel, uint frame) {
+  uint x = pixel.x & 3u;
+  uint y = pixel.y & 3u;
+  uint cell = (((x + y) & 3u) << 2u) + x;
+  uint offset = (y + 4u - x) & 3u;
+  // Fractions of 2^32, exact for every frame: the ratio itself and 1 / 1.3247179572.
+  uint direction_bits = (cell << 28u) + (1u << 27u) + frame * 2654435769u;
+  uint offset_bits = (offset << 30u) + (1u << 29u) + frame * 3242174889u;
+  SliceNoise noise;
+  noise.direction = float(direction_bits >> 8u) * (1.0f / 16777216.0f);
+  noise.offset = float(offset_bits >> 8u) * (1.0f / 16777216.0f);
+  return noise;
+}
+
 // Position along a Hilbert curve through a 64x64 block; takes x and y modulo 64. In [0,4096).
 ALCOVE_INLINE uint hilbert_index(uvec2 pixel) {
   uint x = pixel.x & 63u;

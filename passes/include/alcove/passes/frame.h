@@ -34,7 +34,8 @@ struct Frame {
   framegraph::Graph& graph;
   Kernels& kernels;
   View view;
-  std::uint32_t index = 0;  // counts frames: it turns the noise
+  std::uint32_t index = 0;    // counts frames: it turns the noise and moves the searched pixels
+  View previous_view = view;  // of the frame before: what history is reprojected with
 };
 
 }  // namespace alcove::passes

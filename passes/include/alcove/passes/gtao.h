@@ -16,14 +16,25 @@ enum class Estimator : std::uint8_t {
   bitmask,
 };
 
+// How directions are spread over pixels and frames (shaders/maths/sampling.h).
+enum class Pattern : std::uint8_t {
+  golden,   // the memo's 4x4 block, turned by the golden ratio from frame to frame
+  hilbert,  // Hilbert curve and R2 sequence
+  memo,     // the memo's 4x4 block and six rotations
+};
+
 struct GtaoSettings {
   float radius = 0.5f;       // scene units, over 0: occluders beyond it do not count
   std::uint32_t slices = 1;  // a pixel, 1 to 64; with the noise of a 4x4 block, 16 times as many
   std::uint32_t steps = 12;  // a side of a slice, 1 to 64: 2 * slices * steps depth fetches a pixel
   Estimator estimator = Estimator::bitmask;
-  float thickness = 0.15f;   // of an occluder, in parts of the radius, at least 0 (bitmask)
-  float fill = 0.4f;         // share of what is hidden behind it that occludes, [0,1] (bitmask)
-  bool bent_normal = false;  // also write the mean visible direction
+  float thickness = 0.15f;  // of an occluder, in parts of the radius, at least 0 (bitmask)
+  float fill = 0.4f;        // share of what is hidden behind it that occludes, [0,1] (bitmask)
+  // One search a frame in a block of so many pixels a side: 1, 2 or 4. Which of them moves on from
+  // frame to frame.
+  std::uint32_t divisor = 1;
+  Pattern pattern = Pattern::golden;
+  bool bent_normal = false;                  // also write the mean visible direction
   Precision precision = Precision::float16;  // unorm8 counts as float16
 };
 
@@ -33,11 +44,12 @@ struct GtaoInputs {
   bool normals_in_view_space = false;
 };
 
-// What filters and history work on: sums over slices, as large as the depth.
+// What filters and history work on: sums over slices, one texel a block.
 struct OcclusionSignal {
   framegraph::Texture signal;  // two channels: the visible part of the slices, and all of it
   framegraph::Texture bent;  // xyz: the mean visible direction weighted by the cosine, view space,
                              // not normalised; null where none is wanted
+  std::uint32_t divisor = 1;  // pixels on a side of a block
 };
 
 [[nodiscard]] tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame,

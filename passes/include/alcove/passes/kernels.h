@@ -24,7 +24,8 @@ enum class Shader : std::uint8_t {
   depth_pyramid,
   normals,
   gtao,
-  spatial_filter,
+  reconstruct,
+  reconstruct_history,
   count,
 };
 

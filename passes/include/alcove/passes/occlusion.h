@@ -6,7 +6,7 @@
 #include "alcove/passes/depth_pyramid.h"
 #include "alcove/passes/gtao.h"
 #include "alcove/passes/normals.h"
-#include "alcove/passes/spatial_filter.h"
+#include "alcove/passes/reconstruct.h"
 
 namespace alcove::passes {
 
@@ -18,11 +18,16 @@ struct OcclusionSettings {
   std::uint32_t slices = 1;  // a pixel, 1 to 64
   std::uint32_t steps = 12;  // a side of a slice, 1 to 64
   Estimator estimator = Estimator::bitmask;
-  float thickness = 0.15f;       // of an occluder, in parts of the radius, at least 0 (bitmask)
-  float fill = 0.4f;             // share of what is hidden behind it that occludes, [0,1] (bitmask)
-  std::uint32_t depth_mips = 1;  // levels of the depth pyramid, 1 to 5
-  std::uint32_t filter_reach = 2;  // neighbours on each side, 0 to 3; 0 leaves the filter out
-  float filter_tolerance = 0.05f;  // distance from the tangent plane, in parts of the radius
+  float thickness = 0.15f;  // of an occluder, in parts of the radius, at least 0 (bitmask)
+  float fill = 0.4f;        // share of what is hidden behind it that occludes, [0,1] (bitmask)
+  // One search a frame in a block of so many pixels a side: 1, 2 or 4.
+  std::uint32_t divisor = 1;
+  Pattern pattern = Pattern::golden;
+  std::uint32_t depth_mips = 1;      // levels of the depth pyramid, 1 to 5
+  std::uint32_t filter_reach = 2;    // blocks on each side, 0 to 3; 0 leaves the filter out
+  float filter_tolerance_px = 2.0f;  // distance from the tangent plane, in sizes of a pixel
+  std::uint32_t history_frames = 0;  // that are averaged, 0 to 255; 0 keeps none
+  float clamp_width = 0.0f;          // of history, in deviations of this frame; 0 leaves it free
   bool bent_normal = false;
   Precision precision = Precision::unorm8;
 };
@@ -34,6 +39,8 @@ struct OcclusionInputs {
   framegraph::Texture depth_ndc;       // as the view's projection wrote it
   framegraph::Texture normals;         // xyz unit; null: they are made from depth
   bool normals_in_view_space = false;  // else in world space
+  framegraph::Texture
+      motion;  // xy: uv of this frame minus uv of the last; null: only the camera moves
 };
 
 struct OcclusionOutputs {
@@ -47,6 +54,7 @@ struct OcclusionOutputs {
 // What is not read afterwards is culled by the graph, with all that only leads there. Bent normals
 // are in the space of the given normals, in view space where none are given.
 [[nodiscard]] tl::expected<OcclusionOutputs, Error> add_occlusion(
-    const Frame& frame, const OcclusionInputs& inputs, const OcclusionSettings& settings);
+    const Frame& frame, const OcclusionInputs& inputs, const OcclusionSettings& settings,
+    std::string_view history_name = "occlusion");
 
 }  // namespace alcove::passes

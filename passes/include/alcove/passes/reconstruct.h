@@ -1,0 +1,49 @@
+// From searched pixels to every pixel: spatial filter, upsampling and history in one pass.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "alcove/passes/frame.h"
+#include "alcove/passes/gtao.h"
+
+namespace alcove::passes {
+
+struct ReconstructSettings {
+  // Blocks on each side that a pixel looks at while it has little history, or none, 0 to 3. 2
+  // covers the 4x4 pattern of a full-resolution search; 1 is enough for a lower one. 0 filters
+  // nothing.
+  std::uint32_t reach = 2;
+  // How far a neighbour may lie from the pixel's tangent plane before it counts for nothing, in
+  // sizes of a pixel there, over 0.
+  float tolerance_px = 2.0f;
+  // Frames that are averaged, 0 to 255. 0 keeps no history and allocates none: for engines whose
+  // own temporal filter comes after.
+  std::uint32_t history_frames = 0;
+  // History is held to so many standard deviations of this frame's neighbourhood; 0 leaves it free.
+  float clamp_width = 0.0f;
+  Precision precision = Precision::unorm8;
+};
+
+struct ReconstructInputs {
+  OcclusionSignal signal;       // as add_gtao writes it
+  framegraph::Texture depth;    // linear
+  framegraph::Texture normals;  // as GtaoInputs::normals
+  bool normals_in_view_space = false;
+  framegraph::Texture
+      motion;  // xy: uv of this frame minus uv of the last; null: only the camera moves
+};
+
+struct Occlusion {
+  framegraph::Texture visibility;   // one channel, [0,1], 1 open, as large as the depth
+  framegraph::Texture bent_normal;  // xyz unit, in the space of the normals; null where the signal
+                                    // has none
+};
+
+// `history_name` tells the histories of one graph apart: each view needs its own. A history begins
+// anew where the size or the kind of the signal changes, and after Graph::reset_history.
+[[nodiscard]] tl::expected<Occlusion, Error> add_reconstruct(
+    const Frame& frame, const ReconstructInputs& inputs, const ReconstructSettings& settings,
+    std::string_view history_name = "occlusion");
+
+}  // namespace alcove::passes

@@ -1,0 +1,204 @@
+#include "alcove/passes/reconstruct.h"
+
+#include <array>
+#include <span>
+#include <string>
+
+#include "reconstruct_parameters.h"
+#include "search_phase.h"
+#include "view_parameters.h"
+
+namespace alcove::passes {
+
+using framegraph::Graph;
+using framegraph::Range;
+using framegraph::RecordContext;
+using framegraph::Texture;
+using framegraph::TextureHistory;
+
+namespace {
+
+constexpr std::uint32_t kMaxReach = 3;
+constexpr std::uint32_t kMaxHistoryFrames = 255;
+
+tl::expected<void, Error> check(const ReconstructSettings& settings) {
+  if (!(settings.tolerance_px > 0.0f)) {
+    return tl::unexpected(Error{"The filter's tolerance is " +
+                                std::to_string(settings.tolerance_px) +
+                                " pixels; it must be over 0."});
+  }
+  if (settings.reach > kMaxReach) {
+    return tl::unexpected(Error{"The filter's reach is " + std::to_string(settings.reach) +
+                                "; it must be 0 to 3 blocks."});
+  }
+  if (settings.history_frames > kMaxHistoryFrames) {
+    return tl::unexpected(Error{"The history is " + std::to_string(settings.history_frames) +
+                                " frames long; it must be 0 to 255."});
+  }
+  return {};
+}
+
+VkFormat visibility_format(Precision precision) {
+  switch (precision) {
+    case Precision::unorm8:
+      return VK_FORMAT_R8_UNORM;
+    case Precision::float16:
+      return VK_FORMAT_R16_SFLOAT;
+    default:
+      return VK_FORMAT_R32_SFLOAT;
+  }
+}
+
+VkFormat bent_normal_format(Precision precision) {
+  switch (precision) {
+    case Precision::unorm8:
+      return VK_FORMAT_R8G8B8A8_SNORM;
+    case Precision::float16:
+      return VK_FORMAT_R16G16B16A16_SFLOAT;
+    default:
+      return VK_FORMAT_R32G32B32A32_SFLOAT;
+  }
+}
+
+// All that the pass touches; null where it is not wanted.
+struct Textures {
+  ReconstructInputs inputs;
+  Occlusion result;
+  Texture history;
+  Texture next_history;
+  Texture bent_history;
+  Texture next_bent_history;
+};
+
+// Declares the textures that the pass writes. `valid` is whether last frame's history can be read.
+Textures create_textures(const Frame& frame, const ReconstructInputs& inputs,
+                         const ReconstructSettings& settings, std::string_view history_name,
+                         bool& valid) {
+  Graph& graph = frame.graph;
+  const VkExtent3D extent = graph.extent(inputs.depth);
+  const auto size = framegraph::Extent::absolute(extent.width, extent.height);
+  Textures textures{.inputs = inputs};
+  textures.result.visibility =
+      graph.create_texture("visibility", {visibility_format(settings.precision), size});
+  if (inputs.signal.bent) {
+    textures.result.bent_normal =
+        graph.create_texture("bent normal", {bent_normal_format(settings.precision), size});
+  }
+  if (settings.history_frames == 0) {
+    return textures;
+  }
+  const std::string name(history_name);
+  const TextureHistory history =
+      graph.create_texture_history(name + " history", {VK_FORMAT_R32G32_UINT, size});
+  valid = history.validity == framegraph::HistoryValidity::valid;
+  textures.history = history.previous();
+  textures.next_history = history.current;
+  if (inputs.signal.bent) {
+    const TextureHistory bent =
+        graph.create_texture_history(name + " bent history", {VK_FORMAT_R16G16B16A16_SFLOAT, size});
+    valid = valid && bent.validity == framegraph::HistoryValidity::valid;
+    textures.bent_history = bent.previous();
+    textures.next_bent_history = bent.current;
+  }
+  return textures;
+}
+
+void declare_accesses(framegraph::PassBuilder& pass, Textures& textures) {
+  const auto read = [&](Texture texture, Range range = {}) {
+    if (texture) {
+      pass.read(texture, framegraph::access::sampled_compute, range);
+    }
+  };
+  const auto write = [&](Texture& texture) {
+    if (texture) {
+      texture = pass.write(texture, framegraph::access::storage_write_compute, {},
+                           framegraph::Contents::discard);
+    }
+  };
+  read(textures.inputs.signal.signal);
+  read(textures.inputs.signal.bent);
+  read(textures.inputs.depth, Range::mip(0));
+  read(textures.inputs.normals);
+  read(textures.inputs.motion);
+  read(textures.history);
+  read(textures.bent_history);
+  write(textures.result.visibility);
+  write(textures.result.bent_normal);
+  write(textures.next_history);
+  write(textures.next_bent_history);
+}
+
+using Bindings = std::array<VkImageView, 11>;
+
+// In the order of the shader's bindings; what is not wanted is bound to something of its kind.
+Bindings bindings_of(RecordContext& context, const Textures& textures) {
+  const auto view_or = [&](Texture texture, Texture instead) {
+    return texture         ? context.view(texture)
+           : bool(instead) ? context.view(instead)
+                           : VkImageView{VK_NULL_HANDLE};
+  };
+  const ReconstructInputs& in = textures.inputs;
+  const Occlusion& out = textures.result;
+  return {context.view(in.signal.signal),
+          view_or(in.signal.bent, in.signal.signal),
+          context.view(in.depth),
+          context.view(in.normals),
+          context.view(out.visibility),
+          view_or(out.bent_normal, out.visibility),
+          view_or(in.motion, in.depth),
+          view_or(textures.history, {}),
+          view_or(textures.bent_history, in.signal.signal),
+          view_or(textures.next_history, {}),
+          view_or(textures.next_bent_history, out.visibility)};
+}
+
+}  // namespace
+
+tl::expected<Occlusion, Error> add_reconstruct(const Frame& frame, const ReconstructInputs& inputs,
+                                               const ReconstructSettings& settings,
+                                               std::string_view history_name) {
+  if (auto good = check(settings); !good) {
+    return tl::unexpected(good.error());
+  }
+  const auto projection = projection_of(frame, frame.view, inputs.depth);
+  const auto previous = projection_of(frame, frame.previous_view, inputs.depth);
+  if (!projection || !previous) {
+    return tl::unexpected(projection ? previous.error() : projection.error());
+  }
+  bool history_valid = false;
+  Textures textures = create_textures(frame, inputs, settings, history_name, history_valid);
+  const bool history = settings.history_frames > 0;
+  const std::array constants{inputs.signal.divisor, settings.reach,
+                             static_cast<std::uint32_t>(bool(inputs.signal.bent)),
+                             static_cast<std::uint32_t>(bool(inputs.motion))};
+  const auto kernel =
+      frame.kernels.get(history ? Shader::reconstruct_history : Shader::reconstruct, constants);
+  if (!kernel) {
+    return tl::unexpected(kernel.error());
+  }
+  auto pass = frame.graph.add_pass("reconstruct");
+  declare_accesses(pass, textures);
+  const auto [phase_x, phase_y] = search_phase(inputs.signal.divisor, frame.index);
+  const maths::ReconstructParameters parameters{
+      *projection,
+      *previous,
+      view_from_normal(frame, inputs.normals_in_view_space),
+      to_mat4(frame.previous_view.view_from_world) *
+          maths::inverse(to_mat4(frame.view.view_from_world)),
+      maths::vec2(static_cast<float>(phase_x), static_cast<float>(phase_y)),
+      settings.tolerance_px,
+      static_cast<float>(settings.history_frames),
+      settings.clamp_width,
+      history_valid ? 1u : 0u};
+  pass.record([&kernels = frame.kernels, kernel = *kernel, textures, parameters,
+               history](RecordContext& context) {
+    const Bindings views = bindings_of(context, textures);
+    // Without history the last five bindings do not exist.
+    const std::span<const VkImageView> bound(views.data(), history ? views.size() : 6);
+    kernels.dispatch(context, kernel, bound, bytes_of(parameters),
+                     context.extent(textures.result.visibility));
+  });
+  return textures.result;
+}
+
+}  // namespace alcove::passes

@@ -1,0 +1,19 @@
+#ifndef ALCOVE_SAMPLE_COMMANDS_H_
+#define ALCOVE_SAMPLE_COMMANDS_H_
+
+#include <string>
+#include <tl/expected.hpp>
+
+#include "options.h"
+
+namespace alcove::sample {
+
+// The subcommands of `alcove`, a file each. They print to stdout; an error is one sentence.
+[[nodiscard]] tl::expected<void, std::string> run_render(const Options& options);
+[[nodiscard]] tl::expected<void, std::string> run_compare(const Options& options);
+[[nodiscard]] tl::expected<void, std::string> run_graph(const Options& options);
+[[nodiscard]] tl::expected<void, std::string> run_doctor(const Options& options);
+
+}  // namespace alcove::sample
+
+#endif  // ALCOVE_SAMPLE_COMMANDS_H_

@@ -1,0 +1,74 @@
+#ifndef ALCOVE_SAMPLE_FRAME_RENDERER_H_
+#define ALCOVE_SAMPLE_FRAME_RENDERER_H_
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
+#include "alcove/framegraph/executor.h"
+#include "alcove/passes/occlusion.h"
+#include "gbuffer.h"
+#include "gpu.h"
+#include "image.h"
+#include "options.h"
+
+namespace alcove::sample {
+
+// What one frame is drawn with.
+struct FrameRequest {
+  GbufferView view;
+  std::uint32_t index = 0;  // counts frames
+  passes::OcclusionSettings occlusion;
+};
+
+struct PassTime {
+  std::string pass;
+  double milliseconds;
+};
+
+// What a frame cost.
+struct FrameCost {
+  std::vector<PassTime> gpu;  // each pass by GPU timestamps, g-buffer first
+  double occlusion_ms = 0;    // their sum without the g-buffer
+  double cpu_ms = 0;          // processor time of all threads for the occlusion passes
+};
+
+// The images of a frame, read back.
+struct FrameImages {
+  Image<float> depth_ndc;      // as the projection wrote it
+  Image<glm::vec3> normal_ws;  // what the occlusion was given, or made from depth
+  Image<glm::vec3> albedo;     // linear
+  Image<float> roughness;      // perceptual
+  Image<float> visibility;
+  Image<glm::vec3> bent_normal_ws;  // empty without bent normals
+};
+
+// Draws frames of one scene at one size: a g-buffer, then occlusion on it, each a submission of its
+// own so that the cost of the second can be told.
+class FrameRenderer {
+ public:
+  [[nodiscard]] static tl::expected<std::unique_ptr<FrameRenderer>, std::string> create(
+      Gpu& gpu, const Scene& scene, VkExtent2D size, NormalSource normals);
+  ~FrameRenderer();
+  FrameRenderer(const FrameRenderer&) = delete;
+  FrameRenderer& operator=(const FrameRenderer&) = delete;
+
+  // Draws a frame and forgets its images: for what comes before the one that is wanted.
+  [[nodiscard]] tl::expected<FrameCost, std::string> draw(const FrameRequest& request);
+  // Draws a frame and reads its images back. What reading back costs is not counted.
+  [[nodiscard]] tl::expected<FrameImages, std::string> draw_and_read(const FrameRequest& request);
+
+  // Bytes of the occlusion's transients in the frame drawn last.
+  const framegraph::MemoryStatistics& memory() const;
+
+ private:
+  struct State;
+  explicit FrameRenderer(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace alcove::sample
+
+#endif  // ALCOVE_SAMPLE_FRAME_RENDERER_H_

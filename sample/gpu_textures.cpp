@@ -1,0 +1,158 @@
+#include "gpu_textures.h"
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <utility>
+
+namespace alcove::sample {
+namespace {
+
+using Failure = tl::unexpected<std::string>;
+
+constexpr std::array<uint8_t, 4> kWhite{255, 255, 255, 255};
+
+VkSamplerAddressMode address_mode(Wrap wrap) {
+  switch (wrap) {
+    case Wrap::kClamp:
+      return VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+    case Wrap::kMirror:
+      return VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT;
+    default:
+      return VK_SAMPLER_ADDRESS_MODE_REPEAT;
+  }
+}
+
+std::span<const uint8_t> texels_of(const Scene& scene, std::int32_t image) {
+  return image < 0 ? std::span<const uint8_t>(kWhite)
+                   : std::span<const uint8_t>(scene.images[static_cast<std::size_t>(image)].rgba);
+}
+
+}  // namespace
+
+tl::expected<std::size_t, std::string> GpuTextures::add_texture(const Scene& scene,
+                                                                std::int32_t image, bool srgb) {
+  const auto found = std::ranges::find_if(textures_, [&](const Texture& texture) {
+    return texture.image == image && texture.srgb == srgb;
+  });
+  if (found != textures_.end()) {
+    return static_cast<std::size_t>(found - textures_.begin());
+  }
+  VkExtent2D size{1, 1};
+  if (image >= 0) {
+    const TextureImage& source = scene.images[static_cast<std::size_t>(image)];
+    size = {source.width, source.height};
+  }
+  const uint32_t largest = device_.properties().limits.maxImageDimension2D;
+  if (size.width > largest || size.height > largest) {
+    return Failure("A texture of " + scene.name + " has " + std::to_string(size.width) + "x" +
+                   std::to_string(size.height) + " texels; the device takes at most " +
+                   std::to_string(largest) + " a side.");
+  }
+  auto made = GpuImage::create(device_, srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM,
+                               size, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
+  if (!made) {
+    return Failure(std::move(made.error()));
+  }
+  textures_.push_back({image, srgb, std::move(*made)});
+  return textures_.size() - 1;
+}
+
+tl::expected<VkSampler, std::string> GpuTextures::add_sampler(Wrap wrap_u, Wrap wrap_v) {
+  const VkSamplerCreateInfo info{.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
+                                 .magFilter = VK_FILTER_LINEAR,
+                                 .minFilter = VK_FILTER_LINEAR,
+                                 .addressModeU = address_mode(wrap_u),
+                                 .addressModeV = address_mode(wrap_v),
+                                 .addressModeW = VK_SAMPLER_ADDRESS_MODE_REPEAT};
+  VkSampler sampler = VK_NULL_HANDLE;
+  if (const VkResult result = vkCreateSampler(device_.device(), &info, nullptr, &sampler);
+      result != VK_SUCCESS) {
+    return Failure("The device could not create a sampler of the scene's textures (" +
+                   std::string(result_name(result)) + ").");
+  }
+  samplers_.push_back(sampler);
+  return sampler;
+}
+
+tl::expected<void, std::string> GpuTextures::add_use(const Scene& scene, const TextureUse& use,
+                                                     bool srgb) {
+  const Use wanted{use.image, srgb, use.wrap_u, use.wrap_v};
+  if (std::ranges::find(uses_, wanted) != uses_.end()) {
+    return {};
+  }
+  const auto texture = add_texture(scene, use.image, srgb);
+  if (!texture) {
+    return Failure(texture.error());
+  }
+  // Few wrap modes occur, so a sampler is shared by looking for a use with the same.
+  const auto like = std::ranges::find_if(uses_, [&](const Use& other) {
+    return other.wrap_u == use.wrap_u && other.wrap_v == use.wrap_v;
+  });
+  VkSampler sampler = VK_NULL_HANDLE;
+  if (like != uses_.end()) {
+    sampler = descriptors_[static_cast<std::size_t>(like - uses_.begin())].sampler;
+  } else {
+    const auto made = add_sampler(use.wrap_u, use.wrap_v);
+    if (!made) {
+      return Failure(made.error());
+    }
+    sampler = *made;
+  }
+  uses_.push_back(wanted);
+  descriptors_.push_back(
+      {sampler, textures_[*texture].gpu->view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
+  return {};
+}
+
+tl::expected<void, std::string> GpuTextures::upload(Gpu& gpu, const Scene& scene) {
+  std::vector<std::unique_ptr<HostBuffer>> sources;
+  for (const Texture& texture : textures_) {
+    const auto texels = std::as_bytes(texels_of(scene, texture.image));
+    auto source = HostBuffer::create(device_, texels.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+    if (!source) {
+      return Failure(std::move(source.error()));
+    }
+    std::ranges::copy(texels, (*source)->bytes().begin());
+    sources.push_back(std::move(*source));
+  }
+  const auto declare = [&](framegraph::Graph& graph) -> tl::expected<void, std::string> {
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+      const auto import = textures_[i].gpu->import_to_fill(kSampledState);
+      add_copy(graph, *sources[i], graph.import_texture("scene texture", import));
+    }
+    return {};
+  };
+  return gpu.run(declare).map([](const framegraph::FrameReport&) {});
+}
+
+tl::expected<std::unique_ptr<GpuTextures>, std::string> GpuTextures::create(Gpu& gpu,
+                                                                            const Scene& scene) {
+  std::unique_ptr<GpuTextures> made(new GpuTextures(gpu.device()));
+  auto done = made->add_use(scene, {}, false);
+  for (const Material& material : scene.materials) {
+    done =
+        done.and_then([&] { return made->add_use(scene, material.base_color_texture, true); })
+            .and_then([&] { return made->add_use(scene, material.metal_roughness_texture, false); })
+            .and_then([&] { return made->add_use(scene, material.emissive_texture, true); });
+  }
+  done = done.and_then([&] { return made->upload(gpu, scene); });
+  if (!done) {
+    return Failure(std::move(done.error()));
+  }
+  return made;
+}
+
+GpuTextures::~GpuTextures() {
+  for (const VkSampler sampler : samplers_) {
+    vkDestroySampler(device_.device(), sampler, nullptr);
+  }
+}
+
+std::uint32_t GpuTextures::index_of(const TextureUse& use, bool srgb) const {
+  const Use wanted{use.image, srgb, use.wrap_u, use.wrap_v};
+  const auto found = std::ranges::find(uses_, wanted);
+  return found == uses_.end() ? 0 : static_cast<std::uint32_t>(found - uses_.begin());
+}
+
+}  // namespace alcove::sample

@@ -1,0 +1,64 @@
+#ifndef ALCOVE_SAMPLE_GPU_TEXTURES_H_
+#define ALCOVE_SAMPLE_GPU_TEXTURES_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
+#include "gpu.h"
+#include "gpu_image.h"
+#include "scene.h"
+
+namespace alcove::sample {
+
+// The images of a scene on the device as its materials use them: one descriptor for each image,
+// wrap mode and encoding that occurs, after a white one at index 0. Bilinear, one mip: the truth
+// samples the same texels, so that both see the same cut-outs.
+class GpuTextures {
+ public:
+  // Uploads through a frame of its own.
+  [[nodiscard]] static tl::expected<std::unique_ptr<GpuTextures>, std::string> create(
+      Gpu& gpu, const Scene& scene);
+  ~GpuTextures();
+  GpuTextures(const GpuTextures&) = delete;
+  GpuTextures& operator=(const GpuTextures&) = delete;
+
+  // The descriptor of a use, one of those that the scene's materials have. `srgb` is decoded by the
+  // device as it is read.
+  std::uint32_t index_of(const TextureUse& use, bool srgb) const;
+  const std::vector<VkDescriptorImageInfo>& descriptors() const { return descriptors_; }
+
+ private:
+  struct Use {
+    std::int32_t image;
+    bool srgb;
+    Wrap wrap_u;
+    Wrap wrap_v;
+    bool operator==(const Use&) const = default;
+  };
+  struct Texture {
+    std::int32_t image;  // -1: white
+    bool srgb;
+    std::unique_ptr<GpuImage> gpu;
+  };
+
+  explicit GpuTextures(const VulkanDevice& device) : device_(device) {}
+  tl::expected<void, std::string> add_use(const Scene& scene, const TextureUse& use, bool srgb);
+  tl::expected<std::size_t, std::string> add_texture(const Scene& scene, std::int32_t image,
+                                                     bool srgb);
+  tl::expected<VkSampler, std::string> add_sampler(Wrap wrap_u, Wrap wrap_v);
+  tl::expected<void, std::string> upload(Gpu& gpu, const Scene& scene);
+
+  const VulkanDevice& device_;
+  std::vector<Texture> textures_;
+  std::vector<VkSampler> samplers_;
+  std::vector<Use> uses_;  // parallel to the descriptors
+  std::vector<VkDescriptorImageInfo> descriptors_;
+};
+
+}  // namespace alcove::sample
+
+#endif  // ALCOVE_SAMPLE_GPU_TEXTURES_H_

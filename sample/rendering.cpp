@@ -1,0 +1,208 @@
+#include "rendering.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "camera.h"
+#include "image_io.h"
+#include "load_scene.h"
+#include "settings.h"
+
+namespace alcove::sample {
+namespace {
+
+using Failure = tl::unexpected<std::string>;
+
+// Frames that are timed when a run draws one frame only: a first one also compiles shaders.
+constexpr std::uint32_t kFewestTimedFrames = 5;
+
+double median(std::vector<double> values) {
+  if (values.empty()) {
+    return 0;
+  }
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+// Passes are told apart by their place in the frame: every frame of a run has the same.
+Costs medians(const std::vector<FrameCost>& frames) {
+  const auto over_frames = [&](auto value) {
+    std::vector<double> values;
+    for (const FrameCost& frame : frames) {
+      values.push_back(value(frame));
+    }
+    return median(std::move(values));
+  };
+  Costs costs;
+  for (std::size_t i = 0; i < frames.back().gpu.size(); ++i) {
+    const double time = over_frames([i](const FrameCost& frame) {
+      return i < frame.gpu.size() ? frame.gpu[i].milliseconds : 0.0;
+    });
+    costs.passes.push_back({frames.back().gpu[i].pass, time});
+  }
+  costs.occlusion_ms = over_frames([](const FrameCost& frame) { return frame.occlusion_ms; });
+  costs.cpu_ms = over_frames([](const FrameCost& frame) { return frame.cpu_ms; });
+  return costs;
+}
+
+// The requests of a run's frames, by index: the camera orbits, and motion is from the frame before.
+class Run {
+ public:
+  Run(const Options& options, const Camera& camera, const passes::OcclusionSettings& settings)
+      : options_(options), camera_(camera), settings_(settings) {}
+
+  Camera camera(std::uint32_t frame) const {
+    return orbited(camera_, options_.view.orbit * static_cast<float>(frame));
+  }
+
+  FrameRequest request(std::uint32_t frame, bool all_outputs) const {
+    const CameraMatrices now = matrices(frame);
+    const CameraMatrices before = matrices(frame == 0 ? 0 : frame - 1);
+    FrameRequest request;
+    request.view = {now.view_from_world, now.clip_from_view, before.view_from_world,
+                    before.clip_from_view, camera_.reversed_z};
+    request.index = frame;
+    request.occlusion = settings_;
+    request.occlusion.bent_normal |= all_outputs;
+    return request;
+  }
+
+ private:
+  CameraMatrices matrices(std::uint32_t frame) const {
+    return camera_matrices(camera(frame), options_.view.width, options_.view.height);
+  }
+
+  const Options& options_;
+  Camera camera_;
+  passes::OcclusionSettings settings_;
+};
+
+// Draws the run with visibility alone, timed; a single frame is drawn again until its time is
+// known.
+tl::expected<Costs, std::string> time_run(FrameRenderer& renderer, const Run& run,
+                                          std::uint32_t frames) {
+  std::vector<FrameCost> costs;
+  const std::uint32_t timed = std::max(frames, kFewestTimedFrames);
+  for (std::uint32_t i = 0; i <= timed; ++i) {
+    // One more than is timed: the first compiles shaders.
+    auto cost = renderer.draw(run.request(std::min(i, frames - 1), false));
+    if (!cost) {
+      return Failure(std::move(cost.error()));
+    }
+    if (i > 0) {
+      costs.push_back(std::move(*cost));
+    }
+  }
+  return medians(costs);
+}
+
+tl::expected<FrameImages, std::string> draw_images(FrameRenderer& renderer, const Run& run,
+                                                   std::uint32_t frames) {
+  for (std::uint32_t i = 0; i + 1 < frames; ++i) {
+    if (auto cost = renderer.draw(run.request(i, true)); !cost) {
+      return Failure(std::move(cost.error()));
+    }
+  }
+  return renderer.draw_and_read(run.request(frames - 1, true));
+}
+
+}  // namespace
+
+tl::expected<Rendering, std::string> render(const Options& options) {
+  Rendering result;
+  auto scene = load_scene(options.scene);
+  if (!scene) {
+    return Failure(std::move(scene.error()));
+  }
+  result.scene = std::move(*scene);
+  const auto camera = camera_of(options.view, result.scene);
+  if (!camera) {
+    return Failure(camera.error());
+  }
+  const auto settings = occlusion_settings(options.occlusion, result.scene);
+  if (!settings) {
+    return Failure(settings.error());
+  }
+  result.settings = *settings;
+  auto gpu = Gpu::create({.validation = options.validation, .index = options.device});
+  if (!gpu) {
+    return Failure(std::move(gpu.error()));
+  }
+  result.device = (*gpu)->device().properties().deviceName;
+  result.driver = (*gpu)->device().driver();
+
+  const Run run(options, *camera, *settings);
+  const std::uint32_t frames = options.view.frames;
+  result.camera = run.camera(frames - 1);
+  auto renderer = FrameRenderer::create(
+      **gpu, result.scene, {options.view.width, options.view.height}, options.occlusion.normals);
+  if (!renderer) {
+    return Failure(std::move(renderer.error()));
+  }
+  auto costs = time_run(**renderer, run, frames);
+  if (!costs) {
+    return Failure(std::move(costs.error()));
+  }
+  result.costs = std::move(*costs);
+  result.memory = (*renderer)->memory();
+  auto images = draw_images(**renderer, run, frames);
+  if (!images) {
+    return Failure(std::move(images.error()));
+  }
+  result.images = std::move(*images);
+  for (const std::string& message : (*gpu)->device().validation_messages()) {
+    return Failure("The validation layer says: " + message);
+  }
+  return result;
+}
+
+Image<float> linear_depth(const Rendering& rendering) {
+  const Image<float>& ndc = rendering.images.depth_ndc;
+  const CameraMatrices matrices = camera_matrices(rendering.camera, ndc.width, ndc.height);
+  const float sky = rendering.camera.reversed_z ? 0.0f : 1.0f;
+  Image<float> depth(ndc.width, ndc.height, std::numeric_limits<float>::infinity());
+  for (std::size_t i = 0; i < ndc.pixels.size(); ++i) {
+    if (ndc.pixels[i] != sky) {
+      depth.pixels[i] = static_cast<float>(view_depth(matrices.view_from_clip, ndc.pixels[i]));
+    }
+  }
+  return depth;
+}
+
+namespace {
+
+// Directions as colours: each component from -1..1 to 0..1.
+Image<glm::vec3> as_colours(const Image<glm::vec3>& directions) {
+  Image<glm::vec3> colours = directions;
+  for (glm::vec3& colour : colours.pixels) {
+    colour = colour * 0.5f + 0.5f;
+  }
+  return colours;
+}
+
+}  // namespace
+
+tl::expected<void, std::string> write_images(const Rendering& rendering,
+                                             const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) {
+    return Failure("The folder " + folder.string() + " could not be created: " + error.message() +
+                   ".");
+  }
+  const FrameImages& images = rendering.images;
+  return write_exr(folder / "ao.exr", images.visibility)
+      .and_then([&] { return write_png(folder / "ao.png", images.visibility); })
+      .and_then([&] { return write_exr(folder / "bent_normal.exr", images.bent_normal_ws); })
+      .and_then(
+          [&] { return write_png(folder / "bent_normal.png", as_colours(images.bent_normal_ws)); })
+      .and_then([&] { return write_exr(folder / "depth.exr", linear_depth(rendering)); })
+      .and_then([&] { return write_exr(folder / "normal.exr", images.normal_ws); })
+      .and_then([&] { return write_png(folder / "normal.png", as_colours(images.normal_ws)); })
+      .and_then([&] { return write_png(folder / "albedo.png", images.albedo); });
+}
+
+}  // namespace alcove::sample

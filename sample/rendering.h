@@ -1,0 +1,47 @@
+#ifndef ALCOVE_SAMPLE_RENDERING_H_
+#define ALCOVE_SAMPLE_RENDERING_H_
+
+#include <memory>
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
+#include "frame_renderer.h"
+#include "gpu.h"
+#include "options.h"
+#include "scene.h"
+
+namespace alcove::sample {
+
+// Medians over the frames of a run.
+struct Costs {
+  std::vector<PassTime> passes;  // GPU timestamps, milliseconds
+  double occlusion_ms = 0;       // of the occlusion passes together
+  double cpu_ms = 0;             // processor time of all threads for them
+};
+
+// Everything that `alcove render` knows of what it drew; `compare` adds truths to it.
+struct Rendering {
+  Scene scene;
+  Camera camera;  // of the last frame
+  passes::OcclusionSettings settings;
+  FrameImages images;  // of the last frame, with every output
+  Costs costs;         // with visibility as the only output
+  framegraph::MemoryStatistics memory;
+  std::string device;
+  std::string driver;
+};
+
+// Loads the scene, draws its frames and reads the last one back.
+[[nodiscard]] tl::expected<Rendering, std::string> render(const Options& options);
+
+// Distance along the view axis, infinity in the sky.
+[[nodiscard]] Image<float> linear_depth(const Rendering& rendering);
+
+// Writes the images of a rendering and creates the folder where it is missing.
+[[nodiscard]] tl::expected<void, std::string> write_images(const Rendering& rendering,
+                                                           const std::filesystem::path& folder);
+
+}  // namespace alcove::sample
+
+#endif  // ALCOVE_SAMPLE_RENDERING_H_

@@ -1,0 +1,36 @@
+#ifndef ALCOVE_SAMPLE_TRIANGLES_H_
+#define ALCOVE_SAMPLE_TRIANGLES_H_
+
+#include <cstdint>
+#include <vector>
+
+#include "scene.h"
+
+namespace alcove::sample {
+
+// A corner of a triangle as the rasteriser takes it: three in a row are a triangle, none is shared,
+// since each carries the triangle's own normal too.
+struct Vertex {
+  glm::vec3 position_ws;
+  glm::vec3 normal_ws;
+  glm::vec3 face_normal_ws;  // unit, by the winding
+  glm::vec2 uv;
+};
+
+struct TriangleDraw {
+  uint32_t first_vertex;
+  uint32_t vertex_count;
+  uint32_t material;
+};
+
+struct Triangles {
+  std::vector<Vertex> vertices;
+  std::vector<TriangleDraw> draws;
+};
+
+// All triangles of the scene in world space, one draw a mesh. Those without area are left out.
+[[nodiscard]] Triangles flatten(const Scene& scene);
+
+}  // namespace alcove::sample
+
+#endif  // ALCOVE_SAMPLE_TRIANGLES_H_

@@ -1,0 +1,127 @@
+#include "truths.h"
+
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include "progress.h"
+#include "truth_cache.h"
+
+namespace alcove::sample {
+namespace {
+
+// Raised when a truth is computed otherwise, so that old entries of the cache are not taken.
+constexpr std::uint32_t kTruthVersion = 1;
+constexpr std::uint32_t kHeightFieldSlices = 64;
+
+TruthCache cache_of(const Options& options) {
+  return TruthCache(options.use_cache ? TruthCache::default_folder() : std::filesystem::path());
+}
+
+// The rasteriser's pixels as points for the ray tracer. Where a primary ray misses what was
+// rasterised (an edge through the pixel's centre), the point comes from the depth buffer.
+SurfacePoints points_of(const Rendering& rendering, const RayScene& rays,
+                        const Image<float>& depth) {
+  const std::uint32_t width = depth.width;
+  const std::uint32_t height = depth.height;
+  const GBuffer cast = cast_gbuffer(rays, rendering.camera, width, height);
+  const CameraMatrices matrices = camera_matrices(rendering.camera, width, height);
+  SurfacePoints points{cast.position_ws, rendering.images.normal_ws, cast.geometric_normal_ws};
+  const glm::vec3 forward = -glm::vec3(matrices.world_from_view[2]);
+  for (std::uint32_t y = 0; y < height; ++y) {
+    for (std::uint32_t x = 0; x < width; ++x) {
+      const float z = depth.at(x, y);
+      if (!std::isfinite(z)) {
+        points.normal_ws.at(x, y) = glm::vec3(0.0f);
+      } else if (!std::isfinite(cast.depth_vs.at(x, y)) ||
+                 std::abs(cast.depth_vs.at(x, y) - z) > 0.01f * z) {
+        const Ray ray =
+            camera_ray(matrices, rendering.camera.orthographic,
+                       {static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f}, width, height);
+        points.position_ws.at(x, y) =
+            ray.origin_ws + ray.direction_ws * (z / glm::dot(ray.direction_ws, forward));
+        points.geometric_normal_ws.at(x, y) = rendering.images.normal_ws.at(x, y);
+      }
+    }
+  }
+  return points;
+}
+
+tl::expected<OcclusionTruth, std::string> scene_truth(const Rendering& rendering,
+                                                      const Options& options,
+                                                      const Image<float>& depth) {
+  const TruthSettings settings{.radius = rendering.settings.radius, .spp = options.occlusion.spp};
+  CacheKey key;
+  key.add(std::string("scene truth"));
+  key.add(kTruthVersion);
+  key.add(rendering.scene);
+  key.add(rendering.camera);
+  key.add(settings.radius);
+  key.add(settings.spp);
+  key.add(depth);
+  key.add(rendering.images.normal_ws);
+  CacheKey bent_key = key;
+  bent_key.add(std::string("bent"));
+  const TruthCache cache = cache_of(options);
+  OcclusionTruth truth{Image<float>(depth.width, depth.height),
+                       Image<glm::vec3>(depth.width, depth.height),
+                       Image<glm::vec3>(depth.width, depth.height)};
+  if (cache.read(key, truth.visibility) && cache.read(bent_key, truth.bent_normal_ws)) {
+    return truth;
+  }
+  auto rays = RayScene::create(rendering.scene);
+  if (!rays) {
+    return tl::unexpected(std::move(rays.error()));
+  }
+  truth = occlusion_truth(*rays, points_of(rendering, *rays, depth), settings,
+                          print_progress("scene truth"));
+  cache.write(key, truth.visibility);
+  cache.write(bent_key, truth.bent_normal_ws);
+  return truth;
+}
+
+HeightFieldTruth depth_truth(const Rendering& rendering, const Options& options,
+                             const Image<float>& depth) {
+  const HeightFieldSettings settings{rendering.settings.radius, kHeightFieldSlices};
+  CacheKey key;
+  key.add(std::string("height-field truth"));
+  key.add(kTruthVersion);
+  key.add(rendering.camera);
+  key.add(settings.radius);
+  key.add(settings.slices);
+  key.add(depth);
+  key.add(rendering.images.normal_ws);
+  CacheKey bent_key = key;
+  bent_key.add(std::string("bent"));
+  const TruthCache cache = cache_of(options);
+  HeightFieldTruth truth{Image<float>(depth.width, depth.height),
+                         Image<glm::vec3>(depth.width, depth.height)};
+  if (cache.read(key, truth.visibility) && cache.read(bent_key, truth.bent_normal_ws)) {
+    return truth;
+  }
+  truth = height_field_truth(depth, rendering.images.normal_ws, rendering.camera, settings,
+                             print_progress("height-field truth"));
+  cache.write(key, truth.visibility);
+  cache.write(bent_key, truth.bent_normal_ws);
+  return truth;
+}
+
+}  // namespace
+
+tl::expected<Truths, std::string> truths_of(const Rendering& rendering, const Options& options) {
+  const Image<float> depth = linear_depth(rendering);
+  Truths truths;
+  truths.surfaces = Mask(depth.width, depth.height);
+  for (std::size_t i = 0; i < depth.pixels.size(); ++i) {
+    truths.surfaces.pixels[i] = std::isfinite(depth.pixels[i]) ? 1 : 0;
+  }
+  auto scene = scene_truth(rendering, options, depth);
+  if (!scene) {
+    return tl::unexpected(std::move(scene.error()));
+  }
+  truths.scene = std::move(*scene);
+  truths.height_field = depth_truth(rendering, options, depth);
+  return truths;
+}
+
+}  // namespace alcove::sample
