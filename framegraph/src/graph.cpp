@@ -37,7 +37,7 @@ void Graph::reset() {
   description_.resources.clear();
   description_.externals.clear();
   description_.outputs.clear();
-  description_.text.clear();
+  text_used_ = 0;
   description_.pass_names.clear();
   description_.resource_names.clear();
   versions_.clear();
@@ -45,7 +45,7 @@ void Graph::reset() {
   callbacks_.clear();
   histories_.begin_frame();
   block_ = 0;
-  used_ = 0;
+  next_ = end_ = 0;
   tag_ = next_tag();
 }
 
@@ -54,59 +54,39 @@ void Graph::destroy_callables() {
   cleanups_.clear();
 }
 
-void* Graph::allocate(std::size_t size, std::size_t alignment) {
-  for (;; ++block_, used_ = 0) {
+void* Graph::allocate_in_next_block(std::size_t size, std::size_t alignment) {
+  for (;; ++block_) {
     if (block_ == blocks_.size()) {
       const std::size_t block_size = std::max(kBlockSize, size + alignment);
       blocks_.push_back({std::make_unique<std::byte[]>(block_size), block_size});
     }
     const Block& block = blocks_[block_];
-    const auto base = reinterpret_cast<std::uintptr_t>(block.bytes.get());
-    const std::uintptr_t start = (base + used_ + alignment - 1) & ~(std::uintptr_t{alignment} - 1);
-    if (start + size > base + block.size) continue;
-    used_ = start + size - base;
+    next_ = reinterpret_cast<std::uintptr_t>(block.bytes.get());
+    end_ = next_ + block.size;
+    const std::uintptr_t start = (next_ + alignment - 1) & ~(std::uintptr_t{alignment} - 1);
+    if (start + size > end_) continue;
+    next_ = start + size;
+    ++block_;
     return reinterpret_cast<void*>(start);
   }
 }
 
-GraphDescription::Name Graph::keep_name(std::string_view name) {
-  const auto offset = static_cast<std::uint32_t>(description_.text.size());
-  description_.text.insert(description_.text.end(), name.begin(), name.end());
-  return {offset, static_cast<std::uint32_t>(name.size())};
-}
-
-std::uint32_t Graph::add_resource(std::string_view name, const ResourceRecord& record) {
-  const auto index = static_cast<std::uint32_t>(description_.resources.size());
-  description_.resources.push_back(record);
-  description_.resource_names.push_back(keep_name(name));
-  versions_.push_back(0);
-  return index;
+void Graph::resolve_extent(ResourceRecord& record, const Extent& extent) const {
+  const Texture& base = extent.relative_to;
+  if (base.graph != tag_ || base.index >= description_.resources.size()) {
+    record.flags |= kRelativeToNothing;
+    return;
+  }
+  const ResourceRecord& other = description_.resources[base.index];
+  record.width = divided(other.width, extent.divisor);
+  record.height = divided(other.height, extent.divisor);
+  record.depth = divided(other.depth, extent.divisor);
 }
 
 ResourceRecord Graph::texture_record(const TextureDesc& desc) const {
   ResourceRecord record;
-  record.format = desc.format;
-  record.mips = desc.mips;
-  record.layers = desc.layers;
-  record.samples = desc.samples;
-  record.width = desc.extent.width;
-  record.height = desc.extent.height;
-  record.depth = desc.extent.depth;
-  const Texture& base = desc.extent.relative_to;
-  if (base.index == kNone) return record;
-  if (base.graph != tag_ || base.index >= description_.resources.size()) {
-    record.flags |= kRelativeToNothing;
-    return record;
-  }
-  const ResourceRecord& other = description_.resources[base.index];
-  record.width = divided(other.width, desc.extent.divisor);
-  record.height = divided(other.height, desc.extent.divisor);
-  record.depth = divided(other.depth, desc.extent.divisor);
+  fill_texture_record(record, desc);
   return record;
-}
-
-Texture Graph::create_texture(std::string_view name, const TextureDesc& desc) {
-  return {add_resource(name, texture_record(desc)), 0, tag_};
 }
 
 Buffer Graph::create_buffer(std::string_view name, const BufferDesc& desc) {
@@ -209,83 +189,9 @@ void Graph::reset_history(std::string_view name) { histories_.invalidate(name); 
 
 void Graph::reset_histories() { histories_.invalidate_all(); }
 
-PassBuilder Graph::add_pass(std::string_view name, QueueClass queue) {
-  const auto index = static_cast<std::uint32_t>(description_.passes.size());
-  description_.passes.push_back(
-      {static_cast<std::uint32_t>(description_.accesses.size()), queue, 0, 0});
-  description_.pass_names.push_back(keep_name(name));
-  callbacks_.push_back({});
-  return {*this, index};
+void Graph::grow_text(std::size_t size) {
+  description_.text.resize(std::max<std::size_t>(1024, 2 * (text_used_ + size)));
 }
-
-void Graph::append_access(std::uint32_t pass, std::uint32_t index, std::uint32_t version,
-                          std::uint32_t graph, const Access& access, Range range,
-                          std::uint32_t flags, ResourceKind kind) {
-  AccessRecord record;
-  record.stages = access.stages;
-  record.access = access.access;
-  record.layout = access.layout;
-  record.usage = access.usage;
-  record.version = version;
-  record.kind = kind;
-  record.range = range;
-  if (index == kNone) {
-    flags |= kNull;
-  } else if (graph != tag_ || index >= description_.resources.size()) {
-    flags |= kForeign;
-  } else {
-    record.resource = index;
-    const ResourceRecord& resource = description_.resources[index];
-    if (range.mips == kAll && range.base_mip < resource.mips)
-      record.range.mips = static_cast<std::uint16_t>(resource.mips - range.base_mip);
-    if (range.layers == kAll && range.base_layer < resource.layers)
-      record.range.layers = static_cast<std::uint16_t>(resource.layers - range.base_layer);
-  }
-  if (pass + 1 != description_.passes.size()) flags |= kClosed;
-  record.flags = flags;
-  description_.accesses.push_back(record);
-}
-
-std::uint32_t Graph::next_version(std::uint32_t index, std::uint32_t graph) {
-  if (graph != tag_ || index >= versions_.size()) return kNone;
-  return ++versions_[index];
-}
-
-void PassBuilder::read(Texture texture, const Access& access, Range range) {
-  graph_.append_access(pass_, texture.index, texture.version, texture.graph, access, range, 0,
-                       ResourceKind::texture);
-}
-
-void PassBuilder::read(Buffer buffer, const Access& access) {
-  graph_.append_access(pass_, buffer.index, buffer.version, buffer.graph, access, {}, 0,
-                       ResourceKind::buffer);
-}
-
-namespace {
-
-std::uint32_t write_flags(Contents contents, Need need) {
-  return kWrite | (contents == Contents::discard ? kDiscard : 0u) |
-         (need == Need::optional ? kOptional : 0u);
-}
-
-}  // namespace
-
-Texture PassBuilder::write(Texture texture, const Access& access, Range range, Contents contents,
-                           Need need) {
-  graph_.append_access(pass_, texture.index, texture.version, texture.graph, access, range,
-                       write_flags(contents, need), ResourceKind::texture);
-  texture.version = graph_.next_version(texture.index, texture.graph);
-  return texture;
-}
-
-Buffer PassBuilder::write(Buffer buffer, const Access& access, Contents contents, Need need) {
-  graph_.append_access(pass_, buffer.index, buffer.version, buffer.graph, access, {},
-                       write_flags(contents, need), ResourceKind::buffer);
-  buffer.version = graph_.next_version(buffer.index, buffer.graph);
-  return buffer;
-}
-
-void PassBuilder::side_effect() { graph_.description_.passes[pass_].flags |= kSideEffect; }
 
 void Graph::output(Texture texture) {
   const bool known = texture.graph == tag_ && texture.index < description_.resources.size();

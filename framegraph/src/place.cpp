@@ -1,5 +1,12 @@
-// Placement: offsets for all transients, in heaps by the memory types that they allow.
+// Placement: offsets for all transients, in one heap for each set of memory types that they allow.
+//
+// First the cheapest way: first fit in order of first use. It meets the lower bound (the most bytes
+// live at once) when sizes are alike. Where it does not, first fit by falling size, by falling
+// bytes times positions and by falling lifetime are tried, and then the best order is improved: the
+// resources that end at the peak are placed first, or two change places. The search ends at the
+// lower bound, or when its budget of steps, which does not depend on time, is spent.
 #include <algorithm>
+#include <numeric>
 
 #include "workspace.h"
 
@@ -10,46 +17,248 @@ VkDeviceSize align_up(VkDeviceSize value, VkDeviceSize alignment) {
   return (value + alignment - 1) & ~(alignment - 1);
 }
 
-// The first offset at which nothing that is live at the same time lies.
-VkDeviceSize first_fit(const Plan& plan, const std::vector<std::uint32_t>& placed,
-                       const Placement& wanted) {
-  VkDeviceSize offset = 0;
-  for (bool moved = true; moved;) {
-    moved = false;
-    for (std::uint32_t other : placed) {
-      const Placement& there = plan.placements[other];
-      if (there.heap != wanted.heap) continue;
-      if (there.last < wanted.first || wanted.last < there.first) continue;
-      if (offset + wanted.size <= there.offset || there.offset + there.size <= offset) continue;
-      offset = align_up(there.offset + there.size, wanted.alignment);
-      moved = true;
+class Placer {
+ public:
+  Placer(const Limits& limits, Workspace& workspace, Plan& plan)
+      : limits_(limits), workspace_(workspace), plan_(plan), s_(workspace.place) {}
+
+  void run() {
+    make_heaps();
+    for (std::uint32_t heap = 0; heap < plan_.heaps.size(); ++heap) {
+      gather(heap);
+      plan_.heaps[heap].lower_bound = lower_bound();
+      if (limits_.alias)
+        fill(plan_.heaps[heap].lower_bound);
+      else
+        side_by_side();
+      plan_.heaps[heap].size = best_;
+      for (const PlaceItem& item : s_.items) plan_.placements[item.resource].offset = item.offset;
     }
   }
-  return offset;
-}
+
+ private:
+  void make_heaps() {
+    for (const std::uint32_t r : workspace_.transients) {
+      const MemoryRequirements& needed = workspace_.requirements[r];
+      Placement& placement = plan_.placements[r];
+      std::uint32_t heap = 0;
+      while (heap < plan_.heaps.size() && plan_.heaps[heap].memory_types != needed.memory_types)
+        ++heap;
+      if (heap == plan_.heaps.size()) plan_.heaps.push_back({needed.memory_types, 0, 0, 0});
+      placement.heap = heap;
+      // Buffers and images never meet in one page when both keep to whole pages.
+      placement.alignment = std::max(needed.alignment, limits_.buffer_image_granularity);
+      placement.size = align_up(needed.size, limits_.buffer_image_granularity);
+      Heap& into = plan_.heaps[heap];
+      into.unaliased = align_up(into.unaliased, placement.alignment) + placement.size;
+    }
+  }
+
+  void gather(std::uint32_t heap) {
+    s_.items.clear();
+    for (const std::uint32_t r : workspace_.transients) {
+      const Placement& placement = plan_.placements[r];
+      if (placement.heap != heap) continue;
+      s_.items.push_back(
+          {placement.size, placement.alignment, 0, placement.first, placement.last, r});
+    }
+  }
+
+  VkDeviceSize lower_bound() {
+    s_.change.assign(plan_.passes.size() + 1, 0);
+    for (const PlaceItem& item : s_.items) {
+      s_.change[item.first] += static_cast<std::int64_t>(item.size);
+      s_.change[item.last + 1] -= static_cast<std::int64_t>(item.size);
+    }
+    std::int64_t live = 0;
+    std::int64_t most = 0;
+    for (const std::int64_t change : s_.change) {
+      live += change;
+      most = std::max(most, live);
+    }
+    return static_cast<VkDeviceSize>(most);
+  }
+
+  void side_by_side() {
+    best_ = 0;
+    for (PlaceItem& item : s_.items) {
+      item.offset = align_up(best_, item.alignment);
+      best_ = item.offset + item.size;
+    }
+  }
+
+  void fill(VkDeviceSize bound) {
+    best_ = fit_by_time();
+    if (best_ <= bound) return;
+    const std::size_t count = s_.items.size();
+    budget_ = limits_.placement_effort;
+    if (static_cast<std::int64_t>(count * count) > budget_) return;
+    s_.order.resize(count);
+    try_falling([](const PlaceItem& item) { return item.size; });
+    const auto span = [](const PlaceItem& item) {
+      return VkDeviceSize{item.last - item.first + 1};
+    };
+    if (best_ > bound) try_falling([&](const PlaceItem& item) { return item.size * span(item); });
+    if (best_ > bound) try_falling(span);
+    if (best_ > bound) try_from_peak();
+    improve(bound);
+  }
+
+  // First fit in order of first use, against what is live then: kept in order of offset.
+  VkDeviceSize fit_by_time() {
+    VkDeviceSize peak = 0;
+    s_.live.clear();
+    for (PlaceItem& item : s_.items) {
+      VkDeviceSize offset = 0;
+      std::size_t kept = 0;
+      std::size_t at = 0;  // where the item belongs among those kept
+      bool found = false;
+      for (std::size_t i = 0; i < s_.live.size(); ++i) {
+        const PlaceItem& other = s_.live[i];
+        if (other.last < item.first) continue;
+        if (!found && offset + item.size <= other.offset) {
+          found = true;
+          at = kept;
+        }
+        if (!found) offset = std::max(offset, align_up(other.offset + other.size, item.alignment));
+        s_.live[kept++] = other;
+      }
+      if (!found) at = kept;
+      s_.live.resize(kept);
+      item.offset = offset;
+      s_.live.insert(s_.live.begin() + static_cast<std::ptrdiff_t>(at), item);
+      peak = std::max(peak, offset + item.size);
+    }
+    return peak;
+  }
+
+  template <typename Key>
+  void try_falling(Key&& key) {
+    std::iota(s_.order.begin(), s_.order.end(), 0u);
+    std::stable_sort(s_.order.begin(), s_.order.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return key(s_.items[a]) > key(s_.items[b]);
+    });
+    try_order();
+  }
+
+  // What is live where most is live has the least choice: it comes first, then the rest by
+  // distance from there, in order of time on either side.
+  void try_from_peak() {
+    std::int64_t live = 0;
+    std::int64_t most = -1;
+    std::uint32_t peak = 0;
+    for (std::uint32_t position = 0; position < s_.change.size(); ++position) {
+      live += s_.change[position];
+      if (live > most) {
+        most = live;
+        peak = position;
+      }
+    }
+    const auto distance = [&](const PlaceItem& item) {
+      if (item.first > peak) return item.first - peak;
+      return item.last < peak ? peak - item.last : 0u;
+    };
+    std::iota(s_.order.begin(), s_.order.end(), 0u);
+    std::stable_sort(s_.order.begin(), s_.order.end(), [&](std::uint32_t a, std::uint32_t b) {
+      const PlaceItem& x = s_.items[a];
+      const PlaceItem& y = s_.items[b];
+      const std::uint32_t dx = distance(x);
+      const std::uint32_t dy = distance(y);
+      if (dx != dy) return dx < dy;
+      return x.last - x.first != y.last - y.first ? x.last - x.first > y.last - y.first
+                                                  : x.size > y.size;
+    });
+    try_order();
+  }
+
+  // First fit in s_.order; kept if it beats the best, given up when it goes beyond `limit`.
+  bool try_order(VkDeviceSize limit = ~VkDeviceSize{0}) {
+    VkDeviceSize peak = 0;
+    s_.live.clear();
+    s_.offsets.resize(s_.items.size());
+    for (const std::uint32_t index : s_.order) {
+      const PlaceItem& item = s_.items[index];
+      VkDeviceSize offset = 0;
+      for (const PlaceItem& other : s_.live) {
+        if (other.last < item.first || item.last < other.first) continue;
+        if (offset + item.size <= other.offset) break;
+        offset = std::max(offset, align_up(other.offset + other.size, item.alignment));
+      }
+      budget_ -= static_cast<std::int64_t>(s_.live.size());
+      s_.offsets[index] = offset;
+      peak = std::max(peak, offset + item.size);
+      if (peak > limit) {
+        last_ = peak;
+        return false;
+      }
+      const auto at = std::upper_bound(
+          s_.live.begin(), s_.live.end(), offset,
+          [](VkDeviceSize value, const PlaceItem& there) { return value < there.offset; });
+      s_.live.insert(at, item)->offset = offset;
+    }
+    last_ = peak;
+    if (peak >= best_) return false;
+    best_ = peak;
+    for (std::size_t i = 0; i < s_.items.size(); ++i) s_.items[i].offset = s_.offsets[i];
+    s_.best_order = s_.order;
+    s_.current = s_.offsets;
+    current_ = peak;
+    return true;
+  }
+
+  void improve(VkDeviceSize bound) {
+    if (s_.best_order.size() != s_.items.size()) {
+      s_.best_order = s_.order;
+      s_.current = s_.offsets;
+      current_ = last_;
+    }
+    std::uint32_t state = 1;
+    const auto roll = [&state](std::size_t sides) {
+      state ^= state << 13;
+      state ^= state >> 17;
+      state ^= state << 5;
+      return state % sides;
+    };
+    while (best_ > bound && budget_ > 0) {
+      budget_ -= 16;
+      s_.order = s_.best_order;
+      // What ends at the peak had too little choice: let it choose earlier.
+      const auto high = std::find_if(s_.order.begin(), s_.order.end(), [this](std::uint32_t i) {
+        return s_.current[i] + s_.items[i].size == current_;
+      });
+      if (high != s_.order.end() && roll(4) != 0) {
+        const auto to =
+            s_.order.begin() + static_cast<std::ptrdiff_t>(
+                                   roll(static_cast<std::size_t>(high - s_.order.begin()) + 1));
+        std::rotate(to, high, high + 1);
+      } else {
+        std::swap(s_.order[roll(s_.order.size())], s_.order[roll(s_.order.size())]);
+      }
+      // Slightly worse steps are taken too: they lead away from where nothing improves.
+      const VkDeviceSize limit = current_ + bound / 256 * roll(3);
+      try_order(limit);
+      if (last_ > limit) continue;
+      s_.best_order = s_.order;
+      s_.current = s_.offsets;
+      current_ = last_;
+    }
+    s_.best_order.clear();
+  }
+
+  const Limits& limits_;
+  Workspace& workspace_;
+  Plan& plan_;
+  Workspace::Place& s_;
+  VkDeviceSize best_ = 0;
+  VkDeviceSize last_ = 0;     // peak of the last order tried
+  VkDeviceSize current_ = 0;  // peak of the order that is being improved
+  std::int64_t budget_ = 0;   // comparisons left
+};
 
 }  // namespace
 
-void place(const GraphDescription& graph, const Limits& limits, Workspace& workspace, Plan& plan) {
-  (void)graph;
-  std::vector<std::uint32_t> placed;
-  for (std::uint32_t r : workspace.transients) {
-    const MemoryRequirements& needed = workspace.requirements[r];
-    Placement& placement = plan.placements[r];
-    const auto heap = std::find_if(plan.heaps.begin(), plan.heaps.end(), [&](const Heap& h) {
-      return h.memory_types == needed.memory_types;
-    });
-    placement.heap = static_cast<std::uint32_t>(heap - plan.heaps.begin());
-    if (heap == plan.heaps.end()) plan.heaps.push_back({needed.memory_types, 0, 0, 0});
-    placement.alignment = std::max(needed.alignment, limits.buffer_image_granularity);
-    placement.size = align_up(needed.size, limits.buffer_image_granularity);
-    Heap& into = plan.heaps[placement.heap];
-    placement.offset = limits.alias ? first_fit(plan, placed, placement)
-                                    : align_up(into.unaliased, placement.alignment);
-    into.unaliased = align_up(into.unaliased, placement.alignment) + placement.size;
-    into.size = std::max(into.size, placement.offset + placement.size);
-    placed.push_back(r);
-  }
+void place(const GraphDescription&, const Limits& limits, Workspace& workspace, Plan& plan) {
+  Placer(limits, workspace, plan).run();
 }
 
 }  // namespace alcove::framegraph

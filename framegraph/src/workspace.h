@@ -30,6 +30,16 @@ struct UseState {
   bool operator==(const UseState&) const = default;
 };
 
+// A transient while it is placed.
+struct PlaceItem {
+  VkDeviceSize size = 0;
+  VkDeviceSize alignment = 1;
+  VkDeviceSize offset = 0;
+  std::uint32_t first = 0;  // positions
+  std::uint32_t last = 0;
+  std::uint32_t resource = kNone;
+};
+
 struct Workspace {
   // Subresources are numbered through: those of resource r begin at first_sub[r]; mips run faster
   // than layers. A resource whose description is wrong has none.
@@ -57,6 +67,15 @@ struct Workspace {
     std::vector<std::uint32_t>
         history_reader;  // by resource: of slot 0, the pass that reads an older one
   } cull;
+  struct Place {
+    std::vector<PlaceItem> items;  // in order of first use
+    std::vector<PlaceItem> live;   // in order of offset
+    std::vector<std::int64_t> change;
+    std::vector<std::uint32_t> order;
+    std::vector<std::uint32_t> best_order;
+    std::vector<VkDeviceSize> offsets;
+    std::vector<VkDeviceSize> current;
+  } place;
   struct Synchronise {
     std::vector<UseState> states;     // by subresource
     std::vector<UseState> last_uses;  // by subresource, at the end of a frame

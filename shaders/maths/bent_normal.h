@@ -19,7 +19,7 @@ ALCOVE_MATHS_BEGIN
 ALCOVE_INLINE vec2 bent_arc(Slice s, float side, float horizon) {
   float c = clamp(horizon, tangent_horizon(s, side), 1.0f);
   float along = side * s.along;
-  float sine_squared = 1.0f - c * c;
+  float sine_squared = (1.0f - c) * (1.0f + c);
   float sine_cubed = sine_squared * sqrt(sine_squared);
   float rise = 1.0f - c;
   float x = s.toward * sine_cubed + along * rise * rise * (2.0f + c);

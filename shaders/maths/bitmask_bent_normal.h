@@ -25,7 +25,7 @@ ALCOVE_INLINE float horizon_of_arc(Slice s, float side, float arc) {
   // Exact for a normal along the view vector, and below the solution for any other.
   float c = mix(lowest, 1.0f, sqrt(1.0f - part));
   for (int i = 0; i < 3; ++i) {
-    float slope = c * s.toward + side * s.along * sqrt(max(1.0f - c * c, 0.0f));
+    float slope = c * s.toward + side * s.along * sqrt((1.0f - c) * (1.0f + c));
     c += (slice_arc(s, side, c) - arc) / max(slope, 1e-3f);
     c = clamp(c, lowest, 1.0f);
   }

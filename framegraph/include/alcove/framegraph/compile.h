@@ -54,6 +54,9 @@ struct Limits {
   MemoryOracle memory;
   FormatOracle formats;
   Ordering ordering = Ordering::lower_peak;
+  // How long placement looks for the lower bound where the first way does not meet it, in
+  // comparisons of two resources; 0 takes the first way.
+  std::int64_t placement_effort = 1 << 24;
   bool alias = true;            // false gives each transient bytes of its own
   bool split_barriers = false;  // vkCmdSetEvent2 where other work lies between
 };

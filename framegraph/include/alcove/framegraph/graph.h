@@ -17,6 +17,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <memory>
 #include <new>
 #include <span>
@@ -160,8 +161,11 @@ class Graph {
   };
 
   GraphDescription::Name keep_name(std::string_view name);
+  void grow_text(std::size_t size);
   std::uint32_t add_resource(std::string_view name, const ResourceRecord& record);
   ResourceRecord texture_record(const TextureDesc& desc) const;
+  void fill_texture_record(ResourceRecord& record, const TextureDesc& desc) const;
+  void resolve_extent(ResourceRecord& record, const Extent& extent) const;
   std::uint32_t add_history(std::string_view name, ResourceRecord record, std::uint32_t slots,
                             HistoryValidity& validity);
   void append_access(std::uint32_t pass, std::uint32_t index, std::uint32_t version,
@@ -169,6 +173,7 @@ class Graph {
                      ResourceKind kind);
   std::uint32_t next_version(std::uint32_t index, std::uint32_t graph);
   void* allocate(std::size_t size, std::size_t alignment);
+  void* allocate_in_next_block(std::size_t size, std::size_t alignment);
   void destroy_callables();
 
   GraphDescription description_;
@@ -177,9 +182,11 @@ class Graph {
   std::vector<Callback> callbacks_;      // parallel to description_.passes
   std::vector<Cleanup> cleanups_;
   std::vector<Block> blocks_;
-  std::size_t block_ = 0;
-  std::size_t used_ = 0;
-  std::uint32_t tag_ = 0;  // of the handles of this frame of this graph
+  std::size_t block_ = 0;    // the next block
+  std::uintptr_t next_ = 0;  // free bytes of the current one
+  std::uintptr_t end_ = 0;
+  std::size_t text_used_ = 0;  // of description_.text
+  std::uint32_t tag_ = 0;      // of the handles of this frame of this graph
   HistoryTable histories_;
 };
 
@@ -197,5 +204,133 @@ void PassBuilder::record(Callable&& callable) {
         {[](void* stored) { static_cast<Stored*>(stored)->~Stored(); }, object});
   }
 }
+
+// What follows runs for every pass of every frame: inline, so that a frame that did not change
+// costs little more than writing its records.
+
+inline void* Graph::allocate(std::size_t size, std::size_t alignment) {
+  const std::uintptr_t start = (next_ + alignment - 1) & ~(std::uintptr_t{alignment} - 1);
+  if (start + size > end_) return allocate_in_next_block(size, alignment);
+  next_ = start + size;
+  return reinterpret_cast<void*>(start);
+}
+
+inline GraphDescription::Name Graph::keep_name(std::string_view name) {
+  const std::size_t size = name.size();
+  if (text_used_ + size > description_.text.size()) grow_text(size);
+  char* to = description_.text.data() + text_used_;
+  // Two overlapping copies of a fixed size are cheaper than one of a size that is not known.
+  if (size >= 8 && size <= 16) {
+    std::memcpy(to, name.data(), 8);
+    std::memcpy(to + size - 8, name.data() + size - 8, 8);
+  } else if (size >= 4 && size < 8) {
+    std::memcpy(to, name.data(), 4);
+    std::memcpy(to + size - 4, name.data() + size - 4, 4);
+  } else if (size != 0) {
+    std::memcpy(to, name.data(), size);
+  }
+  const GraphDescription::Name kept{static_cast<std::uint32_t>(text_used_),
+                                    static_cast<std::uint32_t>(size)};
+  text_used_ += size;
+  return kept;
+}
+
+inline void Graph::fill_texture_record(ResourceRecord& record, const TextureDesc& desc) const {
+  record.format = desc.format;
+  record.width = desc.extent.width;
+  record.height = desc.extent.height;
+  record.depth = desc.extent.depth;
+  record.mips = desc.mips;
+  record.layers = desc.layers;
+  record.samples = desc.samples;
+  if (desc.extent.relative_to.index != kNone) resolve_extent(record, desc.extent);
+}
+
+inline std::uint32_t Graph::add_resource(std::string_view name, const ResourceRecord& record) {
+  const auto index = static_cast<std::uint32_t>(description_.resources.size());
+  description_.resources.push_back(record);
+  description_.resource_names.push_back(keep_name(name));
+  versions_.push_back(0);
+  return index;
+}
+
+inline Texture Graph::create_texture(std::string_view name, const TextureDesc& desc) {
+  const auto index = static_cast<std::uint32_t>(description_.resources.size());
+  fill_texture_record(description_.resources.emplace_back(), desc);
+  description_.resource_names.push_back(keep_name(name));
+  versions_.push_back(0);
+  return {index, 0, tag_};
+}
+
+inline PassBuilder Graph::add_pass(std::string_view name, QueueClass queue) {
+  const auto index = static_cast<std::uint32_t>(description_.passes.size());
+  description_.passes.push_back(
+      {static_cast<std::uint32_t>(description_.accesses.size()), queue, 0, 0});
+  description_.pass_names.push_back(keep_name(name));
+  callbacks_.push_back({});
+  return {*this, index};
+}
+
+inline void Graph::append_access(std::uint32_t pass, std::uint32_t index, std::uint32_t version,
+                                 std::uint32_t graph, const Access& access, Range range,
+                                 std::uint32_t flags, ResourceKind kind) {
+  AccessRecord& record = description_.accesses.emplace_back();
+  record.stages = access.stages;
+  record.access = access.access;
+  record.layout = access.layout;
+  record.usage = access.usage;
+  record.version = version;
+  record.kind = kind;
+  if (graph == tag_ && index < description_.resources.size()) {
+    record.resource = index;
+    const ResourceRecord& resource = description_.resources[index];
+    if (range.mips == kAll && range.base_mip < resource.mips)
+      range.mips = static_cast<std::uint16_t>(resource.mips - range.base_mip);
+    if (range.layers == kAll && range.base_layer < resource.layers)
+      range.layers = static_cast<std::uint16_t>(resource.layers - range.base_layer);
+  } else {
+    flags |= index == kNone ? kNull : kForeign;
+  }
+  record.range = range;
+  if (pass + 1 != description_.passes.size()) flags |= kClosed;
+  record.flags = flags;
+}
+
+inline std::uint32_t Graph::next_version(std::uint32_t index, std::uint32_t graph) {
+  if (graph != tag_ || index >= versions_.size()) return kNone;
+  return ++versions_[index];
+}
+
+inline void PassBuilder::read(Texture texture, const Access& access, Range range) {
+  graph_.append_access(pass_, texture.index, texture.version, texture.graph, access, range, 0,
+                       ResourceKind::texture);
+}
+
+inline void PassBuilder::read(Buffer buffer, const Access& access) {
+  graph_.append_access(pass_, buffer.index, buffer.version, buffer.graph, access, {}, 0,
+                       ResourceKind::buffer);
+}
+
+inline Texture PassBuilder::write(Texture texture, const Access& access, Range range,
+                                  Contents contents, Need need) {
+  const std::uint32_t flags = kWrite | (contents == Contents::discard ? kDiscard : 0u) |
+                              (need == Need::optional ? kOptional : 0u);
+  graph_.append_access(pass_, texture.index, texture.version, texture.graph, access, range, flags,
+                       ResourceKind::texture);
+  texture.version = graph_.next_version(texture.index, texture.graph);
+  return texture;
+}
+
+inline Buffer PassBuilder::write(Buffer buffer, const Access& access, Contents contents,
+                                 Need need) {
+  const std::uint32_t flags = kWrite | (contents == Contents::discard ? kDiscard : 0u) |
+                              (need == Need::optional ? kOptional : 0u);
+  graph_.append_access(pass_, buffer.index, buffer.version, buffer.graph, access, {}, flags,
+                       ResourceKind::buffer);
+  buffer.version = graph_.next_version(buffer.index, buffer.graph);
+  return buffer;
+}
+
+inline void PassBuilder::side_effect() { graph_.description_.passes[pass_].flags |= kSideEffect; }
 
 }  // namespace alcove::framegraph

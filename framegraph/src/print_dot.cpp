@@ -1,0 +1,92 @@
+// Plans for Graphviz: passes in columns by queue, an edge for each version from its writer to its
+// readers, culled passes dashed.
+#include <vector>
+
+#include "alcove/framegraph/print.h"
+#include "print_names.h"
+
+namespace alcove::framegraph {
+namespace {
+
+std::string quoted(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + '"';
+}
+
+class DotPrinter {
+ public:
+  DotPrinter(const GraphDescription& graph, const Plan& plan) : graph_(graph), plan_(plan) {}
+
+  std::string print() {
+    out_ = "digraph frame {\n  rankdir=TB; node [shape=box fontname=\"sans-serif\"];\n";
+    position_.assign(graph_.passes.size(), kNone);
+    for (std::uint32_t p = 0; p < plan_.passes.size(); ++p) position_[plan_.passes[p].pass] = p;
+    for (std::uint32_t pass = 0; pass < graph_.passes.size(); ++pass) node(pass);
+    edges();
+    return std::move(out_) + "}\n";
+  }
+
+ private:
+  static std::string id(std::uint32_t pass) {
+    return std::string("p").append(std::to_string(pass));
+  }
+
+  void node(std::uint32_t pass) {
+    std::string label(graph_.pass_name(pass));
+    std::string style = "style=dashed color=gray fontcolor=gray";
+    if (position_[pass] != kNone) {
+      const PlannedPass& planned = plan_.passes[position_[pass]];
+      std::uint32_t barriers = 0;
+      for (std::uint32_t b = 0; b < planned.batch_count; ++b)
+        barriers += plan_.batches[planned.first_batch + b].count;
+      label = std::to_string(position_[pass]).append(" ").append(label);
+      if (barriers > 0) label.append(" | ").append(std::to_string(barriers)).append(" barriers");
+      constexpr const char* kColors[] = {"lightsteelblue", "palegreen", "moccasin"};
+      style = std::string("style=filled fillcolor=")
+                  .append(kColors[static_cast<std::size_t>(planned.queue)]);
+    }
+    out_.append("  ").append(id(pass)).append(" [label=").append(quoted(label));
+    out_.append(" ").append(style).append("];\n");
+  }
+
+  // From the last writer of a resource to each later access, in program order.
+  void edges() {
+    std::vector<std::uint32_t> writer(graph_.resources.size(), kNone);
+    for (std::uint32_t pass = 0; pass < graph_.passes.size(); ++pass) {
+      for (const AccessRecord& access : graph_.pass_accesses(pass)) {
+        const std::uint32_t from = writer[access.resource];
+        if (from != kNone && from != pass && !(access.flags & kDiscard)) edge(from, pass, access);
+      }
+      for (const AccessRecord& access : graph_.pass_accesses(pass)) {
+        if (access.flags & kWrite) writer[access.resource] = pass;
+      }
+    }
+  }
+
+  void edge(std::uint32_t from, std::uint32_t to, const AccessRecord& access) {
+    const std::string label = std::string(graph_.resource_name(access.resource))
+                                  .append(".")
+                                  .append(std::to_string(access.version));
+    out_.append("  ").append(id(from)).append(" -> ").append(id(to));
+    out_.append(" [label=").append(quoted(label));
+    if (position_[from] == kNone || position_[to] == kNone) out_ += " style=dashed color=gray";
+    out_ += "];\n";
+  }
+
+  const GraphDescription& graph_;
+  const Plan& plan_;
+  std::vector<std::uint32_t> position_;
+  std::string out_;
+};
+
+}  // namespace
+
+std::string print_dot(const GraphDescription& graph, const Plan& plan) {
+  return DotPrinter(graph, plan).print();
+}
+
+}  // namespace alcove::framegraph

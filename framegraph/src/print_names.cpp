@@ -1,0 +1,143 @@
+#include "print_names.h"
+
+#include <cstddef>
+
+namespace alcove::framegraph {
+namespace {
+
+struct Bit {
+  std::uint64_t bit;
+  const char* name;
+};
+
+constexpr Bit kStages[] = {
+    {VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT, "indirect"},
+    {VK_PIPELINE_STAGE_2_INDEX_INPUT_BIT, "index"},
+    {VK_PIPELINE_STAGE_2_VERTEX_ATTRIBUTE_INPUT_BIT, "attributes"},
+    {VK_PIPELINE_STAGE_2_VERTEX_INPUT_BIT, "vertex input"},
+    {VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT, "vertex"},
+    {VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, "fragment"},
+    {VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT, "early tests"},
+    {VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT, "late tests"},
+    {VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, "color output"},
+    {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, "compute"},
+    {VK_PIPELINE_STAGE_2_COPY_BIT, "copy"},
+    {VK_PIPELINE_STAGE_2_BLIT_BIT, "blit"},
+    {VK_PIPELINE_STAGE_2_RESOLVE_BIT, "resolve"},
+    {VK_PIPELINE_STAGE_2_CLEAR_BIT, "clear"},
+    {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, "transfer"},
+    {VK_PIPELINE_STAGE_2_HOST_BIT, "host"},
+    {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, "all commands"},
+    {VK_PIPELINE_STAGE_2_ALL_GRAPHICS_BIT, "all graphics"},
+    {VK_PIPELINE_STAGE_2_BOTTOM_OF_PIPE_BIT, "bottom"},
+};
+
+constexpr Bit kAccesses[] = {
+    {VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT, "indirect read"},
+    {VK_ACCESS_2_INDEX_READ_BIT, "index read"},
+    {VK_ACCESS_2_VERTEX_ATTRIBUTE_READ_BIT, "attribute read"},
+    {VK_ACCESS_2_UNIFORM_READ_BIT, "uniform read"},
+    {VK_ACCESS_2_SHADER_READ_BIT, "shader read"},
+    {VK_ACCESS_2_SHADER_WRITE_BIT, "shader write"},
+    {VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, "sampled read"},
+    {VK_ACCESS_2_SHADER_STORAGE_READ_BIT, "storage read"},
+    {VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, "storage write"},
+    {VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT, "color read"},
+    {VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, "color write"},
+    {VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT, "depth read"},
+    {VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT, "depth write"},
+    {VK_ACCESS_2_TRANSFER_READ_BIT, "transfer read"},
+    {VK_ACCESS_2_TRANSFER_WRITE_BIT, "transfer write"},
+    {VK_ACCESS_2_HOST_READ_BIT, "host read"},
+    {VK_ACCESS_2_HOST_WRITE_BIT, "host write"},
+    {VK_ACCESS_2_MEMORY_READ_BIT, "memory read"},
+    {VK_ACCESS_2_MEMORY_WRITE_BIT, "memory write"},
+};
+
+template <std::size_t kCount>
+std::string join(std::uint64_t bits, const Bit (&names)[kCount]) {
+  if (bits == 0) return "none";
+  std::string text;
+  const auto append = [&text](const std::string& name) {
+    if (!text.empty()) text += '|';
+    text += name;
+  };
+  for (const Bit& bit : names) {
+    if (!(bits & bit.bit)) continue;
+    append(bit.name);
+    bits &= ~bit.bit;
+  }
+  if (bits != 0) append(std::string("+").append(std::to_string(bits)));
+  return text;
+}
+
+}  // namespace
+
+std::string stage_names(VkPipelineStageFlags2 stages) { return join(stages, kStages); }
+
+std::string access_names(VkAccessFlags2 accesses) { return join(accesses, kAccesses); }
+
+std::string layout_name(VkImageLayout layout) {
+  switch (layout) {
+    case VK_IMAGE_LAYOUT_UNDEFINED:
+      return "undefined";
+    case VK_IMAGE_LAYOUT_GENERAL:
+      return "general";
+    case VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL:
+      return "color";
+    case VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL:
+      return "depth";
+    case VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL:
+      return "depth read";
+    case VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL:
+      return "shader read";
+    case VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL:
+      return "transfer source";
+    case VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL:
+      return "transfer destination";
+    case VK_IMAGE_LAYOUT_PRESENT_SRC_KHR:
+      return "present";
+    default:
+      return std::string("layout ").append(std::to_string(layout));
+  }
+}
+
+std::string queue_name(QueueClass queue) {
+  switch (queue) {
+    case QueueClass::graphics:
+      return "graphics";
+    case QueueClass::compute:
+      return "compute";
+    case QueueClass::transfer:
+      return "transfer";
+  }
+  return "unknown";
+}
+
+std::string byte_size(VkDeviceSize bytes) {
+  // Tenths of the largest unit that leaves at least one.
+  constexpr const char* kUnits[] = {"B", "KiB", "MiB", "GiB"};
+  std::size_t unit = 0;
+  VkDeviceSize scale = 1;
+  while (unit + 1 < std::size(kUnits) && bytes / scale >= 1024) {
+    scale *= 1024;
+    ++unit;
+  }
+  std::string text = std::to_string(bytes / scale);
+  if (unit > 0) text.append(".").append(std::to_string(bytes % scale * 10 / scale));
+  return text.append(" ").append(kUnits[unit]);
+}
+
+std::string range_name(const Range& range, std::uint32_t mips, std::uint32_t layers) {
+  const auto part = [](const char* what, std::uint32_t base, std::uint32_t count) {
+    std::string text = std::string(" ").append(what).append(" ").append(std::to_string(base));
+    if (count > 1) text.append("..").append(std::to_string(base + count - 1));
+    return text;
+  };
+  std::string text;
+  if (range.mips != mips) text += part("mip", range.base_mip, range.mips);
+  if (range.layers != layers) text += part("layer", range.base_layer, range.layers);
+  return text;
+}
+
+}  // namespace alcove::framegraph

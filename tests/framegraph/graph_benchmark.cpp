@@ -1,0 +1,125 @@
+// What declaring and compiling cost, by number of passes: a program, not a test.
+//
+// chain: each pass reads what the one before wrote and writes a texture of its own.
+// random: each pass reads two of the last 32 textures.
+// Prints the median over many runs, in nanoseconds a pass, of
+//   setup    declaring the frame
+//   compile  Compiler::compile, everything it needs already allocated
+//   steady   declaring the same frame again and finding its plan: what a frame costs as a rule
+// and the allocations of a steady frame, counted by replacing operator new.
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <new>
+#include <vector>
+
+#include "alcove/framegraph/compile.h"
+#include "random_graph.h"
+
+namespace {
+
+std::size_t allocations = 0;
+
+}  // namespace
+
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* memory = std::malloc(size)) return memory;
+  std::abort();
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+
+namespace alcove::framegraph {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+enum class Shape { chain, random };
+
+void declare(Graph& graph, Shape shape, std::uint32_t passes, std::vector<Texture>& textures) {
+  graph.reset();
+  textures.clear();
+  Dice dice(passes);
+  const TextureDesc desc{VK_FORMAT_R16G16B16A16_SFLOAT, Extent::absolute(1920, 1080)};
+  for (std::uint32_t i = 0; i < passes; ++i) {
+    Texture texture = graph.create_texture("texture", desc);
+    PassBuilder pass = graph.add_pass("pass");
+    if (shape == Shape::chain) {
+      if (i > 0) pass.read(textures[i - 1], access::sampled_compute);
+    } else if (i > 0) {
+      const std::uint32_t window = std::min(i, 32u);
+      const std::uint32_t first = dice.roll(window);
+      const std::uint32_t second = dice.roll(window);
+      pass.read(textures[i - 1 - first], access::sampled_compute);
+      if (second != first) pass.read(textures[i - 1 - second], access::sampled_compute);
+    }
+    texture = pass.write(texture, access::storage_write_compute);
+    pass.record([texture](RecordContext& context) { (void)context.view(texture); });
+    textures.push_back(texture);
+  }
+  graph.output(textures.back());
+}
+
+double median(std::vector<double>& values) {
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
+                   values.end());
+  return values[values.size() / 2];
+}
+
+template <typename Function>
+double time_ns(Function&& f) {
+  const auto start = Clock::now();
+  f();
+  return std::chrono::duration<double, std::nano>(Clock::now() - start).count();
+}
+
+void measure(Shape shape, std::uint32_t passes) {
+  Graph graph;
+  std::vector<Texture> textures;
+  Compiler compiler;
+  Plan plan;
+  const Limits limits;
+  std::vector<double> setup;
+  std::vector<double> compile;
+  std::vector<double> steady;
+  declare(graph, shape, passes, textures);
+  const GraphDescription kept = graph.description();
+  const int runs = static_cast<int>(std::max(31u, 200'000u / passes));
+  std::size_t steady_allocations = 0;
+  for (int run = 0; run < runs; ++run) {
+    setup.push_back(time_ns([&] { declare(graph, shape, passes, textures); }));
+    compile.push_back(time_ns([&] {
+      if (!compiler.compile(graph.description(), limits, plan)) std::abort();
+    }));
+    const std::size_t before = allocations;
+    steady.push_back(time_ns([&] {
+      declare(graph, shape, passes, textures);
+      if (!same_declaration(graph.description(), kept)) std::abort();
+    }));
+    if (run > 0) steady_allocations += allocations - before;
+    steady.reserve(steady.size() + 1);
+  }
+  const double count = passes;
+  const double setup_ns = median(setup) / count;
+  const double compile_ns = median(compile) / count;
+  std::printf("%-7s %5u  %8.1f %8.1f %8.1f  %8.1f  %6zu   %zu of %u live\n",
+              shape == Shape::chain ? "chain" : "random", passes, setup_ns, compile_ns,
+              setup_ns + compile_ns, median(steady) / count, steady_allocations, plan.passes.size(),
+              passes);
+}
+
+}  // namespace
+}  // namespace alcove::framegraph
+
+int main() {
+  using namespace alcove::framegraph;
+  std::printf("nanoseconds a pass, median; allocations of all steady frames\n");
+  std::printf("shape  passes     setup  compile     both    steady  allocs\n");
+  for (const Shape shape : {Shape::chain, Shape::random}) {
+    for (const std::uint32_t passes : {10u, 100u, 1000u, 5000u}) measure(shape, passes);
+  }
+  return 0;
+}
