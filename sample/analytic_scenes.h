@@ -39,8 +39,8 @@ struct AnalyticScene {
 // Sphere of `radius` whose centre stands at distance d in a direction `cosine` from the normal, all
 // of it above the horizon (cosine >= radius / d): 1 - cosine (radius / d)^2.
 [[nodiscard]] double visibility_under_sphere(double radius, double distance, double cosine);
-// V-groove of infinite length, from anywhere on a wall, walls endless: the other wall covers an
-// elevation up to the opening angle, in radians: (1 - cos(angle)) / 2.
+// V-groove of infinite length, from anywhere on a wall, walls endless: the other wall rises
+// from the edge to pi minus the opening angle (radians), which leaves (1 - cos(angle)) / 2.
 [[nodiscard]] double visibility_in_groove(double opening_angle);
 // Floor at distance d from an endless wall of height h: (1 + d / sqrt(d^2 + h^2)) / 2.
 [[nodiscard]] double visibility_beside_wall(double distance, double height);

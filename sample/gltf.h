@@ -21,16 +21,22 @@ namespace alcove::sample {
 // and lines, morph targets, skins, animation, texture coordinate sets other than the base colour's,
 // normal maps (shading normals are the vertices'). Alpha blend counts as mask with cutoff 0.5.
 //
-// The file may be hostile: every index, offset, stride and count is checked before it is used,
-// nothing is allocated beyond a small multiple of the bytes of the files, and external files must
-// lie in the scene's folder. Errors are one sentence with the file's name. Thread-safe.
+// The file may be hostile: every index, offset, stride and count is checked before it is used, what
+// a file may grow to is bounded by GltfLimits, and external files must lie in the scene's folder.
+// Errors are one sentence with the file's name. Thread-safe.
+struct GltfLimits {
+  uint64_t vertices = uint64_t{1} << 25;  // of all meshes together, instances counted each
+  uint64_t indices = uint64_t{3} << 25;
+  uint64_t pixels = uint64_t{1} << 29;  // of all images together
+};
 [[nodiscard]] tl::expected<Scene, std::string> load_gltf(const std::filesystem::path& file);
 
 // The same from memory. `name` stands in messages; external files are looked for in `folder`, or
 // refused when it is empty.
 [[nodiscard]] tl::expected<Scene, std::string> parse_gltf(std::span<const uint8_t> bytes,
                                                           const std::string& name,
-                                                          const std::filesystem::path& folder);
+                                                          const std::filesystem::path& folder,
+                                                          const GltfLimits& limits = {});
 
 }  // namespace alcove::sample
 

@@ -1,0 +1,23 @@
+#ifndef ALCOVE_SAMPLE_GLTF_MATERIAL_H_
+#define ALCOVE_SAMPLE_GLTF_MATERIAL_H_
+
+#include <tiny_gltf.h>
+
+#include <cstdint>
+#include <string>
+#include <tl/expected.hpp>
+
+#include "scene.h"
+
+namespace alcove::sample {
+
+// The model's materials, plus one default at the end for primitives that name none, and those of
+// its images that a material uses. Images are taken from buffer views, or from the encoded bytes
+// that the loader left in Image::image. An image that cannot be read is a warning and reads white;
+// more than `most_pixels` in all, or a texture that does not exist, is an error.
+[[nodiscard]] tl::expected<void, std::string> add_materials(const tinygltf::Model& model,
+                                                            uint64_t most_pixels, Scene& scene);
+
+}  // namespace alcove::sample
+
+#endif  // ALCOVE_SAMPLE_GLTF_MATERIAL_H_
