@@ -101,8 +101,11 @@ inline constexpr Access transfer_source{VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_
 inline constexpr Access transfer_destination{
     VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
     VK_BUFFER_USAGE_TRANSFER_DST_BIT};
-inline constexpr Access fill{VK_PIPELINE_STAGE_2_CLEAR_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                             VK_IMAGE_LAYOUT_UNDEFINED, VK_BUFFER_USAGE_TRANSFER_DST_BIT};
+// vkCmdFillBuffer and vkCmdUpdateBuffer, which implementations count among the clears or the
+// copies.
+inline constexpr Access fill{VK_PIPELINE_STAGE_2_CLEAR_BIT | VK_PIPELINE_STAGE_2_COPY_BIT,
+                             VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
+                             VK_BUFFER_USAGE_TRANSFER_DST_BIT};
 // For a departure: a buffer that the host reads once the frame's fence has signalled.
 inline constexpr State host_read{VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT,
                                  VK_IMAGE_LAYOUT_UNDEFINED};

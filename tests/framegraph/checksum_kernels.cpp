@@ -1,0 +1,142 @@
+#include "checksum_kernels.h"
+
+#include "spirv/checksum_buffer.h"
+#include "spirv/checksum_texture.h"
+
+namespace alcove::framegraph {
+
+ChecksumKernels::ChecksumKernels(Gpu& gpu) : device_(gpu.device().device()) {
+  const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 4096},
+                                        {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 8192},
+                                        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 8192}};
+  VkDescriptorPoolCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
+  info.maxSets = 4096;
+  info.poolSizeCount = 3;
+  info.pPoolSizes = sizes;
+  vkCreateDescriptorPool(device_, &info, nullptr, &pool_);
+  texture_ = make(kChecksumTexture, sizeof kChecksumTexture, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE);
+  buffer_ = make(kChecksumBuffer, sizeof kChecksumBuffer, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER);
+}
+
+ChecksumKernels::~ChecksumKernels() {
+  destroy(texture_);
+  destroy(buffer_);
+  vkDestroyDescriptorPool(device_, pool_, nullptr);
+}
+
+void ChecksumKernels::reset() { vkResetDescriptorPool(device_, pool_, 0); }
+
+ChecksumKernels::Kernel ChecksumKernels::make(const std::uint32_t* code, std::size_t size,
+                                              VkDescriptorType second) {
+  Kernel kernel;
+  VkDescriptorSetLayoutBinding bindings[3] = {};
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    bindings[i].binding = i;
+    bindings[i].descriptorType = i == 0 ? VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE : second;
+    bindings[i].descriptorCount = 1;
+    bindings[i].stageFlags = VK_SHADER_STAGE_COMPUTE_BIT;
+  }
+  VkDescriptorSetLayoutCreateInfo set_info{};
+  set_info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
+  set_info.bindingCount = 3;
+  set_info.pBindings = bindings;
+  vkCreateDescriptorSetLayout(device_, &set_info, nullptr, &kernel.set_layout);
+  const VkPushConstantRange push{VK_SHADER_STAGE_COMPUTE_BIT, 0, 8};
+  VkPipelineLayoutCreateInfo layout_info{};
+  layout_info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
+  layout_info.setLayoutCount = 1;
+  layout_info.pSetLayouts = &kernel.set_layout;
+  layout_info.pushConstantRangeCount = 1;
+  layout_info.pPushConstantRanges = &push;
+  vkCreatePipelineLayout(device_, &layout_info, nullptr, &kernel.layout);
+  VkShaderModuleCreateInfo module_info{};
+  module_info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
+  module_info.codeSize = size;
+  module_info.pCode = code;
+  VkShaderModule module = VK_NULL_HANDLE;
+  vkCreateShaderModule(device_, &module_info, nullptr, &module);
+  VkComputePipelineCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
+  info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
+  info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
+  info.stage.module = module;
+  info.stage.pName = "main";
+  info.layout = kernel.layout;
+  vkCreateComputePipelines(device_, VK_NULL_HANDLE, 1, &info, nullptr, &kernel.pipeline);
+  vkDestroyShaderModule(device_, module, nullptr);
+  return kernel;
+}
+
+void ChecksumKernels::destroy(Kernel& kernel) {
+  vkDestroyPipeline(device_, kernel.pipeline, nullptr);
+  vkDestroyPipelineLayout(device_, kernel.layout, nullptr);
+  vkDestroyDescriptorSetLayout(device_, kernel.set_layout, nullptr);
+}
+
+VkDescriptorSet ChecksumKernels::bind(RecordContext& context, const Kernel& kernel,
+                                      std::uint32_t seed, bool keep) {
+  VkDescriptorSetAllocateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
+  info.descriptorPool = pool_;
+  info.descriptorSetCount = 1;
+  info.pSetLayouts = &kernel.set_layout;
+  VkDescriptorSet set = VK_NULL_HANDLE;
+  vkAllocateDescriptorSets(device_, &info, &set);
+  const std::uint32_t parameters[2] = {seed, keep ? 1u : 0u};
+  context.vk.vkCmdBindPipeline(context.commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline);
+  context.vk.vkCmdPushConstants(context.commands, kernel.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, 8,
+                                parameters);
+  return set;
+}
+
+void ChecksumKernels::mix_texture(RecordContext& context, VkImageView sampled, VkImageView storage,
+                                  VkImageView result, VkExtent3D size, std::uint32_t seed,
+                                  bool keep) {
+  const VkDescriptorSet set = bind(context, texture_, seed, keep);
+  const VkDescriptorImageInfo images[3] = {
+      {VK_NULL_HANDLE, sampled, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL},
+      {VK_NULL_HANDLE, storage, VK_IMAGE_LAYOUT_GENERAL},
+      {VK_NULL_HANDLE, result, VK_IMAGE_LAYOUT_GENERAL}};
+  VkWriteDescriptorSet writes[3] = {};
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    writes[i].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+    writes[i].dstSet = set;
+    writes[i].dstBinding = i;
+    writes[i].descriptorCount = 1;
+    writes[i].descriptorType =
+        i == 0 ? VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE : VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+    writes[i].pImageInfo = &images[i];
+  }
+  context.vk.vkUpdateDescriptorSets(device_, 3, writes, 0, nullptr);
+  context.vk.vkCmdBindDescriptorSets(context.commands, VK_PIPELINE_BIND_POINT_COMPUTE,
+                                     texture_.layout, 0, 1, &set, 0, nullptr);
+  context.vk.vkCmdDispatch(context.commands, (size.width + 7) / 8, (size.height + 7) / 8, 1);
+}
+
+void ChecksumKernels::mix_buffer(RecordContext& context, VkImageView sampled, VkBuffer from,
+                                 VkBuffer to, std::uint32_t words, std::uint32_t seed, bool keep) {
+  const VkDescriptorSet set = bind(context, buffer_, seed, keep);
+  const VkDescriptorImageInfo image{VK_NULL_HANDLE, sampled,
+                                    VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+  const VkDescriptorBufferInfo buffers[2] = {{from, 0, VK_WHOLE_SIZE}, {to, 0, VK_WHOLE_SIZE}};
+  VkWriteDescriptorSet writes[3] = {};
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    writes[i].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+    writes[i].dstSet = set;
+    writes[i].dstBinding = i;
+    writes[i].descriptorCount = 1;
+    writes[i].descriptorType =
+        i == 0 ? VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    if (i == 0)
+      writes[i].pImageInfo = &image;
+    else
+      writes[i].pBufferInfo = &buffers[i - 1];
+  }
+  context.vk.vkUpdateDescriptorSets(device_, 3, writes, 0, nullptr);
+  context.vk.vkCmdBindDescriptorSets(context.commands, VK_PIPELINE_BIND_POINT_COMPUTE,
+                                     buffer_.layout, 0, 1, &set, 0, nullptr);
+  context.vk.vkCmdDispatch(context.commands, (words + 63) / 64, 1, 1);
+}
+
+}  // namespace alcove::framegraph

@@ -1,0 +1,45 @@
+// The two compute kernels that device tests mix contents with, and their descriptor sets.
+#pragma once
+
+#include "alcove/framegraph/framegraph.h"
+#include "gpu.h"
+
+namespace alcove::framegraph {
+
+// What the kernels compute of two words; the tests' own model of the frame uses it too.
+inline std::uint32_t mix_in(std::uint32_t a, std::uint32_t b) {
+  const std::uint32_t x = (a ^ b) * 0x9e3779b1u;
+  return x ^ (x >> 15);
+}
+
+class ChecksumKernels {
+ public:
+  explicit ChecksumKernels(Gpu& gpu);
+  ~ChecksumKernels();
+  ChecksumKernels(const ChecksumKernels&) = delete;
+  ChecksumKernels& operator=(const ChecksumKernels&) = delete;
+
+  // Frees all descriptor sets: the device must be idle.
+  void reset();
+  void mix_texture(RecordContext& context, VkImageView sampled, VkImageView storage,
+                   VkImageView result, VkExtent3D size, std::uint32_t seed, bool keep);
+  void mix_buffer(RecordContext& context, VkImageView sampled, VkBuffer from, VkBuffer to,
+                  std::uint32_t words, std::uint32_t seed, bool keep);
+
+ private:
+  struct Kernel {
+    VkDescriptorSetLayout set_layout = VK_NULL_HANDLE;
+    VkPipelineLayout layout = VK_NULL_HANDLE;
+    VkPipeline pipeline = VK_NULL_HANDLE;
+  };
+  Kernel make(const std::uint32_t* code, std::size_t size, VkDescriptorType second);
+  void destroy(Kernel& kernel);
+  VkDescriptorSet bind(RecordContext& context, const Kernel& kernel, std::uint32_t seed, bool keep);
+
+  VkDevice device_;
+  VkDescriptorPool pool_ = VK_NULL_HANDLE;
+  Kernel texture_;
+  Kernel buffer_;
+};
+
+}  // namespace alcove::framegraph

@@ -1,0 +1,270 @@
+// Random frames on the device whose passes mix what they read into what they write: the contents
+// must be those that a plain model of the frame computes on the host, with memory shared and
+// without.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "checksum_kernels.h"
+#include "gpu.h"
+#include "random_graph.h"
+
+namespace alcove::framegraph {
+namespace {
+
+constexpr std::uint32_t kFrames = 300;
+constexpr std::uint32_t kHostWords = 1 << 16;
+
+// A resource and the words that it should hold.
+struct Modelled {
+  bool texture = true;
+  Texture handle;
+  Buffer buffer;
+  std::uint32_t width = 1;  // of a buffer: its words
+  std::uint32_t height = 1;
+  std::vector<std::uint32_t> words;
+};
+
+class FrameMaker {
+ public:
+  FrameMaker(Graph& graph, ChecksumKernels& kernels, const HostBuffer& host, std::uint64_t seed)
+      : graph_(graph), kernels_(kernels), host_(host), dice_(seed) {}
+
+  // Declares a frame; afterwards `expected` is what the host buffer must hold.
+  void declare() {
+    graph_.reset();
+    clear();
+    fill();
+    const std::uint32_t passes = 4 + dice_.roll(20);
+    for (std::uint32_t i = 0; i < passes; ++i) {
+      switch (dice_.roll(8)) {
+        case 0:
+          clear();
+          break;
+        case 1:
+          fill();
+          break;
+        case 2:
+        case 3:
+          mix_buffer();
+          break;
+        default:
+          mix_texture();
+      }
+    }
+    Buffer out = graph_.import_buffer("host", Gpu::imported(host_));
+    for (const Modelled& modelled : all_) {
+      if (dice_.chance(90)) out = copy_out(modelled, out);
+    }
+    out = copy_out(all_.back(), out);
+  }
+
+  std::vector<std::uint32_t> expected;
+
+ private:
+  std::uint32_t any() { return static_cast<std::uint32_t>(dice_.roll(1u << 30)); }
+  Modelled* choose(bool texture) {
+    std::vector<Modelled*> fitting;
+    for (Modelled& modelled : all_) {
+      if (modelled.texture == texture) fitting.push_back(&modelled);
+    }
+    const auto count = static_cast<std::uint32_t>(fitting.size());
+    return fitting[count - 1 - dice_.roll(std::min(count, 5u))];
+  }
+
+  Modelled new_texture() {
+    Modelled made;
+    made.width = 1 + dice_.roll(40);
+    made.height = 1 + dice_.roll(40);
+    made.handle = graph_.create_texture(
+        "texture", {VK_FORMAT_R32_UINT, Extent::absolute(made.width, made.height)});
+    made.words.resize(std::size_t{made.width} * made.height);
+    return made;
+  }
+
+  Modelled new_buffer() {
+    Modelled made;
+    made.texture = false;
+    made.width = 1 + dice_.roll(2000);
+    made.buffer = graph_.create_buffer("buffer", {4 * VkDeviceSize{made.width}});
+    made.words.resize(made.width);
+    return made;
+  }
+
+  void clear() {
+    Modelled made = new_texture();
+    const std::uint32_t value = any();
+    std::fill(made.words.begin(), made.words.end(), value);
+    PassBuilder pass = graph_.add_pass("clear");
+    made.handle = pass.write(made.handle, access::clear, {}, Contents::discard);
+    pass.record([handle = made.handle, value](RecordContext& c) {
+      VkClearColorValue color{};
+      color.uint32[0] = value;
+      const VkImageSubresourceRange range{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+      c.vk.vkCmdClearColorImage(c.commands, c.image(handle), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                                &color, 1, &range);
+    });
+    all_.push_back(std::move(made));
+  }
+
+  void fill() {
+    Modelled made = new_buffer();
+    const std::uint32_t value = any();
+    std::fill(made.words.begin(), made.words.end(), value);
+    PassBuilder pass = graph_.add_pass("fill");
+    made.buffer = pass.write(made.buffer, buffer_access::fill, Contents::discard);
+    pass.record([handle = made.buffer, value](RecordContext& c) {
+      c.vk.vkCmdFillBuffer(c.commands, c.buffer(handle), 0, VK_WHOLE_SIZE, value);
+    });
+    all_.push_back(std::move(made));
+  }
+
+  // Into a new texture, or into one that is there and takes part itself.
+  void mix_texture() {
+    const Modelled sampled = *choose(true);
+    const Modelled storage = *choose(true);
+    const bool keep = dice_.chance(100);
+    Modelled result = keep ? *choose(true) : new_texture();
+    if (sampled.handle == storage.handle || result.handle == sampled.handle ||
+        result.handle == storage.handle)
+      return;
+    const std::uint32_t seed = any();
+    for (std::uint32_t y = 0; y < result.height; ++y) {
+      for (std::uint32_t x = 0; x < result.width; ++x) {
+        std::uint32_t& word = result.words[y * result.width + x];
+        std::uint32_t value = mix_in(seed, y * result.width + x);
+        value = mix_in(value, at(sampled, x, y));
+        value = mix_in(value, at(storage, x, y));
+        word = keep ? mix_in(value, word) : value;
+      }
+    }
+    PassBuilder pass = graph_.add_pass("mix texture");
+    pass.read(sampled.handle, access::sampled_compute);
+    pass.read(storage.handle, access::storage_read_compute);
+    const Texture before = result.handle;
+    result.handle = pass.write(
+        before, keep ? access::storage_read_write_compute : access::storage_write_compute, {},
+        keep ? Contents::keep : Contents::discard);
+    pass.record([=, this, from = sampled.handle, and_from = storage.handle,
+                 to = result.handle](RecordContext& c) {
+      kernels_.mix_texture(c, c.view(from), c.view(and_from), c.view(to), c.extent(to), seed, keep);
+    });
+    replace(std::move(result), before.index);
+  }
+
+  void mix_buffer() {
+    const Modelled sampled = *choose(true);
+    const Modelled from = *choose(false);
+    const bool keep = dice_.chance(100);
+    Modelled result = keep ? *choose(false) : new_buffer();
+    if (result.buffer == from.buffer) return;
+    const std::uint32_t seed = any();
+    for (std::uint32_t i = 0; i < result.width; ++i) {
+      std::uint32_t value = mix_in(seed, i);
+      value = mix_in(value, at(sampled, i % sampled.width, i / sampled.width));
+      value = mix_in(value, from.words[i % from.width]);
+      result.words[i] = keep ? mix_in(value, result.words[i]) : value;
+    }
+    PassBuilder pass = graph_.add_pass("mix buffer");
+    pass.read(sampled.handle, access::sampled_compute);
+    pass.read(from.buffer, buffer_access::storage_read_compute);
+    const Buffer before = result.buffer;
+    result.buffer = pass.write(
+        before,
+        keep ? buffer_access::storage_read_write_compute : buffer_access::storage_write_compute,
+        keep ? Contents::keep : Contents::discard);
+    pass.record([=, this, texture = sampled.handle, words = result.width, in = from.buffer,
+                 to = result.buffer](RecordContext& c) {
+      kernels_.mix_buffer(c, c.view(texture), c.buffer(in), c.buffer(to), words, seed, keep);
+    });
+    replace(std::move(result), before.index);
+  }
+
+  static std::uint32_t at(const Modelled& m, std::uint32_t x, std::uint32_t y) {
+    return m.words[(y % m.height) * m.width + x % m.width];
+  }
+
+  void replace(Modelled modelled, std::uint32_t index) {
+    for (Modelled& there : all_) {
+      const std::uint32_t its = there.texture ? there.handle.index : there.buffer.index;
+      if (its != index) continue;
+      there = std::move(modelled);
+      return;
+    }
+    all_.push_back(std::move(modelled));
+  }
+
+  Buffer copy_out(const Modelled& modelled, Buffer out) {
+    const VkDeviceSize offset = 4 * expected.size();
+    if (expected.size() + modelled.words.size() > kHostWords) return out;
+    expected.insert(expected.end(), modelled.words.begin(), modelled.words.end());
+    PassBuilder pass = graph_.add_pass("copy out");
+    if (modelled.texture)
+      pass.read(modelled.handle, access::transfer_source);
+    else
+      pass.read(modelled.buffer, buffer_access::transfer_source);
+    out = pass.write(out, buffer_access::transfer_destination);
+    pass.record([offset, out, texture = modelled.texture, image = modelled.handle,
+                 buffer = modelled.buffer](RecordContext& c) {
+      if (!texture) {
+        const VkBufferCopy copy{0, offset, c.size(buffer)};
+        c.vk.vkCmdCopyBuffer(c.commands, c.buffer(buffer), c.buffer(out), 1, &copy);
+        return;
+      }
+      VkBufferImageCopy copy{};
+      copy.bufferOffset = offset;
+      copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+      copy.imageExtent = c.extent(image);
+      c.vk.vkCmdCopyImageToBuffer(c.commands, c.image(image), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                                  c.buffer(out), 1, &copy);
+    });
+    return out;
+  }
+
+  Graph& graph_;
+  ChecksumKernels& kernels_;
+  const HostBuffer& host_;
+  Dice dice_;
+  std::vector<Modelled> all_;
+};
+
+void expect_contents(bool alias, std::uint64_t seed) {
+  Gpu gpu;
+  ASSERT_EQ(gpu.problem(), "");
+  {
+    ChecksumKernels kernels(gpu);
+    ExecutorOptions options;
+    options.alias = alias;
+    options.verify = true;
+    options.check_uses = true;
+    auto executor = Executor::create(gpu.handles(), options);
+    ASSERT_TRUE(executor) << to_string(executor.error());
+    const HostBuffer host = gpu.make_host_buffer(4 * kHostWords);
+    Graph graph;
+    VkDeviceSize aliased = 0;
+    VkDeviceSize unaliased = 0;
+    for (std::uint32_t i = 0; i < kFrames; ++i) {
+      kernels.reset();
+      FrameMaker maker(graph, kernels, host, seed + i);
+      maker.declare();
+      const auto report = gpu.run(*executor, graph);
+      ASSERT_TRUE(report) << "seed " << seed + i << ": " << to_string(report.error());
+      ASSERT_EQ(std::memcmp(host.mapped, maker.expected.data(), 4 * maker.expected.size()), 0)
+          << "seed " << seed + i;
+      aliased += report->memory.aliased;
+      unaliased += report->memory.unaliased;
+    }
+    if (alias)
+      EXPECT_LT(aliased, unaliased);
+    else
+      EXPECT_EQ(aliased, unaliased);
+  }
+  EXPECT_EQ(gpu.messages(), "");
+}
+
+TEST(Contents, OfRandomFramesThatShareMemoryAreRight) { expect_contents(true, 1000); }
+TEST(Contents, OfRandomFramesThatShareNoMemoryAreRight) { expect_contents(false, 1000); }
+
+}  // namespace
+}  // namespace alcove::framegraph
