@@ -10,6 +10,7 @@
 #include "maths/gtao.h"
 #include "maths/gtso.h"
 #include "maths/history.h"
+#include "maths/lobe_slice.h"
 #include "maths/multi_bounce.h"
 #include "maths/packing.h"
 #include "maths/projection.h"
@@ -169,11 +170,18 @@ ALCOVE_INLINE vec4 parity_of_sampling(uint which, vec4 a, vec4 b) {
       vec2 bent = bitmask_bent(s, scale, hash(pixel.x));
       return vec4(bent.x, bent.y, slice_arc(s, 1.0f, horizon_of_arc(s, 1.0f, b.x)), 0.0f);
     }
+    case 21u: {
+      Slice s = parity_slice(a);
+      LobeSlice lobe = make_lobe_slice(s, 0.05f + 0.95f * b.x);
+      LobeVisibility by_horizons = horizon_lobe(s, lobe, b.y * 2.0f - 1.0f, b.z * 2.0f - 1.0f);
+      LobeVisibility by_sectors = bitmask_lobe(s, make_sector_scale(s), lobe, hash(pixel.x));
+      return vec4(by_horizons.visible, by_horizons.open, by_sectors.visible, by_sectors.open);
+    }
   }
   return vec4(0.0f);
 }
 
-const uint kParityCases = 21u;
+const uint kParityCases = 22u;
 
 // Four results of case `which` for eight numbers in [0,1).
 ALCOVE_INLINE vec4 parity_case(uint which, vec4 a, vec4 b, Projection p) {

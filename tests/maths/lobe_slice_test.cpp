@@ -1,0 +1,270 @@
+#include "maths/lobe_slice.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "random_input.h"
+#include "slice_truth.h"
+
+namespace alcove::maths_test {
+namespace {
+
+using glm::vec3;
+using maths::LobeVisibility;
+using maths::Slice;
+
+constexpr float kRoughnesses[] = {0.1f, 0.2f, 0.3f, 0.45f, 0.6f, 0.8f, 1.0f};
+
+// GGX in a slice, in double, from its definition and not from the half-angle identity.
+class LobeTruth {
+ public:
+  LobeTruth(const Slice& s, double n_dot_v, double alpha)
+      : slice_(s), n_dot_v_(n_dot_v), alpha_(alpha) {}
+
+  double density(double t) const {
+    const double n_dot_l = normal_along(t);
+    if (n_dot_l <= 0.0) return 0.0;
+    const double a2 = alpha_ * alpha_;
+    return distribution(t) * std::abs(std::sin(t)) /
+           (1.0 + lambda(n_dot_v_, a2) + lambda(n_dot_l, a2));
+  }
+
+  double distribution(double t) const {
+    // The half vector of (0,1) and (sin t, cos t).
+    const double x = std::sin(t), y = 1.0 + std::cos(t), length = std::hypot(x, y);
+    const double n_dot_h = (slice_.along() * x + slice_.toward() * y) / length;
+    const double a2 = alpha_ * alpha_, d = 1.0 - n_dot_h * n_dot_h * (1.0 - a2);
+    return a2 / (kPi * d * d);
+  }
+
+  // Integral of f between two angles, panels gathered where the lobe has its centre.
+  template <typename Function>
+  double between(Function f, double from, double to) const {
+    if (from >= to) return 0.0;
+    const double centre = 2 * slice_.truth.gamma;
+    std::vector<double> cuts = {from, to, 0.0};
+    for (double width = 0.25 * alpha_; width < 4.0; width *= 2) {
+      cuts.push_back(centre - width);
+      cuts.push_back(centre + width);
+    }
+    for (double& cut : cuts) cut = std::clamp(cut, from, to);
+    std::sort(cuts.begin(), cuts.end());
+    double sum = 0.0;
+    for (std::size_t k = 0; k + 1 < cuts.size(); ++k)
+      if (cuts[k + 1] > cuts[k]) sum += integrate(f, cuts[k], cuts[k + 1], 8);
+    return sum;
+  }
+
+  double integral(double from, double to) const {
+    return between([this](double t) { return density(t); }, from, to);
+  }
+
+  double lowest() const { return slice_.truth.lowest(); }
+  double highest() const { return slice_.truth.highest(); }
+
+ private:
+  struct Components {
+    explicit Components(const Slice& s) : truth(s) {}
+    double along() const { return truth.scale * std::sin(truth.gamma); }
+    double toward() const { return truth.scale * std::cos(truth.gamma); }
+    SliceTruth truth;
+  };
+
+  double normal_along(double t) const {
+    return slice_.along() * std::sin(t) + slice_.toward() * std::cos(t);
+  }
+  static double lambda(double c, double a2) {
+    return 0.5 * (std::sqrt(1.0 + a2 * (1.0 / (c * c) - 1.0)) - 1.0);
+  }
+
+  Components slice_;
+  double n_dot_v_, alpha_;
+};
+
+// A surface tilted from the view, cut by slices at even turns around the view vector.
+struct Surface {
+  vec3 view{0, 0, 1};
+  vec3 normal;
+  maths::ViewBasis basis = maths::make_view_basis(view);
+
+  explicit Surface(double tilt) : normal(float(std::sin(tilt)), 0, float(std::cos(tilt))) {}
+  Slice slice(double phi) const {
+    return maths::make_slice(normal, maths::slice_direction(basis, float(phi)), view);
+  }
+};
+
+TEST(LobeSlice, DistributionHasThisAntiderivative) {
+  RandomInput random;
+  double worst = 0.0;
+  for (const float roughness : kRoughnesses) {
+    const float alpha = roughness * roughness;
+    for (int i = 0; i < 300; ++i) {
+      const Slice s = Surface(random.uniform(0.0f, 1.5f)).slice(random.uniform(0.0f, 3.14f));
+      const LobeTruth truth(s, s.toward, alpha);
+      const maths::LobeSlice lobe = maths::make_lobe_slice(s, alpha);
+      const float side = random.bits() % 2 == 0 ? 1.0f : -1.0f;
+      const double end = side > 0 ? truth.highest() : truth.lowest();
+      const double angle = end * random.uniform(0.0f, 1.0f);
+      const auto d = [&](double t) { return truth.distribution(t) * std::abs(std::sin(t)); };
+      const double expected = truth.between(d, std::min(angle, 0.0), std::max(angle, 0.0));
+      const double whole = truth.between(d, truth.lowest(), truth.highest());
+      const float found =
+          std::abs(maths::lobe_edge(s, lobe, side, float(std::cos(angle))).integral -
+                   maths::lobe_edge(s, lobe, side, 1.0f).integral);
+      worst = std::max(worst, std::abs(found - expected) / std::max(whole, 1e-3));
+    }
+  }
+  RecordProperty("worst", std::to_string(worst));
+  EXPECT_LT(worst, 5e-3);
+}
+
+struct Error {
+  double squares = 0.0, worst = 0.0;
+  int count = 0;
+  void add(double error) {
+    squares += error * error;
+    worst = std::max(worst, std::abs(error));
+    ++count;
+  }
+  double rms() const { return std::sqrt(squares / count); }
+};
+
+Error horizon_error(RandomInput& random, int slices, float roughness, int cases) {
+  const float alpha = roughness * roughness;
+  Error error;
+  for (int i = 0; i < cases; ++i) {
+    const double tilt = std::acos(random.uniform(0.05f, 1.0f));
+    const Surface surface(tilt);
+    double visible = 0.0, open = 0.0;
+    float visible_sum = 0.0f, open_sum = 0.0f;
+    for (int k = 0; k < slices; ++k) {
+      const Slice s = surface.slice(slices == 1 ? 0.0 : kPi * (k + 0.5) / slices);
+      const LobeTruth truth(s, std::cos(tilt), alpha);
+      const double ahead = std::clamp(truth.highest() * random.uniform(0.0f, 1.3f), 0.0, kPi);
+      const double behind = std::clamp(truth.lowest() * random.uniform(0.0f, 1.3f), -kPi, 0.0);
+      visible += truth.integral(std::max(behind, truth.lowest()), std::min(ahead, truth.highest()));
+      open += truth.integral(truth.lowest(), truth.highest());
+      const LobeVisibility found = maths::horizon_lobe(
+          s, maths::make_lobe_slice(s, alpha), float(std::cos(ahead)), float(std::cos(behind)));
+      visible_sum += found.visible;
+      open_sum += found.open;
+    }
+    error.add(maths::lobe_visibility(visible_sum, open_sum) - visible / open);
+  }
+  return error;
+}
+
+TEST(LobeSlice, OneSliceStaysWithinItsStatedErrorOfTheWholeBrdf) {
+  RandomInput random;
+  for (const float roughness : kRoughnesses) {
+    const Error error = horizon_error(random, 1, roughness, 400);
+    RecordProperty("rms_" + std::to_string(roughness), std::to_string(error.rms()));
+    EXPECT_LT(error.rms(), 0.011) << "roughness " << roughness;
+    EXPECT_LT(error.worst, 0.04) << "roughness " << roughness;
+  }
+}
+
+TEST(LobeSlice, SumOfSlicesStaysWithinItsStatedErrorOfTheWholeBrdf) {
+  RandomInput random;
+  for (const float roughness : kRoughnesses) {
+    const Error error = horizon_error(random, 16, roughness, 40);
+    EXPECT_LT(error.rms(), 0.007) << "roughness " << roughness;
+    EXPECT_LT(error.worst, 0.03) << "roughness " << roughness;
+  }
+}
+
+TEST(LobeSlice, OpenSlicesOverAllTurnsHoldTheLobeOfTheBrdf) {
+  for (const float roughness : {0.3f, 0.6f}) {
+    for (const double tilt : {0.2, 0.8, 1.3}) {
+      const Surface surface(tilt);
+      const float alpha = roughness * roughness;
+      const double in_slices = integrate(
+          [&](double phi) {
+            const Slice s = surface.slice(phi);
+            return double(maths::horizon_lobe(s, maths::make_lobe_slice(s, alpha), -1, -1).open);
+          },
+          0.0, kPi, 64);
+      const double whole = integrate(
+          [&](double phi) {
+            const Slice s = surface.slice(phi);
+            const LobeTruth truth(s, std::cos(tilt), alpha);
+            return truth.integral(truth.lowest(), truth.highest());
+          },
+          0.0, kPi, 64);
+      EXPECT_NEAR(in_slices / whole, 1.0, 0.12) << roughness << " " << tilt;
+    }
+  }
+}
+
+TEST(LobeSlice, OpenAndClosedAreExactForAnyRoughnessAndView) {
+  RandomInput random;
+  for (int i = 0; i < 5000; ++i) {
+    const Slice s = Surface(random.uniform(0.0f, 1.5707f)).slice(random.uniform(0.0f, 3.14f));
+    const maths::LobeSlice lobe = maths::make_lobe_slice(s, random.uniform(0.0f, 1.0f));
+    const LobeVisibility open = maths::horizon_lobe(s, lobe, -1.0f, -1.0f);
+    EXPECT_EQ(maths::lobe_visibility(open.visible, open.open), 1.0f);
+    const LobeVisibility closed = maths::horizon_lobe(s, lobe, 1.0f, 1.0f);
+    EXPECT_EQ(closed.visible, 0.0f);
+    EXPECT_TRUE(std::isfinite(closed.open));
+    EXPECT_EQ(maths::bitmask_lobe(s, maths::make_sector_scale(s), lobe, 0xffffffffu).visible, 0.0f);
+    const LobeVisibility clear = maths::bitmask_lobe(s, maths::make_sector_scale(s), lobe, 0u);
+    EXPECT_EQ(clear.visible, clear.open);
+  }
+}
+
+TEST(LobeSlice, MirrorSeesWhatLiesAtItsAngle) {
+  const double tilt = 0.4;
+  const Slice s = Surface(tilt).slice(0.0);
+  const maths::LobeSlice lobe = maths::make_lobe_slice(s, 0.0f);
+  const auto seen = [&](double horizon) {
+    const LobeVisibility v = maths::horizon_lobe(s, lobe, float(std::cos(horizon)), -1.0f);
+    return maths::lobe_visibility(v.visible, v.open);
+  };
+  EXPECT_LT(seen(2 * tilt - 0.1), 0.02f);
+  EXPECT_NEAR(seen(2 * tilt), 0.5f, 0.02f);
+  EXPECT_GT(seen(2 * tilt + 0.1), 0.98f);
+}
+
+TEST(LobeSlice, BitmaskAgreesWithTheHorizonsItHolds) {
+  RandomInput random;
+  for (const float roughness : {0.3f, 0.6f, 1.0f}) {
+    Error error;
+    for (int i = 0; i < 1000; ++i) {
+      const Slice s = Surface(random.uniform(0.0f, 1.4f)).slice(random.uniform(0.0f, 3.14f));
+      const maths::SectorScale scale = maths::make_sector_scale(s);
+      const maths::LobeSlice lobe = maths::make_lobe_slice(s, roughness * roughness);
+      // Horizons on the edges of sectors, so that both say the same.
+      const unsigned low = unsigned(random.uniform(0.0f, scale.view) * 32.0f);
+      const unsigned high = unsigned(std::ceil(random.uniform(scale.view, 1.0f) * 32.0f));
+      const unsigned hidden = maths::cover_sectors(0.0f, float(low) / 32.0f, 0.5f) |
+                              maths::cover_sectors(float(high) / 32.0f, 1.0f, 0.5f);
+      const LobeVisibility a = maths::bitmask_lobe(s, scale, lobe, hidden);
+      const LobeVisibility b = maths::horizon_lobe(
+          s, lobe, maths::sector_edge(s, scale, lobe, float(high) / 32.0f).cosine,
+          maths::sector_edge(s, scale, lobe, float(low) / 32.0f).cosine);
+      if (high <= low || float(low) / 32.0f > scale.view) continue;
+      error.add(maths::lobe_visibility(a.visible, a.open) -
+                maths::lobe_visibility(b.visible, b.open));
+    }
+    EXPECT_LT(error.worst, 2e-3) << "roughness " << roughness;
+  }
+}
+
+TEST(LobeSlice, SliceOfViewAndNormalHoldsTheMirrorDirection) {
+  RandomInput random;
+  for (int i = 0; i < 1000; ++i) {
+    const vec3 view = random.unit_vector(), normal = random.facing(view);
+    const vec3 otherwise = maths::make_view_basis(view).x;
+    const vec3 direction = maths::lobe_direction(normal, view, otherwise);
+    const vec3 mirror = reflect(-view, normal);
+    EXPECT_NEAR(dot(mirror, cross(view, direction)), 0.0f, 1e-4f);
+    EXPECT_NEAR(length(direction), 1.0f, 1e-5f);
+    EXPECT_EQ(maths::lobe_direction(view, view, otherwise), otherwise);
+  }
+}
+
+}  // namespace
+}  // namespace alcove::maths_test
