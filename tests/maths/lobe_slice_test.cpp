@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "maths/visibility_bitmask.h"
 #include "random_input.h"
 #include "slice_truth.h"
 
@@ -13,7 +14,7 @@ namespace alcove::maths_test {
 namespace {
 
 using glm::vec3;
-using maths::LobeVisibility;
+using maths::LobeSlice;
 using maths::Slice;
 
 constexpr float kRoughnesses[] = {0.1f, 0.2f, 0.3f, 0.45f, 0.6f, 0.8f, 1.0f};
@@ -104,16 +105,15 @@ TEST(LobeSlice, DistributionHasThisAntiderivative) {
     for (int i = 0; i < 300; ++i) {
       const Slice s = Surface(random.uniform(0.0f, 1.5f)).slice(random.uniform(0.0f, 3.14f));
       const LobeTruth truth(s, s.toward, alpha);
-      const maths::LobeSlice lobe = maths::make_lobe_slice(s, alpha);
+      const LobeSlice lobe = maths::make_lobe_slice(s, alpha);
       const float side = random.bits() % 2 == 0 ? 1.0f : -1.0f;
       const double end = side > 0 ? truth.highest() : truth.lowest();
       const double angle = end * random.uniform(0.0f, 1.0f);
       const auto d = [&](double t) { return truth.distribution(t) * std::abs(std::sin(t)); };
       const double expected = truth.between(d, std::min(angle, 0.0), std::max(angle, 0.0));
       const double whole = truth.between(d, truth.lowest(), truth.highest());
-      const float found =
-          std::abs(maths::lobe_edge(s, lobe, side, float(std::cos(angle))).integral -
-                   maths::lobe_edge(s, lobe, side, 1.0f).integral);
+      const glm::vec2 light = maths::horizon_light(s, side, float(std::cos(angle)));
+      const float found = std::abs(maths::lobe_antiderivative(lobe.density, light) - lobe.at_view);
       worst = std::max(worst, std::abs(found - expected) / std::max(whole, 1e-3));
     }
   }
@@ -147,10 +147,9 @@ Error horizon_error(RandomInput& random, int slices, float roughness, int cases)
       const double behind = std::clamp(truth.lowest() * random.uniform(0.0f, 1.3f), -kPi, 0.0);
       visible += truth.integral(std::max(behind, truth.lowest()), std::min(ahead, truth.highest()));
       open += truth.integral(truth.lowest(), truth.highest());
-      const LobeVisibility found = maths::horizon_lobe(
-          s, maths::make_lobe_slice(s, alpha), float(std::cos(ahead)), float(std::cos(behind)));
-      visible_sum += found.visible;
-      open_sum += found.open;
+      const LobeSlice lobe = maths::make_lobe_slice(s, alpha);
+      visible_sum += maths::horizon_lobe(s, lobe, float(std::cos(ahead)), float(std::cos(behind)));
+      open_sum += lobe.open;
     }
     error.add(maths::lobe_visibility(visible_sum, open_sum) - visible / open);
   }
@@ -163,7 +162,7 @@ TEST(LobeSlice, OneSliceStaysWithinItsStatedErrorOfTheWholeBrdf) {
     const Error error = horizon_error(random, 1, roughness, 400);
     RecordProperty("rms_" + std::to_string(roughness), std::to_string(error.rms()));
     EXPECT_LT(error.rms(), 0.011) << "roughness " << roughness;
-    EXPECT_LT(error.worst, 0.04) << "roughness " << roughness;
+    EXPECT_LT(error.worst, 0.06) << "roughness " << roughness;
   }
 }
 
@@ -177,24 +176,22 @@ TEST(LobeSlice, SumOfSlicesStaysWithinItsStatedErrorOfTheWholeBrdf) {
 }
 
 TEST(LobeSlice, OpenSlicesOverAllTurnsHoldTheLobeOfTheBrdf) {
-  for (const float roughness : {0.3f, 0.6f}) {
+  for (const float roughness : {0.3f, 0.6f, 1.0f}) {
     for (const double tilt : {0.2, 0.8, 1.3}) {
       const Surface surface(tilt);
       const float alpha = roughness * roughness;
       const double in_slices = integrate(
           [&](double phi) {
-            const Slice s = surface.slice(phi);
-            return double(maths::horizon_lobe(s, maths::make_lobe_slice(s, alpha), -1, -1).open);
+            return double(maths::make_lobe_slice(surface.slice(phi), alpha).open);
           },
           0.0, kPi, 64);
       const double whole = integrate(
           [&](double phi) {
-            const Slice s = surface.slice(phi);
-            const LobeTruth truth(s, std::cos(tilt), alpha);
+            const LobeTruth truth(surface.slice(phi), std::cos(tilt), alpha);
             return truth.integral(truth.lowest(), truth.highest());
           },
           0.0, kPi, 64);
-      EXPECT_NEAR(in_slices / whole, 1.0, 0.12) << roughness << " " << tilt;
+      EXPECT_NEAR(in_slices / whole, 1.0, 0.1) << roughness << " " << tilt;
     }
   }
 }
@@ -203,53 +200,61 @@ TEST(LobeSlice, OpenAndClosedAreExactForAnyRoughnessAndView) {
   RandomInput random;
   for (int i = 0; i < 5000; ++i) {
     const Slice s = Surface(random.uniform(0.0f, 1.5707f)).slice(random.uniform(0.0f, 3.14f));
-    const maths::LobeSlice lobe = maths::make_lobe_slice(s, random.uniform(0.0f, 1.0f));
-    const LobeVisibility open = maths::horizon_lobe(s, lobe, -1.0f, -1.0f);
-    EXPECT_EQ(maths::lobe_visibility(open.visible, open.open), 1.0f);
-    const LobeVisibility closed = maths::horizon_lobe(s, lobe, 1.0f, 1.0f);
-    EXPECT_EQ(closed.visible, 0.0f);
-    EXPECT_TRUE(std::isfinite(closed.open));
-    EXPECT_EQ(maths::bitmask_lobe(s, maths::make_sector_scale(s), lobe, 0xffffffffu).visible, 0.0f);
-    const LobeVisibility clear = maths::bitmask_lobe(s, maths::make_sector_scale(s), lobe, 0u);
-    EXPECT_EQ(clear.visible, clear.open);
+    const LobeSlice lobe = maths::make_lobe_slice(s, random.uniform(0.0f, 1.0f));
+    EXPECT_TRUE(std::isfinite(lobe.open));
+    EXPECT_GE(lobe.open, 0.0f);
+    EXPECT_NEAR(maths::horizon_lobe(s, lobe, -1.0f, -1.0f), lobe.open, 1e-6f * lobe.open);
+    EXPECT_EQ(maths::horizon_lobe(s, lobe, 1.0f, 1.0f), 0.0f);
+    EXPECT_EQ(maths::bitmask_lobe(lobe, 0u), lobe.open);
+    EXPECT_EQ(maths::bitmask_lobe(lobe, 0xffffffffu), 0.0f);
+  }
+  EXPECT_EQ(maths::lobe_visibility(0.0f, 0.0f), 1.0f);
+}
+
+TEST(LobeSlice, ArcGrowsAsTheHorizonFalls) {
+  RandomInput random;
+  for (int i = 0; i < 300; ++i) {
+    const Slice s = Surface(random.uniform(0.0f, 1.57f)).slice(random.uniform(0.0f, 3.14f));
+    const LobeSlice lobe = maths::make_lobe_slice(s, random.uniform(0.0f, 1.0f));
+    for (const float side : {-1.0f, 1.0f}) {
+      float before = 0.0f;
+      for (float c = 1.0f; c >= -1.0f; c -= 0.01f) {
+        const float arc = maths::lobe_arc(s, lobe, side, c);
+        EXPECT_GE(arc, before - 1e-3f * lobe.open);
+        before = arc;
+      }
+    }
   }
 }
 
 TEST(LobeSlice, MirrorSeesWhatLiesAtItsAngle) {
   const double tilt = 0.4;
   const Slice s = Surface(tilt).slice(0.0);
-  const maths::LobeSlice lobe = maths::make_lobe_slice(s, 0.0f);
+  const LobeSlice lobe = maths::make_lobe_slice(s, 0.0f);
   const auto seen = [&](double horizon) {
-    const LobeVisibility v = maths::horizon_lobe(s, lobe, float(std::cos(horizon)), -1.0f);
-    return maths::lobe_visibility(v.visible, v.open);
+    return maths::horizon_lobe(s, lobe, float(std::cos(horizon)), -1.0f) / lobe.open;
   };
   EXPECT_LT(seen(2 * tilt - 0.1), 0.02f);
   EXPECT_NEAR(seen(2 * tilt), 0.5f, 0.02f);
   EXPECT_GT(seen(2 * tilt + 0.1), 0.98f);
 }
 
-TEST(LobeSlice, BitmaskAgreesWithTheHorizonsItHolds) {
+TEST(LobeSlice, SectorsOfTheLobeHoldItsHorizonsWithinASector) {
   RandomInput random;
-  for (const float roughness : {0.3f, 0.6f, 1.0f}) {
+  for (const float roughness : kRoughnesses) {
     Error error;
-    for (int i = 0; i < 1000; ++i) {
-      const Slice s = Surface(random.uniform(0.0f, 1.4f)).slice(random.uniform(0.0f, 3.14f));
-      const maths::SectorScale scale = maths::make_sector_scale(s);
-      const maths::LobeSlice lobe = maths::make_lobe_slice(s, roughness * roughness);
-      // Horizons on the edges of sectors, so that both say the same.
-      const unsigned low = unsigned(random.uniform(0.0f, scale.view) * 32.0f);
-      const unsigned high = unsigned(std::ceil(random.uniform(scale.view, 1.0f) * 32.0f));
-      const unsigned hidden = maths::cover_sectors(0.0f, float(low) / 32.0f, 0.5f) |
-                              maths::cover_sectors(float(high) / 32.0f, 1.0f, 0.5f);
-      const LobeVisibility a = maths::bitmask_lobe(s, scale, lobe, hidden);
-      const LobeVisibility b = maths::horizon_lobe(
-          s, lobe, maths::sector_edge(s, scale, lobe, float(high) / 32.0f).cosine,
-          maths::sector_edge(s, scale, lobe, float(low) / 32.0f).cosine);
-      if (high <= low || float(low) / 32.0f > scale.view) continue;
-      error.add(maths::lobe_visibility(a.visible, a.open) -
-                maths::lobe_visibility(b.visible, b.open));
+    for (int i = 0; i < 2000; ++i) {
+      const Slice s = Surface(random.uniform(0.0f, 1.5f)).slice(random.uniform(0.0f, 3.14f));
+      const LobeSlice lobe = maths::make_lobe_slice(s, roughness * roughness);
+      const float ahead = random.uniform(-1.0f, 1.0f), behind = random.uniform(-1.0f, 1.0f);
+      const unsigned hidden =
+          maths::cover_sectors(maths::lobe_position(s, lobe, 1.0f, ahead), 1.0f, 0.5f) |
+          maths::cover_sectors(0.0f, maths::lobe_position(s, lobe, -1.0f, behind), 0.5f);
+      error.add((maths::bitmask_lobe(lobe, hidden) - maths::horizon_lobe(s, lobe, ahead, behind)) /
+                lobe.open);
     }
-    EXPECT_LT(error.worst, 2e-3) << "roughness " << roughness;
+    EXPECT_LT(error.worst, 1.01 / 32) << "roughness " << roughness;
+    EXPECT_LT(error.rms(), 0.014) << "roughness " << roughness;
   }
 }
 

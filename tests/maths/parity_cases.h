@@ -173,9 +173,11 @@ ALCOVE_INLINE vec4 parity_of_sampling(uint which, vec4 a, vec4 b) {
     case 21u: {
       Slice s = parity_slice(a);
       LobeSlice lobe = make_lobe_slice(s, 0.05f + 0.95f * b.x);
-      LobeVisibility by_horizons = horizon_lobe(s, lobe, b.y * 2.0f - 1.0f, b.z * 2.0f - 1.0f);
-      LobeVisibility by_sectors = bitmask_lobe(s, make_sector_scale(s), lobe, hash(pixel.x));
-      return vec4(by_horizons.visible, by_horizons.open, by_sectors.visible, by_sectors.open);
+      float ahead = b.y * 2.0f - 1.0f;
+      float behind = b.z * 2.0f - 1.0f;
+      return vec4(lobe.open, horizon_lobe(s, lobe, ahead, behind),
+                  lobe_position(s, lobe, 1.0f, ahead) * lobe.open,
+                  bitmask_lobe(lobe, hash(pixel.x)));
     }
   }
   return vec4(0.0f);
