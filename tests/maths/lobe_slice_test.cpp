@@ -161,8 +161,8 @@ TEST(LobeSlice, OneSliceStaysWithinItsStatedErrorOfTheWholeBrdf) {
   for (const float roughness : kRoughnesses) {
     const Error error = horizon_error(random, 1, roughness, 400);
     RecordProperty("rms_" + std::to_string(roughness), std::to_string(error.rms()));
-    EXPECT_LT(error.rms(), 0.011) << "roughness " << roughness;
-    EXPECT_LT(error.worst, 0.06) << "roughness " << roughness;
+    EXPECT_LT(error.rms(), 0.013) << "roughness " << roughness;
+    EXPECT_LT(error.worst, 0.07) << "roughness " << roughness;
   }
 }
 
@@ -170,7 +170,7 @@ TEST(LobeSlice, SumOfSlicesStaysWithinItsStatedErrorOfTheWholeBrdf) {
   RandomInput random;
   for (const float roughness : kRoughnesses) {
     const Error error = horizon_error(random, 16, roughness, 40);
-    EXPECT_LT(error.rms(), 0.007) << "roughness " << roughness;
+    EXPECT_LT(error.rms(), 0.008) << "roughness " << roughness;
     EXPECT_LT(error.worst, 0.03) << "roughness " << roughness;
   }
 }

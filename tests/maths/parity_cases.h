@@ -155,6 +155,9 @@ ALCOVE_INLINE vec4 parity_of_sampling(uint which, vec4 a, vec4 b) {
     case 17u:
       return vec4(spatial_pattern(pixel, frame).direction, spatial_pattern(pixel, frame).offset,
                   hilbert_noise(pixel, frame).direction, hilbert_noise(pixel, frame).offset);
+    case 22u:
+      return vec4(golden_pattern(pixel, frame).direction, golden_pattern(pixel, frame).offset,
+                  unit_float(hash(frame)), float(hilbert_index(pixel)));
     case 18u:
       return vec4(unit_float(hash(pixel.x + pixel.y * 960u)), float(hilbert_index(pixel)),
                   float(bitCount(cover_sectors(floor(b.x * 64.0f) / 64.0f + 0.005f,
@@ -183,7 +186,7 @@ ALCOVE_INLINE vec4 parity_of_sampling(uint which, vec4 a, vec4 b) {
   return vec4(0.0f);
 }
 
-const uint kParityCases = 22u;
+const uint kParityCases = 23u;
 
 // Four results of case `which` for eight numbers in [0,1).
 ALCOVE_INLINE vec4 parity_case(uint which, vec4 a, vec4 b, Projection p) {

@@ -1,10 +1,8 @@
-// The same functions on the device and on the CPU, and the same structs.
+// The same functions on the device and on the CPU.
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstddef>
 #include <cstring>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -13,7 +11,6 @@
 #include "parity_cases.h"
 #include "parity_spirv.h"
 #include "random_input.h"
-#include "spirv_layout.h"
 #include "vulkan_device.h"
 
 namespace alcove::maths_test {
@@ -52,6 +49,7 @@ constexpr Bound kBounds[] = {
     {"steps", 1e-5, 1e-4},
     {"bent normal of sectors", 2e-4, 1e-5},
     {"lobe of slices", 1e-3, 1e-3},
+    {"golden pattern", 0.0, 0.0},
 };
 static_assert(std::size(kBounds) == maths::kParityCases);
 
@@ -74,10 +72,9 @@ class Parity : public ::testing::TestWithParam<std::uint32_t> {
     device_ = std::move(*made);
     run_ = std::make_unique<ComputeRun>(
         *device_, kParitySpirv,
-        std::vector<std::uint32_t>{sizeof(maths::Projection), kInputs * 32, kInputs * 16, 256});
+        std::vector<std::uint32_t>{sizeof(maths::Projection), kInputs * 32, kInputs * 16});
     const maths::Projection projection = off_centre_projection();
     std::memcpy(run_->data(0), &projection, sizeof projection);
-    std::memcpy(run_->data(3), &projection, sizeof projection);
   }
   static void TearDownTestSuite() {
     run_.reset();
@@ -123,35 +120,6 @@ INSTANTIATE_TEST_SUITE_P(EveryFunction, Parity, ::testing::Range(0u, maths::kPar
                              if (c == ' ') c = '_';
                            return name;
                          });
-
-using Offsets = std::map<std::string, std::uint32_t>;
-
-#define ALCOVE_OFFSET(type, member) \
-  { #member, std::uint32_t(offsetof(maths::type, member)) }
-
-TEST(ParameterStructs, LieOnTheDeviceWhereTheyLieInCpp) {
-  const std::map<std::string, Offsets> expected = {
-      {"Projection",
-       {ALCOVE_OFFSET(Projection, uv_to_slope), ALCOVE_OFFSET(Projection, uv_to_origin),
-        ALCOVE_OFFSET(Projection, position_to_uv), ALCOVE_OFFSET(Projection, depth_to_uv),
-        ALCOVE_OFFSET(Projection, depth_unproject), ALCOVE_OFFSET(Projection, eye),
-        ALCOVE_OFFSET(Projection, size_px), ALCOVE_OFFSET(Projection, texel_uv),
-        ALCOVE_OFFSET(Projection, sky), ALCOVE_OFFSET(Projection, near_far)}},
-      {"Thickness",
-       {ALCOVE_OFFSET(Thickness, constant), ALCOVE_OFFSET(Thickness, per_radius),
-        ALCOVE_OFFSET(Thickness, per_depth)}},
-  };
-  std::map<std::string, int> seen;
-  for (const StructLayout& layout : struct_layouts(kParitySpirv)) {
-    const auto match = expected.find(layout.name);
-    if (match == expected.end()) continue;
-    EXPECT_EQ(layout.offsets, match->second) << layout.name;
-    ++seen[layout.name];
-  }
-  EXPECT_EQ(seen["Projection"], 2) << "as std140 and as std430";
-  EXPECT_EQ(seen["Thickness"], 1);
-  EXPECT_EQ(sizeof(maths::Projection) % 16, 0u) << "so that std140 and C++ agree on arrays of it";
-}
 
 }  // namespace
 }  // namespace alcove::maths_test

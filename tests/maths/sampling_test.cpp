@@ -14,6 +14,14 @@ namespace {
 using glm::uvec2;
 using maths::SliceNoise;
 
+// The longest stretch of [0,1), ends joined, without a value.
+float largest_gap(std::vector<float> values) {
+  std::sort(values.begin(), values.end());
+  float gap = values.front() + 1.0f - values.back();
+  for (std::size_t k = 1; k < values.size(); ++k) gap = std::max(gap, values[k] - values[k - 1]);
+  return gap;
+}
+
 TEST(SpatialPattern, BlockHoldsSixteenDirectionsAndFourOffsets) {
   for (unsigned frame = 0; frame < 24; ++frame) {
     std::set<float> directions, offsets;
@@ -63,6 +71,34 @@ TEST(SpatialPattern, RepeatsEveryFourPixelsAndTwentyFourFrames) {
   EXPECT_EQ(a.offset, b.offset);
 }
 
+TEST(GoldenPattern, BlockHoldsSixteenDirectionsAndFourOffsetsInEveryFrame) {
+  for (unsigned frame : {0u, 1u, 5u, 1000000u}) {
+    std::set<float> directions, offsets;
+    for (unsigned k = 0; k < 16; ++k) {
+      const SliceNoise noise = maths::golden_pattern(uvec2(k & 3u, k >> 2u), frame);
+      directions.insert(noise.direction);
+      offsets.insert(noise.offset);
+      EXPECT_TRUE(noise.direction >= 0.0f && noise.direction < 1.0f);
+      EXPECT_TRUE(noise.offset >= 0.0f && noise.offset < 1.0f);
+    }
+    EXPECT_EQ(directions.size(), 16u);
+    EXPECT_EQ(offsets.size(), 4u);
+  }
+}
+
+TEST(GoldenPattern, AnyRunOfFramesCoversDirectionsAndOffsetsEvenly) {
+  for (unsigned start : {0u, 123u, 4000000000u}) {
+    std::vector<float> directions, offsets;
+    for (unsigned frame = 0; frame < 32; ++frame) {
+      const SliceNoise noise = maths::golden_pattern(uvec2(2, 1), start + frame);
+      directions.push_back(noise.direction);
+      offsets.push_back(noise.offset);
+    }
+    EXPECT_LT(largest_gap(directions), 2.7f / 32);
+    EXPECT_LT(largest_gap(offsets), 4.2f / 32);
+  }
+}
+
 TEST(HilbertNoise, CurveVisitsEveryPixelOnceInUnitSteps) {
   std::vector<uvec2> path(4096, uvec2(64));
   for (unsigned y = 0; y < 64; ++y)
@@ -89,12 +125,6 @@ TEST(HilbertNoise, IsTheR2SequenceInExactArithmetic) {
 }
 
 TEST(HilbertNoise, IsSpreadEvenlyOverABlockAndOverFrames) {
-  const auto largest_gap = [](std::vector<float> values) {
-    std::sort(values.begin(), values.end());
-    float gap = values.front() + 1.0f - values.back();
-    for (std::size_t k = 1; k < values.size(); ++k) gap = std::max(gap, values[k] - values[k - 1]);
-    return gap;
-  };
   std::vector<float> block, frames;
   for (unsigned k = 0; k < 16; ++k)
     block.push_back(maths::hilbert_noise(uvec2(8 + (k & 3u), 12 + (k >> 2u)), 0).direction);

@@ -1,0 +1,68 @@
+// Parameter structs are written once for both sides: they must lie in a uniform block as in C++.
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <map>
+#include <string>
+
+#include "depth_pyramid_parameters.h"
+#include "gtao_parameters.h"
+#include "maths/projection.h"
+#include "normals_parameters.h"
+#include "parameter_layouts_spirv.h"
+#include "reconstruct_parameters.h"
+#include "spirv_layout.h"
+
+namespace alcove::maths_test {
+namespace {
+
+using Offsets = std::map<std::string, std::uint32_t>;
+
+#define ALCOVE_OFFSET(type, member) \
+  { #member, std::uint32_t(offsetof(maths::type, member)) }
+
+const std::map<std::string, Offsets> kExpected = {
+    {"Projection",
+     {ALCOVE_OFFSET(Projection, uv_to_slope), ALCOVE_OFFSET(Projection, uv_to_origin),
+      ALCOVE_OFFSET(Projection, position_to_uv), ALCOVE_OFFSET(Projection, depth_to_uv),
+      ALCOVE_OFFSET(Projection, depth_unproject), ALCOVE_OFFSET(Projection, eye),
+      ALCOVE_OFFSET(Projection, size_px), ALCOVE_OFFSET(Projection, texel_uv),
+      ALCOVE_OFFSET(Projection, sky), ALCOVE_OFFSET(Projection, near_far)}},
+    {"DepthPyramidParameters",
+     {ALCOVE_OFFSET(DepthPyramidParameters, projection),
+      ALCOVE_OFFSET(DepthPyramidParameters, reach)}},
+    {"GtaoParameters",
+     {ALCOVE_OFFSET(GtaoParameters, projection), ALCOVE_OFFSET(GtaoParameters, view_from_normal),
+      ALCOVE_OFFSET(GtaoParameters, phase), ALCOVE_OFFSET(GtaoParameters, radius),
+      ALCOVE_OFFSET(GtaoParameters, frame), ALCOVE_OFFSET(GtaoParameters, thickness),
+      ALCOVE_OFFSET(GtaoParameters, fill)}},
+    {"NormalsParameters", {ALCOVE_OFFSET(NormalsParameters, projection)}},
+    {"ReconstructParameters",
+     {ALCOVE_OFFSET(ReconstructParameters, projection),
+      ALCOVE_OFFSET(ReconstructParameters, previous),
+      ALCOVE_OFFSET(ReconstructParameters, view_from_normal),
+      ALCOVE_OFFSET(ReconstructParameters, previous_view_from_view),
+      ALCOVE_OFFSET(ReconstructParameters, phase),
+      ALCOVE_OFFSET(ReconstructParameters, tolerance_px),
+      ALCOVE_OFFSET(ReconstructParameters, longest),
+      ALCOVE_OFFSET(ReconstructParameters, clamp_width),
+      ALCOVE_OFFSET(ReconstructParameters, history_valid)}},
+};
+
+TEST(ParameterStructs, LieInUniformBlocksWhereTheyLieInCpp) {
+  std::map<std::string, int> seen;
+  for (const StructLayout& layout : struct_layouts(kParameterLayouts)) {
+    const auto match = kExpected.find(layout.name);
+    if (match == kExpected.end()) continue;
+    EXPECT_EQ(layout.offsets, match->second) << layout.name;
+    ++seen[layout.name];
+  }
+  for (const auto& [name, offsets] : kExpected) EXPECT_EQ(seen[name], 1) << name;
+}
+
+TEST(ParameterStructs, CanFollowOneAnotherInABlock) {
+  EXPECT_EQ(sizeof(maths::Projection) % 16, 0u);
+}
+
+}  // namespace
+}  // namespace alcove::maths_test

@@ -1,0 +1,22 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+
+// Declares every parameter struct in the uniform block that its shader declares it in.
+
+#include "depth_pyramid_parameters.h"
+#include "gtao_parameters.h"
+#include "maths/projection.h"
+#include "normals_parameters.h"
+#include "reconstruct_parameters.h"
+
+layout(set = 0, binding = 0) uniform A { Projection projection; };
+layout(set = 0, binding = 1) uniform B { DepthPyramidParameters depth_pyramid; };
+layout(set = 0, binding = 2) uniform C { GtaoParameters gtao; };
+layout(set = 0, binding = 3) uniform D { NormalsParameters normals; };
+layout(set = 0, binding = 4) uniform E { ReconstructParameters reconstruct; };
+layout(std430, set = 0, binding = 5) buffer Sum { float sum; };
+
+void main() {
+  sum = projection.size_px.x + depth_pyramid.reach + gtao.radius + normals.projection.size_px.x +
+        reconstruct.longest;
+}
