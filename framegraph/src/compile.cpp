@@ -32,6 +32,7 @@ tl::expected<void, Errors> Compiler::compile(const GraphDescription& graph, cons
   if (!validate(graph, limits, workspace, errors)) return tl::unexpected(std::move(errors));
   cull(graph, workspace, plan);
   order(graph, limits, workspace, plan);
+  assign_queues(graph, limits, workspace, plan);
   lifetimes(graph, limits, workspace, plan);
   place(graph, limits, workspace, plan);
   synchronise(graph, limits, workspace, plan);

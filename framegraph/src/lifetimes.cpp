@@ -1,9 +1,29 @@
 // Lifetimes: the positions between which a transient's memory is its own, and what it must be made
 // with.
+#include <algorithm>
+
 #include "format_info.h"
 #include "workspace.h"
 
 namespace alcove::framegraph {
+
+namespace {
+
+// A pass of another queue that may run beside the last use must not have the memory.
+void lengthen(const GraphDescription& graph, const Workspace& workspace, Plan& plan) {
+  for (std::uint32_t position = 0; position < plan.passes.size(); ++position) {
+    const std::uint32_t pass = plan.passes[position].pass;
+    const auto accesses = graph.pass_accesses(pass);
+    const std::uint8_t* live = plan.live_accesses.data() + graph.passes[pass].first_access;
+    const std::uint32_t until = taken_until(workspace, plan, position);
+    for (std::size_t i = 0; i < accesses.size(); ++i) {
+      Placement& placement = plan.placements[accesses[i].resource];
+      if (live[i]) placement.last = std::max(placement.last, until);
+    }
+  }
+}
+
+}  // namespace
 
 void lifetimes(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
                Plan& plan) {
@@ -24,6 +44,7 @@ void lifetimes(const GraphDescription& graph, const Limits& limits, Workspace& w
         workspace.transients.push_back(accesses[i].resource);
     }
   }
+  if (workspace.several_queues) lengthen(graph, workspace, plan);
   // What is wanted after the frame keeps its memory to the end.
   for (const OutputRecord& output : graph.outputs) {
     Placement& placement = plan.placements[output.resource];

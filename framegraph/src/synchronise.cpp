@@ -29,11 +29,20 @@ void note(UseState& state, const AccessRecord& access, std::int32_t time) {
     state.seen_access = 0;
     state.transition = kNone;
     state.handed_over = 0;
+    state.by_wait = 0;
   } else {
     state.read_stages |= access.stages;
     state.read_time = time;
   }
   state.layout = access.layout;
+  state.used = 1;
+}
+
+// Stages of this access that a semaphore wait covers.
+VkPipelineStageFlags2 waited_stages(const AccessRecord& access) {
+  const VkPipelineStageFlags2 stages =
+      access.stages & ~(VK_PIPELINE_STAGE_2_HOST_BIT | VK_PIPELINE_STAGE_2_BOTTOM_OF_PIPE_BIT);
+  return stages != 0 ? stages : VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
 }
 
 void note_external(UseState& state, const ExternalRecord& external) {
@@ -46,7 +55,9 @@ void note_external(UseState& state, const ExternalRecord& external) {
     state.read_stages = arrival.stages;
     state.read_time = kBeforeFrame;
   }
-  if (external.has_contents) state.layout = arrival.layout;
+  if (!external.has_contents) return;
+  state.layout = arrival.layout;
+  state.used = 1;
 }
 
 // Makes `last` cover the mips of `next` too, if the two are neighbours that change alike.
@@ -55,7 +66,8 @@ bool extend(Transition& last, const Transition& next) {
   const Range& b = next.range;
   const bool alike = last.src_stages == next.src_stages && last.src_access == next.src_access &&
                      last.dst_stages == next.dst_stages && last.dst_access == next.dst_access &&
-                     last.old_layout == next.old_layout && last.new_layout == next.new_layout;
+                     last.old_layout == next.old_layout && last.new_layout == next.new_layout &&
+                     last.src_queue == next.src_queue && last.dst_queue == next.dst_queue;
   const bool neighbours =
       a.base_layer == b.base_layer && a.layers == b.layers && a.base_mip + a.mips == b.base_mip;
   if (!alike || !neighbours) return false;
@@ -73,6 +85,8 @@ void Synchroniser::run() {
   std::size_t started = 0;
   for (std::uint32_t position = 0; position < plan_.passes.size(); ++position) {
     PlannedPass& planned = plan_.passes[position];
+    queue_ = planned.queue;
+    floor_ = plan_.submissions[planned.submission].first_pass;
     const auto accesses = graph_.pass_accesses(planned.pass);
     const std::uint8_t* live =
         plan_.live_accesses.data() + graph_.passes[planned.pass].first_access;
@@ -96,8 +110,11 @@ void Synchroniser::arrive() {
   for (std::uint32_t r = 0; r < graph_.resources.size(); ++r) {
     if (graph_.resources[r].external == kNone) continue;
     const ExternalRecord& external = graph_.externals[graph_.resources[r].external];
-    for (std::uint32_t sub = first[r]; sub < first[r + 1]; ++sub)
+    for (std::uint32_t sub = first[r]; sub < first[r + 1]; ++sub) {
       note_external(s_.states[sub], external);
+      const auto queue = static_cast<std::size_t>(external.queue);
+      if (limits_.queue_families[queue] != kNone) s_.states[sub].queue = external.queue;
+    }
   }
 }
 
@@ -134,6 +151,12 @@ void Synchroniser::take_over_memory(std::uint32_t resource) {
     const auto& states = segment.before ? s_.last_uses : s_.states;
     for (std::uint32_t sub = first[segment.resource]; sub < first[segment.resource + 1]; ++sub) {
       const UseState& state = states[sub];
+      // With several queues a frame begins when all of the one before is done.
+      if (workspace_.several_queues && (segment.before || state.queue != queue_)) {
+        merged.by_wait = 1;
+        continue;
+      }
+      merged.by_wait |= state.by_wait;
       if (state.read_stages != 0) {
         merged.read_stages |= state.read_stages;
         merged.read_time = std::max(merged.read_time, state.read_time);
@@ -147,6 +170,7 @@ void Synchroniser::take_over_memory(std::uint32_t resource) {
   take_over(s_.memory[placed.heap], {placed.offset, placed.offset + placed.size, resource, false},
             merge);
   merged.handed_over = 1;
+  merged.queue = queue_;
   std::fill(s_.states.begin() + first[resource], s_.states.begin() + first[resource + 1], merged);
 }
 
@@ -174,6 +198,7 @@ void Synchroniser::use(std::uint32_t position, const AccessRecord& access) {
 void Synchroniser::use_range(std::uint32_t position, const AccessRecord& access, UseState& state,
                              const Range& range) {
   const bool texture = graph_.resources[access.resource].kind == ResourceKind::texture;
+  if (state.queue != queue_ && change_queue(position, access, state, range)) return;
   if (texture && state.layout != access.layout)
     change_layout(position, access, state, range);
   else if (access.flags & kWrite)
@@ -192,15 +217,24 @@ void Synchroniser::change_layout(std::uint32_t position, const AccessRecord& acc
     wanted.src_stages = state.read_stages;
     wanted.src_access = 0;
   }
+  // A wait covers all stages, so that any stage follows on it.
+  if (wanted.src_stages == 0 && state.by_wait) wanted.src_stages = waited_stages(access);
   wanted.dst_stages = access.stages;
   wanted.dst_access = access.access;
   wanted.resource = access.resource;
+  wanted.src_queue = wanted.dst_queue = queue_;
   wanted.old_layout = access.flags & kDiscard ? VK_IMAGE_LAYOUT_UNDEFINED : state.layout;
   wanted.new_layout = access.layout;
   wanted.range = range;
   const std::int32_t time = std::max(state.read_time, state.write_time);
-  const std::uint32_t transition = add_image(time, position, wanted);
+  note_change(position, access, state, add_image(time, position, wanted));
+}
+
+// The state after an access for which a barrier was just added.
+void Synchroniser::note_change(std::uint32_t position, const AccessRecord& access, UseState& state,
+                               std::uint32_t transition) {
   state = {};
+  state.queue = queue_;
   state.write_stages = access.stages;
   state.write_time = static_cast<std::int32_t>(2 * batch_position_);
   state.seen_stages = access.stages;
@@ -209,16 +243,90 @@ void Synchroniser::change_layout(std::uint32_t position, const AccessRecord& acc
   if (!(access.flags & kWrite)) state.transition = transition;
 }
 
+// A subresource comes from another queue, by a wait that is there already. True when it changed
+// hands, with its layout, and nothing is left to do.
+bool Synchroniser::change_queue(std::uint32_t position, const AccessRecord& access, UseState& state,
+                                const Range& range) {
+  const auto family = [this](QueueClass queue) {
+    return limits_.queue_families[static_cast<std::size_t>(queue)];
+  };
+  const bool texture = graph_.resources[access.resource].kind == ResourceKind::texture;
+  const bool keeps = state.used && !(access.flags & kDiscard) &&
+                     (!texture || state.layout != VK_IMAGE_LAYOUT_UNDEFINED);
+  if (!keeps || family(state.queue) == family(queue_)) {
+    // Without its contents an image needs no giver, if it comes from the undefined layout.
+    const bool given = family(state.queue) == family(queue_);
+    const VkImageLayout layout = given ? state.layout : VK_IMAGE_LAYOUT_UNDEFINED;
+    const std::uint8_t used = state.used;
+    const bool fresh = state.handed_over != 0;
+    state = {};
+    state.queue = queue_;
+    state.by_wait = 1;
+    state.used = used;
+    state.layout = layout;
+    if (fresh) {
+      // Who had the memory before may have been on this queue: no wait stands between.
+      state.handed_over = 1;
+      state.write_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+      state.write_access = VK_ACCESS_2_MEMORY_WRITE_BIT;
+      return false;
+    }
+    // The wait covers all that commands do, but nothing that the host does.
+    state.seen_stages = ~VkPipelineStageFlags2{VK_PIPELINE_STAGE_2_HOST_BIT};
+    state.seen_access = ~VkAccessFlags2{0};
+    return false;
+  }
+  Transition release;
+  release.src_stages = state.read_stages != 0 ? state.read_stages : state.write_stages;
+  release.src_access = state.read_stages != 0 ? 0 : state.write_access;
+  release.resource = access.resource;
+  release.range = range;
+  release.old_layout = texture ? state.layout : VK_IMAGE_LAYOUT_UNDEFINED;
+  release.new_layout = texture ? access.layout : VK_IMAGE_LAYOUT_UNDEFINED;
+  release.src_queue = state.queue;
+  release.dst_queue = queue_;
+  if (release.src_stages == 0) release.src_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+  const std::int32_t time = std::max(state.read_time, state.write_time);
+  const std::uint32_t from = time < 0
+                                 ? workspace_.queues.opening[static_cast<std::size_t>(state.queue)]
+                                 : plan_.passes[static_cast<std::size_t>(time / 2)].submission;
+  s_.releases.push_back({from, release});
+  Transition acquire = release;
+  acquire.src_stages = waited_stages(access);
+  acquire.src_access = 0;
+  acquire.dst_stages = access.stages;
+  acquire.dst_access = access.access;
+  note_change(position, access, state, add_image(kBeforeFrame, position, acquire));
+  return true;
+}
+
+// Releases come after the last pass of their submissions.
+void Synchroniser::add_releases() {
+  std::stable_sort(s_.releases.begin(), s_.releases.end(),
+                   [](const auto& a, const auto& b) { return a.submission < b.submission; });
+  for (const auto& release : s_.releases) {
+    Submission& submission = plan_.submissions[release.submission];
+    if (submission.batch_count == 0) {
+      submission.first_batch = static_cast<std::uint32_t>(plan_.batches.size());
+      submission.batch_count = 1;
+      plan_.batches.push_back({static_cast<std::uint32_t>(plan_.transitions.size()), 0, kNone});
+    }
+    plan_.transitions.push_back(release.transition);
+    ++plan_.batches.back().count;
+  }
+  s_.releases.clear();
+}
+
 void Synchroniser::read_again(std::uint32_t position, const AccessRecord& access, UseState& state) {
   const bool seen =
       (access.stages & ~state.seen_stages) == 0 && (access.access & ~state.seen_access) == 0;
-  if (!seen && state.write_time != -2) {
+  if (!seen && (state.write_time != -2 || state.by_wait)) {
     if (state.transition != kNone) {
       plan_.transitions[state.transition].dst_stages |= access.stages;
       plan_.transitions[state.transition].dst_access |= access.access;
     } else {
       Transition wanted;
-      wanted.src_stages = state.write_stages;
+      wanted.src_stages = state.by_wait ? VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT : state.write_stages;
       wanted.src_access = state.write_access;
       wanted.dst_stages = access.stages;
       wanted.dst_access = access.access;
@@ -254,7 +362,9 @@ void Synchroniser::write_again(std::uint32_t position, const AccessRecord& acces
 
 void Synchroniser::depart() {
   const auto end = static_cast<std::uint32_t>(plan_.passes.size());
+  if (workspace_.several_queues) floor_ = end;
   for (std::uint32_t r = 0; r < graph_.resources.size() && !graph_.externals.empty(); ++r) {
+    queue_ = QueueClass::graphics;
     const ResourceRecord& resource = graph_.resources[r];
     if (resource.external == kNone) continue;
     const ExternalRecord& external = graph_.externals[resource.external];
@@ -263,13 +373,12 @@ void Synchroniser::depart() {
       use(end, outside_use(r, external.departure));
     if (used && resource.origin == Origin::history) leave(r);
   }
-  Submission all;
-  all.pass_count = end;
   if (batch_position_ == end && !plan_.batches.empty()) {
-    all.first_batch = static_cast<std::uint32_t>(plan_.batches.size() - 1);
-    all.batch_count = 1;
+    Submission& last = plan_.submissions.back();
+    last.first_batch = static_cast<std::uint32_t>(plan_.batches.size() - 1);
+    last.batch_count = 1;
   }
-  plan_.submissions.push_back(all);
+  if (!s_.releases.empty()) add_releases();
 }
 
 AccessRecord Synchroniser::outside_use(std::uint32_t resource, const State& state) const {
@@ -293,15 +402,22 @@ void Synchroniser::leave(std::uint32_t resource) {
   bool one_layout = true;
   for (std::uint32_t sub = first; sub < last; ++sub) {
     const UseState& state = s_.states[sub];
-    one_layout = one_layout && state.layout == s_.states[first].layout;
+    one_layout = one_layout && state.layout == s_.states[first].layout &&
+                 state.queue == s_.states[first].queue;
     final.state.stages |= state.read_stages != 0 ? state.read_stages : state.write_stages;
     if (state.read_stages == 0) final.state.access |= state.write_access;
     final.written |= s_.last_uses[sub].write_stages != 0;
   }
   final.state.layout = s_.states[first].layout;
+  if (workspace_.several_queues) {
+    // Other queues' uses are not followed apart.
+    final.state.stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+    if (final.written) final.state.access = VK_ACCESS_2_MEMORY_WRITE_BIT;
+  }
+  final.queue = one_layout ? s_.states[first].queue : QueueClass::graphics;
   if (!one_layout) {
-    final.state.layout = VK_IMAGE_LAYOUT_GENERAL;
-    final.state.access = 0;
+    final.state = {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT,
+                   VK_IMAGE_LAYOUT_GENERAL};
     use(static_cast<std::uint32_t>(plan_.passes.size()), outside_use(resource, final.state));
   }
   plan_.finals.push_back(final);
@@ -309,6 +425,7 @@ void Synchroniser::leave(std::uint32_t resource) {
 
 // The dependencies go into the last batch if that comes after `time`, else into a new one.
 Batch& Synchroniser::batch_after(std::int32_t time, std::uint32_t position) {
+  time = std::max(time, static_cast<std::int32_t>(2 * floor_) - 1);
   if (batch_position_ == kNone || static_cast<std::int32_t>(2 * batch_position_) < time) {
     batch_position_ = position;
     plan_.batches.push_back({static_cast<std::uint32_t>(plan_.transitions.size()), 0, kNone});

@@ -26,6 +26,11 @@ class Synchroniser {
                  const Range& range);
   void change_layout(std::uint32_t position, const AccessRecord& access, UseState& state,
                      const Range& range);
+  void note_change(std::uint32_t position, const AccessRecord& access, UseState& state,
+                   std::uint32_t transition);
+  bool change_queue(std::uint32_t position, const AccessRecord& access, UseState& state,
+                    const Range& range);
+  void add_releases();
   void read_again(std::uint32_t position, const AccessRecord& access, UseState& state);
   void write_again(std::uint32_t position, const AccessRecord& access, UseState& state);
   void depart();
@@ -41,7 +46,9 @@ class Synchroniser {
   Workspace& workspace_;
   Plan& plan_;
   Workspace::Synchronise& s_;
-  std::uint32_t batch_position_ = kNone;  // of the last batch
+  std::uint32_t batch_position_ = kNone;     // of the last batch
+  QueueClass queue_ = QueueClass::graphics;  // of the pass in hand
+  std::uint32_t floor_ = 0;  // first position of its submission: no barrier can be put before
 };
 
 }  // namespace alcove::framegraph

@@ -42,7 +42,9 @@ void Replay::check_state(const AccessRecord& access, const Sub& sub, std::uint8_
     fail(name(access.resource) + " is in layout " + std::to_string(sub.layout) + ", needed is " +
          std::to_string(access.layout));
   if (sub.released) fail(name(access.resource) + " is used between release and acquire");
-  if (sub.family != kNone && sub.family != family(queue))
+  // A buffer whose contents are thrown away can be taken by anybody.
+  const bool taken = record.kind == ResourceKind::buffer && (access.flags & kDiscard);
+  if (!taken && sub.family != kNone && sub.family != family(queue))
     fail(name(access.resource) + " is used by a queue family that does not own it");
 }
 

@@ -61,13 +61,13 @@ void Replay::find_expected() {
   last_ = std::move(content);
 }
 
-// Transients hold nothing, imports arrive as declared. With several queues each frame begins when
-// all of the frame before is done; with one, commands just follow each other.
+// Transients hold nothing, imports arrive as declared. Where queues other than graphics take part,
+// a frame begins when all of the frame before is done; else commands just follow each other.
 void Replay::begin_frame(bool first) {
   where_ = first ? "at the start of the frame" : "at the start of the next frame";
-  const bool several = std::any_of(
-      plan_.submissions.begin(), plan_.submissions.end(),
-      [this](const Submission& s) { return s.queue != plan_.submissions.front().queue; });
+  const bool several =
+      std::any_of(plan_.submissions.begin(), plan_.submissions.end(),
+                  [](const Submission& s) { return s.queue != QueueClass::graphics; });
   if (several) for_each_piece([](Piece& piece) { join(piece); });
   for (std::uint32_t r = 0; r < resources_.size(); ++r) {
     const ResourceRecord& record = graph_.resources[r];

@@ -23,7 +23,7 @@ class Tables {
     if (!errors_.empty()) return false;  // indices may be wrong
     check_lifetimes();
     for (std::uint32_t r = 0; r < graph_.resources.size(); ++r) check_placement(r);
-    check_granularity();
+    check_overlaps();
     return true;
   }
 
@@ -155,12 +155,12 @@ class Tables {
       fail(name(r) + " lies in a heap whose memory types it does not allow");
   }
 
-  // A buffer and an image must not meet in one page of the device's granularity while both live.
-  void check_granularity() {
+  // What lives together shares no byte, and a buffer and an image no page of the granularity.
+  void check_overlaps() {
     const VkDeviceSize page = limits_.buffer_image_granularity;
-    if (page <= 1) return;
     for (std::uint32_t a = 0; a < graph_.resources.size(); ++a) {
       for (std::uint32_t b = a + 1; b < graph_.resources.size(); ++b) {
+        if (meet(a, b, 1)) fail(name(a) + " and " + name(b) + " live together on the same bytes");
         if (graph_.resources[a].kind != graph_.resources[b].kind && meet(a, b, page))
           fail(name(a) + " and " + name(b) + " share a page of the buffer-image granularity");
       }

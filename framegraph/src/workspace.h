@@ -26,7 +26,11 @@ struct UseState {
   VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
   std::uint32_t transition = kNone;  // the image barrier that made this layout
   // Memory that others had before: its reads do not stand for its writes.
-  std::uint32_t handed_over = 0;
+  std::uint8_t handed_over = 0;
+  // Comes after work of another queue by a wait that covers all stages.
+  std::uint8_t by_wait = 0;
+  QueueClass queue = QueueClass::graphics;  // of the last use
+  std::uint8_t used = 0;                    // in this frame, or arrived with contents
   bool operator==(const UseState&) const = default;
 };
 
@@ -67,6 +71,20 @@ struct Workspace {
     std::vector<std::uint32_t>
         history_reader;  // by resource: of slot 0, the pass that reads an older one
   } cull;
+  bool several_queues = false;
+  struct Queues {
+    std::vector<std::uint32_t> waits;      // by position and queue: the pass waited for
+    std::vector<std::uint8_t> waited_for;  // by position
+    std::vector<std::uint32_t> last_user;  // by subresource
+    std::vector<std::uint8_t> opened;      // by position: bits of opening submissions waited for
+    std::vector<std::uint8_t> opened_at;   // by position: of those known to be done
+    std::vector<std::int32_t> known_at;    // by position and queue, before regrouping
+    std::vector<std::int32_t> known;       // the last position of the queue known to be done
+    std::vector<std::uint32_t> submission_of;
+    std::vector<std::uint32_t> new_position;
+    std::vector<PlannedPass> moved;
+    std::uint32_t opening[kQueueClasses] = {kNone, kNone, kNone};  // submission before the passes
+  } queues;
   struct Place {
     std::vector<PlaceItem> items;  // in order of first use
     std::vector<PlaceItem> live;   // in order of offset
@@ -80,6 +98,11 @@ struct Workspace {
     std::vector<UseState> states;     // by subresource
     std::vector<UseState> last_uses;  // by subresource, at the end of a frame
     std::vector<MemoryMap> memory;    // by heap
+    struct Release {
+      std::uint32_t submission = 0;
+      Transition transition;
+    };
+    std::vector<Release> releases;
   } synchronise;
 };
 
@@ -106,6 +129,11 @@ bool validate(const GraphDescription& graph, const Limits& limits, Workspace& wo
 void cull(const GraphDescription& graph, Workspace& workspace, Plan& plan);
 // The order of execution.
 void order(const GraphDescription& graph, const Limits& limits, Workspace& workspace, Plan& plan);
+// Which queue runs what, in which submissions.
+void assign_queues(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
+                   Plan& plan);
+// The last position at which another queue may still run beside this pass.
+std::uint32_t taken_until(const Workspace& workspace, const Plan& plan, std::uint32_t position);
 // First and last position of each resource, its usage and its memory requirements.
 void lifetimes(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
                Plan& plan);

@@ -32,5 +32,37 @@ RC_GTEST_PROP(Fuzz, EveryPlanOfARightGraphIsVerified, (std::uint64_t seed)) {
   expect_verified(seed, {}, {});
 }
 
+Limits with_families(std::uint32_t graphics, std::uint32_t compute, std::uint32_t transfer) {
+  Limits limits;
+  limits.queue_families[0] = graphics;
+  limits.queue_families[1] = compute;
+  limits.queue_families[2] = transfer;
+  return limits;
+}
+
+RandomOptions on_all_queues() {
+  RandomOptions options;
+  options.queues = true;
+  return options;
+}
+
+RC_GTEST_PROP(Fuzz, EveryPlanOverThreeQueueFamiliesIsVerified, (std::uint64_t seed)) {
+  expect_verified(seed, on_all_queues(), with_families(0, 1, 2));
+}
+
+RC_GTEST_PROP(Fuzz, EveryPlanOverQueuesOfOneFamilyIsVerified, (std::uint64_t seed)) {
+  expect_verified(seed, on_all_queues(), with_families(0, 0, 0));
+}
+
+RC_GTEST_PROP(Fuzz, GraphsForSeveralQueuesCollapseToOne, (std::uint64_t seed)) {
+  expect_verified(seed, on_all_queues(), with_families(0, kNone, kNone));
+}
+
+RC_GTEST_PROP(Fuzz, EveryPlanWithCoarseGranularityIsVerified, (std::uint64_t seed)) {
+  Limits limits;
+  limits.buffer_image_granularity = 4096;
+  expect_verified(seed, {}, limits);
+}
+
 }  // namespace
 }  // namespace alcove::framegraph

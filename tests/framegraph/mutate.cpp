@@ -92,11 +92,24 @@ class Mutator {
     const Placement& placement = plan_.placements[resource];
     if (placement.heap == kNone || placement.first == placement.last) return;
     Plan mutant = plan_;
-    --mutant.placements[resource].last;
-    visit_("end a lifetime early", mutant);
+    if (is_used_at(resource, placement.last)) {
+      --mutant.placements[resource].last;
+      visit_("end a lifetime early", mutant);
+    }
     mutant = plan_;
     ++mutant.placements[resource].first;
     visit_("begin a lifetime late", mutant);
+  }
+
+  bool is_used_at(std::uint32_t resource, std::uint32_t position) const {
+    const std::uint32_t pass = plan_.passes[position].pass;
+    const auto accesses = graph_.pass_accesses(pass);
+    for (std::size_t i = 0; i < accesses.size(); ++i) {
+      if (accesses[i].resource == resource &&
+          plan_.live_accesses[graph_.passes[pass].first_access + i])
+        return true;
+    }
+    return false;
   }
 
   // Moves a resource onto one that is live at the same time, and out of its heap.

@@ -62,7 +62,8 @@ struct PlannedPass {
 };
 
 // Work handed to one queue in one piece. Submissions are in an order in which each waits only on
-// earlier ones; signals are counted per queue.
+// earlier ones. A frame that uses other queues than graphics begins when all of the frame before is
+// done: each of its first submissions waits for the last ones of that frame.
 struct Submission {
   QueueClass queue = QueueClass::graphics;
   std::uint32_t first_pass = 0;  // positions [first_pass, first_pass + pass_count)

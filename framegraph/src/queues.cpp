@@ -1,0 +1,291 @@
+// Queues: cuts the order of execution into submissions where one queue must wait for another, and
+// finds what each queue knows of the others, which says until when a transient's memory is taken.
+//
+// A submission begins with the pass that waits and ends with the pass that is waited for, so that
+// none waits longer than it must and none waits for what comes after it. With one queue there is
+// one submission. Two passes of different queues depend on each other when they use one
+// subresource, reads too: it may have to change hands or layouts between them.
+#include <algorithm>
+
+#include "workspace.h"
+
+namespace alcove::framegraph {
+namespace {
+
+class QueueAssigner {
+ public:
+  QueueAssigner(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
+                Plan& plan)
+      : graph_(graph), limits_(limits), workspace_(workspace), plan_(plan), s_(workspace.queues) {}
+
+  void run() {
+    const auto count = static_cast<std::uint32_t>(plan_.passes.size());
+    workspace_.several_queues =
+        std::any_of(plan_.passes.begin(), plan_.passes.end(),
+                    [](const PlannedPass& p) { return p.queue != QueueClass::graphics; });
+    if (!workspace_.several_queues) {
+      plan_.submissions.push_back({QueueClass::graphics, 0, count, 0, 0, 0, 0});
+      return;
+    }
+    find_waits();
+    cut();
+    regroup();
+    close();
+  }
+
+ private:
+  static constexpr std::uint32_t kNobody = kNone;
+
+  std::uint32_t family(QueueClass queue) const {
+    return limits_.queue_families[static_cast<std::size_t>(queue)];
+  }
+
+  // For each pass, the last pass of each other queue that it must wait for, and was not known done.
+  void find_waits() {
+    const std::size_t count = plan_.passes.size();
+    s_.waits.assign(count * kQueueClasses, kNobody);
+    s_.waited_for.assign(count, 0);
+    s_.last_user.assign(workspace_.first_sub.back(), kNobody);
+    s_.known_at.assign(count * kQueueClasses, -1);
+    s_.opened.assign(count, 0);
+    s_.opened_at.assign(count, 0);
+    std::fill(&known_[0][0], &known_[0][0] + kQueueClasses * kQueueClasses, -1);
+    std::fill(std::begin(known_open_), std::end(known_open_), std::uint8_t{0});
+    for (std::uint32_t position = 0; position < count; ++position) {
+      find_wait_of(position);
+      learn(position);
+    }
+  }
+
+  void find_wait_of(std::uint32_t position) {
+    const auto own = static_cast<std::size_t>(plan_.passes[position].queue);
+    std::uint32_t* waits = &s_.waits[position * kQueueClasses];
+    for_each_live(position, [&](std::uint32_t resource, std::uint32_t sub) {
+      const std::uint32_t user = s_.last_user[sub];
+      s_.last_user[sub] = position;
+      if (user == kNobody) s_.opened[position] |= given_by(resource, plan_.passes[position].queue);
+      if (user == kNobody || user == position ||
+          plan_.passes[user].queue == plan_.passes[position].queue)
+        return;
+      const auto other = static_cast<std::size_t>(plan_.passes[user].queue);
+      if (known_[own][other] >= static_cast<std::int32_t>(user)) return;
+      waits[other] = waits[other] == kNobody ? user : std::max(waits[other], user);
+    });
+    s_.opened[position] &= static_cast<std::uint8_t>(~known_open_[own]);
+    drop_implied(waits);
+    for (std::size_t other = 0; other < kQueueClasses; ++other) {
+      if (waits[other] != kNobody)
+        s_.opened[position] &= static_cast<std::uint8_t>(~s_.opened_at[waits[other]]);
+    }
+  }
+
+  // A wait for a pass that another pass waited for already knows of is not needed.
+  void drop_implied(std::uint32_t* waits) const {
+    for (std::size_t other = 0; other < kQueueClasses; ++other) {
+      for (std::size_t third = 0; third < kQueueClasses; ++third) {
+        if (third == other || waits[third] == kNobody || waits[other] == kNobody) continue;
+        if (s_.known_at[waits[third] * kQueueClasses + other] >=
+            static_cast<std::int32_t>(waits[other]))
+          waits[other] = kNobody;
+      }
+    }
+  }
+
+  // What the queue knows of the others once this pass runs: what it waits for, and what that knew.
+  void learn(std::uint32_t position) {
+    const auto own = static_cast<std::size_t>(plan_.passes[position].queue);
+    for (std::size_t other = 0; other < kQueueClasses; ++other) {
+      const std::uint32_t wait = s_.waits[position * kQueueClasses + other];
+      if (wait == kNobody) continue;
+      s_.waited_for[wait] = 1;
+      known_open_[own] |= s_.opened_at[wait];
+      known_[own][other] = std::max(known_[own][other], static_cast<std::int32_t>(wait));
+      for (std::size_t third = 0; third < kQueueClasses; ++third)
+        known_[own][third] =
+            std::max(known_[own][third], s_.known_at[wait * kQueueClasses + third]);
+    }
+    known_[own][own] = static_cast<std::int32_t>(position);
+    known_open_[own] |= s_.opened[position];
+    s_.opened_at[position] = known_open_[own];
+    for (std::size_t other = 0; other < kQueueClasses; ++other)
+      s_.known_at[position * kQueueClasses + other] = known_[own][other];
+  }
+
+  // A bit for the queue that used the resource before the frame, if that is not `user`.
+  std::uint8_t given_by(std::uint32_t resource, QueueClass user) const {
+    const std::uint32_t external = graph_.resources[resource].external;
+    if (external == kNone) return 0;
+    const ExternalRecord& record = graph_.externals[external];
+    const QueueClass owner = arrival_queue(record);
+    if (owner == user || (!record.has_contents && record.arrival.stages == 0)) return 0;
+    return static_cast<std::uint8_t>(1u << static_cast<unsigned>(owner));
+  }
+
+  // f(resource, subresource) for all that a pass uses.
+  template <typename Function>
+  void for_each_live(std::uint32_t position, Function&& f) const {
+    const std::uint32_t pass = plan_.passes[position].pass;
+    const auto accesses = graph_.pass_accesses(pass);
+    const std::uint8_t* live = plan_.live_accesses.data() + graph_.passes[pass].first_access;
+    for (std::size_t i = 0; i < accesses.size(); ++i) {
+      if (!live[i]) continue;
+      const std::uint32_t resource = accesses[i].resource;
+      for_each_sub(graph_.resources[resource], workspace_.first_sub[resource], accesses[i].range,
+                   [&](std::uint32_t sub) { f(resource, sub); });
+    }
+  }
+
+  // Submissions by pass, numbered in order of their first passes.
+  void cut() {
+    open_before();
+    std::uint32_t open[kQueueClasses] = {kNobody, kNobody, kNobody};
+    s_.submission_of.resize(plan_.passes.size());
+    for (std::uint32_t position = 0; position < plan_.passes.size(); ++position) {
+      const QueueClass queue = plan_.passes[position].queue;
+      std::uint32_t& current = open[static_cast<std::size_t>(queue)];
+      const std::uint32_t* waits = &s_.waits[position * kQueueClasses];
+      const bool has_waits = s_.opened[position] != 0 ||
+                             std::any_of(waits, waits + kQueueClasses,
+                                         [](std::uint32_t wait) { return wait != kNobody; });
+      if (current == kNobody || has_waits) {
+        current = static_cast<std::uint32_t>(plan_.submissions.size());
+        Submission submission;
+        submission.queue = queue;
+        submission.first_wait = static_cast<std::uint32_t>(plan_.waits.size());
+        plan_.submissions.push_back(submission);
+        for (std::size_t other = 0; other < kQueueClasses; ++other) {
+          if (s_.opened[position] & (1u << other)) add_wait(s_.opening[other]);
+          if (waits[other] != kNobody) add_wait(s_.submission_of[waits[other]]);
+        }
+      }
+      s_.submission_of[position] = current;
+      ++plan_.submissions[current].pass_count;
+      if (s_.waited_for[position]) current = kNobody;
+    }
+  }
+
+  void add_wait(std::uint32_t submission) {
+    plan_.waits.push_back({submission, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT});
+    ++plan_.submissions.back().wait_count;
+  }
+
+  // What another queue used before the frame is waited for, and given away, by a submission of that
+  // queue without passes.
+  void open_before() {
+    std::fill(std::begin(s_.opening), std::end(s_.opening), kNobody);
+    std::uint8_t opened = 0;
+    for (const std::uint8_t queues : s_.opened) opened |= queues;
+    for (std::size_t queue = 0; queue < kQueueClasses; ++queue) {
+      if (!(opened & (1u << queue))) continue;
+      s_.opening[queue] = static_cast<std::uint32_t>(plan_.submissions.size());
+      Submission submission;
+      submission.queue = static_cast<QueueClass>(queue);
+      plan_.submissions.push_back(submission);
+    }
+  }
+
+  // A queue that this frame does not have leaves its resources to graphics.
+  QueueClass arrival_queue(const ExternalRecord& external) const {
+    return family(external.queue) == kNone ? QueueClass::graphics : external.queue;
+  }
+
+  // Passes in order of submissions; submissions hold runs of positions.
+  void regroup() {
+    std::uint32_t next = 0;
+    for (Submission& submission : plan_.submissions) {
+      submission.first_pass = next;
+      next += submission.pass_count;
+      submission.pass_count = 0;
+    }
+    s_.moved.resize(plan_.passes.size());
+    s_.known.resize(s_.known_at.size());
+    s_.new_position.resize(plan_.passes.size());
+    for (std::uint32_t position = 0; position < plan_.passes.size(); ++position) {
+      Submission& submission = plan_.submissions[s_.submission_of[position]];
+      const std::uint32_t to = submission.first_pass + submission.pass_count++;
+      s_.moved[to] = plan_.passes[position];
+      s_.moved[to].submission = s_.submission_of[position];
+      s_.new_position[position] = to;
+    }
+    // What was known of a queue, in new positions: a queue's passes keep their order.
+    for (std::uint32_t position = 0; position < plan_.passes.size(); ++position) {
+      for (std::size_t other = 0; other < kQueueClasses; ++other) {
+        const std::int32_t old = s_.known_at[position * kQueueClasses + other];
+        s_.known[s_.new_position[position] * kQueueClasses + other] =
+            old < 0 ? -1
+                    : static_cast<std::int32_t>(s_.new_position[static_cast<std::size_t>(old)]);
+      }
+    }
+    plan_.passes.swap(s_.moved);
+    for (std::uint32_t position = 0; position < plan_.passes.size(); ++position)
+      workspace_.order[position] = plan_.passes[position].pass;
+  }
+
+  // Imports depart from graphics, after their last use; so do histories of which parts may differ.
+  void close() {
+    if (graph_.externals.empty()) return;
+    std::uint32_t last[kQueueClasses] = {kNobody, kNobody, kNobody};
+    for (std::uint32_t r = 0; r < graph_.resources.size(); ++r) {
+      const std::uint32_t external = graph_.resources[r].external;
+      if (external == kNone) continue;
+      const std::uint32_t subs = workspace_.first_sub[r + 1] - workspace_.first_sub[r];
+      if (!graph_.externals[external].has_departure &&
+          (graph_.resources[r].origin != Origin::history || subs == 1))
+        continue;
+      for (std::uint32_t sub = workspace_.first_sub[r]; sub < workspace_.first_sub[r + 1]; ++sub) {
+        const std::uint32_t user = s_.last_user[sub];
+        if (user == kNobody) continue;
+        std::uint32_t& there = last[static_cast<std::size_t>(s_.moved[user].queue)];
+        there = there == kNobody ? user : std::max(there, user);
+      }
+    }
+    for (std::size_t other = 1; other < kQueueClasses; ++other) {
+      if (last[other] != kNobody && known_[0][other] >= static_cast<std::int32_t>(last[other]))
+        last[other] = kNobody;
+    }
+    last[0] = kNobody;
+    drop_implied(last);
+    Submission submission;
+    submission.first_pass = static_cast<std::uint32_t>(plan_.passes.size());
+    submission.first_wait = static_cast<std::uint32_t>(plan_.waits.size());
+    plan_.submissions.push_back(submission);
+    for (std::size_t other = 1; other < kQueueClasses; ++other) {
+      if (last[other] != kNobody) add_wait(s_.submission_of[last[other]]);
+    }
+  }
+
+  std::int32_t known_[kQueueClasses][kQueueClasses] = {};
+  // Queues whose opening submission is known to be done, as bits.
+  std::uint8_t known_open_[kQueueClasses] = {};
+  const GraphDescription& graph_;
+  const Limits& limits_;
+  Workspace& workspace_;
+  Plan& plan_;
+  Workspace::Queues& s_;
+};
+
+}  // namespace
+
+void assign_queues(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
+                   Plan& plan) {
+  QueueAssigner(graph, limits, workspace, plan).run();
+}
+
+std::uint32_t taken_until(const Workspace& workspace, const Plan& plan, std::uint32_t position) {
+  const auto own = static_cast<std::size_t>(plan.passes[position].queue);
+  std::uint32_t until = position;
+  for (std::size_t other = 0; other < kQueueClasses; ++other) {
+    if (other == own) continue;
+    // Later passes of the other queue that do not know this one done may run beside it.
+    for (std::uint32_t later = position + 1; later < plan.passes.size(); ++later) {
+      if (static_cast<std::size_t>(plan.passes[later].queue) != other) continue;
+      if (workspace.queues.known[later * kQueueClasses + own] >=
+          static_cast<std::int32_t>(position))
+        break;
+      until = std::max(until, later);
+    }
+  }
+  return until;
+}
+
+}  // namespace alcove::framegraph
