@@ -76,7 +76,7 @@ ALCOVE_INLINE vec3 facing_normal(vec3 normal, vec3 view) {
   float away = min(dot(normal, view), 0.0f);
   vec3 turned = normal - view * away;
   float squared = dot(turned, turned);
-  return squared > 1e-12f ? turned * inversesqrt(squared) : view;
+  return squared > 1e-8f ? turned * inversesqrt(squared) : view;
 }
 
 // Cosine of the horizon that the surface's own tangent plane makes on a side: no horizon is lower.

@@ -29,7 +29,7 @@ struct Bound {
 constexpr Bound kBounds[] = {
     {"slice", 1e-4, 1e-5},
     {"visibility", 1e-4, 1e-5},
-    {"bent normal", 2e-5, 1e-5},
+    {"bent normal", 1e-4, 1e-5},
     {"sectors", 5e-5, 1e-5},
     {"arc cosine", 2e-5, 1e-5},
     {"position and depth", 1e-5, 1e-5},
