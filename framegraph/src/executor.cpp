@@ -5,6 +5,7 @@
 #include "alcove/framegraph/verify.h"
 #include "plan_cache.h"
 #include "recorder.h"
+#include "submitter.h"
 
 namespace alcove::framegraph {
 namespace {
@@ -20,21 +21,25 @@ constexpr VkBufferUsageFlags kEveryBufferUsage =
 struct Executor::Implementation {
   explicit Implementation(const ExecutorOptions& wanted) : options(wanted) {}
 
-  tl::expected<CachedPlan*, Errors> plan_for(const Graph& graph, bool& compiled);
+  tl::expected<CachedPlan*, Errors> plan_for(const Graph& graph, bool one_queue, bool& compiled);
   tl::expected<void, Errors> find_physical(const Graph& graph, CachedPlan& cached);
   VkResult find_external(const Graph& graph, CachedPlan& cached, std::uint32_t resource);
-  tl::expected<FrameReport, Errors> prepare(Graph& graph, const FrameInfo& frame,
+  tl::expected<FrameReport, Errors> prepare(Graph& graph, const FrameInfo& info, bool one_queue,
                                             CachedPlan*& cached);
+  tl::expected<void, Errors> check_slot(std::uint32_t slot) const;
+  bool starts_anew(const CachedPlan& cached) const;
   void finish(Graph& graph, const CachedPlan& cached);
   void begin_frame(const FrameInfo& info);
 
   ExecutorOptions options;
   DeviceContext device;
   Compiler compiler;
-  PlanCache plans;
+  PlanCache plans[2];  // for record, on one queue, and for submit
   std::unique_ptr<Pool> pool;
   std::unique_ptr<Recorder> recorder;
-  std::vector<std::unique_ptr<Timestamps>> timestamps;  // by slot
+  std::unique_ptr<Submitter> submitter;
+  std::vector<std::unique_ptr<Timestamps>> timestamps;  // by slot and queue class
+  std::vector<PassTiming> timings;                      // what timings() returned last
   std::vector<std::uint64_t> slot_frames;               // last frame recorded with each slot
   std::uint64_t frame = 0;
   std::uint64_t finished = 0;
@@ -54,7 +59,8 @@ tl::expected<Executor, Errors> Executor::create(const DeviceHandles& device,
   made->pool = std::make_unique<Pool>(made->device);
   made->recorder = std::make_unique<Recorder>(made->device, *made->pool);
   made->slot_frames.resize(made->options.frames_in_flight);
-  for (std::uint32_t i = 0; i < made->options.frames_in_flight; ++i)
+  made->submitter = std::make_unique<Submitter>(made->device, made->options.frames_in_flight);
+  for (std::uint32_t i = 0; i < made->options.frames_in_flight * kQueueClasses; ++i)
     made->timestamps.push_back(std::make_unique<Timestamps>(made->device));
   return Executor(std::move(made));
 }
@@ -66,15 +72,16 @@ Executor& Executor::operator=(Executor&&) noexcept = default;
 Executor::~Executor() = default;
 
 tl::expected<CachedPlan*, Errors> Executor::Implementation::plan_for(const Graph& graph,
+                                                                     bool one_queue,
                                                                      bool& compiled) {
   const GraphDescription& description = graph.description();
   compiled = false;
-  if (CachedPlan* cached = plans.find(description)) return cached;
-  CachedPlan& room = plans.room(frame);
+  PlanCache& cache = plans[one_queue ? 0 : 1];
+  if (CachedPlan* cached = cache.find(description)) return cached;
+  CachedPlan& room = cache.room(frame);
   if (before == &room) before = nullptr;
-  // Passes of one command buffer run on one queue.
   Limits limits = device.limits;
-  limits.queue_families[1] = limits.queue_families[2] = kNone;
+  if (one_queue) limits.queue_families[1] = limits.queue_families[2] = kNone;
   if (auto done = compiler.compile(description, limits, room.plan); !done)
     return tl::unexpected(std::move(done.error()));
   Errors errors;
@@ -91,7 +98,7 @@ tl::expected<CachedPlan*, Errors> Executor::Implementation::plan_for(const Graph
     if (auto right = verify(description, limits, room.plan); !right)
       return tl::unexpected(std::move(right.error()));
   }
-  plans.keep(room, description);
+  cache.keep(room, description);
   compiled = true;
   return &room;
 }
@@ -154,19 +161,28 @@ void Executor::Implementation::begin_frame(const FrameInfo& info) {
   pool->collect(finished, frame);
 }
 
+tl::expected<void, Errors> Executor::Implementation::check_slot(std::uint32_t slot) const {
+  if (slot < slot_frames.size()) return {};
+  Errors errors(1);
+  errors[0].message = std::string("frame slot ").append(std::to_string(slot)) +
+                      " is not below the " + std::to_string(slot_frames.size()) +
+                      " frames in flight: raise ExecutorOptions::frames_in_flight";
+  return tl::unexpected(std::move(errors));
+}
+
+// A plan expects its own leavings in memory; those of another need a barrier of their own.
+bool Executor::Implementation::starts_anew(const CachedPlan& cached) const {
+  return before != &cached || before_generation != pool->generation();
+}
+
 tl::expected<FrameReport, Errors> Executor::Implementation::prepare(Graph& graph,
                                                                     const FrameInfo& info,
+                                                                    bool one_queue,
                                                                     CachedPlan*& cached) {
-  if (info.slot >= slot_frames.size()) {
-    Errors errors(1);
-    errors[0].message = "frame slot " + std::to_string(info.slot) + " is not below the " +
-                        std::to_string(slot_frames.size()) +
-                        " frames in flight: raise ExecutorOptions::frames_in_flight";
-    return tl::unexpected(std::move(errors));
-  }
+  if (auto right = check_slot(info.slot); !right) return tl::unexpected(std::move(right.error()));
   begin_frame(info);
   FrameReport report;
-  auto found = plan_for(graph, report.compiled);
+  auto found = plan_for(graph, one_queue, report.compiled);
   if (!found) return tl::unexpected(std::move(found.error()));
   cached = *found;
   if (auto done = find_physical(graph, *cached); !done)
@@ -185,6 +201,8 @@ tl::expected<FrameReport, Errors> Executor::Implementation::prepare(Graph& graph
 
 // Histories move on: slot 0 becomes slot 1 where it was written.
 void Executor::Implementation::finish(Graph& graph, const CachedPlan& cached) {
+  before = &cached;
+  before_generation = pool->generation();
   const GraphDescription& description = graph.description();
   for (const FinalState& final : cached.plan.finals) {
     const ResourceRecord& record = description.resources[final.resource];
@@ -207,9 +225,10 @@ tl::expected<FrameReport, Errors> Executor::record(Graph& graph, VkCommandBuffer
                                                    const FrameInfo& info) {
   Implementation& self = *implementation_;
   CachedPlan* cached = nullptr;
-  auto report = self.prepare(graph, info, cached);
+  auto report = self.prepare(graph, info, true, cached);
   if (!report) return report;
-  Timestamps* timestamps = self.options.timestamps ? self.timestamps[info.slot].get() : nullptr;
+  Timestamps* timestamps =
+      self.options.timestamps ? self.timestamps[info.slot * kQueueClasses].get() : nullptr;
   if (timestamps) {
     const VkResult result =
         timestamps->begin_frame(commands, static_cast<std::uint32_t>(cached->plan.passes.size()));
@@ -218,20 +237,60 @@ tl::expected<FrameReport, Errors> Executor::record(Graph& graph, VkCommandBuffer
   }
   Recorder& recorder = *self.recorder;
   recorder.begin(graph, cached->plan, cached->physical, self.options.check_uses, info.slot);
-  // A plan expects its own leavings in memory; another plan's need a barrier of their own.
-  if (self.before != cached || self.before_generation != self.pool->generation())
-    recorder.full_barrier(commands);
+  if (self.starts_anew(*cached)) recorder.full_barrier(commands);
   recorder.submission(cached->plan.submissions[0], commands, timestamps);
-  self.before = cached;
-  self.before_generation = self.pool->generation();
   self.finish(graph, *cached);
   if (!recorder.errors().empty()) return tl::unexpected(std::move(recorder.errors()));
   return report;
 }
 
+tl::expected<FrameReport, Errors> Executor::submit(Graph& graph, const FrameInfo& info) {
+  Implementation& self = *implementation_;
+  if (self.device.handles.queues[0].queue == VK_NULL_HANDLE) {
+    Errors errors(1);
+    errors[0].code = ErrorCode::no_queue;
+    errors[0].message =
+        "the executor has no graphics queue to submit to: set DeviceHandles::queues[0]";
+    return tl::unexpected(std::move(errors));
+  }
+  if (auto waited = wait(info.slot); !waited) return tl::unexpected(std::move(waited.error()));
+  CachedPlan* cached = nullptr;
+  auto report = self.prepare(graph, info, false, cached);
+  if (!report) return report;
+  Timestamps* timestamps[kQueueClasses] = {};
+  // Queues for transfers alone may have no timestamps.
+  for (std::size_t q = 0; q + 1 < kQueueClasses && self.options.timestamps; ++q)
+    timestamps[q] = self.timestamps[info.slot * kQueueClasses + q].get();
+  for (Timestamps* times : timestamps) {
+    if (times) times->forget();
+  }
+  Recorder& recorder = *self.recorder;
+  recorder.begin(graph, cached->plan, cached->physical, self.options.check_uses, info.slot);
+  const VkResult result = self.submitter->submit(cached->plan, recorder, info.slot, timestamps,
+                                                 self.starts_anew(*cached));
+  if (result != VK_SUCCESS)
+    return tl::unexpected(vulkan_error(result, "the frame cannot be submitted"));
+  self.finish(graph, *cached);
+  if (!recorder.errors().empty()) return tl::unexpected(std::move(recorder.errors()));
+  return report;
+}
+
+tl::expected<void, Errors> Executor::wait(std::uint32_t slot) {
+  if (auto right = implementation_->check_slot(slot); !right) return right;
+  if (const VkResult result = implementation_->submitter->wait(slot))
+    return tl::unexpected(vulkan_error(result, "waiting for a frame failed"));
+  return {};
+}
+
 std::span<const PassTiming> Executor::timings(std::uint32_t slot) {
-  if (slot >= implementation_->timestamps.size() || !implementation_->options.timestamps) return {};
-  return implementation_->timestamps[slot]->read();
+  Implementation& self = *implementation_;
+  self.timings.clear();
+  if (slot >= self.slot_frames.size() || !self.options.timestamps) return {};
+  for (std::size_t q = 0; q < kQueueClasses; ++q) {
+    const auto times = self.timestamps[slot * kQueueClasses + q]->read();
+    self.timings.insert(self.timings.end(), times.begin(), times.end());
+  }
+  return self.timings;
 }
 
 void Executor::forget(VkImage image) {

@@ -64,10 +64,13 @@ void Recorder::batches(std::uint32_t first, std::uint32_t count, VkCommandBuffer
     const Batch& batch = plan_->batches[b];
     images_.clear();
     memories_.clear();
+    buffers_.clear();
     for (std::uint32_t i = batch.first; i < batch.first + batch.count; ++i) {
       const Transition& t = plan_->transitions[i];
-      if (t.resource != kNone) {
+      if (t.resource != kNone && (*physical_)[t.resource]->image) {
         images_.push_back(image_barrier(t));
+      } else if (t.resource != kNone) {
+        buffers_.push_back(buffer_barrier(t));
       } else {
         memories_.push_back({VK_STRUCTURE_TYPE_MEMORY_BARRIER_2, nullptr, t.src_stages,
                              t.src_access, t.dst_stages, t.dst_access});
@@ -77,6 +80,8 @@ void Recorder::batches(std::uint32_t first, std::uint32_t count, VkCommandBuffer
     info.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
     info.memoryBarrierCount = static_cast<std::uint32_t>(memories_.size());
     info.pMemoryBarriers = memories_.data();
+    info.bufferMemoryBarrierCount = static_cast<std::uint32_t>(buffers_.size());
+    info.pBufferMemoryBarriers = buffers_.data();
     info.imageMemoryBarrierCount = static_cast<std::uint32_t>(images_.size());
     info.pImageMemoryBarriers = images_.data();
     device_.vk.vkCmdPipelineBarrier2(commands, &info);
@@ -93,11 +98,34 @@ VkImageMemoryBarrier2 Recorder::image_barrier(const Transition& t) const {
   barrier.dstAccessMask = t.dst_access;
   barrier.oldLayout = t.old_layout;
   barrier.newLayout = t.new_layout;
-  barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+  barrier.srcQueueFamilyIndex = family(t, t.src_queue);
+  barrier.dstQueueFamilyIndex = family(t, t.dst_queue);
   barrier.image = physical.image;
   barrier.subresourceRange = {aspects(physical.record.format), t.range.base_mip, t.range.mips,
                               t.range.base_layer, t.range.layers};
   return barrier;
+}
+
+VkBufferMemoryBarrier2 Recorder::buffer_barrier(const Transition& t) const {
+  VkBufferMemoryBarrier2 barrier{};
+  barrier.sType = VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER_2;
+  barrier.srcStageMask = t.src_stages;
+  barrier.srcAccessMask = t.src_access;
+  barrier.dstStageMask = t.dst_stages;
+  barrier.dstAccessMask = t.dst_access;
+  barrier.srcQueueFamilyIndex = family(t, t.src_queue);
+  barrier.dstQueueFamilyIndex = family(t, t.dst_queue);
+  barrier.buffer = (*physical_)[t.resource]->buffer;
+  barrier.size = VK_WHOLE_SIZE;
+  return barrier;
+}
+
+// Named only where ownership changes.
+std::uint32_t Recorder::family(const Transition& t, QueueClass queue) const {
+  const auto& families = device_.limits.queue_families;
+  const bool changes = families[static_cast<std::size_t>(t.src_queue)] !=
+                       families[static_cast<std::size_t>(t.dst_queue)];
+  return changes ? families[static_cast<std::size_t>(queue)] : VK_QUEUE_FAMILY_IGNORED;
 }
 
 const AccessRecord* Recorder::declared(std::uint32_t pass, std::uint32_t resource) const {

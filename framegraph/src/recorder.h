@@ -29,6 +29,8 @@ class Recorder {
   void batches(std::uint32_t first, std::uint32_t count, VkCommandBuffer commands);
   void pass(const PlannedPass& planned, VkCommandBuffer commands, Timestamps* timestamps);
   VkImageMemoryBarrier2 image_barrier(const Transition& transition) const;
+  VkBufferMemoryBarrier2 buffer_barrier(const Transition& transition) const;
+  std::uint32_t family(const Transition& transition, QueueClass queue) const;
 
   // The access of the running pass that names this resource; null, and an error where uses are
   // checked, when there is none.
@@ -42,6 +44,7 @@ class Recorder {
   bool check_uses_ = false;
   std::uint32_t slot_ = 0;
   std::vector<VkImageMemoryBarrier2> images_;
+  std::vector<VkBufferMemoryBarrier2> buffers_;
   std::vector<VkMemoryBarrier2> memories_;
   mutable Errors errors_;
 };

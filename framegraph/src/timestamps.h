@@ -18,6 +18,8 @@ class Timestamps {
 
   // Starts a frame of so many passes; the device has finished the last one.
   [[nodiscard]] VkResult begin_frame(VkCommandBuffer commands, std::uint32_t passes);
+  // Nothing is to be read until a frame begins again.
+  void forget() { count_ = 0; }
   void begin_pass(VkCommandBuffer commands, std::string_view name);
   void end_pass(VkCommandBuffer commands);
   // Empty when the device has not finished.

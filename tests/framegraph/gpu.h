@@ -112,10 +112,12 @@ class Gpu {
     return report;
   }
 
-  // What the validation layers said, one line each.
-  std::string messages() const {
+  // What the validation layers said, one line each, without messages that contain `except`.
+  std::string messages(const std::string& except = "") const {
     std::string text;
-    for (const std::string& message : device_->validation_messages()) text += message + '\n';
+    for (const std::string& message : device_->validation_messages()) {
+      if (except.empty() || message.find(except) == std::string::npos) text += message + '\n';
+    }
     return text;
   }
 

@@ -94,15 +94,14 @@ class Executor {
                                                          const FrameInfo& frame = {});
 
   // Records and submits on as many queues as there are. Waits itself for what was last submitted
-  // with this slot. `signal` may be null; it is signalled (a timeline semaphore, to `value`) when
-  // the whole frame is done.
+  // with this slot. Not to be mixed with record() on one executor unless the caller orders the two.
   [[nodiscard]] tl::expected<FrameReport, Errors> submit(Graph& graph, const FrameInfo& frame = {});
   // Waits for what was submitted with this slot.
   [[nodiscard]] tl::expected<void, Errors> wait(std::uint32_t slot = 0);
 
-  // GPU time of each pass of the frame last recorded with this slot, in order of execution. Only
-  // after the device has finished it; empty where there is nothing or timestamps are off. The names
-  // are valid until the slot is recorded again.
+  // GPU time of each pass of the frame last recorded with this slot, in order of execution on each
+  // queue. Only after the device has finished it; empty where there is nothing or timestamps are
+  // off. Valid until the next call.
   [[nodiscard]] std::span<const PassTiming> timings(std::uint32_t slot = 0);
 
   // To be called before the caller destroys an image that it imported, if passes asked for views of

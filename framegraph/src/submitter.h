@@ -1,0 +1,51 @@
+// Hands recorded submissions to the queues, ordered by one timeline semaphore for each queue class.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "device_context.h"
+#include "recorder.h"
+
+namespace alcove::framegraph {
+
+class Submitter {
+ public:
+  Submitter(const DeviceContext& device, std::uint32_t slots) : device_(device), slots_(slots) {}
+  ~Submitter();
+  Submitter(const Submitter&) = delete;
+  Submitter& operator=(const Submitter&) = delete;
+
+  // Waits until the device has finished what was submitted with this slot.
+  [[nodiscard]] VkResult wait(std::uint32_t slot);
+  // Records and submits a plan that `recorder` was begun with. `timestamps` is by queue class, null
+  // where there are none. `full_barrier`: memory holds the leavings of another plan.
+  [[nodiscard]] VkResult submit(const Plan& plan, Recorder& recorder, std::uint32_t slot,
+                                Timestamps* const* timestamps, bool full_barrier);
+
+ private:
+  struct SlotQueue {
+    VkCommandPool pool = VK_NULL_HANDLE;
+    std::vector<VkCommandBuffer> buffers;
+    std::uint32_t used = 0;
+    std::uint64_t value = 0;  // of the queue's semaphore once the slot's last frame is done
+  };
+  struct Slot {
+    SlotQueue queues[kQueueClasses];
+  };
+
+  VkResult prepare(std::uint32_t slot);
+  VkResult next_buffer(std::uint32_t slot, std::size_t queue, VkCommandBuffer& buffer);
+  VkResult submit_one(const Plan& plan, std::uint32_t index, VkCommandBuffer buffer, bool join);
+
+  const DeviceContext& device_;
+  std::vector<Slot> slots_;
+  VkSemaphore semaphores_[kQueueClasses] = {};
+  std::uint64_t values_[kQueueClasses] = {};  // last value that will be signalled
+  std::uint64_t before_[kQueueClasses] = {};  // the same at the end of the frame before
+  std::vector<std::uint64_t> signalled_;      // by submission of this frame
+  std::vector<VkSemaphoreSubmitInfo> waits_;
+  bool several_before_ = false;
+};
+
+}  // namespace alcove::framegraph
