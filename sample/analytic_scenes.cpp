@@ -11,7 +11,7 @@ namespace alcove::sample {
 namespace {
 
 constexpr double kPi = glm::pi<double>();
-constexpr float kFar = 200.0f;  // how far a surface that stands for an endless one reaches
+constexpr float kFar = 50.0f;  // how far a surface that stands for an endless one reaches
 
 struct Name {
   std::string kind;

@@ -152,10 +152,12 @@ uint32_t RayScene::Impl::blocked(const glm::vec3& origin, std::span<const glm::v
   return bits;
 }
 
-glm::vec3 off_surface(const glm::vec3& position_ws, const glm::vec3& normal_ws) {
-  const float size =
-      std::max({std::abs(position_ws.x), std::abs(position_ws.y), std::abs(position_ws.z), 0.1f});
-  return position_ws + normal_ws * (size * 0x1p-18f);
+glm::vec3 RayScene::Impl::off_surface(const glm::vec3& position_ws,
+                                      const glm::vec3& normal_ws) const {
+  const Bounds& bounds = scene->bounds_ws;
+  const glm::vec3 reach =
+      glm::max(glm::max(glm::abs(bounds.low), glm::abs(bounds.high)), glm::abs(position_ws));
+  return position_ws + normal_ws * (std::max({reach.x, reach.y, reach.z}) * 0x1p-20f);
 }
 
 glm::vec3 albedo_at(const Scene& scene, const Hit& hit) {

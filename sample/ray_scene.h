@@ -33,11 +33,11 @@ struct RayScene::Impl {
   // Whether each of up to 16 rays from one origin meets anything nearer than `far`; bit i is ray i.
   [[nodiscard]] uint32_t blocked(const glm::vec3& origin, std::span<const glm::vec3> directions,
                                  float far) const;
+  // A start for rays that leave a surface: off it by some sixteen times the rounding of positions
+  // in a scene of this size, so that a flat surface does not meet itself.
+  [[nodiscard]] glm::vec3 off_surface(const glm::vec3& position_ws,
+                                      const glm::vec3& normal_ws) const;
 };
-
-// A start for rays that leave a surface: off it by a little more than the rounding of positions of
-// that size, so that a flat surface does not meet itself.
-[[nodiscard]] glm::vec3 off_surface(const glm::vec3& position_ws, const glm::vec3& normal_ws);
 
 // Linear base colour at a hit.
 [[nodiscard]] glm::vec3 albedo_at(const Scene& scene, const Hit& hit);

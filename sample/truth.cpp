@@ -34,8 +34,9 @@ void for_each_surface(const SurfacePoints& points, uint32_t seed, const Progress
       progress);
 }
 
-glm::vec3 ray_start(const SurfacePoints& points, size_t pixel) {
-  return off_surface(points.position_ws.pixels[pixel], points.geometric_normal_ws.pixels[pixel]);
+glm::vec3 ray_start(const RayScene& scene, const SurfacePoints& points, size_t pixel) {
+  return scene.impl().off_surface(points.position_ws.pixels[pixel],
+                                  points.geometric_normal_ws.pixels[pixel]);
 }
 
 // What fits one pixel of the g-buffer.
@@ -129,7 +130,7 @@ glm::vec3 trace_path(const RayScene::Impl& scene, glm::vec3 origin, glm::vec3 di
       if (unit_float(hash(bits, 7)) >= survival) return glm::vec3(0.0f);
       weight /= survival;
     }
-    origin = off_surface(origin + direction * hit->distance, hit->geometric_normal_ws);
+    origin = scene.off_surface(origin + direction * hit->distance, hit->geometric_normal_ws);
     const glm::vec2 u(unit_float(bits), unit_float(hash(bits, 3)));
     direction = frame_of(hit->geometric_normal_ws).to_world(cosine_direction(u));
   }
@@ -174,8 +175,8 @@ OcclusionTruth occlusion_truth(const RayScene& scene, const SurfacePoints& point
   OcclusionTruth out{{width, height, 1.0f}, {width, height}, {width, height}};
   for_each_surface(points, settings.seed, progress, [&](size_t pixel, uint64_t seed) {
     const glm::vec3& normal = points.normal_ws.pixels[pixel];
-    const OpenRays open =
-        trace_hemisphere(scene.impl(), ray_start(points, pixel), frame_of(normal), settings, seed);
+    const OpenRays open = trace_hemisphere(scene.impl(), ray_start(scene, points, pixel),
+                                           frame_of(normal), settings, seed);
     const auto rays = static_cast<float>(settings.spp);
     const float length = glm::length(open.sum);
     out.visibility.pixels[pixel] = static_cast<float>(open.count) / rays;
@@ -198,9 +199,9 @@ Image<float> specular_truth(const RayScene& scene, const SurfacePoints& points,
     const glm::vec3 view =
         viewer.orthographic ? viewer.view_ws : glm::normalize(viewer.eye_ws - position);
     const float r = roughness.pixels[pixel];
-    out.pixels[pixel] =
-        trace_lobe(scene.impl(), ray_start(points, pixel), frame_of(points.normal_ws.pixels[pixel]),
-                   view, std::max(r * r, 1e-4f), settings, seed);
+    out.pixels[pixel] = trace_lobe(scene.impl(), ray_start(scene, points, pixel),
+                                   frame_of(points.normal_ws.pixels[pixel]), view,
+                                   std::max(r * r, 1e-4f), settings, seed);
   });
   return out;
 }
@@ -210,7 +211,7 @@ Image<glm::vec3> interreflection_truth(const RayScene& scene, const SurfacePoint
   Image<glm::vec3> out(points.normal_ws.width, points.normal_ws.height, glm::vec3(1.0f));
   for_each_surface(points, settings.seed, progress, [&](size_t pixel, uint64_t seed) {
     const Frame frame = frame_of(points.normal_ws.pixels[pixel]);
-    const glm::vec3 origin = ray_start(points, pixel);
+    const glm::vec3 origin = ray_start(scene, points, pixel);
     glm::dvec3 sum(0.0);
     for (uint32_t i = 0; i < settings.spp; ++i) {
       const glm::vec3 direction = frame.to_world(cosine_direction(r2_point(i, seed)));

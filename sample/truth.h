@@ -33,6 +33,8 @@ struct GBuffer {
 // Where a truth is wanted: one entry per pixel. A zero normal marks a pixel to skip (sky), which
 // gets the value of an open surface.
 struct SurfacePoints {
+  // Exact to a few roundings, as cast_gbuffer's are; positions from a depth buffer of the usual
+  // direction can be off by more than rays start off the surface, and then meet it.
   Image<glm::vec3> position_ws;
   Image<glm::vec3> normal_ws;            // the normal that the occlusion pass was given; unit
   Image<glm::vec3> geometric_normal_ws;  // faces the viewer; rays start off the surface along it
