@@ -4,6 +4,8 @@
 
 #include "spirv/depth_pyramid.h"
 #include "spirv/gtao.h"
+#include "spirv/gtso.h"
+#include "spirv/multi_bounce.h"
 #include "spirv/normals.h"
 #include "spirv/reconstruct.h"
 #include "spirv/reconstruct_history.h"
@@ -19,6 +21,8 @@ const ShaderSource& shader_source(Shader shader) {
       {kReconstructHistory,
        "sssstt"
        "ssstt"},
+      {kMultiBounce, "sst"},
+      {kGtso, "ssssst"},
   }};
   return sources[static_cast<std::size_t>(shader)];
 }

@@ -14,6 +14,21 @@
 
 ALCOVE_MATHS_BEGIN
 
+// Visibility as the cones take it: [0,1], with the last 1/128 below open counted as open. A filtered
+// visibility is no surer than that, and a cone's angle, whose cosine is sqrt(1 - visibility), turns so
+// little into 5 degrees, which would cost an open surface the whole of a sharp lobe at grazing angles.
+ALCOVE_INLINE float settled_visibility(float visibility) {
+  return clamp(visibility * (128.0f / 127.0f), 0.0f, 1.0f);
+}
+
+// The direction that mirrors `view` in the surface. A view from under it, as interpolated normals
+// have, is taken along it.
+ALCOVE_INLINE vec3 mirror_direction(vec3 normal, vec3 view) {
+  float n_dot_v = dot(normal, view);
+  vec3 facing = n_dot_v < 1e-3f ? normalize(view + (1e-3f - n_dot_v) * normal) : view;
+  return 2.0f * dot(normal, facing) * normal - facing;
+}
+
 // The angle whose sine and cosine are given up to a common factor, from arguments that rounding may
 // have pushed under 0.
 ALCOVE_INLINE float angle_of(float sine_squared, float cosine) {
@@ -68,6 +83,16 @@ ALCOVE_INLINE float specular_occlusion(float visibility, vec3 bent_normal, vec3 
                                        vec3 reflection, float alpha) {
   return cone_specular_occlusion(visibility_cone(visibility), lobe_cone(alpha), bent_normal, normal,
                                  reflection);
+}
+
+// The same with both intersections by a smooth step: cheaper, and as open where nothing is hidden.
+ALCOVE_INLINE float smooth_specular_occlusion(float visibility, vec3 bent_normal, vec3 normal,
+                                              vec3 reflection, float alpha) {
+  float lobe = lobe_cone(max(alpha, 1e-3f));
+  float above = cap_intersection_smooth(kHalfPi, lobe, angle_between(normal, reflection));
+  float seen = cap_intersection_smooth(visibility_cone(visibility), lobe,
+                                       angle_between(bent_normal, reflection));
+  return clamp(seen / max(above, 1e-12f), 0.0f, 1.0f);
 }
 
 // Lagarde and de Rousiers 2014: from visibility and the cosine of the view alone. Open stays open.

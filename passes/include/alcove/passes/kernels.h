@@ -26,6 +26,8 @@ enum class Shader : std::uint8_t {
   gtao,
   reconstruct,
   reconstruct_history,
+  multi_bounce,
+  gtso,
   count,
 };
 

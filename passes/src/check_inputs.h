@@ -1,0 +1,41 @@
+// What a pass asks of the textures that it is given.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "alcove/passes/frame.h"
+
+namespace alcove::passes {
+
+struct NamedInput {
+  std::string_view name;
+  framegraph::Texture texture;
+};
+
+// An error that names the first input that is missing, or not as large as the first of them.
+[[nodiscard]] inline tl::expected<void, Error> check_inputs(const framegraph::Graph& graph,
+                                                            std::string_view pass,
+                                                            std::span<const NamedInput> inputs) {
+  const auto size_text = [](VkExtent3D size) {
+    return std::to_string(size.width) + "x" + std::to_string(size.height);
+  };
+  for (const NamedInput& input : inputs) {
+    if (!input.texture) {
+      return tl::unexpected(Error{"The pass " + std::string(pass) + " needs a texture of " +
+                                  std::string(input.name) + "; it was given none."});
+    }
+    const VkExtent3D size = graph.extent(input.texture);
+    const VkExtent3D wanted = graph.extent(inputs.front().texture);
+    if (size.width != wanted.width || size.height != wanted.height) {
+      return tl::unexpected(Error{"The pass " + std::string(pass) + " was given " +
+                                  std::string(input.name) + " of " + size_text(size) +
+                                  " pixels and " + std::string(inputs.front().name) + " of " +
+                                  size_text(wanted) + "; make them equal."});
+    }
+  }
+  return {};
+}
+
+}  // namespace alcove::passes

@@ -1,0 +1,101 @@
+#include "alcove/passes/gtso.h"
+
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "check_inputs.h"
+#include "gtso_parameters.h"
+#include "output_format.h"
+#include "view_parameters.h"
+
+namespace alcove::passes {
+
+using framegraph::Range;
+using framegraph::RecordContext;
+using framegraph::Texture;
+
+namespace {
+
+tl::expected<void, Error> check(const Frame& frame, const GtsoInputs& inputs,
+                                const GtsoSettings& settings) {
+  if (!(settings.roughness >= 0.0f && settings.roughness <= 1.0f)) {
+    return tl::unexpected(Error{"The roughness for specular occlusion is " +
+                                std::to_string(settings.roughness) + "; it must be 0 to 1."});
+  }
+  if (settings.roughness_channel > 3) {
+    return tl::unexpected(Error{"Roughness is asked from channel " +
+                                std::to_string(settings.roughness_channel) +
+                                " of its texture; channels are 0 to 3."});
+  }
+  std::vector<NamedInput> named{{"visibility", inputs.visibility},
+                                {"normals", inputs.normals},
+                                {"linear depth", inputs.depth}};
+  if (settings.model != SpecularModel::lagarde) {
+    named.push_back({"bent normals", inputs.bent_normal});
+  }
+  if (inputs.roughness) {
+    named.push_back({"roughness", inputs.roughness});
+  }
+  return check_inputs(frame.graph, "specular occlusion", named);
+}
+
+void declare_reads(framegraph::PassBuilder& pass, const GtsoInputs& inputs) {
+  for (const Texture texture :
+       {inputs.visibility, inputs.bent_normal, inputs.normals, inputs.roughness}) {
+    if (texture) {
+      pass.read(texture, framegraph::access::sampled_compute);
+    }
+  }
+  pass.read(inputs.depth, framegraph::access::sampled_compute, Range::mip(0));
+}
+
+}  // namespace
+
+tl::expected<Texture, Error> add_gtso(const Frame& frame, const GtsoInputs& given,
+                                      const GtsoSettings& settings) {
+  if (auto good = check(frame, given, settings); !good) {
+    return tl::unexpected(std::move(good.error()));
+  }
+  GtsoInputs inputs = given;
+  if (settings.model == SpecularModel::lagarde) {
+    inputs.bent_normal = {};
+  }
+  const auto projection = projection_of(frame, frame.view, inputs.depth);
+  if (!projection) {
+    return tl::unexpected(projection.error());
+  }
+  const std::array constants{static_cast<std::uint32_t>(settings.model),
+                             static_cast<std::uint32_t>(bool(inputs.roughness)),
+                             settings.roughness_channel};
+  const auto kernel = frame.kernels.get(Shader::gtso, constants);
+  if (!kernel) {
+    return tl::unexpected(kernel.error());
+  }
+  Texture result = frame.graph.create_texture(
+      "specular occlusion",
+      {scalar_format(settings.precision), framegraph::Extent::relative(inputs.depth)});
+  auto pass = frame.graph.add_pass("specular occlusion");
+  declare_reads(pass, inputs);
+  result = pass.write(result, framegraph::access::storage_write_compute, {},
+                      framegraph::Contents::discard);
+  const maths::GtsoParameters parameters{
+      *projection, view_from_normal(frame, inputs.normals_in_view_space), settings.roughness};
+  pass.record([&kernels = frame.kernels, kernel = *kernel, inputs, result,
+               parameters](RecordContext& context) {
+    // What is not read is bound to something of its kind.
+    const auto view_or = [&](Texture texture, Texture instead) {
+      return context.view(texture ? texture : instead);
+    };
+    const std::array views{context.view(inputs.visibility),
+                           view_or(inputs.bent_normal, inputs.normals),
+                           context.view(inputs.normals),
+                           context.view(inputs.depth),
+                           view_or(inputs.roughness, inputs.visibility),
+                           context.view(result)};
+    kernels.dispatch(context, kernel, views, bytes_of(parameters), context.extent(result));
+  });
+  return result;
+}
+
+}  // namespace alcove::passes

@@ -1,0 +1,46 @@
+#include "alcove/passes/multi_bounce.h"
+
+#include <array>
+
+#include "check_inputs.h"
+#include "multi_bounce_parameters.h"
+#include "output_format.h"
+#include "view_parameters.h"
+
+namespace alcove::passes {
+
+using framegraph::RecordContext;
+using framegraph::Texture;
+
+tl::expected<Texture, Error> add_multi_bounce(const Frame& frame, const MultiBounceInputs& inputs,
+                                              Precision precision) {
+  const std::array<NamedInput, 2> named{
+      {{"visibility", inputs.visibility}, {"albedo", inputs.albedo}}};
+  if (auto good = check_inputs(frame.graph, "multi-bounce", named); !good) {
+    return tl::unexpected(std::move(good.error()));
+  }
+  const auto kernel = frame.kernels.get(Shader::multi_bounce, {});
+  if (!kernel) {
+    return tl::unexpected(kernel.error());
+  }
+  Texture result = frame.graph.create_texture(
+      "multi-bounce",
+      {colour_format(precision), framegraph::Extent::relative(inputs.visibility)});
+  auto pass = frame.graph.add_pass("multi-bounce");
+  pass.read(inputs.visibility, framegraph::access::sampled_compute);
+  pass.read(inputs.albedo, framegraph::access::sampled_compute);
+  result = pass.write(result, framegraph::access::storage_write_compute, {},
+                      framegraph::Contents::discard);
+  const VkExtent3D size = frame.graph.extent(inputs.visibility);
+  const maths::MultiBounceParameters parameters{
+      maths::vec2(static_cast<float>(size.width), static_cast<float>(size.height))};
+  pass.record([&kernels = frame.kernels, kernel = *kernel, inputs, result,
+               parameters](RecordContext& context) {
+    const std::array views{context.view(inputs.visibility), context.view(inputs.albedo),
+                           context.view(result)};
+    kernels.dispatch(context, kernel, views, bytes_of(parameters), context.extent(result));
+  });
+  return result;
+}
+
+}  // namespace alcove::passes

@@ -1,0 +1,31 @@
+// The formats of results by their precision.
+#pragma once
+
+#include "alcove/passes/frame.h"
+
+namespace alcove::passes {
+
+[[nodiscard]] inline VkFormat scalar_format(Precision precision) {
+  switch (precision) {
+    case Precision::unorm8:
+      return VK_FORMAT_R8_UNORM;
+    case Precision::float16:
+      return VK_FORMAT_R16_SFLOAT;
+    default:
+      return VK_FORMAT_R32_SFLOAT;
+  }
+}
+
+// Colours from 0 to 1.
+[[nodiscard]] inline VkFormat colour_format(Precision precision) {
+  switch (precision) {
+    case Precision::unorm8:
+      return VK_FORMAT_R8G8B8A8_UNORM;
+    case Precision::float16:
+      return VK_FORMAT_R16G16B16A16_SFLOAT;
+    default:
+      return VK_FORMAT_R32G32B32A32_SFLOAT;
+  }
+}
+
+}  // namespace alcove::passes
