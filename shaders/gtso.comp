@@ -43,7 +43,7 @@ float occlusion_of(ivec2 pixel, vec3 normal, vec3 view) {
   if (kModel == kLagarde) {
     return lagarde_specular_occlusion(dot(normal, view), visibility, alpha);
   }
-  vec3 bent = fetch_direction(bent_normal_image, pixel);
+  vec3 bent = raised_bent_normal(fetch_direction(bent_normal_image, pixel), normal, visibility);
   vec3 reflection = mirror_direction(normal, view);
   return kModel == kSmoothCone
              ? smooth_specular_occlusion(visibility, bent, normal, reflection, alpha)

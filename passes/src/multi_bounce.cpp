@@ -24,8 +24,7 @@ tl::expected<Texture, Error> add_multi_bounce(const Frame& frame, const MultiBou
     return tl::unexpected(kernel.error());
   }
   Texture result = frame.graph.create_texture(
-      "multi-bounce",
-      {colour_format(precision), framegraph::Extent::relative(inputs.visibility)});
+      "multi-bounce", {colour_format(precision), framegraph::Extent::relative(inputs.visibility)});
   auto pass = frame.graph.add_pass("multi-bounce");
   pass.read(inputs.visibility, framegraph::access::sampled_compute);
   pass.read(inputs.albedo, framegraph::access::sampled_compute);

@@ -59,6 +59,19 @@ ALCOVE_INLINE float tilted_visibility_cone(float visibility, float bent_dot_norm
   return visibility_cone(clamp(visibility / max(bent_dot_normal, 1e-4f), 0.0f, 1.0f));
 }
 
+// The bent normal turned towards the normal until the cone of this visibility around it lies above
+// the surface, where everything visible lies. An open surface's is the normal itself, whatever noise
+// has tilted it.
+ALCOVE_INLINE vec3 raised_bent_normal(vec3 bent_normal, vec3 normal, float visibility) {
+  float v = clamp(visibility, 0.0f, 1.0f);
+  float bent_dot_normal = dot(bent_normal, normal);
+  if (bent_dot_normal * abs(bent_dot_normal) >= v) return bent_normal;
+  vec3 across = bent_normal - bent_dot_normal * normal;
+  float squared = dot(across, across);
+  if (squared < 1e-12f) return normal;
+  return sqrt(v) * normal + sqrt((1.0f - v) / squared) * across;
+}
+
 // Half-angle of the cone that stands for the lobe: its cosine is 10^(-alpha^2).
 ALCOVE_INLINE float lobe_cone(float alpha) {
   float x = alpha * alpha * 2.302585f;

@@ -99,6 +99,9 @@ TEST(Gtso, OpenSurfaceStaysOpenForEveryLobeAndView) {
       const vec3 reflection(float(std::sin(t)), 0, float(std::cos(t)));
       EXPECT_NEAR(maths::specular_occlusion(1.0f, kNormal, kNormal, reflection, alpha), 1.0f, 1e-4f)
           << alpha << " " << angle;
+      EXPECT_NEAR(maths::smooth_specular_occlusion(1.0f, kNormal, kNormal, reflection, alpha), 1.0f,
+                  1e-4f)
+          << alpha << " " << angle;
     }
 }
 
@@ -129,6 +132,43 @@ TEST(Gtso, GrowsWithVisibilityAndStaysInRange) {
       EXPECT_GE(s, before - 1e-3f);
       EXPECT_LE(s, 1.0f);
       before = s;
+    }
+  }
+}
+
+TEST(Gtso, VisibilityIsSettledOnlyNearItsEnds) {
+  EXPECT_EQ(maths::settled_visibility(0.0f), 0.0f);
+  EXPECT_EQ(maths::settled_visibility(127.5f / 128.0f), 1.0f);
+  for (float v = 0.0f; v <= 1.0f; v += 0.01f) {
+    EXPECT_NEAR(maths::settled_visibility(v), v, 1.0f / 127.0f);
+  }
+}
+
+TEST(Gtso, RaisedConeLiesAboveTheSurface) {
+  RandomInput random;
+  for (int i = 0; i < 2000; ++i) {
+    const vec3 normal = random.unit_vector(), bent = random.facing(normal);
+    const float v = random.uniform(0.0f, 1.0f);
+    const vec3 raised = maths::raised_bent_normal(bent, normal, v);
+    const float room = float(kPi) / 2 - maths::visibility_cone(v);
+    EXPECT_NEAR(glm::length(raised), 1.0f, 1e-4f);
+    EXPECT_LE(maths::angle_between(raised, normal), room + 1e-3f);
+    if (maths::angle_between(bent, normal) < room - 1e-3f) {
+      EXPECT_EQ(raised, bent);
+    }
+    EXPECT_LT(maths::angle_between(maths::raised_bent_normal(bent, normal, 1.0f), normal), 1e-3f);
+  }
+}
+
+TEST(Gtso, MirrorDirectionIsUnitAndNeverUnderTheSurface) {
+  RandomInput random;
+  for (int i = 0; i < 1000; ++i) {
+    const vec3 normal = random.unit_vector(), view = random.unit_vector();
+    const vec3 mirror = maths::mirror_direction(normal, view);
+    EXPECT_NEAR(glm::length(mirror), 1.0f, 1e-4f);
+    EXPECT_GE(glm::dot(mirror, normal), 0.0f);
+    if (glm::dot(normal, view) > 1e-3f) {
+      EXPECT_NEAR(glm::dot(mirror, normal), glm::dot(normal, view), 1e-5f);
     }
   }
 }

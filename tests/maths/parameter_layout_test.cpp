@@ -7,7 +7,9 @@
 
 #include "depth_pyramid_parameters.h"
 #include "gtao_parameters.h"
+#include "gtso_parameters.h"
 #include "maths/projection.h"
+#include "multi_bounce_parameters.h"
 #include "normals_parameters.h"
 #include "parameter_layouts_spirv.h"
 #include "reconstruct_parameters.h"
@@ -36,6 +38,10 @@ const std::map<std::string, Offsets> kExpected = {
       ALCOVE_OFFSET(GtaoParameters, phase), ALCOVE_OFFSET(GtaoParameters, radius),
       ALCOVE_OFFSET(GtaoParameters, frame), ALCOVE_OFFSET(GtaoParameters, thickness),
       ALCOVE_OFFSET(GtaoParameters, fill)}},
+    {"GtsoParameters",
+     {ALCOVE_OFFSET(GtsoParameters, projection), ALCOVE_OFFSET(GtsoParameters, view_from_normal),
+      ALCOVE_OFFSET(GtsoParameters, roughness)}},
+    {"MultiBounceParameters", {ALCOVE_OFFSET(MultiBounceParameters, size_px)}},
     {"NormalsParameters", {ALCOVE_OFFSET(NormalsParameters, projection)}},
     {"ReconstructParameters",
      {ALCOVE_OFFSET(ReconstructParameters, projection),

@@ -5,7 +5,9 @@
 
 #include "depth_pyramid_parameters.h"
 #include "gtao_parameters.h"
+#include "gtso_parameters.h"
 #include "maths/projection.h"
+#include "multi_bounce_parameters.h"
 #include "normals_parameters.h"
 #include "reconstruct_parameters.h"
 
@@ -14,9 +16,11 @@ layout(set = 0, binding = 1) uniform B { DepthPyramidParameters depth_pyramid; }
 layout(set = 0, binding = 2) uniform C { GtaoParameters gtao; };
 layout(set = 0, binding = 3) uniform D { NormalsParameters normals; };
 layout(set = 0, binding = 4) uniform E { ReconstructParameters reconstruct; };
-layout(std430, set = 0, binding = 5) buffer Sum { float sum; };
+layout(set = 0, binding = 5) uniform F { GtsoParameters gtso; };
+layout(set = 0, binding = 6) uniform G { MultiBounceParameters multi_bounce; };
+layout(std430, set = 0, binding = 7) buffer Sum { float sum; };
 
 void main() {
   sum = projection.size_px.x + depth_pyramid.reach + gtao.radius + normals.projection.size_px.x +
-        reconstruct.longest;
+        reconstruct.longest + gtso.roughness + multi_bounce.size_px.x;
 }

@@ -37,10 +37,13 @@ struct GtsoInputs {
 
 // Out: one channel, the visible share of the GGX lobe of each pixel, [0,1], 1 open, which multiplies
 // specular probe light; 1 in the sky. Unorm8 is R8_UNORM, float16 R16_SFLOAT, float32 R32_SFLOAT.
-// Where no direction in the picture is hidden, nothing is darkened at any roughness: a visibility
-// within 1/128 of 1 counts as open, because the noise of a filtered one is no less and a cone turns
-// it into degrees. Errors: an input that is missing or of another size than the rest, a roughness or
-// a channel out of range.
+//
+// An open surface stays open at any roughness and angle: a visibility within 1/128 of 1 counts as
+// open, because a filtered one is no surer than that and a cone turns it into degrees. The memo
+// divides by the whole lobe, also by what lies under the surface; here that is left out.
+//
+// Errors: an input that is missing or of another size than the rest, a roughness or a channel out
+// of range.
 [[nodiscard]] tl::expected<framegraph::Texture, Error> add_gtso(const Frame& frame,
                                                                 const GtsoInputs& inputs,
                                                                 const GtsoSettings& settings);

@@ -1,0 +1,261 @@
+#include "alcove/passes/gtso.h"
+
+#include <gmock/gmock.h>
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "maths/gtso.h"
+#include "maths/make_projection.h"
+#include "pass_fixture.h"
+#include "random_input.h"
+#include "views.h"
+
+namespace alcove::passes {
+namespace {
+
+using framegraph::Graph;
+using framegraph::Texture;
+using glm::vec3;
+
+using GtsoPass = PassTest;
+
+constexpr std::uint32_t kWidth = 45;
+constexpr std::uint32_t kHeight = 31;
+constexpr float kSky = 1e12f;
+
+constexpr std::array kModels{SpecularModel::cone, SpecularModel::smooth_cone,
+                             SpecularModel::lagarde};
+
+struct Inputs {
+  HostImage visibility{kWidth, kHeight, {}, 1};
+  HostImage bent{kWidth, kHeight, {}, 4};
+  HostImage normals{kWidth, kHeight, {}, 4};
+  HostImage depth{kWidth, kHeight, {}, 1};
+  HostImage surface{kWidth, kHeight, {}, 4};  // roughness in the last channel
+};
+
+void append(HostImage& image, vec3 v, float w) {
+  image.texels.insert(image.texels.end(), {v.x, v.y, v.z, w});
+}
+
+vec3 direction(const HostImage& image, std::uint32_t x, std::uint32_t y) {
+  return glm::normalize(vec3(image.at(x, y, 0), image.at(x, y, 1), image.at(x, y, 2)));
+}
+
+// Surfaces that face the eye, in view space, with every seventh pixel sky.
+Inputs random_inputs() {
+  maths_test::RandomInput random;
+  Inputs inputs;
+  for (std::uint32_t i = 0; i < kWidth * kHeight; ++i) {
+    const vec3 normal = random.facing(vec3(0, 0, 1));
+    append(inputs.normals, normal, 0.0f);
+    append(inputs.bent, random.facing(normal), 0.0f);
+    append(inputs.surface, vec3(0.25f), random.uniform(0.05f, 1.0f));
+    inputs.visibility.texels.push_back(random.uniform(0.0f, 1.0f));
+    inputs.depth.texels.push_back(i % 7 == 6 ? kSky : random.uniform(1.0f, 9.0f));
+  }
+  return inputs;
+}
+
+Texture add(const Frame& frame, const GtsoInputs& inputs, const GtsoSettings& settings) {
+  const auto result = add_gtso(frame, inputs, settings);
+  EXPECT_TRUE(result) << result.error().message;
+  return result.value_or(Texture{});
+}
+
+maths::Projection projection_of(const View& view) {
+  maths::mat4 clip_from_view;
+  std::memcpy(&clip_from_view[0][0], view.clip_from_view.data(), sizeof(clip_from_view));
+  return maths::make_projection(clip_from_view, kWidth, kHeight).value();
+}
+
+// What the pass should write at a pixel.
+float expected(const Inputs& inputs, const maths::Projection& projection, SpecularModel model,
+               std::uint32_t x, std::uint32_t y) {
+  const float depth = inputs.depth.at(x, y);
+  if (depth == kSky) {
+    return 1.0f;
+  }
+  const maths::vec2 uv = maths::pixel_centre_uv(projection, {x, y});
+  const vec3 view = maths::view_vector(projection, maths::position_vs(projection, uv, depth));
+  const vec3 normal = direction(inputs.normals, x, y);
+  const float visibility = maths::settled_visibility(inputs.visibility.at(x, y));
+  const vec3 bent = maths::raised_bent_normal(direction(inputs.bent, x, y), normal, visibility);
+  const float alpha = inputs.surface.at(x, y, 3) * inputs.surface.at(x, y, 3);
+  const vec3 mirror = maths::mirror_direction(normal, view);
+  switch (model) {
+    case SpecularModel::cone:
+      return maths::specular_occlusion(visibility, bent, normal, mirror, alpha);
+    case SpecularModel::smooth_cone:
+      return maths::smooth_specular_occlusion(visibility, bent, normal, mirror, alpha);
+    default:
+      return maths::lagarde_specular_occlusion(glm::dot(normal, view), visibility, alpha);
+  }
+}
+
+TEST_F(GtsoPass, AgreesWithTheFormulasInEveryView) {
+  const Inputs inputs = random_inputs();
+  for (const TestView& view : test_views()) {
+    for (const SpecularModel model : kModels) {
+      SCOPED_TRACE(testing::Message() << view.name << ", model " << static_cast<int>(model));
+      run([&](Graph& graph) {
+        const Frame frame{graph, gpu().kernels(), view.view, 0};
+        read_back(graph,
+                  add(frame,
+                      {.visibility = upload(graph, inputs.visibility),
+                       .bent_normal = upload(graph, inputs.bent),
+                       .normals = upload(graph, inputs.normals),
+                       .depth = upload(graph, inputs.depth),
+                       .roughness = upload(graph, inputs.surface),
+                       .normals_in_view_space = true},
+                      {.model = model, .roughness_channel = 3, .precision = Precision::float32}));
+      });
+      const maths::Projection projection = projection_of(view.view);
+      for (std::uint32_t y = 0; y < kHeight; ++y) {
+        for (std::uint32_t x = 0; x < kWidth; ++x) {
+          EXPECT_NEAR(result().at(x, y), expected(inputs, projection, model, x, y), 2e-3f);
+        }
+      }
+    }
+  }
+}
+
+// Visibility and bent normals of an open plane with the noise that filtered ones have.
+Inputs open_inputs(const PlaneScene& plane) {
+  maths_test::RandomInput random;
+  Inputs inputs;
+  for (std::uint32_t i = 0; i < kWidth * kHeight; ++i) {
+    const vec3 normal = direction(plane.normal_vs, i % kWidth, i / kWidth);
+    inputs.visibility.texels.push_back(random.uniform(127.0f / 128.0f, 1.0f));
+    append(inputs.bent, glm::normalize(normal + 0.1f * random.unit_vector()), 0.0f);
+  }
+  return inputs;
+}
+
+// Over the pixels of a plane that are seen under up to 85 degrees.
+float lowest_of(const HostImage& image, const PlaneScene& plane, const View& view) {
+  const maths::Projection projection = projection_of(view);
+  float lowest = 1.0f;
+  for (std::uint32_t y = 0; y < kHeight; ++y) {
+    for (std::uint32_t x = 0; x < kWidth; ++x) {
+      const maths::vec2 uv = maths::pixel_centre_uv(projection, {x, y});
+      const float depth = maths::linear_depth(projection, plane.depth_ndc.at(x, y));
+      const vec3 towards =
+          maths::view_vector(projection, maths::position_vs(projection, uv, depth));
+      if (glm::dot(towards, direction(plane.normal_vs, x, y)) >= std::cos(glm::radians(85.0f))) {
+        lowest = std::min(lowest, image.at(x, y));
+      }
+    }
+  }
+  return lowest;
+}
+
+TEST_F(GtsoPass, OpenSurfaceStaysOpenAtAnyRoughness) {
+  const std::array roughness{0.0f, 0.1f, 0.3f, 0.6f, 1.0f};
+  for (const TestView& view : test_views()) {
+    for (const float degrees : {0.0f, 30.0f, 60.0f, 84.0f}) {
+      const PlaneScene plane = plane_scene(view, kWidth, kHeight, degrees);
+      const Inputs open = open_inputs(plane);
+      run([&](Graph& graph) {
+        const Frame frame{graph, gpu().kernels(), view.view, 0};
+        const auto depth = add_depth_pyramid(frame, upload(graph, plane.depth_ndc), 1, 0.05f);
+        ASSERT_TRUE(depth) << depth.error().message;
+        const GtsoInputs inputs{.visibility = upload(graph, open.visibility),
+                                .bent_normal = upload(graph, open.bent),
+                                .normals = upload(graph, plane.normal_vs),
+                                .depth = *depth,
+                                .normals_in_view_space = true};
+        for (const SpecularModel model : kModels) {
+          for (const float r : roughness) {
+            read_back(graph,
+                      add(frame, inputs,
+                          {.model = model, .roughness = r, .precision = Precision::float32}));
+          }
+        }
+      });
+      for (std::size_t image = 0; image < kModels.size() * roughness.size(); ++image) {
+        EXPECT_GE(lowest_of(result(image), plane, view.view), 0.99f)
+            << view.name << " tilted " << degrees << " degrees, model " << image / roughness.size()
+            << ", roughness " << roughness[image % roughness.size()];
+      }
+    }
+  }
+}
+
+TEST_F(GtsoPass, TurnsNormalsOfTheWorldIntoTheView) {
+  const Inputs inputs = random_inputs();
+  const auto with = [&](View view, bool in_view_space) {
+    run([&](Graph& graph) {
+      read_back(graph, add({graph, gpu().kernels(), view, 0},
+                           {.visibility = upload(graph, inputs.visibility),
+                            .bent_normal = upload(graph, inputs.bent),
+                            .normals = upload(graph, inputs.normals),
+                            .depth = upload(graph, inputs.depth),
+                            .normals_in_view_space = in_view_space},
+                           {.roughness = 0.4f, .precision = Precision::float32}));
+    });
+    return result();
+  };
+  View view = test_views().front().view;
+  const HostImage in_view_space = with(view, true);
+  const HostImage unturned = with(view, false);
+  EXPECT_EQ(in_view_space.texels, unturned.texels);
+  // A half turn about the view axis.
+  view.view_from_world[0] = view.view_from_world[5] = -1.0f;
+  EXPECT_NE(in_view_space.texels, with(view, false).texels);
+  EXPECT_EQ(in_view_space.texels, with(view, true).texels);
+}
+
+TEST_F(GtsoPass, TakesNoTimeWhenNobodyReadsIt) {
+  const Inputs inputs = random_inputs();
+  run([&](Graph& graph) {
+    const Frame frame{graph, gpu().kernels(), test_views().front().view, 0};
+    const Texture depth = upload(graph, inputs.depth);
+    (void)add(frame,
+              {.visibility = upload(graph, inputs.visibility),
+               .bent_normal = upload(graph, inputs.bent),
+               .normals = upload(graph, inputs.normals),
+               .depth = depth},
+              {});
+    read_back(graph, depth);
+  });
+  for (const framegraph::PassTiming& timing : gpu().timings()) {
+    EXPECT_NE(timing.name, "specular occlusion");
+  }
+}
+
+TEST_F(GtsoPass, RefusesWhatItCannotUseAndNamesIt) {
+  const Inputs inputs = random_inputs();
+  const HostImage small{2, 2, std::vector<float>(4), 1};
+  run([&](Graph& graph) {
+    const Frame frame{graph, gpu().kernels(), test_views().front().view, 0};
+    const GtsoInputs good{.visibility = upload(graph, inputs.visibility),
+                          .bent_normal = upload(graph, inputs.bent),
+                          .normals = upload(graph, inputs.normals),
+                          .depth = upload(graph, inputs.depth)};
+    const auto refused = [&](const GtsoInputs& given, const GtsoSettings& settings,
+                             const char* name) {
+      const auto result = add_gtso(frame, given, settings);
+      ASSERT_FALSE(result) << name;
+      EXPECT_THAT(result.error().message, testing::HasSubstr(name));
+    };
+    GtsoInputs without_bent = good;
+    without_bent.bent_normal = {};
+    refused(without_bent, {}, "bent normals");
+    GtsoInputs unequal = good;
+    unequal.depth = upload(graph, small);
+    refused(unequal, {}, "2x2");
+    refused(good, {.roughness = std::numeric_limits<float>::quiet_NaN()}, "0 to 1");
+    refused(good, {.roughness = 1.5f}, "0 to 1");
+    refused(good, {.roughness_channel = 4}, "channel 4");
+    // Lagarde's model needs no bent normal.
+    read_back(graph, add(frame, without_bent,
+                         {.model = SpecularModel::lagarde, .precision = Precision::float32}));
+  });
+}
+
+}  // namespace
+}  // namespace alcove::passes
