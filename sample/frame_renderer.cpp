@@ -37,12 +37,6 @@ double processor_ms() {
   return static_cast<double>(time.tv_sec) * 1e3 + static_cast<double>(time.tv_nsec) * 1e-6;
 }
 
-passes::Matrix to_matrix(const glm::mat4& matrix) {
-  passes::Matrix result;
-  std::memcpy(result.data(), &matrix, sizeof(result));
-  return result;
-}
-
 // Turns texels of a read-back buffer into an image, one call of `convert` each.
 template <typename Pixel, typename Texel, typename Convert>
 Image<Pixel> to_image(const HostBuffer& buffer, VkExtent2D size, Convert convert) {
@@ -227,6 +221,12 @@ FrameImages FrameRenderer::State::convert(
     }
   }
   return images;
+}
+
+passes::Matrix to_matrix(const glm::mat4& matrix) {
+  passes::Matrix result;
+  std::memcpy(result.data(), &matrix, sizeof(result));
+  return result;
 }
 
 FrameRenderer::FrameRenderer(std::unique_ptr<State> state) : state_(std::move(state)) {}

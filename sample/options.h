@@ -32,7 +32,7 @@ struct ViewOptions {
 };
 
 struct OcclusionOptions {
-  Quality quality = Quality::kHigh;
+  Quality quality = Quality::kMedium;
   std::optional<float> radius;  // scene units; none: default_radius(scene)
   NormalSource normals = NormalSource::kShading;
   std::vector<std::pair<std::string, std::string>> set;  // --set name=value, in order

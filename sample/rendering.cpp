@@ -166,7 +166,7 @@ Image<float> linear_depth(const Rendering& rendering) {
   Image<float> depth(ndc.width, ndc.height, std::numeric_limits<float>::infinity());
   for (std::size_t i = 0; i < ndc.pixels.size(); ++i) {
     if (ndc.pixels[i] != sky) {
-      depth.pixels[i] = static_cast<float>(view_depth(matrices.view_from_clip, ndc.pixels[i]));
+      depth.pixels[i] = static_cast<float>(view_depth(matrices.clip_from_view, ndc.pixels[i]));
     }
   }
   return depth;
