@@ -210,7 +210,7 @@ void add_occlusion(CLI::App& app, Raw& raw) {
       {"geometric", NormalSource::kGeometric},
       {"depth", NormalSource::kDepth}};
   const std::string group = "Occlusion";
-  app.add_option("--quality", occlusion.quality, "low, medium, high, ultra or reference; high")
+  app.add_option("--quality", occlusion.quality, "low, medium, high, ultra or reference; medium")
       ->transform(CLI::CheckedTransformer(kQualities).description(""))
       ->type_name("NAME")
       ->group(group);
