@@ -26,12 +26,15 @@ vec3 fetch_position(ivec2 pixel, float depth) {
 }
 
 // How badly the line through the depths one and two pixels away misses the pixel's own. Depth itself
-// is no line on the image of a plane; its inverse is, in perspective, so that is compared there.
+// is no line on the image of a plane; its inverse is, in perspective, so that is compared there. The
+// step to the first counts for a little: on a strip two pixels wide both lines miss by the strip's
+// whole depth, and at a crease between planes a quarter of the step never outweighs the miss.
 float miss(float depth, float one, float two) {
+  vec3 line = vec3(depth, one, two);
   if (parameters.projection.eye.w > 0.0) {
-    return abs(2.0 / one - 1.0 / two - 1.0 / depth);
+    line = 1.0 / line;
   }
-  return abs(2.0 * one - two - depth);
+  return abs(2.0 * line.y - line.z - line.x) + 0.25 * abs(line.y - line.x);
 }
 
 // From the pixel to its better neighbour along an axis, pointing along +axis of the image.
@@ -43,10 +46,16 @@ vec3 tangent(ivec2 pixel, ivec2 axis, float depth) {
   float miss_after = miss(depth, after, fetch_depth(pixel + 2 * axis));
   bool first = any(lessThan(pixel - axis, ivec2(0)));
   bool final = any(greaterThan(pixel + axis, last));
-  bool take_after = first || (!final && miss_after < miss_before);
+  bool none_before = first || is_sky_depth(before);
+  bool none_after = final || is_sky_depth(after);
+  bool take_after = none_before || (!none_after && miss_after < miss_before);
+  // A pixel alone on its axis faces the eye there: its neighbour counts as being as deep.
+  before = none_before ? depth : before;
+  after = none_after ? depth : after;
   vec3 here = fetch_position(pixel, depth);
-  return take_after ? fetch_position(pixel + axis, after) - here
-                    : here - fetch_position(pixel - axis, before);
+  vec3 there = take_after ? fetch_position(pixel + axis, after) - here
+                          : here - fetch_position(pixel - axis, before);
+  return normalize(there);  // so that no product of far ones overflows
 }
 
 void main() {

@@ -1,11 +1,78 @@
 #include "pass_fixture.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <cstring>
+#include <limits>
+#include <span>
 
 namespace alcove::passes {
 
 using framegraph::Graph;
 using framegraph::Texture;
+
+namespace {
+
+struct TexelLayout {
+  std::uint32_t channels = 0;
+  std::uint32_t channel_bytes = 0;
+};
+
+TexelLayout layout_of(VkFormat format) {
+  switch (format) {
+    case VK_FORMAT_R8_UNORM:
+      return {1, 1};
+    case VK_FORMAT_R8G8B8A8_SNORM:
+      return {4, 1};
+    case VK_FORMAT_R16_SFLOAT:
+      return {1, 2};
+    case VK_FORMAT_R16G16_SFLOAT:
+      return {2, 2};
+    case VK_FORMAT_R16G16B16A16_SFLOAT:
+      return {4, 2};
+    case VK_FORMAT_R32_SFLOAT:
+      return {1, 4};
+    case VK_FORMAT_R32G32_SFLOAT:
+      return {2, 4};
+    case VK_FORMAT_R32G32B32A32_SFLOAT:
+      return {4, 4};
+    default:
+      ADD_FAILURE() << "The fixture cannot read format " << format << " back.";
+      return {1, 4};
+  }
+}
+
+void decode(std::span<const std::byte> bytes, VkFormat format, std::vector<float>& texels) {
+  const std::uint32_t size = layout_of(format).channel_bytes;
+  for (std::size_t i = 0; i < texels.size(); ++i) {
+    const std::byte* from = bytes.data() + i * size;
+    if (size == 4) {
+      std::memcpy(&texels[i], from, 4);
+    } else if (size == 2) {
+      std::uint16_t half = 0;
+      std::memcpy(&half, from, 2);
+      texels[i] = sample::half_to_float(half);
+    } else if (format == VK_FORMAT_R8_UNORM) {
+      texels[i] = static_cast<float>(std::to_integer<int>(*from)) / 255.0f;
+    } else {
+      const auto stored = static_cast<std::int8_t>(*from);
+      texels[i] = std::max(static_cast<float>(stored) / 127.0f, -1.0f);
+    }
+  }
+}
+
+VkFormat uploaded_format(std::uint32_t channels) {
+  switch (channels) {
+    case 1:
+      return VK_FORMAT_R32_SFLOAT;
+    case 2:
+      return VK_FORMAT_R32G32_SFLOAT;
+    default:
+      return VK_FORMAT_R32G32B32A32_SFLOAT;
+  }
+}
+
+}  // namespace
 
 void PassTest::SetUp() {
   auto made = sample::Gpu::create({.validation = true}, {.verify = true, .check_uses = true});
@@ -29,27 +96,27 @@ Texture PassTest::upload(Graph& graph, const HostImage& image) {
   EXPECT_TRUE(buffer) << buffer.error();
   std::memcpy((*buffer)->bytes().data(), image.texels.data(), bytes);
   const Texture target = graph.create_texture(
-      "uploaded", {image.channels == 1 ? VK_FORMAT_R32_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT,
-                   framegraph::Extent::absolute(image.width, image.height)});
+      "uploaded",
+      {uploaded_format(image.channels), framegraph::Extent::absolute(image.width, image.height)});
   uploads_.push_back(std::move(*buffer));
   return sample::add_copy(graph, *uploads_.back(), target);
 }
 
 void PassTest::read_back(Graph& graph, Texture texture, std::uint32_t mip) {
   const VkExtent3D extent = graph.extent(texture);
+  const VkFormat format = graph.format(texture);
   HostImage image;
   image.width = std::max(extent.width >> mip, 1u);
   image.height = std::max(extent.height >> mip, 1u);
-  image.channels = graph.format(texture) == VK_FORMAT_R32_SFLOAT      ? 1
-                   : graph.format(texture) == VK_FORMAT_R32G32_SFLOAT ? 2
-                                                                      : 4;
+  image.channels = layout_of(format).channels;
   image.texels.resize(std::size_t{image.width} * image.height * image.channels);
-  auto buffer = sample::HostBuffer::create(gpu_->device(), image.texels.size() * sizeof(float),
+  auto buffer = sample::HostBuffer::create(gpu_->device(),
+                                           image.texels.size() * layout_of(format).channel_bytes,
                                            VK_BUFFER_USAGE_TRANSFER_DST_BIT);
-  EXPECT_TRUE(buffer) << buffer.error();
-  downloads_.push_back(std::move(*buffer));
+  ASSERT_TRUE(buffer) << buffer.error();
+  downloads_.push_back({std::move(*buffer), format});
   results_.push_back(std::move(image));
-  sample::add_read_back(graph, texture, *downloads_.back(), mip);
+  sample::add_read_back(graph, texture, *downloads_.back().buffer, mip);
 }
 
 void PassTest::run(const std::function<void(Graph&)>& declare) {
@@ -62,9 +129,56 @@ void PassTest::run(const std::function<void(Graph&)>& declare) {
   });
   ASSERT_TRUE(report) << report.error();
   for (std::size_t i = 0; i < results_.size(); ++i) {
-    std::memcpy(results_[i].texels.data(), downloads_[i]->bytes().data(),
-                results_[i].texels.size() * sizeof(float));
+    decode(downloads_[i].buffer->bytes(), downloads_[i].format, results_[i].texels);
   }
+}
+
+PassTest::OcclusionImages PassTest::run_occlusion(const OcclusionFrame& given,
+                                                  const OcclusionSettings& settings) {
+  run([&](Graph& graph) {
+    if (given.reset) {
+      graph.reset_histories();
+    }
+    const Frame frame{graph, gpu_->kernels(), given.view, given.index, given.previous_view};
+    OcclusionInputs inputs{.depth_ndc = upload(graph, given.depth_ndc),
+                           .normals_in_view_space = true};
+    if (given.normal_vs != nullptr) {
+      inputs.normals = upload(graph, *given.normal_vs);
+    }
+    if (given.motion != nullptr) {
+      inputs.motion = upload(graph, *given.motion);
+    }
+    const auto outputs = add_occlusion(frame, inputs, settings);
+    ASSERT_TRUE(outputs) << outputs.error().message;
+    read_back(graph, outputs->visibility);
+    if (settings.bent_normal) {
+      read_back(graph, outputs->bent_normal);
+    }
+  });
+  OcclusionImages images;
+  if (!results_.empty()) {
+    images.visibility = results_[0];
+  }
+  if (results_.size() > 1) {
+    images.bent_normal = results_[1];
+  }
+  return images;
+}
+
+void PassTest::poison_memory(std::uint32_t width, std::uint32_t height) {
+  constexpr int kTextures = 6;
+  const std::size_t floats = std::size_t{width} * height * 4;
+  const HostImage poison{width, height,
+                         std::vector<float>(floats, std::numeric_limits<float>::quiet_NaN()), 4};
+  run([&](Graph& graph) {
+    std::vector<Texture> textures;
+    for (int i = 0; i < kTextures; ++i) {
+      textures.push_back(upload(graph, poison));
+    }
+    for (const Texture texture : textures) {
+      read_back(graph, texture);
+    }
+  });
 }
 
 }  // namespace alcove::passes

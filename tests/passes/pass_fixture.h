@@ -32,9 +32,10 @@ class PassTest : public testing::Test {
   void SetUp() override;
   void TearDown() override;
 
-  // Adds a texture of 32-bit floats (1 or 4 channels) that holds `image`.
+  // Adds a texture of 32-bit floats (1, 2 or 4 channels) that holds `image`.
   framegraph::Texture upload(framegraph::Graph& graph, const HostImage& image);
-  // Has `texture`, of 32-bit floats, read back: result() gives it once the frame has run.
+  // Has `texture`, of any format that the passes write, read back: result() gives it as floats once
+  // the frame has run.
   void read_back(framegraph::Graph& graph, framegraph::Texture texture, std::uint32_t mip = 0);
   // The images read back by the last frame, in order.
   const HostImage& result(std::size_t index = 0) const { return results_[index]; }
@@ -42,12 +43,36 @@ class PassTest : public testing::Test {
   // Runs one frame that `declare` declares; fails the test where it cannot.
   void run(const std::function<void(framegraph::Graph&)>& declare);
 
+  // Runs frame `frame.index` of the whole of add_occlusion and returns its images.
+  struct OcclusionFrame {
+    View view;
+    const HostImage& depth_ndc;
+    const HostImage* normal_vs = nullptr;  // null: from depth
+    const HostImage* motion = nullptr;     // null: none
+    View previous_view = view;
+    std::uint32_t index = 0;
+    bool reset = false;  // forgets the history first
+  };
+  struct OcclusionImages {
+    HostImage visibility;
+    HostImage bent_normal;  // empty where none was asked for
+  };
+  OcclusionImages run_occlusion(const OcclusionFrame& frame, const OcclusionSettings& settings);
+
+  // Fills the device memory that transients of about this size get with what is not a number, so
+  // that a texel which a pass forgets shows.
+  void poison_memory(std::uint32_t width, std::uint32_t height);
+
   sample::Gpu& gpu() { return *gpu_; }
 
  private:
+  struct Download {
+    std::unique_ptr<sample::HostBuffer> buffer;
+    VkFormat format = VK_FORMAT_UNDEFINED;
+  };
   std::unique_ptr<sample::Gpu> gpu_;
   std::vector<std::unique_ptr<sample::HostBuffer>> uploads_;
-  std::vector<std::unique_ptr<sample::HostBuffer>> downloads_;
+  std::vector<Download> downloads_;
   std::vector<HostImage> results_;
 };
 

@@ -1,0 +1,124 @@
+#include "drawing.h"
+
+#include <cmath>
+#include <cstring>
+#include <numbers>
+
+namespace alcove::passes {
+namespace {
+
+glm::dmat4 in_double(const Matrix& matrix) {
+  glm::mat4 single;
+  std::memcpy(&single[0][0], matrix.data(), sizeof(single));
+  return glm::dmat4(single);
+}
+
+}  // namespace
+
+Surface plane(const glm::dvec3& through, const glm::dvec3& normal) {
+  const glm::dvec3 unit = glm::normalize(normal);
+  return {[=](const Ray& ray) -> std::vector<Hit> {
+            const double slope = glm::dot(ray.along, unit);
+            if (slope == 0.0) {
+              return {};
+            }
+            const double t = glm::dot(through - ray.from, unit) / slope;
+            return {{t, ray.from + t * ray.along, unit}};
+          },
+          {}};
+}
+
+Surface tilted_plane(double tilt_degrees, double distance) {
+  const double tilt = tilt_degrees * std::numbers::pi / 180.0;
+  const double across = std::sin(tilt) / std::numbers::sqrt2;
+  return plane({0.0, 0.0, -distance}, {across, across, std::cos(tilt)});
+}
+
+Surface sphere(const glm::dvec3& centre, double radius) {
+  return {[=](const Ray& ray) -> std::vector<Hit> {
+            const glm::dvec3 from = ray.from - centre;
+            const double a = glm::dot(ray.along, ray.along);
+            const double b = glm::dot(from, ray.along);
+            const double discriminant = b * b - a * (glm::dot(from, from) - radius * radius);
+            if (discriminant < 0.0) {
+              return {};
+            }
+            std::vector<Hit> hits;
+            for (const double side : {-1.0, 1.0}) {
+              const double t = (-b + side * std::sqrt(discriminant)) / a;
+              const glm::dvec3 position = ray.from + t * ray.along;
+              hits.push_back({t, position, (position - centre) / radius});
+            }
+            return hits;
+          },
+          {}};
+}
+
+TestCamera::TestCamera(const View& view, std::uint32_t width, std::uint32_t height)
+    : clip_from_view_(in_double(view.clip_from_view)),
+      view_from_clip_(glm::inverse(clip_from_view_)),
+      width_(width),
+      height_(height),
+      reversed_(clip_from_view_[2][2] * clip_from_view_[3][3] >
+                clip_from_view_[3][2] * clip_from_view_[2][3]) {}
+
+Ray TestCamera::ray(double x, double y) const {
+  const double u = 2.0 * x / width_ - 1.0;
+  const double v = 2.0 * y / height_ - 1.0;
+  // The near plane's raw depth and one a little behind it: the far plane may be infinite.
+  const glm::dvec4 near = view_from_clip_ * glm::dvec4(u, v, reversed_ ? 1.0 : 0.0, 1.0);
+  const glm::dvec4 behind = view_from_clip_ * glm::dvec4(u, v, 0.5, 1.0);
+  const glm::dvec3 from = glm::dvec3(near) / near.w;
+  return {from, glm::dvec3(behind) / behind.w - from};
+}
+
+glm::dvec3 TestCamera::project(const glm::dvec3& position) const {
+  const glm::dvec4 clip = clip_from_view_ * glm::dvec4(position, 1.0);
+  return {(clip.x / clip.w + 1.0) * 0.5 * width_, (clip.y / clip.w + 1.0) * 0.5 * height_,
+          clip.z / clip.w};
+}
+
+glm::dvec3 TestCamera::to_eye(std::uint32_t x, std::uint32_t y) const {
+  return -glm::normalize(ray(x + 0.5, y + 0.5).along);
+}
+
+std::optional<Hit> cast(const Scene& scene, const Ray& ray) {
+  std::optional<Hit> nearest;
+  for (const Surface& surface : scene) {
+    for (const Hit& hit : surface.meet(ray)) {
+      if (hit.t > 0.0 && (!nearest || hit.t < nearest->t) &&
+          (!surface.keep || surface.keep(hit.position))) {
+        nearest = hit;
+      }
+    }
+  }
+  if (nearest && glm::dot(nearest->normal, ray.along) > 0.0) {
+    nearest->normal = -nearest->normal;
+  }
+  return nearest;
+}
+
+bool Drawing::is_sky(std::uint32_t x, std::uint32_t y) const {
+  const float depth = depth_ndc.at(x, y);
+  return std::isnan(depth) || depth == camera.sky();
+}
+
+Drawing draw(const TestView& view, std::uint32_t width, std::uint32_t height, const Scene& scene) {
+  Drawing drawing{
+      TestCamera(view.view, width, height), scene, {width, height, {}, 1}, {width, height, {}, 4}};
+  for (std::uint32_t y = 0; y < height; ++y) {
+    for (std::uint32_t x = 0; x < width; ++x) {
+      const auto hit = cast(scene, drawing.camera.ray(x + 0.5, y + 0.5));
+      const double depth = hit ? drawing.camera.project(hit->position).z : -1.0;
+      const bool seen = depth > 0.0 && depth < 1.0;
+      drawing.depth_ndc.texels.push_back(seen ? static_cast<float>(depth) : drawing.camera.sky());
+      const glm::dvec3 normal = seen ? hit->normal : glm::dvec3(0.0, 0.0, 1.0);
+      for (const double component : {normal.x, normal.y, normal.z, 0.0}) {
+        drawing.normal_vs.texels.push_back(static_cast<float>(component));
+      }
+    }
+  }
+  return drawing;
+}
+
+}  // namespace alcove::passes
