@@ -1,0 +1,113 @@
+// Culling: what nobody wants goes, with a reason; what stays says for whom.
+#include <gtest/gtest.h>
+
+#include "alcove/framegraph/compile.h"
+
+namespace alcove::framegraph {
+namespace {
+
+const TextureDesc kDesc{VK_FORMAT_R8G8B8A8_UNORM, Extent::absolute(8, 8)};
+
+class Cull : public testing::Test {
+ protected:
+  Texture write(const char* name, Texture texture, Contents contents = Contents::keep) {
+    PassBuilder pass = graph_.add_pass(name);
+    return pass.write(texture, access::storage_write_compute, {}, contents);
+  }
+  Texture make(const char* name) { return write(name, graph_.create_texture(name, kDesc)); }
+  Plan plan() {
+    auto compiled = compile(graph_);
+    EXPECT_TRUE(compiled) << to_string(compiled.error());
+    return std::move(*compiled);
+  }
+  Graph graph_;
+};
+
+TEST_F(Cull, WhatNobodyReadsCostsNothing) {
+  const Texture wanted = make("wanted");
+  (void)make("unwanted");
+  graph_.output(wanted);
+  const Plan result = plan();
+  ASSERT_EQ(result.passes.size(), 1u);
+  EXPECT_EQ(result.fates[0].fate, Fate::output);
+  EXPECT_EQ(result.fates[1].fate, Fate::unread);
+  EXPECT_EQ(result.placements[1].heap, kNone);
+}
+
+TEST_F(Cull, AChainIsKeptByItsEndAndSaysSo) {
+  const Texture first = make("first");
+  Texture second = graph_.create_texture("second", kDesc);
+  PassBuilder pass = graph_.add_pass("reader");
+  pass.read(first, access::sampled_compute);
+  second = pass.write(second, access::storage_write_compute);
+  graph_.output(second);
+  const Plan result = plan();
+  EXPECT_EQ(result.fates[0].fate, Fate::feeds_pass);
+  EXPECT_EQ(result.fates[0].witness, 1u);
+  EXPECT_EQ(result.fates[0].resource, 0u);
+}
+
+TEST_F(Cull, ASideEffectKeepsAPassThatWritesNothing) {
+  graph_.add_pass("kept").side_effect();
+  (void)graph_.add_pass("gone");
+  const Plan result = plan();
+  EXPECT_EQ(result.fates[0].fate, Fate::side_effect);
+  EXPECT_EQ(result.fates[1].fate, Fate::writes_nothing);
+}
+
+TEST_F(Cull, AWriteThatDiscardsMakesEarlierWritesUnread) {
+  Texture texture = make("first");
+  texture = write("second", texture, Contents::discard);
+  graph_.output(texture);
+  const Plan result = plan();
+  EXPECT_EQ(result.fates[0].fate, Fate::unread);
+  EXPECT_EQ(result.fates[1].fate, Fate::output);
+}
+
+TEST_F(Cull, AnOptionalOutputThatNobodyReadsHasNoMemory) {
+  Texture main = graph_.create_texture("main", kDesc);
+  Texture extra = graph_.create_texture("extra", kDesc);
+  PassBuilder pass = graph_.add_pass("pass");
+  main = pass.write(main, access::storage_write_compute);
+  extra = pass.write_optional(extra, access::storage_write_compute);
+  graph_.output(main);
+  const Plan result = plan();
+  EXPECT_EQ(result.live_accesses, (std::vector<std::uint8_t>{1, 0}));
+  EXPECT_EQ(result.placements[extra.index].heap, kNone);
+}
+
+TEST_F(Cull, OneMipKeepsOnlyItsWriter) {
+  TextureDesc desc = kDesc;
+  desc.mips = 3;
+  Texture texture = graph_.create_texture("t", desc);
+  for (std::uint32_t mip = 0; mip < 3; ++mip) {
+    PassBuilder pass = graph_.add_pass("mip");
+    texture = pass.write(texture, access::storage_write_compute, Range::mip(mip));
+  }
+  PassBuilder reader = graph_.add_pass("reader");
+  reader.read(texture, access::sampled_compute, Range::mip(1));
+  reader.side_effect();
+  const Plan result = plan();
+  EXPECT_EQ(result.fates[0].fate, Fate::unread);
+  EXPECT_EQ(result.fates[1].fate, Fate::feeds_pass);
+  EXPECT_EQ(result.fates[2].fate, Fate::unread);
+}
+
+TEST_F(Cull, AHistoryKeepsItsWriterOnlyWhereItIsRead) {
+  const TextureHistory history = graph_.create_texture_history("h", kDesc);
+  Texture result = graph_.create_texture("result", kDesc);
+  PassBuilder accumulate = graph_.add_pass("accumulate");
+  accumulate.read(history.previous(), access::sampled_compute);
+  result = accumulate.write(result, access::storage_write_compute);
+  (void)write("remember", history.current);
+  // Nobody wants the result: reader and writer of the history keep each other alive no more.
+  EXPECT_EQ(plan().passes.size(), 0u);
+  graph_.output(result);
+  const Plan kept = plan();
+  EXPECT_EQ(kept.passes.size(), 2u);
+  EXPECT_EQ(kept.fates[1].fate, Fate::feeds_history);
+  EXPECT_EQ(kept.fates[1].witness, 0u);
+}
+
+}  // namespace
+}  // namespace alcove::framegraph

@@ -1,0 +1,228 @@
+// Wrong declarations: each comes back as an error that names what is wrong and what to change.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "alcove/framegraph/compile.h"
+
+namespace alcove::framegraph {
+namespace {
+
+using testing::HasSubstr;
+
+const TextureDesc kDesc{VK_FORMAT_R8G8B8A8_UNORM, Extent::absolute(8, 8)};
+
+class Validate : public testing::Test {
+ protected:
+  PassBuilder pass(const char* name, QueueClass queue = QueueClass::graphics) {
+    PassBuilder made = graph_.add_pass(name, queue);
+    made.side_effect();
+    return made;
+  }
+  Texture written(const char* name) {
+    Texture texture = graph_.create_texture(name, kDesc);
+    return pass("writer").write(texture, access::storage_write_compute);
+  }
+  // Exactly this error, and its sentence.
+  void expect(ErrorCode code, const char* text, const Limits& limits = {}) {
+    const auto plan = compile(graph_, limits);
+    ASSERT_FALSE(plan);
+    EXPECT_EQ(plan.error().size(), 1u) << to_string(plan.error());
+    EXPECT_EQ(plan.error()[0].code, code) << plan.error()[0].message;
+    EXPECT_THAT(plan.error()[0].message, HasSubstr(text));
+  }
+  Graph graph_;
+};
+
+TEST_F(Validate, ARightGraphHasNoErrors) {
+  const Texture texture = written("t");
+  pass("reader").read(texture, access::sampled_compute);
+  EXPECT_TRUE(compile(graph_));
+}
+
+TEST_F(Validate, AnEmptyGraphIsRight) { EXPECT_TRUE(compile(graph_)); }
+
+TEST_F(Validate, AStaleHandleIsNamedWithItsVersions) {
+  const Texture old = written("t");
+  PassBuilder second = pass("second");
+  (void)second.write(old, access::storage_read_write_compute);
+  pass("reader").read(old, access::sampled_compute);
+  expect(ErrorCode::stale_handle,
+         "pass 'reader' reads texture 't' version 1, but the version then is 2: pass 'second'");
+}
+
+TEST_F(Validate, AWriteAfterTheValueWasConsumedElsewhereIsRefused) {
+  const Texture old = written("t");
+  PassBuilder second = pass("second");
+  (void)second.write(old, access::storage_read_write_compute);
+  PassBuilder third = pass("third");
+  (void)third.write(old, access::storage_read_write_compute);
+  const auto plan = compile(graph_);
+  ASSERT_FALSE(plan);
+  EXPECT_THAT(plan.error()[0].message, HasSubstr("pass 'third' writes texture 't' version 1"));
+}
+
+TEST_F(Validate, AHandleOfAnotherGraphIsForeign) {
+  Graph other;
+  const Texture foreign = other.create_texture("foreign", kDesc);
+  pass("reader").read(foreign, access::sampled_compute);
+  expect(ErrorCode::foreign_handle, "'reader' reads a texture through a handle of another graph");
+}
+
+TEST_F(Validate, AHandleFromBeforeResetIsForeign) {
+  const Texture old = graph_.create_texture("t", kDesc);
+  graph_.reset();
+  PassBuilder writer = pass("writer");
+  (void)writer.write(old, access::storage_write_compute);
+  expect(ErrorCode::foreign_handle, "of a frame before reset");
+}
+
+TEST_F(Validate, ANullHandleIsRefused) {
+  pass("reader").read(Buffer{}, buffer_access::vertex_buffer);
+  expect(ErrorCode::null_handle, "'reader' reads a buffer through a null handle");
+}
+
+TEST_F(Validate, ReadingBeforeAnyWriteIsRefused) {
+  pass("reader").read(graph_.create_texture("t", kDesc), access::sampled_compute);
+  expect(ErrorCode::read_before_write, "'reader' reads texture 't' version 0");
+}
+
+TEST_F(Validate, ReadingAMipThatNothingWroteIsRefused) {
+  TextureDesc desc = kDesc;
+  desc.mips = 3;
+  Texture texture = graph_.create_texture("t", desc);
+  PassBuilder writer = pass("writer");
+  texture = writer.write(texture, access::storage_write_compute, Range::mip(1));
+  pass("fine").read(texture, access::sampled_compute, Range::mip(1));
+  pass("reader").read(texture, access::sampled_compute, Range::mip(2));
+  expect(ErrorCode::read_before_write, "'reader'");
+}
+
+TEST_F(Validate, ReadingAndWritingOneSubresourceIsRefused) {
+  const Texture texture = written("t");
+  PassBuilder both = pass("both");
+  both.read(texture, access::sampled_compute);
+  (void)both.write(texture, access::storage_write_compute);
+  expect(ErrorCode::read_and_write, "'both' uses a subresource of texture 't'");
+}
+
+TEST_F(Validate, ReadingOneMipAndWritingAnotherIsRight) {
+  TextureDesc desc = kDesc;
+  desc.mips = 2;
+  Texture texture = graph_.create_texture("t", desc);
+  PassBuilder first = pass("first");
+  texture = first.write(texture, access::storage_write_compute, Range::mip(0));
+  PassBuilder both = pass("both");
+  both.read(texture, access::sampled_general_compute, Range::mip(0));
+  (void)both.write(texture, access::storage_write_compute, Range::mip(1));
+  EXPECT_TRUE(compile(graph_));
+}
+
+TEST_F(Validate, TwoWritesOfOneSubresourceInAPassAreRefused) {
+  Texture texture = graph_.create_texture("t", kDesc);
+  PassBuilder twice = pass("twice");
+  texture = twice.write(texture, access::storage_write_compute);
+  (void)twice.write(texture, access::storage_write_compute);
+  expect(ErrorCode::two_writers, "'twice' writes a subresource of texture 't' twice");
+}
+
+TEST_F(Validate, AnImportWithoutTheNeededUsageIsRefused) {
+  ImportedTexture import;
+  import.image = reinterpret_cast<VkImage>(std::uintptr_t{16});
+  import.desc = kDesc;
+  import.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
+  Texture texture = graph_.import_texture("swap", import);
+  PassBuilder writer = pass("writer");
+  (void)writer.write(texture, access::storage_write_compute);
+  expect(ErrorCode::missing_usage, "was imported with 0x4: create it with 0x8 too");
+}
+
+TEST_F(Validate, AnImportWithoutItsHandleIsRefused) {
+  ImportedTexture import;
+  import.desc = kDesc;
+  (void)graph_.import_texture("swap", import);
+  expect(ErrorCode::bad_import, "set ImportedTexture::image");
+}
+
+TEST_F(Validate, AFormatWithoutSupportIsRefused) {
+  (void)written("t");
+  Limits limits;
+  limits.formats.query = [](const void*, VkFormat) {
+    return VkImageUsageFlags{VK_IMAGE_USAGE_SAMPLED_BIT};
+  };
+  expect(ErrorCode::unsupported_format, "does not support on this device", limits);
+}
+
+TEST_F(Validate, ARangeBeyondTheMipsIsRefused) {
+  const Texture texture = written("t");
+  pass("reader").read(texture, access::sampled_compute, Range::mip(3));
+  expect(ErrorCode::bad_range, "but it has 1 mips and 1 layers");
+}
+
+TEST_F(Validate, ZeroSizesAndSizesOverTheLimitsAreRefused) {
+  (void)graph_.create_texture("none", {VK_FORMAT_R8_UNORM, Extent::absolute(0, 4)});
+  (void)graph_.create_texture("huge", {VK_FORMAT_R8_UNORM, Extent::absolute(1 << 20, 4)});
+  (void)graph_.create_texture("deep", {VK_FORMAT_R8_UNORM, Extent::absolute(4, 4), 9});
+  (void)graph_.create_texture("formless", {VK_FORMAT_UNDEFINED, Extent::absolute(4, 4)});
+  (void)graph_.create_buffer("empty", {0});
+  const auto plan = compile(graph_);
+  ASSERT_FALSE(plan);
+  ASSERT_EQ(plan.error().size(), 5u) << to_string(plan.error());
+  for (const Error& error : plan.error()) EXPECT_EQ(error.code, ErrorCode::bad_description);
+}
+
+TEST_F(Validate, AnExtentRelativeToAForeignTextureIsRefused) {
+  Graph other;
+  const Texture foreign = other.create_texture("foreign", kDesc);
+  (void)graph_.create_texture("half", {VK_FORMAT_R8_UNORM, Extent::relative(foreign, 2)});
+  expect(ErrorCode::bad_description, "relative to a handle of another graph");
+}
+
+TEST_F(Validate, AHistoryThatNothingWritesIsRefused) {
+  const TextureHistory history = graph_.create_texture_history("h", kDesc);
+  pass("reader").read(history.previous(), access::sampled_compute);
+  expect(ErrorCode::history_never_written, "write its current slot");
+}
+
+TEST_F(Validate, AHistoryOfOneSlotIsACycle) {
+  (void)graph_.create_texture_history("h", kDesc, 1);
+  expect(ErrorCode::history_cycle, "at least 2 slots");
+}
+
+TEST_F(Validate, AGraphicsStageOnTheComputeQueueIsRefused) {
+  Texture texture = graph_.create_texture("t", kDesc);
+  PassBuilder draw = pass("draw", QueueClass::compute);
+  (void)draw.write(texture, access::color_attachment);
+  expect(ErrorCode::bad_access, "put the pass on QueueClass::graphics");
+}
+
+TEST_F(Validate, AnAccessDeclaredTooLateIsRefused) {
+  Texture texture = graph_.create_texture("t", kDesc);
+  PassBuilder early = pass("early");
+  (void)pass("late");
+  (void)early.write(texture, access::storage_write_compute);
+  expect(ErrorCode::closed_pass, "before the next add_pass");
+}
+
+TEST_F(Validate, AWriteThatOnlyReadsIsRefused) {
+  Texture texture = graph_.create_texture("t", kDesc);
+  PassBuilder writer = pass("writer");
+  (void)writer.write(texture, access::sampled_compute);
+  expect(ErrorCode::bad_access, "declare it with read()");
+}
+
+TEST_F(Validate, AnOutputThatNothingWritesIsRefused) {
+  graph_.output(graph_.create_texture("t", kDesc));
+  expect(ErrorCode::read_before_write, "output texture 't' is written by no pass");
+}
+
+TEST_F(Validate, AllErrorsComeAtOnce) {
+  pass("one").read(Texture{}, access::sampled_compute);
+  pass("two").read(graph_.create_texture("t", kDesc), access::sampled_compute);
+  (void)graph_.create_buffer("empty", {0});
+  const auto plan = compile(graph_);
+  ASSERT_FALSE(plan);
+  EXPECT_EQ(plan.error().size(), 3u);
+}
+
+}  // namespace
+}  // namespace alcove::framegraph
