@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "alcove/framegraph/access.h"
+#include "alcove/passes/multi_bounce.h"
 #include "gpu_image.h"
 
 namespace alcove::sample {
@@ -100,6 +101,15 @@ Image<glm::vec3> read_vectors(const HostBuffer& buffer, VkExtent2D size,
   }
 }
 
+Image<glm::vec3> read_colours(const HostBuffer& buffer, VkExtent2D size,
+                              passes::Precision precision) {
+  if (precision == passes::Precision::unorm8) {
+    return to_image<glm::vec3, Byte4>(
+        buffer, size, [](const Byte4& t) { return glm::vec3(t[0], t[1], t[2]) / 255.0f; });
+  }
+  return read_vectors(buffer, size, precision);
+}
+
 }  // namespace
 
 // The occlusion's frame: what it was given and what it makes.
@@ -108,7 +118,22 @@ struct Declared {
   Texture normal;
   Texture albedo;
   passes::OcclusionOutputs outputs;
+  Texture multi_bounce;
+  std::vector<Texture> specular_occlusion;
 };
+
+// What is read back of a frame, in the order that FrameRenderer::State::convert takes it.
+std::vector<Texture> wanted_of(const Declared& declared) {
+  const passes::OcclusionOutputs& outputs = declared.outputs;
+  std::vector<Texture> wanted{declared.depth, outputs.normals, declared.albedo, outputs.visibility};
+  if (outputs.bent_normal) {
+    wanted.push_back(outputs.bent_normal);
+    wanted.push_back(declared.multi_bounce);
+    wanted.insert(wanted.end(), declared.specular_occlusion.begin(),
+                  declared.specular_occlusion.end());
+  }
+  return wanted;
+}
 
 struct FrameRenderer::State {
   State(Gpu& on, VkExtent2D of_size, NormalSource source)
@@ -116,7 +141,10 @@ struct FrameRenderer::State {
 
   tl::expected<void, std::string> create_targets();
   tl::expected<void, std::string> draw_gbuffer(const FrameRequest& request, FrameCost& cost);
+  passes::Frame frame_of(Graph& graph, const FrameRequest& request);
   tl::expected<Declared, std::string> declare_occlusion(Graph& graph, const FrameRequest& request);
+  tl::expected<void, std::string> declare_light(Graph& graph, const FrameRequest& request,
+                                                Declared& declared);
   FrameImages convert(const FrameRequest& request,
                       const std::vector<std::unique_ptr<HostBuffer>>& buffers) const;
   void append_times(FrameCost& cost, bool occlusion);
@@ -171,17 +199,20 @@ tl::expected<void, std::string> FrameRenderer::State::draw_gbuffer(const FrameRe
   return {};
 }
 
+passes::Frame FrameRenderer::State::frame_of(Graph& graph, const FrameRequest& request) {
+  return {graph,
+          gpu.kernels(),
+          {to_matrix(request.view.clip_from_view), to_matrix(request.view.view_from_world)},
+          request.index};
+}
+
 tl::expected<Declared, std::string> FrameRenderer::State::declare_occlusion(
     Graph& graph, const FrameRequest& request) {
   const auto import = [&](Target target) {
     return graph.import_texture("g-buffer", targets[target]->import_to_read(kSampledState));
   };
-  Declared declared{import(kDepth), import(kNormal), import(kAlbedo), {}};
-  const passes::Frame frame{
-      graph,
-      gpu.kernels(),
-      {to_matrix(request.view.clip_from_view), to_matrix(request.view.view_from_world)},
-      request.index};
+  Declared declared{import(kDepth), import(kNormal), import(kAlbedo), {}, {}, {}};
+  const passes::Frame frame = frame_of(graph, request);
   passes::OcclusionInputs inputs{.depth_ndc = declared.depth};
   if (normals != NormalSource::kDepth) {
     inputs.normals = declared.normal;
@@ -197,6 +228,45 @@ tl::expected<Declared, std::string> FrameRenderer::State::declare_occlusion(
   return declared;
 }
 
+// Adds what is made of visibility and bent normal; nothing without bent normals.
+tl::expected<void, std::string> FrameRenderer::State::declare_light(Graph& graph,
+                                                                    const FrameRequest& request,
+                                                                    Declared& declared) {
+  const passes::OcclusionOutputs& outputs = declared.outputs;
+  if (!outputs.bent_normal) {
+    return {};
+  }
+  const passes::Frame frame = frame_of(graph, request);
+  const passes::Precision precision = request.occlusion.precision;
+  const auto bounced =
+      passes::add_multi_bounce(frame, {outputs.visibility, declared.albedo}, precision);
+  if (!bounced) {
+    return Failure(bounced.error().message);
+  }
+  declared.multi_bounce = *bounced;
+  passes::GtsoInputs inputs{.visibility = outputs.visibility,
+                            .bent_normal = outputs.bent_normal,
+                            .normals = outputs.normals,
+                            .depth = outputs.linear_depth,
+                            .normals_in_view_space = normals == NormalSource::kDepth};
+  passes::GtsoSettings settings{.model = request.light.specular_model, .precision = precision};
+  std::vector<float> roughness = request.light.roughness;
+  if (roughness.empty()) {
+    inputs.roughness = declared.albedo;
+    settings.roughness_channel = 3;
+    roughness.push_back(settings.roughness);
+  }
+  for (const float value : roughness) {
+    settings.roughness = value;
+    const auto occluded = passes::add_gtso(frame, inputs, settings);
+    if (!occluded) {
+      return Failure(occluded.error().message);
+    }
+    declared.specular_occlusion.push_back(*occluded);
+  }
+  return {};
+}
+
 FrameImages FrameRenderer::State::convert(
     const FrameRequest& request, const std::vector<std::unique_ptr<HostBuffer>>& buffers) const {
   FrameImages images;
@@ -210,6 +280,10 @@ FrameImages FrameRenderer::State::convert(
   images.visibility = read_visibility(*buffers[3], size, precision);
   if (buffers.size() > 4) {
     images.bent_normal_ws = read_vectors(*buffers[4], size, precision);
+    images.multi_bounce = read_colours(*buffers[5], size, precision);
+    for (std::size_t i = 6; i < buffers.size(); ++i) {
+      images.specular_occlusion.push_back(read_visibility(*buffers[i], size, precision));
+    }
   }
   if (normals == NormalSource::kDepth) {
     const glm::mat3 world_from_view = glm::transpose(glm::mat3(request.view.view_from_world));
@@ -281,13 +355,10 @@ tl::expected<FrameImages, std::string> FrameRenderer::draw_and_read(const FrameR
     if (!declared) {
       return Failure(std::move(declared.error()));
     }
-    const passes::OcclusionOutputs& outputs = declared->outputs;
-    std::vector<Texture> wanted{declared->depth, outputs.normals, declared->albedo,
-                                outputs.visibility};
-    if (outputs.bent_normal) {
-      wanted.push_back(outputs.bent_normal);
+    if (auto lit = state_->declare_light(graph, request, *declared); !lit) {
+      return lit;
     }
-    for (const Texture texture : wanted) {
+    for (const Texture texture : wanted_of(*declared)) {
       auto buffer = HostBuffer::create(state_->gpu.device(),
                                        VkDeviceSize{state_->size.width} * state_->size.height *
                                            texel_bytes(graph.format(texture)),

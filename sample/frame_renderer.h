@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "alcove/framegraph/executor.h"
+#include "alcove/passes/gtso.h"
 #include "alcove/passes/occlusion.h"
 #include "gbuffer.h"
 #include "gpu.h"
@@ -16,11 +17,18 @@
 
 namespace alcove::sample {
 
+// What is made of visibility in a frame that is read back.
+struct LightRequest {
+  passes::SpecularModel specular_model = passes::SpecularModel::cone;
+  std::vector<float> roughness;  // perceptual, an image each; empty: one, of the materials' own
+};
+
 // What one frame is drawn with.
 struct FrameRequest {
   GbufferView view;
   std::uint32_t index = 0;  // counts frames
   passes::OcclusionSettings occlusion;
+  LightRequest light;
 };
 
 struct PassTime {
@@ -42,7 +50,9 @@ struct FrameImages {
   Image<glm::vec3> albedo;     // linear
   Image<float> roughness;      // perceptual
   Image<float> visibility;
-  Image<glm::vec3> bent_normal_ws;  // empty without bent normals
+  Image<glm::vec3> bent_normal_ws;  // empty without bent normals, as are the next two
+  Image<glm::vec3> multi_bounce;
+  std::vector<Image<float>> specular_occlusion;  // by LightRequest::roughness
 };
 
 // Draws frames of one scene at one size: a g-buffer, then occlusion on it, each a submission of its
@@ -57,7 +67,7 @@ class FrameRenderer {
 
   // Draws a frame and forgets its images: for what comes before the one that is wanted.
   [[nodiscard]] tl::expected<FrameCost, std::string> draw(const FrameRequest& request);
-  // Draws a frame and reads its images back. What reading back costs is not counted.
+  // Draws a frame, lights it and reads its images back. What that costs is not counted.
   [[nodiscard]] tl::expected<FrameImages, std::string> draw_and_read(const FrameRequest& request);
 
   // Bytes of the occlusion's transients in the frame drawn last.

@@ -161,8 +161,9 @@ void read_occlusion(const CLI::App& app, const Raw& raw, OcclusionOptions& occlu
   for (const float r : occlusion.roughness) {
     if (!(r >= 0.0f && r <= 1.0f)) occlusion.roughness.clear();
   }
-  if (occlusion.roughness.empty()) {
-    refuse("--roughness", raw.roughness, "numbers from 0 to 1, such as 0.1,0.3,0.6");
+  constexpr size_t kMost = 16;
+  if (occlusion.roughness.empty() || occlusion.roughness.size() > kMost) {
+    refuse("--roughness", raw.roughness, "up to 16 numbers from 0 to 1, such as 0.1,0.3,0.6");
   }
 }
 

@@ -1,7 +1,9 @@
 #include "rendering.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <utility>
 
@@ -51,8 +53,9 @@ Costs medians(const std::vector<FrameCost>& frames) {
 // The requests of a run's frames, by index: the camera orbits, and motion is from the frame before.
 class Run {
  public:
-  Run(const Options& options, const Camera& camera, const passes::OcclusionSettings& settings)
-      : options_(options), camera_(camera), settings_(settings) {}
+  Run(const Options& options, const Camera& camera, const passes::OcclusionSettings& settings,
+      const LightRequest& light)
+      : options_(options), camera_(camera), settings_(settings), light_(light) {}
 
   Camera camera(std::uint32_t frame) const {
     return orbited(camera_, options_.view.orbit * static_cast<float>(frame));
@@ -67,6 +70,7 @@ class Run {
     request.index = frame;
     request.occlusion = settings_;
     request.occlusion.bent_normal |= all_outputs;
+    request.light = light_;
     return request;
   }
 
@@ -78,6 +82,7 @@ class Run {
   const Options& options_;
   Camera camera_;
   passes::OcclusionSettings settings_;
+  LightRequest light_;
 };
 
 // Draws the run with visibility alone, timed; a single frame is drawn again until its time is
@@ -127,6 +132,11 @@ tl::expected<Rendering, std::string> render(const Options& options) {
     return Failure(settings.error());
   }
   result.settings = *settings;
+  const auto model = specular_model(options.occlusion);
+  if (!model) {
+    return Failure(model.error());
+  }
+  result.light = {*model, options.occlusion.roughness};
   auto gpu = Gpu::create({.validation = options.validation, .index = options.device});
   if (!gpu) {
     return Failure(std::move(gpu.error()));
@@ -134,7 +144,7 @@ tl::expected<Rendering, std::string> render(const Options& options) {
   result.device = (*gpu)->device().properties().deviceName;
   result.driver = (*gpu)->device().driver();
 
-  const Run run(options, *camera, *settings);
+  const Run run(options, *camera, *settings, result.light);
   const std::uint32_t frames = options.view.frames;
   result.camera = run.camera(frames - 1);
   auto renderer = FrameRenderer::create(
@@ -183,7 +193,31 @@ Image<glm::vec3> as_colours(const Image<glm::vec3>& directions) {
   return colours;
 }
 
+tl::expected<void, std::string> write_light(const Rendering& rendering,
+                                            const std::filesystem::path& folder) {
+  const FrameImages& images = rendering.images;
+  auto written = write_exr(folder / "multi_bounce.exr", images.multi_bounce).and_then([&] {
+    return write_png(folder / "multi_bounce.png", images.multi_bounce);
+  });
+  for (std::size_t i = 0; written && i < images.specular_occlusion.size(); ++i) {
+    const std::string name = specular_name(rendering.light, i);
+    written = write_exr(folder / (name + ".exr"), images.specular_occlusion[i]).and_then([&] {
+      return write_png(folder / (name + ".png"), images.specular_occlusion[i]);
+    });
+  }
+  return written;
+}
+
 }  // namespace
+
+std::string specular_name(const LightRequest& light, std::size_t i) {
+  if (light.roughness.size() < 2) {
+    return "specular_occlusion";
+  }
+  std::array<char, 32> percent{};
+  std::snprintf(percent.data(), percent.size(), "_r%02g", 100.0 * light.roughness[i]);
+  return "specular_occlusion" + std::string(percent.data());
+}
 
 tl::expected<void, std::string> write_images(const Rendering& rendering,
                                              const std::filesystem::path& folder) {
@@ -199,6 +233,7 @@ tl::expected<void, std::string> write_images(const Rendering& rendering,
       .and_then([&] { return write_exr(folder / "bent_normal.exr", images.bent_normal_ws); })
       .and_then(
           [&] { return write_png(folder / "bent_normal.png", as_colours(images.bent_normal_ws)); })
+      .and_then([&] { return write_light(rendering, folder); })
       .and_then([&] { return write_exr(folder / "depth.exr", linear_depth(rendering)); })
       .and_then([&] { return write_exr(folder / "normal.exr", images.normal_ws); })
       .and_then([&] { return write_png(folder / "normal.png", as_colours(images.normal_ws)); })

@@ -25,6 +25,7 @@ struct Rendering {
   Scene scene;
   Camera camera;  // of the last frame
   passes::OcclusionSettings settings;
+  LightRequest light;
   FrameImages images;  // of the last frame, with every output
   Costs costs;         // with visibility as the only output
   framegraph::MemoryStatistics memory;
@@ -37,6 +38,10 @@ struct Rendering {
 
 // Distance along the view axis, infinity in the sky.
 [[nodiscard]] Image<float> linear_depth(const Rendering& rendering);
+
+// The name of the specular occlusion of index `i` without its ending: specular_occlusion, followed
+// by _r30 and the like where several roughness values were asked for.
+[[nodiscard]] std::string specular_name(const LightRequest& light, std::size_t i);
 
 // Writes the images of a rendering and creates the folder where it is missing.
 [[nodiscard]] tl::expected<void, std::string> write_images(const Rendering& rendering,

@@ -52,6 +52,7 @@ Json report_of(const Rendering& rendering, const Options& options) {
   report["camera"] = camera_json(rendering.camera);
   report["normals"] = name_of(options.occlusion.normals);
   report["settings"] = to_json(rendering.settings);
+  report["settings"]["specular_model"] = name_of(rendering.light.specular_model);
   for (const PassTime& pass : rendering.costs.passes) {
     report["timings_ms"][pass.pass] = pass.milliseconds;
   }

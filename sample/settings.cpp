@@ -23,6 +23,11 @@ constexpr std::array<std::pair<std::string_view, passes::Precision>, 3> kPrecisi
     {{"unorm8", passes::Precision::unorm8},
      {"float16", passes::Precision::float16},
      {"float32", passes::Precision::float32}}};
+constexpr std::string_view kSpecularModel = "specular_model";
+constexpr std::array<std::pair<std::string_view, passes::SpecularModel>, 3> kSpecularModels{
+    {{"cone", passes::SpecularModel::cone},
+     {"smooth_cone", passes::SpecularModel::smooth_cone},
+     {"lagarde", passes::SpecularModel::lagarde}}};
 constexpr std::array<std::pair<std::string_view, bool>, 2> kBooleans{
     {{"false", false}, {"true", true}}};
 
@@ -117,7 +122,8 @@ tl::expected<void, std::string> set(OcclusionSettings& settings, const std::stri
     }
   });
   if (!known) {
-    return Failure("There is no setting '" + name + "'; --set knows " + names + ".");
+    return Failure("There is no setting '" + name + "'; --set knows " + names + ", " +
+                   std::string(kSpecularModel) + ".");
   }
   if (!wants.empty()) {
     return Failure("--set " + name + "=" + value + ": " + name + " takes " + wants + ".");
@@ -147,12 +153,29 @@ tl::expected<OcclusionSettings, std::string> occlusion_settings(const OcclusionO
   OcclusionSettings settings = passes::quality_settings(
       to_quality(options.quality), options.radius.value_or(default_radius(scene)));
   for (const auto& [name, value] : options.set) {
+    if (name == kSpecularModel) {
+      continue;
+    }
     if (auto done = set(settings, name, value); !done) {
       return Failure(std::move(done.error()));
     }
   }
   return settings;
 }
+
+tl::expected<passes::SpecularModel, std::string> specular_model(const OcclusionOptions& options) {
+  passes::SpecularModel model = passes::SpecularModel::cone;
+  for (const auto& [name, value] : options.set) {
+    if (name == kSpecularModel) {
+      if (const std::string wants = parse_name(value, model, kSpecularModels); !wants.empty()) {
+        return Failure("--set " + name + "=" + value + ": " + name + " takes " + wants + ".");
+      }
+    }
+  }
+  return model;
+}
+
+std::string name_of(passes::SpecularModel model) { return name_of(model, kSpecularModels); }
 
 Json to_json(const OcclusionSettings& settings) {
   Json json;
