@@ -1,13 +1,222 @@
-// Ordering: program order of the live passes.
+// Ordering: program order, unless another lowers the memory peak.
+//
+// The other order is made greedily: of the passes whose inputs are ready, the one that leaves the
+// fewest bytes live comes next, the earliest declared among equals. It is taken only where its peak
+// is below that of program order; a graph in which no order could be lower is not tried.
+#include <algorithm>
+
 #include "workspace.h"
 
 namespace alcove::framegraph {
+namespace {
+
+class Orderer {
+ public:
+  Orderer(const GraphDescription& graph, const Limits& limits, Workspace& workspace, Plan& plan)
+      : graph_(graph), limits_(limits), workspace_(workspace), plan_(plan), s_(workspace.reorder) {}
+
+  void run() {
+    workspace_.order.clear();
+    for (std::uint32_t pass = 0; pass < graph_.passes.size(); ++pass) {
+      if (workspace_.pass_live[pass]) workspace_.order.push_back(pass);
+    }
+    const bool worthwhile = limits_.ordering == Ordering::lower_peak && limits_.alias &&
+                            workspace_.order.size() >= 3 &&
+                            workspace_.order.size() <= limits_.reorder_passes;
+    plan_.reordered = worthwhile && reorder();
+  }
+
+ private:
+  bool reorder() {
+    measure();
+    std::int64_t floor = 0;
+    const std::int64_t peak = peak_in_program_order(floor);
+    // A pass's own resources are live together in any order.
+    if (peak <= floor) return false;
+    find_edges();
+    const std::int64_t other = list_greedily(peak);
+    if (other >= peak || s_.order.size() != workspace_.order.size()) return false;
+    workspace_.order = s_.order;
+    return true;
+  }
+
+  template <typename Function>
+  void for_each_live(std::uint32_t pass, Function&& f) const {
+    const auto accesses = graph_.pass_accesses(pass);
+    const std::uint8_t* live = plan_.live_accesses.data() + graph_.passes[pass].first_access;
+    for (std::size_t i = 0; i < accesses.size(); ++i) {
+      if (live[i]) f(accesses[i]);
+    }
+  }
+
+  // Bytes of each transient, and how many passes use it.
+  void measure() {
+    s_.bytes.assign(graph_.resources.size(), 0);
+    s_.uses.assign(graph_.resources.size(), 0);
+    s_.seen.assign(graph_.resources.size(), kNone);
+    for (const std::uint32_t pass : workspace_.order) {
+      for_each_live(pass, [&](const AccessRecord& access) {
+        const ResourceRecord& record = graph_.resources[access.resource];
+        if (record.origin != Origin::transient || s_.seen[access.resource] == pass) return;
+        s_.seen[access.resource] = pass;
+        if (s_.uses[access.resource]++ == 0)
+          s_.bytes[access.resource] = static_cast<std::int64_t>(estimate_requirements(record).size);
+      });
+    }
+    // What is wanted after the frame is never given up.
+    for (const OutputRecord& output : graph_.outputs) ++s_.uses[output.resource];
+  }
+
+  // What running a pass adds to the live bytes while it runs, and what it gives up afterwards.
+  struct Step {
+    std::int64_t gained = 0;
+    std::int64_t freed = 0;
+    std::int64_t own = 0;
+  };
+  Step step(std::uint32_t pass) {
+    Step result;
+    ++stamp_;
+    for_each_live(pass, [&](const AccessRecord& access) {
+      const std::uint32_t r = access.resource;
+      if (s_.bytes[r] == 0 || s_.stamp[r] == stamp_) return;
+      s_.stamp[r] = stamp_;
+      result.own += s_.bytes[r];
+      if (!s_.begun[r]) result.gained += s_.bytes[r];
+      if (s_.left[r] == 1) result.freed += s_.bytes[r];
+    });
+    return result;
+  }
+
+  void begin_walk() {
+    s_.left = s_.uses;
+    s_.begun.assign(graph_.resources.size(), 0);
+    s_.stamp.resize(std::max(s_.stamp.size(), graph_.resources.size()));
+    std::fill(s_.stamp.begin(), s_.stamp.end(), 0u);
+    stamp_ = 0;
+  }
+
+  void take(std::uint32_t pass) {
+    ++stamp_;
+    for_each_live(pass, [&](const AccessRecord& access) {
+      if (s_.stamp[access.resource] == stamp_) return;
+      s_.stamp[access.resource] = stamp_;
+      s_.begun[access.resource] = 1;
+      if (s_.left[access.resource] != 0) --s_.left[access.resource];
+    });
+  }
+
+  std::int64_t peak_in_program_order(std::int64_t& floor) {
+    begin_walk();
+    std::int64_t live = 0;
+    std::int64_t peak = 0;
+    for (const std::uint32_t pass : workspace_.order) {
+      const Step s = step(pass);
+      floor = std::max(floor, s.own);
+      peak = std::max(peak, live + s.gained);
+      live += s.gained - s.freed;
+      take(pass);
+    }
+    return peak;
+  }
+
+  void add_edge(std::uint32_t from, std::uint32_t to) {
+    if (from == kNone || from == to) return;
+    s_.edges.push_back({from, s_.first_edge[from]});
+    s_.edges.back().to = to;
+    s_.first_edge[from] = static_cast<std::uint32_t>(s_.edges.size() - 1);
+    ++s_.waiting[to];
+  }
+
+  // A read follows the last write; a write follows that and all reads since.
+  void find_edges() {
+    s_.edges.clear();
+    s_.first_edge.assign(graph_.passes.size(), kNone);
+    s_.waiting.assign(graph_.passes.size(), 0);
+    s_.writer.assign(workspace_.first_sub.back(), kNone);
+    s_.first_reader.assign(workspace_.first_sub.back(), kNone);
+    s_.readers.clear();
+    for (const std::uint32_t pass : workspace_.order) {
+      for_each_live(pass, [&](const AccessRecord& access) {
+        for_each_sub(graph_.resources[access.resource], workspace_.first_sub[access.resource],
+                     access.range,
+                     [&](std::uint32_t sub) { depend(pass, sub, access.flags & kWrite); });
+      });
+    }
+  }
+
+  void depend(std::uint32_t pass, std::uint32_t sub, bool writes) {
+    add_edge(s_.writer[sub], pass);
+    if (!writes) {
+      s_.readers.push_back({pass, s_.first_reader[sub], 0});
+      s_.first_reader[sub] = static_cast<std::uint32_t>(s_.readers.size() - 1);
+      return;
+    }
+    for (std::uint32_t i = s_.first_reader[sub]; i != kNone; i = s_.readers[i].next)
+      add_edge(s_.readers[i].from, pass);
+    s_.first_reader[sub] = kNone;
+    s_.writer[sub] = pass;
+  }
+
+  std::int64_t list_greedily(std::int64_t limit) {
+    begin_walk();
+    s_.order.clear();
+    s_.ready.clear();
+    for (const std::uint32_t pass : workspace_.order) {
+      if (s_.waiting[pass] == 0) s_.ready.push_back(pass);
+    }
+    std::int64_t live = 0;
+    std::int64_t peak = 0;
+    while (!s_.ready.empty()) {
+      const std::size_t chosen = choose(live, peak);
+      const std::uint32_t pass = s_.ready[chosen];
+      s_.ready.erase(s_.ready.begin() + static_cast<std::ptrdiff_t>(chosen));
+      const Step s = step(pass);
+      peak = std::max(peak, live + s.gained);
+      if (peak >= limit) return peak;
+      live += s.gained - s.freed;
+      take(pass);
+      s_.order.push_back(pass);
+      for (std::uint32_t e = s_.first_edge[pass]; e != kNone; e = s_.edges[e].next) {
+        if (--s_.waiting[s_.edges[e].to] == 0) s_.ready.push_back(s_.edges[e].to);
+      }
+    }
+    return peak;
+  }
+
+  // The ready pass that leaves least; one that stays below the peak so far before one that does
+  // not.
+  std::size_t choose(std::int64_t live, std::int64_t peak) {
+    std::size_t best = 0;
+    bool best_below = false;
+    std::int64_t best_leaves = 0;
+    for (std::size_t i = 0; i < s_.ready.size(); ++i) {
+      const Step s = step(s_.ready[i]);
+      const bool below = live + s.gained <= peak;
+      const std::int64_t leaves = s.gained - s.freed;
+      const bool better =
+          i == 0 || (below && !best_below) ||
+          (below == best_below &&
+           (leaves < best_leaves || (leaves == best_leaves && s_.ready[i] < s_.ready[best])));
+      if (!better) continue;
+      best = i;
+      best_below = below;
+      best_leaves = leaves;
+    }
+    return best;
+  }
+
+  const GraphDescription& graph_;
+  const Limits& limits_;
+  Workspace& workspace_;
+  Plan& plan_;
+  Workspace::Reorder& s_;
+  std::uint32_t stamp_ = 0;
+};
+
+}  // namespace
 
 void order(const GraphDescription& graph, const Limits& limits, Workspace& workspace, Plan& plan) {
-  workspace.order.clear();
-  for (std::uint32_t pass = 0; pass < graph.passes.size(); ++pass) {
-    if (workspace.pass_live[pass]) workspace.order.push_back(pass);
-  }
+  Orderer(graph, limits, workspace, plan).run();
   plan.passes.resize(workspace.order.size());
   for (std::uint32_t position = 0; position < workspace.order.size(); ++position) {
     PlannedPass& planned = plan.passes[position];

@@ -14,6 +14,12 @@ void Recorder::begin(const Graph& graph, const Plan& plan, const std::vector<Phy
   check_uses_ = check_uses;
   slot_ = slot;
   errors_.clear();
+  shares_with_buffers_ = false;
+  const GraphDescription& description = graph.description();
+  for (std::uint32_t r = 0; r < plan.placements.size(); ++r) {
+    if (plan.placements[r].heap != kNone && description.resources[r].kind == ResourceKind::buffer)
+      shares_with_buffers_ = true;
+  }
 }
 
 void Recorder::full_barrier(VkCommandBuffer commands) {
@@ -69,6 +75,12 @@ void Recorder::batches(std::uint32_t first, std::uint32_t count, VkCommandBuffer
       const Transition& t = plan_->transitions[i];
       if (t.resource != kNone && (*physical_)[t.resource]->image) {
         images_.push_back(image_barrier(t));
+        // An image barrier orders all commands of its stages, whatever they touch. The validation
+        // layers take it to concern the image alone, and miss that a buffer which had the memory
+        // before, and one that has it after, are ordered by way of the image: told so, at no cost.
+        if (t.old_layout == VK_IMAGE_LAYOUT_UNDEFINED && shares_with_buffers_)
+          memories_.push_back({VK_STRUCTURE_TYPE_MEMORY_BARRIER_2, nullptr, t.src_stages,
+                               t.src_access, t.dst_stages, t.dst_access});
       } else if (t.resource != kNone) {
         buffers_.push_back(buffer_barrier(t));
       } else {

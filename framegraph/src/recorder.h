@@ -42,6 +42,7 @@ class Recorder {
   const Plan* plan_ = nullptr;
   const std::vector<Physical*>* physical_ = nullptr;
   bool check_uses_ = false;
+  bool shares_with_buffers_ = false;  // the plan has transient buffers
   std::uint32_t slot_ = 0;
   std::vector<VkImageMemoryBarrier2> images_;
   std::vector<VkBufferMemoryBarrier2> buffers_;

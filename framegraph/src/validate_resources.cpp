@@ -47,7 +47,7 @@ bool check_texture(Validation& v, std::uint32_t index, const ResourceRecord& r) 
     return bad("has " + std::to_string(r.layers) + " layers: the device allows 1 to " +
                std::to_string(v.limits.max_layers));
   if (r.depth > 1 && r.layers > 1) return bad("is 3D and an array: it can be one of the two");
-  if (!std::has_single_bit(r.samples) || r.samples > v.limits.max_samples)
+  if (r.samples == 0 || (r.samples & (r.samples - 1)) != 0 || r.samples > v.limits.max_samples)
     return bad("has " + std::to_string(r.samples) + " samples: a power of two up to " +
                std::to_string(v.limits.max_samples) + " is allowed");
   if (r.samples > 1 && (r.mips > 1 || r.depth > 1))

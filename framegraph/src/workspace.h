@@ -71,6 +71,28 @@ struct Workspace {
     std::vector<std::uint32_t>
         history_reader;  // by resource: of slot 0, the pass that reads an older one
   } cull;
+  struct Reorder {
+    // A link of a list: of the passes that follow `from`, or of the readers of a subresource.
+    struct Link {
+      std::uint32_t from = kNone;
+      std::uint32_t next = kNone;
+      std::uint32_t to = kNone;
+    };
+    std::vector<std::int64_t> bytes;          // by resource
+    std::vector<std::uint32_t> uses;          // by resource: passes, and one more for an output
+    std::vector<std::uint32_t> left;          // of them, at this point of a walk
+    std::vector<std::uint8_t> begun;          // by resource
+    std::vector<std::uint32_t> seen;          // by resource
+    std::vector<std::uint32_t> stamp;         // by resource
+    std::vector<std::uint32_t> writer;        // by subresource
+    std::vector<std::uint32_t> first_reader;  // by subresource, into readers
+    std::vector<Link> readers;
+    std::vector<Link> edges;
+    std::vector<std::uint32_t> first_edge;  // by pass, into edges
+    std::vector<std::uint32_t> waiting;     // by pass: edges that lead to it
+    std::vector<std::uint32_t> ready;
+    std::vector<std::uint32_t> order;
+  } reorder;
   bool several_queues = false;
   struct Queues {
     std::vector<std::uint32_t> waits;      // by position and queue: the pass waited for

@@ -13,7 +13,7 @@
 namespace alcove::framegraph {
 namespace {
 
-constexpr std::uint32_t kFrames = 300;
+constexpr std::uint32_t kFrames = 400;
 constexpr std::uint32_t kHostWords = 1 << 16;
 
 // A resource and the words that it should hold.
@@ -262,6 +262,10 @@ void expect_contents(bool alias, Path path, std::uint64_t seed) {
       ASSERT_TRUE(executor->wait());
       ASSERT_EQ(std::memcmp(host.mapped, maker.expected.data(), 4 * maker.expected.size()), 0)
           << "seed " << seed + i;
+      if (path != Path::submit_to_three) {
+        ASSERT_EQ(gpu.messages(), "") << "seed " << seed + i << "\n"
+                                      << print_text(graph.description(), *report->plan);
+      }
       aliased += report->memory.aliased;
       unaliased += report->memory.unaliased;
     }

@@ -54,6 +54,9 @@ struct Limits {
   MemoryOracle memory;
   FormatOracle formats;
   Ordering ordering = Ordering::lower_peak;
+  // Graphs of more live passes than this keep program order: looking for another takes time that
+  // grows faster than the graph.
+  std::uint32_t reorder_passes = 48;
   // How long placement looks for the lower bound where the first way does not meet it, in
   // comparisons of two resources; 0 takes the first way.
   std::int64_t placement_effort = 1 << 24;
