@@ -88,14 +88,13 @@ Textures create_textures(const Frame& frame, const ReconstructInputs& inputs,
     return textures;
   }
   const std::string name(history_name);
-  const TextureHistory history =
-      graph.create_texture_history(name + " history", {VK_FORMAT_R32G32_UINT, size});
+  const TextureHistory history = graph.create_texture_history(name, {VK_FORMAT_R32G32_UINT, size});
   valid = history.validity == framegraph::HistoryValidity::valid;
   textures.history = history.previous();
   textures.next_history = history.current;
   if (inputs.signal.bent) {
     const TextureHistory bent =
-        graph.create_texture_history(name + " bent history", {VK_FORMAT_R16G16B16A16_SFLOAT, size});
+        graph.create_texture_history(name + " bent normal", {VK_FORMAT_R16G16B16A16_SFLOAT, size});
     valid = valid && bent.validity == framegraph::HistoryValidity::valid;
     textures.bent_history = bent.previous();
     textures.next_bent_history = bent.current;

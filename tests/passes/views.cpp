@@ -4,6 +4,7 @@
 #include <cstring>
 #include <glm/glm.hpp>
 #include <numbers>
+#include <utility>
 
 namespace alcove::passes {
 namespace {
@@ -42,6 +43,16 @@ glm::dmat4 orthographic(double half_width, double half_height, double near, doub
 }
 
 }  // namespace
+
+TestView perspective_view(std::string name, double scale_x, double scale_y, double near, double far,
+                          bool reversed) {
+  return {std::move(name), view_of(perspective(scale_x, scale_y, near, far, reversed))};
+}
+
+TestView orthographic_view(std::string name, double half_width, double half_height, double near,
+                           double far) {
+  return {std::move(name), view_of(orthographic(half_width, half_height, near, far)), true};
+}
 
 std::vector<TestView> test_views() {
   const double infinite = std::numeric_limits<double>::infinity();

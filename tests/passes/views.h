@@ -18,6 +18,12 @@ struct TestView {
 // Perspective: finite, infinite, reversed, off-centre, jittered, flipped in Y; orthographic.
 std::vector<TestView> test_views();
 
+// `scale_x` and `scale_y` are cotangents of half the angles of view; `far` may be infinite.
+TestView perspective_view(std::string name, double scale_x, double scale_y, double near, double far,
+                          bool reversed);
+TestView orthographic_view(std::string name, double half_width, double half_height, double near,
+                           double far);
+
 // A plane through the point 4 units before the eye, tilted about the image's diagonal.
 struct PlaneScene {
   HostImage depth_ndc;

@@ -41,7 +41,8 @@ struct Occlusion {
 };
 
 // `history_name` tells the histories of one graph apart: each view needs its own. A history begins
-// anew where the size or the kind of the signal changes, and after Graph::reset_history.
+// anew where the size or the kind of the signal changes, and after
+// Graph::reset_history(history_name).
 [[nodiscard]] tl::expected<Occlusion, Error> add_reconstruct(
     const Frame& frame, const ReconstructInputs& inputs, const ReconstructSettings& settings,
     std::string_view history_name = "occlusion");

@@ -1,0 +1,294 @@
+// What must not change the image: the scene's unit, the kind of projection, the resolution of the
+// search on an open plane, and what is not a number elsewhere.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "gtao_scenes.h"
+#include "pass_fixture.h"
+
+namespace alcove::passes {
+namespace {
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+constexpr std::uint32_t kWidth = 57;
+constexpr std::uint32_t kHeight = 39;
+
+class GtaoInvariance : public PassTest {
+ protected:
+  HostImage visibility(const TestView& view, const Drawing& drawing,
+                       const OcclusionSettings& settings) {
+    return run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, settings).visibility;
+  }
+};
+
+OcclusionSettings unfiltered(Estimator estimator, float radius) {
+  OcclusionSettings settings;
+  settings.radius = radius;
+  settings.slices = 4;
+  settings.steps = 8;
+  settings.estimator = estimator;
+  settings.filter_reach = 0;
+  settings.precision = Precision::float32;
+  return settings;
+}
+
+constexpr std::array kEstimators{Estimator::horizons, Estimator::bitmask};
+
+struct Difference {
+  double mean = 0.0;
+  double largest = 0.0;
+};
+
+Difference difference(const HostImage& a, const HostImage& b) {
+  Difference found;
+  for (std::size_t i = 0; i < a.texels.size(); ++i) {
+    const double apart = std::abs(a.texels[i] - b.texels[i]);
+    found.mean += apart / static_cast<double>(a.texels.size());
+    found.largest = std::max(found.largest, std::isfinite(apart) ? apart : 1e9);
+  }
+  return found;
+}
+
+Scene scaled(const Scene& scene, double scale) {
+  Scene result;
+  for (const Surface& surface : scene) {
+    Surface larger;
+    larger.meet = [=](const Ray& ray) {
+      std::vector<Hit> hits = surface.meet({ray.from / scale, ray.along / scale});
+      for (Hit& hit : hits) {
+        hit.position *= scale;
+      }
+      return hits;
+    };
+    if (surface.keep) {
+      larger.keep = [=](const glm::dvec3& p) { return surface.keep(p / scale); };
+    }
+    result.push_back(std::move(larger));
+  }
+  return result;
+}
+
+TEST_F(GtaoInvariance, TheSceneMayHaveAnyUnit) {
+  for (const Estimator estimator : kEstimators) {
+    for (const NamedScene& scene : gtao_scenes()) {
+      const TestView one = perspective_view("one", 1.2, 1.8, 0.1, kInfinity, true);
+      const HostImage expected =
+          visibility(one, draw(one, kWidth, kHeight, scene.scene), unfiltered(estimator, 1.0f));
+      for (const double unit : {1e-3, 1e3, 2.5e6}) {
+        SCOPED_TRACE(testing::Message() << scene.name << " in units of " << 1.0 / unit);
+        const TestView view = perspective_view("scaled", 1.2, 1.8, 0.1 * unit, kInfinity, true);
+        const HostImage found =
+            visibility(view, draw(view, kWidth, kHeight, scaled(scene.scene, unit)),
+                       unfiltered(estimator, static_cast<float>(unit)));
+        const Difference apart = difference(found, expected);
+        EXPECT_LT(apart.mean, 5e-4);
+        EXPECT_LT(apart.largest, 0.1);
+      }
+    }
+  }
+}
+
+TEST_F(GtaoInvariance, StandardReversedAndInfiniteDepthAgree) {
+  for (const Estimator estimator : kEstimators) {
+    for (const NamedScene& scene : gtao_scenes()) {
+      const TestView reversed = perspective_view("", 1.2, 1.8, 0.5, kInfinity, true);
+      const HostImage expected = visibility(reversed, draw(reversed, kWidth, kHeight, scene.scene),
+                                            unfiltered(estimator, 1.0f));
+      for (const TestView& view :
+           {perspective_view("reversed finite", 1.2, 1.8, 0.5, 50.0, true),
+            perspective_view("standard finite", 1.2, 1.8, 0.5, 50.0, false),
+            perspective_view("standard infinite", 1.2, 1.8, 0.5, kInfinity, false)}) {
+        SCOPED_TRACE(testing::Message() << scene.name << ", " << view.name);
+        const Difference apart = difference(
+            visibility(view, draw(view, kWidth, kHeight, scene.scene), unfiltered(estimator, 1.0f)),
+            expected);
+        EXPECT_LT(apart.mean, 1e-3);
+        EXPECT_LT(apart.largest, 0.1);
+      }
+    }
+  }
+}
+
+TEST_F(GtaoInvariance, AnOrthographicViewIsANarrowPerspectiveFromAfar) {
+  const double away = 2000.0;
+  const TestView flat = orthographic_view("orthographic", 3.0, 2.0, 0.1, 20.0);
+  const TestView narrow =
+      perspective_view("narrow", (away + 4.0) / 3.0, (away + 4.0) / 2.0, away, kInfinity, true);
+  for (const Estimator estimator : kEstimators) {
+    for (const NamedScene& scene : gtao_scenes()) {
+      SCOPED_TRACE(scene.name);
+      Scene moved;
+      for (const Surface& surface : scene.scene) {
+        const glm::dvec3 shift(0.0, 0.0, -away);
+        Surface further;
+        further.meet = [=](const Ray& ray) {
+          std::vector<Hit> hits = surface.meet({ray.from - shift, ray.along});
+          for (Hit& hit : hits) {
+            hit.position += shift;
+          }
+          return hits;
+        };
+        if (surface.keep) {
+          further.keep = [=](const glm::dvec3& p) { return surface.keep(p - shift); };
+        }
+        moved.push_back(std::move(further));
+      }
+      const OcclusionSettings settings = unfiltered(estimator, 1.0f);
+      const Difference apart =
+          difference(visibility(flat, draw(flat, kWidth, kHeight, scene.scene), settings),
+                     visibility(narrow, draw(narrow, kWidth, kHeight, moved), settings));
+      EXPECT_LT(apart.mean, 0.004);
+    }
+  }
+}
+
+// Odd sizes leave blocks that are cut by the border: not a texel may be forgotten there.
+TEST_F(GtaoInvariance, EverySizeDivisorAndPatternCoversEveryPixel) {
+  const TestView view = test_views()[2];
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> sizes{{1, 1}, {3, 5}, {17, 9}, {33, 1}};
+  for (const auto& [width, height] : sizes) {
+    const Drawing drawing = draw(view, width, height, {tilted_plane(40.0, 4.0)});
+    for (const std::uint32_t divisor : {1u, 2u, 4u}) {
+      for (const Pattern pattern : {Pattern::golden, Pattern::hilbert, Pattern::memo}) {
+        for (const std::uint32_t history : {0u, 8u}) {
+          SCOPED_TRACE(testing::Message()
+                       << width << " x " << height << " by " << divisor << ", pattern "
+                       << static_cast<int>(pattern) << ", history of " << history);
+          OcclusionSettings settings = unfiltered(Estimator::bitmask, 0.5f);
+          settings.slices = 1;
+          settings.steps = 6;
+          settings.divisor = divisor;
+          settings.pattern = pattern;
+          settings.history_frames = history;
+          settings.filter_reach = history == 0 ? 0 : 2;
+          settings.bent_normal = true;
+          poison_memory(width, height);
+          // The last searched pixel of a block falls outside of the image.
+          const OcclusionImages images = run_occlusion({.view = view.view,
+                                                        .depth_ndc = drawing.depth_ndc,
+                                                        .normal_vs = &drawing.normal_vs,
+                                                        .index = 1,
+                                                        .reset = true},
+                                                       settings);
+          for (std::uint32_t i = 0; i < width * height; ++i) {
+            ASSERT_NEAR(images.visibility.texels[i], 1.0, 0.05) << "pixel " << i;
+            double dot = 0.0;
+            for (std::uint32_t c = 0; c < 3; ++c) {
+              dot += images.bent_normal.texels[i * 4 + c] * drawing.normal_vs.texels[i * 4 + c];
+            }
+            ASSERT_GT(dot, 0.9) << "pixel " << i;
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST_F(GtaoInvariance, EveryPatternMeetsTheSameMeanInAGroove) {
+  const TestView view = test_views()[2];
+  const Drawing drawing = draw(view, 64, 48, groove(0.8));
+  for (const Estimator estimator : kEstimators) {
+    std::vector<double> means;
+    for (const std::uint32_t divisor : {1u, 2u, 4u}) {
+      for (const Pattern pattern : {Pattern::golden, Pattern::hilbert, Pattern::memo}) {
+        OcclusionSettings settings = unfiltered(estimator, 1.0f);
+        settings.divisor = divisor;
+        settings.pattern = pattern;
+        settings.filter_reach = 2;
+        const HostImage image = visibility(view, drawing, settings);
+        double mean = 0.0;
+        for (const float texel : image.texels) {
+          mean += texel / static_cast<double>(image.texels.size());
+        }
+        means.push_back(mean);
+      }
+    }
+    EXPECT_THAT(means, testing::Each(testing::DoubleNear(means[0], 0.02)));
+    EXPECT_LT(means[0], 0.98);
+  }
+}
+
+TEST_F(GtaoInvariance, WhatIsNoNumberStaysLocalAndFinite) {
+  const TestView view = test_views()[2];
+  for (const Estimator estimator : kEstimators) {
+    OcclusionSettings settings = unfiltered(estimator, 0.5f);
+    settings.bent_normal = true;
+    settings.filter_reach = 2;
+    Drawing drawing = draw(view, kWidth, kHeight, groove(0.8));
+    const OcclusionFrame frame{view.view, drawing.depth_ndc, &drawing.normal_vs};
+    const HostImage clean = run_occlusion(frame, settings).visibility;
+    for (const std::uint32_t hole : {0u, 20u * kWidth + 28u}) {
+      drawing.depth_ndc.texels[hole] = kNaN;
+    }
+    const OcclusionImages holed = run_occlusion(frame, settings);
+    EXPECT_THAT(holed.visibility.texels,
+                testing::Each(testing::AllOf(testing::Ge(0.0f), testing::Le(1.0f))));
+    for (const float component : holed.bent_normal.texels) {
+      ASSERT_TRUE(std::isfinite(component));
+    }
+    int changed = 0;
+    for (std::size_t i = 0; i < clean.texels.size(); ++i) {
+      changed += std::abs(clean.texels[i] - holed.visibility.texels[i]) > 0.1f ? 1 : 0;
+    }
+    EXPECT_LT(changed, 40) << "of " << clean.texels.size() << " pixels";
+  }
+}
+
+TEST_F(GtaoInvariance, DepthBuffersOfNothingButNonsenseGiveFiniteImages) {
+  for (const TestView& view : test_views()) {
+    SCOPED_TRACE(view.name);
+    Drawing drawing = draw(view, kWidth, kHeight, groove(0.8));
+    const std::array nonsense{kNaN,
+                              0.0f,
+                              1.0f,
+                              -1.0f,
+                              2.0f,
+                              1e-38f,
+                              0.99999994f,
+                              0.5f,
+                              static_cast<float>(kInfinity),
+                              -static_cast<float>(kInfinity)};
+    for (std::size_t i = 0; i < drawing.depth_ndc.texels.size(); ++i) {
+      drawing.depth_ndc.texels[i] = nonsense[(i * 2654435761u >> 7) % nonsense.size()];
+    }
+    for (const Estimator estimator : kEstimators) {
+      for (const bool given : {false, true}) {
+        OcclusionSettings settings = unfiltered(estimator, 0.5f);
+        settings.bent_normal = true;
+        settings.filter_reach = 2;
+        settings.history_frames = 8;
+        for (int frame = 0; frame < 2; ++frame) {
+          const OcclusionImages images = run_occlusion(
+              {view.view, drawing.depth_ndc, given ? &drawing.normal_vs : nullptr}, settings);
+          EXPECT_THAT(images.visibility.texels,
+                      testing::Each(testing::AllOf(testing::Ge(0.0f), testing::Le(1.0f))));
+          for (const float component : images.bent_normal.texels) {
+            ASSERT_TRUE(std::isfinite(component));
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST_F(GtaoInvariance, SkyIsOpenAndOccludesNothing) {
+  for (const TestView& view : test_views()) {
+    SCOPED_TRACE(view.name);
+    Surface post = plane({0.0, 0.0, -4.0}, {0.0, 0.0, 1.0});
+    post.keep = [](const glm::dvec3& p) { return std::abs(p.x) < 0.8; };
+    const Drawing drawing = draw(view, kWidth, kHeight, {post});
+    for (const Estimator estimator : kEstimators) {
+      const HostImage image = visibility(view, drawing, unfiltered(estimator, 1.0f));
+      EXPECT_THAT(image.texels,
+                  testing::Each(testing::Ge(estimator == Estimator::bitmask ? 0.97f : 0.996f)));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace alcove::passes

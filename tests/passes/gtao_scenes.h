@@ -1,0 +1,50 @@
+// Scenes for ambient occlusion, in view space about 4 units before the eye.
+#ifndef ALCOVE_TESTS_PASSES_GTAO_SCENES_H_
+#define ALCOVE_TESTS_PASSES_GTAO_SCENES_H_
+
+#include <cmath>
+#include <string>
+
+#include "drawing.h"
+
+namespace alcove::passes {
+
+// Two walls that meet in a line along y, `half_angle` (radians) between each and the view's axis.
+inline Scene groove(double half_angle, double bottom = 4.5) {
+  const glm::dvec3 through(0.0, 0.0, -bottom);
+  Surface left = plane(through, {std::cos(half_angle), 0.0, std::sin(half_angle)});
+  left.keep = [](const glm::dvec3& p) { return p.x < 0.0; };
+  Surface right = plane(through, {-std::cos(half_angle), 0.0, std::sin(half_angle)});
+  right.keep = [](const glm::dvec3& p) { return p.x >= 0.0; };
+  return {left, right};
+}
+
+// A floor that faces the eye, and a platform `height` above it where x > `edge`.
+inline Scene step(double edge, double height, double floor = 4.0) {
+  Surface platform = plane({0.0, 0.0, -floor + height}, {0.0, 0.0, 1.0});
+  platform.keep = [=](const glm::dvec3& p) { return p.x > edge; };
+  Surface wall = plane({edge, 0.0, 0.0}, {1.0, 0.0, 0.0});
+  wall.keep = [=](const glm::dvec3& p) { return p.z > -floor && p.z < -floor + height; };
+  return {plane({0.0, 0.0, -floor}, {0.0, 0.0, 1.0}), platform, wall};
+}
+
+// A sphere that lies on a tilted floor.
+inline Scene ball_on_floor() {
+  const glm::dvec3 normal = glm::normalize(glm::dvec3(0.1, 0.5, 1.0));
+  const glm::dvec3 through(0.0, 0.0, -4.2);
+  const double radius = 0.7;
+  return {plane(through, normal), sphere(through + radius * normal, radius)};
+}
+
+struct NamedScene {
+  std::string name;
+  Scene scene;
+};
+
+inline std::vector<NamedScene> gtao_scenes() {
+  return {{"groove", groove(0.8)}, {"step", step(0.31, 0.6)}, {"ball", ball_on_floor()}};
+}
+
+}  // namespace alcove::passes
+
+#endif  // ALCOVE_TESTS_PASSES_GTAO_SCENES_H_

@@ -1,0 +1,365 @@
+// The spatial filter, the upsampling and the history, fed with signals that the tests write.
+#include "alcove/passes/reconstruct.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "gtao_scenes.h"
+#include "pass_fixture.h"
+
+namespace alcove::passes {
+namespace {
+
+using framegraph::Graph;
+
+constexpr std::uint32_t kWidth = 32;
+constexpr std::uint32_t kHeight = 24;
+
+class Reconstruct : public PassTest {
+ protected:
+  struct Input {
+    View view;
+    const Drawing& drawing;
+    const HostImage& signal;  // two channels, one texel a block
+    std::uint32_t divisor = 1;
+    const HostImage* motion = nullptr;
+    View previous_view = view;
+    std::uint32_t index = 0;
+    bool reset = false;
+  };
+
+  HostImage reconstruct(const Input& input, const ReconstructSettings& settings) {
+    run([&](Graph& graph) {
+      if (input.reset) {
+        graph.reset_history("occlusion");
+      }
+      const Frame frame{graph, gpu().kernels(), input.view, input.index, input.previous_view};
+      const auto depth = add_depth_pyramid(frame, upload(graph, input.drawing.depth_ndc), 1, 1.0f);
+      ASSERT_TRUE(depth) << depth.error().message;
+      ReconstructInputs inputs{
+          .signal = {.signal = upload(graph, input.signal), .divisor = input.divisor},
+          .depth = *depth,
+          .normals = upload(graph, input.drawing.normal_vs),
+          .normals_in_view_space = true};
+      if (input.motion != nullptr) {
+        inputs.motion = upload(graph, *input.motion);
+      }
+      const auto made = add_reconstruct(frame, inputs, settings);
+      ASSERT_TRUE(made) << made.error().message;
+      read_back(graph, made->visibility);
+    });
+    return result();
+  }
+};
+
+ReconstructSettings precise(std::uint32_t reach, std::uint32_t history_frames) {
+  return {.reach = reach, .history_frames = history_frames, .precision = Precision::float32};
+}
+
+// The signal of slices that are all open by `weight` and visible by `visibility` of it.
+template <typename Visibility>
+HostImage signal_of(std::uint32_t width, std::uint32_t height, const Visibility& visibility) {
+  HostImage signal{width, height, {}, 2};
+  for (std::uint32_t y = 0; y < height; ++y) {
+    for (std::uint32_t x = 0; x < width; ++x) {
+      const float weight = 0.8f + 0.1f * static_cast<float>((x + y) % 3);
+      signal.texels.push_back(visibility(x, y) * weight);
+      signal.texels.push_back(weight);
+    }
+  }
+  return signal;
+}
+
+HostImage constant_signal(std::uint32_t width, std::uint32_t height, float visibility) {
+  return signal_of(width, height, [=](std::uint32_t, std::uint32_t) { return visibility; });
+}
+
+HostImage noise_signal(std::mt19937& random) {
+  std::uniform_real_distribution<float> noise(0.2f, 0.8f);
+  return signal_of(kWidth, kHeight, [&](std::uint32_t, std::uint32_t) { return noise(random); });
+}
+
+double variance(const HostImage& image) {
+  double sum = 0.0;
+  double squares = 0.0;
+  for (const float texel : image.texels) {
+    sum += texel;
+    squares += double{texel} * texel;
+  }
+  const double count = static_cast<double>(image.texels.size());
+  return squares / count - sum / count * (sum / count);
+}
+
+TEST_F(Reconstruct, AConstantSignalStaysConstantInAnySceneAtAnyResolution) {
+  const TestView view = test_views()[2];
+  std::vector<NamedScene> scenes = gtao_scenes();
+  scenes.push_back({"grazing", {tilted_plane(75.0, 4.0)}});
+  for (const NamedScene& scene : scenes) {
+    const Drawing drawing = draw(view, 33, 23, scene.scene);
+    for (const std::uint32_t divisor : {1u, 2u, 4u}) {
+      const HostImage signal =
+          constant_signal((33 + divisor - 1) / divisor, (23 + divisor - 1) / divisor, 0.37f);
+      for (const std::uint32_t reach : {0u, 1u, 2u, 3u}) {
+        for (const std::uint32_t history : {0u, 16u}) {
+          SCOPED_TRACE(testing::Message() << scene.name << " by " << divisor << ", reach " << reach
+                                          << ", history " << history);
+          for (std::uint32_t frame = 0; frame < (history == 0 ? 1u : 4u); ++frame) {
+            const HostImage found = reconstruct({.view = view.view,
+                                                 .drawing = drawing,
+                                                 .signal = signal,
+                                                 .divisor = divisor,
+                                                 .index = frame,
+                                                 .reset = frame == 0},
+                                                precise(reach, history));
+            for (std::uint32_t y = 0; y < 23; ++y) {
+              for (std::uint32_t x = 0; x < 33; ++x) {
+                const float expected = drawing.is_sky(x, y) ? 1.0f : 0.37f;
+                // History keeps 16 bits of sums, which are small where no search lies near.
+                ASSERT_NEAR(found.at(x, y), expected, history == 0 ? 1e-4 : 0.02)
+                    << "at " << x << ", " << y;
+              }
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST_F(Reconstruct, TheFilterLowersNoiseOnATiltedPlane) {
+  const TestView view = test_views()[2];
+  const std::uint32_t seed = 5;
+  SCOPED_TRACE(testing::Message() << "seed " << seed);
+  std::mt19937 random(seed);
+  const HostImage signal = noise_signal(random);
+  for (const double tilt : {0.0, 30.0, 50.0}) {
+    const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(tilt, 4.0)});
+    const Input input{view.view, drawing, signal};
+    const double before = variance(reconstruct(input, precise(0, 0)));
+    EXPECT_LT(variance(reconstruct(input, precise(2, 0))), 0.2 * before) << tilt << " degrees";
+  }
+}
+
+TEST_F(Reconstruct, NothingLeaksAcrossADepthEdge) {
+  for (const TestView& view : test_views()) {
+    const Drawing drawing = draw(view, kWidth, kHeight, step(0.3, 1.0));
+    const auto on_platform = [&](std::uint32_t x, std::uint32_t y) {
+      return cast(drawing.scene, drawing.camera.ray(x + 0.5, y + 0.5))->position.z > -3.1;
+    };
+    const HostImage signal = signal_of(kWidth, kHeight, [&](std::uint32_t x, std::uint32_t y) {
+      return on_platform(x, y) ? 0.9f : 0.2f;
+    });
+    for (const std::uint32_t history : {0u, 16u}) {
+      SCOPED_TRACE(testing::Message() << view.name << ", history " << history);
+      for (std::uint32_t frame = 0; frame < 4; ++frame) {
+        const HostImage found = reconstruct({.view = view.view,
+                                             .drawing = drawing,
+                                             .signal = signal,
+                                             .index = frame,
+                                             .reset = frame == 0},
+                                            precise(2, history));
+        for (std::uint32_t y = 0; y < kHeight; ++y) {
+          for (std::uint32_t x = 0; x < kWidth; ++x) {
+            const auto hit = cast(drawing.scene, drawing.camera.ray(x + 0.5, y + 0.5));
+            if (std::abs(hit->normal.z) > 0.5) {  // not on the platform's wall
+              ASSERT_NEAR(found.at(x, y), on_platform(x, y) ? 0.9f : 0.2f, 0.01)
+                  << "at " << x << ", " << y;
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST_F(Reconstruct, AStaticViewConverges) {
+  const TestView view = test_views()[2];
+  const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(30.0, 4.0)});
+  const std::uint32_t seed = 17;
+  SCOPED_TRACE(testing::Message() << "seed " << seed);
+  std::mt19937 random(seed);
+  std::vector<double> variances;
+  HostImage last;
+  for (std::uint32_t frame = 0; frame < 40; ++frame) {
+    const HostImage signal = noise_signal(random);
+    last = reconstruct({.view = view.view, .drawing = drawing, .signal = signal, .index = frame},
+                       precise(1, 32));
+    variances.push_back(variance(last));
+  }
+  EXPECT_LT(variances[7], 0.5 * variances[0]);
+  EXPECT_LT(variances[39], 0.1 * variances[0]);
+  double mean = 0.0;
+  for (const float texel : last.texels) {
+    mean += texel / static_cast<double>(last.texels.size());
+  }
+  EXPECT_NEAR(mean, 0.5, 0.01);
+}
+
+// A history of many more frames than it counts: what is stored must neither drift nor lock.
+TEST_F(Reconstruct, HundredsOfEqualFramesDoNotDrift) {
+  const TestView view = test_views()[2];
+  const Drawing drawing = draw(view, 9, 7, {tilted_plane(30.0, 4.0)});
+  for (const float visibility : {0.013f, 0.37f, 0.985f, 1.0f}) {
+    SCOPED_TRACE(visibility);
+    const HostImage signal = constant_signal(9, 7, visibility);
+    HostImage found;
+    for (std::uint32_t frame = 0; frame < 250; ++frame) {
+      found = reconstruct({.view = view.view,
+                           .drawing = drawing,
+                           .signal = signal,
+                           .index = frame,
+                           .reset = frame == 0},
+                          precise(1, 255));
+    }
+    EXPECT_THAT(found.texels, testing::Each(testing::FloatNear(visibility, 2e-3f)));
+    // From a wrong start the history comes back to within what it can store.
+    const HostImage wrong = constant_signal(9, 7, 1.0f - visibility);
+    for (std::uint32_t frame = 0; frame < 130; ++frame) {
+      found = reconstruct({.view = view.view,
+                           .drawing = drawing,
+                           .signal = frame == 0 ? wrong : signal,
+                           .index = frame,
+                           .reset = frame == 0},
+                          precise(1, 8));
+    }
+    EXPECT_THAT(found.texels, testing::Each(testing::FloatNear(visibility, 4e-3f)));
+  }
+}
+
+TEST_F(Reconstruct, ARestartForgetsWhatWas) {
+  const TestView view = test_views()[2];
+  const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(30.0, 4.0)});
+  const Drawing smaller = draw(view, kWidth - 3, kHeight, {tilted_plane(30.0, 4.0)});
+  const HostImage dark = constant_signal(kWidth, kHeight, 0.1f);
+  const HostImage bright = constant_signal(kWidth, kHeight, 0.9f);
+  const HostImage bright_smaller = constant_signal(kWidth - 3, kHeight, 0.9f);
+  const ReconstructSettings settings = precise(1, 32);
+  const auto gather_dark = [&] {
+    for (std::uint32_t frame = 0; frame < 6; ++frame) {
+      (void)reconstruct({.view = view.view, .drawing = drawing, .signal = dark, .index = frame},
+                        settings);
+    }
+  };
+
+  gather_dark();
+  const HostImage kept =
+      reconstruct({.view = view.view, .drawing = drawing, .signal = bright}, settings);
+  EXPECT_THAT(kept.texels, testing::Each(testing::Lt(0.5f)));
+  gather_dark();
+  const HostImage reset = reconstruct(
+      {.view = view.view, .drawing = drawing, .signal = bright, .reset = true}, settings);
+  EXPECT_THAT(reset.texels, testing::Each(testing::FloatNear(0.9f, 2e-3f)));
+  gather_dark();
+  const HostImage resized =
+      reconstruct({.view = view.view, .drawing = smaller, .signal = bright_smaller}, settings);
+  EXPECT_THAT(resized.texels, testing::Each(testing::FloatNear(0.9f, 2e-3f)));
+}
+
+// The eye leaps sideways: what it could not see before starts anew, what it could goes on.
+TEST_F(Reconstruct, WhatACameraJumpUncoversStartsAnew) {
+  const TestView view = test_views()[2];
+  const double leap = 0.8;
+  Scene before = step(0.3, 1.5, 5.0);
+  const Drawing first = draw(view, kWidth, kHeight, before);
+  // The world stands still; in the view space of the eye that moved it lies `leap` to the left.
+  const Drawing second = draw(view, kWidth, kHeight, step(0.3 - leap, 1.5, 5.0));
+  View moved = view.view;
+  moved.view_from_world[12] = static_cast<float>(-leap);
+
+  const HostImage dark = constant_signal(kWidth, kHeight, 0.1f);
+  const HostImage bright = constant_signal(kWidth, kHeight, 0.9f);
+  for (std::uint32_t frame = 0; frame < 8; ++frame) {
+    (void)reconstruct({.view = view.view, .drawing = first, .signal = dark, .index = frame},
+                      precise(1, 32));
+  }
+  const HostImage found = reconstruct(
+      {.view = moved, .drawing = second, .signal = bright, .previous_view = view.view, .index = 8},
+      precise(1, 32));
+  int anew = 0;
+  int gone_on = 0;
+  for (std::uint32_t y = 0; y < kHeight; ++y) {
+    for (std::uint32_t x = 0; x < kWidth; ++x) {
+      const auto hit = cast(second.scene, second.camera.ray(x + 0.5, y + 0.5));
+      const glm::dvec3 was = hit->position + glm::dvec3(leap, 0.0, 0.0);
+      const glm::dvec3 pixel = first.camera.project(was);
+      // Margins of a pixel or two: there some of the four texels are of another surface.
+      const bool outside = pixel.x < -0.5 || pixel.x > kWidth + 0.5;
+      const bool well_inside =
+          pixel.x > 2.0 && pixel.x < kWidth - 2.0 && pixel.y > 2.0 && pixel.y < kHeight - 2.0;
+      bool hidden = true;
+      bool seen = true;
+      for (const double aside : {-1.5, 0.0, 1.5}) {
+        const auto there = cast(first.scene, first.camera.ray(pixel.x + aside, pixel.y));
+        const bool same = there && std::abs(there->position.z - was.z) < 0.02 * std::abs(was.z);
+        hidden = hidden && !same;
+        seen = seen && same;
+      }
+      if (std::abs(hit->normal.z) < 0.5) {
+        continue;
+      }
+      if (outside || hidden) {
+        ASSERT_NEAR(found.at(x, y), 0.9f, 0.01) << "at " << x << ", " << y;
+        ++anew;
+      } else if (seen && well_inside) {
+        ASSERT_LT(found.at(x, y), 0.6f) << "at " << x << ", " << y;
+        ++gone_on;
+      }
+    }
+  }
+  EXPECT_GT(anew, 30);
+  EXPECT_GT(gone_on, 200);
+}
+
+// A plane slides by three pixels a frame and carries a pattern: with motion vectors the pattern
+// stays sharp, without them it is smeared.
+TEST_F(Reconstruct, MotionVectorsFollowAMovingPlane) {
+  const TestView view = test_views()[2];
+  const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(0.0, 4.0)});
+  const std::uint32_t speed = 3;
+  const auto pattern_at = [&](std::uint32_t frame) {
+    return signal_of(kWidth, kHeight, [&](std::uint32_t x, std::uint32_t) {
+      return (x + 300 - speed * frame) % 16 < 8 ? 0.9f : 0.1f;
+    });
+  };
+  HostImage motion{kWidth, kHeight, {}, 2};
+  for (std::uint32_t i = 0; i < kWidth * kHeight; ++i) {
+    motion.texels.push_back(static_cast<float>(speed) / static_cast<float>(kWidth));
+    motion.texels.push_back(0.0f);
+  }
+  for (const bool given : {true, false}) {
+    HostImage found;
+    HostImage signal;
+    for (std::uint32_t frame = 0; frame < 10; ++frame) {
+      signal = pattern_at(frame);
+      found = reconstruct({.view = view.view,
+                           .drawing = drawing,
+                           .signal = signal,
+                           .motion = given ? &motion : nullptr,
+                           .index = frame,
+                           .reset = frame == 0},
+                          precise(0, 32));
+    }
+    // Where the plane was on the image ever since the first frame.
+    double error = 0.0;
+    int count = 0;
+    for (std::uint32_t y = 0; y < kHeight; ++y) {
+      for (std::uint32_t x = 28; x < kWidth; ++x) {
+        const std::size_t i = std::size_t{y} * kWidth + x;
+        error += std::abs(found.texels[i] - signal.texels[i * 2] / signal.texels[i * 2 + 1]);
+        ++count;
+      }
+    }
+    if (given) {
+      EXPECT_LT(error / count, 0.12);
+    } else {
+      EXPECT_GT(error / count, 0.2);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace alcove::passes

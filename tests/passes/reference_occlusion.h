@@ -1,0 +1,25 @@
+// What ambient occlusion should be, by brute force: every slice through the eye marched in steps of
+// half a pixel over the exact surfaces, integrated numerically in double precision.
+#ifndef ALCOVE_TESTS_PASSES_REFERENCE_OCCLUSION_H_
+#define ALCOVE_TESTS_PASSES_REFERENCE_OCCLUSION_H_
+
+#include <cstdint>
+#include <glm/glm.hpp>
+
+#include "drawing.h"
+
+namespace alcove::passes {
+
+struct ReferenceOcclusion {
+  double visibility = 0.0;
+  glm::dvec3 bent_normal{0.0};  // unit, view space
+};
+
+// Of pixel (x, y), which must show a surface. An occluder is whatever the image shows within
+// `radius` of the point, and all that lies behind it within the plane of a slice.
+ReferenceOcclusion reference_occlusion(const Drawing& drawing, std::uint32_t x, std::uint32_t y,
+                                       double radius);
+
+}  // namespace alcove::passes
+
+#endif  // ALCOVE_TESTS_PASSES_REFERENCE_OCCLUSION_H_
