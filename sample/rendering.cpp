@@ -33,6 +33,7 @@ double median(std::vector<double> values) {
 Costs medians(const std::vector<FrameCost>& frames) {
   const auto over_frames = [&](auto value) {
     std::vector<double> values;
+    values.reserve(frames.size());
     for (const FrameCost& frame : frames) {
       values.push_back(value(frame));
     }
