@@ -55,7 +55,6 @@ tl::expected<Executor, Errors> Executor::create(const DeviceHandles& device,
     return tl::unexpected(std::move(opened.error()));
   made->device.limits.ordering = options.ordering;
   made->device.limits.alias = options.alias;
-  made->device.limits.split_barriers = options.split_barriers;
   made->pool = std::make_unique<Pool>(made->device);
   made->recorder = std::make_unique<Recorder>(made->device, *made->pool);
   made->slot_frames.resize(made->options.frames_in_flight);

@@ -24,8 +24,10 @@ std::uint32_t HistoryTable::declare(std::string_view name, const ResourceRecord&
     entry.record = record;
     entry.head = 0;
     ++entry.generation;
+    bool held = false;
+    for (const HistorySlot& slot : entry.slots)
+      held = held || slot.validity != HistoryValidity::first_frame;
     for (HistorySlot& slot : entry.slots) {
-      const bool held = slot.validity != HistoryValidity::first_frame;
       slot = {};
       if (held) slot.validity = HistoryValidity::resized;
     }

@@ -309,7 +309,7 @@ void Synchroniser::add_releases() {
     if (submission.batch_count == 0) {
       submission.first_batch = static_cast<std::uint32_t>(plan_.batches.size());
       submission.batch_count = 1;
-      plan_.batches.push_back({static_cast<std::uint32_t>(plan_.transitions.size()), 0, kNone});
+      plan_.batches.push_back({static_cast<std::uint32_t>(plan_.transitions.size()), 0});
     }
     plan_.transitions.push_back(release.transition);
     ++plan_.batches.back().count;
@@ -428,7 +428,7 @@ Batch& Synchroniser::batch_after(std::int32_t time, std::uint32_t position) {
   time = std::max(time, static_cast<std::int32_t>(2 * floor_) - 1);
   if (batch_position_ == kNone || static_cast<std::int32_t>(2 * batch_position_) < time) {
     batch_position_ = position;
-    plan_.batches.push_back({static_cast<std::uint32_t>(plan_.transitions.size()), 0, kNone});
+    plan_.batches.push_back({static_cast<std::uint32_t>(plan_.transitions.size()), 0});
   }
   return plan_.batches.back();
 }

@@ -93,7 +93,7 @@ class Declarer {
 
   void add_transient() {
     Known known;
-    known.texture = !dice_.chance(70);
+    known.texture = !dice_.chance(70) || !options_.transient_buffers;
     if (known.texture) {
       const TextureDesc desc = texture_desc();
       known.mips = std::clamp(desc.mips, 1u, 64u);

@@ -50,6 +50,7 @@ struct RandomOptions {
   std::uint32_t most_side = 256;
   bool imports = true;
   bool histories = true;
+  bool transient_buffers = true;
   bool queues = false;    // passes on compute and transfer queues too
   bool mistakes = false;  // stale and foreign handles, wrong ranges and sizes
 };

@@ -60,8 +60,7 @@ struct Limits {
   // How long placement looks for the lower bound where the first way does not meet it, in
   // comparisons of two resources; 0 takes the first way.
   std::int64_t placement_effort = 1 << 24;
-  bool alias = true;            // false gives each transient bytes of its own
-  bool split_barriers = false;  // vkCmdSetEvent2 where other work lies between
+  bool alias = true;  // false gives each transient bytes of its own
 };
 
 // Everything that compiling needs beside its input: kept from call to call, so that no memory is

@@ -43,7 +43,6 @@ struct ExecutorOptions {
   bool timestamps = true;              // GPU time of each pass
   Ordering ordering = Ordering::lower_peak;
   bool alias = true;
-  bool split_barriers = false;
 #ifdef NDEBUG
   bool verify = false;      // every new plan goes through verify()
   bool check_uses = false;  // undeclared uses in callbacks are errors

@@ -47,9 +47,6 @@ struct Transition {
 struct Batch {
   std::uint32_t first = 0;  // into Plan::transitions
   std::uint32_t count = 0;
-  // The position whose end signals a split barrier, kNone for one that is not split: vkCmdSetEvent2
-  // after that position, vkCmdWaitEvents2 here.
-  std::uint32_t split_after = kNone;
 };
 
 // A pass in execution order. Positions index Plan::passes; within a submission they run in order.

@@ -1,0 +1,140 @@
+// The number of barrier commands, against an exhaustive search over where they could be.
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <iostream>
+
+#include "alcove/framegraph/compile.h"
+#include "alcove/framegraph/verify.h"
+#include "deferred_frame.h"
+#include "random_graph.h"
+
+namespace alcove::framegraph {
+namespace {
+
+// A plan whose barriers are recorded before the positions of a mask only, each as strong as can be:
+// everything waits for everything, and each layout change of the plan is moved to the latest of
+// those positions that the change's own pass allows.
+Plan with_barriers_at(const Plan& plan, std::uint32_t mask) {
+  Plan made = plan;
+  made.batches.clear();
+  made.transitions.clear();
+  std::vector<std::vector<Transition>> changes(plan.passes.size() + 1);
+  const auto move = [&](std::uint32_t first, std::uint32_t count, std::size_t position) {
+    for (std::uint32_t b = first; b < first + count; ++b) {
+      const Batch& batch = plan.batches[b];
+      for (std::uint32_t t = batch.first; t < batch.first + batch.count; ++t) {
+        if (plan.transitions[t].resource == kNone) continue;
+        std::size_t to = position;
+        while (to > 0 && !(mask & (1u << to))) --to;
+        changes[to].push_back(plan.transitions[t]);
+      }
+    }
+  };
+  for (std::size_t p = 0; p < plan.passes.size(); ++p)
+    move(plan.passes[p].first_batch, plan.passes[p].batch_count, p);
+  move(plan.submissions[0].first_batch, plan.submissions[0].batch_count, plan.passes.size());
+  for (std::size_t p = 0; p <= plan.passes.size(); ++p) {
+    const auto first = static_cast<std::uint32_t>(made.batches.size());
+    const std::uint32_t count = mask & (1u << p) ? 1 : 0;
+    if (count) {
+      Batch batch;
+      batch.first = static_cast<std::uint32_t>(made.transitions.size());
+      Transition all;
+      all.src_stages = all.dst_stages =
+          VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT | VK_PIPELINE_STAGE_2_HOST_BIT;
+      all.src_access = VK_ACCESS_2_MEMORY_WRITE_BIT;
+      all.dst_access = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+      made.transitions.push_back(all);
+      for (Transition change : changes[p]) {
+        change.src_stages = all.src_stages;
+        change.src_access = all.src_access;
+        change.dst_stages = all.dst_stages;
+        change.dst_access = all.dst_access;
+        made.transitions.push_back(change);
+      }
+      batch.count = static_cast<std::uint32_t>(made.transitions.size()) - batch.first;
+      made.batches.push_back(batch);
+    }
+    if (p < plan.passes.size()) {
+      made.passes[p].first_batch = first;
+      made.passes[p].batch_count = count;
+    } else {
+      made.submissions[0].first_batch = first;
+      made.submissions[0].batch_count = count;
+    }
+  }
+  return made;
+}
+
+// Without transient buffers: what those must wait for in the frame before could now and then be met
+// by a command of that frame, and compile meets it in this one.
+TEST(Barriers, NoPlacementOfFewerCommandsIsRight) {
+  Graph graph;
+  std::uint32_t tried = 0;
+  RandomOptions options;
+  options.most_passes = 7;
+  options.transient_buffers = false;
+  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+    graph.reset();
+    graph.reset_histories();
+    Dice dice(seed);
+    declare_random(graph, dice, options);
+    const auto plan = compile(graph);
+    ASSERT_TRUE(plan) << to_string(plan.error());
+    const auto used = static_cast<int>(plan->batches.size());
+    for (std::uint32_t mask = 0; mask < 2u << plan->passes.size(); ++mask) {
+      if (std::popcount(mask) >= used) continue;
+      ++tried;
+      EXPECT_FALSE(verify(graph.description(), {}, with_barriers_at(*plan, mask)))
+          << "seed " << seed << ": " << used << " commands, but " << std::popcount(mask)
+          << " would do, before positions " << mask;
+    }
+  }
+  EXPECT_GT(tried, 1000u);
+  std::cerr << tried << " placements of fewer commands refused\n";
+}
+
+TEST(Barriers, ReadsAfterReadsCostNothing) {
+  Graph graph;
+  Texture texture = graph.create_texture("t", {VK_FORMAT_R8_UNORM, Extent::absolute(8, 8)});
+  PassBuilder writer = graph.add_pass("writer");
+  texture = writer.write(texture, access::storage_write_compute);
+  for (int i = 0; i < 5; ++i) {
+    PassBuilder reader = graph.add_pass("reader");
+    reader.read(texture, i % 2 ? access::sampled_fragment : access::sampled_compute);
+    reader.side_effect();
+  }
+  const auto plan = compile(graph);
+  ASSERT_TRUE(plan);
+  // One for the first use, one for all the readers, of both stages.
+  EXPECT_EQ(plan->transitions.size(), 2u);
+  EXPECT_EQ(plan->transitions[1].dst_stages,
+            VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT);
+}
+
+TEST(Barriers, NeighbouringMipsThatChangeAlikeAreOneBarrier) {
+  Graph graph;
+  Texture texture = graph.create_texture("t", {VK_FORMAT_R8_UNORM, Extent::absolute(64, 64), 5, 3});
+  PassBuilder writer = graph.add_pass("writer");
+  texture = writer.write(texture, access::storage_write_compute);
+  PassBuilder reader = graph.add_pass("reader");
+  reader.read(texture, access::sampled_compute);
+  reader.side_effect();
+  const auto plan = compile(graph);
+  ASSERT_TRUE(plan);
+  EXPECT_EQ(plan->transitions.size(), 2u);
+}
+
+TEST(Barriers, TheDeferredFrameHasOneCommandForEachPassThatDependsOnTheLast) {
+  Graph graph;
+  declare_deferred_frame(graph, 1920, 1080);
+  const auto plan = compile(graph);
+  ASSERT_TRUE(plan);
+  // Every pass but the shadow mask, which waits with the half depth, follows on the one before; one
+  // more hands the back buffer over.
+  EXPECT_LE(plan->batches.size(), plan->passes.size() + 1);
+}
+
+}  // namespace
+}  // namespace alcove::framegraph

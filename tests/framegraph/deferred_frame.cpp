@@ -1,0 +1,102 @@
+#include "deferred_frame.h"
+
+#include <initializer_list>
+#include <vector>
+
+namespace alcove::framegraph {
+namespace {
+
+class DeferredFrame {
+ public:
+  DeferredFrame(Graph& graph, std::uint32_t width, std::uint32_t height)
+      : graph_(graph), width_(width), height_(height) {}
+
+  void declare() {
+    draw_geometry();
+    const Texture ao = occlude();
+    const Texture shadow = compute("shadow mask", VK_FORMAT_R8_UNORM, 1, {depth_});
+    const Texture lit = compute("lighting", VK_FORMAT_R16G16B16A16_SFLOAT, 1,
+                                {depth_, albedo_, normal_, material_, ao, shadow});
+    const Texture smooth =
+        compute("antialiasing", VK_FORMAT_R16G16B16A16_SFLOAT, 1, {lit, motion_});
+    const Texture bloom = bloom_of(smooth);
+    const Texture mapped = compute("tonemap", VK_FORMAT_R8G8B8A8_UNORM, 1, {smooth, bloom});
+    present(mapped);
+  }
+
+ private:
+  Texture make(const char* name, VkFormat format, std::uint32_t divisor) {
+    const auto side = [divisor](std::uint32_t size) { return (size + divisor - 1) / divisor; };
+    return graph_.create_texture(name, {format, Extent::absolute(side(width_), side(height_))});
+  }
+
+  void draw_geometry() {
+    depth_ = make("depth", VK_FORMAT_D32_SFLOAT, 1);
+    albedo_ = make("albedo", VK_FORMAT_R8G8B8A8_UNORM, 1);
+    normal_ = make("normal", VK_FORMAT_R16G16_SFLOAT, 1);
+    material_ = make("material", VK_FORMAT_R8G8B8A8_UNORM, 1);
+    motion_ = make("motion", VK_FORMAT_R16G16_SFLOAT, 1);
+    PassBuilder pass = graph_.add_pass("g-buffer");
+    depth_ = pass.write(depth_, access::depth_attachment);
+    for (Texture* target : {&albedo_, &normal_, &material_, &motion_})
+      *target = pass.write(*target, access::color_attachment);
+    pass.record([](RecordContext&) {});
+  }
+
+  Texture compute(const char* name, VkFormat format, std::uint32_t divisor,
+                  std::initializer_list<Texture> from) {
+    Texture to = make(name, format, divisor);
+    PassBuilder pass = graph_.add_pass(name);
+    for (const Texture& read : from)
+      pass.read(read, read == depth_ ? access::depth_read_compute : access::sampled_compute);
+    to = pass.write(to, access::storage_write_compute);
+    pass.record([](RecordContext&) {});
+    return to;
+  }
+
+  Texture occlude() {
+    const Texture half = compute("half depth", VK_FORMAT_R32_SFLOAT, 2, {depth_});
+    const Texture ao = compute("occlusion", VK_FORMAT_R8_UNORM, 2, {half, normal_});
+    const Texture across = compute("blur across", VK_FORMAT_R8_UNORM, 2, {ao, half});
+    return compute("blur down", VK_FORMAT_R8_UNORM, 2, {across, half});
+  }
+
+  Texture bloom_of(Texture from) {
+    constexpr VkFormat kFormat = VK_FORMAT_B10G11R11_UFLOAT_PACK32;
+    std::vector<Texture> down;
+    for (std::uint32_t mip = 1; mip <= 6; ++mip) {
+      from = compute("bloom down", kFormat, 1u << mip, {from});
+      down.push_back(from);
+    }
+    Texture up = down[5];
+    for (std::uint32_t mip = 5; mip >= 1; --mip)
+      up = compute("bloom up", kFormat, 1u << mip, {up, down[mip - 1]});
+    return up;
+  }
+
+  void present(Texture from) {
+    ImportedTexture import;
+    import.image = reinterpret_cast<VkImage>(std::uintptr_t{16});
+    import.desc = {VK_FORMAT_R8G8B8A8_UNORM, Extent::absolute(width_, height_)};
+    import.usage = VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    import.departure = access::present;
+    Texture back_buffer = graph_.import_texture("back buffer", import);
+    PassBuilder pass = graph_.add_pass("present");
+    pass.read(from, access::transfer_source);
+    back_buffer = pass.write(back_buffer, access::transfer_destination, {}, Contents::discard);
+    pass.record([](RecordContext&) {});
+  }
+
+  Graph& graph_;
+  std::uint32_t width_;
+  std::uint32_t height_;
+  Texture depth_, albedo_, normal_, material_, motion_;
+};
+
+}  // namespace
+
+void declare_deferred_frame(Graph& graph, std::uint32_t width, std::uint32_t height) {
+  DeferredFrame(graph, width, height).declare();
+}
+
+}  // namespace alcove::framegraph

@@ -1,0 +1,210 @@
+// Histories on the device: what each slot holds, frame by frame, is what history.h promises.
+#include <gtest/gtest.h>
+
+#include "checksum_kernels.h"
+#include "gpu.h"
+
+namespace alcove::framegraph {
+namespace {
+
+// A frame that may write its number into the history and may read the older slots out to the host.
+struct Frame {
+  std::uint32_t value = 0;
+  bool writes = true;
+  bool wanted = true;       // false: the writer is culled
+  bool by_compute = false;  // read as a storage image of a kernel instead of a copy
+  std::uint32_t size = 8;
+};
+
+class History : public testing::Test {
+ protected:
+  static constexpr std::uint32_t kSlots = 3;
+
+  void SetUp() override {
+    ASSERT_EQ(gpu_.problem(), "");
+    kernels_ = std::make_unique<ChecksumKernels>(gpu_);
+    ExecutorOptions options;
+    options.verify = true;
+    options.check_uses = true;
+    auto made = Executor::create(gpu_.handles(), options);
+    ASSERT_TRUE(made) << to_string(made.error());
+    executor_ = std::make_unique<Executor>(std::move(*made));
+    host_ = gpu_.make_host_buffer(4 * kSlots);
+  }
+  void TearDown() override {
+    executor_.reset();
+    kernels_.reset();
+    EXPECT_EQ(gpu_.messages(), "");
+  }
+
+  void run(const Frame& frame) {
+    graph_.reset();
+    kernels_->reset();
+    const TextureHistory history = graph_.create_texture_history(
+        "history", {VK_FORMAT_R32_UINT, Extent::absolute(frame.size, frame.size)}, kSlots);
+    validity_ = history.validity;
+    Buffer out = graph_.import_buffer("host", Gpu::imported(host_));
+    PassBuilder mark = graph_.add_pass("mark");
+    out = mark.write(out, buffer_access::fill, Contents::discard);
+    mark.record([out](RecordContext& c) {
+      c.vk.vkCmdFillBuffer(c.commands, c.buffer(out), 0, VK_WHOLE_SIZE, 0xffff);
+    });
+    Texture current = history.current;
+    if (frame.writes) current = write(current, frame.value);
+    if (frame.writes && frame.wanted) graph_.output(current);
+    for (std::uint32_t age = 1; age < kSlots && frame.wanted; ++age) {
+      if (!frame.writes && validity_ != HistoryValidity::valid) continue;
+      out = frame.by_compute ? read_by_kernel(history.previous(age), out, age)
+                             : read_by_copy(history.previous(age), out, age);
+    }
+    const auto report = gpu_.run(*executor_, graph_);
+    ASSERT_TRUE(report) << to_string(report.error());
+  }
+
+  Texture write(Texture texture, std::uint32_t value) {
+    PassBuilder pass = graph_.add_pass("write");
+    texture = pass.write(texture, access::clear);
+    pass.record([texture, value](RecordContext& c) {
+      VkClearColorValue color{};
+      color.uint32[0] = value;
+      const VkImageSubresourceRange range{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+      c.vk.vkCmdClearColorImage(c.commands, c.image(texture), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                                &color, 1, &range);
+    });
+    return texture;
+  }
+
+  Buffer read_by_copy(Texture texture, Buffer out, std::uint32_t age) {
+    PassBuilder pass = graph_.add_pass("copy");
+    pass.read(texture, access::transfer_source);
+    out = pass.write(out, buffer_access::transfer_destination);
+    pass.record([=](RecordContext& c) {
+      if (c.validity(texture) != HistoryValidity::valid) return;
+      VkBufferImageCopy copy{};
+      copy.bufferOffset = 4 * age;
+      copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+      copy.imageExtent = {1, 1, 1};
+      c.vk.vkCmdCopyImageToBuffer(c.commands, c.image(texture),
+                                  VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, c.buffer(out), 1, &copy);
+    });
+    return out;
+  }
+
+  // The same slot through other accesses, usages and layouts: into a texture, and that to the host.
+  Buffer read_by_kernel(Texture texture, Buffer out, std::uint32_t age) {
+    Texture zero = graph_.create_texture("zero", {VK_FORMAT_R32_UINT, Extent::absolute(1, 1)});
+    zero = write(zero, 0);
+    Texture mixed = graph_.create_texture("mixed", {VK_FORMAT_R32_UINT, Extent::absolute(1, 1)});
+    PassBuilder pass = graph_.add_pass("mix");
+    pass.read(texture, access::sampled_compute);
+    pass.read(zero, access::storage_read_compute);
+    mixed = pass.write(mixed, access::storage_write_compute);
+    pass.record([=, this](RecordContext& c) {
+      if (c.validity(texture) != HistoryValidity::valid) return;
+      kernels_->mix_texture(c, c.view(texture), c.view(zero), c.view(mixed), c.extent(mixed), 0,
+                            false);
+    });
+    PassBuilder copy_pass = graph_.add_pass("copy mixed");
+    copy_pass.read(mixed, access::transfer_source);
+    out = copy_pass.write(out, buffer_access::transfer_destination);
+    copy_pass.record([=](RecordContext& c) {
+      VkBufferImageCopy copy{};
+      copy.bufferOffset = 4 * age;
+      copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+      copy.imageExtent = {1, 1, 1};
+      c.vk.vkCmdCopyImageToBuffer(c.commands, c.image(mixed), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                                  c.buffer(out), 1, &copy);
+    });
+    return out;
+  }
+
+  std::uint32_t slot(std::uint32_t age) const {
+    return static_cast<const std::uint32_t*>(host_.mapped)[age];
+  }
+  static std::uint32_t mixed(std::uint32_t value) { return mix_in(mix_in(mix_in(0, 0), value), 0); }
+
+  Gpu gpu_;
+  std::unique_ptr<ChecksumKernels> kernels_;
+  std::unique_ptr<Executor> executor_;
+  HostBuffer host_;
+  Graph graph_;
+  HistoryValidity validity_ = HistoryValidity::valid;
+};
+
+constexpr std::uint32_t kNothing = 0xffff;
+
+TEST_F(History, SlotsHoldTheFramesBefore) {
+  for (std::uint32_t frame = 1; frame <= 6; ++frame) {
+    run({frame});
+    EXPECT_EQ(validity_, frame == 1 ? HistoryValidity::first_frame : HistoryValidity::valid);
+    EXPECT_EQ(slot(1), frame > 1 ? frame - 1 : kNothing);
+    EXPECT_EQ(slot(2), frame > 2 ? frame - 2 : kNothing);
+  }
+}
+
+TEST_F(History, AFrameThatDoesNotWriteLeavesTheSlotsWhereTheyAre) {
+  run({1});
+  run({2});
+  run({0, false});
+  EXPECT_EQ(slot(1), 2u);
+  EXPECT_EQ(slot(2), 1u);
+  run({3});
+  EXPECT_EQ(slot(1), 2u);
+  EXPECT_EQ(slot(2), 1u);
+}
+
+TEST_F(History, AFrameThatCullsTheWriterLeavesTheSlotsWhereTheyAre) {
+  run({1});
+  run({2});
+  run({9, true, false});
+  run({3});
+  EXPECT_EQ(slot(1), 2u);
+  EXPECT_EQ(slot(2), 1u);
+}
+
+TEST_F(History, AFrameWithoutTheHistoryLeavesItAlone) {
+  run({1});
+  graph_.reset();
+  ASSERT_TRUE(gpu_.run(*executor_, graph_));
+  run({2});
+  EXPECT_EQ(validity_, HistoryValidity::valid);
+  EXPECT_EQ(slot(1), 1u);
+}
+
+TEST_F(History, AResizeMakesItInvalidAndSaysWhy) {
+  run({1});
+  run({2});
+  run({3, true, true, false, 16});
+  EXPECT_EQ(validity_, HistoryValidity::resized);
+  EXPECT_EQ(slot(1), kNothing);
+  run({4, true, true, false, 16});
+  EXPECT_EQ(validity_, HistoryValidity::valid);
+  EXPECT_EQ(slot(1), 3u);
+  EXPECT_EQ(slot(2), kNothing);
+}
+
+TEST_F(History, AResetMakesItInvalidAndSaysWhy) {
+  run({1});
+  run({2});
+  graph_.reset_history("history");
+  run({3});
+  EXPECT_EQ(validity_, HistoryValidity::reset);
+  EXPECT_EQ(slot(1), kNothing);
+  run({4});
+  EXPECT_EQ(slot(1), 3u);
+  EXPECT_EQ(slot(2), kNothing);
+}
+
+TEST_F(History, ContentsSurviveAChangeOfAccess) {
+  run({1});
+  run({2});
+  run({3, true, true, true});
+  EXPECT_EQ(slot(1), mixed(2));
+  EXPECT_EQ(slot(2), mixed(1));
+  run({4});
+  EXPECT_EQ(slot(1), 3u);
+  EXPECT_EQ(slot(2), 2u);
+}
+
+}  // namespace
+}  // namespace alcove::framegraph

@@ -1,0 +1,126 @@
+// Placement against the lower bound: the most bytes that are live at once.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <iostream>
+
+#include "alcove/framegraph/compile.h"
+#include "alcove/framegraph/verify.h"
+#include "deferred_frame.h"
+#include "random_graph.h"
+
+namespace alcove::framegraph {
+namespace {
+
+TEST(Place, TheDeferredFrameMeetsItsLowerBound) {
+  Graph graph;
+  declare_deferred_frame(graph, 1920, 1080);
+  const auto plan = compile(graph);
+  ASSERT_TRUE(plan) << to_string(plan.error());
+  EXPECT_EQ(std::count_if(plan->placements.begin(), plan->placements.end(),
+                          [](const Placement& p) { return p.heap != kNone; }),
+            24);
+  ASSERT_EQ(plan->heaps.size(), 1u);
+  EXPECT_EQ(plan->heaps[0].size, plan->heaps[0].lower_bound);
+  EXPECT_LT(plan->heaps[0].size, plan->heaps[0].unaliased);
+  EXPECT_TRUE(verify(graph.description(), {}, *plan));
+  std::cerr << "deferred frame: " << plan->heaps[0].size << " bytes, lower bound "
+            << plan->heaps[0].lower_bound << ", without aliasing " << plan->heaps[0].unaliased
+            << ", " << plan->batches.size() << " barrier commands, " << plan->transitions.size()
+            << " barriers\n";
+}
+
+// 20 to 40 passes with up to three reads and two new textures of any size each.
+void declare_sizes(Graph& graph, Dice& dice) {
+  std::vector<Texture> textures;
+  const std::uint32_t passes = 20 + dice.roll(21);
+  for (std::uint32_t i = 0; i < passes; ++i) {
+    PassBuilder pass = graph.add_pass("pass");
+    std::vector<std::uint32_t> used;
+    for (std::uint32_t reads = dice.roll(4); reads > 0 && !textures.empty(); --reads) {
+      const auto window = std::min<std::uint32_t>(static_cast<std::uint32_t>(textures.size()),
+                                                  dice.chance(128) ? 4 : 16);
+      const Texture& texture = textures[textures.size() - 1 - dice.roll(window)];
+      if (std::find(used.begin(), used.end(), texture.index) != used.end()) continue;
+      used.push_back(texture.index);
+      pass.read(texture, access::sampled_compute);
+    }
+    for (std::uint32_t writes = 1 + dice.roll(2); writes > 0; --writes) {
+      const Texture texture = graph.create_texture(
+          "texture",
+          {VK_FORMAT_R8_UNORM, Extent::absolute(1 + dice.roll(2048), 1 + dice.roll(1080))});
+      textures.push_back(pass.write(texture, access::storage_write_compute));
+    }
+    pass.side_effect();
+  }
+}
+
+TEST(Place, RandomGraphsComeWithinTwoPercentOfTheirLowerBound) {
+  std::vector<double> ratios;
+  Graph graph;
+  for (std::uint64_t seed = 0; seed < 1000; ++seed) {
+    graph.reset();
+    Dice dice(seed);
+    declare_sizes(graph, dice);
+    const auto plan = compile(graph);
+    ASSERT_TRUE(plan) << to_string(plan.error());
+    ratios.push_back(static_cast<double>(plan->heaps[0].size) /
+                     static_cast<double>(plan->heaps[0].lower_bound));
+  }
+  std::sort(ratios.begin(), ratios.end());
+  std::cerr << "peak over lower bound: median " << ratios[500] << ", 99th percentile "
+            << ratios[990] << ", worst " << ratios[999] << "\n";
+  EXPECT_EQ(ratios[500], 1.0);
+  EXPECT_LE(ratios[990], 1.02);
+}
+
+TEST(Place, WithoutAliasingNothingSharesBytes) {
+  Graph graph;
+  declare_deferred_frame(graph, 640, 360);
+  Limits limits;
+  limits.alias = false;
+  const auto plan = compile(graph, limits);
+  ASSERT_TRUE(plan);
+  EXPECT_EQ(plan->heaps[0].size, plan->heaps[0].unaliased);
+}
+
+TEST(Place, MemoryTypesThatDifferGetHeapsOfTheirOwn) {
+  Graph graph;
+  declare_deferred_frame(graph, 640, 360);
+  Limits limits;
+  limits.memory.query = [](const void*, const ResourceRecord& record, VkFlags) {
+    MemoryRequirements needed = estimate_requirements(record);
+    needed.memory_types = record.format == VK_FORMAT_D32_SFLOAT ? 2u : 5u;
+    needed.alignment = 65536;
+    return needed;
+  };
+  const auto plan = compile(graph, limits);
+  ASSERT_TRUE(plan);
+  EXPECT_EQ(plan->heaps.size(), 2u);
+  EXPECT_TRUE(verify(graph.description(), limits, *plan));
+}
+
+TEST(Order, AnotherOrderIsTakenOnlyWhereItsPeakIsLower) {
+  std::uint32_t reordered = 0;
+  Graph graph;
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    graph.reset();
+    Dice dice(seed);
+    declare_sizes(graph, dice);
+    Limits limits;
+    limits.placement_effort = 0;
+    const auto free = compile(graph, limits);
+    limits.ordering = Ordering::program;
+    const auto program = compile(graph, limits);
+    ASSERT_TRUE(free && program);
+    ASSERT_FALSE(program->reordered);
+    EXPECT_LE(free->heaps[0].lower_bound, program->heaps[0].lower_bound) << "seed " << seed;
+    if (!free->reordered) continue;
+    ++reordered;
+    EXPECT_LT(free->heaps[0].lower_bound, program->heaps[0].lower_bound) << "seed " << seed;
+  }
+  EXPECT_GT(reordered, 10u);
+}
+
+}  // namespace
+}  // namespace alcove::framegraph

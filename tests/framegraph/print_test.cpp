@@ -1,0 +1,68 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "alcove/framegraph/compile.h"
+#include "alcove/framegraph/print.h"
+#include "deferred_frame.h"
+
+namespace alcove::framegraph {
+namespace {
+
+using testing::HasSubstr;
+
+class Print : public testing::Test {
+ protected:
+  void SetUp() override {
+    declare_deferred_frame(graph_, 1920, 1080);
+    (void)graph_.add_pass("nobody \"wants\" this");
+    plan_ = *compile(graph_);
+  }
+  Graph graph_;
+  Plan plan_;
+};
+
+TEST_F(Print, TextShowsPassesBarriersCullingAndMemory) {
+  const std::string text = print_text(graph_.description(), plan_);
+  EXPECT_THAT(text, HasSubstr("lower bound"));
+  EXPECT_THAT(text, HasSubstr("g-buffer"));
+  EXPECT_THAT(text, HasSubstr("compute -> copy: tonemap general -> transfer source"));
+  EXPECT_THAT(text, HasSubstr("culled: nobody \"wants\" this, it writes nothing"));
+  EXPECT_THAT(text, HasSubstr("memory by offset"));
+}
+
+TEST_F(Print, TextFitsAScreenInWidth) {
+  std::istringstream lines(print_text(graph_.description(), plan_));
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 180u) << line;
+}
+
+TEST_F(Print, JsonIsBalancedAndEscaped) {
+  const std::string json = print_json(graph_.description(), plan_);
+  int depth = 0;
+  bool quoted = false;
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    if (json[i] == '\\' && quoted) {
+      ++i;
+      continue;
+    }
+    if (json[i] == '"') quoted = !quoted;
+    if (quoted) continue;
+    if (json[i] == '{' || json[i] == '[') ++depth;
+    if (json[i] == '}' || json[i] == ']') --depth;
+    ASSERT_GE(depth, 0);
+  }
+  EXPECT_EQ(depth, 0);
+  EXPECT_FALSE(quoted);
+  EXPECT_THAT(json, HasSubstr(R"("name":"nobody \"wants\" this")"));
+}
+
+TEST_F(Print, DotHasANodeForEachPass) {
+  const std::string dot = print_dot(graph_.description(), plan_);
+  for (std::size_t i = 0; i < graph_.description().passes.size(); ++i)
+    EXPECT_THAT(dot, HasSubstr(std::string("p").append(std::to_string(i)).append(" [label=")));
+  EXPECT_THAT(dot, HasSubstr("style=dashed"));
+}
+
+}  // namespace
+}  // namespace alcove::framegraph
