@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <string>
 
+#include "check_inputs.h"
 #include "depth_pyramid_parameters.h"
 #include "view_parameters.h"
 
@@ -24,16 +27,34 @@ std::uint32_t mips_that_fit(VkExtent3D extent, std::uint32_t wanted) {
   return mips;
 }
 
+tl::expected<void, Error> check(const Frame& frame, Texture depth_ndc, std::uint32_t mips,
+                                float reach) {
+  if (mips < 1 || mips > kMaxMips) {
+    return tl::unexpected(Error{"The depth pyramid was asked for " + std::to_string(mips) +
+                                " mips; it must be 1 to 5."});
+  }
+  if (mips > 1 && (!(reach > 0.0f) || !std::isfinite(reach))) {
+    return tl::unexpected(Error{"The depth pyramid's reach is " + std::to_string(reach) +
+                                "; it must be a length over 0 in the scene's units "
+                                "(add_occlusion takes it from the radius)."});
+  }
+  const std::array<NamedInput, 1> needed{{{"depth", depth_ndc}}};
+  return check_inputs(frame.graph, "depth pyramid", needed);
+}
+
 }  // namespace
 
 tl::expected<Texture, Error> add_depth_pyramid(const Frame& frame, Texture depth_ndc,
                                                std::uint32_t mips, float reach) {
+  if (auto good = check(frame, depth_ndc, mips, reach); !good) {
+    return tl::unexpected(good.error());
+  }
   const VkExtent3D extent = frame.graph.extent(depth_ndc);
   const auto projection = projection_of(frame, frame.view, depth_ndc);
   if (!projection) {
     return tl::unexpected(projection.error());
   }
-  mips = mips_that_fit(extent, std::clamp(mips, 1u, kMaxMips));
+  mips = mips_that_fit(extent, mips);
   const std::array constants{mips};
   const auto kernel = frame.kernels.get(Shader::depth_pyramid, constants);
   if (!kernel) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "check_inputs.h"
 #include "gtao_parameters.h"
 #include "search_phase.h"
 #include "view_parameters.h"
@@ -29,10 +30,11 @@ tl::expected<void, Error> check(const GtaoSettings& settings) {
     return tl::unexpected(Error{"The resolution is divided by " + std::to_string(settings.divisor) +
                                 "; it must be 1, 2 or 4."});
   }
-  if (!(settings.thickness >= 0.0f) || !(settings.fill >= 0.0f && settings.fill <= 1.0f)) {
+  if (!(settings.thickness >= 0.0f) || !std::isfinite(settings.thickness) ||
+      !(settings.fill >= 0.0f && settings.fill <= 1.0f)) {
     return tl::unexpected(Error{"The thickness is " + std::to_string(settings.thickness) +
                                 " radii and the fill " + std::to_string(settings.fill) +
-                                "; the first must be at least 0, the second 0 to 1."});
+                                "; the first must be at least 0 and finite, the second 0 to 1."});
   }
   return {};
 }
@@ -57,6 +59,10 @@ OcclusionSignal create_signal(const Frame& frame, Texture depth, const GtaoSetti
 tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame, const GtaoInputs& inputs,
                                               const GtaoSettings& settings) {
   if (auto good = check(settings); !good) {
+    return tl::unexpected(good.error());
+  }
+  const std::array<NamedInput, 2> needed{{{"depth", inputs.depth}, {"normals", inputs.normals}}};
+  if (auto good = check_inputs(frame.graph, "gtao", needed); !good) {
     return tl::unexpected(good.error());
   }
   const auto projection = projection_of(frame, frame.view, inputs.depth);

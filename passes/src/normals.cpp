@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "check_inputs.h"
 #include "normals_parameters.h"
 #include "view_parameters.h"
 
@@ -12,6 +13,10 @@ using framegraph::RecordContext;
 using framegraph::Texture;
 
 tl::expected<Texture, Error> add_normals(const Frame& frame, Texture depth) {
+  const std::array<NamedInput, 1> needed{{{"linear depth", depth}}};
+  if (auto good = check_inputs(frame.graph, "normals", needed); !good) {
+    return tl::unexpected(good.error());
+  }
   const auto projection = projection_of(frame, frame.view, depth);
   if (!projection) {
     return tl::unexpected(projection.error());

@@ -1,9 +1,11 @@
 #include "alcove/passes/reconstruct.h"
 
 #include <array>
+#include <cmath>
 #include <span>
 #include <string>
 
+#include "check_inputs.h"
 #include "reconstruct_parameters.h"
 #include "search_phase.h"
 #include "view_parameters.h"
@@ -22,10 +24,10 @@ constexpr std::uint32_t kMaxReach = 3;
 constexpr std::uint32_t kMaxHistoryFrames = 255;
 
 tl::expected<void, Error> check(const ReconstructSettings& settings) {
-  if (!(settings.tolerance_px > 0.0f)) {
+  if (!(settings.tolerance_px > 0.0f) || !std::isfinite(settings.tolerance_px)) {
     return tl::unexpected(Error{"The filter's tolerance is " +
                                 std::to_string(settings.tolerance_px) +
-                                " pixels; it must be over 0."});
+                                " pixels; it must be over 0 and finite."});
   }
   if (settings.reach > kMaxReach) {
     return tl::unexpected(Error{"The filter's reach is " + std::to_string(settings.reach) +
@@ -35,7 +37,19 @@ tl::expected<void, Error> check(const ReconstructSettings& settings) {
     return tl::unexpected(Error{"The history is " + std::to_string(settings.history_frames) +
                                 " frames long; it must be 0 to 255."});
   }
+  if (!(settings.clamp_width >= 0.0f) || !std::isfinite(settings.clamp_width)) {
+    return tl::unexpected(Error{"The history's clamp is " + std::to_string(settings.clamp_width) +
+                                " deviations wide; it must be at least 0 and finite."});
+  }
   return {};
+}
+
+tl::expected<void, Error> check_textures(const Frame& frame, const ReconstructInputs& inputs) {
+  const std::array<NamedInput, 3> needed{
+      {{"depth", inputs.depth},
+       {"normals", inputs.normals},
+       {"motion vectors", inputs.motion ? inputs.motion : inputs.depth}}};
+  return check_inputs(frame.graph, "reconstruct", needed);
 }
 
 VkFormat visibility_format(Precision precision) {
@@ -157,6 +171,9 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& frame, const Reconst
                                                const ReconstructSettings& settings,
                                                std::string_view history_name) {
   if (auto good = check(settings); !good) {
+    return tl::unexpected(good.error());
+  }
+  if (auto good = check_textures(frame, inputs); !good) {
     return tl::unexpected(good.error());
   }
   const auto projection = projection_of(frame, frame.view, inputs.depth);

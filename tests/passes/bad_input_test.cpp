@@ -1,0 +1,160 @@
+// Bad input of any kind is one sentence that names the thing, and the device goes on.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "gtao_scenes.h"
+#include "pass_fixture.h"
+
+namespace alcove::passes {
+namespace {
+
+using framegraph::Graph;
+using testing::HasSubstr;
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+class BadInput : public PassTest {
+ protected:
+  // What add_occlusion says of an input that `spoil` changed; empty where it takes it.
+  using Spoil = std::function<void(View&, OcclusionSettings&)>;
+  std::string error_of(const Spoil& spoil) {
+    const Drawing drawing = draw(test_views()[2], 16, 12, groove(0.8));
+    std::string said;
+    run([&](Graph& graph) {
+      View view = test_views()[2].view;
+      OcclusionSettings settings;
+      settings.history_frames = 4;
+      spoil(view, settings);
+      const Frame frame{graph, gpu().kernels(), view, 0};
+      const framegraph::Texture depth = upload(graph, drawing.depth_ndc);
+      const auto outputs = add_occlusion(frame, {depth}, settings);
+      if (!outputs) {
+        said = outputs.error().message;
+      }
+      read_back(graph, outputs ? outputs->visibility : depth);
+    });
+    return said;
+  }
+
+  void expect_a_good_frame() {
+    const Drawing drawing = draw(test_views()[2], 16, 12, {tilted_plane(10.0, 4.0)});
+    const OcclusionImages images =
+        run_occlusion({test_views()[2].view, drawing.depth_ndc, &drawing.normal_vs}, {});
+    EXPECT_THAT(images.visibility.texels, testing::Each(testing::Ge(0.95f)));
+  }
+};
+
+bool is_a_sentence(const std::string& text) {
+  return !text.empty() && text.back() == '.' && std::isupper(static_cast<unsigned char>(text[0]));
+}
+
+TEST_F(BadInput, EverySettingOutOfRangeIsNamed) {
+  struct Case {
+    const char* names;
+    Spoil spoil;
+  };
+  const std::vector<Case> cases{
+      {"radius", [](View&, OcclusionSettings& s) { s.radius = 0.0f; }},
+      {"radius", [](View&, OcclusionSettings& s) { s.radius = -1.0f; }},
+      {"radius", [](View&, OcclusionSettings& s) { s.radius = kNaN; }},
+      {"radius", [](View&, OcclusionSettings& s) { s.radius = kInfinity; }},
+      {"steps", [](View&, OcclusionSettings& s) { s.steps = 0; }},
+      {"steps", [](View&, OcclusionSettings& s) { s.steps = 65; }},
+      {"slices", [](View&, OcclusionSettings& s) { s.slices = 0; }},
+      {"slices", [](View&, OcclusionSettings& s) { s.slices = 4000000000u; }},
+      {"resolution", [](View&, OcclusionSettings& s) { s.divisor = 3; }},
+      {"resolution", [](View&, OcclusionSettings& s) { s.divisor = 0; }},
+      {"thickness", [](View&, OcclusionSettings& s) { s.thickness = -0.1f; }},
+      {"thickness", [](View&, OcclusionSettings& s) { s.thickness = kNaN; }},
+      {"thickness", [](View&, OcclusionSettings& s) { s.thickness = kInfinity; }},
+      {"fill", [](View&, OcclusionSettings& s) { s.fill = 1.5f; }},
+      {"fill", [](View&, OcclusionSettings& s) { s.fill = kNaN; }},
+      {"tolerance", [](View&, OcclusionSettings& s) { s.filter_tolerance_px = 0.0f; }},
+      {"tolerance", [](View&, OcclusionSettings& s) { s.filter_tolerance_px = kNaN; }},
+      {"tolerance", [](View&, OcclusionSettings& s) { s.filter_tolerance_px = kInfinity; }},
+      {"reach", [](View&, OcclusionSettings& s) { s.filter_reach = 4; }},
+      {"history", [](View&, OcclusionSettings& s) { s.history_frames = 256; }},
+      {"clamp", [](View&, OcclusionSettings& s) { s.clamp_width = -1.0f; }},
+      {"clamp", [](View&, OcclusionSettings& s) { s.clamp_width = kNaN; }},
+      {"mips", [](View&, OcclusionSettings& s) { s.depth_mips = 0; }},
+      {"mips", [](View&, OcclusionSettings& s) { s.depth_mips = 6; }},
+  };
+  for (const Case& bad : cases) {
+    const std::string said = error_of(bad.spoil);
+    EXPECT_THAT(said, HasSubstr(bad.names));
+    EXPECT_PRED1(is_a_sentence, said);
+  }
+  expect_a_good_frame();
+}
+
+TEST_F(BadInput, AProjectionThatIsNoneIsNamed) {
+  const std::vector<std::function<void(Matrix&)>> spoils{
+      [](Matrix& m) { m.fill(0.0f); },         [](Matrix& m) { m[0] = kNaN; },
+      [](Matrix& m) { m[10] = kInfinity; },    [](Matrix& m) { m[5] = 0.0f; },
+      [](Matrix& m) { m[11] = 1.0f; },  // looks along +Z
+      [](Matrix& m) { m[10] = m[14] = 0.0f; },  // one depth for all
+      [](Matrix& m) { m[2] = 0.4f; },  // oblique near plane
+      [](Matrix& m) { m[1] = 0.5f; },  // mixes x and y
+  };
+  for (const auto& spoil : spoils) {
+    const std::string said =
+        error_of([&](View& view, OcclusionSettings&) { spoil(view.clip_from_view); });
+    EXPECT_THAT(said, HasSubstr("view"));
+    EXPECT_PRED1(is_a_sentence, said);
+  }
+  expect_a_good_frame();
+}
+
+TEST_F(BadInput, AnImageWithoutPixelsIsNamed) {
+  std::string said;
+  const auto report = gpu().run([&](Graph& graph) -> tl::expected<void, std::string> {
+    const Frame frame{graph, gpu().kernels(), test_views()[2].view, 0};
+    const auto depth = graph.create_texture("empty depth", {VK_FORMAT_R32_SFLOAT, {}});
+    const auto outputs = add_occlusion(frame, {depth}, {});
+    said = outputs ? "" : outputs.error().message;
+    return {};
+  });
+  EXPECT_THAT(said, HasSubstr("no pixels"));
+  EXPECT_PRED1(is_a_sentence, said);
+  // The graph that such a texture was declared in is refused too.
+  ASSERT_FALSE(report);
+  EXPECT_THAT(report.error(), HasSubstr("'empty depth'"));
+  expect_a_good_frame();
+}
+
+TEST_F(BadInput, ImagesOfUnequalSizesAreNamed) {
+  const Drawing drawing = draw(test_views()[2], 16, 12, groove(0.8));
+  const Drawing small = draw(test_views()[2], 16, 11, groove(0.8));
+  run([&](Graph& graph) {
+    const Frame frame{graph, gpu().kernels(), test_views()[2].view, 0};
+    const framegraph::Texture depth = upload(graph, drawing.depth_ndc);
+    const auto normals = add_occlusion(frame, {depth, upload(graph, small.normal_vs), true}, {});
+    ASSERT_FALSE(normals);
+    EXPECT_THAT(normals.error().message, HasSubstr("normals of 16x11"));
+    const auto motion =
+        add_occlusion(frame, {.depth_ndc = depth, .motion = upload(graph, small.depth_ndc)}, {});
+    ASSERT_FALSE(motion);
+    EXPECT_THAT(motion.error().message, HasSubstr("motion vectors of 16x11"));
+    read_back(graph, depth);
+  });
+  expect_a_good_frame();
+}
+
+TEST_F(BadInput, AnInputThatWasNeverMadeIsNamed) {
+  std::string said;
+  run([&](Graph& graph) {
+    const Frame frame{graph, gpu().kernels(), test_views()[2].view, 0};
+    const auto outputs = add_occlusion(frame, {}, {});
+    ASSERT_FALSE(outputs);
+    said = outputs.error().message;
+  });
+  EXPECT_PRED1(is_a_sentence, said);
+  expect_a_good_frame();
+}
+
+}  // namespace
+}  // namespace alcove::passes

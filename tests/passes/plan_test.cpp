@@ -1,0 +1,156 @@
+// Model only what is required: what is off or unread has no pass, no memory and no pipeline.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <string>
+
+#include "alcove/framegraph/compile.h"
+#include "gtao_scenes.h"
+#include "pass_fixture.h"
+
+namespace alcove::passes {
+namespace {
+
+using framegraph::Graph;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::Not;
+
+// Which outputs of add_occlusion the frame reads.
+struct Reads {
+  bool visibility = true;
+  bool bent_normal = false;
+  bool linear_depth = false;
+};
+
+class OcclusionPlan : public PassTest {
+ protected:
+  // What of the passes a compiled frame keeps; uploads and read-backs are left out.
+  struct Kept {
+    std::vector<std::string> passes;
+    std::vector<std::string> transients;
+    std::vector<std::string> histories;
+    std::uint64_t bytes = 0;  // of the transients
+  };
+
+  Kept kept(const OcclusionSettings& settings, Reads reads = {}, bool normals_given = true) {
+    const Drawing drawing = draw(test_views()[2], 32, 24, groove(0.8));
+    Kept found;
+    run([&](Graph& graph) {
+      const Frame frame{graph, gpu().kernels(), test_views()[2].view, 0};
+      OcclusionInputs inputs{.depth_ndc = upload(graph, drawing.depth_ndc),
+                             .normals_in_view_space = true};
+      if (normals_given) {
+        inputs.normals = upload(graph, drawing.normal_vs);
+      }
+      const auto outputs = add_occlusion(frame, inputs, settings);
+      ASSERT_TRUE(outputs) << outputs.error().message;
+      if (reads.visibility) {
+        read_back(graph, outputs->visibility);
+      }
+      if (reads.bent_normal) {
+        read_back(graph, outputs->bent_normal);
+      }
+      if (reads.linear_depth) {
+        read_back(graph, outputs->linear_depth);
+      }
+      const auto plan = framegraph::compile(graph);
+      ASSERT_TRUE(plan) << framegraph::to_string(plan.error());
+      found = describe(graph.description(), *plan);
+    });
+    return found;
+  }
+
+  static Kept describe(const framegraph::GraphDescription& graph, const framegraph::Plan& plan) {
+    Kept found;
+    for (const framegraph::PlannedPass& pass : plan.passes) {
+      const std::string name(graph.pass_name(pass.pass));
+      if (name != "upload" && name != "read back") {
+        found.passes.push_back(name);
+      }
+    }
+    for (std::uint32_t i = 0; i < graph.resources.size(); ++i) {
+      const std::string name(graph.resource_name(i));
+      if (graph.resources[i].origin == framegraph::Origin::history) {
+        found.histories.push_back(name);
+      } else if (plan.placements[i].heap != framegraph::kNone && name != "uploaded") {
+        found.transients.push_back(name);
+        found.bytes += plan.placements[i].size;
+      }
+    }
+    return found;
+  }
+};
+
+OcclusionSettings least() {
+  OcclusionSettings settings;
+  settings.estimator = Estimator::horizons;
+  settings.steps = 4;
+  settings.history_frames = 0;
+  return settings;
+}
+
+TEST_F(OcclusionPlan, TheLeastFrameIsThreePassesAndThreeTextures) {
+  const Kept frame = kept(least());
+  EXPECT_THAT(frame.passes, ElementsAre("depth pyramid", "gtao", "reconstruct"));
+  EXPECT_THAT(frame.transients,
+              testing::UnorderedElementsAre("linear depth", "occlusion signal", "visibility"));
+  EXPECT_THAT(frame.histories, testing::IsEmpty());
+  EXPECT_EQ(gpu().kernels().pipeline_count(), 3u);
+}
+
+TEST_F(OcclusionPlan, NormalsAreMadeOnlyWhereNoneAreGiven) {
+  EXPECT_THAT(kept(least(), {}, true).passes, Not(Contains("normals")));
+  const std::size_t pipelines = gpu().kernels().pipeline_count();
+  const Kept made = kept(least(), {}, false);
+  EXPECT_THAT(made.passes, Contains("normals"));
+  EXPECT_THAT(made.transients, Contains("normals from depth"));
+  EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines + 1);
+}
+
+TEST_F(OcclusionPlan, BentNormalsAndHistoryCostOnlyWhereTheyAreOn) {
+  const Kept without = kept(least());
+  OcclusionSettings bent = least();
+  bent.bent_normal = true;
+  const Kept with_bent = kept(bent, {.bent_normal = true});
+  EXPECT_THAT(with_bent.transients, Contains("bent normal"));
+  EXPECT_GT(with_bent.bytes, without.bytes);
+
+  OcclusionSettings history = least();
+  history.history_frames = 8;
+  EXPECT_THAT(kept(history).histories, testing::SizeIs(2));
+  history.bent_normal = true;
+  EXPECT_THAT(kept(history, {.bent_normal = true}).histories, testing::SizeIs(4));
+}
+
+TEST_F(OcclusionPlan, MipsCostMemoryOnlyWhereTheyAreAskedFor) {
+  OcclusionSettings mips = least();
+  mips.depth_mips = 4;
+  EXPECT_GT(kept(mips).bytes, kept(least()).bytes);
+}
+
+TEST_F(OcclusionPlan, ALowerResolutionOfTheSearchTakesLessMemory) {
+  OcclusionSettings half = least();
+  half.divisor = 2;
+  EXPECT_LT(kept(half).bytes, kept(least()).bytes);
+}
+
+TEST_F(OcclusionPlan, WhatNobodyReadsIsCulledWithAllThatLeadsThere) {
+  const Kept depth_only = kept(least(), {.visibility = false, .linear_depth = true}, false);
+  EXPECT_THAT(depth_only.passes, ElementsAre("depth pyramid"));
+  EXPECT_THAT(depth_only.transients, ElementsAre("linear depth"));
+  EXPECT_THAT(kept(least(), {.visibility = false}, false).passes, testing::IsEmpty());
+}
+
+TEST_F(OcclusionPlan, AFrameThatWasDeclaredBeforeMakesNoPipeline) {
+  (void)kept(least());
+  const std::size_t pipelines = gpu().kernels().pipeline_count();
+  OcclusionSettings other = least();
+  other.radius = 3.0f;
+  other.filter_tolerance_px = 4.0f;
+  (void)kept(other);
+  EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines);
+}
+
+}  // namespace
+}  // namespace alcove::passes
