@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <utility>
 #include <vector>
 
 #include "parallel.h"
@@ -21,18 +22,19 @@ constexpr float kHalfPi = glm::half_pi<float>();
 // they are not joined each texel is a column of its own width, as deep as you like.
 struct Field {
   uint32_t width = 0, height = 0;
-  std::vector<float> value;   // 0 in the sky (perspective), infinity (orthographic)
-  std::vector<uint8_t> join;  // bit 0: with x + 1, bit 1: with y + 1
-  glm::vec2 scale;            // view x and y of a pixel at depth 1 (or any): scale * pixel + origin
+  std::vector<float> value;       // sky: 0 in perspective, kFarAway in orthographic views
+  std::vector<float> join_right;  // 1: the surface goes on to (x + 1, y); 0: it does not
+  std::vector<float> join_below;
+  glm::vec2 scale;  // view x and y of a pixel at depth 1 (or any): scale * pixel + origin
   glm::vec2 origin;
   bool orthographic = false;
 };
 
-constexpr uint8_t kJoinRight = 1;
-constexpr uint8_t kJoinBelow = 2;
+// Deeper than any radius reaches, and still finite, so that it can be multiplied by 0.
+constexpr float kFarAway = 1e15f;
 
 bool is_open(const Field& field, float value) {
-  return field.orthographic ? std::isinf(value) : value <= 0.0f;
+  return field.orthographic ? value >= kFarAway : value <= 0.0f;
 }
 
 // Two texels are joined where the step between them is no more than three times the gentler of the
@@ -56,10 +58,9 @@ void find_joins(Field& field) {
   };
   for (int64_t y = 0; y < h; ++y) {
     for (int64_t x = 0; x < w; ++x) {
-      uint8_t bits = 0;
-      if (x + 1 < w && test(x, y, 1, 0)) bits |= kJoinRight;
-      if (y + 1 < h && test(x, y, 0, 1)) bits |= kJoinBelow;
-      field.join[static_cast<size_t>(y * w + x)] = bits;
+      const auto i = static_cast<size_t>(y * w + x);
+      if (x + 1 < w && test(x, y, 1, 0)) field.join_right[i] = 1.0f;
+      if (y + 1 < h && test(x, y, 0, 1)) field.join_below[i] = 1.0f;
     }
   }
 }
@@ -76,12 +77,13 @@ Field make_field(const Image<float>& depth_vs, const Camera& camera) {
   field.scale = 2.0f / (glm::vec2(field.width, field.height) * focal);
   field.origin = (-1.0f - shift) / focal;
   field.value.resize(depth_vs.pixels.size());
-  field.join.resize(depth_vs.pixels.size());
+  field.join_right.assign(depth_vs.pixels.size(), 0.0f);
+  field.join_below.assign(depth_vs.pixels.size(), 0.0f);
   for (size_t i = 0; i < depth_vs.pixels.size(); ++i) {
     const float depth = depth_vs.pixels[i];
     const bool surface = std::isfinite(depth) && (field.orthographic || depth > 0.0f);
     if (field.orthographic) {
-      field.value[i] = surface ? depth : INFINITY;
+      field.value[i] = surface ? std::min(depth, kFarAway) : kFarAway;
     } else {
       field.value[i] = surface ? 1.0f / depth : 0.0f;
     }
@@ -95,12 +97,6 @@ glm::vec3 view_position(const Field& field, glm::vec2 pixel, float value) {
   const glm::vec2 xy = field.scale * pixel + field.origin;
   if (field.orthographic) return {xy, -value};
   return glm::vec3(xy, -1.0f) / value;
-}
-
-// The surface on the line between two texels, `t` of the way from a to b.
-float between(float a, float b, bool join, float t) {
-  if (join) return a + t * (b - a);
-  return t < 0.5f ? a : b;
 }
 
 // One direction in the image: a line from a pixel's centre that moves one texel a step along its
@@ -118,40 +114,120 @@ Walk walk_of(glm::vec2 direction) {
   return {along_x, major >= 0.0f ? 1 : -1, minor / std::abs(major)};
 }
 
+// A walk laid out as arithmetic: step k stands at `minor + slope k` across row or column k of the
+// longer axis, and sees the point (ray + k ray_step + value * column), times value in perspective.
+struct March {
+  int steps;  // all of them within the image
+  float minor, slope;
+  int first, major_stride, minor_stride, minor_last;  // of texels in the field's arrays
+  const float* value;
+  const float* join;
+  glm::vec3 ray, ray_step, column;  // relative to the pixel's own point
+  glm::vec3 view;
+  float radius2;
+  float radius2_value2;  // what value^2 times this adds to radius2
+};
+
+// Steps until the walk leaves the image.
+int steps_inside(float start, float slope, int major, int step, int major_size, int minor_size) {
+  const int along = step > 0 ? major_size - 1 - major : major;
+  if (slope == 0.0f) return along;
+  const float room = slope > 0.0f ? static_cast<float>(minor_size - 1) - start : start;
+  const float across = (room + 0.49f) / std::abs(slope);
+  return std::min(along, static_cast<int>(std::min(across, static_cast<float>(along))));
+}
+
+March march_of(const Field& field, uint32_t x, uint32_t y, const Walk& walk,
+               const glm::vec3& centre, const glm::vec3& view, float radius, int steps) {
+  March m;
+  const int width = static_cast<int>(field.width), height = static_cast<int>(field.height);
+  const int major = static_cast<int>(walk.along_x ? x : y);
+  const int major_size = walk.along_x ? width : height, minor_size = walk.along_x ? height : width;
+  m.minor = static_cast<float>(walk.along_x ? y : x);
+  m.slope = walk.slope;
+  m.steps =
+      std::min(steps, steps_inside(m.minor, walk.slope, major, walk.step, major_size, minor_size));
+  m.major_stride = walk.step * (walk.along_x ? 1 : width);
+  m.minor_stride = walk.along_x ? width : 1;
+  m.first = major * (walk.along_x ? 1 : width);
+  m.minor_last = minor_size - 1;
+  m.value = field.value.data();
+  m.join = walk.along_x ? field.join_below.data() : field.join_right.data();
+  const glm::vec2 texel(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+  const auto along = static_cast<float>(walk.step);
+  const glm::vec2 move = walk.along_x ? glm::vec2(along, walk.slope) : glm::vec2(walk.slope, along);
+  const glm::vec2 ray = field.scale * texel + field.origin;
+  m.ray_step = glm::vec3(field.scale * move, 0.0f);
+  m.view = view;
+  m.radius2 = radius * radius;
+  m.radius2_value2 = 0.0f;
+  if (field.orthographic) {
+    m.ray = glm::vec3(ray, 0.0f) - centre;
+    m.column = {0, 0, -1};
+  } else {
+    m.ray = glm::vec3(ray, -1.0f);
+    m.column = -centre;
+    std::swap(m.radius2, m.radius2_value2);
+  }
+  return m;
+}
+
+#if defined(__GNUC__) && defined(__x86_64__) && !defined(__clang__)
+#define ALCOVE_WIDE __attribute__((target_clones("arch=haswell", "default")))
+#else
+#define ALCOVE_WIDE
+#endif
+
+constexpr int kBlock = 64;  // steps taken together
+
+// The field's value at `count` steps from step `first` on. Loads only: what follows is arithmetic
+// on whole registers.
+void load_values(const March m, int first, int count, float* values) {
+  for (int i = 0; i < count; ++i) {
+    const int step = first + i;
+    const float minor = m.minor + m.slope * static_cast<float>(step);
+    // Minor is at least -0.5; the shift makes truncation round down.
+    const int low = std::min(std::max(static_cast<int>(minor + 1.0f) - 1, 0), m.minor_last);
+    const float t = minor - static_cast<float>(low);
+    const int texel = m.first + step * m.major_stride + low * m.minor_stride;
+    const float a = m.value[texel];
+    const float b = m.value[low < m.minor_last ? texel + m.minor_stride : texel];
+    // No branches: which way they go is as good as random.
+    const auto nearest = static_cast<float>(static_cast<int>(t + 0.5f));
+    values[i] = a + (b - a) * (nearest + m.join[texel] * (t - nearest));
+  }
+}
+
+// For `count` steps from `first` on: the cosine between the view vector and the direction to the
+// surface, times its size, and by how much the radius (squared) exceeds the distance.
+ALCOVE_WIDE void squared_cosines(const March m, int first, int count, const float* values,
+                                 float* __restrict cosines, float* __restrict slack) {
+  for (int i = 0; i < count; ++i) {
+    const auto at = static_cast<float>(first + i);
+    const float value = values[i];
+    const float qx = m.ray.x + at * m.ray_step.x + value * m.column.x;
+    const float qy = m.ray.y + at * m.ray_step.y + value * m.column.y;
+    const float qz = m.ray.z + value * m.column.z;
+    const float distance2 = qx * qx + qy * qy + qz * qz + 1e-30f;
+    const float towards = qx * m.view.x + qy * m.view.y + qz * m.view.z;
+    const float within = m.radius2 + m.radius2_value2 * value * value;
+    cosines[i] = towards * std::abs(towards) / distance2;
+    slack[i] = within - distance2;
+  }
+}
+
 // The largest cosine between the view vector and the direction to a point of the surface within the
-// radius, along one walk; -1 where there is none.
-float walk_horizon(const Field& field, uint32_t x, uint32_t y, const Walk& walk,
-                   const glm::vec3& centre, const glm::vec3& view, float radius, int steps) {
-  const int major_size = static_cast<int>(walk.along_x ? field.width : field.height);
-  const int minor_size = static_cast<int>(walk.along_x ? field.height : field.width);
-  const size_t major_stride = walk.along_x ? 1 : field.width;
-  const size_t minor_stride = walk.along_x ? field.width : 1;
-  const uint8_t join_bit = walk.along_x ? kJoinBelow : kJoinRight;
-  int major = static_cast<int>(walk.along_x ? x : y);
-  const float start = static_cast<float>(walk.along_x ? y : x);
-  const float radius2 = radius * radius;
+// radius, times its size (which keeps the order and needs no root); -1 where there is none.
+float squared_horizon(const March& m) {
+  std::array<float, kBlock> values, cosines, slack;
   float best = -1.0f;
-  for (int k = 1; k <= steps; ++k) {
-    major += walk.step;
-    const float minor = start + walk.slope * static_cast<float>(k);
-    if (major < 0 || major >= major_size || minor < -0.5f ||
-        minor >= static_cast<float>(minor_size) - 0.5f) {
-      break;
+  for (int first = 1; first <= m.steps; first += kBlock) {
+    const int count = std::min(kBlock, m.steps - first + 1);
+    load_values(m, first, count, values.data());
+    squared_cosines(m, first, count, values.data(), cosines.data(), slack.data());
+    for (size_t i = 0; i < static_cast<size_t>(count); ++i) {
+      best = std::max(best, slack[i] >= 0.0f ? cosines[i] : -1.0f);
     }
-    const int low = std::clamp(static_cast<int>(std::floor(minor)), 0, minor_size - 1);
-    const int high = std::min(low + 1, minor_size - 1);
-    const size_t row = static_cast<size_t>(major) * major_stride;
-    const size_t a = row + static_cast<size_t>(low) * minor_stride;
-    const size_t b = row + static_cast<size_t>(high) * minor_stride;
-    const float t = std::max(minor - static_cast<float>(low), 0.0f);
-    const float value = between(field.value[a], field.value[b], (field.join[a] & join_bit) != 0, t);
-    if (is_open(field, value)) continue;
-    const glm::vec2 pixel = walk.along_x ? glm::vec2(static_cast<float>(major), minor)
-                                         : glm::vec2(minor, static_cast<float>(major));
-    const glm::vec3 to = view_position(field, pixel + 0.5f, value) - centre;
-    const float distance2 = glm::dot(to, to);
-    if (distance2 > radius2 || distance2 <= 0.0f) continue;
-    best = std::max(best, glm::dot(to, view) / std::sqrt(distance2));
   }
   return best;
 }
@@ -177,15 +253,30 @@ int steps_within(const Field& field, const Walk& walk, const glm::vec3& centre, 
   return static_cast<int>(std::min(std::ceil(reach), static_cast<float>(most)));
 }
 
-// Five-point Gauss-Legendre over [a, b].
-template <class Function>
-void integrate(float a, float b, const Function& add) {
-  constexpr std::array<float, 5> kNodes = {-0.9061798459f, -0.5384693101f, 0.0f, 0.5384693101f,
-                                           0.9061798459f};
-  constexpr std::array<float, 5> kWeights = {0.2369268851f, 0.4786286705f, 0.5688888889f,
-                                             0.4786286705f, 0.2369268851f};
+// Sines and cosines at the five nodes of Gauss-Legendre over [a, b], by the addition theorem, and
+// the weights.
+struct Nodes {
+  std::array<float, 5> sine, cosine, weight;
+};
+Nodes nodes_over(float a, float b) {
+  constexpr std::array<float, 3> kPlaces = {0.0f, 0.5384693101f, 0.9061798459f};
+  constexpr std::array<float, 3> kWeights = {0.5688888889f, 0.4786286705f, 0.2369268851f};
   const float half = 0.5f * (b - a), middle = 0.5f * (a + b);
-  for (size_t i = 0; i < kNodes.size(); ++i) add(middle + half * kNodes[i], half * kWeights[i]);
+  const float s = std::sin(middle), c = std::cos(middle);
+  Nodes nodes{};
+  nodes.sine[0] = s;
+  nodes.cosine[0] = c;
+  nodes.weight[0] = half * kWeights[0];
+  for (size_t i = 1; i < kPlaces.size(); ++i) {
+    const float ds = std::sin(half * kPlaces[i]), dc = std::cos(half * kPlaces[i]);
+    for (size_t side = 0; side < 2; ++side) {
+      const float turn = side == 0 ? ds : -ds;
+      nodes.sine[2 * i - 1 + side] = s * dc + c * turn;
+      nodes.cosine[2 * i - 1 + side] = c * dc - s * turn;
+      nodes.weight[2 * i - 1 + side] = half * kWeights[i];
+    }
+  }
+  return nodes;
 }
 
 struct Slice {
@@ -197,20 +288,27 @@ struct Slice {
 // Angles from the view vector, positive along the slice's direction: the lit part of the slice lies
 // from `low` to `high`, the hemisphere of the normal within a quarter turn of `tilt`.
 Slice integrate_slice(float low, float high, float tilt) {
-  Slice slice;
-  const auto lit = [&](float angle, float weight) {
-    const float w = weight * std::cos(angle - tilt) * std::abs(std::sin(angle));
-    slice.visible += w;
-    slice.bent += w * glm::vec2(std::sin(angle), std::cos(angle));
-  };
-  const auto all = [&](float angle, float weight) {
-    slice.open += weight * std::cos(angle - tilt) * std::abs(std::sin(angle));
-  };
   const float first = tilt - kHalfPi, last = tilt + kHalfPi;
-  integrate(std::clamp(low, first, 0.0f), 0.0f, lit);
-  integrate(0.0f, std::clamp(high, 0.0f, last), lit);
-  integrate(first, 0.0f, all);
-  integrate(0.0f, last, all);
+  const float tilt_sine = std::sin(tilt), tilt_cosine = std::cos(tilt);
+  Slice slice;
+  const auto weight_at = [&](const Nodes& nodes, size_t i) {
+    return nodes.weight[i] * (nodes.cosine[i] * tilt_cosine + nodes.sine[i] * tilt_sine) *
+           std::abs(nodes.sine[i]);
+  };
+  const auto add_lit = [&](const Nodes& nodes) {
+    for (size_t i = 0; i < nodes.sine.size(); ++i) {
+      const float w = weight_at(nodes, i);
+      slice.visible += w;
+      slice.bent += w * glm::vec2(nodes.sine[i], nodes.cosine[i]);
+    }
+  };
+  const auto add_open = [&](const Nodes& nodes) {
+    for (size_t i = 0; i < nodes.sine.size(); ++i) slice.open += weight_at(nodes, i);
+  };
+  add_lit(nodes_over(std::clamp(low, first, 0.0f), 0.0f));
+  add_lit(nodes_over(0.0f, std::clamp(high, 0.0f, last)));
+  add_open(nodes_over(first, 0.0f));
+  add_open(nodes_over(0.0f, last));
   return slice;
 }
 
@@ -259,7 +357,9 @@ Pixel see(const Field& field, uint32_t x, uint32_t y, const glm::vec3& normal,
     for (int side = 0; side < 2; ++side) {
       const Walk walk = walk_of(side == 0 ? line : -line);
       const int steps = steps_within(field, walk, centre, settings.radius);
-      const float cosine = walk_horizon(field, x, y, walk, centre, view, settings.radius, steps);
+      const float squared =
+          squared_horizon(march_of(field, x, y, walk, centre, view, settings.radius, steps));
+      const float cosine = std::copysign(std::sqrt(std::abs(squared)), squared);
       horizon[static_cast<size_t>(side)] = std::acos(std::clamp(cosine, -1.0f, 1.0f));
     }
     const Slice slice = integrate_slice(-horizon[1], horizon[0], tilt);
