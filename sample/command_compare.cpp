@@ -5,6 +5,8 @@
 
 #include "commands.h"
 #include "image_io.h"
+#include "light_errors.h"
+#include "light_truths.h"
 #include "report.h"
 #include "truths.h"
 
@@ -99,10 +101,16 @@ tl::expected<void, std::string> run_compare(const Options& options) {
   if (!truths) {
     return tl::unexpected(truths.error());
   }
+  const auto light = light_truths_of(*rendering, options);
+  if (!light) {
+    return tl::unexpected(light.error());
+  }
   const Errors errors = errors_of(*rendering, *truths);
+  const LightErrors light_errors = light_errors_of(*rendering, *truths, *light);
   nlohmann::ordered_json report = report_of(*rendering, options);
   report["spp"] = options.occlusion.spp;
   report["errors"] = errors_json(errors);
+  report["errors"].update(to_json(light_errors));
   return write_images(*rendering, options.out)
       .and_then([&] { return write_truths(*rendering, *truths, options.out); })
       .and_then([&] { return write_text(options.out / "report.json", report.dump(2) + "\n"); })
@@ -111,7 +119,8 @@ tl::expected<void, std::string> run_compare(const Options& options) {
           std::cout << "note: " << warning << "\n";
         }
         std::cout << time_table(*rendering) << error_table(errors)
-                  << "Images and report.json are in " << options.out.string() << "\n";
+                  << light_error_table(light_errors) << "Images and report.json are in "
+                  << options.out.string() << "\n";
       });
 }
 

@@ -211,13 +211,21 @@ tl::expected<void, std::string> write_light(const Rendering& rendering,
 
 }  // namespace
 
-std::string specular_name(const LightRequest& light, std::size_t i) {
-  if (light.roughness.size() < 2) {
-    return "specular_occlusion";
+std::string roughness_name(const LightRequest& light, std::size_t i) {
+  if (light.roughness.empty()) {
+    return "materials";
   }
   std::array<char, 32> percent{};
-  std::snprintf(percent.data(), percent.size(), "_r%02g", 100.0 * light.roughness[i]);
-  return "specular_occlusion" + std::string(percent.data());
+  std::snprintf(percent.data(), percent.size(), "r%02g", 100.0 * light.roughness[i]);
+  return percent.data();
+}
+
+std::string specular_name(const LightRequest& light, std::size_t i) {
+  std::string name = "specular_occlusion";
+  if (light.roughness.size() > 1) {
+    name.append("_").append(roughness_name(light, i));
+  }
+  return name;
 }
 
 tl::expected<void, std::string> write_images(const Rendering& rendering,

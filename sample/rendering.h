@@ -39,6 +39,9 @@ struct Rendering {
 // Distance along the view axis, infinity in the sky.
 [[nodiscard]] Image<float> linear_depth(const Rendering& rendering);
 
+// What the specular occlusion of index `i` was made for: materials, or r30 for a roughness of 0.3.
+[[nodiscard]] std::string roughness_name(const LightRequest& light, std::size_t i);
+
 // The name of the specular occlusion of index `i` without its ending: specular_occlusion, followed
 // by _r30 and the like where several roughness values were asked for.
 [[nodiscard]] std::string specular_name(const LightRequest& light, std::size_t i);

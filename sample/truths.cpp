@@ -18,7 +18,9 @@ TruthCache cache_of(const Options& options) {
   return TruthCache(options.use_cache ? TruthCache::default_folder() : std::filesystem::path());
 }
 
-// The rasteriser's pixels as points for the ray tracer. Where a primary ray misses what was
+}  // namespace
+
+// Where a primary ray misses what was
 // rasterised (an edge through the pixel's centre), the point comes from the depth buffer.
 SurfacePoints points_of(const Rendering& rendering, const RayScene& rays,
                         const Image<float>& depth) {
@@ -46,6 +48,8 @@ SurfacePoints points_of(const Rendering& rendering, const RayScene& rays,
   }
   return points;
 }
+
+namespace {
 
 tl::expected<OcclusionTruth, std::string> scene_truth(const Rendering& rendering,
                                                       const Options& options,

@@ -1,0 +1,115 @@
+#include "light_errors.h"
+
+#include <iomanip>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "maths/gtso.h"
+#include "maths/multi_bounce.h"
+#include "report.h"
+
+namespace alcove::sample {
+namespace {
+
+Image<glm::vec3> bounced(const Image<float>& visibility, const Image<glm::vec3>& albedo) {
+  Image<glm::vec3> result(visibility.width, visibility.height);
+  for (std::size_t i = 0; i < result.pixels.size(); ++i) {
+    result.pixels[i] = maths::multi_bounce(visibility.pixels[i], albedo.pixels[i]);
+  }
+  return result;
+}
+
+Image<glm::vec3> grey(const Image<float>& values) {
+  Image<glm::vec3> result(values.width, values.height);
+  for (std::size_t i = 0; i < result.pixels.size(); ++i) {
+    result.pixels[i] = glm::vec3(values.pixels[i]);
+  }
+  return result;
+}
+
+float specular_of(passes::SpecularModel model, float visibility, const glm::vec3& bent,
+                  const glm::vec3& normal, const glm::vec3& view, float roughness) {
+  const float alpha = roughness * roughness;
+  const glm::vec3 mirror = maths::mirror_direction(normal, view);
+  const glm::vec3 raised = maths::raised_bent_normal(bent, normal, visibility);
+  switch (model) {
+    case passes::SpecularModel::lagarde:
+      return maths::lagarde_specular_occlusion(glm::dot(normal, view), visibility, alpha);
+    case passes::SpecularModel::smooth_cone:
+      return maths::smooth_specular_occlusion(visibility, raised, normal, mirror, alpha);
+    default:
+      return maths::specular_occlusion(visibility, raised, normal, mirror, alpha);
+  }
+}
+
+// The rendering's model where it is given the truth.
+Image<float> specular_of_truth(const Rendering& rendering, const OcclusionTruth& truth,
+                               const LightTruths& light, const Image<float>& roughness) {
+  const Viewer viewer = viewer_of(rendering.camera);
+  Image<float> result(roughness.width, roughness.height, 1.0f);
+  for (std::size_t i = 0; i < result.pixels.size(); ++i) {
+    if (light.sampled.pixels[i] != 0) {
+      const glm::vec3 view =
+          viewer.orthographic ? viewer.view_ws
+                              : glm::normalize(viewer.eye_ws - light.points.position_ws.pixels[i]);
+      result.pixels[i] = specular_of(rendering.light.specular_model, truth.visibility.pixels[i],
+                                     truth.bent_normal_ws.pixels[i],
+                                     light.points.normal_ws.pixels[i], view, roughness.pixels[i]);
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+LightErrors light_errors_of(const Rendering& rendering, const Truths& truths,
+                            const LightTruths& light) {
+  const FrameImages& images = rendering.images;
+  const Image<float>& visibility = truths.scene.visibility;
+  LightErrors errors;
+  errors.bounced = compare_images(images.multi_bounce, light.interreflection, light.sampled);
+  errors.bounced_truth =
+      compare_images(bounced(visibility, images.albedo), light.interreflection, light.sampled);
+  errors.unbounced_truth = compare_images(grey(visibility), light.interreflection, light.sampled);
+  const std::vector<Image<float>> roughness = roughness_images(rendering);
+  const Image<float> open(visibility.width, visibility.height, 1.0f);
+  for (std::size_t i = 0; i < roughness.size(); ++i) {
+    const Image<float>& truth = light.specular[i];
+    errors.specular.push_back(
+        {roughness_name(rendering.light, i),
+         compare_images(images.specular_occlusion[i], truth, light.sampled),
+         compare_images(specular_of_truth(rendering, truths.scene, light, roughness[i]), truth,
+                        light.sampled),
+         compare_images(open, truth, light.sampled)});
+  }
+  return errors;
+}
+
+nlohmann::ordered_json to_json(const LightErrors& errors) {
+  nlohmann::ordered_json json;
+  json["multi_bounce"] = {{"pipeline", to_json(errors.bounced)},
+                          {"true_visibility", to_json(errors.bounced_truth)},
+                          {"true_visibility_unbounced", to_json(errors.unbounced_truth)}};
+  for (const SpecularErrors& one : errors.specular) {
+    json["specular_occlusion"][one.name] = {{"pipeline", to_json(one.pipeline)},
+                                            {"true_inputs", to_json(one.true_inputs)},
+                                            {"none", to_json(one.none)}};
+  }
+  return json;
+}
+
+std::string light_error_table(const LightErrors& errors) {
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(4);
+  text << "RMSE of multi-bounce over " << errors.bounced.count << " pixels: " << errors.bounced.rmse
+       << " (the polynomial on the true visibility " << errors.bounced_truth.rmse
+       << ", the true visibility alone " << errors.unbounced_truth.rmse << ")\n";
+  for (const SpecularErrors& one : errors.specular) {
+    text << "RMSE of specular occlusion, " << std::left << std::setw(10) << one.name << std::right
+         << one.pipeline.rmse << " (with true visibility and bent normal " << one.true_inputs.rmse
+         << ", with none " << one.none.rmse << ")\n";
+  }
+  return text.str();
+}
+
+}  // namespace alcove::sample

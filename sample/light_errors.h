@@ -1,0 +1,38 @@
+#ifndef ALCOVE_SAMPLE_LIGHT_ERRORS_H_
+#define ALCOVE_SAMPLE_LIGHT_ERRORS_H_
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "errors.h"
+#include "light_truths.h"
+#include "truths.h"
+
+namespace alcove::sample {
+
+// How far specular occlusion of one roughness is off.
+struct SpecularErrors {
+  std::string name;          // materials, or r30 and the like
+  ErrorSummary pipeline;     // as it was rendered
+  ErrorSummary true_inputs;  // the same model given the true visibility and bent normal
+  ErrorSummary none;         // with everything open
+};
+
+// How far the light of a rendering is from the truth.
+struct LightErrors {
+  ErrorSummary bounced;          // multi-bounce as it was rendered
+  ErrorSummary bounced_truth;    // the polynomial on the true visibility
+  ErrorSummary unbounced_truth;  // the true visibility as it is
+  std::vector<SpecularErrors> specular;
+};
+
+[[nodiscard]] LightErrors light_errors_of(const Rendering& rendering, const Truths& truths,
+                                          const LightTruths& light);
+// For `errors` of report.json: the members `multi_bounce` and `specular_occlusion`.
+[[nodiscard]] nlohmann::ordered_json to_json(const LightErrors& errors);
+[[nodiscard]] std::string light_error_table(const LightErrors& errors);
+
+}  // namespace alcove::sample
+
+#endif  // ALCOVE_SAMPLE_LIGHT_ERRORS_H_

@@ -1,0 +1,128 @@
+#include "light_truths.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <utility>
+
+#include "progress.h"
+#include "truth_cache.h"
+#include "truths.h"
+
+namespace alcove::sample {
+namespace {
+
+// Raised when a truth is computed otherwise, so that old entries of the cache are not taken.
+constexpr std::uint32_t kLightTruthVersion = 1;
+constexpr double kWantedPoints = 32'000;
+
+// One pixel of each block, where it is no sky. The same for every picture of one size.
+Mask choose_pixels(const Image<float>& depth) {
+  const double pixels = static_cast<double>(depth.pixels.size());
+  const auto side =
+      static_cast<std::uint32_t>(std::max(1.0, std::round(std::sqrt(pixels / kWantedPoints))));
+  Mask chosen(depth.width, depth.height);
+  std::minstd_rand random;
+  for (std::uint32_t y = 0; y < depth.height; y += side) {
+    for (std::uint32_t x = 0; x < depth.width; x += side) {
+      const auto column =
+          std::min<std::uint32_t>(x + static_cast<std::uint32_t>(random() % side), depth.width - 1);
+      const auto row = std::min<std::uint32_t>(y + static_cast<std::uint32_t>(random() % side),
+                                               depth.height - 1);
+      chosen.at(column, row) = std::isfinite(depth.at(column, row)) ? 1 : 0;
+    }
+  }
+  return chosen;
+}
+
+class Tracer {
+ public:
+  Tracer(const Rendering& rendering, const Options& options, const RayScene& rays,
+         const SurfacePoints& points)
+      : rendering_(rendering),
+        rays_(rays),
+        points_(points),
+        settings_{.radius = rendering.settings.radius, .spp = options.occlusion.spp},
+        cache_(options.use_cache ? TruthCache::default_folder() : std::filesystem::path()) {
+    key_.add(std::string("light truth"));
+    key_.add(kLightTruthVersion);
+    key_.add(rendering.scene);
+    key_.add(rendering.camera);
+    key_.add(settings_.radius);
+    key_.add(settings_.spp);
+    key_.add(points.position_ws);
+    key_.add(points.normal_ws);
+  }
+
+  Image<glm::vec3> interreflection() const {
+    CacheKey key = key_;
+    key.add(std::string("interreflection"));
+    Image<glm::vec3> truth(points_.normal_ws.width, points_.normal_ws.height);
+    if (!cache_.read(key, truth)) {
+      truth =
+          interreflection_truth(rays_, points_, settings_, print_progress("interreflection truth"));
+      cache_.write(key, truth);
+    }
+    return truth;
+  }
+
+  Image<float> specular(const Image<float>& roughness) const {
+    CacheKey key = key_;
+    key.add(std::string("specular"));
+    key.add(roughness);
+    Image<float> truth(points_.normal_ws.width, points_.normal_ws.height);
+    if (!cache_.read(key, truth)) {
+      truth = specular_truth(rays_, points_, roughness, viewer_of(rendering_.camera), settings_,
+                             print_progress("specular truth"));
+      cache_.write(key, truth);
+    }
+    return truth;
+  }
+
+ private:
+  const Rendering& rendering_;
+  const RayScene& rays_;
+  const SurfacePoints& points_;
+  TruthSettings settings_;
+  TruthCache cache_;
+  CacheKey key_;
+};
+
+}  // namespace
+
+std::vector<Image<float>> roughness_images(const Rendering& rendering) {
+  const Image<float>& materials = rendering.images.roughness;
+  if (rendering.light.roughness.empty()) {
+    return {materials};
+  }
+  std::vector<Image<float>> images;
+  for (const float roughness : rendering.light.roughness) {
+    images.emplace_back(materials.width, materials.height, roughness);
+  }
+  return images;
+}
+
+tl::expected<LightTruths, std::string> light_truths_of(const Rendering& rendering,
+                                                       const Options& options) {
+  const auto rays = RayScene::create(rendering.scene);
+  if (!rays) {
+    return tl::unexpected(rays.error());
+  }
+  const Image<float> depth = linear_depth(rendering);
+  LightTruths truths;
+  truths.sampled = choose_pixels(depth);
+  truths.points = points_of(rendering, *rays, depth);
+  for (std::size_t i = 0; i < truths.sampled.pixels.size(); ++i) {
+    if (truths.sampled.pixels[i] == 0) {
+      truths.points.normal_ws.pixels[i] = glm::vec3(0.0f);
+    }
+  }
+  const Tracer tracer(rendering, options, *rays, truths.points);
+  truths.interreflection = tracer.interreflection();
+  for (const Image<float>& roughness : roughness_images(rendering)) {
+    truths.specular.push_back(tracer.specular(roughness));
+  }
+  return truths;
+}
+
+}  // namespace alcove::sample

@@ -1,0 +1,33 @@
+#ifndef ALCOVE_SAMPLE_LIGHT_TRUTHS_H_
+#define ALCOVE_SAMPLE_LIGHT_TRUTHS_H_
+
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
+#include "errors.h"
+#include "rendering.h"
+#include "truth.h"
+
+namespace alcove::sample {
+
+// What multi-bounce and specular occlusion should have been, ray traced. A path costs many times
+// what a ray of visibility does, so these are taken at some 30,000 pixels, one at random in each
+// block of the picture; elsewhere they mean nothing.
+struct LightTruths {
+  Mask sampled;  // not sky
+  SurfacePoints points;
+  Image<glm::vec3> interreflection;
+  std::vector<Image<float>> specular;  // for each of roughness_images()
+};
+
+// The perceptual roughness that each specular occlusion of a rendering was made for.
+[[nodiscard]] std::vector<Image<float>> roughness_images(const Rendering& rendering);
+
+// Computes them, or takes them from the cache on disk. Progress on stderr.
+[[nodiscard]] tl::expected<LightTruths, std::string> light_truths_of(const Rendering& rendering,
+                                                                     const Options& options);
+
+}  // namespace alcove::sample
+
+#endif  // ALCOVE_SAMPLE_LIGHT_TRUTHS_H_
