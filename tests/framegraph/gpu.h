@@ -47,6 +47,10 @@ class Gpu {
       vkDestroyBuffer(device_->device(), host.buffer, nullptr);
       vkFreeMemory(device_->device(), host.memory, nullptr);
     }
+    for (Image& image : images_) {
+      vkDestroyImage(device_->device(), image.image, nullptr);
+      vkFreeMemory(device_->device(), image.memory, nullptr);
+    }
     vkDestroyCommandPool(device_->device(), pool_, nullptr);
   }
 
@@ -86,6 +90,48 @@ class Gpu {
     buffers_.push_back(host);
     return host;
   }
+  VkImage make_image(const TextureDesc& desc, VkImageUsageFlags usage) {
+    VkImageCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
+    info.imageType = VK_IMAGE_TYPE_2D;
+    info.format = desc.format;
+    info.extent = {desc.extent.width, desc.extent.height, 1};
+    info.mipLevels = desc.mips;
+    info.arrayLayers = desc.layers;
+    info.samples = desc.samples;
+    info.usage = usage;
+    Image image;
+    vkCreateImage(device_->device(), &info, nullptr, &image.image);
+    VkMemoryRequirements needed{};
+    vkGetImageMemoryRequirements(device_->device(), image.image, &needed);
+    VkMemoryAllocateInfo allocate{};
+    allocate.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
+    allocate.allocationSize = needed.size;
+    allocate.memoryTypeIndex = device_->memory_type(needed.memoryTypeBits, 0);
+    vkAllocateMemory(device_->device(), &allocate, nullptr, &image.memory);
+    vkBindImageMemory(device_->device(), image.image, image.memory, 0);
+    images_.push_back(image);
+    return image.image;
+  }
+  // From the undefined layout, in a submission of its own.
+  void change_layout(VkImage image, VkImageLayout layout) {
+    VkImageMemoryBarrier2 barrier{};
+    barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
+    barrier.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+    barrier.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT;
+    barrier.newLayout = layout;
+    barrier.image = image;
+    barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS, 0,
+                                VK_REMAINING_ARRAY_LAYERS};
+    VkDependencyInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
+    info.imageMemoryBarrierCount = 1;
+    info.pImageMemoryBarriers = &barrier;
+    begin();
+    vkCmdPipelineBarrier2(commands_, &info);
+    end_and_wait();
+  }
+
   static ImportedBuffer imported(const HostBuffer& host) {
     ImportedBuffer import;
     import.buffer = host.buffer;
@@ -98,10 +144,18 @@ class Gpu {
 
   // Records one frame, runs it and waits.
   tl::expected<FrameReport, Errors> run(Executor& executor, Graph& graph) {
-    VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO, nullptr,
-                                   VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT, nullptr};
-    vkBeginCommandBuffer(commands_, &begin);
+    begin();
     auto report = executor.record(graph, commands_);
+    end_and_wait();
+    return report;
+  }
+
+  void begin() {
+    VkCommandBufferBeginInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO, nullptr,
+                                  VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT, nullptr};
+    vkBeginCommandBuffer(commands_, &info);
+  }
+  void end_and_wait() {
     vkEndCommandBuffer(commands_);
     VkSubmitInfo submit{};
     submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
@@ -109,7 +163,6 @@ class Gpu {
     submit.pCommandBuffers = &commands_;
     vkQueueSubmit(device_->queue(), 1, &submit, VK_NULL_HANDLE);
     vkQueueWaitIdle(device_->queue());
-    return report;
   }
 
   // What the validation layers said, one line each, without messages that contain `except`.
@@ -125,6 +178,11 @@ class Gpu {
   std::unique_ptr<sample::VulkanDevice> device_;
   VkCommandPool pool_ = VK_NULL_HANDLE;
   VkCommandBuffer commands_ = VK_NULL_HANDLE;
+  struct Image {
+    VkImage image = VK_NULL_HANDLE;
+    VkDeviceMemory memory = VK_NULL_HANDLE;
+  };
+  std::vector<Image> images_;
   std::vector<HostBuffer> buffers_;
   std::string problem_;
 };
