@@ -4,6 +4,7 @@ namespace alcove::framegraph {
 
 const char* load(VulkanFunctions& functions, PFN_vkGetInstanceProcAddr get_instance_proc_addr,
                  VkInstance instance, VkDevice device) {
+  if (get_instance_proc_addr == nullptr) return "vkGetInstanceProcAddr";
 #define ALCOVE_LOAD(name)                                                                 \
   functions.name = reinterpret_cast<PFN_##name>(get_instance_proc_addr(instance, #name)); \
   if (functions.name == nullptr) return #name;

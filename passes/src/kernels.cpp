@@ -261,6 +261,12 @@ Kernels::~Kernels() = default;
 
 tl::expected<Kernels, Error> Kernels::create(const framegraph::DeviceHandles& device,
                                              std::uint32_t frames_in_flight) {
+  if (device.instance == VK_NULL_HANDLE || device.physical_device == VK_NULL_HANDLE ||
+      device.device == VK_NULL_HANDLE || device.get_instance_proc_addr == nullptr) {
+    return tl::unexpected(
+        Error{"The occlusion passes need an instance, a physical device, a device and "
+              "vkGetInstanceProcAddr; one of them is null."});
+  }
   auto state = std::make_unique<State>();
   if (const char* missing = framegraph::load(state->vk, device.get_instance_proc_addr,
                                              device.instance, device.device)) {

@@ -1,0 +1,14 @@
+# Fails where an archive defines or needs a global symbol of Vulkan's: the functions are the
+# caller's, and come through vkGetInstanceProcAddr. Run with -DNM=... -DARCHIVES=...
+foreach(archive IN LISTS ARCHIVES)
+  execute_process(COMMAND ${NM} --extern-only ${archive} OUTPUT_VARIABLE symbols
+    COMMAND_ERROR_IS_FATAL ANY)
+  string(REGEX MATCHALL "[A-Za-z] vk[A-Z][A-Za-z0-9]*" found "${symbols}")
+  if(found)
+    message(FATAL_ERROR "${archive} has global symbols of Vulkan's: ${found}")
+  endif()
+  # An archive that was read wrongly has no symbols at all.
+  if(NOT symbols MATCHES "alcove")
+    message(FATAL_ERROR "${archive} has no symbols of Alcove's.")
+  endif()
+endforeach()

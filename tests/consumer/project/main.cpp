@@ -1,0 +1,26 @@
+// Touches both libraries without a device: a plan is compiled, settings are made, and kernels on no
+// device are an error value.
+#include <alcove/framegraph/framegraph.h>
+#include <alcove/passes/occlusion.h>
+
+#include <cstdio>
+
+int main() {
+  using namespace alcove;
+  const passes::OcclusionSettings settings = passes::quality_settings(passes::Quality::high, 2.0f);
+
+  framegraph::Graph graph;
+  const framegraph::Texture texture =
+      graph.create_texture("texture", {VK_FORMAT_R8_UNORM, framegraph::Extent::absolute(64, 64)});
+  auto pass = graph.add_pass("pass");
+  graph.output(pass.write(texture, framegraph::access::storage_write_compute, {},
+                          framegraph::Contents::discard));
+  pass.record([](framegraph::RecordContext&) {});
+  const auto plan = framegraph::compile(graph);
+
+  const auto kernels = passes::Kernels::create({}, 1);
+  const bool good = settings.radius == 2.0f && plan && plan->passes.size() == 1 && !kernels;
+  std::printf("%s\n",
+              kernels ? "Kernels were made on no device." : kernels.error().message.c_str());
+  return good ? 0 : 1;
+}
