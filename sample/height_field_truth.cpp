@@ -54,7 +54,11 @@ void find_joins(Field& field) {
   const auto test = [&](int64_t x, int64_t y, int64_t dx, int64_t dy) {
     const float a = at(x, y), b = at(x + dx, y + dy);
     if (is_open(field, a) || is_open(field, b)) return false;
-    return joined(at(x - dx, y - dy), a, b, at(x + 2 * dx, y + 2 * dy));
+    // Past the border of the image the surface is taken to go on as it does inside.
+    const bool starts = x - dx < 0 || y - dy < 0, ends = x + 2 * dx >= w || y + 2 * dy >= h;
+    const float after = ends ? 2.0f * b - a : at(x + 2 * dx, y + 2 * dy);
+    const float before = starts ? a - (after - b) : at(x - dx, y - dy);
+    return joined(before, a, b, after);
   };
   for (int64_t y = 0; y < h; ++y) {
     for (int64_t x = 0; x < w; ++x) {
@@ -133,7 +137,7 @@ int steps_inside(float start, float slope, int major, int step, int major_size, 
   const int along = step > 0 ? major_size - 1 - major : major;
   if (slope == 0.0f) return along;
   const float room = slope > 0.0f ? static_cast<float>(minor_size - 1) - start : start;
-  const float across = (room + 0.49f) / std::abs(slope);
+  const float across = room / std::abs(slope);
   return std::min(along, static_cast<int>(std::min(across, static_cast<float>(along))));
 }
 
@@ -186,8 +190,7 @@ void load_values(const March m, int first, int count, float* values) {
   for (int i = 0; i < count; ++i) {
     const int step = first + i;
     const float minor = m.minor + m.slope * static_cast<float>(step);
-    // Minor is at least -0.5; the shift makes truncation round down.
-    const int low = std::min(std::max(static_cast<int>(minor + 1.0f) - 1, 0), m.minor_last);
+    const int low = std::min(std::max(static_cast<int>(minor), 0), m.minor_last);
     const float t = minor - static_cast<float>(low);
     const int texel = m.first + step * m.major_stride + low * m.minor_stride;
     const float a = m.value[texel];

@@ -1,0 +1,105 @@
+#ifndef ALCOVE_TESTS_SAMPLE_GLTF_MAKER_H_
+#define ALCOVE_TESTS_SAMPLE_GLTF_MAKER_H_
+
+#include <cstdint>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace alcove::sample {
+
+// Builds small glTF files in memory: a JSON to edit and a buffer to fill.
+class GltfMaker {
+ public:
+  nlohmann::json json = {{"asset", {{"version", "2.0"}}},
+                         {"scene", 0},
+                         {"scenes", {{{"nodes", {0}}}}},
+                         {"nodes", {{{"mesh", 0}}}}};
+  std::vector<uint8_t> bytes;
+
+  // Appends values to the buffer, at a multiple of 4, and gives their buffer view.
+  template <class T>
+  int view(const std::vector<T>& values, int stride = 0) {
+    while (bytes.size() % 4) bytes.push_back(0);
+    nlohmann::json view = {
+        {"buffer", 0}, {"byteOffset", bytes.size()}, {"byteLength", values.size() * sizeof(T)}};
+    if (stride) view["byteStride"] = stride;
+    const auto* first = reinterpret_cast<const uint8_t*>(values.data());
+    bytes.insert(bytes.end(), first, first + values.size() * sizeof(T));
+    json["bufferViews"].push_back(view);
+    return static_cast<int>(json["bufferViews"].size()) - 1;
+  }
+
+  int accessor(int buffer_view, int component, const std::string& type, size_t count,
+               bool normalized = false) {
+    json["accessors"].push_back({{"bufferView", buffer_view},
+                                 {"componentType", component},
+                                 {"type", type},
+                                 {"count", count},
+                                 {"normalized", normalized}});
+    return static_cast<int>(json["accessors"].size()) - 1;
+  }
+
+  // One triangle in the XY plane that faces +Z.
+  static GltfMaker triangle() {
+    GltfMaker maker;
+    const int positions = maker.view<float>({0, 0, 0, 1, 0, 0, 0, 1, 0});
+    const int accessor = maker.accessor(positions, 5126, "VEC3", 3);
+    maker.json["meshes"] = {{{"primitives", {{{"attributes", {{"POSITION", accessor}}}}}}}};
+    return maker;
+  }
+
+  nlohmann::json& primitive() { return json["meshes"][0]["primitives"][0]; }
+
+  // A .gltf whose buffer is embedded.
+  std::vector<uint8_t> gltf() const {
+    nlohmann::json out = json;
+    out["buffers"] = {{{"byteLength", bytes.size()},
+                       {"uri", "data:application/octet-stream;base64," + base64(bytes)}}};
+    const std::string text = out.dump();
+    return {text.begin(), text.end()};
+  }
+
+  std::vector<uint8_t> glb() const {
+    nlohmann::json out = json;
+    out["buffers"] = {{{"byteLength", bytes.size()}}};
+    std::string text = out.dump();
+    while (text.size() % 4) text += ' ';
+    std::vector<uint8_t> binary = bytes;
+    while (binary.size() % 4) binary.push_back(0);
+    std::vector<uint8_t> file;
+    const auto word = [&](uint32_t value) {
+      for (int shift = 0; shift < 32; shift += 8) {
+        file.push_back(static_cast<uint8_t>(value >> shift));
+      }
+    };
+    word(0x46546c67);
+    word(2);
+    word(static_cast<uint32_t>(28 + text.size() + binary.size()));
+    word(static_cast<uint32_t>(text.size()));
+    word(0x4e4f534a);
+    file.insert(file.end(), text.begin(), text.end());
+    word(static_cast<uint32_t>(binary.size()));
+    word(0x004e4942);
+    file.insert(file.end(), binary.begin(), binary.end());
+    return file;
+  }
+
+  static std::string base64(const std::vector<uint8_t>& in) {
+    constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string out;
+    for (size_t i = 0; i < in.size(); i += 3) {
+      uint32_t group = 0;
+      for (size_t k = 0; k < 3; ++k) group = group << 8 | (i + k < in.size() ? in[i + k] : 0u);
+      for (size_t k = 0; k < 4; ++k) {
+        out += i + k <= in.size() ? kDigits[group >> (18 - 6 * k) & 63u] : '=';
+      }
+    }
+    return out;
+  }
+};
+
+}  // namespace alcove::sample
+
+#endif  // ALCOVE_TESTS_SAMPLE_GLTF_MAKER_H_

@@ -1,0 +1,120 @@
+#include "options.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "builtin_scene.h"
+
+namespace alcove::sample {
+namespace {
+
+using testing::HasSubstr;
+
+tl::expected<Options, Stop> parse(std::vector<const char*> arguments) {
+  arguments.insert(arguments.begin(), "alcove");
+  return parse_options(static_cast<int>(arguments.size()), arguments.data());
+}
+
+TEST(Options, DefaultsAreTheBuiltInSceneAt960By540) {
+  const auto options = parse({"render"});
+  ASSERT_TRUE(options);
+  EXPECT_EQ(options->command, Command::kRender);
+  EXPECT_TRUE(options->scene.empty());
+  EXPECT_EQ(options->view.width, 960u);
+  EXPECT_EQ(options->view.height, 540u);
+}
+
+TEST(Options, AFullCommandLineIsUnderstood) {
+  const auto options =
+      parse({"compare",  "scene.glb", "--eye",        "-9,5.5,-0.4", "--target",    "5,3.2,-0.3",
+             "--fov-y",  "60",        "--near",       "0.1",         "--far",       "inf",
+             "--radius", "0.75",      "--normals",    "geometric",   "--quality",   "ultra",
+             "--set",    "slices=2",  "--set",        "steps=5",     "--roughness", "0.1,0.3,0.6",
+             "--spp",    "512",       "--reversed-z", "--size",      "320x200",     "--out",
+             "x"});
+  ASSERT_TRUE(options) << options.error().text;
+  EXPECT_EQ(options->scene, "scene.glb");
+  EXPECT_EQ(*options->view.eye_ws, glm::vec3(-9, 5.5f, -0.4f));
+  EXPECT_TRUE(std::isinf(*options->view.far_plane));
+  EXPECT_EQ(options->occlusion.quality, Quality::kUltra);
+  EXPECT_EQ(options->occlusion.normals, NormalSource::kGeometric);
+  EXPECT_EQ(options->occlusion.set.size(), 2u);
+  EXPECT_EQ(options->occlusion.set[1].second, "5");
+  EXPECT_EQ(options->occlusion.roughness.size(), 3u);
+  EXPECT_EQ(options->occlusion.spp, 512u);
+  EXPECT_EQ(options->view.width, 320u);
+  EXPECT_EQ(options->out, "x");
+}
+
+TEST(Options, NonsenseIsRefusedInASentenceThatNamesTheOption) {
+  const std::vector<std::vector<const char*>> wrong = {
+      {"render", "--size", "0x540"},     {"render", "--size", "960"},
+      {"render", "--size", "99999x2"},   {"render", "--radius", "0"},
+      {"render", "--radius", "nan"},     {"render", "--radius", "-1"},
+      {"render", "--spp", "0"},          {"render", "--frames", "0"},
+      {"render", "--fov-y", "180"},      {"render", "--eye", "1,2"},
+      {"render", "--eye", "1,2,nan"},    {"render", "--up", "0,0,0"},
+      {"render", "--near", "0"},         {"render", "--far", "near"},
+      {"render", "--set", "slices"},     {"render", "--roughness", "2"},
+      {"render", "--quality", "superb"}, {"render", "--normals", "none"},
+      {"render", "--ortho-height", "0"}};
+  for (const auto& arguments : wrong) {
+    const auto options = parse(arguments);
+    ASSERT_FALSE(options) << arguments[1] << " " << arguments[2];
+    EXPECT_EQ(options.error().status, 2);
+    EXPECT_THAT(options.error().text, HasSubstr(arguments[1]));
+    EXPECT_EQ(options.error().text.find('\n'), std::string::npos);
+  }
+}
+
+TEST(Options, NearMustBeBeforeFar) {
+  const auto options = parse({"render", "--near", "5", "--far", "2"});
+  ASSERT_FALSE(options);
+  EXPECT_THAT(options.error().text, HasSubstr("--near"));
+}
+
+TEST(Options, HelpTeachesAndAsksForNoRun) {
+  const auto all = parse({"--help"});
+  ASSERT_FALSE(all);
+  EXPECT_EQ(all.error().status, 0);
+  EXPECT_THAT(all.error().text, HasSubstr("compare"));
+  const auto one = parse({"render", "--help"});
+  ASSERT_FALSE(one);
+  EXPECT_THAT(one.error().text, HasSubstr("--radius"));
+}
+
+TEST(Options, NoCommandAndUnknownOnesAreMistakes) {
+  EXPECT_EQ(parse({}).error().status, 2);
+  EXPECT_EQ(parse({"paint"}).error().status, 2);
+  EXPECT_EQ(parse({"render", "--colour", "red"}).error().status, 2);
+}
+
+TEST(Options, CameraTakesTheScenesAndThenWhatWasTyped) {
+  const Scene scene = builtin_scene();
+  ViewOptions view;
+  view.camera = "court";
+  view.fov_y = 0.5f;
+  const auto camera = camera_of(view, scene);
+  ASSERT_TRUE(camera);
+  EXPECT_EQ(camera->eye_ws, find_camera(scene, "court")->eye_ws);
+  EXPECT_EQ(camera->fov_y, 0.5f);
+}
+
+TEST(Options, CameraThatTheSceneLacksIsRefusedWithThoseItHas) {
+  ViewOptions view;
+  view.camera = "kitchen";
+  const auto camera = camera_of(view, builtin_scene());
+  ASSERT_FALSE(camera);
+  EXPECT_THAT(camera.error(), HasSubstr("court"));
+}
+
+TEST(Options, EyeOnTheTargetIsRefused) {
+  ViewOptions view;
+  view.eye_ws = view.target_ws = glm::vec3(1.0f);
+  EXPECT_FALSE(camera_of(view, builtin_scene()));
+}
+
+}  // namespace
+}  // namespace alcove::sample

@@ -1,0 +1,89 @@
+#include "truth_cache.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "builtin_scene.h"
+#include "temporary_folder.h"
+
+namespace alcove::sample {
+namespace {
+
+CacheKey key_of(int number) {
+  CacheKey key;
+  key.add(number);
+  return key;
+}
+
+std::filesystem::path only_file(const std::filesystem::path& folder) {
+  return std::filesystem::directory_iterator(folder)->path();
+}
+
+TEST(TruthCache, WhatIsWrittenIsReadUnderItsKeyOnly) {
+  const TemporaryFolder folder;
+  const TruthCache cache(folder.path / "deep" / "cache");
+  Image<glm::vec3> image(3, 2, glm::vec3(1, 2, 3));
+  cache.write(key_of(1), image);
+  Image<glm::vec3> read(3, 2);
+  EXPECT_TRUE(cache.read(key_of(1), read));
+  EXPECT_EQ(read.pixels, image.pixels);
+  EXPECT_FALSE(cache.read(key_of(2), read));
+  EXPECT_FALSE(cache.read(key_of(1), 17));
+}
+
+TEST(TruthCache, DamagedEntriesReadAsAbsent) {
+  const TemporaryFolder folder;
+  const TruthCache cache(folder.path);
+  const std::vector<float> values(100, 0.5f);
+  cache.write(key_of(1), values);
+  const auto file = only_file(folder.path);
+  const auto size = std::filesystem::file_size(file);
+  for (const size_t at :
+       {size_t{0}, size_t{9}, size_t{20}, size_t{40}, static_cast<size_t>(size - 1)}) {
+    cache.write(key_of(1), values);
+    std::fstream stream(file, std::ios::in | std::ios::out | std::ios::binary);
+    stream.seekp(static_cast<std::streamoff>(at));
+    stream.put('\x7f');
+    stream.close();
+    EXPECT_FALSE(cache.read(key_of(1), values.size())) << at;
+  }
+  cache.write(key_of(1), values);
+  std::filesystem::resize_file(file, size - 4);
+  EXPECT_FALSE(cache.read(key_of(1), values.size()));
+}
+
+TEST(TruthCache, WritingLeavesNoTemporaryFiles) {
+  const TemporaryFolder folder;
+  const TruthCache cache(folder.path);
+  for (int i = 0; i < 3; ++i) cache.write(key_of(1), std::vector<float>(5, 1.0f));
+  size_t files = 0;
+  for ([[maybe_unused]] const auto& e : std::filesystem::directory_iterator(folder.path)) ++files;
+  EXPECT_EQ(files, 1u);
+}
+
+TEST(TruthCache, KeyChangesWithSceneAndCamera) {
+  const Scene scene = builtin_scene();
+  CacheKey key, moved, recoloured, turned;
+  key.add(scene);
+  Scene other = scene;
+  other.meshes[0].positions_ws[0].x += 1e-3f;
+  moved.add(other);
+  other = scene;
+  other.materials[0].base_color.g *= 0.5f;
+  recoloured.add(other);
+  turned.add(scene);
+  turned.add(scene.cameras[0]);
+  EXPECT_NE(key.hex(), moved.hex());
+  EXPECT_NE(key.hex(), recoloured.hex());
+  EXPECT_NE(key.hex(), turned.hex());
+}
+
+TEST(TruthCache, WithoutAFolderNothingIsKept) {
+  const TruthCache cache("");
+  cache.write(key_of(1), std::vector<float>(5, 1.0f));
+  EXPECT_FALSE(cache.read(key_of(1), 5));
+}
+
+}  // namespace
+}  // namespace alcove::sample

@@ -1,0 +1,195 @@
+#include "truth.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "analytic_scenes.h"
+#include "builtin_scene.h"
+#include "errors.h"
+#include "height_field_truth.h"
+
+namespace alcove::sample {
+namespace {
+
+SurfacePoints points_of(const AnalyticScene& analytic) {
+  const auto count = static_cast<uint32_t>(analytic.points.size());
+  SurfacePoints out{{count, 1}, {count, 1}, {count, 1}};
+  for (uint32_t i = 0; i < count; ++i) {
+    out.position_ws.at(i, 0) = analytic.points[i].position_ws;
+    out.normal_ws.at(i, 0) = analytic.points[i].normal_ws;
+  }
+  out.geometric_normal_ws = out.normal_ws;
+  return out;
+}
+
+class ClosedForm : public testing::TestWithParam<const char*> {};
+
+TEST_P(ClosedForm, RayTracedVisibilityAgreesWithinThreeStandardErrors) {
+  const auto analytic = analytic_scene(GetParam());
+  ASSERT_TRUE(analytic);
+  const auto rays = RayScene::create(analytic->scene);
+  ASSERT_TRUE(rays);
+  constexpr uint32_t kRays = 65536;
+  const auto truth = occlusion_truth(*rays, points_of(*analytic),
+                                     {static_cast<float>(analytic->closed_form_radius), kRays, 1});
+  for (uint32_t i = 0; i < analytic->points.size(); ++i) {
+    const double expected = analytic->points[i].visibility;
+    // The error of as many independent rays; ours are better spread.
+    const double standard_error = std::sqrt(expected * (1.0 - expected) / kRays);
+    EXPECT_NEAR(truth.visibility.at(i, 0), expected, 3.0 * standard_error + 1e-6)
+        << GetParam() << " point " << i;
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Scenes, ClosedForm,
+                         testing::Values("plane:0", "plane:85", "groove:30", "groove:90",
+                                         "groove:150", "corner", "sphere", "pit", "step"));
+
+// Everything of one view of a scene that the truths need.
+struct View {
+  GBuffer g;
+  SurfacePoints points;
+  Mask mask;
+};
+View view_of(const RayScene& rays, const Camera& camera, uint32_t width, uint32_t height) {
+  View view{cast_gbuffer(rays, camera, width, height), {}, {width, height}};
+  view.points = {view.g.position_ws, view.g.geometric_normal_ws, view.g.geometric_normal_ws};
+  for (size_t i = 0; i < view.mask.pixels.size(); ++i) {
+    view.mask.pixels[i] = view.g.material.pixels[i] != kNoMaterial;
+  }
+  return view;
+}
+
+TEST(Truth, OpenPlaneIsExactlyOpenAtAnyTilt) {
+  for (const char* name : {"plane:0", "plane:45", "plane:80", "plane:88"}) {
+    const auto analytic = analytic_scene(name);
+    const auto rays = RayScene::create(analytic->scene);
+    const View view = view_of(*rays, analytic->scene.cameras[0], 64, 36);
+    const auto truth = occlusion_truth(*rays, view.points, {1.0f, 64, 1});
+    for (const float v : truth.visibility.pixels) ASSERT_EQ(v, 1.0f) << name;
+  }
+}
+
+TEST(Truth, BentNormalOfAnOpenPlaneIsItsNormal) {
+  const auto analytic = analytic_scene("plane:60");
+  const auto rays = RayScene::create(analytic->scene);
+  const auto points = points_of(*analytic);
+  const auto truth = occlusion_truth(*rays, points, {1.0f, 65536, 1});
+  EXPECT_NEAR(glm::length(truth.bent_mean_ws.at(0, 0)), 2.0f / 3.0f, 1e-3f);
+  EXPECT_GT(glm::dot(truth.bent_normal_ws.at(0, 0), points.normal_ws.at(0, 0)), 0.99999f);
+}
+
+TEST(Truth, HitsBeyondTheRadiusDoNotBlock) {
+  const auto analytic = analytic_scene("groove:90");
+  const auto rays = RayScene::create(analytic->scene);
+  const auto truth = occlusion_truth(*rays, points_of(*analytic), {0.05f, 256, 1});
+  EXPECT_EQ(truth.visibility.at(0, 0), 1.0f);
+}
+
+TEST(Truth, BlackWallsMakeInterreflectionTheVisibilityAndWhiteOnesHideNothing) {
+  for (const float albedo : {0.0f, 1.0f}) {
+    auto analytic = analytic_scene("groove:90");
+    analytic->scene.materials[0].base_color = glm::vec4(glm::vec3(albedo), 1.0f);
+    const auto rays = RayScene::create(analytic->scene);
+    const auto light = interreflection_truth(*rays, points_of(*analytic), {5.0f, 4096, 1});
+    const auto open = occlusion_truth(*rays, points_of(*analytic), {5.0f, 4096, 1});
+    const float expected = albedo == 0.0f ? open.visibility.at(0, 0) : 1.0f;
+    EXPECT_NEAR(light.at(0, 0).g, expected, 0.02f) << albedo;
+  }
+}
+
+TEST(Truth, MirrorLooksAlongTheReflectedView) {
+  // From a floor, a shallow view towards the wall reflects into it, one away from it does not.
+  const auto analytic = analytic_scene("step");
+  const auto rays = RayScene::create(analytic->scene);
+  SurfacePoints points{{1, 1, glm::vec3(-0.3f, 0, 0)}, {1, 1, glm::vec3(0, 1, 0)}, {}};
+  points.geometric_normal_ws = points.normal_ws;
+  const Image<float> roughness(1, 1, 0.05f);
+  const Viewer towards{false, {-2.3f, 1.0f, 0.0f}, {}};
+  const Viewer away{true, {}, glm::normalize(glm::vec3(0.5f, 1.0f, 0.0f))};
+  EXPECT_LT(specular_truth(*rays, points, roughness, towards, {2.0f, 512, 1}).at(0, 0), 0.01f);
+  EXPECT_GT(specular_truth(*rays, points, roughness, away, {2.0f, 512, 1}).at(0, 0), 0.99f);
+}
+
+TEST(Truth, SpecularOcclusionOfAnOpenPlaneIsOne) {
+  const auto analytic = analytic_scene("plane:85");
+  const auto rays = RayScene::create(analytic->scene);
+  const View view = view_of(*rays, analytic->scene.cameras[0], 16, 9);
+  for (const float r : {0.05f, 0.3f, 1.0f}) {
+    const auto truth = specular_truth(*rays, view.points, Image<float>(16, 9, r),
+                                      viewer_of(analytic->scene.cameras[0]), {1.0f, 64, 1});
+    for (const float v : truth.pixels) ASSERT_EQ(v, 1.0f) << r;
+  }
+}
+
+TEST(Truth, CutOutTexelsLetRaysThrough) {
+  auto analytic = analytic_scene("plane:0");
+  Scene& scene = analytic->scene;
+  scene.images.push_back({"holes", 2, 1, {255, 255, 255, 255, 255, 255, 255, 0}});
+  scene.materials[0].base_color_texture = {0, Wrap::kClamp, Wrap::kClamp};
+  scene.materials[0].alpha_mode = AlphaMode::kMask;
+  for (size_t i = 0; i < scene.meshes[0].uvs.size(); ++i) {
+    scene.meshes[0].uvs[i] = {scene.meshes[0].positions_ws[i].x > 0.0f ? 1.0f : 0.0f, 0.5f};
+  }
+  const auto rays = RayScene::create(scene);
+  const GBuffer g = cast_gbuffer(*rays, scene.cameras[0], 16, 9);
+  EXPECT_EQ(g.material.at(0, 4), 0u);
+  EXPECT_EQ(g.material.at(15, 4), kNoMaterial);
+}
+
+TEST(HeightFieldTruth, OpenPlaneIsOpenWithin255thInEveryProjection) {
+  for (const char* name : {"plane:0", "plane:45", "plane:75"}) {
+    auto analytic = analytic_scene(name);
+    const auto rays = RayScene::create(analytic->scene);
+    for (const bool orthographic : {false, true}) {
+      Camera camera = analytic->scene.cameras[0];
+      camera.orthographic = orthographic;
+      camera.offset_ndc = {0.2f, -0.1f};
+      const View view = view_of(*rays, camera, 96, 54);
+      const auto truth =
+          height_field_truth(view.g.depth_vs, view.g.geometric_normal_ws, camera, {0.5f, 64});
+      for (size_t i = 0; i < view.mask.pixels.size(); ++i) {
+        // At the far plane the scene ends, and with it the plane.
+        if (view.g.depth_vs.pixels[i] < 0.5f * camera.far_plane) {
+          ASSERT_NEAR(truth.visibility.pixels[i], 1.0f, 1.0f / 255.0f) << name << " " << i;
+        }
+      }
+    }
+  }
+}
+
+// Where all that blocks is in the image, the height field of a groove or a step is its scene.
+TEST(HeightFieldTruth, AgreesWithTheSceneWhereTheImageHoldsAllOfIt) {
+  for (const char* name : {"groove:90", "groove:120", "step"}) {
+    const auto analytic = analytic_scene(name);
+    const auto rays = RayScene::create(analytic->scene);
+    const Camera& camera = analytic->scene.cameras[0];
+    const View view = view_of(*rays, camera, 240, 136);
+    const float radius = 0.4f;
+    const auto seen =
+        height_field_truth(view.g.depth_vs, view.g.geometric_normal_ws, camera, {radius, 64});
+    const auto traced = occlusion_truth(*rays, view.points, {radius, 1024, 1});
+    Mask middle(240, 136);
+    for (uint32_t y = 50; y < 86; ++y) {
+      for (uint32_t x = 90; x < 150; ++x) middle.at(x, y) = view.mask.at(x, y);
+    }
+    const ErrorSummary error = compare_images(seen.visibility, traced.visibility, middle);
+    EXPECT_LT(error.rmse, 0.03) << name << " bias " << error.bias;
+  }
+}
+
+TEST(BuiltinScene, HoldsWhatItPromises) {
+  const Scene scene = builtin_scene();
+  EXPECT_LT(triangle_count(scene), 50000u);
+  EXPECT_GE(scene.cameras.size(), 2u);
+  for (const Mesh& mesh : scene.meshes) {
+    ASSERT_LT(mesh.material, scene.materials.size());
+    ASSERT_EQ(mesh.positions_ws.size(), mesh.normals_ws.size());
+    ASSERT_EQ(mesh.positions_ws.size(), mesh.uvs.size());
+    for (const uint32_t i : mesh.indices) ASSERT_LT(i, mesh.positions_ws.size());
+    for (const glm::vec3& n : mesh.normals_ws) ASSERT_NEAR(glm::length(n), 1.0f, 1e-4f);
+  }
+}
+
+}  // namespace
+}  // namespace alcove::sample
