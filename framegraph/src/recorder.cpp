@@ -183,7 +183,15 @@ VkImageView RecordContext::view(Texture texture, Range range) const {
     const VkImageView given = recorder_.graph_->imports()[record.external].view;
     if (given != VK_NULL_HANDLE) return given;
   }
-  return recorder_.pool_.view(*physical, range);
+  const VkImageView view = recorder_.pool_.view(*physical, range);
+  if (view == VK_NULL_HANDLE) {
+    recorder_.errors_.push_back(
+        {ErrorCode::vulkan,
+         std::string("no view of '").append(graph.resource_name(texture.index)) +
+             "' could be made: the device is out of memory",
+         VK_ERROR_OUT_OF_DEVICE_MEMORY, pass_, texture.index, texture.version});
+  }
+  return view;
 }
 
 VkImage RecordContext::image(Texture texture) const {

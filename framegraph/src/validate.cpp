@@ -6,6 +6,10 @@
 namespace alcove::framegraph {
 namespace {
 
+constexpr VkAccessFlags2 kAttachmentBits =
+    VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT |
+    VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
+
 class Replay {
  public:
   explicit Replay(Validation& validation) : v_(validation), s_(validation.workspace.validate) {}
@@ -13,6 +17,7 @@ class Replay {
   void run() {
     begin();
     for (std::uint32_t pass = 0; pass < v_.graph.passes.size(); ++pass) {
+      attachment_ = kNone;
       for (const AccessRecord& access : v_.graph.pass_accesses(pass)) visit(pass, access);
     }
     for (const OutputRecord& output : v_.graph.outputs) check_output(output);
@@ -44,6 +49,7 @@ class Replay {
     unwritten_ = conflict_ = false;
     for_each_sub(v_.graph.resources[access.resource], first[access.resource], access.range,
                  [&](std::uint32_t sub) { touch(pass, access, sub); });
+    if (access.access & kAttachmentBits) check_attachment(pass, access);
     if (conflict_) report_conflict(pass, access);
     if (unwritten_) report_unwritten(pass, access);
   }
@@ -62,6 +68,38 @@ class Replay {
       s_.read_stamp[sub] = stamp;
     }
     s_.layout[sub] = access.layout;
+  }
+
+  // All attachments of a pass are drawn to together.
+  void check_attachment(std::uint32_t pass, const AccessRecord& access) {
+    const ResourceRecord& r = v_.graph.resources[access.resource];
+    const auto side = [&access](std::uint32_t size) {
+      return std::max(1u, size >> access.range.base_mip);
+    };
+    if (attachment_ == kNone) {
+      attachment_ = access.resource;
+      width_ = side(r.width);
+      height_ = side(r.height);
+      return;
+    }
+    if (side(r.width) == width_ && side(r.height) == height_ &&
+        r.samples == v_.graph.resources[attachment_].samples)
+      return;
+    const auto size = [](std::uint32_t width, std::uint32_t height, std::uint32_t samples) {
+      return std::to_string(width)
+                 .append("x")
+                 .append(std::to_string(height))
+                 .append(" with ")
+                 .append(std::to_string(samples)) +
+             " sample(s)";
+    };
+    v_.fail(ErrorCode::attachment_mismatch,
+            v_.pass_text(pass) + " draws to " + v_.resource_text(access.resource) + " of " +
+                size(side(r.width), side(r.height), r.samples) + " and to " +
+                v_.resource_text(attachment_) + " of " +
+                size(width_, height_, v_.graph.resources[attachment_].samples) +
+                ": give the attachments of a pass one size and one number of samples",
+            pass, access.resource, access.version);
   }
 
   void report_conflict(std::uint32_t pass, const AccessRecord& access) {
@@ -167,6 +205,9 @@ class Replay {
   Workspace::Validate& s_;
   bool unwritten_ = false;
   bool conflict_ = false;
+  std::uint32_t attachment_ = kNone;  // the first of this pass, and the size of its mip
+  std::uint32_t width_ = 0;
+  std::uint32_t height_ = 0;
 };
 
 }  // namespace

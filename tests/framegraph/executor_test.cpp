@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "failing_device.h"
 #include "gpu.h"
 
 namespace alcove::framegraph {
@@ -91,6 +92,53 @@ TEST_F(ExecutorTest, AnUndeclaredUseIsNamedWhereUsesAreChecked) {
   ASSERT_FALSE(report);
   EXPECT_EQ(report.error()[0].code, ErrorCode::undeclared_use);
   EXPECT_THAT(report.error()[0].message, testing::HasSubstr("'nosy' uses 'secret'"));
+}
+
+// Whatever call fails, the frame comes back as an error, the next one runs, and nothing is leaked.
+TEST_F(ExecutorTest, RunningOutOfMemoryAnywhereIsAnErrorAndLeaksNothing) {
+  const HostBuffer host = gpu_.make_host_buffer(4 * sizeof(std::uint32_t));
+  DeviceHandles handles = gpu_.handles();
+  handles.get_instance_proc_addr = failing::get_instance_proc_addr;
+  const auto declare = [&](Graph& graph) {
+    declare_chain(graph, host, 4);
+    const TextureHistory history =
+        graph.create_texture_history("history", {VK_FORMAT_R32_UINT, Extent::absolute(4, 4)});
+    PassBuilder pass = graph.add_pass("remember");
+    const Texture texture = pass.write(history.current, access::clear);
+    pass.record([=](RecordContext& c) {
+      (void)c.view(texture);
+      clear_image(c, c.image(texture), 1, 1);
+    });
+    graph.output(texture);
+  };
+  int failed = 0;
+  int last = 0;
+  for (const bool submits : {false, true}) {
+    for (int call = 1; call == 1 || last >= call - 1; ++call) {
+      auto executor = Executor::create(handles);
+      ASSERT_TRUE(executor) << to_string(executor.error());
+      Graph graph;
+      failing::fail_at(call);
+      declare(graph);
+      const auto report = submits ? executor->submit(graph) : gpu_.run(*executor, graph);
+      last = failing::calls();
+      failing::fail_at(0);
+      if (last < call) {
+        EXPECT_TRUE(report);
+      } else {
+        ++failed;
+        ASSERT_FALSE(report) << "call " << call;
+        EXPECT_EQ(report.error()[0].result, VK_ERROR_OUT_OF_DEVICE_MEMORY);
+      }
+      ASSERT_TRUE(executor->wait());
+      declare(graph);
+      const auto again = submits ? executor->submit(graph) : gpu_.run(*executor, graph);
+      EXPECT_TRUE(again) << to_string(again.error());
+      ASSERT_TRUE(executor->wait());
+    }
+    EXPECT_EQ(failing::alive(), 0);
+  }
+  EXPECT_GE(failed, 20);
 }
 
 }  // namespace

@@ -225,9 +225,11 @@ class Declarer {
     } else {
       known.written.assign(known.written.size(), true);
     }
-    known.handle =
-        pass.write(known.handle, kWrites[pick(dice_, queue, {0, 1, 2, 3, 4}, {0, 1, 3, 4}, {3})],
-                   range, contents, need);
+    std::uint32_t way = pick(dice_, queue, {0, 1, 2, 3, 4}, {0, 1, 3, 4}, {3});
+    // The attachments of a pass would have to be of one size.
+    if (way == 2 && drawn_in_ == index) way = 4;
+    if (way == 2) drawn_in_ = index;
+    known.handle = pass.write(known.handle, kWrites[way], range, contents, need);
   }
 
   Graph& graph_;
@@ -235,6 +237,7 @@ class Declarer {
   const RandomOptions& options_;
   std::vector<Known> known_;
   std::size_t history_ = 0;
+  std::uint32_t drawn_in_ = kNone;  // the last pass with an attachment
 };
 
 }  // namespace

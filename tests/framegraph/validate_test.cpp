@@ -125,6 +125,15 @@ TEST_F(Validate, TwoWritesOfOneSubresourceInAPassAreRefused) {
   expect(ErrorCode::two_writers, "'twice' writes a subresource of texture 't' twice");
 }
 
+TEST_F(Validate, AttachmentsOfDifferentSizesAreRefused) {
+  Texture color = graph_.create_texture("color", kDesc);
+  Texture depth = graph_.create_texture("depth", {VK_FORMAT_D32_SFLOAT, Extent::absolute(16, 8)});
+  PassBuilder draw = pass("draw");
+  color = draw.write(color, access::color_attachment);
+  depth = draw.write(depth, access::depth_attachment);
+  expect(ErrorCode::attachment_mismatch, "'draw' draws to texture 'depth' of 16x8");
+}
+
 TEST_F(Validate, AnImportWithoutTheNeededUsageIsRefused) {
   ImportedTexture import;
   import.image = reinterpret_cast<VkImage>(std::uintptr_t{16});

@@ -16,6 +16,7 @@ enum class ErrorCode : std::uint8_t {
   read_before_write,      // nothing wrote what is read
   read_and_write,         // one pass reads and writes one subresource in two accesses
   two_writers,            // one pass writes one subresource twice
+  attachment_mismatch,    // one pass's attachments differ in size or samples
   missing_usage,          // an import was not created for this use
   unsupported_format,     // the format cannot be used so
   bad_range,              // mips or layers that the texture does not have

@@ -1,0 +1,84 @@
+#include "failing_device.h"
+
+#include <cstring>
+
+namespace alcove::framegraph::failing {
+namespace {
+
+int failing_call = 0;
+int call_count = 0;
+int alive_count = 0;
+
+// Wraps one creating and one destroying function of the device.
+template <auto kCreate, auto kDestroy>
+struct Wrapped;
+
+template <typename Info, typename Handle,
+          VkResult(VKAPI_PTR* kCreate)(VkDevice, const Info*, const VkAllocationCallbacks*,
+                                       Handle*),
+          void(VKAPI_PTR* kDestroy)(VkDevice, Handle, const VkAllocationCallbacks*)>
+struct Wrapped<kCreate, kDestroy> {
+  static VKAPI_ATTR VkResult VKAPI_CALL create(VkDevice device, const Info* info,
+                                               const VkAllocationCallbacks* callbacks,
+                                               Handle* handle) {
+    if (++call_count == failing_call) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+    const VkResult result = kCreate(device, info, callbacks, handle);
+    if (result == VK_SUCCESS) ++alive_count;
+    return result;
+  }
+  static VKAPI_ATTR void VKAPI_CALL destroy(VkDevice device, Handle handle,
+                                            const VkAllocationCallbacks* callbacks) {
+    if (handle != VK_NULL_HANDLE) --alive_count;
+    kDestroy(device, handle, callbacks);
+  }
+};
+
+using Memory = Wrapped<&vkAllocateMemory, &vkFreeMemory>;
+using Image = Wrapped<&vkCreateImage, &vkDestroyImage>;
+using Buffer = Wrapped<&vkCreateBuffer, &vkDestroyBuffer>;
+using View = Wrapped<&vkCreateImageView, &vkDestroyImageView>;
+using Queries = Wrapped<&vkCreateQueryPool, &vkDestroyQueryPool>;
+using Pool = Wrapped<&vkCreateCommandPool, &vkDestroyCommandPool>;
+using Semaphore = Wrapped<&vkCreateSemaphore, &vkDestroySemaphore>;
+
+PFN_vkVoidFunction VKAPI_CALL get_device_proc_addr(VkDevice device, const char* name) {
+  struct Entry {
+    const char* name;
+    PFN_vkVoidFunction function;
+  };
+#define ALCOVE_WRAP(type, made, unmade)                          \
+  {made, reinterpret_cast<PFN_vkVoidFunction>(&type::create)}, { \
+    unmade, reinterpret_cast<PFN_vkVoidFunction>(&type::destroy) \
+  }
+  const Entry entries[] = {
+      ALCOVE_WRAP(Memory, "vkAllocateMemory", "vkFreeMemory"),
+      ALCOVE_WRAP(Image, "vkCreateImage", "vkDestroyImage"),
+      ALCOVE_WRAP(Buffer, "vkCreateBuffer", "vkDestroyBuffer"),
+      ALCOVE_WRAP(View, "vkCreateImageView", "vkDestroyImageView"),
+      ALCOVE_WRAP(Queries, "vkCreateQueryPool", "vkDestroyQueryPool"),
+      ALCOVE_WRAP(Pool, "vkCreateCommandPool", "vkDestroyCommandPool"),
+      ALCOVE_WRAP(Semaphore, "vkCreateSemaphore", "vkDestroySemaphore"),
+  };
+#undef ALCOVE_WRAP
+  for (const Entry& entry : entries) {
+    if (std::strcmp(entry.name, name) == 0) return entry.function;
+  }
+  return vkGetDeviceProcAddr(device, name);
+}
+
+}  // namespace
+
+void fail_at(int call) {
+  failing_call = call;
+  call_count = 0;
+}
+int calls() { return call_count; }
+int alive() { return alive_count; }
+
+PFN_vkVoidFunction VKAPI_CALL get_instance_proc_addr(VkInstance instance, const char* name) {
+  if (std::strcmp(name, "vkGetDeviceProcAddr") == 0)
+    return reinterpret_cast<PFN_vkVoidFunction>(&get_device_proc_addr);
+  return vkGetInstanceProcAddr(instance, name);
+}
+
+}  // namespace alcove::framegraph::failing

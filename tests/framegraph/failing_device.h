@@ -1,0 +1,17 @@
+// A device whose creating calls fail when they are told to, and that counts what is not destroyed.
+#pragma once
+
+#include <vulkan/vulkan.h>
+
+namespace alcove::framegraph::failing {
+
+// The call, counted from 1, that fails with out of device memory; 0 for none.
+void fail_at(int call);
+// Calls since fail_at.
+int calls();
+// Objects that were created and not destroyed.
+int alive();
+// To be given to the executor in place of vkGetInstanceProcAddr.
+PFN_vkVoidFunction VKAPI_CALL get_instance_proc_addr(VkInstance instance, const char* name);
+
+}  // namespace alcove::framegraph::failing
