@@ -1,7 +1,6 @@
 #include "deferred_frame.h"
 
 #include <initializer_list>
-#include <vector>
 
 namespace alcove::framegraph {
 namespace {
@@ -63,10 +62,10 @@ class DeferredFrame {
 
   Texture bloom_of(Texture from) {
     constexpr VkFormat kFormat = VK_FORMAT_B10G11R11_UFLOAT_PACK32;
-    std::vector<Texture> down;
+    Texture down[6];
     for (std::uint32_t mip = 1; mip <= 6; ++mip) {
       from = compute("bloom down", kFormat, 1u << mip, {from});
-      down.push_back(from);
+      down[mip - 1] = from;
     }
     Texture up = down[5];
     for (std::uint32_t mip = 5; mip >= 1; --mip)
