@@ -14,6 +14,7 @@
 #include "maths/connected_samples.h"
 #include "maths/gtao.h"
 #include "maths/sampling.h"
+#include "maths/signal.h"
 #include "maths/slice_line.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -24,36 +25,62 @@ layout(constant_id = 2) const bool kBentNormal = false;
 layout(constant_id = 3) const bool kBitmask = false;
 layout(constant_id = 4) const int kDivisor = 1;  // one search a block of so many pixels a side
 layout(constant_id = 5) const uint kPattern = 0;  // 0 golden, 1 Hilbert and R2, 2 the memo's
+layout(constant_id = 6) const bool kPerspective = true;
+layout(constant_id = 7) const bool kReversed = false;
+
+// Bend of the line between two samples, in depths for each pixel's width, that parts two surfaces.
+const float kSharpBend = 4.0;
 
 layout(set = 0, binding = 0) uniform Parameters { GtaoParameters parameters; };
-layout(set = 0, binding = 1) uniform texture2D depth_image;   // linear
+layout(set = 0, binding = 1) uniform texture2D depth_image;   // as the projection wrote it
 layout(set = 0, binding = 2) uniform texture2D normal_image;  // xyz, turned by view_from_normal
-layout(set = 0, binding = 3) uniform writeonly image2D signal_image;  // visible, open
+layout(set = 0, binding = 3) uniform writeonly uimage2D signal_image;  // signal, line
 // Bound to the signal and never written where no bent normal is wanted.
-layout(set = 0, binding = 4) uniform writeonly image2D bent_image;
+layout(set = 0, binding = 4) uniform writeonly uimage2D bent_image;
 
 struct Surface {
-  vec2 pixel;  // centre, pixels
+  ivec2 pixel;
+  vec2 centre;  // of the pixel, pixels
   float depth;
   vec3 normal;  // unit, view space
   vec3 view;    // unit, view space, towards the eye
+  TangentLine tangent;
 };
 
-Surface fetch_surface(ivec2 pixel, float depth) {
+ivec2 size_px() { return textureSize(depth_image, 0); }
+
+// As is_sky_ndc() has it.
+bool is_sky(float ndc) { return kReversed ? !(ndc > 0.0) : !(ndc < 1.0); }
+
+const float kSkyLine = kPerspective ? 1.0 / kSkyDepth : kSkyDepth;
+
+// `line` of the image at a pixel; the sky's where the depth is the far plane's.
+float fetch_line(ivec2 pixel) {
+  float ndc = texelFetch(depth_image, pixel, 0).r;
+  float line = parameters.line_from_ndc.x * ndc + parameters.line_from_ndc.y;
+  return is_sky(ndc) ? kSkyLine : line;
+}
+
+float depth_of_line(float line) { return kPerspective ? 1.0 / line : line; }
+
+Surface fetch_surface(ivec2 pixel, float line) {
   Surface surface;
-  surface.pixel = vec2(pixel) + 0.5;
-  surface.depth = depth;
-  vec2 uv = surface.pixel * parameters.projection.texel_uv;
-  surface.view = view_vector(parameters.projection, position_vs(parameters.projection, uv, depth));
+  surface.pixel = pixel;
+  surface.centre = vec2(pixel) + 0.5;
+  surface.depth = depth_of_line(line);
+  vec2 slope = parameters.slope.zw + (kPerspective ? surface.centre * parameters.slope.xy : vec2(0.0));
+  surface.view = normalize(vec3(-slope, 1.0));
   vec3 normal = mat3(parameters.view_from_normal) * texelFetch(normal_image, pixel, 0).xyz;
   surface.normal = facing_normal(normalize(normal), surface.view);
+  surface.tangent = make_tangent_line(parameters.slope.xy, surface.normal, surface.view,
+                                      surface.depth, kPerspective);
   return surface;
 }
 
 // Pixels from the surface to the border of the image along a direction.
-float border_distance(vec2 pixel, vec2 direction) {
-  vec2 border = mix(vec2(0.0), parameters.projection.size_px, greaterThan(direction, vec2(0.0)));
-  vec2 distance = (border - pixel) / direction;
+float border_distance(vec2 centre, vec2 direction) {
+  vec2 border = mix(vec2(0.0), vec2(size_px()), greaterThan(direction, vec2(0.0)));
+  vec2 distance = (border - centre) / direction;
   return min(direction.x != 0.0 ? distance.x : 1e9, direction.y != 0.0 ? distance.y : 1e9) - 0.01;
 }
 
@@ -61,124 +88,174 @@ float border_distance(vec2 pixel, vec2 direction) {
 // above its tangent plane within the radius lies nearer by the cosine of gamma.
 float search_distance(Surface surface, SliceLine line, Slice slice, float side) {
   float reach = tangent_horizon(slice, side) > 0.0 ? slice.cosine : 1.0;
-  float radius_px =
-      slice_radius_px(parameters.projection, line, parameters.radius * reach, surface.depth);
-  return min(radius_px, border_distance(surface.pixel, side * line.direction_px));
+  return slice_radius_px(line, parameters.radius * reach, surface.depth, kPerspective);
 }
+
+// One side of a slice, as it is searched.
+struct Search {
+  SliceLine line;
+  ivec2 pixel;
+  vec2 direction_px;  // outwards; 0 where there is nothing to search
+  float side;
+  float reach_px;  // from the first step to the last
+  float offset;    // of the steps, [0,1)
+  float depth;     // linear, of the shaded point
+  TangentLine tangent;
+};
+
+Search make_search(Surface surface, SliceLine line, Slice slice, float side, float offset) {
+  vec2 direction = side * line.direction_px;
+  float border = border_distance(surface.centre, direction);
+  float distance_px = search_distance(surface, line, slice, side);
+  Search search;
+  search.line = line;
+  search.pixel = surface.pixel;
+  search.direction_px = min(distance_px, border) < kNearestStep ? vec2(0.0) : direction;
+  search.side = side;
+  // Steps stay apart where the radius spans few pixels, and inside the image always.
+  float apart = max(distance_px - kNearestStep, 0.25 * float(kStepCount));
+  search.reach_px = max(min(apart, border - kNearestStep), 1e-3);
+  search.offset = offset;
+  search.depth = surface.depth;
+  search.tangent = surface.tangent;
+  return search;
+}
+
+LineSample fetch_sample(Search search, uint k) {
+  float t = (float(k) + search.offset) * (1.0 / float(kStepCount));
+  LineSample found;
+  found.offset_px = kNearestStep + search.reach_px * t * t;
+  vec2 exact = search.direction_px * found.offset_px;
+  vec2 snapped = roundEven(exact);
+  float line = fetch_line(search.pixel + ivec2(snapped));
+  found.share = 1.0 / found.offset_px;
+  found.line = max(line + line_correction(search.tangent, snapped, exact, line, found.share),
+                   0.1 * line);
+  float depth = depth_of_line(found.line);
+  found.point = slice_point(search.line, search.side * found.offset_px, depth, search.depth,
+                            kPerspective ? depth : 1.0);
+  found.point.x *= search.side;
+  return found;
+}
+
+bool within_radius(float squared) { return squared <= parameters.radius * parameters.radius; }
 
 // Cosine of the highest horizon within the radius on one side; -1 where there is none.
-float find_horizon(Surface surface, SliceLine line, Slice slice, float side, float offset) {
+float find_horizon(Search search) {
   float horizon = -1.0;
-  float distance_px = search_distance(surface, line, slice, side);
-  if (distance_px < kNearestStep) {
-    return horizon;
-  }
-  vec2 direction = side * line.direction_px;
-  float radius_squared = parameters.radius * parameters.radius;
   for (uint k = 0; k < kStepCount; ++k) {
-    float step_px = step_distance_squared(k, kStepCount, offset, distance_px);
-    vec2 texel = floor(surface.pixel + direction * step_px);
-    float depth = texelFetch(depth_image, ivec2(texel), 0).r;
-    vec2 point = slice_point(line, texel + 0.5 - surface.pixel, depth, surface.depth,
-                             sample_scale(parameters.projection, depth));
+    vec2 point = fetch_sample(search, k).point;
     float squared = dot(point, point);
-    if (squared <= radius_squared && side * point.x > 0.0) {
-      horizon = max(horizon, point.y * inversesqrt(max(squared, 1e-30)));
-    }
+    float cosine = point.y * inversesqrt(max(squared, 1e-30));
+    horizon = within_radius(squared) ? max(horizon, cosine) : horizon;
   }
-  return horizon;
+  return search.direction_px == vec2(0.0) ? -1.0 : horizon;
 }
 
-// A sample of a side, as the bitmask wants it.
-struct Occluder {
-  LineSample on_line;
-  vec2 point;  // in the plane of the slice, scene units
+// A side of a slice as the bitmask sees it.
+struct Side {
+  float height_per_x;  // above the tangent plane, of a point of the slice's plane
+  float height_per_y;
+  float sharp;         // bend that parts two surfaces
+  EdgeScale edges;
 };
 
-Occluder fetch_occluder(Surface surface, SliceLine line, vec2 direction, float step_px) {
-  vec2 texel = floor(surface.pixel + direction * step_px);
-  float depth = texelFetch(depth_image, ivec2(texel), 0).r;
-  Occluder occluder;
-  occluder.on_line.offset_px = step_px;
-  occluder.on_line.line = parameters.projection.eye.w > 0.0 ? 1.0 / depth : depth;
-  occluder.point = slice_point(line, texel + 0.5 - surface.pixel, depth, surface.depth,
-                               sample_scale(parameters.projection, depth));
-  return occluder;
+Side make_side(Surface surface, SliceLine line, Slice slice, SectorScale scale, float side) {
+  Side made;
+  made.height_per_x = side * slice.along;
+  made.height_per_y = slice.toward;
+  made.sharp = kSharpBend * line.x_per_step * (kPerspective ? surface.tangent.line : 1.0);
+  made.edges = make_edge_scale(slice, scale, side);
+  return made;
 }
 
-float position_of(Slice slice, SectorScale scale, float side, vec2 point) {
-  float cosine = point.y * inversesqrt(max(dot(point, point), 1e-30));
-  return sector_position(slice, scale, side, cosine);
-}
-
-struct SideOcclusion {
-  uint sectors;   // occluded ones
-  float highest;  // position of the occluder nearest to the view vector; the tangent plane's without
+// What the search holds on to from sample to sample.
+struct Sheet {
+  LineSample last;
+  float slope;      // of `line` up to the last sample
+  float bend;       // at the last sample
+  float position;   // of the last sample's front
+  float distance;   // its distance from the shaded point
+  bool inside;      // whether it lies within the radius, on this side
+  uint sectors;     // occluded so far
 };
 
-SideOcclusion find_occluders(Surface surface, SliceLine line, Slice slice, SectorScale scale,
-                             float side, float offset) {
-  SideOcclusion found;
-  found.sectors = 0u;
-  found.highest = side > 0.0 ? 1.0 : 0.0;
-  float distance_px = search_distance(surface, line, slice, side);
-  if (distance_px < kNearestStep) {
-    return found;
-  }
-  vec2 direction = side * line.direction_px;
-  bool perspective = parameters.projection.eye.w > 0.0;
-  float per_px = abs(line.x_per_step);
-  float radius_squared = parameters.radius * parameters.radius;
-  float towards_eye = perspective ? 1.0 / (surface.depth * line.y_per_depth) : 0.0;
+float back_position(Side side, LineSample here) {
+  return edge_position(side.edges, here.point - vec2(0.0, parameters.thickness));
+}
 
-  Occluder before;
-  before.on_line.offset_px = 0.0;
-  before.on_line.line = perspective ? 1.0 / surface.depth : surface.depth;
-  before.point = vec2(0.0);
-  Occluder last = before;
-  float last_position = found.highest;
-  Occluder here = fetch_occluder(surface, line, direction,
-                                 step_distance_squared(0, kStepCount, offset, distance_px));
-  for (uint k = 0; k < kStepCount; ++k) {
-    Occluder next = here;
-    if (k + 1 < kStepCount) {
-      next = fetch_occluder(surface, line, direction,
-                            step_distance_squared(k + 1, kStepCount, offset, distance_px));
-      next.on_line.offset_px = max(next.on_line.offset_px, here.on_line.offset_px + 0.25);
-    }
-    float step_px = here.on_line.offset_px - last.on_line.offset_px;
-    float tolerance =
-        2.0 * per_px * (perspective ? min(here.on_line.line, last.on_line.line) : 1.0);
-    bool joined = k > 0 && (k + 1 < kStepCount
-                                ? samples_connect(before.on_line, last.on_line, here.on_line,
-                                                  next.on_line, tolerance)
-                                : abs(extrapolate(before.on_line, last.on_line,
-                                                  here.on_line.offset_px) -
-                                      here.on_line.line) < tolerance * step_px);
-    bool inside = dot(here.point, here.point) <= radius_squared && side * here.point.x > 0.0;
-    vec2 front = here.point;
-    if (!joined) {
-      front.x *= 1.0 - edge_share(kStepCount) * step_px / here.on_line.offset_px;
-    }
-    float position = position_of(slice, scale, side, front);
-    if (inside) {
-      vec2 behind = here.point + parameters.thickness * vec2(here.point.x * towards_eye, -1.0);
-      float covered = position_of(slice, scale, side, behind);
-      float low = min(position, covered);
-      float high = max(position, covered);
-      if (joined) {
-        low = min(low, last_position);
-        high = max(high, last_position);
-      }
-      found.sectors |= cover_sectors(low, high, 0.5);
-      found.highest = side > 0.0 ? min(found.highest, low) : max(found.highest, high);
-    }
-    before = last;
-    last = here;
-    last_position = position;
+// The first sample stands alone. Its edge is drawn in unless it lies on the surface's own plane.
+Sheet begin_sheet(Surface surface, Side side, LineSample here, LineSample next) {
+  Sheet sheet;
+  sheet.last = here;
+  sheet.slope = line_slope(here, next);
+  sheet.bend = (here.line - surface.tangent.line) * here.share - sheet.slope;
+  float squared = dot(here.point, here.point);
+  sheet.distance = sqrt(squared);
+  sheet.inside = within_radius(squared);
+  float height = dot(here.point, vec2(side.height_per_x, side.height_per_y));
+  bool above = height * abs(height) > 0.04 * squared;
+  vec2 front = vec2(here.point.x * (above ? 1.0 - edge_share(kStepCount) : 1.0), here.point.y);
+  sheet.position = edge_position(side.edges, front);
+  uint covered = sectors_between(sheet.position, back_position(side, here));
+  sheet.sectors = sheet.inside ? covered : 0u;
+  return sheet;
+}
+
+// Adds a sample, `bend` of the line at it: its thickness, and the sheet between it and the last one
+// if they are joined, each as far as it lies within the radius.
+void extend_sheet(inout Sheet sheet, Side side, LineSample here, float bend) {
+  bool joined = samples_join(sheet.bend, bend, side.sharp);
+  float squared = dot(here.point, here.point);
+  bool inside = within_radius(squared);
+  float step_px = here.offset_px - sheet.last.offset_px;
+  float drawn = joined ? 0.0 : edge_share(kStepCount) * step_px * here.share;
+  float position =
+      edge_position(side.edges, vec2(here.point.x * (1.0 - drawn), here.point.y));
+  float distance = sqrt(squared);
+  vec2 crossing = radius_crossing(here.point, distance, sheet.last.point, sheet.distance,
+                                  parameters.radius);
+  float cut = edge_position(side.edges, crossing);
+  float start = inside ? position : cut;
+  float end = inside ? back_position(side, here) : cut;
+  float low = min(start, end);
+  float high = max(start, end);
+  float joint = joined ? (sheet.inside ? sheet.position : cut) : start;
+  uint covered = sectors_between(min(low, joint), max(high, joint));
+  sheet.sectors |= inside || (joined && sheet.inside) ? covered : 0u;
+  sheet.last = here;
+  sheet.bend = bend;
+  sheet.position = position;
+  sheet.distance = distance;
+  sheet.inside = inside;
+}
+
+// The sectors that the samples of a side occlude. Each sample waits for the next one, which tells
+// how the line bends at it.
+uint find_occluders(Surface surface, Search search, Side side) {
+  LineSample here = fetch_sample(search, 1);
+  Sheet sheet = begin_sheet(surface, side, fetch_sample(search, 0), here);
+  for (uint k = 2; k < kStepCount; ++k) {
+    LineSample next = fetch_sample(search, k);
+    float slope = line_slope(here, next);
+    float bend = sheet.slope - slope;
+    extend_sheet(sheet, side, here, bend);
+    sheet.slope = slope;
     here = next;
   }
-  return found;
+  // Nothing tells how it ends: joined only if the way to it did not bend.
+  extend_sheet(sheet, side, here, -1e30 * sheet.bend);
+  return search.direction_px == vec2(0.0) ? 0u : sheet.sectors;
+}
+
+float bitmask_slice(Surface surface, SliceLine line, Slice slice, SectorScale scale,
+                    Search ahead, Search behind) {
+  uint front = find_occluders(surface, ahead, make_side(surface, line, slice, scale, 1.0));
+  uint back = find_occluders(surface, behind, make_side(surface, line, slice, scale, -1.0));
+  float thin = bitmask_visibility(scale, front | back);
+  float thick =
+      bitmask_visibility(scale, filled_sectors(1.0, front) | filled_sectors(-1.0, back));
+  return mix(thin, thick, parameters.fill);
 }
 
 SliceNoise noise_at(uvec2 block) {
@@ -192,24 +269,29 @@ SliceNoise noise_at(uvec2 block) {
   }
 }
 
+void store_signal(ivec2 block, float visible, float open, float line) {
+  Signal signal;
+  signal.visible = visible;
+  signal.open = open;
+  imageStore(signal_image, block, uvec4(pack_signal(signal), floatBitsToUint(line), 0u, 0u));
+}
+
 void main() {
   ivec2 block = ivec2(gl_GlobalInvocationID.xy);
-  ivec2 size = ivec2(parameters.projection.size_px);
-  if (any(greaterThanEqual(block * kDivisor, size))) {
+  if (any(greaterThanEqual(block * kDivisor, size_px()))) {
     return;
   }
-  ivec2 pixel = min(block * kDivisor + ivec2(parameters.phase), size - 1);
-  float depth = texelFetch(depth_image, pixel, 0).r;
-  if (is_sky_depth(depth)) {
-    imageStore(signal_image, block, vec4(1.0));
+  ivec2 pixel = min(block * kDivisor + ivec2(parameters.phase), size_px() - 1);
+  float centre_line = fetch_line(pixel);
+  if (centre_line == kSkyLine) {
+    store_signal(block, 1.0, 1.0, kSkyLine);
     if (kBentNormal) {
-      imageStore(bent_image, block, vec4(0.0));
+      imageStore(bent_image, block, uvec4(0u));
     }
     return;
   }
-  Surface surface = fetch_surface(pixel, depth);
+  Surface surface = fetch_surface(pixel, centre_line);
   ViewBasis basis = make_view_basis(surface.view);
-  vec2 per_px = ray_per_px(parameters.projection);
   SliceNoise noise = noise_at(uvec2(block));
 
   float visibility = 0.0;
@@ -218,28 +300,26 @@ void main() {
   for (uint i = 0; i < kSliceCount; ++i) {
     vec3 direction = slice_direction(basis, slice_angle(i, kSliceCount, noise.direction));
     Slice slice = make_slice(surface.normal, direction, surface.view);
-    SliceLine line = make_slice_line(per_px, surface.normal, direction, surface.view);
+    SliceLine line = make_slice_line(parameters.slope.xy, direction, surface.view);
+    Search ahead = make_search(surface, line, slice, 1.0, noise.offset);
+    Search behind = make_search(surface, line, slice, -1.0, noise.offset);
     if (kBitmask) {
       SectorScale scale = make_sector_scale(slice);
-      SideOcclusion front = find_occluders(surface, line, slice, scale, 1.0, noise.offset);
-      SideOcclusion back = find_occluders(surface, line, slice, scale, -1.0, noise.offset);
-      float thin = bitmask_visibility(scale, front.sectors | back.sectors);
-      float thick = scale.open * max(front.highest - back.highest, 0.0);
-      visibility += mix(thin, thick, parameters.fill);
+      visibility += bitmask_slice(surface, line, slice, scale, ahead, behind);
       weight += scale.open;
       continue;
     }
-    float ahead = find_horizon(surface, line, slice, 1.0, noise.offset);
-    float behind = find_horizon(surface, line, slice, -1.0, noise.offset);
-    visibility += slice_visibility(slice, ahead, behind);
+    float front = find_horizon(ahead);
+    float back = find_horizon(behind);
+    visibility += slice_visibility(slice, front, back);
     weight += open_slice(slice);
     if (kBentNormal) {
-      bent += slice_bent_normal(slice, direction, surface.view, ahead, behind);
+      bent += slice_bent_normal(slice, direction, surface.view, front, back);
     }
   }
   float mean = 1.0 / float(kSliceCount);
-  imageStore(signal_image, block, vec4(visibility * mean, weight * mean, 0.0, 0.0));
+  store_signal(block, visibility * mean, weight * mean, centre_line);
   if (kBentNormal) {
-    imageStore(bent_image, block, vec4(bent * mean, 0.0));
+    imageStore(bent_image, block, uvec4(pack_direction(bent * mean), 0u, 0u));
   }
 }

@@ -18,7 +18,7 @@
 #include "maths/history.h"
 #include "maths/projection.h"
 #include "maths/reprojection.h"
-#include "maths/slice_line.h"
+#include "maths/signal.h"
 #include "reconstruct_parameters.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -27,12 +27,16 @@ layout(constant_id = 0) const int kDivisor = 1;
 layout(constant_id = 1) const int kReach = 2;
 layout(constant_id = 2) const bool kBentNormal = false;
 layout(constant_id = 3) const bool kMotion = false;
+layout(constant_id = 4) const bool kPerspective = true;
+layout(constant_id = 5) const bool kClamp = false;
+layout(constant_id = 6) const bool kReversed = false;
+layout(constant_id = 7) const bool kStill = false;  // nothing moved since the last frame
 
 layout(set = 0, binding = 0) uniform Parameters { ReconstructParameters parameters; };
-layout(set = 0, binding = 1) uniform texture2D signal_image;  // visible, open; one texel a block
-layout(set = 0, binding = 2) uniform texture2D bent_image;    // where there is none, the signal
-layout(set = 0, binding = 3) uniform texture2D depth_image;   // linear, every pixel
-layout(set = 0, binding = 4) uniform texture2D normal_image;  // xyz, turned by view_from_normal
+layout(set = 0, binding = 1) uniform utexture2D signal_image;  // signal, line; one texel a block
+layout(set = 0, binding = 2) uniform utexture2D bent_image;    // where there is none, the signal
+layout(set = 0, binding = 3) uniform texture2D depth_image;    // as the projection wrote it
+layout(set = 0, binding = 4) uniform texture2D normal_image;   // xyz
 layout(set = 0, binding = 5) uniform writeonly image2D visibility_image;
 // In the space of the normals; bound to the visibility and never written where there is none.
 layout(set = 0, binding = 6) uniform writeonly image2D bent_normal_image;
@@ -46,105 +50,128 @@ layout(set = 0, binding = 11) uniform writeonly image2D next_bent_history_image;
 
 struct Surface {
   ivec2 pixel;
-  vec2 uv;
-  float depth;
-  vec3 position;  // view space
-  vec3 normal;    // unit, view space
-  // Distance to the tangent plane as a linear form: a neighbour at offset (i, j) and depth z lies
-  // s * (i * plane_per_px.x + j * plane_per_px.y) + (z - depth) * plane_per_depth from it, in
-  // tolerances.
-  vec2 plane_per_px;
-  float plane_per_depth;
+  vec2 centre;    // of the pixel, pixels
+  float line;     // linear along the image of any plane: 1/depth in perspective, depth otherwise
+  float depth;    // linear
+  vec2 gradient;  // of `line` on the tangent plane, for each pixel
+  float stiffness;  // tolerances that a unit of `line` off the tangent plane stands for
+  float slant;    // cosine between normal and view vector, on the axis
 };
 
 // What is added up: over neighbours, then over frames.
 struct Sum {
-  vec2 signal;
+  Signal signal;
   vec3 bent;
 };
 
 struct Neighbourhood {
   Sum sum;
-  float weight;
   Spread spread;  // of the visibility
 };
 
-Surface fetch_surface(ivec2 pixel, float depth) {
-  Projection projection = parameters.projection;
+ivec2 size_px() { return textureSize(depth_image, 0); }
+
+// As is_sky_ndc() has it.
+bool is_sky(float ndc) { return kReversed ? !(ndc > 0.0) : !(ndc < 1.0); }
+
+Surface fetch_surface(ivec2 pixel, float ndc) {
   Surface surface;
   surface.pixel = pixel;
-  surface.uv = pixel_centre_uv(projection, uvec2(pixel));
-  surface.depth = depth;
-  surface.position = position_vs(projection, surface.uv, depth);
-  surface.normal =
-      normalize(mat3(parameters.view_from_normal) * texelFetch(normal_image, pixel, 0).xyz);
-  vec2 per_px = ray_per_px(projection);
-  float tolerance =
-      parameters.tolerance_px * abs(per_px.y) * sample_scale(projection, depth);
-  vec3 ray = position_vs(projection, surface.uv, 1.0) - position_vs(projection, surface.uv, 0.0);
-  surface.plane_per_px = per_px * surface.normal.xy / tolerance;
-  surface.plane_per_depth = dot(surface.normal, ray) / tolerance;
+  surface.centre = vec2(pixel) + 0.5;
+  surface.line = parameters.line_from_ndc.x * ndc + parameters.line_from_ndc.y;
+  surface.depth = kPerspective ? 1.0 / surface.line : surface.line;
+  vec3 plane = mat3(parameters.plane_from_normal) * texelFetch(normal_image, pixel, 0).xyz;
+  // How the distance from the plane grows with depth along the pixel's ray. Seen edge-on, a plane
+  // would run to any depth.
+  float along = plane.z + (kPerspective ? dot(surface.centre, plane.xy) : 0.0);
+  surface.slant = max(abs(along), 0.02);
+  float per_line = (along < 0.0 ? -1.0 : 1.0) / surface.slant;
+  surface.gradient = plane.xy * (kPerspective ? surface.line * per_line : -per_line);
+  surface.stiffness =
+      surface.slant * parameters.tolerance * (kPerspective ? surface.depth : 1.0);
   return surface;
 }
 
-float plane_distance_weight(Surface surface, vec2 offset, float depth) {
-  float distance = sample_scale(parameters.projection, depth) * dot(offset, surface.plane_per_px) +
-                   (depth - surface.depth) * surface.plane_per_depth;
-  return max(1.0 - abs(distance), 0.0);
-}
-
-Sum fetch_sum(ivec2 block, float weight) {
+Sum no_sum() {
   Sum sum;
-  sum.signal = weight * texelFetch(signal_image, block, 0).rg;
-  sum.bent = kBentNormal ? weight * texelFetch(bent_image, block, 0).xyz : vec3(0.0);
+  sum.signal.visible = 0.0;
+  sum.signal.open = 0.0;
+  sum.bent = vec3(0.0);
   return sum;
 }
 
-// The searches of the blocks around a pixel. `narrowness` is 1 / (2 width^2), width in pixels.
-Neighbourhood gather(Surface surface, int reach, float narrowness) {
-  ivec2 size = ivec2(parameters.projection.size_px);
-  ivec2 last_block = (size + kDivisor - 1) / kDivisor - 1;
-  ivec2 centre = surface.pixel / kDivisor;
-  ivec2 phase = ivec2(parameters.phase);
-  ivec2 low = max(centre - reach, ivec2(0));
-  ivec2 high = min(centre + reach, last_block);
+void add(inout Sum sum, float weight, Signal signal, vec3 bent) {
+  sum.signal.visible += weight * signal.visible;
+  sum.signal.open += weight * signal.open;
+  if (kBentNormal) {
+    sum.bent += weight * bent;
+  }
+}
 
+// The blocks that a pixel looks at: all within reach, or only those whose searched pixels stand
+// around it.
+struct Window {
+  ivec2 low;
+  ivec2 high;
+  float narrowness;  // a neighbour at distance d weighs 1 / (1 + narrowness d^2)^4
+};
+
+ivec2 last_block() {
+  return (size_px() + (kDivisor - 1)) / kDivisor - 1;
+}
+
+Window window_within(ivec2 pixel, int reach, float width_px) {
+  Window window;
+  window.low = max(pixel / kDivisor - reach, ivec2(0));
+  window.high = min(pixel / kDivisor + reach, last_block());
+  window.narrowness = 0.125 / (width_px * width_px);
+  return window;
+}
+
+// What a neighbour's search weighs: it falls with the distance on the image and with that from the
+// tangent plane, and never to nothing. Where no neighbour lies on the plane the nearest to it count.
+float neighbour_weight(Surface surface, Window window, vec2 offset, float line) {
+  float off_plane =
+      (line - surface.line - dot(offset, surface.gradient)) * surface.stiffness;
+  float near = 1.0 + window.narrowness * dot(offset, offset);
+  near *= near;
+  return 1.0 / (near * near * (1.0 + off_plane * off_plane));
+}
+
+Neighbourhood gather(Surface surface, Window window) {
+  ivec2 last = size_px() - 1;
+  ivec2 phase = ivec2(parameters.phase);
   Neighbourhood found;
-  found.sum.signal = vec2(0.0);
-  found.sum.bent = vec3(0.0);
-  found.weight = 0.0;
-  float squares = 0.0;
-  float plain = 0.0;
-  for (int y = low.y; y <= high.y; ++y) {
-    for (int x = low.x; x <= high.x; ++x) {
-      ivec2 searched = min(ivec2(x, y) * kDivisor + phase, size - 1);
-      vec2 offset = vec2(searched - surface.pixel);
-      float depth = texelFetch(depth_image, searched, 0).r;
-      // A little everywhere: where no neighbour lies on the plane their plain mean is all there is.
-      float weight = exp(-dot(offset, offset) * narrowness) *
-                     max(plane_distance_weight(surface, offset, depth), 1e-4);
-      Sum more = fetch_sum(ivec2(x, y), weight);
-      found.sum.signal += more.signal;
-      found.sum.bent += more.bent;
-      found.weight += weight;
-#ifdef HISTORY
-      float visibility = more.signal.x / max(more.signal.y, 1e-9);
-      plain += weight * visibility;
-      squares += weight * visibility * visibility;
-#endif
+  found.sum = no_sum();
+  vec3 moments = vec3(0.0);
+  for (int y = window.low.y; y <= window.high.y; ++y) {
+    for (int x = window.low.x; x <= window.high.x; ++x) {
+      uvec2 stored = texelFetch(signal_image, ivec2(x, y), 0).xy;
+      ivec2 searched = min(ivec2(x, y) * kDivisor + phase, last);
+      float weight = neighbour_weight(surface, window, vec2(searched - surface.pixel),
+                                      uintBitsToFloat(stored.y));
+      Signal signal = unpack_signal(stored.x);
+      vec3 bent = kBentNormal ? unpack_direction(texelFetch(bent_image, ivec2(x, y), 0).xy)
+                              : vec3(0.0);
+      add(found.sum, weight, signal, bent);
+      if (kClamp) {
+        float visibility = signal.visible / max(signal.open, 1e-9);
+        moments += weight * vec3(1.0, visibility, visibility * visibility);
+      }
     }
   }
-  found.spread = spread_of_sums(plain / found.weight, squares / found.weight, 1.0);
+  if (kClamp) {
+    found.spread = spread_of_sums(moments.y / moments.x, moments.z / moments.x, 1.0);
+  }
   return found;
 }
 
 void store(ivec2 pixel, Sum sum) {
-  float visibility = mean_visibility(sum.signal.x, sum.signal.y);
+  float visibility = mean_visibility(sum.signal.visible, sum.signal.open);
   imageStore(visibility_image, pixel, vec4(visibility));
   if (kBentNormal) {
-    mat3 normal_from_view = transpose(mat3(parameters.view_from_normal));
     vec3 fallback = texelFetch(normal_image, pixel, 0).xyz;
-    vec3 bent = finish_bent_normal(normal_from_view * sum.bent, fallback);
+    vec3 bent = finish_bent_normal(mat3(parameters.normal_from_view) * sum.bent, fallback);
     imageStore(bent_normal_image, pixel, vec4(bent, 0.0));
   }
 }
@@ -157,83 +184,109 @@ struct History {
   float count;  // frames; 0 where nothing of this surface is known
 };
 
-// Means in 16 bits each, depth as a half, and the count: 8 bytes a pixel. Rounding is to nearest, and
-// finer than the noise by far, so that means neither drift nor lock.
-const float kLargestMean = 8.0;  // of a window's weights (below 4) times an open slice (below pi/2)
+const float kDepthTolerance = 0.01;  // of the depth, for a surface seen head-on
+const float kLargestDepth = 6e4;     // of a half
+const float kSettled = 8.0;          // frames from which a pixel needs only its closest neighbours
 
 uvec2 pack_history(History history, float depth) {
-  return uvec2(packUnorm2x16(history.sum.signal / kLargestMean),
-               packHalf2x16(vec2(min(depth, 6e4), history.count)));
+  return uvec2(pack_signal(history.sum.signal),
+               packHalf2x16(vec2(min(depth, kLargestDepth), history.count)));
 }
 
-const float kDepthTolerance = 0.01;  // of the depth, for a surface seen head-on
+// Where the surface was on the last frame's image: xy in pixels, z its depth there, w 0 if it was
+// not on it.
+vec4 reproject(Surface surface) {
+  float scale = kPerspective ? surface.depth : 1.0;
+  vec4 before = parameters.previous_from_pixel * vec4(surface.centre * scale, surface.depth, 1.0);
+  vec2 position = before.xy / before.w;
+  if (kMotion) {
+    vec2 motion = texelFetch(motion_image, surface.pixel, 0).rg;
+    position = surface.centre - motion * vec2(size_px());
+  }
+  bool seen = before.w > 1e-6 && all(greaterThanEqual(position, vec2(0.0))) &&
+              all(lessThanEqual(position, vec2(size_px())));
+  return seen ? vec4(position, before.z, 1.0) : vec4(0.0);
+}
+
+// A texel of history, all of it or none as its depth tells whether it is of the same surface.
+float add_history(inout History history, Surface surface, ivec2 texel, float depth, float share) {
+  uvec2 stored = texelFetch(history_image, texel, 0).xy;
+  vec2 depth_and_count = unpackHalf2x16(stored.y);
+  float weight = share * history_weight(min(depth, kLargestDepth), depth_and_count.x,
+                                        kDepthTolerance, surface.slant);
+  vec3 bent = kBentNormal ? texelFetch(bent_history_image, texel, 0).xyz : vec3(0.0);
+  add(history.sum, weight, unpack_signal(stored.x), bent);
+  history.count += weight * depth_and_count.y;
+  return weight;
+}
 
 History read_history(Surface surface) {
   History history;
-  history.sum.signal = vec2(0.0);
-  history.sum.bent = vec3(0.0);
+  history.sum = no_sum();
   history.count = 0.0;
-  Reprojected before =
-      reproject_camera(parameters.previous, parameters.previous_view_from_view, surface.position);
-  if (kMotion) {
-    vec2 motion = texelFetch(motion_image, surface.pixel, 0).rg;
-    before = reproject_motion(parameters.previous, parameters.previous_view_from_view,
-                              surface.position, surface.uv, motion);
-  }
-  if (parameters.history_valid == 0u || before.valid == 0.0) {
-    return history;
-  }
-  ivec2 last = ivec2(parameters.projection.size_px) - 1;
-  BilinearTaps taps = bilinear_taps(before.uv, parameters.projection.size_px);
-  vec3 view = view_vector(parameters.projection, surface.position);
-  float slant = dot(surface.normal, view);
   float weight_sum = 0.0;
-  for (int i = 0; i < 4; ++i) {
-    float weight = taps.weights[i];
-    // Where nothing moves three of the four weigh next to nothing and are not read.
-    if (weight > 0.01) {
-      ivec2 texel = clamp(ivec2(taps.first) + ivec2(i & 1, i >> 1), ivec2(0), last);
-      uvec2 stored = texelFetch(history_image, texel, 0).xy;
-      vec2 depth_and_count = unpackHalf2x16(stored.y);
-      weight *= history_weight(min(before.depth, 6e4), depth_and_count.x, kDepthTolerance, slant);
-      history.sum.signal += weight * kLargestMean * unpackUnorm2x16(stored.x);
-      if (kBentNormal) {
-        history.sum.bent += weight * texelFetch(bent_history_image, texel, 0).xyz;
-      }
-      history.count += weight * depth_and_count.y;
-      weight_sum += weight;
+  if (kStill) {
+    weight_sum = add_history(history, surface, surface.pixel, surface.depth, 1.0);
+  } else {
+    vec4 before = reproject(surface);
+    vec2 first = floor(before.xy - 0.5);
+    vec2 part = before.xy - 0.5 - first;
+    for (int i = 0; i < 4; ++i) {
+      ivec2 corner = ivec2(i & 1, i >> 1);
+      ivec2 texel = clamp(ivec2(first) + corner, ivec2(0), size_px() - 1);
+      vec2 near = abs(1.0 - vec2(corner) - part);
+      weight_sum += add_history(history, surface, texel, before.z, near.x * near.y * before.w);
     }
   }
-  if (weight_sum < 0.05) {
-    history.count = 0.0;
-    return history;
-  }
-  float scale = 1.0 / weight_sum;
-  history.sum.signal *= scale;
+  float scale = weight_sum < 0.05 ? 0.0 : 1.0 / weight_sum;
+  history.sum.signal.visible *= scale;
+  history.sum.signal.open *= scale;
   history.sum.bent *= scale;
   history.count *= scale;
   return history;
 }
 
-// The pixel's sums with this frame's neighbourhood added.
-History advance(Surface surface, History history) {
-  // Wide while a pixel has little of its own, then hardly more than the pixel itself.
-  float width = max(0.8, 2.0 * inversesqrt(history.count + 1.0));
-  Neighbourhood now =
-      gather(surface, history.count < 8.0 ? kReach : 1, 0.5 / (width * width));
-  // Not divided by the weight found: a frame that searched the pixel itself counts for more than one
-  // that searched its neighbours. Divided by the window's size, so that wide ones do not.
-  float scale = 0.64 / (width * width);
-  History next;
-  if (history.count > 0.0 && parameters.clamp_width > 0.0) {
-    float before = mean_visibility(history.sum.signal.x, history.sum.signal.y);
-    float after = clamp_to_spread(before, now.spread, parameters.clamp_width);
-    history.sum.signal.x = after * history.sum.signal.y;
+// A block of 4 gives a pixel few searches of its own even in time.
+const float kWidth = kDivisor > 2 ? 2.5 : 1.0;
+
+// Wide while a pixel has little of its own, then hardly more than the pixel itself.
+float window_width(float count) { return max(0.65 * kWidth, 2.0 * inversesqrt(count + 1.0)); }
+
+Window window_of(Surface surface, float count) {
+  Window window = window_within(surface.pixel, kReach, window_width(count));
+  if (kDivisor > 1 && count >= kSettled) {
+    ivec2 from_phase = surface.pixel - ivec2(parameters.phase);
+    window.low = clamp((from_phase + kDivisor) / kDivisor - 1, ivec2(0), last_block());
+    window.high =
+        clamp((from_phase + (2 * kDivisor - 1)) / kDivisor - 1, ivec2(0), last_block());
+  }
+  return window;
+}
+
+void clamp_history(inout History history, Spread spread) {
+  float before = mean_visibility(history.sum.signal.visible, history.sum.signal.open);
+  float after = clamp_to_spread(before, spread, parameters.clamp_width);
+  if (history.count > 0.0) {
+    history.sum.signal.visible = after * history.sum.signal.open;
     history.count = count_after_clamp(history.count, before, after, 0.25);
   }
-  float weight = accumulation_weight(history.count, parameters.longest);
-  next.sum.signal = mix(history.sum.signal, now.sum.signal * scale, weight);
-  next.sum.bent = mix(history.sum.bent, now.sum.bent * scale, weight);
+}
+
+// The pixel's sums with this frame's neighbourhood added.
+History advance(Surface surface, History history) {
+  Neighbourhood now = gather(surface, window_of(surface, history.count));
+  if (kClamp) {
+    clamp_history(history, now.spread);
+  }
+  // Not divided by the weight found: a frame that searched the pixel itself counts for more than one
+  // that searched its neighbours. Divided by the window's size, so that wide ones do not.
+  float width = window_width(history.count);
+  float fresh = accumulation_weight(history.count, parameters.longest);
+  float scale = 0.42 * kWidth * kWidth / (width * width) * fresh;
+  History next;
+  next.sum = no_sum();
+  add(next.sum, 1.0 - fresh, history.sum.signal, history.sum.bent);
+  add(next.sum, scale, now.sum.signal, now.sum.bent);
   next.count = next_count(history.count, parameters.longest);
   return next;
 }
@@ -252,26 +305,23 @@ void reconstruct(Surface surface) {
 
 void reconstruct(Surface surface) {
   float width = float(kDivisor) * (kReach > 1 ? 1.5 : 1.0);
-  store(surface.pixel, gather(surface, kReach, 0.5 / (width * width)).sum);
+  store(surface.pixel, gather(surface, window_within(surface.pixel, kReach, width)).sum);
 }
 
 #endif
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, ivec2(parameters.projection.size_px)))) {
+  if (any(greaterThanEqual(pixel, size_px()))) {
     return;
   }
-  float depth = texelFetch(depth_image, pixel, 0).r;
-  if (is_sky_depth(depth)) {
-    Sum open;
-    open.signal = vec2(1.0);
-    open.bent = vec3(0.0);
-    store(pixel, open);
+  float ndc = texelFetch(depth_image, pixel, 0).r;
+  if (is_sky(ndc)) {
+    store(pixel, no_sum());
 #ifdef HISTORY
     imageStore(next_history_image, pixel, uvec4(0u));
 #endif
     return;
   }
-  reconstruct(fetch_surface(pixel, depth));
+  reconstruct(fetch_surface(pixel, ndc));
 }

@@ -1,20 +1,23 @@
 #ifndef ALCOVE_RECONSTRUCT_PARAMETERS_H
 #define ALCOVE_RECONSTRUCT_PARAMETERS_H
 
-#include "maths/projection.h"
+#include "maths/language.h"
 
 ALCOVE_MATHS_BEGIN
 
 struct ReconstructParameters {
-  Projection projection;
-  Projection previous;          // of the frame before
-  mat4 view_from_normal;        // rotation from the space of the normals to view space
-  mat4 previous_view_from_view;  // from this frame's view space to the previous one's
-  vec2 phase;                   // which pixel of each block was searched this frame
-  float tolerance_px;           // distance from the tangent plane where a weight is 0, in pixel sizes
-  float longest;                // frames that history counts at most
-  float clamp_width;            // history is held to so many deviations of this frame's neighbourhood
-  uint history_valid;           // 0 or 1
+  // To the image of the frame before, from (x s, y s, depth, 1), x and y in pixels and s as
+  // sample_scale(): x w and y w in pixels, the depth there, and w. Zeros where there is no history.
+  mat4 previous_from_pixel;
+  // From a normal, as it is stored, to its plane on the image: dot((x s, y s, depth), result) is
+  // constant on the plane, x and y in pixels.
+  mat4 plane_from_normal;
+  mat4 normal_from_view;  // rotation from view space to the space of the normals
+  vec2 line_from_ndc;     // LineSample::line = x * depth_ndc + y
+  vec2 phase;             // which pixel of each block was searched this frame
+  float tolerance;        // scale of distances from the tangent plane, in depths
+  float longest;          // frames that history counts at most
+  float clamp_width;      // history is held to so many deviations of this frame's neighbourhood
 };
 
 ALCOVE_MATHS_END

@@ -5,6 +5,7 @@
 
 #include "check_inputs.h"
 #include "gtao_parameters.h"
+#include "maths/slice_line.h"
 #include "search_phase.h"
 #include "view_parameters.h"
 
@@ -21,7 +22,7 @@ tl::expected<void, Error> check(const GtaoSettings& settings) {
     return tl::unexpected(Error{"The occlusion radius is " + std::to_string(settings.radius) +
                                 "; it must be a length over 0 in the scene's units."});
   }
-  if (settings.slices < 1 || settings.slices > 64 || settings.steps < 1 || settings.steps > 64) {
+  if (settings.slices < 1 || settings.slices > 64 || settings.steps < 2 || settings.steps > 64) {
     return tl::unexpected(Error{"There are " + std::to_string(settings.slices) + " slices of " +
                                 std::to_string(settings.steps) +
                                 " steps; each number must be 1 to 64."});
@@ -41,15 +42,11 @@ tl::expected<void, Error> check(const GtaoSettings& settings) {
 
 // The textures that the pass writes, made for the graph but not yet written.
 OcclusionSignal create_signal(const Frame& frame, Texture depth, const GtaoSettings& settings) {
-  const bool precise = settings.precision == Precision::float32;
   const auto size = framegraph::Extent::relative(depth, settings.divisor);
   OcclusionSignal result{.divisor = settings.divisor};
-  result.signal = frame.graph.create_texture(
-      "occlusion signal", {precise ? VK_FORMAT_R32G32_SFLOAT : VK_FORMAT_R16G16_SFLOAT, size});
+  result.signal = frame.graph.create_texture("occlusion signal", {VK_FORMAT_R32G32_UINT, size});
   if (settings.bent_normal) {
-    result.bent = frame.graph.create_texture(
-        "bent signal",
-        {precise ? VK_FORMAT_R32G32B32A32_SFLOAT : VK_FORMAT_R16G16B16A16_SFLOAT, size});
+    result.bent = frame.graph.create_texture("bent signal", {VK_FORMAT_R32G32_UINT, size});
   }
   return result;
 }
@@ -61,11 +58,11 @@ tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame, const GtaoInpu
   if (auto good = check(settings); !good) {
     return tl::unexpected(good.error());
   }
-  const std::array<NamedInput, 2> needed{{{"depth", inputs.depth}, {"normals", inputs.normals}}};
+  const std::array<NamedInput, 2> needed{{{"depth", inputs.depth_ndc}, {"normals", inputs.normals}}};
   if (auto good = check_inputs(frame.graph, "gtao", needed); !good) {
     return tl::unexpected(good.error());
   }
-  const auto projection = projection_of(frame, frame.view, inputs.depth);
+  const auto projection = projection_of(frame, frame.view, inputs.depth_ndc);
   if (!projection) {
     return tl::unexpected(projection.error());
   }
@@ -74,15 +71,17 @@ tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame, const GtaoInpu
                              static_cast<std::uint32_t>(settings.bent_normal),
                              static_cast<std::uint32_t>(settings.estimator == Estimator::bitmask),
                              settings.divisor,
-                             static_cast<std::uint32_t>(settings.pattern)};
+                             static_cast<std::uint32_t>(settings.pattern),
+                             static_cast<std::uint32_t>(is_perspective(*projection)),
+                             static_cast<std::uint32_t>(is_reversed(*projection))};
   const auto kernel = frame.kernels.get(Shader::gtao, constants);
   if (!kernel) {
     return tl::unexpected(kernel.error());
   }
 
-  OcclusionSignal result = create_signal(frame, inputs.depth, settings);
+  OcclusionSignal result = create_signal(frame, inputs.depth_ndc, settings);
   auto pass = frame.graph.add_pass("gtao");
-  pass.read(inputs.depth, framegraph::access::sampled_compute);
+  pass.read(inputs.depth_ndc, framegraph::access::sampled_compute);
   pass.read(inputs.normals, framegraph::access::sampled_compute);
   const auto& stored = framegraph::access::storage_write_compute;
   result.signal = pass.write(result.signal, stored, {}, framegraph::Contents::discard);
@@ -90,9 +89,11 @@ tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame, const GtaoInpu
     result.bent = pass.write(result.bent, stored, {}, framegraph::Contents::discard);
   }
   const SearchPhase phase = search_phase(settings.divisor, frame.index);
+  const maths::vec2 per_px = maths::ray_per_px(*projection);
   const maths::GtaoParameters parameters{
-      *projection,
       view_from_normal(frame, inputs.normals_in_view_space),
+      maths::vec4(per_px, projection->uv_to_slope.z, projection->uv_to_slope.w),
+      line_from_ndc(*projection),
       maths::vec2(static_cast<float>(phase.x), static_cast<float>(phase.y)),
       settings.radius,
       frame.index,
@@ -101,8 +102,8 @@ tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame, const GtaoInpu
   pass.record([&kernels = frame.kernels, kernel = *kernel, inputs, result,
                parameters](RecordContext& context) {
     const VkImageView signal = context.view(result.signal);
-    const std::array views{context.view(inputs.depth), context.view(inputs.normals), signal,
-                           result.bent ? context.view(result.bent) : signal};
+    const std::array views{context.view(inputs.depth_ndc), context.view(inputs.normals), signal,
+                           context.view(result.bent ? result.bent : result.signal)};
     kernels.dispatch(context, kernel, views, bytes_of(parameters), context.extent(result.signal));
   });
   return result;

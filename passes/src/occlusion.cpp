@@ -15,14 +15,14 @@ OcclusionSettings quality_settings(Quality quality, float radius) {
   settings.radius = radius;
   switch (quality) {
     case Quality::low:
-      settings.divisor = 2;
-      settings.steps = 5;
+      settings.divisor = 4;
+      settings.steps = 8;
       settings.filter_reach = 1;
       settings.history_frames = 32;
       break;
     case Quality::medium:
-      settings.divisor = 2;
-      settings.steps = 8;
+      settings.divisor = 4;
+      settings.steps = 12;
       settings.filter_reach = 1;
       settings.history_frames = 32;
       break;
@@ -72,9 +72,8 @@ tl::expected<OcclusionOutputs, Error> add_occlusion(const Frame& frame,
                           .fill = settings.fill,
                           .divisor = settings.divisor,
                           .pattern = settings.pattern,
-                          .bent_normal = settings.bent_normal,
-                          .precision = settings.precision};
-  const auto signal = add_gtao(frame, {*depth, normals, in_view_space}, gtao);
+                          .bent_normal = settings.bent_normal};
+  const auto signal = add_gtao(frame, {inputs.depth_ndc, normals, in_view_space}, gtao);
   if (!signal) {
     return tl::unexpected(signal.error());
   }
@@ -83,7 +82,7 @@ tl::expected<OcclusionOutputs, Error> add_occlusion(const Frame& frame,
                                         .history_frames = settings.history_frames,
                                         .clamp_width = settings.clamp_width,
                                         .precision = settings.precision};
-  return add_reconstruct(frame, {*signal, *depth, normals, in_view_space, inputs.motion},
+  return add_reconstruct(frame, {*signal, inputs.depth_ndc, normals, in_view_space, inputs.motion},
                          reconstruct, history_name)
       .map([&](const Occlusion& filtered) {
         return OcclusionOutputs{filtered.visibility, filtered.bent_normal, *depth, normals};

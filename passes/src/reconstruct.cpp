@@ -6,6 +6,7 @@
 #include <string>
 
 #include "check_inputs.h"
+#include "maths/slice_line.h"
 #include "reconstruct_parameters.h"
 #include "search_phase.h"
 #include "view_parameters.h"
@@ -46,9 +47,9 @@ tl::expected<void, Error> check(const ReconstructSettings& settings) {
 
 tl::expected<void, Error> check_textures(const Frame& frame, const ReconstructInputs& inputs) {
   const std::array<NamedInput, 3> needed{
-      {{"depth", inputs.depth},
+      {{"depth", inputs.depth_ndc},
        {"normals", inputs.normals},
-       {"motion vectors", inputs.motion ? inputs.motion : inputs.depth}}};
+       {"motion vectors", inputs.motion ? inputs.motion : inputs.depth_ndc}}};
   return check_inputs(frame.graph, "reconstruct", needed);
 }
 
@@ -89,7 +90,7 @@ Textures create_textures(const Frame& frame, const ReconstructInputs& inputs,
                          const ReconstructSettings& settings, std::string_view history_name,
                          bool& valid) {
   Graph& graph = frame.graph;
-  const VkExtent3D extent = graph.extent(inputs.depth);
+  const VkExtent3D extent = graph.extent(inputs.depth_ndc);
   const auto size = framegraph::Extent::absolute(extent.width, extent.height);
   Textures textures{.inputs = inputs};
   textures.result.visibility =
@@ -130,7 +131,7 @@ void declare_accesses(framegraph::PassBuilder& pass, Textures& textures) {
   };
   read(textures.inputs.signal.signal);
   read(textures.inputs.signal.bent);
-  read(textures.inputs.depth, Range::mip(0));
+  read(textures.inputs.depth_ndc);
   read(textures.inputs.normals);
   read(textures.inputs.motion);
   read(textures.history);
@@ -154,15 +155,59 @@ Bindings bindings_of(RecordContext& context, const Textures& textures) {
   const Occlusion& out = textures.result;
   return {context.view(in.signal.signal),
           view_or(in.signal.bent, in.signal.signal),
-          context.view(in.depth),
+          context.view(in.depth_ndc),
           context.view(in.normals),
           context.view(out.visibility),
           view_or(out.bent_normal, out.visibility),
-          view_or(in.motion, in.depth),
+          view_or(in.motion, in.depth_ndc),
           view_or(textures.history, {}),
-          view_or(textures.bent_history, in.signal.signal),
+          view_or(textures.bent_history, in.depth_ndc),
           view_or(textures.next_history, {}),
           view_or(textures.next_bent_history, out.visibility)};
+}
+
+// View-space positions from (x s, y s, depth, 1), as ReconstructParameters::previous_from_pixel has
+// them.
+maths::mat4 view_from_pixel(const maths::Projection& p) {
+  const maths::vec2 per_px = maths::ray_per_px(p);
+  maths::mat4 m(0.0f);
+  m[0][0] = per_px.x;
+  m[1][1] = per_px.y;
+  m[2] = maths::vec4(p.uv_to_slope.z, p.uv_to_slope.w, -1.0f, 0.0f);
+  m[3] = maths::vec4(p.uv_to_origin.z, p.uv_to_origin.w, 0.0f, 1.0f);
+  return m;
+}
+
+// From view-space positions to (x w, y w, depth, w), x and y in pixels.
+maths::mat4 pixel_from_view(const maths::Projection& p) {
+  maths::mat4 m(0.0f);
+  m[0][0] = p.position_to_uv.x * p.size_px.x;
+  m[1][1] = p.position_to_uv.y * p.size_px.y;
+  m[2] = -maths::vec4(p.depth_to_uv.x * p.size_px.x, p.depth_to_uv.y * p.size_px.y, 1.0f,
+                      p.depth_to_uv.z);
+  m[3] = maths::vec4(p.position_to_uv.z * p.size_px.x, p.position_to_uv.w * p.size_px.y, 0.0f,
+                     p.depth_to_uv.w);
+  return m;
+}
+
+maths::ReconstructParameters parameters_of(const Frame& frame, const maths::Projection& projection,
+                                           const maths::Projection& previous,
+                                           bool normals_in_view_space,
+                                           const ReconstructSettings& settings) {
+  const maths::mat4 from_pixel = view_from_pixel(projection);
+  const maths::mat4 to_previous = to_mat4(frame.previous_view.view_from_world) *
+                                  maths::inverse(to_mat4(frame.view.view_from_world));
+  const maths::mat4 to_view = view_from_normal(frame, normals_in_view_space);
+  maths::ReconstructParameters parameters{};
+  parameters.previous_from_pixel = pixel_from_view(previous) * to_previous * from_pixel;
+  parameters.plane_from_normal =
+      maths::mat4(maths::transpose(maths::mat3(from_pixel)) * maths::mat3(to_view));
+  parameters.normal_from_view = maths::transpose(to_view);
+  parameters.line_from_ndc = line_from_ndc(projection);
+  parameters.tolerance = 1.0f / (settings.tolerance_px * std::abs(maths::ray_per_px(projection).y));
+  parameters.longest = static_cast<float>(settings.history_frames);
+  parameters.clamp_width = settings.clamp_width;
+  return parameters;
 }
 
 }  // namespace
@@ -176,17 +221,23 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& frame, const Reconst
   if (auto good = check_textures(frame, inputs); !good) {
     return tl::unexpected(good.error());
   }
-  const auto projection = projection_of(frame, frame.view, inputs.depth);
-  const auto previous = projection_of(frame, frame.previous_view, inputs.depth);
+  const auto projection = projection_of(frame, frame.view, inputs.depth_ndc);
+  const auto previous = projection_of(frame, frame.previous_view, inputs.depth_ndc);
   if (!projection || !previous) {
     return tl::unexpected(projection ? previous.error() : projection.error());
   }
   bool history_valid = false;
   Textures textures = create_textures(frame, inputs, settings, history_name, history_valid);
   const bool history = settings.history_frames > 0;
-  const std::array constants{inputs.signal.divisor, settings.reach,
+  const bool still = history_valid && !inputs.motion && frame.view == frame.previous_view;
+  const std::array constants{inputs.signal.divisor,
+                             settings.reach,
                              static_cast<std::uint32_t>(bool(inputs.signal.bent)),
-                             static_cast<std::uint32_t>(bool(inputs.motion))};
+                             static_cast<std::uint32_t>(bool(inputs.motion)),
+                             static_cast<std::uint32_t>(is_perspective(*projection)),
+                             static_cast<std::uint32_t>(settings.clamp_width > 0.0f),
+                             static_cast<std::uint32_t>(is_reversed(*projection)),
+                             static_cast<std::uint32_t>(still)};
   const auto kernel =
       frame.kernels.get(history ? Shader::reconstruct_history : Shader::reconstruct, constants);
   if (!kernel) {
@@ -195,17 +246,12 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& frame, const Reconst
   auto pass = frame.graph.add_pass("reconstruct");
   declare_accesses(pass, textures);
   const auto [phase_x, phase_y] = search_phase(inputs.signal.divisor, frame.index);
-  const maths::ReconstructParameters parameters{
-      *projection,
-      *previous,
-      view_from_normal(frame, inputs.normals_in_view_space),
-      to_mat4(frame.previous_view.view_from_world) *
-          maths::inverse(to_mat4(frame.view.view_from_world)),
-      maths::vec2(static_cast<float>(phase_x), static_cast<float>(phase_y)),
-      settings.tolerance_px,
-      static_cast<float>(settings.history_frames),
-      settings.clamp_width,
-      history_valid ? 1u : 0u};
+  maths::ReconstructParameters parameters =
+      parameters_of(frame, *projection, *previous, inputs.normals_in_view_space, settings);
+  parameters.phase = maths::vec2(static_cast<float>(phase_x), static_cast<float>(phase_y));
+  if (!history_valid) {
+    parameters.previous_from_pixel = maths::mat4(0.0f);
+  }
   pass.record([&kernels = frame.kernels, kernel = *kernel, textures, parameters,
                history](RecordContext& context) {
     const Bindings views = bindings_of(context, textures);

@@ -33,6 +33,22 @@ namespace alcove::passes {
   return normals_in_view_space ? maths::mat4(1.0f) : to_mat4(frame.view.view_from_world);
 }
 
+[[nodiscard]] inline bool is_perspective(const maths::Projection& projection) {
+  return projection.eye.w > 0.0f;
+}
+
+[[nodiscard]] inline bool is_reversed(const maths::Projection& projection) {
+  return projection.sky.x < 0.0f;
+}
+
+// From raw depth to a number that is linear along the image of any plane, 1/depth in perspective
+// and depth in orthographic views: x * depth_ndc + y.
+[[nodiscard]] inline maths::vec2 line_from_ndc(const maths::Projection& projection) {
+  const maths::vec4& unproject = projection.depth_unproject;
+  return is_perspective(projection) ? maths::vec2(unproject.z, unproject.w) / unproject.y
+                                    : maths::vec2(unproject.x, unproject.y) / unproject.w;
+}
+
 template <typename Parameters>
 [[nodiscard]] std::span<const std::byte> bytes_of(const Parameters& parameters) {
   static_assert(std::is_trivially_copyable_v<Parameters>);

@@ -1,16 +1,14 @@
-// The image line of a slice, and depth samples near it as points of the slice's plane.
+// The image line of a slice, and depth samples on it as points of the slice's plane.
 //
-// A sample snapped to a texel's centre does not lie in the plane. It is carried there parallel to
-// the surface's tangent plane, which keeps its height above that plane, so an open plane stays
-// exactly open at any tilt and any snapping. (The memo projects nothing; others use the sample as
-// it is, and see a tilted plane occlude itself.)
-//
-// Where the slice hardly meets the tangent plane the way is long and may end on the other side of
-// the point: such a sample says nothing of its side and is to be passed over.
+// A sample snapped to a texel's centre lies beside the line. If it is of the surface's own tangent
+// plane its depth is moved onto the line along that plane (line_correction), so an open plane stays
+// exactly open at any tilt and any snapping; the further it stands off the plane, the less of that.
+// (The memo projects nothing; others use the sample as it is, and see a tilted plane occlude
+// itself.)
 //
 // In the plane a point is (x, y): x along the slice's direction, y along the view vector, in scene
-// units from the shaded point. Both are linear in the texel offset (i, j) once it is scaled by s,
-// the sample's linear depth in perspective and 1 in orthographic views, so a sample costs six
+// units from the shaded point. Both are linear in the distance along the line once it is scaled by
+// s, the sample's linear depth in perspective and 1 in orthographic views, so a sample costs three
 // multiply-adds and no position in space is ever formed.
 #ifndef ALCOVE_MATHS_SLICE_LINE_H
 #define ALCOVE_MATHS_SLICE_LINE_H
@@ -22,15 +20,10 @@ ALCOVE_MATHS_BEGIN
 
 struct SliceLine {
   vec2 direction_px;  // unit vector on the image, the way of positive x
-  vec2 x_per_px;      // x of a point at offset (i, j): s * dot((i, j), x_per_px)
-  vec2 y_per_px;      // y of it: s * dot((i, j), y_per_px) + (centre depth - depth) * y_per_depth
+  float x_per_step;   // x of a point i pixels along direction_px: s * i * x_per_step; positive
+  float y_per_step;   // y of it: s * i * y_per_step + (centre depth - depth) * y_per_depth
   float y_per_depth;  // length of the view ray at unit linear depth
-  float x_per_step;   // x of the point one pixel along direction_px, for s = 1; positive
 };
-
-// Keeps the carry finite where a slice and the tangent plane do not meet at all and the slice
-// weighs nothing.
-const float kSmallestCarry = 1e-5f;
 
 // Change of the view ray's x and y from one pixel to the next, to be scaled by s.
 ALCOVE_INLINE vec2 ray_per_px(Projection p) {
@@ -43,43 +36,70 @@ ALCOVE_INLINE float sample_scale(Projection p, float depth) {
   return p.eye.w > 0.0f ? depth : 1.0f;
 }
 
-// The line of the slice through a point along `direction` (unit, perpendicular to `view`). `normal`
-// and `view` are unit, in view space; `per_px` is ray_per_px() of the projection.
-ALCOVE_INLINE SliceLine make_slice_line(vec2 per_px, vec3 normal, vec3 direction, vec3 view) {
+// The line of the slice through a point along `direction` (unit, perpendicular to `view`, which is
+// unit, in view space); `per_px` is ray_per_px() of the projection.
+ALCOVE_INLINE SliceLine make_slice_line(vec2 per_px, vec3 direction, vec3 view) {
   vec3 axis = cross(view, direction);
-  float n_axis = dot(normal, axis);
-  float carry = n_axis / max(1.0f - n_axis * n_axis, kSmallestCarry);
-  vec3 to_x = direction + axis * (carry * dot(normal, direction));
-  vec3 to_y = view + axis * (carry * dot(normal, view));
-
-  SliceLine line;
-  line.x_per_px = vec2(per_px.x * to_x.x, per_px.y * to_x.y);
-  line.y_per_px = vec2(per_px.x * to_y.x, per_px.y * to_y.y);
-  line.y_per_depth = 1.0f / max(view.z, 1e-6f);
   // Image directions that stay in the plane have no component along its axis.
   vec2 along = vec2(per_px.y * axis.y, -per_px.x * axis.x);
   along = along * inversesqrt(max(dot(along, along), 1e-30f));
-  float x_per_step = dot(along, line.x_per_px);
-  line.direction_px = x_per_step < 0.0f ? -along : along;
+  float x_per_step = along.x * per_px.x * direction.x + along.y * per_px.y * direction.y;
+  float y_per_step = along.x * per_px.x * view.x + along.y * per_px.y * view.y;
+  bool turned = x_per_step < 0.0f;
+  SliceLine line;
+  line.direction_px = turned ? -along : along;
   line.x_per_step = abs(x_per_step);
+  line.y_per_step = turned ? -y_per_step : y_per_step;
+  line.y_per_depth = 1.0f / max(view.z, 1e-6f);
   return line;
 }
 
-// The sample at a texel offset and a linear depth as a point of the plane; `scale` is
-// sample_scale() of its depth.
-ALCOVE_INLINE vec2 slice_point(SliceLine line, vec2 offset_px, float depth, float centre_depth,
+// The point of the line `offset_px` pixels along it (negative: against it) at a linear depth;
+// `scale` is sample_scale() of its depth.
+ALCOVE_INLINE vec2 slice_point(SliceLine line, float offset_px, float depth, float centre_depth,
                                float scale) {
-  return vec2(scale * dot(offset_px, line.x_per_px),
-              scale * dot(offset_px, line.y_per_px) + (centre_depth - depth) * line.y_per_depth);
+  float along = scale * offset_px;
+  return vec2(along * line.x_per_step,
+              along * line.y_per_step + (centre_depth - depth) * line.y_per_depth);
+}
+
+// The surface's tangent plane on the image. LineSample::line, 1/depth in perspective and depth in
+// orthographic views, is linear there.
+struct TangentLine {
+  float line;     // at the surface's own pixel
+  vec2 gradient;  // for each pixel
+  float fading;   // of a sample's correction with its distance from the plane
+};
+
+// `normal` and `view` are unit, in view space.
+ALCOVE_INLINE TangentLine make_tangent_line(vec2 per_px, vec3 normal, vec3 view, float depth,
+                                            bool perspective) {
+  // Seen edge-on, the plane would run to any depth within a pixel.
+  float slant = max(dot(normal, view), 0.01f);
+  TangentLine t;
+  t.line = perspective ? 1.0f / depth : depth;
+  float rise = view.z / slant * (perspective ? -t.line : 1.0f);
+  t.gradient = vec2(per_px.x * normal.x * rise, per_px.y * normal.y * rise);
+  t.fading = 2.0f * slant * slant / (abs(per_px.y) * (perspective ? t.line : 1.0f));
+  return t;
+}
+
+// What to add to `line` of the sample at the texel `snapped_px` away to move it to `offset_px` away
+// (vectors, pixels). `share` is 1 / the length of offset_px.
+ALCOVE_INLINE float line_correction(TangentLine t, vec2 snapped_px, vec2 offset_px, float line,
+                                    float share) {
+  float off_plane = line - t.line - dot(snapped_px, t.gradient);
+  float kept = max(1.0f - t.fading * share * abs(off_plane), 0.0f);
+  return kept * dot(offset_px - snapped_px, t.gradient);
 }
 
 // Pixels along the line that a sphere of radius `radius` (scene units) around the point spans on
 // one side. In perspective the sphere bulges towards the eye, and one around the eye spans
 // everything.
-ALCOVE_INLINE float slice_radius_px(Projection p, SliceLine line, float radius,
-                                    float centre_depth) {
-  float across = radius / max(sample_scale(p, centre_depth) * line.x_per_step, 1e-30f);
-  float nearness = p.eye.w * radius / max(centre_depth * line.y_per_depth, 1e-30f);
+ALCOVE_INLINE float slice_radius_px(SliceLine line, float radius, float centre_depth,
+                                    bool perspective) {
+  float across = radius / max((perspective ? centre_depth : 1.0f) * line.x_per_step, 1e-30f);
+  float nearness = perspective ? radius / max(centre_depth * line.y_per_depth, 1e-30f) : 0.0f;
   return across * inversesqrt(max(1.0f - nearness * nearness, 1e-6f));
 }
 

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "maths/connected_samples.h"
 #include "maths/make_projection.h"
@@ -50,30 +52,28 @@ struct Setting {
         view(maths::view_vector(projection, position)),
         normal(maths::facing_normal(random.unit_vector(), view)),
         direction(maths::slice_direction(maths::make_view_basis(view), random.uniform(0, 6.28f))),
-        line(maths::make_slice_line(maths::ray_per_px(projection), normal, direction, view)) {}
+        line(maths::make_slice_line(maths::ray_per_px(projection), direction, view)) {}
 
-  // Where the plane of slice and tangent plane part so little that no sample is carried far.
-  bool carries_well() const { return std::abs(dot(normal, cross(view, direction))) < 0.95f; }
+  bool perspective() const { return projection.eye.w > 0.0f; }
 
   vec3 delta(vec2 offset_px, float sample_depth) const {
     return maths::position_vs(projection, (pixel + offset_px) * projection.texel_uv, sample_depth) -
            position;
   }
 
-  vec2 point(vec2 offset_px, float sample_depth) const {
+  vec2 point(float offset_px, float sample_depth) const {
     return maths::slice_point(line, offset_px, sample_depth, depth,
                               maths::sample_scale(projection, sample_depth));
   }
 };
 
-TEST(SliceLine, ASampleInThePlaneKeepsItsCoordinates) {
+TEST(SliceLine, ASampleOnTheLineKeepsItsCoordinates) {
   RandomInput random;
   for (int i = 0; i < 5000; ++i) {
     const Setting s(random);
-    if (!s.carries_well()) continue;
-    const vec2 offset = s.line.direction_px * random.uniform(-60.0f, 60.0f);
+    const float offset = random.uniform(-60.0f, 60.0f);
     const float depth = s.depth * random.uniform(0.5f, 2.0f);
-    const vec3 delta = s.delta(offset, depth);
+    const vec3 delta = s.delta(s.line.direction_px * offset, depth);
     ASSERT_NEAR(dot(delta, cross(s.view, s.direction)), 0.0f, 1e-4f * s.depth) << "the premise";
     const vec2 point = s.point(offset, depth);
     EXPECT_NEAR(point.x, dot(delta, s.direction), 3e-4f * s.depth);
@@ -81,16 +81,35 @@ TEST(SliceLine, ASampleInThePlaneKeepsItsCoordinates) {
   }
 }
 
-TEST(SliceLine, ASampleBesideThePlaneKeepsItsHeightAboveTheSurface) {
+TEST(SliceLine, ASampleOfTheTangentPlaneIsMovedAlongIt) {
   RandomInput random;
   for (int i = 0; i < 5000; ++i) {
     const Setting s(random);
-    if (!s.carries_well()) continue;
-    const vec2 offset(random.uniform(-60.0f, 60.0f), random.uniform(-60.0f, 60.0f));
-    const float depth = s.depth * random.uniform(0.5f, 2.0f);
-    const vec2 point = s.point(offset, depth);
-    const float height = point.x * dot(s.normal, s.direction) + point.y * dot(s.normal, s.view);
-    EXPECT_NEAR(height, dot(s.delta(offset, depth), s.normal), 3e-4f * s.depth);
+    if (dot(s.normal, s.view) < 0.1f) continue;
+    const maths::TangentLine tangent = maths::make_tangent_line(
+        maths::ray_per_px(s.projection), s.normal, s.view, s.depth, s.perspective());
+    const vec2 exact = s.line.direction_px * random.uniform(2.0f, 40.0f);
+    const vec2 snapped = round(exact);
+    const float line = tangent.line + dot(snapped, tangent.gradient);
+    const float moved =
+        line + maths::line_correction(tangent, snapped, exact, line, 1.0f / length(exact));
+    const float depth = s.perspective() ? 1.0f / moved : moved;
+    // A plane that passes behind the eye has no image there.
+    if (!(depth > 0.0f) || depth > 10.0f * s.depth) continue;
+    EXPECT_NEAR(dot(s.delta(exact, depth), s.normal), 0.0f, 2e-4f * depth);
+  }
+}
+
+TEST(SliceLine, ASampleFarOffTheTangentPlaneIsLeftAsItIs) {
+  RandomInput random;
+  for (int i = 0; i < 1000; ++i) {
+    const Setting s(random);
+    const maths::TangentLine tangent = maths::make_tangent_line(
+        maths::ray_per_px(s.projection), s.normal, s.view, s.depth, s.perspective());
+    const vec2 exact(10.3f, -4.4f), snapped(10.0f, -4.0f);
+    const float line =
+        tangent.line + dot(snapped, tangent.gradient) + 1.01f * length(exact) / tangent.fading;
+    EXPECT_EQ(maths::line_correction(tangent, snapped, exact, line, 1.0f / length(exact)), 0.0f);
   }
 }
 
@@ -100,7 +119,6 @@ TEST(SliceLine, RunsTheWayOfTheSlicesDirection) {
     const Setting s(random);
     EXPECT_NEAR(length(s.line.direction_px), 1.0f, 1e-5f);
     EXPECT_GE(s.line.x_per_step, 0.0f);
-    if (!s.carries_well()) continue;
     const vec2 along = maths::pixels_along(s.projection, s.direction, s.view, s.depth);
     EXPECT_GT(dot(normalize(along), s.line.direction_px), 0.999f);
   }
@@ -111,7 +129,6 @@ TEST(SliceLine, RadiusSpansTheSilhouetteOfItsSphere) {
   for (int i = 0; i < 2000; ++i) {
     Setting s(random);
     s.normal = s.view;
-    s.line = maths::make_slice_line(maths::ray_per_px(s.projection), s.normal, s.direction, s.view);
     const float radius = 0.2f * s.depth;
     // The sphere's silhouette in this slice: where a ray of the plane touches it.
     const bool perspective = s.projection.eye.w > 0.0f;
@@ -122,41 +139,76 @@ TEST(SliceLine, RadiusSpansTheSilhouetteOfItsSphere) {
                                    : s.position + s.direction * radius;
     const vec2 imaged = maths::uv_of_position(s.projection, touch) * s.projection.size_px;
     const float expected = distance(imaged, s.pixel);
-    const float spanned = maths::slice_radius_px(s.projection, s.line, radius, s.depth);
+    const float spanned = maths::slice_radius_px(s.line, radius, s.depth, s.perspective());
     // To first order in the sphere's size against its distance, off the axis.
     EXPECT_NEAR(spanned / expected, 1.0f, 0.35f);
   }
 }
 
-TEST(SliceLine, SliceThatDoesNotMeetTheSurfaceStaysFinite) {
-  const vec3 view(0, 0, 1), direction(1, 0, 0), normal(0, 1, 0);
-  const SliceLine line = maths::make_slice_line(vec2(0.01f), normal, direction, view);
-  const vec2 point = maths::slice_point(line, vec2(3, 4), 1.0f, 1.0f, 1.0f);
-  EXPECT_TRUE(std::isfinite(point.x) && std::isfinite(point.y));
+TEST(ConnectedSamples, JoinAlongAPlaneAndAcrossACreaseButNotOverAGap) {
+  const float sharp = 0.1f;
+  EXPECT_TRUE(maths::samples_join(0.0f, 0.0f, sharp)) << "a plane";
+  EXPECT_TRUE(maths::samples_join(0.0f, -3.0f, sharp)) << "a plane that ends";
+  EXPECT_TRUE(maths::samples_join(2.0f, 1.0f, sharp)) << "a crease between the two";
+  EXPECT_TRUE(maths::samples_join(0.05f, -3.0f, sharp)) << "a surface that hardly bends";
+  EXPECT_FALSE(maths::samples_join(2.0f, -1.0f, sharp)) << "one surface in front of another";
 }
 
-maths::LineSample at(float offset_px, float line) {
-  maths::LineSample sample;
-  sample.offset_px = offset_px;
-  sample.line = line;
-  return sample;
-}
-
-TEST(ConnectedSamples, JoinOnAPlaneAtAnySlope) {
+TEST(ConnectedSamples, SlopeIsThatOfThePlane) {
   RandomInput random;
   for (int i = 0; i < 1000; ++i) {
     const float slope = random.uniform(-10.0f, 10.0f);
-    const auto on_plane = [&](float x) { return at(x, 1.0f + slope * x); };
-    EXPECT_TRUE(
-        maths::samples_connect(on_plane(1), on_plane(2.5f), on_plane(5), on_plane(9), 1e-3f));
+    maths::LineSample from, to;
+    from.offset_px = random.uniform(1.0f, 5.0f);
+    to.offset_px = from.offset_px + random.uniform(0.5f, 5.0f);
+    from.line = 1.0f + slope * from.offset_px;
+    to.line = 1.0f + slope * to.offset_px;
+    EXPECT_NEAR(maths::line_slope(from, to), slope, 1e-3f);
   }
 }
 
-TEST(ConnectedSamples, JoinAcrossACreaseAndPartAtAStep) {
-  // A floor that meets a wall between the middle samples.
-  EXPECT_TRUE(maths::samples_connect(at(0, 1), at(1, 1), at(2, 1.5f), at(3, 2.5f), 1e-3f));
-  // Two level surfaces, one in front of the other.
-  EXPECT_FALSE(maths::samples_connect(at(0, 1), at(1, 1), at(2, 3), at(3, 3), 1e-3f));
+TEST(ConnectedSamples, EdgePositionIsTheSectorPositionWithinAFifthOfASector) {
+  RandomInput random;
+  for (int i = 0; i < 20000; ++i) {
+    const vec3 view = random.unit_vector();
+    const vec3 normal = maths::facing_normal(random.unit_vector(), view);
+    const vec3 other = random.unit_vector();
+    const vec3 direction = normalize(other - view * dot(other, view));
+    const maths::Slice slice = maths::make_slice(normal, direction, view);
+    if (slice.scale < 0.01f) continue;
+    const maths::SectorScale scale = maths::make_sector_scale(slice);
+    const float side = random.bits() % 2 == 0 ? 1.0f : -1.0f;
+    const vec2 point(random.uniform(0.0f, 1.0f), random.uniform(-1.0f, 1.0f));
+    const float exact = 32.0f * maths::sector_position(slice, scale, side, point.y / length(point));
+    const float found = maths::edge_position(maths::make_edge_scale(slice, scale, side), point);
+    EXPECT_NEAR(found, exact, 0.2f) << "side " << side;
+  }
+}
+
+TEST(ConnectedSamples, SectorsBetweenPositionsAreThoseWithinThem) {
+  for (int from = 0; from <= 32; ++from) {
+    for (int to = 0; to <= 32; ++to) {
+      std::uint32_t expected = 0;
+      for (int k = std::min(from, to); k < std::max(from, to); ++k) expected |= 1u << k;
+      EXPECT_EQ(maths::sectors_between(static_cast<float>(from) + 0.2f,
+                                       static_cast<float>(to) - 0.2f * (to > 0 ? 1.0f : 0.0f)),
+                expected);
+    }
+  }
+}
+
+TEST(ConnectedSamples, FillingGoesFromTheHighestOccluderToTheTangentPlane) {
+  EXPECT_EQ(maths::filled_sectors(1.0f, 0u), 0u);
+  EXPECT_EQ(maths::filled_sectors(-1.0f, 0u), 0u);
+  EXPECT_EQ(maths::filled_sectors(1.0f, 0x00110000u), 0xffff0000u);
+  EXPECT_EQ(maths::filled_sectors(-1.0f, 0x00000110u), 0x000001ffu);
+  EXPECT_EQ(maths::filled_sectors(-1.0f, 0x80000000u), 0xffffffffu);
+}
+
+TEST(ConnectedSamples, ASheetIsCutAtTheRadius) {
+  const vec2 inside(0.6f, 0.0f), outside(3.0f, 0.0f);
+  EXPECT_NEAR(maths::radius_crossing(outside, 3.0f, inside, 0.6f, 1.0f).x, 1.0f, 1e-6f);
+  EXPECT_NEAR(maths::radius_crossing(inside, 0.6f, outside, 3.0f, 1.0f).x, 1.0f, 1e-6f);
 }
 
 }  // namespace

@@ -20,6 +20,8 @@ inline constexpr Matrix kIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1
 struct View {
   Matrix clip_from_view = kIdentity;
   Matrix view_from_world = kIdentity;  // rotation and translation only
+
+  bool operator==(const View&) const = default;
 };
 
 // How many bits the results have. Between passes there are never fewer than 16.

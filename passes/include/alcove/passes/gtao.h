@@ -26,7 +26,7 @@ enum class Pattern : std::uint8_t {
 struct GtaoSettings {
   float radius = 0.5f;       // scene units, over 0: occluders beyond it do not count
   std::uint32_t slices = 1;  // a pixel, 1 to 64; with the noise of a 4x4 block, 16 times as many
-  std::uint32_t steps = 12;  // a side of a slice, 1 to 64: 2 * slices * steps depth fetches a pixel
+  std::uint32_t steps = 12;  // a side of a slice, 2 to 64: 2 * slices * steps depth fetches a pixel
   Estimator estimator = Estimator::bitmask;
   float thickness = 0.15f;  // of an occluder, in parts of the radius, at least 0 (bitmask)
   float fill = 0.4f;        // share of what is hidden behind it that occludes, [0,1] (bitmask)
@@ -34,21 +34,23 @@ struct GtaoSettings {
   // frame to frame.
   std::uint32_t divisor = 1;
   Pattern pattern = Pattern::golden;
-  bool bent_normal = false;                  // also write the mean visible direction
-  Precision precision = Precision::float16;  // unorm8 counts as float16
+  bool bent_normal = false;  // also write the mean visible direction
 };
 
 struct GtaoInputs {
-  framegraph::Texture depth;    // linear, as add_depth_pyramid makes it
-  framegraph::Texture normals;  // xyz unit, in world space unless `normals_in_view_space`
+  framegraph::Texture depth_ndc;  // as the view's projection wrote it
+  framegraph::Texture normals;    // xyz unit, in world space unless `normals_in_view_space`
   bool normals_in_view_space = false;
 };
 
 // What filters and history work on: sums over slices, one texel a block.
 struct OcclusionSignal {
-  framegraph::Texture signal;  // two channels: the visible part of the slices, and all of it
-  framegraph::Texture bent;  // xyz: the mean visible direction weighted by the cosine, view space,
-                             // not normalised; null where none is wanted
+  // R32G32_UINT: the visible part of the slices and all of it (shaders/maths/signal.h), and the
+  // bits of a float that is linear along the image of any plane.
+  framegraph::Texture signal;
+  // R32G32_UINT: the mean visible direction weighted by the cosine, view space, not normalised, as
+  // halves; null where none is wanted.
+  framegraph::Texture bent;
   std::uint32_t divisor = 1;  // pixels on a side of a block
 };
 

@@ -16,7 +16,7 @@ enum class Quality : std::uint8_t { low, medium, high, ultra, reference };
 struct OcclusionSettings {
   float radius = 0.5f;       // scene units, over 0: occluders beyond it do not count
   std::uint32_t slices = 1;  // a pixel, 1 to 64
-  std::uint32_t steps = 12;  // a side of a slice, 1 to 64
+  std::uint32_t steps = 12;  // a side of a slice, 2 to 64
   Estimator estimator = Estimator::bitmask;
   float thickness = 0.15f;  // of an occluder, in parts of the radius, at least 0 (bitmask)
   float fill = 0.4f;        // share of what is hidden behind it that occludes, [0,1] (bitmask)
@@ -25,7 +25,7 @@ struct OcclusionSettings {
   Pattern pattern = Pattern::golden;
   std::uint32_t depth_mips = 1;      // levels of the depth pyramid, 1 to 5
   std::uint32_t filter_reach = 2;    // blocks on each side, 0 to 3; 0 leaves the filter out
-  float filter_tolerance_px = 2.0f;  // distance from the tangent plane, in sizes of a pixel
+  float filter_tolerance_px = 1.0f;  // distance from the tangent plane, in sizes of a pixel
   std::uint32_t history_frames = 0;  // that are averaged, 0 to 255; 0 keeps none
   float clamp_width = 0.0f;          // of history, in deviations of this frame; 0 leaves it free
   bool bent_normal = false;

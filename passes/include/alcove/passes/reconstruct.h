@@ -14,9 +14,9 @@ struct ReconstructSettings {
   // covers the 4x4 pattern of a full-resolution search; 1 is enough for a lower one. 0 filters
   // nothing.
   std::uint32_t reach = 2;
-  // How far a neighbour may lie from the pixel's tangent plane before it counts for nothing, in
-  // sizes of a pixel there, over 0.
-  float tolerance_px = 2.0f;
+  // How far a neighbour lies from the pixel's tangent plane when it counts half, in sizes of a
+  // pixel there, over 0.
+  float tolerance_px = 1.0f;
   // Frames that are averaged, 0 to 255. 0 keeps no history and allocates none: for engines whose
   // own temporal filter comes after.
   std::uint32_t history_frames = 0;
@@ -26,9 +26,9 @@ struct ReconstructSettings {
 };
 
 struct ReconstructInputs {
-  OcclusionSignal signal;       // as add_gtao writes it
-  framegraph::Texture depth;    // linear
-  framegraph::Texture normals;  // as GtaoInputs::normals
+  OcclusionSignal signal;         // as add_gtao writes it
+  framegraph::Texture depth_ndc;  // as the view's projection wrote it
+  framegraph::Texture normals;    // as GtaoInputs::normals
   bool normals_in_view_space = false;
   framegraph::Texture
       motion;  // xy: uv of this frame minus uv of the last; null: only the camera moves
