@@ -134,8 +134,9 @@ float neighbour_weight(Surface surface, Window window, vec2 offset, float line) 
   float off_plane =
       (line - surface.line - dot(offset, surface.gradient)) * surface.stiffness;
   float near = 1.0 + window.narrowness * dot(offset, offset);
-  near *= near;
-  return 1.0 / (near * near * (1.0 + off_plane * off_plane));
+  float level = 1.0 + off_plane * off_plane;
+  float both = near * near * level;
+  return 1.0 / (both * both);
 }
 
 Neighbourhood gather(Surface surface, Window window) {

@@ -90,14 +90,14 @@ void PassTest::TearDown() {
   downloads_.clear();
 }
 
-Texture PassTest::upload(Graph& graph, const HostImage& image) {
+Texture PassTest::upload(Graph& graph, const HostImage& image, VkFormat format) {
   const std::size_t bytes = image.texels.size() * sizeof(float);
   auto buffer = sample::HostBuffer::create(gpu_->device(), bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
   EXPECT_TRUE(buffer) << buffer.error();
   std::memcpy((*buffer)->bytes().data(), image.texels.data(), bytes);
   const Texture target = graph.create_texture(
-      "uploaded",
-      {uploaded_format(image.channels), framegraph::Extent::absolute(image.width, image.height)});
+      "uploaded", {format == VK_FORMAT_UNDEFINED ? uploaded_format(image.channels) : format,
+                   framegraph::Extent::absolute(image.width, image.height)});
   uploads_.push_back(std::move(*buffer));
   return sample::add_copy(graph, *uploads_.back(), target);
 }

@@ -33,7 +33,9 @@ class PassTest : public testing::Test {
   void TearDown() override;
 
   // Adds a texture of 32-bit floats (1, 2 or 4 channels) that holds `image`.
-  framegraph::Texture upload(framegraph::Graph& graph, const HostImage& image);
+  // A `format` of 32-bit channels takes the floats by their bits.
+  framegraph::Texture upload(framegraph::Graph& graph, const HostImage& image,
+                             VkFormat format = VK_FORMAT_UNDEFINED);
   // Has `texture`, of any format that the passes write, read back: result() gives it as floats once
   // the frame has run.
   void read_back(framegraph::Graph& graph, framegraph::Texture texture, std::uint32_t mip = 0);

@@ -4,12 +4,16 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
 #include <random>
 
 #include "gtao_scenes.h"
+#include "maths/signal.h"
 #include "pass_fixture.h"
+#include "search_phase.h"
+#include "view_parameters.h"
 
 namespace alcove::passes {
 namespace {
@@ -32,17 +36,39 @@ class Reconstruct : public PassTest {
     bool reset = false;
   };
 
+  // The signal as a search would store it, with the depth of the pixel that it searched.
+  static HostImage packed_signal(const Input& input) {
+    const HostImage& depth = input.drawing.depth_ndc;
+    const auto projection =
+        maths::make_projection(to_mat4(input.view.clip_from_view), depth.width, depth.height);
+    const maths::vec2 from_ndc = line_from_ndc(projection.value());
+    const SearchPhase phase = search_phase(input.divisor, input.index);
+    HostImage packed = input.signal;
+    for (std::uint32_t y = 0; y < packed.height; ++y) {
+      for (std::uint32_t x = 0; x < packed.width; ++x) {
+        const float ndc = depth.at(std::min(x * input.divisor + phase.x, depth.width - 1),
+                                   std::min(y * input.divisor + phase.y, depth.height - 1));
+        float* texel = &packed.texels[(std::size_t{y} * packed.width + x) * 2];
+        maths::Signal signal;
+        signal.visible = texel[0];
+        signal.open = texel[1];
+        texel[0] = std::bit_cast<float>(maths::pack_signal(signal));
+        texel[1] = from_ndc.x * ndc + from_ndc.y;
+      }
+    }
+    return packed;
+  }
+
   HostImage reconstruct(const Input& input, const ReconstructSettings& settings) {
     run([&](Graph& graph) {
       if (input.reset) {
         graph.reset_history("occlusion");
       }
       const Frame frame{graph, gpu().kernels(), input.view, input.index, input.previous_view};
-      const auto depth = add_depth_pyramid(frame, upload(graph, input.drawing.depth_ndc), 1, 1.0f);
-      ASSERT_TRUE(depth) << depth.error().message;
       ReconstructInputs inputs{
-          .signal = {.signal = upload(graph, input.signal), .divisor = input.divisor},
-          .depth = *depth,
+          .signal = {.signal = upload(graph, packed_signal(input), VK_FORMAT_R32G32_UINT),
+                     .divisor = input.divisor},
+          .depth_ndc = upload(graph, input.drawing.depth_ndc),
           .normals = upload(graph, input.drawing.normal_vs),
           .normals_in_view_space = true};
       if (input.motion != nullptr) {

@@ -25,7 +25,7 @@ struct OcclusionSettings {
   Pattern pattern = Pattern::golden;
   std::uint32_t depth_mips = 1;      // levels of the depth pyramid, 1 to 5
   std::uint32_t filter_reach = 2;    // blocks on each side, 0 to 3; 0 leaves the filter out
-  float filter_tolerance_px = 1.0f;  // distance from the tangent plane, in sizes of a pixel
+  float filter_tolerance_px = 1.5f;  // distance from the tangent plane, in sizes of a pixel
   std::uint32_t history_frames = 0;  // that are averaged, 0 to 255; 0 keeps none
   float clamp_width = 0.0f;          // of history, in deviations of this frame; 0 leaves it free
   bool bent_normal = false;

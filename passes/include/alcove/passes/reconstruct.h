@@ -14,9 +14,9 @@ struct ReconstructSettings {
   // covers the 4x4 pattern of a full-resolution search; 1 is enough for a lower one. 0 filters
   // nothing.
   std::uint32_t reach = 2;
-  // How far a neighbour lies from the pixel's tangent plane when it counts half, in sizes of a
+  // How far a neighbour lies from the pixel's tangent plane when it counts a quarter, in sizes of a
   // pixel there, over 0.
-  float tolerance_px = 1.0f;
+  float tolerance_px = 1.5f;
   // Frames that are averaged, 0 to 255. 0 keeps no history and allocates none: for engines whose
   // own temporal filter comes after.
   std::uint32_t history_frames = 0;
