@@ -135,8 +135,10 @@ class Placer {
   template <typename Key>
   void try_falling(Key&& key) {
     std::iota(s_.order.begin(), s_.order.end(), 0u);
-    std::stable_sort(s_.order.begin(), s_.order.end(), [&](std::uint32_t a, std::uint32_t b) {
-      return key(s_.items[a]) > key(s_.items[b]);
+    std::sort(s_.order.begin(), s_.order.end(), [&](std::uint32_t a, std::uint32_t b) {
+      const auto x = key(s_.items[a]);
+      const auto y = key(s_.items[b]);
+      return x != y ? x > y : a < b;
     });
     try_order();
   }
@@ -159,14 +161,16 @@ class Placer {
       return item.last < peak ? peak - item.last : 0u;
     };
     std::iota(s_.order.begin(), s_.order.end(), 0u);
-    std::stable_sort(s_.order.begin(), s_.order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    std::sort(s_.order.begin(), s_.order.end(), [&](std::uint32_t a, std::uint32_t b) {
       const PlaceItem& x = s_.items[a];
       const PlaceItem& y = s_.items[b];
       const std::uint32_t dx = distance(x);
       const std::uint32_t dy = distance(y);
       if (dx != dy) return dx < dy;
-      return x.last - x.first != y.last - y.first ? x.last - x.first > y.last - y.first
-                                                  : x.size > y.size;
+      const std::uint32_t span_x = x.last - x.first;
+      const std::uint32_t span_y = y.last - y.first;
+      if (span_x != span_y) return span_x > span_y;
+      return x.size != y.size ? x.size > y.size : a < b;
     });
     try_order();
   }

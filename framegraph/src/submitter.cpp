@@ -6,6 +6,11 @@ namespace alcove::framegraph {
 
 Submitter::~Submitter() {
   const VkDevice device = device_.handles.device;
+  // Waiting for a semaphore's value is enough by the letter, but a software driver may still be
+  // letting go of the semaphore then: an idle queue has let go of everything.
+  for (std::size_t q = 0; q < kQueueClasses; ++q) {
+    if (values_[q] != 0) device_.vk.vkQueueWaitIdle(device_.handles.queues[q].queue);
+  }
   for (Slot& slot : slots_) {
     for (SlotQueue& queue : slot.queues)
       device_.vk.vkDestroyCommandPool(device, queue.pool, nullptr);

@@ -290,7 +290,7 @@ bool Synchroniser::change_queue(std::uint32_t position, const AccessRecord& acce
   const std::uint32_t from = time < 0
                                  ? workspace_.queues.opening[static_cast<std::size_t>(state.queue)]
                                  : plan_.passes[static_cast<std::size_t>(time / 2)].submission;
-  s_.releases.push_back({from, release});
+  s_.releases.push_back({from, static_cast<std::uint32_t>(s_.releases.size()), release});
   Transition acquire = release;
   acquire.src_stages = waited_stages(access);
   acquire.src_access = 0;
@@ -302,8 +302,9 @@ bool Synchroniser::change_queue(std::uint32_t position, const AccessRecord& acce
 
 // Releases come after the last pass of their submissions.
 void Synchroniser::add_releases() {
-  std::stable_sort(s_.releases.begin(), s_.releases.end(),
-                   [](const auto& a, const auto& b) { return a.submission < b.submission; });
+  std::sort(s_.releases.begin(), s_.releases.end(), [](const auto& a, const auto& b) {
+    return a.submission != b.submission ? a.submission < b.submission : a.number < b.number;
+  });
   for (const auto& release : s_.releases) {
     Submission& submission = plan_.submissions[release.submission];
     if (submission.batch_count == 0) {

@@ -122,6 +122,7 @@ struct Workspace {
     std::vector<MemoryMap> memory;    // by heap
     struct Release {
       std::uint32_t submission = 0;
+      std::uint32_t number = 0;  // in order of need
       Transition transition;
     };
     std::vector<Release> releases;

@@ -83,7 +83,7 @@ class Executor {
                                                              const ExecutorOptions& options = {});
   Executor(Executor&&) noexcept;
   Executor& operator=(Executor&&) noexcept;
-  // The device must have finished all that was recorded.
+  // The device must have finished all that was recorded; what was submitted is waited for.
   ~Executor();
 
   // Records the frame into `commands`, a primary command buffer of the graphics family in the
