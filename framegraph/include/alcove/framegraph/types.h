@@ -93,7 +93,8 @@ struct State {
 };
 
 // An image of the caller's. The graph never owns or outlives it; `view` may be null, then the
-// executor makes the views that passes ask for. `usage` is what the image was created with.
+// executor makes the views that passes ask for and keeps them by image: call Executor::forget
+// before the image is destroyed. `usage` is what the image was created with.
 struct ImportedTexture {
   VkImage image = VK_NULL_HANDLE;
   VkImageView view = VK_NULL_HANDLE;  // of the whole image
