@@ -144,9 +144,9 @@ TEST_F(GtaoTruth, WhatLiesBeyondTheRadiusDoesNotOcclude) {
     const auto images =
         run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, exact(estimator, radius));
     for (std::uint32_t x = 0; x < 64; ++x) {
-      // To the nearest sample on the platform's edge. The bitmask joins floor and platform by a
-      // slope, whose foot is nearer by the height of the wall and a step.
-      const double across = (64 - x) * 8.0 / 128;
+      // To the nearest sample on the platform's edge, known to half a pixel. The bitmask joins
+      // floor and platform by a slope, whose foot is nearer by the height of the wall and a step.
+      const double across = (63.5 - x) * 8.0 / 128;
       const double distance = std::hypot(across, height);
       if ((estimator == Estimator::bitmask ? across / 1.15 : distance) > radius) {
         EXPECT_GT(images.visibility.at(x, 64), 0.996) << "column " << x;
