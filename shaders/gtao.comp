@@ -11,6 +11,7 @@
 
 #include "gtao_parameters.h"
 #include "maths/bent_normal.h"
+#include "maths/bitmask_bent_normal.h"
 #include "maths/connected_samples.h"
 #include "maths/gtao.h"
 #include "maths/sampling.h"
@@ -129,11 +130,14 @@ LineSample fetch_sample(Search search, uint k) {
   vec2 snapped = roundEven(exact);
   float line = fetch_line(search.pixel + ivec2(snapped));
   found.share = 1.0 / found.offset_px;
-  found.line = max(line + line_correction(search.tangent, snapped, exact, line, found.share),
-                   0.1 * line);
+  // Only across the line: along it a sample stays where it was found.
+  float along_px = dot(snapped, search.line.direction_px);
+  vec2 moved = tangent_share(search.tangent, snapped, line, found.share) *
+               (search.line.direction_px * along_px - snapped);
+  found.line = max(line + dot(moved, search.tangent.gradient), 0.1 * line);
   float depth = depth_of_line(found.line);
-  found.point = slice_point(search.line, search.side * found.offset_px, depth, search.depth,
-                            kPerspective ? depth : 1.0);
+  found.point =
+      slice_point(search.line, along_px, depth, search.depth, kPerspective ? depth : 1.0);
   found.point.x *= search.side;
   return found;
 }
@@ -248,14 +252,43 @@ uint find_occluders(Surface surface, Search search, Side side) {
   return search.direction_px == vec2(0.0) ? 0u : sheet.sectors;
 }
 
-float bitmask_slice(Surface surface, SliceLine line, Slice slice, SectorScale scale,
-                    Search ahead, Search behind) {
+// What a slice adds to the pixel's sums.
+struct SliceSum {
+  float visible;
+  float open;
+  vec3 bent;
+};
+
+SliceSum bitmask_slice(Surface surface, SliceLine line, Slice slice, vec3 direction, Search ahead,
+                       Search behind) {
+  SectorScale scale = make_sector_scale(slice);
   uint front = find_occluders(surface, ahead, make_side(surface, line, slice, scale, 1.0));
   uint back = find_occluders(surface, behind, make_side(surface, line, slice, scale, -1.0));
-  float thin = bitmask_visibility(scale, front | back);
-  float thick =
-      bitmask_visibility(scale, filled_sectors(1.0, front) | filled_sectors(-1.0, back));
-  return mix(thin, thick, parameters.fill);
+  uint thin = front | back;
+  uint thick = filled_sectors(1.0, front) | filled_sectors(-1.0, back);
+  SliceSum sum;
+  sum.open = scale.open;
+  sum.visible =
+      mix(bitmask_visibility(scale, thin), bitmask_visibility(scale, thick), parameters.fill);
+  sum.bent = vec3(0.0);
+  if (kBentNormal) {
+    vec2 bent =
+        mix(bitmask_bent(slice, scale, thin), bitmask_bent(slice, scale, thick), parameters.fill);
+    sum.bent = direction * bent.x + surface.view * bent.y;
+  }
+  return sum;
+}
+
+SliceSum horizon_slice(Surface surface, Slice slice, vec3 direction, Search ahead,
+                       Search behind) {
+  float front = find_horizon(ahead);
+  float back = find_horizon(behind);
+  SliceSum sum;
+  sum.visible = slice_visibility(slice, front, back);
+  sum.open = open_slice(slice);
+  sum.bent = kBentNormal ? slice_bent_normal(slice, direction, surface.view, front, back)
+                         : vec3(0.0);
+  return sum;
 }
 
 SliceNoise noise_at(uvec2 block) {
@@ -294,32 +327,22 @@ void main() {
   ViewBasis basis = make_view_basis(surface.view);
   SliceNoise noise = noise_at(uvec2(block));
 
-  float visibility = 0.0;
-  float weight = 0.0;
-  vec3 bent = vec3(0.0);
+  SliceSum sum = SliceSum(0.0, 0.0, vec3(0.0));
   for (uint i = 0; i < kSliceCount; ++i) {
     vec3 direction = slice_direction(basis, slice_angle(i, kSliceCount, noise.direction));
     Slice slice = make_slice(surface.normal, direction, surface.view);
     SliceLine line = make_slice_line(parameters.slope.xy, direction, surface.view);
     Search ahead = make_search(surface, line, slice, 1.0, noise.offset);
     Search behind = make_search(surface, line, slice, -1.0, noise.offset);
-    if (kBitmask) {
-      SectorScale scale = make_sector_scale(slice);
-      visibility += bitmask_slice(surface, line, slice, scale, ahead, behind);
-      weight += scale.open;
-      continue;
-    }
-    float front = find_horizon(ahead);
-    float back = find_horizon(behind);
-    visibility += slice_visibility(slice, front, back);
-    weight += open_slice(slice);
-    if (kBentNormal) {
-      bent += slice_bent_normal(slice, direction, surface.view, front, back);
-    }
+    SliceSum more = kBitmask ? bitmask_slice(surface, line, slice, direction, ahead, behind)
+                             : horizon_slice(surface, slice, direction, ahead, behind);
+    sum.visible += more.visible;
+    sum.open += more.open;
+    sum.bent += more.bent;
   }
   float mean = 1.0 / float(kSliceCount);
-  store_signal(block, visibility * mean, weight * mean, centre_line);
+  store_signal(block, sum.visible * mean, sum.open * mean, centre_line);
   if (kBentNormal) {
-    imageStore(bent_image, block, uvec4(pack_direction(bent * mean), 0u, 0u));
+    imageStore(bent_image, block, uvec4(pack_direction(sum.bent * mean), 0u, 0u));
   }
 }

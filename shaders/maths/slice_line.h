@@ -1,7 +1,7 @@
 // The image line of a slice, and depth samples on it as points of the slice's plane.
 //
 // A sample snapped to a texel's centre lies beside the line. If it is of the surface's own tangent
-// plane its depth is moved onto the line along that plane (line_correction), so an open plane stays
+// plane its depth is moved onto the line along that plane (tangent_share), so an open plane stays
 // exactly open at any tilt and any snapping; the further it stands off the plane, the less of that.
 // (The memo projects nothing; others use the sample as it is, and see a tilted plane occlude
 // itself.)
@@ -80,17 +80,16 @@ ALCOVE_INLINE TangentLine make_tangent_line(vec2 per_px, vec3 normal, vec3 view,
   t.line = perspective ? 1.0f / depth : depth;
   float rise = view.z / slant * (perspective ? -t.line : 1.0f);
   t.gradient = vec2(per_px.x * normal.x * rise, per_px.y * normal.y * rise);
-  t.fading = 2.0f * slant * slant / (abs(per_px.y) * (perspective ? t.line : 1.0f));
+  t.fading = 60.0f * slant * slant / (abs(per_px.y) * (perspective ? t.line : 1.0f));
   return t;
 }
 
-// What to add to `line` of the sample at the texel `snapped_px` away to move it to `offset_px` away
-// (vectors, pixels). `share` is 1 / the length of offset_px.
-ALCOVE_INLINE float line_correction(TangentLine t, vec2 snapped_px, vec2 offset_px, float line,
-                                    float share) {
+// How far a sample at the texel `snapped_px` away is moved towards the exact place it stands for, along
+// the tangent plane: 1 on the plane, which stays exactly flat, 0 off it, where an occluder stays where
+// it was found. `share` is 1 / the distance in pixels.
+ALCOVE_INLINE float tangent_share(TangentLine t, vec2 snapped_px, float line, float share) {
   float off_plane = line - t.line - dot(snapped_px, t.gradient);
-  float kept = max(1.0f - t.fading * share * abs(off_plane), 0.0f);
-  return kept * dot(offset_px - snapped_px, t.gradient);
+  return max(1.0f - t.fading * share * abs(off_plane), 0.0f);
 }
 
 // Pixels along the line that a sphere of radius `radius` (scene units) around the point spans on

@@ -91,8 +91,8 @@ TEST(SliceLine, ASampleOfTheTangentPlaneIsMovedAlongIt) {
     const vec2 exact = s.line.direction_px * random.uniform(2.0f, 40.0f);
     const vec2 snapped = round(exact);
     const float line = tangent.line + dot(snapped, tangent.gradient);
-    const float moved =
-        line + maths::line_correction(tangent, snapped, exact, line, 1.0f / length(exact));
+    const float share = maths::tangent_share(tangent, snapped, line, 1.0f / length(exact));
+    const float moved = line + share * dot(exact - snapped, tangent.gradient);
     const float depth = s.perspective() ? 1.0f / moved : moved;
     // A plane that passes behind the eye has no image there.
     if (!(depth > 0.0f) || depth > 10.0f * s.depth) continue;
@@ -109,7 +109,7 @@ TEST(SliceLine, ASampleFarOffTheTangentPlaneIsLeftAsItIs) {
     const vec2 exact(10.3f, -4.4f), snapped(10.0f, -4.0f);
     const float line =
         tangent.line + dot(snapped, tangent.gradient) + 1.01f * length(exact) / tangent.fading;
-    EXPECT_EQ(maths::line_correction(tangent, snapped, exact, line, 1.0f / length(exact)), 0.0f);
+    EXPECT_EQ(maths::tangent_share(tangent, snapped, line, 1.0f / length(exact)), 0.0f);
   }
 }
 

@@ -78,7 +78,7 @@ TEST_F(GtaoTruth, HorizonsMeetBruteForceInEverySceneAndView) {
       const Errors errors = errors_of(images.visibility, drawing, radius);
       EXPECT_LT(errors.mean, 0.008);
       // Silhouettes lie between pixels, and the ball's contact is narrower than one.
-      EXPECT_LT(errors.largest, scene.name == "ball" ? 0.25 : 0.08);
+      EXPECT_LT(errors.largest, scene.name == "ball" ? 0.3 : 0.08);
     }
   }
 }
@@ -93,7 +93,7 @@ TEST_F(GtaoTruth, TheBitmaskMeetsBruteForceWhereAllThatIsHiddenOccludes) {
                                       exact(Estimator::bitmask, radius));
     const Errors errors = errors_of(images.visibility, drawing, radius);
     EXPECT_LT(errors.mean, 0.02);
-    EXPECT_LT(errors.largest, scene.name == "ball" ? 0.25 : 0.08);
+    EXPECT_LT(errors.largest, scene.name == "ball" ? 0.3 : 0.08);
   }
 }
 
