@@ -181,8 +181,9 @@ TEST_F(GtaoInvariance, EverySizeDivisorAndPatternCoversEveryPixel) {
             for (std::uint32_t c = 0; c < 3; ++c) {
               dot += images.bent_normal.texels[i * 4 + c] * drawing.normal_vs.texels[i * 4 + c];
             }
-            // A single slice of a tilted plane leans as far as the plane does.
-            ASSERT_GT(dot, 0.3) << "pixel " << i;
+            // A single slice holds only what lies in it: its mean direction is no more than above
+            // the surface.
+            ASSERT_GT(dot, 0.0) << "pixel " << i;
           }
         }
       }
