@@ -11,15 +11,14 @@ namespace alcove::sample {
 namespace {
 
 // The occlusion's frame as the sample declares it, with images that stand for an engine's.
-tl::expected<void, std::string> declare(framegraph::Graph& graph, Gpu& gpu,
-                                        const Options& options,
+tl::expected<void, std::string> declare(framegraph::Graph& graph, Gpu& gpu, const Options& options,
                                         const passes::OcclusionSettings& settings) {
   const auto extent = framegraph::Extent::absolute(options.view.width, options.view.height);
   const auto texture = [&](const char* name, VkFormat format) {
     auto pass = graph.add_pass(name);
-    const framegraph::Texture filled = pass.write(graph.create_texture(name, {format, extent}),
-                                                  framegraph::access::color_attachment, {},
-                                                  framegraph::Contents::discard);
+    const framegraph::Texture filled =
+        pass.write(graph.create_texture(name, {format, extent}),
+                   framegraph::access::color_attachment, {}, framegraph::Contents::discard);
     pass.record([](framegraph::RecordContext&) {});
     return filled;
   };

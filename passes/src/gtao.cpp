@@ -58,7 +58,8 @@ tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame, const GtaoInpu
   if (auto good = check(settings); !good) {
     return tl::unexpected(good.error());
   }
-  const std::array<NamedInput, 2> needed{{{"depth", inputs.depth_ndc}, {"normals", inputs.normals}}};
+  const std::array<NamedInput, 2> needed{
+      {{"depth", inputs.depth_ndc}, {"normals", inputs.normals}}};
   if (auto good = check_inputs(frame.graph, "gtao", needed); !good) {
     return tl::unexpected(good.error());
   }

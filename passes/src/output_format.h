@@ -28,4 +28,9 @@ namespace alcove::passes {
   }
 }
 
+// Unit vectors.
+[[nodiscard]] inline VkFormat direction_format(Precision precision) {
+  return precision == Precision::unorm8 ? VK_FORMAT_R8G8B8A8_SNORM : colour_format(precision);
+}
+
 }  // namespace alcove::passes

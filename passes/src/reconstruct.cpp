@@ -7,6 +7,7 @@
 
 #include "check_inputs.h"
 #include "maths/slice_line.h"
+#include "output_format.h"
 #include "reconstruct_parameters.h"
 #include "search_phase.h"
 #include "view_parameters.h"
@@ -53,28 +54,6 @@ tl::expected<void, Error> check_textures(const Frame& frame, const ReconstructIn
   return check_inputs(frame.graph, "reconstruct", needed);
 }
 
-VkFormat visibility_format(Precision precision) {
-  switch (precision) {
-    case Precision::unorm8:
-      return VK_FORMAT_R8_UNORM;
-    case Precision::float16:
-      return VK_FORMAT_R16_SFLOAT;
-    default:
-      return VK_FORMAT_R32_SFLOAT;
-  }
-}
-
-VkFormat bent_normal_format(Precision precision) {
-  switch (precision) {
-    case Precision::unorm8:
-      return VK_FORMAT_R8G8B8A8_SNORM;
-    case Precision::float16:
-      return VK_FORMAT_R16G16B16A16_SFLOAT;
-    default:
-      return VK_FORMAT_R32G32B32A32_SFLOAT;
-  }
-}
-
 // All that the pass touches; null where it is not wanted.
 struct Textures {
   ReconstructInputs inputs;
@@ -94,10 +73,10 @@ Textures create_textures(const Frame& frame, const ReconstructInputs& inputs,
   const auto size = framegraph::Extent::absolute(extent.width, extent.height);
   Textures textures{.inputs = inputs};
   textures.result.visibility =
-      graph.create_texture("visibility", {visibility_format(settings.precision), size});
+      graph.create_texture("visibility", {scalar_format(settings.precision), size});
   if (inputs.signal.bent) {
     textures.result.bent_normal =
-        graph.create_texture("bent normal", {bent_normal_format(settings.precision), size});
+        graph.create_texture("bent normal", {direction_format(settings.precision), size});
   }
   if (settings.history_frames == 0) {
     return textures;

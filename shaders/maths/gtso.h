@@ -14,9 +14,10 @@
 
 ALCOVE_MATHS_BEGIN
 
-// Visibility as the cones take it: [0,1], with the last 1/128 below open counted as open. A filtered
-// visibility is no surer than that, and a cone's angle, whose cosine is sqrt(1 - visibility), turns so
-// little into 5 degrees, which would cost an open surface the whole of a sharp lobe at grazing angles.
+// Visibility as the cones take it: [0,1], with the last 1/128 below open counted as open. A
+// filtered visibility is no surer than that, and a cone's angle, whose cosine is sqrt(1 -
+// visibility), turns so little into 5 degrees, which would cost an open surface the whole of a
+// sharp lobe at grazing angles.
 ALCOVE_INLINE float settled_visibility(float visibility) {
   return clamp(visibility * (128.0f / 127.0f), 0.0f, 1.0f);
 }
@@ -60,8 +61,8 @@ ALCOVE_INLINE float tilted_visibility_cone(float visibility, float bent_dot_norm
 }
 
 // The bent normal turned towards the normal until the cone of this visibility around it lies above
-// the surface, where everything visible lies. An open surface's is the normal itself, whatever noise
-// has tilted it.
+// the surface, where everything visible lies. An open surface's is the normal itself, whatever
+// noise has tilted it.
 ALCOVE_INLINE vec3 raised_bent_normal(vec3 bent_normal, vec3 normal, float visibility) {
   float v = clamp(visibility, 0.0f, 1.0f);
   float bent_dot_normal = dot(bent_normal, normal);

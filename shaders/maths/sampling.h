@@ -39,9 +39,10 @@ ALCOVE_INLINE SliceNoise spatial_pattern(uvec2 pixel, uint frame) {
   return noise;
 }
 
-// The memo's 4x4 block, turned from frame to frame by the golden ratio (directions) and the first R2
-// number (offsets): no frame repeats, and any run of frames covers both evenly, so that it goes with
-// searches that move through a block of pixels, whose own period the memo's six rotations would meet.
+// The memo's 4x4 block, turned from frame to frame by the golden ratio (directions) and the first
+// R2 number (offsets): no frame repeats, and any run of frames covers both evenly, so that it goes
+// with searches that move through a block of pixels, whose own period the memo's six rotations
+// would meet.
 ALCOVE_INLINE SliceNoise golden_pattern(uvec2 pixel, uint frame) {
   uint x = pixel.x & 3u;
   uint y = pixel.y & 3u;

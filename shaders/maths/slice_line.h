@@ -84,9 +84,9 @@ ALCOVE_INLINE TangentLine make_tangent_line(vec2 per_px, vec3 normal, vec3 view,
   return t;
 }
 
-// How far a sample at the texel `snapped_px` away is moved towards the exact place it stands for, along
-// the tangent plane: 1 on the plane, which stays exactly flat, 0 off it, where an occluder stays where
-// it was found. `share` is 1 / the distance in pixels.
+// How far a sample at the texel `snapped_px` away is moved towards the exact place it stands for,
+// along the tangent plane: 1 on the plane, which stays exactly flat, 0 off it, where an occluder
+// stays where it was found. `share` is 1 / the distance in pixels.
 ALCOVE_INLINE float tangent_share(TangentLine t, vec2 snapped_px, float line, float share) {
   float off_plane = line - t.line - dot(snapped_px, t.gradient);
   return max(1.0f - t.fading * share * abs(off_plane), 0.0f);

@@ -35,8 +35,9 @@ struct GtsoInputs {
   bool normals_in_view_space = false;
 };
 
-// Out: one channel, the visible share of the GGX lobe of each pixel, [0,1], 1 open, which multiplies
-// specular probe light; 1 in the sky. Unorm8 is R8_UNORM, float16 R16_SFLOAT, float32 R32_SFLOAT.
+// Out: one channel, the visible share of the GGX lobe of each pixel, [0,1], 1 open, which
+// multiplies specular probe light; 1 in the sky. Unorm8 is R8_UNORM, float16 R16_SFLOAT, float32
+// R32_SFLOAT.
 //
 // An open surface stays open at any roughness and angle: a visibility within 1/128 of 1 counts as
 // open, because a filtered one is no surer than that and a cone turns it into degrees. The memo
