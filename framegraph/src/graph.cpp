@@ -45,7 +45,7 @@ void Graph::reset() {
   callbacks_.clear();
   histories_.begin_frame();
   block_ = 0;
-  next_ = end_ = 0;
+  next_ = end_ = nullptr;
   tag_ = next_tag();
 }
 
@@ -61,13 +61,13 @@ void* Graph::allocate_in_next_block(std::size_t size, std::size_t alignment) {
       blocks_.push_back({std::make_unique<std::byte[]>(block_size), block_size});
     }
     const Block& block = blocks_[block_];
-    next_ = reinterpret_cast<std::uintptr_t>(block.bytes.get());
-    end_ = next_ + block.size;
-    const std::uintptr_t start = (next_ + alignment - 1) & ~(std::uintptr_t{alignment} - 1);
-    if (start + size > end_) continue;
-    next_ = start + size;
+    std::byte* const first = block.bytes.get();
+    const std::size_t padding = (0 - reinterpret_cast<std::uintptr_t>(first)) & (alignment - 1);
+    if (padding + size > block.size) continue;
+    next_ = first + padding + size;
+    end_ = first + block.size;
     ++block_;
-    return reinterpret_cast<void*>(start);
+    return first + padding;
   }
 }
 

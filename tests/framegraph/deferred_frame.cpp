@@ -12,10 +12,9 @@ class DeferredFrame {
 
   void declare() {
     draw_geometry();
+    sort_lights();
     const Texture ao = occlude();
-    const Texture shadow = compute("shadow mask", VK_FORMAT_R8_UNORM, 1, {depth_});
-    const Texture lit = compute("lighting", VK_FORMAT_R16G16B16A16_SFLOAT, 1,
-                                {depth_, albedo_, normal_, material_, ao, shadow});
+    const Texture lit = light(ao);
     const Texture smooth =
         compute("antialiasing", VK_FORMAT_R16G16B16A16_SFLOAT, 1, {lit, motion_});
     const Texture bloom = bloom_of(smooth);
@@ -32,14 +31,36 @@ class DeferredFrame {
   void draw_geometry() {
     depth_ = make("depth", VK_FORMAT_D32_SFLOAT, 1);
     albedo_ = make("albedo", VK_FORMAT_R8G8B8A8_UNORM, 1);
-    normal_ = make("normal", VK_FORMAT_R16G16_SFLOAT, 1);
-    material_ = make("material", VK_FORMAT_R8G8B8A8_UNORM, 1);
-    motion_ = make("motion", VK_FORMAT_R16G16_SFLOAT, 1);
+    normal_ = make("normal, roughness", VK_FORMAT_R16G16B16A16_SFLOAT, 1);
+    emission_ = make("emission", VK_FORMAT_R16G16B16A16_SFLOAT, 1);
+    motion_ = make("motion, its depth", VK_FORMAT_R16G16B16A16_SFLOAT, 1);
     PassBuilder pass = graph_.add_pass("g-buffer");
     depth_ = pass.write(depth_, access::depth_attachment);
-    for (Texture* target : {&albedo_, &normal_, &material_, &motion_})
+    for (Texture* target : {&albedo_, &normal_, &emission_, &motion_})
       *target = pass.write(*target, access::color_attachment);
     pass.record([](RecordContext&) {});
+  }
+
+  // A bit for each of 128 lights in each tile of 16 x 16 pixels.
+  void sort_lights() {
+    const VkDeviceSize tiles = VkDeviceSize{(width_ + 15) / 16} * ((height_ + 15) / 16);
+    light_tiles_ = graph_.create_buffer("light tiles", {16 * tiles});
+    PassBuilder pass = graph_.add_pass("light tiles");
+    pass.read(depth_, access::depth_read_compute);
+    light_tiles_ = pass.write(light_tiles_, buffer_access::storage_write_compute);
+    pass.record([](RecordContext&) {});
+  }
+
+  Texture light(Texture ao) {
+    Texture lit = make("lighting", VK_FORMAT_R16G16B16A16_SFLOAT, 1);
+    PassBuilder pass = graph_.add_pass("lighting");
+    pass.read(depth_, access::depth_read_compute);
+    pass.read(light_tiles_, buffer_access::storage_read_compute);
+    for (const Texture& read : {albedo_, normal_, emission_, ao})
+      pass.read(read, access::sampled_compute);
+    lit = pass.write(lit, access::storage_write_compute);
+    pass.record([](RecordContext&) {});
+    return lit;
   }
 
   Texture compute(const char* name, VkFormat format, std::uint32_t divisor,
@@ -89,10 +110,19 @@ class DeferredFrame {
   Graph& graph_;
   std::uint32_t width_;
   std::uint32_t height_;
-  Texture depth_, albedo_, normal_, material_, motion_;
+  Texture depth_, albedo_, normal_, emission_, motion_;
+  Buffer light_tiles_;
 };
 
 }  // namespace
+
+MemoryRequirements paged_requirements(const void*, const ResourceRecord& record, VkFlags) {
+  constexpr VkDeviceSize kPage = 65536;
+  MemoryRequirements needed = estimate_requirements(record);
+  needed.size = (needed.size + kPage - 1) / kPage * kPage;
+  needed.alignment = kPage;
+  return needed;
+}
 
 void declare_deferred_frame(Graph& graph, std::uint32_t width, std::uint32_t height) {
   DeferredFrame(graph, width, height).declare();

@@ -182,9 +182,9 @@ class Graph {
   std::vector<Callback> callbacks_;      // parallel to description_.passes
   std::vector<Cleanup> cleanups_;
   std::vector<Block> blocks_;
-  std::size_t block_ = 0;    // the next block
-  std::uintptr_t next_ = 0;  // free bytes of the current one
-  std::uintptr_t end_ = 0;
+  std::size_t block_ = 0;      // the next block
+  std::byte* next_ = nullptr;  // free bytes of the current one
+  std::byte* end_ = nullptr;
   std::size_t text_used_ = 0;  // of description_.text
   std::uint32_t tag_ = 0;      // of the handles of this frame of this graph
   HistoryTable histories_;
@@ -209,10 +209,12 @@ void PassBuilder::record(Callable&& callable) {
 // costs little more than writing its records.
 
 inline void* Graph::allocate(std::size_t size, std::size_t alignment) {
-  const std::uintptr_t start = (next_ + alignment - 1) & ~(std::uintptr_t{alignment} - 1);
-  if (start + size > end_) return allocate_in_next_block(size, alignment);
+  const std::size_t padding = (0 - reinterpret_cast<std::uintptr_t>(next_)) & (alignment - 1);
+  if (padding + size > static_cast<std::size_t>(end_ - next_))
+    return allocate_in_next_block(size, alignment);
+  std::byte* const start = next_ + padding;
   next_ = start + size;
-  return reinterpret_cast<void*>(start);
+  return start;
 }
 
 inline GraphDescription::Name Graph::keep_name(std::string_view name) {
