@@ -30,6 +30,9 @@ struct Executor::Implementation {
   bool starts_anew(const CachedPlan& cached) const;
   void finish(Graph& graph, const CachedPlan& cached);
   void begin_frame(const FrameInfo& info);
+  Timestamps& timestamps_of(std::size_t slot, std::size_t queue) {
+    return *timestamps[slot * kQueueClasses + queue];
+  }
 
   ExecutorOptions options;
   DeviceContext device;
@@ -227,7 +230,7 @@ tl::expected<FrameReport, Errors> Executor::record(Graph& graph, VkCommandBuffer
   auto report = self.prepare(graph, info, true, cached);
   if (!report) return report;
   Timestamps* timestamps =
-      self.options.timestamps ? self.timestamps[info.slot * kQueueClasses].get() : nullptr;
+      self.options.timestamps ? &self.timestamps_of(info.slot, 0) : nullptr;
   if (timestamps) {
     const VkResult result =
         timestamps->begin_frame(commands, static_cast<std::uint32_t>(cached->plan.passes.size()));
@@ -259,7 +262,7 @@ tl::expected<FrameReport, Errors> Executor::submit(Graph& graph, const FrameInfo
   Timestamps* timestamps[kQueueClasses] = {};
   // Queues for transfers alone may have no timestamps.
   for (std::size_t q = 0; q + 1 < kQueueClasses && self.options.timestamps; ++q)
-    timestamps[q] = self.timestamps[info.slot * kQueueClasses + q].get();
+    timestamps[q] = &self.timestamps_of(info.slot, q);
   for (Timestamps* times : timestamps) {
     if (times) times->forget();
   }
@@ -286,7 +289,7 @@ std::span<const PassTiming> Executor::timings(std::uint32_t slot) {
   self.timings.clear();
   if (slot >= self.slot_frames.size() || !self.options.timestamps) return {};
   for (std::size_t q = 0; q < kQueueClasses; ++q) {
-    const auto times = self.timestamps[slot * kQueueClasses + q]->read();
+    const auto times = self.timestamps_of(slot, q).read();
     self.timings.insert(self.timings.end(), times.begin(), times.end());
   }
   return self.timings;

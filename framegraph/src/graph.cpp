@@ -7,7 +7,7 @@
 namespace alcove::framegraph {
 namespace {
 
-constexpr std::size_t kBlockSize = 16 * 1024;
+constexpr std::size_t kBlockSize = 16384;
 
 // Handles of different graphs and frames differ by this: its only use is to refuse foreign ones.
 std::uint32_t next_tag() {

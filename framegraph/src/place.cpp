@@ -92,6 +92,7 @@ class Placer {
     if (best_ <= bound) return;
     const std::size_t count = s_.items.size();
     budget_ = limits_.placement_effort;
+    random_ = 1;
     if (static_cast<std::int64_t>(count * count) > budget_) return;
     s_.order.resize(count);
     try_falling([](const PlaceItem& item) { return item.size; });
@@ -175,78 +176,109 @@ class Placer {
     try_order();
   }
 
-  // First fit in s_.order; kept if it beats the best, given up when it goes beyond `limit`.
-  bool try_order(VkDeviceSize limit = ~VkDeviceSize{0}) {
-    VkDeviceSize peak = 0;
-    s_.live.clear();
-    s_.offsets.resize(s_.items.size());
-    for (const std::uint32_t index : s_.order) {
-      const PlaceItem& item = s_.items[index];
-      VkDeviceSize offset = 0;
-      for (const PlaceItem& other : s_.live) {
-        if (other.last < item.first || item.last < other.first) continue;
-        if (offset + item.size <= other.offset) break;
-        offset = std::max(offset, align_up(other.offset + other.size, item.alignment));
-      }
-      budget_ -= static_cast<std::int64_t>(s_.live.size());
-      s_.offsets[index] = offset;
-      peak = std::max(peak, offset + item.size);
+  // First fit in s_.order; kept if it beats the best, given up when it goes beyond `limit`. What
+  // comes before `from` in the order stays where the settled order had it.
+  bool try_order(VkDeviceSize limit = ~VkDeviceSize{0}, std::size_t from = 0) {
+    VkDeviceSize peak = keep_before(from);
+    for (std::size_t i = from; i < s_.order.size(); ++i) {
+      peak = std::max(peak, fit(s_.order[i]));
       if (peak > limit) {
         last_ = peak;
         return false;
       }
-      const auto at = std::upper_bound(
-          s_.live.begin(), s_.live.end(), offset,
-          [](VkDeviceSize value, const PlaceItem& there) { return value < there.offset; });
-      s_.live.insert(at, item)->offset = offset;
     }
     last_ = peak;
     if (peak >= best_) return false;
     best_ = peak;
     for (std::size_t i = 0; i < s_.items.size(); ++i) s_.items[i].offset = s_.offsets[i];
-    s_.best_order = s_.order;
-    s_.current = s_.offsets;
-    current_ = peak;
+    settle();
     return true;
   }
 
-  void improve(VkDeviceSize bound) {
-    if (s_.best_order.size() != s_.items.size()) {
-      s_.best_order = s_.order;
-      s_.current = s_.offsets;
-      current_ = last_;
+  // Puts those where the settled order had them; their peak.
+  VkDeviceSize keep_before(std::size_t from) {
+    s_.live.clear();
+    s_.offsets.resize(s_.items.size());
+    if (from == 0) return 0;
+    VkDeviceSize peak = 0;
+    s_.kept.assign(s_.items.size(), 0);
+    for (std::size_t i = 0; i < from; ++i) {
+      const std::uint32_t index = s_.order[i];
+      s_.offsets[index] = s_.settled_offsets[index];
+      s_.kept[index] = 1;
+      peak = std::max(peak, s_.settled_offsets[index] + s_.items[index].size);
     }
-    std::uint32_t state = 1;
-    const auto roll = [&state](std::size_t sides) {
-      state ^= state << 13;
-      state ^= state >> 17;
-      state ^= state << 5;
-      return state % sides;
-    };
+    for (const PlaceItem& item : s_.settled_items) {
+      if (s_.kept[item.resource]) s_.live.push_back(item);
+    }
+    return peak;
+  }
+
+  // Puts one as low as it goes; its end.
+  VkDeviceSize fit(std::uint32_t index) {
+    const PlaceItem& item = s_.items[index];
+    VkDeviceSize offset = 0;
+    std::size_t scanned = 0;
+    for (; scanned < s_.live.size(); ++scanned) {
+      const PlaceItem& other = s_.live[scanned];
+      if (other.last < item.first || item.last < other.first) continue;
+      if (offset + item.size <= other.offset) break;
+      offset = std::max(offset, align_up(other.offset + other.size, item.alignment));
+    }
+    budget_ -= static_cast<std::int64_t>(scanned);
+    s_.offsets[index] = offset;
+    const auto at = std::upper_bound(
+        s_.live.begin(), s_.live.end(), offset,
+        [](VkDeviceSize value, const PlaceItem& there) { return value < there.offset; });
+    const auto made = s_.live.insert(at, item);
+    made->offset = offset;
+    made->resource = index;  // among the items
+    return offset + item.size;
+  }
+
+  // Further changes are made to this order.
+  void settle() {
+    s_.settled_order = s_.order;
+    s_.settled_offsets = s_.offsets;
+    s_.settled_items = s_.live;
+    settled_peak_ = last_;
+  }
+
+  void improve(VkDeviceSize bound) {
+    if (s_.settled_order.size() != s_.items.size()) settle();
     while (best_ > bound && budget_ > 0) {
       budget_ -= 16;
-      s_.order = s_.best_order;
-      // What ends at the peak had too little choice: let it choose earlier.
-      const auto high = std::find_if(s_.order.begin(), s_.order.end(), [this](std::uint32_t i) {
-        return s_.current[i] + s_.items[i].size == current_;
-      });
-      if (high != s_.order.end() && roll(4) != 0) {
-        const auto to =
-            s_.order.begin() + static_cast<std::ptrdiff_t>(
-                                   roll(static_cast<std::size_t>(high - s_.order.begin()) + 1));
-        std::rotate(to, high, high + 1);
-      } else {
-        std::swap(s_.order[roll(s_.order.size())], s_.order[roll(s_.order.size())]);
-      }
+      const std::size_t from = change_order();
       // Slightly worse steps are taken too: they lead away from where nothing improves.
-      const VkDeviceSize limit = current_ + bound / 256 * roll(3);
-      try_order(limit);
-      if (last_ > limit) continue;
-      s_.best_order = s_.order;
-      s_.current = s_.offsets;
-      current_ = last_;
+      const VkDeviceSize limit = settled_peak_ + bound / 256 * roll(3);
+      if (!try_order(limit, from) && last_ <= limit) settle();
     }
-    s_.best_order.clear();
+    s_.settled_order.clear();
+  }
+
+  // The settled order with one change; the first place that differs.
+  std::size_t change_order() {
+    s_.order = s_.settled_order;
+    // What ends at the peak had too little choice: let it choose earlier.
+    const auto high = std::find_if(s_.order.begin(), s_.order.end(), [this](std::uint32_t i) {
+      return s_.settled_offsets[i] + s_.items[i].size == settled_peak_;
+    });
+    if (high != s_.order.end() && roll(4) != 0) {
+      const std::size_t to = roll(static_cast<std::size_t>(high - s_.order.begin()) + 1);
+      std::rotate(s_.order.begin() + static_cast<std::ptrdiff_t>(to), high, high + 1);
+      return to;
+    }
+    const std::size_t one = roll(s_.order.size());
+    const std::size_t other = roll(s_.order.size());
+    std::swap(s_.order[one], s_.order[other]);
+    return std::min(one, other);
+  }
+
+  std::uint32_t roll(std::size_t sides) {
+    random_ ^= random_ << 13;
+    random_ ^= random_ >> 17;
+    random_ ^= random_ << 5;
+    return static_cast<std::uint32_t>(random_ % sides);
   }
 
   const Limits& limits_;
@@ -254,9 +286,10 @@ class Placer {
   Plan& plan_;
   Workspace::Place& s_;
   VkDeviceSize best_ = 0;
-  VkDeviceSize last_ = 0;     // peak of the last order tried
-  VkDeviceSize current_ = 0;  // peak of the order that is being improved
-  std::int64_t budget_ = 0;   // comparisons left
+  VkDeviceSize last_ = 0;          // peak of the last order tried
+  VkDeviceSize settled_peak_ = 0;  // peak of the order that is being improved
+  std::int64_t budget_ = 0;        // comparisons left
+  std::uint32_t random_ = 1;
 };
 
 }  // namespace

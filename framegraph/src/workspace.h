@@ -112,9 +112,12 @@ struct Workspace {
     std::vector<PlaceItem> live;   // in order of offset
     std::vector<std::int64_t> change;
     std::vector<std::uint32_t> order;
-    std::vector<std::uint32_t> best_order;
     std::vector<VkDeviceSize> offsets;
-    std::vector<VkDeviceSize> current;
+    // The order that is being improved, its offsets, and its items in order of offset.
+    std::vector<std::uint32_t> settled_order;
+    std::vector<VkDeviceSize> settled_offsets;
+    std::vector<PlaceItem> settled_items;
+    std::vector<std::uint8_t> kept;
   } place;
   struct Synchronise {
     std::vector<UseState> states;     // by subresource

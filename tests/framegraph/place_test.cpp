@@ -86,6 +86,9 @@ void expect_close_to_bound(std::uint32_t fewest_passes) {
 TEST(Place, GraphsOf20To40PassesComeWithinTwoPercentOfTheirLowerBound) {
   expect_close_to_bound(20);
 }
+TEST(Place, GraphsOf40To80PassesComeWithinTwoPercentOfTheirLowerBound) {
+  expect_close_to_bound(40);
+}
 
 TEST(Place, WithoutAliasingNothingSharesBytes) {
   Graph graph;
