@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kShaderCount = static_cast<std::size_t>(Shader::count);
 constexpr std::size_t kMaxConstants = 16;
-constexpr std::size_t kMaxBindings = 16;
+constexpr std::size_t kMaxBindings = 17;  // the parameters among them
 constexpr std::uint32_t kGroupSize = 8;
 
 tl::unexpected<Error> failure(std::string_view what, VkResult result) {
@@ -34,6 +34,24 @@ struct Set {
   VkDescriptorSet set = VK_NULL_HANDLE;
 };
 
+// Memory that the host wrote and the device reads.
+struct HostBuffer {
+  VkBuffer buffer = VK_NULL_HANDLE;
+  VkDeviceMemory memory = VK_NULL_HANDLE;
+  std::byte* mapped = nullptr;
+};
+
+VkDescriptorType descriptor_type(char binding) {
+  switch (binding) {
+    case 's':
+      return VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
+    case 't':
+      return VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+    default:
+      return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+  }
+}
+
 struct FrameSlot {
   VkDescriptorPool pool = VK_NULL_HANDLE;
   std::array<Set, Kernels::kMaxDispatches> sets;
@@ -50,9 +68,8 @@ struct Kernels::State {
   std::array<VkPipelineLayout, kShaderCount> pipeline_layouts{};
   std::vector<Pipeline> pipelines;
   std::vector<FrameSlot> slots;
-  VkBuffer parameters = VK_NULL_HANDLE;
-  VkDeviceMemory parameter_memory = VK_NULL_HANDLE;
-  std::byte* mapped = nullptr;
+  std::array<HostBuffer, kShaderCount> tables{};
+  HostBuffer parameters;
   std::size_t slot = 0;
   std::uint32_t dispatches = 0;
 
@@ -64,10 +81,14 @@ struct Kernels::State {
   tl::expected<void, Error> create_layouts();
   tl::expected<void, Error> create_slots(std::uint32_t count);
   tl::expected<void, Error> create_parameters(std::uint32_t slot_count);
+  tl::expected<void, Error> create_buffer(HostBuffer& made, VkDeviceSize size,
+                                          VkBufferUsageFlags usage, std::string_view what);
+  void destroy_buffer(const HostBuffer& buffer) const;
   tl::expected<void, Error> create_module(std::size_t shader);
+  tl::expected<void, Error> create_table(std::size_t shader);
   VkDescriptorSet next_set(Shader shader);
   VkDeviceSize write_parameters(std::span<const std::byte> bytes);
-  void write_set(VkDescriptorSet set, std::string_view bindings, std::span<const VkImageView> views,
+  void write_set(VkDescriptorSet set, Shader shader, std::span<const VkImageView> views,
                  VkDeviceSize offset, VkDeviceSize size);
 };
 
@@ -82,12 +103,17 @@ Kernels::State::~State() {
     vk.vkDestroyShaderModule(device, modules[i], nullptr);
     vk.vkDestroyPipelineLayout(device, pipeline_layouts[i], nullptr);
     vk.vkDestroyDescriptorSetLayout(device, set_layouts[i], nullptr);
+    destroy_buffer(tables[i]);
   }
   for (const FrameSlot& frame : slots) {
     vk.vkDestroyDescriptorPool(device, frame.pool, nullptr);
   }
-  vk.vkDestroyBuffer(device, parameters, nullptr);
-  vk.vkFreeMemory(device, parameter_memory, nullptr);
+  destroy_buffer(parameters);
+}
+
+void Kernels::State::destroy_buffer(const HostBuffer& buffer) const {
+  vk.vkDestroyBuffer(device, buffer.buffer, nullptr);
+  vk.vkFreeMemory(device, buffer.memory, nullptr);
 }
 
 tl::expected<void, Error> Kernels::State::create_layouts() {
@@ -97,10 +123,8 @@ tl::expected<void, Error> Kernels::State::create_layouts() {
     assert(bindings.size() < kMaxBindings);
     described[0] = {0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr};
     for (std::uint32_t b = 0; b < bindings.size(); ++b) {
-      described[b + 1] = {
-          b + 1,
-          bindings[b] == 's' ? VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE : VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
-          1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr};
+      described[b + 1] = {b + 1, descriptor_type(bindings[b]), 1, VK_SHADER_STAGE_COMPUTE_BIT,
+                          nullptr};
     }
     const VkDescriptorSetLayoutCreateInfo set_info{
         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
@@ -122,8 +146,9 @@ tl::expected<void, Error> Kernels::State::create_layouts() {
 }
 
 tl::expected<void, Error> Kernels::State::create_slots(std::uint32_t count) {
-  const std::array<VkDescriptorPoolSize, 3> sizes{
+  const std::array<VkDescriptorPoolSize, 4> sizes{
       {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, kMaxDispatches},
+       {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kMaxDispatches},
        {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, kMaxDispatches * 8},
        {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, kMaxDispatches * 6}}};
   const VkDescriptorPoolCreateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
@@ -141,17 +166,17 @@ tl::expected<void, Error> Kernels::State::create_slots(std::uint32_t count) {
   return {};
 }
 
-tl::expected<void, Error> Kernels::State::create_parameters(std::uint32_t slot_count) {
+tl::expected<void, Error> Kernels::State::create_buffer(HostBuffer& made, VkDeviceSize size,
+                                                        VkBufferUsageFlags usage,
+                                                        std::string_view what) {
   const VkBufferCreateInfo info{
-      .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
-      .size = VkDeviceSize{slot_count} * kMaxDispatches * kMaxParameterBytes,
-      .usage = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT};
-  if (const VkResult result = vk.vkCreateBuffer(device, &info, nullptr, &parameters);
+      .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = size, .usage = usage};
+  if (const VkResult result = vk.vkCreateBuffer(device, &info, nullptr, &made.buffer);
       result != VK_SUCCESS) {
-    return failure("the buffer of parameters", result);
+    return failure("the buffer of " + std::string(what), result);
   }
   VkMemoryRequirements needs;
-  vk.vkGetBufferMemoryRequirements(device, parameters, &needs);
+  vk.vkGetBufferMemoryRequirements(device, made.buffer, &needs);
   VkPhysicalDeviceMemoryProperties memory;
   vk.vkGetPhysicalDeviceMemoryProperties(physical_device, &memory);
   constexpr VkMemoryPropertyFlags kWanted =
@@ -165,18 +190,41 @@ tl::expected<void, Error> Kernels::State::create_parameters(std::uint32_t slot_c
   const VkMemoryAllocateInfo allocation{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
                                         .allocationSize = needs.size,
                                         .memoryTypeIndex = type};
-  VkResult result = vk.vkAllocateMemory(device, &allocation, nullptr, &parameter_memory);
+  VkResult result = vk.vkAllocateMemory(device, &allocation, nullptr, &made.memory);
   void* pointer = nullptr;
   if (result == VK_SUCCESS) {
-    result = vk.vkBindBufferMemory(device, parameters, parameter_memory, 0);
+    result = vk.vkBindBufferMemory(device, made.buffer, made.memory, 0);
   }
   if (result == VK_SUCCESS) {
-    result = vk.vkMapMemory(device, parameter_memory, 0, VK_WHOLE_SIZE, 0, &pointer);
+    result = vk.vkMapMemory(device, made.memory, 0, VK_WHOLE_SIZE, 0, &pointer);
   }
   if (result != VK_SUCCESS) {
-    return failure("the memory of parameters", result);
+    return failure("the memory of " + std::string(what), result);
   }
-  mapped = static_cast<std::byte*>(pointer);
+  made.mapped = static_cast<std::byte*>(pointer);
+  return {};
+}
+
+tl::expected<void, Error> Kernels::State::create_parameters(std::uint32_t slot_count) {
+  return create_buffer(parameters, VkDeviceSize{slot_count} * kMaxDispatches * kMaxParameterBytes,
+                       VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, "parameters");
+}
+
+// The table that a shader looks up, where it has one.
+tl::expected<void, Error> Kernels::State::create_table(std::size_t shader) {
+  const std::span<const std::uint32_t> table = shader_source(static_cast<Shader>(shader)).table;
+  HostBuffer& made = tables[shader];
+  if (table.empty() || made.mapped != nullptr) {
+    return {};
+  }
+  if (auto created =
+          create_buffer(made, table.size_bytes(), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, "a table");
+      !created) {
+    destroy_buffer(made);
+    made = {};
+    return created;
+  }
+  std::memcpy(made.mapped, table.data(), table.size_bytes());
   return {};
 }
 
@@ -221,37 +269,37 @@ VkDescriptorSet Kernels::State::next_set(Shader shader) {
 VkDeviceSize Kernels::State::write_parameters(std::span<const std::byte> bytes) {
   assert(bytes.size() <= kMaxParameterBytes);
   const VkDeviceSize offset = (slot * kMaxDispatches + dispatches) * kMaxParameterBytes;
-  std::memcpy(mapped + offset, bytes.data(), bytes.size());
+  std::memcpy(parameters.mapped + offset, bytes.data(), bytes.size());
   return offset;
 }
 
-void Kernels::State::write_set(VkDescriptorSet set, std::string_view bindings,
+void Kernels::State::write_set(VkDescriptorSet set, Shader shader,
                                std::span<const VkImageView> views, VkDeviceSize offset,
                                VkDeviceSize size) {
-  assert(views.size() == bindings.size());
-  const VkDescriptorBufferInfo buffer{parameters, offset, size};
+  const std::string_view bindings = shader_source(shader).bindings;
+  const HostBuffer& table = tables[static_cast<std::size_t>(shader)];
+  assert(views.size() + (table.buffer != VK_NULL_HANDLE ? 1 : 0) == bindings.size());
+  const VkDescriptorBufferInfo buffer{parameters.buffer, offset, size};
+  const VkDescriptorBufferInfo table_buffer{table.buffer, 0, VK_WHOLE_SIZE};
   std::array<VkDescriptorImageInfo, kMaxBindings> images;
   std::array<VkWriteDescriptorSet, kMaxBindings> writes;
-  writes[0] = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-               .dstSet = set,
-               .dstBinding = 0,
-               .descriptorCount = 1,
-               .descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,
-               .pBufferInfo = &buffer};
-  for (std::uint32_t i = 0; i < views.size(); ++i) {
-    const bool sampled = bindings[i] == 's';
-    images[i] = {VK_NULL_HANDLE, views[i],
-                 sampled ? VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL : VK_IMAGE_LAYOUT_GENERAL};
-    writes[i + 1] = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                     .dstSet = set,
-                     .dstBinding = i + 1,
-                     .descriptorCount = 1,
-                     .descriptorType = sampled ? VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE
-                                               : VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
-                     .pImageInfo = &images[i]};
+  for (std::uint32_t i = 0; i <= bindings.size(); ++i) {
+    writes[i] = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                 .dstSet = set,
+                 .dstBinding = i,
+                 .descriptorCount = 1,
+                 .descriptorType =
+                     i == 0 ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : descriptor_type(bindings[i - 1]),
+                 .pImageInfo = &images[i],
+                 .pBufferInfo = i == 0 ? &buffer : &table_buffer};
   }
-  vk.vkUpdateDescriptorSets(device, static_cast<std::uint32_t>(views.size() + 1), writes.data(), 0,
-                            nullptr);
+  for (std::uint32_t i = 0; i < views.size(); ++i) {
+    images[i + 1] = {
+        VK_NULL_HANDLE, views[i],
+        bindings[i] == 's' ? VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL : VK_IMAGE_LAYOUT_GENERAL};
+  }
+  vk.vkUpdateDescriptorSets(device, static_cast<std::uint32_t>(bindings.size() + 1), writes.data(),
+                            0, nullptr);
 }
 
 Kernels::Kernels(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -298,7 +346,7 @@ tl::expected<Kernel, Error> Kernels::get(Shader shader, std::span<const std::uin
     }
   }
   const auto index = static_cast<std::size_t>(shader);
-  if (auto made = s.create_module(index); !made) {
+  if (auto made = s.create_module(index).and_then([&] { return s.create_table(index); }); !made) {
     return tl::unexpected(std::move(made.error()));
   }
   assert(constants.size() <= kMaxConstants);
@@ -337,7 +385,7 @@ void Kernels::dispatch(framegraph::RecordContext& context, Kernel kernel,
     return;
   }
   const VkDeviceSize offset = s.write_parameters(parameters);
-  s.write_set(set, shader_source(kernel.shader).bindings, views, offset, parameters.size());
+  s.write_set(set, kernel.shader, views, offset, parameters.size());
   const VkCommandBuffer commands = context.commands;
   const VkPipelineLayout layout = s.pipeline_layouts[static_cast<std::size_t>(kernel.shader)];
   s.vk.vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline);
@@ -349,5 +397,15 @@ void Kernels::dispatch(framegraph::RecordContext& context, Kernel kernel,
 }
 
 std::size_t Kernels::pipeline_count() const { return state_->pipelines.size(); }
+
+std::size_t Kernels::table_bytes() const {
+  std::size_t bytes = 0;
+  for (std::size_t i = 0; i < kShaderCount; ++i) {
+    if (state_->tables[i].mapped != nullptr) {
+      bytes += shader_source(static_cast<Shader>(i)).table.size_bytes();
+    }
+  }
+  return bytes;
+}
 
 }  // namespace alcove::passes

@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "spirv/apply.h"
+#include "spirv/apply_specular.h"
 #include "spirv/depth_pyramid.h"
 #include "spirv/gtao.h"
 #include "spirv/gtso.h"
@@ -9,6 +11,7 @@
 #include "spirv/normals.h"
 #include "spirv/reconstruct.h"
 #include "spirv/reconstruct_history.h"
+#include "tables/reflectance.h"
 
 namespace alcove::passes {
 
@@ -23,6 +26,11 @@ const ShaderSource& shader_source(Shader shader) {
        "ssstt"},
       {kMultiBounce, "sst"},
       {kGtso, "ssssst"},
+      {kApply, "ssssssstt"},
+      {kApplySpecular,
+       "ssssssstt"
+       "tssssb",
+       kReflectanceTable},
   }};
   return sources[static_cast<std::size_t>(shader)];
 }

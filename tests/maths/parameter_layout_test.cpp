@@ -5,7 +5,9 @@
 #include <map>
 #include <string>
 
+#include "apply_parameters.h"
 #include "depth_pyramid_parameters.h"
+#include "environment_parameters.h"
 #include "gtao_parameters.h"
 #include "gtso_parameters.h"
 #include "maths/projection.h"
@@ -41,6 +43,15 @@ const std::map<std::string, Offsets> kExpected = {
     {"GtsoParameters",
      {ALCOVE_OFFSET(GtsoParameters, projection), ALCOVE_OFFSET(GtsoParameters, view_from_normal),
       ALCOVE_OFFSET(GtsoParameters, roughness)}},
+    {"ApplyParameters",
+     {ALCOVE_OFFSET(ApplyParameters, projection), ALCOVE_OFFSET(ApplyParameters, world_from_view),
+      ALCOVE_OFFSET(ApplyParameters, world_from_normal), ALCOVE_OFFSET(ApplyParameters, map),
+      ALCOVE_OFFSET(ApplyParameters, roughness), ALCOVE_OFFSET(ApplyParameters, metallic)}},
+    {"EnvironmentParameters",
+     {ALCOVE_OFFSET(EnvironmentParameters, source_px), ALCOVE_OFFSET(EnvironmentParameters, size),
+      ALCOVE_OFFSET(EnvironmentParameters, samples),
+      ALCOVE_OFFSET(EnvironmentParameters, roughness),
+      ALCOVE_OFFSET(EnvironmentParameters, levels)}},
     {"MultiBounceParameters", {ALCOVE_OFFSET(MultiBounceParameters, size_px)}},
     {"NormalsParameters", {ALCOVE_OFFSET(NormalsParameters, projection)}},
     {"ReconstructParameters",

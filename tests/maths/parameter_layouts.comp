@@ -3,7 +3,9 @@
 
 // Declares every parameter struct in the uniform block that its shader declares it in.
 
+#include "apply_parameters.h"
 #include "depth_pyramid_parameters.h"
+#include "environment_parameters.h"
 #include "gtao_parameters.h"
 #include "gtso_parameters.h"
 #include "maths/projection.h"
@@ -18,9 +20,12 @@ layout(set = 0, binding = 3) uniform D { NormalsParameters normals; };
 layout(set = 0, binding = 4) uniform E { ReconstructParameters reconstruct; };
 layout(set = 0, binding = 5) uniform F { GtsoParameters gtso; };
 layout(set = 0, binding = 6) uniform G { MultiBounceParameters multi_bounce; };
-layout(std430, set = 0, binding = 7) buffer Sum { float sum; };
+layout(set = 0, binding = 7) uniform H { ApplyParameters apply; };
+layout(set = 0, binding = 8) uniform I { EnvironmentParameters environment; };
+layout(std430, set = 0, binding = 9) buffer Sum { float sum; };
 
 void main() {
   sum = projection.size_px.x + depth_pyramid.reach + gtao.radius + normals.projection.size_px.x +
-        reconstruct.longest + gtso.roughness + multi_bounce.size_px.x;
+        reconstruct.longest + gtso.roughness + multi_bounce.size_px.x +
+        apply.roughness + environment.size;
 }

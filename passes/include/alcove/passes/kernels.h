@@ -28,6 +28,8 @@ enum class Shader : std::uint8_t {
   reconstruct_history,
   multi_bounce,
   gtso,
+  apply,
+  apply_specular,
   count,
 };
 
@@ -62,9 +64,13 @@ class Kernels {
   [[nodiscard]] tl::expected<Kernel, Error> get(Shader shader,
                                                 std::span<const std::uint32_t> constants);
 
+  // Bytes of the tables that the shaders in use look up; one that is not used has none.
+  [[nodiscard]] std::size_t table_bytes() const;
+
   // Records a dispatch that covers `size` pixels (and layers) with 8x8 groups. Binding 0 is a
   // uniform buffer with `parameters`; the views follow in the order of the shader's bindings,
-  // sampled ones in SHADER_READ_ONLY_OPTIMAL unless `general` is set, stored ones in GENERAL.
+  // sampled ones in SHADER_READ_ONLY_OPTIMAL, stored ones in GENERAL; the shader's table comes
+  // last.
   void dispatch(framegraph::RecordContext& context, Kernel kernel,
                 std::span<const VkImageView> views, std::span<const std::byte> parameters,
                 VkExtent3D size);

@@ -1,0 +1,205 @@
+#include "alcove/passes/apply.h"
+
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "apply_parameters.h"
+#include "check_inputs.h"
+#include "maths/spherical_harmonics.h"
+#include "output_format.h"
+#include "view_parameters.h"
+
+namespace alcove::passes {
+
+using framegraph::Range;
+using framegraph::RecordContext;
+using framegraph::Texture;
+
+namespace {
+
+tl::unexpected<Error> refusal(std::string message) {
+  return tl::unexpected(Error{std::move(message)});
+}
+
+tl::expected<void, Error> check_settings(const ApplySettings& settings) {
+  if (!(settings.roughness >= 0.0f && settings.roughness <= 1.0f)) {
+    return refusal("The roughness of probe light is " + std::to_string(settings.roughness) +
+                   "; it must be 0 to 1.");
+  }
+  if (!(settings.metallic >= 0.0f && settings.metallic <= 1.0f)) {
+    return refusal("The metallic of probe light is " + std::to_string(settings.metallic) +
+                   "; it must be 0 to 1.");
+  }
+  if (settings.roughness_channel > 3 || settings.metallic_channel > 3) {
+    return refusal("Roughness is asked from channel " + std::to_string(settings.roughness_channel) +
+                   " and metallic from channel " + std::to_string(settings.metallic_channel) +
+                   " of their textures; channels are 0 to 3.");
+  }
+  if (settings.precision == Precision::unorm8) {
+    return refusal("Probe light was asked for in 8 bits, which end at 1; use float16 or float32.");
+  }
+  return {};
+}
+
+tl::expected<void, Error> check_probe(const Frame& frame, const ApplyInputs& inputs) {
+  if (!inputs.harmonics) {
+    return refusal("The pass probe light needs a texture of harmonics; it was given none.");
+  }
+  const VkExtent3D harmonics = frame.graph.extent(inputs.harmonics);
+  if (harmonics.width != maths::kHarmonics || harmonics.height != 1) {
+    return refusal("The pass probe light was given harmonics of " +
+                   std::to_string(harmonics.width) + "x" + std::to_string(harmonics.height) +
+                   " texels; it needs 9x1.");
+  }
+  if (inputs.map) {
+    const VkExtent3D map = frame.graph.extent(inputs.map);
+    if (map.width != map.height || map.width == 0) {
+      return refusal("The pass probe light was given an environment map of " +
+                     std::to_string(map.width) + "x" + std::to_string(map.height) +
+                     " texels; it must be square.");
+    }
+  }
+  return {};
+}
+
+// The inputs that are as large as the depth, by name; those that are null and may be are left out.
+std::vector<NamedInput> named_inputs(const ApplyInputs& inputs) {
+  std::vector<NamedInput> named{
+      {"linear depth", inputs.depth}, {"normals", inputs.normals}, {"albedo", inputs.albedo}};
+  const std::array<NamedInput, 6> optional{{{"roughness", inputs.roughness},
+                                            {"metallic", inputs.metallic},
+                                            {"visibility", inputs.visibility},
+                                            {"bent normals", inputs.bent_normal},
+                                            {"specular occlusion", inputs.specular_occlusion},
+                                            {"light", inputs.light}}};
+  for (const NamedInput& input : optional) {
+    if (input.texture) {
+      named.push_back(input);
+    }
+  }
+  return named;
+}
+
+tl::expected<Kernel, Error> kernel_of(const Frame& frame, const ApplyInputs& inputs,
+                                      const ApplySettings& settings) {
+  const auto flag = [](bool on) { return static_cast<std::uint32_t>(on); };
+  const std::array constants{flag(bool(inputs.bent_normal)),
+                             flag(bool(inputs.visibility)),
+                             flag(settings.multi_bounce && inputs.visibility),
+                             flag(bool(inputs.light)),
+                             flag(settings.parts),
+                             flag(bool(inputs.roughness)),
+                             settings.roughness_channel,
+                             flag(bool(inputs.metallic)),
+                             settings.metallic_channel,
+                             flag(bool(inputs.specular_occlusion))};
+  constexpr std::size_t kDiffuseConstants = 5;
+  return inputs.map
+             ? frame.kernels.get(Shader::apply_specular, constants)
+             : frame.kernels.get(Shader::apply, std::span(constants).first(kDiffuseConstants));
+}
+
+Texture write_light(const Frame& frame, framegraph::PassBuilder& pass, const char* name,
+                    Texture depth, Precision precision) {
+  const Texture light = frame.graph.create_texture(
+      name, {colour_format(precision), framegraph::Extent::relative(depth)});
+  return pass.write(light, framegraph::access::storage_write_compute, {},
+                    framegraph::Contents::discard);
+}
+
+void declare_reads(framegraph::PassBuilder& pass, const ApplyInputs& inputs) {
+  std::vector<NamedInput> named = named_inputs(inputs);
+  named.push_back({"harmonics", inputs.harmonics});
+  if (inputs.map) {
+    named.push_back({"map", inputs.map});
+  }
+  for (const NamedInput& input : named) {
+    pass.read(input.texture, framegraph::access::sampled_compute,
+              input.texture == inputs.depth ? Range::mip(0) : Range{});
+  }
+}
+
+// What a purely diffuse surface does not use.
+ApplyInputs without_specular(ApplyInputs inputs) {
+  inputs.roughness = inputs.metallic = inputs.specular_occlusion = {};
+  return inputs;
+}
+
+maths::ApplyParameters parameters_of(const Frame& frame, const ApplyInputs& inputs,
+                                     const ApplySettings& settings,
+                                     const maths::Projection& projection) {
+  const maths::mat4 world_from_view(
+      glm::transpose(maths::mat3(to_mat4(frame.view.view_from_world))));
+  maths::ApplyParameters parameters{
+      projection, world_from_view,
+      inputs.normals_in_view_space ? world_from_view : maths::mat4(1.0f)};
+  if (inputs.map) {
+    const auto& described = frame.graph.description().resources[inputs.map.index];
+    parameters.map = {static_cast<float>(described.width), static_cast<float>(described.mips)};
+  }
+  parameters.roughness = settings.roughness;
+  parameters.metallic = settings.metallic;
+  return parameters;
+}
+
+}  // namespace
+
+tl::expected<AppliedLight, Error> add_apply(const Frame& frame, const ApplyInputs& given,
+                                            const ApplySettings& settings) {
+  const ApplyInputs inputs = given.map ? given : without_specular(given);
+  auto good =
+      check_settings(settings)
+          .and_then([&] { return check_inputs(frame.graph, "probe light", named_inputs(inputs)); })
+          .and_then([&] { return check_probe(frame, inputs); });
+  if (!good) {
+    return tl::unexpected(std::move(good.error()));
+  }
+  const auto projection = projection_of(frame, frame.view, inputs.depth);
+  if (!projection) {
+    return tl::unexpected(projection.error());
+  }
+  const auto kernel = kernel_of(frame, inputs, settings);
+  if (!kernel) {
+    return tl::unexpected(kernel.error());
+  }
+  auto pass = frame.graph.add_pass("probe light");
+  declare_reads(pass, inputs);
+  AppliedLight result;
+  result.lit = write_light(frame, pass, "lit", inputs.depth, settings.precision);
+  if (settings.parts) {
+    result.diffuse = write_light(frame, pass, "diffuse light", inputs.depth, settings.precision);
+  }
+  if (settings.parts && inputs.map) {
+    result.specular = write_light(frame, pass, "specular light", inputs.depth, settings.precision);
+  }
+  pass.record(
+      [&kernels = frame.kernels, kernel = *kernel, inputs, result,
+       parameters = parameters_of(frame, inputs, settings, *projection)](RecordContext& context) {
+        // What is not read, or not written, is bound to something of its kind.
+        const auto view_or = [&](Texture texture, Texture instead) {
+          return context.view(texture ? texture : instead);
+        };
+        const std::array views{context.view(inputs.depth),
+                               context.view(inputs.normals),
+                               context.view(inputs.albedo),
+                               view_or(inputs.bent_normal, inputs.normals),
+                               view_or(inputs.visibility, inputs.albedo),
+                               view_or(inputs.light, inputs.albedo),
+                               context.view(inputs.harmonics),
+                               context.view(result.lit),
+                               view_or(result.diffuse, result.lit),
+                               view_or(result.specular, result.lit),
+                               view_or(inputs.roughness, inputs.albedo),
+                               view_or(inputs.metallic, inputs.albedo),
+                               view_or(inputs.specular_occlusion, inputs.albedo),
+                               view_or(inputs.map, inputs.albedo)};
+        constexpr std::size_t kDiffuseViews = 9;
+        kernels.dispatch(context, kernel,
+                         std::span(views).first(inputs.map ? views.size() : kDiffuseViews),
+                         bytes_of(parameters), context.extent(result.lit));
+      });
+  return result;
+}
+
+}  // namespace alcove::passes

@@ -1,0 +1,104 @@
+#include "maths/split_sum.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+
+#include "maths/ggx.h"
+#include "maths/packing.h"
+#include "quadrature.h"
+#include "random_input.h"
+#include "tables.h"
+
+namespace alcove::maths_test {
+namespace {
+
+using glm::uvec2;
+using glm::vec2;
+using glm::vec3;
+
+// The table as the shader reads it.
+vec2 look_up(const std::vector<std::uint32_t>& table, float n_dot_v, float roughness) {
+  const vec2 at = maths::reflectance_coordinates(n_dot_v, roughness);
+  const uvec2 low = min(uvec2(at), uvec2(maths::kReflectanceTable - 2));
+  const vec2 t = at - vec2(low);
+  const auto entry = [&](unsigned x, unsigned y) {
+    const std::uint32_t word = table[(low.y + y) * maths::kReflectanceTable + low.x + x];
+    return vec2(maths::unpack_unorm(word, 16), maths::unpack_unorm(word >> 16, 16));
+  };
+  return mix(mix(entry(0, 0), entry(1, 0), t.x), mix(entry(0, 1), entry(1, 1), t.x), t.y);
+}
+
+// The lobe's integral over microfacets that the view sees: by the angle and, evenly, by the turn.
+vec2 quadrature(float n_dot_v, float roughness) {
+  const float alpha = roughness * roughness;
+  const vec3 view(std::sqrt(1.0f - n_dot_v * n_dot_v), 0.0f, n_dot_v);
+  struct Sum {
+    double x, y;
+    Sum operator+(const Sum& o) const { return {x + o.x, y + o.y}; }
+    Sum& operator+=(const Sum& o) { return *this = *this + o; }
+  };
+  const auto mean = [&](double u1, double u2) {
+    const vec3 h = maths::sample_ggx_normal(view, alpha, float(u1), float(u2));
+    const vec3 light = reflect(-view, h);
+    if (light.z <= 0.0f) return Sum{0, 0};
+    const double share =
+        maths::ggx_shadowing(n_dot_v, light.z, alpha) / maths::ggx_masking(n_dot_v, alpha);
+    const double fresnel = std::pow(1.0 - std::max(dot(view, h), 0.0f), 5.0);
+    return Sum{share * (1 - fresnel), share * fresnel};
+  };
+  Sum sum{0, 0};
+  constexpr int kSide = 192;
+  for (int i = 0; i < kSide; ++i) {
+    for (int j = 0; j < kSide; ++j) {
+      sum += mean((i + 0.5) / kSide, (j + 0.5) / kSide);
+    }
+  }
+  return vec2(float(sum.x), float(sum.y)) / float(kSide * kSide);
+}
+
+TEST(SplitSum, TableIsCloseToTheIntegralBetweenItsEntriesToo) {
+  const auto table = alcove::passes::reflectance_table();
+  RandomInput random;
+  double worst = 0.0, squares = 0.0;
+  constexpr int kPoints = 400;
+  for (int i = 0; i < kPoints; ++i) {
+    const float n_dot_v = std::max(random.uniform(0.0f, 1.0f), 1e-3f);
+    const float roughness = random.uniform(0.0f, 1.0f);
+    const vec2 error = look_up(table, n_dot_v, roughness) - quadrature(n_dot_v, roughness);
+    for (const float e : {error.x, error.y, error.x + error.y}) {
+      worst = std::max(worst, double(std::abs(e)));
+      squares += e * e / 3.0;
+    }
+  }
+  const double rmse = std::sqrt(squares / kPoints);
+  std::cout << "reflectance table: max " << worst << ", RMSE " << rmse << "\n";
+  EXPECT_LT(worst, 0.015);
+  EXPECT_LT(rmse, 0.001);
+}
+
+TEST(SplitSum, NothingReflectsMoreThanItGets) {
+  const auto table = alcove::passes::reflectance_table();
+  for (float n_dot_v = 0.0f; n_dot_v <= 1.0f; n_dot_v += 0.01f) {
+    for (float roughness = 0.0f; roughness <= 1.0f; roughness += 0.01f) {
+      const vec3 white = maths::specular_reflectance(vec3(1), look_up(table, n_dot_v, roughness));
+      EXPECT_LE(white.x, 1.0f);
+      EXPECT_GT(white.x, 0.25f);
+    }
+  }
+  EXPECT_NEAR(maths::specular_reflectance(vec3(1), look_up(table, 1.0f, 0.0f)).x, 1.0f, 1e-3f);
+}
+
+TEST(SplitSum, MetalsScatterNothingAndDielectricsReflectTheirShare) {
+  const vec3 base(0.9f, 0.5f, 0.1f);
+  EXPECT_EQ(maths::diffuse_albedo(base, 1.0f), vec3(0));
+  EXPECT_EQ(maths::diffuse_albedo(base, 0.0f), base);
+  EXPECT_EQ(maths::normal_reflectance(base, 1.0f), base);
+  EXPECT_EQ(maths::normal_reflectance(base, 0.0f), vec3(maths::kDielectricReflectance));
+  EXPECT_EQ(maths::normal_reflectance(base, 3.0f), base) << "out of range";
+}
+
+}  // namespace
+}  // namespace alcove::maths_test
