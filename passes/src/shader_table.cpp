@@ -5,6 +5,10 @@
 #include "spirv/apply.h"
 #include "spirv/apply_specular.h"
 #include "spirv/depth_pyramid.h"
+#include "spirv/environment_half.h"
+#include "spirv/environment_harmonics.h"
+#include "spirv/environment_map.h"
+#include "spirv/environment_prefilter.h"
 #include "spirv/gtao.h"
 #include "spirv/gtso.h"
 #include "spirv/multi_bounce.h"
@@ -31,6 +35,10 @@ const ShaderSource& shader_source(Shader shader) {
        "ssssssstt"
        "tssssb",
        kReflectanceTable},
+      {kEnvironmentMap, "st"},
+      {kEnvironmentHalf, "st"},
+      {kEnvironmentPrefilter, "st"},
+      {kEnvironmentHarmonics, "st"},
   }};
   return sources[static_cast<std::size_t>(shader)];
 }

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "alcove/framegraph/compile.h"
-#include "maths/environment_map.h"
+#include "environment_lookup.h"
 #include "maths/gtso.h"
 #include "maths/make_projection.h"
 #include "maths/multi_bounce.h"
@@ -52,10 +52,6 @@ struct Inputs {
 
 void append(HostImage& image, vec3 v, float w) {
   image.texels.insert(image.texels.end(), {v.x, v.y, v.z, w});
-}
-
-vec3 rgb(const HostImage& image, std::uint32_t x, std::uint32_t y) {
-  return {image.at(x, y, 0), image.at(x, y, 1), image.at(x, y, 2)};
 }
 
 // Surfaces that face the eye, in view space, with every seventh pixel sky.
@@ -105,18 +101,6 @@ vec3 irradiance(const HostImage& harmonics, vec3 direction) {
     sum += rgb(harmonics, i, 0) * (maths::harmonic(i, direction) * maths::harmonic_irradiance(i));
   }
   return max(sum, vec3(0));
-}
-
-vec3 look_up(const HostImage& map, vec3 direction) {
-  const int size = static_cast<int>(map.width);
-  const vec2 texel = maths::map_uv(direction) * float(size) - 0.5f;
-  const glm::ivec2 low(floor(texel));
-  const vec2 t = texel - vec2(low);
-  const auto fetch = [&](int x, int y) {
-    const glm::ivec2 at = maths::map_texel(low + glm::ivec2(x, y), size);
-    return rgb(map, static_cast<std::uint32_t>(at.x), static_cast<std::uint32_t>(at.y));
-  };
-  return mix(mix(fetch(0, 0), fetch(1, 0), t.x), mix(fetch(0, 1), fetch(1, 1), t.x), t.y);
 }
 
 vec2 reflectance(float n_dot_v, float roughness) {

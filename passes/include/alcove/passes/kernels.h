@@ -30,6 +30,10 @@ enum class Shader : std::uint8_t {
   gtso,
   apply,
   apply_specular,
+  environment_map,
+  environment_half,
+  environment_prefilter,
+  environment_harmonics,
   count,
 };
 
