@@ -40,7 +40,6 @@ struct Executor::Implementation {
   PlanCache plans[2];  // for record, on one queue, and for submit
   std::unique_ptr<Pool> pool;
   std::unique_ptr<Recorder> recorder;
-  std::unique_ptr<Submitter> submitter;
   std::vector<std::unique_ptr<Timestamps>> timestamps;  // by slot and queue class
   std::vector<PassTiming> timings;                      // what timings() returned last
   std::vector<std::uint64_t> slot_frames;               // last frame recorded with each slot
@@ -48,6 +47,7 @@ struct Executor::Implementation {
   std::uint64_t finished = 0;
   const CachedPlan* before = nullptr;  // the plan of the frame before
   std::uint64_t before_generation = 0;
+  std::unique_ptr<Submitter> submitter;  // destroyed first: it waits for the device
 };
 
 tl::expected<Executor, Errors> Executor::create(const DeviceHandles& device,
@@ -229,8 +229,7 @@ tl::expected<FrameReport, Errors> Executor::record(Graph& graph, VkCommandBuffer
   CachedPlan* cached = nullptr;
   auto report = self.prepare(graph, info, true, cached);
   if (!report) return report;
-  Timestamps* timestamps =
-      self.options.timestamps ? &self.timestamps_of(info.slot, 0) : nullptr;
+  Timestamps* timestamps = self.options.timestamps ? &self.timestamps_of(info.slot, 0) : nullptr;
   if (timestamps) {
     const VkResult result =
         timestamps->begin_frame(commands, static_cast<std::uint32_t>(cached->plan.passes.size()));
@@ -270,8 +269,12 @@ tl::expected<FrameReport, Errors> Executor::submit(Graph& graph, const FrameInfo
   recorder.begin(graph, cached->plan, cached->physical, self.options.check_uses, info.slot);
   const VkResult result = self.submitter->submit(cached->plan, recorder, info.slot, timestamps,
                                                  self.starts_anew(*cached));
-  if (result != VK_SUCCESS)
+  if (result != VK_SUCCESS) {
+    // Half a frame may have written to any of them.
+    if (self.submitter->stopped_midway()) graph.histories().invalidate_all();
+    self.before = nullptr;
     return tl::unexpected(vulkan_error(result, "the frame cannot be submitted"));
+  }
   self.finish(graph, *cached);
   if (!recorder.errors().empty()) return tl::unexpected(std::move(recorder.errors()));
   return report;

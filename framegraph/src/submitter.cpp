@@ -86,17 +86,36 @@ VkResult Submitter::next_buffer(std::uint32_t slot, std::size_t queue, VkCommand
 
 VkResult Submitter::submit(const Plan& plan, Recorder& recorder, std::uint32_t slot,
                            Timestamps* const* timestamps, bool full_barrier) {
+  submitted_ = 0;
   if (const VkResult result = prepare(slot)) return result;
+  // All is recorded before anything runs: what fails while recording leaves the device untouched.
+  if (const VkResult result = record(plan, recorder, slot, timestamps, full_barrier)) return result;
   const bool several =
       std::any_of(plan.submissions.begin(), plan.submissions.end(),
                   [](const Submission& s) { return s.queue != QueueClass::graphics; });
   std::copy(std::begin(values_), std::end(values_), std::begin(before_));
   signalled_.assign(plan.submissions.size(), 0);
   bool begun[kQueueClasses] = {};
+  VkResult result = VK_SUCCESS;
+  for (; submitted_ < plan.submissions.size(); ++submitted_) {
+    bool& own = begun[static_cast<std::size_t>(plan.submissions[submitted_].queue)];
+    result = submit_one(plan, submitted_, !own && (several || several_before_));
+    if (result != VK_SUCCESS) break;
+    own = true;
+  }
+  several_before_ = several;
+  for (std::size_t q = 0; q < kQueueClasses; ++q) slots_[slot].queues[q].value = values_[q];
+  return result;
+}
+
+VkResult Submitter::record(const Plan& plan, Recorder& recorder, std::uint32_t slot,
+                           Timestamps* const* timestamps, bool full_barrier) {
+  recorded_.assign(plan.submissions.size(), VK_NULL_HANDLE);
+  bool begun[kQueueClasses] = {};
   for (std::uint32_t i = 0; i < plan.submissions.size(); ++i) {
     const Submission& submission = plan.submissions[i];
     const auto q = static_cast<std::size_t>(submission.queue);
-    VkCommandBuffer buffer = VK_NULL_HANDLE;
+    VkCommandBuffer& buffer = recorded_[i];
     if (const VkResult result = next_buffer(slot, q, buffer)) return result;
     VkCommandBufferBeginInfo begin{};
     begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
@@ -109,17 +128,12 @@ VkResult Submitter::submit(const Plan& plan, Recorder& recorder, std::uint32_t s
     if (!begun[q] && full_barrier) recorder.full_barrier(buffer);
     recorder.submission(submission, buffer, timestamps[q]);
     if (const VkResult result = device_.vk.vkEndCommandBuffer(buffer)) return result;
-    const bool join = !begun[q] && (several || several_before_);
-    if (const VkResult result = submit_one(plan, i, buffer, join)) return result;
     begun[q] = true;
   }
-  several_before_ = several;
-  for (std::size_t q = 0; q < kQueueClasses; ++q) slots_[slot].queues[q].value = values_[q];
   return VK_SUCCESS;
 }
 
-VkResult Submitter::submit_one(const Plan& plan, std::uint32_t index, VkCommandBuffer buffer,
-                               bool join) {
+VkResult Submitter::submit_one(const Plan& plan, std::uint32_t index, bool join) {
   const Submission& submission = plan.submissions[index];
   const auto own = static_cast<std::size_t>(submission.queue);
   waits_.clear();
@@ -146,7 +160,7 @@ VkResult Submitter::submit_one(const Plan& plan, std::uint32_t index, VkCommandB
   signal.stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
   VkCommandBufferSubmitInfo commands{};
   commands.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO;
-  commands.commandBuffer = buffer;
+  commands.commandBuffer = recorded_[index];
   VkSubmitInfo2 info{};
   info.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2;
   info.waitSemaphoreInfoCount = static_cast<std::uint32_t>(waits_.size());

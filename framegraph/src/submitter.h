@@ -22,6 +22,8 @@ class Submitter {
   // where there are none. `full_barrier`: memory holds the leavings of another plan.
   [[nodiscard]] VkResult submit(const Plan& plan, Recorder& recorder, std::uint32_t slot,
                                 Timestamps* const* timestamps, bool full_barrier);
+  // Whether submit handed over some of a frame and then failed.
+  bool stopped_midway() const { return submitted_ != 0; }
 
  private:
   struct SlotQueue {
@@ -36,7 +38,9 @@ class Submitter {
 
   VkResult prepare(std::uint32_t slot);
   VkResult next_buffer(std::uint32_t slot, std::size_t queue, VkCommandBuffer& buffer);
-  VkResult submit_one(const Plan& plan, std::uint32_t index, VkCommandBuffer buffer, bool join);
+  VkResult record(const Plan& plan, Recorder& recorder, std::uint32_t slot,
+                  Timestamps* const* timestamps, bool full_barrier);
+  VkResult submit_one(const Plan& plan, std::uint32_t index, bool join);
 
   const DeviceContext& device_;
   std::vector<Slot> slots_;
@@ -44,6 +48,8 @@ class Submitter {
   std::uint64_t values_[kQueueClasses] = {};  // last value that will be signalled
   std::uint64_t before_[kQueueClasses] = {};  // the same at the end of the frame before
   std::vector<std::uint64_t> signalled_;      // by submission of this frame
+  std::vector<VkCommandBuffer> recorded_;     // by submission of this frame
+  std::uint32_t submitted_ = 0;               // submissions of this frame handed over
   std::vector<VkSemaphoreSubmitInfo> waits_;
   bool several_before_ = false;
 };

@@ -178,7 +178,8 @@ void Synchroniser::use(std::uint32_t position, const AccessRecord& access) {
   const ResourceRecord& resource = graph_.resources[access.resource];
   const std::uint32_t first = workspace_.first_sub[access.resource];
   UseState* const states = s_.states.data() + first;
-  UseState* const lead = states + access.range.base_layer * resource.mips + access.range.base_mip;
+  UseState* const lead =
+      states + std::size_t{access.range.base_layer} * resource.mips + access.range.base_mip;
   bool alike = true;
   for_each_sub(resource, first, access.range,
                [&](std::uint32_t sub) { alike = alike && s_.states[sub] == *lead; });

@@ -45,12 +45,12 @@ std::span<const PassTiming> Timestamps::read() {
   if (count_ == 0) return {};
   if (!read_) {
     const VkResult result = device_.vk.vkGetQueryPoolResults(
-        device_.handles.device, pool_, 0, 2 * count_, 2 * count_ * sizeof(std::uint64_t),
+        device_.handles.device, pool_, 0, 2 * count_, ticks_.size() * sizeof(std::uint64_t),
         ticks_.data(), sizeof(std::uint64_t), VK_QUERY_RESULT_64_BIT);
     if (result != VK_SUCCESS) return {};
     const double milliseconds = device_.properties.limits.timestampPeriod * 1e-6;
     timings_.clear();
-    for (std::uint32_t i = 0; i < count_; ++i) {
+    for (std::size_t i = 0; i < count_; ++i) {
       const std::uint64_t ticks = ticks_[2 * i + 1] - ticks_[2 * i];
       timings_.push_back({names_[i], static_cast<double>(ticks) * milliseconds});
     }

@@ -94,28 +94,42 @@ TEST_F(ExecutorTest, AnUndeclaredUseIsNamedWhereUsesAreChecked) {
   EXPECT_THAT(report.error()[0].message, testing::HasSubstr("'nosy' uses 'secret'"));
 }
 
-// Whatever call fails, the frame comes back as an error, the next one runs, and nothing is leaked.
-TEST_F(ExecutorTest, RunningOutOfMemoryAnywhereIsAnErrorAndLeaksNothing) {
-  const HostBuffer host = gpu_.make_host_buffer(4 * sizeof(std::uint32_t));
-  DeviceHandles handles = gpu_.handles();
-  handles.get_instance_proc_addr = failing::get_instance_proc_addr;
-  const auto declare = [&](Graph& graph) {
-    declare_chain(graph, host, 4);
+class FailingDeviceTest : public ExecutorTest {
+ protected:
+  void SetUp() override {
+    ExecutorTest::SetUp();
+    failing::fail_at(0);
+    failing::lose(false);
+    host_ = gpu_.make_host_buffer(4 * sizeof(std::uint32_t));
+    handles_ = gpu_.handles();
+    handles_.get_instance_proc_addr = failing::get_instance_proc_addr;
+  }
+
+  // Transients, an import and a history; the remembering pass on `queue`.
+  void declare(Graph& graph, QueueClass queue = QueueClass::graphics) {
+    declare_chain(graph, host_, 4);
     const TextureHistory history =
         graph.create_texture_history("history", {VK_FORMAT_R32_UINT, Extent::absolute(4, 4)});
-    PassBuilder pass = graph.add_pass("remember");
+    PassBuilder pass = graph.add_pass("remember", queue);
     const Texture texture = pass.write(history.current, access::clear);
     pass.record([=](RecordContext& c) {
       (void)c.view(texture);
       clear_image(c, c.image(texture), 1, 1);
     });
     graph.output(texture);
-  };
+  }
+
+  HostBuffer host_;
+  DeviceHandles handles_;
+};
+
+// Whatever call fails, the frame comes back as an error, the next one runs, and nothing is leaked.
+TEST_F(FailingDeviceTest, RunningOutOfMemoryAnywhereIsAnErrorAndLeaksNothing) {
   int failed = 0;
   int last = 0;
   for (const bool submits : {false, true}) {
     for (int call = 1; call == 1 || last >= call - 1; ++call) {
-      auto executor = Executor::create(handles);
+      auto executor = Executor::create(handles_);
       ASSERT_TRUE(executor) << to_string(executor.error());
       Graph graph;
       failing::fail_at(call);
@@ -139,6 +153,55 @@ TEST_F(ExecutorTest, RunningOutOfMemoryAnywhereIsAnErrorAndLeaksNothing) {
     EXPECT_EQ(failing::alive(), 0);
   }
   EXPECT_GE(failed, 20);
+}
+
+// Lost at any submission of any frame: an error each time it is asked, and nothing is leaked.
+TEST_F(FailingDeviceTest, LosingTheDeviceIsAnErrorAndLeaksNothing) {
+  handles_.queues[1] = handles_.queues[0];
+  int lost = 0;
+  for (int submission = 0; submission < 6; ++submission) {
+    {
+      auto executor = Executor::create(handles_);
+      ASSERT_TRUE(executor) << to_string(executor.error());
+      Graph graph;
+      failing::lose_after(submission);
+      for (std::uint32_t frame = 0; frame < 4; ++frame) {
+        declare(graph, QueueClass::compute);
+        const auto report = executor->submit(graph, {frame % 2});
+        if (report) {
+          EXPECT_EQ(lost, 0);
+          continue;
+        }
+        ++lost;
+        EXPECT_EQ(report.error()[0].result, VK_ERROR_DEVICE_LOST);
+        EXPECT_THAT(report.error()[0].message, testing::HasSubstr("VK_ERROR_DEVICE_LOST"));
+      }
+      EXPECT_GE(lost, 1) << submission;
+      lost = 0;
+    }
+    EXPECT_EQ(failing::alive(), 0);
+    failing::lose(false);
+  }
+}
+
+TEST_F(FailingDeviceTest, LosingTheDeviceWhileWaitingIsAnErrorAndLeaksNothing) {
+  {
+    auto executor = Executor::create(handles_);
+    ASSERT_TRUE(executor) << to_string(executor.error());
+    Graph graph;
+    declare(graph);
+    ASSERT_TRUE(executor->submit(graph));
+    failing::lose(true);
+    const auto waited = executor->wait();
+    ASSERT_FALSE(waited);
+    EXPECT_EQ(waited.error()[0].result, VK_ERROR_DEVICE_LOST);
+    declare(graph);
+    const auto report = executor->submit(graph);
+    ASSERT_FALSE(report);
+    EXPECT_EQ(report.error()[0].result, VK_ERROR_DEVICE_LOST);
+  }
+  EXPECT_EQ(failing::alive(), 0);
+  failing::lose(false);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "failing_device.h"
 
+#include <cstdint>
 #include <cstring>
 
 namespace alcove::framegraph::failing {
@@ -8,6 +9,8 @@ namespace {
 int failing_call = 0;
 int call_count = 0;
 int alive_count = 0;
+bool is_lost = false;
+int submissions_left = -1;  // until the device is lost; below 0: it is not going to be
 
 // Wraps one creating and one destroying function of the device.
 template <auto kCreate, auto kDestroy>
@@ -41,6 +44,23 @@ using Queries = Wrapped<&vkCreateQueryPool, &vkDestroyQueryPool>;
 using Pool = Wrapped<&vkCreateCommandPool, &vkDestroyCommandPool>;
 using Semaphore = Wrapped<&vkCreateSemaphore, &vkDestroySemaphore>;
 
+VKAPI_ATTR VkResult VKAPI_CALL submit(VkQueue queue, std::uint32_t count, const VkSubmitInfo2* info,
+                                      VkFence fence) {
+  if (submissions_left >= 0 && submissions_left-- == 0) is_lost = true;
+  return is_lost ? VK_ERROR_DEVICE_LOST : vkQueueSubmit2(queue, count, info, fence);
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL wait_semaphores(VkDevice device, const VkSemaphoreWaitInfo* info,
+                                               std::uint64_t timeout) {
+  return is_lost ? VK_ERROR_DEVICE_LOST : vkWaitSemaphores(device, info, timeout);
+}
+
+// The device that really is there has to be idle before anything is destroyed.
+VKAPI_ATTR VkResult VKAPI_CALL wait_idle(VkQueue queue) {
+  const VkResult result = vkQueueWaitIdle(queue);
+  return is_lost ? VK_ERROR_DEVICE_LOST : result;
+}
+
 PFN_vkVoidFunction VKAPI_CALL get_device_proc_addr(VkDevice device, const char* name) {
   struct Entry {
     const char* name;
@@ -58,6 +78,9 @@ PFN_vkVoidFunction VKAPI_CALL get_device_proc_addr(VkDevice device, const char* 
       ALCOVE_WRAP(Queries, "vkCreateQueryPool", "vkDestroyQueryPool"),
       ALCOVE_WRAP(Pool, "vkCreateCommandPool", "vkDestroyCommandPool"),
       ALCOVE_WRAP(Semaphore, "vkCreateSemaphore", "vkDestroySemaphore"),
+      {"vkQueueSubmit2", reinterpret_cast<PFN_vkVoidFunction>(&submit)},
+      {"vkWaitSemaphores", reinterpret_cast<PFN_vkVoidFunction>(&wait_semaphores)},
+      {"vkQueueWaitIdle", reinterpret_cast<PFN_vkVoidFunction>(&wait_idle)},
   };
 #undef ALCOVE_WRAP
   for (const Entry& entry : entries) {
@@ -72,6 +95,11 @@ void fail_at(int call) {
   failing_call = call;
   call_count = 0;
 }
+void lose(bool lost) {
+  is_lost = lost;
+  submissions_left = -1;
+}
+void lose_after(int submissions) { submissions_left = submissions; }
 int calls() { return call_count; }
 int alive() { return alive_count; }
 

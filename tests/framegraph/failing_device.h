@@ -1,4 +1,5 @@
-// A device whose creating calls fail when they are told to, and that counts what is not destroyed.
+// A device whose creating calls fail when they are told to, that can be lost, and that counts what
+// is not destroyed.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -9,6 +10,10 @@ namespace alcove::framegraph::failing {
 void fail_at(int call);
 // Calls since fail_at.
 int calls();
+// From now on (or no more) the device is lost: nothing is submitted, and waits say so.
+void lose(bool lost);
+// Loses it at the submission after so many more.
+void lose_after(int submissions);
 // Objects that were created and not destroyed.
 int alive();
 // To be given to the executor in place of vkGetInstanceProcAddr.

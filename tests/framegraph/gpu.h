@@ -23,9 +23,10 @@ struct HostBuffer {
 
 class Gpu {
  public:
-  Gpu() {
+  // Without validation: for counting what the executor itself does.
+  explicit Gpu(bool validation = true) {
     sample::DeviceOptions options;
-    options.validation = true;
+    options.validation = validation_ = validation;
     auto made = sample::VulkanDevice::create(options);
     if (!made) {
       problem_ = made.error();
@@ -63,7 +64,7 @@ class Gpu {
     handles.device = device_->device();
     handles.get_instance_proc_addr = vkGetInstanceProcAddr;
     handles.queues[0] = {device_->queue(), device_->queue_family()};
-    handles.debug_utils = true;
+    handles.debug_utils = validation_;
     return handles;
   }
 
@@ -185,6 +186,7 @@ class Gpu {
   std::vector<Image> images_;
   std::vector<HostBuffer> buffers_;
   std::string problem_;
+  bool validation_ = true;
 };
 
 }  // namespace alcove::framegraph

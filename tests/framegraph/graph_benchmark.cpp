@@ -12,30 +12,11 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
-#include <new>
 #include <vector>
 
 #include "alcove/framegraph/compile.h"
+#include "allocation_counter.h"
 #include "random_graph.h"
-
-namespace {
-
-std::size_t allocations = 0;
-
-}  // namespace
-
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size)) return memory;
-  std::abort();
-}
-void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
-  ++allocations;
-  return std::malloc(size == 0 ? 1 : size);
-}
-void operator delete(void* memory, const std::nothrow_t&) noexcept { std::free(memory); }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace alcove::framegraph {
 namespace {
@@ -99,12 +80,12 @@ void measure(Shape shape, std::uint32_t passes) {
     compile.push_back(time_ns([&] {
       if (!compiler.compile(graph.description(), limits, plan)) std::abort();
     }));
-    const std::size_t before = allocations;
+    const std::size_t before = allocations();
     steady.push_back(time_ns([&] {
       declare(graph, shape, passes, textures);
       if (!same_declaration(graph.description(), kept)) std::abort();
     }));
-    if (run > 0) steady_allocations += allocations - before;
+    if (run > 0) steady_allocations += allocations() - before;
     steady.reserve(steady.size() + 1);
   }
   const double count = passes;

@@ -1,30 +1,9 @@
 // A frame that did not change allocates nothing: counted by replacing operator new.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <new>
-
 #include "alcove/framegraph/compile.h"
+#include "allocation_counter.h"
 #include "deferred_frame.h"
-
-namespace {
-
-std::size_t allocations = 0;
-
-}  // namespace
-
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
-  std::abort();
-}
-void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
-  ++allocations;
-  return std::malloc(size == 0 ? 1 : size);
-}
-void operator delete(void* memory, const std::nothrow_t&) noexcept { std::free(memory); }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace alcove::framegraph {
 namespace {
@@ -43,13 +22,13 @@ TEST(Steady, DeclaringAFrameAgainAllocatesNothing) {
   declare(graph);
   declare(graph);
   const GraphDescription kept = graph.description();
-  const std::size_t before = allocations;
+  const std::size_t before = allocations();
   for (int frame = 0; frame < 10; ++frame) {
     declare(graph);
     ASSERT_TRUE(same_declaration(graph.description(), kept));
     ASSERT_EQ(hash(graph.description()), hash(kept));
   }
-  EXPECT_EQ(allocations - before, 0u);
+  EXPECT_EQ(allocations() - before, 0u);
 }
 
 TEST(Steady, CompilingAFrameAgainAllocatesNothing) {
@@ -58,9 +37,9 @@ TEST(Steady, CompilingAFrameAgainAllocatesNothing) {
   Compiler compiler;
   Plan plan;
   ASSERT_TRUE(compiler.compile(graph.description(), {}, plan));
-  const std::size_t before = allocations;
+  const std::size_t before = allocations();
   ASSERT_TRUE(compiler.compile(graph.description(), {}, plan));
-  EXPECT_EQ(allocations - before, 0u);
+  EXPECT_EQ(allocations() - before, 0u);
 }
 
 TEST(Steady, AnyDifferenceMakesAnotherKey) {

@@ -61,6 +61,8 @@ struct Limits {
   // comparisons of two resources; 0 takes the first way.
   std::int64_t placement_effort = 1 << 24;
   bool alias = true;  // false gives each transient bytes of its own
+  // Barriers with work between what they wait for and what waits become events.
+  bool split_barriers = false;
 };
 
 // Everything that compiling needs beside its input: kept from call to call, so that no memory is

@@ -43,6 +43,11 @@ struct ExecutorOptions {
   bool timestamps = true;              // GPU time of each pass
   Ordering ordering = Ordering::lower_peak;
   bool alias = true;
+  // Barriers with work between what they wait for and what waits become events (see README).
+  bool split_barriers = false;
+  // Threads that record passes, the caller's among them, 1 to 64. With more than one the callbacks
+  // of different passes run at the same time, into secondary command buffers.
+  std::uint32_t recording_threads = 1;
 #ifdef NDEBUG
   bool verify = false;      // every new plan goes through verify()
   bool check_uses = false;  // undeclared uses in callbacks are errors
@@ -94,6 +99,8 @@ class Executor {
 
   // Records and submits on as many queues as there are. Waits itself for what was last submitted
   // with this slot. Not to be mixed with record() on one executor unless the caller orders the two.
+  // When the device is lost, this and wait() give an error with VK_ERROR_DEVICE_LOST, each time:
+  // what is left is to destroy the executor, which waits for nothing and leaks nothing.
   [[nodiscard]] tl::expected<FrameReport, Errors> submit(Graph& graph, const FrameInfo& frame = {});
   // Waits for what was submitted with this slot.
   [[nodiscard]] tl::expected<void, Errors> wait(std::uint32_t slot = 0);

@@ -4,6 +4,7 @@
 
 #include <vulkan/vulkan_core.h>
 
+#include <cstddef>
 #include <cstdint>
 
 namespace alcove::framegraph {
@@ -129,7 +130,7 @@ enum class Need : std::uint8_t {
 };
 
 enum class QueueClass : std::uint8_t { graphics, compute, transfer };
-inline constexpr std::uint32_t kQueueClasses = 3;
+inline constexpr std::size_t kQueueClasses = 3;
 
 // Why a slot of a history resource has no contents, or that it has.
 enum class HistoryValidity : std::uint8_t {

@@ -1,0 +1,88 @@
+// A frame that was recorded before is declared, recorded and submitted again without an allocation.
+#include <gtest/gtest.h>
+
+#include "allocation_counter.h"
+#include "gpu.h"
+
+namespace alcove::framegraph {
+namespace {
+
+void clear(RecordContext& context, VkImage image) {
+  const VkClearColorValue color{};
+  const VkImageSubresourceRange range{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+  context.vk.vkCmdClearColorImage(context.commands, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                                  &color, 1, &range);
+}
+
+// Transients, a history, an import, views and passes of other queues.
+void declare(Graph& graph, const HostBuffer& host) {
+  graph.reset();
+  const TextureDesc desc{VK_FORMAT_R32_UINT, Extent::absolute(16, 16)};
+  const TextureHistory history = graph.create_texture_history("history", desc);
+  Buffer out = graph.import_buffer("out", Gpu::imported(host));
+  PassBuilder remember = graph.add_pass("remember");
+  const Texture current = remember.write(history.current, access::clear);
+  remember.record([=](RecordContext& c) { clear(c, c.image(current)); });
+  for (int i = 0; i < 10; ++i) {
+    Texture texture = graph.create_texture("texture", desc);
+    PassBuilder make = graph.add_pass("a pass with a name of some length");
+    make.read(i % 2 ? history.previous() : current, access::sampled_compute);
+    texture = make.write(texture, access::clear);
+    make.record([=](RecordContext& c) {
+      if (c.view(texture) != VK_NULL_HANDLE) clear(c, c.image(texture));
+    });
+    PassBuilder copy = graph.add_pass("copy", QueueClass::transfer);
+    copy.read(texture, access::transfer_source);
+    out = copy.write(out, buffer_access::transfer_destination);
+    copy.record([=](RecordContext& c) {
+      VkBufferImageCopy region{};
+      region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+      region.imageExtent = c.extent(texture);
+      c.vk.vkCmdCopyImageToBuffer(c.commands, c.image(texture),
+                                  VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, c.buffer(out), 1, &region);
+    });
+  }
+}
+
+enum class Path { record, submit, submit_to_three };
+
+// Allocations of this thread in 20 frames, after some frames of getting used to it.
+std::size_t allocations_of_steady_frames(Path path) {
+  Gpu gpu(false);
+  EXPECT_EQ(gpu.problem(), "");
+  DeviceHandles handles = gpu.handles();
+  if (path == Path::submit_to_three) handles.queues[1] = handles.queues[2] = handles.queues[0];
+  ExecutorOptions options;
+  options.verify = options.check_uses = false;
+  auto executor = Executor::create(handles, options);
+  EXPECT_TRUE(executor);
+  const HostBuffer host = gpu.make_host_buffer(4 * 16 * 16);
+  Graph graph;
+  std::size_t before = 0;
+  constexpr int kFrames = 30;
+  for (int frame = 0; frame < kFrames; ++frame) {
+    if (frame == 10) before = allocations();
+    declare(graph, host);
+    if (path == Path::record) {
+      EXPECT_TRUE(gpu.run(*executor, graph));
+    } else {
+      EXPECT_TRUE(executor->submit(graph, {static_cast<std::uint32_t>(frame % 2)}));
+    }
+    EXPECT_TRUE(executor->wait(static_cast<std::uint32_t>(frame % 2)));
+    EXPECT_EQ(executor->timings().empty(), false);
+  }
+  return allocations() - before;
+}
+
+TEST(SteadyRecord, RecordingAFrameAgainAllocatesNothing) {
+  EXPECT_EQ(allocations_of_steady_frames(Path::record), 0u);
+}
+TEST(SteadyRecord, SubmittingAFrameAgainAllocatesNothing) {
+  EXPECT_EQ(allocations_of_steady_frames(Path::submit), 0u);
+}
+TEST(SteadyRecord, SubmittingAFrameToThreeQueuesAgainAllocatesNothing) {
+  EXPECT_EQ(allocations_of_steady_frames(Path::submit_to_three), 0u);
+}
+
+}  // namespace
+}  // namespace alcove::framegraph
