@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "alcove/framegraph/verify.h"
+#include "crew.h"
 #include "plan_cache.h"
-#include "recorder.h"
 #include "submitter.h"
 
 namespace alcove::framegraph {
@@ -39,7 +39,7 @@ struct Executor::Implementation {
   Compiler compiler;
   PlanCache plans[2];  // for record, on one queue, and for submit
   std::unique_ptr<Pool> pool;
-  std::unique_ptr<Recorder> recorder;
+  std::unique_ptr<Crew> crew;
   std::vector<std::unique_ptr<Timestamps>> timestamps;  // by slot and queue class
   std::vector<PassTiming> timings;                      // what timings() returned last
   std::vector<std::uint64_t> slot_frames;               // last frame recorded with each slot
@@ -59,7 +59,9 @@ tl::expected<Executor, Errors> Executor::create(const DeviceHandles& device,
   made->device.limits.ordering = options.ordering;
   made->device.limits.alias = options.alias;
   made->pool = std::make_unique<Pool>(made->device);
-  made->recorder = std::make_unique<Recorder>(made->device, *made->pool);
+  made->crew = std::make_unique<Crew>(made->device, *made->pool,
+                                      std::clamp(options.recording_threads, 1u, 64u),
+                                      made->options.frames_in_flight);
   made->slot_frames.resize(made->options.frames_in_flight);
   made->submitter = std::make_unique<Submitter>(made->device, made->options.frames_in_flight);
   for (std::uint32_t i = 0; i < made->options.frames_in_flight * kQueueClasses; ++i)
@@ -190,6 +192,10 @@ tl::expected<FrameReport, Errors> Executor::Implementation::prepare(Graph& graph
   if (auto done = find_physical(graph, *cached); !done)
     return tl::unexpected(std::move(done.error()));
   cached->last_frame = frame;
+  const RecordedFrame recorded{&graph, &cached->plan, &cached->physical, options.check_uses,
+                               info.slot};
+  if (const VkResult result = crew->begin(recorded))
+    return tl::unexpected(vulkan_error(result, "command buffers cannot be used again"));
   report.plan = &cached->plan;
   for (const Heap& heap : cached->plan.heaps) {
     report.memory.aliased += heap.size;
@@ -236,12 +242,13 @@ tl::expected<FrameReport, Errors> Executor::record(Graph& graph, VkCommandBuffer
     if (result != VK_SUCCESS)
       return tl::unexpected(vulkan_error(result, "timestamps cannot be created"));
   }
-  Recorder& recorder = *self.recorder;
-  recorder.begin(graph, cached->plan, cached->physical, self.options.check_uses, info.slot);
-  if (self.starts_anew(*cached)) recorder.full_barrier(commands);
-  recorder.submission(cached->plan.submissions[0], commands, timestamps);
+  if (self.starts_anew(*cached)) self.crew->full_barrier(commands);
+  const VkResult result = self.crew->submission(cached->plan.submissions[0], commands, timestamps);
+  if (result != VK_SUCCESS)
+    return tl::unexpected(vulkan_error(result, "the frame cannot be recorded"));
   self.finish(graph, *cached);
-  if (!recorder.errors().empty()) return tl::unexpected(std::move(recorder.errors()));
+  if (Errors errors = self.crew->take_errors(); !errors.empty())
+    return tl::unexpected(std::move(errors));
   return report;
 }
 
@@ -265,9 +272,7 @@ tl::expected<FrameReport, Errors> Executor::submit(Graph& graph, const FrameInfo
   for (Timestamps* times : timestamps) {
     if (times) times->forget();
   }
-  Recorder& recorder = *self.recorder;
-  recorder.begin(graph, cached->plan, cached->physical, self.options.check_uses, info.slot);
-  const VkResult result = self.submitter->submit(cached->plan, recorder, info.slot, timestamps,
+  const VkResult result = self.submitter->submit(cached->plan, *self.crew, info.slot, timestamps,
                                                  self.starts_anew(*cached));
   if (result != VK_SUCCESS) {
     // Half a frame may have written to any of them.
@@ -276,7 +281,8 @@ tl::expected<FrameReport, Errors> Executor::submit(Graph& graph, const FrameInfo
     return tl::unexpected(vulkan_error(result, "the frame cannot be submitted"));
   }
   self.finish(graph, *cached);
-  if (!recorder.errors().empty()) return tl::unexpected(std::move(recorder.errors()));
+  if (Errors errors = self.crew->take_errors(); !errors.empty())
+    return tl::unexpected(std::move(errors));
   return report;
 }
 

@@ -139,6 +139,7 @@ void Pool::forget(VkImage image, std::uint64_t frame) {
 }
 
 VkImageView Pool::view(Physical& physical, const Range& range) {
+  const std::lock_guard lock(views_mutex_);
   for (const CachedView& cached : physical.views) {
     if (cached.range == range) return cached.view;
   }

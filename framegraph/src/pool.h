@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "device_context.h"
@@ -56,7 +57,8 @@ class Pool {
   // A stand-in for an import: its views are cached by image.
   Physical& import(const ResourceRecord& record, const ImportHandles& handles);
   void forget(VkImage image, std::uint64_t frame);
-  // The view of a range, made on first use; null when the device is out of memory.
+  // The view of a range, made on first use; null when the device is out of memory. Several threads
+  // may ask at the same time.
   VkImageView view(Physical& physical, const Range& range);
 
   // Destroys what is unused since long or retired, up to a frame that the device has finished.
@@ -96,6 +98,7 @@ class Pool {
   std::vector<std::unique_ptr<Physical>> imports_;
   std::vector<Retired> retired_;
   std::uint64_t generation_ = 1;
+  std::mutex views_mutex_;  // of all views
 };
 
 }  // namespace alcove::framegraph

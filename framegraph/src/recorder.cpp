@@ -6,18 +6,17 @@
 
 namespace alcove::framegraph {
 
-void Recorder::begin(const Graph& graph, const Plan& plan, const std::vector<Physical*>& physical,
-                     bool check_uses, std::uint32_t slot) {
-  graph_ = &graph;
-  plan_ = &plan;
-  physical_ = &physical;
-  check_uses_ = check_uses;
-  slot_ = slot;
+void Recorder::begin(const RecordedFrame& frame) {
+  graph_ = frame.graph;
+  plan_ = frame.plan;
+  physical_ = frame.physical;
+  check_uses_ = frame.check_uses;
+  slot_ = frame.slot;
   errors_.clear();
   shares_with_buffers_ = false;
-  const GraphDescription& description = graph.description();
-  for (std::uint32_t r = 0; r < plan.placements.size(); ++r) {
-    if (plan.placements[r].heap != kNone && description.resources[r].kind == ResourceKind::buffer)
+  const GraphDescription& description = graph_->description();
+  for (std::uint32_t r = 0; r < plan_->placements.size(); ++r) {
+    if (plan_->placements[r].heap != kNone && description.resources[r].kind == ResourceKind::buffer)
       shares_with_buffers_ = true;
   }
 }
@@ -35,33 +34,34 @@ void Recorder::full_barrier(VkCommandBuffer commands) {
   device_.vk.vkCmdPipelineBarrier2(commands, &info);
 }
 
-void Recorder::submission(const Submission& submission, VkCommandBuffer commands,
-                          Timestamps* timestamps) {
-  for (std::uint32_t i = 0; i < submission.pass_count; ++i)
-    pass(plan_->passes[submission.first_pass + i], commands, timestamps);
-  batches(submission.first_batch, submission.batch_count, commands);
+void Recorder::passes(const PassRun& run, VkCommandBuffer commands) {
+  for (std::uint32_t i = 0; i < run.count; ++i)
+    pass(plan_->passes[run.first + i], commands, run.timestamps, run.first_time + i);
 }
 
-void Recorder::pass(const PlannedPass& planned, VkCommandBuffer commands, Timestamps* timestamps) {
+void Recorder::begin_label(std::string_view name, VkCommandBuffer commands) const {
+  char text[64];
+  const std::size_t length = name.size() < sizeof text ? name.size() : sizeof text - 1;
+  std::memcpy(text, name.data(), length);
+  text[length] = '\0';
+  VkDebugUtilsLabelEXT info{};
+  info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT;
+  info.pLabelName = text;
+  device_.vk.vkCmdBeginDebugUtilsLabelEXT(commands, &info);
+}
+
+void Recorder::pass(const PlannedPass& planned, VkCommandBuffer commands, Timestamps* timestamps,
+                    std::uint32_t time) {
   batches(planned.first_batch, planned.batch_count, commands);
   const std::string_view name = graph_->description().pass_name(planned.pass);
   const bool label = device_.handles.debug_utils && device_.vk.vkCmdBeginDebugUtilsLabelEXT;
-  if (label) {
-    char text[64];
-    const std::size_t length = name.size() < sizeof text ? name.size() : sizeof text - 1;
-    std::memcpy(text, name.data(), length);
-    text[length] = '\0';
-    VkDebugUtilsLabelEXT info{};
-    info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT;
-    info.pLabelName = text;
-    device_.vk.vkCmdBeginDebugUtilsLabelEXT(commands, &info);
-  }
-  if (timestamps) timestamps->begin_pass(commands, name);
+  if (label) begin_label(name, commands);
+  if (timestamps) timestamps->begin_pass(commands, time, name);
   RecordContext context(commands, device_.vk, *this, planned.pass);
   context.resources_id = pool_.generation();
   context.frame_slot = slot_;
   graph_->call(planned.pass, context);
-  if (timestamps) timestamps->end_pass(commands);
+  if (timestamps) timestamps->end_pass(commands, time);
   if (label) device_.vk.vkCmdEndDebugUtilsLabelEXT(commands);
 }
 

@@ -1,4 +1,5 @@
-// Records a plan into a command buffer.
+// Records passes and barriers of a plan into a command buffer. One thread at a time; several
+// recorders may record parts of one plan at the same time.
 #pragma once
 
 #include <vector>
@@ -11,23 +12,41 @@
 
 namespace alcove::framegraph {
 
+// A frame that is being recorded. `physical` is by resource, null where a resource is not used.
+struct RecordedFrame {
+  const Graph* graph = nullptr;
+  const Plan* plan = nullptr;
+  const std::vector<Physical*>* physical = nullptr;
+  bool check_uses = false;
+  std::uint32_t slot = 0;
+};
+
+// Passes that follow each other on a queue, at positions [first, first + count) of the plan.
+struct PassRun {
+  std::uint32_t first = 0;
+  std::uint32_t count = 0;
+  Timestamps* timestamps = nullptr;
+  std::uint32_t first_time = 0;  // the first pass's number among those
+};
+
 class Recorder {
  public:
   Recorder(const DeviceContext& device, Pool& pool) : device_(device), pool_(pool) {}
 
-  // What the next calls record. `physical` is by resource, null where a resource is not used.
-  void begin(const Graph& graph, const Plan& plan, const std::vector<Physical*>& physical,
-             bool check_uses, std::uint32_t slot);
+  // What the next calls record.
+  void begin(const RecordedFrame& frame);
   // Orders everything after all that the queue did before.
   void full_barrier(VkCommandBuffer commands);
-  void submission(const Submission& submission, VkCommandBuffer commands, Timestamps* timestamps);
+  void passes(const PassRun& run, VkCommandBuffer commands);
+  void batches(std::uint32_t first, std::uint32_t count, VkCommandBuffer commands);
   // What callbacks touched undeclared, and what ran out while recording.
   Errors& errors() { return errors_; }
 
  private:
   friend class RecordContext;
-  void batches(std::uint32_t first, std::uint32_t count, VkCommandBuffer commands);
-  void pass(const PlannedPass& planned, VkCommandBuffer commands, Timestamps* timestamps);
+  void pass(const PlannedPass& planned, VkCommandBuffer commands, Timestamps* timestamps,
+            std::uint32_t time);
+  void begin_label(std::string_view name, VkCommandBuffer commands) const;
   VkImageMemoryBarrier2 image_barrier(const Transition& transition) const;
   VkBufferMemoryBarrier2 buffer_barrier(const Transition& transition) const;
   std::uint32_t family(const Transition& transition, QueueClass queue) const;

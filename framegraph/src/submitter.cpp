@@ -84,12 +84,12 @@ VkResult Submitter::next_buffer(std::uint32_t slot, std::size_t queue, VkCommand
   return VK_SUCCESS;
 }
 
-VkResult Submitter::submit(const Plan& plan, Recorder& recorder, std::uint32_t slot,
+VkResult Submitter::submit(const Plan& plan, Crew& crew, std::uint32_t slot,
                            Timestamps* const* timestamps, bool full_barrier) {
   submitted_ = 0;
   if (const VkResult result = prepare(slot)) return result;
   // All is recorded before anything runs: what fails while recording leaves the device untouched.
-  if (const VkResult result = record(plan, recorder, slot, timestamps, full_barrier)) return result;
+  if (const VkResult result = record(plan, crew, slot, timestamps, full_barrier)) return result;
   const bool several =
       std::any_of(plan.submissions.begin(), plan.submissions.end(),
                   [](const Submission& s) { return s.queue != QueueClass::graphics; });
@@ -108,7 +108,7 @@ VkResult Submitter::submit(const Plan& plan, Recorder& recorder, std::uint32_t s
   return result;
 }
 
-VkResult Submitter::record(const Plan& plan, Recorder& recorder, std::uint32_t slot,
+VkResult Submitter::record(const Plan& plan, Crew& crew, std::uint32_t slot,
                            Timestamps* const* timestamps, bool full_barrier) {
   recorded_.assign(plan.submissions.size(), VK_NULL_HANDLE);
   bool begun[kQueueClasses] = {};
@@ -125,8 +125,8 @@ VkResult Submitter::record(const Plan& plan, Recorder& recorder, std::uint32_t s
       const auto passes = static_cast<std::uint32_t>(plan.passes.size());
       if (const VkResult result = timestamps[q]->begin_frame(buffer, passes)) return result;
     }
-    if (!begun[q] && full_barrier) recorder.full_barrier(buffer);
-    recorder.submission(submission, buffer, timestamps[q]);
+    if (!begun[q] && full_barrier) crew.full_barrier(buffer);
+    if (const VkResult result = crew.submission(submission, buffer, timestamps[q])) return result;
     if (const VkResult result = device_.vk.vkEndCommandBuffer(buffer)) return result;
     begun[q] = true;
   }

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "crew.h"
 #include "device_context.h"
-#include "recorder.h"
 
 namespace alcove::framegraph {
 
@@ -18,9 +18,9 @@ class Submitter {
 
   // Waits until the device has finished what was submitted with this slot.
   [[nodiscard]] VkResult wait(std::uint32_t slot);
-  // Records and submits a plan that `recorder` was begun with. `timestamps` is by queue class, null
+  // Records and submits a plan that `crew` was begun with. `timestamps` is by queue class, null
   // where there are none. `full_barrier`: memory holds the leavings of another plan.
-  [[nodiscard]] VkResult submit(const Plan& plan, Recorder& recorder, std::uint32_t slot,
+  [[nodiscard]] VkResult submit(const Plan& plan, Crew& crew, std::uint32_t slot,
                                 Timestamps* const* timestamps, bool full_barrier);
   // Whether submit handed over some of a frame and then failed.
   bool stopped_midway() const { return submitted_ != 0; }
@@ -38,8 +38,8 @@ class Submitter {
 
   VkResult prepare(std::uint32_t slot);
   VkResult next_buffer(std::uint32_t slot, std::size_t queue, VkCommandBuffer& buffer);
-  VkResult record(const Plan& plan, Recorder& recorder, std::uint32_t slot,
-                  Timestamps* const* timestamps, bool full_barrier);
+  VkResult record(const Plan& plan, Crew& crew, std::uint32_t slot, Timestamps* const* timestamps,
+                  bool full_barrier);
   VkResult submit_one(const Plan& plan, std::uint32_t index, bool join);
 
   const DeviceContext& device_;

@@ -29,16 +29,15 @@ VkResult Timestamps::begin_frame(VkCommandBuffer commands, std::uint32_t passes)
   return VK_SUCCESS;
 }
 
-void Timestamps::begin_pass(VkCommandBuffer commands, std::string_view name) {
-  names_[count_].assign(name);
+void Timestamps::begin_pass(VkCommandBuffer commands, std::uint32_t number, std::string_view name) {
+  names_[number].assign(name);
   device_.vk.vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pool_,
-                                  2 * count_);
+                                  2 * number);
 }
 
-void Timestamps::end_pass(VkCommandBuffer commands) {
+void Timestamps::end_pass(VkCommandBuffer commands, std::uint32_t number) {
   device_.vk.vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pool_,
-                                  2 * count_ + 1);
-  ++count_;
+                                  2 * number + 1);
 }
 
 std::span<const PassTiming> Timestamps::read() {

@@ -20,8 +20,14 @@ class Timestamps {
   [[nodiscard]] VkResult begin_frame(VkCommandBuffer commands, std::uint32_t passes);
   // Nothing is to be read until a frame begins again.
   void forget() { count_ = 0; }
-  void begin_pass(VkCommandBuffer commands, std::string_view name);
-  void end_pass(VkCommandBuffer commands);
+  // Announces so many passes; the number of the first. Numbers are in order of execution.
+  std::uint32_t add(std::uint32_t passes) {
+    count_ += passes;
+    return count_ - passes;
+  }
+  // Different passes may be recorded at the same time.
+  void begin_pass(VkCommandBuffer commands, std::uint32_t number, std::string_view name);
+  void end_pass(VkCommandBuffer commands, std::uint32_t number);
   // Empty when the device has not finished.
   std::span<const PassTiming> read();
 

@@ -82,7 +82,10 @@ VkDescriptorSet ChecksumKernels::bind(RecordContext& context, const Kernel& kern
   info.descriptorSetCount = 1;
   info.pSetLayouts = &kernel.set_layout;
   VkDescriptorSet set = VK_NULL_HANDLE;
-  vkAllocateDescriptorSets(device_, &info, &set);
+  {
+    const std::lock_guard lock(mutex_);
+    vkAllocateDescriptorSets(device_, &info, &set);
+  }
   const std::uint32_t parameters[2] = {seed, keep ? 1u : 0u};
   context.vk.vkCmdBindPipeline(context.commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline);
   context.vk.vkCmdPushConstants(context.commands, kernel.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, 8,

@@ -1,7 +1,9 @@
 // The two compute kernels that device tests mix contents with, and their descriptor sets.
 #pragma once
 
+#include <mutex>
 #include "alcove/framegraph/framegraph.h"
+
 #include "gpu.h"
 
 namespace alcove::framegraph {
@@ -37,6 +39,7 @@ class ChecksumKernels {
   VkDescriptorSet bind(RecordContext& context, const Kernel& kernel, std::uint32_t seed, bool keep);
 
   VkDevice device_;
+  std::mutex mutex_;  // of the pool: passes may be recorded by several threads
   VkDescriptorPool pool_ = VK_NULL_HANDLE;
   Kernel texture_;
   Kernel buffer_;

@@ -119,17 +119,21 @@ class FailingDeviceTest : public ExecutorTest {
     graph.output(texture);
   }
 
+  void expect_out_of_memory_anywhere_is_an_error(std::uint32_t threads);
+
   HostBuffer host_;
   DeviceHandles handles_;
 };
 
 // Whatever call fails, the frame comes back as an error, the next one runs, and nothing is leaked.
-TEST_F(FailingDeviceTest, RunningOutOfMemoryAnywhereIsAnErrorAndLeaksNothing) {
+void FailingDeviceTest::expect_out_of_memory_anywhere_is_an_error(std::uint32_t threads) {
+  ExecutorOptions options;
+  options.recording_threads = threads;
   int failed = 0;
   int last = 0;
   for (const bool submits : {false, true}) {
     for (int call = 1; call == 1 || last >= call - 1; ++call) {
-      auto executor = Executor::create(handles_);
+      auto executor = Executor::create(handles_, options);
       ASSERT_TRUE(executor) << to_string(executor.error());
       Graph graph;
       failing::fail_at(call);
@@ -153,6 +157,13 @@ TEST_F(FailingDeviceTest, RunningOutOfMemoryAnywhereIsAnErrorAndLeaksNothing) {
     EXPECT_EQ(failing::alive(), 0);
   }
   EXPECT_GE(failed, 20);
+}
+
+TEST_F(FailingDeviceTest, RunningOutOfMemoryAnywhereIsAnErrorAndLeaksNothing) {
+  expect_out_of_memory_anywhere_is_an_error(1);
+}
+TEST_F(FailingDeviceTest, RunningOutOfMemoryInAnyThreadIsAnErrorAndLeaksNothing) {
+  expect_out_of_memory_anywhere_is_an_error(2);
 }
 
 // Lost at any submission of any frame: an error each time it is asked, and nothing is leaked.

@@ -1,14 +1,15 @@
 #include "failing_device.h"
 
+#include <atomic>
 #include <cstdint>
 #include <cstring>
 
 namespace alcove::framegraph::failing {
 namespace {
 
-int failing_call = 0;
-int call_count = 0;
-int alive_count = 0;
+std::atomic<int> failing_call = 0;
+std::atomic<int> call_count = 0;
+std::atomic<int> alive_count = 0;
 bool is_lost = false;
 int submissions_left = -1;  // until the device is lost; below 0: it is not going to be
 

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
+#include <initializer_list>
 #include <memory>
 #include <string>
 #include <vector>
@@ -166,11 +168,14 @@ class Gpu {
     vkQueueWaitIdle(device_->queue());
   }
 
-  // What the validation layers said, one line each, without messages that contain `except`.
-  std::string messages(const std::string& except = "") const {
+  // What the validation layers said, one line each, without messages that contain one of `except`.
+  std::string messages(std::initializer_list<const char*> except = {}) const {
     std::string text;
     for (const std::string& message : device_->validation_messages()) {
-      if (except.empty() || message.find(except) == std::string::npos) text += message + '\n';
+      const bool excepted = std::any_of(except.begin(), except.end(), [&](const char* part) {
+        return message.find(part) != std::string::npos;
+      });
+      if (!excepted) text += message + '\n';
     }
     return text;
   }

@@ -47,12 +47,13 @@ void declare(Graph& graph, const HostBuffer& host) {
 enum class Path { record, submit, submit_to_three };
 
 // Allocations of this thread in 20 frames, after some frames of getting used to it.
-std::size_t allocations_of_steady_frames(Path path) {
+std::size_t allocations_of_steady_frames(Path path, std::uint32_t threads = 1) {
   Gpu gpu(false);
   EXPECT_EQ(gpu.problem(), "");
   DeviceHandles handles = gpu.handles();
   if (path == Path::submit_to_three) handles.queues[1] = handles.queues[2] = handles.queues[0];
   ExecutorOptions options;
+  options.recording_threads = threads;
   options.verify = options.check_uses = false;
   auto executor = Executor::create(handles, options);
   EXPECT_TRUE(executor);
@@ -82,6 +83,9 @@ TEST(SteadyRecord, SubmittingAFrameAgainAllocatesNothing) {
 }
 TEST(SteadyRecord, SubmittingAFrameToThreeQueuesAgainAllocatesNothing) {
   EXPECT_EQ(allocations_of_steady_frames(Path::submit_to_three), 0u);
+}
+TEST(SteadyRecord, RecordingAFrameAgainWithTwoThreadsAllocatesNothing) {
+  EXPECT_EQ(allocations_of_steady_frames(Path::record, 2), 0u);
 }
 
 }  // namespace

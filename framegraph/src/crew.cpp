@@ -1,0 +1,160 @@
+#include "crew.h"
+
+#include <algorithm>
+
+namespace alcove::framegraph {
+
+Crew::Crew(const DeviceContext& device, Pool& pool, std::uint32_t threads, std::uint32_t slots)
+    : device_(device), slots_(slots) {
+  for (std::uint32_t i = 0; i < threads; ++i)
+    recorders_.push_back(std::make_unique<Recorder>(device, pool));
+  if (threads > 1) buffers_.resize(threads * slots_ * kQueueClasses);
+  for (std::size_t i = 1; i < threads; ++i) threads_.emplace_back([this, i] { work(i); });
+}
+
+Crew::~Crew() {
+  {
+    const std::lock_guard lock(mutex_);
+    ends_ = true;
+  }
+  begun_.notify_all();
+  for (std::thread& thread : threads_) thread.join();
+  for (Buffers& buffers : buffers_)
+    device_.vk.vkDestroyCommandPool(device_.handles.device, buffers.pool, nullptr);
+}
+
+VkResult Crew::begin(const RecordedFrame& frame) {
+  for (const auto& recorder : recorders_) recorder->begin(frame);
+  slot_ = frame.slot;
+  for (std::size_t i = 0; i < buffers_.size(); ++i) {
+    Buffers& buffers = buffers_[i];
+    if (i / kQueueClasses % slots_ != slot_ || buffers.used == 0) continue;
+    const VkResult result = device_.vk.vkResetCommandPool(device_.handles.device, buffers.pool, 0);
+    if (result != VK_SUCCESS) return result;
+    buffers.used = 0;
+  }
+  return VK_SUCCESS;
+}
+
+VkResult Crew::submission(const Submission& submission, VkCommandBuffer commands,
+                          Timestamps* timestamps) {
+  const PassRun passes{submission.first_pass, submission.pass_count, timestamps,
+                       timestamps ? timestamps->add(submission.pass_count) : 0};
+  Recorder& own = *recorders_[0];
+  if (threads_.empty() || submission.pass_count < 2) {
+    own.passes(passes, commands);
+  } else {
+    queue_ = submission.queue;
+    cut(passes);
+    record_together();
+    recorded_.clear();
+    for (const Piece& piece : pieces_) {
+      if (piece.result != VK_SUCCESS) return piece.result;
+      recorded_.push_back(piece.commands);
+    }
+    device_.vk.vkCmdExecuteCommands(commands, static_cast<std::uint32_t>(recorded_.size()),
+                                    recorded_.data());
+  }
+  own.batches(submission.first_batch, submission.batch_count, commands);
+  return VK_SUCCESS;
+}
+
+Errors Crew::take_errors() {
+  Errors all;
+  for (const auto& recorder : recorders_) {
+    for (Error& error : recorder->errors()) all.push_back(std::move(error));
+    recorder->errors().clear();
+  }
+  return all;
+}
+
+// More pieces than threads, so that one that has slow passes is made up for by the others.
+void Crew::cut(const PassRun& passes) {
+  const auto count =
+      static_cast<std::uint32_t>(std::min<std::size_t>(passes.count, 2 * recorders_.size()));
+  pieces_.assign(count, Piece{});
+  std::uint32_t done = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    PassRun& own = pieces_[i].passes;
+    own = passes;
+    own.first += done;
+    own.first_time += done;
+    own.count = (passes.count - done) / (count - i);
+    done += own.count;
+  }
+}
+
+void Crew::record_together() {
+  next_piece_ = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    ++round_;
+    busy_ = threads_.size();
+  }
+  begun_.notify_all();
+  record_pieces(0);
+  std::unique_lock lock(mutex_);
+  done_.wait(lock, [this] { return busy_ == 0; });
+}
+
+void Crew::work(std::size_t thread) {
+  std::uint64_t round = 0;
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    begun_.wait(lock, [&] { return ends_ || round_ != round; });
+    if (ends_) return;
+    round = round_;
+    lock.unlock();
+    record_pieces(thread);
+    lock.lock();
+    if (--busy_ == 0) done_.notify_one();
+  }
+}
+
+void Crew::record_pieces(std::size_t thread) {
+  for (std::size_t i = next_piece_++; i < pieces_.size(); i = next_piece_++)
+    pieces_[i].result = record(pieces_[i], thread);
+}
+
+VkResult Crew::record(Piece& piece, std::size_t thread) {
+  if (const VkResult result = next_buffer(buffers_of(thread), piece.commands)) return result;
+  VkCommandBufferInheritanceInfo inherited{};
+  inherited.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_INHERITANCE_INFO;
+  VkCommandBufferBeginInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+  info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+  info.pInheritanceInfo = &inherited;
+  if (const VkResult result = device_.vk.vkBeginCommandBuffer(piece.commands, &info)) return result;
+  recorders_[thread]->passes(piece.passes, piece.commands);
+  return device_.vk.vkEndCommandBuffer(piece.commands);
+}
+
+Crew::Buffers& Crew::buffers_of(std::size_t thread) {
+  return buffers_[(thread * slots_ + slot_) * kQueueClasses + static_cast<std::size_t>(queue_)];
+}
+
+VkResult Crew::next_buffer(Buffers& buffers, VkCommandBuffer& commands) {
+  const VkDevice device = device_.handles.device;
+  if (buffers.pool == VK_NULL_HANDLE) {
+    VkCommandPoolCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
+    info.queueFamilyIndex = device_.limits.queue_families[static_cast<std::size_t>(queue_)];
+    const VkResult result = device_.vk.vkCreateCommandPool(device, &info, nullptr, &buffers.pool);
+    if (result != VK_SUCCESS) return result;
+  }
+  if (buffers.used == buffers.made.size()) {
+    VkCommandBufferAllocateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
+    info.commandPool = buffers.pool;
+    info.level = VK_COMMAND_BUFFER_LEVEL_SECONDARY;
+    info.commandBufferCount = 1;
+    VkCommandBuffer made = VK_NULL_HANDLE;
+    const VkResult result = device_.vk.vkAllocateCommandBuffers(device, &info, &made);
+    if (result != VK_SUCCESS) return result;
+    buffers.made.push_back(made);
+  }
+  commands = buffers.made[buffers.used++];
+  return VK_SUCCESS;
+}
+
+}  // namespace alcove::framegraph

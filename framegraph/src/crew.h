@@ -1,0 +1,76 @@
+// Records a plan's submissions: by one thread into the command buffer itself, or by several into
+// secondary command buffers that it executes in order.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "recorder.h"
+
+namespace alcove::framegraph {
+
+class Crew {
+ public:
+  // `threads` counts the caller's: 1 makes none.
+  Crew(const DeviceContext& device, Pool& pool, std::uint32_t threads, std::uint32_t slots);
+  ~Crew();
+  Crew(const Crew&) = delete;
+  Crew& operator=(const Crew&) = delete;
+
+  // What the next calls record; the device has finished what was recorded with this slot.
+  [[nodiscard]] VkResult begin(const RecordedFrame& frame);
+  void full_barrier(VkCommandBuffer commands) { recorders_[0]->full_barrier(commands); }
+  // On an error nothing is recorded.
+  [[nodiscard]] VkResult submission(const Submission& submission, VkCommandBuffer commands,
+                                    Timestamps* timestamps);
+  // What callbacks did wrong since begin; empty afterwards.
+  Errors take_errors();
+
+ private:
+  // A thread's secondary command buffers of one slot and queue class.
+  struct Buffers {
+    VkCommandPool pool = VK_NULL_HANDLE;
+    std::vector<VkCommandBuffer> made;
+    std::size_t used = 0;
+  };
+  // A run of passes that one thread records.
+  struct Piece {
+    PassRun passes;
+    VkCommandBuffer commands = VK_NULL_HANDLE;
+    VkResult result = VK_SUCCESS;
+  };
+
+  void work(std::size_t thread);
+  void record_pieces(std::size_t thread);
+  VkResult record(Piece& piece, std::size_t thread);
+  VkResult next_buffer(Buffers& buffers, VkCommandBuffer& commands);
+  Buffers& buffers_of(std::size_t thread);
+  void cut(const PassRun& passes);
+  void record_together();
+
+  const DeviceContext& device_;
+  std::vector<std::unique_ptr<Recorder>> recorders_;  // by thread
+  std::vector<Buffers> buffers_;                      // by thread, slot and queue class
+  std::size_t slots_;
+  std::size_t slot_ = 0;
+
+  // The job in hand. The threads read it while `round_` has just moved on and `busy_` is not 0.
+  std::vector<Piece> pieces_;
+  std::vector<VkCommandBuffer> recorded_;
+  QueueClass queue_ = QueueClass::graphics;
+  std::atomic<std::size_t> next_piece_ = 0;
+
+  std::mutex mutex_;
+  std::condition_variable begun_;
+  std::condition_variable done_;
+  std::uint64_t round_ = 0;
+  std::size_t busy_ = 0;  // threads that have not finished the round
+  bool ends_ = false;
+  std::vector<std::thread> threads_;
+};
+
+}  // namespace alcove::framegraph
