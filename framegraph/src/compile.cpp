@@ -9,6 +9,7 @@ void clear(Plan& plan) {
   plan.passes.clear();
   plan.batches.clear();
   plan.transitions.clear();
+  plan.sets.clear();
   plan.submissions.clear();
   plan.waits.clear();
   plan.placements.clear();

@@ -4,6 +4,7 @@
 
 #include "alcove/framegraph/verify.h"
 #include "crew.h"
+#include "events.h"
 #include "plan_cache.h"
 #include "submitter.h"
 
@@ -39,6 +40,7 @@ struct Executor::Implementation {
   Compiler compiler;
   PlanCache plans[2];  // for record, on one queue, and for submit
   std::unique_ptr<Pool> pool;
+  std::unique_ptr<Events> events;
   std::unique_ptr<Crew> crew;
   std::vector<std::unique_ptr<Timestamps>> timestamps;  // by slot and queue class
   std::vector<PassTiming> timings;                      // what timings() returned last
@@ -58,7 +60,9 @@ tl::expected<Executor, Errors> Executor::create(const DeviceHandles& device,
     return tl::unexpected(std::move(opened.error()));
   made->device.limits.ordering = options.ordering;
   made->device.limits.alias = options.alias;
+  made->device.limits.split_barriers = options.split_barriers;
   made->pool = std::make_unique<Pool>(made->device);
+  made->events = std::make_unique<Events>(made->device, made->options.frames_in_flight);
   made->crew = std::make_unique<Crew>(made->device, *made->pool,
                                       std::clamp(options.recording_threads, 1u, 64u),
                                       made->options.frames_in_flight);
@@ -192,8 +196,11 @@ tl::expected<FrameReport, Errors> Executor::Implementation::prepare(Graph& graph
   if (auto done = find_physical(graph, *cached); !done)
     return tl::unexpected(std::move(done.error()));
   cached->last_frame = frame;
-  const RecordedFrame recorded{&graph, &cached->plan, &cached->physical, options.check_uses,
-                               info.slot};
+  const auto events_of_frame = events->begin_frame(info.slot, cached->plan.sets.size());
+  if (!events_of_frame)
+    return tl::unexpected(vulkan_error(events_of_frame.error(), "events cannot be created"));
+  const RecordedFrame recorded{&graph,           &cached->plan,      &cached->physical,
+                               *events_of_frame, options.check_uses, info.slot};
   if (const VkResult result = crew->begin(recorded))
     return tl::unexpected(vulkan_error(result, "command buffers cannot be used again"));
   report.plan = &cached->plan;

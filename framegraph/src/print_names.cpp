@@ -140,4 +140,11 @@ std::string range_name(const Range& range, std::uint32_t mips, std::uint32_t lay
   return text;
 }
 
+std::uint32_t set_after(const Plan& plan, const Batch& batch) {
+  for (std::uint32_t p = 0; p < plan.passes.size() && batch.event != kNone; ++p) {
+    if (batch.event - plan.passes[p].first_set < plan.passes[p].set_count) return p;
+  }
+  return kNone;
+}
+
 }  // namespace alcove::framegraph

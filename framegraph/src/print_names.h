@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "alcove/framegraph/plan.h"
 #include "alcove/framegraph/types.h"
 
 namespace alcove::framegraph {
@@ -15,5 +16,7 @@ std::string queue_name(QueueClass queue);
 std::string byte_size(VkDeviceSize bytes);
 // "mip 0..2 layer 1" where it is not everything.
 std::string range_name(const Range& range, std::uint32_t mips, std::uint32_t layers);
+// The position of the pass after which a split barrier's event is set; kNone for other barriers.
+std::uint32_t set_after(const Plan& plan, const Batch& batch);
 
 }  // namespace alcove::framegraph

@@ -85,12 +85,14 @@ class TextPrinter {
     for (std::uint32_t b = first; b < first + count; ++b) {
       const Batch& batch = plan_.batches[b];
       for (std::uint32_t t = batch.first; t < batch.first + batch.count; ++t)
-        transition(plan_.transitions[t]);
+        transition(plan_.transitions[t], set_after(plan_, batch));
     }
   }
 
-  void transition(const Transition& t) {
+  void transition(const Transition& t, std::uint32_t event_set_after) {
     std::string text = "      | ";
+    if (event_set_after != kNone)
+      text.append("event set after ").append(std::to_string(event_set_after)).append(": ");
     text.append(stage_names(t.src_stages)).append(" -> ").append(stage_names(t.dst_stages));
     if (t.resource != kNone) {
       const ResourceRecord& record = graph_.resources[t.resource];

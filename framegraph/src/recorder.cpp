@@ -10,6 +10,7 @@ void Recorder::begin(const RecordedFrame& frame) {
   graph_ = frame.graph;
   plan_ = frame.plan;
   physical_ = frame.physical;
+  events_ = frame.events;
   check_uses_ = frame.check_uses;
   slot_ = frame.slot;
   errors_.clear();
@@ -63,41 +64,62 @@ void Recorder::pass(const PlannedPass& planned, VkCommandBuffer commands, Timest
   graph_->call(planned.pass, context);
   if (timestamps) timestamps->end_pass(commands, time);
   if (label) device_.vk.vkCmdEndDebugUtilsLabelEXT(commands);
+  set_events(planned, commands);
 }
 
 void Recorder::batches(std::uint32_t first, std::uint32_t count, VkCommandBuffer commands) {
   for (std::uint32_t b = first; b < first + count; ++b) {
     const Batch& batch = plan_->batches[b];
-    images_.clear();
-    memories_.clear();
-    buffers_.clear();
-    for (std::uint32_t i = batch.first; i < batch.first + batch.count; ++i) {
-      const Transition& t = plan_->transitions[i];
-      if (t.resource != kNone && (*physical_)[t.resource]->image) {
-        images_.push_back(image_barrier(t));
-        // An image barrier orders all commands of its stages, whatever they touch. The validation
-        // layers take it to concern the image alone, and miss that a buffer which had the memory
-        // before, and one that has it after, are ordered by way of the image: told so, at no cost.
-        if (t.old_layout == VK_IMAGE_LAYOUT_UNDEFINED && shares_with_buffers_)
-          memories_.push_back({VK_STRUCTURE_TYPE_MEMORY_BARRIER_2, nullptr, t.src_stages,
-                               t.src_access, t.dst_stages, t.dst_access});
-      } else if (t.resource != kNone) {
-        buffers_.push_back(buffer_barrier(t));
-      } else {
-        memories_.push_back({VK_STRUCTURE_TYPE_MEMORY_BARRIER_2, nullptr, t.src_stages,
-                             t.src_access, t.dst_stages, t.dst_access});
-      }
-    }
-    VkDependencyInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
-    info.memoryBarrierCount = static_cast<std::uint32_t>(memories_.size());
-    info.pMemoryBarriers = memories_.data();
-    info.bufferMemoryBarrierCount = static_cast<std::uint32_t>(buffers_.size());
-    info.pBufferMemoryBarriers = buffers_.data();
-    info.imageMemoryBarrierCount = static_cast<std::uint32_t>(images_.size());
-    info.pImageMemoryBarriers = images_.data();
-    device_.vk.vkCmdPipelineBarrier2(commands, &info);
+    const VkDependencyInfo info = dependency(batch);
+    if (batch.event == kNone)
+      device_.vk.vkCmdPipelineBarrier2(commands, &info);
+    else
+      device_.vk.vkCmdWaitEvents2(commands, 1, &events_[batch.event], &info);
   }
+}
+
+void Recorder::set_events(const PlannedPass& planned, VkCommandBuffer commands) {
+  for (std::uint32_t e = planned.first_set; e < planned.first_set + planned.set_count; ++e) {
+    const VkDependencyInfo info = dependency(plan_->batches[plan_->sets[e]]);
+    device_.vk.vkCmdSetEvent2(commands, events_[e], &info);
+  }
+}
+
+// Valid until the next call.
+VkDependencyInfo Recorder::dependency(const Batch& batch) {
+  images_.clear();
+  memories_.clear();
+  buffers_.clear();
+  for (std::uint32_t i = batch.first; i < batch.first + batch.count; ++i) {
+    const Transition& t = plan_->transitions[i];
+    const VkMemoryBarrier2 memory{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
+                                  nullptr,
+                                  t.src_stages,
+                                  t.src_access,
+                                  t.dst_stages,
+                                  t.dst_access};
+    if (t.resource != kNone && (*physical_)[t.resource]->image) {
+      images_.push_back(image_barrier(t));
+      // An image barrier orders all commands of its stages, whatever they touch. The validation
+      // layers take it to concern the image alone, and miss that a buffer which had the memory
+      // before, and one that has it after, are ordered by way of the image: told so, at no cost.
+      if (t.old_layout == VK_IMAGE_LAYOUT_UNDEFINED && shares_with_buffers_)
+        memories_.push_back(memory);
+    } else if (t.resource != kNone) {
+      buffers_.push_back(buffer_barrier(t));
+    } else {
+      memories_.push_back(memory);
+    }
+  }
+  VkDependencyInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
+  info.memoryBarrierCount = static_cast<std::uint32_t>(memories_.size());
+  info.pMemoryBarriers = memories_.data();
+  info.bufferMemoryBarrierCount = static_cast<std::uint32_t>(buffers_.size());
+  info.pBufferMemoryBarriers = buffers_.data();
+  info.imageMemoryBarrierCount = static_cast<std::uint32_t>(images_.size());
+  info.pImageMemoryBarriers = images_.data();
+  return info;
 }
 
 VkImageMemoryBarrier2 Recorder::image_barrier(const Transition& t) const {

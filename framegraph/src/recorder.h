@@ -2,6 +2,7 @@
 // recorders may record parts of one plan at the same time.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "alcove/framegraph/graph.h"
@@ -17,6 +18,7 @@ struct RecordedFrame {
   const Graph* graph = nullptr;
   const Plan* plan = nullptr;
   const std::vector<Physical*>* physical = nullptr;
+  std::span<const VkEvent> events;  // of the plan's split barriers
   bool check_uses = false;
   std::uint32_t slot = 0;
 };
@@ -47,6 +49,8 @@ class Recorder {
   void pass(const PlannedPass& planned, VkCommandBuffer commands, Timestamps* timestamps,
             std::uint32_t time);
   void begin_label(std::string_view name, VkCommandBuffer commands) const;
+  void set_events(const PlannedPass& planned, VkCommandBuffer commands);
+  VkDependencyInfo dependency(const Batch& batch);
   VkImageMemoryBarrier2 image_barrier(const Transition& transition) const;
   VkBufferMemoryBarrier2 buffer_barrier(const Transition& transition) const;
   std::uint32_t family(const Transition& transition, QueueClass queue) const;
@@ -60,6 +64,7 @@ class Recorder {
   const Graph* graph_ = nullptr;
   const Plan* plan_ = nullptr;
   const std::vector<Physical*>* physical_ = nullptr;
+  std::span<const VkEvent> events_;
   bool check_uses_ = false;
   bool shares_with_buffers_ = false;  // the plan has transient buffers
   std::uint32_t slot_ = 0;

@@ -5,6 +5,7 @@
 #include "synchronise.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "access_bits.h"
 
@@ -79,6 +80,7 @@ bool extend(Transition& last, const Transition& next) {
 
 void Synchroniser::run() {
   s_.states.assign(workspace_.first_sub.back(), UseState{});
+  s_.latest.clear();
   arrive();
   find_last_uses();
   const auto& transients = workspace_.transients;
@@ -102,6 +104,7 @@ void Synchroniser::run() {
     }
   }
   depart();
+  if (limits_.split_barriers) split();
 }
 
 void Synchroniser::arrive() {
@@ -431,8 +434,52 @@ Batch& Synchroniser::batch_after(std::int32_t time, std::uint32_t position) {
   if (batch_position_ == kNone || static_cast<std::int32_t>(2 * batch_position_) < time) {
     batch_position_ = position;
     plan_.batches.push_back({static_cast<std::uint32_t>(plan_.transitions.size()), 0});
+    s_.latest.push_back(time);
   }
+  s_.latest.back() = std::max(s_.latest.back(), time);
   return plan_.batches.back();
+}
+
+// The pass after which all is there that a pass's batch waits for, if others run between the two.
+std::uint32_t Synchroniser::set_position(std::uint32_t position) const {
+  const PlannedPass& planned = plan_.passes[position];
+  if (planned.batch_count == 0 || !can_split(plan_.batches[planned.first_batch])) return kNone;
+  const std::int32_t latest = s_.latest[planned.first_batch];
+  const std::uint32_t floor = plan_.submissions[planned.submission].first_pass;
+  if (latest < static_cast<std::int32_t>(2 * floor)) return kNone;
+  const auto after = static_cast<std::uint32_t>(latest) / 2;
+  return after + 1 < position ? after : kNone;
+}
+
+void Synchroniser::split() {
+  const auto count = static_cast<std::uint32_t>(plan_.passes.size());
+  for (std::uint32_t position = 0; position < count; ++position) {
+    const std::uint32_t after = set_position(position);
+    if (after != kNone) ++plan_.passes[after].set_count;
+  }
+  std::uint32_t events = 0;
+  for (PlannedPass& planned : plan_.passes) {
+    planned.first_set = events;
+    events += std::exchange(planned.set_count, 0);
+  }
+  plan_.sets.resize(events);
+  for (std::uint32_t position = 0; position < count; ++position) {
+    const std::uint32_t after = set_position(position);
+    if (after == kNone) continue;
+    const std::uint32_t event = plan_.passes[after].first_set + plan_.passes[after].set_count++;
+    plan_.sets[event] = plan_.passes[position].first_batch;
+    plan_.batches[plan_.passes[position].first_batch].event = event;
+  }
+}
+
+// Events are of one queue family, and not for the host.
+bool Synchroniser::can_split(const Batch& batch) const {
+  for (std::uint32_t i = batch.first; i < batch.first + batch.count; ++i) {
+    const Transition& t = plan_.transitions[i];
+    if (((t.src_stages | t.dst_stages) & VK_PIPELINE_STAGE_2_HOST_BIT) != 0) return false;
+    if (t.src_queue != t.dst_queue) return false;
+  }
+  return true;
 }
 
 std::uint32_t Synchroniser::add_image(std::int32_t time, std::uint32_t position,

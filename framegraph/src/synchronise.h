@@ -34,6 +34,9 @@ class Synchroniser {
   void read_again(std::uint32_t position, const AccessRecord& access, UseState& state);
   void write_again(std::uint32_t position, const AccessRecord& access, UseState& state);
   void depart();
+  void split();
+  std::uint32_t set_position(std::uint32_t position) const;
+  bool can_split(const Batch& batch) const;
   AccessRecord outside_use(std::uint32_t resource, const State& state) const;
   void leave(std::uint32_t resource);
 

@@ -87,6 +87,8 @@ Scopes scopes_of(const Transition& t, QueueClass queue) {
           expand_accesses(t.dst_access)};
 }
 
+namespace {
+
 bool comes_before(const Piece& piece, const Scopes& barrier) {
   return (piece.queue == barrier.queue && (piece.stage & barrier.src) != 0) ||
          (piece.after[barrier.queue] & barrier.src) != 0;
@@ -99,11 +101,31 @@ bool is_made_available(const Piece& piece, const Scopes& barrier, bool memory) {
          (piece.writes & ~barrier.src_access) == 0;
 }
 
-void apply(Piece& piece, const Scopes& barrier, bool memory) {
+}  // namespace
+
+Reach reach(const Piece& piece, const Scopes& barrier, bool memory) {
+  return {comes_before(piece, barrier), is_made_available(piece, barrier, memory)};
+}
+
+void capture(Piece& piece, const Scopes& barrier, std::uint32_t transition) {
+  std::erase_if(piece.captures, [&](const Capture& c) { return c.transition == transition; });
   if (!comes_before(piece, barrier)) return;
-  const bool made_available = is_made_available(piece, barrier, memory);
+  piece.captures.push_back({transition, is_made_available(piece, barrier, false),
+                            is_made_available(piece, barrier, true)});
+}
+
+Reach captured(const Piece& piece, std::uint32_t transition, bool memory) {
+  for (const Capture& capture : piece.captures) {
+    if (capture.transition == transition)
+      return {true, capture.available || (memory && capture.direct)};
+  }
+  return {};
+}
+
+void apply(Piece& piece, const Scopes& barrier, const Reach& reached, bool memory) {
+  if (!reached.before) return;
   piece.after[barrier.queue] |= barrier.dst;
-  if (!made_available) return;
+  if (!reached.available) return;
   piece.available[barrier.queue] |= barrier.dst;
   if (memory && barrier.dst_access != 0)
     piece.grants.push_back({barrier.queue, barrier.dst, barrier.dst_access});

@@ -28,6 +28,14 @@ struct Grant {
   Accesses accesses = 0;
 };
 
+// That an operation came before the set of an event: by which transition of its batch, and whether
+// with its writes available, by what was so before or (`direct`) by the transition's memory side.
+struct Capture {
+  std::uint32_t transition = 0;
+  bool available = false;
+  bool direct = false;
+};
+
 struct Piece {
   std::uint8_t queue = 0;
   Stages stage = 0;     // one bit; 0 for a layout change, which is ordered by `after` alone
@@ -36,6 +44,7 @@ struct Piece {
   Stages available[kQueueClasses] = {};
   std::vector<Grant> grants;
   std::vector<std::uint32_t> signalled;  // submissions whose signal comes after it
+  std::vector<Capture> captures;         // by events that are set and not yet waited for
 };
 
 // The pieces of a command's access.
@@ -54,12 +63,19 @@ struct Scopes {
 };
 Scopes scopes_of(const Transition& transition, QueueClass queue);
 
-// Whether a piece comes before what the barrier does, and whether with its writes available.
-// `memory`: the barrier's memory side covers the piece's resource.
-bool comes_before(const Piece& piece, const Scopes& barrier);
-bool is_made_available(const Piece& piece, const Scopes& barrier, bool memory);
-// What the barrier adds to the piece.
-void apply(Piece& piece, const Scopes& barrier, bool memory);
+// How a piece stands to the first scope of a barrier: whether it comes before what the barrier
+// does, and whether with its writes available. `memory`: the barrier's memory side covers the
+// piece's resource.
+struct Reach {
+  bool before = false;
+  bool available = false;
+};
+Reach reach(const Piece& piece, const Scopes& barrier, bool memory);
+// The same for a barrier by event: as it was when the event was set.
+void capture(Piece& piece, const Scopes& barrier, std::uint32_t transition);
+Reach captured(const Piece& piece, std::uint32_t transition, bool memory);
+// What the barrier adds to a piece that it reaches.
+void apply(Piece& piece, const Scopes& barrier, const Reach& reached, bool memory);
 
 // Signals and waits of submissions.
 void signal(Piece& piece, std::uint8_t queue, std::uint32_t submission);

@@ -19,6 +19,7 @@ void Replay::run() {
   find_expected();
   for (int frame = 0; frame < 2 && errors_.empty(); ++frame) {
     begin_frame(frame == 0);
+    set_in_.assign(plan_.sets.size(), kNone);
     for (std::uint32_t s = 0; s < plan_.submissions.size(); ++s) submission(s);
     end_frame();
     signals_ += static_cast<std::uint32_t>(plan_.submissions.size());
@@ -101,17 +102,45 @@ void Replay::submission(std::uint32_t index) {
   for (std::uint32_t p = 0; p < submission.pass_count; ++p) {
     const PlannedPass& planned = plan_.passes[submission.first_pass + p];
     where_ = std::string("before pass '").append(graph_.pass_name(planned.pass)).append("'");
-    batches(planned.first_batch, planned.batch_count, submission.queue);
+    batches(planned.first_batch, planned.batch_count, index);
     where_ = std::string("in pass '").append(graph_.pass_name(planned.pass)).append("'");
     pass(submission.first_pass + p);
+    set_events(planned, index);
   }
   where_ = "after the last pass";
-  batches(submission.first_batch, submission.batch_count, submission.queue);
+  batches(submission.first_batch, submission.batch_count, index);
   for_each_piece([&](Piece& piece) { signal(piece, queue, signals_ + index); });
 }
 
-void Replay::batches(std::uint32_t first, std::uint32_t count, QueueClass queue) {
-  for (std::uint32_t b = first; b < first + count; ++b) batch(plan_.batches[b], queue);
+void Replay::batches(std::uint32_t first, std::uint32_t count, std::uint32_t submission) {
+  for (std::uint32_t b = first; b < first + count; ++b) {
+    if (plan_.batches[b].event != kNone) wait_for_event(plan_.batches[b], submission);
+    batch(plan_.batches[b], plan_.submissions[submission].queue);
+  }
+}
+
+void Replay::set_events(const PlannedPass& planned, std::uint32_t submission) {
+  for (std::uint32_t event = planned.first_set; event < planned.first_set + planned.set_count;
+       ++event) {
+    set_in_[event] = submission;
+    const Batch& batch = plan_.batches[plan_.sets[event]];
+    for (std::uint32_t i = batch.first; i < batch.first + batch.count; ++i) {
+      const Scopes scopes = scopes_of(plan_.transitions[i], planned.queue);
+      for_each_piece([&](Piece& piece) { capture(piece, scopes, i); });
+    }
+  }
+}
+
+void Replay::wait_for_event(const Batch& batch, std::uint32_t submission) {
+  if (set_in_[batch.event] == kNone)
+    fail("an event is waited for that nothing has set: it would hang");
+  else if (set_in_[batch.event] != submission)
+    fail("an event is waited for in another submission than it was set in");
+}
+
+Reach Replay::reach_of(const Piece& piece, const Batch& batch, std::uint32_t transition,
+                       const Scopes& scopes, bool memory) const {
+  return batch.event == kNone ? reach(piece, scopes, memory) : captured(piece, transition, memory);
 }
 
 // The transitions of a batch do not see each other: all are checked, then all apply.
@@ -120,7 +149,10 @@ void Replay::batch(const Batch& batch, QueueClass queue) {
     const Transition& t = plan_.transitions[i];
     if (t.resource == kNone) continue;
     const Scopes scopes = scopes_of(t, queue);
-    for_each_sub(t.resource, t.range, [&](Sub& sub) { change_sub(t, scopes, sub); });
+    for_each_sub(t.resource, t.range, [&](Sub& sub) {
+      check_order_of_change(batch, i, scopes, sub);
+      check_state_of_change(t, scopes, sub);
+    });
   }
   for (std::uint32_t r = 0; r < resources_.size(); ++r) {
     for (Sub& sub : resources_[r].subs) {
@@ -145,8 +177,9 @@ void Replay::apply_batch(const Batch& batch, QueueClass queue, std::uint32_t res
       const auto& others = resources_[t.resource].overlapping;
       memory = std::find(others.begin(), others.end(), resource) != others.end();
     }
+    const Scopes scopes = scopes_of(t, queue);
     Piece by_this = piece;
-    apply(by_this, scopes_of(t, queue), memory);
+    apply(by_this, scopes, reach_of(piece, batch, i, scopes, memory), memory);
     for (std::size_t q = 0; q < kQueueClasses; ++q) {
       after.after[q] |= by_this.after[q];
       after.available[q] |= by_this.available[q];
@@ -158,34 +191,46 @@ void Replay::apply_batch(const Batch& batch, QueueClass queue, std::uint32_t res
 }
 
 // Whether everything that was done to the subresource and its bytes comes before the change.
-void Replay::change_sub(const Transition& t, const Scopes& scopes, Sub& sub) {
+void Replay::check_order_of_change(const Batch& batch, std::uint32_t transition,
+                                   const Scopes& scopes, const Sub& sub) {
+  const std::uint32_t resource = plan_.transitions[transition].resource;
+  const auto reached = [&](const Piece& piece) {
+    return reach_of(piece, batch, transition, scopes, true);
+  };
+  const auto is_done = [&](const Piece& piece) {
+    const Reach r = reached(piece);
+    return r.before && r.available;
+  };
+  for (const Piece& piece : sub.reads) {
+    if (!reached(piece).before) fail("a layout change of " + name(resource) + " overtakes a read");
+  }
+  for (const Piece& piece : sub.writes) {
+    if (!is_done(piece))
+      fail("a layout change of " + name(resource) +
+           " overtakes a write, or does not make it available");
+  }
+  for (std::uint32_t other : resources_[resource].overlapping) {
+    for (const Sub& theirs : resources_[other].subs) {
+      for (const Piece& piece : theirs.reads) {
+        if (!reached(piece).before)
+          fail(name(resource) + " takes the memory of " + name(other) + " before its last read");
+      }
+      for (const Piece& piece : theirs.writes) {
+        if (!is_done(piece))
+          fail(name(resource) + " takes the memory of " + name(other) +
+               " before its last write is done");
+      }
+    }
+  }
+}
+
+// Whether the subresource is in the layout and with the owner that the change expects.
+void Replay::check_state_of_change(const Transition& t, const Scopes& scopes, const Sub& sub) {
   const auto queue = scopes.queue;
   const bool transfer = family(static_cast<std::uint8_t>(t.src_queue)) !=
                         family(static_cast<std::uint8_t>(t.dst_queue));
   const bool acquires = transfer && queue == static_cast<std::uint8_t>(t.dst_queue);
   const bool texture = graph_.resources[t.resource].kind == ResourceKind::texture;
-  for (const Piece& piece : sub.reads) {
-    if (!comes_before(piece, scopes))
-      fail("a layout change of " + name(t.resource) + " overtakes a read");
-  }
-  for (const Piece& piece : sub.writes) {
-    if (!comes_before(piece, scopes) || !is_made_available(piece, scopes, true))
-      fail("a layout change of " + name(t.resource) +
-           " overtakes a write, or does not make it available");
-  }
-  for (std::uint32_t other : resources_[t.resource].overlapping) {
-    for (const Sub& theirs : resources_[other].subs) {
-      for (const Piece& piece : theirs.reads) {
-        if (!comes_before(piece, scopes))
-          fail(name(t.resource) + " takes the memory of " + name(other) + " before its last read");
-      }
-      for (const Piece& piece : theirs.writes) {
-        if (!comes_before(piece, scopes) || !is_made_available(piece, scopes, true))
-          fail(name(t.resource) + " takes the memory of " + name(other) +
-               " before its last write is done");
-      }
-    }
-  }
   if (texture && t.old_layout != VK_IMAGE_LAYOUT_UNDEFINED && t.old_layout != sub.layout)
     fail("a change of " + name(t.resource) + " expects layout " + std::to_string(t.old_layout) +
          ", but it is in " + std::to_string(sub.layout));

@@ -42,11 +42,17 @@ class Replay {
   void find_expected();
   void begin_frame(bool first);
   void submission(std::uint32_t index);
-  void batches(std::uint32_t first, std::uint32_t count, QueueClass queue);
+  void batches(std::uint32_t first, std::uint32_t count, std::uint32_t submission);
   void batch(const Batch& batch, QueueClass queue);
+  void set_events(const PlannedPass& planned, std::uint32_t submission);
+  void wait_for_event(const Batch& batch, std::uint32_t submission);
+  Reach reach_of(const Piece& piece, const Batch& batch, std::uint32_t transition,
+                 const Scopes& scopes, bool memory) const;
   void apply_batch(const Batch& batch, QueueClass queue, std::uint32_t resource, Piece& piece);
   void change(const Transition& transition, QueueClass queue);
-  void change_sub(const Transition& transition, const Scopes& scopes, Sub& sub);
+  void check_order_of_change(const Batch& batch, std::uint32_t transition, const Scopes& scopes,
+                             const Sub& sub);
+  void check_state_of_change(const Transition& transition, const Scopes& scopes, const Sub& sub);
   void pass(std::uint32_t position);
   void check_access(std::uint32_t position, std::uint32_t access_index);
   void check_read(const AccessRecord& access, std::uint32_t expected, const Sub& sub,
@@ -77,6 +83,7 @@ class Replay {
   std::vector<std::vector<std::uint32_t>> expected_;
   std::vector<std::vector<std::uint32_t>> last_;  // by resource: what must be there in the end
   std::uint32_t signals_ = 0;                     // submissions of earlier frames
+  std::vector<std::uint32_t> set_in_;             // by event: the submission that set it
   std::string where_;
 };
 

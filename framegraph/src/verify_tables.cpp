@@ -98,6 +98,7 @@ class Tables {
     };
     for (const PlannedPass& planned : plan_.passes) check(planned.first_batch, planned.batch_count);
     for (const Submission& s : plan_.submissions) check(s.first_batch, s.batch_count);
+    if (errors_.empty()) check_events();
     for (const Transition& t : plan_.transitions) {
       if (t.resource == kNone) continue;
       if (t.resource >= graph_.resources.size()) {
@@ -109,6 +110,38 @@ class Tables {
           (t.range.mips == 0 || t.range.layers == 0 || t.range.base_mip + t.range.mips > r.mips ||
            t.range.base_layer + t.range.layers > r.layers))
         fail("a transition of " + name(t.resource) + " is out of its mips or layers");
+    }
+  }
+
+  // Each event belongs to one batch, and is set once at most.
+  void check_events() {
+    for (std::uint32_t b = 0; b < plan_.batches.size(); ++b) {
+      const std::uint32_t event = plan_.batches[b].event;
+      if (event != kNone && (event >= plan_.sets.size() || plan_.sets[event] != b))
+        fail("a batch waits for an event of another");
+    }
+    std::vector<std::uint32_t> set(plan_.sets.size(), 0);
+    for (const PlannedPass& planned : plan_.passes) {
+      if (planned.set_count > set.size() || planned.first_set > set.size() - planned.set_count) {
+        fail("events are out of range");
+        return;
+      }
+      for (std::uint32_t e = planned.first_set; e < planned.first_set + planned.set_count; ++e) {
+        if (set[e]++) fail("an event is set twice");
+        if (plan_.sets[e] >= plan_.batches.size() || plan_.batches[plan_.sets[e]].event != e)
+          fail("an event is set that no batch waits for");
+        else if (plan_.batches[plan_.sets[e]].count != 0)
+          check_event_scopes(plan_.batches[plan_.sets[e]]);
+      }
+    }
+  }
+
+  void check_event_scopes(const Batch& batch) {
+    for (std::uint32_t i = batch.first; i < batch.first + batch.count; ++i) {
+      const Transition& t = plan_.transitions[i];
+      if (((t.src_stages | t.dst_stages) & VK_PIPELINE_STAGE_2_HOST_BIT) != 0)
+        fail("an event is to order the host");
+      if (t.src_queue != t.dst_queue) fail("an event is to change an owner");
     }
   }
 

@@ -120,9 +120,10 @@ struct Workspace {
     std::vector<std::uint8_t> kept;
   } place;
   struct Synchronise {
-    std::vector<UseState> states;     // by subresource
-    std::vector<UseState> last_uses;  // by subresource, at the end of a frame
-    std::vector<MemoryMap> memory;    // by heap
+    std::vector<UseState> states;      // by subresource
+    std::vector<UseState> last_uses;   // by subresource, at the end of a frame
+    std::vector<MemoryMap> memory;     // by heap
+    std::vector<std::int32_t> latest;  // by batch: the last time that it waits for
     struct Release {
       std::uint32_t submission = 0;
       std::uint32_t number = 0;  // in order of need

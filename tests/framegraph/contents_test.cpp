@@ -309,5 +309,9 @@ TEST(Contents, OfRandomFramesThatThreeThreadsRecordForSeveralQueuesAreRight) {
   expect_contents(true, Path::submit_to_three, 3000, 3);
 }
 
+TEST(Contents, OfRandomFramesWithSplitBarriersAreRight) {
+  expect_contents(true, Path::record, 4000, 1, true);
+}
+
 }  // namespace
 }  // namespace alcove::framegraph

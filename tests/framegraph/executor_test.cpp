@@ -129,6 +129,7 @@ class FailingDeviceTest : public ExecutorTest {
 void FailingDeviceTest::expect_out_of_memory_anywhere_is_an_error(std::uint32_t threads) {
   ExecutorOptions options;
   options.recording_threads = threads;
+  options.split_barriers = true;
   int failed = 0;
   int last = 0;
   for (const bool submits : {false, true}) {

@@ -43,6 +43,7 @@ using Buffer = Wrapped<&vkCreateBuffer, &vkDestroyBuffer>;
 using View = Wrapped<&vkCreateImageView, &vkDestroyImageView>;
 using Queries = Wrapped<&vkCreateQueryPool, &vkDestroyQueryPool>;
 using Pool = Wrapped<&vkCreateCommandPool, &vkDestroyCommandPool>;
+using Event = Wrapped<&vkCreateEvent, &vkDestroyEvent>;
 using Semaphore = Wrapped<&vkCreateSemaphore, &vkDestroySemaphore>;
 
 VKAPI_ATTR VkResult VKAPI_CALL submit(VkQueue queue, std::uint32_t count, const VkSubmitInfo2* info,
@@ -78,6 +79,7 @@ PFN_vkVoidFunction VKAPI_CALL get_device_proc_addr(VkDevice device, const char* 
       ALCOVE_WRAP(View, "vkCreateImageView", "vkDestroyImageView"),
       ALCOVE_WRAP(Queries, "vkCreateQueryPool", "vkDestroyQueryPool"),
       ALCOVE_WRAP(Pool, "vkCreateCommandPool", "vkDestroyCommandPool"),
+      ALCOVE_WRAP(Event, "vkCreateEvent", "vkDestroyEvent"),
       ALCOVE_WRAP(Semaphore, "vkCreateSemaphore", "vkDestroySemaphore"),
       {"vkQueueSubmit2", reinterpret_cast<PFN_vkVoidFunction>(&submit)},
       {"vkWaitSemaphores", reinterpret_cast<PFN_vkVoidFunction>(&wait_semaphores)},

@@ -64,5 +64,11 @@ RC_GTEST_PROP(Fuzz, EveryPlanWithCoarseGranularityIsVerified, (std::uint64_t see
   expect_verified(seed, {}, limits);
 }
 
+RC_GTEST_PROP(Fuzz, EveryPlanWithSplitBarriersIsVerified, (std::uint64_t seed)) {
+  Limits limits = with_families(0, 1, kNone);
+  limits.split_barriers = true;
+  expect_verified(seed, seed % 2 ? on_all_queues() : RandomOptions{}, limits);
+}
+
 }  // namespace
 }  // namespace alcove::framegraph

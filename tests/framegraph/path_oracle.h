@@ -1,7 +1,7 @@
-// A second opinion on the ordering in a plan of one queue: for every pair of conflicting operations
-// of two frames it searches for a path of barriers from the one to the other. Slow and simple; it
-// shares nothing with the verifier, which carries knowledge forward instead. Layouts, contents and
-// lifetimes are not its business.
+// A second opinion on the ordering in a plan: for every pair of conflicting operations of two
+// frames it searches for a path of barriers, events and semaphores from the one to the other. Slow
+// and simple; it shares nothing with the verifier, which carries knowledge forward instead.
+// Layouts, contents, owners and lifetimes are not its business.
 #pragma once
 
 #include <string>

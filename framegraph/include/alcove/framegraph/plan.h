@@ -47,9 +47,9 @@ struct Transition {
 struct Batch {
   std::uint32_t first = 0;  // into Plan::transitions
   std::uint32_t count = 0;
-  // 0 or 1: an event is set after an earlier pass of the submission and waited for here, so that
-  // the passes between run meanwhile. Its sources are what came before the set.
-  std::uint32_t split = 0;
+  // Index into Plan::sets of a split barrier: its event is set after an earlier pass of the
+  // submission and waited for here. It orders what came before the set; the passes between run on.
+  std::uint32_t event = kNone;
 };
 
 // A pass in execution order. Positions index Plan::passes; within a submission they run in order.
@@ -59,7 +59,7 @@ struct PlannedPass {
   std::uint32_t submission = 0;   // into Plan::submissions
   std::uint32_t first_batch = 0;  // batches that come before it
   std::uint32_t batch_count = 0;
-  std::uint32_t first_set = 0;  // into Plan::sets: batches whose events are set after it
+  std::uint32_t first_set = 0;  // into Plan::sets: events that are set after it
   std::uint32_t set_count = 0;
 };
 
@@ -112,7 +112,7 @@ struct Plan {
   std::vector<PlannedPass> passes;
   std::vector<Batch> batches;
   std::vector<Transition> transitions;
-  std::vector<std::uint32_t> sets;  // split batches, by the pass after which they are set
+  std::vector<std::uint32_t> sets;  // by event: its batch
   std::vector<Submission> submissions;
   std::vector<Wait> waits;
   std::vector<Placement> placements;  // by resource

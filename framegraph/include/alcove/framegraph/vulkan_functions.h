@@ -109,6 +109,7 @@ namespace alcove::framegraph {
   X(vkResetCommandBuffer)                     \
   X(vkResetCommandPool)                       \
   X(vkResetDescriptorPool)                    \
+  X(vkResetEvent)                             \
   X(vkResetFences)                            \
   X(vkUnmapMemory)                            \
   X(vkUpdateDescriptorSets)                   \
