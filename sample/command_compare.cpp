@@ -7,6 +7,7 @@
 #include "image_io.h"
 #include "light_errors.h"
 #include "light_truths.h"
+#include "lit_errors.h"
 #include "report.h"
 #include "truths.h"
 
@@ -111,16 +112,26 @@ tl::expected<void, std::string> run_compare(const Options& options) {
   report["spp"] = options.occlusion.spp;
   report["errors"] = errors_json(errors);
   report["errors"].update(to_json(light_errors));
+  std::string lit_table;
+  if (light->lit) {
+    const LitErrors lit_errors = lit_errors_of(*rendering, *light);
+    report["errors"].update(to_json(lit_errors));
+    lit_table = lit_error_table(lit_errors);
+  }
   return write_images(*rendering, options.out)
       .and_then([&] { return write_truths(*rendering, *truths, options.out); })
+      .and_then([&] {
+        return light->lit ? write_lit_steps(*rendering, *light, options.out)
+                          : tl::expected<void, std::string>();
+      })
       .and_then([&] { return write_text(options.out / "report.json", report.dump(2) + "\n"); })
       .map([&] {
         for (const std::string& warning : rendering->scene.warnings) {
           std::cout << "note: " << warning << "\n";
         }
         std::cout << time_table(*rendering) << error_table(errors)
-                  << light_error_table(light_errors) << "Images and report.json are in "
-                  << options.out.string() << "\n";
+                  << light_error_table(light_errors) << lit_table
+                  << "Images and report.json are in " << options.out.string() << "\n";
       });
 }
 

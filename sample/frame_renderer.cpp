@@ -5,9 +5,12 @@
 #include <cmath>
 #include <cstring>
 #include <ctime>
+#include <functional>
 #include <utility>
 
 #include "alcove/framegraph/access.h"
+#include "alcove/passes/apply.h"
+#include "alcove/passes/environment.h"
 #include "alcove/passes/multi_bounce.h"
 #include "gpu_image.h"
 
@@ -58,6 +61,10 @@ glm::vec3 from_half(const Half4& texel) {
   return {half_to_float(texel[0]), half_to_float(texel[1]), half_to_float(texel[2])};
 }
 
+glm::vec3 from_bytes(const Byte4& texel) {
+  return glm::vec3(texel[0], texel[1], texel[2]) / 255.0f;
+}
+
 std::uint32_t texel_bytes(VkFormat format) {
   switch (format) {
     case VK_FORMAT_R8_UNORM:
@@ -104,8 +111,7 @@ Image<glm::vec3> read_vectors(const HostBuffer& buffer, VkExtent2D size,
 Image<glm::vec3> read_colours(const HostBuffer& buffer, VkExtent2D size,
                               passes::Precision precision) {
   if (precision == passes::Precision::unorm8) {
-    return to_image<glm::vec3, Byte4>(
-        buffer, size, [](const Byte4& t) { return glm::vec3(t[0], t[1], t[2]) / 255.0f; });
+    return to_image<glm::vec3, Byte4>(buffer, size, from_bytes);
   }
   return read_vectors(buffer, size, precision);
 }
@@ -117,21 +123,88 @@ struct Declared {
   Texture depth;
   Texture normal;
   Texture albedo;
+  Texture emissive;
   passes::OcclusionOutputs outputs;
   Texture multi_bounce;
   std::vector<Texture> specular_occlusion;
+  passes::AppliedLight lit;
+  Texture unoccluded;
+  Texture unbent;
+  Texture occluded;
+  Texture bounced;
 };
 
-// What is read back of a frame, in the order that FrameRenderer::State::convert takes it.
-std::vector<Texture> wanted_of(const Declared& declared) {
-  const passes::OcclusionOutputs& outputs = declared.outputs;
-  std::vector<Texture> wanted{declared.depth, outputs.normals, declared.albedo, outputs.visibility};
-  if (outputs.bent_normal) {
-    wanted.push_back(outputs.bent_normal);
-    wanted.push_back(declared.multi_bounce);
-    wanted.insert(wanted.end(), declared.specular_occlusion.begin(),
-                  declared.specular_occlusion.end());
+// A texture that is read back and where its texels go.
+struct Wanted {
+  Texture texture;
+  std::function<void(const HostBuffer&, FrameImages&)> store;
+};
+
+// What a frame has of its light.
+void append_lit(const Declared& declared, VkExtent2D size, std::vector<Wanted>& wanted) {
+  const auto colours = [&](Texture texture, Image<glm::vec3> LitImages::*image) {
+    if (texture) {
+      wanted.push_back({texture, [=](const HostBuffer& buffer, FrameImages& images) {
+                          images.lit.*image = to_image<glm::vec3, Half4>(buffer, size, from_half);
+                        }});
+    }
+  };
+  colours(declared.lit.lit, &LitImages::all);
+  colours(declared.lit.diffuse, &LitImages::diffuse);
+  colours(declared.lit.specular, &LitImages::specular);
+  colours(declared.unoccluded, &LitImages::unoccluded);
+  colours(declared.unbent, &LitImages::unbent);
+  colours(declared.occluded, &LitImages::occluded);
+  colours(declared.bounced, &LitImages::bounced);
+}
+
+void append_surfaces(const Declared& declared, VkExtent2D size, std::vector<Wanted>& wanted) {
+  wanted.push_back({declared.depth, [size](const HostBuffer& buffer, FrameImages& images) {
+                      images.depth_ndc =
+                          to_image<float, float>(buffer, size, [](float x) { return x; });
+                    }});
+  wanted.push_back(
+      {declared.outputs.normals, [size](const HostBuffer& buffer, FrameImages& images) {
+         images.normal_ws = to_image<glm::vec3, Half4>(buffer, size, from_half);
+       }});
+  wanted.push_back({declared.albedo, [size](const HostBuffer& buffer, FrameImages& images) {
+                      images.albedo = to_image<glm::vec3, Byte4>(buffer, size, from_bytes);
+                      images.roughness = to_image<float, Byte4>(
+                          buffer, size, [](const Byte4& t) { return float(t[3]) / 255.0f; });
+                    }});
+  wanted.push_back({declared.emissive, [size](const HostBuffer& buffer, FrameImages& images) {
+                      images.metallic = to_image<float, Half4>(
+                          buffer, size, [](const Half4& t) { return half_to_float(t[3]); });
+                    }});
+}
+
+// Everything that is read back of a frame.
+std::vector<Wanted> wanted_of(const Declared& declared, VkExtent2D size,
+                              passes::Precision precision) {
+  std::vector<Wanted> wanted;
+  append_surfaces(declared, size, wanted);
+  wanted.push_back(
+      {declared.outputs.visibility, [=](const HostBuffer& buffer, FrameImages& images) {
+         images.visibility = read_visibility(buffer, size, precision);
+       }});
+  if (declared.outputs.bent_normal) {
+    wanted.push_back(
+        {declared.outputs.bent_normal, [=](const HostBuffer& buffer, FrameImages& images) {
+           images.bent_normal_ws = read_vectors(buffer, size, precision);
+         }});
   }
+  if (declared.multi_bounce) {
+    wanted.push_back({declared.multi_bounce, [=](const HostBuffer& buffer, FrameImages& images) {
+                        images.multi_bounce = read_colours(buffer, size, precision);
+                      }});
+  }
+  for (const Texture texture : declared.specular_occlusion) {
+    wanted.push_back({texture, [=](const HostBuffer& buffer, FrameImages& images) {
+                        images.specular_occlusion.push_back(
+                            read_visibility(buffer, size, precision));
+                      }});
+  }
+  append_lit(declared, size, wanted);
   return wanted;
 }
 
@@ -145,8 +218,11 @@ struct FrameRenderer::State {
   tl::expected<Declared, std::string> declare_occlusion(Graph& graph, const FrameRequest& request);
   tl::expected<void, std::string> declare_light(Graph& graph, const FrameRequest& request,
                                                 Declared& declared);
-  FrameImages convert(const FrameRequest& request,
-                      const std::vector<std::unique_ptr<HostBuffer>>& buffers) const;
+  tl::expected<passes::Environment, std::string> declare_environment(Graph& graph,
+                                                                     const FrameRequest& request);
+  tl::expected<void, std::string> declare_lit(Graph& graph, const FrameRequest& request,
+                                              Declared& declared);
+  void turn_to_world(const FrameRequest& request, FrameImages& images) const;
   void append_times(FrameCost& cost, bool occlusion);
 
   Gpu& gpu;
@@ -154,6 +230,7 @@ struct FrameRenderer::State {
   NormalSource normals;
   std::unique_ptr<GbufferRenderer> gbuffer;
   std::array<std::unique_ptr<GpuImage>, kTargetCount> targets;
+  std::unique_ptr<HostBuffer> environment;  // uploaded in the frame that is lit
   framegraph::MemoryStatistics memory;
 };
 
@@ -211,7 +288,10 @@ tl::expected<Declared, std::string> FrameRenderer::State::declare_occlusion(
   const auto import = [&](Target target) {
     return graph.import_texture("g-buffer", targets[target]->import_to_read(kSampledState));
   };
-  Declared declared{import(kDepth), import(kNormal), import(kAlbedo), {}, {}, {}};
+  Declared declared{.depth = import(kDepth),
+                    .normal = import(kNormal),
+                    .albedo = import(kAlbedo),
+                    .emissive = import(kEmissive)};
   const passes::Frame frame = frame_of(graph, request);
   passes::OcclusionInputs inputs{.depth_ndc = declared.depth};
   if (normals != NormalSource::kDepth) {
@@ -233,7 +313,7 @@ tl::expected<void, std::string> FrameRenderer::State::declare_light(Graph& graph
                                                                     const FrameRequest& request,
                                                                     Declared& declared) {
   const passes::OcclusionOutputs& outputs = declared.outputs;
-  if (!outputs.bent_normal) {
+  if (!outputs.bent_normal || request.light == nullptr) {
     return {};
   }
   const passes::Frame frame = frame_of(graph, request);
@@ -249,8 +329,8 @@ tl::expected<void, std::string> FrameRenderer::State::declare_light(Graph& graph
                             .normals = outputs.normals,
                             .depth = outputs.linear_depth,
                             .normals_in_view_space = normals == NormalSource::kDepth};
-  passes::GtsoSettings settings{.model = request.light.specular_model, .precision = precision};
-  std::vector<float> roughness = request.light.roughness;
+  passes::GtsoSettings settings{.model = request.light->specular_model, .precision = precision};
+  std::vector<float> roughness = request.light->roughness;
   if (roughness.empty()) {
     inputs.roughness = declared.albedo;
     settings.roughness_channel = 3;
@@ -264,27 +344,87 @@ tl::expected<void, std::string> FrameRenderer::State::declare_light(Graph& graph
     }
     declared.specular_occlusion.push_back(*occluded);
   }
+  return request.light->environment.empty() ? tl::expected<void, std::string>()
+                                            : declare_lit(graph, request, declared);
+}
+
+tl::expected<passes::Environment, std::string> FrameRenderer::State::declare_environment(
+    Graph& graph, const FrameRequest& request) {
+  const EnvironmentImage& image = request.light->environment;
+  auto buffer = HostBuffer::create(gpu.device(), image.pixels.size() * sizeof(glm::vec4),
+                                   VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+  if (!buffer) {
+    return Failure(std::move(buffer.error()));
+  }
+  environment = std::move(*buffer);
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    const glm::vec4 texel(image.pixels[i], 1.0f);
+    std::memcpy(environment->bytes().data() + i * sizeof(texel), &texel, sizeof(texel));
+  }
+  const Texture source = graph.create_texture(
+      "equirectangular",
+      {VK_FORMAT_R32G32B32A32_SFLOAT, framegraph::Extent::absolute(image.width, image.height)});
+  auto made =
+      passes::add_environment(frame_of(graph, request), add_copy(graph, *environment, source));
+  if (!made) {
+    return Failure(std::move(made.error().message));
+  }
+  return *made;
+}
+
+// Lights the surfaces with the environment; emission is not shown, the truth knows of none.
+tl::expected<void, std::string> FrameRenderer::State::declare_lit(Graph& graph,
+                                                                  const FrameRequest& request,
+                                                                  Declared& declared) {
+  const auto probe = declare_environment(graph, request);
+  if (!probe) {
+    return Failure(probe.error());
+  }
+  const passes::OcclusionOutputs& outputs = declared.outputs;
+  const std::vector<float>& given = request.light->roughness;
+  std::string error;
+  const auto light = [&](passes::ApplyInputs inputs, bool multi_bounce, bool parts) {
+    inputs.depth = outputs.linear_depth;
+    inputs.normals = outputs.normals;
+    inputs.albedo = declared.albedo;
+    if (given.empty()) {
+      inputs.roughness = declared.albedo;
+    }
+    inputs.metallic = declared.emissive;
+    inputs.harmonics = probe->harmonics;
+    inputs.map = probe->map;
+    inputs.normals_in_view_space = normals == NormalSource::kDepth;
+    auto lit = passes::add_apply(frame_of(graph, request), inputs,
+                                 {.multi_bounce = multi_bounce,
+                                  .roughness = given.empty() ? 0.0f : given.front(),
+                                  .roughness_channel = 3,
+                                  .metallic_channel = 3,
+                                  .parts = parts});
+    if (!lit) {
+      error = std::move(lit.error().message);
+    }
+    return lit.value_or(passes::AppliedLight{});
+  };
+  declared.lit = light({.visibility = outputs.visibility,
+                        .bent_normal = outputs.bent_normal,
+                        .specular_occlusion = declared.specular_occlusion.front()},
+                       true, true);
+  if (request.light->lit_steps) {
+    const passes::ApplyInputs bent{.visibility = outputs.visibility,
+                                   .bent_normal = outputs.bent_normal};
+    declared.unoccluded = light({}, false, false).lit;
+    declared.unbent = light({.visibility = outputs.visibility}, false, false).lit;
+    declared.occluded = light(bent, false, false).lit;
+    declared.bounced = light(bent, true, false).lit;
+  }
+  if (!error.empty()) {
+    return Failure(std::move(error));
+  }
   return {};
 }
 
-FrameImages FrameRenderer::State::convert(
-    const FrameRequest& request, const std::vector<std::unique_ptr<HostBuffer>>& buffers) const {
-  FrameImages images;
-  images.depth_ndc = to_image<float, float>(*buffers[0], size, [](float x) { return x; });
-  images.normal_ws = to_image<glm::vec3, Half4>(*buffers[1], size, from_half);
-  images.albedo = to_image<glm::vec3, Byte4>(
-      *buffers[2], size, [](const Byte4& t) { return glm::vec3(t[0], t[1], t[2]) / 255.0f; });
-  images.roughness = to_image<float, Byte4>(*buffers[2], size,
-                                            [](const Byte4& t) { return float(t[3]) / 255.0f; });
-  const passes::Precision precision = request.occlusion.precision;
-  images.visibility = read_visibility(*buffers[3], size, precision);
-  if (buffers.size() > 4) {
-    images.bent_normal_ws = read_vectors(*buffers[4], size, precision);
-    images.multi_bounce = read_colours(*buffers[5], size, precision);
-    for (std::size_t i = 6; i < buffers.size(); ++i) {
-      images.specular_occlusion.push_back(read_visibility(*buffers[i], size, precision));
-    }
-  }
+// Directions of normals that were made from depth are in view space.
+void FrameRenderer::State::turn_to_world(const FrameRequest& request, FrameImages& images) const {
   if (normals == NormalSource::kDepth) {
     const glm::mat3 world_from_view = glm::transpose(glm::mat3(request.view.view_from_world));
     for (glm::vec3& normal : images.normal_ws.pixels) {
@@ -294,7 +434,6 @@ FrameImages FrameRenderer::State::convert(
       bent = world_from_view * bent;
     }
   }
-  return images;
 }
 
 passes::Matrix to_matrix(const glm::mat4& matrix) {
@@ -349,6 +488,7 @@ tl::expected<FrameImages, std::string> FrameRenderer::draw_and_read(const FrameR
     return Failure(std::move(drawn.error()));
   }
   // Filled while the frame is declared: what is read back, and into which buffer.
+  std::vector<Wanted> wanted;
   std::vector<std::unique_ptr<HostBuffer>> buffers;
   auto report = state_->gpu.run([&](Graph& graph) -> tl::expected<void, std::string> {
     auto declared = state_->declare_occlusion(graph, request);
@@ -358,15 +498,16 @@ tl::expected<FrameImages, std::string> FrameRenderer::draw_and_read(const FrameR
     if (auto lit = state_->declare_light(graph, request, *declared); !lit) {
       return lit;
     }
-    for (const Texture texture : wanted_of(*declared)) {
+    wanted = wanted_of(*declared, state_->size, request.occlusion.precision);
+    for (const Wanted& one : wanted) {
       auto buffer = HostBuffer::create(state_->gpu.device(),
                                        VkDeviceSize{state_->size.width} * state_->size.height *
-                                           texel_bytes(graph.format(texture)),
+                                           texel_bytes(graph.format(one.texture)),
                                        VK_BUFFER_USAGE_TRANSFER_DST_BIT);
       if (!buffer) {
         return Failure(std::move(buffer.error()));
       }
-      add_read_back(graph, texture, **buffer);
+      add_read_back(graph, one.texture, **buffer);
       buffers.push_back(std::move(*buffer));
     }
     return {};
@@ -374,7 +515,12 @@ tl::expected<FrameImages, std::string> FrameRenderer::draw_and_read(const FrameR
   if (!report) {
     return Failure(std::move(report.error()));
   }
-  return state_->convert(request, buffers);
+  FrameImages images;
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    wanted[i].store(*buffers[i], images);
+  }
+  state_->turn_to_world(request, images);
+  return images;
 }
 
 const framegraph::MemoryStatistics& FrameRenderer::memory() const { return state_->memory; }

@@ -10,6 +10,7 @@
 #include "alcove/framegraph/executor.h"
 #include "alcove/passes/gtso.h"
 #include "alcove/passes/occlusion.h"
+#include "environment.h"
 #include "gbuffer.h"
 #include "gpu.h"
 #include "image.h"
@@ -21,6 +22,8 @@ namespace alcove::sample {
 struct LightRequest {
   passes::SpecularModel specular_model = passes::SpecularModel::cone;
   std::vector<float> roughness;  // perceptual, an image each; empty: one, of the materials' own
+  EnvironmentImage environment;  // that lights the scene; empty: it is not lit
+  bool lit_steps = false;        // also light it with less and less of the occlusion
 };
 
 // What one frame is drawn with.
@@ -28,7 +31,7 @@ struct FrameRequest {
   GbufferView view;
   std::uint32_t index = 0;  // counts frames
   passes::OcclusionSettings occlusion;
-  LightRequest light;
+  const LightRequest* light = nullptr;  // null: none
 };
 
 struct PassTime {
@@ -43,16 +46,29 @@ struct FrameCost {
   double cpu_ms = 0;          // processor time of all threads for the occlusion passes
 };
 
+// Radiance towards the eye under the environment, zero in the sky.
+struct LitImages {
+  Image<glm::vec3> all;  // with all that is known of occlusion
+  Image<glm::vec3> diffuse;
+  Image<glm::vec3> specular;
+  Image<glm::vec3> unoccluded;  // this and the rest by LightRequest::lit_steps
+  Image<glm::vec3> unbent;      // diffuse light times visibility
+  Image<glm::vec3> occluded;    // the same, from along the bent normal
+  Image<glm::vec3> bounced;     // that times multi-bounce instead
+};
+
 // The images of a frame, read back.
 struct FrameImages {
   Image<float> depth_ndc;      // as the projection wrote it
   Image<glm::vec3> normal_ws;  // what the occlusion was given, or made from depth
   Image<glm::vec3> albedo;     // linear
   Image<float> roughness;      // perceptual
+  Image<float> metallic;
   Image<float> visibility;
   Image<glm::vec3> bent_normal_ws;  // empty without bent normals, as are the next two
   Image<glm::vec3> multi_bounce;
   std::vector<Image<float>> specular_occlusion;  // by LightRequest::roughness
+  LitImages lit;                                 // empty without an environment
 };
 
 // Draws frames of one scene at one size: a g-buffer, then occlusion on it, each a submission of its

@@ -1,6 +1,7 @@
 #include "light_truths.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 #include <utility>
@@ -16,11 +17,13 @@ namespace {
 constexpr std::uint32_t kLightTruthVersion = 1;
 constexpr double kWantedPoints = 32'000;
 
-// One pixel of each block, where it is no sky. The same for every picture of one size.
-Mask choose_pixels(const Image<float>& depth) {
+std::uint32_t block_size(const Image<float>& depth) {
   const double pixels = static_cast<double>(depth.pixels.size());
-  const auto side =
-      static_cast<std::uint32_t>(std::max(1.0, std::round(std::sqrt(pixels / kWantedPoints))));
+  return static_cast<std::uint32_t>(std::max(1.0, std::round(std::sqrt(pixels / kWantedPoints))));
+}
+
+// One pixel of each block, where it is no sky. The same for every picture of one size.
+Mask choose_pixels(const Image<float>& depth, std::uint32_t side) {
   Mask chosen(depth.width, depth.height);
   std::minstd_rand random;
   for (std::uint32_t y = 0; y < depth.height; y += side) {
@@ -79,6 +82,40 @@ class Tracer {
     return truth;
   }
 
+  LitTruth lit(const Image<float>& roughness) const {
+    const SurfaceMaterials materials{rendering_.images.albedo, roughness,
+                                     rendering_.images.metallic};
+    CacheKey key = key_;
+    key.add(std::string("lit"));
+    key.add(materials.albedo);
+    key.add(materials.roughness);
+    key.add(materials.metallic);
+    key.add(rendering_.light.environment);
+    const std::uint32_t width = points_.normal_ws.width;
+    const std::uint32_t height = points_.normal_ws.height;
+    LitTruth truth{{width, height}, {width, height}, {width, height}, {width, height}};
+    const std::array<std::pair<const char*, Image<glm::vec3>*>, 4> parts{
+        {{"diffuse", &truth.diffuse},
+         {"specular", &truth.specular},
+         {"diffuse noise", &truth.diffuse_noise},
+         {"specular noise", &truth.specular_noise}}};
+    const auto key_of = [&](const char* part) {
+      CacheKey own = key;
+      own.add(std::string(part));
+      return own;
+    };
+    if (!std::ranges::all_of(parts, [&](const auto& part) {
+          return cache_.read(key_of(part.first), *part.second);
+        })) {
+      truth = lit_truth(rays_, points_, materials, viewer_of(rendering_.camera),
+                        rendering_.light.environment, settings_, print_progress("lit truth"));
+      for (const auto& [name, image] : parts) {
+        cache_.write(key_of(name), *image);
+      }
+    }
+    return truth;
+  }
+
  private:
   const Rendering& rendering_;
   const RayScene& rays_;
@@ -110,7 +147,8 @@ tl::expected<LightTruths, std::string> light_truths_of(const Rendering& renderin
   }
   const Image<float> depth = linear_depth(rendering);
   LightTruths truths;
-  truths.sampled = choose_pixels(depth);
+  truths.block = block_size(depth);
+  truths.sampled = choose_pixels(depth, truths.block);
   truths.points = points_of(rendering, *rays, depth);
   for (std::size_t i = 0; i < truths.sampled.pixels.size(); ++i) {
     if (truths.sampled.pixels[i] == 0) {
@@ -121,6 +159,9 @@ tl::expected<LightTruths, std::string> light_truths_of(const Rendering& renderin
   truths.interreflection = tracer.interreflection();
   for (const Image<float>& roughness : roughness_images(rendering)) {
     truths.specular.push_back(tracer.specular(roughness));
+  }
+  if (options.lit) {
+    truths.lit = tracer.lit(roughness_images(rendering).front());
   }
   return truths;
 }

@@ -1,11 +1,13 @@
 #ifndef ALCOVE_SAMPLE_LIGHT_TRUTHS_H_
 #define ALCOVE_SAMPLE_LIGHT_TRUTHS_H_
 
+#include <optional>
 #include <string>
 #include <tl/expected.hpp>
 #include <vector>
 
 #include "errors.h"
+#include "lit_truth.h"
 #include "rendering.h"
 #include "truth.h"
 
@@ -15,10 +17,12 @@ namespace alcove::sample {
 // what a ray of visibility does, so these are taken at some 30,000 pixels, one at random in each
 // block of the picture; elsewhere they mean nothing.
 struct LightTruths {
-  Mask sampled;  // not sky
+  std::uint32_t block = 1;  // pixels on a side of a block
+  Mask sampled;             // not sky
   SurfacePoints points;
   Image<glm::vec3> interreflection;
   std::vector<Image<float>> specular;  // for each of roughness_images()
+  std::optional<LitTruth> lit;         // with --lit, for the first of them
 };
 
 // The perceptual roughness that each specular occlusion of a rendering was made for.

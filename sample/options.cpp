@@ -239,6 +239,13 @@ void add_occlusion(CLI::App& app, Raw& raw) {
       ->group(group);
 }
 
+void add_environment(CLI::App& app, Raw& raw) {
+  app.add_option("--environment", raw.options.environment,
+                 "light all around, an equirectangular .hdr or .exr; a sky that is made")
+      ->type_name("FILE")
+      ->group("Light");
+}
+
 void add_output(CLI::App& app, Raw& raw) {
   app.add_option("--out", raw.options.out, "folder for images and report.json; out")
       ->type_name("DIR");
@@ -272,8 +279,12 @@ std::vector<Subcommand> add_commands(CLI::App& app, Raw& raw) {
     add_scene(*sub, raw);
     add_view(*sub, raw);
     add_occlusion(*sub, raw);
+    add_environment(*sub, raw);
     add_output(*sub, raw);
   }
+  compare->add_flag("--lit", raw.options.lit,
+                    "path trace the picture lit by the environment too, and say how far it is off "
+                    "without occlusion and with each part of it; takes minutes");
   compare->add_flag("--no-cache", raw.no_cache, "compute the truths anew");
   CLI::App* graph = app.add_subcommand("graph", "the compiled plan of a frame; needs no device");
   add_view(*graph, raw);

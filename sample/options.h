@@ -42,7 +42,9 @@ struct OcclusionOptions {
 
 struct Options {
   Command command = Command::kRender;
-  std::string scene;  // empty: the built-in one
+  std::string scene;                  // empty: the built-in one
+  std::filesystem::path environment;  // .hdr or .exr; empty: the procedural sky
+  bool lit = false;                   // compare: also trace the lit picture
   ViewOptions view;
   OcclusionOptions occlusion;
   std::filesystem::path out = "out";

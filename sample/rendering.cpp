@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "camera.h"
+#include "display.h"
 #include "image_io.h"
 #include "load_scene.h"
 #include "settings.h"
@@ -71,7 +72,7 @@ class Run {
     request.index = frame;
     request.occlusion = settings_;
     request.occlusion.bent_normal |= all_outputs;
-    request.light = light_;
+    request.light = &light_;
     return request;
   }
 
@@ -83,7 +84,7 @@ class Run {
   const Options& options_;
   Camera camera_;
   passes::OcclusionSettings settings_;
-  LightRequest light_;
+  const LightRequest& light_;
 };
 
 // Draws the run with visibility alone, timed; a single frame is drawn again until its time is
@@ -137,7 +138,11 @@ tl::expected<Rendering, std::string> render(const Options& options) {
   if (!model) {
     return Failure(model.error());
   }
-  result.light = {*model, options.occlusion.roughness};
+  auto environment = load_environment(options.environment);
+  if (!environment) {
+    return Failure(std::move(environment.error()));
+  }
+  result.light = {*model, options.occlusion.roughness, std::move(*environment), options.lit};
   auto gpu = Gpu::create({.validation = options.validation, .index = options.device});
   if (!gpu) {
     return Failure(std::move(gpu.error()));
@@ -194,6 +199,23 @@ Image<glm::vec3> as_colours(const Image<glm::vec3>& directions) {
   return colours;
 }
 
+tl::expected<void, std::string> write_lit(const Rendering& rendering,
+                                          const std::filesystem::path& folder) {
+  const LitImages& lit = rendering.images.lit;
+  const float exposure = exposure_of(rendering.light.environment);
+  return write_exr(folder / "lit.exr", lit.all)
+      .and_then([&] {
+        return write_png(folder / "lit.png",
+                         display_colours(with_sky(rendering, lit.all), exposure));
+      })
+      .and_then([&] {
+        return write_png(folder / "lit_diffuse.png", display_colours(lit.diffuse, exposure));
+      })
+      .and_then([&] {
+        return write_png(folder / "lit_specular.png", display_colours(lit.specular, exposure));
+      });
+}
+
 tl::expected<void, std::string> write_light(const Rendering& rendering,
                                             const std::filesystem::path& folder) {
   const FrameImages& images = rendering.images;
@@ -206,7 +228,7 @@ tl::expected<void, std::string> write_light(const Rendering& rendering,
       return write_png(folder / (name + ".png"), images.specular_occlusion[i]);
     });
   }
-  return written;
+  return written.and_then([&] { return write_lit(rendering, folder); });
 }
 
 }  // namespace

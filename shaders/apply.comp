@@ -6,6 +6,7 @@
 // prefiltered environment by the split sum, each with its occlusion. SPECULAR compiles the second in.
 
 #include "apply_parameters.h"
+#include "maths/gtso.h"
 #include "maths/multi_bounce.h"
 #include "maths/projection.h"
 #include "maths/spherical_harmonics.h"
@@ -31,7 +32,6 @@ layout(set = 0, binding = 8) uniform writeonly image2D lit_image;
 layout(set = 0, binding = 9) uniform writeonly image2D diffuse_image;
 #ifdef SPECULAR
 #include "environment_fetch.h"
-#include "maths/gtso.h"
 #include "maths/split_sum.h"
 
 layout(constant_id = 5) const bool kRoughnessTexture = false;
@@ -57,6 +57,13 @@ vec3 fetch_direction(texture2D image, ivec2 pixel) {
   return normalize(mat3(parameters.world_from_normal) * texelFetch(image, pixel, 0).xyz);
 }
 
+// As far from the normal as the visibility lets it be, so that its noise does not show where a surface
+// is open.
+vec3 fetch_bent_normal(ivec2 pixel, vec3 normal, float visibility) {
+  vec3 bent = fetch_direction(bent_normal_image, pixel);
+  return kVisibility ? raised_bent_normal(bent, normal, settled_visibility(visibility)) : bent;
+}
+
 // Irradiance over pi; ringing must not turn into darkness below black.
 vec3 irradiance(vec3 direction) {
   vec3 sum = vec3(0.0);
@@ -68,12 +75,9 @@ vec3 irradiance(vec3 direction) {
 }
 
 vec3 diffuse_light(ivec2 pixel, vec3 normal, vec3 albedo) {
-  vec3 light = irradiance(kBentNormal ? fetch_direction(bent_normal_image, pixel) : normal);
-  if (kVisibility) {
-    float visibility = texelFetch(visibility_image, pixel, 0).r;
-    light *= kMultiBounce ? multi_bounce(visibility, albedo) : vec3(visibility);
-  }
-  return light;
+  float visibility = kVisibility ? texelFetch(visibility_image, pixel, 0).r : 1.0;
+  vec3 light = irradiance(kBentNormal ? fetch_bent_normal(pixel, normal, visibility) : normal);
+  return light * (kMultiBounce ? multi_bounce(visibility, albedo) : vec3(visibility));
 }
 
 #ifdef SPECULAR
@@ -90,10 +94,17 @@ vec2 fetch_reflectance(float n_dot_v, float roughness) {
   return mix(near, far, t.y);
 }
 
-vec3 specular_light(ivec2 pixel, vec3 normal, vec3 view, float roughness) {
+// Occluders are seen in the mirror too: what they send back counts as for the diffuse part.
+vec3 specular_visibility(ivec2 pixel, vec3 albedo) {
+  float visibility =
+      kSpecularOcclusion ? texelFetch(specular_occlusion_image, pixel, 0).r : 1.0;
+  return kMultiBounce ? multi_bounce(visibility, albedo) : vec3(visibility);
+}
+
+vec3 specular_light(vec3 normal, vec3 view, float roughness) {
   float level = level_of_roughness(roughness, uint(parameters.map.y));
-  vec3 light = fetch_map(map_image, parameters.map.x, level, mirror_direction(normal, view));
-  return kSpecularOcclusion ? light * texelFetch(specular_occlusion_image, pixel, 0).r : light;
+  vec3 direction = dominant_direction(normal, mirror_direction(normal, view), roughness);
+  return fetch_map(map_image, parameters.map.x, level, direction);
 }
 
 Light light_of(ivec2 pixel, vec3 normal, vec3 view) {
@@ -107,7 +118,8 @@ Light light_of(ivec2 pixel, vec3 normal, vec3 view) {
   Light light;
   light.diffuse = diffuse_light(pixel, normal, base) * diffuse_albedo(base, metallic) *
                   (vec3(1.0) - reflected);
-  light.specular = specular_light(pixel, normal, view, roughness) * reflected;
+  light.specular =
+      specular_light(normal, view, roughness) * specular_visibility(pixel, base) * reflected;
   return light;
 }
 #else

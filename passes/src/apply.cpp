@@ -84,16 +84,17 @@ std::vector<NamedInput> named_inputs(const ApplyInputs& inputs) {
 tl::expected<Kernel, Error> kernel_of(const Frame& frame, const ApplyInputs& inputs,
                                       const ApplySettings& settings) {
   const auto flag = [](bool on) { return static_cast<std::uint32_t>(on); };
-  const std::array constants{flag(bool(inputs.bent_normal)),
-                             flag(bool(inputs.visibility)),
-                             flag(settings.multi_bounce && inputs.visibility),
-                             flag(bool(inputs.light)),
-                             flag(settings.parts),
-                             flag(bool(inputs.roughness)),
-                             settings.roughness_channel,
-                             flag(bool(inputs.metallic)),
-                             settings.metallic_channel,
-                             flag(bool(inputs.specular_occlusion))};
+  const std::array constants{
+      flag(bool(inputs.bent_normal)),
+      flag(bool(inputs.visibility)),
+      flag(settings.multi_bounce && (inputs.visibility || inputs.specular_occlusion)),
+      flag(bool(inputs.light)),
+      flag(settings.parts),
+      flag(bool(inputs.roughness)),
+      settings.roughness_channel,
+      flag(bool(inputs.metallic)),
+      settings.metallic_channel,
+      flag(bool(inputs.specular_occlusion))};
   constexpr std::size_t kDiffuseConstants = 5;
   return inputs.map
              ? frame.kernels.get(Shader::apply_specular, constants)

@@ -92,6 +92,55 @@ TEST(SplitSum, NothingReflectsMoreThanItGets) {
   EXPECT_NEAR(maths::specular_reflectance(vec3(1), look_up(table, 1.0f, 0.0f)).x, 1.0f, 1e-3f);
 }
 
+// Bright above, dark below, brightest on one side.
+double light_from(vec3 d) {
+  return (d.y > 0.0f ? 1.0 : 0.25) + 4.0 * std::exp(10.0 * (dot(d, vec3(0.6f, 0.8f, 0.0f)) - 1.0));
+}
+
+// The mean light of the lobe about `normal` that `view` sees: an even spread over its microfacets.
+double lobe_light(vec3 normal, vec3 view, float alpha) {
+  const vec3 x =
+      normalize(cross(std::abs(normal.y) < 0.9f ? vec3(0, 1, 0) : vec3(1, 0, 0), normal));
+  const glm::mat3 world(x, cross(normal, x), normal);
+  const vec3 v = transpose(world) * view;
+  double sum = 0.0, weights = 0.0;
+  constexpr int kSamples = 1024;
+  for (int i = 0; i < kSamples; ++i) {
+    const double turn = std::fmod(0.5 + i * 0.6180339887498949, 1.0);
+    const vec3 h =
+        maths::sample_ggx_normal(v, alpha, float(turn), (float(i) + 0.5f) / float(kSamples));
+    const vec3 light = reflect(-v, h);
+    if (light.z <= 0.0f) continue;
+    const double weight =
+        maths::ggx_shadowing(v.z, light.z, alpha) / maths::ggx_masking(v.z, alpha);
+    sum += weight * light_from(world * light);
+    weights += weight;
+  }
+  return sum / weights;
+}
+
+TEST(SplitSum, TheDominantDirectionHalvesTheErrorOfRoughLobes) {
+  RandomInput random;
+  for (const float roughness : {0.6f, 0.8f, 1.0f}) {
+    double mirror_squares = 0.0, squares = 0.0;
+    for (int i = 0; i < 300; ++i) {
+      const vec3 normal = random.unit_vector(), view = random.facing(normal);
+      if (dot(normal, view) < 0.02f) continue;
+      const float alpha = roughness * roughness;
+      const double truth = lobe_light(normal, view, alpha);
+      const vec3 mirror = reflect(-view, normal);
+      const vec3 dominant = maths::dominant_direction(normal, mirror, roughness);
+      mirror_squares += std::pow(lobe_light(mirror, mirror, alpha) - truth, 2);
+      squares += std::pow(lobe_light(dominant, dominant, alpha) - truth, 2);
+    }
+    EXPECT_LT(squares, 0.4 * mirror_squares) << roughness;
+  }
+  EXPECT_LT(distance(maths::dominant_direction(vec3(0, 0, 1), vec3(0.6f, 0, 0.8f), 0.0f),
+                     vec3(0.6f, 0, 0.8f)),
+            1e-6f)
+      << "mirrors keep their direction";
+}
+
 TEST(SplitSum, MetalsScatterNothingAndDielectricsReflectTheirShare) {
   const vec3 base(0.9f, 0.5f, 0.1f);
   EXPECT_EQ(maths::diffuse_albedo(base, 1.0f), vec3(0));

@@ -133,17 +133,21 @@ Light expected(const Inputs& inputs, const View& view, std::uint32_t x, std::uin
   const vec3 towards =
       world_from_view * maths::view_vector(projection, maths::position_vs(projection, uv, depth));
   const vec3 normal = normalize(world_from_view * rgb(inputs.normals, x, y));
-  const vec3 bent = normalize(world_from_view * rgb(inputs.bent, x, y));
+  const vec3 bent =
+      maths::raised_bent_normal(normalize(world_from_view * rgb(inputs.bent, x, y)), normal,
+                                maths::settled_visibility(inputs.visibility.at(x, y)));
   const vec3 base = rgb(inputs.albedo, x, y);
   const float roughness = inputs.albedo.at(x, y, 3);
   const float metallic = inputs.light.at(x, y, 3);
   const vec3 reflected = maths::specular_reflectance(maths::normal_reflectance(base, metallic),
                                                      reflectance(dot(normal, towards), roughness));
   const vec3 visible = maths::multi_bounce(inputs.visibility.at(x, y), base);
-  const vec3 mirrored = look_up(inputs.map, maths::mirror_direction(normal, towards));
+  const vec3 mirrored = look_up(
+      inputs.map,
+      maths::dominant_direction(normal, maths::mirror_direction(normal, towards), roughness));
   return {maths::diffuse_albedo(base, metallic) * (1.0f - reflected) * visible *
               irradiance(inputs.harmonics, bent),
-          reflected * mirrored * inputs.specular_occlusion.at(x, y)};
+          reflected * mirrored * maths::multi_bounce(inputs.specular_occlusion.at(x, y), base)};
 }
 
 View turned(View view) {

@@ -28,14 +28,16 @@ TEST(Options, DefaultsAreTheBuiltInSceneAt960By540) {
 
 TEST(Options, AFullCommandLineIsUnderstood) {
   const auto options =
-      parse({"compare",  "scene.glb", "--eye",        "-9,5.5,-0.4", "--target",    "5,3.2,-0.3",
-             "--fov-y",  "60",        "--near",       "0.1",         "--far",       "inf",
-             "--radius", "0.75",      "--normals",    "geometric",   "--quality",   "ultra",
-             "--set",    "slices=2",  "--set",        "steps=5",     "--roughness", "0.1,0.3,0.6",
-             "--spp",    "512",       "--reversed-z", "--size",      "320x200",     "--out",
-             "x"});
+      parse({"compare",  "scene.glb", "--eye",         "-9,5.5,-0.4", "--target",    "5,3.2,-0.3",
+             "--fov-y",  "60",        "--near",        "0.1",         "--far",       "inf",
+             "--radius", "0.75",      "--normals",     "geometric",   "--quality",   "ultra",
+             "--set",    "slices=2",  "--set",         "steps=5",     "--roughness", "0.1,0.3,0.6",
+             "--spp",    "512",       "--reversed-z",  "--size",      "320x200",     "--out",
+             "x",        "--lit",     "--environment", "sky.hdr"});
   ASSERT_TRUE(options) << options.error().text;
   EXPECT_EQ(options->scene, "scene.glb");
+  EXPECT_EQ(options->environment, "sky.hdr");
+  EXPECT_TRUE(options->lit);
   EXPECT_EQ(*options->view.eye_ws, glm::vec3(-9, 5.5f, -0.4f));
   EXPECT_TRUE(std::isinf(*options->view.far_plane));
   EXPECT_EQ(options->occlusion.quality, Quality::kUltra);

@@ -8,7 +8,7 @@
 namespace alcove::passes {
 
 struct ApplySettings {
-  // Brightens the visibility of the diffuse part by what occluders of the surface's own albedo send
+  // Brightens visibility and specular occlusion by what occluders of the surface's own albedo send
   // back, as add_multi_bounce does but without a texture of it.
   bool multi_bounce = true;
   float roughness = 0.5f;               // perceptual, [0,1], of every pixel where no texture has it

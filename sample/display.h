@@ -1,0 +1,19 @@
+#ifndef ALCOVE_SAMPLE_DISPLAY_H_
+#define ALCOVE_SAMPLE_DISPLAY_H_
+
+#include "environment.h"
+#include "rendering.h"
+
+namespace alcove::sample {
+
+// Radiance as it is shown: what an environment's light is multiplied with, so that a white surface
+// in its mean comes out bright but not white; then the shoulder and sRGB.
+[[nodiscard]] float exposure_of(const EnvironmentImage& environment);
+[[nodiscard]] Image<glm::vec3> display_colours(const Image<glm::vec3>& radiance, float exposure);
+
+// The picture with the environment where the scene is not.
+[[nodiscard]] Image<glm::vec3> with_sky(const Rendering& rendering, Image<glm::vec3> picture);
+
+}  // namespace alcove::sample
+
+#endif  // ALCOVE_SAMPLE_DISPLAY_H_

@@ -1,0 +1,109 @@
+#include "environment.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <string>
+
+#include "image_io.h"
+#include "temporary_folder.h"
+
+namespace alcove::sample {
+namespace {
+
+using testing::HasSubstr;
+
+void write_file(const std::filesystem::path& file, const std::string& bytes) {
+  std::ofstream(file, std::ios::binary) << bytes;
+}
+
+// An uncompressed Radiance file of one colour: mantissas and exponent.
+std::string radiance_file(int width, int height, const std::string& pixel) {
+  std::string text = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y " + std::to_string(height) + " +X " +
+                     std::to_string(width) + "\n";
+  for (int i = 0; i < width * height; ++i) text += pixel;
+  return text;
+}
+
+TEST(Environment, TheSkyIsMeanOneAndBrightestAbove) {
+  const auto sky = load_environment({});
+  ASSERT_TRUE(sky);
+  const glm::vec3 mean = mean_radiance(*sky);
+  EXPECT_NEAR((mean.x + mean.y + mean.z) / 3.0f, 1.0f, 0.25f);
+  EXPECT_GT(radiance(*sky, {0, 1, 0}).z, radiance(*sky, {0, -1, 0}).z);
+}
+
+TEST(Environment, LightIsFoundWhereTheHeaderSays) {
+  EnvironmentImage image(64, 32);
+  image.at(16, 16) = glm::vec3(5);  // a quarter to the right: +X, just under the horizon
+  const glm::vec3 there = glm::normalize(glm::vec3(1.0f, -0.05f, 0.05f));
+  EXPECT_GT(radiance(image, there).x, 4.0f);
+  EXPECT_EQ(radiance(image, {-1, 0, 0}).x, 0.0f);
+  // Columns wrap around.
+  image.at(63, 16) = glm::vec3(5);
+  const glm::vec3 seam = glm::normalize(glm::vec3(0.0f, -0.05f, -1.0f));
+  EXPECT_NEAR(radiance(image, seam).x, 2.5f, 0.3f);
+}
+
+TEST(Environment, ExrAndRadianceFilesAreRead) {
+  const TemporaryFolder folder;
+  EnvironmentImage image(8, 4, glm::vec3(0.5f, 1.0f, 2.0f));
+  image.at(3, 1) = {std::numeric_limits<float>::quiet_NaN(), -1.0f,
+                    std::numeric_limits<float>::infinity()};
+  ASSERT_TRUE(write_exr(folder.path / "a.exr", image));
+  const auto exr = load_environment(folder.path / "a.exr");
+  ASSERT_TRUE(exr) << exr.error();
+  EXPECT_EQ(exr->at(0, 0), glm::vec3(0.5f, 1.0f, 2.0f));
+  EXPECT_EQ(exr->at(3, 1), glm::vec3(0.0f)) << "what is no light counts as none";
+
+  write_file(folder.path / "b.HDR", radiance_file(8, 4, std::string("\x40\x80\x20\x81", 4)));
+  const auto hdr = load_environment(folder.path / "b.HDR");
+  ASSERT_TRUE(hdr) << hdr.error();
+  EXPECT_NEAR(hdr->at(5, 2).x, 0.5f, 0.01f);
+  EXPECT_NEAR(hdr->at(5, 2).y, 1.0f, 0.01f);
+}
+
+TEST(Environment, LargeFilesAreBroughtDownToTheirMean) {
+  const TemporaryFolder folder;
+  EnvironmentImage image(4096, 4);
+  for (uint32_t y = 0; y < 4; ++y) {
+    for (uint32_t x = 0; x < 4096; ++x) image.at(x, y) = glm::vec3(x % 2 ? 3.0f : 1.0f);
+  }
+  ASSERT_TRUE(write_exr(folder.path / "a.exr", image));
+  const auto loaded = load_environment(folder.path / "a.exr");
+  ASSERT_TRUE(loaded) << loaded.error();
+  EXPECT_EQ(loaded->width, 2048u);
+  for (const glm::vec3& pixel : loaded->pixels) ASSERT_EQ(pixel, glm::vec3(2.0f));
+}
+
+TEST(Environment, HostileFilesAreOneSentence) {
+  const TemporaryFolder folder;
+  const std::string good = radiance_file(8, 4, std::string("\x40\x80\x20\x81", 4));
+  const std::vector<std::pair<std::string, std::string>> files{
+      {"empty.hdr", ""},
+      {"text.hdr", "hello"},
+      {"header.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n"},
+      {"negative.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y -4 +X 8\n"},
+      {"promise.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 30000 +X 30000\n\x02\x02"},
+      {"empty.exr", ""},
+      {"text.exr", "hello"},
+      {"magic.exr", std::string("\x76\x2f\x31\x01\x02\x00\x00\x00", 8) + std::string(64, 'a')},
+      {"picture.png", good},
+      {"noending", good}};
+  for (const auto& [name, bytes] : files) {
+    write_file(folder.path / name, bytes);
+    const auto loaded = load_environment(folder.path / name);
+    ASSERT_FALSE(loaded) << name;
+    EXPECT_THAT(loaded.error(), HasSubstr(name));
+    EXPECT_EQ(loaded.error().find('\n'), std::string::npos) << loaded.error();
+  }
+  const auto missing = load_environment(folder.path / "missing.hdr");
+  ASSERT_FALSE(missing);
+  EXPECT_THAT(missing.error(), HasSubstr("missing.hdr"));
+}
+
+}  // namespace
+}  // namespace alcove::sample
