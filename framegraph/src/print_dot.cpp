@@ -1,5 +1,6 @@
-// Plans for Graphviz: passes in columns by queue, an edge for each version from its writer to its
-// readers, culled passes dashed.
+// Plans for Graphviz: passes coloured by queue, an edge from each to those that read what it
+// writes, culled passes dashed.
+#include <map>
 #include <vector>
 
 #include "alcove/framegraph/print.h"
@@ -12,17 +13,25 @@ std::string quoted(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') out += '\\';
-    out += c;
+    if (c == '\n')
+      out += "\\n";
+    else
+      out += c;
   }
   return out + '"';
 }
 
 class DotPrinter {
  public:
-  DotPrinter(const GraphDescription& graph, const Plan& plan) : graph_(graph), plan_(plan) {}
+  DotPrinter(const GraphDescription& graph, const Plan& plan)
+      : graph_(graph), plan_(plan), names_(resource_names(graph)) {}
 
   std::string print() {
-    out_ = "digraph frame {\n  rankdir=TB; node [shape=box fontname=\"sans-serif\"];\n";
+    out_ =
+        "digraph frame {\n"
+        "  rankdir=TB; nodesep=0.3; ranksep=0.35;\n"
+        "  node [shape=box fontname=\"sans-serif\" fontsize=11 height=0.3];\n"
+        "  edge [fontname=\"sans-serif\" fontsize=9 arrowsize=0.6];\n";
     position_.assign(graph_.passes.size(), kNone);
     for (std::uint32_t p = 0; p < plan_.passes.size(); ++p) position_[plan_.passes[p].pass] = p;
     for (std::uint32_t pass = 0; pass < graph_.passes.size(); ++pass) node(pass);
@@ -45,32 +54,41 @@ class DotPrinter {
         barriers += plan_.batches[planned.first_batch + b].count;
       label = std::to_string(position_[pass]).append(" ").append(label);
       if (barriers > 0) label.append(" | ").append(std::to_string(barriers)).append(" barriers");
+      if (planned.batch_count > 0) label += event_of(plan_.batches[planned.first_batch]);
       constexpr const char* kColors[] = {"lightsteelblue", "palegreen", "moccasin"};
       style = std::string("style=filled fillcolor=")
                   .append(kColors[static_cast<std::size_t>(planned.queue)]);
     }
     out_.append("  ").append(id(pass)).append(" [label=").append(quoted(label));
+    out_.append(" tooltip=").append(quoted(reason(graph_, plan_.fates[pass])));
     out_.append(" ").append(style).append("];\n");
   }
 
-  // From the last writer of a resource to each later access, in program order.
+  std::string event_of(const Batch& batch) const {
+    const std::uint32_t after = set_after(plan_, batch);
+    return after == kNone ? "" : " since " + std::to_string(after);
+  }
+
+  // From the last writers of what a pass uses, in program order: one edge for each of those.
   void edges() {
     std::vector<std::uint32_t> writer(graph_.resources.size(), kNone);
     for (std::uint32_t pass = 0; pass < graph_.passes.size(); ++pass) {
+      std::map<std::uint32_t, std::string> labels;  // by writer
       for (const AccessRecord& access : graph_.pass_accesses(pass)) {
         const std::uint32_t from = writer[access.resource];
-        if (from != kNone && from != pass && !(access.flags & kDiscard)) edge(from, pass, access);
+        if (from == kNone || from == pass || (access.flags & kDiscard)) continue;
+        std::string& label = labels[from];
+        if (!label.empty()) label += '\n';
+        label.append(names_[access.resource]).append(".").append(std::to_string(access.version));
       }
+      for (const auto& [from, label] : labels) edge(from, pass, label);
       for (const AccessRecord& access : graph_.pass_accesses(pass)) {
         if (access.flags & kWrite) writer[access.resource] = pass;
       }
     }
   }
 
-  void edge(std::uint32_t from, std::uint32_t to, const AccessRecord& access) {
-    const std::string label = std::string(graph_.resource_name(access.resource))
-                                  .append(".")
-                                  .append(std::to_string(access.version));
+  void edge(std::uint32_t from, std::uint32_t to, const std::string& label) {
     out_.append("  ").append(id(from)).append(" -> ").append(id(to));
     out_.append(" [label=").append(quoted(label));
     if (position_[from] == kNone || position_[to] == kNone) out_ += " style=dashed color=gray";
@@ -79,6 +97,7 @@ class DotPrinter {
 
   const GraphDescription& graph_;
   const Plan& plan_;
+  std::vector<std::string> names_;
   std::vector<std::uint32_t> position_;
   std::string out_;
 };

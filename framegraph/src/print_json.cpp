@@ -112,6 +112,7 @@ class JsonPrinter {
     json_.begin('{');
     json_.field("name", graph_.pass_name(planned.pass));
     json_.field("declared", planned.pass);
+    json_.field("reason", reason(graph_, plan_.fates[planned.pass]));
     json_.key("accesses");
     json_.begin('[');
     const std::uint32_t first = graph_.passes[planned.pass].first_access;
@@ -186,7 +187,7 @@ class JsonPrinter {
       if (fate != Fate::unread && fate != Fate::writes_nothing) continue;
       json_.begin('{');
       json_.field("name", graph_.pass_name(pass));
-      json_.field("reason", fate == Fate::unread ? "unread" : "writes nothing");
+      json_.field("reason", reason(graph_, plan_.fates[pass]));
       json_.end('}');
     }
     json_.end(']');

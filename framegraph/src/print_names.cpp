@@ -1,5 +1,6 @@
 #include "print_names.h"
 
+#include <algorithm>
 #include <cstddef>
 
 namespace alcove::framegraph {
@@ -138,6 +139,39 @@ std::string range_name(const Range& range, std::uint32_t mips, std::uint32_t lay
   if (range.mips != mips) text += part("mip", range.base_mip, range.mips);
   if (range.layers != layers) text += part("layer", range.base_layer, range.layers);
   return text;
+}
+
+std::vector<std::string> resource_names(const GraphDescription& graph) {
+  std::vector<std::string> names;
+  for (std::uint32_t r = 0; r < graph.resources.size(); ++r)
+    names.emplace_back(graph.resource_name(r));
+  std::vector<std::string> sorted = names;
+  std::sort(sorted.begin(), sorted.end());
+  for (std::uint32_t r = 0; r < names.size(); ++r) {
+    const auto [first, last] = std::equal_range(sorted.begin(), sorted.end(), names[r]);
+    if (last - first > 1) names[r].append("#").append(std::to_string(r));
+  }
+  return names;
+}
+
+std::string reason(const GraphDescription& graph, const PassFate& fate) {
+  std::string witness = "for '";
+  if (fate.witness != kNone) witness.append(graph.pass_name(fate.witness)).append("'");
+  switch (fate.fate) {
+    case Fate::side_effect:
+      return "for its side effect";
+    case Fate::output:
+      return "for what is wanted after the frame";
+    case Fate::feeds_pass:
+      return witness;
+    case Fate::feeds_history:
+      return witness.append(" in later frames");
+    case Fate::unread:
+      return "nobody reads what it writes";
+    case Fate::writes_nothing:
+      return "it writes nothing and has no side effect";
+  }
+  return "";
 }
 
 std::uint32_t set_after(const Plan& plan, const Batch& batch) {

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "alcove/framegraph/description.h"
 #include "alcove/framegraph/plan.h"
 #include "alcove/framegraph/types.h"
 
@@ -16,6 +18,10 @@ std::string queue_name(QueueClass queue);
 std::string byte_size(VkDeviceSize bytes);
 // "mip 0..2 layer 1" where it is not everything.
 std::string range_name(const Range& range, std::uint32_t mips, std::uint32_t layers);
+// Names of all resources, with their index where several have the same one.
+std::vector<std::string> resource_names(const GraphDescription& graph);
+// Why a pass runs, "for 'lighting'", or why it does not.
+std::string reason(const GraphDescription& graph, const PassFate& fate);
 // The position of the pass after which a split barrier's event is set; kNone for other barriers.
 std::uint32_t set_after(const Plan& plan, const Batch& batch);
 

@@ -10,6 +10,7 @@ namespace alcove::framegraph {
 namespace {
 
 constexpr std::size_t kNameWidth = 24;
+constexpr std::size_t kLineWidth = 110;
 
 std::string padded(std::string_view text, std::size_t width) {
   std::string out(text.substr(0, width));
@@ -17,9 +18,26 @@ std::string padded(std::string_view text, std::size_t width) {
   return out;
 }
 
+// `head`, then the items, on as many lines as they need.
+std::string wrapped(const std::string& head, const std::vector<std::string>& items,
+                    const char* separator) {
+  std::string out;
+  std::string row = head;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    const std::string item = items[i] + (i + 1 < items.size() ? separator : "");
+    if (row.size() + item.size() > kLineWidth && row.size() > head.size()) {
+      out.append(row, 0, row.find_last_not_of(' ') + 1).append("\n");
+      row.assign(std::min<std::size_t>(head.size(), 12), ' ');
+    }
+    row += item;
+  }
+  return out + row;
+}
+
 class TextPrinter {
  public:
-  TextPrinter(const GraphDescription& graph, const Plan& plan) : graph_(graph), plan_(plan) {}
+  TextPrinter(const GraphDescription& graph, const Plan& plan)
+      : graph_(graph), plan_(plan), names_(resource_names(graph)) {}
 
   std::string print() {
     summary();
@@ -31,10 +49,6 @@ class TextPrinter {
 
  private:
   void line(const std::string& text) { out_.append(text).append("\n"); }
-  std::string name(std::uint32_t resource) const {
-    return std::string(graph_.resource_name(resource));
-  }
-
   void summary() {
     line(std::to_string(plan_.passes.size()) + " of " + std::to_string(graph_.passes.size()) +
          " passes" + (plan_.reordered ? ", reordered" : "") + ", " +
@@ -65,61 +79,82 @@ class TextPrinter {
   void pass(std::uint32_t position) {
     const PlannedPass& planned = plan_.passes[position];
     batches(planned.first_batch, planned.batch_count);
-    std::string text =
-        padded(std::to_string(position), 4) + padded(graph_.pass_name(planned.pass), kNameWidth);
+    std::string head = padded(std::to_string(position), 4);
+    head += padded(graph_.pass_name(planned.pass), kNameWidth) + " ";
     const std::uint32_t first = graph_.passes[planned.pass].first_access;
     const auto accesses = graph_.pass_accesses(planned.pass);
-    for (std::size_t i = 0; i < accesses.size(); ++i) {
-      const AccessRecord& access = accesses[i];
-      const ResourceRecord& record = graph_.resources[access.resource];
-      const bool writes = (access.flags & kWrite) != 0;
-      text.append(writes ? " >" : " <").append(name(access.resource));
-      text.append(".").append(std::to_string(access.version + (writes ? 1 : 0)));
-      text.append(range_name(access.range, record.mips, record.layers));
-      if (!plan_.live_accesses[first + i]) text += " (unread)";
-    }
-    line(text);
+    std::vector<std::string> items;
+    for (std::size_t i = 0; i < accesses.size(); ++i)
+      items.push_back(access(accesses[i], plan_.live_accesses[first + i] != 0));
+    items.push_back("(" + reason(graph_, plan_.fates[planned.pass]) + ")");
+    line(wrapped(head, items, " "));
+  }
+
+  std::string access(const AccessRecord& access, bool live) const {
+    const ResourceRecord& record = graph_.resources[access.resource];
+    const bool writes = (access.flags & kWrite) != 0;
+    std::string text = writes ? ">" : "<";
+    text.append(names_[access.resource]);
+    text.append(".").append(std::to_string(access.version + (writes ? 1 : 0)));
+    text.append(range_name(access.range, record.mips, record.layers));
+    if (!live) text += " (unread)";
+    return text;
   }
 
   void batches(std::uint32_t first, std::uint32_t count) {
-    for (std::uint32_t b = first; b < first + count; ++b) {
-      const Batch& batch = plan_.batches[b];
-      for (std::uint32_t t = batch.first; t < batch.first + batch.count; ++t)
-        transition(plan_.transitions[t], set_after(plan_, batch));
+    for (std::uint32_t b = first; b < first + count; ++b) batch(plan_.batches[b]);
+  }
+
+  // One line for all transitions that wait for and hold up the same stages.
+  void batch(const Batch& batch) {
+    const std::uint32_t event_set_after = set_after(plan_, batch);
+    std::vector<std::uint8_t> done(batch.count, 0);
+    for (std::uint32_t i = 0; i < batch.count; ++i) {
+      if (done[i]) continue;
+      const Transition& lead = plan_.transitions[batch.first + i];
+      std::vector<std::string> items;
+      for (std::uint32_t j = i; j < batch.count; ++j) {
+        const Transition& t = plan_.transitions[batch.first + j];
+        if (t.src_stages != lead.src_stages || t.dst_stages != lead.dst_stages) continue;
+        done[j] = 1;
+        items.push_back(change(t));
+      }
+      std::string head = "      | ";
+      if (event_set_after != kNone)
+        head.append("event set after ").append(std::to_string(event_set_after)).append(": ");
+      head.append(stage_names(lead.src_stages)).append(" -> ");
+      head.append(stage_names(lead.dst_stages)).append(": ");
+      line(wrapped(head, items, ", "));
     }
   }
 
-  void transition(const Transition& t, std::uint32_t event_set_after) {
-    std::string text = "      | ";
-    if (event_set_after != kNone)
-      text.append("event set after ").append(std::to_string(event_set_after)).append(": ");
-    text.append(stage_names(t.src_stages)).append(" -> ").append(stage_names(t.dst_stages));
-    if (t.resource != kNone) {
-      const ResourceRecord& record = graph_.resources[t.resource];
-      text.append(": ").append(name(t.resource));
-      text.append(range_name(t.range, record.mips, record.layers));
-      if (record.kind == ResourceKind::texture)
-        text.append(" ")
-            .append(layout_name(t.old_layout))
-            .append(" -> ")
-            .append(layout_name(t.new_layout));
-    }
+  std::string change(const Transition& t) const {
+    if (t.resource == kNone) return "memory";
+    const ResourceRecord& record = graph_.resources[t.resource];
+    std::string text = names_[t.resource] + range_name(t.range, record.mips, record.layers);
+    if (record.kind == ResourceKind::texture)
+      text.append(" ")
+          .append(layout_name(t.old_layout))
+          .append(" -> ")
+          .append(layout_name(t.new_layout));
     if (t.src_queue != t.dst_queue)
-      text.append(", ")
+      text.append(" (")
           .append(queue_name(t.src_queue))
-          .append(" gives to ")
-          .append(queue_name(t.dst_queue));
-    line(text);
+          .append(" gives it to ")
+          .append(queue_name(t.dst_queue))
+          .append(")");
+    return text;
   }
 
   void culled() {
     bool any = false;
-    for (std::uint32_t pass = 0; pass < plan_.fates.size(); ++pass) {
-      const PassFate& fate = plan_.fates[pass];
-      if (fate.fate != Fate::unread && fate.fate != Fate::writes_nothing) continue;
-      line("culled: " + std::string(graph_.pass_name(pass)) +
-           (fate.fate == Fate::unread ? ", nobody reads what it writes"
-                                      : ", it writes nothing and has no side effect"));
+    for (const Fate fate : {Fate::unread, Fate::writes_nothing}) {
+      std::vector<std::string> items;
+      for (std::uint32_t pass = 0; pass < plan_.fates.size(); ++pass) {
+        if (plan_.fates[pass].fate == fate) items.emplace_back(graph_.pass_name(pass));
+      }
+      if (items.empty()) continue;
+      line(wrapped("culled, " + reason(graph_, {fate, kNone, kNone}) + ": ", items, ", "));
       any = true;
     }
     if (any) line("");
@@ -141,10 +176,10 @@ class TextPrinter {
     constexpr std::size_t kColumns = 64;
     const std::size_t step = (plan_.passes.size() + kColumns - 1) / kColumns;
     if (rows.empty() || step == 0) return;
-    line(padded("memory by offset", kNameWidth) + "  offset      size        positions");
+    line(padded("memory by offset", kNameWidth) + "  offset      size        " + ruler(step));
     for (const std::uint32_t r : rows) {
       const Placement& placement = plan_.placements[r];
-      std::string text = padded(graph_.resource_name(r), kNameWidth) + "  " +
+      std::string text = padded(names_[r], kNameWidth) + "  " +
                          padded(byte_size(placement.offset), 12) +
                          padded(byte_size(placement.size), 12);
       for (std::size_t column = 0; column * step < plan_.passes.size(); ++column) {
@@ -155,8 +190,17 @@ class TextPrinter {
     }
   }
 
+  // The positions that stand above every tenth column.
+  std::string ruler(std::size_t step) const {
+    std::string text;
+    for (std::size_t column = 0; column * step < plan_.passes.size(); column += 10)
+      text += padded(std::to_string(column * step), 10);
+    return text.substr(0, text.find_last_not_of(' ') + 1);
+  }
+
   const GraphDescription& graph_;
   const Plan& plan_;
+  std::vector<std::string> names_;
   std::string out_;
 };
 

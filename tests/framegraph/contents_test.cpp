@@ -14,7 +14,7 @@ namespace alcove::framegraph {
 namespace {
 
 constexpr std::uint32_t kFrames = 400;
-constexpr std::uint32_t kHostWords = 1 << 16;
+constexpr VkDeviceSize kHostWords = 1 << 16;
 
 // A resource and the words that it should hold.
 struct Modelled {

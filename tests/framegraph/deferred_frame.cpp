@@ -2,6 +2,8 @@
 
 #include <initializer_list>
 
+#include "fake_handle.h"
+
 namespace alcove::framegraph {
 namespace {
 
@@ -31,9 +33,9 @@ class DeferredFrame {
   void draw_geometry() {
     depth_ = make("depth", VK_FORMAT_D32_SFLOAT, 1);
     albedo_ = make("albedo", VK_FORMAT_R8G8B8A8_UNORM, 1);
-    normal_ = make("normal, roughness", VK_FORMAT_R16G16B16A16_SFLOAT, 1);
+    normal_ = make("normal", VK_FORMAT_R16G16B16A16_SFLOAT, 1);
     emission_ = make("emission", VK_FORMAT_R16G16B16A16_SFLOAT, 1);
-    motion_ = make("motion, its depth", VK_FORMAT_R16G16B16A16_SFLOAT, 1);
+    motion_ = make("motion", VK_FORMAT_R16G16B16A16_SFLOAT, 1);
     PassBuilder pass = graph_.add_pass("g-buffer");
     depth_ = pass.write(depth_, access::depth_attachment);
     for (Texture* target : {&albedo_, &normal_, &emission_, &motion_})
@@ -96,7 +98,7 @@ class DeferredFrame {
 
   void present(Texture from) {
     ImportedTexture import;
-    import.image = reinterpret_cast<VkImage>(std::uintptr_t{16});
+    import.image = fake_handle<VkImage>();
     import.desc = {VK_FORMAT_R8G8B8A8_UNORM, Extent::absolute(width_, height_)};
     import.usage = VK_IMAGE_USAGE_TRANSFER_DST_BIT;
     import.departure = access::present;

@@ -72,7 +72,7 @@ TEST(Example, OfTheReadmeRuns) {
   depth.arrival = {VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT, 0,
                    VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
   gpu.change_layout(depth.image, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
-  const HostBuffer host = gpu.make_host_buffer(4 * 16 * 9);
+  const HostBuffer host = gpu.make_host_buffer(VkDeviceSize{4} * 16 * 9);
   {
     auto executor = Executor::create(gpu.handles());
     ASSERT_TRUE(executor) << to_string(executor.error());

@@ -29,7 +29,7 @@ class History : public testing::Test {
     auto made = Executor::create(gpu_.handles(), options);
     ASSERT_TRUE(made) << to_string(made.error());
     executor_ = std::make_unique<Executor>(std::move(*made));
-    host_ = gpu_.make_host_buffer(4 * kSlots);
+    host_ = gpu_.make_host_buffer(VkDeviceSize{4} * kSlots);
   }
   void TearDown() override {
     executor_.reset();
@@ -81,7 +81,7 @@ class History : public testing::Test {
     pass.record([=](RecordContext& c) {
       if (c.validity(texture) != HistoryValidity::valid) return;
       VkBufferImageCopy copy{};
-      copy.bufferOffset = 4 * age;
+      copy.bufferOffset = VkDeviceSize{4} * age;
       copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
       copy.imageExtent = {1, 1, 1};
       c.vk.vkCmdCopyImageToBuffer(c.commands, c.image(texture),
@@ -109,7 +109,7 @@ class History : public testing::Test {
     out = copy_pass.write(out, buffer_access::transfer_destination);
     copy_pass.record([=](RecordContext& c) {
       VkBufferImageCopy copy{};
-      copy.bufferOffset = 4 * age;
+      copy.bufferOffset = VkDeviceSize{4} * age;
       copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
       copy.imageExtent = {1, 1, 1};
       c.vk.vkCmdCopyImageToBuffer(c.commands, c.image(mixed), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,

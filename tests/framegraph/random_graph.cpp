@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "fake_handle.h"
+
 namespace alcove::framegraph {
 namespace {
 
@@ -100,8 +102,8 @@ class Declarer {
       known.layers = desc.layers;
       known.handle = graph_.create_texture(numbered('t', known_.size()), desc);
     } else {
-      known.buffer =
-          graph_.create_buffer(numbered('b', known_.size()), {4u * (1 + dice_.roll(5000))});
+      known.buffer = graph_.create_buffer(numbered('b', known_.size()),
+                                          {VkDeviceSize{4} * (1 + dice_.roll(5000))});
     }
     keep(std::move(known), false);
   }
@@ -113,7 +115,7 @@ class Declarer {
     known.texture = dice_.chance(160);
     if (known.texture) {
       ImportedTexture import;
-      import.image = reinterpret_cast<VkImage>(std::uintptr_t{16});
+      import.image = fake_handle<VkImage>();
       import.desc = {VK_FORMAT_R8G8B8A8_UNORM, Extent::absolute(side(), side()), 1, 1,
                      VK_SAMPLE_COUNT_1_BIT};
       import.usage = ~VkImageUsageFlags{0};
@@ -128,7 +130,7 @@ class Declarer {
       known.handle = graph_.import_texture(numbered('i', known_.size()), import);
     } else {
       ImportedBuffer import;
-      import.buffer = reinterpret_cast<VkBuffer>(std::uintptr_t{16});
+      import.buffer = fake_handle<VkBuffer>();
       import.desc.size = 1024;
       import.usage = ~VkBufferUsageFlags{0};
       import.has_contents = full;

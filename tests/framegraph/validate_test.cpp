@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "alcove/framegraph/compile.h"
+#include "fake_handle.h"
 
 namespace alcove::framegraph {
 namespace {
@@ -136,7 +137,7 @@ TEST_F(Validate, AttachmentsOfDifferentSizesAreRefused) {
 
 TEST_F(Validate, AnImportWithoutTheNeededUsageIsRefused) {
   ImportedTexture import;
-  import.image = reinterpret_cast<VkImage>(std::uintptr_t{16});
+  import.image = fake_handle<VkImage>();
   import.desc = kDesc;
   import.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
   Texture texture = graph_.import_texture("swap", import);
