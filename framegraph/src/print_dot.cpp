@@ -66,7 +66,7 @@ class DotPrinter {
 
   std::string event_of(const Batch& batch) const {
     const std::uint32_t after = set_after(plan_, batch);
-    return after == kNone ? "" : " since " + std::to_string(after);
+    return after == kNone ? "" : std::string(" since ").append(std::to_string(after));
   }
 
   // From the last writers of what a pass uses, in program order: one edge for each of those.

@@ -86,7 +86,7 @@ class TextPrinter {
     std::vector<std::string> items;
     for (std::size_t i = 0; i < accesses.size(); ++i)
       items.push_back(access(accesses[i], plan_.live_accesses[first + i] != 0));
-    items.push_back("(" + reason(graph_, plan_.fates[planned.pass]) + ")");
+    items.push_back(std::string("(").append(reason(graph_, plan_.fates[planned.pass])).append(")"));
     line(wrapped(head, items, " "));
   }
 
@@ -154,7 +154,8 @@ class TextPrinter {
         if (plan_.fates[pass].fate == fate) items.emplace_back(graph_.pass_name(pass));
       }
       if (items.empty()) continue;
-      line(wrapped("culled, " + reason(graph_, {fate, kNone, kNone}) + ": ", items, ", "));
+      const std::string why = reason(graph_, {fate, kNone, kNone});
+      line(wrapped(std::string("culled, ").append(why).append(": "), items, ", "));
       any = true;
     }
     if (any) line("");
