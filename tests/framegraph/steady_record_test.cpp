@@ -57,7 +57,7 @@ std::size_t allocations_of_steady_frames(Path path, std::uint32_t threads = 1) {
   options.verify = options.check_uses = false;
   auto executor = Executor::create(handles, options);
   EXPECT_TRUE(executor);
-  const HostBuffer host = gpu.make_host_buffer(4 * 16 * 16);
+  const HostBuffer host = gpu.make_host_buffer(VkDeviceSize{4} * 16 * 16);
   Graph graph;
   std::size_t before = 0;
   constexpr int kFrames = 30;

@@ -1,0 +1,88 @@
+#include "barrier_search.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <iostream>
+
+#include "alcove/framegraph/verify.h"
+
+namespace alcove::framegraph {
+namespace {
+
+using Changes = std::vector<std::vector<Transition>>;  // by position
+
+// The plan's layout changes at the latest positions of the mask that are not too late.
+Changes moved_changes(const Plan& plan, std::uint32_t mask) {
+  Changes changes(plan.passes.size() + 1);
+  const auto move = [&](std::uint32_t first, std::uint32_t count, std::size_t position) {
+    std::size_t to = position;
+    while (to > 0 && !(mask & (1u << to))) --to;
+    for (std::uint32_t b = first; b < first + count; ++b) {
+      const Batch& batch = plan.batches[b];
+      for (std::uint32_t t = batch.first; t < batch.first + batch.count; ++t) {
+        if (plan.transitions[t].resource != kNone) changes[to].push_back(plan.transitions[t]);
+      }
+    }
+  };
+  for (std::size_t p = 0; p < plan.passes.size(); ++p)
+    move(plan.passes[p].first_batch, plan.passes[p].batch_count, p);
+  move(plan.submissions[0].first_batch, plan.submissions[0].batch_count, plan.passes.size());
+  return changes;
+}
+
+// Everything waits for everything, and the changes.
+void append_full_barrier(Plan& plan, const std::vector<Transition>& changes) {
+  Batch batch;
+  batch.first = static_cast<std::uint32_t>(plan.transitions.size());
+  batch.count = static_cast<std::uint32_t>(changes.size() + 1);
+  Transition all;
+  all.src_stages = all.dst_stages =
+      VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT | VK_PIPELINE_STAGE_2_HOST_BIT;
+  all.src_access = VK_ACCESS_2_MEMORY_WRITE_BIT;
+  all.dst_access = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+  plan.transitions.push_back(all);
+  for (Transition change : changes) {
+    change.src_stages = all.src_stages;
+    change.src_access = all.src_access;
+    change.dst_stages = all.dst_stages;
+    change.dst_access = all.dst_access;
+    plan.transitions.push_back(change);
+  }
+  plan.batches.push_back(batch);
+}
+
+}  // namespace
+
+Plan with_barriers_at(const Plan& plan, std::uint32_t mask) {
+  const Changes changes = moved_changes(plan, mask);
+  Plan made = plan;
+  made.batches.clear();
+  made.transitions.clear();
+  for (std::size_t p = 0; p <= plan.passes.size(); ++p) {
+    const auto first = static_cast<std::uint32_t>(made.batches.size());
+    const std::uint32_t count = mask & (1u << p) ? 1 : 0;
+    if (count) append_full_barrier(made, changes[p]);
+    const bool last = p == plan.passes.size();
+    (last ? made.submissions[0].first_batch : made.passes[p].first_batch) = first;
+    (last ? made.submissions[0].batch_count : made.passes[p].batch_count) = count;
+  }
+  return made;
+}
+
+void expect_no_command_too_many(const char* name, const GraphDescription& graph,
+                                const Limits& limits, const Plan& plan) {
+  const auto used = static_cast<int>(plan.batches.size());
+  std::uint32_t tried = 0;
+  for (std::uint32_t mask = 0; mask < 2u << plan.passes.size(); ++mask) {
+    if (std::popcount(mask) != used - 1) continue;
+    ++tried;
+    EXPECT_FALSE(verify(graph, limits, with_barriers_at(plan, mask))) << name << ": " << mask;
+  }
+  std::cerr << name << ": " << plan.passes.size() << " passes, " << used
+            << " barrier commands with " << plan.transitions.size() << " barriers; " << tried
+            << " placements of one fewer refused\n";
+  EXPECT_GT(tried, 0u);
+}
+
+}  // namespace alcove::framegraph
