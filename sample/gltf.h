@@ -19,7 +19,7 @@ namespace alcove::sample {
 // sparse), embedded, binary and external buffers and images, metal-roughness materials, alpha mask,
 // cameras. Missing normals are made from the faces. Left out, with a warning in the scene: points
 // and lines, morph targets, skins, animation, texture coordinate sets other than the base colour's,
-// normal maps (shading normals are the vertices'). Alpha blend counts as mask with cutoff 0.5.
+// normal maps (shading normals are the vertices'). Alpha blend counts as opaque.
 //
 // The file may be hostile: every index, offset, stride and count is checked before it is used, what
 // a file may grow to is bounded by GltfLimits, and external files must lie in the scene's folder.

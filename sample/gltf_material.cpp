@@ -51,12 +51,6 @@ Wrap wrap_of(int mode) {
   return Wrap::kRepeat;
 }
 
-AlphaMode alpha_mode_of(const std::string& mode) {
-  if (mode == "MASK") return AlphaMode::kMask;
-  if (mode == "BLEND") return AlphaMode::kBlend;
-  return AlphaMode::kOpaque;
-}
-
 tl::expected<void, std::string> MaterialReader::add(const tinygltf::Material& in) {
   Material out;
   out.name = in.name;
@@ -69,9 +63,8 @@ tl::expected<void, std::string> MaterialReader::add(const tinygltf::Material& in
   for (size_t c = 0; c < 3 && c < in.emissiveFactor.size(); ++c) {
     out.emissive[static_cast<int>(c)] = clamped(in.emissiveFactor[c], 0.0, 1e6, 0.0);
   }
-  out.alpha_mode = alpha_mode_of(in.alphaMode);
-  out.alpha_cutoff =
-      out.alpha_mode == AlphaMode::kMask ? clamped(in.alphaCutoff, 0.0, 1e6, 0.5) : 0.5f;
+  out.alpha_mode = in.alphaMode == "MASK" ? AlphaMode::kMask : AlphaMode::kOpaque;
+  out.alpha_cutoff = clamped(in.alphaCutoff, 0.0, 1e6, 0.5);
   out.double_sided = in.doubleSided;
   for (auto [index, use] : {std::pair{pbr.baseColorTexture.index, &out.base_color_texture},
                             {pbr.metallicRoughnessTexture.index, &out.metal_roughness_texture},

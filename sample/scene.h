@@ -28,9 +28,9 @@ struct TextureUse {
   Wrap wrap_v = Wrap::kRepeat;
 };
 
-// kBlend hides like kMask with a cutoff of 0.5, in the rasteriser and in the ray tracer alike: an
-// occluder either blocks or does not.
-enum class AlphaMode : uint8_t { kOpaque, kMask, kBlend };
+// A g-buffer holds one surface a pixel, and an occluder either blocks or does not: what is blended
+// counts as opaque, in the rasteriser and in the ray tracer alike.
+enum class AlphaMode : uint8_t { kOpaque, kMask };
 
 // Metal and roughness, after glTF 2.0 section 3.9. Factors are linear and multiply the texture.
 struct Material {
@@ -43,7 +43,7 @@ struct Material {
   glm::vec3 emissive{0.0f};            // >= 0
   TextureUse emissive_texture;
   AlphaMode alpha_mode = AlphaMode::kOpaque;
-  float alpha_cutoff = 0.5f;  // kept where alpha >= cutoff; 0.5 for kBlend
+  float alpha_cutoff = 0.5f;  // of kMask: kept where alpha >= cutoff
   bool double_sided = false;
 };
 

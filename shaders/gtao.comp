@@ -11,12 +11,12 @@
 
 #include "gtao_parameters.h"
 #include "maths/bent_normal.h"
-#include "maths/bitmask_bent_normal.h"
 #include "maths/connected_samples.h"
 #include "maths/gtao.h"
 #include "maths/sampling.h"
 #include "maths/signal.h"
 #include "maths/slice_line.h"
+#include "maths/visibility_bitmask.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -27,13 +27,12 @@ layout(constant_id = 3) const bool kBitmask = false;
 layout(constant_id = 4) const int kDivisor = 1;  // one search a block of so many pixels a side
 layout(constant_id = 5) const uint kPattern = 0;  // 0 golden, 1 Hilbert and R2, 2 the memo's
 layout(constant_id = 6) const bool kPerspective = true;
-layout(constant_id = 7) const bool kReversed = false;
 
 // Bend of the line between two samples, in depths for each pixel's width, that parts two surfaces.
 const float kSharpBend = 4.0;
 
 layout(set = 0, binding = 0) uniform Parameters { GtaoParameters parameters; };
-layout(set = 0, binding = 1) uniform texture2D depth_image;   // as the projection wrote it
+layout(set = 0, binding = 1, r32f) uniform readonly image2D line_image;  // LineSample::line
 layout(set = 0, binding = 2) uniform texture2D normal_image;  // xyz, turned by view_from_normal
 layout(set = 0, binding = 3) uniform writeonly uimage2D signal_image;  // signal, line
 // Bound to the signal and never written where no bent normal is wanted.
@@ -48,27 +47,13 @@ struct Surface {
   TangentLine tangent;
 };
 
-ivec2 size_px() { return textureSize(depth_image, 0); }
-
-// As is_sky_ndc() has it.
-bool is_sky(float ndc) { return kReversed ? !(ndc > 0.0) : !(ndc < 1.0); }
-
-const float kSkyLine = kPerspective ? 1.0 / kSkyDepth : kSkyDepth;
-
-// `line` of the image at a pixel; the sky's where the depth is the far plane's.
-float fetch_line(ivec2 pixel) {
-  float ndc = texelFetch(depth_image, pixel, 0).r;
-  float line = parameters.line_from_ndc.x * ndc + parameters.line_from_ndc.y;
-  return is_sky(ndc) ? kSkyLine : line;
-}
-
-float depth_of_line(float line) { return kPerspective ? 1.0 / line : line; }
+ivec2 size_px() { return imageSize(line_image); }
 
 Surface fetch_surface(ivec2 pixel, float line) {
   Surface surface;
   surface.pixel = pixel;
   surface.centre = vec2(pixel) + 0.5;
-  surface.depth = depth_of_line(line);
+  surface.depth = kPerspective ? 1.0 / line : line;
   vec2 slope = parameters.slope.zw + (kPerspective ? surface.centre * parameters.slope.xy : vec2(0.0));
   surface.view = normalize(vec3(-slope, 1.0));
   vec3 normal = mat3(parameters.view_from_normal) * texelFetch(normal_image, pixel, 0).xyz;
@@ -85,153 +70,140 @@ float border_distance(vec2 centre, vec2 direction) {
   return min(direction.x != 0.0 ? distance.x : 1e9, direction.y != 0.0 ? distance.y : 1e9) - 0.01;
 }
 
-// How far to search on one side, in pixels. Where the surface faces away from a side, what stands
-// above its tangent plane within the radius lies nearer by the cosine of gamma.
-float search_distance(Surface surface, SliceLine line, Slice slice, float side) {
-  float reach = tangent_horizon(slice, side) > 0.0 ? slice.cosine : 1.0;
-  return slice_radius_px(line, parameters.radius * reach, surface.depth, kPerspective);
-}
-
 // One side of a slice, as it is searched.
 struct Search {
-  SliceLine line;
   ivec2 pixel;
-  vec2 direction_px;  // outwards; 0 where there is nothing to search
-  float side;
-  float reach_px;  // from the first step to the last
+  SliceLine line;  // outwards
+  float reach_px;  // from the first step to the last; 0 where there is nothing to search
   float offset;    // of the steps, [0,1)
   float depth;     // linear, of the shaded point
   TangentLine tangent;
+  float gradient;  // of the tangent line, outwards
 };
 
 Search make_search(Surface surface, SliceLine line, Slice slice, float side, float offset) {
-  vec2 direction = side * line.direction_px;
-  float border = border_distance(surface.centre, direction);
-  float distance_px = search_distance(surface, line, slice, side);
   Search search;
-  search.line = line;
   search.pixel = surface.pixel;
-  search.direction_px = min(distance_px, border) < kNearestStep ? vec2(0.0) : direction;
-  search.side = side;
+  search.line = line;
+  search.line.direction_px *= side;
+  search.line.y_per_step *= side;
+  // Where the surface faces away from a side, what stands above its tangent plane within the radius
+  // lies nearer by the cosine of gamma.
+  float share = tangent_horizon(slice, side) > 0.0 ? slice.cosine : 1.0;
+  float distance_px = slice_radius_px(line, parameters.radius * share, surface.depth, kPerspective);
+  float border = border_distance(surface.centre, search.line.direction_px);
   // Steps stay apart where the radius spans few pixels, and inside the image always.
   float apart = max(distance_px - kNearestStep, 0.25 * float(kStepCount));
-  search.reach_px = max(min(apart, border - kNearestStep), 1e-3);
+  bool empty = min(distance_px, border) < kNearestStep;
+  search.reach_px = empty ? 0.0 : max(min(apart, border - kNearestStep), 1e-3);
   search.offset = offset;
   search.depth = surface.depth;
   search.tangent = surface.tangent;
+  search.gradient = dot(search.line.direction_px, surface.tangent.gradient);
   return search;
 }
 
 LineSample fetch_sample(Search search, uint k) {
   float t = (float(k) + search.offset) * (1.0 / float(kStepCount));
   LineSample found;
-  found.offset_px = kNearestStep + search.reach_px * t * t;
-  vec2 exact = search.direction_px * found.offset_px;
-  vec2 snapped = roundEven(exact);
-  float line = fetch_line(search.pixel + ivec2(snapped));
-  found.share = 1.0 / found.offset_px;
+  found.offset_px = kNearestStep + search.reach_px * (t * t);
+  vec2 snapped = roundEven(search.line.direction_px * found.offset_px);
+  // A side with nothing to search may lie outside the image.
+  ivec2 texel = search.pixel + (search.reach_px > 0.0 ? ivec2(snapped) : ivec2(0));
+  float line = imageLoad(line_image, texel).r;
   // Only across the line: along it a sample stays where it was found.
   float along_px = dot(snapped, search.line.direction_px);
-  vec2 moved = tangent_share(search.tangent, snapped, line, found.share) *
-               (search.line.direction_px * along_px - snapped);
-  found.line = max(line + dot(moved, search.tangent.gradient), 0.1 * line);
-  float depth = depth_of_line(found.line);
-  found.point =
-      slice_point(search.line, along_px, depth, search.depth, kPerspective ? depth : 1.0);
-  found.point.x *= search.side;
+  float on_plane = dot(snapped, search.tangent.gradient);
+  float share = tangent_share(search.tangent, line - search.tangent.line - on_plane,
+                              found.offset_px);
+  found.line = max(line + share * (along_px * search.gradient - on_plane), 0.1 * line);
+  found.point = slice_point(search.line, along_px, found.line, search.depth, kPerspective);
   return found;
 }
 
-bool within_radius(float squared) { return squared <= parameters.radius * parameters.radius; }
+float squared_length(vec2 v) { return dot(v, v); }
 
 // Cosine of the highest horizon within the radius on one side; -1 where there is none.
 float find_horizon(Search search) {
   float horizon = -1.0;
   for (uint k = 0; k < kStepCount; ++k) {
-    vec2 point = fetch_sample(search, k).point;
-    float squared = dot(point, point);
+    vec3 point = fetch_sample(search, k).point;
+    float squared = squared_length(point.xy);
+    float reach = parameters.radius * point.z;
     float cosine = point.y * inversesqrt(max(squared, 1e-30));
-    horizon = within_radius(squared) ? max(horizon, cosine) : horizon;
+    horizon = squared <= reach * reach ? max(horizon, cosine) : horizon;
   }
-  return search.direction_px == vec2(0.0) ? -1.0 : horizon;
+  return search.reach_px > 0.0 ? horizon : -1.0;
 }
 
 // A side of a slice as the bitmask sees it.
 struct Side {
-  float height_per_x;  // above the tangent plane, of a point of the slice's plane
-  float height_per_y;
-  float sharp;         // bend that parts two surfaces
-  EdgeScale edges;
+  vec2 height;        // above the tangent plane, of each unit of a point of the slice's plane
+  float sharp;        // bend that parts two surfaces
+  float per_bearing;  // sectors
 };
 
-Side make_side(Surface surface, SliceLine line, Slice slice, SectorScale scale, float side) {
+Side make_side(Surface surface, SliceLine line, Slice slice, float side) {
   Side made;
-  made.height_per_x = side * slice.along;
-  made.height_per_y = slice.toward;
+  made.height = vec2(side * slice.along, slice.toward);
   made.sharp = kSharpBend * line.x_per_step * (kPerspective ? surface.tangent.line : 1.0);
-  made.edges = make_edge_scale(slice, scale, side);
+  made.per_bearing = sectors_per_bearing(slice, side);
   return made;
 }
 
 // What the search holds on to from sample to sample.
 struct Sheet {
   LineSample last;
-  float slope;      // of `line` up to the last sample
-  float bend;       // at the last sample
-  float position;   // of the last sample's front
-  float distance;   // its distance from the shaded point
-  bool inside;      // whether it lies within the radius, on this side
-  uint sectors;     // occluded so far
+  float rise;      // of `line` over the last step
+  float step_px;   // the last step
+  float bend;      // sharp, at the last sample
+  float position;  // of the last sample's front, in sectors
+  float excess;    // radius_excess() of it
+  uint sectors;    // occluded so far
 };
 
 float back_position(Side side, LineSample here) {
-  return edge_position(side.edges, here.point - vec2(0.0, parameters.thickness));
+  return sector_position(side.per_bearing,
+                         here.point.xy - vec2(0.0, parameters.thickness * here.point.z));
 }
 
 // The first sample stands alone. Its edge is drawn in unless it lies on the surface's own plane.
 Sheet begin_sheet(Surface surface, Side side, LineSample here, LineSample next) {
   Sheet sheet;
   sheet.last = here;
-  sheet.slope = line_slope(here, next);
-  sheet.bend = (here.line - surface.tangent.line) * here.share - sheet.slope;
-  float squared = dot(here.point, here.point);
-  sheet.distance = sqrt(squared);
-  sheet.inside = within_radius(squared);
-  float height = dot(here.point, vec2(side.height_per_x, side.height_per_y));
-  bool above = height * abs(height) > 0.04 * squared;
-  vec2 front = vec2(here.point.x * (above ? 1.0 - edge_share(kStepCount) : 1.0), here.point.y);
-  sheet.position = edge_position(side.edges, front);
+  sheet.rise = next.line - here.line;
+  sheet.step_px = next.offset_px - here.offset_px;
+  sheet.bend = sharp_bend(here.line - surface.tangent.line, here.offset_px, sheet.rise,
+                          sheet.step_px, side.sharp);
+  float height = dot(here.point.xy, side.height);
+  bool above = height * abs(height) > 0.04 * squared_length(here.point.xy);
+  float drawn = above ? edge_share(kStepCount) : 0.0;
+  sheet.position = sector_position(side.per_bearing, here.point.xy * vec2(1.0 - drawn, 1.0));
+  sheet.excess = radius_excess(here.point, parameters.radius);
   uint covered = sectors_between(sheet.position, back_position(side, here));
-  sheet.sectors = sheet.inside ? covered : 0u;
+  sheet.sectors = sheet.excess <= 0.0 ? covered : 0u;
   return sheet;
 }
 
 // Adds a sample, `bend` of the line at it: its thickness, and the sheet between it and the last one
-// if they are joined, each as far as it lies within the radius.
-void extend_sheet(inout Sheet sheet, Side side, LineSample here, float bend) {
-  bool joined = samples_join(sheet.bend, bend, side.sharp);
-  float squared = dot(here.point, here.point);
-  bool inside = within_radius(squared);
-  float step_px = here.offset_px - sheet.last.offset_px;
-  float drawn = joined ? 0.0 : edge_share(kStepCount) * step_px * here.share;
-  float position =
-      edge_position(side.edges, vec2(here.point.x * (1.0 - drawn), here.point.y));
-  float distance = sqrt(squared);
-  vec2 crossing = radius_crossing(here.point, distance, sheet.last.point, sheet.distance,
-                                  parameters.radius);
-  float cut = edge_position(side.edges, crossing);
-  float start = inside ? position : cut;
-  float end = inside ? back_position(side, here) : cut;
-  float low = min(start, end);
-  float high = max(start, end);
-  float joint = joined ? (sheet.inside ? sheet.position : cut) : start;
-  uint covered = sectors_between(min(low, joint), max(high, joint));
-  sheet.sectors |= inside || (joined && sheet.inside) ? covered : 0u;
+// if they are joined, as far as it runs within the radius.
+void extend_sheet(inout Sheet sheet, Side side, float x_per_step, LineSample here, float bend) {
+  bool joined = samples_join(sheet.bend, bend);
+  float excess = radius_excess(here.point, parameters.radius);
+  bool inside = excess <= 0.0;
+  float drawn = joined ? 0.0 : edge_share(kStepCount) * sheet.step_px * x_per_step;
+  vec2 front = vec2(here.point.x - drawn, here.point.y);
+  vec2 leaves = radius_crossing(here.point, excess, sheet.last.point, sheet.excess);
+  float position = sector_position(side.per_bearing, inside ? front : leaves);
+  float end = inside ? back_position(side, here) : position;
+  bool continued = joined && sheet.excess <= 0.0;
+  float joint = continued ? sheet.position : position;
+  uint covered = sectors_between(min(min(position, end), joint), max(max(position, end), joint));
+  sheet.sectors |= inside || continued ? covered : 0u;
   sheet.last = here;
   sheet.bend = bend;
   sheet.position = position;
-  sheet.distance = distance;
-  sheet.inside = inside;
+  sheet.excess = excess;
 }
 
 // The sectors that the samples of a side occlude. Each sample waits for the next one, which tells
@@ -241,15 +213,17 @@ uint find_occluders(Surface surface, Search search, Side side) {
   Sheet sheet = begin_sheet(surface, side, fetch_sample(search, 0), here);
   for (uint k = 2; k < kStepCount; ++k) {
     LineSample next = fetch_sample(search, k);
-    float slope = line_slope(here, next);
-    float bend = sheet.slope - slope;
-    extend_sheet(sheet, side, here, bend);
-    sheet.slope = slope;
+    float rise = next.line - here.line;
+    float step_px = next.offset_px - here.offset_px;
+    float bend = sharp_bend(sheet.rise, sheet.step_px, rise, step_px, side.sharp);
+    extend_sheet(sheet, side, search.line.x_per_step, here, bend);
+    sheet.rise = rise;
+    sheet.step_px = step_px;
     here = next;
   }
   // Nothing tells how it ends: joined only if the way to it did not bend.
-  extend_sheet(sheet, side, here, -1e30 * sheet.bend);
-  return search.direction_px == vec2(0.0) ? 0u : sheet.sectors;
+  extend_sheet(sheet, side, search.line.x_per_step, here, -sheet.bend);
+  return search.reach_px > 0.0 ? sheet.sectors : 0u;
 }
 
 // What a slice adds to the pixel's sums.
@@ -261,21 +235,20 @@ struct SliceSum {
 
 SliceSum bitmask_slice(Surface surface, SliceLine line, Slice slice, vec3 direction, Search ahead,
                        Search behind) {
-  SectorScale scale = make_sector_scale(slice);
-  uint front = find_occluders(surface, ahead, make_side(surface, line, slice, scale, 1.0));
-  uint back = find_occluders(surface, behind, make_side(surface, line, slice, scale, -1.0));
-  uint thin = front | back;
-  uint thick = filled_sectors(1.0, front) | filled_sectors(-1.0, back);
+  Side ahead_side = make_side(surface, line, slice, 1.0);
+  Side behind_side = make_side(surface, line, slice, -1.0);
+  uint ahead_sectors = find_occluders(surface, ahead, ahead_side);
+  uint behind_sectors = find_occluders(surface, behind, behind_side);
+  VisiblePart front = visible_part(slice, 1.0, ahead_side.per_bearing, ahead_sectors,
+                                   parameters.fill, kBentNormal);
+  VisiblePart back = visible_part(slice, -1.0, behind_side.per_bearing, behind_sectors,
+                                  parameters.fill, kBentNormal);
   SliceSum sum;
-  sum.open = scale.open;
-  sum.visible =
-      mix(bitmask_visibility(scale, thin), bitmask_visibility(scale, thick), parameters.fill);
-  sum.bent = vec3(0.0);
-  if (kBentNormal) {
-    vec2 bent =
-        mix(bitmask_bent(slice, scale, thin), bitmask_bent(slice, scale, thick), parameters.fill);
-    sum.bent = direction * bent.x + surface.view * bent.y;
-  }
+  sum.visible = front.arc + back.arc;
+  sum.open =
+      light_arc(slice, 1.0, tangent_light(slice, 1.0)) + light_arc(slice, -1.0, tangent_light(slice, -1.0));
+  vec2 bent = front.bent + back.bent;
+  sum.bent = direction * bent.x + surface.view * bent.y;
   return sum;
 }
 
@@ -315,9 +288,9 @@ void main() {
     return;
   }
   ivec2 pixel = min(block * kDivisor + ivec2(parameters.phase), size_px() - 1);
-  float centre_line = fetch_line(pixel);
-  if (centre_line == kSkyLine) {
-    store_signal(block, 1.0, 1.0, kSkyLine);
+  float centre_line = imageLoad(line_image, pixel).r;
+  if (centre_line == sky_line(kPerspective)) {
+    store_signal(block, 1.0, 1.0, sky_line(kPerspective));
     if (kBentNormal) {
       imageStore(bent_image, block, uvec4(0u));
     }

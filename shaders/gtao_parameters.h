@@ -8,7 +8,6 @@ ALCOVE_MATHS_BEGIN
 struct GtaoParameters {
   mat4 view_from_normal;  // rotation from the space of the normals to view space
   vec4 slope;             // xy: ray_per_px(); zw: of the ray at the image's corner; view space
-  vec2 line_from_ndc;     // LineSample::line = x * depth_ndc + y
   vec2 phase;             // which pixel of a block is searched
   float radius;           // scene units
   uint frame;             // turns the noise

@@ -19,6 +19,7 @@
 #include "maths/projection.h"
 #include "maths/reprojection.h"
 #include "maths/signal.h"
+#include "maths/slice_line.h"
 #include "reconstruct_parameters.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -29,20 +30,21 @@ layout(constant_id = 2) const bool kBentNormal = false;
 layout(constant_id = 3) const bool kMotion = false;
 layout(constant_id = 4) const bool kPerspective = true;
 layout(constant_id = 5) const bool kClamp = false;
-layout(constant_id = 6) const bool kReversed = false;
-layout(constant_id = 7) const bool kStill = false;  // nothing moved since the last frame
+layout(constant_id = 6) const bool kStill = false;  // nothing moved since the last frame
 
 layout(set = 0, binding = 0) uniform Parameters { ReconstructParameters parameters; };
-layout(set = 0, binding = 1) uniform utexture2D signal_image;  // signal, line; one texel a block
-layout(set = 0, binding = 2) uniform utexture2D bent_image;    // where there is none, the signal
-layout(set = 0, binding = 3) uniform texture2D depth_image;    // as the projection wrote it
-layout(set = 0, binding = 4) uniform texture2D normal_image;   // xyz
+// What our own passes wrote is read as storage: a texel at a known place needs no sampler.
+layout(set = 0, binding = 1, rg32ui) uniform readonly uimage2D signal_image;  // one texel a block
+// Where there is none, the signal.
+layout(set = 0, binding = 2, rg32ui) uniform readonly uimage2D bent_image;
+layout(set = 0, binding = 3, r32f) uniform readonly image2D line_image;  // LineSample::line
+layout(set = 0, binding = 4) uniform texture2D normal_image;             // xyz
 layout(set = 0, binding = 5) uniform writeonly image2D visibility_image;
 // In the space of the normals; bound to the visibility and never written where there is none.
 layout(set = 0, binding = 6) uniform writeonly image2D bent_normal_image;
 #ifdef HISTORY
-layout(set = 0, binding = 7) uniform texture2D motion_image;  // where there is none, the depth
-layout(set = 0, binding = 8) uniform utexture2D history_image;
+layout(set = 0, binding = 7) uniform texture2D motion_image;  // where there is none, the normals
+layout(set = 0, binding = 8, rg32ui) uniform readonly uimage2D history_image;
 layout(set = 0, binding = 9) uniform texture2D bent_history_image;
 layout(set = 0, binding = 10) uniform writeonly uimage2D next_history_image;
 layout(set = 0, binding = 11) uniform writeonly image2D next_bent_history_image;
@@ -69,16 +71,13 @@ struct Neighbourhood {
   Spread spread;  // of the visibility
 };
 
-ivec2 size_px() { return textureSize(depth_image, 0); }
+ivec2 size_px() { return imageSize(line_image); }
 
-// As is_sky_ndc() has it.
-bool is_sky(float ndc) { return kReversed ? !(ndc > 0.0) : !(ndc < 1.0); }
-
-Surface fetch_surface(ivec2 pixel, float ndc) {
+Surface fetch_surface(ivec2 pixel, float line) {
   Surface surface;
   surface.pixel = pixel;
   surface.centre = vec2(pixel) + 0.5;
-  surface.line = parameters.line_from_ndc.x * ndc + parameters.line_from_ndc.y;
+  surface.line = line;
   surface.depth = kPerspective ? 1.0 / surface.line : surface.line;
   vec3 plane = mat3(parameters.plane_from_normal) * texelFetch(normal_image, pixel, 0).xyz;
   // How the distance from the plane grows with depth along the pixel's ray. Seen edge-on, a plane
@@ -147,12 +146,12 @@ Neighbourhood gather(Surface surface, Window window) {
   vec3 moments = vec3(0.0);
   for (int y = window.low.y; y <= window.high.y; ++y) {
     for (int x = window.low.x; x <= window.high.x; ++x) {
-      uvec2 stored = texelFetch(signal_image, ivec2(x, y), 0).xy;
+      uvec2 stored = imageLoad(signal_image, ivec2(x, y)).xy;
       ivec2 searched = min(ivec2(x, y) * kDivisor + phase, last);
       float weight = neighbour_weight(surface, window, vec2(searched - surface.pixel),
                                       uintBitsToFloat(stored.y));
       Signal signal = unpack_signal(stored.x);
-      vec3 bent = kBentNormal ? unpack_direction(texelFetch(bent_image, ivec2(x, y), 0).xy)
+      vec3 bent = kBentNormal ? unpack_direction(imageLoad(bent_image, ivec2(x, y)).xy)
                               : vec3(0.0);
       add(found.sum, weight, signal, bent);
       if (kClamp) {
@@ -211,7 +210,7 @@ vec4 reproject(Surface surface) {
 
 // A texel of history, all of it or none as its depth tells whether it is of the same surface.
 float add_history(inout History history, Surface surface, ivec2 texel, float depth, float share) {
-  uvec2 stored = texelFetch(history_image, texel, 0).xy;
+  uvec2 stored = imageLoad(history_image, texel).xy;
   vec2 depth_and_count = unpackHalf2x16(stored.y);
   float weight = share * history_weight(min(depth, kLargestDepth), depth_and_count.x,
                                         kDepthTolerance, surface.slant);
@@ -316,13 +315,13 @@ void main() {
   if (any(greaterThanEqual(pixel, size_px()))) {
     return;
   }
-  float ndc = texelFetch(depth_image, pixel, 0).r;
-  if (is_sky(ndc)) {
+  float line = imageLoad(line_image, pixel).r;
+  if (line == sky_line(kPerspective)) {
     store(pixel, no_sum());
 #ifdef HISTORY
     imageStore(next_history_image, pixel, uvec4(0u));
 #endif
     return;
   }
-  reconstruct(fetch_surface(pixel, ndc));
+  reconstruct(fetch_surface(pixel, line));
 }

@@ -6,14 +6,14 @@
 ALCOVE_MATHS_BEGIN
 
 struct ReconstructParameters {
-  // To the image of the frame before, from (x s, y s, depth, 1), x and y in pixels and s as
-  // sample_scale(): x w and y w in pixels, the depth there, and w. Zeros where there is no history.
+  // To the image of the frame before, from (x s, y s, depth, 1), x and y in pixels and s the depth
+  // in perspective and 1 in orthographic views: x w and y w in pixels, the depth there, and w.
+  // Zeros where there is no history.
   mat4 previous_from_pixel;
   // From a normal, as it is stored, to its plane on the image: dot((x s, y s, depth), result) is
   // constant on the plane, x and y in pixels.
   mat4 plane_from_normal;
   mat4 normal_from_view;  // rotation from view space to the space of the normals
-  vec2 line_from_ndc;     // LineSample::line = x * depth_ndc + y
   vec2 phase;             // which pixel of each block was searched this frame
   float tolerance;        // scale of distances from the tangent plane, in depths
   float longest;          // frames that history counts at most

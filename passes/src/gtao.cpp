@@ -59,11 +59,11 @@ tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame, const GtaoInpu
     return tl::unexpected(good.error());
   }
   const std::array<NamedInput, 2> needed{
-      {{"depth", inputs.depth_ndc}, {"normals", inputs.normals}}};
+      {{"line depth", inputs.line_depth}, {"normals", inputs.normals}}};
   if (auto good = check_inputs(frame.graph, "gtao", needed); !good) {
     return tl::unexpected(good.error());
   }
-  const auto projection = projection_of(frame, frame.view, inputs.depth_ndc);
+  const auto projection = projection_of(frame, frame.view, inputs.line_depth);
   if (!projection) {
     return tl::unexpected(projection.error());
   }
@@ -73,16 +73,15 @@ tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame, const GtaoInpu
                              static_cast<std::uint32_t>(settings.estimator == Estimator::bitmask),
                              settings.divisor,
                              static_cast<std::uint32_t>(settings.pattern),
-                             static_cast<std::uint32_t>(is_perspective(*projection)),
-                             static_cast<std::uint32_t>(is_reversed(*projection))};
+                             static_cast<std::uint32_t>(is_perspective(*projection))};
   const auto kernel = frame.kernels.get(Shader::gtao, constants);
   if (!kernel) {
     return tl::unexpected(kernel.error());
   }
 
-  OcclusionSignal result = create_signal(frame, inputs.depth_ndc, settings);
+  OcclusionSignal result = create_signal(frame, inputs.line_depth, settings);
   auto pass = frame.graph.add_pass("gtao");
-  pass.read(inputs.depth_ndc, framegraph::access::sampled_compute);
+  pass.read(inputs.line_depth, framegraph::access::storage_read_compute);
   pass.read(inputs.normals, framegraph::access::sampled_compute);
   const auto& stored = framegraph::access::storage_write_compute;
   result.signal = pass.write(result.signal, stored, {}, framegraph::Contents::discard);
@@ -94,7 +93,6 @@ tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame, const GtaoInpu
   const maths::GtaoParameters parameters{
       view_from_normal(frame, inputs.normals_in_view_space),
       maths::vec4(per_px, projection->uv_to_slope.z, projection->uv_to_slope.w),
-      line_from_ndc(*projection),
       maths::vec2(static_cast<float>(phase.x), static_cast<float>(phase.y)),
       settings.radius,
       frame.index,
@@ -103,7 +101,7 @@ tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame, const GtaoInpu
   pass.record([&kernels = frame.kernels, kernel = *kernel, inputs, result,
                parameters](RecordContext& context) {
     const VkImageView signal = context.view(result.signal);
-    const std::array views{context.view(inputs.depth_ndc), context.view(inputs.normals), signal,
+    const std::array views{context.view(inputs.line_depth), context.view(inputs.normals), signal,
                            context.view(result.bent ? result.bent : result.signal)};
     kernels.dispatch(context, kernel, views, bytes_of(parameters), context.extent(result.signal));
   });

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "alcove/passes/line_depth.h"
+
 namespace alcove::passes {
 namespace {
 
@@ -73,7 +75,11 @@ tl::expected<OcclusionOutputs, Error> add_occlusion(const Frame& frame,
                           .divisor = settings.divisor,
                           .pattern = settings.pattern,
                           .bent_normal = settings.bent_normal};
-  const auto signal = add_gtao(frame, {inputs.depth_ndc, normals, in_view_space}, gtao);
+  const auto line = add_line_depth(frame, inputs.depth_ndc);
+  if (!line) {
+    return tl::unexpected(line.error());
+  }
+  const auto signal = add_gtao(frame, {*line, normals, in_view_space}, gtao);
   if (!signal) {
     return tl::unexpected(signal.error());
   }
@@ -82,7 +88,7 @@ tl::expected<OcclusionOutputs, Error> add_occlusion(const Frame& frame,
                                         .history_frames = settings.history_frames,
                                         .clamp_width = settings.clamp_width,
                                         .precision = settings.precision};
-  return add_reconstruct(frame, {*signal, inputs.depth_ndc, normals, in_view_space, inputs.motion},
+  return add_reconstruct(frame, {*signal, *line, normals, in_view_space, inputs.motion},
                          reconstruct, history_name)
       .map([&](const Occlusion& filtered) {
         return OcclusionOutputs{filtered.visibility, filtered.bent_normal, *depth, normals};

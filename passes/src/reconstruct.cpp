@@ -48,9 +48,9 @@ tl::expected<void, Error> check(const ReconstructSettings& settings) {
 
 tl::expected<void, Error> check_textures(const Frame& frame, const ReconstructInputs& inputs) {
   const std::array<NamedInput, 3> needed{
-      {{"depth", inputs.depth_ndc},
+      {{"line depth", inputs.line_depth},
        {"normals", inputs.normals},
-       {"motion vectors", inputs.motion ? inputs.motion : inputs.depth_ndc}}};
+       {"motion vectors", inputs.motion ? inputs.motion : inputs.line_depth}}};
   return check_inputs(frame.graph, "reconstruct", needed);
 }
 
@@ -69,7 +69,7 @@ Textures create_textures(const Frame& frame, const ReconstructInputs& inputs,
                          const ReconstructSettings& settings, std::string_view history_name,
                          bool& valid) {
   Graph& graph = frame.graph;
-  const VkExtent3D extent = graph.extent(inputs.depth_ndc);
+  const VkExtent3D extent = graph.extent(inputs.line_depth);
   const auto size = framegraph::Extent::absolute(extent.width, extent.height);
   Textures textures{.inputs = inputs};
   textures.result.visibility =
@@ -97,9 +97,9 @@ Textures create_textures(const Frame& frame, const ReconstructInputs& inputs,
 }
 
 void declare_accesses(framegraph::PassBuilder& pass, Textures& textures) {
-  const auto read = [&](Texture texture, Range range = {}) {
+  const auto read = [&](Texture texture, const framegraph::Access& access) {
     if (texture) {
-      pass.read(texture, framegraph::access::sampled_compute, range);
+      pass.read(texture, access);
     }
   };
   const auto write = [&](Texture& texture) {
@@ -108,13 +108,15 @@ void declare_accesses(framegraph::PassBuilder& pass, Textures& textures) {
                            framegraph::Contents::discard);
     }
   };
-  read(textures.inputs.signal.signal);
-  read(textures.inputs.signal.bent);
-  read(textures.inputs.depth_ndc);
-  read(textures.inputs.normals);
-  read(textures.inputs.motion);
-  read(textures.history);
-  read(textures.bent_history);
+  const auto& sampled = framegraph::access::sampled_compute;
+  const auto& stored = framegraph::access::storage_read_compute;
+  read(textures.inputs.signal.signal, stored);
+  read(textures.inputs.signal.bent, stored);
+  read(textures.inputs.line_depth, stored);
+  read(textures.inputs.normals, sampled);
+  read(textures.inputs.motion, sampled);
+  read(textures.history, stored);
+  read(textures.bent_history, sampled);
   write(textures.result.visibility);
   write(textures.result.bent_normal);
   write(textures.next_history);
@@ -134,13 +136,13 @@ Bindings bindings_of(RecordContext& context, const Textures& textures) {
   const Occlusion& out = textures.result;
   return {context.view(in.signal.signal),
           view_or(in.signal.bent, in.signal.signal),
-          context.view(in.depth_ndc),
+          context.view(in.line_depth),
           context.view(in.normals),
           context.view(out.visibility),
           view_or(out.bent_normal, out.visibility),
-          view_or(in.motion, in.depth_ndc),
+          view_or(in.motion, in.normals),
           view_or(textures.history, {}),
-          view_or(textures.bent_history, in.depth_ndc),
+          view_or(textures.bent_history, in.normals),
           view_or(textures.next_history, {}),
           view_or(textures.next_bent_history, out.visibility)};
 }
@@ -182,7 +184,6 @@ maths::ReconstructParameters parameters_of(const Frame& frame, const maths::Proj
   parameters.plane_from_normal =
       maths::mat4(maths::transpose(maths::mat3(from_pixel)) * maths::mat3(to_view));
   parameters.normal_from_view = maths::transpose(to_view);
-  parameters.line_from_ndc = line_from_ndc(projection);
   parameters.tolerance = 1.0f / (settings.tolerance_px * std::abs(maths::ray_per_px(projection).y));
   parameters.longest = static_cast<float>(settings.history_frames);
   parameters.clamp_width = settings.clamp_width;
@@ -200,8 +201,8 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& frame, const Reconst
   if (auto good = check_textures(frame, inputs); !good) {
     return tl::unexpected(good.error());
   }
-  const auto projection = projection_of(frame, frame.view, inputs.depth_ndc);
-  const auto previous = projection_of(frame, frame.previous_view, inputs.depth_ndc);
+  const auto projection = projection_of(frame, frame.view, inputs.line_depth);
+  const auto previous = projection_of(frame, frame.previous_view, inputs.line_depth);
   if (!projection || !previous) {
     return tl::unexpected(projection ? previous.error() : projection.error());
   }
@@ -215,7 +216,6 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& frame, const Reconst
                              static_cast<std::uint32_t>(bool(inputs.motion)),
                              static_cast<std::uint32_t>(is_perspective(*projection)),
                              static_cast<std::uint32_t>(settings.clamp_width > 0.0f),
-                             static_cast<std::uint32_t>(is_reversed(*projection)),
                              static_cast<std::uint32_t>(still)};
   const auto kernel =
       frame.kernels.get(history ? Shader::reconstruct_history : Shader::reconstruct, constants);

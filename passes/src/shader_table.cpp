@@ -11,6 +11,7 @@
 #include "spirv/environment_prefilter.h"
 #include "spirv/gtao.h"
 #include "spirv/gtso.h"
+#include "spirv/line_depth.h"
 #include "spirv/multi_bounce.h"
 #include "spirv/normals.h"
 #include "spirv/reconstruct.h"
@@ -23,11 +24,12 @@ const ShaderSource& shader_source(Shader shader) {
   static const std::array<ShaderSource, static_cast<std::size_t>(Shader::count)> sources{{
       {kDepthPyramid, "sttttt"},
       {kNormals, "st"},
-      {kGtao, "sstt"},
-      {kReconstruct, "sssstt"},
+      {kLineDepth, "st"},
+      {kGtao, "tstt"},
+      {kReconstruct, "tttstt"},
       {kReconstructHistory,
-       "sssstt"
-       "ssstt"},
+       "tttstt"
+       "ststt"},
       {kMultiBounce, "sst"},
       {kGtso, "ssssst"},
       {kApply, "ssssssstt"},

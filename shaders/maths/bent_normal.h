@@ -14,17 +14,23 @@
 
 ALCOVE_MATHS_BEGIN
 
-// One side's part: x along the slice's direction, y along the view vector. `horizon` is a cosine;
-// one below the tangent plane, or out of [-1,1], is raised or cut to it. Each at most 1 in size.
+// One side's part from the view vector to a light above the tangent plane: x along the slice's
+// direction, y along the view vector, each at most 1 in size. `light` is the sine (at least 0) and
+// cosine of its angle.
+ALCOVE_INLINE vec2 bent_light_arc(Slice s, float side, vec2 light) {
+  float along = side * s.along;
+  float sine_cubed = light.x * light.x * light.x;
+  float rise = 1.0f - light.y;
+  float x = s.toward * sine_cubed + along * rise * rise * (2.0f + light.y);
+  float y = s.toward * (1.0f - light.y * light.y * light.y) + along * sine_cubed;
+  return vec2(side * x * (1.0f / 3.0f), y * (1.0f / 3.0f));
+}
+
+// The same up to a horizon, given by its cosine; one below the tangent plane, or out of [-1,1], is
+// raised or cut to it.
 ALCOVE_INLINE vec2 bent_arc(Slice s, float side, float horizon) {
   float c = clamp(horizon, tangent_horizon(s, side), 1.0f);
-  float along = side * s.along;
-  float sine_squared = (1.0f - c) * (1.0f + c);
-  float sine_cubed = sine_squared * sqrt(sine_squared);
-  float rise = 1.0f - c;
-  float x = s.toward * sine_cubed + along * rise * rise * (2.0f + c);
-  float y = s.toward * (1.0f - c * c * c) + along * sine_cubed;
-  return vec2(side * x * (1.0f / 3.0f), y * (1.0f / 3.0f));
+  return bent_light_arc(s, side, vec2(sqrt((1.0f - c) * (1.0f + c)), c));
 }
 
 // A slice's part of the bent normal, in the space of `direction` and `view`; sum over slices.

@@ -25,14 +25,19 @@ ALCOVE_INLINE float horizon_cosine(vec3 delta, vec3 view) {
   return squared > 0.0f ? dot(delta, view) * inversesqrt(squared) : -1.0f;
 }
 
-// Cosine-weighted visibility of one side up to a horizon, times the projected normal's length.
-// `horizon` is a cosine; one below the tangent plane, or out of [-1,1], is raised or cut to it.
+// Cosine-weighted visibility of one side from the view vector to a light above the tangent plane,
+// times the projected normal's length. `light` is the sine (at least 0) and cosine of its angle.
 // Within 2.4e-5.
+ALCOVE_INLINE float light_arc(Slice s, float side, vec2 light) {
+  float swell = arc_cosine(light.y) - light.x * light.y;
+  return 0.5f * (light.x * light.x * s.toward + swell * (side * s.along));
+}
+
+// The same up to a horizon, given by its cosine; one below the tangent plane, or out of [-1,1], is
+// raised or cut to it.
 ALCOVE_INLINE float slice_arc(Slice s, float side, float horizon) {
   float c = clamp(horizon, tangent_horizon(s, side), 1.0f);
-  float along = side * s.along;
-  float sine_squared = (1.0f - c) * (1.0f + c);
-  return 0.5f * (sine_squared * s.toward + (arc_cosine(c) - c * sqrt(sine_squared)) * along);
+  return light_arc(s, side, vec2(sqrt((1.0f - c) * (1.0f + c)), c));
 }
 
 // Both sides together: the slice's part of the visibility. `ahead` is the horizon's cosine on the

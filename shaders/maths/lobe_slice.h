@@ -24,6 +24,7 @@
 #include "ggx.h"
 #include "language.h"
 #include "slice.h"
+#include "visibility_bitmask.h"
 
 ALCOVE_MATHS_BEGIN
 
@@ -131,11 +132,11 @@ ALCOVE_INLINE LobeSlice make_lobe_slice(Slice s, float alpha) {
   return lobe;
 }
 
-// The lobe on a side between the view vector and a horizon, given by its cosine: from 0 to the
-// side's `whole`.
-ALCOVE_INLINE float lobe_arc(Slice s, LobeSlice lobe, float side, float cosine) {
+// The lobe on a side between the view vector and a light above the tangent plane: from 0 to the
+// side's `whole`. `light` is the sine (at least 0) and cosine of its angle.
+ALCOVE_INLINE float lobe_light_arc(LobeSlice lobe, float side, vec2 light) {
   float integral =
-      abs(lobe_antiderivative(lobe.density, horizon_light(s, side, cosine)) - lobe.at_view);
+      abs(lobe_antiderivative(lobe.density, vec2(side * light.x, light.y)) - lobe.at_view);
   float inner = side > 0.0f ? lobe.ahead.inner : lobe.behind.inner;
   float outer = side > 0.0f ? lobe.ahead.outer : lobe.behind.outer;
   float knee = side > 0.0f ? lobe.ahead.knee : lobe.behind.knee;
@@ -143,22 +144,32 @@ ALCOVE_INLINE float lobe_arc(Slice s, LobeSlice lobe, float side, float cosine) 
   return min(inner * min(integral, knee) + outer * max(integral - knee, 0.0f), whole);
 }
 
+// The same up to a horizon, given by its cosine.
+ALCOVE_INLINE float lobe_arc(Slice s, LobeSlice lobe, float side, float cosine) {
+  vec2 light = horizon_light(s, side, cosine);
+  return lobe_light_arc(lobe, side, vec2(abs(light.x), light.y));
+}
+
 // The lobe between two horizons. In [0, lobe.open].
 ALCOVE_INLINE float horizon_lobe(Slice s, LobeSlice lobe, float ahead, float behind) {
   return lobe_arc(s, lobe, 1.0f, ahead) + lobe_arc(s, lobe, -1.0f, behind);
 }
 
-// The part of the open lobe below an angle, [0,1], as sector_position() is of the cosine: for a
-// bitmask of its own, whose sectors are as fine as the lobe is narrow. Sectors of the cosine are
-// too coarse for it (RMS error 0.13 at roughness 0.1).
-ALCOVE_INLINE float lobe_position(Slice s, LobeSlice lobe, float side, float cosine) {
-  float below = lobe.behind.whole + side * lobe_arc(s, lobe, side, cosine);
-  return lobe.open > 0.0f ? clamp(below / lobe.open, 0.0f, 1.0f) : 0.0f;
-}
-
-// What a bitmask of the lobe's sectors leaves visible. In [0, lobe.open].
-ALCOVE_INLINE float bitmask_lobe(LobeSlice lobe, uint occluded) {
-  return lobe.open * (1.0f - float(bitCount(occluded)) * (1.0f / 32.0f));
+// What the sectors of a side leave visible of the lobe, as visible_part() has it of the cosine.
+ALCOVE_INLINE float visible_lobe(LobeSlice lobe, float side, float per_bearing, uint occluded,
+                                 float fill) {
+  float keep = 1.0f - fill;
+  float whole = side > 0.0f ? lobe.ahead.whole : lobe.behind.whole;
+  float sum = whole * (occluded == 0u ? 1.0f : ((occluded >> 31u) != 0u ? 0.0f : keep));
+  uint ends = occluded ^ (occluded << 1u);
+  float weight = 1.0f;
+  while (ends != 0u) {
+    vec2 light = bearing_light(float(findLSB(ends)) / per_bearing);
+    sum += weight * lobe_light_arc(lobe, side, light);
+    weight = weight > 0.0f ? -keep : keep;
+    ends &= ends - 1u;
+  }
+  return max(sum, 0.0f);
 }
 
 // The direction of the slice that holds the lobe's centre: the plane of view and normal. Where they

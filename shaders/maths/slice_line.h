@@ -7,33 +7,34 @@
 // itself.)
 //
 // In the plane a point is (x, y): x along the slice's direction, y along the view vector, in scene
-// units from the shaded point. Both are linear in the distance along the line once it is scaled by
-// s, the sample's linear depth in perspective and 1 in orthographic views, so a sample costs three
-// multiply-adds and no position in space is ever formed.
+// units from the shaded point. Held as (x w, y w, w), w being 1/depth in perspective and 1 in
+// orthographic views, it is linear in the distance along the line and in the sample's `line`: it
+// costs three multiply-adds and no division, and no position in space is ever formed.
 #ifndef ALCOVE_MATHS_SLICE_LINE_H
 #define ALCOVE_MATHS_SLICE_LINE_H
 
+#include "constants.h"
 #include "language.h"
 #include "projection.h"
 
 ALCOVE_MATHS_BEGIN
 
+// LineSample::line of the sky.
+ALCOVE_INLINE float sky_line(bool perspective) {
+  return perspective ? 1.0f / kSkyDepth : kSkyDepth;
+}
+
 struct SliceLine {
   vec2 direction_px;  // unit vector on the image, the way of positive x
-  float x_per_step;   // x of a point i pixels along direction_px: s * i * x_per_step; positive
-  float y_per_step;   // y of it: s * i * y_per_step + (centre depth - depth) * y_per_depth
+  float x_per_step;   // x w of a point i pixels along direction_px: i * x_per_step; positive
+  float y_per_step;   // y w of it: i * y_per_step + (centre depth - depth) w * y_per_depth
   float y_per_depth;  // length of the view ray at unit linear depth
 };
 
-// Change of the view ray's x and y from one pixel to the next, to be scaled by s.
+// Change of the view ray's x and y from one pixel to the next.
 ALCOVE_INLINE vec2 ray_per_px(Projection p) {
   return vec2((p.uv_to_slope.x + p.uv_to_origin.x) * p.texel_uv.x,
               (p.uv_to_slope.y + p.uv_to_origin.y) * p.texel_uv.y);
-}
-
-// The factor s of a sample at linear depth `depth`.
-ALCOVE_INLINE float sample_scale(Projection p, float depth) {
-  return p.eye.w > 0.0f ? depth : 1.0f;
 }
 
 // The line of the slice through a point along `direction` (unit, perpendicular to `view`, which is
@@ -54,13 +55,13 @@ ALCOVE_INLINE SliceLine make_slice_line(vec2 per_px, vec3 direction, vec3 view) 
   return line;
 }
 
-// The point of the line `offset_px` pixels along it (negative: against it) at a linear depth;
-// `scale` is sample_scale() of its depth.
-ALCOVE_INLINE vec2 slice_point(SliceLine line, float offset_px, float depth, float centre_depth,
-                               float scale) {
-  float along = scale * offset_px;
-  return vec2(along * line.x_per_step,
-              along * line.y_per_step + (centre_depth - depth) * line.y_per_depth);
+// (x w, y w, w) of the point `offset_px` pixels along the line (negative: against it), where
+// `line` is LineSample::line.
+ALCOVE_INLINE vec3 slice_point(SliceLine slice, float offset_px, float line, float centre_depth,
+                               bool perspective) {
+  float rise = perspective ? centre_depth * line - 1.0f : centre_depth - line;
+  return vec3(offset_px * slice.x_per_step, offset_px * slice.y_per_step + rise * slice.y_per_depth,
+              perspective ? line : 1.0f);
 }
 
 // The surface's tangent plane on the image. LineSample::line, 1/depth in perspective and depth in
@@ -84,12 +85,11 @@ ALCOVE_INLINE TangentLine make_tangent_line(vec2 per_px, vec3 normal, vec3 view,
   return t;
 }
 
-// How far a sample at the texel `snapped_px` away is moved towards the exact place it stands for,
-// along the tangent plane: 1 on the plane, which stays exactly flat, 0 off it, where an occluder
-// stays where it was found. `share` is 1 / the distance in pixels.
-ALCOVE_INLINE float tangent_share(TangentLine t, vec2 snapped_px, float line, float share) {
-  float off_plane = line - t.line - dot(snapped_px, t.gradient);
-  return max(1.0f - t.fading * share * abs(off_plane), 0.0f);
+// How far a sample, `off_plane` off the tangent plane in `line` and so many pixels away, is moved
+// towards the exact place it stands for along that plane: 1 on the plane, which stays exactly flat,
+// 0 off it, where an occluder stays where it was found.
+ALCOVE_INLINE float tangent_share(TangentLine t, float off_plane, float offset_px) {
+  return max(1.0f - t.fading * abs(off_plane) / offset_px, 0.0f);
 }
 
 // Pixels along the line that a sphere of radius `radius` (scene units) around the point spans on

@@ -1,12 +1,16 @@
-// Visibility of a slice as 32 sectors, for occluders of finite thickness (after Therrien, Levesque
-// and Gilet 2023).
+// Visibility of one side of a slice as 32 sectors, for occluders of finite thickness (after
+// Therrien, Levesque and Gilet 2023).
 //
-// Sectors are not of equal angle: an angle is mapped through the slice's own distribution of the
-// cosine-weighted visibility, so that every sector holds exactly 1/32 of the open slice and a count
-// of bits is the integral. Sector 0 lies at the tangent plane on the negative side of the slice.
+// Angles are measured on a square instead of a circle, as bearings: 0 along the view vector, 1
+// across it, 2 against it, for one division and no root or arc cosine. A side's sectors are equal
+// steps of bearing from the view vector (sector 0) to the tangent plane. What weighs them comes
+// last: any weight with an antiderivative is integrated exactly at the ends of the runs of occluded
+// sectors, of which a side has one or two. So one search serves visibility, bent normal and any
+// lobe.
 #ifndef ALCOVE_MATHS_VISIBILITY_BITMASK_H
 #define ALCOVE_MATHS_VISIBILITY_BITMASK_H
 
+#include "bent_normal.h"
 #include "gtao.h"
 #include "language.h"
 #include "slice.h"
@@ -15,73 +19,76 @@ ALCOVE_MATHS_BEGIN
 
 const uint kSectorCount = 32u;
 
-// What the distribution of one slice needs: computed once, used by every step.
-struct SectorScale {
-  float open;          // the open slice, as open_slice() but exactly the sum of its two sides
-  float inverse_open;  // 1 / open; 0 where the slice holds nothing
-  float view;          // the distribution at the view vector itself, [0,1]
+// Of a point in the slice's plane, x outwards from the view vector (at least 0), y along it; any
+// length. In [0,2].
+ALCOVE_INLINE float bearing(vec2 point) {
+  return 1.0f - point.y / max(point.x + abs(point.y), 1e-30f);
+}
+
+// Sine and cosine of the angle to the view vector at a bearing in [0,2].
+ALCOVE_INLINE vec2 bearing_light(float at) {
+  float y = 1.0f - at;
+  float x = 1.0f - abs(y);
+  float inverse = inversesqrt(x * x + y * y);
+  return vec2(x * inverse, y * inverse);
+}
+
+// Sine and cosine of the angle at which a side meets the tangent plane.
+ALCOVE_INLINE vec2 tangent_light(Slice s, float side) { return vec2(s.cosine, -side * s.sine); }
+
+// Sectors of a side for each unit of bearing, at least 16.
+ALCOVE_INLINE float sectors_per_bearing(Slice s, float side) {
+  return float(kSectorCount) / max(bearing(tangent_light(s, side)), 1e-4f);
+}
+
+// Position of a point among the sectors of its side, in [0,32]; what lies under the tangent plane
+// counts as on it.
+ALCOVE_INLINE float sector_position(float per_bearing, vec2 point) {
+  return min(bearing(point) * per_bearing, float(kSectorCount));
+}
+
+// The sectors between two positions in [0,32], in either order, to the nearest boundaries.
+ALCOVE_INLINE uint sectors_between(float from, float to) {
+  int low = int(min(from, to) + 0.5f);
+  int count = int(max(from, to) + 0.5f) - low;
+  return count > 0 ? (0xffffffffu >> uint(32 - count)) << uint(low) : 0u;
+}
+
+// What is visible of a side: as slice_arc() and bent_arc().
+struct VisiblePart {
+  float arc;
+  vec2 bent;  // zero where it was not asked for
 };
 
-ALCOVE_INLINE SectorScale make_sector_scale(Slice s) {
-  float behind = slice_arc(s, -1.0f, tangent_horizon(s, -1.0f));
-  float ahead = slice_arc(s, 1.0f, tangent_horizon(s, 1.0f));
-  SectorScale scale;
-  scale.open = max(ahead + behind, 0.0f);
-  scale.inverse_open = scale.open > 1e-6f ? 1.0f / scale.open : 0.0f;
-  scale.view = behind * scale.inverse_open;
-  return scale;
+ALCOVE_INLINE VisiblePart add_part(VisiblePart sum, float weight, Slice s, float side, vec2 light,
+                                   bool with_bent) {
+  sum.arc += weight * light_arc(s, side, light);
+  if (with_bent) sum.bent += bent_light_arc(s, side, light) * weight;
+  return sum;
 }
 
-// The part of the open slice below an angle, [0,1], growing from the negative side's tangent plane
-// to the positive side's. The angle is given by its side (1 or -1) and the cosine to the view
-// vector; what lies under the tangent plane counts as on it.
-ALCOVE_INLINE float sector_position(Slice s, SectorScale scale, float side, float cosine) {
-  return clamp(scale.view + side * slice_arc(s, side, cosine) * scale.inverse_open, 0.0f, 1.0f);
-}
-
-// The lowest `count` sectors; any count.
-ALCOVE_INLINE uint sectors_below(uint count) {
-  return count >= 32u ? 0xffffffffu : (1u << count) - 1u;
-}
-
-// The sectors between two positions, in either order. An edge falls on the nearest sector boundary
-// with `dither` 0.5; with dithers spread over [0,1) the mean number of sectors is 32 |to - from|
-// exactly, however thin the range. Not-a-number covers nothing.
-ALCOVE_INLINE uint cover_sectors(float from, float to, float dither) {
-  if (!(from >= 0.0f && to >= 0.0f)) return 0u;
-  uint low = uint(min(min(from, to), 1.0f) * 32.0f + dither);
-  uint high = uint(min(max(from, to), 1.0f) * 32.0f + dither);
-  return sectors_below(high) & ~sectors_below(low);
-}
-
-// Visibility of the slice, weighted as slice_visibility() is: sum it, and divide by the sum of
-// `scale.open`. `occluded` has a bit for every covered sector.
-ALCOVE_INLINE float bitmask_visibility(SectorScale scale, uint occluded) {
-  return scale.open * (1.0f - float(bitCount(occluded)) * (1.0f / 32.0f));
-}
-
-// How thick an occluder is taken to be, in the scene's units, at a linear depth `depth` and for a
-// search of `radius`: the sum of a constant, a part of the radius and a part of the depth.
-struct Thickness {
-  float constant;    // scene units, at least 0
-  float per_radius;  // at least 0
-  float per_depth;   // at least 0
-};
-
-ALCOVE_INLINE float occluder_thickness(Thickness t, float radius, float depth) {
-  return t.constant + t.per_radius * radius + t.per_depth * max(depth, 0.0f);
-}
-
-// The sectors that one sample covers: from the angle of its front, `delta` away from the surface,
-// to the angle of the point `thickness` behind it along the ray that sees it (`sample_view` is the
-// unit vector from the sample to the eye; with the surface's own view vector both are the same
-// slice).
-ALCOVE_INLINE uint sample_sectors(Slice s, SectorScale scale, float side, vec3 delta, vec3 view,
-                                  vec3 sample_view, float thickness, float dither) {
-  float front = horizon_cosine(delta, view);
-  float back = horizon_cosine(delta - sample_view * thickness, view);
-  return cover_sectors(sector_position(s, scale, side, front),
-                       sector_position(s, scale, side, min(back, front)), dither);
+// Exact over the visible sectors. What lies behind an occluder, up to the tangent plane, is
+// unknown: the part `fill` of it, [0,1], counts as occluded too. An open side is exactly its open
+// arc and a full one exactly 0.
+ALCOVE_INLINE VisiblePart visible_part(Slice s, float side, float per_bearing, uint occluded,
+                                       float fill, bool with_bent) {
+  float keep = 1.0f - fill;
+  VisiblePart sum;
+  sum.arc = 0.0f;
+  sum.bent = vec2(0.0f, 0.0f);
+  // The ends of runs, from the view vector outwards: visible up to the first, then of what is
+  // visible beyond an occluder only the part that is kept.
+  float weight = occluded == 0u ? 1.0f : ((occluded >> 31u) != 0u ? 0.0f : keep);
+  sum = add_part(sum, weight, s, side, tangent_light(s, side), with_bent);
+  uint ends = occluded ^ (occluded << 1u);
+  weight = 1.0f;
+  while (ends != 0u) {
+    vec2 light = bearing_light(float(findLSB(ends)) / per_bearing);
+    sum = add_part(sum, weight, s, side, light, with_bent);
+    weight = weight > 0.0f ? -keep : keep;
+    ends &= ends - 1u;
+  }
+  return sum;
 }
 
 ALCOVE_MATHS_END

@@ -10,6 +10,7 @@
 #include "environment_parameters.h"
 #include "gtao_parameters.h"
 #include "gtso_parameters.h"
+#include "line_depth_parameters.h"
 #include "maths/projection.h"
 #include "multi_bounce_parameters.h"
 #include "normals_parameters.h"
@@ -37,9 +38,9 @@ const std::map<std::string, Offsets> kExpected = {
       ALCOVE_OFFSET(DepthPyramidParameters, reach)}},
     {"GtaoParameters",
      {ALCOVE_OFFSET(GtaoParameters, view_from_normal), ALCOVE_OFFSET(GtaoParameters, slope),
-      ALCOVE_OFFSET(GtaoParameters, line_from_ndc), ALCOVE_OFFSET(GtaoParameters, phase),
-      ALCOVE_OFFSET(GtaoParameters, radius), ALCOVE_OFFSET(GtaoParameters, frame),
-      ALCOVE_OFFSET(GtaoParameters, thickness), ALCOVE_OFFSET(GtaoParameters, fill)}},
+      ALCOVE_OFFSET(GtaoParameters, phase), ALCOVE_OFFSET(GtaoParameters, radius),
+      ALCOVE_OFFSET(GtaoParameters, frame), ALCOVE_OFFSET(GtaoParameters, thickness),
+      ALCOVE_OFFSET(GtaoParameters, fill)}},
     {"GtsoParameters",
      {ALCOVE_OFFSET(GtsoParameters, projection), ALCOVE_OFFSET(GtsoParameters, view_from_normal),
       ALCOVE_OFFSET(GtsoParameters, roughness)}},
@@ -52,13 +53,13 @@ const std::map<std::string, Offsets> kExpected = {
       ALCOVE_OFFSET(EnvironmentParameters, samples),
       ALCOVE_OFFSET(EnvironmentParameters, roughness),
       ALCOVE_OFFSET(EnvironmentParameters, levels)}},
+    {"LineDepthParameters", {ALCOVE_OFFSET(LineDepthParameters, line_from_ndc)}},
     {"MultiBounceParameters", {ALCOVE_OFFSET(MultiBounceParameters, size_px)}},
     {"NormalsParameters", {ALCOVE_OFFSET(NormalsParameters, projection)}},
     {"ReconstructParameters",
      {ALCOVE_OFFSET(ReconstructParameters, previous_from_pixel),
       ALCOVE_OFFSET(ReconstructParameters, plane_from_normal),
       ALCOVE_OFFSET(ReconstructParameters, normal_from_view),
-      ALCOVE_OFFSET(ReconstructParameters, line_from_ndc),
       ALCOVE_OFFSET(ReconstructParameters, phase), ALCOVE_OFFSET(ReconstructParameters, tolerance),
       ALCOVE_OFFSET(ReconstructParameters, longest),
       ALCOVE_OFFSET(ReconstructParameters, clamp_width)}},

@@ -8,6 +8,7 @@
 #include "environment_parameters.h"
 #include "gtao_parameters.h"
 #include "gtso_parameters.h"
+#include "line_depth_parameters.h"
 #include "maths/projection.h"
 #include "multi_bounce_parameters.h"
 #include "normals_parameters.h"
@@ -22,10 +23,11 @@ layout(set = 0, binding = 5) uniform F { GtsoParameters gtso; };
 layout(set = 0, binding = 6) uniform G { MultiBounceParameters multi_bounce; };
 layout(set = 0, binding = 7) uniform H { ApplyParameters apply; };
 layout(set = 0, binding = 8) uniform I { EnvironmentParameters environment; };
-layout(std430, set = 0, binding = 9) buffer Sum { float sum; };
+layout(set = 0, binding = 9) uniform J { LineDepthParameters line_depth; };
+layout(std430, set = 0, binding = 10) buffer Sum { float sum; };
 
 void main() {
   sum = projection.size_px.x + depth_pyramid.reach + gtao.radius + normals.projection.size_px.x +
-        reconstruct.longest + gtso.roughness + multi_bounce.size_px.x +
-        apply.roughness + environment.size;
+        reconstruct.longest + gtso.roughness + multi_bounce.size_px.x + apply.roughness +
+        environment.size + line_depth.line_from_ndc.x;
 }

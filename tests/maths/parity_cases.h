@@ -4,7 +4,7 @@
 #define ALCOVE_TESTS_PARITY_CASES_H
 
 #include "maths/bent_normal.h"
-#include "maths/bitmask_bent_normal.h"
+#include "maths/connected_samples.h"
 #include "maths/filter_weights.h"
 #include "maths/ggx.h"
 #include "maths/gtao.h"
@@ -41,7 +41,6 @@ ALCOVE_INLINE uvec2 parity_pixel(vec4 a) { return uvec2(uint(a.x * 960.0f), uint
 
 ALCOVE_INLINE vec4 parity_of_slices(uint which, vec4 a, vec4 b) {
   Slice s = parity_slice(a);
-  SectorScale scale = make_sector_scale(s);
   float ahead = b.x * 2.0f - 1.0f;
   float behind = b.y * 2.0f - 1.0f;
   switch (which) {
@@ -57,11 +56,14 @@ ALCOVE_INLINE vec4 parity_of_slices(uint which, vec4 a, vec4 b) {
       vec3 bent = slice_bent_normal(s, direction, view, ahead, behind);
       return vec4(bent.x, bent.y, bent.z, uniform_slice_visibility(ahead, behind));
     }
-    case 3u:
-      // Times the open slice: a slice that holds next to nothing has sectors of noise.
-      return vec4(sector_position(s, scale, 1.0f, ahead) * scale.open,
-                  sector_position(s, scale, -1.0f, behind) * scale.open, scale.open,
-                  bitmask_visibility(scale, 0x00ff00f0u));
+    case 3u: {
+      vec2 point = vec2(b.z, ahead);
+      float per_bearing = sectors_per_bearing(s, 1.0f);
+      // A narrow side has sectors narrower than the digits of its angle.
+      return vec4(bearing(point), bearing_light(2.0f * b.w).x,
+                  sector_position(per_bearing, point) / per_bearing,
+                  sharp_bend(ahead, 0.5f + b.z, behind, 0.5f + b.w, 0.1f));
+    }
     case 4u:
       return vec4(arc_cosine(ahead), arc_cosine_cheap(ahead), raise_horizon(ahead, behind, b.z),
                   horizon_cosine(parity_direction(b.z, b.w) * 3.0f, parity_view(a.x, a.y)));
@@ -159,19 +161,19 @@ ALCOVE_INLINE vec4 parity_of_sampling(uint which, vec4 a, vec4 b) {
       return vec4(golden_pattern(pixel, frame).direction, golden_pattern(pixel, frame).offset,
                   unit_float(hash(frame)), float(hilbert_index(pixel)));
     case 18u:
-      return vec4(unit_float(hash(pixel.x + pixel.y * 960u)), float(hilbert_index(pixel)),
-                  float(bitCount(cover_sectors(floor(b.x * 64.0f) / 64.0f + 0.005f,
-                                               floor(b.y * 64.0f) / 64.0f + 0.005f, 0.5f))),
-                  snap_to_texel(vec2(b.z * 99.0f, b.w)).x);
+      return vec4(
+          unit_float(hash(pixel.x + pixel.y * 960u)), float(hilbert_index(pixel)),
+          float(bitCount(sectors_between(floor(b.x * 32.0f) + 0.2f, floor(b.y * 32.0f) + 0.2f))),
+          snap_to_texel(vec2(b.z * 99.0f, b.w)).x);
     case 19u:
       return vec4(step_distance(3u, 7u, b.x, 90.0f * b.y, 1.5f),
                   step_distance_squared(3u, 7u, b.x, 90.0f * b.y),
                   depth_mip(b.z * 99.0f, 3.3f, 4.0f), slice_angle(1u, 3u, b.w));
     case 20u: {
       Slice s = parity_slice(a);
-      SectorScale scale = make_sector_scale(s);
-      vec2 bent = bitmask_bent(s, scale, hash(pixel.x));
-      return vec4(bent.x, bent.y, slice_arc(s, 1.0f, horizon_of_arc(s, 1.0f, b.x)), 0.0f);
+      VisiblePart part =
+          visible_part(s, -1.0f, sectors_per_bearing(s, -1.0f), hash(pixel.x), b.x, true);
+      return vec4(part.arc, part.bent.x, part.bent.y, 0.0f);
     }
     case 21u: {
       Slice s = parity_slice(a);
@@ -179,8 +181,8 @@ ALCOVE_INLINE vec4 parity_of_sampling(uint which, vec4 a, vec4 b) {
       float ahead = b.y * 2.0f - 1.0f;
       float behind = b.z * 2.0f - 1.0f;
       return vec4(lobe.open, horizon_lobe(s, lobe, ahead, behind),
-                  lobe_position(s, lobe, 1.0f, ahead) * lobe.open,
-                  bitmask_lobe(lobe, hash(pixel.x)));
+                  visible_lobe(lobe, 1.0f, sectors_per_bearing(s, 1.0f), hash(pixel.x), 0.4f),
+                  visible_lobe(lobe, -1.0f, sectors_per_bearing(s, -1.0f), hash(pixel.y), 0.0f));
     }
   }
   return vec4(0.0f);

@@ -62,8 +62,9 @@ struct Setting {
   }
 
   vec2 point(float offset_px, float sample_depth) const {
-    return maths::slice_point(line, offset_px, sample_depth, depth,
-                              maths::sample_scale(projection, sample_depth));
+    const float sample_line = perspective() ? 1.0f / sample_depth : sample_depth;
+    const vec3 scaled = maths::slice_point(line, offset_px, sample_line, depth, perspective());
+    return vec2(scaled) / scaled.z;
   }
 };
 
@@ -91,7 +92,9 @@ TEST(SliceLine, ASampleOfTheTangentPlaneIsMovedAlongIt) {
     const vec2 exact = s.line.direction_px * random.uniform(2.0f, 40.0f);
     const vec2 snapped = round(exact);
     const float line = tangent.line + dot(snapped, tangent.gradient);
-    const float share = maths::tangent_share(tangent, snapped, line, 1.0f / length(exact));
+    const float on_plane = dot(snapped, tangent.gradient);
+    const float share =
+        maths::tangent_share(tangent, line - tangent.line - on_plane, length(exact));
     const float moved = line + share * dot(exact - snapped, tangent.gradient);
     const float depth = s.perspective() ? 1.0f / moved : moved;
     // A plane that passes behind the eye has no image there.
@@ -106,10 +109,9 @@ TEST(SliceLine, ASampleFarOffTheTangentPlaneIsLeftAsItIs) {
     const Setting s(random);
     const maths::TangentLine tangent = maths::make_tangent_line(
         maths::ray_per_px(s.projection), s.normal, s.view, s.depth, s.perspective());
-    const vec2 exact(10.3f, -4.4f), snapped(10.0f, -4.0f);
-    const float line =
-        tangent.line + dot(snapped, tangent.gradient) + 1.01f * length(exact) / tangent.fading;
-    EXPECT_EQ(maths::tangent_share(tangent, snapped, line, 1.0f / length(exact)), 0.0f);
+    const float offset_px = random.uniform(1.3f, 60.0f);
+    EXPECT_EQ(maths::tangent_share(tangent, 1.01f * offset_px / tangent.fading, offset_px), 0.0f);
+    EXPECT_EQ(maths::tangent_share(tangent, -1.01f * offset_px / tangent.fading, offset_px), 0.0f);
   }
 }
 
@@ -146,69 +148,43 @@ TEST(SliceLine, RadiusSpansTheSilhouetteOfItsSphere) {
 }
 
 TEST(ConnectedSamples, JoinAlongAPlaneAndAcrossACreaseButNotOverAGap) {
-  const float sharp = 0.1f;
-  EXPECT_TRUE(maths::samples_join(0.0f, 0.0f, sharp)) << "a plane";
-  EXPECT_TRUE(maths::samples_join(0.0f, -3.0f, sharp)) << "a plane that ends";
-  EXPECT_TRUE(maths::samples_join(2.0f, 1.0f, sharp)) << "a crease between the two";
-  EXPECT_TRUE(maths::samples_join(0.05f, -3.0f, sharp)) << "a surface that hardly bends";
-  EXPECT_FALSE(maths::samples_join(2.0f, -1.0f, sharp)) << "one surface in front of another";
+  EXPECT_TRUE(maths::samples_join(0.0f, 0.0f)) << "a plane";
+  EXPECT_TRUE(maths::samples_join(0.0f, -3.0f)) << "a plane that ends";
+  EXPECT_TRUE(maths::samples_join(2.0f, 1.0f)) << "a crease between the two";
+  EXPECT_FALSE(maths::samples_join(2.0f, -1.0f)) << "one surface in front of another";
 }
 
-TEST(ConnectedSamples, SlopeIsThatOfThePlane) {
+TEST(ConnectedSamples, OnlySharpBendsCountAndTheirSignIsTheTurns) {
   RandomInput random;
-  for (int i = 0; i < 1000; ++i) {
-    const float slope = random.uniform(-10.0f, 10.0f);
-    maths::LineSample from, to;
-    from.offset_px = random.uniform(1.0f, 5.0f);
-    to.offset_px = from.offset_px + random.uniform(0.5f, 5.0f);
-    from.line = 1.0f + slope * from.offset_px;
-    to.line = 1.0f + slope * to.offset_px;
-    EXPECT_NEAR(maths::line_slope(from, to), slope, 1e-3f);
-  }
-}
-
-TEST(ConnectedSamples, EdgePositionIsTheSectorPositionWithinAFifthOfASector) {
-  RandomInput random;
-  for (int i = 0; i < 20000; ++i) {
-    const vec3 view = random.unit_vector();
-    const vec3 normal = maths::facing_normal(random.unit_vector(), view);
-    const vec3 other = random.unit_vector();
-    const vec3 direction = normalize(other - view * dot(other, view));
-    const maths::Slice slice = maths::make_slice(normal, direction, view);
-    if (slice.scale < 0.01f) continue;
-    const maths::SectorScale scale = maths::make_sector_scale(slice);
-    const float side = random.bits() % 2 == 0 ? 1.0f : -1.0f;
-    const vec2 point(random.uniform(0.0f, 1.0f), random.uniform(-1.0f, 1.0f));
-    const float exact = 32.0f * maths::sector_position(slice, scale, side, point.y / length(point));
-    const float found = maths::edge_position(maths::make_edge_scale(slice, scale, side), point);
-    EXPECT_NEAR(found, exact, 0.2f) << "side " << side;
-  }
-}
-
-TEST(ConnectedSamples, SectorsBetweenPositionsAreThoseWithinThem) {
-  for (int from = 0; from <= 32; ++from) {
-    for (int to = 0; to <= 32; ++to) {
-      std::uint32_t expected = 0;
-      for (int k = std::min(from, to); k < std::max(from, to); ++k) expected |= 1u << k;
-      EXPECT_EQ(maths::sectors_between(static_cast<float>(from) + 0.2f,
-                                       static_cast<float>(to) - 0.2f * (to > 0 ? 1.0f : 0.0f)),
-                expected);
+  for (int i = 0; i < 2000; ++i) {
+    const float before = random.uniform(-1.0f, 1.0f), after = random.uniform(-1.0f, 1.0f);
+    const float step = random.uniform(0.5f, 5.0f), next = random.uniform(0.5f, 5.0f);
+    const float bend = maths::sharp_bend(before * step, step, after * next, next, 0.1f);
+    const float turn = before - after;
+    if (std::abs(turn) < 0.0999f) {
+      EXPECT_EQ(bend, 0.0f);
+    } else if (std::abs(turn) > 0.1001f) {
+      EXPECT_NEAR(bend / (step * next), turn, 1e-5f);
     }
   }
 }
 
-TEST(ConnectedSamples, FillingGoesFromTheHighestOccluderToTheTangentPlane) {
-  EXPECT_EQ(maths::filled_sectors(1.0f, 0u), 0u);
-  EXPECT_EQ(maths::filled_sectors(-1.0f, 0u), 0u);
-  EXPECT_EQ(maths::filled_sectors(1.0f, 0x00110000u), 0xffff0000u);
-  EXPECT_EQ(maths::filled_sectors(-1.0f, 0x00000110u), 0x000001ffu);
-  EXPECT_EQ(maths::filled_sectors(-1.0f, 0x80000000u), 0xffffffffu);
-}
-
-TEST(ConnectedSamples, ASheetIsCutAtTheRadius) {
-  const vec2 inside(0.6f, 0.0f), outside(3.0f, 0.0f);
-  EXPECT_NEAR(maths::radius_crossing(outside, 3.0f, inside, 0.6f, 1.0f).x, 1.0f, 1e-6f);
-  EXPECT_NEAR(maths::radius_crossing(inside, 0.6f, outside, 3.0f, 1.0f).x, 1.0f, 1e-6f);
+TEST(ConnectedSamples, ASheetIsCutWhereItLeavesTheRadius) {
+  RandomInput random;
+  for (int i = 0; i < 2000; ++i) {
+    const vec2 inside = random.uniform(0.1f, 0.9f) * normalize(vec2(random.uniform(0, 1), 1.0f));
+    const vec2 outside = random.uniform(1.1f, 9.0f) * normalize(vec2(1.0f, random.uniform(-1, 1)));
+    // In proportion to the distances from the shaded point.
+    const float part = (1.0f - length(inside)) / (length(outside) - length(inside));
+    const vec2 expected = normalize(mix(inside, outside, part));
+    const vec3 a = vec3(inside, 1.0f) * random.uniform(0.1f, 2.0f);
+    const vec3 b = vec3(outside, 1.0f) * random.uniform(0.1f, 2.0f);
+    const float ea = maths::radius_excess(a, 1.0f), eb = maths::radius_excess(b, 1.0f);
+    EXPECT_LT(ea, 0.0f);
+    EXPECT_GT(eb, 0.0f);
+    EXPECT_LT(distance(normalize(maths::radius_crossing(a, ea, b, eb)), expected), 1e-4f);
+    EXPECT_LT(distance(normalize(maths::radius_crossing(b, eb, a, ea)), expected), 1e-4f);
+  }
 }
 
 }  // namespace

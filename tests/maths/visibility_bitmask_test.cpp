@@ -3,11 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <limits>
+#include <cstdint>
+#include <tuple>
 #include <utility>
-#include <vector>
 
 #include "random_input.h"
 #include "slice_truth.h"
@@ -15,168 +14,155 @@
 namespace alcove::maths_test {
 namespace {
 
+using glm::vec2;
 using glm::vec3;
-using maths::SectorScale;
 using maths::Slice;
+using maths::VisiblePart;
 
-using Interval = std::pair<double, double>;
+vec2 light_at(double angle) { return {float(std::sin(angle)), float(std::cos(angle))}; }
 
-float position_of(const Slice& s, const SectorScale& scale, double angle) {
-  return maths::sector_position(s, scale, angle < 0 ? -1.0f : 1.0f, float(std::cos(angle)));
+Slice random_slice(RandomInput& random) {
+  return slice_of(random.uniform(0.05f, 1.0f), random.uniform(-1.57f, 1.57f));
 }
 
-// Visibility of a slice outside the union of some intervals of angle.
-double visibility_outside(const SliceTruth& truth, std::vector<Interval> hidden) {
-  std::sort(hidden.begin(), hidden.end());
-  double visible = 0.0, reached = truth.lowest();
-  for (const auto& [from, to] : hidden) {
-    if (from > reached) visible += truth.visibility(reached, from);
-    reached = std::max(reached, to);
+float random_side(RandomInput& random) { return random.bits() % 2 == 0 ? 1.0f : -1.0f; }
+
+// Runs of sectors, as occluders make them.
+std::uint32_t random_runs(RandomInput& random) {
+  std::uint32_t occluded = 0;
+  for (unsigned k = random.bits() % 4; k > 0; --k) {
+    occluded |= maths::sectors_between(random.uniform(0, 32), random.uniform(0, 32));
   }
-  return visible + truth.visibility(reached, truth.highest());
+  return occluded;
 }
 
-TEST(VisibilityBitmask, PositionIsTheDistributionOfTheSlice) {
-  for (double gamma = -1.55; gamma <= 1.55; gamma += 0.05) {
-    const Slice s = slice_of(0.9, gamma);
-    const SectorScale scale = maths::make_sector_scale(s);
-    const SliceTruth truth(s);
-    for (double angle = truth.lowest(); angle <= truth.highest(); angle += 0.02) {
-      const double expected = truth.visibility(truth.lowest(), angle) / truth.open();
-      EXPECT_NEAR(position_of(s, scale, angle), expected, 2e-4) << gamma << " " << angle;
-    }
+// Angle of a sector's boundary to the view vector, in double.
+double boundary_angle(float per_bearing, int boundary) {
+  const double y = 1.0 - boundary / double(per_bearing);
+  return std::atan2(1.0 - std::abs(y), y);
+}
+
+VisiblePart part_of(const Slice& s, float side, std::uint32_t occluded, float fill) {
+  return maths::visible_part(s, side, maths::sectors_per_bearing(s, side), occluded, fill, true);
+}
+
+TEST(VisibilityBitmask, BearingsGrowWithTheAngleAndTurnBackIntoIt) {
+  float before = -1.0f;
+  for (double angle = 0.0; angle <= kPi; angle += 0.001) {
+    const vec2 light = light_at(angle);
+    const float at = maths::bearing(light * 3.0f);
+    EXPECT_GT(at, before);
+    EXPECT_LT(distance(maths::bearing_light(at), light), 1e-6f);
+    before = at;
   }
+  EXPECT_EQ(maths::bearing(vec2(0, 1)), 0.0f);
+  EXPECT_EQ(maths::bearing(vec2(1, 0)), 1.0f);
+  EXPECT_EQ(maths::bearing(vec2(0, -1)), 2.0f);
+  EXPECT_TRUE(std::isfinite(maths::bearing(vec2(0, 0))));
 }
 
-TEST(VisibilityBitmask, PositionRunsFromZeroToOneAtTheTangentPlane) {
-  for (double gamma = -kPi / 2; gamma <= kPi / 2; gamma += 0.01) {
-    const Slice s = slice_of(0.9, gamma);
-    const SectorScale scale = maths::make_sector_scale(s);
-    EXPECT_NEAR(maths::sector_position(s, scale, -1.0f, -1.0f), 0.0f, 1e-6f);
-    EXPECT_NEAR(maths::sector_position(s, scale, 1.0f, -1.0f), 1.0f, 1e-6f);
-    EXPECT_NEAR(maths::sector_position(s, scale, 1.0f, 1.0f),
-                maths::sector_position(s, scale, -1.0f, 1.0f), 1e-6f);
-  }
-}
-
-TEST(VisibilityBitmask, CoversWhatItIsTold) {
-  EXPECT_EQ(maths::cover_sectors(0.0f, 1.0f, 0.5f), 0xffffffffu);
-  EXPECT_EQ(maths::cover_sectors(1.0f, 0.0f, 0.5f), 0xffffffffu);
-  EXPECT_EQ(maths::cover_sectors(0.0f, 0.25f, 0.5f), 0xffu);
-  EXPECT_EQ(maths::cover_sectors(0.5f, 0.75f, 0.5f), 0x00ff0000u);
-  EXPECT_EQ(maths::cover_sectors(0.4f, 0.4f, 0.5f), 0u);
-  EXPECT_EQ(maths::cover_sectors(1.0f, 1.0f, 0.999f), 0u);
-  EXPECT_EQ(maths::cover_sectors(0.0f, 7.0f, 0.0f), 0xffffffffu);
-  const float nan = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_EQ(maths::cover_sectors(nan, 1.0f, 0.5f), 0u);
-  EXPECT_EQ(maths::cover_sectors(0.0f, nan, 0.5f), 0u);
-}
-
-TEST(VisibilityBitmask, CountsSectorsWithinHalfAnEdgeEach) {
+TEST(VisibilityBitmask, PositionsRunFromTheViewVectorToTheTangentPlane) {
   RandomInput random;
-  for (int i = 0; i < 20000; ++i) {
-    const float from = random.uniform(0, 1), to = random.uniform(0, 1);
-    const int bits = std::popcount(maths::cover_sectors(from, to, 0.5f));
-    EXPECT_NEAR(bits, 32.0f * std::abs(to - from), 1.0f + 1e-4f);
+  for (int i = 0; i < 5000; ++i) {
+    const Slice s = random_slice(random);
+    const float side = random_side(random);
+    const float per_bearing = maths::sectors_per_bearing(s, side);
+    const double tangent = std::acos(double(maths::tangent_horizon(s, side)));
+    EXPECT_EQ(maths::sector_position(per_bearing, vec2(0, 1)), 0.0f);
+    // A narrow side has sectors narrower than the digits of its cosine.
+    const float tolerance = 2e-3f + 2e-7f * per_bearing * per_bearing;
+    EXPECT_NEAR(maths::sector_position(per_bearing, light_at(tangent)), 32.0f, tolerance);
+    EXPECT_EQ(maths::sector_position(per_bearing, light_at(std::min(tangent + 0.01, kPi))), 32.0f);
   }
 }
 
-TEST(VisibilityBitmask, DitheredRangesAreUnbiasedHoweverThin) {
-  for (const float width : {1e-3f, 0.01f, 0.02f, 0.1f}) {
-    for (const float from : {0.0f, 0.013f, 0.41f, 0.8f}) {
-      double sum = 0.0;
-      constexpr int kDithers = 4096;
-      for (int k = 0; k < kDithers; ++k)
-        sum +=
-            std::popcount(maths::cover_sectors(from, from + width, (float(k) + 0.5f) / kDithers));
-      EXPECT_NEAR(sum / kDithers, 32.0 * width, 1e-3);
+TEST(VisibilityBitmask, SectorsBetweenPositionsAreThoseWithinThem) {
+  for (int from = 0; from <= 32; ++from) {
+    for (int to = 0; to <= 32; ++to) {
+      std::uint32_t expected = 0;
+      for (int k = std::min(from, to); k < std::max(from, to); ++k) expected |= 1u << k;
+      EXPECT_EQ(maths::sectors_between(static_cast<float>(from) + 0.2f,
+                                       static_cast<float>(to) - 0.2f * (to > 0 ? 1.0f : 0.0f)),
+                expected);
     }
   }
 }
 
-TEST(VisibilityBitmask, AgreesWithTheUnionOfIntervalsWithinItsSectors) {
+// What `occluded` leaves visible, sector by sector in double; behind the first occluder only the
+// part 1 - fill of it.
+struct Expected {
+  double arc = 0.0;
+  glm::dvec2 bent{0.0};
+};
+Expected expected_part(const Slice& s, float side, std::uint32_t occluded, double fill) {
+  const SliceTruth truth(s);
+  const float per_bearing = maths::sectors_per_bearing(s, side);
+  Expected sum;
+  bool behind = false;
+  for (int k = 0; k < 32; ++k) {
+    if ((occluded >> k & 1u) != 0) {
+      behind = true;
+      continue;
+    }
+    double from = boundary_angle(per_bearing, k), to = boundary_angle(per_bearing, k + 1);
+    if (side < 0.0f) std::tie(from, to) = std::pair(-to, -from);
+    const double weight = behind ? 1.0 - fill : 1.0;
+    sum.arc += weight * truth.visibility(from, to);
+    sum.bent += weight * truth.bent(from, to);
+  }
+  return sum;
+}
+
+TEST(VisibilityBitmask, PartsAgreeWithTheIntegralOverTheVisibleSectors) {
   RandomInput random;
-  double squares = 0.0;
-  constexpr int kCases = 4000;
-  for (int i = 0; i < kCases; ++i) {
-    const Slice s = slice_of(random.uniform(0.05f, 1.0f), random.uniform(-1.57f, 1.57f));
-    const SectorScale scale = maths::make_sector_scale(s);
-    const SliceTruth truth(s);
-    std::vector<Interval> hidden;
-    unsigned occluded = 0;
-    const int count = 1 + int(random.bits() % 5);
-    for (int k = 0; k < count; ++k) {
-      double from = random.uniform(float(truth.lowest()), float(truth.highest()));
-      double to = random.uniform(float(truth.lowest()), float(truth.highest()));
-      if (from > to) std::swap(from, to);
-      hidden.emplace_back(from, to);
-      occluded |=
-          maths::cover_sectors(position_of(s, scale, from), position_of(s, scale, to), 0.5f);
-    }
-    // Each of at most 2 * count edges is off by at most half a sector.
-    const double error = maths::bitmask_visibility(scale, occluded) / truth.open() -
-                         visibility_outside(truth, hidden) / truth.open();
-    EXPECT_LE(std::abs(error), count / 32.0 + 1e-3);
-    squares += error * error;
+  double worst_arc = 0.0, worst_bent = 0.0;
+  for (int i = 0; i < 1500; ++i) {
+    const Slice s = random_slice(random);
+    const float side = random_side(random);
+    const std::uint32_t occluded = random_runs(random);
+    const float fill = random.uniform(0, 1);
+    const VisiblePart part = part_of(s, side, occluded, fill);
+    const Expected expected = expected_part(s, side, occluded, fill);
+    worst_arc = std::max(worst_arc, std::abs(double(part.arc) - expected.arc));
+    worst_bent = std::max(worst_bent, distance(glm::dvec2(part.bent), expected.bent));
   }
-  EXPECT_LT(std::sqrt(squares / kCases), 0.02);
+  RecordProperty("worst_arc", std::to_string(worst_arc));
+  RecordProperty("worst_bent", std::to_string(worst_bent));
+  EXPECT_LT(worst_arc, 4e-4);  // 2.4e-5 at each end of a run and at the tangent plane
+  EXPECT_LT(worst_bent, 1e-5);
 }
 
 TEST(VisibilityBitmask, OpenAndFullAreExact) {
   for (double gamma = -kPi / 2; gamma <= kPi / 2; gamma += 0.1) {
     const Slice s = slice_of(0.7, gamma);
-    const SectorScale scale = maths::make_sector_scale(s);
-    EXPECT_EQ(maths::bitmask_visibility(scale, 0u), scale.open);
-    EXPECT_EQ(maths::bitmask_visibility(scale, 0xffffffffu), 0.0f);
-    EXPECT_NEAR(scale.open, maths::open_slice(s), 2e-4f);
+    for (const float side : {-1.0f, 1.0f}) {
+      const float open = maths::light_arc(s, side, maths::tangent_light(s, side));
+      for (const float fill : {0.0f, 0.4f, 1.0f}) {
+        EXPECT_EQ(part_of(s, side, 0u, fill).arc, open);
+        EXPECT_EQ(part_of(s, side, 0xffffffffu, fill).arc, 0.0f);
+      }
+    }
+  }
+}
+
+TEST(VisibilityBitmask, FilledOccludersGiveTheHorizon) {
+  RandomInput random;
+  for (int i = 0; i < 2000; ++i) {
+    const Slice s = random_slice(random);
+    const float side = random_side(random);
+    const float per_bearing = maths::sectors_per_bearing(s, side);
+    const int first = int(random.bits() % 32);
+    const auto horizon = float(std::cos(boundary_angle(per_bearing, first)));
+    EXPECT_NEAR(part_of(s, side, 1u << first, 1.0f).arc, maths::slice_arc(s, side, horizon), 1e-4f);
   }
 }
 
 TEST(VisibilityBitmask, SliceThatHoldsNothingStaysFinite) {
   const Slice s = maths::make_slice(vec3(0, 1, 0), vec3(1, 0, 0), vec3(0, 0, 1));
-  const SectorScale scale = maths::make_sector_scale(s);
-  EXPECT_EQ(maths::bitmask_visibility(scale, 0u), 0.0f);
-  EXPECT_TRUE(std::isfinite(maths::sector_position(s, scale, 1.0f, 0.3f)));
-}
-
-TEST(VisibilityBitmask, InfinitelyThickSamplesGiveTheHorizon) {
-  RandomInput random;
-  const vec3 view(0, 0, 1);
-  for (int i = 0; i < 2000; ++i) {
-    const Slice s = slice_of(1.0, random.uniform(-1.4f, 1.4f));
-    const SectorScale scale = maths::make_sector_scale(s);
-    const vec3 delta(random.uniform(0.1f, 1.0f), 0, random.uniform(-0.2f, 1.0f));
-    const unsigned mask = maths::sample_sectors(s, scale, 1.0f, delta, view, view, 1e9f, 0.5f);
-    const float expected = maths::slice_visibility(s, maths::horizon_cosine(delta, view), -1.0f);
-    EXPECT_NEAR(maths::bitmask_visibility(scale, mask), expected, scale.open * (0.51f / 32));
+  for (const float side : {-1.0f, 1.0f}) {
+    EXPECT_EQ(part_of(s, side, 0x0ff0u, 0.4f).arc, 0.0f);
+    EXPECT_EQ(part_of(s, side, 0x0ff0u, 0.4f).bent, vec2(0.0f));
   }
-}
-
-TEST(VisibilityBitmask, ThickerOccludersCoverMore) {
-  RandomInput random;
-  const vec3 view(0, 0, 1);
-  for (int i = 0; i < 2000; ++i) {
-    const Slice s = slice_of(1.0, random.uniform(-1.4f, 1.4f));
-    const SectorScale scale = maths::make_sector_scale(s);
-    const float side = random.bits() % 2 == 0 ? 1.0f : -1.0f;
-    const vec3 delta(side * random.uniform(0.01f, 1.0f), 0, random.uniform(-1.0f, 1.0f));
-    unsigned before = 0u;
-    for (const float thickness : {0.0f, 0.01f, 0.1f, 1.0f, 10.0f}) {
-      const unsigned mask =
-          maths::sample_sectors(s, scale, side, delta, view, view, thickness, 0.5f);
-      EXPECT_EQ(mask & before, before);
-      before = mask;
-    }
-  }
-}
-
-TEST(VisibilityBitmask, ThicknessIsTheSumOfItsModels) {
-  maths::Thickness t;
-  t.constant = 0.5f;
-  t.per_radius = 0.2f;
-  t.per_depth = 0.01f;
-  EXPECT_FLOAT_EQ(maths::occluder_thickness(t, 2.0f, 10.0f), 1.0f);
-  EXPECT_FLOAT_EQ(maths::occluder_thickness(t, 2.0f, -10.0f), 0.9f);
 }
 
 }  // namespace

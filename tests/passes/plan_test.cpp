@@ -90,12 +90,13 @@ OcclusionSettings least() {
   return settings;
 }
 
-TEST_F(OcclusionPlan, TheLeastFrameIsTwoPassesAndTwoTextures) {
+TEST_F(OcclusionPlan, TheLeastFrameIsThreePassesAndThreeTextures) {
   const Kept frame = kept(least());
-  EXPECT_THAT(frame.passes, ElementsAre("gtao", "reconstruct"));
-  EXPECT_THAT(frame.transients, testing::UnorderedElementsAre("occlusion signal", "visibility"));
+  EXPECT_THAT(frame.passes, ElementsAre("line depth", "gtao", "reconstruct"));
+  EXPECT_THAT(frame.transients,
+              testing::UnorderedElementsAre("line depth", "occlusion signal", "visibility"));
   EXPECT_THAT(frame.histories, testing::IsEmpty());
-  EXPECT_EQ(gpu().kernels().pipeline_count(), 3u);
+  EXPECT_EQ(gpu().kernels().pipeline_count(), 4u);
 }
 
 TEST_F(OcclusionPlan, NormalsAreMadeOnlyWhereNoneAreGiven) {

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <random>
 
+#include "alcove/passes/line_depth.h"
 #include "gtao_scenes.h"
 #include "maths/signal.h"
 #include "pass_fixture.h"
@@ -65,10 +66,12 @@ class Reconstruct : public PassTest {
         graph.reset_history("occlusion");
       }
       const Frame frame{graph, gpu().kernels(), input.view, input.index, input.previous_view};
+      const auto line = add_line_depth(frame, upload(graph, input.drawing.depth_ndc));
+      ASSERT_TRUE(line) << line.error().message;
       ReconstructInputs inputs{
           .signal = {.signal = upload(graph, packed_signal(input), VK_FORMAT_R32G32_UINT),
                      .divisor = input.divisor},
-          .depth_ndc = upload(graph, input.drawing.depth_ndc),
+          .line_depth = *line,
           .normals = upload(graph, input.drawing.normal_vs),
           .normals_in_view_space = true};
       if (input.motion != nullptr) {

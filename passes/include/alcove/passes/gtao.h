@@ -38,8 +38,8 @@ struct GtaoSettings {
 };
 
 struct GtaoInputs {
-  framegraph::Texture depth_ndc;  // as the view's projection wrote it
-  framegraph::Texture normals;    // xyz unit, in world space unless `normals_in_view_space`
+  framegraph::Texture line_depth;  // as add_line_depth makes it
+  framegraph::Texture normals;     // xyz unit, in world space unless `normals_in_view_space`
   bool normals_in_view_space = false;
 };
 

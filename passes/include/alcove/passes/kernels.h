@@ -23,6 +23,7 @@ struct Error {
 enum class Shader : std::uint8_t {
   depth_pyramid,
   normals,
+  line_depth,
   gtao,
   reconstruct,
   reconstruct_history,

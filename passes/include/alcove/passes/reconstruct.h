@@ -26,9 +26,9 @@ struct ReconstructSettings {
 };
 
 struct ReconstructInputs {
-  OcclusionSignal signal;         // as add_gtao writes it
-  framegraph::Texture depth_ndc;  // as the view's projection wrote it
-  framegraph::Texture normals;    // as GtaoInputs::normals
+  OcclusionSignal signal;          // as add_gtao writes it
+  framegraph::Texture line_depth;  // as add_line_depth makes it
+  framegraph::Texture normals;     // as GtaoInputs::normals
   bool normals_in_view_space = false;
   framegraph::Texture
       motion;  // xy: uv of this frame minus uv of the last; null: only the camera moves
