@@ -5,14 +5,11 @@
 #include "synchronise.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "access_bits.h"
 
 namespace alcove::framegraph {
 namespace {
-
-constexpr std::int32_t kBeforeFrame = -1;
 
 std::int32_t pass_time(std::uint32_t position) {
   return static_cast<std::int32_t>(2 * position + 1);
@@ -37,13 +34,6 @@ void note(UseState& state, const AccessRecord& access, std::int32_t time) {
   }
   state.layout = access.layout;
   state.used = 1;
-}
-
-// Stages of this access that a semaphore wait covers.
-VkPipelineStageFlags2 waited_stages(const AccessRecord& access) {
-  const VkPipelineStageFlags2 stages =
-      access.stages & ~(VK_PIPELINE_STAGE_2_HOST_BIT | VK_PIPELINE_STAGE_2_BOTTOM_OF_PIPE_BIT);
-  return stages != 0 ? stages : VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
 }
 
 void note_external(UseState& state, const ExternalRecord& external) {
@@ -247,81 +237,6 @@ void Synchroniser::note_change(std::uint32_t position, const AccessRecord& acces
   if (!(access.flags & kWrite)) state.transition = transition;
 }
 
-// A subresource comes from another queue, by a wait that is there already. True when it changed
-// hands, with its layout, and nothing is left to do.
-bool Synchroniser::change_queue(std::uint32_t position, const AccessRecord& access, UseState& state,
-                                const Range& range) {
-  const auto family = [this](QueueClass queue) {
-    return limits_.queue_families[static_cast<std::size_t>(queue)];
-  };
-  const bool texture = graph_.resources[access.resource].kind == ResourceKind::texture;
-  const bool keeps = state.used && !(access.flags & kDiscard) &&
-                     (!texture || state.layout != VK_IMAGE_LAYOUT_UNDEFINED);
-  if (!keeps || family(state.queue) == family(queue_)) {
-    // Without its contents an image needs no giver, if it comes from the undefined layout.
-    const bool given = family(state.queue) == family(queue_);
-    const VkImageLayout layout = given ? state.layout : VK_IMAGE_LAYOUT_UNDEFINED;
-    const std::uint8_t used = state.used;
-    const bool fresh = state.handed_over != 0;
-    state = {};
-    state.queue = queue_;
-    state.by_wait = 1;
-    state.used = used;
-    state.layout = layout;
-    if (fresh) {
-      // Who had the memory before may have been on this queue: no wait stands between.
-      state.handed_over = 1;
-      state.write_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-      state.write_access = VK_ACCESS_2_MEMORY_WRITE_BIT;
-      return false;
-    }
-    // The wait covers all that commands do, but nothing that the host does.
-    state.seen_stages = ~VkPipelineStageFlags2{VK_PIPELINE_STAGE_2_HOST_BIT};
-    state.seen_access = ~VkAccessFlags2{0};
-    return false;
-  }
-  Transition release;
-  release.src_stages = state.read_stages != 0 ? state.read_stages : state.write_stages;
-  release.src_access = state.read_stages != 0 ? 0 : state.write_access;
-  release.resource = access.resource;
-  release.range = range;
-  release.old_layout = texture ? state.layout : VK_IMAGE_LAYOUT_UNDEFINED;
-  release.new_layout = texture ? access.layout : VK_IMAGE_LAYOUT_UNDEFINED;
-  release.src_queue = state.queue;
-  release.dst_queue = queue_;
-  if (release.src_stages == 0) release.src_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-  const std::int32_t time = std::max(state.read_time, state.write_time);
-  const std::uint32_t from = time < 0
-                                 ? workspace_.queues.opening[static_cast<std::size_t>(state.queue)]
-                                 : plan_.passes[static_cast<std::size_t>(time / 2)].submission;
-  s_.releases.push_back({from, static_cast<std::uint32_t>(s_.releases.size()), release});
-  Transition acquire = release;
-  acquire.src_stages = waited_stages(access);
-  acquire.src_access = 0;
-  acquire.dst_stages = access.stages;
-  acquire.dst_access = access.access;
-  note_change(position, access, state, add_image(kBeforeFrame, position, acquire));
-  return true;
-}
-
-// Releases come after the last pass of their submissions.
-void Synchroniser::add_releases() {
-  std::sort(s_.releases.begin(), s_.releases.end(), [](const auto& a, const auto& b) {
-    return a.submission != b.submission ? a.submission < b.submission : a.number < b.number;
-  });
-  for (const auto& release : s_.releases) {
-    Submission& submission = plan_.submissions[release.submission];
-    if (submission.batch_count == 0) {
-      submission.first_batch = static_cast<std::uint32_t>(plan_.batches.size());
-      submission.batch_count = 1;
-      plan_.batches.push_back({static_cast<std::uint32_t>(plan_.transitions.size()), 0});
-    }
-    plan_.transitions.push_back(release.transition);
-    ++plan_.batches.back().count;
-  }
-  s_.releases.clear();
-}
-
 void Synchroniser::read_again(std::uint32_t position, const AccessRecord& access, UseState& state) {
   const bool seen =
       (access.stages & ~state.seen_stages) == 0 && (access.access & ~state.seen_access) == 0;
@@ -438,48 +353,6 @@ Batch& Synchroniser::batch_after(std::int32_t time, std::uint32_t position) {
   }
   s_.latest.back() = std::max(s_.latest.back(), time);
   return plan_.batches.back();
-}
-
-// The pass after which all is there that a pass's batch waits for, if others run between the two.
-std::uint32_t Synchroniser::set_position(std::uint32_t position) const {
-  const PlannedPass& planned = plan_.passes[position];
-  if (planned.batch_count == 0 || !can_split(plan_.batches[planned.first_batch])) return kNone;
-  const std::int32_t latest = s_.latest[planned.first_batch];
-  const std::uint32_t floor = plan_.submissions[planned.submission].first_pass;
-  if (latest < static_cast<std::int32_t>(2 * floor)) return kNone;
-  const auto after = static_cast<std::uint32_t>(latest) / 2;
-  return after + 1 < position ? after : kNone;
-}
-
-void Synchroniser::split() {
-  const auto count = static_cast<std::uint32_t>(plan_.passes.size());
-  for (std::uint32_t position = 0; position < count; ++position) {
-    const std::uint32_t after = set_position(position);
-    if (after != kNone) ++plan_.passes[after].set_count;
-  }
-  std::uint32_t events = 0;
-  for (PlannedPass& planned : plan_.passes) {
-    planned.first_set = events;
-    events += std::exchange(planned.set_count, 0);
-  }
-  plan_.sets.resize(events);
-  for (std::uint32_t position = 0; position < count; ++position) {
-    const std::uint32_t after = set_position(position);
-    if (after == kNone) continue;
-    const std::uint32_t event = plan_.passes[after].first_set + plan_.passes[after].set_count++;
-    plan_.sets[event] = plan_.passes[position].first_batch;
-    plan_.batches[plan_.passes[position].first_batch].event = event;
-  }
-}
-
-// Events are of one queue family, and not for the host.
-bool Synchroniser::can_split(const Batch& batch) const {
-  for (std::uint32_t i = batch.first; i < batch.first + batch.count; ++i) {
-    const Transition& t = plan_.transitions[i];
-    if (((t.src_stages | t.dst_stages) & VK_PIPELINE_STAGE_2_HOST_BIT) != 0) return false;
-    if (t.src_queue != t.dst_queue) return false;
-  }
-  return true;
 }
 
 std::uint32_t Synchroniser::add_image(std::int32_t time, std::uint32_t position,

@@ -1,10 +1,21 @@
-// The synchroniser: see synchronise.cpp.
+// The synchroniser: see synchronise.cpp, and handover.cpp for what goes from queue to queue,
+// split_barriers.cpp for events.
 #pragma once
 
 #include "memory_map.h"
 #include "workspace.h"
 
 namespace alcove::framegraph {
+
+// Stages of this access that a semaphore wait covers.
+inline VkPipelineStageFlags2 waited_stages(const AccessRecord& access) {
+  const VkPipelineStageFlags2 stages =
+      access.stages & ~(VK_PIPELINE_STAGE_2_HOST_BIT | VK_PIPELINE_STAGE_2_BOTTOM_OF_PIPE_BIT);
+  return stages != 0 ? stages : VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+}
+
+// A time before the frame: see UseState.
+inline constexpr std::int32_t kBeforeFrame = -1;
 
 class Synchroniser {
  public:
@@ -30,6 +41,9 @@ class Synchroniser {
                    std::uint32_t transition);
   bool change_queue(std::uint32_t position, const AccessRecord& access, UseState& state,
                     const Range& range);
+  void take_without_giver(UseState& state, bool same_family) const;
+  Transition release_of(const AccessRecord& access, const UseState& state,
+                        const Range& range) const;
   void add_releases();
   void read_again(std::uint32_t position, const AccessRecord& access, UseState& state);
   void write_again(std::uint32_t position, const AccessRecord& access, UseState& state);

@@ -234,84 +234,97 @@ class FrameMaker {
 
 enum class Path { record, submit, submit_to_three };
 
+// How frames are run.
+struct Way {
+  Path path = Path::record;
+  bool alias = true;
+  bool split = false;
+  std::uint32_t threads = 1;
+};
+
 // The layers do not follow timeline semaphores from submit to submit. From one command buffer to
 // another they take a layout change to be ordered by what its barrier waits for directly, not by
 // what that in turn waited for; the same barriers in one command buffer are what they let pass.
-std::string messages(const Gpu& gpu, Path path, std::uint32_t threads) {
+std::string messages(const Gpu& gpu, const Way& way) {
   const char* between_submits = "vkQueueSubmit2: Hazard";
   const char* between_secondaries = "vkCmdExecuteCommands: Hazard";
-  if (path == Path::submit_to_three) return gpu.messages({between_submits, between_secondaries});
-  return threads > 1 ? gpu.messages({between_secondaries}) : gpu.messages();
+  if (way.path == Path::submit_to_three)
+    return gpu.messages({between_submits, between_secondaries});
+  return way.threads > 1 ? gpu.messages({between_secondaries}) : gpu.messages();
 }
 
-void expect_contents(bool alias, Path path, std::uint64_t seed, std::uint32_t threads = 1,
-                     bool split = false) {
+tl::expected<Executor, Errors> make_executor(const Gpu& gpu, const Way& way) {
+  ExecutorOptions options;
+  options.alias = way.alias;
+  options.split_barriers = way.split;
+  options.recording_threads = way.threads;
+  options.verify = true;
+  options.check_uses = true;
+  DeviceHandles handles = gpu.handles();
+  // One queue plays all three: the submissions and their semaphores are those of three.
+  if (way.path == Path::submit_to_three) handles.queues[1] = handles.queues[2] = handles.queues[0];
+  return Executor::create(handles, options);
+}
+
+// Sums over frames.
+struct Totals {
+  VkDeviceSize aliased = 0;
+  VkDeviceSize unaliased = 0;
+  std::size_t split = 0;
+};
+
+void run_frames(Gpu& gpu, Executor& executor, const Way& way, std::uint64_t seed, Totals& totals) {
+  ChecksumKernels kernels(gpu);
+  const HostBuffer host = gpu.make_host_buffer(4 * kHostWords);
+  Graph graph;
+  for (std::uint32_t i = 0; i < kFrames; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(seed + i));
+    kernels.reset();
+    FrameMaker maker(graph, kernels, host, seed + i);
+    maker.declare();
+    const auto report =
+        way.path == Path::record ? gpu.run(executor, graph) : executor.submit(graph);
+    ASSERT_TRUE(report) << to_string(report.error());
+    ASSERT_TRUE(executor.wait());
+    ASSERT_EQ(std::memcmp(host.mapped, maker.expected.data(), 4 * maker.expected.size()), 0);
+    if (way.path != Path::submit_to_three) {
+      ASSERT_EQ(messages(gpu, way), "") << print_text(graph.description(), *report->plan);
+    }
+    totals.aliased += report->memory.aliased;
+    totals.unaliased += report->memory.unaliased;
+    totals.split += report->plan->sets.size();
+  }
+}
+
+void expect_contents(const Way& way, std::uint64_t seed) {
   Gpu gpu;
   ASSERT_EQ(gpu.problem(), "");
   {
-    ChecksumKernels kernels(gpu);
-    ExecutorOptions options;
-    options.alias = alias;
-    options.recording_threads = threads;
-    options.split_barriers = split;
-    options.verify = true;
-    options.check_uses = true;
-    DeviceHandles handles = gpu.handles();
-    // One queue plays all three: the submissions and their semaphores are those of three.
-    if (path == Path::submit_to_three) handles.queues[1] = handles.queues[2] = handles.queues[0];
-    auto executor = Executor::create(handles, options);
+    auto executor = make_executor(gpu, way);
     ASSERT_TRUE(executor) << to_string(executor.error());
-    const HostBuffer host = gpu.make_host_buffer(4 * kHostWords);
-    Graph graph;
-    VkDeviceSize aliased = 0;
-    VkDeviceSize unaliased = 0;
-    for (std::uint32_t i = 0; i < kFrames; ++i) {
-      kernels.reset();
-      FrameMaker maker(graph, kernels, host, seed + i);
-      maker.declare();
-      const auto report =
-          path == Path::record ? gpu.run(*executor, graph) : executor->submit(graph);
-      ASSERT_TRUE(report) << "seed " << seed + i << ": " << to_string(report.error());
-      ASSERT_TRUE(executor->wait());
-      ASSERT_EQ(std::memcmp(host.mapped, maker.expected.data(), 4 * maker.expected.size()), 0)
-          << "seed " << seed + i;
-      if (path != Path::submit_to_three) {
-        ASSERT_EQ(messages(gpu, path, threads), "")
-            << "seed " << seed + i << "\n"
-            << print_text(graph.description(), *report->plan);
-      }
-      aliased += report->memory.aliased;
-      unaliased += report->memory.unaliased;
-    }
-    if (alias)
-      EXPECT_LT(aliased, unaliased);
-    else
-      EXPECT_EQ(aliased, unaliased);
+    Totals totals;
+    run_frames(gpu, *executor, way, seed, totals);
+    EXPECT_EQ(totals.aliased < totals.unaliased, way.alias);
+    EXPECT_EQ(totals.split > 10, way.split);
   }
-  EXPECT_EQ(messages(gpu, path, threads), "");
+  EXPECT_EQ(messages(gpu, way), "");
 }
 
-TEST(Contents, OfRandomFramesThatShareMemoryAreRight) { expect_contents(true, Path::record, 1000); }
-TEST(Contents, OfRandomFramesThatShareNoMemoryAreRight) {
-  expect_contents(false, Path::record, 1000);
-}
+TEST(Contents, OfRandomFramesThatShareMemoryAreRight) { expect_contents({}, 1000); }
+TEST(Contents, OfRandomFramesThatShareNoMemoryAreRight) { expect_contents({.alias = false}, 1000); }
 TEST(Contents, OfRandomFramesThatTheExecutorSubmitsAreRight) {
-  expect_contents(true, Path::submit, 2000);
+  expect_contents({.path = Path::submit}, 2000);
 }
 TEST(Contents, OfRandomFramesOverSeveralQueuesAreRight) {
-  expect_contents(true, Path::submit_to_three, 3000);
+  expect_contents({.path = Path::submit_to_three}, 3000);
 }
-
 TEST(Contents, OfRandomFramesThatThreeThreadsRecordAreRight) {
-  expect_contents(true, Path::record, 1000, 3);
+  expect_contents({.threads = 3}, 1000);
 }
 TEST(Contents, OfRandomFramesThatThreeThreadsRecordForSeveralQueuesAreRight) {
-  expect_contents(true, Path::submit_to_three, 3000, 3);
+  expect_contents({.path = Path::submit_to_three, .threads = 3}, 3000);
 }
-
-TEST(Contents, OfRandomFramesWithSplitBarriersAreRight) {
-  expect_contents(true, Path::record, 4000, 1, true);
-}
+TEST(Contents, OfRandomFramesWithSplitBarriersAreRight) { expect_contents({.split = true}, 4000); }
 
 }  // namespace
 }  // namespace alcove::framegraph

@@ -1,0 +1,92 @@
+// What goes from queue to queue: by a wait that is there already, and between queue families by a
+// release after the last pass of the giver's submission and an acquire before the taker's pass.
+#include <algorithm>
+
+#include "synchronise.h"
+
+namespace alcove::framegraph {
+
+// True when the subresource changed hands, with its layout, and nothing is left to do.
+bool Synchroniser::change_queue(std::uint32_t position, const AccessRecord& access, UseState& state,
+                                const Range& range) {
+  const auto family = [this](QueueClass queue) {
+    return limits_.queue_families[static_cast<std::size_t>(queue)];
+  };
+  const bool same_family = family(state.queue) == family(queue_);
+  const bool texture = graph_.resources[access.resource].kind == ResourceKind::texture;
+  const bool keeps = state.used && !(access.flags & kDiscard) &&
+                     (!texture || state.layout != VK_IMAGE_LAYOUT_UNDEFINED);
+  if (!keeps || same_family) {
+    take_without_giver(state, same_family);
+    return false;
+  }
+  const Transition release = release_of(access, state, range);
+  const std::int32_t time = std::max(state.read_time, state.write_time);
+  const std::uint32_t from = time < 0
+                                 ? workspace_.queues.opening[static_cast<std::size_t>(state.queue)]
+                                 : plan_.passes[static_cast<std::size_t>(time / 2)].submission;
+  s_.releases.push_back({from, static_cast<std::uint32_t>(s_.releases.size()), release});
+  Transition acquire = release;
+  acquire.src_stages = waited_stages(access);
+  acquire.src_access = 0;
+  acquire.dst_stages = access.stages;
+  acquire.dst_access = access.access;
+  note_change(position, access, state, add_image(kBeforeFrame, position, acquire));
+  return true;
+}
+
+// Without its contents an image needs no giver, if it comes from the undefined layout.
+void Synchroniser::take_without_giver(UseState& state, bool same_family) const {
+  UseState taken;
+  taken.queue = queue_;
+  taken.by_wait = 1;
+  taken.used = state.used;
+  taken.layout = same_family ? state.layout : VK_IMAGE_LAYOUT_UNDEFINED;
+  if (state.handed_over) {
+    // Who had the memory before may have been on this queue: no wait stands between.
+    taken.handed_over = 1;
+    taken.write_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+    taken.write_access = VK_ACCESS_2_MEMORY_WRITE_BIT;
+  } else {
+    // The wait covers all that commands do, but nothing that the host does.
+    taken.seen_stages = ~VkPipelineStageFlags2{VK_PIPELINE_STAGE_2_HOST_BIT};
+    taken.seen_access = ~VkAccessFlags2{0};
+  }
+  state = taken;
+}
+
+Transition Synchroniser::release_of(const AccessRecord& access, const UseState& state,
+                                    const Range& range) const {
+  const bool texture = graph_.resources[access.resource].kind == ResourceKind::texture;
+  Transition release;
+  release.src_stages = state.read_stages != 0 ? state.read_stages : state.write_stages;
+  release.src_access = state.read_stages != 0 ? 0 : state.write_access;
+  release.resource = access.resource;
+  release.range = range;
+  release.old_layout = texture ? state.layout : VK_IMAGE_LAYOUT_UNDEFINED;
+  release.new_layout = texture ? access.layout : VK_IMAGE_LAYOUT_UNDEFINED;
+  release.src_queue = state.queue;
+  release.dst_queue = queue_;
+  if (release.src_stages == 0) release.src_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+  return release;
+}
+
+// Releases come after the last pass of their submissions.
+void Synchroniser::add_releases() {
+  std::sort(s_.releases.begin(), s_.releases.end(), [](const auto& a, const auto& b) {
+    return a.submission != b.submission ? a.submission < b.submission : a.number < b.number;
+  });
+  for (const auto& release : s_.releases) {
+    Submission& submission = plan_.submissions[release.submission];
+    if (submission.batch_count == 0) {
+      submission.first_batch = static_cast<std::uint32_t>(plan_.batches.size());
+      submission.batch_count = 1;
+      plan_.batches.push_back({static_cast<std::uint32_t>(plan_.transitions.size()), 0});
+    }
+    plan_.transitions.push_back(release.transition);
+    ++plan_.batches.back().count;
+  }
+  s_.releases.clear();
+}
+
+}  // namespace alcove::framegraph
