@@ -1,5 +1,6 @@
 #include "light_errors.h"
 
+#include <cmath>
 #include <iomanip>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -7,6 +8,7 @@
 #include "maths/gtso.h"
 #include "maths/multi_bounce.h"
 #include "report.h"
+#include "tables.h"
 
 namespace alcove::sample {
 namespace {
@@ -37,6 +39,12 @@ float specular_of(passes::SpecularModel model, float visibility, const glm::vec3
       return maths::lagarde_specular_occlusion(glm::dot(normal, view), visibility, alpha);
     case passes::SpecularModel::smooth_cone:
       return maths::smooth_specular_occlusion(visibility, raised, normal, mirror, alpha);
+    case passes::SpecularModel::table: {
+      static const std::vector<std::uint32_t> table = passes::gtso_table();
+      return passes::look_up_gtso(table, visibility, maths::visibility_cone(visibility),
+                                  maths::angle_between(raised, mirror),
+                                  maths::angle_between(normal, mirror), roughness);
+    }
     default:
       return maths::specular_occlusion(visibility, raised, normal, mirror, alpha);
   }
@@ -60,6 +68,40 @@ Image<float> specular_of_truth(const Rendering& rendering, const OcclusionTruth&
   return result;
 }
 
+// What no function of visibility and albedo can better: the spread of the truth among pixels and
+// channels that have the same of both, to within a cell.
+double spread_of(const Image<float>& visibility, const Image<glm::vec3>& albedo,
+                 const Image<glm::vec3>& truth, const Mask& mask) {
+  constexpr int kVisibilities = 64;
+  constexpr int kAlbedos = 16;
+  struct Cell {
+    double count = 0, sum = 0, squares = 0;
+  };
+  std::vector<Cell> cells(std::size_t{kVisibilities} * kAlbedos);
+  for (std::size_t i = 0; i < mask.pixels.size(); ++i) {
+    for (int c = 0; mask.pixels[i] != 0 && c < 3; ++c) {
+      const int x = static_cast<int>(visibility.pixels[i] * (kVisibilities - 1) + 0.5f);
+      const int y = static_cast<int>(albedo.pixels[i][c] * (kAlbedos - 1) + 0.5f);
+      Cell& cell = cells[static_cast<std::size_t>(y * kVisibilities + x)];
+      const double value = truth.pixels[i][c];
+      cell.count += 1;
+      cell.sum += value;
+      cell.squares += value * value;
+    }
+  }
+  double squares = 0, count = 0;
+  for (const Cell& cell : cells) {
+    // A cell of one value has no spread to tell; the mean of few is nearer to them than to the
+    // rest.
+    if (cell.count > 1) {
+      const double own = cell.squares - cell.sum * cell.sum / cell.count;
+      squares += own * cell.count / (cell.count - 1);
+      count += cell.count;
+    }
+  }
+  return count > 0 ? std::sqrt(squares / count) : 0;
+}
+
 }  // namespace
 
 LightErrors light_errors_of(const Rendering& rendering, const Truths& truths,
@@ -71,6 +113,7 @@ LightErrors light_errors_of(const Rendering& rendering, const Truths& truths,
   errors.bounced_truth =
       compare_images(bounced(visibility, images.albedo), light.interreflection, light.sampled);
   errors.unbounced_truth = compare_images(grey(visibility), light.interreflection, light.sampled);
+  errors.bounced_best = spread_of(visibility, images.albedo, light.interreflection, light.sampled);
   const std::vector<Image<float>> roughness = roughness_images(rendering);
   const Image<float> open(visibility.width, visibility.height, 1.0f);
   for (std::size_t i = 0; i < roughness.size(); ++i) {
@@ -89,7 +132,8 @@ nlohmann::ordered_json to_json(const LightErrors& errors) {
   nlohmann::ordered_json json;
   json["multi_bounce"] = {{"pipeline", to_json(errors.bounced)},
                           {"true_visibility", to_json(errors.bounced_truth)},
-                          {"true_visibility_unbounced", to_json(errors.unbounced_truth)}};
+                          {"true_visibility_unbounced", to_json(errors.unbounced_truth)},
+                          {"true_visibility_best_rmse", errors.bounced_best}};
   for (const SpecularErrors& one : errors.specular) {
     json["specular_occlusion"][one.name] = {{"pipeline", to_json(one.pipeline)},
                                             {"true_inputs", to_json(one.true_inputs)},
@@ -103,6 +147,7 @@ std::string light_error_table(const LightErrors& errors) {
   text << std::fixed << std::setprecision(4);
   text << "RMSE of multi-bounce over " << errors.bounced.count << " pixels: " << errors.bounced.rmse
        << " (the polynomial on the true visibility " << errors.bounced_truth.rmse
+       << ", the best function of it and albedo " << errors.bounced_best
        << ", the true visibility alone " << errors.unbounced_truth.rmse << ")\n";
   for (const SpecularErrors& one : errors.specular) {
     text << "RMSE of specular occlusion, " << std::left << std::setw(10) << one.name << std::right

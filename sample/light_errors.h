@@ -24,6 +24,7 @@ struct LightErrors {
   ErrorSummary bounced;          // multi-bounce as it was rendered
   ErrorSummary bounced_truth;    // the polynomial on the true visibility
   ErrorSummary unbounced_truth;  // the true visibility as it is
+  double bounced_best = 0;       // RMSE of the best that is a function of visibility and albedo
   std::vector<SpecularErrors> specular;
 };
 

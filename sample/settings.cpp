@@ -24,10 +24,11 @@ constexpr std::array<std::pair<std::string_view, passes::Precision>, 3> kPrecisi
      {"float16", passes::Precision::float16},
      {"float32", passes::Precision::float32}}};
 constexpr std::string_view kSpecularModel = "specular_model";
-constexpr std::array<std::pair<std::string_view, passes::SpecularModel>, 3> kSpecularModels{
+constexpr std::array<std::pair<std::string_view, passes::SpecularModel>, 4> kSpecularModels{
     {{"cone", passes::SpecularModel::cone},
      {"smooth_cone", passes::SpecularModel::smooth_cone},
-     {"lagarde", passes::SpecularModel::lagarde}}};
+     {"lagarde", passes::SpecularModel::lagarde},
+     {"table", passes::SpecularModel::table}}};
 constexpr std::array<std::pair<std::string_view, bool>, 2> kBooleans{
     {{"false", false}, {"true", true}}};
 

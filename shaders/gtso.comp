@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 // The visible share of each pixel's GGX lobe from its visibility and bent normal (Jimenez et al. 2016,
-// section 6), by one of the models of maths/gtso.h.
+// section 6), by one of the models of maths/gtso.h or, with TABLE, by the memo's table.
 
 #include "gtso_parameters.h"
 #include "maths/gtso.h"
@@ -23,6 +23,12 @@ layout(set = 0, binding = 4) uniform texture2D depth_image;        // linear
 layout(set = 0, binding = 5) uniform texture2D roughness_image;    // unread where there is none
 layout(set = 0, binding = 6) uniform writeonly image2D result_image;
 
+#ifdef TABLE
+#include "maths/gtso_table.h"
+
+layout(set = 0, binding = 7) readonly buffer Table { uint gtso_table[]; };
+#endif
+
 const int kSmoothCone = 1;
 const int kLagarde = 2;
 
@@ -30,24 +36,53 @@ vec3 fetch_direction(texture2D image, ivec2 pixel) {
   return normalize(mat3(parameters.view_from_normal) * texelFetch(image, pixel, 0).xyz);
 }
 
-float fetch_alpha(ivec2 pixel) {
-  float roughness = kRoughnessTexture
-                        ? clamp(texelFetch(roughness_image, pixel, 0)[kRoughnessChannel], 0.0, 1.0)
-                        : parameters.roughness;
-  return roughness * roughness;
+float fetch_roughness(ivec2 pixel) {
+  return kRoughnessTexture
+             ? clamp(texelFetch(roughness_image, pixel, 0)[kRoughnessChannel], 0.0, 1.0)
+             : parameters.roughness;
 }
+
+#ifdef TABLE
+float fetch_entry(uvec4 entry) {
+  uint index = gtso_index(entry);
+  return float((gtso_table[index / 4u] >> (index % 4u * 8u)) & 255u) / 255.0;
+}
+
+float occlusion_by_table(float visibility, vec3 bent, vec3 normal, vec3 reflection,
+                         float roughness) {
+  float cone = visibility_cone(visibility);
+  float bent_from_mirror = angle_between(bent, reflection);
+  float exact = gtso_exact(visibility, cone, bent_from_mirror, roughness);
+  if (exact >= 0.0) {
+    return exact;
+  }
+  vec4 at =
+      gtso_coordinates(cone, bent_from_mirror, angle_between(normal, reflection), roughness);
+  uvec4 entry = gtso_entry(at);
+  float sum = 0.0;
+  for (uint corner = 0u; corner < 16u; ++corner) {
+    sum += gtso_corner_weight(at - vec4(entry), corner) * fetch_entry(gtso_corner(entry, corner));
+  }
+  return sum;
+}
+#endif
 
 float occlusion_of(ivec2 pixel, vec3 normal, vec3 view) {
   float visibility = settled_visibility(texelFetch(visibility_image, pixel, 0).r);
-  float alpha = fetch_alpha(pixel);
+  float roughness = fetch_roughness(pixel);
+  float alpha = roughness * roughness;
   if (kModel == kLagarde) {
     return lagarde_specular_occlusion(dot(normal, view), visibility, alpha);
   }
   vec3 bent = raised_bent_normal(fetch_direction(bent_normal_image, pixel), normal, visibility);
   vec3 reflection = mirror_direction(normal, view);
+#ifdef TABLE
+  return occlusion_by_table(visibility, bent, normal, reflection, roughness);
+#else
   return kModel == kSmoothCone
              ? smooth_specular_occlusion(visibility, bent, normal, reflection, alpha)
              : specular_occlusion(visibility, bent, normal, reflection, alpha);
+#endif
 }
 
 void main() {

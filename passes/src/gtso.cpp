@@ -68,7 +68,8 @@ tl::expected<Texture, Error> add_gtso(const Frame& frame, const GtsoInputs& give
   const std::array constants{static_cast<std::uint32_t>(settings.model),
                              static_cast<std::uint32_t>(bool(inputs.roughness)),
                              settings.roughness_channel};
-  const auto kernel = frame.kernels.get(Shader::gtso, constants);
+  const auto kernel = frame.kernels.get(
+      settings.model == SpecularModel::table ? Shader::gtso_by_table : Shader::gtso, constants);
   if (!kernel) {
     return tl::unexpected(kernel.error());
   }

@@ -12,10 +12,12 @@
 #include "spirv/gtao.h"
 #include "spirv/gtso.h"
 #include "spirv/line_depth.h"
+#include "spirv/gtso_by_table.h"
 #include "spirv/multi_bounce.h"
 #include "spirv/normals.h"
 #include "spirv/reconstruct.h"
 #include "spirv/reconstruct_history.h"
+#include "tables/gtso.h"
 #include "tables/reflectance.h"
 
 namespace alcove::passes {
@@ -32,6 +34,7 @@ const ShaderSource& shader_source(Shader shader) {
        "ststt"},
       {kMultiBounce, "sst"},
       {kGtso, "ssssst"},
+      {kGtsoByTable, "ssssstb", kGtsoTable},
       {kApply, "ssssssstt"},
       {kApplySpecular,
        "ssssssstt"

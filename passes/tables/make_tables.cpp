@@ -32,6 +32,9 @@ int main(int argc, char** argv) {
   if (name == "reflectance") {
     written = write(argv[2], "kReflectanceTable", reflectance_table());
   }
+  if (name == "gtso") {
+    written = write(argv[2], "kGtsoTable", gtso_table());
+  }
   if (!written) {
     std::fprintf(stderr, "make_tables: no table '%s', or it could not be written\n", name.c_str());
   }

@@ -8,9 +8,11 @@
 #include <limits>
 
 #include "maths/gtso.h"
+#include "maths/gtso_table.h"
 #include "maths/make_projection.h"
 #include "pass_fixture.h"
 #include "random_input.h"
+#include "tables.h"
 #include "views.h"
 
 namespace alcove::passes {
@@ -27,7 +29,7 @@ constexpr std::uint32_t kHeight = 31;
 constexpr float kSky = 1e12f;
 
 constexpr std::array kModels{SpecularModel::cone, SpecularModel::smooth_cone,
-                             SpecularModel::lagarde};
+                             SpecularModel::lagarde, SpecularModel::table};
 
 struct Inputs {
   HostImage visibility{kWidth, kHeight, {}, 1};
@@ -91,6 +93,12 @@ float expected(const Inputs& inputs, const maths::Projection& projection, Specul
       return maths::specular_occlusion(visibility, bent, normal, mirror, alpha);
     case SpecularModel::smooth_cone:
       return maths::smooth_specular_occlusion(visibility, bent, normal, mirror, alpha);
+    case SpecularModel::table: {
+      static const std::vector<std::uint32_t> table = gtso_table();
+      return look_up_gtso(table, visibility, maths::visibility_cone(visibility),
+                          maths::angle_between(bent, mirror), maths::angle_between(normal, mirror),
+                          inputs.surface.at(x, y, 3));
+    }
     default:
       return maths::lagarde_specular_occlusion(glm::dot(normal, view), visibility, alpha);
   }
@@ -225,6 +233,24 @@ TEST_F(GtsoPass, TakesNoTimeWhenNobodyReadsIt) {
   for (const framegraph::PassTiming& timing : gpu().timings()) {
     EXPECT_NE(timing.name, "specular occlusion");
   }
+}
+
+TEST_F(GtsoPass, OnlyTheTablesModelHasATable) {
+  const Inputs inputs = random_inputs();
+  const auto run_with = [&](SpecularModel model) {
+    run([&](Graph& graph) {
+      read_back(graph, add({graph, gpu().kernels(), test_views().front().view, 0},
+                           {.visibility = upload(graph, inputs.visibility),
+                            .bent_normal = upload(graph, inputs.bent),
+                            .normals = upload(graph, inputs.normals),
+                            .depth = upload(graph, inputs.depth)},
+                           {.model = model}));
+    });
+    return gpu().kernels().table_bytes();
+  };
+  EXPECT_EQ(run_with(SpecularModel::cone), 0u);
+  EXPECT_EQ(run_with(SpecularModel::lagarde), 0u);
+  EXPECT_EQ(run_with(SpecularModel::table), maths::kGtsoEntries);
 }
 
 TEST_F(GtsoPass, RefusesWhatItCannotUseAndNamesIt) {

@@ -29,6 +29,7 @@ enum class Shader : std::uint8_t {
   reconstruct_history,
   multi_bounce,
   gtso,
+  gtso_by_table,
   apply,
   apply_specular,
   environment_map,
