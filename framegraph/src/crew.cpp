@@ -25,6 +25,8 @@ Crew::~Crew() {
 
 VkResult Crew::begin(const RecordedFrame& frame) {
   for (const auto& recorder : recorders_) recorder->begin(frame);
+  // The validation layers do not follow events through secondary command buffers.
+  together_ = !threads_.empty() && frame.plan->sets.empty();
   slot_ = frame.slot;
   for (std::size_t i = 0; i < buffers_.size(); ++i) {
     Buffers& buffers = buffers_[i];
@@ -41,7 +43,7 @@ VkResult Crew::submission(const Submission& submission, VkCommandBuffer commands
   const PassRun passes{submission.first_pass, submission.pass_count, timestamps,
                        timestamps ? timestamps->add(submission.pass_count) : 0};
   Recorder& own = *recorders_[0];
-  if (threads_.empty() || submission.pass_count < 2) {
+  if (!together_ || submission.pass_count < 2) {
     own.passes(passes, commands);
   } else {
     queue_ = submission.queue;

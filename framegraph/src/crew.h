@@ -57,6 +57,7 @@ class Crew {
   std::vector<Buffers> buffers_;                      // by thread, slot and queue class
   std::size_t slots_;
   std::size_t slot_ = 0;
+  bool together_ = false;  // whether several threads record this frame
 
   // The job in hand. The threads read it while `round_` has just moved on and `busy_` is not 0.
   std::vector<Piece> pieces_;

@@ -325,6 +325,9 @@ TEST(Contents, OfRandomFramesThatThreeThreadsRecordForSeveralQueuesAreRight) {
   expect_contents({.path = Path::submit_to_three, .threads = 3}, 3000);
 }
 TEST(Contents, OfRandomFramesWithSplitBarriersAreRight) { expect_contents({.split = true}, 4000); }
+TEST(Contents, OfRandomFramesWithSplitBarriersThatThreeThreadsRecordAreRight) {
+  expect_contents({.split = true, .threads = 3}, 4000);
+}
 
 }  // namespace
 }  // namespace alcove::framegraph

@@ -43,7 +43,8 @@ struct ExecutorOptions {
   bool timestamps = true;              // GPU time of each pass
   Ordering ordering = Ordering::lower_peak;
   bool alias = true;
-  // Barriers with work between what they wait for and what waits become events (see README).
+  // Barriers with work between what they wait for and what waits become events (see README). Frames
+  // that have any are recorded by the caller's thread.
   bool split_barriers = false;
   // Threads that record passes, the caller's among them, 1 to 64. With more than one the callbacks
   // of different passes run at the same time, into secondary command buffers; a caller's query must
