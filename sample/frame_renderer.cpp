@@ -6,6 +6,7 @@
 #include <cstring>
 #include <ctime>
 #include <functional>
+#include <optional>
 #include <utility>
 
 #include "alcove/framegraph/access.h"
@@ -213,6 +214,7 @@ struct FrameRenderer::State {
       : gpu(on), size(of_size), normals(source) {}
 
   tl::expected<void, std::string> create_targets();
+  // Nothing is drawn again while the view and the one before it stay the same.
   tl::expected<void, std::string> draw_gbuffer(const FrameRequest& request, FrameCost& cost);
   passes::Frame frame_of(Graph& graph, const FrameRequest& request);
   tl::expected<Declared, std::string> declare_occlusion(Graph& graph, const FrameRequest& request);
@@ -229,6 +231,8 @@ struct FrameRenderer::State {
   VkExtent2D size;
   NormalSource normals;
   std::unique_ptr<GbufferRenderer> gbuffer;
+  std::optional<GbufferView> drawn_view;  // what the targets hold
+  std::vector<PassTime> gbuffer_times;    // of their last drawing
   std::array<std::unique_ptr<GpuImage>, kTargetCount> targets;
   std::unique_ptr<HostBuffer> environment;  // uploaded in the frame that is lit
   framegraph::MemoryStatistics memory;
@@ -258,6 +262,10 @@ void FrameRenderer::State::append_times(FrameCost& cost, bool occlusion) {
 
 tl::expected<void, std::string> FrameRenderer::State::draw_gbuffer(const FrameRequest& request,
                                                                    FrameCost& cost) {
+  if (drawn_view == request.view) {
+    cost.gpu = gbuffer_times;
+    return {};
+  }
   const auto declare = [&](Graph& graph) -> tl::expected<void, std::string> {
     std::array<Texture, kTargetCount> filled;
     for (std::size_t i = 0; i < kTargetCount; ++i) {
@@ -273,6 +281,8 @@ tl::expected<void, std::string> FrameRenderer::State::draw_gbuffer(const FrameRe
     return Failure(std::move(report.error()));
   }
   append_times(cost, false);
+  drawn_view = request.view;
+  gbuffer_times = cost.gpu;
   return {};
 }
 
@@ -280,7 +290,9 @@ passes::Frame FrameRenderer::State::frame_of(Graph& graph, const FrameRequest& r
   return {graph,
           gpu.kernels(),
           {to_matrix(request.view.clip_from_view), to_matrix(request.view.view_from_world)},
-          request.index};
+          request.index,
+          {to_matrix(request.view.previous_clip_from_view),
+           to_matrix(request.view.previous_view_from_world)}};
 }
 
 tl::expected<Declared, std::string> FrameRenderer::State::declare_occlusion(

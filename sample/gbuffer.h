@@ -19,6 +19,8 @@ struct GbufferView {
   glm::mat4 previous_view_from_world{1.0f};
   glm::mat4 previous_clip_from_view{1.0f};
   bool reversed_z = false;
+
+  bool operator==(const GbufferView&) const = default;
 };
 
 // What a frame's rasterisation writes: of `size`, each with the format that is named. A null

@@ -235,15 +235,16 @@ float squared_horizon(const March& m) {
   return best;
 }
 
-// How many steps along the walk reach as far as a point of the radius's sphere can appear.
-int steps_within(const Field& field, const Walk& walk, const glm::vec3& centre, float radius) {
-  const float texel = std::abs(walk.along_x ? field.scale.x : field.scale.y);
-  const int most = static_cast<int>(walk.along_x ? field.width : field.height);
+// How many steps along an axis of the image reach as far as a point of the radius's sphere can
+// appear.
+int steps_within(const Field& field, bool along_x, const glm::vec3& centre, float radius) {
+  const float texel = std::abs(along_x ? field.scale.x : field.scale.y);
+  const int most = static_cast<int>(along_x ? field.width : field.height);
   float reach = radius / texel;
   if (!field.orthographic) {
     // The silhouette of the sphere in the plane of this axis and the view axis.
     const float depth = -centre.z;
-    const float side = std::abs(walk.along_x ? centre.x : centre.y);
+    const float side = std::abs(along_x ? centre.x : centre.y);
     const float distance2 = side * side + depth * depth;
     if (distance2 <= radius * radius) return most;
     const float middle = std::atan2(side, depth);
@@ -310,6 +311,10 @@ Slice integrate_slice(float low, float high, float tilt) {
   };
   add_lit(nodes_over(std::clamp(low, first, 0.0f), 0.0f));
   add_lit(nodes_over(0.0f, std::clamp(high, 0.0f, last)));
+  if (low <= first && high >= last) {
+    slice.open = slice.visible;
+    return slice;
+  }
   add_open(nodes_over(first, 0.0f));
   add_open(nodes_over(0.0f, last));
   return slice;
@@ -344,6 +349,8 @@ Pixel see(const Field& field, uint32_t x, uint32_t y, const glm::vec3& normal,
   const auto [e1, e2] = across(view);
   // Every pixel turns its slices a little, so that no direction of the image is favoured.
   const float turn = static_cast<float>((x * 5u + y * 3u) % 8u) / 8.0f;
+  const int steps_x = steps_within(field, true, centre, settings.radius);
+  const int steps_y = steps_within(field, false, centre, settings.radius);
   float visible = 0.0f, open = 0.0f;
   glm::vec3 bent(0.0f);
   for (uint32_t s = 0; s < settings.slices; ++s) {
@@ -359,7 +366,7 @@ Pixel see(const Field& field, uint32_t x, uint32_t y, const glm::vec3& normal,
     std::array<float, 2> horizon;
     for (int side = 0; side < 2; ++side) {
       const Walk walk = walk_of(side == 0 ? line : -line);
-      const int steps = steps_within(field, walk, centre, settings.radius);
+      const int steps = walk.along_x ? steps_x : steps_y;
       const float squared =
           squared_horizon(march_of(field, x, y, walk, centre, view, settings.radius, steps));
       const float cosine = std::copysign(std::sqrt(std::abs(squared)), squared);

@@ -23,8 +23,8 @@ OcclusionSettings quality_settings(Quality quality, float radius) {
       settings.history_frames = 32;
       break;
     case Quality::medium:
-      settings.divisor = 4;
-      settings.steps = 12;
+      settings.divisor = 2;
+      settings.steps = 8;
       settings.filter_reach = 1;
       settings.history_frames = 32;
       break;
@@ -33,8 +33,9 @@ OcclusionSettings quality_settings(Quality quality, float radius) {
       settings.history_frames = 32;
       break;
     case Quality::ultra:
-      settings.slices = 2;
-      settings.steps = 18;
+      settings.divisor = 2;
+      settings.steps = 24;
+      settings.filter_reach = 1;
       settings.history_frames = 32;
       break;
     case Quality::reference:
