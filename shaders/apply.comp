@@ -94,17 +94,20 @@ vec2 fetch_reflectance(float n_dot_v, float roughness) {
   return mix(near, far, t.y);
 }
 
-// Occluders are seen in the mirror too: what they send back counts as for the diffuse part.
-vec3 specular_visibility(ivec2 pixel, vec3 albedo) {
-  float visibility =
-      kSpecularOcclusion ? texelFetch(specular_occlusion_image, pixel, 0).r : 1.0;
-  return kMultiBounce ? multi_bounce(visibility, albedo) : vec3(visibility);
-}
-
-vec3 specular_light(vec3 normal, vec3 view, float roughness) {
+vec3 environment_light(vec3 normal, vec3 view, float roughness) {
   float level = level_of_roughness(roughness, uint(parameters.map.y));
   vec3 direction = dominant_direction(normal, mirror_direction(normal, view), roughness);
   return fetch_map(map_image, parameters.map.x, level, direction);
+}
+
+// What the lobe sees: the environment and, as multi-bounce has it, occluders that are coloured and
+// lit as the surface is.
+vec3 specular_light(ivec2 pixel, vec3 environment, vec3 occluder) {
+  if (!kSpecularOcclusion) {
+    return environment;
+  }
+  float visible = texelFetch(specular_occlusion_image, pixel, 0).r;
+  return environment * visible + (kMultiBounce ? occluder * (1.0 - visible) : vec3(0.0));
 }
 
 Light light_of(ivec2 pixel, vec3 normal, vec3 view) {
@@ -115,11 +118,11 @@ Light light_of(ivec2 pixel, vec3 normal, vec3 view) {
                                     : parameters.metallic;
   vec2 table_value = fetch_reflectance(dot(normal, view), roughness);
   vec3 reflected = specular_reflectance(normal_reflectance(base, metallic), table_value);
+  vec3 spread = diffuse_light(pixel, normal, base);
   Light light;
-  light.diffuse = diffuse_light(pixel, normal, base) * diffuse_albedo(base, metallic) *
-                  (vec3(1.0) - reflected);
+  light.diffuse = spread * diffuse_albedo(base, metallic) * (vec3(1.0) - reflected);
   light.specular =
-      specular_light(normal, view, roughness) * specular_visibility(pixel, base) * reflected;
+      specular_light(pixel, environment_light(normal, view, roughness), spread * base) * reflected;
   return light;
 }
 #else

@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "alcove/framegraph/compile.h"
+#include "alcove/passes/environment.h"
+#include "alcove/passes/occlusion.h"
 #include "environment_lookup.h"
 #include "maths/gtso.h"
 #include "maths/make_projection.h"
@@ -145,9 +147,10 @@ Light expected(const Inputs& inputs, const View& view, std::uint32_t x, std::uin
   const vec3 mirrored = look_up(
       inputs.map,
       maths::dominant_direction(normal, maths::mirror_direction(normal, towards), roughness));
-  return {maths::diffuse_albedo(base, metallic) * (1.0f - reflected) * visible *
-              irradiance(inputs.harmonics, bent),
-          reflected * mirrored * maths::multi_bounce(inputs.specular_occlusion.at(x, y), base)};
+  const vec3 spread = visible * irradiance(inputs.harmonics, bent);
+  const float open = inputs.specular_occlusion.at(x, y);
+  return {maths::diffuse_albedo(base, metallic) * (1.0f - reflected) * spread,
+          reflected * (mirrored * open + spread * base * (1.0f - open))};
 }
 
 View turned(View view) {
@@ -287,6 +290,51 @@ TEST_F(ApplyPlan, WithoutAMapThereIsNoTableAndWithoutPartsNoTextureOfThem) {
   EXPECT_EQ(specular.table_bytes, 4u * maths::kReflectanceTable * maths::kReflectanceTable);
   EXPECT_THAT(kept(true, {.roughness = 0.2f}).pipelines, specular.pipelines)
       << "numbers make no new pipeline";
+}
+
+// A whole frame from depth to light without specular light: no bent normal, no pass of specular
+// occlusion, no environment map and no table.
+TEST_F(ApplyPass, AFrameWithoutSpecularLightHasNothingOfIt) {
+  const PlaneScene plane = plane_scene(test_views()[2], kWidth, kHeight, 30.0f);
+  const Inputs inputs = random_inputs();
+  std::vector<std::string> names;
+  run([&](Graph& graph) {
+    const Frame frame{graph, gpu().kernels(), test_views()[2].view, 0};
+    const auto occlusion = add_occlusion(frame,
+                                         {.depth_ndc = upload(graph, plane.depth_ndc),
+                                          .normals = upload(graph, plane.normal_vs),
+                                          .normals_in_view_space = true},
+                                         quality_settings(Quality::medium, 0.5f));
+    ASSERT_TRUE(occlusion) << occlusion.error().message;
+    const auto probe = add_environment(frame, upload(graph, inputs.map), {.size = 16, .levels = 2});
+    ASSERT_TRUE(probe) << probe.error().message;
+    const auto lit = add_apply(frame,
+                               {.depth = occlusion->linear_depth,
+                                .normals = occlusion->normals,
+                                .albedo = upload(graph, inputs.albedo),
+                                .visibility = occlusion->visibility,
+                                .harmonics = probe->harmonics,
+                                .normals_in_view_space = true},
+                               {});
+    ASSERT_TRUE(lit) << lit.error().message;
+    read_back(graph, lit->lit);
+    const auto plan = framegraph::compile(graph);
+    ASSERT_TRUE(plan) << framegraph::to_string(plan.error());
+    for (const framegraph::PlannedPass& pass : plan->passes) {
+      names.emplace_back(graph.description().pass_name(pass.pass));
+    }
+    for (std::uint32_t i = 0; i < graph.description().resources.size(); ++i) {
+      if (plan->placements[i].heap != framegraph::kNone) {
+        names.emplace_back(graph.description().resource_name(i));
+      }
+    }
+  });
+  EXPECT_THAT(names, testing::Contains("probe light"));
+  for (const char* absent : {"specular occlusion", "bent normal", "environment prefilter",
+                             "environment map", "specular light", "multi-bounce"}) {
+    EXPECT_THAT(names, testing::Not(testing::Contains(absent)));
+  }
+  EXPECT_EQ(gpu().kernels().table_bytes(), 0u);
 }
 
 TEST_F(ApplyPass, DiffuseSurfacesNeedNoMap) {
