@@ -427,7 +427,9 @@ tl::expected<void, std::string> FrameRenderer::State::declare_lit(Graph& graph,
     declared.unoccluded = light({}, false, false).lit;
     declared.unbent = light({.visibility = outputs.visibility}, false, false).lit;
     declared.occluded = light(bent, false, false).lit;
-    declared.bounced = light(bent, true, false).lit;
+    passes::ApplyInputs bounced = bent;
+    bounced.specular_occlusion = outputs.visibility;
+    declared.bounced = light(bounced, true, false).lit;
   }
   if (!error.empty()) {
     return Failure(std::move(error));

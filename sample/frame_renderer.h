@@ -20,7 +20,7 @@ namespace alcove::sample {
 
 // What is made of visibility in a frame that is read back.
 struct LightRequest {
-  passes::SpecularModel specular_model = passes::SpecularModel::cone;
+  passes::SpecularModel specular_model = passes::SpecularModel::table;
   std::vector<float> roughness;  // perceptual, an image each; empty: one, of the materials' own
   EnvironmentImage environment;  // that lights the scene; empty: it is not lit
   bool lit_steps = false;        // also light it with less and less of the occlusion
@@ -54,7 +54,7 @@ struct LitImages {
   Image<glm::vec3> unoccluded;  // this and the rest by LightRequest::lit_steps
   Image<glm::vec3> unbent;      // diffuse light times visibility
   Image<glm::vec3> occluded;    // the same, from along the bent normal
-  Image<glm::vec3> bounced;     // that times multi-bounce instead
+  Image<glm::vec3> bounced;     // that times multi-bounce instead, and specular light alike
 };
 
 // The images of a frame, read back.

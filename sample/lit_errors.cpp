@@ -37,14 +37,17 @@ double mean_over(const Mask& mask, const Image<glm::vec3>& image, const Value& v
   return count == 0 ? 0.0 : total / static_cast<double>(count);
 }
 
-// A picture with a pixel for each block: the one that was traced, or the sky.
-Image<glm::vec3> of_blocks(const Image<glm::vec3>& picture, const LightTruths& light) {
+// A picture with a pixel for each block: the one that was traced, or else one of the sky.
+Image<glm::vec3> of_blocks(const Image<glm::vec3>& picture, const LightTruths& light,
+                           const Image<float>& depth) {
   const std::uint32_t block = light.block;
   Image<glm::vec3> small((picture.width + block - 1) / block, (picture.height + block - 1) / block);
-  for (std::uint32_t y = 0; y < picture.height; ++y) {
-    for (std::uint32_t x = 0; x < picture.width; ++x) {
-      if ((x % block == 0 && y % block == 0) || light.sampled.at(x, y) != 0) {
-        small.at(x / block, y / block) = picture.at(x, y);
+  for (const bool sky : {true, false}) {
+    for (std::uint32_t y = 0; y < picture.height; ++y) {
+      for (std::uint32_t x = 0; x < picture.width; ++x) {
+        if (sky ? std::isinf(depth.at(x, y)) : light.sampled.at(x, y) != 0) {
+          small.at(x / block, y / block) = picture.at(x, y);
+        }
       }
     }
   }
@@ -95,8 +98,8 @@ LitErrors lit_errors_of(const Rendering& rendering, const LightTruths& light) {
   };
   errors.steps = {step("without occlusion", images.unoccluded, truth, variance),
                   step("visibility, light along the bent normal", images.occluded, truth, variance),
-                  step("and multi-bounce", images.bounced, truth, variance),
-                  step("and specular occlusion", images.all, truth, variance)};
+                  step("and multi-bounce, on specular light too", images.bounced, truth, variance),
+                  step("and specular light by its own occlusion", images.all, truth, variance)};
   errors.unbent = step("visibility alone", images.unbent, truth, variance);
   errors.diffuse =
       step("diffuse part of the last", images.diffuse, light.lit->diffuse, diffuse_variance);
@@ -147,8 +150,9 @@ tl::expected<void, std::string> write_lit_steps(const Rendering& rendering,
   const float exposure = exposure_of(rendering.light.environment);
   const Image<glm::vec3> truth = sum(light.lit->diffuse, light.lit->specular);
   const double mean = mean_over(light.sampled, truth, [](double x) { return x; });
+  const Image<float> depth = linear_depth(rendering);
   const auto tile = [&](const Image<glm::vec3>& picture) {
-    return display_colours(of_blocks(with_sky(rendering, picture), light), exposure);
+    return display_colours(of_blocks(with_sky(rendering, picture), light, depth), exposure);
   };
   const std::array tiles{
       tile(images.unoccluded),
@@ -157,7 +161,7 @@ tl::expected<void, std::string> write_lit_steps(const Rendering& rendering,
       tile(images.all),
       tile(images.unbent),
       tile(truth),
-      error_colours(of_blocks(images.all, light), of_blocks(truth, light), mean)};
+      error_colours(of_blocks(images.all, light, depth), of_blocks(truth, light, depth), mean)};
   constexpr std::uint32_t kColumns = 4;
   const std::uint32_t width = tiles[0].width + 2;
   const std::uint32_t height = tiles[0].height + 2;

@@ -203,10 +203,10 @@ LitTruth lit_truth(const RayScene& scene, const SurfacePoints& points,
         const glm::vec2 u = r2_point(i, seed);
         const Scattered spread = scatter_diffuse(surface, u);
         diffuse.means[half] +=
-            spread.weight * tracer.trace(origin, spread.direction_ws, hash(seed, 2 * i));
+            spread.weight * tracer.trace(origin, spread.direction_ws, hash(seed, uint64_t{2} * i));
         if (const auto mirrored = scatter_specular(surface, u)) {
           specular.means[half] += mirrored->weight * tracer.trace(origin, mirrored->direction_ws,
-                                                                  hash(seed, 2 * i + 1));
+                                                                  hash(seed, uint64_t{2} * i + 1));
         }
       }
       diffuse.means[half] /= double(samples);

@@ -165,7 +165,7 @@ tl::expected<OcclusionSettings, std::string> occlusion_settings(const OcclusionO
 }
 
 tl::expected<passes::SpecularModel, std::string> specular_model(const OcclusionOptions& options) {
-  passes::SpecularModel model = passes::SpecularModel::cone;
+  passes::SpecularModel model = passes::SpecularModel::table;
   for (const auto& [name, value] : options.set) {
     if (name == kSpecularModel) {
       if (const std::string wants = parse_name(value, model, kSpecularModels); !wants.empty()) {

@@ -16,7 +16,7 @@ namespace alcove::sample {
 [[nodiscard]] tl::expected<passes::OcclusionSettings, std::string> occlusion_settings(
     const OcclusionOptions& options, const Scene& scene);
 
-// How specular occlusion is found: `--set specular_model=...`, else by cones.
+// How specular occlusion is found: `--set specular_model=...`, else by the table.
 [[nodiscard]] tl::expected<passes::SpecularModel, std::string> specular_model(
     const OcclusionOptions& options);
 [[nodiscard]] std::string name_of(passes::SpecularModel model);

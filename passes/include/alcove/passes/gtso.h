@@ -1,4 +1,4 @@
-// Ground-truth specular occlusion: Jimenez, Wu, Pesce and Jarabo 2016, section 6, by cones.
+// Ground-truth specular occlusion: Jimenez, Wu, Pesce and Jarabo 2016, section 6, by cones or by its table.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ enum class SpecularModel : std::uint8_t {
 };
 
 struct GtsoSettings {
-  SpecularModel model = SpecularModel::cone;
+  SpecularModel model = SpecularModel::table;
   float roughness = 0.5f;               // perceptual, [0,1], of every pixel where no texture has it
   std::uint32_t roughness_channel = 0;  // of the roughness texture, 0 to 3
   Precision precision = Precision::unorm8;
