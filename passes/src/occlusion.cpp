@@ -34,6 +34,7 @@ OcclusionSettings quality_settings(Quality quality, float radius) {
       break;
     case Quality::ultra:
       settings.divisor = 2;
+      settings.slices = 2;
       settings.steps = 24;
       settings.filter_reach = 1;
       settings.history_frames = 32;
