@@ -13,10 +13,13 @@ namespace alcove::maths_test {
 
 class RandomInput {
  public:
-  RandomInput() : seed_(choose_seed()), engine_(seed_) {
+  RandomInput() : RandomInput(choose_seed()) {
     ::testing::Test::RecordProperty("seed", std::to_string(seed_));
     std::cout << "seed " << seed_ << " (replay with ALCOVE_TEST_SEED)\n";
   }
+
+  // Always the same inputs, and nothing logged.
+  explicit RandomInput(unsigned seed) : seed_(seed), engine_(seed) {}
 
   float uniform(float low, float high) {
     return std::uniform_real_distribution<float>(low, high)(engine_);
