@@ -93,6 +93,8 @@ Field make_field(const Image<float>& depth_vs, const Camera& camera) {
     }
   }
   find_joins(field);
+  // What a walk along the last row or column reads beyond it.
+  field.value.resize(field.value.size() + field.width + 1, 0.0f);
   return field;
 }
 
@@ -123,7 +125,7 @@ Walk walk_of(glm::vec2 direction) {
 struct March {
   int steps;  // all of them within the image
   float minor, slope;
-  int first, major_stride, minor_stride, minor_last;  // of texels in the field's arrays
+  int first, major_stride, minor_stride;  // of texels in the field's arrays
   const float* value;
   const float* join;
   glm::vec3 ray, ray_step, column;  // relative to the pixel's own point
@@ -154,7 +156,6 @@ March march_of(const Field& field, uint32_t x, uint32_t y, const Walk& walk,
   m.major_stride = walk.step * (walk.along_x ? 1 : width);
   m.minor_stride = walk.along_x ? width : 1;
   m.first = major * (walk.along_x ? 1 : width);
-  m.minor_last = minor_size - 1;
   m.value = field.value.data();
   m.join = walk.along_x ? field.join_below.data() : field.join_right.data();
   const glm::vec2 texel(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
@@ -187,17 +188,21 @@ constexpr int kBlock = 64;  // steps taken together
 // The field's value at `count` steps from step `first` on. Loads only: what follows is arithmetic
 // on whole registers.
 void load_values(const March m, int first, int count, float* values) {
+  auto step = static_cast<float>(first);
+  int texel = m.first + first * m.major_stride;
   for (int i = 0; i < count; ++i) {
-    const int step = first + i;
-    const float minor = m.minor + m.slope * static_cast<float>(step);
-    const int low = std::min(std::max(static_cast<int>(minor), 0), m.minor_last);
+    // Rounding leaves the image by less than a texel, where nothing is joined, at no weight.
+    const float minor = m.minor + m.slope * step;
+    const int low = static_cast<int>(minor);
     const float t = minor - static_cast<float>(low);
-    const int texel = m.first + step * m.major_stride + low * m.minor_stride;
-    const float a = m.value[texel];
-    const float b = m.value[low < m.minor_last ? texel + m.minor_stride : texel];
+    const int at = texel + low * m.minor_stride;
+    const float a = m.value[at];
+    const float b = m.value[at + m.minor_stride];
     // No branches: which way they go is as good as random.
-    const auto nearest = static_cast<float>(static_cast<int>(t + 0.5f));
-    values[i] = a + (b - a) * (nearest + m.join[texel] * (t - nearest));
+    const float nearest = t >= 0.5f ? 1.0f : 0.0f;
+    values[i] = a + (b - a) * (nearest + m.join[at] * (t - nearest));
+    step += 1.0f;
+    texel += m.major_stride;
   }
 }
 

@@ -9,6 +9,7 @@
 #include "maths/multi_bounce.h"
 #include "report.h"
 #include "tables.h"
+#include "tables/gtso.h"
 
 namespace alcove::sample {
 namespace {
@@ -39,12 +40,10 @@ float specular_of(passes::SpecularModel model, float visibility, const glm::vec3
       return maths::lagarde_specular_occlusion(glm::dot(normal, view), visibility, alpha);
     case passes::SpecularModel::smooth_cone:
       return maths::smooth_specular_occlusion(visibility, raised, normal, mirror, alpha);
-    case passes::SpecularModel::table: {
-      static const std::vector<std::uint32_t> table = passes::gtso_table();
-      return passes::look_up_gtso(table, visibility, maths::visibility_cone(visibility),
+    case passes::SpecularModel::table:
+      return passes::look_up_gtso(kGtsoTable, visibility, maths::visibility_cone(visibility),
                                   maths::angle_between(raised, mirror),
                                   maths::angle_between(normal, mirror), roughness);
-    }
     default:
       return maths::specular_occlusion(visibility, raised, normal, mirror, alpha);
   }

@@ -18,8 +18,8 @@ namespace {
 
 using Failure = tl::unexpected<std::string>;
 
-// Frames that are timed when a run draws one frame only: a first one also compiles shaders.
-constexpr std::uint32_t kFewestTimedFrames = 5;
+// Frames whose times make the median; one more, the first, also compiles shaders.
+constexpr std::uint32_t kTimedFrames = 9;
 
 double median(std::vector<double> values) {
   if (values.empty()) {
@@ -87,14 +87,12 @@ class Run {
   const LightRequest& light_;
 };
 
-// Draws the run with visibility alone, timed; a single frame is drawn again until its time is
-// known.
+// Draws the first frames of the run with visibility alone, timed; a short run's last frame is drawn
+// again until its time is known.
 tl::expected<Costs, std::string> time_run(FrameRenderer& renderer, const Run& run,
                                           std::uint32_t frames) {
   std::vector<FrameCost> costs;
-  const std::uint32_t timed = std::max(frames, kFewestTimedFrames);
-  for (std::uint32_t i = 0; i <= timed; ++i) {
-    // One more than is timed: the first compiles shaders.
+  for (std::uint32_t i = 0; i <= kTimedFrames; ++i) {
     auto cost = renderer.draw(run.request(std::min(i, frames - 1), false));
     if (!cost) {
       return Failure(std::move(cost.error()));

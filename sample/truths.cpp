@@ -12,7 +12,7 @@ namespace {
 
 // Raised when a truth is computed otherwise, so that old entries of the cache are not taken.
 constexpr std::uint32_t kTruthVersion = 1;
-constexpr std::uint32_t kHeightFieldSlices = 32;
+constexpr std::uint32_t kHeightFieldSlices = 24;
 
 TruthCache cache_of(const Options& options) {
   return TruthCache(options.use_cache ? TruthCache::default_folder() : std::filesystem::path());

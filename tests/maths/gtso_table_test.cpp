@@ -36,7 +36,7 @@ float possible_angle(float share, float cone, float mirror_from_normal) {
 
 // Every coordinate at random, some of them at an end: entries, between entries, and along edges.
 TEST(GtsoTable, IsCloseToItsOwnIntegral) {
-  RandomInput random;
+  RandomInput random(1);  // always the same set: the README states its figures
   double squares = 0.0, worst = 0.0;
   int count = 0;
   const auto coordinate = [&](int i) {

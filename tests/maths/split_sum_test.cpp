@@ -61,9 +61,9 @@ vec2 quadrature(float n_dot_v, float roughness) {
 
 TEST(SplitSum, TableIsCloseToTheIntegralBetweenItsEntriesToo) {
   const auto table = alcove::passes::reflectance_table();
-  RandomInput random;
+  RandomInput random(1);  // always the same set: the README states its figures
   double worst = 0.0, squares = 0.0;
-  constexpr int kPoints = 400;
+  constexpr int kPoints = 1000;
   for (int i = 0; i < kPoints; ++i) {
     const float n_dot_v = std::max(random.uniform(0.0f, 1.0f), 1e-3f);
     const float roughness = random.uniform(0.0f, 1.0f);

@@ -103,7 +103,7 @@ TEST_F(EnvironmentPass, LevelsAgreeWithQuadratureOfTheLobe) {
       read_back(graph, made->map, level);
     }
   });
-  maths_test::RandomInput random;
+  maths_test::RandomInput random(1);  // of so few directions a mean differs from set to set
   for (std::uint32_t level = 0; level < kLevels; ++level) {
     const float roughness = maths::roughness_of_level(level, kLevels);
     const HostImage& map = result(level);
