@@ -309,14 +309,37 @@ tl::expected<Declared, std::string> FrameRenderer::State::declare_occlusion(
   if (normals != NormalSource::kDepth) {
     inputs.normals = declared.normal;
   }
+  passes::OcclusionSettings settings = request.occlusion;
+  std::vector<float> roughness;
+  if (request.light != nullptr) {
+    roughness = request.light->roughness;
+  }
+  if (roughness.empty()) {
+    inputs.roughness = declared.albedo;
+    settings.roughness_channel = 3;
+  } else {
+    settings.roughness = roughness.front();
+  }
   if (request.index == 0) {
     graph.reset_histories();
   }
-  auto outputs = passes::add_occlusion(frame, inputs, request.occlusion);
+  auto outputs = passes::add_occlusion(frame, inputs, settings);
   if (!outputs) {
     return Failure(std::move(outputs.error().message));
   }
   declared.outputs = *outputs;
+  if (outputs->specular) {
+    declared.specular_occlusion.push_back(outputs->specular);
+  }
+  // More of them are found again from the start, in histories of their own.
+  for (std::size_t i = 1; i < roughness.size() && outputs->specular; ++i) {
+    settings.roughness = roughness[i];
+    auto more = passes::add_occlusion(frame, inputs, settings, "roughness " + std::to_string(i));
+    if (!more) {
+      return Failure(std::move(more.error().message));
+    }
+    declared.specular_occlusion.push_back(more->specular);
+  }
   return declared;
 }
 
@@ -336,26 +359,6 @@ tl::expected<void, std::string> FrameRenderer::State::declare_light(Graph& graph
     return Failure(bounced.error().message);
   }
   declared.multi_bounce = *bounced;
-  passes::GtsoInputs inputs{.visibility = outputs.visibility,
-                            .bent_normal = outputs.bent_normal,
-                            .normals = outputs.normals,
-                            .depth = outputs.linear_depth,
-                            .normals_in_view_space = normals == NormalSource::kDepth};
-  passes::GtsoSettings settings{.model = request.light->specular_model, .precision = precision};
-  std::vector<float> roughness = request.light->roughness;
-  if (roughness.empty()) {
-    inputs.roughness = declared.albedo;
-    settings.roughness_channel = 3;
-    roughness.push_back(settings.roughness);
-  }
-  for (const float value : roughness) {
-    settings.roughness = value;
-    const auto occluded = passes::add_gtso(frame, inputs, settings);
-    if (!occluded) {
-      return Failure(occluded.error().message);
-    }
-    declared.specular_occlusion.push_back(*occluded);
-  }
   return request.light->environment.empty() ? tl::expected<void, std::string>()
                                             : declare_lit(graph, request, declared);
 }
@@ -482,8 +485,11 @@ tl::expected<FrameCost, std::string> FrameRenderer::draw(const FrameRequest& req
   auto report = state_->gpu.run([&](Graph& graph) {
     return state_->declare_occlusion(graph, request).map([&](const Declared& declared) {
       graph.output(declared.outputs.visibility);
-      if (declared.outputs.bent_normal) {
+      if (request.occlusion.bent_normal) {
         graph.output(declared.outputs.bent_normal);
+      }
+      for (const Texture specular : declared.specular_occlusion) {
+        graph.output(specular);
       }
     });
   });

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "alcove/framegraph/executor.h"
-#include "alcove/passes/gtso.h"
 #include "alcove/passes/occlusion.h"
 #include "environment.h"
 #include "gbuffer.h"
@@ -20,7 +19,6 @@ namespace alcove::sample {
 
 // What is made of visibility in a frame that is read back.
 struct LightRequest {
-  passes::SpecularModel specular_model = passes::SpecularModel::table;
   std::vector<float> roughness;  // perceptual, an image each; empty: one, of the materials' own
   EnvironmentImage environment;  // that lights the scene; empty: it is not lit
   bool lit_steps = false;        // also light it with less and less of the occlusion

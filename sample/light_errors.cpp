@@ -30,22 +30,23 @@ Image<glm::vec3> grey(const Image<float>& values) {
   return result;
 }
 
-float specular_of(passes::SpecularModel model, float visibility, const glm::vec3& bent,
+// What a model makes of visibility and bent normal; slices know more, and are told by the table.
+float specular_of(passes::Specular model, float visibility, const glm::vec3& bent,
                   const glm::vec3& normal, const glm::vec3& view, float roughness) {
   const float alpha = roughness * roughness;
   const glm::vec3 mirror = maths::mirror_direction(normal, view);
   const glm::vec3 raised = maths::raised_bent_normal(bent, normal, visibility);
   switch (model) {
-    case passes::SpecularModel::lagarde:
+    case passes::Specular::lagarde:
       return maths::lagarde_specular_occlusion(glm::dot(normal, view), visibility, alpha);
-    case passes::SpecularModel::smooth_cone:
+    case passes::Specular::smooth_cone:
       return maths::smooth_specular_occlusion(visibility, raised, normal, mirror, alpha);
-    case passes::SpecularModel::table:
+    case passes::Specular::cone:
+      return maths::specular_occlusion(visibility, raised, normal, mirror, alpha);
+    default:
       return passes::look_up_gtso(kGtsoTable, visibility, maths::visibility_cone(visibility),
                                   maths::angle_between(raised, mirror),
                                   maths::angle_between(normal, mirror), roughness);
-    default:
-      return maths::specular_occlusion(visibility, raised, normal, mirror, alpha);
   }
 }
 
@@ -59,7 +60,7 @@ Image<float> specular_of_truth(const Rendering& rendering, const OcclusionTruth&
       const glm::vec3 view =
           viewer.orthographic ? viewer.view_ws
                               : glm::normalize(viewer.eye_ws - light.points.position_ws.pixels[i]);
-      result.pixels[i] = specular_of(rendering.light.specular_model, truth.visibility.pixels[i],
+      result.pixels[i] = specular_of(rendering.settings.specular, truth.visibility.pixels[i],
                                      truth.bent_normal_ws.pixels[i],
                                      light.points.normal_ws.pixels[i], view, roughness.pixels[i]);
     }

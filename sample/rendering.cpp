@@ -52,18 +52,29 @@ Costs medians(const std::vector<FrameCost>& frames) {
   return costs;
 }
 
+// What is asked of a frame.
+enum class Outputs : std::uint8_t {
+  kVisibility,  // and a bent normal, where the settings say so
+  kSpecular,    // and specular occlusion
+  kAll,
+};
+
 // The requests of a run's frames, by index: the camera orbits, and motion is from the frame before.
 class Run {
  public:
   Run(const Options& options, const Camera& camera, const passes::OcclusionSettings& settings,
       const LightRequest& light)
-      : options_(options), camera_(camera), settings_(settings), light_(light) {}
+      : options_(options), camera_(camera), settings_(settings), light_(light) {
+    if (!light.roughness.empty()) {
+      timed_light_.roughness = {light.roughness.front()};
+    }
+  }
 
   Camera camera(std::uint32_t frame) const {
     return orbited(camera_, options_.view.orbit * static_cast<float>(frame));
   }
 
-  FrameRequest request(std::uint32_t frame, bool all_outputs) const {
+  FrameRequest request(std::uint32_t frame, Outputs outputs) const {
     const CameraMatrices now = matrices(frame);
     const CameraMatrices before = matrices(frame == 0 ? 0 : frame - 1);
     FrameRequest request;
@@ -71,8 +82,16 @@ class Run {
                     before.clip_from_view, camera_.reversed_z};
     request.index = frame;
     request.occlusion = settings_;
-    request.occlusion.bent_normal |= all_outputs;
-    request.light = &light_;
+    switch (outputs) {
+      case Outputs::kVisibility:
+        request.occlusion.specular = passes::Specular::none;
+        break;
+      case Outputs::kSpecular:
+        break;
+      case Outputs::kAll:
+        request.occlusion.bent_normal = true;
+    }
+    request.light = outputs == Outputs::kAll ? &light_ : &timed_light_;
     return request;
   }
 
@@ -85,15 +104,16 @@ class Run {
   Camera camera_;
   passes::OcclusionSettings settings_;
   const LightRequest& light_;
+  LightRequest timed_light_;  // one roughness, and no light
 };
 
-// Draws the first frames of the run with visibility alone, timed; a short run's last frame is drawn
+// Draws the first frames of the run, timed; a short run's last frame is drawn
 // again until its time is known.
 tl::expected<Costs, std::string> time_run(FrameRenderer& renderer, const Run& run,
-                                          std::uint32_t frames) {
+                                          std::uint32_t frames, Outputs outputs) {
   std::vector<FrameCost> costs;
   for (std::uint32_t i = 0; i <= kTimedFrames; ++i) {
-    auto cost = renderer.draw(run.request(std::min(i, frames - 1), false));
+    auto cost = renderer.draw(run.request(std::min(i, frames - 1), outputs));
     if (!cost) {
       return Failure(std::move(cost.error()));
     }
@@ -107,11 +127,11 @@ tl::expected<Costs, std::string> time_run(FrameRenderer& renderer, const Run& ru
 tl::expected<FrameImages, std::string> draw_images(FrameRenderer& renderer, const Run& run,
                                                    std::uint32_t frames) {
   for (std::uint32_t i = 0; i + 1 < frames; ++i) {
-    if (auto cost = renderer.draw(run.request(i, true)); !cost) {
+    if (auto cost = renderer.draw(run.request(i, Outputs::kAll)); !cost) {
       return Failure(std::move(cost.error()));
     }
   }
-  return renderer.draw_and_read(run.request(frames - 1, true));
+  return renderer.draw_and_read(run.request(frames - 1, Outputs::kAll));
 }
 
 }  // namespace
@@ -132,15 +152,14 @@ tl::expected<Rendering, std::string> render(const Options& options) {
     return Failure(settings.error());
   }
   result.settings = *settings;
-  const auto model = specular_model(options.occlusion);
-  if (!model) {
-    return Failure(model.error());
+  if (result.settings.specular == passes::Specular::none) {
+    result.settings.specular = passes::Specular::slices;
   }
   auto environment = load_environment(options.environment);
   if (!environment) {
     return Failure(std::move(environment.error()));
   }
-  result.light = {*model, options.occlusion.roughness, std::move(*environment), options.lit};
+  result.light = {options.occlusion.roughness, std::move(*environment), options.lit};
   auto gpu = Gpu::create({.validation = options.validation, .index = options.device});
   if (!gpu) {
     return Failure(std::move(gpu.error()));
@@ -148,7 +167,7 @@ tl::expected<Rendering, std::string> render(const Options& options) {
   result.device = (*gpu)->device().properties().deviceName;
   result.driver = (*gpu)->device().driver();
 
-  const Run run(options, *camera, *settings, result.light);
+  const Run run(options, *camera, result.settings, result.light);
   const std::uint32_t frames = options.view.frames;
   result.camera = run.camera(frames - 1);
   auto renderer = FrameRenderer::create(
@@ -156,12 +175,17 @@ tl::expected<Rendering, std::string> render(const Options& options) {
   if (!renderer) {
     return Failure(std::move(renderer.error()));
   }
-  auto costs = time_run(**renderer, run, frames);
+  auto costs = time_run(**renderer, run, frames, Outputs::kVisibility);
   if (!costs) {
     return Failure(std::move(costs.error()));
   }
   result.costs = std::move(*costs);
   result.memory = (*renderer)->memory();
+  costs = time_run(**renderer, run, frames, Outputs::kSpecular);
+  if (!costs) {
+    return Failure(std::move(costs.error()));
+  }
+  result.costs_with_specular = std::move(*costs);
   auto images = draw_images(**renderer, run, frames);
   if (!images) {
     return Failure(std::move(images.error()));

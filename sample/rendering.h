@@ -28,6 +28,7 @@ struct Rendering {
   LightRequest light;
   FrameImages images;  // of the last frame, with every output
   Costs costs;         // with visibility as the only output
+  Costs costs_with_specular;
   framegraph::MemoryStatistics memory;
   std::string device;
   std::string driver;

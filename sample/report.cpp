@@ -52,12 +52,13 @@ Json report_of(const Rendering& rendering, const Options& options) {
   report["camera"] = camera_json(rendering.camera);
   report["normals"] = name_of(options.occlusion.normals);
   report["settings"] = to_json(rendering.settings);
-  report["settings"]["specular_model"] = name_of(rendering.light.specular_model);
   for (const PassTime& pass : rendering.costs.passes) {
     report["timings_ms"][pass.pass] = pass.milliseconds;
   }
   report["timings_ms"]["total"] = rendering.costs.occlusion_ms;
   report["cpu_ms"] = rendering.costs.cpu_ms;
+  report["with_specular"] = {{"total_ms", rendering.costs_with_specular.occlusion_ms},
+                             {"cpu_ms", rendering.costs_with_specular.cpu_ms}};
   report["memory"] = {{"transient_bytes", rendering.memory.aliased},
                       {"transient_bytes_without_aliasing", rendering.memory.unaliased},
                       {"transient_bytes_lower_bound", rendering.memory.lower_bound},
@@ -99,6 +100,8 @@ std::string time_table(const Rendering& rendering) {
   }
   row("occlusion, by GPU timestamps", rendering.costs.occlusion_ms);
   row("occlusion, processor time", rendering.costs.cpu_ms);
+  row("with specular, by GPU timestamps", rendering.costs_with_specular.occlusion_ms);
+  row("with specular, processor time", rendering.costs_with_specular.cpu_ms);
   const auto mib = [](VkDeviceSize bytes) {
     return static_cast<double>(bytes) / (1024.0 * 1024.0);
   };

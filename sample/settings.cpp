@@ -23,12 +23,13 @@ constexpr std::array<std::pair<std::string_view, passes::Precision>, 3> kPrecisi
     {{"unorm8", passes::Precision::unorm8},
      {"float16", passes::Precision::float16},
      {"float32", passes::Precision::float32}}};
-constexpr std::string_view kSpecularModel = "specular_model";
-constexpr std::array<std::pair<std::string_view, passes::SpecularModel>, 4> kSpecularModels{
-    {{"cone", passes::SpecularModel::cone},
-     {"smooth_cone", passes::SpecularModel::smooth_cone},
-     {"lagarde", passes::SpecularModel::lagarde},
-     {"table", passes::SpecularModel::table}}};
+constexpr std::array<std::pair<std::string_view, passes::Specular>, 6> kSpeculars{
+    {{"none", passes::Specular::none},
+     {"slices", passes::Specular::slices},
+     {"table", passes::Specular::table},
+     {"cone", passes::Specular::cone},
+     {"smooth_cone", passes::Specular::smooth_cone},
+     {"lagarde", passes::Specular::lagarde}}};
 constexpr std::array<std::pair<std::string_view, bool>, 2> kBooleans{
     {{"false", false}, {"true", true}}};
 
@@ -68,6 +69,9 @@ std::string parse(const std::string& text, passes::Pattern& value) {
 std::string parse(const std::string& text, passes::Precision& value) {
   return parse_name(text, value, kPrecisions);
 }
+std::string parse(const std::string& text, passes::Specular& value) {
+  return parse_name(text, value, kSpeculars);
+}
 std::string parse(const std::string& text, bool& value) {
   return parse_name(text, value, kBooleans);
 }
@@ -89,6 +93,7 @@ Json show(bool value) { return value; }
 Json show(passes::Estimator value) { return name_of(value, kEstimators); }
 Json show(passes::Pattern value) { return name_of(value, kPatterns); }
 Json show(passes::Precision value) { return name_of(value, kPrecisions); }
+Json show(passes::Specular value) { return name_of(value, kSpeculars); }
 
 // Calls `visit(name, field)` for every setting.
 template <typename Settings, typename Visit>
@@ -107,6 +112,7 @@ void for_each_setting(Settings& settings, const Visit& visit) {
   visit("history_frames", settings.history_frames);
   visit("clamp_width", settings.clamp_width);
   visit("bent_normal", settings.bent_normal);
+  visit("specular", settings.specular);
   visit("precision", settings.precision);
 }
 
@@ -123,8 +129,7 @@ tl::expected<void, std::string> set(OcclusionSettings& settings, const std::stri
     }
   });
   if (!known) {
-    return Failure("There is no setting '" + name + "'; --set knows " + names + ", " +
-                   std::string(kSpecularModel) + ".");
+    return Failure("There is no setting '" + name + "'; --set knows " + names + ".");
   }
   if (!wants.empty()) {
     return Failure("--set " + name + "=" + value + ": " + name + " takes " + wants + ".");
@@ -154,29 +159,12 @@ tl::expected<OcclusionSettings, std::string> occlusion_settings(const OcclusionO
   OcclusionSettings settings = passes::quality_settings(
       to_quality(options.quality), options.radius.value_or(default_radius(scene)));
   for (const auto& [name, value] : options.set) {
-    if (name == kSpecularModel) {
-      continue;
-    }
     if (auto done = set(settings, name, value); !done) {
       return Failure(std::move(done.error()));
     }
   }
   return settings;
 }
-
-tl::expected<passes::SpecularModel, std::string> specular_model(const OcclusionOptions& options) {
-  passes::SpecularModel model = passes::SpecularModel::table;
-  for (const auto& [name, value] : options.set) {
-    if (name == kSpecularModel) {
-      if (const std::string wants = parse_name(value, model, kSpecularModels); !wants.empty()) {
-        return Failure("--set " + name + "=" + value + ": " + name + " takes " + wants + ".");
-      }
-    }
-  }
-  return model;
-}
-
-std::string name_of(passes::SpecularModel model) { return name_of(model, kSpecularModels); }
 
 Json to_json(const OcclusionSettings& settings) {
   Json json;

@@ -7,12 +7,15 @@
 //
 // Writes two numbers a pixel, the visible part of its slices and the whole of them when open: filters
 // and history add up each, and only the last divides. The mean of the pixels' own ratios would be
-// biased. The bent normal is written as a sum over slices too, in view space, and never normalised.
+// biased. The bent normal is written as a sum over slices too, in view space, and never normalised; and
+// so (compiled with LOBE) are the visible part and the whole of the surface's GGX lobe, by the same
+// horizons or sectors.
 
 #include "gtao_parameters.h"
 #include "maths/bent_normal.h"
 #include "maths/connected_samples.h"
 #include "maths/gtao.h"
+#include "maths/lobe_slice.h"
 #include "maths/sampling.h"
 #include "maths/signal.h"
 #include "maths/slice_line.h"
@@ -27,6 +30,11 @@ layout(constant_id = 3) const bool kBitmask = false;
 layout(constant_id = 4) const int kDivisor = 1;  // one search a block of so many pixels a side
 layout(constant_id = 5) const uint kPattern = 0;  // 0 golden, 1 Hilbert and R2, 2 the memo's
 layout(constant_id = 6) const bool kPerspective = true;
+layout(constant_id = 7) const bool kRoughnessTexture = false;
+layout(constant_id = 8) const int kRoughnessChannel = 0;
+
+// Keeps what slices beside a narrow lobe hold of it above the least half.
+const float kLobeScale = 256.0;
 
 // Bend of the line between two samples, in depths for each pixel's width, that parts two surfaces.
 const float kSharpBend = 4.0;
@@ -37,6 +45,13 @@ layout(set = 0, binding = 2) uniform texture2D normal_image;  // xyz, turned by 
 layout(set = 0, binding = 3) uniform writeonly uimage2D signal_image;  // signal, line
 // Bound to the signal and never written where no bent normal is wanted.
 layout(set = 0, binding = 4) uniform writeonly uimage2D bent_image;
+#ifdef LOBE
+layout(set = 0, binding = 5) uniform texture2D roughness_image;      // perceptual
+layout(set = 0, binding = 6) uniform writeonly uimage2D lobe_image;  // lobe, surface
+const bool kLobe = true;
+#else
+const bool kLobe = false;
+#endif
 
 struct Surface {
   ivec2 pixel;
@@ -45,9 +60,19 @@ struct Surface {
   vec3 normal;  // unit, view space
   vec3 view;    // unit, view space, towards the eye
   TangentLine tangent;
+  LobeSurface lobe;  // normal as it was given
 };
 
 ivec2 size_px() { return imageSize(line_image); }
+
+float fetch_roughness(ivec2 pixel) {
+#ifdef LOBE
+  if (kRoughnessTexture) {
+    return clamp(texelFetch(roughness_image, pixel, 0)[kRoughnessChannel], 0.0, 1.0);
+  }
+#endif
+  return parameters.roughness;
+}
 
 Surface fetch_surface(ivec2 pixel, float line) {
   Surface surface;
@@ -56,8 +81,10 @@ Surface fetch_surface(ivec2 pixel, float line) {
   surface.depth = kPerspective ? 1.0 / line : line;
   vec2 slope = parameters.slope.zw + (kPerspective ? surface.centre * parameters.slope.xy : vec2(0.0));
   surface.view = normalize(vec3(-slope, 1.0));
-  vec3 normal = mat3(parameters.view_from_normal) * texelFetch(normal_image, pixel, 0).xyz;
+  vec3 given = texelFetch(normal_image, pixel, 0).xyz;
+  vec3 normal = mat3(parameters.view_from_normal) * given;
   surface.normal = facing_normal(normalize(normal), surface.view);
+  surface.lobe = LobeSurface(given, fetch_roughness(pixel));
   surface.tangent = make_tangent_line(parameters.slope.xy, surface.normal, surface.view,
                                       surface.depth, kPerspective);
   return surface;
@@ -231,7 +258,14 @@ struct SliceSum {
   float visible;
   float open;
   vec3 bent;
+  Signal lobe;
 };
+
+Signal no_lobe() { return Signal(0.0, 0.0); }
+
+LobeSlice lobe_of(Surface surface, Slice slice) {
+  return make_lobe_slice(slice, surface.lobe.roughness * surface.lobe.roughness);
+}
 
 SliceSum bitmask_slice(Surface surface, SliceLine line, Slice slice, vec3 direction, Search ahead,
                        Search behind) {
@@ -249,6 +283,14 @@ SliceSum bitmask_slice(Surface surface, SliceLine line, Slice slice, vec3 direct
       light_arc(slice, 1.0, tangent_light(slice, 1.0)) + light_arc(slice, -1.0, tangent_light(slice, -1.0));
   vec2 bent = front.bent + back.bent;
   sum.bent = direction * bent.x + surface.view * bent.y;
+  sum.lobe = no_lobe();
+  if (kLobe) {
+    LobeSlice lobe = lobe_of(surface, slice);
+    sum.lobe.visible =
+        visible_lobe(lobe, 1.0, ahead_side.per_bearing, ahead_sectors, parameters.fill) +
+        visible_lobe(lobe, -1.0, behind_side.per_bearing, behind_sectors, parameters.fill);
+    sum.lobe.open = lobe.open;
+  }
   return sum;
 }
 
@@ -261,6 +303,11 @@ SliceSum horizon_slice(Surface surface, Slice slice, vec3 direction, Search ahea
   sum.open = open_slice(slice);
   sum.bent = kBentNormal ? slice_bent_normal(slice, direction, surface.view, front, back)
                          : vec3(0.0);
+  sum.lobe = no_lobe();
+  if (kLobe) {
+    LobeSlice lobe = lobe_of(surface, slice);
+    sum.lobe = Signal(horizon_lobe(slice, lobe, front, back), lobe.open);
+  }
   return sum;
 }
 
@@ -282,6 +329,15 @@ void store_signal(ivec2 block, float visible, float open, float line) {
   imageStore(signal_image, block, uvec4(pack_signal(signal), floatBitsToUint(line), 0u, 0u));
 }
 
+#ifdef LOBE
+void store_lobe(ivec2 block, LobeSurface surface, Signal lobe) {
+  // Lobes of any width come to about as much: what neighbours of other roughness add is in scale.
+  float scale = kLobeScale * max(surface.roughness * surface.roughness, kSmallestLobe);
+  lobe = Signal(lobe.visible * scale, lobe.open * scale);
+  imageStore(lobe_image, block, uvec4(pack_lobe(lobe), pack_lobe_surface(surface), 0u, 0u));
+}
+#endif
+
 void main() {
   ivec2 block = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(block * kDivisor, size_px()))) {
@@ -294,13 +350,16 @@ void main() {
     if (kBentNormal) {
       imageStore(bent_image, block, uvec4(0u));
     }
+#ifdef LOBE
+    imageStore(lobe_image, block, uvec4(0u));
+#endif
     return;
   }
   Surface surface = fetch_surface(pixel, centre_line);
   ViewBasis basis = make_view_basis(surface.view);
   SliceNoise noise = noise_at(uvec2(block));
 
-  SliceSum sum = SliceSum(0.0, 0.0, vec3(0.0));
+  SliceSum sum = SliceSum(0.0, 0.0, vec3(0.0), no_lobe());
   for (uint i = 0; i < kSliceCount; ++i) {
     vec3 direction = slice_direction(basis, slice_angle(i, kSliceCount, noise.direction));
     Slice slice = make_slice(surface.normal, direction, surface.view);
@@ -312,10 +371,15 @@ void main() {
     sum.visible += more.visible;
     sum.open += more.open;
     sum.bent += more.bent;
+    sum.lobe.visible += more.lobe.visible;
+    sum.lobe.open += more.lobe.open;
   }
   float mean = 1.0 / float(kSliceCount);
   store_signal(block, sum.visible * mean, sum.open * mean, centre_line);
   if (kBentNormal) {
     imageStore(bent_image, block, uvec4(pack_direction(sum.bent * mean), 0u, 0u));
   }
+#ifdef LOBE
+  store_lobe(block, surface.lobe, Signal(sum.lobe.visible * mean, sum.lobe.open * mean));
+#endif
 }

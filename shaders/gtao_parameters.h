@@ -13,6 +13,7 @@ struct GtaoParameters {
   uint frame;             // turns the noise
   float thickness;        // of what is joined to nothing, scene units (bitmask)
   float fill;             // share of what lies behind an occluder that counts as occluded, [0,1]
+  float roughness;        // perceptual, of every surface where no texture has it
 };
 
 ALCOVE_MATHS_END

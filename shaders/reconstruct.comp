@@ -11,11 +11,13 @@
 // sharp. Neighbours weigh by their distance on the image, in a window that narrows as a pixel gathers
 // frames, and by their distance from the pixel's tangent plane, so that a plane at any tilt is
 // filtered whole and nothing leaks across an edge. Sums are added up, visible and open parts each,
-// and divided last.
+// and divided last. Those of the GGX lobe weigh by normal and roughness too: the narrower the lobe,
+// the more of it hangs on where it points.
 
 #include "maths/bent_normal.h"
 #include "maths/gtao.h"
 #include "maths/history.h"
+#include "maths/lobe_slice.h"
 #include "maths/projection.h"
 #include "maths/reprojection.h"
 #include "maths/signal.h"
@@ -31,6 +33,8 @@ layout(constant_id = 3) const bool kMotion = false;
 layout(constant_id = 4) const bool kPerspective = true;
 layout(constant_id = 5) const bool kClamp = false;
 layout(constant_id = 6) const bool kStill = false;  // nothing moved since the last frame
+layout(constant_id = 7) const bool kRoughnessTexture = false;
+layout(constant_id = 8) const int kRoughnessChannel = 0;
 
 layout(set = 0, binding = 0) uniform Parameters { ReconstructParameters parameters; };
 // What our own passes wrote is read as storage: a texel at a known place needs no sampler.
@@ -48,6 +52,21 @@ layout(set = 0, binding = 8, rg32ui) uniform readonly uimage2D history_image;
 layout(set = 0, binding = 9) uniform texture2D bent_history_image;
 layout(set = 0, binding = 10) uniform writeonly uimage2D next_history_image;
 layout(set = 0, binding = 11) uniform writeonly image2D next_bent_history_image;
+const int kFirstLobeBinding = 12;
+#else
+const int kFirstLobeBinding = 7;
+#endif
+#ifdef LOBE
+layout(set = 0, binding = kFirstLobeBinding, rg32ui) uniform readonly uimage2D lobe_image;
+layout(set = 0, binding = kFirstLobeBinding + 1) uniform texture2D roughness_image;  // perceptual
+layout(set = 0, binding = kFirstLobeBinding + 2) uniform writeonly image2D specular_image;
+#ifdef HISTORY
+layout(set = 0, binding = 15, r32ui) uniform readonly uimage2D lobe_history_image;
+layout(set = 0, binding = 16) uniform writeonly uimage2D next_lobe_history_image;
+#endif
+const bool kLobe = true;
+#else
+const bool kLobe = false;
 #endif
 
 struct Surface {
@@ -58,12 +77,14 @@ struct Surface {
   vec2 gradient;  // of `line` on the tangent plane, for each pixel
   float stiffness;  // tolerances that a unit of `line` off the tangent plane stands for
   float slant;    // cosine between normal and view vector, on the axis
+  LobeSurface lobe;
 };
 
 // What is added up: over neighbours, then over frames.
 struct Sum {
   Signal signal;
   vec3 bent;
+  Signal lobe;
 };
 
 struct Neighbourhood {
@@ -73,13 +94,24 @@ struct Neighbourhood {
 
 ivec2 size_px() { return imageSize(line_image); }
 
+LobeSurface fetch_lobe_surface(ivec2 pixel, vec3 normal) {
+  LobeSurface surface = LobeSurface(normal, parameters.roughness);
+#ifdef LOBE
+  if (kRoughnessTexture) {
+    surface.roughness = texelFetch(roughness_image, pixel, 0)[kRoughnessChannel];
+  }
+#endif
+  return surface;
+}
+
 Surface fetch_surface(ivec2 pixel, float line) {
   Surface surface;
   surface.pixel = pixel;
   surface.centre = vec2(pixel) + 0.5;
   surface.line = line;
   surface.depth = kPerspective ? 1.0 / surface.line : surface.line;
-  vec3 plane = mat3(parameters.plane_from_normal) * texelFetch(normal_image, pixel, 0).xyz;
+  vec3 normal = texelFetch(normal_image, pixel, 0).xyz;
+  vec3 plane = mat3(parameters.plane_from_normal) * normal;
   // How the distance from the plane grows with depth along the pixel's ray. Seen edge-on, a plane
   // would run to any depth.
   float along = plane.z + (kPerspective ? dot(surface.centre, plane.xy) : 0.0);
@@ -88,6 +120,7 @@ Surface fetch_surface(ivec2 pixel, float line) {
   surface.gradient = plane.xy * (kPerspective ? surface.line * per_line : -per_line);
   surface.stiffness =
       surface.slant * parameters.tolerance * (kPerspective ? surface.depth : 1.0);
+  surface.lobe = fetch_lobe_surface(pixel, normal);
   return surface;
 }
 
@@ -96,14 +129,22 @@ Sum no_sum() {
   sum.signal.visible = 0.0;
   sum.signal.open = 0.0;
   sum.bent = vec3(0.0);
+  sum.lobe = sum.signal;
   return sum;
 }
 
-void add(inout Sum sum, float weight, Signal signal, vec3 bent) {
-  sum.signal.visible += weight * signal.visible;
-  sum.signal.open += weight * signal.open;
+void add(inout Signal sum, float weight, Signal more) {
+  sum.visible += weight * more.visible;
+  sum.open += weight * more.open;
+}
+
+void add(inout Sum sum, float weight, Sum more) {
+  add(sum.signal, weight, more.signal);
   if (kBentNormal) {
-    sum.bent += weight * bent;
+    sum.bent += weight * more.bent;
+  }
+  if (kLobe) {
+    add(sum.lobe, weight, more.lobe);
   }
 }
 
@@ -138,6 +179,16 @@ float neighbour_weight(Surface surface, Window window, vec2 offset, float line) 
   return 1.0 / (both * both);
 }
 
+// A neighbour's lobe as far as it is like the surface's own.
+Signal fetch_lobe(Surface surface, ivec2 block) {
+  Signal lobe = Signal(0.0, 0.0);
+#ifdef LOBE
+  uvec2 stored = imageLoad(lobe_image, block).xy;
+  add(lobe, lobe_weight(surface.lobe, unpack_lobe_surface(stored.y)), unpack_lobe(stored.x));
+#endif
+  return lobe;
+}
+
 Neighbourhood gather(Surface surface, Window window) {
   ivec2 last = size_px() - 1;
   ivec2 phase = ivec2(parameters.phase);
@@ -150,12 +201,15 @@ Neighbourhood gather(Surface surface, Window window) {
       ivec2 searched = min(ivec2(x, y) * kDivisor + phase, last);
       float weight = neighbour_weight(surface, window, vec2(searched - surface.pixel),
                                       uintBitsToFloat(stored.y));
-      Signal signal = unpack_signal(stored.x);
-      vec3 bent = kBentNormal ? unpack_direction(imageLoad(bent_image, ivec2(x, y)).xy)
-                              : vec3(0.0);
-      add(found.sum, weight, signal, bent);
+      Sum here = no_sum();
+      here.signal = unpack_signal(stored.x);
+      if (kBentNormal) {
+        here.bent = unpack_direction(imageLoad(bent_image, ivec2(x, y)).xy);
+      }
+      here.lobe = fetch_lobe(surface, ivec2(x, y));
+      add(found.sum, weight, here);
       if (kClamp) {
-        float visibility = signal.visible / max(signal.open, 1e-9);
+        float visibility = here.signal.visible / max(here.signal.open, 1e-9);
         moments += weight * vec3(1.0, visibility, visibility * visibility);
       }
     }
@@ -174,6 +228,9 @@ void store(ivec2 pixel, Sum sum) {
     vec3 bent = finish_bent_normal(mat3(parameters.normal_from_view) * sum.bent, fallback);
     imageStore(bent_normal_image, pixel, vec4(bent, 0.0));
   }
+#ifdef LOBE
+  imageStore(specular_image, pixel, vec4(lobe_visibility(sum.lobe.visible, sum.lobe.open)));
+#endif
 }
 
 #ifdef HISTORY
@@ -214,19 +271,26 @@ float add_history(inout History history, Surface surface, ivec2 texel, float dep
   vec2 depth_and_count = unpackHalf2x16(stored.y);
   float weight = share * history_weight(min(depth, kLargestDepth), depth_and_count.x,
                                         kDepthTolerance, surface.slant);
-  vec3 bent = kBentNormal ? texelFetch(bent_history_image, texel, 0).xyz : vec3(0.0);
-  add(history.sum, weight, unpack_signal(stored.x), bent);
+  Sum here = no_sum();
+  here.signal = unpack_signal(stored.x);
+  if (kBentNormal) {
+    here.bent = texelFetch(bent_history_image, texel, 0).xyz;
+  }
+#ifdef LOBE
+  here.lobe = unpack_lobe(imageLoad(lobe_history_image, texel).x);
+#endif
+  add(history.sum, weight, here);
   history.count += weight * depth_and_count.y;
   return weight;
 }
 
 History read_history(Surface surface) {
-  History history;
-  history.sum = no_sum();
-  history.count = 0.0;
+  History found;
+  found.sum = no_sum();
+  found.count = 0.0;
   float weight_sum = 0.0;
   if (kStill) {
-    weight_sum = add_history(history, surface, surface.pixel, surface.depth, 1.0);
+    weight_sum = add_history(found, surface, surface.pixel, surface.depth, 1.0);
   } else {
     vec4 before = reproject(surface);
     vec2 first = floor(before.xy - 0.5);
@@ -235,14 +299,14 @@ History read_history(Surface surface) {
       ivec2 corner = ivec2(i & 1, i >> 1);
       ivec2 texel = clamp(ivec2(first) + corner, ivec2(0), size_px() - 1);
       vec2 near = abs(1.0 - vec2(corner) - part);
-      weight_sum += add_history(history, surface, texel, before.z, near.x * near.y * before.w);
+      weight_sum += add_history(found, surface, texel, before.z, near.x * near.y * before.w);
     }
   }
   float scale = weight_sum < 0.05 ? 0.0 : 1.0 / weight_sum;
-  history.sum.signal.visible *= scale;
-  history.sum.signal.open *= scale;
-  history.sum.bent *= scale;
-  history.count *= scale;
+  History history;
+  history.sum = no_sum();
+  add(history.sum, scale, found.sum);
+  history.count = found.count * scale;
   return history;
 }
 
@@ -285,8 +349,8 @@ History advance(Surface surface, History history) {
   float scale = 0.42 * kWidth * kWidth / (width * width) * fresh;
   History next;
   next.sum = no_sum();
-  add(next.sum, 1.0 - fresh, history.sum.signal, history.sum.bent);
-  add(next.sum, scale, now.sum.signal, now.sum.bent);
+  add(next.sum, 1.0 - fresh, history.sum);
+  add(next.sum, scale, now.sum);
   next.count = next_count(history.count, parameters.longest);
   return next;
 }
@@ -298,6 +362,9 @@ void reconstruct(Surface surface) {
   if (kBentNormal) {
     imageStore(next_bent_history_image, surface.pixel, vec4(next.sum.bent, 0.0));
   }
+#ifdef LOBE
+  imageStore(next_lobe_history_image, surface.pixel, uvec4(pack_lobe(next.sum.lobe), 0u, 0u, 0u));
+#endif
   store(surface.pixel, next.sum);
 }
 

@@ -18,6 +18,7 @@ struct ReconstructParameters {
   float tolerance;        // scale of distances from the tangent plane, in depths
   float longest;          // frames that history counts at most
   float clamp_width;      // history is held to so many deviations of this frame's neighbourhood
+  float roughness;        // perceptual, of every surface where no texture has it
 };
 
 ALCOVE_MATHS_END

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "check_inputs.h"
 #include "gtao_parameters.h"
@@ -37,6 +38,13 @@ tl::expected<void, Error> check(const GtaoSettings& settings) {
                                 " radii and the fill " + std::to_string(settings.fill) +
                                 "; the first must be at least 0 and finite, the second 0 to 1."});
   }
+  if (!(settings.roughness >= 0.0f && settings.roughness <= 1.0f) ||
+      settings.roughness_channel > 3) {
+    return tl::unexpected(Error{"The roughness is " + std::to_string(settings.roughness) +
+                                " and its texture's channel " +
+                                std::to_string(settings.roughness_channel) +
+                                "; the first must be 0 to 1, the second 0 to 3."});
+  }
   return {};
 }
 
@@ -48,6 +56,9 @@ OcclusionSignal create_signal(const Frame& frame, Texture depth, const GtaoSetti
   if (settings.bent_normal) {
     result.bent = frame.graph.create_texture("bent signal", {VK_FORMAT_R32G32_UINT, size});
   }
+  if (settings.lobe) {
+    result.lobe = frame.graph.create_texture("lobe signal", {VK_FORMAT_R32G32_UINT, size});
+  }
   return result;
 }
 
@@ -58,8 +69,11 @@ tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame, const GtaoInpu
   if (auto good = check(settings); !good) {
     return tl::unexpected(good.error());
   }
-  const std::array<NamedInput, 2> needed{
-      {{"line depth", inputs.line_depth}, {"normals", inputs.normals}}};
+  const bool rough = settings.lobe && inputs.roughness;
+  const std::array<NamedInput, 3> needed{
+      {{"line depth", inputs.line_depth},
+       {"normals", inputs.normals},
+       {"roughness", rough ? inputs.roughness : inputs.normals}}};
   if (auto good = check_inputs(frame.graph, "gtao", needed); !good) {
     return tl::unexpected(good.error());
   }
@@ -73,8 +87,11 @@ tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame, const GtaoInpu
                              static_cast<std::uint32_t>(settings.estimator == Estimator::bitmask),
                              settings.divisor,
                              static_cast<std::uint32_t>(settings.pattern),
-                             static_cast<std::uint32_t>(is_perspective(*projection))};
-  const auto kernel = frame.kernels.get(Shader::gtao, constants);
+                             static_cast<std::uint32_t>(is_perspective(*projection)),
+                             static_cast<std::uint32_t>(rough),
+                             settings.roughness_channel};
+  const auto kernel =
+      frame.kernels.get(settings.lobe ? Shader::gtao_lobe : Shader::gtao, constants);
   if (!kernel) {
     return tl::unexpected(kernel.error());
   }
@@ -88,6 +105,12 @@ tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame, const GtaoInpu
   if (settings.bent_normal) {
     result.bent = pass.write(result.bent, stored, {}, framegraph::Contents::discard);
   }
+  if (settings.lobe) {
+    result.lobe = pass.write(result.lobe, stored, {}, framegraph::Contents::discard);
+  }
+  if (rough) {
+    pass.read(inputs.roughness, framegraph::access::sampled_compute);
+  }
   const SearchPhase phase = search_phase(settings.divisor, frame.index);
   const maths::vec2 per_px = maths::ray_per_px(*projection);
   const maths::GtaoParameters parameters{
@@ -97,13 +120,21 @@ tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame, const GtaoInpu
       settings.radius,
       frame.index,
       settings.thickness * settings.radius,
-      settings.fill};
-  pass.record([&kernels = frame.kernels, kernel = *kernel, inputs, result,
-               parameters](RecordContext& context) {
+      settings.fill,
+      settings.roughness};
+  pass.record([&kernels = frame.kernels, kernel = *kernel, inputs, result, parameters,
+               rough](RecordContext& context) {
+    const VkImageView normals = context.view(inputs.normals);
     const VkImageView signal = context.view(result.signal);
-    const std::array views{context.view(inputs.line_depth), context.view(inputs.normals), signal,
-                           context.view(result.bent ? result.bent : result.signal)};
-    kernels.dispatch(context, kernel, views, bytes_of(parameters), context.extent(result.signal));
+    const std::array views{context.view(inputs.line_depth),
+                           normals,
+                           signal,
+                           result.bent ? context.view(result.bent) : signal,
+                           rough ? context.view(inputs.roughness) : normals,
+                           result.lobe ? context.view(result.lobe) : signal};
+    // Without a lobe the last two bindings do not exist.
+    const std::span<const VkImageView> bound(views.data(), result.lobe ? views.size() : 4);
+    kernels.dispatch(context, kernel, bound, bytes_of(parameters), context.extent(result.signal));
   });
   return result;
 }

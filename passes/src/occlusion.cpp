@@ -10,6 +10,45 @@ namespace {
 // How deep one surface may run across two texels of the depth pyramid, in parts of the radius.
 constexpr float kPyramidReach = 0.1f;
 
+// Of a Specular that is neither none nor slices.
+SpecularModel model_of(Specular specular) {
+  switch (specular) {
+    case Specular::cone:
+      return SpecularModel::cone;
+    case Specular::smooth_cone:
+      return SpecularModel::smooth_cone;
+    case Specular::lagarde:
+      return SpecularModel::lagarde;
+    default:
+      return SpecularModel::table;
+  }
+}
+
+bool by_model(Specular specular) {
+  return specular != Specular::none && specular != Specular::slices;
+}
+
+// Specular occlusion from what was found, into `outputs`.
+tl::expected<OcclusionOutputs, Error> add_model(const Frame& frame, OcclusionOutputs outputs,
+                                                const OcclusionInputs& inputs, bool in_view_space,
+                                                const OcclusionSettings& settings) {
+  return add_gtso(frame,
+                  {.visibility = outputs.visibility,
+                   .bent_normal = outputs.bent_normal,
+                   .normals = outputs.normals,
+                   .depth = outputs.linear_depth,
+                   .roughness = inputs.roughness,
+                   .normals_in_view_space = in_view_space},
+                  {.model = model_of(settings.specular),
+                   .roughness = settings.roughness,
+                   .roughness_channel = settings.roughness_channel,
+                   .precision = settings.precision})
+      .map([&](framegraph::Texture specular) {
+        outputs.specular = specular;
+        return outputs;
+      });
+}
+
 }  // namespace
 
 OcclusionSettings quality_settings(Quality quality, float radius) {
@@ -68,20 +107,25 @@ tl::expected<OcclusionOutputs, Error> add_occlusion(const Frame& frame,
     }
     normals = *made;
   }
-  const GtaoSettings gtao{.radius = settings.radius,
-                          .slices = settings.slices,
-                          .steps = settings.steps,
-                          .estimator = settings.estimator,
-                          .thickness = settings.thickness,
-                          .fill = settings.fill,
-                          .divisor = settings.divisor,
-                          .pattern = settings.pattern,
-                          .bent_normal = settings.bent_normal};
+  const GtaoSettings gtao{
+      .radius = settings.radius,
+      .slices = settings.slices,
+      .steps = settings.steps,
+      .estimator = settings.estimator,
+      .thickness = settings.thickness,
+      .fill = settings.fill,
+      .divisor = settings.divisor,
+      .pattern = settings.pattern,
+      .bent_normal = settings.bent_normal ||
+                     (by_model(settings.specular) && settings.specular != Specular::lagarde),
+      .lobe = settings.specular == Specular::slices,
+      .roughness = settings.roughness,
+      .roughness_channel = settings.roughness_channel};
   const auto line = add_line_depth(frame, inputs.depth_ndc);
   if (!line) {
     return tl::unexpected(line.error());
   }
-  const auto signal = add_gtao(frame, {*line, normals, in_view_space}, gtao);
+  const auto signal = add_gtao(frame, {*line, normals, in_view_space, inputs.roughness}, gtao);
   if (!signal) {
     return tl::unexpected(signal.error());
   }
@@ -89,12 +133,19 @@ tl::expected<OcclusionOutputs, Error> add_occlusion(const Frame& frame,
                                         .tolerance_px = settings.filter_tolerance_px,
                                         .history_frames = settings.history_frames,
                                         .clamp_width = settings.clamp_width,
+                                        .roughness = settings.roughness,
+                                        .roughness_channel = settings.roughness_channel,
                                         .precision = settings.precision};
-  return add_reconstruct(frame, {*signal, *line, normals, in_view_space, inputs.motion},
-                         reconstruct, history_name)
-      .map([&](const Occlusion& filtered) {
-        return OcclusionOutputs{filtered.visibility, filtered.bent_normal, *depth, normals};
-      });
+  const auto filtered = add_reconstruct(
+      frame, {*signal, *line, normals, in_view_space, inputs.motion, inputs.roughness}, reconstruct,
+      history_name);
+  if (!filtered) {
+    return tl::unexpected(filtered.error());
+  }
+  const OcclusionOutputs outputs{filtered->visibility, filtered->bent_normal, filtered->specular,
+                                 *depth, normals};
+  return by_model(settings.specular) ? add_model(frame, outputs, inputs, in_view_space, settings)
+                                     : tl::expected<OcclusionOutputs, Error>(outputs);
 }
 
 }  // namespace alcove::passes

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <span>
 #include <string>
 
@@ -47,10 +48,11 @@ tl::expected<void, Error> check(const ReconstructSettings& settings) {
 }
 
 tl::expected<void, Error> check_textures(const Frame& frame, const ReconstructInputs& inputs) {
-  const std::array<NamedInput, 3> needed{
-      {{"line depth", inputs.line_depth},
-       {"normals", inputs.normals},
-       {"motion vectors", inputs.motion ? inputs.motion : inputs.line_depth}}};
+  const auto or_line = [&](Texture texture) { return texture ? texture : inputs.line_depth; };
+  const std::array<NamedInput, 4> needed{{{"line depth", inputs.line_depth},
+                                          {"normals", inputs.normals},
+                                          {"motion vectors", or_line(inputs.motion)},
+                                          {"roughness", or_line(inputs.roughness)}}};
   return check_inputs(frame.graph, "reconstruct", needed);
 }
 
@@ -62,6 +64,8 @@ struct Textures {
   Texture next_history;
   Texture bent_history;
   Texture next_bent_history;
+  Texture lobe_history;
+  Texture next_lobe_history;
 };
 
 // Declares the textures that the pass writes. `valid` is whether last frame's history can be read.
@@ -78,6 +82,10 @@ Textures create_textures(const Frame& frame, const ReconstructInputs& inputs,
     textures.result.bent_normal =
         graph.create_texture("bent normal", {direction_format(settings.precision), size});
   }
+  if (inputs.signal.lobe) {
+    textures.result.specular =
+        graph.create_texture("specular occlusion", {scalar_format(settings.precision), size});
+  }
   if (settings.history_frames == 0) {
     return textures;
   }
@@ -92,6 +100,13 @@ Textures create_textures(const Frame& frame, const ReconstructInputs& inputs,
     valid = valid && bent.validity == framegraph::HistoryValidity::valid;
     textures.bent_history = bent.previous();
     textures.next_bent_history = bent.current;
+  }
+  if (inputs.signal.lobe) {
+    const TextureHistory lobe =
+        graph.create_texture_history(name + " lobe", {VK_FORMAT_R32_UINT, size});
+    valid = valid && lobe.validity == framegraph::HistoryValidity::valid;
+    textures.lobe_history = lobe.previous();
+    textures.next_lobe_history = lobe.current;
   }
   return textures;
 }
@@ -117,34 +132,60 @@ void declare_accesses(framegraph::PassBuilder& pass, Textures& textures) {
   read(textures.inputs.motion, sampled);
   read(textures.history, stored);
   read(textures.bent_history, sampled);
+  read(textures.inputs.signal.lobe, stored);
+  read(textures.inputs.roughness, sampled);
+  read(textures.lobe_history, stored);
   write(textures.result.visibility);
   write(textures.result.bent_normal);
   write(textures.next_history);
   write(textures.next_bent_history);
+  write(textures.result.specular);
+  write(textures.next_lobe_history);
 }
 
-using Bindings = std::array<VkImageView, 11>;
+// As many as the shader can have.
+struct Bindings {
+  std::array<VkImageView, 16> views{};
+  std::size_t count = 0;
+
+  void add(std::initializer_list<VkImageView> more) {
+    for (const VkImageView view : more) {
+      views.at(count++) = view;
+    }
+  }
+};
 
 // In the order of the shader's bindings; what is not wanted is bound to something of its kind.
 Bindings bindings_of(RecordContext& context, const Textures& textures) {
   const auto view_or = [&](Texture texture, Texture instead) {
-    return texture         ? context.view(texture)
-           : bool(instead) ? context.view(instead)
-                           : VkImageView{VK_NULL_HANDLE};
+    return context.view(texture ? texture : instead);
   };
   const ReconstructInputs& in = textures.inputs;
   const Occlusion& out = textures.result;
-  return {context.view(in.signal.signal),
-          view_or(in.signal.bent, in.signal.signal),
-          context.view(in.line_depth),
-          context.view(in.normals),
-          context.view(out.visibility),
-          view_or(out.bent_normal, out.visibility),
-          view_or(in.motion, in.normals),
-          view_or(textures.history, {}),
-          view_or(textures.bent_history, in.normals),
-          view_or(textures.next_history, {}),
-          view_or(textures.next_bent_history, out.visibility)};
+  Bindings bindings;
+  bindings.add({context.view(in.signal.signal), view_or(in.signal.bent, in.signal.signal),
+                context.view(in.line_depth), context.view(in.normals), context.view(out.visibility),
+                view_or(out.bent_normal, out.visibility)});
+  if (textures.history) {
+    bindings.add({view_or(in.motion, in.normals), context.view(textures.history),
+                  view_or(textures.bent_history, in.normals), context.view(textures.next_history),
+                  view_or(textures.next_bent_history, out.visibility)});
+  }
+  if (in.signal.lobe) {
+    bindings.add({context.view(in.signal.lobe), view_or(in.roughness, in.normals),
+                  context.view(out.specular)});
+  }
+  if (textures.lobe_history) {
+    bindings.add({context.view(textures.lobe_history), context.view(textures.next_lobe_history)});
+  }
+  return bindings;
+}
+
+Shader shader_of(bool history, bool lobe) {
+  if (lobe) {
+    return history ? Shader::reconstruct_lobe_history : Shader::reconstruct_lobe;
+  }
+  return history ? Shader::reconstruct_history : Shader::reconstruct;
 }
 
 // View-space positions from (x s, y s, depth, 1), as ReconstructParameters::previous_from_pixel has
@@ -187,16 +228,21 @@ maths::ReconstructParameters parameters_of(const Frame& frame, const maths::Proj
   parameters.tolerance = 1.0f / (settings.tolerance_px * std::abs(maths::ray_per_px(projection).y));
   parameters.longest = static_cast<float>(settings.history_frames);
   parameters.clamp_width = settings.clamp_width;
+  parameters.roughness = settings.roughness;
   return parameters;
 }
 
 }  // namespace
 
-tl::expected<Occlusion, Error> add_reconstruct(const Frame& frame, const ReconstructInputs& inputs,
+tl::expected<Occlusion, Error> add_reconstruct(const Frame& frame, const ReconstructInputs& given,
                                                const ReconstructSettings& settings,
                                                std::string_view history_name) {
   if (auto good = check(settings); !good) {
     return tl::unexpected(good.error());
+  }
+  ReconstructInputs inputs = given;
+  if (!inputs.signal.lobe) {
+    inputs.roughness = {};
   }
   if (auto good = check_textures(frame, inputs); !good) {
     return tl::unexpected(good.error());
@@ -216,9 +262,10 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& frame, const Reconst
                              static_cast<std::uint32_t>(bool(inputs.motion)),
                              static_cast<std::uint32_t>(is_perspective(*projection)),
                              static_cast<std::uint32_t>(settings.clamp_width > 0.0f),
-                             static_cast<std::uint32_t>(still)};
-  const auto kernel =
-      frame.kernels.get(history ? Shader::reconstruct_history : Shader::reconstruct, constants);
+                             static_cast<std::uint32_t>(still),
+                             static_cast<std::uint32_t>(bool(inputs.roughness)),
+                             settings.roughness_channel};
+  const auto kernel = frame.kernels.get(shader_of(history, bool(inputs.signal.lobe)), constants);
   if (!kernel) {
     return tl::unexpected(kernel.error());
   }
@@ -231,14 +278,13 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& frame, const Reconst
   if (!history_valid) {
     parameters.previous_from_pixel = maths::mat4(0.0f);
   }
-  pass.record([&kernels = frame.kernels, kernel = *kernel, textures, parameters,
-               history](RecordContext& context) {
-    const Bindings views = bindings_of(context, textures);
-    // Without history the last five bindings do not exist.
-    const std::span<const VkImageView> bound(views.data(), history ? views.size() : 6);
-    kernels.dispatch(context, kernel, bound, bytes_of(parameters),
-                     context.extent(textures.result.visibility));
-  });
+  pass.record(
+      [&kernels = frame.kernels, kernel = *kernel, textures, parameters](RecordContext& context) {
+        const Bindings bindings = bindings_of(context, textures);
+        const std::span<const VkImageView> bound(bindings.views.data(), bindings.count);
+        kernels.dispatch(context, kernel, bound, bytes_of(parameters),
+                         context.extent(textures.result.visibility));
+      });
   return textures.result;
 }
 

@@ -10,13 +10,16 @@
 #include "spirv/environment_map.h"
 #include "spirv/environment_prefilter.h"
 #include "spirv/gtao.h"
+#include "spirv/gtao_lobe.h"
 #include "spirv/gtso.h"
-#include "spirv/line_depth.h"
 #include "spirv/gtso_by_table.h"
+#include "spirv/line_depth.h"
 #include "spirv/multi_bounce.h"
 #include "spirv/normals.h"
 #include "spirv/reconstruct.h"
 #include "spirv/reconstruct_history.h"
+#include "spirv/reconstruct_lobe.h"
+#include "spirv/reconstruct_lobe_history.h"
 #include "tables/gtso.h"
 #include "tables/reflectance.h"
 
@@ -28,10 +31,20 @@ const ShaderSource& shader_source(Shader shader) {
       {kNormals, "st"},
       {kLineDepth, "st"},
       {kGtao, "tstt"},
+      {kGtaoLobe,
+       "tstt"
+       "st"},
       {kReconstruct, "tttstt"},
       {kReconstructHistory,
        "tttstt"
        "ststt"},
+      {kReconstructLobe,
+       "tttstt"
+       "tst"},
+      {kReconstructLobeHistory,
+       "tttstt"
+       "ststt"
+       "tsttt"},
       {kMultiBounce, "sst"},
       {kGtso, "ssssst"},
       {kGtsoByTable, "ssssstb", kGtsoTable},

@@ -8,9 +8,9 @@
 namespace alcove::passes {
 
 struct ApplySettings {
-  // Occluders send light back, as of the surface's own albedo and lit as it is: the visibility of the
-  // diffuse part is brightened as by add_multi_bounce, without a texture of it, and what specular
-  // occlusion hides shows such an occluder instead of black.
+  // Occluders send light back, as of the surface's own albedo and lit as it is: the visibility of
+  // the diffuse part is brightened as by add_multi_bounce, without a texture of it, and what
+  // specular occlusion hides shows such an occluder instead of black.
   bool multi_bounce = true;
   float roughness = 0.5f;               // perceptual, [0,1], of every pixel where no texture has it
   float metallic = 0.0f;                // [0,1], the same

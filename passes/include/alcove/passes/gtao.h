@@ -35,12 +35,17 @@ struct GtaoSettings {
   std::uint32_t divisor = 1;
   Pattern pattern = Pattern::golden;
   bool bent_normal = false;  // also write the mean visible direction
+  // Also write how much of each surface's GGX lobe its slices see (shaders/maths/lobe_slice.h).
+  bool lobe = false;
+  float roughness = 0.5f;               // perceptual, [0,1], of every pixel where no texture has it
+  std::uint32_t roughness_channel = 0;  // of the roughness texture, 0 to 3
 };
 
 struct GtaoInputs {
   framegraph::Texture line_depth;  // as add_line_depth makes it
   framegraph::Texture normals;     // xyz unit, in world space unless `normals_in_view_space`
   bool normals_in_view_space = false;
+  framegraph::Texture roughness;  // perceptual, [0,1]; null: GtaoSettings::roughness
 };
 
 // What filters and history work on: sums over slices, one texel a block.
@@ -51,6 +56,9 @@ struct OcclusionSignal {
   // R32G32_UINT: the mean visible direction weighted by the cosine, view space, not normalised, as
   // halves; null where none is wanted.
   framegraph::Texture bent;
+  // R32G32_UINT: visible and open part of the lobe, and the surface it belongs to; null where none
+  // is wanted (shaders/maths/signal.h).
+  framegraph::Texture lobe;
   std::uint32_t divisor = 1;  // pixels on a side of a block
 };
 

@@ -1,4 +1,5 @@
-// Ground-truth specular occlusion: Jimenez, Wu, Pesce and Jarabo 2016, section 6, by cones or by its table.
+// Ground-truth specular occlusion: Jimenez, Wu, Pesce and Jarabo 2016, section 6, by cones or by
+// its table.
 #pragma once
 
 #include <cstdint>

@@ -5,10 +5,22 @@
 
 #include "alcove/passes/depth_pyramid.h"
 #include "alcove/passes/gtao.h"
+#include "alcove/passes/gtso.h"
 #include "alcove/passes/normals.h"
 #include "alcove/passes/reconstruct.h"
 
 namespace alcove::passes {
+
+// How specular occlusion is found, the visible share of each surface's GGX lobe.
+enum class Specular : std::uint8_t {
+  none,
+  slices,  // by the slices that visibility is found by: the lobe within their horizons or sectors
+  // From visibility and bent normal, as GtsoSettings::model says.
+  table,
+  cone,
+  smooth_cone,
+  lagarde,
+};
 
 enum class Quality : std::uint8_t { low, medium, high, ultra, reference };
 
@@ -29,6 +41,9 @@ struct OcclusionSettings {
   std::uint32_t history_frames = 0;  // that are averaged, 0 to 255; 0 keeps none
   float clamp_width = 0.0f;          // of history, in deviations of this frame; 0 leaves it free
   bool bent_normal = false;
+  Specular specular = Specular::none;
+  float roughness = 0.5f;               // perceptual, [0,1], of every pixel where no texture has it
+  std::uint32_t roughness_channel = 0;  // of the roughness texture, 0 to 3
   Precision precision = Precision::unorm8;
 };
 
@@ -41,12 +56,15 @@ struct OcclusionInputs {
   bool normals_in_view_space = false;  // else in world space
   framegraph::Texture
       motion;  // xy: uv of this frame minus uv of the last; null: only the camera moves
+  framegraph::Texture roughness;  // perceptual, [0,1]; null: OcclusionSettings::roughness
 };
 
 struct OcclusionOutputs {
   framegraph::Texture visibility;  // one channel, [0,1], 1 open
   framegraph::Texture
       bent_normal;  // xyz unit, in the space of `normals`; null where none was asked for
+  framegraph::Texture specular;  // one channel, multiplies specular probe light, [0,1], 1 open;
+                                 // null where none was asked for
   framegraph::Texture linear_depth;  // as add_depth_pyramid makes it
   framegraph::Texture normals;       // those given, or those made from depth, in view space
 };

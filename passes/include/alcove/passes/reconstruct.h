@@ -22,6 +22,8 @@ struct ReconstructSettings {
   std::uint32_t history_frames = 0;
   // History is held to so many standard deviations of this frame's neighbourhood; 0 leaves it free.
   float clamp_width = 0.0f;
+  float roughness = 0.5f;  // as GtaoSettings has them; read where the signal has a lobe
+  std::uint32_t roughness_channel = 0;
   Precision precision = Precision::unorm8;
 };
 
@@ -32,12 +34,15 @@ struct ReconstructInputs {
   bool normals_in_view_space = false;
   framegraph::Texture
       motion;  // xy: uv of this frame minus uv of the last; null: only the camera moves
+  framegraph::Texture roughness;  // as GtaoInputs::roughness
 };
 
 struct Occlusion {
   framegraph::Texture visibility;   // one channel, [0,1], 1 open, as large as the depth
   framegraph::Texture bent_normal;  // xyz unit, in the space of the normals; null where the signal
                                     // has none
+  framegraph::Texture specular;  // one channel, the visible share of the GGX lobe, [0,1], 1 open;
+                                 // null where the signal has no lobe
 };
 
 // `history_name` tells the histories of one graph apart: each view needs its own. A history begins
