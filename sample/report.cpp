@@ -41,6 +41,16 @@ const char* name_of(NormalSource source) {
   }
 }
 
+Json costs_json(const Costs& costs) {
+  Json json;
+  for (const PassTime& pass : costs.passes) {
+    json["timings_ms"][pass.pass] = pass.milliseconds;
+  }
+  json["timings_ms"]["total"] = costs.occlusion_ms;
+  json["cpu_ms"] = costs.cpu_ms;
+  return json;
+}
+
 }  // namespace
 
 Json report_of(const Rendering& rendering, const Options& options) {
@@ -52,13 +62,8 @@ Json report_of(const Rendering& rendering, const Options& options) {
   report["camera"] = camera_json(rendering.camera);
   report["normals"] = name_of(options.occlusion.normals);
   report["settings"] = to_json(rendering.settings);
-  for (const PassTime& pass : rendering.costs.passes) {
-    report["timings_ms"][pass.pass] = pass.milliseconds;
-  }
-  report["timings_ms"]["total"] = rendering.costs.occlusion_ms;
-  report["cpu_ms"] = rendering.costs.cpu_ms;
-  report["with_specular"] = {{"total_ms", rendering.costs_with_specular.occlusion_ms},
-                             {"cpu_ms", rendering.costs_with_specular.cpu_ms}};
+  report.update(costs_json(rendering.costs));
+  report["with_specular"] = costs_json(rendering.costs_with_specular);
   report["memory"] = {{"transient_bytes", rendering.memory.aliased},
                       {"transient_bytes_without_aliasing", rendering.memory.unaliased},
                       {"transient_bytes_lower_bound", rendering.memory.lower_bound},

@@ -33,9 +33,6 @@ layout(constant_id = 6) const bool kPerspective = true;
 layout(constant_id = 7) const bool kRoughnessTexture = false;
 layout(constant_id = 8) const int kRoughnessChannel = 0;
 
-// Keeps what slices beside a narrow lobe hold of it above the least half.
-const float kLobeScale = 256.0;
-
 // Bend of the line between two samples, in depths for each pixel's width, that parts two surfaces.
 const float kSharpBend = 4.0;
 
@@ -332,7 +329,7 @@ void store_signal(ivec2 block, float visible, float open, float line) {
 #ifdef LOBE
 void store_lobe(ivec2 block, LobeSurface surface, Signal lobe) {
   // Lobes of any width come to about as much: what neighbours of other roughness add is in scale.
-  float scale = kLobeScale * max(surface.roughness * surface.roughness, kSmallestLobe);
+  float scale = max(surface.roughness * surface.roughness, kSmallestLobe);
   lobe = Signal(lobe.visible * scale, lobe.open * scale);
   imageStore(lobe_image, block, uvec4(pack_lobe(lobe), pack_lobe_surface(surface), 0u, 0u));
 }
@@ -361,18 +358,22 @@ void main() {
 
   SliceSum sum = SliceSum(0.0, 0.0, vec3(0.0), no_lobe());
   for (uint i = 0; i < kSliceCount; ++i) {
-    vec3 direction = slice_direction(basis, slice_angle(i, kSliceCount, noise.direction));
+    WeightedAngle angle = WeightedAngle(slice_angle(i, kSliceCount, noise.direction), 1.0);
+    if (kLobe) {
+      angle = lobe_angle(angle.phi, lobe_plane(surface.normal, basis), surface.lobe.roughness);
+    }
+    vec3 direction = slice_direction(basis, angle.phi);
     Slice slice = make_slice(surface.normal, direction, surface.view);
     SliceLine line = make_slice_line(parameters.slope.xy, direction, surface.view);
     Search ahead = make_search(surface, line, slice, 1.0, noise.offset);
     Search behind = make_search(surface, line, slice, -1.0, noise.offset);
     SliceSum more = kBitmask ? bitmask_slice(surface, line, slice, direction, ahead, behind)
                              : horizon_slice(surface, slice, direction, ahead, behind);
-    sum.visible += more.visible;
-    sum.open += more.open;
-    sum.bent += more.bent;
-    sum.lobe.visible += more.lobe.visible;
-    sum.lobe.open += more.lobe.open;
+    sum.visible += angle.weight * more.visible;
+    sum.open += angle.weight * more.open;
+    sum.bent += angle.weight * more.bent;
+    sum.lobe.visible += angle.weight * more.lobe.visible;
+    sum.lobe.open += angle.weight * more.lobe.open;
   }
   float mean = 1.0 / float(kSliceCount);
   store_signal(block, sum.visible * mean, sum.open * mean, centre_line);

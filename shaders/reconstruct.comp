@@ -184,7 +184,7 @@ Signal fetch_lobe(Surface surface, ivec2 block) {
   Signal lobe = Signal(0.0, 0.0);
 #ifdef LOBE
   uvec2 stored = imageLoad(lobe_image, block).xy;
-  add(lobe, lobe_weight(surface.lobe, unpack_lobe_surface(stored.y)), unpack_lobe(stored.x));
+  add(lobe, lobe_weight(surface.lobe, stored.y), unpack_lobe(stored.x));
 #endif
   return lobe;
 }

@@ -6,7 +6,6 @@
 #define ALCOVE_MATHS_SIGNAL_H
 
 #include "language.h"
-#include "octahedral.h"
 
 ALCOVE_MATHS_BEGIN
 
@@ -40,53 +39,49 @@ ALCOVE_INLINE vec3 unpack_direction(uvec2 bits) {
   return vec3(unpackHalf2x16(bits.x), unpackHalf2x16(bits.y).x);
 }
 
-// The same of a GGX lobe, in parts that differ by orders of magnitude from slice to slice: the
-// ratio to 2^-17, the open part, [0,65504], as a half.
+// The same of a GGX lobe, whose open part differs by orders of magnitude from slice to slice: the
+// ratio to 2^-17, the open part, at least 0 and finite, to 2^-9 of itself.
 ALCOVE_INLINE uint pack_lobe(Signal lobe) {
   float ratio = lobe.open > 0.0f ? clamp(lobe.visible / lobe.open, 0.0f, 1.0f) : 1.0f;
-  return uint(ratio * 65535.0f + 0.5f) | (packHalf2x16(vec2(min(lobe.open, 65504.0f), 0.0f)) << 16u);
+  uint open = (floatBitsToUint(lobe.open) + 0x8000u) & 0xffff0000u;
+  return uint(ratio * 65535.0f + 0.5f) | open;
 }
 
 ALCOVE_INLINE Signal unpack_lobe(uint bits) {
   Signal lobe;
-  lobe.open = unpackHalf2x16(bits >> 16u).x;
+  lobe.open = uintBitsToFloat(bits & 0xffff0000u);
   lobe.visible = float(bits & 0xffffu) * (1.0f / 65535.0f) * lobe.open;
   return lobe;
 }
 
-// The surface that a lobe belongs to, for filters: a unit normal to 0.5 degrees and a perceptual
-// roughness to 2^-9.
+// The surface that a lobe belongs to, for filters.
 struct LobeSurface {
-  vec3 normal;
-  float roughness;
+  vec3 normal;      // unit
+  float roughness;  // perceptual, [0,1]
 };
 
+// A byte each: normal to half a degree, roughness to 2^-9.
 ALCOVE_INLINE uint pack_lobe_surface(LobeSurface surface) {
-  vec2 square = octahedral_encode(surface.normal) * 0.5f + 0.5f;
-  return uint(clamp(square.x, 0.0f, 1.0f) * 4095.0f + 0.5f) |
-         (uint(clamp(square.y, 0.0f, 1.0f) * 4095.0f + 0.5f) << 12u) |
-         (uint(clamp(surface.roughness, 0.0f, 1.0f) * 255.0f + 0.5f) << 24u);
+  return packUnorm4x8(vec4(surface.normal.x * 0.5f + 0.5f, surface.normal.y * 0.5f + 0.5f,
+                           surface.normal.z * 0.5f + 0.5f, surface.roughness));
 }
 
-ALCOVE_INLINE LobeSurface unpack_lobe_surface(uint bits) {
-  LobeSurface surface;
-  surface.normal = octahedral_decode(vec2(float(bits & 4095u), float((bits >> 12u) & 4095u)) *
-                                         (2.0f / 4095.0f) -
-                                     1.0f);
-  surface.roughness = float(bits >> 24u) * (1.0f / 255.0f);
-  return surface;
-}
-
-// What a neighbour's lobe weighs beside a surface's own, [0,1]: it falls to a half where normals
-// part by some 12 degrees, or roughness by a tenth.
-ALCOVE_INLINE float lobe_weight(LobeSurface own, LobeSurface neighbour) {
-  float agreement = max(dot(own.normal, neighbour.normal), 0.0f);
-  float squared = agreement * agreement;
+// What the lobe of a neighbour, packed, weighs beside a surface's own, [0,1]: a half where normals
+// part by some 12 degrees or roughness by a tenth.
+ALCOVE_INLINE float lobe_weight(LobeSurface own, uint neighbour) {
+  // dot(own.normal, bytes * 2 / 255 - 1), the scale on the own side, where it is done once.
+  vec3 scaled = own.normal * (2.0f / 255.0f);
+  float offset = own.normal.x + own.normal.y + own.normal.z;
+  float agreement = scaled.x * float(neighbour & 255u) +
+                    scaled.y * float((neighbour >> 8u) & 255u) +
+                    scaled.z * float((neighbour >> 16u) & 255u) - offset;
+  float first = max(agreement, 0.0f);
+  float squared = first * first;
   float fourth = squared * squared;
   float eighth = fourth * fourth;
   float sixteenth = eighth * eighth;
-  float apart = 10.0f * (own.roughness - neighbour.roughness);
-  return sixteenth * sixteenth / (1.0f + apart * apart);
+  float apart = own.roughness * 5.0f - float(neighbour >> 24u) * (5.0f / 255.0f);
+  return sixteenth * sixteenth * max(1.0f - abs(apart), 0.0f);
 }
 
 ALCOVE_MATHS_END

@@ -267,13 +267,34 @@ TEST(LobeSlice, SliceOfViewAndNormalHoldsTheMirrorDirection) {
   RandomInput random;
   for (int i = 0; i < 1000; ++i) {
     const vec3 view = random.unit_vector(), normal = random.facing(view);
-    const vec3 otherwise = maths::make_view_basis(view).x;
-    const vec3 direction = maths::lobe_direction(normal, view, otherwise);
+    const maths::ViewBasis basis = maths::make_view_basis(view);
+    const vec3 direction = maths::slice_direction(basis, maths::lobe_plane(normal, basis));
     const vec3 mirror = reflect(-view, normal);
     EXPECT_NEAR(dot(mirror, cross(view, direction)), 0.0f, 1e-4f);
-    EXPECT_NEAR(length(direction), 1.0f, 1e-5f);
-    EXPECT_EQ(maths::lobe_direction(view, view, otherwise), otherwise);
+    EXPECT_TRUE(std::isfinite(maths::lobe_plane(view, basis)));
   }
+}
+
+TEST(LobeSlice, TurnedAnglesKeepTheMeanOverAllTurns) {
+  for (const float roughness : kRoughnesses) {
+    double plain = 0.0, turned = 0.0, weights = 0.0;
+    const auto f = [](double phi) {
+      return 1.0 + 0.5 * std::cos(2 * phi + 0.3) + std::sin(4 * phi);
+    };
+    constexpr int kTurns = 1000;
+    for (int i = 0; i < kTurns; ++i) {
+      const double phi = kPi * (i + 0.5) / kTurns;
+      const maths::WeightedAngle angle = maths::lobe_angle(float(phi), 0.7f, roughness);
+      EXPECT_GT(angle.weight, 0.15f);
+      EXPECT_LT(angle.weight, 1.85f);
+      plain += f(phi) / kTurns;
+      turned += angle.weight * f(angle.phi) / kTurns;
+      weights += angle.weight / kTurns;
+    }
+    EXPECT_NEAR(turned, plain, 1e-4);
+    EXPECT_NEAR(weights, 1.0, 1e-5);
+  }
+  EXPECT_EQ(maths::lobe_angle(0.4f, 1.0f, 1.0f).weight, 1.0f);
 }
 
 }  // namespace

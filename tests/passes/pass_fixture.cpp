@@ -154,13 +154,19 @@ PassTest::OcclusionImages PassTest::run_occlusion(const OcclusionFrame& given,
     if (settings.bent_normal) {
       read_back(graph, outputs->bent_normal);
     }
+    if (settings.specular != Specular::none) {
+      read_back(graph, outputs->specular);
+    }
   });
   OcclusionImages images;
   if (!results_.empty()) {
     images.visibility = results_[0];
   }
-  if (results_.size() > 1) {
+  if (settings.bent_normal && results_.size() > 1) {
     images.bent_normal = results_[1];
+  }
+  if (settings.specular != Specular::none && results_.size() > 1) {
+    images.specular = results_.back();
   }
   return images;
 }

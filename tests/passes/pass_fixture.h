@@ -57,7 +57,8 @@ class PassTest : public testing::Test {
   };
   struct OcclusionImages {
     HostImage visibility;
-    HostImage bent_normal;  // empty where none was asked for
+    HostImage bent_normal;  // empty where none was asked for, as is the next
+    HostImage specular;
   };
   OcclusionImages run_occlusion(const OcclusionFrame& frame, const OcclusionSettings& settings);
 

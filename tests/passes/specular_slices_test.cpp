@@ -1,0 +1,136 @@
+// Specular occlusion by the slices of visibility: against the GGX lobe cast over the exact
+// surfaces, and where nothing occludes.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "gtao_scenes.h"
+#include "maths/ggx.h"
+#include "pass_fixture.h"
+
+namespace alcove::passes {
+namespace {
+
+using SpecularSlices = PassTest;
+using glm::dvec3;
+
+OcclusionSettings settings_of(Quality quality, float radius, float roughness) {
+  OcclusionSettings settings = quality_settings(quality, radius);
+  settings.specular = Specular::slices;
+  settings.roughness = roughness;
+  settings.precision = Precision::float32;
+  return settings;
+}
+
+// The share of the lobe at a pixel that meets nothing within the radius, from rays spread evenly
+// over the microfacets that the eye sees.
+double cast_lobe(const Drawing& drawing, std::uint32_t x, std::uint32_t y, double radius,
+                 float roughness) {
+  constexpr int kSide = 48;
+  const float alpha = roughness * roughness;
+  const auto hit = cast(drawing.scene, drawing.camera.ray(x + 0.5, y + 0.5));
+  const dvec3 normal = hit->normal, view = drawing.camera.to_eye(x, y);
+  const dvec3 across = glm::normalize(glm::cross(normal, dvec3(0.31, 0.74, 0.2)));
+  const glm::dmat3 world(across, glm::cross(normal, across), normal);
+  const glm::vec3 local_view(glm::transpose(world) * view);
+  double visible = 0.0, open = 0.0;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    const glm::vec3 half = maths::sample_ggx_normal(
+        local_view, alpha, (float(i % kSide) + 0.5f) / kSide, (float(i / kSide) + 0.5f) / kSide);
+    const glm::vec3 light = glm::reflect(-local_view, half);
+    if (light.z <= 0.0f) continue;
+    const double share = maths::ggx_shadowing(local_view.z, light.z, alpha);
+    const Ray ray{hit->position + 1e-6 * normal, world * dvec3(light)};
+    const auto met = cast(drawing.scene, ray);
+    open += share;
+    if (!met || glm::length(met->position - hit->position) > radius) visible += share;
+  }
+  return open > 0.0 ? visible / open : 1.0;
+}
+
+// Mean error over every 7th pixel of every 5th row.
+double mean_error(const HostImage& specular, const Drawing& drawing, double radius,
+                  float roughness) {
+  double sum = 0.0;
+  int count = 0;
+  for (std::uint32_t y = 1; y < specular.height; y += 5) {
+    for (std::uint32_t x = 2; x < specular.width; x += 7) {
+      if (!drawing.is_sky(x, y)) {
+        sum += std::abs(specular.at(x, y) - cast_lobe(drawing, x, y, radius, roughness));
+        ++count;
+      }
+    }
+  }
+  return sum / count;
+}
+
+TEST_F(SpecularSlices, MeetTheLobeCastOverTheExactSurfaces) {
+  const float radius = 1.2f;
+  // Perspective and orthographic. Walls and platforms are as deep as a depth buffer takes them for.
+  for (const TestView& view : {test_views().front(), test_views().back()}) {
+    for (const NamedScene& scene : {gtao_scenes()[0], gtao_scenes()[1]}) {
+      const Drawing drawing = draw(view, 60, 40, scene.scene);
+      for (const Estimator estimator : {Estimator::horizons, Estimator::bitmask}) {
+        for (const float roughness : {0.15f, 0.3f, 0.6f, 1.0f}) {
+          SCOPED_TRACE(testing::Message()
+                       << scene.name << ", " << view.name << ", roughness " << roughness
+                       << (estimator == Estimator::bitmask ? ", bitmask" : ", horizons"));
+          OcclusionSettings settings = settings_of(Quality::reference, radius, roughness);
+          settings.estimator = estimator;
+          settings.fill = 1.0f;
+          const auto images =
+              run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, settings);
+          EXPECT_LT(mean_error(images.specular, drawing, radius, roughness), 0.02);
+        }
+      }
+    }
+  }
+}
+
+TEST_F(SpecularSlices, AnOpenSurfaceShowsItsWholeLobe) {
+  for (const TestView& view : test_views()) {
+    for (const float degrees : {0.0f, 30.0f, 60.0f, 85.0f}) {
+      const PlaneScene plane = plane_scene(view, 64, 48, degrees);
+      for (const float roughness : {0.0f, 0.1f, 0.3f, 0.6f, 1.0f}) {
+        for (const Quality quality : {Quality::low, Quality::medium, Quality::reference}) {
+          for (std::uint32_t index = 0; index < 3; ++index) {
+            SCOPED_TRACE(testing::Message() << view.name << " tilted " << degrees << ", roughness "
+                                            << roughness << ", frame " << index);
+            const auto images = run_occlusion({.view = view.view,
+                                               .depth_ndc = plane.depth_ndc,
+                                               .normal_vs = &plane.normal_vs,
+                                               .index = index,
+                                               .reset = index == 0},
+                                              settings_of(quality, 0.5f, roughness));
+            EXPECT_THAT(images.specular.texels, testing::Each(testing::Ge(0.99f)));
+            EXPECT_THAT(images.specular.texels, testing::Each(testing::Le(1.0f)));
+          }
+        }
+      }
+    }
+  }
+}
+
+// History gathers what one frame cannot hold: a narrow lobe lies in few slices.
+TEST_F(SpecularSlices, FramesBringANarrowLobeCloser) {
+  const float radius = 1.2f, roughness = 0.2f;
+  const TestView view = test_views().front();
+  const Drawing drawing = draw(view, 60, 40, groove(0.8));
+  double first = 0.0, last = 0.0;
+  for (std::uint32_t index = 0; index < 32; ++index) {
+    const auto images = run_occlusion({.view = view.view,
+                                       .depth_ndc = drawing.depth_ndc,
+                                       .normal_vs = &drawing.normal_vs,
+                                       .index = index,
+                                       .reset = index == 0},
+                                      settings_of(Quality::medium, radius, roughness));
+    last = mean_error(images.specular, drawing, radius, roughness);
+    first = index == 0 ? last : first;
+  }
+  EXPECT_LT(last, 0.05);
+  EXPECT_LT(last, 0.8 * first);
+}
+
+}  // namespace
+}  // namespace alcove::passes
