@@ -39,12 +39,12 @@ const float kSharpBend = 4.0;
 layout(set = 0, binding = 0) uniform Parameters { GtaoParameters parameters; };
 layout(set = 0, binding = 1, r32f) uniform readonly image2D line_image;  // LineSample::line
 layout(set = 0, binding = 2) uniform texture2D normal_image;  // xyz, turned by view_from_normal
-layout(set = 0, binding = 3) uniform writeonly uimage2D signal_image;  // signal, line
+// Signal and line; with LOBE also its signal and the surface that it belongs to.
+layout(set = 0, binding = 3) uniform writeonly uimage2D signal_image;
 // Bound to the signal and never written where no bent normal is wanted.
 layout(set = 0, binding = 4) uniform writeonly uimage2D bent_image;
 #ifdef LOBE
-layout(set = 0, binding = 5) uniform texture2D roughness_image;      // perceptual
-layout(set = 0, binding = 6) uniform writeonly uimage2D lobe_image;  // lobe, surface
+layout(set = 0, binding = 5) uniform texture2D roughness_image;  // perceptual
 const bool kLobe = true;
 #else
 const bool kLobe = false;
@@ -65,7 +65,8 @@ ivec2 size_px() { return imageSize(line_image); }
 float fetch_roughness(ivec2 pixel) {
 #ifdef LOBE
   if (kRoughnessTexture) {
-    return clamp(texelFetch(roughness_image, pixel, 0)[kRoughnessChannel], 0.0, 1.0);
+    float roughness = texelFetch(roughness_image, pixel, 0)[kRoughnessChannel];
+    return roughness > 0.0 ? min(roughness, 1.0) : 0.0;  // 0 too where it is not a number
   }
 #endif
   return parameters.roughness;
@@ -319,21 +320,12 @@ SliceNoise noise_at(uvec2 block) {
   }
 }
 
-void store_signal(ivec2 block, float visible, float open, float line) {
-  Signal signal;
-  signal.visible = visible;
-  signal.open = open;
-  imageStore(signal_image, block, uvec4(pack_signal(signal), floatBitsToUint(line), 0u, 0u));
-}
-
-#ifdef LOBE
-void store_lobe(ivec2 block, LobeSurface surface, Signal lobe) {
-  // Lobes of any width come to about as much: what neighbours of other roughness add is in scale.
+// Lobes of any width come to about as much: what neighbours of other roughness add is in scale.
+uvec2 pack_scaled_lobe(LobeSurface surface, Signal lobe) {
   float scale = max(surface.roughness * surface.roughness, kSmallestLobe);
   lobe = Signal(lobe.visible * scale, lobe.open * scale);
-  imageStore(lobe_image, block, uvec4(pack_lobe(lobe), pack_lobe_surface(surface), 0u, 0u));
+  return uvec2(pack_lobe(lobe), pack_lobe_surface(surface));
 }
-#endif
 
 void main() {
   ivec2 block = ivec2(gl_GlobalInvocationID.xy);
@@ -343,13 +335,12 @@ void main() {
   ivec2 pixel = min(block * kDivisor + ivec2(parameters.phase), size_px() - 1);
   float centre_line = imageLoad(line_image, pixel).r;
   if (centre_line == sky_line(kPerspective)) {
-    store_signal(block, 1.0, 1.0, sky_line(kPerspective));
+    uint open = pack_signal(Signal(1.0, 1.0));
+    imageStore(signal_image, block,
+               uvec4(open, floatBitsToUint(sky_line(kPerspective)), 0u, 0u));
     if (kBentNormal) {
       imageStore(bent_image, block, uvec4(0u));
     }
-#ifdef LOBE
-    imageStore(lobe_image, block, uvec4(0u));
-#endif
     return;
   }
   Surface surface = fetch_surface(pixel, centre_line);
@@ -376,11 +367,12 @@ void main() {
     sum.lobe.open += angle.weight * more.lobe.open;
   }
   float mean = 1.0 / float(kSliceCount);
-  store_signal(block, sum.visible * mean, sum.open * mean, centre_line);
+  uvec2 lobe = kLobe ? pack_scaled_lobe(surface.lobe, Signal(sum.lobe.visible * mean,
+                                                             sum.lobe.open * mean))
+                     : uvec2(0u);
+  imageStore(signal_image, block, uvec4(pack_signal(Signal(sum.visible * mean, sum.open * mean)),
+                                        floatBitsToUint(centre_line), lobe));
   if (kBentNormal) {
     imageStore(bent_image, block, uvec4(pack_direction(sum.bent * mean), 0u, 0u));
   }
-#ifdef LOBE
-  store_lobe(block, surface.lobe, Signal(sum.lobe.visible * mean, sum.lobe.open * mean));
-#endif
 }

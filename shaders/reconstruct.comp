@@ -36,9 +36,17 @@ layout(constant_id = 6) const bool kStill = false;  // nothing moved since the l
 layout(constant_id = 7) const bool kRoughnessTexture = false;
 layout(constant_id = 8) const int kRoughnessChannel = 0;
 
+#ifdef LOBE
+const bool kLobe = true;
+#define SIGNAL_FORMAT rgba32ui
+#else
+const bool kLobe = false;
+#define SIGNAL_FORMAT rg32ui
+#endif
+
 layout(set = 0, binding = 0) uniform Parameters { ReconstructParameters parameters; };
 // What our own passes wrote is read as storage: a texel at a known place needs no sampler.
-layout(set = 0, binding = 1, rg32ui) uniform readonly uimage2D signal_image;  // one texel a block
+layout(set = 0, binding = 1, SIGNAL_FORMAT) uniform readonly uimage2D signal_image;  // one texel a block
 // Where there is none, the signal.
 layout(set = 0, binding = 2, rg32ui) uniform readonly uimage2D bent_image;
 layout(set = 0, binding = 3, r32f) uniform readonly image2D line_image;  // LineSample::line
@@ -48,7 +56,7 @@ layout(set = 0, binding = 5) uniform writeonly image2D visibility_image;
 layout(set = 0, binding = 6) uniform writeonly image2D bent_normal_image;
 #ifdef HISTORY
 layout(set = 0, binding = 7) uniform texture2D motion_image;  // where there is none, the normals
-layout(set = 0, binding = 8, rg32ui) uniform readonly uimage2D history_image;
+layout(set = 0, binding = 8, SIGNAL_FORMAT) uniform readonly uimage2D history_image;
 layout(set = 0, binding = 9) uniform texture2D bent_history_image;
 layout(set = 0, binding = 10) uniform writeonly uimage2D next_history_image;
 layout(set = 0, binding = 11) uniform writeonly image2D next_bent_history_image;
@@ -57,16 +65,8 @@ const int kFirstLobeBinding = 12;
 const int kFirstLobeBinding = 7;
 #endif
 #ifdef LOBE
-layout(set = 0, binding = kFirstLobeBinding, rg32ui) uniform readonly uimage2D lobe_image;
-layout(set = 0, binding = kFirstLobeBinding + 1) uniform texture2D roughness_image;  // perceptual
-layout(set = 0, binding = kFirstLobeBinding + 2) uniform writeonly image2D specular_image;
-#ifdef HISTORY
-layout(set = 0, binding = 15, r32ui) uniform readonly uimage2D lobe_history_image;
-layout(set = 0, binding = 16) uniform writeonly uimage2D next_lobe_history_image;
-#endif
-const bool kLobe = true;
-#else
-const bool kLobe = false;
+layout(set = 0, binding = kFirstLobeBinding) uniform texture2D roughness_image;  // perceptual
+layout(set = 0, binding = kFirstLobeBinding + 1) uniform writeonly image2D specular_image;
 #endif
 
 struct Surface {
@@ -179,16 +179,6 @@ float neighbour_weight(Surface surface, Window window, vec2 offset, float line) 
   return 1.0 / (both * both);
 }
 
-// A neighbour's lobe as far as it is like the surface's own.
-Signal fetch_lobe(Surface surface, ivec2 block) {
-  Signal lobe = Signal(0.0, 0.0);
-#ifdef LOBE
-  uvec2 stored = imageLoad(lobe_image, block).xy;
-  add(lobe, lobe_weight(surface.lobe, stored.y), unpack_lobe(stored.x));
-#endif
-  return lobe;
-}
-
 Neighbourhood gather(Surface surface, Window window) {
   ivec2 last = size_px() - 1;
   ivec2 phase = ivec2(parameters.phase);
@@ -197,7 +187,7 @@ Neighbourhood gather(Surface surface, Window window) {
   vec3 moments = vec3(0.0);
   for (int y = window.low.y; y <= window.high.y; ++y) {
     for (int x = window.low.x; x <= window.high.x; ++x) {
-      uvec2 stored = imageLoad(signal_image, ivec2(x, y)).xy;
+      uvec4 stored = imageLoad(signal_image, ivec2(x, y));
       ivec2 searched = min(ivec2(x, y) * kDivisor + phase, last);
       float weight = neighbour_weight(surface, window, vec2(searched - surface.pixel),
                                       uintBitsToFloat(stored.y));
@@ -206,7 +196,10 @@ Neighbourhood gather(Surface surface, Window window) {
       if (kBentNormal) {
         here.bent = unpack_direction(imageLoad(bent_image, ivec2(x, y)).xy);
       }
-      here.lobe = fetch_lobe(surface, ivec2(x, y));
+      if (kLobe) {
+        // As far as it is like the surface's own.
+        add(here.lobe, lobe_weight(surface.lobe, stored.w), unpack_lobe(stored.z));
+      }
       add(found.sum, weight, here);
       if (kClamp) {
         float visibility = here.signal.visible / max(here.signal.open, 1e-9);
@@ -245,9 +238,15 @@ const float kDepthTolerance = 0.01;  // of the depth, for a surface seen head-on
 const float kLargestDepth = 6e4;     // of a half
 const float kSettled = 8.0;          // frames from which a pixel needs only its closest neighbours
 
-uvec2 pack_history(History history, float depth) {
-  return uvec2(pack_signal(history.sum.signal),
-               packHalf2x16(vec2(min(depth, kLargestDepth), history.count)));
+uvec4 pack_history(History history, float depth) {
+  // A normal that is not a number must not stay in the history.
+  Signal lobe = history.sum.lobe;
+  if (!(lobe.visible >= 0.0 && lobe.visible <= lobe.open && lobe.open < 1e30)) {
+    lobe = Signal(0.0, 0.0);
+  }
+  return uvec4(pack_signal(history.sum.signal),
+               packHalf2x16(vec2(min(depth, kLargestDepth), history.count)),
+               floatBitsToUint(lobe.visible), floatBitsToUint(lobe.open));
 }
 
 // Where the surface was on the last frame's image: xy in pixels, z its depth there, w 0 if it was
@@ -267,7 +266,7 @@ vec4 reproject(Surface surface) {
 
 // A texel of history, all of it or none as its depth tells whether it is of the same surface.
 float add_history(inout History history, Surface surface, ivec2 texel, float depth, float share) {
-  uvec2 stored = imageLoad(history_image, texel).xy;
+  uvec4 stored = imageLoad(history_image, texel);
   vec2 depth_and_count = unpackHalf2x16(stored.y);
   float weight = share * history_weight(min(depth, kLargestDepth), depth_and_count.x,
                                         kDepthTolerance, surface.slant);
@@ -276,9 +275,7 @@ float add_history(inout History history, Surface surface, ivec2 texel, float dep
   if (kBentNormal) {
     here.bent = texelFetch(bent_history_image, texel, 0).xyz;
   }
-#ifdef LOBE
-  here.lobe = unpack_lobe(imageLoad(lobe_history_image, texel).x);
-#endif
+  here.lobe = Signal(uintBitsToFloat(stored.z), uintBitsToFloat(stored.w));
   add(history.sum, weight, here);
   history.count += weight * depth_and_count.y;
   return weight;
@@ -357,14 +354,10 @@ History advance(Surface surface, History history) {
 
 void reconstruct(Surface surface) {
   History next = advance(surface, read_history(surface));
-  imageStore(next_history_image, surface.pixel,
-             uvec4(pack_history(next, surface.depth), 0u, 0u));
+  imageStore(next_history_image, surface.pixel, pack_history(next, surface.depth));
   if (kBentNormal) {
     imageStore(next_bent_history_image, surface.pixel, vec4(next.sum.bent, 0.0));
   }
-#ifdef LOBE
-  imageStore(next_lobe_history_image, surface.pixel, uvec4(pack_lobe(next.sum.lobe), 0u, 0u, 0u));
-#endif
   store(surface.pixel, next.sum);
 }
 

@@ -7,6 +7,7 @@
 #include "check_inputs.h"
 #include "gtao_parameters.h"
 #include "maths/slice_line.h"
+#include "output_format.h"
 #include "search_phase.h"
 #include "view_parameters.h"
 
@@ -51,13 +52,11 @@ tl::expected<void, Error> check(const GtaoSettings& settings) {
 // The textures that the pass writes, made for the graph but not yet written.
 OcclusionSignal create_signal(const Frame& frame, Texture depth, const GtaoSettings& settings) {
   const auto size = framegraph::Extent::relative(depth, settings.divisor);
-  OcclusionSignal result{.divisor = settings.divisor};
-  result.signal = frame.graph.create_texture("occlusion signal", {VK_FORMAT_R32G32_UINT, size});
+  OcclusionSignal result{.divisor = settings.divisor, .lobe = settings.lobe};
+  result.signal =
+      frame.graph.create_texture("occlusion signal", {signal_format(settings.lobe), size});
   if (settings.bent_normal) {
     result.bent = frame.graph.create_texture("bent signal", {VK_FORMAT_R32G32_UINT, size});
-  }
-  if (settings.lobe) {
-    result.lobe = frame.graph.create_texture("lobe signal", {VK_FORMAT_R32G32_UINT, size});
   }
   return result;
 }
@@ -105,9 +104,6 @@ tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame, const GtaoInpu
   if (settings.bent_normal) {
     result.bent = pass.write(result.bent, stored, {}, framegraph::Contents::discard);
   }
-  if (settings.lobe) {
-    result.lobe = pass.write(result.lobe, stored, {}, framegraph::Contents::discard);
-  }
   if (rough) {
     pass.read(inputs.roughness, framegraph::access::sampled_compute);
   }
@@ -126,13 +122,10 @@ tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame, const GtaoInpu
                rough](RecordContext& context) {
     const VkImageView normals = context.view(inputs.normals);
     const VkImageView signal = context.view(result.signal);
-    const std::array views{context.view(inputs.line_depth),
-                           normals,
-                           signal,
+    const std::array views{context.view(inputs.line_depth), normals, signal,
                            result.bent ? context.view(result.bent) : signal,
-                           rough ? context.view(inputs.roughness) : normals,
-                           result.lobe ? context.view(result.lobe) : signal};
-    // Without a lobe the last two bindings do not exist.
+                           rough ? context.view(inputs.roughness) : normals};
+    // Without a lobe the last binding does not exist.
     const std::span<const VkImageView> bound(views.data(), result.lobe ? views.size() : 4);
     kernels.dispatch(context, kernel, bound, bytes_of(parameters), context.extent(result.signal));
   });

@@ -33,4 +33,9 @@ namespace alcove::passes {
   return precision == Precision::unorm8 ? VK_FORMAT_R8G8B8A8_SNORM : colour_format(precision);
 }
 
+// What a search leaves, and its history: two words, and two more for a lobe.
+[[nodiscard]] inline VkFormat signal_format(bool lobe) {
+  return lobe ? VK_FORMAT_R32G32B32A32_UINT : VK_FORMAT_R32G32_UINT;
+}
+
 }  // namespace alcove::passes

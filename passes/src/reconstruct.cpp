@@ -64,8 +64,6 @@ struct Textures {
   Texture next_history;
   Texture bent_history;
   Texture next_bent_history;
-  Texture lobe_history;
-  Texture next_lobe_history;
 };
 
 // Declares the textures that the pass writes. `valid` is whether last frame's history can be read.
@@ -90,7 +88,8 @@ Textures create_textures(const Frame& frame, const ReconstructInputs& inputs,
     return textures;
   }
   const std::string name(history_name);
-  const TextureHistory history = graph.create_texture_history(name, {VK_FORMAT_R32G32_UINT, size});
+  const TextureHistory history =
+      graph.create_texture_history(name, {signal_format(inputs.signal.lobe), size});
   valid = history.validity == framegraph::HistoryValidity::valid;
   textures.history = history.previous();
   textures.next_history = history.current;
@@ -100,13 +99,6 @@ Textures create_textures(const Frame& frame, const ReconstructInputs& inputs,
     valid = valid && bent.validity == framegraph::HistoryValidity::valid;
     textures.bent_history = bent.previous();
     textures.next_bent_history = bent.current;
-  }
-  if (inputs.signal.lobe) {
-    const TextureHistory lobe =
-        graph.create_texture_history(name + " lobe", {VK_FORMAT_R32_UINT, size});
-    valid = valid && lobe.validity == framegraph::HistoryValidity::valid;
-    textures.lobe_history = lobe.previous();
-    textures.next_lobe_history = lobe.current;
   }
   return textures;
 }
@@ -132,20 +124,17 @@ void declare_accesses(framegraph::PassBuilder& pass, Textures& textures) {
   read(textures.inputs.motion, sampled);
   read(textures.history, stored);
   read(textures.bent_history, sampled);
-  read(textures.inputs.signal.lobe, stored);
   read(textures.inputs.roughness, sampled);
-  read(textures.lobe_history, stored);
   write(textures.result.visibility);
   write(textures.result.bent_normal);
   write(textures.next_history);
   write(textures.next_bent_history);
   write(textures.result.specular);
-  write(textures.next_lobe_history);
 }
 
 // As many as the shader can have.
 struct Bindings {
-  std::array<VkImageView, 16> views{};
+  std::array<VkImageView, 13> views{};
   std::size_t count = 0;
 
   void add(std::initializer_list<VkImageView> more) {
@@ -172,11 +161,7 @@ Bindings bindings_of(RecordContext& context, const Textures& textures) {
                   view_or(textures.next_bent_history, out.visibility)});
   }
   if (in.signal.lobe) {
-    bindings.add({context.view(in.signal.lobe), view_or(in.roughness, in.normals),
-                  context.view(out.specular)});
-  }
-  if (textures.lobe_history) {
-    bindings.add({context.view(textures.lobe_history), context.view(textures.next_lobe_history)});
+    bindings.add({view_or(in.roughness, in.normals), context.view(out.specular)});
   }
   return bindings;
 }
@@ -265,7 +250,7 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& frame, const Reconst
                              static_cast<std::uint32_t>(still),
                              static_cast<std::uint32_t>(bool(inputs.roughness)),
                              settings.roughness_channel};
-  const auto kernel = frame.kernels.get(shader_of(history, bool(inputs.signal.lobe)), constants);
+  const auto kernel = frame.kernels.get(shader_of(history, inputs.signal.lobe), constants);
   if (!kernel) {
     return tl::unexpected(kernel.error());
   }

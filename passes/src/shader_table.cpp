@@ -33,18 +33,18 @@ const ShaderSource& shader_source(Shader shader) {
       {kGtao, "tstt"},
       {kGtaoLobe,
        "tstt"
-       "st"},
+       "s"},
       {kReconstruct, "tttstt"},
       {kReconstructHistory,
        "tttstt"
        "ststt"},
       {kReconstructLobe,
        "tttstt"
-       "tst"},
+       "st"},
       {kReconstructLobeHistory,
        "tttstt"
        "ststt"
-       "tsttt"},
+       "st"},
       {kMultiBounce, "sst"},
       {kGtso, "ssssst"},
       {kGtsoByTable, "ssssstb", kGtsoTable},

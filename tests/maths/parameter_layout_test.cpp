@@ -40,7 +40,7 @@ const std::map<std::string, Offsets> kExpected = {
      {ALCOVE_OFFSET(GtaoParameters, view_from_normal), ALCOVE_OFFSET(GtaoParameters, slope),
       ALCOVE_OFFSET(GtaoParameters, phase), ALCOVE_OFFSET(GtaoParameters, radius),
       ALCOVE_OFFSET(GtaoParameters, frame), ALCOVE_OFFSET(GtaoParameters, thickness),
-      ALCOVE_OFFSET(GtaoParameters, fill)}},
+      ALCOVE_OFFSET(GtaoParameters, fill), ALCOVE_OFFSET(GtaoParameters, roughness)}},
     {"GtsoParameters",
      {ALCOVE_OFFSET(GtsoParameters, projection), ALCOVE_OFFSET(GtsoParameters, view_from_normal),
       ALCOVE_OFFSET(GtsoParameters, roughness)}},
@@ -62,7 +62,8 @@ const std::map<std::string, Offsets> kExpected = {
       ALCOVE_OFFSET(ReconstructParameters, normal_from_view),
       ALCOVE_OFFSET(ReconstructParameters, phase), ALCOVE_OFFSET(ReconstructParameters, tolerance),
       ALCOVE_OFFSET(ReconstructParameters, longest),
-      ALCOVE_OFFSET(ReconstructParameters, clamp_width)}},
+      ALCOVE_OFFSET(ReconstructParameters, clamp_width),
+      ALCOVE_OFFSET(ReconstructParameters, roughness)}},
 };
 
 TEST(ParameterStructs, LieInUniformBlocksWhereTheyLieInCpp) {

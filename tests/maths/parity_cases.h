@@ -17,6 +17,7 @@
 #include "maths/pyramid.h"
 #include "maths/reprojection.h"
 #include "maths/sampling.h"
+#include "maths/signal.h"
 #include "maths/visibility_bitmask.h"
 
 ALCOVE_MATHS_BEGIN
@@ -146,6 +147,17 @@ ALCOVE_INLINE vec4 parity_of_storage(uint which, vec4 a, vec4 b) {
       return vec4(spread.mean, spread.deviation, clamp_to_spread(a.w, spread, 1.0f),
                   accumulate(b.x, b.y, accumulation_weight(floor(b.z * 40.0f), 32.0f)));
     }
+    case 23u: {
+      Signal lobe;
+      lobe.visible = a.x * a.y;
+      lobe.open = a.x;
+      lobe = unpack_lobe(pack_lobe(lobe));
+      LobeSurface surface;
+      surface.normal = parity_direction(b.x, b.y);
+      surface.roughness = b.z;
+      return vec4(lobe.visible, lobe.open, lobe_weight(surface, pack_lobe_surface(surface)),
+                  lobe_angle(a.z * kPi, a.w, b.w).phi);
+    }
   }
   return vec4(0.0f);
 }
@@ -188,14 +200,14 @@ ALCOVE_INLINE vec4 parity_of_sampling(uint which, vec4 a, vec4 b) {
   return vec4(0.0f);
 }
 
-const uint kParityCases = 23u;
+const uint kParityCases = 24u;
 
 // Four results of case `which` for eight numbers in [0,1).
 ALCOVE_INLINE vec4 parity_case(uint which, vec4 a, vec4 b, Projection p) {
   if (which < 5u) return parity_of_slices(which, a, b);
   if (which < 9u) return parity_of_cameras(which, a, b, p);
   if (which < 13u) return parity_of_light(which, a, b);
-  if (which < 17u) return parity_of_storage(which, a, b);
+  if (which < 17u || which == 23u) return parity_of_storage(which, a, b);
   return parity_of_sampling(which, a, b);
 }
 

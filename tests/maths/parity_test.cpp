@@ -51,6 +51,7 @@ constexpr Bound kBounds[] = {
     {"bent normal of sectors", 2e-4, 1e-5},
     {"lobe of slices", 1e-3, 1e-3},
     {"golden pattern", 0.0, 0.0},
+    {"lobe signal", 1e-4, 4e-3},
 };
 static_assert(std::size(kBounds) == maths::kParityCases);
 

@@ -7,6 +7,7 @@
 #include "maths/octahedral.h"
 #include "maths/packing.h"
 #include "maths/pyramid.h"
+#include "maths/signal.h"
 #include "random_input.h"
 
 namespace alcove::maths_test {
@@ -15,6 +16,67 @@ namespace {
 using glm::vec2;
 using glm::vec3;
 using glm::vec4;
+
+maths::Signal signal_of(float visible, float open) {
+  maths::Signal signal;
+  signal.visible = visible;
+  signal.open = open;
+  return signal;
+}
+
+TEST(Signal, RatiosComeBackAndOpenStaysOpen) {
+  RandomInput random;
+  for (int i = 0; i < 20000; ++i) {
+    const float open = random.uniform(1e-3f, maths::kLargestOpen);
+    const float ratio = i % 5 == 0 ? 1.0f : random.uniform(0.0f, 1.0f);
+    const maths::Signal back =
+        maths::unpack_signal(maths::pack_signal(signal_of(ratio * open, open)));
+    EXPECT_NEAR(back.open, open, 4.0f / 65536);
+    EXPECT_NEAR(back.visible, ratio * back.open, 2e-5f * back.open);
+    if (ratio == 1.0f) {
+      EXPECT_EQ(back.visible, back.open);
+    }
+  }
+}
+
+TEST(Signal, LobesOfAnySizeComeBack) {
+  RandomInput random;
+  for (int i = 0; i < 20000; ++i) {
+    const float open = random.log_uniform(1e-20f, 1e20f);
+    const float ratio = i % 5 == 0 ? 1.0f : random.uniform(0.0f, 1.0f);
+    const maths::Signal back = maths::unpack_lobe(maths::pack_lobe(signal_of(ratio * open, open)));
+    EXPECT_NEAR(back.open / open, 1.0f, 1.0f / 256);
+    EXPECT_NEAR(back.visible / back.open, ratio, 2e-5f);
+    if (ratio == 1.0f) {
+      EXPECT_EQ(back.visible, back.open);
+    }
+  }
+  EXPECT_EQ(maths::unpack_lobe(maths::pack_lobe(signal_of(0, 0))).open, 0.0f);
+}
+
+TEST(Signal, LobesWeighByNormalAndRoughness) {
+  RandomInput random;
+  const auto surface = [](vec3 normal, float roughness) {
+    maths::LobeSurface made;
+    made.normal = normal;
+    made.roughness = roughness;
+    return made;
+  };
+  for (int i = 0; i < 5000; ++i) {
+    const vec3 normal = random.unit_vector();
+    const float roughness = random.uniform(0.0f, 1.0f);
+    const maths::LobeSurface own = surface(normal, roughness);
+    const auto weight = [&](vec3 other, float other_roughness) {
+      return maths::lobe_weight(own, maths::pack_lobe_surface(surface(other, other_roughness)));
+    };
+    // 32 times the error of a byte.
+    EXPECT_NEAR(weight(normal, roughness), 1.0f, 0.3f);
+    EXPECT_EQ(weight(-normal, roughness), 0.0f);
+    EXPECT_EQ(weight(normal, roughness < 0.5f ? roughness + 0.25f : roughness - 0.25f), 0.0f);
+    const vec3 across = normalize(cross(normal, vec3(0.3f, 0.5f, 0.8f)));
+    EXPECT_NEAR(weight(normalize(normal + across * 0.21f), roughness), 0.5f, 0.2f);
+  }
+}
 
 TEST(Octahedral, RoundTripsEveryDirection) {
   RandomInput random;

@@ -82,6 +82,9 @@ TEST_F(BadInput, EverySettingOutOfRangeIsNamed) {
       {"clamp", [](View&, OcclusionSettings& s) { s.clamp_width = kNaN; }},
       {"mips", [](View&, OcclusionSettings& s) { s.depth_mips = 0; }},
       {"mips", [](View&, OcclusionSettings& s) { s.depth_mips = 6; }},
+      {"roughness", [](View&, OcclusionSettings& s) { s.roughness = 1.1f; }},
+      {"roughness", [](View&, OcclusionSettings& s) { s.roughness = kNaN; }},
+      {"channel", [](View&, OcclusionSettings& s) { s.roughness_channel = 4; }},
   };
   for (const Case& bad : cases) {
     const std::string said = error_of(bad.spoil);

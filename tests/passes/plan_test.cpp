@@ -21,6 +21,7 @@ struct Reads {
   bool visibility = true;
   bool bent_normal = false;
   bool linear_depth = false;
+  bool specular = false;
 };
 
 class OcclusionPlan : public PassTest {
@@ -53,6 +54,10 @@ class OcclusionPlan : public PassTest {
       }
       if (reads.linear_depth) {
         read_back(graph, outputs->linear_depth);
+      }
+      EXPECT_EQ(bool(outputs->specular), settings.specular != Specular::none);
+      if (reads.specular) {
+        read_back(graph, outputs->specular);
       }
       const auto plan = framegraph::compile(graph);
       ASSERT_TRUE(plan) << framegraph::to_string(plan.error());
@@ -121,6 +126,26 @@ TEST_F(OcclusionPlan, BentNormalsAndHistoryCostOnlyWhereTheyAreOn) {
   EXPECT_THAT(kept(history).histories, testing::SizeIs(2));
   history.bent_normal = true;
   EXPECT_THAT(kept(history, {.bent_normal = true}).histories, testing::SizeIs(4));
+}
+
+TEST_F(OcclusionPlan, SpecularOcclusionCostsOnlyWhereItIsOn) {
+  const Kept without = kept(least());
+  OcclusionSettings settings = least();
+  settings.roughness = 0.2f;  // which nothing reads
+  EXPECT_EQ(kept(settings).bytes, without.bytes);
+
+  settings.specular = Specular::slices;
+  const Kept by_slices = kept(settings, {.specular = true});
+  EXPECT_EQ(by_slices.passes, without.passes);
+  EXPECT_THAT(by_slices.transients, Contains("specular occlusion"));
+  EXPECT_THAT(by_slices.transients, Not(Contains("bent normal")));
+
+  settings.specular = Specular::table;
+  EXPECT_THAT(kept(settings, {.specular = true}).transients, Contains("bent normal"));
+  const Kept unread = kept(settings);
+  EXPECT_THAT(unread.passes, Not(Contains("specular occlusion")));
+  settings.specular = Specular::lagarde;
+  EXPECT_THAT(kept(settings, {.specular = true}).transients, Not(Contains("bent normal")));
 }
 
 TEST_F(OcclusionPlan, MipsCostMemoryOnlyWhereTheyAreAskedFor) {

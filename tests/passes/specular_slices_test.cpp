@@ -90,11 +90,11 @@ TEST_F(SpecularSlices, MeetTheLobeCastOverTheExactSurfaces) {
 
 TEST_F(SpecularSlices, AnOpenSurfaceShowsItsWholeLobe) {
   for (const TestView& view : test_views()) {
-    for (const float degrees : {0.0f, 30.0f, 60.0f, 85.0f}) {
+    for (const float degrees : {0.0f, 60.0f, 85.0f}) {
       const PlaneScene plane = plane_scene(view, 64, 48, degrees);
-      for (const float roughness : {0.0f, 0.1f, 0.3f, 0.6f, 1.0f}) {
-        for (const Quality quality : {Quality::low, Quality::medium, Quality::reference}) {
-          for (std::uint32_t index = 0; index < 3; ++index) {
+      for (const float roughness : {0.0f, 0.3f, 1.0f}) {
+        for (const Quality quality : {Quality::low, Quality::medium}) {
+          for (std::uint32_t index = 0; index < 2; ++index) {
             SCOPED_TRACE(testing::Message() << view.name << " tilted " << degrees << ", roughness "
                                             << roughness << ", frame " << index);
             const auto images = run_occlusion({.view = view.view,
@@ -118,7 +118,7 @@ TEST_F(SpecularSlices, FramesBringANarrowLobeCloser) {
   const TestView view = test_views().front();
   const Drawing drawing = draw(view, 60, 40, groove(0.8));
   double first = 0.0, last = 0.0;
-  for (std::uint32_t index = 0; index < 32; ++index) {
+  for (std::uint32_t index = 0; index < 22; ++index) {
     const auto images = run_occlusion({.view = view.view,
                                        .depth_ndc = drawing.depth_ndc,
                                        .normal_vs = &drawing.normal_vs,

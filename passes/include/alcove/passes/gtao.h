@@ -51,15 +51,14 @@ struct GtaoInputs {
 // What filters and history work on: sums over slices, one texel a block.
 struct OcclusionSignal {
   // R32G32_UINT: the visible part of the slices and all of it (shaders/maths/signal.h), and the
-  // bits of a float that is linear along the image of any plane.
+  // bits of a float that is linear along the image of any plane. With a lobe R32G32B32A32_UINT: the
+  // same two of it, and the surface it belongs to.
   framegraph::Texture signal;
   // R32G32_UINT: the mean visible direction weighted by the cosine, view space, not normalised, as
   // halves; null where none is wanted.
   framegraph::Texture bent;
-  // R32G32_UINT: visible and open part of the lobe, and the surface it belongs to; null where none
-  // is wanted (shaders/maths/signal.h).
-  framegraph::Texture lobe;
   std::uint32_t divisor = 1;  // pixels on a side of a block
+  bool lobe = false;
 };
 
 [[nodiscard]] tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame,

@@ -63,8 +63,8 @@ struct OcclusionOutputs {
   framegraph::Texture visibility;  // one channel, [0,1], 1 open
   framegraph::Texture
       bent_normal;  // xyz unit, in the space of `normals`; null where none was asked for
-  framegraph::Texture specular;  // one channel, multiplies specular probe light, [0,1], 1 open;
-                                 // null where none was asked for
+  framegraph::Texture specular;      // one channel, multiplies specular probe light, [0,1], 1 open;
+                                     // null where none was asked for
   framegraph::Texture linear_depth;  // as add_depth_pyramid makes it
   framegraph::Texture normals;       // those given, or those made from depth, in view space
 };
