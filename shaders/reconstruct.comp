@@ -236,7 +236,8 @@ struct History {
 
 const float kDepthTolerance = 0.01;  // of the depth, for a surface seen head-on
 const float kLargestDepth = 6e4;     // of a half
-const float kSettled = 8.0;          // frames from which a pixel needs only its closest neighbours
+const float kGathered = 3.0;         // frames from which a pixel needs no far neighbours
+const float kSettled = 8.0;          // and from which only the closest
 
 uvec4 pack_history(History history, float depth) {
   // A normal that is not a number must not stay in the history.
@@ -314,7 +315,8 @@ const float kWidth = kDivisor > 2 ? 2.5 : 1.0;
 float window_width(float count) { return max(0.65 * kWidth, 2.0 * inversesqrt(count + 1.0)); }
 
 Window window_of(Surface surface, float count) {
-  Window window = window_within(surface.pixel, kReach, window_width(count));
+  int reach = count < kGathered ? kReach : min(kReach, 1);
+  Window window = window_within(surface.pixel, reach, window_width(count));
   if (kDivisor > 1 && count >= kSettled) {
     ivec2 from_phase = surface.pixel - ivec2(parameters.phase);
     window.low = clamp((from_phase + kDivisor) / kDivisor - 1, ivec2(0), last_block());

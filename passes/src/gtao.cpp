@@ -13,7 +13,6 @@
 
 namespace alcove::passes {
 
-using framegraph::Range;
 using framegraph::RecordContext;
 using framegraph::Texture;
 

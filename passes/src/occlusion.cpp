@@ -58,13 +58,11 @@ OcclusionSettings quality_settings(Quality quality, float radius) {
     case Quality::low:
       settings.divisor = 4;
       settings.steps = 8;
-      settings.filter_reach = 1;
       settings.history_frames = 32;
       break;
     case Quality::medium:
       settings.divisor = 2;
       settings.steps = 8;
-      settings.filter_reach = 1;
       settings.history_frames = 32;
       break;
     case Quality::high:
@@ -75,7 +73,6 @@ OcclusionSettings quality_settings(Quality quality, float radius) {
       settings.divisor = 2;
       settings.slices = 2;
       settings.steps = 24;
-      settings.filter_reach = 1;
       settings.history_frames = 32;
       break;
     case Quality::reference:

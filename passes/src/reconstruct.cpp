@@ -16,7 +16,6 @@
 namespace alcove::passes {
 
 using framegraph::Graph;
-using framegraph::Range;
 using framegraph::RecordContext;
 using framegraph::Texture;
 using framegraph::TextureHistory;
