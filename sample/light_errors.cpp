@@ -80,8 +80,8 @@ double spread_of(const Image<float>& visibility, const Image<glm::vec3>& albedo,
   std::vector<Cell> cells(std::size_t{kVisibilities} * kAlbedos);
   for (std::size_t i = 0; i < mask.pixels.size(); ++i) {
     for (int c = 0; mask.pixels[i] != 0 && c < 3; ++c) {
-      const int x = static_cast<int>(visibility.pixels[i] * (kVisibilities - 1) + 0.5f);
-      const int y = static_cast<int>(albedo.pixels[i][c] * (kAlbedos - 1) + 0.5f);
+      const auto x = std::lround(visibility.pixels[i] * (kVisibilities - 1));
+      const auto y = std::lround(albedo.pixels[i][c] * (kAlbedos - 1));
       Cell& cell = cells[static_cast<std::size_t>(y * kVisibilities + x)];
       const double value = truth.pixels[i][c];
       cell.count += 1;

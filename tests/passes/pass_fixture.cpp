@@ -178,6 +178,7 @@ void PassTest::poison_memory(std::uint32_t width, std::uint32_t height) {
                          std::vector<float>(floats, std::numeric_limits<float>::quiet_NaN()), 4};
   run([&](Graph& graph) {
     std::vector<Texture> textures;
+    textures.reserve(kTextures);
     for (int i = 0; i < kTextures; ++i) {
       textures.push_back(upload(graph, poison));
     }

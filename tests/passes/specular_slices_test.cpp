@@ -36,8 +36,9 @@ double cast_lobe(const Drawing& drawing, std::uint32_t x, std::uint32_t y, doubl
   const glm::vec3 local_view(glm::transpose(world) * view);
   double visible = 0.0, open = 0.0;
   for (int i = 0; i < kSide * kSide; ++i) {
+    const int row = i / kSide;
     const glm::vec3 half = maths::sample_ggx_normal(
-        local_view, alpha, (float(i % kSide) + 0.5f) / kSide, (float(i / kSide) + 0.5f) / kSide);
+        local_view, alpha, (float(i % kSide) + 0.5f) / kSide, (float(row) + 0.5f) / kSide);
     const glm::vec3 light = glm::reflect(-local_view, half);
     if (light.z <= 0.0f) continue;
     const double share = maths::ggx_shadowing(local_view.z, light.z, alpha);
