@@ -177,8 +177,8 @@ ALCOVE_INLINE float visible_lobe(LobeSlice lobe, float side, float per_bearing, 
   return max(sum, 0.0f);
 }
 
-// The angle of the slice that holds the lobe's centre, the plane of view and normal. Where they fall
-// together every slice does.
+// The angle of the slice that holds the lobe's centre, the plane of view and normal. Where they
+// fall together every slice does.
 ALCOVE_INLINE float lobe_plane(vec3 normal, ViewBasis basis) {
   return atan(dot(normal, basis.y), dot(normal, basis.x) + 1e-12f);
 }

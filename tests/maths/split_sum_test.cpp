@@ -65,7 +65,8 @@ TEST(SplitSum, TableIsCloseToTheIntegralBetweenItsEntriesToo) {
   double worst = 0.0, squares = 0.0;
   constexpr int kPoints = 1000;
   for (int i = 0; i < kPoints; ++i) {
-    const float n_dot_v = std::max(random.uniform(0.0f, 1.0f), 1e-3f);
+    // Every fifth edge-on, where it changes fastest.
+    const float n_dot_v = std::max(random.uniform(0.0f, i % 5 == 0 ? 0.03f : 1.0f), 1e-3f);
     const float roughness = random.uniform(0.0f, 1.0f);
     const vec2 error = look_up(table, n_dot_v, roughness) - quadrature(n_dot_v, roughness);
     for (const float e : {error.x, error.y, error.x + error.y}) {

@@ -119,7 +119,7 @@ TEST_F(SpecularSlices, FramesBringANarrowLobeCloser) {
   const TestView view = test_views().front();
   const Drawing drawing = draw(view, 60, 40, groove(0.8));
   double first = 0.0, last = 0.0;
-  for (std::uint32_t index = 0; index < 22; ++index) {
+  for (std::uint32_t index = 0; index < 32; ++index) {
     const auto images = run_occlusion({.view = view.view,
                                        .depth_ndc = drawing.depth_ndc,
                                        .normal_vs = &drawing.normal_vs,

@@ -18,7 +18,7 @@ enum class SpecularModel : std::uint8_t {
   // Lagarde and de Rousiers 2014: from visibility and angle of view, without a bent normal.
   lagarde,
   // The memo's table: the lobe itself within the cone of visibility, for the angles between bent
-  // normal, mirror direction and normal (shaders/maths/gtso_table.h). 40 KiB that no other model
+  // normal, mirror direction and normal (shaders/maths/gtso_table.h). 54 KiB that no other model
   // has.
   table,
 };
