@@ -1,12 +1,15 @@
 #include "format_info.h"
 
 #include <algorithm>
+#include <array>
 
 #include "alcove/framegraph/compile.h"
 
 namespace alcove::framegraph {
 
-std::uint32_t texel_size(VkFormat format) {
+namespace {
+
+constexpr std::uint32_t find_texel_size(VkFormat format) {
   const auto in = [format](VkFormat first, VkFormat last) {
     return format >= first && format <= last;
   };
@@ -42,6 +45,21 @@ std::uint32_t texel_size(VkFormat format) {
   }
   if (in(VK_FORMAT_BC1_RGB_UNORM_BLOCK, VK_FORMAT_ASTC_12x12_SRGB_BLOCK)) return 1;
   return 16;
+}
+
+// By format, as far as those of Vulkan 1.0 go.
+constexpr auto kTexelSizes = [] {
+  std::array<std::uint8_t, VK_FORMAT_ASTC_12x12_SRGB_BLOCK + 1> sizes{};
+  for (std::size_t i = 0; i < sizes.size(); ++i)
+    sizes[i] = static_cast<std::uint8_t>(find_texel_size(static_cast<VkFormat>(i)));
+  return sizes;
+}();
+
+}  // namespace
+
+std::uint32_t texel_size(VkFormat format) {
+  const auto index = static_cast<std::size_t>(format);
+  return index < kTexelSizes.size() ? kTexelSizes[index] : find_texel_size(format);
 }
 
 VkImageAspectFlags aspects(VkFormat format) {

@@ -1,6 +1,8 @@
 // Which resource last used which bytes of a heap.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -33,6 +35,11 @@ void take_over(MemoryMap& map, const Segment& owner, Function&& f) {
   }
   std::size_t last = first;
   for (; last < map.size() && map[last].begin < owner.end; ++last) f(map[last]);
+  // As a rule one owner's bytes go to another whole.
+  if (last == first + 1 && map[first].begin >= owner.begin && map[first].end <= owner.end) {
+    map[first] = owner;
+    return;
+  }
   // What is left of the first and the last of those on either side.
   Segment kept[3];
   std::size_t keep = 0;
@@ -53,6 +60,25 @@ void take_over(MemoryMap& map, const Segment& owner, Function&& f) {
               map.begin() + static_cast<std::ptrdiff_t>(last));
   }
   for (std::size_t i = 0; i < keep; ++i) map[first + i] = kept[i];
+}
+
+// Gives those bytes of [begin, end) to `owner` that nobody has; how many they were.
+inline VkDeviceSize claim_free(MemoryMap& map, const Segment& owner) {
+  VkDeviceSize claimed = 0;
+  VkDeviceSize at = owner.begin;
+  for (std::size_t i = 0; at < owner.end; ++i) {
+    if (i < map.size() && map[i].begin <= at) {
+      at = std::max(at, map[i].end);
+      continue;
+    }
+    Segment gap = owner;
+    gap.begin = at;
+    if (i < map.size()) gap.end = std::min(owner.end, map[i].begin);
+    map.insert(map.begin() + static_cast<std::ptrdiff_t>(i), gap);
+    claimed += gap.end - gap.begin;
+    at = gap.end;
+  }
+  return claimed;
 }
 
 }  // namespace alcove::framegraph

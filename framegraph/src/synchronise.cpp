@@ -111,27 +111,52 @@ void Synchroniser::arrive() {
   }
 }
 
-// The frame before used memory as this one will: with what, and who had which bytes last.
+// The frame before used memory as this one will: who had which bytes last, and with what. Only
+// their last uses are looked for, and those of histories.
 void Synchroniser::find_last_uses() {
-  s_.last_uses.assign(workspace_.first_sub.back(), UseState{});
-  for (const PlannedPass& planned : plan_.passes) {
+  s_.last_uses.resize(workspace_.first_sub.back());
+  s_.is_last.assign(graph_.resources.size(), 0);
+  auto from = static_cast<std::uint32_t>(plan_.passes.size());
+  const auto want = [&](std::uint32_t resource) {
+    s_.is_last[resource] = 1;
+    from = std::min(from, plan_.placements[resource].first);
+    const auto& first = workspace_.first_sub;
+    std::fill(s_.last_uses.begin() + first[resource], s_.last_uses.begin() + first[resource + 1],
+              UseState{});
+  };
+  find_last_owners();
+  for (const MemoryMap& map : s_.memory) {
+    for (const Segment& segment : map) want(segment.resource);
+  }
+  for (std::uint32_t r = 0; r < graph_.resources.size() && !graph_.externals.empty(); ++r) {
+    if (graph_.resources[r].origin == Origin::history) want(r);
+  }
+  for (std::uint32_t position = from; position < plan_.passes.size(); ++position) {
+    const PlannedPass& planned = plan_.passes[position];
     const auto accesses = graph_.pass_accesses(planned.pass);
     const std::uint8_t* live =
         plan_.live_accesses.data() + graph_.passes[planned.pass].first_access;
     for (std::size_t i = 0; i < accesses.size(); ++i) {
-      if (!live[i]) continue;
       const AccessRecord& access = accesses[i];
+      if (!live[i] || !s_.is_last[access.resource]) continue;
       for_each_sub(graph_.resources[access.resource], workspace_.first_sub[access.resource],
                    access.range,
                    [&](std::uint32_t sub) { note(s_.last_uses[sub], access, kBeforeFrame); });
     }
   }
+}
+
+// Backwards over the transients: bytes belong to the last that has them. Most heaps are full soon.
+void Synchroniser::find_last_owners() {
   s_.memory.resize(std::max(s_.memory.size(), plan_.heaps.size()));
   for (MemoryMap& map : s_.memory) map.clear();
-  for (std::uint32_t r : workspace_.transients) {
-    const Placement& placed = plan_.placements[r];
-    take_over(s_.memory[placed.heap], {placed.offset, placed.offset + placed.size, r, true},
-              [](const Segment&) {});
+  VkDeviceSize unclaimed = 0;
+  for (const Heap& heap : plan_.heaps) unclaimed += heap.size;
+  const auto& transients = workspace_.transients;
+  for (std::size_t i = transients.size(); i-- > 0 && unclaimed > 0;) {
+    const Placement& placed = plan_.placements[transients[i]];
+    unclaimed -= claim_free(s_.memory[placed.heap],
+                            {placed.offset, placed.offset + placed.size, transients[i], true});
   }
 }
 
@@ -170,6 +195,10 @@ void Synchroniser::take_over_memory(std::uint32_t resource) {
 void Synchroniser::use(std::uint32_t position, const AccessRecord& access) {
   const ResourceRecord& resource = graph_.resources[access.resource];
   const std::uint32_t first = workspace_.first_sub[access.resource];
+  if (resource.mips * resource.layers <= 1) {
+    use_range(position, access, s_.states[first], access.range);
+    return;
+  }
   UseState* const states = s_.states.data() + first;
   UseState* const lead =
       states + std::size_t{access.range.base_layer} * resource.mips + access.range.base_mip;
@@ -189,8 +218,8 @@ void Synchroniser::use(std::uint32_t position, const AccessRecord& access) {
   });
 }
 
-void Synchroniser::use_range(std::uint32_t position, const AccessRecord& access, UseState& state,
-                             const Range& range) {
+inline void Synchroniser::use_range(std::uint32_t position, const AccessRecord& access,
+                                    UseState& state, const Range& range) {
   const bool texture = graph_.resources[access.resource].kind == ResourceKind::texture;
   if (state.queue != queue_ && change_queue(position, access, state, range)) return;
   if (texture && state.layout != access.layout)
@@ -201,8 +230,8 @@ void Synchroniser::use_range(std::uint32_t position, const AccessRecord& access,
     read_again(position, access, state);
 }
 
-void Synchroniser::change_layout(std::uint32_t position, const AccessRecord& access,
-                                 UseState& state, const Range& range) {
+inline void Synchroniser::change_layout(std::uint32_t position, const AccessRecord& access,
+                                        UseState& state, const Range& range) {
   Transition wanted;
   // Reads come after the write that they saw; a memory hand-over may have both.
   wanted.src_stages = state.read_stages | state.write_stages;
@@ -344,7 +373,7 @@ void Synchroniser::leave(std::uint32_t resource) {
 }
 
 // The dependencies go into the last batch if that comes after `time`, else into a new one.
-Batch& Synchroniser::batch_after(std::int32_t time, std::uint32_t position) {
+inline Batch& Synchroniser::batch_after(std::int32_t time, std::uint32_t position) {
   time = std::max(time, static_cast<std::int32_t>(2 * floor_) - 1);
   if (batch_position_ == kNone || static_cast<std::int32_t>(2 * batch_position_) < time) {
     batch_position_ = position;

@@ -31,6 +31,7 @@ class Synchroniser {
  private:
   void arrive();
   void find_last_uses();
+  void find_last_owners();
   void take_over_memory(std::uint32_t resource);
   void use(std::uint32_t position, const AccessRecord& access);
   void use_range(std::uint32_t position, const AccessRecord& access, UseState& state,

@@ -27,20 +27,18 @@ class Replay {
   void begin() {
     const auto& first = v_.workspace.first_sub;
     s_.versions.assign(v_.graph.resources.size(), 0);
-    s_.written.assign(first.back(), 0);
-    s_.read_stamp.assign(first.back(), 0);
-    s_.write_stamp.assign(first.back(), 0);
-    s_.layout.resize(first.back());
+    s_.touches.assign(first.back(), {});
     if (v_.graph.externals.empty()) return;
     for (std::uint32_t r = 0; r < v_.graph.resources.size(); ++r) {
       const std::uint32_t external = v_.graph.resources[r].external;
       if (external == kNone || !v_.graph.externals[external].has_contents) continue;
-      std::fill(s_.written.begin() + first[r], s_.written.begin() + first[r + 1], 1);
+      for (std::uint32_t sub = first[r]; sub < first[r + 1]; ++sub) s_.touches[sub].written = 1;
     }
   }
 
   void visit(std::uint32_t pass, const AccessRecord& access) {
-    if (!validate_access(v_, pass, access)) return;
+    const QueueClass queue = v_.graph.passes[pass].queue;
+    if (!is_plainly_right(v_, queue, access) && !validate_access(v_, pass, access)) return;
     std::uint32_t& version = s_.versions[access.resource];
     if (access.version != version) stale(pass, access, version);
     if (access.flags & kWrite) ++version;
@@ -55,19 +53,20 @@ class Replay {
   }
 
   void touch(std::uint32_t pass, const AccessRecord& access, std::uint32_t sub) {
+    Workspace::Touch& touched = s_.touches[sub];
     const std::uint32_t stamp = pass + 1;
-    const bool read_before = s_.read_stamp[sub] == stamp;
-    const bool written_before = s_.write_stamp[sub] == stamp;
+    const bool read_before = touched.read_stamp == stamp;
+    const bool written_before = touched.write_stamp == stamp;
     if (access.flags & kWrite) {
       conflict_ |= read_before || written_before;
-      s_.write_stamp[sub] = stamp;
-      s_.written[sub] = 1;
+      touched.write_stamp = stamp;
+      touched.written = 1;
     } else {
-      conflict_ |= written_before || (read_before && s_.layout[sub] != access.layout);
-      unwritten_ |= s_.written[sub] == 0;
-      s_.read_stamp[sub] = stamp;
+      conflict_ |= written_before || (read_before && touched.layout != access.layout);
+      unwritten_ |= touched.written == 0;
+      touched.read_stamp = stamp;
     }
-    s_.layout[sub] = access.layout;
+    touched.layout = access.layout;
   }
 
   // All attachments of a pass are drawn to together.
@@ -105,9 +104,10 @@ class Replay {
   void report_conflict(std::uint32_t pass, const AccessRecord& access) {
     const bool writes = (access.flags & kWrite) != 0;
     bool other_writes = false;
-    for_each_sub(
-        v_.graph.resources[access.resource], v_.workspace.first_sub[access.resource], access.range,
-        [&](std::uint32_t sub) { other_writes |= !writes || s_.read_stamp[sub] != pass + 1; });
+    for_each_sub(v_.graph.resources[access.resource], v_.workspace.first_sub[access.resource],
+                 access.range, [&](std::uint32_t sub) {
+                   other_writes |= !writes || s_.touches[sub].read_stamp != pass + 1;
+                 });
     if (writes && other_writes) {
       v_.fail(ErrorCode::two_writers,
               v_.pass_text(pass) + " writes a subresource of " + v_.resource_text(access.resource) +
@@ -191,10 +191,10 @@ class Replay {
       return;
     }
     const auto& first = v_.workspace.first_sub;
-    const auto begin = s_.written.begin();
-    if (std::find(begin + first[output.resource], begin + first[output.resource + 1], 1) ==
-            begin + first[output.resource + 1] &&
-        first[output.resource] != first[output.resource + 1])
+    const auto begin = s_.touches.begin() + first[output.resource];
+    const auto end = s_.touches.begin() + first[output.resource + 1];
+    if (begin != end &&
+        std::none_of(begin, end, [](const Workspace::Touch& touched) { return touched.written; }))
       v_.fail(ErrorCode::read_before_write,
               "output " + v_.resource_text(output.resource) +
                   " is written by no pass: write it, or do not ask for it",

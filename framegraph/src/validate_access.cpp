@@ -120,9 +120,6 @@ struct Checker {
               " does not support on this device: choose another format");
   }
 
-  static bool layout_is_usable(VkImageLayout layout) {
-    return layout != VK_IMAGE_LAYOUT_UNDEFINED && layout != VK_IMAGE_LAYOUT_PREINITIALIZED;
-  }
   static std::string hex(VkFlags flags) {
     static constexpr char kDigits[] = "0123456789abcdef";
     std::string text;
@@ -134,27 +131,9 @@ struct Checker {
   }
 };
 
-// What most accesses are, found out at once; anything else is looked at closely.
-bool is_plainly_right(const Validation& v, std::uint32_t pass, const AccessRecord& access) {
-  if ((access.flags & (kNull | kForeign | kClosed)) != 0) return false;
-  const ResourceRecord& r = v.graph.resources[access.resource];
-  const Range& range = access.range;
-  const bool texture = r.kind == ResourceKind::texture;
-  const bool in_range =
-      !texture || (range.mips != 0 && range.layers != 0 && range.base_mip + range.mips <= r.mips &&
-                   range.base_layer + range.layers <= r.layers);
-  const bool writes = (access.access & kWriteBits) != 0;
-  const bool right = access.kind == r.kind && in_range && access.stages != 0 &&
-                     access.access != 0 && writes == ((access.flags & kWrite) != 0) &&
-                     (!texture || Checker::layout_is_usable(access.layout));
-  return right && r.origin != Origin::imported && v.limits.formats.query == nullptr &&
-         v.graph.passes[pass].queue == QueueClass::graphics;
-}
-
 }  // namespace
 
 bool validate_access(Validation& validation, std::uint32_t pass, const AccessRecord& access) {
-  if (is_plainly_right(validation, pass, access)) return true;
   Checker checker{validation, pass, access};
   if (!checker.handle() || !checker.range()) return false;
   checker.masks();

@@ -59,12 +59,15 @@ struct Workspace {
   std::vector<MemoryRequirements> requirements;  // by resource
 
   // Scratch of the single phases.
+  struct Touch {
+    std::uint32_t read_stamp = 0;  // the last pass that read it, and wrote it, from 1
+    std::uint32_t write_stamp = 0;
+    VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
+    std::uint32_t written = 0;  // 0 or 1: has contents
+  };
   struct Validate {
     std::vector<std::uint32_t> versions;
-    std::vector<std::uint8_t> written;  // by subresource
-    std::vector<std::uint32_t> read_stamp;
-    std::vector<std::uint32_t> write_stamp;
-    std::vector<VkImageLayout> layout;
+    std::vector<Touch> touches;  // by subresource
   } validate;
   struct Cull {
     std::vector<std::uint32_t> needed_by;  // by subresource
@@ -120,10 +123,11 @@ struct Workspace {
     std::vector<std::uint8_t> kept;
   } place;
   struct Synchronise {
-    std::vector<UseState> states;      // by subresource
-    std::vector<UseState> last_uses;   // by subresource, at the end of a frame
-    std::vector<MemoryMap> memory;     // by heap
-    std::vector<std::int32_t> latest;  // by batch: the last time that it waits for
+    std::vector<UseState> states;       // by subresource
+    std::vector<UseState> last_uses;    // by subresource, at the end of a frame, of those that
+    std::vector<std::uint8_t> is_last;  // by resource: had memory last, or is a history
+    std::vector<MemoryMap> memory;      // by heap
+    std::vector<std::int32_t> latest;   // by batch: the last time that it waits for
     struct Release {
       std::uint32_t submission = 0;
       std::uint32_t number = 0;  // in order of need
