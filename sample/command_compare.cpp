@@ -1,4 +1,3 @@
-#include <cmath>
 #include <iomanip>
 #include <iostream>
 #include <sstream>
@@ -13,19 +12,6 @@
 
 namespace alcove::sample {
 namespace {
-
-// Signed error as colours: white where right, red where too dark, blue where too bright, full
-// colour at an error of a quarter.
-Image<glm::vec3> error_colours(const Image<float>& result, const Image<float>& truth) {
-  Image<glm::vec3> colours(result.width, result.height);
-  for (std::size_t i = 0; i < colours.pixels.size(); ++i) {
-    const float error = 4.0f * (result.pixels[i] - truth.pixels[i]);
-    const float less = std::fmin(std::fabs(error), 1.0f);
-    colours.pixels[i] = error < 0.0f ? glm::vec3(1.0f, 1.0f - less, 1.0f - less)
-                                     : glm::vec3(1.0f - less, 1.0f - less, 1.0f);
-  }
-  return colours;
-}
 
 struct Errors {
   ErrorSummary scene;

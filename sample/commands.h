@@ -11,6 +11,7 @@ namespace alcove::sample {
 // The subcommands of `alcove`, a file each. They print to stdout; an error is one sentence.
 [[nodiscard]] tl::expected<void, std::string> run_render(const Options& options);
 [[nodiscard]] tl::expected<void, std::string> run_compare(const Options& options);
+[[nodiscard]] tl::expected<void, std::string> run_motion(const Options& options);
 [[nodiscard]] tl::expected<void, std::string> run_graph(const Options& options);
 [[nodiscard]] tl::expected<void, std::string> run_doctor(const Options& options);
 

@@ -45,6 +45,10 @@ struct OpenSurfaceSummary {
 [[nodiscard]] OpenSurfaceSummary open_surfaces(const Image<float>& result,
                                                const Image<float>& truth, const Mask& mask);
 
+// Signed error as colours: white where right, red where too dark, blue where too bright, full
+// colour at an error of a quarter.
+[[nodiscard]] Image<glm::vec3> error_colours(const Image<float>& result, const Image<float>& truth);
+
 }  // namespace alcove::sample
 
 #endif  // ALCOVE_SAMPLE_ERRORS_H_

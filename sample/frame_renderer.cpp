@@ -246,7 +246,10 @@ tl::expected<Declared, std::string> FrameRenderer::State::declare_occlusion(
   } else {
     settings.roughness = roughness.front();
   }
-  if (request.index == 0) {
+  if (request.motion_vectors) {
+    inputs.motion = import(kMotion);
+  }
+  if (request.index == 0 || request.restart) {
     graph.reset_histories();
   }
   auto outputs = passes::add_occlusion(frame, inputs, settings);

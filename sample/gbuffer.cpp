@@ -24,6 +24,10 @@ using Failure = tl::unexpected<std::string>;
 constexpr std::array<VkFormat, 4> kColourFormats{kNormalFormat, kAlbedoFormat, kMotionFormat,
                                                  kEmissiveFormat};
 
+// That read what each draw pushes.
+constexpr VkShaderStageFlags kDrawStages =
+    VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
+
 Failure failure(const char* what, VkResult result) {
   return Failure(std::string("The device could not create ") + what + " of the g-buffer (" +
                  std::string(result_name(result)) + ").");
@@ -124,7 +128,7 @@ tl::expected<void, std::string> GbufferRenderer::State::create_layout() {
   if (result != VK_SUCCESS) {
     return failure("the descriptor set layout", result);
   }
-  const VkPushConstantRange range{VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof(maths::GbufferDraw)};
+  const VkPushConstantRange range{kDrawStages, 0, sizeof(maths::GbufferDraw)};
   const VkPipelineLayoutCreateInfo info{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
                                         .setLayoutCount = 1,
                                         .pSetLayouts = &set_layout,
@@ -339,8 +343,9 @@ void GbufferRenderer::State::record(RecordContext& context, const Gbuffer& gbuff
   const VkDeviceSize offset = 0;
   vk.vkCmdBindVertexBuffers(context.commands, 0, 1, &buffer, &offset);
   for (const TriangleDraw& draw : draws) {
-    vk.vkCmdPushConstants(context.commands, layout, VK_SHADER_STAGE_FRAGMENT_BIT, 0,
-                          sizeof(maths::GbufferDraw), &constants[draw.material]);
+    maths::GbufferDraw pushed = constants[draw.material];
+    pushed.moves = draw.moves ? 1 : 0;
+    vk.vkCmdPushConstants(context.commands, layout, kDrawStages, 0, sizeof(pushed), &pushed);
     vk.vkCmdDraw(context.commands, draw.vertex_count, 1, draw.first_vertex, 0);
   }
   vk.vkCmdEndRendering(context.commands);
@@ -367,6 +372,8 @@ Gbuffer GbufferRenderer::add(Graph& graph, const GbufferView& view, const Gbuffe
   parameters.clip_from_world = view.clip_from_view * view.view_from_world;
   parameters.previous_clip_from_world =
       view.previous_clip_from_view * view.previous_view_from_world;
+  parameters.world_from_moving = view.world_from_moving;
+  parameters.previous_world_from_moving = view.previous_world_from_moving;
   const glm::mat4 world_from_view = glm::inverse(view.view_from_world);
   const bool perspective = view.clip_from_view[2][3] != 0.0f;
   parameters.eye_ws = perspective ? glm::vec4(glm::vec3(world_from_view[3]), 1.0f)

@@ -12,13 +12,16 @@
 
 namespace alcove::sample {
 
-// The camera of a frame, as matrices: from world to view space and on to Vulkan clip space.
+// The camera of a frame, as matrices: from world to view space and on to Vulkan clip space; and
+// where the meshes stand that move.
 struct GbufferView {
   glm::mat4 view_from_world{1.0f};
   glm::mat4 clip_from_view{1.0f};
   glm::mat4 previous_view_from_world{1.0f};
   glm::mat4 previous_clip_from_view{1.0f};
   bool reversed_z = false;
+  glm::mat4 world_from_moving{1.0f};  // rotation and translation of each Mesh::moves
+  glm::mat4 previous_world_from_moving{1.0f};
 
   bool operator==(const GbufferView&) const = default;
 };

@@ -169,6 +169,16 @@ Outcome write_png_bytes(const std::filesystem::path& file, uint32_t width, uint3
 
 }  // namespace
 
+tl::expected<void, std::string> create_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) {
+    return tl::unexpected("The folder " + folder.string() +
+                          " could not be created: " + error.message() + ".");
+  }
+  return {};
+}
+
 Outcome write_whole(const std::filesystem::path& file,
                     const std::function<Outcome(const std::filesystem::path&)>& write) {
   const std::filesystem::path temporary = temporary_beside(file);

@@ -15,6 +15,9 @@ namespace alcove::sample {
 // renamed. Errors are one sentence with the file's name and the system's reason (a full disk, a
 // folder that cannot be written).
 
+// With those above it; nothing happens where it is there.
+[[nodiscard]] tl::expected<void, std::string> create_folder(const std::filesystem::path& folder);
+
 // OpenEXR, scanlines, 32-bit float, top row first: one channel `Y`, or three `R` `G` `B`.
 [[nodiscard]] tl::expected<void, std::string> write_exr(const std::filesystem::path& file,
                                                         const Image<float>& image);

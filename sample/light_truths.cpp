@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "progress.h"
+#include "surface_points.h"
 #include "truth_cache.h"
 #include "truths.h"
 
@@ -149,7 +150,7 @@ tl::expected<LightTruths, std::string> light_truths_of(const Rendering& renderin
   LightTruths truths;
   truths.block = block_size(depth);
   truths.sampled = choose_pixels(depth, truths.block);
-  truths.points = points_of(rendering, *rays, depth);
+  truths.points = surface_points(*rays, rendering.camera, rendering.images.normal_ws, depth);
   for (std::size_t i = 0; i < truths.sampled.pixels.size(); ++i) {
     if (truths.sampled.pixels[i] == 0) {
       truths.points.normal_ws.pixels[i] = glm::vec3(0.0f);

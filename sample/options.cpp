@@ -15,7 +15,7 @@ struct Raw {
   std::string eye, target, up, size, far_plane, roughness;
   std::vector<std::string> set;
   double fov_y = 0, ortho_height = 0, near_plane = 0, radius = 0, orbit = 0;
-  int64_t frames = 1, spp = 256;
+  int64_t frames = 0, spp = 256;  // 0 frames: as many as the command draws by itself
   bool no_cache = false;
 };
 
@@ -78,6 +78,11 @@ void read_size(const std::string& text, ViewOptions& view) {
   view.height = static_cast<uint32_t>(height);
 }
 
+constexpr int64_t kMostFrames = 100000;
+// Of `alcove motion`: fewer leave nothing to compare.
+constexpr uint32_t kFewestPathFrames = 12;
+constexpr uint32_t kPathFrames = 48;
+
 bool positive(double value) { return std::isfinite(value) && value > 0.0; }
 
 std::string shown(double value) {
@@ -119,6 +124,19 @@ void check_together(const ViewOptions& view) {
   }
 }
 
+void read_frames(const CLI::App& app, const Raw& raw, Command command, ViewOptions& view) {
+  const bool motion = command == Command::kMotion;
+  const int64_t fewest = motion ? kFewestPathFrames : 1;
+  if (app.count("--frames") == 0) {
+    view.frames = motion ? kPathFrames : 1;
+  } else if (raw.frames < fewest || raw.frames > kMostFrames) {
+    refuse("--frames", std::to_string(raw.frames),
+           "a number from " + std::to_string(fewest) + " to " + std::to_string(kMostFrames));
+  } else {
+    view.frames = static_cast<uint32_t>(raw.frames);
+  }
+}
+
 void read_view(const CLI::App& app, const Raw& raw, ViewOptions& view) {
   view.eye_ws = vector_of("--eye", raw.eye);
   view.target_ws = vector_of("--target", raw.target);
@@ -134,10 +152,6 @@ void read_view(const CLI::App& app, const Raw& raw, ViewOptions& view) {
   read_length(app, "--ortho-height", raw.ortho_height, view.ortho_height);
   read_length(app, "--near", raw.near_plane, view.near_plane);
   read_far(raw.far_plane, view);
-  if (raw.frames < 1 || raw.frames > 100000) {
-    refuse("--frames", std::to_string(raw.frames), "a number from 1 to 100000");
-  }
-  view.frames = static_cast<uint32_t>(raw.frames);
   if (!std::isfinite(raw.orbit)) refuse("--orbit", "", "an angle in degrees");
   view.orbit = glm::radians(static_cast<float>(raw.orbit));
   check_together(view);
@@ -191,11 +205,45 @@ void add_view(CLI::App& app, Raw& raw) {
   app.add_option("--size", raw.size, "of the image in pixels; 960x540")
       ->type_name("WxH")
       ->group(group);
+}
+
+void add_frames(CLI::App& app, Raw& raw) {
+  const std::string group = "View";
   app.add_option("--frames", raw.frames, "how many to render; the last is written")
       ->type_name("N")
       ->group(group);
   app.add_option("--orbit", raw.orbit, "turn about the target by so much per frame")
       ->type_name("DEGREES")
+      ->group(group);
+}
+
+void add_motion(CLI::App& app, Raw& raw) {
+  static const std::map<std::string, std::optional<MotionKind>> kPaths = [] {
+    std::map<std::string, std::optional<MotionKind>> paths{{"all", std::nullopt}};
+    for (const MotionKind kind : kMotionKinds) paths[name_of(kind)] = kind;
+    return paths;
+  }();
+  const std::string group = "Motion";
+  app.add_option_function<std::string>(
+         "--path",
+         [&raw](const std::string& name) {
+           const auto path = kPaths.find(name);
+           if (path == kPaths.end()) {
+             throw CLI::ValidationError("--path", name +
+                                                      " is none of orbit, dolly, strafe, object, "
+                                                      "cut and all");
+           }
+           raw.options.path = path->second;
+         },
+         "orbit (about the middle of the view), dolly (towards it), strafe (past a "
+         "column that is put near the eye), object (the camera stands, a block slides over the "
+         "ground), cut (to elsewhere) or all of them; all")
+      ->type_name("NAME")
+      ->group(group);
+  app.add_option("--frames", raw.frames,
+                 "how long each path is, from the view given on; three of its frames are compared "
+                 "with the ray-traced truth; 48")
+      ->type_name("N")
       ->group(group);
 }
 
@@ -278,6 +326,7 @@ std::vector<Subcommand> add_commands(CLI::App& app, Raw& raw) {
   for (CLI::App* sub : {render, compare}) {
     add_scene(*sub, raw);
     add_view(*sub, raw);
+    add_frames(*sub, raw);
     add_occlusion(*sub, raw);
     add_environment(*sub, raw);
     add_output(*sub, raw);
@@ -286,8 +335,17 @@ std::vector<Subcommand> add_commands(CLI::App& app, Raw& raw) {
                     "path trace the picture lit by the environment too, and say how far it is off "
                     "without occlusion and with each part of it; takes minutes");
   compare->add_flag("--no-cache", raw.no_cache, "compute the truths anew");
+  CLI::App* motion = app.add_subcommand(
+      "motion", "how far it is from the truth while camera or things move, beside standing still");
+  add_scene(*motion, raw);
+  add_motion(*motion, raw);
+  add_view(*motion, raw);
+  add_occlusion(*motion, raw);
+  add_output(*motion, raw);
+  motion->add_flag("--no-cache", raw.no_cache, "compute the truths anew");
   CLI::App* graph = app.add_subcommand("graph", "the compiled plan of a frame; needs no device");
   add_view(*graph, raw);
+  add_frames(*graph, raw);
   add_occlusion(*graph, raw);
   graph->add_option("--format", raw.options.graph_format, "text, json or dot (Graphviz); text")
       ->transform(CLI::CheckedTransformer(kFormats).description(""))
@@ -295,6 +353,7 @@ std::vector<Subcommand> add_commands(CLI::App& app, Raw& raw) {
   CLI::App* doctor = app.add_subcommand("doctor", "the Vulkan devices here and what they lack");
   return {{render, Command::kRender},
           {compare, Command::kCompare},
+          {motion, Command::kMotion},
           {graph, Command::kGraph},
           {doctor, Command::kDoctor}};
 }
@@ -305,6 +364,7 @@ Options finished(const CLI::App& app, const Raw& raw, Command command) {
   options.use_cache = !raw.no_cache;
   if (command == Command::kDoctor) return options;
   read_view(app, raw, options.view);
+  read_frames(app, raw, command, options.view);
   read_occlusion(app, raw, options.occlusion);
   return options;
 }
@@ -324,6 +384,7 @@ tl::expected<Options, Stop> parse_options(int argc, const char* const* argv) {
       "Ambient occlusion of a scene, and how far it is from the truth.\n"
       "  alcove render scene.gltf --camera hall --out out\n"
       "  alcove compare groove:60 --radius 1\n"
+      "  alcove motion scene.gltf --path strafe\n"
       "  alcove render --eye -6,0.55,-4.6 --target 0,0.75,-2.9 --quality ultra",
       "alcove");
   Raw raw;

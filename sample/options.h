@@ -10,11 +10,12 @@
 #include <vector>
 
 #include "camera.h"
+#include "motion_paths.h"
 #include "scene.h"
 
 namespace alcove::sample {
 
-enum class Command { kRender, kCompare, kGraph, kDoctor };
+enum class Command { kRender, kCompare, kMotion, kGraph, kDoctor };
 enum class Quality { kLow, kMedium, kHigh, kUltra, kReference };
 enum class NormalSource { kShading, kGeometric, kDepth };
 enum class GraphFormat { kText, kJson, kDot };
@@ -48,6 +49,7 @@ struct Options {
   ViewOptions view;
   OcclusionOptions occlusion;
   std::filesystem::path out = "out";
+  std::optional<MotionKind> path;  // motion: none for all of them
   GraphFormat graph_format = GraphFormat::kText;
   int device = -1;
   bool validation = false;

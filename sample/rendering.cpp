@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <utility>
 
 #include "camera.h"
@@ -12,6 +11,7 @@
 #include "image_io.h"
 #include "load_scene.h"
 #include "settings.h"
+#include "surface_points.h"
 
 namespace alcove::sample {
 namespace {
@@ -198,16 +198,7 @@ tl::expected<Rendering, std::string> render(const Options& options) {
 }
 
 Image<float> linear_depth(const Rendering& rendering) {
-  const Image<float>& ndc = rendering.images.depth_ndc;
-  const CameraMatrices matrices = camera_matrices(rendering.camera, ndc.width, ndc.height);
-  const float sky = rendering.camera.reversed_z ? 0.0f : 1.0f;
-  Image<float> depth(ndc.width, ndc.height, std::numeric_limits<float>::infinity());
-  for (std::size_t i = 0; i < ndc.pixels.size(); ++i) {
-    if (ndc.pixels[i] != sky) {
-      depth.pixels[i] = static_cast<float>(view_depth(matrices.clip_from_view, ndc.pixels[i]));
-    }
-  }
-  return depth;
+  return linear_depth(rendering.camera, rendering.images.depth_ndc);
 }
 
 namespace {
@@ -274,11 +265,8 @@ std::string specular_name(const LightRequest& light, std::size_t i) {
 
 tl::expected<void, std::string> write_images(const Rendering& rendering,
                                              const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) {
-    return Failure("The folder " + folder.string() + " could not be created: " + error.message() +
-                   ".");
+  if (auto made = create_folder(folder); !made) {
+    return made;
   }
   const FrameImages& images = rendering.images;
   return write_exr(folder / "ao.exr", images.visibility)

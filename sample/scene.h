@@ -57,6 +57,9 @@ struct Mesh {
   std::vector<glm::vec3> normals_ws;
   std::vector<glm::vec2> uvs;
   std::vector<uint32_t> indices;  // 3 per triangle
+  // Drawn where GbufferView::world_from_moving puts it, from a space of its own; traced as it
+  // stands.
+  bool moves = false;
 };
 
 struct Bounds {

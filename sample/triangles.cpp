@@ -32,7 +32,7 @@ Triangles flatten(const Scene& scene) {
     }
     const auto count = static_cast<uint32_t>(triangles.vertices.size()) - first;
     if (count > 0) {
-      triangles.draws.push_back({first, count, mesh.material});
+      triangles.draws.push_back({first, count, mesh.material, mesh.moves});
     }
   }
   return triangles;

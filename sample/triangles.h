@@ -9,7 +9,7 @@
 namespace alcove::sample {
 
 // A corner of a triangle as the rasteriser takes it: three in a row are a triangle, none is shared,
-// since each carries the triangle's own normal too.
+// since each carries the triangle's own normal too. In the space of the mesh where that moves.
 struct Vertex {
   glm::vec3 position_ws;
   glm::vec3 normal_ws;
@@ -21,6 +21,7 @@ struct TriangleDraw {
   uint32_t first_vertex;
   uint32_t vertex_count;
   uint32_t material;
+  bool moves;
 };
 
 struct Triangles {
@@ -28,7 +29,7 @@ struct Triangles {
   std::vector<TriangleDraw> draws;
 };
 
-// All triangles of the scene in world space, one draw a mesh. Those without area are left out.
+// All triangles of the scene, one draw a mesh. Those without area are left out.
 [[nodiscard]] Triangles flatten(const Scene& scene);
 
 }  // namespace alcove::sample

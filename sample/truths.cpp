@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "progress.h"
+#include "surface_points.h"
 #include "truth_cache.h"
 
 namespace alcove::sample {
@@ -17,39 +18,6 @@ constexpr std::uint32_t kHeightFieldSlices = 24;
 TruthCache cache_of(const Options& options) {
   return TruthCache(options.use_cache ? TruthCache::default_folder() : std::filesystem::path());
 }
-
-}  // namespace
-
-// Where a primary ray misses what was
-// rasterised (an edge through the pixel's centre), the point comes from the depth buffer.
-SurfacePoints points_of(const Rendering& rendering, const RayScene& rays,
-                        const Image<float>& depth) {
-  const std::uint32_t width = depth.width;
-  const std::uint32_t height = depth.height;
-  const GBuffer cast = cast_gbuffer(rays, rendering.camera, width, height);
-  const CameraMatrices matrices = camera_matrices(rendering.camera, width, height);
-  SurfacePoints points{cast.position_ws, rendering.images.normal_ws, cast.geometric_normal_ws};
-  const glm::vec3 forward = -glm::vec3(matrices.world_from_view[2]);
-  for (std::uint32_t y = 0; y < height; ++y) {
-    for (std::uint32_t x = 0; x < width; ++x) {
-      const float z = depth.at(x, y);
-      if (!std::isfinite(z)) {
-        points.normal_ws.at(x, y) = glm::vec3(0.0f);
-      } else if (!std::isfinite(cast.depth_vs.at(x, y)) ||
-                 std::abs(cast.depth_vs.at(x, y) - z) > 0.01f * z) {
-        const Ray ray =
-            camera_ray(matrices, rendering.camera.orthographic,
-                       {static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f}, width, height);
-        points.position_ws.at(x, y) =
-            ray.origin_ws + ray.direction_ws * (z / glm::dot(ray.direction_ws, forward));
-        points.geometric_normal_ws.at(x, y) = rendering.images.normal_ws.at(x, y);
-      }
-    }
-  }
-  return points;
-}
-
-namespace {
 
 tl::expected<OcclusionTruth, std::string> scene_truth(const Rendering& rendering,
                                                       const Options& options,
@@ -77,8 +45,9 @@ tl::expected<OcclusionTruth, std::string> scene_truth(const Rendering& rendering
   if (!rays) {
     return tl::unexpected(std::move(rays.error()));
   }
-  truth = occlusion_truth(*rays, points_of(rendering, *rays, depth), settings,
-                          print_progress("scene truth"));
+  truth = occlusion_truth(
+      *rays, surface_points(*rays, rendering.camera, rendering.images.normal_ws, depth), settings,
+      print_progress("scene truth"));
   cache.write(key, truth.visibility);
   cache.write(bent_key, truth.bent_normal_ws);
   return truth;

@@ -18,11 +18,6 @@ struct Truths {
   Mask surfaces;                  // pixels that are not sky
 };
 
-// The rasteriser's pixels as points for the ray tracer, with the normals that the occlusion was
-// given. `depth` as linear_depth() gives it.
-[[nodiscard]] SurfacePoints points_of(const Rendering& rendering, const RayScene& rays,
-                                      const Image<float>& depth);
-
 // Computes them, or takes them from the cache on disk. Points are where primary rays through the
 // pixel centres meet the scene, normals those that the occlusion was given. Progress on stderr.
 [[nodiscard]] tl::expected<Truths, std::string> truths_of(const Rendering& rendering,

@@ -10,7 +10,9 @@ ALCOVE_MATHS_BEGIN
 struct GbufferParameters {
   mat4 clip_from_world;
   mat4 previous_clip_from_world;  // without jitter differences: motion is of surfaces alone
-  vec4 eye_ws;                    // w = 1: a position; w = 0: the direction towards the eye
+  mat4 world_from_moving;         // of draws that move; rotation and translation
+  mat4 previous_world_from_moving;
+  vec4 eye_ws;  // w = 1: a position; w = 0: the direction towards the eye
 };
 
 // Once a draw, as push constants; texture indices count from 0, texture 0 is white.
@@ -23,6 +25,7 @@ struct GbufferDraw {
   uint base_colour_texture;
   uint metallic_roughness_texture;
   uint emissive_texture;
+  uint moves;  // 1: positions and normals are those of GbufferParameters::world_from_moving
 };
 
 ALCOVE_MATHS_END

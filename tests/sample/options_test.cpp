@@ -71,6 +71,26 @@ TEST(Options, NonsenseIsRefusedInASentenceThatNamesTheOption) {
   }
 }
 
+TEST(Options, MotionTakesAPathAndEnoughFramesToCompare) {
+  const auto all = parse({"motion"});
+  ASSERT_TRUE(all);
+  EXPECT_EQ(all->command, Command::kMotion);
+  EXPECT_FALSE(all->path);
+  EXPECT_EQ(all->view.frames, 48u);
+  const auto one = parse({"motion", "--path", "strafe", "--frames", "24"});
+  ASSERT_TRUE(one) << one.error().text;
+  EXPECT_EQ(one->path, MotionKind::kStrafe);
+  EXPECT_EQ(one->view.frames, 24u);
+  EXPECT_EQ(parse({"render"})->view.frames, 1u);
+  for (const auto& wrong : std::vector<std::vector<const char*>>{{"motion", "--path", "spiral"},
+                                                                 {"motion", "--frames", "11"}}) {
+    const auto options = parse(wrong);
+    ASSERT_FALSE(options) << wrong[1];
+    EXPECT_EQ(options.error().status, 2);
+    EXPECT_THAT(options.error().text, HasSubstr(wrong[1]));
+  }
+}
+
 TEST(Options, NearMustBeBeforeFar) {
   const auto options = parse({"render", "--near", "5", "--far", "2"});
   ASSERT_FALSE(options);

@@ -1,0 +1,146 @@
+#include "motion_errors.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace alcove::sample {
+namespace {
+
+constexpr std::uint32_t kWidth = 40;
+constexpr std::uint32_t kHeight = 30;
+
+// A wall at z = -10 and before it, where x is below `edge`, another at z = -4, both facing the eye,
+// and a visibility that is fixed to the wall.
+SeenFrame walls(const Camera& camera, float edge) {
+  SeenFrame frame{
+      camera, {kWidth, kHeight}, {kWidth, kHeight, glm::vec3(0, 0, 1)}, {kWidth, kHeight}};
+  const CameraMatrices matrices = camera_matrices(camera, kWidth, kHeight);
+  const glm::vec3 forward = -glm::vec3(matrices.world_from_view[2]);
+  for (std::uint32_t y = 0; y < kHeight; ++y) {
+    for (std::uint32_t x = 0; x < kWidth; ++x) {
+      const Ray ray =
+          camera_ray(matrices, camera.orthographic,
+                     {static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f}, kWidth, kHeight);
+      const auto at = [&](float z) {
+        return ray.origin_ws + ray.direction_ws * ((z - ray.origin_ws.z) / ray.direction_ws.z);
+      };
+      const bool near = at(-4.0f).x < edge;
+      const glm::vec3 point = at(near ? -4.0f : -10.0f);
+      frame.depth.at(x, y) = glm::dot(point - camera.eye_ws, forward);
+      frame.visibility.at(x, y) = 0.5f + 0.03f * point.x + 0.02f * point.y;
+    }
+  }
+  return frame;
+}
+
+Camera camera_at(float x) {
+  Camera camera;
+  camera.eye_ws = {x, 0, 0};
+  camera.target_ws = {x, 0, -1};
+  return camera;
+}
+
+glm::vec3 stands(const glm::vec3& position) { return position; }
+
+TEST(MotionErrors, AStandingSurfaceIsFollowedThroughAnyStepOfTheCamera) {
+  const auto seed = static_cast<std::uint32_t>(std::random_device{}());
+  SCOPED_TRACE(testing::Message() << "seed " << seed);
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> step(-0.5f, 0.5f);
+  for (int i = 0; i < 20; ++i) {
+    Camera moved = camera_at(step(random));
+    moved.target_ws += glm::vec3(0.2f * step(random), 0.2f * step(random), 0.0f);
+    const SeenFrame before = walls(camera_at(0.0f), -100.0f);
+    const SeenFrame now = walls(moved, -100.0f);
+    const Retraced retraced = retrace(now, before, stands);
+    const RunningMean change = visibility_change(now, before, retraced);
+    EXPECT_GT(change.count, 0.5 * kWidth * kHeight);
+    EXPECT_LT(change.mean(), 1e-4) << "linear on a plane: bilinear reading is exact up to slant";
+  }
+}
+
+TEST(MotionErrors, AgesTellWhatIsUncoveredFromWhatEntersTheImage) {
+  // The camera goes to the right: the near wall leaves to the left and uncovers the far one.
+  SeenFrame before = walls(camera_at(0.0f), 0.0f);
+  Image<Age> ages = first_ages(before);
+  EXPECT_EQ(ages.at(3, 3).frames, 1u);
+  const float step = 0.8f;
+  for (std::uint32_t frame = 1; frame <= 3; ++frame) {
+    SeenFrame now = walls(camera_at(step * static_cast<float>(frame)), 0.0f);
+    ages = next_ages(now, retrace(now, before, stands), ages);
+    before = std::move(now);
+  }
+  // Pixels a unit spans at each depth, and the steps of the two walls.
+  const float unit = 0.5f * kHeight / std::tan(0.5f * before.camera.fov_y);
+  const float near_edge = 0.5f * kWidth - 3.0f * step * unit / 4.0f;
+  const float each = step * unit * (1.0f / 4.0f - 1.0f / 10.0f);
+  const auto y = kHeight / 2;
+  // The pixel in the middle of the stripe that frame `age` frames ago uncovered.
+  for (std::uint32_t age = 1; age <= 3; ++age) {
+    const float x = near_edge + (static_cast<float>(age) - 0.5f) * each;
+    const Age found = ages.at(static_cast<std::uint32_t>(x), y);
+    EXPECT_EQ(found.frames, age);
+    EXPECT_TRUE(found.uncovered);
+  }
+  EXPECT_EQ(ages.at(kWidth - 1, y).frames, 1u);
+  EXPECT_FALSE(ages.at(kWidth - 1, y).uncovered) << "it came from beyond the border";
+  EXPECT_EQ(ages.at(kWidth / 2 + 5, y).frames, 4u) << "seen all the time";
+  EXPECT_EQ(ages.at(1, y).frames, 4u);
+}
+
+TEST(MotionErrors, WhatMovesIsFollowedByWhereItWas) {
+  const SeenFrame before = walls(camera_at(0.0f), -100.0f);
+  SeenFrame now = before;
+  // The wall slid to the right by a unit and took its visibility with it.
+  for (float& visibility : now.visibility.pixels) {
+    visibility -= 0.03f;
+  }
+  const auto slid = [](const glm::vec3& position) { return position - glm::vec3(1, 0, 0); };
+  EXPECT_LT(visibility_change(now, before, retrace(now, before, slid)).mean(), 1e-5);
+  EXPECT_NEAR(visibility_change(now, before, retrace(now, before, stands)).mean(), 0.03, 1e-5);
+}
+
+TEST(MotionErrors, SkyHasNoAgeNoWayAndNoSpeed) {
+  SeenFrame sky = walls(camera_at(0.0f), -100.0f);
+  std::ranges::fill(sky.depth.pixels, std::numeric_limits<float>::infinity());
+  const Retraced retraced = retrace(sky, sky, stands);
+  EXPECT_EQ(next_ages(sky, retraced, first_ages(sky)).at(2, 2).frames, 0u);
+  EXPECT_EQ(visibility_change(sky, sky, retraced).count, 0u);
+  EXPECT_EQ(speed_of(retraced).mean, 0.0);
+}
+
+TEST(MotionErrors, SpeedIsThatOfTheSurfacesInPixels) {
+  const SeenFrame before = walls(camera_at(0.0f), -100.0f);
+  const SeenFrame now = walls(camera_at(0.5f), -100.0f);
+  const float expected = 0.5f * 0.5f * kHeight / std::tan(0.5f * now.camera.fov_y) / 10.0f;
+  const Speed speed = speed_of(retrace(now, before, stands));
+  EXPECT_NEAR(speed.mean, expected, 1e-3);
+  EXPECT_NEAR(speed.percentile_95, expected, 1e-3);
+}
+
+// Truths of much noise: with it the error would come out several times too large.
+TEST(MotionErrors, TheNoiseOfATruthIsTakenFromItsError) {
+  const auto seed = static_cast<std::uint32_t>(std::random_device{}());
+  SCOPED_TRACE(testing::Message() << "seed " << seed);
+  std::mt19937 random(seed);
+  std::normal_distribution<float> noise(0.0f, 0.1f);
+  TruthHalves truth{{200, 200}, {200, 200}};
+  Image<float> result(200, 200);
+  for (std::size_t i = 0; i < result.pixels.size(); ++i) {
+    truth.first.pixels[i] = 0.5f + noise(random);
+    truth.second.pixels[i] = 0.5f + noise(random);
+    result.pixels[i] = i % 2 == 0 ? 0.53f : 0.47f;
+  }
+  const Mask all(200, 200, 1);
+  // The mean of 40,000 squares, 0.0009, is known to about 0.00005: six of those.
+  EXPECT_NEAR(squared_error(result, truth, all).mean(), 0.0009, 0.0003);
+  EXPECT_EQ(squared_error(result, truth, Mask(200, 200)).count, 0u);
+  EXPECT_EQ(root({-1.0, 5}), 0.0);
+}
+
+}  // namespace
+}  // namespace alcove::sample

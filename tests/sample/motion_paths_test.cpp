@@ -1,0 +1,140 @@
+#include "motion_paths.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "builtin_scene.h"
+
+namespace alcove::sample {
+namespace {
+
+constexpr std::uint32_t kFrames = 48;
+
+MotionStart builtin_start() {
+  static const MotionStart start = [] {
+    const Scene scene = builtin_scene();
+    const auto rays = RayScene::create(scene);
+    return motion_start(*rays, scene.cameras.front(), 16.0f / 9.0f, 0.5f).value();
+  }();
+  return start;
+}
+
+// Where a point of the world is on the image, in heights from its middle.
+glm::vec2 on_image(const Camera& camera, const glm::vec3& position) {
+  const CameraMatrices matrices = camera_matrices(camera, 100, 100);
+  const glm::vec4 clip = matrices.clip_from_world * glm::vec4(position, 1.0f);
+  return 0.5f * glm::vec2(clip) / clip.w;
+}
+
+TEST(MotionPaths, EveryPathBeginsWithTheGivenView) {
+  const MotionStart start = builtin_start();
+  const glm::vec3 ahead = glm::normalize(start.camera.target_ws - start.camera.eye_ws);
+  for (const MotionKind kind : kMotionKinds) {
+    SCOPED_TRACE(name_of(kind));
+    const Camera first = MotionPath(kind, start, kFrames).camera(0);
+    EXPECT_EQ(first.eye_ws, start.camera.eye_ws);
+    EXPECT_LT(glm::distance(glm::normalize(first.target_ws - first.eye_ws), ahead), 1e-5f);
+  }
+}
+
+TEST(MotionPaths, StepsAreEqualAndSmallSaveForTheCut) {
+  const MotionStart start = builtin_start();
+  for (const MotionKind kind : kMotionKinds) {
+    SCOPED_TRACE(name_of(kind));
+    const MotionPath path(kind, start, kFrames);
+    EXPECT_EQ(path.cut().has_value(), kind == MotionKind::kCut);
+    for (std::uint32_t frame = 1; frame < kFrames; ++frame) {
+      const float step =
+          glm::distance(path.camera(frame).eye_ws, path.camera(frame - 1).eye_ws) / start.depth;
+      if (path.cut() == frame) {
+        EXPECT_GT(step, 0.1f);
+      } else {
+        EXPECT_LT(step, 0.01f) << frame;
+      }
+    }
+  }
+}
+
+TEST(MotionPaths, AnOrbitKeepsItsDistanceFromTheMiddleOfTheView) {
+  const MotionStart start = builtin_start();
+  const MotionPath path(MotionKind::kOrbit, start, kFrames);
+  const Camera first = path.camera(0);
+  const Camera last = path.camera(kFrames - 1);
+  EXPECT_LT(glm::distance(first.target_ws, last.target_ws), 1e-5f);
+  EXPECT_NEAR(glm::distance(last.eye_ws, last.target_ws), start.depth, 1e-3f * start.depth);
+  EXPECT_GT(glm::distance(first.eye_ws, last.eye_ws), 0.1f * start.depth);
+}
+
+TEST(MotionPaths, TheColumnCrossesTheImageAsTheCameraStrafes) {
+  const MotionStart start = builtin_start();
+  const MotionPath path(MotionKind::kStrafe, start, kFrames);
+  Scene scene = builtin_scene();
+  const std::size_t before = scene.meshes.size();
+  path.add_to(scene);
+  ASSERT_EQ(scene.meshes.size(), before + 1);
+  const Mesh& column = scene.meshes.back();
+  EXPECT_FALSE(column.moves);
+  ASSERT_LT(column.material, scene.materials.size());
+  const auto [low, high] = bounds_of({column});
+  const glm::vec3 middle = 0.5f * (low + high);
+  EXPECT_GT(on_image(path.camera(0), middle).x, 0.2f);
+  EXPECT_LT(on_image(path.camera(kFrames - 1), middle).x, -0.2f);
+}
+
+TEST(MotionPaths, TheBlockSlidesOverTheGroundWithoutTouchingIt) {
+  const MotionStart start = builtin_start();
+  const MotionPath path(MotionKind::kObject, start, kFrames);
+  Scene scene = builtin_scene();
+  path.add_to(scene);
+  EXPECT_TRUE(scene.meshes.back().moves);
+  glm::vec2 last(0.0f);
+  for (std::uint32_t frame = 0; frame < kFrames; ++frame) {
+    path.pose(scene, frame);
+    float least = 1e9f;
+    for (const glm::vec3& position : scene.meshes.back().positions_ws) {
+      least = std::min(least, glm::dot(position - start.ground_ws, start.ground_normal_ws));
+    }
+    EXPECT_NEAR(least, 0.2f * start.radius, 1e-4f);
+    const glm::vec2 here =
+        on_image(path.camera(frame), glm::vec3(path.world_from_moving(frame)[3]));
+    if (frame > 0) {
+      EXPECT_GT(here.x, last.x + 0.001f);
+    }
+    last = here;
+  }
+}
+
+TEST(MotionPaths, APointOfTheBlockIsFollowedBackAndNothingElseIs) {
+  const MotionPath path(MotionKind::kObject, builtin_start(), kFrames);
+  Scene then = builtin_scene();
+  path.add_to(then);
+  Scene now = then;
+  path.pose(then, 6);
+  path.pose(now, 7);
+  for (std::size_t i = 0; i < now.meshes.back().positions_ws.size(); ++i) {
+    const glm::vec3 found = path.position_before(now.meshes.back().positions_ws[i], 7);
+    EXPECT_LT(glm::distance(found, then.meshes.back().positions_ws[i]), 1e-4f);
+    EXPECT_TRUE(path.passes_by(now.meshes.back().positions_ws[i], 7, 0));
+  }
+  const glm::vec3 far = builtin_start().camera.eye_ws;
+  EXPECT_EQ(path.position_before(far, 7), far);
+  EXPECT_FALSE(path.passes_by(far, 7, 6));
+  // A place that it left stays one that it has passed by.
+  const glm::vec3 left(path.world_from_moving(0)[3]);
+  EXPECT_TRUE(path.passes_by(left, kFrames - 1, kFrames - 1));
+}
+
+TEST(MotionPaths, AViewOfNothingIsRefused) {
+  const Scene scene = builtin_scene();
+  const auto rays = RayScene::create(scene);
+  ASSERT_TRUE(rays);
+  Camera away = scene.cameras.front();
+  away.eye_ws = scene.bounds_ws.high + glm::vec3(10.0f);
+  away.target_ws = away.eye_ws + glm::vec3(1.0f, 1.0f, 0.0f);
+  const auto start = motion_start(*rays, away, 1.5f, 0.5f);
+  ASSERT_FALSE(start);
+  EXPECT_THAT(start.error(), testing::HasSubstr("--eye"));
+}
+
+}  // namespace
+}  // namespace alcove::sample
