@@ -151,13 +151,15 @@ float squared_length(vec2 v) { return dot(v, v); }
 // Cosine of the highest horizon within the radius on one side; -1 where there is none.
 float find_horizon(Search search) {
   float horizon = -1.0;
-  for (uint k = 0; k < kStepCount; ++k) {
+  uint k = 0;
+  do {
     vec3 point = fetch_sample(search, k).point;
     float squared = squared_length(point.xy);
     float reach = parameters.radius * point.z;
     float cosine = point.y * inversesqrt(max(squared, 1e-30));
     horizon = squared <= reach * reach ? max(horizon, cosine) : horizon;
-  }
+    ++k;
+  } while (k < kStepCount);
   return search.reach_px > 0.0 ? horizon : -1.0;
 }
 
@@ -236,15 +238,19 @@ void extend_sheet(inout Sheet sheet, Side side, float x_per_step, LineSample her
 uint find_occluders(Surface surface, Search search, Side side) {
   LineSample here = fetch_sample(search, 1);
   Sheet sheet = begin_sheet(surface, side, fetch_sample(search, 0), here);
-  for (uint k = 2; k < kStepCount; ++k) {
-    LineSample next = fetch_sample(search, k);
-    float rise = next.line - here.line;
-    float step_px = next.offset_px - here.offset_px;
-    float bend = sharp_bend(sheet.rise, sheet.step_px, rise, step_px, side.sharp);
-    extend_sheet(sheet, side, search.line.x_per_step, here, bend);
-    sheet.rise = rise;
-    sheet.step_px = step_px;
-    here = next;
+  uint k = 2;
+  if (kStepCount > 2u) {
+    do {
+      LineSample next = fetch_sample(search, k);
+      float rise = next.line - here.line;
+      float step_px = next.offset_px - here.offset_px;
+      float bend = sharp_bend(sheet.rise, sheet.step_px, rise, step_px, side.sharp);
+      extend_sheet(sheet, side, search.line.x_per_step, here, bend);
+      sheet.rise = rise;
+      sheet.step_px = step_px;
+      here = next;
+      ++k;
+    } while (k < kStepCount);
   }
   // Nothing tells how it ends: joined only if the way to it did not bend.
   extend_sheet(sheet, side, search.line.x_per_step, here, -sheet.bend);
@@ -348,7 +354,8 @@ void main() {
   SliceNoise noise = noise_at(uvec2(block));
 
   SliceSum sum = SliceSum(0.0, 0.0, vec3(0.0), no_lobe());
-  for (uint i = 0; i < kSliceCount; ++i) {
+  uint i = 0;
+  do {
     WeightedAngle angle = WeightedAngle(slice_angle(i, kSliceCount, noise.direction), 1.0);
     if (kLobe) {
       angle = lobe_angle(angle.phi, lobe_plane(surface.normal, basis), surface.lobe.roughness);
@@ -365,7 +372,8 @@ void main() {
     sum.bent += angle.weight * more.bent;
     sum.lobe.visible += angle.weight * more.lobe.visible;
     sum.lobe.open += angle.weight * more.lobe.open;
-  }
+    ++i;
+  } while (i < kSliceCount);
   float mean = 1.0 / float(kSliceCount);
   uvec2 lobe = kLobe ? pack_scaled_lobe(surface.lobe, Signal(sum.lobe.visible * mean,
                                                              sum.lobe.open * mean))

@@ -8,9 +8,10 @@
 //
 // A block of kDivisor x kDivisor pixels has one search a frame, of a pixel that moves through the
 // block from frame to frame: every pixel is searched at its own depth in time, and edges come back
-// sharp. Neighbours weigh by their distance on the image, in a window that narrows as a pixel gathers
-// frames, and by their distance from the pixel's tangent plane, so that a plane at any tilt is
-// filtered whole and nothing leaks across an edge. Sums are added up, visible and open parts each,
+// sharp. Without a history a pixel looks at all blocks within reach; with one, at the four searched
+// pixels around it. They weigh by their distance on the image, in a window that narrows as a pixel
+// gathers frames, and by their distance from the pixel's tangent plane, so that a plane at any tilt
+// is filtered whole and nothing leaks across an edge. Sums are added up, visible and open parts each,
 // and divided last. Those of the GGX lobe weigh by normal and roughness too: the narrower the lobe,
 // the more of it hangs on where it points.
 
@@ -35,6 +36,7 @@ layout(constant_id = 5) const bool kClamp = false;
 layout(constant_id = 6) const bool kStill = false;  // nothing moved since the last frame
 layout(constant_id = 7) const bool kRoughnessTexture = false;
 layout(constant_id = 8) const int kRoughnessChannel = 0;
+layout(constant_id = 9) const bool kFresh = true;  // there is no history to read yet
 
 #ifdef LOBE
 const bool kLobe = true;
@@ -69,6 +71,12 @@ layout(set = 0, binding = kFirstLobeBinding) uniform texture2D roughness_image; 
 layout(set = 0, binding = kFirstLobeBinding + 1) uniform writeonly image2D specular_image;
 #endif
 
+#ifdef HISTORY
+const bool kBetween = kDivisor > 1 && kReach > 0 && !kFresh;
+#else
+const bool kBetween = false;
+#endif
+
 struct Surface {
   ivec2 pixel;
   vec2 centre;    // of the pixel, pixels
@@ -85,11 +93,6 @@ struct Sum {
   Signal signal;
   vec3 bent;
   Signal lobe;
-};
-
-struct Neighbourhood {
-  Sum sum;
-  Spread spread;  // of the visibility
 };
 
 ivec2 size_px() { return imageSize(line_image); }
@@ -148,69 +151,83 @@ void add(inout Sum sum, float weight, Sum more) {
   }
 }
 
-// The blocks that a pixel looks at: all within reach, or only those whose searched pixels stand
-// around it.
-struct Window {
-  ivec2 low;
-  ivec2 high;
-  float narrowness;  // a neighbour at distance d weighs 1 / (1 + narrowness d^2)^4
+// What a block's search found, and where.
+struct Found {
+  Sum sum;  // the lobe as it is for the searched surface
+  uint lobe_surface;
+  vec2 searched;  // pixel
+  float line;
 };
+
+Found fetch_block(ivec2 block) {
+  uvec4 stored = imageLoad(signal_image, block);
+  Found found;
+  found.sum = no_sum();
+  found.sum.signal = unpack_signal(stored.x);
+  found.line = uintBitsToFloat(stored.y);
+  found.searched = vec2(min(block * kDivisor + ivec2(parameters.phase), size_px() - 1));
+  if (kBentNormal) {
+    found.sum.bent = unpack_direction(imageLoad(bent_image, block).xy);
+  }
+  if (kLobe) {
+    found.sum.lobe = unpack_lobe(stored.z);
+    found.lobe_surface = stored.w;
+  }
+  return found;
+}
 
 ivec2 last_block() {
   return (size_px() + (kDivisor - 1)) / kDivisor - 1;
 }
 
-Window window_within(ivec2 pixel, int reach, float width_px) {
-  Window window;
-  window.low = max(pixel / kDivisor - reach, ivec2(0));
-  window.high = min(pixel / kDivisor + reach, last_block());
-  window.narrowness = 0.125 / (width_px * width_px);
-  return window;
-}
+// A neighbour at distance d weighs 1 / (1 + narrowness d^2)^4.
+float narrowness_of(float width_px) { return 0.125 / (width_px * width_px); }
 
 // What a neighbour's search weighs: it falls with the distance on the image and with that from the
 // tangent plane, and never to nothing. Where no neighbour lies on the plane the nearest to it count.
-float neighbour_weight(Surface surface, Window window, vec2 offset, float line) {
+float neighbour_weight(Surface surface, float narrowness, vec2 offset, float line) {
   float off_plane =
       (line - surface.line - dot(offset, surface.gradient)) * surface.stiffness;
-  float near = 1.0 + window.narrowness * dot(offset, offset);
+  float near = 1.0 + narrowness * dot(offset, offset);
   float level = 1.0 + off_plane * off_plane;
   float both = near * near * level;
   return 1.0 / (both * both);
 }
 
-Neighbourhood gather(Surface surface, Window window) {
-  ivec2 last = size_px() - 1;
-  ivec2 phase = ivec2(parameters.phase);
-  Neighbourhood found;
-  found.sum = no_sum();
-  vec3 moments = vec3(0.0);
-  for (int y = window.low.y; y <= window.high.y; ++y) {
-    for (int x = window.low.x; x <= window.high.x; ++x) {
-      uvec4 stored = imageLoad(signal_image, ivec2(x, y));
-      ivec2 searched = min(ivec2(x, y) * kDivisor + phase, last);
-      float weight = neighbour_weight(surface, window, vec2(searched - surface.pixel),
-                                      uintBitsToFloat(stored.y));
-      Sum here = no_sum();
-      here.signal = unpack_signal(stored.x);
-      if (kBentNormal) {
-        here.bent = unpack_direction(imageLoad(bent_image, ivec2(x, y)).xy);
-      }
-      if (kLobe) {
-        // As far as it is like the surface's own.
-        add(here.lobe, lobe_weight(surface.lobe, stored.w), unpack_lobe(stored.z));
-      }
-      add(found.sum, weight, here);
-      if (kClamp) {
-        float visibility = here.signal.visible / max(here.signal.open, 1e-9);
-        moments += weight * vec3(1.0, visibility, visibility * visibility);
-      }
-    }
+struct Neighbourhood {
+  Sum sum;
+  vec3 moments;  // of the visibility
+};
+
+void add_block(inout Neighbourhood sum, Surface surface, float narrowness, Found found) {
+  float weight = neighbour_weight(surface, narrowness, found.searched - vec2(surface.pixel), found.line);
+  add(sum.sum.signal, weight, found.sum.signal);
+  if (kBentNormal) {
+    sum.sum.bent += weight * found.sum.bent;
+  }
+  if (kLobe) {
+    // As far as it is like the surface's own.
+    add(sum.sum.lobe, weight * lobe_weight(surface.lobe, found.lobe_surface), found.sum.lobe);
   }
   if (kClamp) {
-    found.spread = spread_of_sums(moments.y / moments.x, moments.z / moments.x, 1.0);
+    float visibility = found.sum.signal.visible / max(found.sum.signal.open, 1e-9);
+    sum.moments += weight * vec3(1.0, visibility, visibility * visibility);
   }
-  return found;
+}
+
+// All blocks within reach of the pixel's own. One loop, left at its end: where vectors are wide every
+// test costs a turn.
+Neighbourhood gather(Surface surface, int reach, float narrowness) {
+  ivec2 low = max(surface.pixel / kDivisor - reach, ivec2(0));
+  ivec2 high = min(surface.pixel / kDivisor + reach, last_block());
+  Neighbourhood sum = Neighbourhood(no_sum(), vec3(0.0));
+  ivec2 block = low;
+  do {
+    add_block(sum, surface, narrowness, fetch_block(block));
+    ++block.x;
+    block = block.x > high.x ? ivec2(low.x, block.y + 1) : block;
+  } while (block.y <= high.y);
+  return sum;
 }
 
 void store(ivec2 pixel, Sum sum) {
@@ -236,8 +253,6 @@ struct History {
 
 const float kDepthTolerance = 0.01;  // of the depth, for a surface seen head-on
 const float kLargestDepth = 6e4;     // of a half
-const float kGathered = 3.0;         // frames from which a pixel needs no far neighbours
-const float kSettled = 8.0;          // and from which only the closest
 
 uvec4 pack_history(History history, float depth) {
   // A normal that is not a number must not stay in the history.
@@ -287,6 +302,9 @@ History read_history(Surface surface) {
   found.sum = no_sum();
   found.count = 0.0;
   float weight_sum = 0.0;
+  if (kFresh) {
+    return found;
+  }
   if (kStill) {
     weight_sum = add_history(found, surface, surface.pixel, surface.depth, 1.0);
   } else {
@@ -314,16 +332,17 @@ const float kWidth = kDivisor > 2 ? 2.5 : 1.0;
 // Wide while a pixel has little of its own, then hardly more than the pixel itself.
 float window_width(float count) { return max(0.65 * kWidth, 2.0 * inversesqrt(count + 1.0)); }
 
-Window window_of(Surface surface, float count) {
-  int reach = count < kGathered ? kReach : min(kReach, 1);
-  Window window = window_within(surface.pixel, reach, window_width(count));
-  if (kDivisor > 1 && count >= kSettled) {
-    ivec2 from_phase = surface.pixel - ivec2(parameters.phase);
-    window.low = clamp((from_phase + kDivisor) / kDivisor - 1, ivec2(0), last_block());
-    window.high =
-        clamp((from_phase + (2 * kDivisor - 1)) / kDivisor - 1, ivec2(0), last_block());
+// What this frame found around a pixel that holds so many frames.
+Neighbourhood look_around(Surface surface, Found corners[4], float count) {
+  float narrowness = narrowness_of(window_width(count));
+  if (!kBetween) {
+    return gather(surface, kFresh ? kReach : min(kReach, 1), narrowness);
   }
-  return window;
+  Neighbourhood sum = Neighbourhood(no_sum(), vec3(0.0));
+  for (int i = 0; i < 4; ++i) {
+    add_block(sum, surface, narrowness, corners[i]);
+  }
+  return sum;
 }
 
 void clamp_history(inout History history, Spread spread) {
@@ -336,10 +355,11 @@ void clamp_history(inout History history, Spread spread) {
 }
 
 // The pixel's sums with this frame's neighbourhood added.
-History advance(Surface surface, History history) {
-  Neighbourhood now = gather(surface, window_of(surface, history.count));
+History advance(Surface surface, Found corners[4], History history) {
+  Neighbourhood now = look_around(surface, corners, history.count);
   if (kClamp) {
-    clamp_history(history, now.spread);
+    vec3 moments = now.moments / now.moments.x;
+    clamp_history(history, spread_of_sums(moments.y, moments.z, 1.0));
   }
   // Not divided by the weight found: a frame that searched the pixel itself counts for more than one
   // that searched its neighbours. Divided by the window's size, so that wide ones do not.
@@ -354,8 +374,8 @@ History advance(Surface surface, History history) {
   return next;
 }
 
-void reconstruct(Surface surface) {
-  History next = advance(surface, read_history(surface));
+void reconstruct(Surface surface, Found corners[4]) {
+  History next = advance(surface, corners, read_history(surface));
   imageStore(next_history_image, surface.pixel, pack_history(next, surface.depth));
   if (kBentNormal) {
     imageStore(next_bent_history_image, surface.pixel, vec4(next.sum.bent, 0.0));
@@ -365,18 +385,14 @@ void reconstruct(Surface surface) {
 
 #else
 
-void reconstruct(Surface surface) {
+void reconstruct(Surface surface, Found corners[4]) {
   float width = float(kDivisor) * (kReach > 1 ? 1.5 : 1.0);
-  store(surface.pixel, gather(surface, window_within(surface.pixel, kReach, width)).sum);
+  store(surface.pixel, gather(surface, kReach, narrowness_of(width)).sum);
 }
 
 #endif
 
-void main() {
-  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, size_px()))) {
-    return;
-  }
+void reconstruct_pixel(ivec2 pixel, Found corners[4]) {
   float line = imageLoad(line_image, pixel).r;
   if (line == sky_line(kPerspective)) {
     store(pixel, no_sum());
@@ -385,5 +401,29 @@ void main() {
 #endif
     return;
   }
-  reconstruct(fetch_surface(pixel, line));
+  reconstruct(fetch_surface(pixel, line), corners);
+}
+
+// Each invocation has the pixels of a cell between four searched ones, which are fetched once; or,
+// where no pixel looks just there, of a block.
+void main() {
+  ivec2 cell = ivec2(gl_GlobalInvocationID.xy) - (kBetween ? 1 : 0);
+  ivec2 first = cell * kDivisor + (kBetween ? ivec2(parameters.phase) : ivec2(0));
+  if (any(greaterThanEqual(first, size_px()))) {
+    return;
+  }
+  Found corners[4];
+  if (kBetween) {
+    for (int i = 0; i < 4; ++i) {
+      corners[i] = fetch_block(clamp(cell + ivec2(i & 1, i >> 1), ivec2(0), last_block()));
+    }
+  }
+  int i = 0;
+  do {
+    ivec2 pixel = first + ivec2(i % kDivisor, i / kDivisor);
+    if (all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, size_px()))) {
+      reconstruct_pixel(pixel, corners);
+    }
+    ++i;
+  } while (i < kDivisor * kDivisor);
 }

@@ -8,7 +8,6 @@ ALCOVE_MATHS_BEGIN
 struct ReconstructParameters {
   // To the image of the frame before, from (x s, y s, depth, 1), x and y in pixels and s the depth
   // in perspective and 1 in orthographic views: x w and y w in pixels, the depth there, and w.
-  // Zeros where there is no history.
   mat4 previous_from_pixel;
   // From a normal, as it is stored, to its plane on the image: dot((x s, y s, depth), result) is
   // constant on the plane, x and y in pixels.

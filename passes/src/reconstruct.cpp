@@ -216,6 +216,16 @@ maths::ReconstructParameters parameters_of(const Frame& frame, const maths::Proj
   return parameters;
 }
 
+// An invocation has a cell of pixels between the searched ones, of which there is one more than of
+// blocks, since the outermost stick out of the image. A search of every pixel leaves nothing
+// between.
+VkExtent3D cells_of(VkExtent3D size, std::uint32_t divisor) {
+  if (divisor == 1) {
+    return size;
+  }
+  return {(size.width + divisor - 1) / divisor + 1, (size.height + divisor - 1) / divisor + 1, 1};
+}
+
 }  // namespace
 
 tl::expected<Occlusion, Error> add_reconstruct(const Frame& frame, const ReconstructInputs& given,
@@ -248,7 +258,8 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& frame, const Reconst
                              static_cast<std::uint32_t>(settings.clamp_width > 0.0f),
                              static_cast<std::uint32_t>(still),
                              static_cast<std::uint32_t>(bool(inputs.roughness)),
-                             settings.roughness_channel};
+                             settings.roughness_channel,
+                             static_cast<std::uint32_t>(!history_valid)};
   const auto kernel = frame.kernels.get(shader_of(history, inputs.signal.lobe), constants);
   if (!kernel) {
     return tl::unexpected(kernel.error());
@@ -259,16 +270,13 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& frame, const Reconst
   maths::ReconstructParameters parameters =
       parameters_of(frame, *projection, *previous, inputs.normals_in_view_space, settings);
   parameters.phase = maths::vec2(static_cast<float>(phase_x), static_cast<float>(phase_y));
-  if (!history_valid) {
-    parameters.previous_from_pixel = maths::mat4(0.0f);
-  }
-  pass.record(
-      [&kernels = frame.kernels, kernel = *kernel, textures, parameters](RecordContext& context) {
-        const Bindings bindings = bindings_of(context, textures);
-        const std::span<const VkImageView> bound(bindings.views.data(), bindings.count);
-        kernels.dispatch(context, kernel, bound, bytes_of(parameters),
-                         context.extent(textures.result.visibility));
-      });
+  pass.record([&kernels = frame.kernels, kernel = *kernel, textures, parameters,
+               divisor = inputs.signal.divisor](RecordContext& context) {
+    const Bindings bindings = bindings_of(context, textures);
+    const std::span<const VkImageView> bound(bindings.views.data(), bindings.count);
+    kernels.dispatch(context, kernel, bound, bytes_of(parameters),
+                     cells_of(context.extent(textures.result.visibility), divisor));
+  });
   return textures.result;
 }
 

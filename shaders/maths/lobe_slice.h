@@ -168,11 +168,13 @@ ALCOVE_INLINE float visible_lobe(LobeSlice lobe, float side, float per_bearing, 
   float sum = whole * (occluded == 0u ? 1.0f : ((occluded >> 31u) != 0u ? 0.0f : keep));
   uint ends = occluded ^ (occluded << 1u);
   float weight = 1.0f;
-  while (ends != 0u) {
-    vec2 light = bearing_light(float(findLSB(ends)) / per_bearing);
-    sum += weight * lobe_light_arc(lobe, side, light);
-    weight = weight > 0.0f ? -keep : keep;
-    ends &= ends - 1u;
+  if (ends != 0u) {
+    do {
+      vec2 light = bearing_light(float(findLSB(ends)) / per_bearing);
+      sum += weight * lobe_light_arc(lobe, side, light);
+      weight = weight > 0.0f ? -keep : keep;
+      ends &= ends - 1u;
+    } while (ends != 0u);
   }
   return max(sum, 0.0f);
 }

@@ -82,11 +82,13 @@ ALCOVE_INLINE VisiblePart visible_part(Slice s, float side, float per_bearing, u
   sum = add_part(sum, weight, s, side, tangent_light(s, side), with_bent);
   uint ends = occluded ^ (occluded << 1u);
   weight = 1.0f;
-  while (ends != 0u) {
-    vec2 light = bearing_light(float(findLSB(ends)) / per_bearing);
-    sum = add_part(sum, weight, s, side, light, with_bent);
-    weight = weight > 0.0f ? -keep : keep;
-    ends &= ends - 1u;
+  if (ends != 0u) {
+    do {
+      vec2 light = bearing_light(float(findLSB(ends)) / per_bearing);
+      sum = add_part(sum, weight, s, side, light, with_bent);
+      weight = weight > 0.0f ? -keep : keep;
+      ends &= ends - 1u;
+    } while (ends != 0u);
   }
   return sum;
 }
