@@ -1,4 +1,5 @@
 #version 460
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
@@ -233,23 +234,38 @@ void extend_sheet(inout Sheet sheet, Side side, float x_per_step, LineSample her
   sheet.excess = excess;
 }
 
-// The sectors that the samples of a side occlude. Each sample waits for the next one, which tells
-// how the line bends at it.
+// Adds `here`, now that the sample `next` after it tells how the line bends at it.
+void pass_sample(inout Sheet sheet, inout LineSample here, Side side, float x_per_step,
+                 LineSample next) {
+  float rise = next.line - here.line;
+  float step_px = next.offset_px - here.offset_px;
+  float bend = sharp_bend(sheet.rise, sheet.step_px, rise, step_px, side.sharp);
+  extend_sheet(sheet, side, x_per_step, here, bend);
+  sheet.rise = rise;
+  sheet.step_px = step_px;
+  here = next;
+}
+
+// Samples that are searched in one turn of the loop: a turn costs as much as half a sample, and all
+// in one would be a program of thousands of lines.
+const uint kTurn = 4;
+
+// The sectors that the samples of a side occlude.
 uint find_occluders(Surface surface, Search search, Side side) {
   LineSample here = fetch_sample(search, 1);
   Sheet sheet = begin_sheet(surface, side, fetch_sample(search, 0), here);
+  const uint rest = (kStepCount - 2) % kTurn;
   uint k = 2;
-  if (kStepCount > 2u) {
+  [[unroll]] for (uint i = 0; i < rest; ++i) {
+    pass_sample(sheet, here, side, search.line.x_per_step, fetch_sample(search, k + i));
+  }
+  k += rest;
+  if (k < kStepCount) {
     do {
-      LineSample next = fetch_sample(search, k);
-      float rise = next.line - here.line;
-      float step_px = next.offset_px - here.offset_px;
-      float bend = sharp_bend(sheet.rise, sheet.step_px, rise, step_px, side.sharp);
-      extend_sheet(sheet, side, search.line.x_per_step, here, bend);
-      sheet.rise = rise;
-      sheet.step_px = step_px;
-      here = next;
-      ++k;
+      [[unroll]] for (uint i = 0; i < kTurn; ++i) {
+        pass_sample(sheet, here, side, search.line.x_per_step, fetch_sample(search, k + i));
+      }
+      k += kTurn;
     } while (k < kStepCount);
   }
   // Nothing tells how it ends: joined only if the way to it did not bend.

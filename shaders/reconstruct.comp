@@ -1,4 +1,5 @@
 #version 460
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
@@ -215,18 +216,16 @@ void add_block(inout Neighbourhood sum, Surface surface, float narrowness, Found
   }
 }
 
-// All blocks within reach of the pixel's own. One loop, left at its end: where vectors are wide every
-// test costs a turn.
+// All blocks within reach of the pixel's own; the outermost stand for those outside the image.
 Neighbourhood gather(Surface surface, int reach, float narrowness) {
-  ivec2 low = max(surface.pixel / kDivisor - reach, ivec2(0));
-  ivec2 high = min(surface.pixel / kDivisor + reach, last_block());
+  ivec2 own = surface.pixel / kDivisor;
   Neighbourhood sum = Neighbourhood(no_sum(), vec3(0.0));
-  ivec2 block = low;
-  do {
-    add_block(sum, surface, narrowness, fetch_block(block));
-    ++block.x;
-    block = block.x > high.x ? ivec2(low.x, block.y + 1) : block;
-  } while (block.y <= high.y);
+  [[unroll]] for (int y = -reach; y <= reach; ++y) {
+    [[unroll]] for (int x = -reach; x <= reach; ++x) {
+      ivec2 block = clamp(own + ivec2(x, y), ivec2(0), last_block());
+      add_block(sum, surface, narrowness, fetch_block(block));
+    }
+  }
   return sum;
 }
 
