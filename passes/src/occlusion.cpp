@@ -70,9 +70,8 @@ OcclusionSettings quality_settings(Quality quality, float radius) {
       settings.history_frames = 32;
       break;
     case Quality::ultra:
-      settings.divisor = 2;
-      settings.slices = 2;
       settings.steps = 24;
+      settings.fill = 0.42f;
       settings.history_frames = 32;
       break;
     case Quality::reference:
