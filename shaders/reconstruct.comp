@@ -248,6 +248,7 @@ void store(ivec2 pixel, Sum sum) {
 struct History {
   Sum sum;      // weighted means over frames
   float count;  // frames; 0 where nothing of this surface is known
+  float recent;  // visibility of the last few frames, to tell change by
 };
 
 const float kDepthTolerance = 0.01;  // of the depth, for a surface seen head-on
@@ -260,7 +261,7 @@ uvec4 pack_history(History history, float depth) {
     lobe = Signal(0.0, 0.0);
   }
   return uvec4(pack_signal(history.sum.signal),
-               packHalf2x16(vec2(min(depth, kLargestDepth), history.count)),
+               pack_history_state(min(depth, kLargestDepth), history.count, history.recent),
                floatBitsToUint(lobe.visible), floatBitsToUint(lobe.open));
 }
 
@@ -282,8 +283,8 @@ vec4 reproject(Surface surface) {
 // A texel of history, all of it or none as its depth tells whether it is of the same surface.
 float add_history(inout History history, Surface surface, ivec2 texel, float depth, float share) {
   uvec4 stored = imageLoad(history_image, texel);
-  vec2 depth_and_count = unpackHalf2x16(stored.y);
-  float weight = share * history_weight(min(depth, kLargestDepth), depth_and_count.x,
+  HistoryState state = unpack_history_state(stored.y);
+  float weight = share * history_weight(min(depth, kLargestDepth), state.depth,
                                         kDepthTolerance, surface.slant);
   Sum here = no_sum();
   here.signal = unpack_signal(stored.x);
@@ -292,7 +293,8 @@ float add_history(inout History history, Surface surface, ivec2 texel, float dep
   }
   here.lobe = Signal(uintBitsToFloat(stored.z), uintBitsToFloat(stored.w));
   add(history.sum, weight, here);
-  history.count += weight * depth_and_count.y;
+  history.count += weight * state.count;
+  history.recent += weight * state.recent;
   return weight;
 }
 
@@ -300,6 +302,7 @@ History read_history(Surface surface) {
   History found;
   found.sum = no_sum();
   found.count = 0.0;
+  found.recent = 0.0;
   float weight_sum = 0.0;
   if (kFresh) {
     return found;
@@ -322,6 +325,7 @@ History read_history(Surface surface) {
   history.sum = no_sum();
   add(history.sum, scale, found.sum);
   history.count = found.count * scale;
+  history.recent = found.recent * scale;
   return history;
 }
 
@@ -353,12 +357,27 @@ void clamp_history(inout History history, Spread spread) {
   }
 }
 
+// Where something moves, visibility changes on surfaces that stand still: what the last few frames say
+// then replaces what all of them do.
+void follow_change(inout History history, Signal now) {
+  float before = mean_visibility(history.sum.signal.visible, history.sum.signal.open);
+  history.recent = recent_visibility(history.recent, history.count,
+                                     mean_visibility(now.visible, now.open));
+  float changed = history.count > 0.0 ? visibility_changed(before, history.recent) : 0.0;
+  history.sum.signal.visible =
+      mix(before, history.recent, changed) * history.sum.signal.open;
+  history.count = mix(history.count, min(history.count, kRecentFrames), changed);
+}
+
 // The pixel's sums with this frame's neighbourhood added.
 History advance(Surface surface, Found corners[4], History history) {
   Neighbourhood now = look_around(surface, corners, history.count);
   if (kClamp) {
     vec3 moments = now.moments / now.moments.x;
     clamp_history(history, spread_of_sums(moments.y, moments.z, 1.0));
+  }
+  if (kMotion) {
+    follow_change(history, now.sum.signal);
   }
   // Not divided by the weight found: a frame that searched the pixel itself counts for more than one
   // that searched its neighbours. Divided by the window's size, so that wide ones do not.
@@ -370,6 +389,8 @@ History advance(Surface surface, Found corners[4], History history) {
   add(next.sum, 1.0 - fresh, history.sum);
   add(next.sum, scale, now.sum);
   next.count = next_count(history.count, parameters.longest);
+  next.recent = kMotion ? history.recent
+                        : mean_visibility(next.sum.signal.visible, next.sum.signal.open);
   return next;
 }
 

@@ -54,6 +54,44 @@ ALCOVE_INLINE float count_after_clamp(float count, float before, float after, fl
   return mix(count, min(count, 1.0f), moved);
 }
 
+// What a texel of history knows besides its sums, in 32 bits.
+struct HistoryState {
+  float depth;   // linear, [0,65504], to 2^-11 of itself
+  float count;   // frames, [0,255], whole
+  float recent;  // visibility of the last few frames, [0,1], to 2^-9
+};
+
+ALCOVE_INLINE uint pack_history_state(float depth, float count, float recent) {
+  uint whole = uint(clamp(count, 0.0f, 255.0f) + 0.5f);
+  uint bright = uint(clamp(recent, 0.0f, 1.0f) * 255.0f + 0.5f);
+  return packHalf2x16(vec2(depth, 0.0f)) | (whole << 16u) | (bright << 24u);
+}
+
+ALCOVE_INLINE HistoryState unpack_history_state(uint bits) {
+  HistoryState state;
+  state.depth = unpackHalf2x16(bits & 0xffffu).x;
+  state.count = float((bits >> 16u) & 255u);
+  state.recent = float(bits >> 24u) * (1.0f / 255.0f);
+  return state;
+}
+
+// Frames that `recent` is about the mean of.
+const float kRecentFrames = 4.0f;
+
+// The mean of the last few frames with one more, [0,1] as they are.
+ALCOVE_INLINE float recent_visibility(float recent, float count, float now) {
+  return mix(recent, now, accumulation_weight(count, kRecentFrames));
+}
+
+// How surely the last few frames, `recent`, see another visibility than all that were gathered, `all`,
+// both [0,1]: 0 within the noise of a few searches, which see nothing else in the open and in the dark
+// and differ most between, 1 well beyond it.
+ALCOVE_INLINE float visibility_changed(float all, float recent) {
+  float spread = sqrt(max(min(all * (1.0f - all), recent * (1.0f - recent)), 0.0f));
+  float beyond = abs(recent - all) - (0.01f + 0.25f * spread);
+  return clamp(beyond * 10.0f, 0.0f, 1.0f);
+}
+
 ALCOVE_MATHS_END
 
 #endif

@@ -194,5 +194,52 @@ TEST(History, ClampKeepsWhatAgreesAndCountForgetsWhatMoved) {
   EXPECT_FLOAT_EQ(maths::count_after_clamp(21.0f, 0.7f, 0.6f, 0.2f), 11.0f);
 }
 
+TEST(History, StateKeepsWhatItHolds) {
+  RandomInput random;
+  for (int i = 0; i < 2000; ++i) {
+    const float depth = std::exp(random.uniform(-7.0f, 11.0f));
+    const float count = std::floor(random.uniform(0.0f, 255.99f));
+    const float recent = random.uniform(0.0f, 1.0f);
+    const maths::HistoryState state =
+        maths::unpack_history_state(maths::pack_history_state(depth, count, recent));
+    EXPECT_NEAR(state.depth, depth, depth * std::ldexp(1.0f, -11));
+    EXPECT_EQ(state.count, count);
+    EXPECT_NEAR(state.recent, recent, 0.5f / 255.0f + 1e-6f);
+  }
+  const maths::HistoryState least =
+      maths::unpack_history_state(maths::pack_history_state(0.0f, -1.0f, -1.0f));
+  EXPECT_EQ(least.count + least.recent + least.depth, 0.0f);
+  const maths::HistoryState most =
+      maths::unpack_history_state(maths::pack_history_state(1.0f, 300.0f, 2.0f));
+  EXPECT_EQ(most.count, 255.0f);
+  EXPECT_EQ(most.recent, 1.0f);
+}
+
+TEST(History, ChangeIsToldFromTheNoiseOfAFewSearches) {
+  RandomInput random;
+  for (int i = 0; i < 2000; ++i) {
+    const float a = random.uniform(0.0f, 1.0f);
+    const float b = random.uniform(0.0f, 1.0f);
+    EXPECT_EQ(maths::visibility_changed(a, a), 0.0f);
+    const float changed = maths::visibility_changed(a, b);
+    EXPECT_GE(changed, 0.0f);
+    EXPECT_LE(changed, 1.0f);
+    EXPECT_EQ(changed, maths::visibility_changed(b, a));
+  }
+  // There is no noise in the open, where a trail is seen at once.
+  EXPECT_EQ(maths::visibility_changed(0.8f, 1.0f), 1.0f);
+  EXPECT_EQ(maths::visibility_changed(1.0f, 0.8f), 1.0f);
+  EXPECT_EQ(maths::visibility_changed(0.55f, 0.45f), 0.0f);
+  EXPECT_EQ(maths::visibility_changed(0.2f, 0.8f), 1.0f);
+}
+
+TEST(History, RecentIsAMeanThatForgetsInAFewFrames) {
+  EXPECT_EQ(maths::recent_visibility(0.3f, 0.0f, 0.9f), 0.9f);
+  EXPECT_FLOAT_EQ(maths::recent_visibility(0.2f, 1.0f, 0.4f), 0.3f);
+  float recent = 0.0f;
+  for (int frame = 0; frame < 12; ++frame) recent = maths::recent_visibility(recent, 32.0f, 1.0f);
+  EXPECT_GT(recent, 0.95f);
+}
+
 }  // namespace
 }  // namespace alcove::maths_test

@@ -393,5 +393,38 @@ TEST_F(Reconstruct, MotionVectorsFollowAMovingPlane) {
   }
 }
 
+// What shaded a plane moves away, and then shades it again: the plane itself stands still.
+TEST_F(Reconstruct, WhereThingsMoveAShadeLeavesNoTrail) {
+  const TestView view = test_views()[2];
+  const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(30.0, 4.0)});
+  const HostImage motion{kWidth, kHeight, std::vector<float>(std::size_t{kWidth} * kHeight * 2), 2};
+  const HostImage shaded = constant_signal(kWidth, kHeight, 0.6f);
+  const HostImage open = constant_signal(kWidth, kHeight, 1.0f);
+  const std::uint32_t long_ago = 30;
+  const std::uint32_t soon = 12;
+  for (const bool given : {true, false}) {
+    std::vector<HostImage> found;
+    for (std::uint32_t frame = 0; frame < long_ago + 2 * soon; ++frame) {
+      const bool is_open = frame >= long_ago && frame < long_ago + soon;
+      found.push_back(reconstruct({.view = view.view,
+                                   .drawing = drawing,
+                                   .signal = is_open ? open : shaded,
+                                   .motion = given ? &motion : nullptr,
+                                   .index = frame,
+                                   .reset = frame == 0},
+                                  precise(1, 32)));
+    }
+    const auto left = testing::Each(testing::Gt(0.95f));
+    const auto back = testing::Each(testing::Lt(0.72f));
+    EXPECT_THAT(found[long_ago - 1].texels, testing::Each(testing::FloatNear(0.6f, 5e-3f)));
+    if (given) {
+      EXPECT_THAT(found[long_ago + soon - 1].texels, left);
+      EXPECT_THAT(found[long_ago + 2 * soon - 1].texels, back);
+    } else {
+      EXPECT_THAT(found[long_ago + soon - 1].texels, testing::Each(testing::Lt(0.8f)));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace alcove::passes

@@ -32,8 +32,10 @@ struct ReconstructInputs {
   framegraph::Texture line_depth;  // as add_line_depth makes it
   framegraph::Texture normals;     // as GtaoInputs::normals
   bool normals_in_view_space = false;
-  framegraph::Texture
-      motion;  // xy: uv of this frame minus uv of the last; null: only the camera moves
+  // xy: uv of this frame minus uv of the last; null: only the camera moves. Where it is given,
+  // things may, and with them the visibility of surfaces that stand still: history is held to what
+  // the last few frames say.
+  framegraph::Texture motion;
   framegraph::Texture roughness;  // as GtaoInputs::roughness
 };
 
