@@ -72,6 +72,7 @@ layout(set = 0, binding = kFirstLobeBinding) uniform texture2D roughness_image; 
 layout(set = 0, binding = kFirstLobeBinding + 1) uniform writeonly image2D specular_image;
 #endif
 
+// Whether pixels look at the four searched ones around them; else at all within reach.
 #ifdef HISTORY
 const bool kBetween = kDivisor > 1 && kReach > 0 && !kFresh;
 #else
@@ -201,7 +202,8 @@ struct Neighbourhood {
 };
 
 void add_block(inout Neighbourhood sum, Surface surface, float narrowness, Found found) {
-  float weight = neighbour_weight(surface, narrowness, found.searched - vec2(surface.pixel), found.line);
+  vec2 offset = found.searched - vec2(surface.pixel);
+  float weight = neighbour_weight(surface, narrowness, offset, found.line);
   add(sum.sum.signal, weight, found.sum.signal);
   if (kBentNormal) {
     sum.sum.bent += weight * found.sum.bent;
@@ -246,8 +248,8 @@ void store(ivec2 pixel, Sum sum) {
 
 // What a pixel has gathered so far.
 struct History {
-  Sum sum;      // weighted means over frames
-  float count;  // frames; 0 where nothing of this surface is known
+  Sum sum;       // weighted means over frames
+  float count;   // frames; 0 where nothing of this surface is known
   float recent;  // visibility of the last few frames, to tell change by
 };
 
@@ -424,8 +426,8 @@ void reconstruct_pixel(ivec2 pixel, Found corners[4]) {
   reconstruct(fetch_surface(pixel, line), corners);
 }
 
-// Each invocation has the pixels of a cell between four searched ones, which are fetched once; or,
-// where no pixel looks just there, of a block.
+// Each invocation has kDivisor x kDivisor pixels: with kBetween those of the cell between four searched
+// ones, which are fetched once for all of them, else those of a block.
 void main() {
   ivec2 cell = ivec2(gl_GlobalInvocationID.xy) - (kBetween ? 1 : 0);
   ivec2 first = cell * kDivisor + (kBetween ? ivec2(parameters.phase) : ivec2(0));

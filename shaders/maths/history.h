@@ -83,9 +83,9 @@ ALCOVE_INLINE float recent_visibility(float recent, float count, float now) {
   return mix(recent, now, accumulation_weight(count, kRecentFrames));
 }
 
-// How surely the last few frames, `recent`, see another visibility than all that were gathered, `all`,
-// both [0,1]: 0 within the noise of a few searches, which see nothing else in the open and in the dark
-// and differ most between, 1 well beyond it.
+// How surely the last few frames, `recent`, see another visibility than all that were gathered,
+// `all`, both [0,1]: 0 within the noise of a few searches, which see nothing else in the open and
+// in the dark and differ most between, 1 well beyond it.
 ALCOVE_INLINE float visibility_changed(float all, float recent) {
   float spread = sqrt(max(min(all * (1.0f - all), recent * (1.0f - recent)), 0.0f));
   float beyond = abs(recent - all) - (0.01f + 0.25f * spread);
