@@ -5,19 +5,15 @@
 namespace alcove::framegraph {
 namespace {
 
+// What the phases append to; the rest they overwrite.
 void clear(Plan& plan) {
-  plan.passes.clear();
   plan.batches.clear();
   plan.transitions.clear();
   plan.sets.clear();
   plan.submissions.clear();
   plan.waits.clear();
-  plan.placements.clear();
   plan.heaps.clear();
-  plan.fates.clear();
-  plan.live_accesses.clear();
   plan.finals.clear();
-  plan.reordered = false;
 }
 
 }  // namespace
@@ -27,14 +23,17 @@ Compiler::~Compiler() = default;
 
 tl::expected<void, Errors> Compiler::compile(const GraphDescription& graph, const Limits& limits,
                                              Plan& plan) {
-  clear(plan);
   Workspace& workspace = *workspace_;
   Errors errors;
-  if (!validate(graph, limits, workspace, errors)) return tl::unexpected(std::move(errors));
+  if (!validate(graph, limits, workspace, errors)) {
+    plan = {};
+    return tl::unexpected(std::move(errors));
+  }
+  clear(plan);
   cull(graph, workspace, plan);
   order(graph, limits, workspace, plan);
   assign_queues(graph, limits, workspace, plan);
-  lifetimes(graph, limits, workspace, plan);
+  lifetimes(graph, workspace, plan);
   place(graph, limits, workspace, plan);
   synchronise(graph, limits, workspace, plan);
   return {};

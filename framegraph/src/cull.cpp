@@ -26,13 +26,12 @@ class Culler {
 
  private:
   void walk() {
-    plan_.fates.assign(graph_.passes.size(), PassFate{});
+    plan_.fates.resize(graph_.passes.size());
     plan_.live_accesses.assign(graph_.accesses.size(), 0);
-    workspace_.pass_live.assign(graph_.passes.size(), 0);
     workspace_.cull.needed_by.assign(workspace_.first_sub.back(), kUnneeded);
     seed();
     for (std::uint32_t pass = static_cast<std::uint32_t>(graph_.passes.size()); pass-- > 0;)
-      visit(pass);
+      plan_.fates[pass] = visit(pass);
   }
 
   void seed() {
@@ -54,10 +53,10 @@ class Culler {
       workspace_.cull.needed_by[sub] = why;
   }
 
-  void visit(std::uint32_t pass) {
+  PassFate visit(std::uint32_t pass) {
     const PassRecord& record = graph_.passes[pass];
     const auto accesses = graph_.pass_accesses(pass);
-    std::uint8_t* live = plan_.live_accesses.data() + record.first_access;
+    std::uint8_t* const live = plan_.live_accesses.data() + record.first_access;
     bool pass_is_live = (record.flags & kSideEffect) != 0;
     bool writes = false;
     PassFate fate{pass_is_live ? Fate::side_effect : Fate::unread, kNone, kNone};
@@ -71,40 +70,40 @@ class Culler {
       if (!pass_is_live) fate = explain(why, access.resource);
       pass_is_live = true;
     }
-    if (!writes && !pass_is_live) fate.fate = Fate::writes_nothing;
-    plan_.fates[pass] = fate;
-    if (!pass_is_live) return;
-    workspace_.pass_live[pass] = 1;
+    if (!pass_is_live) {
+      if (!writes) fate.fate = Fate::writes_nothing;
+      return fate;
+    }
+    // A pass does not read what it writes in another access: these can be in any order.
     for (std::size_t i = 0; i < accesses.size(); ++i) {
-      if (!(accesses[i].flags & kOptional)) live[i] = 1;
-      if (live[i] && (accesses[i].flags & kWrite)) end_need(accesses[i]);
+      const AccessRecord& access = accesses[i];
+      if (!(access.flags & kOptional)) live[i] = 1;
+      if (!(access.flags & kWrite))
+        begin_need(access, pass);
+      else if (live[i] && (access.flags & kDiscard))
+        end_need(access);
     }
-    for (const AccessRecord& access : accesses) {
-      if (!(access.flags & kWrite)) begin_need(access, pass);
-    }
+    return fate;
   }
 
   std::uint32_t first_need(const AccessRecord& access) const {
     std::uint32_t why = kUnneeded;
-    for_each_sub(graph_.resources[access.resource], workspace_.first_sub[access.resource],
-                 access.range, [&](std::uint32_t sub) {
-                   if (why == kUnneeded) why = workspace_.cull.needed_by[sub];
-                 });
+    for_each_sub(graph_, workspace_, access, [&](std::uint32_t sub) {
+      if (why == kUnneeded) why = workspace_.cull.needed_by[sub];
+    });
     return why;
   }
 
   // A write that discards is where the need ends; one that keeps passes it on to earlier writers.
   void end_need(const AccessRecord& access) {
-    if (!(access.flags & kDiscard)) return;
-    for_each_sub(graph_.resources[access.resource], workspace_.first_sub[access.resource],
-                 access.range,
+    for_each_sub(graph_, workspace_, access,
                  [&](std::uint32_t sub) { workspace_.cull.needed_by[sub] = kUnneeded; });
   }
 
   void begin_need(const AccessRecord& access, std::uint32_t pass) {
-    const ResourceRecord& resource = graph_.resources[access.resource];
-    for_each_sub(resource, workspace_.first_sub[access.resource], access.range,
+    for_each_sub(graph_, workspace_, access,
                  [&](std::uint32_t sub) { workspace_.cull.needed_by[sub] = pass; });
+    const ResourceRecord& resource = graph_.resources[access.resource];
     if (resource.origin != Origin::history || resource.slot == 0) return;
     std::uint32_t& reader = workspace_.cull.history_reader[access.resource - resource.slot];
     if (reader != kNone) return;

@@ -88,15 +88,14 @@ MemoryRequirements estimate_requirements(const ResourceRecord& record) {
   constexpr VkDeviceSize kAlignment = 256;
   VkDeviceSize size = record.size;
   if (record.kind == ResourceKind::texture) {
-    size = 0;
-    for (std::uint32_t mip = 0; mip < record.mips; ++mip) {
+    size = VkDeviceSize{record.width} * record.height * record.depth;
+    for (std::uint32_t mip = 1; mip < record.mips; ++mip) {
       const auto side = [mip](std::uint32_t length) {
         return VkDeviceSize{mip < 32 ? std::max(1u, length >> mip) : 1u};
       };
-      size +=
-          side(record.width) * side(record.height) * side(record.depth) * texel_size(record.format);
+      size += side(record.width) * side(record.height) * side(record.depth);
     }
-    size *= VkDeviceSize{record.layers} * record.samples;
+    size *= VkDeviceSize{texel_size(record.format)} * record.layers * record.samples;
   }
   return {(size + kAlignment - 1) & ~(kAlignment - 1), kAlignment, ~0u};
 }

@@ -83,6 +83,13 @@ void Graph::resolve_extent(ResourceRecord& record, const Extent& extent) const {
   record.depth = divided(other.depth, extent.divisor);
 }
 
+void Graph::resolve_range(Range& range, const ResourceRecord& resource) {
+  if (range.mips == kAll && range.base_mip < resource.mips)
+    range.mips = static_cast<std::uint16_t>(resource.mips - range.base_mip);
+  if (range.layers == kAll && range.base_layer < resource.layers)
+    range.layers = static_cast<std::uint16_t>(resource.layers - range.base_layer);
+}
+
 ResourceRecord Graph::texture_record(const TextureDesc& desc) const {
   ResourceRecord record;
   fill_texture_record(record, desc);

@@ -26,12 +26,14 @@ bool Synchroniser::change_queue(std::uint32_t position, const AccessRecord& acce
                                  ? workspace_.queues.opening[static_cast<std::size_t>(state.queue)]
                                  : plan_.passes[static_cast<std::size_t>(time / 2)].submission;
   s_.releases.push_back({from, static_cast<std::uint32_t>(s_.releases.size()), release});
-  Transition acquire = release;
+  Transition& acquire = next_image(kBeforeFrame, position);
+  acquire = release;
   acquire.src_stages = waited_stages(access);
   acquire.src_access = 0;
   acquire.dst_stages = access.stages;
   acquire.dst_access = access.access;
-  note_change(position, access, state, add_image(kBeforeFrame, position, acquire));
+  join_neighbours();
+  note_change(position, access, state);
   return true;
 }
 

@@ -20,19 +20,22 @@ struct Segment {
 // Segments in order, none overlapping.
 using MemoryMap = std::vector<Segment>;
 
+// The first segment that ends after an offset.
+inline std::size_t first_after(const MemoryMap& map, VkDeviceSize offset) {
+  const Segment* first = map.data();
+  for (std::size_t count = map.size(); count > 0;) {
+    const std::size_t half = count / 2;
+    const bool before = first[half].end <= offset;
+    first = before ? first + half + 1 : first;
+    count = before ? count - half - 1 : half;
+  }
+  return static_cast<std::size_t>(first - map.data());
+}
+
 // Calls f for each owner of bytes in [begin, end), then makes them `owner`'s.
 template <typename Function>
 void take_over(MemoryMap& map, const Segment& owner, Function&& f) {
-  std::size_t first = 0;
-  for (std::size_t count = map.size(); count > 0;) {
-    const std::size_t half = count / 2;
-    if (map[first + half].end <= owner.begin) {
-      first += half + 1;
-      count -= half + 1;
-    } else {
-      count = half;
-    }
-  }
+  const std::size_t first = first_after(map, owner.begin);
   std::size_t last = first;
   for (; last < map.size() && map[last].begin < owner.end; ++last) f(map[last]);
   // As a rule one owner's bytes go to another whole.
@@ -66,7 +69,7 @@ void take_over(MemoryMap& map, const Segment& owner, Function&& f) {
 inline VkDeviceSize claim_free(MemoryMap& map, const Segment& owner) {
   VkDeviceSize claimed = 0;
   VkDeviceSize at = owner.begin;
-  for (std::size_t i = 0; at < owner.end; ++i) {
+  for (std::size_t i = first_after(map, at); at < owner.end; ++i) {
     if (i < map.size() && map[i].begin <= at) {
       at = std::max(at, map[i].end);
       continue;

@@ -16,10 +16,14 @@ class Orderer {
       : graph_(graph), limits_(limits), workspace_(workspace), plan_(plan), s_(workspace.reorder) {}
 
   void run() {
-    workspace_.order.clear();
-    for (std::uint32_t pass = 0; pass < graph_.passes.size(); ++pass) {
-      if (workspace_.pass_live[pass]) workspace_.order.push_back(pass);
+    const auto count = static_cast<std::uint32_t>(graph_.passes.size());
+    workspace_.order.resize(count);
+    std::size_t live = 0;
+    for (std::uint32_t pass = 0; pass < count; ++pass) {
+      workspace_.order[live] = pass;
+      live += plan_.fates[pass].is_live();
     }
+    workspace_.order.resize(live);
     const bool worthwhile = limits_.ordering == Ordering::lower_peak && limits_.alias &&
                             workspace_.order.size() >= 3 &&
                             workspace_.order.size() <= limits_.reorder_passes;
@@ -40,22 +44,13 @@ class Orderer {
     return true;
   }
 
-  template <typename Function>
-  void for_each_live(std::uint32_t pass, Function&& f) const {
-    const auto accesses = graph_.pass_accesses(pass);
-    const std::uint8_t* live = plan_.live_accesses.data() + graph_.passes[pass].first_access;
-    for (std::size_t i = 0; i < accesses.size(); ++i) {
-      if (live[i]) f(accesses[i]);
-    }
-  }
-
   // Bytes of each transient, and how many passes use it.
   void measure() {
     s_.bytes.assign(graph_.resources.size(), 0);
     s_.uses.assign(graph_.resources.size(), 0);
     s_.seen.assign(graph_.resources.size(), kNone);
     for (const std::uint32_t pass : workspace_.order) {
-      for_each_live(pass, [&](const AccessRecord& access) {
+      for_each_live(graph_, plan_, pass, [&](const AccessRecord& access) {
         const ResourceRecord& record = graph_.resources[access.resource];
         if (record.origin != Origin::transient || s_.seen[access.resource] == pass) return;
         s_.seen[access.resource] = pass;
@@ -76,7 +71,7 @@ class Orderer {
   Step step(std::uint32_t pass) {
     Step result;
     ++stamp_;
-    for_each_live(pass, [&](const AccessRecord& access) {
+    for_each_live(graph_, plan_, pass, [&](const AccessRecord& access) {
       const std::uint32_t r = access.resource;
       if (s_.bytes[r] == 0 || s_.stamp[r] == stamp_) return;
       s_.stamp[r] = stamp_;
@@ -97,7 +92,7 @@ class Orderer {
 
   void take(std::uint32_t pass) {
     ++stamp_;
-    for_each_live(pass, [&](const AccessRecord& access) {
+    for_each_live(graph_, plan_, pass, [&](const AccessRecord& access) {
       if (s_.stamp[access.resource] == stamp_) return;
       s_.stamp[access.resource] = stamp_;
       s_.begun[access.resource] = 1;
@@ -136,9 +131,8 @@ class Orderer {
     s_.first_reader.assign(workspace_.first_sub.back(), kNone);
     s_.readers.clear();
     for (const std::uint32_t pass : workspace_.order) {
-      for_each_live(pass, [&](const AccessRecord& access) {
-        for_each_sub(graph_.resources[access.resource], workspace_.first_sub[access.resource],
-                     access.range,
+      for_each_live(graph_, plan_, pass, [&](const AccessRecord& access) {
+        for_each_sub(graph_, workspace_, access,
                      [&](std::uint32_t sub) { depend(pass, sub, access.flags & kWrite); });
       });
     }
@@ -218,13 +212,16 @@ class Orderer {
 void order(const GraphDescription& graph, const Limits& limits, Workspace& workspace, Plan& plan) {
   Orderer(graph, limits, workspace, plan).run();
   plan.passes.resize(workspace.order.size());
-  for (std::uint32_t position = 0; position < workspace.order.size(); ++position) {
-    PlannedPass& planned = plan.passes[position];
-    planned = {};
-    planned.pass = workspace.order[position];
-    const QueueClass queue = graph.passes[planned.pass].queue;
+  workspace.several_queues = false;
+  PlannedPass* planned = plan.passes.data();
+  for (const std::uint32_t pass : workspace.order) {
+    const QueueClass queue = graph.passes[pass].queue;
     const bool own = limits.queue_families[static_cast<std::size_t>(queue)] != kNone;
-    planned.queue = own ? queue : QueueClass::graphics;
+    *planned = {};
+    planned->pass = pass;
+    planned->queue = own ? queue : QueueClass::graphics;
+    workspace.several_queues |= planned->queue != QueueClass::graphics;
+    ++planned;
   }
 }
 

@@ -19,13 +19,13 @@ VkDeviceSize align_up(VkDeviceSize value, VkDeviceSize alignment) {
 
 class Placer {
  public:
-  Placer(const Limits& limits, Workspace& workspace, Plan& plan)
-      : limits_(limits), workspace_(workspace), plan_(plan), s_(workspace.place) {}
+  Placer(const GraphDescription& graph, const Limits& limits, Workspace& workspace, Plan& plan)
+      : graph_(graph), limits_(limits), workspace_(workspace), plan_(plan), s_(workspace.place) {}
 
   void run() {
     make_heaps();
     for (std::uint32_t heap = 0; heap < plan_.heaps.size(); ++heap) {
-      gather(heap);
+      if (plan_.heaps.size() > 1) gather(heap);
       plan_.heaps[heap].lower_bound = lower_bound();
       if (limits_.alias)
         fill(plan_.heaps[heap].lower_bound);
@@ -37,30 +37,47 @@ class Placer {
   }
 
  private:
+  // Gives each transient its heap, and gathers those of all heaps.
   void make_heaps() {
+    s_.items.resize(workspace_.transients.size());
+    PlaceItem* item = s_.items.data();
     for (const std::uint32_t r : workspace_.transients) {
-      const MemoryRequirements& needed = workspace_.requirements[r];
       Placement& placement = plan_.placements[r];
-      std::uint32_t heap = 0;
-      while (heap < plan_.heaps.size() && plan_.heaps[heap].memory_types != needed.memory_types)
-        ++heap;
-      if (heap == plan_.heaps.size()) plan_.heaps.push_back({needed.memory_types, 0, 0, 0});
-      placement.heap = heap;
+      const MemoryRequirements needed = requirements(graph_.resources[r], placement.usage);
       // Buffers and images never meet in one page when both keep to whole pages.
       placement.alignment = std::max(needed.alignment, limits_.buffer_image_granularity);
       placement.size = align_up(needed.size, limits_.buffer_image_granularity);
-      Heap& into = plan_.heaps[heap];
+      placement.heap = heap_of(needed.memory_types);
+      Heap& into = plan_.heaps[placement.heap];
       into.unaliased = align_up(into.unaliased, placement.alignment) + placement.size;
+      *item++ = item_of(placement, r);
     }
   }
 
+  MemoryRequirements requirements(const ResourceRecord& record, VkFlags usage) const {
+    return limits_.memory.query ? limits_.memory.query(limits_.memory.context, record, usage)
+                                : estimate_requirements(record);
+  }
+
+  std::uint32_t heap_of(std::uint32_t memory_types) {
+    std::uint32_t heap = 0;
+    for (const Heap& there : plan_.heaps) {
+      if (there.memory_types == memory_types) return heap;
+      ++heap;
+    }
+    plan_.heaps.push_back({memory_types, 0, 0, 0});
+    return heap;
+  }
+
+  static PlaceItem item_of(const Placement& placement, std::uint32_t resource) {
+    return {placement.size, placement.alignment, 0, placement.first, placement.last, resource};
+  }
+
+  // Those of one heap.
   void gather(std::uint32_t heap) {
     s_.items.clear();
     for (const std::uint32_t r : workspace_.transients) {
-      const Placement& placement = plan_.placements[r];
-      if (placement.heap != heap) continue;
-      s_.items.push_back(
-          {placement.size, placement.alignment, 0, placement.first, placement.last, r});
+      if (plan_.placements[r].heap == heap) s_.items.push_back(item_of(plan_.placements[r], r));
     }
   }
 
@@ -105,30 +122,36 @@ class Placer {
     improve(bound);
   }
 
-  // First fit in order of first use, against what is live then: kept in order of offset.
+  // First fit in order of first use, against what is taken then: kept in order of offset. What has
+  // ended stays there until it is come across.
   VkDeviceSize fit_by_time() {
     VkDeviceSize peak = 0;
-    s_.live.clear();
+    std::vector<Workspace::Taken>& taken = s_.taken;
+    taken.clear();
     for (PlaceItem& item : s_.items) {
       VkDeviceSize offset = 0;
       std::size_t kept = 0;
-      std::size_t at = 0;  // where the item belongs among those kept
-      bool found = false;
-      for (std::size_t i = 0; i < s_.live.size(); ++i) {
-        const PlaceItem& other = s_.live[i];
+      std::size_t next = 0;
+      for (; next < taken.size(); ++next) {
+        const Workspace::Taken& other = taken[next];
         if (other.last < item.first) continue;
-        if (!found && offset + item.size <= other.offset) {
-          found = true;
-          at = kept;
-        }
-        if (!found) offset = std::max(offset, align_up(other.offset + other.size, item.alignment));
-        s_.live[kept++] = other;
+        if (offset + item.size <= other.begin) break;
+        offset = std::max(offset, align_up(other.end, item.alignment));
+        if (kept != next) taken[kept] = other;
+        ++kept;
       }
-      if (!found) at = kept;
-      s_.live.resize(kept);
       item.offset = offset;
-      s_.live.insert(s_.live.begin() + static_cast<std::ptrdiff_t>(at), item);
-      peak = std::max(peak, offset + item.size);
+      const Workspace::Taken own{offset, offset + item.size, item.last};
+      peak = std::max(peak, own.end);
+      // It takes the place of the first that has ended.
+      if (kept == next) {
+        taken.insert(taken.begin() + static_cast<std::ptrdiff_t>(kept), own);
+        continue;
+      }
+      taken[kept] = own;
+      if (kept + 1 < next)
+        taken.erase(taken.begin() + static_cast<std::ptrdiff_t>(kept + 1),
+                    taken.begin() + static_cast<std::ptrdiff_t>(next));
     }
     return peak;
   }
@@ -281,6 +304,7 @@ class Placer {
     return static_cast<std::uint32_t>(random_ % sides);
   }
 
+  const GraphDescription& graph_;
   const Limits& limits_;
   Workspace& workspace_;
   Plan& plan_;
@@ -294,8 +318,8 @@ class Placer {
 
 }  // namespace
 
-void place(const GraphDescription&, const Limits& limits, Workspace& workspace, Plan& plan) {
-  Placer(limits, workspace, plan).run();
+void place(const GraphDescription& graph, const Limits& limits, Workspace& workspace, Plan& plan) {
+  Placer(graph, limits, workspace, plan).run();
 }
 
 }  // namespace alcove::framegraph

@@ -20,9 +20,6 @@ class QueueAssigner {
 
   void run() {
     const auto count = static_cast<std::uint32_t>(plan_.passes.size());
-    workspace_.several_queues =
-        std::any_of(plan_.passes.begin(), plan_.passes.end(),
-                    [](const PlannedPass& p) { return p.queue != QueueClass::graphics; });
     if (!workspace_.several_queues) {
       plan_.submissions.push_back({QueueClass::graphics, 0, count, 0, 0, 0, 0});
       return;
@@ -60,7 +57,7 @@ class QueueAssigner {
   void find_wait_of(std::uint32_t position) {
     const auto own = static_cast<std::size_t>(plan_.passes[position].queue);
     std::uint32_t* waits = &s_.waits[position * kQueueClasses];
-    for_each_live(position, [&](std::uint32_t resource, std::uint32_t sub) {
+    for_each_live_sub(position, [&](std::uint32_t resource, std::uint32_t sub) {
       const std::uint32_t user = s_.last_user[sub];
       s_.last_user[sub] = position;
       if (user == kNobody) s_.opened[position] |= given_by(resource, plan_.passes[position].queue);
@@ -123,16 +120,10 @@ class QueueAssigner {
 
   // f(resource, subresource) for all that a pass uses.
   template <typename Function>
-  void for_each_live(std::uint32_t position, Function&& f) const {
-    const std::uint32_t pass = plan_.passes[position].pass;
-    const auto accesses = graph_.pass_accesses(pass);
-    const std::uint8_t* live = plan_.live_accesses.data() + graph_.passes[pass].first_access;
-    for (std::size_t i = 0; i < accesses.size(); ++i) {
-      if (!live[i]) continue;
-      const std::uint32_t resource = accesses[i].resource;
-      for_each_sub(graph_.resources[resource], workspace_.first_sub[resource], accesses[i].range,
-                   [&](std::uint32_t sub) { f(resource, sub); });
-    }
+  void for_each_live_sub(std::uint32_t position, Function&& f) const {
+    for_each_live(graph_, plan_, plan_.passes[position].pass, [&](const AccessRecord& access) {
+      for_each_sub(graph_, workspace_, access, [&](std::uint32_t sub) { f(access.resource, sub); });
+    });
   }
 
   // Submissions by pass, numbered in order of their first passes.

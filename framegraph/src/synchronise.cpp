@@ -6,14 +6,8 @@
 
 #include <algorithm>
 
-#include "access_bits.h"
-
 namespace alcove::framegraph {
 namespace {
-
-std::int32_t pass_time(std::uint32_t position) {
-  return static_cast<std::int32_t>(2 * position + 1);
-}
 
 // Records a use in a state, with no regard to dependencies.
 void note(UseState& state, const AccessRecord& access, std::int32_t time) {
@@ -51,43 +45,26 @@ void note_external(UseState& state, const ExternalRecord& external) {
   state.used = 1;
 }
 
-// Makes `last` cover the mips of `next` too, if the two are neighbours that change alike.
-bool extend(Transition& last, const Transition& next) {
-  const Range& a = last.range;
-  const Range& b = next.range;
-  const bool alike = last.src_stages == next.src_stages && last.src_access == next.src_access &&
-                     last.dst_stages == next.dst_stages && last.dst_access == next.dst_access &&
-                     last.old_layout == next.old_layout && last.new_layout == next.new_layout &&
-                     last.src_queue == next.src_queue && last.dst_queue == next.dst_queue;
-  const bool neighbours =
-      a.base_layer == b.base_layer && a.layers == b.layers && a.base_mip + a.mips == b.base_mip;
-  if (!alike || !neighbours) return false;
-  last.range.mips = static_cast<std::uint16_t>(a.mips + b.mips);
-  return true;
-}
-
 }  // namespace
 
 void Synchroniser::run() {
-  s_.states.assign(workspace_.first_sub.back(), UseState{});
+  // Those from outside get their states on arrival, transients when they take over their memory.
+  s_.states.resize(workspace_.first_sub.back());
   s_.latest.clear();
   arrive();
   find_last_uses();
-  const auto& transients = workspace_.transients;
-  std::size_t started = 0;
-  for (std::uint32_t position = 0; position < plan_.passes.size(); ++position) {
+  auto starting = workspace_.transients.cbegin();
+  const auto count = static_cast<std::uint32_t>(plan_.passes.size());
+  for (std::uint32_t position = 0; position < count; ++position) {
     PlannedPass& planned = plan_.passes[position];
     queue_ = planned.queue;
     floor_ = plan_.submissions[planned.submission].first_pass;
-    const auto accesses = graph_.pass_accesses(planned.pass);
-    const std::uint8_t* live =
-        plan_.live_accesses.data() + graph_.passes[planned.pass].first_access;
-    for (; started < transients.size() && plan_.placements[transients[started]].first == position;
-         ++started)
-      take_over_memory(transients[started]);
-    for (std::size_t i = 0; i < accesses.size(); ++i) {
-      if (live[i]) use(position, accesses[i]);
-    }
+    for (;
+         starting != workspace_.transients.cend() && plan_.placements[*starting].first == position;
+         ++starting)
+      take_over_memory(*starting);
+    for_each_live(graph_, plan_, planned.pass,
+                  [&](const AccessRecord& access) { use(position, access); });
     if (batch_position_ == position) {
       planned.first_batch = static_cast<std::uint32_t>(plan_.batches.size() - 1);
       planned.batch_count = 1;
@@ -104,6 +81,7 @@ void Synchroniser::arrive() {
     if (graph_.resources[r].external == kNone) continue;
     const ExternalRecord& external = graph_.externals[graph_.resources[r].external];
     for (std::uint32_t sub = first[r]; sub < first[r + 1]; ++sub) {
+      s_.states[sub] = {};
       note_external(s_.states[sub], external);
       const auto queue = static_cast<std::size_t>(external.queue);
       if (limits_.queue_families[queue] != kNone) s_.states[sub].queue = external.queue;
@@ -132,17 +110,11 @@ void Synchroniser::find_last_uses() {
     if (graph_.resources[r].origin == Origin::history) want(r);
   }
   for (std::uint32_t position = from; position < plan_.passes.size(); ++position) {
-    const PlannedPass& planned = plan_.passes[position];
-    const auto accesses = graph_.pass_accesses(planned.pass);
-    const std::uint8_t* live =
-        plan_.live_accesses.data() + graph_.passes[planned.pass].first_access;
-    for (std::size_t i = 0; i < accesses.size(); ++i) {
-      const AccessRecord& access = accesses[i];
-      if (!live[i] || !s_.is_last[access.resource]) continue;
-      for_each_sub(graph_.resources[access.resource], workspace_.first_sub[access.resource],
-                   access.range,
+    for_each_live(graph_, plan_, plan_.passes[position].pass, [&](const AccessRecord& access) {
+      if (!s_.is_last[access.resource]) return;
+      for_each_sub(graph_, workspace_, access,
                    [&](std::uint32_t sub) { note(s_.last_uses[sub], access, kBeforeFrame); });
-    }
+    });
   }
 }
 
@@ -192,25 +164,29 @@ void Synchroniser::take_over_memory(std::uint32_t resource) {
   std::fill(s_.states.begin() + first[resource], s_.states.begin() + first[resource + 1], merged);
 }
 
-void Synchroniser::use(std::uint32_t position, const AccessRecord& access) {
+inline void Synchroniser::use(std::uint32_t position, const AccessRecord& access) {
+  const std::uint32_t* const subs = workspace_.first_sub.data() + access.resource;
+  if (subs[1] == subs[0] + 1)
+    use_range(position, access, s_.states[subs[0]], access.range);
+  else
+    use_several(position, access);
+}
+
+void Synchroniser::use_several(std::uint32_t position, const AccessRecord& access) {
   const ResourceRecord& resource = graph_.resources[access.resource];
   const std::uint32_t first = workspace_.first_sub[access.resource];
-  if (resource.mips * resource.layers <= 1) {
-    use_range(position, access, s_.states[first], access.range);
-    return;
-  }
   UseState* const states = s_.states.data() + first;
   UseState* const lead =
       states + std::size_t{access.range.base_layer} * resource.mips + access.range.base_mip;
   bool alike = true;
-  for_each_sub(resource, first, access.range,
+  for_each_sub(graph_, workspace_, access,
                [&](std::uint32_t sub) { alike = alike && s_.states[sub] == *lead; });
   if (alike) {
     use_range(position, access, *lead, access.range);
-    for_each_sub(resource, first, access.range, [&](std::uint32_t sub) { s_.states[sub] = *lead; });
+    for_each_sub(graph_, workspace_, access, [&](std::uint32_t sub) { s_.states[sub] = *lead; });
     return;
   }
-  for_each_sub(resource, first, access.range, [&](std::uint32_t sub) {
+  for_each_sub(graph_, workspace_, access, [&](std::uint32_t sub) {
     const std::uint32_t index = sub - first;
     const Range range{static_cast<std::uint16_t>(index % resource.mips), 1,
                       static_cast<std::uint16_t>(index / resource.mips), 1};
@@ -220,7 +196,7 @@ void Synchroniser::use(std::uint32_t position, const AccessRecord& access) {
 
 inline void Synchroniser::use_range(std::uint32_t position, const AccessRecord& access,
                                     UseState& state, const Range& range) {
-  const bool texture = graph_.resources[access.resource].kind == ResourceKind::texture;
+  const bool texture = access.kind == ResourceKind::texture;
   if (state.queue != queue_ && change_queue(position, access, state, range)) return;
   if (texture && state.layout != access.layout)
     change_layout(position, access, state, range);
@@ -232,38 +208,22 @@ inline void Synchroniser::use_range(std::uint32_t position, const AccessRecord& 
 
 inline void Synchroniser::change_layout(std::uint32_t position, const AccessRecord& access,
                                         UseState& state, const Range& range) {
-  Transition wanted;
+  Transition& wanted = next_image(std::max(state.read_time, state.write_time), position);
   // Reads come after the write that they saw; a memory hand-over may have both.
-  wanted.src_stages = state.read_stages | state.write_stages;
-  wanted.src_access = state.write_access;
-  if (state.read_stages != 0 && !state.handed_over) {
-    wanted.src_stages = state.read_stages;
-    wanted.src_access = 0;
-  }
+  const bool after_reads = state.read_stages != 0 && !state.handed_over;
+  wanted.src_stages = after_reads ? state.read_stages : state.read_stages | state.write_stages;
+  wanted.src_access = after_reads ? 0 : state.write_access;
   // A wait covers all stages, so that any stage follows on it.
   if (wanted.src_stages == 0 && state.by_wait) wanted.src_stages = waited_stages(access);
   wanted.dst_stages = access.stages;
   wanted.dst_access = access.access;
   wanted.resource = access.resource;
-  wanted.src_queue = wanted.dst_queue = queue_;
   wanted.old_layout = access.flags & kDiscard ? VK_IMAGE_LAYOUT_UNDEFINED : state.layout;
   wanted.new_layout = access.layout;
   wanted.range = range;
-  const std::int32_t time = std::max(state.read_time, state.write_time);
-  note_change(position, access, state, add_image(time, position, wanted));
-}
-
-// The state after an access for which a barrier was just added.
-void Synchroniser::note_change(std::uint32_t position, const AccessRecord& access, UseState& state,
-                               std::uint32_t transition) {
-  state = {};
-  state.queue = queue_;
-  state.write_stages = access.stages;
-  state.write_time = static_cast<std::int32_t>(2 * batch_position_);
-  state.seen_stages = access.stages;
-  state.seen_access = access.access;
-  note(state, access, pass_time(position));
-  if (!(access.flags & kWrite)) state.transition = transition;
+  wanted.src_queue = wanted.dst_queue = queue_;
+  join_neighbours();
+  note_change(position, access, state);
 }
 
 void Synchroniser::read_again(std::uint32_t position, const AccessRecord& access, UseState& state) {
@@ -337,6 +297,7 @@ AccessRecord Synchroniser::outside_use(std::uint32_t resource, const State& stat
   access.access = state.access;
   access.layout = state.layout;
   access.resource = resource;
+  access.kind = record.kind;
   access.flags = state.access & kWriteBits ? kWrite : 0u;
   access.range = {0, static_cast<std::uint16_t>(record.mips), 0,
                   static_cast<std::uint16_t>(record.layers)};
@@ -372,30 +333,20 @@ void Synchroniser::leave(std::uint32_t resource) {
   plan_.finals.push_back(final);
 }
 
-// The dependencies go into the last batch if that comes after `time`, else into a new one.
-inline Batch& Synchroniser::batch_after(std::int32_t time, std::uint32_t position) {
-  time = std::max(time, static_cast<std::int32_t>(2 * floor_) - 1);
-  if (batch_position_ == kNone || static_cast<std::int32_t>(2 * batch_position_) < time) {
-    batch_position_ = position;
-    plan_.batches.push_back({static_cast<std::uint32_t>(plan_.transitions.size()), 0});
-    s_.latest.push_back(time);
-  }
-  s_.latest.back() = std::max(s_.latest.back(), time);
-  return plan_.batches.back();
-}
-
-std::uint32_t Synchroniser::add_image(std::int32_t time, std::uint32_t position,
-                                      const Transition& wanted) {
-  Batch& batch = batch_after(time, position);
-  // Neighbouring mips and layers that change alike become one barrier.
-  if (batch.count > 0) {
-    Transition& last = plan_.transitions.back();
-    if (last.resource == wanted.resource && extend(last, wanted))
-      return static_cast<std::uint32_t>(plan_.transitions.size() - 1);
-  }
-  plan_.transitions.push_back(wanted);
-  ++batch.count;
-  return static_cast<std::uint32_t>(plan_.transitions.size() - 1);
+// Makes `last` cover the mips of `next` too, if the two are neighbours that change alike.
+bool Synchroniser::extend(Transition& last, const Transition& next) {
+  const Range& a = last.range;
+  const Range& b = next.range;
+  const bool alike = last.resource == next.resource && last.src_stages == next.src_stages &&
+                     last.src_access == next.src_access && last.dst_stages == next.dst_stages &&
+                     last.dst_access == next.dst_access && last.old_layout == next.old_layout &&
+                     last.new_layout == next.new_layout && last.src_queue == next.src_queue &&
+                     last.dst_queue == next.dst_queue;
+  const bool neighbours =
+      a.base_layer == b.base_layer && a.layers == b.layers && a.base_mip + a.mips == b.base_mip;
+  if (!alike || !neighbours) return false;
+  last.range.mips = static_cast<std::uint16_t>(a.mips + b.mips);
+  return true;
 }
 
 void Synchroniser::add_memory(std::int32_t time, std::uint32_t position, const Transition& wanted) {

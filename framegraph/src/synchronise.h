@@ -2,6 +2,8 @@
 // split_barriers.cpp for events.
 #pragma once
 
+#include <algorithm>
+
 #include "memory_map.h"
 #include "workspace.h"
 
@@ -16,6 +18,10 @@ inline VkPipelineStageFlags2 waited_stages(const AccessRecord& access) {
 
 // A time before the frame: see UseState.
 inline constexpr std::int32_t kBeforeFrame = -1;
+
+inline std::int32_t pass_time(std::uint32_t position) {
+  return static_cast<std::int32_t>(2 * position + 1);
+}
 
 class Synchroniser {
  public:
@@ -34,12 +40,12 @@ class Synchroniser {
   void find_last_owners();
   void take_over_memory(std::uint32_t resource);
   void use(std::uint32_t position, const AccessRecord& access);
+  void use_several(std::uint32_t position, const AccessRecord& access);
   void use_range(std::uint32_t position, const AccessRecord& access, UseState& state,
                  const Range& range);
   void change_layout(std::uint32_t position, const AccessRecord& access, UseState& state,
                      const Range& range);
-  void note_change(std::uint32_t position, const AccessRecord& access, UseState& state,
-                   std::uint32_t transition);
+  void note_change(std::uint32_t position, const AccessRecord& access, UseState& state);
   bool change_queue(std::uint32_t position, const AccessRecord& access, UseState& state,
                     const Range& range);
   void take_without_giver(UseState& state, bool same_family) const;
@@ -56,7 +62,9 @@ class Synchroniser {
   void leave(std::uint32_t resource);
 
   Batch& batch_after(std::int32_t time, std::uint32_t position);
-  std::uint32_t add_image(std::int32_t time, std::uint32_t position, const Transition& wanted);
+  Transition& next_image(std::int32_t time, std::uint32_t position);
+  void join_neighbours();
+  static bool extend(Transition& last, const Transition& next);
   void add_memory(std::int32_t time, std::uint32_t position, const Transition& wanted);
 
   const GraphDescription& graph_;
@@ -68,5 +76,52 @@ class Synchroniser {
   QueueClass queue_ = QueueClass::graphics;  // of the pass in hand
   std::uint32_t floor_ = 0;  // first position of its submission: no barrier can be put before
 };
+
+// The dependencies go into the last batch if that comes after `time`, else into a new one.
+inline Batch& Synchroniser::batch_after(std::int32_t time, std::uint32_t position) {
+  time = std::max(time, static_cast<std::int32_t>(2 * floor_) - 1);
+  if (batch_position_ == kNone || static_cast<std::int32_t>(2 * batch_position_) < time) {
+    batch_position_ = position;
+    plan_.batches.push_back({static_cast<std::uint32_t>(plan_.transitions.size()), 0});
+    s_.latest.push_back(time);
+  }
+  s_.latest.back() = std::max(s_.latest.back(), time);
+  return plan_.batches.back();
+}
+
+// A new image barrier, which is joined with its neighbours once it is filled in.
+inline Transition& Synchroniser::next_image(std::int32_t time, std::uint32_t position) {
+  ++batch_after(time, position).count;
+  return plan_.transitions.emplace_back();
+}
+
+// Neighbouring mips and layers that change alike become one barrier.
+inline void Synchroniser::join_neighbours() {
+  if (plan_.batches.back().count < 2) return;
+  const Transition* const last = &plan_.transitions.back();
+  if (!extend(plan_.transitions[plan_.transitions.size() - 2], *last)) return;
+  plan_.transitions.pop_back();
+  --plan_.batches.back().count;
+}
+
+// The state after an access for which the last image barrier was just added.
+inline void Synchroniser::note_change(std::uint32_t position, const AccessRecord& access,
+                                      UseState& state) {
+  state = {};
+  state.write_stages = access.stages;
+  state.layout = access.layout;
+  state.queue = queue_;
+  state.used = 1;
+  if (access.flags & kWrite) {
+    state.write_access = access.access & kWriteBits;
+    state.write_time = pass_time(position);
+    return;
+  }
+  state.write_time = static_cast<std::int32_t>(2 * batch_position_);
+  state.read_stages = state.seen_stages = access.stages;
+  state.seen_access = access.access;
+  state.read_time = pass_time(position);
+  state.transition = static_cast<std::uint32_t>(plan_.transitions.size() - 1);
+}
 
 }  // namespace alcove::framegraph

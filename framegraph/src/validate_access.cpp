@@ -1,4 +1,3 @@
-#include "access_bits.h"
 #include "validate.h"
 
 namespace alcove::framegraph {

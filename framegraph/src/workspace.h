@@ -49,21 +49,20 @@ struct Workspace {
   // than layers. A resource whose description is wrong has none.
   std::vector<std::uint32_t> first_sub;
 
-  // cull -> all: live passes in declaration order.
-  std::vector<std::uint8_t> pass_live;
   // order -> all: live passes in execution order, and each pass's queue.
   std::vector<std::uint32_t> order;
+  bool several_queues = false;
 
   // lifetimes -> place: live transients in order of first use.
   std::vector<std::uint32_t> transients;
-  std::vector<MemoryRequirements> requirements;  // by resource
 
   // Scratch of the single phases.
   struct Touch {
-    std::uint32_t read_stamp = 0;  // the last pass that read it, and wrote it, from 1
-    std::uint32_t write_stamp = 0;
+    std::uint32_t stamp = 0;  // the last pass that used it, from 1
     VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
-    std::uint32_t written = 0;  // 0 or 1: has contents
+    bool reads = false;  // whether that pass does
+    bool writes = false;
+    bool written = false;  // has contents
   };
   struct Validate {
     std::vector<std::uint32_t> versions;
@@ -96,7 +95,6 @@ struct Workspace {
     std::vector<std::uint32_t> ready;
     std::vector<std::uint32_t> order;
   } reorder;
-  bool several_queues = false;
   struct Queues {
     std::vector<std::uint32_t> waits;      // by position and queue: the pass waited for
     std::vector<std::uint8_t> waited_for;  // by position
@@ -110,9 +108,16 @@ struct Workspace {
     std::vector<PlannedPass> moved;
     std::uint32_t opening[kQueueClasses] = {kNone, kNone, kNone};  // submission before the passes
   } queues;
+  // Bytes of a heap that are taken until after a position.
+  struct Taken {
+    VkDeviceSize begin = 0;
+    VkDeviceSize end = 0;
+    std::uint32_t last = 0;
+  };
   struct Place {
     std::vector<PlaceItem> items;  // in order of first use
     std::vector<PlaceItem> live;   // in order of offset
+    std::vector<Taken> taken;      // likewise
     std::vector<std::int64_t> change;
     std::vector<std::uint32_t> order;
     std::vector<VkDeviceSize> offsets;
@@ -139,15 +144,29 @@ struct Workspace {
 
 // Calls f(subresource index) for each subresource of an access.
 template <typename Function>
-inline void for_each_sub(const ResourceRecord& resource, std::uint32_t first, const Range& range,
-                         Function&& f) {
-  if (resource.mips * resource.layers <= 1) {
+inline void for_each_sub(const GraphDescription& graph, const Workspace& workspace,
+                         const AccessRecord& access, Function&& f) {
+  const std::uint32_t* const subs = workspace.first_sub.data() + access.resource;
+  const std::uint32_t first = subs[0];
+  if (subs[1] == first + 1) {
     f(first);
     return;
   }
+  const ResourceRecord& resource = graph.resources[access.resource];
+  const Range& range = access.range;
   for (std::uint32_t layer = range.base_layer; layer < range.base_layer + range.layers; ++layer) {
     for (std::uint32_t mip = range.base_mip; mip < range.base_mip + range.mips; ++mip)
       f(first + layer * resource.mips + mip);
+  }
+}
+
+// Calls f(access) for each live access of a pass.
+template <typename Function>
+inline void for_each_live(const GraphDescription& graph, const Plan& plan, std::uint32_t pass,
+                          Function&& f) {
+  const std::uint8_t* live = plan.live_accesses.data() + graph.passes[pass].first_access;
+  for (const AccessRecord& access : graph.pass_accesses(pass)) {
+    if (*live++) f(access);
   }
 }
 
@@ -165,9 +184,8 @@ void assign_queues(const GraphDescription& graph, const Limits& limits, Workspac
                    Plan& plan);
 // The last position at which another queue may still run beside this pass.
 std::uint32_t taken_until(const Workspace& workspace, const Plan& plan, std::uint32_t position);
-// First and last position of each resource, its usage and its memory requirements.
-void lifetimes(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
-               Plan& plan);
+// First and last position of each resource, and its usage.
+void lifetimes(const GraphDescription& graph, Workspace& workspace, Plan& plan);
 // Offsets in heaps.
 void place(const GraphDescription& graph, const Limits& limits, Workspace& workspace, Plan& plan);
 // Barriers, submissions and waits.

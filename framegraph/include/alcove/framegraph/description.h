@@ -57,7 +57,21 @@ enum AccessFlags : std::uint32_t {
   kForeign = 8,  // the handle was of another graph or frame
   kNull = 16,    // the handle was never made
   kClosed = 32,  // declared on a pass that is not the last
+  // All of a resource with one subresource that is not imported, with stages, access bits and
+  // layout that fit: by itself right on a queue that can run anything. Compile looks closer at any
+  // other.
+  kPlain = 64,
 };
+
+// The access bits that write.
+inline constexpr VkAccessFlags2 kWriteBits =
+    VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT |
+    VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT |
+    VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_HOST_WRITE_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+
+constexpr bool layout_is_usable(VkImageLayout layout) {
+  return layout != VK_IMAGE_LAYOUT_UNDEFINED && layout != VK_IMAGE_LAYOUT_PREINITIALIZED;
+}
 
 struct AccessRecord {
   VkPipelineStageFlags2 stages = 0;

@@ -168,6 +168,7 @@ class Graph {
   void resolve_extent(ResourceRecord& record, const Extent& extent) const;
   std::uint32_t add_history(std::string_view name, ResourceRecord record, std::uint32_t slots,
                             HistoryValidity& validity);
+  static void resolve_range(Range& range, const ResourceRecord& resource);
   void append_access(std::uint32_t pass, std::uint32_t index, std::uint32_t version,
                      std::uint32_t graph, const Access& access, Range range, std::uint32_t flags,
                      ResourceKind kind);
@@ -283,17 +284,23 @@ inline void Graph::append_access(std::uint32_t pass, std::uint32_t index, std::u
   record.usage = access.usage;
   record.version = version;
   record.kind = kind;
+  record.range = range;
   if (graph == tag_ && index < description_.resources.size()) {
     record.resource = index;
     const ResourceRecord& resource = description_.resources[index];
-    if (range.mips == kAll && range.base_mip < resource.mips)
-      range.mips = static_cast<std::uint16_t>(resource.mips - range.base_mip);
-    if (range.layers == kAll && range.base_layer < resource.layers)
-      range.layers = static_cast<std::uint16_t>(resource.layers - range.base_layer);
+    if (range == Range{} && resource.mips == 1 && resource.layers == 1) {
+      record.range = {0, 1, 0, 1};
+      // As a rule the access is a constant, and all but the resource is known to the compiler.
+      const bool fits = access.stages != 0 && access.access != 0 &&
+                        ((access.access & kWriteBits) != 0) == ((flags & kWrite) != 0) &&
+                        (kind == ResourceKind::buffer || layout_is_usable(access.layout));
+      if (fits && resource.kind == kind && resource.origin != Origin::imported) flags |= kPlain;
+    } else {
+      resolve_range(record.range, resource);
+    }
   } else {
     flags |= index == kNone ? kNull : kForeign;
   }
-  record.range = range;
   if (pass + 1 != description_.passes.size()) flags |= kClosed;
   record.flags = flags;
 }

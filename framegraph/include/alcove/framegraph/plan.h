@@ -24,6 +24,7 @@ struct PassFate {
   Fate fate = Fate::unread;
   std::uint32_t witness = kNone;   // the pass that keeps it
   std::uint32_t resource = kNone;  // by which resource
+  bool is_live() const { return fate < Fate::unread; }
 };
 
 // One dependency within a batch. With a resource it is an image barrier over `range`; without one
