@@ -43,6 +43,7 @@ void Graph::reset() {
   versions_.clear();
   imports_.clear();
   callbacks_.clear();
+  open_pass_ = kNone;
   histories_.begin_frame();
   block_ = 0;
   next_ = end_ = nullptr;
@@ -61,13 +62,13 @@ void* Graph::allocate_in_next_block(std::size_t size, std::size_t alignment) {
       blocks_.push_back({std::make_unique<std::byte[]>(block_size), block_size});
     }
     const Block& block = blocks_[block_];
-    std::byte* const first = block.bytes.get();
-    const std::size_t padding = (0 - reinterpret_cast<std::uintptr_t>(first)) & (alignment - 1);
-    if (padding + size > block.size) continue;
-    next_ = first + padding + size;
-    end_ = first + block.size;
+    void* first = block.bytes.get();
+    std::size_t left = block.size;
+    if (std::align(alignment, size, first, left) == nullptr) continue;
+    next_ = static_cast<std::byte*>(first) + size;
+    end_ = block.bytes.get() + block.size;
     ++block_;
-    return first + padding;
+    return first;
   }
 }
 
@@ -94,6 +95,14 @@ ResourceRecord Graph::texture_record(const TextureDesc& desc) const {
   ResourceRecord record;
   fill_texture_record(record, desc);
   return record;
+}
+
+std::uint32_t Graph::add_resource(std::string_view name, const ResourceRecord& record) {
+  const auto index = static_cast<std::uint32_t>(versions_.size());
+  description_.resources.push_back(record);
+  description_.resource_names.push_back(keep_name(name));
+  versions_.push_back(0);
+  return index;
 }
 
 Buffer Graph::create_buffer(std::string_view name, const BufferDesc& desc) {
@@ -196,9 +205,7 @@ void Graph::reset_history(std::string_view name) { histories_.invalidate(name); 
 
 void Graph::reset_histories() { histories_.invalidate_all(); }
 
-void Graph::grow_text(std::size_t size) {
-  description_.text.resize(std::max<std::size_t>(1024, 2 * (text_used_ + size)));
-}
+void Graph::grow_text() { description_.text.resize(std::max<std::size_t>(1024, 2 * text_used_)); }
 
 void Graph::output(Texture texture) {
   const bool known = texture.graph == tag_ && texture.index < description_.resources.size();

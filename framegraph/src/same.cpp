@@ -7,7 +7,7 @@ namespace alcove::framegraph {
 namespace {
 
 template <typename Record>
-bool same(const std::vector<Record>& a, const std::vector<Record>& b) {
+bool same(const Records<Record>& a, const Records<Record>& b) {
   return a.size() == b.size() &&
          (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Record)) == 0);
 }
@@ -19,7 +19,7 @@ std::uint64_t mix(std::uint64_t a, std::uint64_t b) {
 
 // Eight bytes at a time in four lanes: the records are multiples of four bytes.
 template <typename Record>
-std::uint64_t hash_records(std::uint64_t seed, const std::vector<Record>& records) {
+std::uint64_t hash_records(std::uint64_t seed, const Records<Record>& records) {
   static_assert(sizeof(Record) % 4 == 0);
   const auto* bytes = reinterpret_cast<const unsigned char*>(records.data());
   std::size_t size = records.size() * sizeof(Record);

@@ -8,6 +8,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "alcove/framegraph/records.h"
 #include "alcove/framegraph/types.h"
 
 namespace alcove::framegraph {
@@ -106,11 +107,11 @@ struct OutputRecord {
 static_assert(std::has_unique_object_representations_v<OutputRecord>);
 
 struct GraphDescription {
-  std::vector<PassRecord> passes;
-  std::vector<AccessRecord> accesses;  // in order of passes
-  std::vector<ResourceRecord> resources;
-  std::vector<ExternalRecord> externals;
-  std::vector<OutputRecord> outputs;
+  Records<PassRecord> passes;
+  Records<AccessRecord> accesses;  // in order of passes
+  Records<ResourceRecord> resources;
+  Records<ExternalRecord> externals;
+  Records<OutputRecord> outputs;
 
   // Names are for people: they are no part of the key.
   struct Name {
@@ -118,8 +119,8 @@ struct GraphDescription {
     std::uint32_t size = 0;
   };
   std::vector<char> text;
-  std::vector<Name> pass_names;
-  std::vector<Name> resource_names;
+  Records<Name> pass_names;
+  Records<Name> resource_names;
 
   std::span<const AccessRecord> pass_accesses(std::uint32_t pass) const {
     const std::uint32_t first = passes[pass].first_access;

@@ -147,6 +147,7 @@ class Graph {
 
  private:
   friend class PassBuilder;
+  static constexpr std::size_t kAlignment = alignof(std::max_align_t);
   struct Callback {
     void (*call)(void*, RecordContext&) = nullptr;
     void* object = nullptr;
@@ -161,7 +162,7 @@ class Graph {
   };
 
   GraphDescription::Name keep_name(std::string_view name);
-  void grow_text(std::size_t size);
+  void grow_text();
   std::uint32_t add_resource(std::string_view name, const ResourceRecord& record);
   ResourceRecord texture_record(const TextureDesc& desc) const;
   void fill_texture_record(ResourceRecord& record, const TextureDesc& desc) const;
@@ -169,22 +170,22 @@ class Graph {
   std::uint32_t add_history(std::string_view name, ResourceRecord record, std::uint32_t slots,
                             HistoryValidity& validity);
   static void resolve_range(Range& range, const ResourceRecord& resource);
-  void append_access(std::uint32_t pass, std::uint32_t index, std::uint32_t version,
-                     std::uint32_t graph, const Access& access, Range range, std::uint32_t flags,
-                     ResourceKind kind);
-  std::uint32_t next_version(std::uint32_t index, std::uint32_t graph);
+  template <typename Handle>
+  std::uint32_t add_access(std::uint32_t pass, const Handle& handle, const Access& access,
+                           Range range, std::uint32_t flags);
   void* allocate(std::size_t size, std::size_t alignment);
   void* allocate_in_next_block(std::size_t size, std::size_t alignment);
   void destroy_callables();
 
   GraphDescription description_;
-  std::vector<std::uint32_t> versions_;  // of each resource, at this point of the declaration
-  std::vector<ImportHandles> imports_;   // parallel to description_.externals
-  std::vector<Callback> callbacks_;      // parallel to description_.passes
+  Records<std::uint32_t> versions_;     // of each resource, at this point of the declaration
+  std::vector<ImportHandles> imports_;  // parallel to description_.externals
+  Records<Callback> callbacks_;         // parallel to description_.passes
   std::vector<Cleanup> cleanups_;
   std::vector<Block> blocks_;
-  std::size_t block_ = 0;      // the next block
-  std::byte* next_ = nullptr;  // free bytes of the current one
+  std::uint32_t open_pass_ = kNone;  // the last
+  std::size_t block_ = 0;            // the next block
+  std::byte* next_ = nullptr;        // free bytes of the current one
   std::byte* end_ = nullptr;
   std::size_t text_used_ = 0;  // of description_.text
   std::uint32_t tag_ = 0;      // of the handles of this frame of this graph
@@ -210,7 +211,10 @@ void PassBuilder::record(Callable&& callable) {
 // costs little more than writing its records.
 
 inline void* Graph::allocate(std::size_t size, std::size_t alignment) {
-  const std::size_t padding = (0 - reinterpret_cast<std::uintptr_t>(next_)) & (alignment - 1);
+  // What is free begins at a multiple of kAlignment, which is enough for nearly everything.
+  const std::size_t padding =
+      alignment <= kAlignment ? 0 : (0 - reinterpret_cast<std::uintptr_t>(next_)) & (alignment - 1);
+  size = (size + kAlignment - 1) & ~(kAlignment - 1);
   if (padding + size > static_cast<std::size_t>(end_ - next_))
     return allocate_in_next_block(size, alignment);
   std::byte* const start = next_ + padding;
@@ -220,8 +224,10 @@ inline void* Graph::allocate(std::size_t size, std::size_t alignment) {
 
 inline GraphDescription::Name Graph::keep_name(std::string_view name) {
   const std::size_t size = name.size();
-  if (text_used_ + size > description_.text.size()) grow_text(size);
-  char* to = description_.text.data() + text_used_;
+  const std::size_t offset = text_used_;
+  text_used_ = offset + size;
+  if (text_used_ > description_.text.size()) grow_text();
+  char* to = description_.text.data() + offset;
   // Two overlapping copies of a fixed size are cheaper than one of a size that is not known.
   if (size >= 8 && size <= 16) {
     std::memcpy(to, name.data(), 8);
@@ -232,13 +238,11 @@ inline GraphDescription::Name Graph::keep_name(std::string_view name) {
   } else if (size != 0) {
     std::memcpy(to, name.data(), size);
   }
-  const GraphDescription::Name kept{static_cast<std::uint32_t>(text_used_),
-                                    static_cast<std::uint32_t>(size)};
-  text_used_ += size;
-  return kept;
+  return {static_cast<std::uint32_t>(offset), static_cast<std::uint32_t>(size)};
 }
 
 inline void Graph::fill_texture_record(ResourceRecord& record, const TextureDesc& desc) const {
+  record.size = 0;
   record.format = desc.format;
   record.width = desc.extent.width;
   record.height = desc.extent.height;
@@ -246,87 +250,85 @@ inline void Graph::fill_texture_record(ResourceRecord& record, const TextureDesc
   record.mips = desc.mips;
   record.layers = desc.layers;
   record.samples = desc.samples;
+  record.external = kNone;
+  record.kind = ResourceKind::texture;
+  record.origin = Origin::transient;
+  record.slot = 0;
+  record.slots = 1;
+  record.flags = 0;
   if (desc.extent.relative_to.index != kNone) resolve_extent(record, desc.extent);
 }
 
-inline std::uint32_t Graph::add_resource(std::string_view name, const ResourceRecord& record) {
-  const auto index = static_cast<std::uint32_t>(description_.resources.size());
-  description_.resources.push_back(record);
-  description_.resource_names.push_back(keep_name(name));
-  versions_.push_back(0);
-  return index;
-}
-
 inline Texture Graph::create_texture(std::string_view name, const TextureDesc& desc) {
-  const auto index = static_cast<std::uint32_t>(description_.resources.size());
-  fill_texture_record(description_.resources.emplace_back(), desc);
-  description_.resource_names.push_back(keep_name(name));
-  versions_.push_back(0);
+  const auto index = static_cast<std::uint32_t>(versions_.size());
+  fill_texture_record(description_.resources.append(), desc);
+  description_.resource_names.append() = keep_name(name);
+  versions_.append() = 0;
   return {index, 0, tag_};
 }
 
 inline PassBuilder Graph::add_pass(std::string_view name, QueueClass queue) {
-  const auto index = static_cast<std::uint32_t>(description_.passes.size());
-  description_.passes.push_back(
-      {static_cast<std::uint32_t>(description_.accesses.size()), queue, 0, 0});
-  description_.pass_names.push_back(keep_name(name));
-  callbacks_.push_back({});
-  return {*this, index};
+  open_pass_ = static_cast<std::uint32_t>(description_.passes.size());
+  PassRecord& record = description_.passes.append();
+  record.first_access = static_cast<std::uint32_t>(description_.accesses.size());
+  record.queue = queue;
+  record.flags = 0;
+  record.reserved = 0;
+  description_.pass_names.append() = keep_name(name);
+  callbacks_.append() = {};
+  return {*this, open_pass_};
 }
 
-inline void Graph::append_access(std::uint32_t pass, std::uint32_t index, std::uint32_t version,
-                                 std::uint32_t graph, const Access& access, Range range,
-                                 std::uint32_t flags, ResourceKind kind) {
-  AccessRecord& record = description_.accesses.emplace_back();
+// The version that the access leaves.
+template <typename Handle>
+inline std::uint32_t Graph::add_access(std::uint32_t pass, const Handle& handle,
+                                       const Access& access, Range range, std::uint32_t flags) {
+  constexpr ResourceKind kKind =
+      std::is_same_v<Handle, Texture> ? ResourceKind::texture : ResourceKind::buffer;
+  const bool writes = (flags & kWrite) != 0;
+  if (pass != open_pass_) flags |= kClosed;
+  AccessRecord& record = description_.accesses.append();
   record.stages = access.stages;
   record.access = access.access;
   record.layout = access.layout;
   record.usage = access.usage;
-  record.version = version;
-  record.kind = kind;
+  record.version = handle.version;
   record.range = range;
-  if (graph == tag_ && index < description_.resources.size()) {
-    record.resource = index;
-    const ResourceRecord& resource = description_.resources[index];
-    if (range == Range{} && resource.mips == 1 && resource.layers == 1) {
-      record.range = {0, 1, 0, 1};
-      // As a rule the access is a constant, and all but the resource is known to the compiler.
-      const bool fits = access.stages != 0 && access.access != 0 &&
-                        ((access.access & kWriteBits) != 0) == ((flags & kWrite) != 0) &&
-                        (kind == ResourceKind::buffer || layout_is_usable(access.layout));
-      if (fits && resource.kind == kind && resource.origin != Origin::imported) flags |= kPlain;
-    } else {
-      resolve_range(record.range, resource);
-    }
-  } else {
-    flags |= index == kNone ? kNull : kForeign;
+  record.kind = kKind;
+  if (handle.graph != tag_ || handle.index >= versions_.size()) {
+    record.resource = kNone;
+    record.flags = flags | (handle.index == kNone ? kNull : kForeign);
+    return kNone;
   }
-  if (pass + 1 != description_.passes.size()) flags |= kClosed;
+  record.resource = handle.index;
+  const ResourceRecord& resource = description_.resources[handle.index];
+  if (range == Range{} && resource.mips == 1 && resource.layers == 1) {
+    record.range = {0, 1, 0, 1};
+    // As a rule the access is a constant, and all but the resource is known to the compiler.
+    const bool fits = access.stages != 0 && access.access != 0 &&
+                      ((access.access & kWriteBits) != 0) == writes &&
+                      (kKind == ResourceKind::buffer || layout_is_usable(access.layout));
+    if (fits && resource.kind == kKind && resource.origin != Origin::imported) flags |= kPlain;
+  } else {
+    resolve_range(record.range, resource);
+  }
   record.flags = flags;
-}
-
-inline std::uint32_t Graph::next_version(std::uint32_t index, std::uint32_t graph) {
-  if (graph != tag_ || index >= versions_.size()) return kNone;
-  return ++versions_[index];
+  return versions_[handle.index] += writes;
 }
 
 inline void PassBuilder::read(Texture texture, const Access& access, Range range) {
-  graph_.append_access(pass_, texture.index, texture.version, texture.graph, access, range, 0,
-                       ResourceKind::texture);
+  graph_.add_access(pass_, texture, access, range, 0);
 }
 
 inline void PassBuilder::read(Buffer buffer, const Access& access) {
-  graph_.append_access(pass_, buffer.index, buffer.version, buffer.graph, access, {}, 0,
-                       ResourceKind::buffer);
+  graph_.add_access(pass_, buffer, access, {}, 0);
 }
 
 inline Texture PassBuilder::write(Texture texture, const Access& access, Range range,
                                   Contents contents, Need need) {
   const std::uint32_t flags = kWrite | (contents == Contents::discard ? kDiscard : 0u) |
                               (need == Need::optional ? kOptional : 0u);
-  graph_.append_access(pass_, texture.index, texture.version, texture.graph, access, range, flags,
-                       ResourceKind::texture);
-  texture.version = graph_.next_version(texture.index, texture.graph);
+  texture.version = graph_.add_access(pass_, texture, access, range, flags);
   return texture;
 }
 
@@ -334,9 +336,7 @@ inline Buffer PassBuilder::write(Buffer buffer, const Access& access, Contents c
                                  Need need) {
   const std::uint32_t flags = kWrite | (contents == Contents::discard ? kDiscard : 0u) |
                               (need == Need::optional ? kOptional : 0u);
-  graph_.append_access(pass_, buffer.index, buffer.version, buffer.graph, access, {}, flags,
-                       ResourceKind::buffer);
-  buffer.version = graph_.next_version(buffer.index, buffer.graph);
+  buffer.version = graph_.add_access(pass_, buffer, access, {}, flags);
   return buffer;
 }
 
