@@ -56,17 +56,18 @@ class Culler {
   PassFate visit(std::uint32_t pass) {
     const PassRecord& record = graph_.passes[pass];
     const auto accesses = graph_.pass_accesses(pass);
-    std::uint8_t* const live = plan_.live_accesses.data() + record.first_access;
+    std::uint8_t* const first_live = plan_.live_accesses.data() + record.first_access;
     bool pass_is_live = (record.flags & kSideEffect) != 0;
     bool writes = false;
     PassFate fate{pass_is_live ? Fate::side_effect : Fate::unread, kNone, kNone};
-    for (std::size_t i = 0; i < accesses.size(); ++i) {
-      const AccessRecord& access = accesses[i];
+    std::uint8_t* live = first_live;
+    for (const AccessRecord& access : accesses) {
+      std::uint8_t& needed = *live++;
       if (!(access.flags & kWrite)) continue;
       writes = true;
       const std::uint32_t why = first_need(access);
       if (why == kUnneeded) continue;
-      live[i] = 1;
+      needed = 1;
       if (!pass_is_live) fate = explain(why, access.resource);
       pass_is_live = true;
     }
@@ -75,12 +76,13 @@ class Culler {
       return fate;
     }
     // A pass does not read what it writes in another access: these can be in any order.
-    for (std::size_t i = 0; i < accesses.size(); ++i) {
-      const AccessRecord& access = accesses[i];
-      if (!(access.flags & kOptional)) live[i] = 1;
+    live = first_live;
+    for (const AccessRecord& access : accesses) {
+      std::uint8_t& needed = *live++;
+      if (!(access.flags & kOptional)) needed = 1;
       if (!(access.flags & kWrite))
         begin_need(access, pass);
-      else if (live[i] && (access.flags & kDiscard))
+      else if (needed && (access.flags & kDiscard))
         end_need(access);
     }
     return fate;

@@ -55,12 +55,14 @@ constexpr auto kTexelSizes = [] {
   return sizes;
 }();
 
-}  // namespace
-
-std::uint32_t texel_size(VkFormat format) {
+inline std::uint32_t known_texel_size(VkFormat format) {
   const auto index = static_cast<std::size_t>(format);
   return index < kTexelSizes.size() ? kTexelSizes[index] : find_texel_size(format);
 }
+
+}  // namespace
+
+std::uint32_t texel_size(VkFormat format) { return known_texel_size(format); }
 
 VkImageAspectFlags aspects(VkFormat format) {
   switch (format) {
@@ -95,7 +97,7 @@ MemoryRequirements estimate_requirements(const ResourceRecord& record) {
       };
       size += side(record.width) * side(record.height) * side(record.depth);
     }
-    size *= VkDeviceSize{texel_size(record.format)} * record.layers * record.samples;
+    size *= VkDeviceSize{known_texel_size(record.format)} * record.layers * record.samples;
   }
   return {(size + kAlignment - 1) & ~(kAlignment - 1), kAlignment, ~0u};
 }

@@ -16,7 +16,7 @@ void note(UseState& state, const AccessRecord& access, std::int32_t time) {
     state.write_access = access.access & kWriteBits;
     state.write_time = time;
     state.read_stages = 0;
-    state.read_time = -2;
+    state.read_time = kNever;
     state.seen_stages = 0;
     state.seen_access = 0;
     state.transition = kNone;
@@ -53,22 +53,24 @@ void Synchroniser::run() {
   s_.latest.clear();
   arrive();
   find_last_uses();
-  auto starting = workspace_.transients.cbegin();
   const auto count = static_cast<std::uint32_t>(plan_.passes.size());
+  const std::uint32_t* starting = workspace_.transients.data();
+  const std::uint32_t* const end = starting + workspace_.transients.size();
+  const auto next_start = [&] {
+    return starting == end ? count : plan_.placements[*starting].first;
+  };
+  std::uint32_t start = next_start();
   for (std::uint32_t position = 0; position < count; ++position) {
     PlannedPass& planned = plan_.passes[position];
     queue_ = planned.queue;
-    floor_ = plan_.submissions[planned.submission].first_pass;
-    for (;
-         starting != workspace_.transients.cend() && plan_.placements[*starting].first == position;
-         ++starting)
-      take_over_memory(*starting);
+    if (workspace_.several_queues)
+      earliest_ = batch_time(plan_.submissions[planned.submission].first_pass) - 1;
+    for (; start == position; start = next_start()) take_over_memory(*starting++);
     for_each_live(graph_, plan_, planned.pass,
                   [&](const AccessRecord& access) { use(position, access); });
-    if (batch_position_ == position) {
-      planned.first_batch = static_cast<std::uint32_t>(plan_.batches.size() - 1);
-      planned.batch_count = 1;
-    }
+    if (batch_time_ != batch_time(position)) continue;
+    planned.first_batch = static_cast<std::uint32_t>(plan_.batches.size() - 1);
+    planned.batch_count = 1;
   }
   depart();
   if (limits_.split_barriers) split();
@@ -133,14 +135,15 @@ void Synchroniser::find_last_owners() {
 }
 
 // A transient's first use comes after the last uses of all that had its bytes before.
-void Synchroniser::take_over_memory(std::uint32_t resource) {
+inline void Synchroniser::take_over_memory(std::uint32_t resource) {
   const Placement& placed = plan_.placements[resource];
-  const auto& first = workspace_.first_sub;
+  const std::uint32_t* const subs = workspace_.first_sub.data();
+  UseState* const states = s_.states.data();
   UseState merged;
   const auto merge = [&](const Segment& segment) {
-    const auto& states = segment.before ? s_.last_uses : s_.states;
-    for (std::uint32_t sub = first[segment.resource]; sub < first[segment.resource + 1]; ++sub) {
-      const UseState& state = states[sub];
+    const UseState* const theirs = segment.before ? s_.last_uses.data() : states;
+    for (std::uint32_t sub = subs[segment.resource]; sub < subs[segment.resource + 1]; ++sub) {
+      const UseState& state = theirs[sub];
       // With several queues a frame begins when all of the one before is done.
       if (workspace_.several_queues && (segment.before || state.queue != queue_)) {
         merged.by_wait = 1;
@@ -161,7 +164,7 @@ void Synchroniser::take_over_memory(std::uint32_t resource) {
             merge);
   merged.handed_over = 1;
   merged.queue = queue_;
-  std::fill(s_.states.begin() + first[resource], s_.states.begin() + first[resource + 1], merged);
+  for (std::uint32_t sub = subs[resource]; sub < subs[resource + 1]; ++sub) states[sub] = merged;
 }
 
 inline void Synchroniser::use(std::uint32_t position, const AccessRecord& access) {
@@ -229,7 +232,7 @@ inline void Synchroniser::change_layout(std::uint32_t position, const AccessReco
 void Synchroniser::read_again(std::uint32_t position, const AccessRecord& access, UseState& state) {
   const bool seen =
       (access.stages & ~state.seen_stages) == 0 && (access.access & ~state.seen_access) == 0;
-  if (!seen && (state.write_time != -2 || state.by_wait)) {
+  if (!seen && (state.write_time != kNever || state.by_wait)) {
     if (state.transition != kNone) {
       plan_.transitions[state.transition].dst_stages |= access.stages;
       plan_.transitions[state.transition].dst_access |= access.access;
@@ -271,7 +274,7 @@ void Synchroniser::write_again(std::uint32_t position, const AccessRecord& acces
 
 void Synchroniser::depart() {
   const auto end = static_cast<std::uint32_t>(plan_.passes.size());
-  if (workspace_.several_queues) floor_ = end;
+  if (workspace_.several_queues) earliest_ = batch_time(end) - 1;
   for (std::uint32_t r = 0; r < graph_.resources.size() && !graph_.externals.empty(); ++r) {
     queue_ = QueueClass::graphics;
     const ResourceRecord& resource = graph_.resources[r];
@@ -282,7 +285,7 @@ void Synchroniser::depart() {
       use(end, outside_use(r, external.departure));
     if (used && resource.origin == Origin::history) leave(r);
   }
-  if (batch_position_ == end && !plan_.batches.empty()) {
+  if (batch_time_ == batch_time(end) && !plan_.batches.empty()) {
     Submission& last = plan_.submissions.back();
     last.first_batch = static_cast<std::uint32_t>(plan_.batches.size() - 1);
     last.batch_count = 1;

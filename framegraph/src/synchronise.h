@@ -16,8 +16,9 @@ inline VkPipelineStageFlags2 waited_stages(const AccessRecord& access) {
   return stages != 0 ? stages : VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
 }
 
-// A time before the frame: see UseState.
-inline constexpr std::int32_t kBeforeFrame = -1;
+inline std::int32_t batch_time(std::uint32_t position) {
+  return static_cast<std::int32_t>(2 * position);
+}
 
 inline std::int32_t pass_time(std::uint32_t position) {
   return static_cast<std::int32_t>(2 * position + 1);
@@ -72,20 +73,22 @@ class Synchroniser {
   Workspace& workspace_;
   Plan& plan_;
   Workspace::Synchronise& s_;
-  std::uint32_t batch_position_ = kNone;     // of the last batch
+  std::int32_t batch_time_ = kNever;         // of the last batch
   QueueClass queue_ = QueueClass::graphics;  // of the pass in hand
-  std::uint32_t floor_ = 0;  // first position of its submission: no barrier can be put before
+  std::int32_t earliest_ =
+      kBeforeFrame;  // no barrier can be put before: when its submission begins
 };
 
 // The dependencies go into the last batch if that comes after `time`, else into a new one.
 inline Batch& Synchroniser::batch_after(std::int32_t time, std::uint32_t position) {
-  time = std::max(time, static_cast<std::int32_t>(2 * floor_) - 1);
-  if (batch_position_ == kNone || static_cast<std::int32_t>(2 * batch_position_) < time) {
-    batch_position_ = position;
+  time = std::max(time, earliest_);
+  if (batch_time_ < time) {
+    batch_time_ = batch_time(position);
     plan_.batches.push_back({static_cast<std::uint32_t>(plan_.transitions.size()), 0});
     s_.latest.push_back(time);
+  } else {
+    s_.latest.back() = std::max(s_.latest.back(), time);
   }
-  s_.latest.back() = std::max(s_.latest.back(), time);
   return plan_.batches.back();
 }
 
@@ -99,7 +102,7 @@ inline Transition& Synchroniser::next_image(std::int32_t time, std::uint32_t pos
 inline void Synchroniser::join_neighbours() {
   if (plan_.batches.back().count < 2) return;
   const Transition* const last = &plan_.transitions.back();
-  if (!extend(plan_.transitions[plan_.transitions.size() - 2], *last)) return;
+  if (last[-1].resource != last->resource || !extend(plan_.transitions.end()[-2], *last)) return;
   plan_.transitions.pop_back();
   --plan_.batches.back().count;
 }
@@ -117,7 +120,7 @@ inline void Synchroniser::note_change(std::uint32_t position, const AccessRecord
     state.write_time = pass_time(position);
     return;
   }
-  state.write_time = static_cast<std::int32_t>(2 * batch_position_);
+  state.write_time = batch_time_;
   state.read_stages = state.seen_stages = access.stages;
   state.seen_access = access.access;
   state.read_time = pass_time(position);

@@ -55,11 +55,11 @@ bool check_texture(Validation& v, std::uint32_t index, const ResourceRecord& r) 
   return true;
 }
 
-// What most textures are, found out at once; anything else is looked at closely.
-bool is_plainly_right(const Limits& limits, const ResourceRecord& r) {
-  const bool plain = r.flags == 0 && r.depth == 1 && r.mips == 1 && r.layers == 1 && r.samples == 1;
-  const std::uint32_t limit = limits.max_extent_2d;
-  return plain && r.width - 1 < limit && r.height - 1 < limit && r.format != VK_FORMAT_UNDEFINED;
+// What most resources are, found out at once: a right texture of one subresource.
+bool is_plainly_right(const ResourceRecord& r, std::uint32_t limit) {
+  return r.kind == ResourceKind::texture && r.external == kNone && r.flags == 0 && r.depth == 1 &&
+         r.mips == 1 && r.layers == 1 && r.samples == 1 && r.width - 1 < limit &&
+         r.height - 1 < limit && r.format != VK_FORMAT_UNDEFINED;
 }
 
 bool check_buffer(Validation& v, std::uint32_t index, const ResourceRecord& r) {
@@ -86,22 +86,30 @@ void check_external(Validation& v, std::uint32_t index, const ResourceRecord& r)
         kNone, index);
 }
 
+// Any resource; how many subresources it has, none when its description is wrong.
+std::uint32_t look_closely(Validation& v, std::uint32_t index, const ResourceRecord& r) {
+  const bool texture = r.kind == ResourceKind::texture;
+  const bool right = texture ? check_texture(v, index, r) : check_buffer(v, index, r);
+  if (r.external != kNone) check_external(v, index, r);
+  if (!right) return 0;
+  return texture ? r.mips * r.layers : 1;
+}
+
 }  // namespace
 
 void validate_resources(Validation& v) {
   const auto& resources = v.graph.resources;
   v.workspace.first_sub.resize(resources.size() + 1);
+  std::uint32_t* first = v.workspace.first_sub.data();
+  const std::uint32_t limit = v.limits.max_extent_2d;
   std::uint32_t next = 0;
-  for (std::uint32_t i = 0; i < resources.size(); ++i) {
-    const ResourceRecord& r = resources[i];
-    const bool right = r.kind == ResourceKind::buffer  ? check_buffer(v, i, r)
-                       : is_plainly_right(v.limits, r) ? true
-                                                       : check_texture(v, i, r);
-    if (r.external != kNone) check_external(v, i, r);
-    v.workspace.first_sub[i] = next;
-    if (right) next += r.kind == ResourceKind::texture ? r.mips * r.layers : 1;
+  std::uint32_t index = 0;
+  for (const ResourceRecord& r : resources) {
+    *first++ = next;
+    next += is_plainly_right(r, limit) ? 1 : look_closely(v, index, r);
+    ++index;
   }
-  v.workspace.first_sub[resources.size()] = next;
+  *first = next;
 }
 
 }  // namespace alcove::framegraph

@@ -13,16 +13,19 @@
 
 namespace alcove::framegraph {
 
-// What was last done to a subresource, or to bytes of memory. Time runs in half positions: the
-// batch before position p is at 2p, the pass at 2p + 1, everything before the frame at -1.
+// Time runs in half positions: the batch before position p is at 2p, the pass at 2p + 1.
+inline constexpr std::int32_t kBeforeFrame = -1;
+inline constexpr std::int32_t kNever = -2;
+
+// What was last done to a subresource, or to bytes of memory.
 struct UseState {
   VkPipelineStageFlags2 write_stages = 0;  // of the last write or layout change
   VkAccessFlags2 write_access = 0;         // 0 after a layout change: it is available by itself
   VkPipelineStageFlags2 read_stages = 0;   // of the reads since
   VkPipelineStageFlags2 seen_stages = 0;   // by which the write can be seen
   VkAccessFlags2 seen_access = 0;
-  std::int32_t write_time = -2;
-  std::int32_t read_time = -2;
+  std::int32_t write_time = kNever;
+  std::int32_t read_time = kNever;
   VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
   std::uint32_t transition = kNone;  // the image barrier that made this layout
   // Memory that others had before: its reads do not stand for its writes.
@@ -148,7 +151,7 @@ inline void for_each_sub(const GraphDescription& graph, const Workspace& workspa
                          const AccessRecord& access, Function&& f) {
   const std::uint32_t* const subs = workspace.first_sub.data() + access.resource;
   const std::uint32_t first = subs[0];
-  if (subs[1] == first + 1) {
+  if (subs[1] == first + 1) [[likely]] {
     f(first);
     return;
   }
