@@ -37,13 +37,8 @@ void Graph::reset() {
   description_.resources.clear();
   description_.externals.clear();
   description_.outputs.clear();
-  text_used_ = 0;
-  description_.pass_names.clear();
-  description_.resource_names.clear();
-  versions_.clear();
+  description_.text.clear();
   imports_.clear();
-  callbacks_.clear();
-  open_pass_ = kNone;
   histories_.begin_frame();
   block_ = 0;
   next_ = end_ = nullptr;
@@ -84,11 +79,12 @@ void Graph::resolve_extent(ResourceRecord& record, const Extent& extent) const {
   record.depth = divided(other.depth, extent.divisor);
 }
 
-void Graph::resolve_range(Range& range, const ResourceRecord& resource) {
+Range Graph::resolved_range(Range range, const ResourceRecord& resource) {
   if (range.mips == kAll && range.base_mip < resource.mips)
     range.mips = static_cast<std::uint16_t>(resource.mips - range.base_mip);
   if (range.layers == kAll && range.base_layer < resource.layers)
     range.layers = static_cast<std::uint16_t>(resource.layers - range.base_layer);
+  return range;
 }
 
 ResourceRecord Graph::texture_record(const TextureDesc& desc) const {
@@ -98,10 +94,10 @@ ResourceRecord Graph::texture_record(const TextureDesc& desc) const {
 }
 
 std::uint32_t Graph::add_resource(std::string_view name, const ResourceRecord& record) {
-  const auto index = static_cast<std::uint32_t>(versions_.size());
+  const auto index = static_cast<std::uint32_t>(description_.resources.size());
   description_.resources.push_back(record);
-  description_.resource_names.push_back(keep_name(name));
-  versions_.push_back(0);
+  description_.resource_names.at(index) = keep_name(name);
+  versions_.at(index) = 0;
   return index;
 }
 
@@ -204,8 +200,6 @@ Buffer BufferHistory::previous(std::uint32_t age) const {
 void Graph::reset_history(std::string_view name) { histories_.invalidate(name); }
 
 void Graph::reset_histories() { histories_.invalidate_all(); }
-
-void Graph::grow_text() { description_.text.resize(std::max<std::size_t>(1024, 2 * text_used_)); }
 
 void Graph::output(Texture texture) {
   const bool known = texture.graph == tag_ && texture.index < description_.resources.size();

@@ -6,7 +6,6 @@
 #include <span>
 #include <string_view>
 #include <type_traits>
-#include <vector>
 
 #include "alcove/framegraph/records.h"
 #include "alcove/framegraph/types.h"
@@ -58,9 +57,8 @@ enum AccessFlags : std::uint32_t {
   kForeign = 8,  // the handle was of another graph or frame
   kNull = 16,    // the handle was never made
   kClosed = 32,  // declared on a pass that is not the last
-  // All of a resource with one subresource that is not imported, with stages, access bits and
-  // layout that fit: by itself right on a queue that can run anything. Compile looks closer at any
-  // other.
+  // All of a transient with one subresource, with stages, access bits and layout that fit: by
+  // itself right on a queue that can run anything. Compile looks closer at any other.
   kPlain = 64,
 };
 
@@ -118,9 +116,9 @@ struct GraphDescription {
     std::uint32_t offset = 0;
     std::uint32_t size = 0;
   };
-  std::vector<char> text;
-  Records<Name> pass_names;
-  Records<Name> resource_names;
+  Records<char> text;
+  Beside<Name> pass_names;
+  Beside<Name> resource_names;
 
   std::span<const AccessRecord> pass_accesses(std::uint32_t pass) const {
     const std::uint32_t first = passes[pass].first_access;

@@ -162,14 +162,13 @@ class Graph {
   };
 
   GraphDescription::Name keep_name(std::string_view name);
-  void grow_text();
   std::uint32_t add_resource(std::string_view name, const ResourceRecord& record);
   ResourceRecord texture_record(const TextureDesc& desc) const;
   void fill_texture_record(ResourceRecord& record, const TextureDesc& desc) const;
   void resolve_extent(ResourceRecord& record, const Extent& extent) const;
   std::uint32_t add_history(std::string_view name, ResourceRecord record, std::uint32_t slots,
                             HistoryValidity& validity);
-  static void resolve_range(Range& range, const ResourceRecord& resource);
+  static Range resolved_range(Range range, const ResourceRecord& resource);
   template <typename Handle>
   std::uint32_t add_access(std::uint32_t pass, const Handle& handle, const Access& access,
                            Range range, std::uint32_t flags);
@@ -178,17 +177,15 @@ class Graph {
   void destroy_callables();
 
   GraphDescription description_;
-  Records<std::uint32_t> versions_;     // of each resource, at this point of the declaration
+  Beside<std::uint32_t> versions_;      // of each resource, at this point of the declaration
   std::vector<ImportHandles> imports_;  // parallel to description_.externals
-  Records<Callback> callbacks_;         // parallel to description_.passes
+  Beside<Callback> callbacks_;          // parallel to description_.passes
   std::vector<Cleanup> cleanups_;
   std::vector<Block> blocks_;
-  std::uint32_t open_pass_ = kNone;  // the last
-  std::size_t block_ = 0;            // the next block
-  std::byte* next_ = nullptr;        // free bytes of the current one
+  std::size_t block_ = 0;      // the next block
+  std::byte* next_ = nullptr;  // free bytes of the current one
   std::byte* end_ = nullptr;
-  std::size_t text_used_ = 0;  // of description_.text
-  std::uint32_t tag_ = 0;      // of the handles of this frame of this graph
+  std::uint32_t tag_ = 0;  // of the handles of this frame of this graph
   HistoryTable histories_;
 };
 
@@ -197,7 +194,7 @@ void PassBuilder::record(Callable&& callable) {
   using Stored = std::decay_t<Callable>;
   void* object = graph_.allocate(sizeof(Stored), alignof(Stored));
   ::new (object) Stored(std::forward<Callable>(callable));
-  graph_.callbacks_[pass_] = {
+  graph_.callbacks_.at(pass_) = {
       [](void* stored, RecordContext& context) { (*static_cast<Stored*>(stored))(context); },
       object};
   graph_.description_.passes[pass_].flags |= kHasCallback;
@@ -224,10 +221,8 @@ inline void* Graph::allocate(std::size_t size, std::size_t alignment) {
 
 inline GraphDescription::Name Graph::keep_name(std::string_view name) {
   const std::size_t size = name.size();
-  const std::size_t offset = text_used_;
-  text_used_ = offset + size;
-  if (text_used_ > description_.text.size()) grow_text();
-  char* to = description_.text.data() + offset;
+  const std::size_t offset = description_.text.size();
+  char* const to = description_.text.append(size);
   // Two overlapping copies of a fixed size are cheaper than one of a size that is not known.
   if (size >= 8 && size <= 16) {
     std::memcpy(to, name.data(), 8);
@@ -260,23 +255,22 @@ inline void Graph::fill_texture_record(ResourceRecord& record, const TextureDesc
 }
 
 inline Texture Graph::create_texture(std::string_view name, const TextureDesc& desc) {
-  const auto index = static_cast<std::uint32_t>(versions_.size());
+  const auto index = static_cast<std::uint32_t>(description_.resources.size());
   fill_texture_record(description_.resources.append(), desc);
-  description_.resource_names.append() = keep_name(name);
-  versions_.append() = 0;
+  description_.resource_names.at(index) = keep_name(name);
+  versions_.at(index) = 0;
   return {index, 0, tag_};
 }
 
 inline PassBuilder Graph::add_pass(std::string_view name, QueueClass queue) {
-  open_pass_ = static_cast<std::uint32_t>(description_.passes.size());
+  const auto index = static_cast<std::uint32_t>(description_.passes.size());
   PassRecord& record = description_.passes.append();
   record.first_access = static_cast<std::uint32_t>(description_.accesses.size());
   record.queue = queue;
   record.flags = 0;
   record.reserved = 0;
-  description_.pass_names.append() = keep_name(name);
-  callbacks_.append() = {};
-  return {*this, open_pass_};
+  description_.pass_names.at(index) = keep_name(name);
+  return {*this, index};
 }
 
 // The version that the access leaves.
@@ -286,31 +280,32 @@ inline std::uint32_t Graph::add_access(std::uint32_t pass, const Handle& handle,
   constexpr ResourceKind kKind =
       std::is_same_v<Handle, Texture> ? ResourceKind::texture : ResourceKind::buffer;
   const bool writes = (flags & kWrite) != 0;
-  if (pass != open_pass_) flags |= kClosed;
+  if (pass + 1 != description_.passes.size()) [[unlikely]]
+    flags |= kClosed;
   AccessRecord& record = description_.accesses.append();
   record.stages = access.stages;
   record.access = access.access;
   record.layout = access.layout;
   record.usage = access.usage;
   record.version = handle.version;
-  record.range = range;
   record.kind = kKind;
-  if (handle.graph != tag_ || handle.index >= versions_.size()) {
+  if (handle.graph != tag_ || handle.index >= description_.resources.size()) [[unlikely]] {
+    record.range = range;
     record.resource = kNone;
     record.flags = flags | (handle.index == kNone ? kNull : kForeign);
     return kNone;
   }
   record.resource = handle.index;
   const ResourceRecord& resource = description_.resources[handle.index];
-  if (range == Range{} && resource.mips == 1 && resource.layers == 1) {
+  if (range == Range{} && resource.mips == 1 && resource.layers == 1) [[likely]] {
     record.range = {0, 1, 0, 1};
     // As a rule the access is a constant, and all but the resource is known to the compiler.
     const bool fits = access.stages != 0 && access.access != 0 &&
                       ((access.access & kWriteBits) != 0) == writes &&
                       (kKind == ResourceKind::buffer || layout_is_usable(access.layout));
-    if (fits && resource.kind == kKind && resource.origin != Origin::imported) flags |= kPlain;
+    if (fits && resource.kind == kKind && resource.origin == Origin::transient) flags |= kPlain;
   } else {
-    resolve_range(record.range, resource);
+    record.range = resolved_range(range, resource);
   }
   record.flags = flags;
   return versions_[handle.index] += writes;

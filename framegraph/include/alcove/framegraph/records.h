@@ -1,5 +1,5 @@
-// A growing array of plain records, for what is declared anew in every frame: clearing and
-// appending cost next to nothing, since a record is not made again when its place is used again.
+// Growing arrays for what is declared anew in every frame. Using a place again costs next to
+// nothing, since what is there is overwritten and not made again.
 #pragma once
 
 #include <cstddef>
@@ -7,13 +7,19 @@
 
 namespace alcove::framegraph {
 
+// Plain records, one after the other.
 template <typename Record>
 class Records {
  public:
   // The next record, with whatever was there before: its fields are all to be set.
-  Record& append() {
-    if (size_ == capacity_) grow();
-    return records_[size_++];
+  Record& append() { return *append(1); }
+  // The first of `count` such records.
+  Record* append(std::size_t count) {
+    const std::size_t first = size_;
+    size_ += count;
+    if (size_ > capacity_) [[unlikely]]
+      grow();
+    return records_.data() + first;
   }
   void push_back(const Record& record) { append() = record; }
   void clear() { size_ = 0; }
@@ -28,13 +34,36 @@ class Records {
 
  private:
   void grow() {
-    capacity_ = 2 * capacity_ + 16;
+    capacity_ = 2 * size_ + 16;
     records_.resize(capacity_);
   }
 
   std::vector<Record> records_;
   std::size_t size_ = 0;
   std::size_t capacity_ = 0;  // what records_ holds
+};
+
+// Values beside records, each at the index of its record.
+template <typename Value>
+class Beside {
+ public:
+  Value& at(std::size_t index) {
+    if (index >= capacity_) [[unlikely]]
+      grow(index);
+    return values_[index];
+  }
+  // At an index that was given to at() before.
+  const Value& operator[](std::size_t index) const { return values_[index]; }
+  Value& operator[](std::size_t index) { return values_[index]; }
+
+ private:
+  void grow(std::size_t index) {
+    capacity_ = 2 * index + 16;
+    values_.resize(capacity_);
+  }
+
+  std::vector<Value> values_;
+  std::size_t capacity_ = 0;  // what values_ holds
 };
 
 }  // namespace alcove::framegraph
