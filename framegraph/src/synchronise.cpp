@@ -336,15 +336,15 @@ void Synchroniser::leave(std::uint32_t resource) {
   plan_.finals.push_back(final);
 }
 
-// Makes `last` cover the mips of `next` too, if the two are neighbours that change alike.
+// Makes `last` cover the mips of `next` too, if the two are neighbours that change alike: both are
+// of one resource.
 bool Synchroniser::extend(Transition& last, const Transition& next) {
   const Range& a = last.range;
   const Range& b = next.range;
-  const bool alike = last.resource == next.resource && last.src_stages == next.src_stages &&
-                     last.src_access == next.src_access && last.dst_stages == next.dst_stages &&
-                     last.dst_access == next.dst_access && last.old_layout == next.old_layout &&
-                     last.new_layout == next.new_layout && last.src_queue == next.src_queue &&
-                     last.dst_queue == next.dst_queue;
+  const bool alike = last.src_stages == next.src_stages && last.src_access == next.src_access &&
+                     last.dst_stages == next.dst_stages && last.dst_access == next.dst_access &&
+                     last.old_layout == next.old_layout && last.new_layout == next.new_layout &&
+                     last.src_queue == next.src_queue && last.dst_queue == next.dst_queue;
   const bool neighbours =
       a.base_layer == b.base_layer && a.layers == b.layers && a.base_mip + a.mips == b.base_mip;
   if (!alike || !neighbours) return false;

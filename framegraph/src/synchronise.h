@@ -73,10 +73,10 @@ class Synchroniser {
   Workspace& workspace_;
   Plan& plan_;
   Workspace::Synchronise& s_;
-  std::int32_t batch_time_ = kNever;         // of the last batch
+  std::int32_t batch_time_ = kNever;  // of the last batch
+  // When the submission of the pass in hand begins: no barrier can be put before.
+  std::int32_t earliest_ = kBeforeFrame;
   QueueClass queue_ = QueueClass::graphics;  // of the pass in hand
-  std::int32_t earliest_ =
-      kBeforeFrame;  // no barrier can be put before: when its submission begins
 };
 
 // The dependencies go into the last batch if that comes after `time`, else into a new one.
@@ -101,8 +101,8 @@ inline Transition& Synchroniser::next_image(std::int32_t time, std::uint32_t pos
 // Neighbouring mips and layers that change alike become one barrier.
 inline void Synchroniser::join_neighbours() {
   if (plan_.batches.back().count < 2) return;
-  const Transition* const last = &plan_.transitions.back();
-  if (last[-1].resource != last->resource || !extend(plan_.transitions.end()[-2], *last)) return;
+  Transition* const last = &plan_.transitions.back();
+  if (last[-1].resource != last->resource || !extend(last[-1], *last)) return;
   plan_.transitions.pop_back();
   --plan_.batches.back().count;
 }
