@@ -13,8 +13,15 @@ using passes::OcclusionSettings;
 using Failure = tl::unexpected<std::string>;
 using Json = nlohmann::ordered_json;
 
-constexpr std::array<std::pair<std::string_view, passes::Estimator>, 2> kEstimators{
-    {{"horizons", passes::Estimator::horizons}, {"bitmask", passes::Estimator::bitmask}}};
+constexpr std::array<std::pair<std::string_view, passes::Estimator>, 4> kEstimators{
+    {{"horizons", passes::Estimator::horizons},
+     {"heuristic", passes::Estimator::heuristic},
+     {"bitmask", passes::Estimator::bitmask},
+     {"connected", passes::Estimator::connected}}};
+constexpr std::array<std::pair<std::string_view, passes::Weighting>, 2> kWeightings{
+    {{"cosine", passes::Weighting::cosine}, {"uniform", passes::Weighting::uniform}}};
+constexpr std::array<std::pair<std::string_view, passes::ThicknessUnit>, 2> kThicknessUnits{
+    {{"radius", passes::ThicknessUnit::radius}, {"distance", passes::ThicknessUnit::distance}}};
 constexpr std::array<std::pair<std::string_view, passes::Pattern>, 3> kPatterns{
     {{"golden", passes::Pattern::golden},
      {"hilbert", passes::Pattern::hilbert},
@@ -63,6 +70,12 @@ std::string parse_name(const std::string& text, Value& value,
 std::string parse(const std::string& text, passes::Estimator& value) {
   return parse_name(text, value, kEstimators);
 }
+std::string parse(const std::string& text, passes::Weighting& value) {
+  return parse_name(text, value, kWeightings);
+}
+std::string parse(const std::string& text, passes::ThicknessUnit& value) {
+  return parse_name(text, value, kThicknessUnits);
+}
 std::string parse(const std::string& text, passes::Pattern& value) {
   return parse_name(text, value, kPatterns);
 }
@@ -91,6 +104,8 @@ Json show(float value) { return value; }
 Json show(std::uint32_t value) { return value; }
 Json show(bool value) { return value; }
 Json show(passes::Estimator value) { return name_of(value, kEstimators); }
+Json show(passes::Weighting value) { return name_of(value, kWeightings); }
+Json show(passes::ThicknessUnit value) { return name_of(value, kThicknessUnits); }
 Json show(passes::Pattern value) { return name_of(value, kPatterns); }
 Json show(passes::Precision value) { return name_of(value, kPrecisions); }
 Json show(passes::Specular value) { return name_of(value, kSpeculars); }
@@ -102,8 +117,12 @@ void for_each_setting(Settings& settings, const Visit& visit) {
   visit("slices", settings.slices);
   visit("steps", settings.steps);
   visit("estimator", settings.estimator);
+  visit("weighting", settings.weighting);
   visit("thickness", settings.thickness);
+  visit("thickness_unit", settings.thickness_unit);
   visit("fill", settings.fill);
+  visit("blend", settings.blend);
+  visit("falloff", settings.falloff);
   visit("divisor", settings.divisor);
   visit("pattern", settings.pattern);
   visit("depth_mips", settings.depth_mips);

@@ -27,12 +27,19 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const uint kSliceCount = 1;
 layout(constant_id = 1) const uint kStepCount = 12;
 layout(constant_id = 2) const bool kBentNormal = false;
-layout(constant_id = 3) const bool kBitmask = false;
+layout(constant_id = 3) const uint kEstimator = 0;  // as Estimator has them
 layout(constant_id = 4) const int kDivisor = 1;  // one search a block of so many pixels a side
 layout(constant_id = 5) const uint kPattern = 0;  // 0 golden, 1 Hilbert and R2, 2 the memo's
 layout(constant_id = 6) const bool kPerspective = true;
 layout(constant_id = 7) const bool kRoughnessTexture = false;
 layout(constant_id = 8) const int kRoughnessChannel = 0;
+layout(constant_id = 9) const bool kUniformWeight = false;
+layout(constant_id = 10) const bool kFalloff = false;
+layout(constant_id = 11) const bool kThicknessOfDistance = false;  // else of the radius
+
+const bool kHeuristic = kEstimator == 1;
+const bool kBitmask = kEstimator >= 2;
+const bool kConnected = kEstimator == 3;
 
 // Bend of the line between two samples, in depths for each pixel's width, that parts two surfaces.
 const float kSharpBend = 4.0;
@@ -105,6 +112,7 @@ struct Search {
   float depth;     // linear, of the shaded point
   TangentLine tangent;
   float gradient;  // of the tangent line, outwards
+  float lowest;    // cosine of the tangent plane's horizon
 };
 
 Search make_search(Surface surface, SliceLine line, Slice slice, float side, float offset) {
@@ -115,7 +123,8 @@ Search make_search(Surface surface, SliceLine line, Slice slice, float side, flo
   search.line.y_per_step *= side;
   // Where the surface faces away from a side, what stands above its tangent plane within the radius
   // lies nearer by the cosine of gamma.
-  float share = tangent_horizon(slice, side) > 0.0 ? slice.cosine : 1.0;
+  search.lowest = tangent_horizon(slice, side);
+  float share = search.lowest > 0.0 ? slice.cosine : 1.0;
   float distance_px = slice_radius_px(line, parameters.radius * share, surface.depth, kPerspective);
   float border = border_distance(surface.centre, search.line.direction_px);
   // Steps stay apart where the radius spans few pixels, and inside the image always.
@@ -149,16 +158,25 @@ LineSample fetch_sample(Search search, uint k) {
 
 float squared_length(vec2 v) { return dot(v, v); }
 
-// Cosine of the highest horizon within the radius on one side; -1 where there is none.
+// `horizon` (a cosine) after a sample of its side.
+float next_horizon(float horizon, Search search, vec3 point) {
+  float squared = squared_length(point.xy);
+  float reach = parameters.radius * point.z;
+  float inverse = inversesqrt(max(squared, 1e-30));
+  float found = point.y * inverse;
+  if (kFalloff) {
+    found = mix(search.lowest, found, radius_weight(squared * inverse, reach, parameters.falloff));
+  }
+  float next = kHeuristic ? raise_horizon(horizon, found, parameters.blend) : max(horizon, found);
+  return squared <= reach * reach ? next : horizon;
+}
+
+// Cosine of the horizon within the radius on one side; -1 where there is none.
 float find_horizon(Search search) {
   float horizon = -1.0;
   uint k = 0;
   do {
-    vec3 point = fetch_sample(search, k).point;
-    float squared = squared_length(point.xy);
-    float reach = parameters.radius * point.z;
-    float cosine = point.y * inversesqrt(max(squared, 1e-30));
-    horizon = squared <= reach * reach ? max(horizon, cosine) : horizon;
+    horizon = next_horizon(horizon, search, fetch_sample(search, k).point);
     ++k;
   } while (k < kStepCount);
   return search.reach_px > 0.0 ? horizon : -1.0;
@@ -190,9 +208,13 @@ struct Sheet {
   uint sectors;    // occluded so far
 };
 
+// A sample's linear depth, times w.
+float distance_w(LineSample here) { return kPerspective ? 1.0 : here.line; }
+
 float back_position(Side side, LineSample here) {
-  return sector_position(side.per_bearing,
-                         here.point.xy - vec2(0.0, parameters.thickness * here.point.z));
+  // As slice_point() gives lengths, times w; w times the distance is 1 in perspective.
+  float thickness = parameters.thickness * (kThicknessOfDistance ? distance_w(here) : here.point.z);
+  return sector_position(side.per_bearing, here.point.xy - vec2(0.0, thickness));
 }
 
 // The first sample stands alone. Its edge is drawn in unless it lies on the surface's own plane.
@@ -205,7 +227,7 @@ Sheet begin_sheet(Surface surface, Side side, LineSample here, LineSample next) 
                           sheet.step_px, side.sharp);
   float height = dot(here.point.xy, side.height);
   bool above = height * abs(height) > 0.04 * squared_length(here.point.xy);
-  float drawn = above ? edge_share(kStepCount) : 0.0;
+  float drawn = kConnected && above ? edge_share(kStepCount) : 0.0;
   sheet.position = sector_position(side.per_bearing, here.point.xy * vec2(1.0 - drawn, 1.0));
   sheet.excess = radius_excess(here.point, parameters.radius);
   uint covered = sectors_between(sheet.position, back_position(side, here));
@@ -216,10 +238,11 @@ Sheet begin_sheet(Surface surface, Side side, LineSample here, LineSample next) 
 // Adds a sample, `bend` of the line at it: its thickness, and the sheet between it and the last one
 // if they are joined, as far as it runs within the radius.
 void extend_sheet(inout Sheet sheet, Side side, float x_per_step, LineSample here, float bend) {
-  bool joined = samples_join(sheet.bend, bend);
+  bool joined = kConnected && samples_join(sheet.bend, bend);
   float excess = radius_excess(here.point, parameters.radius);
   bool inside = excess <= 0.0;
-  float drawn = joined ? 0.0 : edge_share(kStepCount) * sheet.step_px * x_per_step;
+  float apart = kConnected ? edge_share(kStepCount) * sheet.step_px * x_per_step : 0.0;
+  float drawn = joined ? 0.0 : apart;
   vec2 front = vec2(here.point.x - drawn, here.point.y);
   vec2 leaves = radius_crossing(here.point, excess, sheet.last.point, sheet.excess);
   float position = sector_position(side.per_bearing, inside ? front : leaves);
@@ -293,14 +316,16 @@ SliceSum bitmask_slice(Surface surface, SliceLine line, Slice slice, vec3 direct
   Side behind_side = make_side(surface, line, slice, -1.0);
   uint ahead_sectors = find_occluders(surface, ahead, ahead_side);
   uint behind_sectors = find_occluders(surface, behind, behind_side);
+  const PartRequest request = PartRequest(kUniformWeight, kBentNormal);
   VisiblePart front = visible_part(slice, 1.0, ahead_side.per_bearing, ahead_sectors,
-                                   parameters.fill, kBentNormal);
+                                   parameters.fill, request);
   VisiblePart back = visible_part(slice, -1.0, behind_side.per_bearing, behind_sectors,
-                                  parameters.fill, kBentNormal);
+                                  parameters.fill, request);
   SliceSum sum;
   sum.visible = front.arc + back.arc;
-  sum.open =
-      light_arc(slice, 1.0, tangent_light(slice, 1.0)) + light_arc(slice, -1.0, tangent_light(slice, -1.0));
+  sum.open = kUniformWeight ? 1.0
+                            : light_arc(slice, 1.0, tangent_light(slice, 1.0)) +
+                                  light_arc(slice, -1.0, tangent_light(slice, -1.0));
   vec2 bent = front.bent + back.bent;
   sum.bent = direction * bent.x + surface.view * bent.y;
   sum.lobe = no_lobe();
@@ -319,8 +344,9 @@ SliceSum horizon_slice(Surface surface, Slice slice, vec3 direction, Search ahea
   float front = find_horizon(ahead);
   float back = find_horizon(behind);
   SliceSum sum;
-  sum.visible = slice_visibility(slice, front, back);
-  sum.open = open_slice(slice);
+  sum.visible = kUniformWeight ? uniform_slice_visibility(slice, front, back)
+                               : slice_visibility(slice, front, back);
+  sum.open = kUniformWeight ? 1.0 : open_slice(slice);
   sum.bent = kBentNormal ? slice_bent_normal(slice, direction, surface.view, front, back)
                          : vec3(0.0);
   sum.lobe = no_lobe();

@@ -11,8 +11,10 @@ struct GtaoParameters {
   vec2 phase;             // which pixel of a block is searched
   float radius;           // scene units
   uint frame;             // turns the noise
-  float thickness;        // of what is joined to nothing, scene units (bitmask)
+  float thickness;        // of an occluder, scene units or parts of its distance from the eye
   float fill;             // share of what lies behind an occluder that counts as occluded, [0,1]
+  float blend;            // of a horizon towards each lower sample, [0,1] (heuristic)
+  float falloff;          // last part of the radius, over which occluders fade, [0,1] (horizons)
   float roughness;        // perceptual, of every surface where no texture has it
 };
 

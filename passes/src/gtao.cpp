@@ -18,6 +18,32 @@ using framegraph::Texture;
 
 namespace {
 
+bool is_share(float value) { return value >= 0.0f && value <= 1.0f; }
+
+bool has_thickness(Estimator estimator) {
+  return estimator == Estimator::bitmask || estimator == Estimator::connected;
+}
+
+tl::expected<void, Error> check_occluders(const GtaoSettings& settings) {
+  if (!(settings.thickness >= 0.0f) || !std::isfinite(settings.thickness) ||
+      !is_share(settings.fill)) {
+    return tl::unexpected(Error{"The thickness is " + std::to_string(settings.thickness) +
+                                " and the fill " + std::to_string(settings.fill) +
+                                "; the first must be at least 0 and finite, the second 0 to 1."});
+  }
+  if (!is_share(settings.blend) || !is_share(settings.falloff)) {
+    return tl::unexpected(Error{"The blend is " + std::to_string(settings.blend) +
+                                " and the falloff " + std::to_string(settings.falloff) +
+                                "; each must be 0 to 1."});
+  }
+  if (settings.falloff > 0.0f && has_thickness(settings.estimator)) {
+    return tl::unexpected(Error{
+        "The falloff is " + std::to_string(settings.falloff) +
+        ", but only horizons and the heuristic have one: a sector is occluded or it is not."});
+  }
+  return {};
+}
+
 tl::expected<void, Error> check(const GtaoSettings& settings) {
   if (!(settings.radius > 0.0f) || !std::isfinite(settings.radius)) {
     return tl::unexpected(Error{"The occlusion radius is " + std::to_string(settings.radius) +
@@ -32,20 +58,13 @@ tl::expected<void, Error> check(const GtaoSettings& settings) {
     return tl::unexpected(Error{"The resolution is divided by " + std::to_string(settings.divisor) +
                                 "; it must be 1, 2 or 4."});
   }
-  if (!(settings.thickness >= 0.0f) || !std::isfinite(settings.thickness) ||
-      !(settings.fill >= 0.0f && settings.fill <= 1.0f)) {
-    return tl::unexpected(Error{"The thickness is " + std::to_string(settings.thickness) +
-                                " radii and the fill " + std::to_string(settings.fill) +
-                                "; the first must be at least 0 and finite, the second 0 to 1."});
-  }
-  if (!(settings.roughness >= 0.0f && settings.roughness <= 1.0f) ||
-      settings.roughness_channel > 3) {
+  if (!is_share(settings.roughness) || settings.roughness_channel > 3) {
     return tl::unexpected(Error{"The roughness is " + std::to_string(settings.roughness) +
                                 " and its texture's channel " +
                                 std::to_string(settings.roughness_channel) +
                                 "; the first must be 0 to 1, the second 0 to 3."});
   }
-  return {};
+  return check_occluders(settings);
 }
 
 // The textures that the pass writes, made for the graph but not yet written.
@@ -79,15 +98,19 @@ tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame, const GtaoInpu
   if (!projection) {
     return tl::unexpected(projection.error());
   }
+  const bool of_distance = settings.thickness_unit == ThicknessUnit::distance;
   const std::array constants{settings.slices,
                              settings.steps,
                              static_cast<std::uint32_t>(settings.bent_normal),
-                             static_cast<std::uint32_t>(settings.estimator == Estimator::bitmask),
+                             static_cast<std::uint32_t>(settings.estimator),
                              settings.divisor,
                              static_cast<std::uint32_t>(settings.pattern),
                              static_cast<std::uint32_t>(is_perspective(*projection)),
                              static_cast<std::uint32_t>(rough),
-                             settings.roughness_channel};
+                             settings.roughness_channel,
+                             static_cast<std::uint32_t>(settings.weighting == Weighting::uniform),
+                             static_cast<std::uint32_t>(settings.falloff > 0.0f),
+                             static_cast<std::uint32_t>(of_distance)};
   const auto kernel =
       frame.kernels.get(settings.lobe ? Shader::gtao_lobe : Shader::gtao, constants);
   if (!kernel) {
@@ -114,8 +137,10 @@ tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame, const GtaoInpu
       maths::vec2(static_cast<float>(phase.x), static_cast<float>(phase.y)),
       settings.radius,
       frame.index,
-      settings.thickness * settings.radius,
+      settings.thickness * (of_distance ? 1.0f : settings.radius),
       settings.fill,
+      settings.blend,
+      settings.falloff,
       settings.roughness};
   pass.record([&kernels = frame.kernels, kernel = *kernel, inputs, result, parameters,
                rough](RecordContext& context) {

@@ -55,16 +55,29 @@ ALCOVE_INLINE float mean_visibility(float visibility_sum, float weight_sum) {
   return weight_sum > 0.0f ? clamp(visibility_sum / weight_sum, 0.0f, 1.0f) : 1.0f;
 }
 
-// The same slice without the cosine of the normal (the memo's appendix A), averaged over the slice
-// count: uniform visibility of the hemisphere around the view vector, in [0,1].
-ALCOVE_INLINE float uniform_slice_visibility(float ahead, float behind) {
-  return 1.0f - 0.5f * (max(ahead, 0.0f) + max(behind, 0.0f));
+// Visibility of one side without the cosine of the normal (the memo's appendix A), from the view
+// vector to a light above the tangent plane; both sides of an open slice come to 1, at any tilt.
+ALCOVE_INLINE float uniform_arc(vec2 light) { return 0.5f * (1.0f - light.y); }
+
+// The same of both sides up to their horizons, in [0,1]: averaged over slices, the part of the
+// hemisphere's solid angle that is visible.
+ALCOVE_INLINE float uniform_slice_visibility(Slice s, float ahead, float behind) {
+  float ahead_cut = clamp(ahead, tangent_horizon(s, 1.0f), 1.0f);
+  float behind_cut = clamp(behind, tangent_horizon(s, -1.0f), 1.0f);
+  return 1.0f - 0.5f * (ahead_cut + behind_cut);
 }
 
 // The memo's heuristic for occluders of unknown thickness: a sample above the horizon replaces it,
 // one below pulls it down by `blend` (0: infinitely thick; 0.05 is already much). Cosines.
 ALCOVE_INLINE float raise_horizon(float horizon, float found, float blend) {
   return found > horizon ? found : mix(horizon, found, blend);
+}
+
+// What an occluder weighs at a distance, [0,1]: all up to the last part `falloff`, [0,1], of the
+// radius, over which it fades; none beyond the radius. A falloff of 0 is a step.
+ALCOVE_INLINE float radius_weight(float distance, float radius, float falloff) {
+  float left = radius - distance;
+  return left < 0.0f ? 0.0f : min(left / max(falloff * radius, 1e-30f), 1.0f);
 }
 
 ALCOVE_MATHS_END

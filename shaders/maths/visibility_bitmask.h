@@ -54,16 +54,22 @@ ALCOVE_INLINE uint sectors_between(float from, float to) {
   return count > 0 ? (0xffffffffu >> uint(32 - count)) << uint(low) : 0u;
 }
 
-// What is visible of a side: as slice_arc() and bent_arc().
+// What is asked of a side.
+struct PartRequest {
+  bool uniform_weight;  // uniform_arc() in place of light_arc()
+  bool bent;
+};
+
+// What is visible of a side: as slice_arc() or uniform_arc(), and as bent_arc().
 struct VisiblePart {
   float arc;
   vec2 bent;  // zero where it was not asked for
 };
 
 ALCOVE_INLINE VisiblePart add_part(VisiblePart sum, float weight, Slice s, float side, vec2 light,
-                                   bool with_bent) {
-  sum.arc += weight * light_arc(s, side, light);
-  if (with_bent) sum.bent += bent_light_arc(s, side, light) * weight;
+                                   PartRequest request) {
+  sum.arc += weight * (request.uniform_weight ? uniform_arc(light) : light_arc(s, side, light));
+  if (request.bent) sum.bent += bent_light_arc(s, side, light) * weight;
   return sum;
 }
 
@@ -71,7 +77,7 @@ ALCOVE_INLINE VisiblePart add_part(VisiblePart sum, float weight, Slice s, float
 // unknown: the part `fill` of it, [0,1], counts as occluded too. An open side is exactly its open
 // arc and a full one exactly 0.
 ALCOVE_INLINE VisiblePart visible_part(Slice s, float side, float per_bearing, uint occluded,
-                                       float fill, bool with_bent) {
+                                       float fill, PartRequest request) {
   float keep = 1.0f - fill;
   VisiblePart sum;
   sum.arc = 0.0f;
@@ -79,13 +85,13 @@ ALCOVE_INLINE VisiblePart visible_part(Slice s, float side, float per_bearing, u
   // The ends of runs, from the view vector outwards: visible up to the first, then of what is
   // visible beyond an occluder only the part that is kept.
   float weight = occluded == 0u ? 1.0f : ((occluded >> 31u) != 0u ? 0.0f : keep);
-  sum = add_part(sum, weight, s, side, tangent_light(s, side), with_bent);
+  sum = add_part(sum, weight, s, side, tangent_light(s, side), request);
   uint ends = occluded ^ (occluded << 1u);
   weight = 1.0f;
   if (ends != 0u) {
     do {
       vec2 light = bearing_light(float(findLSB(ends)) / per_bearing);
-      sum = add_part(sum, weight, s, side, light, with_bent);
+      sum = add_part(sum, weight, s, side, light, request);
       weight = weight > 0.0f ? -keep : keep;
       ends &= ends - 1u;
     } while (ends != 0u);

@@ -242,16 +242,32 @@ TEST(Gtao, NothingWeighedIsOpen) {
   EXPECT_EQ(maths::mean_visibility(0.0f, std::numeric_limits<float>::quiet_NaN()), 1.0f);
 }
 
-TEST(Gtao, UniformVisibilityIsTheSolidAngleAboveTheHorizons) {
-  for (double h1 = 0.0; h1 <= kPi / 2; h1 += 0.1) {
-    for (double h2 = 0.0; h2 <= kPi / 2; h2 += 0.1) {
-      const auto f = [](double t) { return std::sin(t); };
-      const double expected = 0.5 * (integrate(f, 0.0, h1) + integrate(f, 0.0, h2));
-      EXPECT_NEAR(maths::uniform_slice_visibility(float(std::cos(h1)), float(std::cos(h2))),
-                  expected, 1e-6);
+TEST(Gtao, UniformVisibilityIsTheSolidAngleAboveTheHorizonsAndTheTangentPlane) {
+  for (double gamma = -1.5; gamma <= 1.5; gamma += 0.25) {
+    const Slice s = slice_of(0.7, gamma);
+    for (double h1 = 0.0; h1 <= kPi; h1 += 0.1) {
+      for (double h2 = 0.0; h2 <= kPi; h2 += 0.1) {
+        const auto f = [](double t) { return std::sin(t); };
+        const double ahead = std::min(h1, gamma + kPi / 2);
+        const double behind = std::min(h2, kPi / 2 - gamma);
+        const double expected = 0.5 * (integrate(f, 0.0, ahead) + integrate(f, 0.0, behind));
+        EXPECT_NEAR(maths::uniform_slice_visibility(s, float(std::cos(h1)), float(std::cos(h2))),
+                    expected, 1e-6);
+      }
     }
+    EXPECT_EQ(maths::uniform_slice_visibility(s, -1.0f, -1.0f), 1.0f);
+    EXPECT_EQ(maths::uniform_slice_visibility(s, 1.0f, 1.0f), 0.0f);
   }
-  EXPECT_EQ(maths::uniform_slice_visibility(-1.0f, -1.0f), 1.0f);
+}
+
+TEST(Gtao, RadiusWeightFallsToNothingAtTheRadius) {
+  EXPECT_EQ(maths::radius_weight(1.0f, 2.0f, 0.5f), 1.0f);
+  EXPECT_FLOAT_EQ(maths::radius_weight(1.5f, 2.0f, 0.5f), 0.5f);
+  EXPECT_EQ(maths::radius_weight(2.0f, 2.0f, 0.5f), 0.0f);
+  EXPECT_EQ(maths::radius_weight(2.1f, 2.0f, 0.5f), 0.0f);
+  EXPECT_EQ(maths::radius_weight(1.9f, 2.0f, 0.0f), 1.0f);
+  EXPECT_EQ(maths::radius_weight(2.1f, 2.0f, 0.0f), 0.0f);
+  EXPECT_EQ(maths::radius_weight(0.0f, 2.0f, 1.0f), 1.0f);
 }
 
 TEST(Gtao, HorizonCosineHoldsAtAnyDistance) {

@@ -55,7 +55,7 @@ ALCOVE_INLINE vec4 parity_of_slices(uint which, vec4 a, vec4 b) {
       vec3 view = parity_view(a.x, a.y);
       vec3 direction = slice_direction(make_view_basis(view), a.z * kPi);
       vec3 bent = slice_bent_normal(s, direction, view, ahead, behind);
-      return vec4(bent.x, bent.y, bent.z, uniform_slice_visibility(ahead, behind));
+      return vec4(bent.x, bent.y, bent.z, uniform_slice_visibility(s, ahead, behind));
     }
     case 3u: {
       vec2 point = vec2(b.z, ahead);
@@ -183,9 +183,12 @@ ALCOVE_INLINE vec4 parity_of_sampling(uint which, vec4 a, vec4 b) {
                   depth_mip(b.z * 99.0f, 3.3f, 4.0f), slice_angle(1u, 3u, b.w));
     case 20u: {
       Slice s = parity_slice(a);
+      PartRequest request;
+      request.uniform_weight = a.w < 0.5f;
+      request.bent = true;
       VisiblePart part =
-          visible_part(s, -1.0f, sectors_per_bearing(s, -1.0f), hash(pixel.x), b.x, true);
-      return vec4(part.arc, part.bent.x, part.bent.y, 0.0f);
+          visible_part(s, -1.0f, sectors_per_bearing(s, -1.0f), hash(pixel.x), b.x, request);
+      return vec4(part.arc, part.bent.x, part.bent.y, radius_weight(b.y, 0.8f, b.z));
     }
     case 21u: {
       Slice s = parity_slice(a);

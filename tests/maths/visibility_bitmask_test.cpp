@@ -42,8 +42,10 @@ double boundary_angle(float per_bearing, int boundary) {
   return std::atan2(1.0 - std::abs(y), y);
 }
 
-VisiblePart part_of(const Slice& s, float side, std::uint32_t occluded, float fill) {
-  return maths::visible_part(s, side, maths::sectors_per_bearing(s, side), occluded, fill, true);
+VisiblePart part_of(const Slice& s, float side, std::uint32_t occluded, float fill,
+                    bool uniform_weight = false) {
+  return maths::visible_part(s, side, maths::sectors_per_bearing(s, side), occluded, fill,
+                             {.uniform_weight = uniform_weight, .bent = true});
 }
 
 TEST(VisibilityBitmask, BearingsGrowWithTheAngleAndTurnBackIntoIt) {
@@ -130,6 +132,24 @@ TEST(VisibilityBitmask, PartsAgreeWithTheIntegralOverTheVisibleSectors) {
   RecordProperty("worst_bent", std::to_string(worst_bent));
   EXPECT_LT(worst_arc, 4e-4);  // 2.4e-5 at each end of a run and at the tangent plane
   EXPECT_LT(worst_bent, 1e-5);
+}
+
+TEST(VisibilityBitmask, UniformPartsAreTheVisibleSectorsSolidAngle) {
+  RandomInput random;
+  for (int i = 0; i < 1500; ++i) {
+    const Slice s = random_slice(random);
+    const float side = random_side(random);
+    const float per_bearing = maths::sectors_per_bearing(s, side);
+    const std::uint32_t occluded = random_runs(random);
+    double expected = 0.0;
+    for (int k = 0; k < 32; ++k) {
+      if ((occluded >> k & 1u) == 0) {
+        expected += 0.5 * (std::cos(boundary_angle(per_bearing, k)) -
+                           std::cos(boundary_angle(per_bearing, k + 1)));
+      }
+    }
+    EXPECT_NEAR(part_of(s, side, occluded, 0.0f, true).arc, expected, 2e-6);
+  }
 }
 
 TEST(VisibilityBitmask, OpenAndFullAreExact) {

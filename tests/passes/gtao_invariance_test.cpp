@@ -37,7 +37,7 @@ OcclusionSettings unfiltered(Estimator estimator, float radius) {
   return settings;
 }
 
-constexpr std::array kEstimators{Estimator::horizons, Estimator::bitmask};
+constexpr std::array kEstimators{Estimator::horizons, Estimator::connected};
 
 struct Difference {
   double mean = 0.0;
@@ -159,7 +159,7 @@ TEST_F(GtaoInvariance, EverySizeDivisorAndPatternCoversEveryPixel) {
           SCOPED_TRACE(testing::Message()
                        << width << " x " << height << " by " << divisor << ", pattern "
                        << static_cast<int>(pattern) << ", history of " << history);
-          OcclusionSettings settings = unfiltered(Estimator::bitmask, 0.5f);
+          OcclusionSettings settings = unfiltered(Estimator::connected, 0.5f);
           settings.slices = 1;
           settings.steps = 6;
           settings.divisor = divisor;
@@ -287,7 +287,7 @@ TEST_F(GtaoInvariance, SkyIsOpenAndOccludesNothing) {
     for (const Estimator estimator : kEstimators) {
       const HostImage image = visibility(view, drawing, unfiltered(estimator, 1.0f));
       EXPECT_THAT(image.texels,
-                  testing::Each(testing::Ge(estimator == Estimator::bitmask ? 0.97f : 0.996f)));
+                  testing::Each(testing::Ge(estimator == Estimator::connected ? 0.97f : 0.996f)));
     }
   }
 }

@@ -24,7 +24,7 @@ OcclusionSettings exact(Estimator estimator, float radius) {
 }
 
 const char* name_of(Estimator estimator) {
-  return estimator == Estimator::bitmask ? "bitmask" : "horizons";
+  return estimator == Estimator::connected ? "connected" : "horizons";
 }
 
 struct Errors {
@@ -83,14 +83,14 @@ TEST_F(GtaoTruth, HorizonsMeetBruteForceInEverySceneAndView) {
   }
 }
 
-TEST_F(GtaoTruth, TheBitmaskMeetsBruteForceWhereAllThatIsHiddenOccludes) {
+TEST_F(GtaoTruth, ConnectedSamplesMeetBruteForceWhereAllThatIsHiddenOccludes) {
   const float radius = 1.2f;
   const TestView view = test_views()[2];
   for (const NamedScene& scene : gtao_scenes()) {
     SCOPED_TRACE(scene.name);
     const Drawing drawing = draw(view, 60, 40, scene.scene);
     const auto images = run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs},
-                                      exact(Estimator::bitmask, radius));
+                                      exact(Estimator::connected, radius));
     const Errors errors = errors_of(images.visibility, drawing, radius);
     EXPECT_LT(errors.mean, 0.02);
     EXPECT_LT(errors.largest, scene.name == "ball" ? 0.3 : 0.08);
@@ -102,7 +102,7 @@ TEST_F(GtaoTruth, AFloorBeforeAPlatformHasTheClosedForm) {
   const TestView view = orthographic_view("orthographic", 4.0, 4.0, 0.1, 20.0);
   const double height = 0.5;
   const Drawing drawing = draw(view, 128, 128, step(0.0, height));
-  for (const Estimator estimator : {Estimator::horizons, Estimator::bitmask}) {
+  for (const Estimator estimator : {Estimator::horizons, Estimator::connected}) {
     SCOPED_TRACE(name_of(estimator));
     const auto images =
         run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, exact(estimator, 8.0f));
@@ -123,7 +123,7 @@ TEST_F(GtaoTruth, AGrooveHasTheClosedFormNearItsBottom) {
   for (const double half_angle : {0.5, std::numbers::pi / 4.0, 1.2}) {
     const Drawing drawing = draw(view, 128, 128, groove(half_angle, 9.0));
     const double expected = (1.0 - std::cos(2.0 * half_angle)) / 2.0;
-    for (const Estimator estimator : {Estimator::horizons, Estimator::bitmask}) {
+    for (const Estimator estimator : {Estimator::horizons, Estimator::connected}) {
       SCOPED_TRACE(testing::Message() << name_of(estimator) << ", half angle " << half_angle);
       const auto images =
           run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, exact(estimator, 8.0f));
@@ -134,21 +134,133 @@ TEST_F(GtaoTruth, AGrooveHasTheClosedFormNearItsBottom) {
   }
 }
 
+// The sky above a platform's edge is a lune: of a hemisphere the part that its angle is of pi.
+TEST_F(GtaoTruth, UniformWeightingMeasuresSolidAngle) {
+  const TestView view = orthographic_view("orthographic", 4.0, 4.0, 0.1, 20.0);
+  const double height = 0.5, half_angle = std::numbers::pi / 4.0;
+  const Drawing platform = draw(view, 128, 128, step(0.0, height));
+  const Drawing walls = draw(view, 128, 128, groove(half_angle, 9.0));
+  for (const Estimator estimator : {Estimator::horizons, Estimator::connected}) {
+    SCOPED_TRACE(name_of(estimator));
+    OcclusionSettings settings = exact(estimator, 8.0f);
+    settings.weighting = Weighting::uniform;
+    const auto floor =
+        run_occlusion({view.view, platform.depth_ndc, &platform.normal_vs}, settings).visibility;
+    for (std::uint32_t x = 44; x < 62; ++x) {
+      const double distance = (64 - x - 0.5) * 8.0 / 128;
+      const double expected = 1.0 - std::atan2(height, distance) / std::numbers::pi;
+      EXPECT_NEAR(floor.at(x, 64), expected, 0.025) << distance << " units away";
+    }
+    const auto wall =
+        run_occlusion({view.view, walls.depth_ndc, &walls.normal_vs}, settings).visibility;
+    for (const std::uint32_t x : {61u, 62u, 65u, 66u}) {
+      EXPECT_NEAR(wall.at(x, 64), 2.0 * half_angle / std::numbers::pi, 0.03);
+    }
+  }
+}
+
+// The mean visibility of a drawing.
+double mean_of(const HostImage& image) {
+  double sum = 0.0;
+  for (std::uint32_t y = 0; y < image.height; ++y) {
+    for (std::uint32_t x = 0; x < image.width; ++x) {
+      sum += image.at(x, y);
+    }
+  }
+  return sum / (image.width * image.height);
+}
+
+TEST_F(GtaoTruth, FalloffFadesOccludersTowardsTheRadius) {
+  const TestView view = test_views()[2];
+  const Drawing drawing = draw(view, 60, 40, groove(0.8));
+  OcclusionSettings settings = exact(Estimator::horizons, 1.2f);
+  double before = 0.0;
+  for (const float falloff : {0.0f, 0.3f, 1.0f}) {
+    settings.falloff = falloff;
+    const auto faded =
+        run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, settings).visibility;
+    const double mean = mean_of(faded);
+    EXPECT_GT(mean, before + 0.01) << falloff;
+    before = mean;
+    EXPECT_LT(faded.at(30, 20), 0.85f) << "what is near occludes still";
+  }
+}
+
+TEST_F(GtaoTruth, TheHeuristicWithoutABlendIsTheHorizons) {
+  const TestView view = test_views()[2];
+  const Drawing drawing = draw(view, 60, 40, step(0.0, 0.5));
+  const auto run_with = [&](Estimator estimator, float blend) {
+    OcclusionSettings settings = exact(estimator, 1.2f);
+    settings.blend = blend;
+    return run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, settings).visibility;
+  };
+  const HostImage horizons = run_with(Estimator::horizons, 0.05f);
+  const HostImage same = run_with(Estimator::heuristic, 0.0f);
+  const HostImage thinner = run_with(Estimator::heuristic, 0.05f);
+  for (std::uint32_t y = 0; y < horizons.height; ++y) {
+    for (std::uint32_t x = 0; x < horizons.width; ++x) {
+      EXPECT_EQ(same.at(x, y), horizons.at(x, y));
+      EXPECT_GE(thinner.at(x, y), horizons.at(x, y) - 1e-6f);
+    }
+  }
+  EXPECT_GT(mean_of(thinner), mean_of(horizons));
+}
+
+TEST_F(GtaoTruth, TheBitmaskOfThickOccludersIsTheHorizons) {
+  const TestView view = test_views()[2];
+  const Drawing drawing = draw(view, 60, 40, step(0.0, 0.5));
+  OcclusionSettings thick = exact(Estimator::bitmask, 1.2f);
+  thick.thickness = 1e4f;
+  const OcclusionSettings horizons = exact(Estimator::horizons, 1.2f);
+  const auto by_sectors =
+      run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, thick).visibility;
+  const auto by_horizons =
+      run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, horizons).visibility;
+  for (std::uint32_t y = 0; y < by_sectors.height; ++y) {
+    for (std::uint32_t x = 0; x < by_sectors.width; ++x) {
+      EXPECT_NEAR(by_sectors.at(x, y), by_horizons.at(x, y), 0.02);
+    }
+  }
+}
+
+// Where all that occludes stands at one distance from the eye.
+TEST_F(GtaoTruth, ThicknessOfDistanceIsThatOfTheRadiusAtOneDistance) {
+  const TestView view = test_views()[2];
+  const Drawing drawing = draw(view, 60, 40, step(0.0, 0.5, 4.0));
+  const float radius = 1.2f, distance = 3.5f;
+  for (const Estimator estimator : {Estimator::bitmask, Estimator::connected}) {
+    OcclusionSettings settings = exact(estimator, radius);
+    settings.fill = 0.0f;
+    settings.thickness = 0.2f;
+    const auto of_radius =
+        run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, settings).visibility;
+    settings.thickness_unit = ThicknessUnit::distance;
+    settings.thickness *= radius / distance;
+    const auto of_distance =
+        run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, settings).visibility;
+    EXPECT_NEAR(mean_of(of_distance), mean_of(of_radius), 1e-4);
+    settings.thickness = 10.0f;
+    const auto thicker =
+        run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, settings).visibility;
+    EXPECT_LT(mean_of(thicker), mean_of(of_radius) - 0.002);
+  }
+}
+
 TEST_F(GtaoTruth, WhatLiesBeyondTheRadiusDoesNotOcclude) {
   const TestView view = orthographic_view("orthographic", 4.0, 4.0, 0.1, 20.0);
   const double height = 0.5;
   const Drawing drawing = draw(view, 128, 128, step(0.0, height));
   const float radius = 1.0f;
-  for (const Estimator estimator : {Estimator::horizons, Estimator::bitmask}) {
+  for (const Estimator estimator : {Estimator::horizons, Estimator::connected}) {
     SCOPED_TRACE(name_of(estimator));
     const auto images =
         run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, exact(estimator, radius));
     for (std::uint32_t x = 0; x < 64; ++x) {
-      // To the nearest sample on the platform's edge, known to half a pixel. The bitmask joins
+      // To the nearest sample on the platform's edge, known to half a pixel. Connected samples join
       // floor and platform by a slope, whose foot is nearer by the height of the wall and a step.
       const double across = (63.5 - x) * 8.0 / 128;
       const double distance = std::hypot(across, height);
-      if ((estimator == Estimator::bitmask ? across / 1.15 : distance) > radius) {
+      if ((estimator == Estimator::connected ? across / 1.15 : distance) > radius) {
         EXPECT_GT(images.visibility.at(x, 64), 0.996) << "column " << x;
       } else if (distance < 0.8 * radius) {
         EXPECT_LT(images.visibility.at(x, 64), 0.96) << "column " << x;
@@ -161,7 +273,7 @@ TEST_F(GtaoTruth, BentNormalsMeetBruteForce) {
   const float radius = 1.2f;
   for (const TestView& view : {test_views()[2], test_views()[5]}) {
     for (const NamedScene& scene : gtao_scenes()) {
-      for (const Estimator estimator : {Estimator::horizons, Estimator::bitmask}) {
+      for (const Estimator estimator : {Estimator::horizons, Estimator::connected}) {
         SCOPED_TRACE(testing::Message()
                      << scene.name << ", " << view.name << ", " << name_of(estimator));
         const Drawing drawing = draw(view, 60, 40, scene.scene);

@@ -72,11 +72,11 @@ TEST_F(SpecularSlices, MeetTheLobeCastOverTheExactSurfaces) {
   for (const TestView& view : {test_views().front(), test_views().back()}) {
     for (const NamedScene& scene : {gtao_scenes()[0], gtao_scenes()[1]}) {
       const Drawing drawing = draw(view, 60, 40, scene.scene);
-      for (const Estimator estimator : {Estimator::horizons, Estimator::bitmask}) {
+      for (const Estimator estimator : {Estimator::horizons, Estimator::connected}) {
         for (const float roughness : {0.15f, 0.3f, 0.6f, 1.0f}) {
           SCOPED_TRACE(testing::Message()
                        << scene.name << ", " << view.name << ", roughness " << roughness
-                       << (estimator == Estimator::bitmask ? ", bitmask" : ", horizons"));
+                       << (estimator == Estimator::connected ? ", connected" : ", horizons"));
           OcclusionSettings settings = settings_of(Quality::reference, radius, roughness);
           settings.estimator = estimator;
           settings.fill = 1.0f;

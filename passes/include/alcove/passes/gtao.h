@@ -11,9 +11,27 @@ namespace alcove::passes {
 enum class Estimator : std::uint8_t {
   // Everything: occluders are infinitely thick (the memo's horizons).
   horizons,
-  // A thickness, where samples do not lie on one surface; a share of the rest (Therrien et al. 2023
-  // with exact cosine weighting; see shaders/maths/connected_samples.h).
+  // The same, but that each lower sample further out pulls the horizon down (the memo's thickness
+  // heuristic).
+  heuristic,
+  // Every sample is an occluder of its own, of one thickness (the visibility bitmask of Therrien et
+  // al. 2023, exactly weighted).
   bitmask,
+  // The same where samples do not lie on one surface; those that do are joined into a sheet without
+  // gaps (shaders/maths/connected_samples.h). Suits thin things and walls alike.
+  connected,
+};
+
+// What an occluder's thickness is measured in, for the estimators that have one.
+enum class ThicknessUnit : std::uint8_t {
+  radius,    // parts of the occlusion radius: one thickness in the scene
+  distance,  // parts of the occluder's distance from the eye along the view axis: one in the image
+};
+
+// What a visible direction weighs.
+enum class Weighting : std::uint8_t {
+  cosine,   // of its angle to the normal: what diffuse surfaces reflect
+  uniform,  // 1: the visible part of the hemisphere's solid angle (the memo's appendix A)
 };
 
 // How directions are spread over pixels and frames (shaders/maths/sampling.h).
@@ -27,9 +45,15 @@ struct GtaoSettings {
   float radius = 0.5f;       // scene units, over 0: occluders beyond it do not count
   std::uint32_t slices = 1;  // a pixel, 1 to 64; with the noise of a 4x4 block, 16 times as many
   std::uint32_t steps = 12;  // a side of a slice, 2 to 64: 2 * slices * steps depth fetches a pixel
-  Estimator estimator = Estimator::bitmask;
-  float thickness = 0.15f;  // of an occluder, in parts of the radius, at least 0 (bitmask)
-  float fill = 0.4f;        // share of what is hidden behind it that occludes, [0,1] (bitmask)
+  Estimator estimator = Estimator::connected;
+  Weighting weighting = Weighting::cosine;  // of visibility; bent normals have the cosine always
+  // Of occluders, for bitmask and connected samples.
+  float thickness = 0.15f;  // at least 0
+  ThicknessUnit thickness_unit = ThicknessUnit::radius;
+  float fill = 0.4f;  // share of what is hidden behind them that occludes too, [0,1]
+  // For horizons and heuristic.
+  float blend = 0.05f;   // of a horizon towards each lower sample, [0,1] (heuristic)
+  float falloff = 0.0f;  // last part of the radius, over which occluders fade, [0,1]; 0: none
   // One search a frame in a block of so many pixels a side: 1, 2 or 4. Which of them moves on from
   // frame to frame.
   std::uint32_t divisor = 1;

@@ -29,9 +29,15 @@ struct OcclusionSettings {
   float radius = 0.5f;       // scene units, over 0: occluders beyond it do not count
   std::uint32_t slices = 1;  // a pixel, 1 to 64
   std::uint32_t steps = 12;  // a side of a slice, 2 to 64
-  Estimator estimator = Estimator::bitmask;
-  float thickness = 0.15f;  // of an occluder, in parts of the radius, at least 0 (bitmask)
-  float fill = 0.4f;        // share of what is hidden behind it that occludes, [0,1] (bitmask)
+  Estimator estimator = Estimator::connected;
+  Weighting weighting = Weighting::cosine;  // of visibility; bent normals have the cosine always
+  // Of occluders, for bitmask and connected samples.
+  float thickness = 0.15f;  // at least 0
+  ThicknessUnit thickness_unit = ThicknessUnit::radius;
+  float fill = 0.4f;  // share of what is hidden behind them that occludes too, [0,1]
+  // For horizons and heuristic.
+  float blend = 0.05f;   // of a horizon towards each lower sample, [0,1] (heuristic)
+  float falloff = 0.0f;  // last part of the radius, over which occluders fade, [0,1]; 0: none
   // One search a frame in a block of so many pixels a side: 1, 2 or 4.
   std::uint32_t divisor = 1;
   Pattern pattern = Pattern::golden;
