@@ -84,7 +84,10 @@ tl::expected<void, std::string> run_compare(const Options& options) {
   if (!rendering) {
     return tl::unexpected(rendering.error());
   }
-  const auto truths = truths_of(*rendering, options);
+  const FrameImages& images = rendering->images;
+  const auto truths = truths_of({rendering->scene, rendering->camera, rendering->settings.radius,
+                                 images.depth_ndc, images.normal_ws},
+                                options);
   if (!truths) {
     return tl::unexpected(truths.error());
   }

@@ -6,10 +6,10 @@
 #include "commands.h"
 #include "errors.h"
 #include "image_io.h"
-#include "load_scene.h"
 #include "motion_run.h"
 #include "progress.h"
 #include "settings.h"
+#include "stage.h"
 #include "truth_cache.h"
 
 namespace alcove::sample {
@@ -21,55 +21,41 @@ using Json = nlohmann::ordered_json;
 
 // What all paths of a run share.
 struct Course {
-  Scene scene;
+  Stage stage;
   MotionStart start;
   MotionSetup setup;
-  std::unique_ptr<Gpu> gpu;
 };
 
 tl::expected<Course, std::string> course_of(const Options& options) {
-  Course course;
-  auto scene = load_scene(options.scene);
-  if (!scene) {
-    return Failure(std::move(scene.error()));
+  auto stage = stage_of(options);
+  if (!stage) {
+    return Failure(std::move(stage.error()));
   }
-  course.scene = std::move(*scene);
-  const auto camera = camera_of(options.view, course.scene);
-  if (!camera) {
-    return Failure(camera.error());
-  }
-  const auto settings = occlusion_settings(options.occlusion, course.scene);
-  if (!settings) {
-    return Failure(settings.error());
-  }
-  if (settings->history_frames == 0) {
+  Course course{std::move(*stage), {}, {}};
+  const passes::OcclusionSettings& settings = course.stage.settings;
+  if (settings.history_frames == 0) {
     return Failure(
         "The occlusion keeps no history, so there is nothing to follow in motion: give another "
         "--quality, or --set history_frames=32.");
   }
-  const auto rays = RayScene::create(course.scene);
+  const auto rays = RayScene::create(course.stage.scene);
   if (!rays) {
     return Failure(rays.error());
   }
   const float aspect =
       static_cast<float>(options.view.width) / static_cast<float>(options.view.height);
-  auto start = motion_start(*rays, *camera, aspect, settings->radius);
+  auto start = motion_start(*rays, course.stage.camera, aspect, settings.radius);
   if (!start) {
     return Failure(std::move(start.error()));
   }
   course.start = std::move(*start);
-  course.setup = {*settings,
+  course.setup = {settings,
                   options.occlusion.normals,
                   options.view.width,
                   options.view.height,
                   options.occlusion.spp,
                   options.use_cache ? TruthCache::default_folder() : std::filesystem::path(),
                   print_progress};
-  auto gpu = Gpu::create({.validation = options.validation, .index = options.device});
-  if (!gpu) {
-    return Failure(std::move(gpu.error()));
-  }
-  course.gpu = std::move(*gpu);
   return course;
 }
 
@@ -171,7 +157,7 @@ Done run_path(Course& course, MotionKind kind, const Options& options, Json& rep
   std::vector<MotionPicture> pictures;
   std::string table;
   if (kind == MotionKind::kCut) {
-    auto made = run_cut(*course.gpu, course.scene, path, course.setup);
+    auto made = run_cut(*course.stage.gpu, course.stage.scene, path, course.setup);
     if (!made) {
       return Failure(std::move(made.error()));
     }
@@ -179,7 +165,7 @@ Done run_path(Course& course, MotionKind kind, const Options& options, Json& rep
     table = table_of(*made);
     pictures = std::move(made->pictures);
   } else {
-    auto made = run_motion(*course.gpu, course.scene, path, course.setup);
+    auto made = run_motion(*course.stage.gpu, course.stage.scene, path, course.setup);
     if (!made) {
       return Failure(std::move(made.error()));
     }
@@ -187,8 +173,8 @@ Done run_path(Course& course, MotionKind kind, const Options& options, Json& rep
     table = table_of(kind, *made);
     pictures = std::move(made->pictures);
   }
-  for (const std::string& message : course.gpu->device().validation_messages()) {
-    return Failure("The validation layer says: " + message);
+  if (auto valid = check_validation(*course.stage.gpu); !valid) {
+    return valid;
   }
   std::cout << table << std::flush;
   return write_pictures(options.out, kind, pictures);
@@ -205,7 +191,7 @@ Done run_motion(const Options& options) {
     return made;
   }
   Json report;
-  report["device"] = course->gpu->device().properties().deviceName;
+  report["device"] = course->stage.gpu->device().properties().deviceName;
   report["settings"] = to_json(course->setup.occlusion);
   report["frames"] = options.view.frames;
   for (const MotionKind kind : kMotionKinds) {

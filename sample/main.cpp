@@ -20,6 +20,8 @@ tl::expected<void, std::string> run(const Options& options) {
       return alcove::sample::run_compare(options);
     case Command::kMotion:
       return alcove::sample::run_motion(options);
+    case Command::kAblate:
+      return alcove::sample::run_ablate(options);
     case Command::kGraph:
       return alcove::sample::run_graph(options);
     default:

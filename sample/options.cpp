@@ -82,6 +82,7 @@ constexpr int64_t kMostFrames = 100000;
 // Of `alcove motion`: fewer leave nothing to compare.
 constexpr uint32_t kFewestPathFrames = 12;
 constexpr uint32_t kPathFrames = 48;
+constexpr uint32_t kAblationFrames = 32;
 
 bool positive(double value) { return std::isfinite(value) && value > 0.0; }
 
@@ -124,11 +125,21 @@ void check_together(const ViewOptions& view) {
   }
 }
 
+uint32_t default_frames(Command command) {
+  switch (command) {
+    case Command::kMotion:
+      return kPathFrames;
+    case Command::kAblate:
+      return kAblationFrames;
+    default:
+      return 1;
+  }
+}
+
 void read_frames(const CLI::App& app, const Raw& raw, Command command, ViewOptions& view) {
-  const bool motion = command == Command::kMotion;
-  const int64_t fewest = motion ? kFewestPathFrames : 1;
+  const int64_t fewest = command == Command::kMotion ? kFewestPathFrames : 1;
   if (app.count("--frames") == 0) {
-    view.frames = motion ? kPathFrames : 1;
+    view.frames = default_frames(command);
   } else if (raw.frames < fewest || raw.frames > kMostFrames) {
     refuse("--frames", std::to_string(raw.frames),
            "a number from " + std::to_string(fewest) + " to " + std::to_string(kMostFrames));
@@ -343,6 +354,18 @@ std::vector<Subcommand> add_commands(CLI::App& app, Raw& raw) {
   add_occlusion(*motion, raw);
   add_output(*motion, raw);
   motion->add_flag("--no-cache", raw.no_cache, "compute the truths anew");
+  CLI::App* ablate = app.add_subcommand(
+      "ablate", "what each part of the occlusion costs and what it buys, one row for each");
+  add_scene(*ablate, raw);
+  add_view(*ablate, raw);
+  ablate
+      ->add_option("--frames", raw.frames,
+                   "how many are drawn of each row, the camera standing; the last is compared; 32")
+      ->type_name("N")
+      ->group("View");
+  add_occlusion(*ablate, raw);
+  add_output(*ablate, raw);
+  ablate->add_flag("--no-cache", raw.no_cache, "compute the truths anew");
   CLI::App* graph = app.add_subcommand("graph", "the compiled plan of a frame; needs no device");
   add_view(*graph, raw);
   add_frames(*graph, raw);
@@ -351,11 +374,8 @@ std::vector<Subcommand> add_commands(CLI::App& app, Raw& raw) {
       ->transform(CLI::CheckedTransformer(kFormats).description(""))
       ->type_name("NAME");
   CLI::App* doctor = app.add_subcommand("doctor", "the Vulkan devices here and what they lack");
-  return {{render, Command::kRender},
-          {compare, Command::kCompare},
-          {motion, Command::kMotion},
-          {graph, Command::kGraph},
-          {doctor, Command::kDoctor}};
+  return {{render, Command::kRender}, {compare, Command::kCompare}, {motion, Command::kMotion},
+          {ablate, Command::kAblate}, {graph, Command::kGraph},     {doctor, Command::kDoctor}};
 }
 
 Options finished(const CLI::App& app, const Raw& raw, Command command) {
@@ -385,6 +405,7 @@ tl::expected<Options, Stop> parse_options(int argc, const char* const* argv) {
       "  alcove render scene.gltf --camera hall --out out\n"
       "  alcove compare groove:60 --radius 1\n"
       "  alcove motion scene.gltf --path strafe\n"
+      "  alcove ablate scene.gltf --quality high\n"
       "  alcove render --eye -6,0.55,-4.6 --target 0,0.75,-2.9 --quality ultra",
       "alcove");
   Raw raw;

@@ -15,7 +15,7 @@
 
 namespace alcove::sample {
 
-enum class Command { kRender, kCompare, kMotion, kGraph, kDoctor };
+enum class Command { kRender, kCompare, kMotion, kAblate, kGraph, kDoctor };
 enum class Quality { kLow, kMedium, kHigh, kUltra, kReference };
 enum class NormalSource { kShading, kGeometric, kDepth };
 enum class GraphFormat { kText, kJson, kDot };

@@ -9,8 +9,7 @@
 #include "camera.h"
 #include "display.h"
 #include "image_io.h"
-#include "load_scene.h"
-#include "settings.h"
+#include "stage.h"
 #include "surface_points.h"
 
 namespace alcove::sample {
@@ -137,21 +136,13 @@ tl::expected<FrameImages, std::string> draw_images(FrameRenderer& renderer, cons
 }  // namespace
 
 tl::expected<Rendering, std::string> render(const Options& options) {
+  auto stage = stage_of(options);
+  if (!stage) {
+    return Failure(std::move(stage.error()));
+  }
   Rendering result;
-  auto scene = load_scene(options.scene);
-  if (!scene) {
-    return Failure(std::move(scene.error()));
-  }
-  result.scene = std::move(*scene);
-  const auto camera = camera_of(options.view, result.scene);
-  if (!camera) {
-    return Failure(camera.error());
-  }
-  const auto settings = occlusion_settings(options.occlusion, result.scene);
-  if (!settings) {
-    return Failure(settings.error());
-  }
-  result.settings = *settings;
+  result.scene = std::move(stage->scene);
+  result.settings = stage->settings;
   if (result.settings.specular == passes::Specular::none) {
     result.settings.specular = passes::Specular::slices;
   }
@@ -160,18 +151,15 @@ tl::expected<Rendering, std::string> render(const Options& options) {
     return Failure(std::move(environment.error()));
   }
   result.light = {options.occlusion.roughness, std::move(*environment), options.lit};
-  auto gpu = Gpu::create({.validation = options.validation, .index = options.device});
-  if (!gpu) {
-    return Failure(std::move(gpu.error()));
-  }
-  result.device = (*gpu)->device().properties().deviceName;
-  result.driver = (*gpu)->device().driver();
+  Gpu& gpu = *stage->gpu;
+  result.device = gpu.device().properties().deviceName;
+  result.driver = gpu.device().driver();
 
-  const Run run(options, *camera, result.settings, result.light);
+  const Run run(options, stage->camera, result.settings, result.light);
   const std::uint32_t frames = options.view.frames;
   result.camera = run.camera(frames - 1);
   auto renderer = FrameRenderer::create(
-      **gpu, result.scene, {options.view.width, options.view.height}, options.occlusion.normals);
+      gpu, result.scene, {options.view.width, options.view.height}, options.occlusion.normals);
   if (!renderer) {
     return Failure(std::move(renderer.error()));
   }
@@ -191,8 +179,8 @@ tl::expected<Rendering, std::string> render(const Options& options) {
     return Failure(std::move(images.error()));
   }
   result.images = std::move(*images);
-  for (const std::string& message : (*gpu)->device().validation_messages()) {
-    return Failure("The validation layer says: " + message);
+  if (auto valid = check_validation(gpu); !valid) {
+    return Failure(std::move(valid.error()));
   }
   return result;
 }

@@ -19,19 +19,19 @@ TruthCache cache_of(const Options& options) {
   return TruthCache(options.use_cache ? TruthCache::default_folder() : std::filesystem::path());
 }
 
-tl::expected<OcclusionTruth, std::string> scene_truth(const Rendering& rendering,
+tl::expected<OcclusionTruth, std::string> scene_truth(const TruthFrame& frame,
                                                       const Options& options,
                                                       const Image<float>& depth) {
-  const TruthSettings settings{.radius = rendering.settings.radius, .spp = options.occlusion.spp};
+  const TruthSettings settings{.radius = frame.radius, .spp = options.occlusion.spp};
   CacheKey key;
   key.add(std::string("scene truth"));
   key.add(kTruthVersion);
-  key.add(rendering.scene);
-  key.add(rendering.camera);
+  key.add(frame.scene);
+  key.add(frame.camera);
   key.add(settings.radius);
   key.add(settings.spp);
   key.add(depth);
-  key.add(rendering.images.normal_ws);
+  key.add(frame.normal_ws);
   CacheKey bent_key = key;
   bent_key.add(std::string("bent"));
   const TruthCache cache = cache_of(options);
@@ -41,29 +41,28 @@ tl::expected<OcclusionTruth, std::string> scene_truth(const Rendering& rendering
   if (cache.read(key, truth.visibility) && cache.read(bent_key, truth.bent_normal_ws)) {
     return truth;
   }
-  auto rays = RayScene::create(rendering.scene);
+  auto rays = RayScene::create(frame.scene);
   if (!rays) {
     return tl::unexpected(std::move(rays.error()));
   }
-  truth = occlusion_truth(
-      *rays, surface_points(*rays, rendering.camera, rendering.images.normal_ws, depth), settings,
-      print_progress("scene truth"));
+  truth = occlusion_truth(*rays, surface_points(*rays, frame.camera, frame.normal_ws, depth),
+                          settings, print_progress("scene truth"));
   cache.write(key, truth.visibility);
   cache.write(bent_key, truth.bent_normal_ws);
   return truth;
 }
 
-HeightFieldTruth depth_truth(const Rendering& rendering, const Options& options,
+HeightFieldTruth depth_truth(const TruthFrame& frame, const Options& options,
                              const Image<float>& depth) {
-  const HeightFieldSettings settings{rendering.settings.radius, kHeightFieldSlices};
+  const HeightFieldSettings settings{frame.radius, kHeightFieldSlices};
   CacheKey key;
   key.add(std::string("height-field truth"));
   key.add(kTruthVersion);
-  key.add(rendering.camera);
+  key.add(frame.camera);
   key.add(settings.radius);
   key.add(settings.slices);
   key.add(depth);
-  key.add(rendering.images.normal_ws);
+  key.add(frame.normal_ws);
   CacheKey bent_key = key;
   bent_key.add(std::string("bent"));
   const TruthCache cache = cache_of(options);
@@ -72,7 +71,7 @@ HeightFieldTruth depth_truth(const Rendering& rendering, const Options& options,
   if (cache.read(key, truth.visibility) && cache.read(bent_key, truth.bent_normal_ws)) {
     return truth;
   }
-  truth = height_field_truth(depth, rendering.images.normal_ws, rendering.camera, settings,
+  truth = height_field_truth(depth, frame.normal_ws, frame.camera, settings,
                              print_progress("height-field truth"));
   cache.write(key, truth.visibility);
   cache.write(bent_key, truth.bent_normal_ws);
@@ -81,19 +80,19 @@ HeightFieldTruth depth_truth(const Rendering& rendering, const Options& options,
 
 }  // namespace
 
-tl::expected<Truths, std::string> truths_of(const Rendering& rendering, const Options& options) {
-  const Image<float> depth = linear_depth(rendering);
+tl::expected<Truths, std::string> truths_of(const TruthFrame& frame, const Options& options) {
+  const Image<float> depth = linear_depth(frame.camera, frame.depth_ndc);
   Truths truths;
   truths.surfaces = Mask(depth.width, depth.height);
   for (std::size_t i = 0; i < depth.pixels.size(); ++i) {
     truths.surfaces.pixels[i] = std::isfinite(depth.pixels[i]) ? 1 : 0;
   }
-  auto scene = scene_truth(rendering, options, depth);
+  auto scene = scene_truth(frame, options, depth);
   if (!scene) {
     return tl::unexpected(std::move(scene.error()));
   }
   truths.scene = std::move(*scene);
-  truths.height_field = depth_truth(rendering, options, depth);
+  truths.height_field = depth_truth(frame, options, depth);
   return truths;
 }
 

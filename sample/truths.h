@@ -6,12 +6,22 @@
 
 #include "errors.h"
 #include "height_field_truth.h"
-#include "rendering.h"
+#include "options.h"
+#include "scene.h"
 #include "truth.h"
 
 namespace alcove::sample {
 
-// Both truths of a rendering, and where they can be compared.
+// A frame that truths are wanted of: borrowed.
+struct TruthFrame {
+  const Scene& scene;
+  const Camera& camera;
+  float radius;  // of occlusion, scene units
+  const Image<float>& depth_ndc;
+  const Image<glm::vec3>& normal_ws;  // that the occlusion was given
+};
+
+// Both truths of a frame, and where they can be compared.
 struct Truths {
   OcclusionTruth scene;           // ray traced
   HeightFieldTruth height_field;  // by brute force on the same depth buffer
@@ -20,7 +30,7 @@ struct Truths {
 
 // Computes them, or takes them from the cache on disk. Points are where primary rays through the
 // pixel centres meet the scene, normals those that the occlusion was given. Progress on stderr.
-[[nodiscard]] tl::expected<Truths, std::string> truths_of(const Rendering& rendering,
+[[nodiscard]] tl::expected<Truths, std::string> truths_of(const TruthFrame& frame,
                                                           const Options& options);
 
 }  // namespace alcove::sample

@@ -364,7 +364,7 @@ SliceNoise noise_at(uvec2 block) {
     case 2:
       return spatial_pattern(block, parameters.frame);
     default:
-      return golden_pattern(block, parameters.frame);
+      return golden_pattern(block, parameters.frame, kDivisor > 1);
   }
 }
 

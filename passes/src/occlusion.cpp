@@ -62,7 +62,7 @@ OcclusionSettings quality_settings(Quality quality, float radius) {
       break;
     case Quality::medium:
       settings.divisor = 2;
-      settings.steps = 8;
+      settings.steps = 10;
       settings.history_frames = 32;
       break;
     case Quality::high:

@@ -39,18 +39,22 @@ ALCOVE_INLINE SliceNoise spatial_pattern(uvec2 pixel, uint frame) {
   return noise;
 }
 
-// The memo's 4x4 block, turned from frame to frame by the golden ratio (directions) and the first
-// R2 number (offsets): no frame repeats, and any run of frames covers both evenly, so that it goes
-// with searches that move through a block of pixels, whose own period the memo's six rotations
-// would meet.
-ALCOVE_INLINE SliceNoise golden_pattern(uvec2 pixel, uint frame) {
+// The memo's 4x4 block, turned from frame to frame by the golden ratio (directions) and an R2
+// number (offsets): no frame repeats, and any run of frames covers both evenly. Where searches
+// move through a block of pixels (`moves`), each is back in its place or beside it after four
+// frames: then it is a quarter of such numbers, so that what a pixel itself is searched for is as
+// even. (The memo's six rotations would meet the period of four.)
+ALCOVE_INLINE SliceNoise golden_pattern(uvec2 pixel, uint frame, bool moves) {
   uint x = pixel.x & 3u;
   uint y = pixel.y & 3u;
   uint cell = (((x + y) & 3u) << 2u) + x;
   uint offset = (y + 4u - x) & 3u;
-  // Fractions of 2^32, exact for every frame: the ratio itself and 1 / 1.3247179572.
-  uint direction_bits = (cell << 28u) + (1u << 27u) + frame * 2654435769u;
-  uint offset_bits = (offset << 30u) + (1u << 29u) + frame * 3242174889u;
+  // Fractions of 2^32, exact for every frame: of 1.6180339887 and 0.7548776662, or of a quarter of
+  // 1.6180339887 and of 2.5698402910.
+  uint turn = moves ? 1737350766u : 2654435769u;
+  uint shift = moves ? 2759345001u : 3242174889u;
+  uint direction_bits = (cell << 28u) + (1u << 27u) + frame * turn;
+  uint offset_bits = (offset << 30u) + (1u << 29u) + frame * shift;
   SliceNoise noise;
   noise.direction = float(direction_bits >> 8u) * (1.0f / 16777216.0f);
   noise.offset = float(offset_bits >> 8u) * (1.0f / 16777216.0f);

@@ -170,8 +170,9 @@ ALCOVE_INLINE vec4 parity_of_sampling(uint which, vec4 a, vec4 b) {
       return vec4(spatial_pattern(pixel, frame).direction, spatial_pattern(pixel, frame).offset,
                   hilbert_noise(pixel, frame).direction, hilbert_noise(pixel, frame).offset);
     case 22u:
-      return vec4(golden_pattern(pixel, frame).direction, golden_pattern(pixel, frame).offset,
-                  unit_float(hash(frame)), float(hilbert_index(pixel)));
+      return vec4(golden_pattern(pixel, frame, true).direction,
+                  golden_pattern(pixel, frame, false).offset, unit_float(hash(frame)),
+                  float(hilbert_index(pixel)));
     case 18u:
       return vec4(
           unit_float(hash(pixel.x + pixel.y * 960u)), float(hilbert_index(pixel)),

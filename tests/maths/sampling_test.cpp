@@ -75,7 +75,7 @@ TEST(GoldenPattern, BlockHoldsSixteenDirectionsAndFourOffsetsInEveryFrame) {
   for (unsigned frame : {0u, 1u, 5u, 1000000u}) {
     std::set<float> directions, offsets;
     for (unsigned k = 0; k < 16; ++k) {
-      const SliceNoise noise = maths::golden_pattern(uvec2(k & 3u, k >> 2u), frame);
+      const SliceNoise noise = maths::golden_pattern(uvec2(k & 3u, k >> 2u), frame, frame > 1u);
       directions.insert(noise.direction);
       offsets.insert(noise.offset);
       EXPECT_TRUE(noise.direction >= 0.0f && noise.direction < 1.0f);
@@ -90,12 +90,27 @@ TEST(GoldenPattern, AnyRunOfFramesCoversDirectionsAndOffsetsEvenly) {
   for (unsigned start : {0u, 123u, 4000000000u}) {
     std::vector<float> directions, offsets;
     for (unsigned frame = 0; frame < 32; ++frame) {
-      const SliceNoise noise = maths::golden_pattern(uvec2(2, 1), start + frame);
+      const SliceNoise noise = maths::golden_pattern(uvec2(2, 1), start + frame, false);
       directions.push_back(noise.direction);
       offsets.push_back(noise.offset);
     }
     EXPECT_LT(largest_gap(directions), 2.7f / 32);
     EXPECT_LT(largest_gap(offsets), 4.2f / 32);
+  }
+}
+
+TEST(GoldenPattern, WhereSearchesMoveEveryFourthFrameCoversThemEvenlyToo) {
+  for (unsigned start : {0u, 123u, 4000000000u}) {
+    for (const unsigned apart : {1u, 4u}) {
+      std::vector<float> directions, offsets;
+      for (unsigned k = 0; k < 32; ++k) {
+        const SliceNoise noise = maths::golden_pattern(uvec2(2, 1), start + apart * k, true);
+        directions.push_back(noise.direction);
+        offsets.push_back(noise.offset);
+      }
+      EXPECT_LT(largest_gap(directions), 2.7f / 32) << apart;
+      EXPECT_LT(largest_gap(offsets), 4.2f / 32) << apart;
+    }
   }
 }
 

@@ -51,6 +51,8 @@ struct OcclusionSettings {
   float roughness = 0.5f;               // perceptual, [0,1], of every pixel where no texture has it
   std::uint32_t roughness_channel = 0;  // of the roughness texture, 0 to 3
   Precision precision = Precision::unorm8;
+
+  friend bool operator==(const OcclusionSettings&, const OcclusionSettings&) = default;
 };
 
 // The settings of a quality at a radius; all of them suit every scene.

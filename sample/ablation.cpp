@@ -1,0 +1,254 @@
+#include "ablation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace alcove::sample {
+namespace {
+
+using Failure = tl::unexpected<std::string>;
+using passes::Estimator;
+using passes::OcclusionSettings;
+using passes::Pattern;
+
+// Pairs of frames whose times make the median; one more, the first, also compiles shaders.
+constexpr std::uint32_t kTimedPairs = 11;
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+FrameRequest request_of(const StillSetup& setup, const OcclusionSettings& settings,
+                        std::uint32_t frame) {
+  const CameraMatrices m = camera_matrices(setup.camera, setup.width, setup.height);
+  FrameRequest request;
+  request.view = {m.view_from_world, m.clip_from_view, m.view_from_world, m.clip_from_view,
+                  setup.camera.reversed_z};
+  request.index = frame;
+  request.occlusion = settings;
+  request.occlusion.specular = passes::Specular::none;
+  request.occlusion.bent_normal = false;
+  return request;
+}
+
+tl::expected<FrameImages, std::string> draw_frames(FrameRenderer& renderer, const StillSetup& setup,
+                                                   const OcclusionSettings& settings) {
+  for (std::uint32_t i = 0; i + 1 < setup.frames; ++i) {
+    if (auto cost = renderer.draw(request_of(setup, settings, i)); !cost) {
+      return Failure(std::move(cost.error()));
+    }
+  }
+  return renderer.draw_and_read(request_of(setup, settings, setup.frames - 1));
+}
+
+std::uint64_t bytes_of(const FrameRenderer& renderer) {
+  const framegraph::MemoryStatistics& memory = renderer.memory();
+  return memory.aliased + memory.history;
+}
+
+class TrialList {
+ public:
+  explicit TrialList(const OcclusionSettings& base) : base_(base) {}
+
+  template <typename Change>
+  void add(const char* part, const std::string& name, const Change& change) {
+    OcclusionSettings settings = base_;
+    change(settings);
+    if (settings != base_) {
+      trials_.push_back({part, name, settings});
+    }
+  }
+  std::vector<Trial> take() { return std::move(trials_); }
+
+ private:
+  OcclusionSettings base_;
+  std::vector<Trial> trials_;
+};
+
+void add_estimators(TrialList& list) {
+  const char* part = "estimator";
+  list.add(part, "horizons, infinitely thick",
+           [](OcclusionSettings& s) { s.estimator = Estimator::horizons; });
+  list.add(part, "the memo's thickness heuristic",
+           [](OcclusionSettings& s) { s.estimator = Estimator::heuristic; });
+  list.add(part, "plain bitmask", [](OcclusionSettings& s) {
+    s.estimator = Estimator::bitmask;
+    s.fill = 0.0f;
+  });
+  list.add(part, "plain bitmask, filled",
+           [](OcclusionSettings& s) { s.estimator = Estimator::bitmask; });
+  list.add(part, "connected samples",
+           [](OcclusionSettings& s) { s.estimator = Estimator::connected; });
+}
+
+void add_occluders(TrialList& list, const OcclusionSettings& base) {
+  if (base.estimator != Estimator::bitmask && base.estimator != Estimator::connected) {
+    return;
+  }
+  const char* part = "occluders";
+  list.add(part, "nothing behind a front", [](OcclusionSettings& s) { s.fill = 0.0f; });
+  list.add(part, "everything behind it", [](OcclusionSettings& s) { s.fill = 1.0f; });
+  list.add(part, "a third as thick", [](OcclusionSettings& s) { s.thickness /= 3.0f; });
+  list.add(part, "three times as thick", [](OcclusionSettings& s) { s.thickness *= 3.0f; });
+}
+
+void add_searches(TrialList& list) {
+  const char* part = "resolution";
+  list.add(part, "every pixel searched", [](OcclusionSettings& s) { s.divisor = 1; });
+  list.add(part, "one in 2x2", [](OcclusionSettings& s) { s.divisor = 2; });
+  list.add(part, "one in 4x4", [](OcclusionSettings& s) { s.divisor = 4; });
+  // As many searches as every pixel has above.
+  list.add(part, "one in 2x2, four slices", [](OcclusionSettings& s) {
+    s.divisor = 2;
+    s.slices = std::min(s.slices * 4, 64u);
+  });
+  part = "work";
+  list.add(part, "half the steps",
+           [](OcclusionSettings& s) { s.steps = std::max(s.steps / 2, 2u); });
+  list.add(part, "twice the steps",
+           [](OcclusionSettings& s) { s.steps = std::min(s.steps * 2, 64u); });
+  list.add(part, "twice the slices",
+           [](OcclusionSettings& s) { s.slices = std::min(s.slices * 2, 64u); });
+  part = "pattern";
+  list.add(part, "golden", [](OcclusionSettings& s) { s.pattern = Pattern::golden; });
+  list.add(part, "Hilbert and R2", [](OcclusionSettings& s) { s.pattern = Pattern::hilbert; });
+  list.add(part, "the memo's, six rotations",
+           [](OcclusionSettings& s) { s.pattern = Pattern::memo; });
+}
+
+void add_reconstruction(TrialList& list, const OcclusionSettings& base) {
+  const char* part = "filter";
+  list.add(part, "none", [](OcclusionSettings& s) { s.filter_reach = 0; });
+  // With a history only its first frame looks further than a block.
+  if (base.history_frames == 0) {
+    list.add(part, "1 block on each side", [](OcclusionSettings& s) { s.filter_reach = 1; });
+    list.add(part, "3 blocks on each side", [](OcclusionSettings& s) { s.filter_reach = 3; });
+  }
+  part = "history";
+  list.add(part, "none, noise advances", [](OcclusionSettings& s) { s.history_frames = 0; });
+  list.add(part, "8 frames", [](OcclusionSettings& s) { s.history_frames = 8; });
+  list.add(part, "none, no filter", [](OcclusionSettings& s) {
+    s.history_frames = 0;
+    s.filter_reach = 0;
+  });
+}
+
+// How often as far away a narrow perspective stands for an orthographic view.
+constexpr float kFarAway = 300.0f;
+
+Twins orthographic_twins(const Camera& camera, std::uint32_t height) {
+  const glm::vec3 back = camera.eye_ws - camera.target_ws;
+  const float distance = glm::length(back);
+  Twins twins{"orthographic, and from far away", camera, camera};
+  Camera& flat = twins.first;
+  if (!flat.orthographic) {
+    flat.orthographic = true;
+    flat.ortho_height = 2.0f * distance * std::tan(0.5f * camera.fov_y);
+  }
+  if (std::isinf(flat.far_plane)) {
+    flat.far_plane = 1000.0f * flat.ortho_height;
+  }
+  Camera& away = twins.second;
+  away.orthographic = false;
+  away.eye_ws = camera.target_ws + back * kFarAway;
+  away.fov_y = 2.0f * std::atan(0.5f * flat.ortho_height / (kFarAway * distance));
+  twins.further = (kFarAway - 1.0f) * distance;
+  away.near_plane = flat.near_plane + twins.further;
+  away.far_plane = flat.far_plane + twins.further;
+  // The images part by some pixels before and behind the target, and towards their borders.
+  twins.tolerance = flat.ortho_height / static_cast<float>(height);
+  return twins;
+}
+
+}  // namespace
+
+std::vector<Trial> trials_of(const OcclusionSettings& base) {
+  TrialList list(base);
+  add_estimators(list);
+  add_occluders(list, base);
+  add_searches(list);
+  add_reconstruction(list, base);
+  return list.take();
+}
+
+std::vector<Twins> twins_of(const Camera& camera, std::uint32_t height) {
+  std::vector<Twins> all;
+  all.push_back({"depth from 1 to 0, and from 0 to 1", camera, camera});
+  all.back().first.reversed_z = true;
+  all.back().second.reversed_z = false;
+  if (!camera.orthographic && !std::isinf(camera.far_plane)) {
+    all.push_back({"far plane at a distance, and at infinity", camera, camera});
+    all.back().second.far_plane = INFINITY;
+  }
+  all.push_back({"this size, and twice as large", camera, camera, 2});
+  all.push_back(orthographic_twins(camera, height));
+  return all;
+}
+
+tl::expected<FrameImages, std::string> draw_still(Gpu& gpu, const Scene& scene,
+                                                  const StillSetup& setup,
+                                                  const OcclusionSettings& settings) {
+  const auto renderer =
+      FrameRenderer::create(gpu, scene, {setup.width, setup.height}, setup.normals);
+  if (!renderer) {
+    return Failure(renderer.error());
+  }
+  return draw_frames(**renderer, setup, settings);
+}
+
+tl::expected<Ablation, std::string> Ablation::create(Gpu& gpu, const Scene& scene,
+                                                     const StillSetup& setup,
+                                                     const OcclusionSettings& base) {
+  Ablation made(scene, setup, base);
+  auto renderer = FrameRenderer::create(gpu, scene, {setup.width, setup.height}, setup.normals);
+  if (!renderer) {
+    return Failure(std::move(renderer.error()));
+  }
+  made.renderer_ = std::move(*renderer);
+  auto images = draw_frames(*made.renderer_, setup, base);
+  if (!images) {
+    return Failure(std::move(images.error()));
+  }
+  made.base_ = std::move(*images);
+  made.next_frame_ = setup.frames;
+  return made;
+}
+
+std::uint64_t Ablation::base_bytes() const { return bytes_of(*renderer_); }
+
+tl::expected<TrialResult, std::string> Ablation::run(Gpu& gpu, const Trial& trial) {
+  const auto renderer =
+      FrameRenderer::create(gpu, scene_, {setup_.width, setup_.height}, setup_.normals);
+  if (!renderer) {
+    return Failure(renderer.error());
+  }
+  auto images = draw_frames(**renderer, setup_, trial.settings);
+  if (!images) {
+    return Failure(std::move(images.error()));
+  }
+  TrialResult result{std::move(images->visibility), {}};
+  std::vector<double> gpu_ratios;
+  std::vector<double> processor_ratios;
+  for (std::uint32_t i = 0; i <= kTimedPairs; ++i) {
+    const auto base = renderer_->draw(request_of(setup_, settings_, next_frame_++));
+    if (!base) {
+      return Failure(base.error());
+    }
+    const auto other = (*renderer)->draw(request_of(setup_, trial.settings, setup_.frames + i));
+    if (!other) {
+      return Failure(other.error());
+    }
+    if (i > 0) {
+      gpu_ratios.push_back(other->occlusion_ms / base->occlusion_ms);
+      processor_ratios.push_back(other->cpu_ms / base->cpu_ms);
+    }
+  }
+  result.cost = {median(std::move(gpu_ratios)), median(std::move(processor_ratios)),
+                 bytes_of(**renderer)};
+  return result;
+}
+
+}  // namespace alcove::sample

@@ -1,0 +1,36 @@
+#ifndef ALCOVE_SAMPLE_STAGE_H_
+#define ALCOVE_SAMPLE_STAGE_H_
+
+#include <memory>
+#include <string>
+#include <tl/expected.hpp>
+
+#include "alcove/passes/occlusion.h"
+#include "camera.h"
+#include "gpu.h"
+#include "options.h"
+#include "scene.h"
+
+namespace alcove::sample {
+
+// What the options of a command ask for, before anything is drawn.
+struct Stage {
+  Scene scene;
+  Camera camera;
+  passes::OcclusionSettings settings;
+  std::unique_ptr<Gpu> gpu;
+};
+
+// Loads the scene, finds camera and settings and opens the device, in this order: the cheapest
+// mistake is told first.
+[[nodiscard]] tl::expected<Stage, std::string> stage_of(const Options& options);
+
+// Another device like the first: histories of what is drawn on it are its own.
+[[nodiscard]] tl::expected<std::unique_ptr<Gpu>, std::string> open_gpu(const Options& options);
+
+// One sentence where the validation layers said anything.
+[[nodiscard]] tl::expected<void, std::string> check_validation(const Gpu& gpu);
+
+}  // namespace alcove::sample
+
+#endif  // ALCOVE_SAMPLE_STAGE_H_

@@ -1,0 +1,124 @@
+// The built-in scene with parts of the occlusion exchanged, small: what `alcove ablate` prints,
+// held to bounds.
+#include "ablation.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "builtin_scene.h"
+#include "errors.h"
+#include "ray_scene.h"
+#include "surface_points.h"
+#include "truth.h"
+
+namespace alcove::sample {
+namespace {
+
+using passes::Estimator;
+using passes::OcclusionSettings;
+using passes::Quality;
+
+TEST(Trials, ChangeOneThingEachAndNeverNothing) {
+  for (const Quality quality : {Quality::low, Quality::medium, Quality::high, Quality::ultra}) {
+    const OcclusionSettings base = passes::quality_settings(quality, 0.5f);
+    std::set<std::string> names;
+    for (const Trial& trial : trials_of(base)) {
+      EXPECT_FALSE(trial.settings == base) << trial.name;
+      EXPECT_TRUE(names.insert(trial.part + trial.name).second) << trial.name;
+      EXPECT_EQ(trial.settings.radius, base.radius) << trial.name;
+    }
+    EXPECT_GT(names.size(), 15u);
+  }
+}
+
+class AblationTest : public testing::Test {
+ protected:
+  std::unique_ptr<Gpu> open() {
+    auto made = Gpu::create({.validation = true}, {.verify = true, .check_uses = true});
+    EXPECT_TRUE(made) << made.error();
+    return made ? std::move(*made) : nullptr;
+  }
+  static void expect_valid(const Gpu& gpu) {
+    for (const std::string& message : gpu.device().validation_messages()) {
+      ADD_FAILURE() << message;
+    }
+  }
+
+  const Scene scene_ = builtin_scene();
+  const StillSetup setup_{scene_.cameras.front(), 240, 135, 12, NormalSource::kGeometric};
+  const OcclusionSettings base_ = passes::quality_settings(Quality::medium, default_radius(scene_));
+};
+
+TEST_F(AblationTest, ConnectedSamplesAreNearestToTheTruth) {
+  const auto gpu = open();
+  ASSERT_TRUE(gpu);
+  auto ablation = Ablation::create(*gpu, scene_, setup_, base_);
+  ASSERT_TRUE(ablation) << ablation.error();
+  const FrameImages& base = ablation->base();
+  const Image<float> depth = linear_depth(setup_.camera, base.depth_ndc);
+  Mask surfaces(depth.width, depth.height);
+  for (std::size_t i = 0; i < depth.pixels.size(); ++i) {
+    surfaces.pixels[i] = std::isfinite(depth.pixels[i]) ? 1 : 0;
+  }
+  const auto rays = RayScene::create(scene_);
+  ASSERT_TRUE(rays);
+  const Image<float> truth =
+      occlusion_truth(*rays, surface_points(*rays, setup_.camera, base.normal_ws, depth),
+                      {.radius = base_.radius, .spp = 64}, nullptr)
+          .visibility;
+  const double connected = compare_images(base.visibility, truth, surfaces).rmse;
+  EXPECT_GT(connected, 0.01);
+  for (const Trial& trial : trials_of(base_)) {
+    if (trial.part != "estimator") {
+      continue;
+    }
+    SCOPED_TRACE(trial.name);
+    const auto other = open();
+    ASSERT_TRUE(other);
+    const auto result = ablation->run(*other, trial);
+    ASSERT_TRUE(result) << result.error();
+    EXPECT_GT(compare_images(result->visibility, truth, surfaces).rmse, 1.02 * connected);
+    EXPECT_GT(result->cost.processor, 0.0);
+    EXPECT_EQ(result->cost.bytes, ablation->base_bytes());
+    expect_valid(*other);
+  }
+  expect_valid(*gpu);
+}
+
+TEST_F(AblationTest, AFrameWithoutHistoryHoldsFewerBytes) {
+  const auto gpu = open();
+  const auto other = open();
+  ASSERT_TRUE(gpu && other);
+  auto ablation = Ablation::create(*gpu, scene_, setup_, base_);
+  ASSERT_TRUE(ablation) << ablation.error();
+  Trial trial{"history", "none", base_};
+  trial.settings.history_frames = 0;
+  const auto result = ablation->run(*other, trial);
+  ASSERT_TRUE(result) << result.error();
+  EXPECT_LT(result->cost.bytes, ablation->base_bytes() / 2);
+}
+
+TEST_F(AblationTest, WhatShouldChangeNothingChangesLittle) {
+  const auto gpu = open();
+  ASSERT_TRUE(gpu);
+  for (const Twins& twins : twins_of(setup_.camera, setup_.height)) {
+    if (twins.scale != 1 || twins.further > 0.0f) {
+      continue;
+    }
+    SCOPED_TRACE(twins.name);
+    StillSetup first = setup_;
+    first.camera = twins.first;
+    StillSetup second = setup_;
+    second.camera = twins.second;
+    const auto images = draw_still(*gpu, scene_, first, base_);
+    const auto others = draw_still(*gpu, scene_, second, base_);
+    ASSERT_TRUE(images && others);
+    const Mask all(setup_.width, setup_.height, 1);
+    EXPECT_LT(compare_images(images->visibility, others->visibility, all).rmse, 0.004);
+  }
+  expect_valid(*gpu);
+}
+
+}  // namespace
+}  // namespace alcove::sample
