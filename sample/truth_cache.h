@@ -57,19 +57,24 @@ class TruthCache {
 
   template <class T>
   [[nodiscard]] bool read(const CacheKey& key, Image<T>& image) const {
-    static_assert(sizeof(T) % sizeof(float) == 0);
-    auto values = read(key, image.pixels.size() * (sizeof(T) / sizeof(float)));
+    auto values = read(key, floats_of(image).size());
     if (!values) return false;
     std::memcpy(image.pixels.data(), values->data(), values->size() * sizeof(float));
     return true;
   }
   template <class T>
   void write(const CacheKey& key, const Image<T>& image) const {
-    write(key, std::span(reinterpret_cast<const float*>(image.pixels.data()),
-                         image.pixels.size() * (sizeof(T) / sizeof(float))));
+    write(key, floats_of(image));
   }
 
  private:
+  template <class T>
+  static std::span<const float> floats_of(const Image<T>& image) {
+    const auto bytes = std::as_bytes(std::span(image.pixels));
+    static_assert(sizeof(T) % sizeof(float) == 0);
+    return {reinterpret_cast<const float*>(bytes.data()), bytes.size() / sizeof(float)};
+  }
+
   std::filesystem::path folder_;
 };
 

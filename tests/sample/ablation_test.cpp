@@ -15,7 +15,6 @@
 namespace alcove::sample {
 namespace {
 
-using passes::Estimator;
 using passes::OcclusionSettings;
 using passes::Quality;
 
