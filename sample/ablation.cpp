@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "median.h"
+
 namespace alcove::sample {
 namespace {
 
@@ -14,12 +16,6 @@ using passes::Pattern;
 
 // Pairs of frames whose times make the median; one more, the first, also compiles shaders.
 constexpr std::uint32_t kTimedPairs = 11;
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 FrameRequest request_of(const StillSetup& setup, const OcclusionSettings& settings,
                         std::uint32_t frame) {

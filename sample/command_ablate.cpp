@@ -181,6 +181,10 @@ Done run_ablate(const Options& options) {
   if (!stage) {
     return Failure(std::move(stage.error()));
   }
+  // Before minutes of work, not after.
+  if (auto made = create_folder(options.out); !made) {
+    return made;
+  }
   const auto rows = run_trials(*stage, options);
   if (!rows) {
     return Failure(rows.error());
@@ -209,9 +213,9 @@ Done run_ablate(const Options& options) {
     report["differences"].push_back(
         {{"between", row.name}, {"visibility", to_json(row.difference)}});
   }
-  return create_folder(options.out)
-      .and_then([&] { return write_text(options.out / "report.json", report.dump(2) + "\n"); })
-      .map([&] { std::cout << "report.json is in " << options.out.string() << "\n"; });
+  return write_text(options.out / "report.json", report.dump(2) + "\n").map([&] {
+    std::cout << "report.json is in " << options.out.string() << "\n";
+  });
 }
 
 }  // namespace alcove::sample

@@ -9,6 +9,7 @@
 #include "camera.h"
 #include "display.h"
 #include "image_io.h"
+#include "median.h"
 #include "stage.h"
 #include "surface_points.h"
 
@@ -19,15 +20,6 @@ using Failure = tl::unexpected<std::string>;
 
 // Frames whose times make the median; one more, the first, also compiles shaders.
 constexpr std::uint32_t kTimedFrames = 9;
-
-double median(std::vector<double> values) {
-  if (values.empty()) {
-    return 0;
-  }
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 // Passes are told apart by their place in the frame: every frame of a run has the same.
 Costs medians(const std::vector<FrameCost>& frames) {

@@ -25,7 +25,7 @@ struct Stage {
 // mistake is told first.
 [[nodiscard]] tl::expected<Stage, std::string> stage_of(const Options& options);
 
-// Another device like the first: histories of what is drawn on it are its own.
+// The device that the options name, opened anew: what is drawn on it has histories of its own.
 [[nodiscard]] tl::expected<std::unique_ptr<Gpu>, std::string> open_gpu(const Options& options);
 
 // One sentence where the validation layers said anything.
