@@ -2,17 +2,20 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
+#include <cstring>
 
 namespace alcove::framegraph {
 namespace {
 
 constexpr std::size_t kBlockSize = 16384;
 
-// Handles of different graphs and frames differ by this: its only use is to refuse foreign ones.
-std::uint32_t next_tag() {
-  static std::atomic<std::uint32_t> tag{0};
-  return tag.fetch_add(1, std::memory_order_relaxed) + 1;
+// A number for each frame of each graph, whose lower half is not 0.
+std::uint64_t next_frame() {
+  static std::atomic<std::uint64_t> frame{0};
+  for (;;) {
+    const std::uint64_t number = frame.fetch_add(1, std::memory_order_relaxed);
+    if (static_cast<std::uint32_t>(number) != 0) return number;
+  }
 }
 
 std::uint32_t divided(std::uint32_t size, std::uint32_t divisor) {
@@ -26,23 +29,27 @@ bool has_departure(const State& state) {
 
 }  // namespace
 
-Graph::Graph() : tag_(next_tag()) {}
+Graph::Graph() { reset(); }
 
 Graph::~Graph() { destroy_callables(); }
 
 void Graph::reset() {
   destroy_callables();
   description_.passes.clear();
+  // What lies further on was said of resources that may not be there any more.
+  description_.accesses.next() = {};
   description_.accesses.clear();
+  next_access_ = &description_.accesses.next();
   description_.resources.clear();
   description_.externals.clear();
   description_.outputs.clear();
-  description_.text.clear();
+  description_.long_names.clear();
   imports_.clear();
   histories_.begin_frame();
   block_ = 0;
   next_ = end_ = nullptr;
-  tag_ = next_tag();
+  frame_ = next_frame();
+  repeating_tag_ = tag_ = static_cast<std::uint32_t>(frame_);
 }
 
 void Graph::destroy_callables() {
@@ -67,16 +74,85 @@ void* Graph::allocate_in_next_block(std::size_t size, std::size_t alignment) {
   }
 }
 
-void Graph::resolve_extent(ResourceRecord& record, const Extent& extent) const {
-  const Texture& base = extent.relative_to;
+void Graph::keep_long_name(std::string_view name, GraphDescription::Name& to) {
+  to.offset = static_cast<std::uint32_t>(description_.long_names.size());
+  description_.long_names.append(name);
+}
+
+// The next record, which is as a rule there already.
+template <typename Record>
+void Graph::add(Records<Record>& records, const Record& record) {
+  if (records.is_full()) records.grow();
+  Record& next = records.next();
+  records.repeat();
+  if (repeating_tag_ != 0 && std::memcmp(&next, &record, sizeof record) == 0) return;
+  next = record;
+  changed();
+}
+
+void Graph::grow_resources() {
+  description_.resources.grow();
+  description_.resource_names.resize(description_.resources.capacity());
+  versions_.resize(description_.resources.capacity());
+}
+
+void Graph::grow_passes() {
+  description_.passes.grow();
+  description_.pass_names.resize(description_.passes.capacity());
+  callbacks_.resize(description_.passes.capacity());
+}
+
+ResourceRecord Graph::texture_record(const TextureDesc& desc) const {
+  ResourceRecord record;
+  fill_texture_record(record, desc);
+  const Texture& base = desc.extent.relative_to;
+  if (base.index == kNone) return record;
   if (base.graph != tag_ || base.index >= description_.resources.size()) {
     record.flags |= kRelativeToNothing;
-    return;
+    return record;
   }
   const ResourceRecord& other = description_.resources[base.index];
-  record.width = divided(other.width, extent.divisor);
-  record.height = divided(other.height, extent.divisor);
-  record.depth = divided(other.depth, extent.divisor);
+  record.width = divided(other.width, desc.extent.divisor);
+  record.height = divided(other.height, desc.extent.divisor);
+  record.depth = divided(other.depth, desc.extent.divisor);
+  return record;
+}
+
+void Graph::add_resource(const ResourceRecord& record) {
+  if (description_.resources.is_full()) grow_resources();
+  versions_[description_.resources.size()] = 0;
+  add(description_.resources, record);
+}
+
+std::uint32_t Graph::add_resource(std::string_view name, const ResourceRecord& record) {
+  const auto index = static_cast<std::uint32_t>(description_.resources.size());
+  add_resource(record);
+  keep_name(name, description_.resource_names[index]);
+  return index;
+}
+
+std::uint32_t Graph::add_any_access(std::uint32_t pass, std::uint32_t index, std::uint32_t version,
+                                    std::uint32_t tag, const Access& access, Range range,
+                                    std::uint32_t flags) {
+  AccessRecord record{access.stages, access.access, access.layout, access.usage,
+                      index,         flags,         range,         version};
+  std::uint32_t left = kNone;
+  if (pass + 1 != description_.passes.size()) record.flags |= kClosed;
+  if (tag != tag_ || index >= description_.resources.size()) {
+    record.flags |= index == kNone ? kNull : kForeign;
+    record.resource = kNone;
+  } else {
+    const bool writes = (flags & kWrite) != 0;
+    const ResourceRecord& resource = description_.resources[index];
+    if (access_fits(access, record.kind(), writes) && range == Range{} &&
+        is_plain(resource, record.kind()))
+      record.flags |= kPlain;
+    record.range = resolved_range(range, resource);
+    left = versions_[index] += writes;
+  }
+  add(description_.accesses, record);
+  next_access_ = &description_.accesses.next();
+  return left;
 }
 
 Range Graph::resolved_range(Range range, const ResourceRecord& resource) {
@@ -85,20 +161,6 @@ Range Graph::resolved_range(Range range, const ResourceRecord& resource) {
   if (range.layers == kAll && range.base_layer < resource.layers)
     range.layers = static_cast<std::uint16_t>(resource.layers - range.base_layer);
   return range;
-}
-
-ResourceRecord Graph::texture_record(const TextureDesc& desc) const {
-  ResourceRecord record;
-  fill_texture_record(record, desc);
-  return record;
-}
-
-std::uint32_t Graph::add_resource(std::string_view name, const ResourceRecord& record) {
-  const auto index = static_cast<std::uint32_t>(description_.resources.size());
-  description_.resources.push_back(record);
-  description_.resource_names.at(index) = keep_name(name);
-  versions_.at(index) = 0;
-  return index;
 }
 
 Buffer Graph::create_buffer(std::string_view name, const BufferDesc& desc) {
@@ -119,7 +181,7 @@ Texture Graph::import_texture(std::string_view name, const ImportedTexture& impo
   external.has_contents = import.arrival.layout != VK_IMAGE_LAYOUT_UNDEFINED;
   external.has_departure = has_departure(import.departure);
   external.has_handle = import.image != VK_NULL_HANDLE;
-  description_.externals.push_back(external);
+  add(description_.externals, external);
   imports_.push_back({import.image, import.view, VK_NULL_HANDLE, kNone});
   return {add_resource(name, record), 0, tag_};
 }
@@ -137,7 +199,7 @@ Buffer Graph::import_buffer(std::string_view name, const ImportedBuffer& import)
   external.has_contents = import.has_contents;
   external.has_departure = has_departure(import.departure);
   external.has_handle = import.buffer != VK_NULL_HANDLE;
-  description_.externals.push_back(external);
+  add(description_.externals, external);
   imports_.push_back({VK_NULL_HANDLE, VK_NULL_HANDLE, import.buffer, kNone});
   return {add_resource(name, record), 0, tag_};
 }
@@ -159,7 +221,7 @@ std::uint32_t Graph::add_history(std::string_view name, ResourceRecord record, s
     external.has_handle = 1;
     record.external = static_cast<std::uint32_t>(description_.externals.size());
     record.slot = static_cast<std::uint8_t>(slot);
-    description_.externals.push_back(external);
+    add(description_.externals, external);
     imports_.push_back({VK_NULL_HANDLE, VK_NULL_HANDLE, VK_NULL_HANDLE, history});
     const std::uint32_t index = add_resource(name, record);
     if (slot == 0) first = index;
@@ -203,8 +265,9 @@ void Graph::reset_histories() { histories_.invalidate_all(); }
 
 void Graph::output(Texture texture) {
   const bool known = texture.graph == tag_ && texture.index < description_.resources.size();
-  description_.outputs.push_back({known ? texture.index : kNone, texture.version,
-                                  texture.index == kNone ? kNull : (known ? 0u : kForeign)});
+  const OutputRecord record{known ? texture.index : kNone, texture.version,
+                            texture.index == kNone ? kNull : (known ? 0u : kForeign)};
+  add(description_.outputs, record);
 }
 
 void Graph::output(Buffer buffer) { output(Texture{buffer.index, buffer.version, buffer.graph}); }

@@ -26,11 +26,8 @@ CachedPlan& PlanCache::room(std::uint64_t frame) {
              return a->last_frame < b->last_frame;
            })->get();
   }
-  // Empty declarations of an empty frame must not be taken for these.
   room->declaration = {};
-  room->declaration.passes.push_back({});
-  room->declaration.outputs.push_back({});
-  room->key = 0;
+  room->key.reset();
   room->generation = 0;
   room->last_frame = frame;
   last_ = nullptr;

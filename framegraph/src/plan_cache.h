@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "alcove/framegraph/compile.h"
@@ -10,8 +11,8 @@
 namespace alcove::framegraph {
 
 struct CachedPlan {
-  std::uint64_t key = 0;
-  GraphDescription declaration;  // names are those of the frame that made it
+  std::optional<std::uint64_t> key;  // the hash of the declaration; none until the plan is kept
+  GraphDescription declaration;      // names are those of the frame that made it
   Plan plan;
   std::uint64_t last_frame = 0;
   // The transients' physical side, right for one generation of the pool.

@@ -127,7 +127,7 @@ class JsonPrinter {
       json_.field("kind", writes ? "write" : "read");
       json_.field("stages", stage_names(access.stages));
       json_.field("accesses", access_names(access.access));
-      if (access.kind == ResourceKind::texture) {
+      if (access.kind() == ResourceKind::texture) {
         json_.field("layout", layout_name(access.layout));
         print_range(access.range);
       }

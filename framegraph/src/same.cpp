@@ -38,9 +38,14 @@ std::uint64_t hash_records(std::uint64_t seed, const Records<Record>& records) {
 }  // namespace
 
 bool same_declaration(const GraphDescription& a, const GraphDescription& b) {
-  return same(a.passes, b.passes) && same(a.accesses, b.accesses) &&
-         same(a.resources, b.resources) && same(a.externals, b.externals) &&
-         same(a.outputs, b.outputs);
+  if (a.accesses.size() != b.accesses.size() || a.resources.size() != b.resources.size() ||
+      a.externals.size() != b.externals.size() || a.outputs.size() != b.outputs.size())
+    return false;
+  // The flags of a pass come one by one, so passes are always looked at.
+  if (!same(a.passes, b.passes)) return false;
+  return a.edition == b.edition ||
+         (same(a.accesses, b.accesses) && same(a.resources, b.resources) &&
+          same(a.externals, b.externals) && same(a.outputs, b.outputs));
 }
 
 std::uint64_t hash(const GraphDescription& description) {

@@ -199,7 +199,7 @@ void Synchroniser::use_several(std::uint32_t position, const AccessRecord& acces
 
 inline void Synchroniser::use_range(std::uint32_t position, const AccessRecord& access,
                                     UseState& state, const Range& range) {
-  const bool texture = access.kind == ResourceKind::texture;
+  const bool texture = access.kind() == ResourceKind::texture;
   if (state.queue != queue_ && change_queue(position, access, state, range)) return;
   if (texture && state.layout != access.layout)
     change_layout(position, access, state, range);
@@ -300,8 +300,8 @@ AccessRecord Synchroniser::outside_use(std::uint32_t resource, const State& stat
   access.access = state.access;
   access.layout = state.layout;
   access.resource = resource;
-  access.kind = record.kind;
-  access.flags = state.access & kWriteBits ? kWrite : 0u;
+  access.flags = (state.access & kWriteBits ? kWrite : 0u) |
+                 (record.kind == ResourceKind::buffer ? kOnBuffer : 0u);
   access.range = {0, static_cast<std::uint16_t>(record.mips), 0,
                   static_cast<std::uint16_t>(record.layers)};
   return access;

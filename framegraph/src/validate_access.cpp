@@ -44,7 +44,7 @@ struct Checker {
   std::string subject() const { return verb() + v.resource_text(access.resource); }
 
   bool handle() {
-    const char* kind = access.kind == ResourceKind::texture ? "texture" : "buffer";
+    const char* kind = access.kind() == ResourceKind::texture ? "texture" : "buffer";
     if (access.flags & kNull)
       return bad(ErrorCode::null_handle, verb() + "a " + kind +
                                              " through a null handle: pass one that "
@@ -54,7 +54,7 @@ struct Checker {
                  verb() + "a " + kind +
                      " through a handle of another graph, or of a frame before reset: "
                      "declare or import it in this frame");
-    if (access.kind != v.graph.resources[access.resource].kind)
+    if (access.kind() != v.graph.resources[access.resource].kind)
       return bad(ErrorCode::foreign_handle, verb() + "a " + kind + " through a handle that is of " +
                                                 v.resource_text(access.resource));
     if (access.flags & kClosed)

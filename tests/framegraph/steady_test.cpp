@@ -1,9 +1,15 @@
 // A frame that did not change allocates nothing: counted by replacing operator new.
 #include <gtest/gtest.h>
 
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <vector>
+
 #include "alcove/framegraph/compile.h"
 #include "allocation_counter.h"
 #include "deferred_frame.h"
+#include "random_graph.h"
 
 namespace alcove::framegraph {
 namespace {
@@ -51,6 +57,122 @@ TEST(Steady, AnyDifferenceMakesAnotherKey) {
   (void)other.create_buffer("more", {4});
   EXPECT_FALSE(same_declaration(one.description(), other.description()));
   EXPECT_NE(hash(one.description()), hash(other.description()));
+}
+
+template <typename Record>
+bool same_bytes(const Records<Record>& a, const Records<Record>& b) {
+  return a.size() == b.size() &&
+         (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Record)) == 0);
+}
+
+// What same_declaration says, found out by looking at every byte.
+bool same_bytes(const GraphDescription& a, const GraphDescription& b) {
+  return same_bytes(a.passes, b.passes) && same_bytes(a.accesses, b.accesses) &&
+         same_bytes(a.resources, b.resources) && same_bytes(a.externals, b.externals) &&
+         same_bytes(a.outputs, b.outputs);
+}
+
+// The same few frames in any order, some of them begun and not ended.
+void declare_one_of_few(Graph& graph, Dice& order) {
+  graph.reset();
+  graph.reset_histories();
+  Dice dice(order.roll(5));
+  RandomOptions options;
+  options.most_passes = 6;
+  options.mistakes = order.roll(4) == 0;
+  if (order.roll(4) != 0) declare_random(graph, dice, options);
+}
+
+TEST(Steady, FramesAreTheSameWhereTheirBytesAre) {
+  Graph graph;
+  std::vector<GraphDescription> kept;
+  Dice order(7);
+  for (int frame = 0; frame < 400; ++frame) {
+    declare_one_of_few(graph, order);
+    kept.push_back(graph.description());
+    for (std::uint32_t more = order.roll(3); more-- > 0;) {
+      const TextureDesc desc{VK_FORMAT_R8_UNORM, Extent::absolute(8, 8 + order.roll(2))};
+      PassBuilder pass = graph.add_pass("more");
+      (void)pass.write(graph.create_texture("more", desc), access::storage_write_compute);
+      if (order.roll(2) != 0) pass.side_effect();
+      kept.push_back(graph.description());
+    }
+    for (const GraphDescription& other : kept)
+      ASSERT_EQ(same_declaration(graph.description(), other),
+                same_bytes(graph.description(), other));
+    if (kept.size() > 40) kept.erase(kept.begin(), kept.begin() + 20);
+  }
+}
+
+TEST(Steady, AUsedGraphDeclaresAsAFreshOne) {
+  Graph used;
+  Dice order(11);
+  for (int frame = 0; frame < 2000; ++frame) {
+    Graph fresh;
+    Dice same = order;
+    declare_one_of_few(used, order);
+    declare_one_of_few(fresh, same);
+    const GraphDescription& a = used.description();
+    const GraphDescription& b = fresh.description();
+    ASSERT_TRUE(same_bytes(a.passes, b.passes)) << frame;
+    ASSERT_TRUE(same_bytes(a.accesses, b.accesses)) << frame;
+    ASSERT_TRUE(same_bytes(a.resources, b.resources)) << frame;
+    ASSERT_TRUE(same_bytes(a.outputs, b.outputs)) << frame;
+    for (std::uint32_t i = 0; i < a.passes.size(); ++i) ASSERT_EQ(a.pass_name(i), b.pass_name(i));
+    for (std::uint32_t i = 0; i < a.resources.size(); ++i)
+      ASSERT_EQ(a.resource_name(i), b.resource_name(i));
+  }
+}
+
+// What an older, longer frame left behind was said of a texture that is another one now.
+TEST(Steady, AnAccessBehindTheLastFramesEndIsLookedAtAnew) {
+  const auto declare = [](Graph& graph, std::uint32_t mips, bool reads) {
+    graph.reset();
+    Texture texture =
+        graph.create_texture("texture", {VK_FORMAT_R8_UNORM, Extent::absolute(8, 8), mips});
+    PassBuilder first = graph.add_pass("first");
+    texture = first.write(texture, access::storage_write_compute);
+    if (reads) graph.add_pass("second").read(texture, access::sampled_compute);
+  };
+  Graph graph;
+  declare(graph, 1, true);
+  declare(graph, 2, false);
+  declare(graph, 2, true);
+  const AccessRecord& read = graph.description().accesses[1];
+  EXPECT_EQ(read.flags & kPlain, 0u);
+  EXPECT_EQ(read.range, (Range{0, 2, 0, 1}));
+}
+
+// A handle made up by counting from another names nothing until that is declared, even where the
+// frame before declared it.
+TEST(Steady, AMadeUpHandleIsForeign) {
+  Graph graph;
+  for (int frame = 0; frame < 3; ++frame) {
+    graph.reset();
+    const TextureDesc desc{VK_FORMAT_R8_UNORM, Extent::absolute(8, 8)};
+    Texture made_up = graph.create_texture("first", desc);
+    ++made_up.index;
+    if (frame == 0) made_up = graph.create_texture("second", desc);
+    graph.add_pass("pass").read(made_up, access::sampled_compute);
+    EXPECT_EQ((graph.description().accesses[0].flags & kForeign) != 0, frame != 0) << frame;
+  }
+}
+
+TEST(Steady, NamesOfAnyLengthAreKept) {
+  Graph graph;
+  for (std::size_t size = 0; size < 80; ++size) {
+    graph.reset();
+    const std::string name = std::string(size, 'a') + "bcdefgh";
+    for (std::size_t i = 0; i < name.size(); ++i) {
+      const std::string_view part = std::string_view(name).substr(i);
+      (void)graph.create_texture(part, {VK_FORMAT_R8_UNORM, Extent::absolute(8, 8)});
+      graph.add_pass(part);
+    }
+    for (std::uint32_t i = 0; i < name.size(); ++i) {
+      EXPECT_EQ(graph.description().resource_name(i), name.substr(i));
+      EXPECT_EQ(graph.description().pass_name(i), name.substr(i));
+    }
+  }
 }
 
 }  // namespace

@@ -4,8 +4,10 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
 #include <type_traits>
+#include <vector>
 
 #include "alcove/framegraph/records.h"
 #include "alcove/framegraph/types.h"
@@ -60,6 +62,7 @@ enum AccessFlags : std::uint32_t {
   // All of a transient with one subresource, with stages, access bits and layout that fit: by
   // itself right on a queue that can run anything. Compile looks closer at any other.
   kPlain = 64,
+  kOnBuffer = 128,  // the handle was of a buffer
 };
 
 // The access bits that write.
@@ -78,11 +81,14 @@ struct AccessRecord {
   VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
   VkFlags usage = 0;
   std::uint32_t resource = kNone;
-  std::uint32_t version = 0;                  // that the access names: a write makes the next one
-  Range range;                                // resolved: kAll only where the base is out of range
-  std::uint32_t flags = 0;                    // AccessFlags
-  ResourceKind kind = ResourceKind::texture;  // of the handle
-  std::uint8_t reserved[3] = {};
+  std::uint32_t flags = 0;    // AccessFlags
+  Range range;                // resolved: kAll only where the base is out of range
+  std::uint32_t version = 0;  // that the access names: a write makes the next one
+  std::uint32_t reserved = 0;
+
+  ResourceKind kind() const {  // of the handle
+    return flags & kOnBuffer ? ResourceKind::buffer : ResourceKind::texture;
+  }
 };
 static_assert(std::has_unique_object_representations_v<AccessRecord>);
 
@@ -110,15 +116,19 @@ struct GraphDescription {
   Records<ResourceRecord> resources;
   Records<ExternalRecord> externals;
   Records<OutputRecord> outputs;
+  // What the records, but for passes, hold at this many: the number of the frame that first
+  // declared them, which no other frame of any graph has.
+  std::uint64_t edition = 0;
 
   // Names are for people: they are no part of the key.
   struct Name {
-    std::uint32_t offset = 0;
     std::uint32_t size = 0;
+    std::uint32_t offset = 0;  // in long_names, where it is too long for the place here
+    char place[24] = {};
   };
-  Records<char> text;
-  Beside<Name> pass_names;
-  Beside<Name> resource_names;
+  std::string long_names;
+  std::vector<Name> pass_names;  // with room for more, as resource_names
+  std::vector<Name> resource_names;
 
   std::span<const AccessRecord> pass_accesses(std::uint32_t pass) const {
     const std::uint32_t first = passes[pass].first_access;
@@ -127,11 +137,13 @@ struct GraphDescription {
                                    : static_cast<std::uint32_t>(accesses.size());
     return {accesses.data() + first, last - first};
   }
-  std::string_view pass_name(std::uint32_t pass) const {
-    return {text.data() + pass_names[pass].offset, pass_names[pass].size};
-  }
+  std::string_view pass_name(std::uint32_t pass) const { return text(pass_names[pass]); }
   std::string_view resource_name(std::uint32_t resource) const {
-    return {text.data() + resource_names[resource].offset, resource_names[resource].size};
+    return text(resource_names[resource]);
+  }
+  std::string_view text(const Name& name) const {
+    const bool here = name.size <= sizeof name.place;
+    return {here ? name.place : long_names.data() + name.offset, name.size};
   }
 };
 

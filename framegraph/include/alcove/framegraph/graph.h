@@ -161,31 +161,47 @@ class Graph {
     std::size_t size = 0;
   };
 
-  GraphDescription::Name keep_name(std::string_view name);
+  void keep_name(std::string_view name, GraphDescription::Name& to);
+  void keep_long_name(std::string_view name, GraphDescription::Name& to);
+  // The records differ from those that lay there before this frame.
+  void changed();
+  template <typename Record>
+  void add(Records<Record>& records, const Record& record);
+  void grow_resources();
+  void grow_passes();
+  void add_resource(const ResourceRecord& record);
   std::uint32_t add_resource(std::string_view name, const ResourceRecord& record);
   ResourceRecord texture_record(const TextureDesc& desc) const;
-  void fill_texture_record(ResourceRecord& record, const TextureDesc& desc) const;
-  void resolve_extent(ResourceRecord& record, const Extent& extent) const;
+  static void fill_texture_record(ResourceRecord& record, const TextureDesc& desc);
+  static bool is_texture_record(const ResourceRecord& record, const TextureDesc& desc);
   std::uint32_t add_history(std::string_view name, ResourceRecord record, std::uint32_t slots,
                             HistoryValidity& validity);
   static Range resolved_range(Range range, const ResourceRecord& resource);
+  static constexpr bool access_fits(const Access& access, ResourceKind kind, bool writes);
+  static bool is_plain(const ResourceRecord& resource, ResourceKind kind);
   template <typename Handle>
   std::uint32_t add_access(std::uint32_t pass, const Handle& handle, const Access& access,
                            Range range, std::uint32_t flags);
+  std::uint32_t add_any_access(std::uint32_t pass, std::uint32_t index, std::uint32_t version,
+                               std::uint32_t tag, const Access& access, Range range,
+                               std::uint32_t flags);
   void* allocate(std::size_t size, std::size_t alignment);
   void* allocate_in_next_block(std::size_t size, std::size_t alignment);
   void destroy_callables();
 
   GraphDescription description_;
-  Beside<std::uint32_t> versions_;      // of each resource, at this point of the declaration
-  std::vector<ImportHandles> imports_;  // parallel to description_.externals
-  Beside<Callback> callbacks_;          // parallel to description_.passes
+  AccessRecord* next_access_ = nullptr;  // description_.accesses.next()
+  std::vector<std::uint32_t> versions_;  // of resources, at this point; room as for these
+  std::vector<ImportHandles> imports_;   // parallel to description_.externals
+  std::vector<Callback> callbacks_;      // room as for description_.passes
   std::vector<Cleanup> cleanups_;
   std::vector<Block> blocks_;
   std::size_t block_ = 0;      // the next block
   std::byte* next_ = nullptr;  // free bytes of the current one
   std::byte* end_ = nullptr;
-  std::uint32_t tag_ = 0;  // of the handles of this frame of this graph
+  std::uint64_t frame_ = 0;  // its number
+  std::uint32_t tag_ = 0;    // of the handles of this frame of this graph: half of its number
+  std::uint32_t repeating_tag_ = 0;  // the same until something changed(), 0 from then on
   HistoryTable histories_;
 };
 
@@ -194,7 +210,7 @@ void PassBuilder::record(Callable&& callable) {
   using Stored = std::decay_t<Callable>;
   void* object = graph_.allocate(sizeof(Stored), alignof(Stored));
   ::new (object) Stored(std::forward<Callable>(callable));
-  graph_.callbacks_.at(pass_) = {
+  graph_.callbacks_[pass_] = {
       [](void* stored, RecordContext& context) { (*static_cast<Stored*>(stored))(context); },
       object};
   graph_.description_.passes[pass_].flags |= kHasCallback;
@@ -219,24 +235,46 @@ inline void* Graph::allocate(std::size_t size, std::size_t alignment) {
   return start;
 }
 
-inline GraphDescription::Name Graph::keep_name(std::string_view name) {
+inline void Graph::keep_name(std::string_view name, GraphDescription::Name& to) {
   const std::size_t size = name.size();
-  const std::size_t offset = description_.text.size();
-  char* const to = description_.text.append(size);
+  to.size = static_cast<std::uint32_t>(size);
   // Two overlapping copies of a fixed size are cheaper than one of a size that is not known.
-  if (size >= 8 && size <= 16) {
-    std::memcpy(to, name.data(), 8);
-    std::memcpy(to + size - 8, name.data() + size - 8, 8);
-  } else if (size >= 4 && size < 8) {
-    std::memcpy(to, name.data(), 4);
-    std::memcpy(to + size - 4, name.data() + size - 4, 4);
-  } else if (size != 0) {
-    std::memcpy(to, name.data(), size);
+  const auto copy = [&](std::size_t half) {
+    std::memcpy(to.place, name.data(), half);
+    std::memcpy(to.place + size - half, name.data() + size - half, half);
+  };
+  if (size > sizeof to.place) {
+    keep_long_name(name, to);
+  } else if (size >= 16) {
+    copy(16);
+  } else if (size >= 8) {
+    copy(8);
+  } else if (size >= 4) {
+    copy(4);
+  } else {
+    for (std::size_t i = 0; i < size; ++i) to.place[i] = name[i];
   }
-  return {static_cast<std::uint32_t>(offset), static_cast<std::uint32_t>(size)};
 }
 
-inline void Graph::fill_texture_record(ResourceRecord& record, const TextureDesc& desc) const {
+inline void Graph::changed() {
+  description_.edition = frame_;
+  repeating_tag_ = 0;
+}
+
+inline bool Graph::is_texture_record(const ResourceRecord& record, const TextureDesc& desc) {
+  // Neighbours in both, so that they are compared two at a time.
+  const auto pair = [](std::uint32_t low, std::uint32_t high) {
+    return low | static_cast<std::uint64_t>(high) << 32;
+  };
+  return pair(record.format, record.width) == pair(desc.format, desc.extent.width) &&
+         pair(record.height, record.depth) == pair(desc.extent.height, desc.extent.depth) &&
+         pair(record.mips, record.layers) == pair(desc.mips, desc.layers) &&
+         record.samples == desc.samples && record.size == 0 && record.external == kNone &&
+         record.kind == ResourceKind::texture && record.origin == Origin::transient &&
+         record.slot == 0 && record.slots == 1 && record.flags == 0;
+}
+
+inline void Graph::fill_texture_record(ResourceRecord& record, const TextureDesc& desc) {
   record.size = 0;
   record.format = desc.format;
   record.width = desc.extent.width;
@@ -251,26 +289,48 @@ inline void Graph::fill_texture_record(ResourceRecord& record, const TextureDesc
   record.slot = 0;
   record.slots = 1;
   record.flags = 0;
-  if (desc.extent.relative_to.index != kNone) resolve_extent(record, desc.extent);
 }
 
 inline Texture Graph::create_texture(std::string_view name, const TextureDesc& desc) {
   const auto index = static_cast<std::uint32_t>(description_.resources.size());
-  fill_texture_record(description_.resources.append(), desc);
-  description_.resource_names.at(index) = keep_name(name);
-  versions_.at(index) = 0;
+  if (description_.resources.is_full() || desc.extent.relative_to.index != kNone) [[unlikely]] {
+    add_resource(texture_record(desc));
+  } else {
+    ResourceRecord& next = description_.resources.next();
+    if (!is_texture_record(next, desc)) [[unlikely]] {
+      fill_texture_record(next, desc);
+      changed();
+    }
+    description_.resources.repeat();
+    versions_[index] = 0;
+  }
+  keep_name(name, description_.resource_names[index]);
   return {index, 0, tag_};
 }
 
 inline PassBuilder Graph::add_pass(std::string_view name, QueueClass queue) {
   const auto index = static_cast<std::uint32_t>(description_.passes.size());
-  PassRecord& record = description_.passes.append();
+  if (description_.passes.is_full()) [[unlikely]]
+    grow_passes();
+  PassRecord& record = description_.passes.next();
   record.first_access = static_cast<std::uint32_t>(description_.accesses.size());
   record.queue = queue;
   record.flags = 0;
   record.reserved = 0;
-  description_.pass_names.at(index) = keep_name(name);
+  description_.passes.repeat();
+  keep_name(name, description_.pass_names[index]);
   return {*this, index};
+}
+
+// Whether stages, access bits and layout, and the resource, are as kPlain has them.
+constexpr bool Graph::access_fits(const Access& access, ResourceKind kind, bool writes) {
+  return access.stages != 0 && access.access != 0 &&
+         ((access.access & kWriteBits) != 0) == writes &&
+         (kind == ResourceKind::buffer || layout_is_usable(access.layout));
+}
+inline bool Graph::is_plain(const ResourceRecord& resource, ResourceKind kind) {
+  return resource.mips == 1 && resource.layers == 1 && resource.kind == kind &&
+         resource.origin == Origin::transient;
 }
 
 // The version that the access leaves.
@@ -280,35 +340,34 @@ inline std::uint32_t Graph::add_access(std::uint32_t pass, const Handle& handle,
   constexpr ResourceKind kKind =
       std::is_same_v<Handle, Texture> ? ResourceKind::texture : ResourceKind::buffer;
   const bool writes = (flags & kWrite) != 0;
-  if (pass + 1 != description_.passes.size()) [[unlikely]]
-    flags |= kClosed;
-  AccessRecord& record = description_.accesses.append();
-  record.stages = access.stages;
-  record.access = access.access;
-  record.layout = access.layout;
-  record.usage = access.usage;
-  record.version = handle.version;
-  record.kind = kKind;
-  if (handle.graph != tag_ || handle.index >= description_.resources.size()) [[unlikely]] {
-    record.range = range;
-    record.resource = kNone;
-    record.flags = flags | (handle.index == kNone ? kNull : kForeign);
-    return kNone;
+  if (kKind == ResourceKind::buffer) flags |= kOnBuffer;
+  // As a rule the access is a constant, and all but the handle is known to the compiler.
+  const auto is_of_whole = [&](std::uint32_t tag) {
+    return access_fits(access, kKind, writes) && range == Range{} && handle.graph == tag &&
+           handle.index < description_.resources.size() && pass + 1 == description_.passes.size();
+  };
+  AccessRecord& next = *next_access_;
+  if (!(is_of_whole(repeating_tag_) && next.stages == access.stages &&
+        next.access == access.access && next.layout == access.layout &&
+        next.usage == access.usage && next.resource == handle.index &&
+        next.version == handle.version && next.range == Range{0, 1, 0, 1} &&
+        next.flags == (flags | kPlain))) [[unlikely]] {
+    if (!(is_of_whole(tag_) && is_plain(description_.resources[handle.index], kKind) &&
+          !description_.accesses.is_full())) [[unlikely]]
+      return add_any_access(pass, handle.index, handle.version, handle.graph, access, range, flags);
+    next.stages = access.stages;
+    next.access = access.access;
+    next.layout = access.layout;
+    next.usage = access.usage;
+    next.resource = handle.index;
+    next.flags = flags | kPlain;
+    next.range = {0, 1, 0, 1};
+    next.version = handle.version;
+    changed();
   }
-  record.resource = handle.index;
-  const ResourceRecord& resource = description_.resources[handle.index];
-  if (range == Range{} && resource.mips == 1 && resource.layers == 1) [[likely]] {
-    record.range = {0, 1, 0, 1};
-    // As a rule the access is a constant, and all but the resource is known to the compiler.
-    const bool fits = access.stages != 0 && access.access != 0 &&
-                      ((access.access & kWriteBits) != 0) == writes &&
-                      (kKind == ResourceKind::buffer || layout_is_usable(access.layout));
-    if (fits && resource.kind == kKind && resource.origin == Origin::transient) flags |= kPlain;
-  } else {
-    record.range = resolved_range(range, resource);
-  }
-  record.flags = flags;
-  return versions_[handle.index] += writes;
+  ++next_access_;
+  description_.accesses.repeat();
+  return writes ? ++versions_[handle.index] : handle.version;
 }
 
 inline void PassBuilder::read(Texture texture, const Access& access, Range range) {

@@ -4,6 +4,7 @@
 
 #include <vulkan/vulkan_core.h>
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 
@@ -80,7 +81,9 @@ struct Range {
   static Range layer(std::uint32_t layer) {
     return {0, kAll, static_cast<std::uint16_t>(layer), 1};
   }
-  bool operator==(const Range&) const = default;
+  constexpr bool operator==(const Range& other) const {
+    return std::bit_cast<std::uint64_t>(*this) == std::bit_cast<std::uint64_t>(other);
+  }
 };
 
 // Where an imported resource comes from, or is to be left: the last (or next) stages and accesses
