@@ -335,7 +335,7 @@ History read_history(Surface surface) {
 const float kWidth = kDivisor > 2 ? 2.5 : 1.0;
 
 // Wide while a pixel has little of its own, then hardly more than the pixel itself.
-float window_width(float count) { return max(0.65 * kWidth, 2.0 * inversesqrt(count + 1.0)); }
+float window_width(float count) { return max(0.58 * kWidth, 2.0 * inversesqrt(count + 1.0)); }
 
 // What this frame found around a pixel that holds so many frames.
 Neighbourhood look_around(Surface surface, Found corners[4], float count) {
