@@ -21,7 +21,6 @@
 #include "maths/history.h"
 #include "maths/lobe_slice.h"
 #include "maths/projection.h"
-#include "maths/reprojection.h"
 #include "maths/signal.h"
 #include "maths/slice_line.h"
 #include "reconstruct_parameters.h"

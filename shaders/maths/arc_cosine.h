@@ -17,13 +17,6 @@ ALCOVE_INLINE float arc_cosine(float x) {
   return x < 0.0f ? kPi - angle : angle;
 }
 
-// acos(x) within 0.0091 rad, with a line for the cubic: the memo's cheap form.
-ALCOVE_INLINE float arc_cosine_cheap(float x) {
-  float a = min(abs(x), 1.0f);
-  float angle = sqrt(1.0f - a) * (kHalfPi - 0.156583f * a);
-  return x < 0.0f ? kPi - angle : angle;
-}
-
 ALCOVE_MATHS_END
 
 #endif

@@ -18,13 +18,6 @@
 
 ALCOVE_MATHS_BEGIN
 
-// Cosine of the angle to the view vector `view` (unit) at which an occluder stands, `delta` away
-// from the surface. An occluder at the surface itself stands nowhere: -1.
-ALCOVE_INLINE float horizon_cosine(vec3 delta, vec3 view) {
-  float squared = dot(delta, delta);
-  return squared > 0.0f ? dot(delta, view) * inversesqrt(squared) : -1.0f;
-}
-
 // Cosine-weighted visibility of one side from the view vector to a light above the tangent plane,
 // times the projected normal's length. `light` is the sine (at least 0) and cosine of its angle.
 // Within 2.4e-5.

@@ -48,18 +48,6 @@ ALCOVE_INLINE float visibility_cone(float visibility) {
   return angle_of(v, sqrt(1.0f - v));
 }
 
-// The same where visibility was not weighted by the cosine.
-ALCOVE_INLINE float uniform_visibility_cone(float visibility) {
-  float v = clamp(visibility, 0.0f, 1.0f);
-  return angle_of(v * (2.0f - v), 1.0f - v);
-}
-
-// The same for a cone that is tilted from the normal, by the cosine between bent normal and normal:
-// it must be wider to let in as much.
-ALCOVE_INLINE float tilted_visibility_cone(float visibility, float bent_dot_normal) {
-  return visibility_cone(clamp(visibility / max(bent_dot_normal, 1e-4f), 0.0f, 1.0f));
-}
-
 // The bent normal turned towards the normal until the cone of this visibility around it lies above
 // the surface, where everything visible lies. An open surface's is the normal itself, whatever
 // noise has tilted it.

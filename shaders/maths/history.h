@@ -1,11 +1,19 @@
-// Accumulation over frames: a mean while samples are few, an exponential average once they are
-// many.
+// Accumulation over frames: what of the last frame is of the same surface, and a mean while samples
+// are few, an exponential average once they are many.
 #ifndef ALCOVE_MATHS_HISTORY_H
 #define ALCOVE_MATHS_HISTORY_H
 
 #include "language.h"
 
 ALCOVE_MATHS_BEGIN
+
+// How far from the expected depth a texel of history may lie and still be the same surface, [0,1]:
+// 1 at the expected depth, 0 from `tolerance` times it on. `slant` is the cosine between normal and
+// view vector: a surface seen edge-on runs deep within one texel.
+ALCOVE_INLINE float history_weight(float expected, float found, float tolerance, float slant) {
+  float reach = tolerance * max(abs(expected), 1e-6f) / max(slant, 0.1f);
+  return clamp(1.0f - abs(found - expected) / reach, 0.0f, 1.0f);
+}
 
 // What this frame weighs when `count` frames are held already (0: none) and at most `longest`
 // count: 1 / (count + 1), never less than 1 / longest. So the first frame stands alone, equal
@@ -17,12 +25,6 @@ ALCOVE_INLINE float accumulation_weight(float count, float longest) {
 // The count to store beside the blend: never above `longest`, so that it cannot drift or overflow.
 ALCOVE_INLINE float next_count(float count, float longest) {
   return min(max(count, 0.0f) + 1.0f, max(longest, 1.0f));
-}
-
-// history + (now - history) weight, and `now` where history is not a number.
-ALCOVE_INLINE float accumulate(float history, float now, float weight) {
-  if (!(history >= 0.0f || history < 0.0f)) return now;
-  return mix(history, now, clamp(weight, 0.0f, 1.0f));
 }
 
 // Mean and spread of a neighbourhood of this frame, from sums over `count` values and their

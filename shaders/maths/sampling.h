@@ -1,4 +1,4 @@
-// Where to look: directions of slices, offsets and distances of steps, and mips to read.
+// Where to look: directions of slices and offsets of steps.
 //
 // Each noise gives a pixel two numbers in [0,1): `direction`, a fraction of half a turn (slice k of
 // n lies at phi = pi (k + direction) / n), and `offset`, a fraction of a step.
@@ -106,31 +106,6 @@ ALCOVE_INLINE float unit_float(uint bits) { return float(bits >> 8u) * (1.0f / 1
 
 // The nearest distance in pixels at which a step can find another texel in every direction.
 const float kNearestStep = 1.3f;
-
-// Distance in pixels of step k of n at `offset` in [0,1): from kNearestStep to radius_px, growing
-// with `power` so that near occluders, which matter most, are searched most finely. A radius below
-// kNearestStep takes every step there.
-ALCOVE_INLINE float step_distance(uint k, uint n, float offset, float radius_px, float power) {
-  float t = (float(k) + offset) / float(n);
-  return kNearestStep + max(radius_px - kNearestStep, 0.0f) * pow(max(t, 1e-6f), power);
-}
-
-// step_distance() with power 2, which needs no pow.
-ALCOVE_INLINE float step_distance_squared(uint k, uint n, float offset, float radius_px) {
-  float t = (float(k) + offset) / float(n);
-  return kNearestStep + max(radius_px - kNearestStep, 0.0f) * t * t;
-}
-
-// The mip of the depth pyramid to read at a distance: texels as wide as about a tenth of it (bias
-// 3.3, a power of two). In [0, last].
-ALCOVE_INLINE float depth_mip(float distance_px, float bias, float last) {
-  return clamp(log2(max(distance_px, 1.0f)) - bias, 0.0f, last);
-}
-
-// The centre of the texel of mip 0 that holds `position_px` (pixels, centres at halves).
-ALCOVE_INLINE vec2 snap_to_texel(vec2 position_px) {
-  return vec2(floor(position_px.x) + 0.5f, floor(position_px.y) + 0.5f);
-}
 
 ALCOVE_MATHS_END
 

@@ -5,7 +5,6 @@
 
 #include "maths/bent_normal.h"
 #include "maths/connected_samples.h"
-#include "maths/filter_weights.h"
 #include "maths/ggx.h"
 #include "maths/gtao.h"
 #include "maths/gtso.h"
@@ -15,7 +14,6 @@
 #include "maths/packing.h"
 #include "maths/projection.h"
 #include "maths/pyramid.h"
-#include "maths/reprojection.h"
 #include "maths/sampling.h"
 #include "maths/signal.h"
 #include "maths/visibility_bitmask.h"
@@ -66,8 +64,8 @@ ALCOVE_INLINE vec4 parity_of_slices(uint which, vec4 a, vec4 b) {
                   sharp_bend(ahead, 0.5f + b.z, behind, 0.5f + b.w, 0.1f));
     }
     case 4u:
-      return vec4(arc_cosine(ahead), arc_cosine_cheap(ahead), raise_horizon(ahead, behind, b.z),
-                  horizon_cosine(parity_direction(b.z, b.w) * 3.0f, parity_view(a.x, a.y)));
+      return vec4(arc_cosine(ahead), arc_cosine(behind), raise_horizon(ahead, behind, b.z),
+                  recent_visibility(b.x, floor(b.y * 40.0f), b.z));
   }
   return vec4(0.0f);
 }
@@ -87,13 +85,9 @@ ALCOVE_INLINE vec4 parity_of_cameras(uint which, vec4 a, vec4 b, Projection p) {
       vec2 along = pixels_along(p, slice_direction(make_view_basis(view), b.y * kPi), view, depth);
       return vec4(view.x, view.y, along.x, along.y);
     }
-    case 8u: {
-      mat4 moved = mat4(1.0f);
-      moved[3] = vec4(b.x, b.y, -b.z, 1.0f);
-      Reprojected r = reproject_camera(p, moved, position);
-      return vec4(r.uv.x, r.uv.y, r.depth,
-                  history_weight(depth, depth * (1.0f + b.w * 0.01f), 0.02f, view.z));
-    }
+    case 8u:
+      return vec4(history_weight(depth, depth * (1.0f + b.w * 0.01f), 0.02f, view.z),
+                  visibility_changed(b.x, b.y), clip_w(p, depth), view.z);
   }
   return vec4(0.0f);
 }
@@ -119,7 +113,7 @@ ALCOVE_INLINE vec4 parity_of_light(uint which, vec4 a, vec4 b) {
     case 12u:
       return vec4(specular_occlusion(b.y, view, normal, light, alpha),
                   lagarde_specular_occlusion(view.z, b.y, alpha), multi_bounce_channel(b.y, b.z),
-                  tilted_visibility_cone(b.y, view.z));
+                  0.0f);
   }
   return vec4(0.0f);
 }
@@ -132,20 +126,17 @@ ALCOVE_INLINE vec4 parity_of_storage(uint which, vec4 a, vec4 b) {
       return vec4(encoded.x, encoded.y, decoded.x, decoded.z);
     }
     case 14u: {
-      uint word = pack_occlusion(a.x, parity_direction(a.y, a.z));
-      vec3 bent = unpack_occlusion_bent_normal(word);
-      return vec4(unpack_occlusion_visibility(word), bent.x, bent.y, bent.z);
+      uint word = pack_unorm(a.x, 12u);
+      return vec4(unpack_unorm(word, 12u), unpack_unorm(pack_unorm(a.y, 8u), 8u), 0.0f, 0.0f);
     }
     case 15u:
-      return vec4(
-          average_depth(vec4(1.0f + a.x, 1.0f + a.y, 1.0f + a.z, 1.0f + a.w), 0.1f + b.x),
-          depth_slope(a.x, a.y, a.z),
-          plane_weight(vec3(a.x, a.y, a.z), parity_direction(b.x, b.y), vec3(b.z, b.w, a.w), 0.7f),
-          normal_weight(parity_view(a.x, a.y), parity_view(b.x, b.y), 0.2f));
+      return vec4(average_depth(vec4(1.0f + a.x, 1.0f + a.y, 1.0f + a.z, 1.0f + a.w), 0.1f + b.x),
+                  next_count(floor(b.z * 40.0f), 32.0f),
+                  count_after_clamp(b.y * 32.0f, b.z, b.w, 0.25f), 0.0f);
     case 16u: {
       Spread spread = spread_of_sums(a.x + a.y + a.z, a.x * a.x + a.y * a.y + a.z * a.z, 3.0f);
       return vec4(spread.mean, spread.deviation, clamp_to_spread(a.w, spread, 1.0f),
-                  accumulate(b.x, b.y, accumulation_weight(floor(b.z * 40.0f), 32.0f)));
+                  accumulation_weight(floor(b.z * 40.0f), 32.0f));
     }
     case 23u: {
       Signal lobe;
@@ -177,11 +168,10 @@ ALCOVE_INLINE vec4 parity_of_sampling(uint which, vec4 a, vec4 b) {
       return vec4(
           unit_float(hash(pixel.x + pixel.y * 960u)), float(hilbert_index(pixel)),
           float(bitCount(sectors_between(floor(b.x * 32.0f) + 0.2f, floor(b.y * 32.0f) + 0.2f))),
-          snap_to_texel(vec2(b.z * 99.0f, b.w)).x);
+          0.0f);
     case 19u:
-      return vec4(step_distance(3u, 7u, b.x, 90.0f * b.y, 1.5f),
-                  step_distance_squared(3u, 7u, b.x, 90.0f * b.y),
-                  depth_mip(b.z * 99.0f, 3.3f, 4.0f), slice_angle(1u, 3u, b.w));
+      return vec4(slice_angle(1u, 3u, b.w), r2_sequence(frame).direction, r2_sequence(frame).offset,
+                  0.0f);
     case 20u: {
       Slice s = parity_slice(a);
       PartRequest request;

@@ -160,35 +160,6 @@ TEST(Hash, FlipsHalfOfItsBitsForEachInputBit) {
   EXPECT_EQ(maths::unit_float(0u), 0.0f);
 }
 
-TEST(Steps, GrowFromTheNearestToTheRadius) {
-  float before = 0.0f;
-  for (unsigned k = 0; k < 12; ++k) {
-    const float d = maths::step_distance_squared(k, 12, 0.5f, 80.0f);
-    EXPECT_GT(d, before);
-    EXPECT_NEAR(d, maths::step_distance(k, 12, 0.5f, 80.0f, 2.0f), 1e-4f * d);
-    before = d;
-  }
-  EXPECT_EQ(maths::step_distance_squared(0, 12, 0.0f, 80.0f), maths::kNearestStep);
-  EXPECT_LE(maths::step_distance_squared(11, 12, 1.0f, 80.0f), 80.0f);
-}
-
-TEST(Steps, OfASmallRadiusStillLeaveTheirOwnTexel) {
-  for (const float radius : {0.0f, 0.5f, 1.3f})
-    EXPECT_EQ(maths::step_distance_squared(3, 4, 0.9f, radius), maths::kNearestStep);
-}
-
-TEST(Steps, MipFollowsDistanceAndStaysInThePyramid) {
-  EXPECT_EQ(maths::depth_mip(1.3f, 3.3f, 4.0f), 0.0f);
-  EXPECT_EQ(maths::depth_mip(0.0f, 3.3f, 4.0f), 0.0f);
-  EXPECT_NEAR(maths::depth_mip(64.0f, 3.3f, 4.0f), 2.7f, 1e-5f);
-  EXPECT_EQ(maths::depth_mip(1e6f, 3.3f, 4.0f), 4.0f);
-}
-
-TEST(Steps, SnapToTheCentreOfTheirTexel) {
-  EXPECT_EQ(maths::snap_to_texel(glm::vec2(3.99f, 7.0f)), glm::vec2(3.5f, 7.5f));
-  EXPECT_EQ(maths::snap_to_texel(glm::vec2(-0.2f, 0.0f)), glm::vec2(-0.5f, 0.5f));
-}
-
 TEST(Slices, OfAllPixelsTileHalfATurn) {
   EXPECT_FLOAT_EQ(maths::slice_angle(0, 3, 0.0f), 0.0f);
   EXPECT_FLOAT_EQ(maths::slice_angle(2, 4, 0.0f), maths::kHalfPi);

@@ -121,36 +121,6 @@ TEST(Packing, UnormRoundsToNearestAndKeepsItsEnds) {
   }
 }
 
-TEST(Packing, PairKeepsBothHalvesApart) {
-  const vec2 pair = maths::unpack_unorm_pair(maths::pack_unorm_pair(vec2(0.2f, 0.9f)));
-  EXPECT_NEAR(pair.x, 0.2f, 0.5001f / 255);
-  EXPECT_NEAR(pair.y, 0.9f, 0.5001f / 255);
-}
-
-TEST(Packing, DitherIsUnbiasedAndKeepsOpenOpen) {
-  for (const float x : {0.0f, 0.1f, 0.5f, 0.777f, 1.0f}) {
-    double sum = 0.0;
-    for (int k = 0; k < 1000; ++k) sum += maths::dither_unorm8(x, (float(k) + 0.5f) / 1000.0f);
-    EXPECT_NEAR(sum / 1000.0, x, 1e-5);
-  }
-  EXPECT_EQ(maths::dither_unorm8(1.0f, 0.999f), 1.0f);
-  EXPECT_EQ(maths::dither_unorm8(0.0f, 0.999f), 0.0f);
-}
-
-TEST(Packing, OcclusionHoldsVisibilityAndBentNormalInOneWord) {
-  RandomInput random;
-  double worst = 0.0;
-  for (int i = 0; i < 100000; ++i) {
-    const vec3 bent = random.unit_vector();
-    const float visibility = random.uniform(0, 1);
-    const unsigned word = maths::pack_occlusion(visibility, bent);
-    EXPECT_NEAR(maths::unpack_occlusion_visibility(word), visibility, 0.5001f / 255);
-    const vec3 back = maths::unpack_occlusion_bent_normal(word);
-    worst = std::max(worst, double(length(cross(back, bent))));
-  }
-  EXPECT_LT(std::asin(worst) * 180 / 3.14159265, 0.06);
-}
-
 TEST(Pyramid, FlatDepthStaysWhatItIs) {
   for (const float depth : {-50.0f, 1e-6f, 1.0f, 1e7f, 1e11f})
     EXPECT_EQ(maths::average_depth(vec4(depth), 0.1f), depth);

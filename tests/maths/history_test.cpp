@@ -1,0 +1,117 @@
+// What history is kept, and how frames add up.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "maths/history.h"
+#include "maths/projection.h"
+#include "random_input.h"
+
+namespace alcove::maths_test {
+namespace {
+
+TEST(History, DepthThatDiffersIsRejectedAndSlantedDepthGivenRoom) {
+  EXPECT_EQ(maths::history_weight(10.0f, 10.0f, 0.02f, 1.0f), 1.0f);
+  EXPECT_EQ(maths::history_weight(10.0f, 10.3f, 0.02f, 1.0f), 0.0f);
+  EXPECT_GT(maths::history_weight(10.0f, 10.3f, 0.02f, 0.2f), 0.5f);
+  EXPECT_EQ(maths::history_weight(10.0f, maths::kSkyDepth, 0.02f, 0.0f), 0.0f);
+  EXPECT_TRUE(std::isfinite(maths::history_weight(0.0f, 0.0f, 0.02f, 0.0f)));
+}
+
+TEST(History, EqualFramesWeighTheSameUntilTheLongest) {
+  RandomInput random;
+  float history = 0.0f, count = 0.0f;
+  double sum = 0.0;
+  for (int frame = 1; frame <= 32; ++frame) {
+    const float now = random.uniform(0, 1);
+    sum += now;
+    history = glm::mix(history, now, maths::accumulation_weight(count, 64.0f));
+    count = maths::next_count(count, 64.0f);
+    EXPECT_NEAR(history, sum / frame, 1e-5);
+  }
+}
+
+TEST(History, NeverDriftsOrLocksOverAMillionFrames) {
+  float history = 0.0f, count = 0.0f;
+  for (int frame = 0; frame < 1000000; ++frame) {
+    history = glm::mix(history, 0.7f, maths::accumulation_weight(count, 32.0f));
+    count = maths::next_count(count, 32.0f);
+  }
+  EXPECT_NEAR(history, 0.7f, 1e-6f);
+  EXPECT_EQ(count, 32.0f);
+  for (int frame = 0; frame < 400; ++frame)
+    history = glm::mix(history, 0.2f, maths::accumulation_weight(count, 32.0f));
+  EXPECT_NEAR(history, 0.2f, 1e-5f);
+}
+
+TEST(History, FirstFrameStandsAlone) { EXPECT_EQ(maths::accumulation_weight(0.0f, 32.0f), 1.0f); }
+
+TEST(History, SpreadIsMeanAndDeviation) {
+  const maths::Spread s = maths::spread_of_sums(1.0f + 2.0f + 3.0f, 1.0f + 4.0f + 9.0f, 3.0f);
+  EXPECT_FLOAT_EQ(s.mean, 2.0f);
+  EXPECT_NEAR(s.deviation, std::sqrt(2.0f / 3.0f), 1e-6f);
+  EXPECT_EQ(maths::spread_of_sums(0.0f, 0.0f, 0.0f).deviation, 0.0f);
+  EXPECT_GE(maths::spread_of_sums(9 * 0.1f, 9 * 0.01f - 1e-6f, 9.0f).deviation, 0.0f);
+}
+
+TEST(History, ClampKeepsWhatAgreesAndCountForgetsWhatMoved) {
+  maths::Spread now;
+  now.mean = 0.5f;
+  now.deviation = 0.1f;
+  EXPECT_EQ(maths::clamp_to_spread(0.55f, now, 1.0f), 0.55f);
+  EXPECT_FLOAT_EQ(maths::clamp_to_spread(0.9f, now, 1.0f), 0.6f);
+  EXPECT_EQ(maths::count_after_clamp(20.0f, 0.55f, 0.55f, 0.2f), 20.0f);
+  EXPECT_EQ(maths::count_after_clamp(20.0f, 0.9f, 0.6f, 0.2f), 1.0f);
+  EXPECT_FLOAT_EQ(maths::count_after_clamp(21.0f, 0.7f, 0.6f, 0.2f), 11.0f);
+}
+
+TEST(History, StateKeepsWhatItHolds) {
+  RandomInput random;
+  for (int i = 0; i < 2000; ++i) {
+    const float depth = std::exp(random.uniform(-7.0f, 11.0f));
+    const float count = std::floor(random.uniform(0.0f, 255.99f));
+    const float recent = random.uniform(0.0f, 1.0f);
+    const maths::HistoryState state =
+        maths::unpack_history_state(maths::pack_history_state(depth, count, recent));
+    EXPECT_NEAR(state.depth, depth, depth * std::ldexp(1.0f, -11));
+    EXPECT_EQ(state.count, count);
+    EXPECT_NEAR(state.recent, recent, 0.5f / 255.0f + 1e-6f);
+  }
+  const maths::HistoryState least =
+      maths::unpack_history_state(maths::pack_history_state(0.0f, -1.0f, -1.0f));
+  EXPECT_EQ(least.count + least.recent + least.depth, 0.0f);
+  const maths::HistoryState most =
+      maths::unpack_history_state(maths::pack_history_state(1.0f, 300.0f, 2.0f));
+  EXPECT_EQ(most.count, 255.0f);
+  EXPECT_EQ(most.recent, 1.0f);
+}
+
+TEST(History, ChangeIsToldFromTheNoiseOfAFewSearches) {
+  RandomInput random;
+  for (int i = 0; i < 2000; ++i) {
+    const float a = random.uniform(0.0f, 1.0f);
+    const float b = random.uniform(0.0f, 1.0f);
+    EXPECT_EQ(maths::visibility_changed(a, a), 0.0f);
+    const float changed = maths::visibility_changed(a, b);
+    EXPECT_GE(changed, 0.0f);
+    EXPECT_LE(changed, 1.0f);
+    EXPECT_EQ(changed, maths::visibility_changed(b, a));
+  }
+  // There is no noise in the open, where a trail is seen at once.
+  EXPECT_EQ(maths::visibility_changed(0.8f, 1.0f), 1.0f);
+  EXPECT_EQ(maths::visibility_changed(1.0f, 0.8f), 1.0f);
+  EXPECT_EQ(maths::visibility_changed(0.55f, 0.45f), 0.0f);
+  EXPECT_EQ(maths::visibility_changed(0.2f, 0.8f), 1.0f);
+}
+
+TEST(History, RecentIsAMeanThatForgetsInAFewFrames) {
+  EXPECT_EQ(maths::recent_visibility(0.3f, 0.0f, 0.9f), 0.9f);
+  EXPECT_FLOAT_EQ(maths::recent_visibility(0.2f, 1.0f, 0.4f), 0.3f);
+  float recent = 0.0f;
+  for (int frame = 0; frame < 12; ++frame) recent = maths::recent_visibility(recent, 32.0f, 1.0f);
+  EXPECT_GT(recent, 0.95f);
+}
+
+}  // namespace
+}  // namespace alcove::maths_test
