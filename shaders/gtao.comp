@@ -36,6 +36,7 @@ layout(constant_id = 8) const int kRoughnessChannel = 0;
 layout(constant_id = 9) const bool kUniformWeight = false;
 layout(constant_id = 10) const bool kFalloff = false;
 layout(constant_id = 11) const bool kThicknessOfDistance = false;  // else of the radius
+layout(constant_id = 12) const bool kBackFaces = false;  // tell the thickness, where there are any
 
 const bool kHeuristic = kEstimator == 1;
 const bool kBitmask = kEstimator >= 2;
@@ -51,8 +52,10 @@ layout(set = 0, binding = 2) uniform texture2D normal_image;  // xyz, turned by 
 layout(set = 0, binding = 3) uniform writeonly uimage2D signal_image;
 // Bound to the signal and never written where no bent normal is wanted.
 layout(set = 0, binding = 4) uniform writeonly uimage2D bent_image;
+// LineSample::line of the back faces; bound to the front's and never read without kBackFaces.
+layout(set = 0, binding = 5, r32f) uniform readonly image2D back_image;
 #ifdef LOBE
-layout(set = 0, binding = 5) uniform texture2D roughness_image;  // perceptual
+layout(set = 0, binding = 6) uniform texture2D roughness_image;  // perceptual
 const bool kLobe = true;
 #else
 const bool kLobe = false;
@@ -138,6 +141,16 @@ Search make_search(Surface surface, SliceLine line, Slice slice, float side, flo
   return search;
 }
 
+// A sample's linear depth, times w.
+float distance_w(LineSample here) { return kPerspective ? 1.0 : here.line; }
+
+// The far end of an occluder of the settings' thickness.
+vec2 settings_back(LineSample here) {
+  // As slice_point() gives lengths, times w; w times the distance is 1 in perspective.
+  float thickness = parameters.thickness * (kThicknessOfDistance ? distance_w(here) : here.point.z);
+  return here.point.xy - vec2(0.0, thickness);
+}
+
 LineSample fetch_sample(Search search, uint k) {
   float t = (float(k) + search.offset) * (1.0 / float(kStepCount));
   LineSample found;
@@ -153,6 +166,13 @@ LineSample fetch_sample(Search search, uint k) {
                               found.offset_px);
   found.line = max(line + share * (along_px * search.gradient - on_plane), 0.1 * line);
   found.point = slice_point(search.line, along_px, found.line, search.depth, kPerspective);
+  if (kBackFaces) {
+    float back = imageLoad(back_image, texel).r;
+    // Not before the front where that was moved.
+    vec3 end = slice_point(search.line, along_px, farther_line(found.line, back, kPerspective),
+                           search.depth, kPerspective);
+    found.back = ends_occluder(line, back, kPerspective) ? end.xy : settings_back(found);
+  }
   return found;
 }
 
@@ -208,13 +228,8 @@ struct Sheet {
   uint sectors;    // occluded so far
 };
 
-// A sample's linear depth, times w.
-float distance_w(LineSample here) { return kPerspective ? 1.0 : here.line; }
-
 float back_position(Side side, LineSample here) {
-  // As slice_point() gives lengths, times w; w times the distance is 1 in perspective.
-  float thickness = parameters.thickness * (kThicknessOfDistance ? distance_w(here) : here.point.z);
-  return sector_position(side.per_bearing, here.point.xy - vec2(0.0, thickness));
+  return sector_position(side.per_bearing, kBackFaces ? here.back : settings_back(here));
 }
 
 // The first sample stands alone. Its edge is drawn in unless it lies on the surface's own plane.

@@ -81,16 +81,22 @@ OcclusionSignal create_signal(const Frame& frame, Texture depth, const GtaoSetti
 
 }  // namespace
 
+bool needs_back_depth(Estimator estimator, ThicknessUnit unit) {
+  return has_thickness(estimator) && unit == ThicknessUnit::back_faces;
+}
+
 tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame, const GtaoInputs& inputs,
                                               const GtaoSettings& settings) {
   if (auto good = check(settings); !good) {
     return tl::unexpected(good.error());
   }
   const bool rough = settings.lobe && inputs.roughness;
-  const std::array<NamedInput, 3> needed{
+  const bool by_back_faces = needs_back_depth(settings.estimator, settings.thickness_unit);
+  const std::array<NamedInput, 4> needed{
       {{"line depth", inputs.line_depth},
        {"normals", inputs.normals},
-       {"roughness", rough ? inputs.roughness : inputs.normals}}};
+       {"roughness", rough ? inputs.roughness : inputs.normals},
+       {"back-face depth", by_back_faces ? inputs.back_line_depth : inputs.line_depth}}};
   if (auto good = check_inputs(frame.graph, "gtao", needed); !good) {
     return tl::unexpected(good.error());
   }
@@ -110,7 +116,8 @@ tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame, const GtaoInpu
                              settings.roughness_channel,
                              static_cast<std::uint32_t>(settings.weighting == Weighting::uniform),
                              static_cast<std::uint32_t>(settings.falloff > 0.0f),
-                             static_cast<std::uint32_t>(of_distance)};
+                             static_cast<std::uint32_t>(of_distance),
+                             static_cast<std::uint32_t>(by_back_faces)};
   const auto kernel =
       frame.kernels.get(settings.lobe ? Shader::gtao_lobe : Shader::gtao, constants);
   if (!kernel) {
@@ -129,6 +136,9 @@ tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame, const GtaoInpu
   if (rough) {
     pass.read(inputs.roughness, framegraph::access::sampled_compute);
   }
+  if (by_back_faces) {
+    pass.read(inputs.back_line_depth, framegraph::access::storage_read_compute);
+  }
   const SearchPhase phase = search_phase(settings.divisor, frame.index);
   const maths::vec2 per_px = maths::ray_per_px(*projection);
   const maths::GtaoParameters parameters{
@@ -142,15 +152,19 @@ tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame, const GtaoInpu
       settings.blend,
       settings.falloff,
       settings.roughness};
-  pass.record([&kernels = frame.kernels, kernel = *kernel, inputs, result, parameters,
-               rough](RecordContext& context) {
+  pass.record([&kernels = frame.kernels, kernel = *kernel, inputs, result, parameters, rough,
+               by_back_faces](RecordContext& context) {
+    const VkImageView line = context.view(inputs.line_depth);
     const VkImageView normals = context.view(inputs.normals);
     const VkImageView signal = context.view(result.signal);
-    const std::array views{context.view(inputs.line_depth), normals, signal,
+    const std::array views{line,
+                           normals,
+                           signal,
                            result.bent ? context.view(result.bent) : signal,
+                           by_back_faces ? context.view(inputs.back_line_depth) : line,
                            rough ? context.view(inputs.roughness) : normals};
     // Without a lobe the last binding does not exist.
-    const std::span<const VkImageView> bound(views.data(), result.lobe ? views.size() : 4);
+    const std::span<const VkImageView> bound(views.data(), views.size() - (result.lobe ? 0 : 1));
     kernels.dispatch(context, kernel, bound, bytes_of(parameters), context.extent(result.signal));
   });
   return result;

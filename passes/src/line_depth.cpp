@@ -11,9 +11,10 @@ namespace alcove::passes {
 using framegraph::RecordContext;
 using framegraph::Texture;
 
-tl::expected<Texture, Error> add_line_depth(const Frame& frame, Texture depth_ndc) {
+tl::expected<Texture, Error> add_line_depth(const Frame& frame, Texture depth_ndc,
+                                            std::string_view name) {
   const std::array<NamedInput, 1> needed{{{"depth", depth_ndc}}};
-  if (auto good = check_inputs(frame.graph, "line depth", needed); !good) {
+  if (auto good = check_inputs(frame.graph, name, needed); !good) {
     return tl::unexpected(good.error());
   }
   const auto projection = projection_of(frame, frame.view, depth_ndc);
@@ -28,9 +29,8 @@ tl::expected<Texture, Error> add_line_depth(const Frame& frame, Texture depth_nd
   }
   const VkExtent3D extent = frame.graph.extent(depth_ndc);
   Texture line = frame.graph.create_texture(
-      "line depth",
-      {VK_FORMAT_R32_SFLOAT, framegraph::Extent::absolute(extent.width, extent.height)});
-  auto pass = frame.graph.add_pass("line depth");
+      name, {VK_FORMAT_R32_SFLOAT, framegraph::Extent::absolute(extent.width, extent.height)});
+  auto pass = frame.graph.add_pass(name);
   pass.read(depth_ndc, framegraph::access::sampled_compute);
   line = pass.write(line, framegraph::access::storage_write_compute, {},
                     framegraph::Contents::discard);

@@ -125,7 +125,16 @@ tl::expected<OcclusionOutputs, Error> add_occlusion(const Frame& frame,
   if (!line) {
     return tl::unexpected(line.error());
   }
-  const auto signal = add_gtao(frame, {*line, normals, in_view_space, inputs.roughness}, gtao);
+  framegraph::Texture back_line;
+  if (inputs.back_depth_ndc && needs_back_depth(settings.estimator, settings.thickness_unit)) {
+    auto made = add_line_depth(frame, inputs.back_depth_ndc, "back line depth");
+    if (!made) {
+      return tl::unexpected(std::move(made.error()));
+    }
+    back_line = *made;
+  }
+  const auto signal =
+      add_gtao(frame, {*line, normals, in_view_space, inputs.roughness, back_line}, gtao);
   if (!signal) {
     return tl::unexpected(signal.error());
   }

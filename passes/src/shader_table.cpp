@@ -30,9 +30,9 @@ const ShaderSource& shader_source(Shader shader) {
       {kDepthPyramid, "sttttt"},
       {kNormals, "st"},
       {kLineDepth, "st"},
-      {kGtao, "tstt"},
+      {kGtao, "tsttt"},
       {kGtaoLobe,
-       "tstt"
+       "tsttt"
        "s"},
       {kReconstruct, "tttstt"},
       {kReconstructHistory,

@@ -4,10 +4,10 @@
 // A depth buffer shows fronts only. Taken as infinitely thick, thin things darken whatever is
 // behind them; taken as thin, walls leak light between their samples. So two consecutive samples
 // are joined into a sheet when depth alone says that they continue one surface (samples_join),
-// every sample has a thickness along the view vector, and the edge of a surface that appears
-// between two samples is placed between them (edge_share). What is hidden behind a front stays
-// unknown: the mean of thin and infinitely thick, `fill` of the latter, errs less than either (see
-// the README's table).
+// every sample has a thickness (along the view vector, or as far as its back face), and the edge of
+// a surface that appears between two samples is placed between them (edge_share). What is hidden
+// behind a front stays unknown: the mean of thin and infinitely thick, `fill` of the latter, errs
+// less than either (see the README's table).
 #ifndef ALCOVE_MATHS_CONNECTED_SAMPLES_H
 #define ALCOVE_MATHS_CONNECTED_SAMPLES_H
 
@@ -20,6 +20,7 @@ struct LineSample {
   float offset_px;  // from the shaded pixel along the line, growing from sample to sample
   float line;       // linear along the image of any plane (slice_line.h)
   vec3 point;       // slice_point() of it, x outwards
+  vec2 back;        // x w and y w of where the occluder ends, if back faces tell
 };
 
 // How sharply `line` bends at a sample: its slope before less its slope after, times both steps; 0

@@ -24,6 +24,18 @@ ALCOVE_INLINE float sky_line(bool perspective) {
   return perspective ? 1.0f / kSkyDepth : kSkyDepth;
 }
 
+// Whether a pixel's back face is where the occluder ends that begins at its front: it lies behind
+// by more than depth buffers round, and is not the sky. Both as LineSample::line.
+ALCOVE_INLINE bool ends_occluder(float front, float back, bool perspective) {
+  float behind = perspective ? front - back : back - front;
+  return behind > 1e-4f * abs(front) && back != sky_line(perspective);
+}
+
+// That of two LineSample::line which is further from the eye.
+ALCOVE_INLINE float farther_line(float a, float b, bool perspective) {
+  return perspective ? min(a, b) : max(a, b);
+}
+
 struct SliceLine {
   vec2 direction_px;  // unit vector on the image, the way of positive x
   float x_per_step;   // x w of a point i pixels along direction_px: i * x_per_step; positive

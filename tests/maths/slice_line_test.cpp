@@ -82,6 +82,45 @@ TEST(SliceLine, ASampleOnTheLineKeepsItsCoordinates) {
   }
 }
 
+float line_of(float depth, bool perspective) { return perspective ? 1.0f / depth : depth; }
+
+TEST(SliceLine, ABackFaceEndsAnOccluderOnlyBehindItsFront) {
+  RandomInput random;
+  for (int i = 0; i < 2000; ++i) {
+    const bool perspective = random.bits() % 2 == 0;
+    const float depth = random.uniform(0.1f, 1000.0f);
+    const float front = line_of(depth, perspective);
+    const float behind = line_of(depth * random.uniform(1.001f, 1e4f), perspective);
+    const float before = line_of(depth * random.uniform(0.001f, 0.999f), perspective);
+    EXPECT_TRUE(maths::ends_occluder(front, behind, perspective));
+    EXPECT_FALSE(maths::ends_occluder(front, before, perspective));
+    EXPECT_FALSE(maths::ends_occluder(front, front, perspective)) << "a face seen from behind";
+    const float rounded = line_of(depth * random.uniform(1.0f, 1.00005f), perspective);
+    EXPECT_FALSE(maths::ends_occluder(front, rounded, perspective));
+    EXPECT_FALSE(maths::ends_occluder(front, maths::sky_line(perspective), perspective));
+    EXPECT_FALSE(maths::ends_occluder(front, NAN, perspective));
+    EXPECT_EQ(maths::farther_line(front, behind, perspective), behind);
+    EXPECT_EQ(maths::farther_line(front, before, perspective), front);
+  }
+}
+
+// So that the sectors of an occluder are those between its two ends, whatever lies between them.
+TEST(SliceLine, AnOccludersBackLiesOnTheViewRayOfItsFront) {
+  RandomInput random;
+  for (int i = 0; i < 5000; ++i) {
+    const Setting s(random);
+    const float offset = random.uniform(1.0f, 60.0f);
+    const float depth = s.depth * random.uniform(0.5f, 1.5f);
+    const float thickness = s.depth * random.uniform(0.01f, 1.0f);
+    const vec2 front = s.point(offset, depth);
+    const vec2 back = s.point(offset, depth + thickness);
+    const vec3 step = s.delta(s.line.direction_px * offset, depth + thickness) -
+                      s.delta(s.line.direction_px * offset, depth);
+    EXPECT_NEAR(distance(front, back), length(step), 6e-4f * s.depth);
+    EXPECT_LT(back.y, front.y);
+  }
+}
+
 TEST(SliceLine, ASampleOfTheTangentPlaneIsMovedAlongIt) {
   RandomInput random;
   for (int i = 0; i < 5000; ++i) {

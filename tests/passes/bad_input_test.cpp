@@ -88,6 +88,8 @@ TEST_F(BadInput, EverySettingOutOfRangeIsNamed) {
       {"roughness", [](View&, OcclusionSettings& s) { s.roughness = 1.1f; }},
       {"roughness", [](View&, OcclusionSettings& s) { s.roughness = kNaN; }},
       {"channel", [](View&, OcclusionSettings& s) { s.roughness_channel = 4; }},
+      {"needs a texture of back-face depth",
+       [](View&, OcclusionSettings& s) { s.thickness_unit = ThicknessUnit::back_faces; }},
   };
   for (const Case& bad : cases) {
     const std::string said = error_of(bad.spoil);
@@ -145,6 +147,11 @@ TEST_F(BadInput, ImagesOfUnequalSizesAreNamed) {
         add_occlusion(frame, {.depth_ndc = depth, .motion = upload(graph, small.depth_ndc)}, {});
     ASSERT_FALSE(motion);
     EXPECT_THAT(motion.error().message, HasSubstr("motion vectors of 16x11"));
+    const auto back_faces =
+        add_occlusion(frame, {.depth_ndc = depth, .back_depth_ndc = upload(graph, small.depth_ndc)},
+                      {.thickness_unit = ThicknessUnit::back_faces});
+    ASSERT_FALSE(back_faces);
+    EXPECT_THAT(back_faces.error().message, HasSubstr("back-face depth of 16x11"));
     read_back(graph, depth);
   });
   expect_a_good_frame();

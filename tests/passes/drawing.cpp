@@ -54,6 +54,23 @@ Surface sphere(const glm::dvec3& centre, double radius) {
           {}};
 }
 
+std::vector<Surface> box(const glm::dvec3& low, const glm::dvec3& high) {
+  std::vector<Surface> faces;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const bool upper : {false, true}) {
+      glm::dvec3 outwards(0.0);
+      outwards[axis] = upper ? 1.0 : -1.0;
+      faces.push_back(plane(upper ? high : low, outwards));
+      faces.back().keep = [=](const glm::dvec3& p) {
+        const int u = (axis + 1) % 3;
+        const int v = (axis + 2) % 3;
+        return p[u] >= low[u] && p[u] <= high[u] && p[v] >= low[v] && p[v] <= high[v];
+      };
+    }
+  }
+  return faces;
+}
+
 TestCamera::TestCamera(const View& view, std::uint32_t width, std::uint32_t height)
     : clip_from_view_(in_double(view.clip_from_view)),
       view_from_clip_(glm::inverse(clip_from_view_)),
@@ -119,6 +136,19 @@ Drawing draw(const TestView& view, std::uint32_t width, std::uint32_t height, co
     }
   }
   return drawing;
+}
+
+HostImage draw_back_faces(const TestView& view, std::uint32_t width, std::uint32_t height,
+                          const Scene& scene) {
+  Scene backs = scene;
+  for (Surface& surface : backs) {
+    surface.meet = [all = surface.meet](const Ray& ray) {
+      std::vector<Hit> hits = all(ray);
+      std::erase_if(hits, [&](const Hit& hit) { return glm::dot(hit.normal, ray.along) <= 0.0; });
+      return hits;
+    };
+  }
+  return draw(view, width, height, backs).depth_ndc;
 }
 
 }  // namespace alcove::passes

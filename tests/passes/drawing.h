@@ -25,7 +25,8 @@ struct Hit {
 };
 
 struct Surface {
-  // Where the ray's line meets the surface, from near to far; the normals may face either way.
+  // Where the ray's line meets the surface, from near to far; the normals may face either way, but
+  // outwards for draw_back_faces().
   std::function<std::vector<Hit>(const Ray&)> meet;
   // Which of its points exist; null: all.
   std::function<bool(const glm::dvec3&)> keep;
@@ -35,6 +36,8 @@ Surface plane(const glm::dvec3& through, const glm::dvec3& normal);
 // Tilted about the image's diagonal, through the point `distance` before the eye.
 Surface tilted_plane(double tilt_degrees, double distance);
 Surface sphere(const glm::dvec3& centre, double radius);
+// The six faces of a solid with edges along the axes.
+std::vector<Surface> box(const glm::dvec3& low, const glm::dvec3& high);
 
 // A view over an image, in double precision.
 class TestCamera {
@@ -76,6 +79,10 @@ struct Drawing {
 };
 
 Drawing draw(const TestView& view, std::uint32_t width, std::uint32_t height, const Scene& scene);
+
+// The depth of the nearest faces that look away from the eye.
+HostImage draw_back_faces(const TestView& view, std::uint32_t width, std::uint32_t height,
+                          const Scene& scene);
 
 }  // namespace alcove::passes
 

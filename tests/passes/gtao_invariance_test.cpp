@@ -255,8 +255,10 @@ TEST_F(GtaoInvariance, DepthBuffersOfNothingButNonsenseGiveFiniteImages) {
                               0.5f,
                               static_cast<float>(kInfinity),
                               -static_cast<float>(kInfinity)};
+    HostImage backs = drawing.depth_ndc;
     for (std::size_t i = 0; i < drawing.depth_ndc.texels.size(); ++i) {
       drawing.depth_ndc.texels[i] = nonsense[(i * 2654435761u >> 7) % nonsense.size()];
+      backs.texels[i] = nonsense[(i * 2246822519u >> 9) % nonsense.size()];
     }
     for (const Estimator estimator : kEstimators) {
       for (const bool given : {false, true}) {
@@ -264,9 +266,14 @@ TEST_F(GtaoInvariance, DepthBuffersOfNothingButNonsenseGiveFiniteImages) {
         settings.bent_normal = true;
         settings.filter_reach = 2;
         settings.history_frames = 8;
+        settings.thickness_unit = given ? ThicknessUnit::back_faces : ThicknessUnit::radius;
         for (int frame = 0; frame < 2; ++frame) {
-          const OcclusionImages images = run_occlusion(
-              {view.view, drawing.depth_ndc, given ? &drawing.normal_vs : nullptr}, settings);
+          const OcclusionImages images =
+              run_occlusion({.view = view.view,
+                             .depth_ndc = drawing.depth_ndc,
+                             .normal_vs = given ? &drawing.normal_vs : nullptr,
+                             .back_depth_ndc = &backs},
+                            settings);
           EXPECT_THAT(images.visibility.texels,
                       testing::Each(testing::AllOf(testing::Ge(0.0f), testing::Le(1.0f))));
           for (const float component : images.bent_normal.texels) {

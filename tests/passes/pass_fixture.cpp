@@ -148,6 +148,9 @@ PassTest::OcclusionImages PassTest::run_occlusion(const OcclusionFrame& given,
     if (given.motion != nullptr) {
       inputs.motion = upload(graph, *given.motion);
     }
+    if (given.back_depth_ndc != nullptr) {
+      inputs.back_depth_ndc = upload(graph, *given.back_depth_ndc);
+    }
     const auto outputs = add_occlusion(frame, inputs, settings);
     ASSERT_TRUE(outputs) << outputs.error().message;
     read_back(graph, outputs->visibility);

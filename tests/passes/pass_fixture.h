@@ -53,7 +53,8 @@ class PassTest : public testing::Test {
     const HostImage* motion = nullptr;     // null: none
     View previous_view = view;
     std::uint32_t index = 0;
-    bool reset = false;  // forgets the history first
+    bool reset = false;                         // forgets the history first
+    const HostImage* back_depth_ndc = nullptr;  // null: none
   };
   struct OcclusionImages {
     HostImage visibility;

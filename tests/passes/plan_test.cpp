@@ -34,7 +34,8 @@ class OcclusionPlan : public PassTest {
     std::uint64_t bytes = 0;  // of the transients
   };
 
-  Kept kept(const OcclusionSettings& settings, Reads reads = {}, bool normals_given = true) {
+  Kept kept(const OcclusionSettings& settings, Reads reads = {}, bool normals_given = true,
+            bool back_faces_given = false) {
     const Drawing drawing = draw(test_views()[2], 32, 24, groove(0.8));
     Kept found;
     run([&](Graph& graph) {
@@ -43,6 +44,9 @@ class OcclusionPlan : public PassTest {
                              .normals_in_view_space = true};
       if (normals_given) {
         inputs.normals = upload(graph, drawing.normal_vs);
+      }
+      if (back_faces_given) {
+        inputs.back_depth_ndc = upload(graph, drawing.depth_ndc);
       }
       const auto outputs = add_occlusion(frame, inputs, settings);
       ASSERT_TRUE(outputs) << outputs.error().message;
@@ -126,6 +130,32 @@ TEST_F(OcclusionPlan, BentNormalsAndHistoryCostOnlyWhereTheyAreOn) {
   EXPECT_THAT(kept(history).histories, testing::SizeIs(2));
   history.bent_normal = true;
   EXPECT_THAT(kept(history, {.bent_normal = true}).histories, testing::SizeIs(4));
+}
+
+TEST_F(OcclusionPlan, BackFacesCostOnlyWhereTheThicknessIsReadFromThem) {
+  const Kept horizons = kept(least());
+  OcclusionSettings settings = least();
+  settings.thickness_unit = ThicknessUnit::back_faces;
+  const Kept unread = kept(settings);
+  EXPECT_EQ(unread.passes, horizons.passes) << "horizons have no thickness";
+  EXPECT_EQ(unread.bytes, horizons.bytes);
+
+  settings.estimator = Estimator::connected;
+  settings.thickness_unit = ThicknessUnit::radius;
+  const Kept constant = kept(settings);
+  const std::size_t pipelines = gpu().kernels().pipeline_count();
+  const Kept given = kept(settings, {}, true, true);
+  EXPECT_EQ(given.passes, constant.passes);
+  EXPECT_EQ(given.transients, constant.transients);
+  EXPECT_EQ(given.bytes, constant.bytes);
+  EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines);
+
+  settings.thickness_unit = ThicknessUnit::back_faces;
+  const Kept read = kept(settings, {}, true, true);
+  EXPECT_THAT(read.passes, ElementsAre("line depth", "back line depth", "gtao", "reconstruct"));
+  EXPECT_THAT(read.transients, Contains("back line depth"));
+  // Another search; back faces go through the kernel that the front's depth does.
+  EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines + 1);
 }
 
 TEST_F(OcclusionPlan, SpecularOcclusionCostsOnlyWhereItIsOn) {

@@ -26,7 +26,17 @@ enum class Estimator : std::uint8_t {
 enum class ThicknessUnit : std::uint8_t {
   radius,    // parts of the occlusion radius: one thickness in the scene
   distance,  // parts of the occluder's distance from the eye along the view axis: one in the image
+  // By a second depth buffer, of back faces: each occluder ends where its view ray meets the
+  // nearest of them, however far behind. Of a closed solid that is where the ray leaves it, unless
+  // others stand in it. Where there is none behind the front (cards, planes, sky) as `radius` has
+  // it; a card before a solid is taken to fill all the way to that one's back, which two depths
+  // cannot tell.
+  back_faces,
 };
+
+// Whether GtaoInputs::back_line_depth and OcclusionInputs::back_depth_ndc are read, and so whether
+// an engine has to draw back faces at all.
+[[nodiscard]] bool needs_back_depth(Estimator estimator, ThicknessUnit unit);
 
 // What a visible direction weighs.
 enum class Weighting : std::uint8_t {
@@ -70,6 +80,8 @@ struct GtaoInputs {
   framegraph::Texture normals;     // xyz unit, in world space unless `normals_in_view_space`
   bool normals_in_view_space = false;
   framegraph::Texture roughness;  // perceptual, [0,1]; null: GtaoSettings::roughness
+  // Of OcclusionInputs::back_depth_ndc, as add_line_depth makes it; only where needs_back_depth().
+  framegraph::Texture back_line_depth;
 };
 
 // What filters and history work on: sums over slices, one texel a block.

@@ -1,6 +1,8 @@
 // Depth in the form that the searches and filters read.
 #pragma once
 
+#include <string_view>
+
 #include "alcove/passes/frame.h"
 
 namespace alcove::passes {
@@ -9,7 +11,8 @@ namespace alcove::passes {
 // it. Out: R32_SFLOAT, 1 / (distance along the view direction, scene units) in perspective and the
 // distance itself in orthographic views: linear along the image of any plane. The sky, and what is
 // not a number, is 1e-12 and 1e12. 32 bits because half floats overflow and band at grazing angles.
+// `name` is that of pass and texture.
 [[nodiscard]] tl::expected<framegraph::Texture, Error> add_line_depth(
-    const Frame& frame, framegraph::Texture depth_ndc);
+    const Frame& frame, framegraph::Texture depth_ndc, std::string_view name = "line depth");
 
 }  // namespace alcove::passes

@@ -65,6 +65,13 @@ struct OcclusionInputs {
   framegraph::Texture
       motion;  // xy: uv of this frame minus uv of the last; null: only the camera moves
   framegraph::Texture roughness;  // perceptual, [0,1]; null: OcclusionSettings::roughness
+  // For ThicknessUnit::back_faces, where needs_back_depth(); else ignored. The depth of the scene
+  // drawn once more with front faces culled, and all else alike: projection, size, cleared to the
+  // sky, the nearest face kept (LESS, GREATER where depth is reversed). The nearest, because that
+  // is where a view ray leaves the solid that it enters first; the farthest is another solid's. Any
+  // value is taken: where it is sky, not a number or not behind `depth_ndc` by more than a
+  // ten-thousandth of the distance, the occluder's thickness is that of the settings.
+  framegraph::Texture back_depth_ndc;
 };
 
 struct OcclusionOutputs {

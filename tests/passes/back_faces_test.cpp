@@ -1,0 +1,163 @@
+// Thickness by a second depth buffer, of back faces, against closed forms.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "drawing.h"
+#include "pass_fixture.h"
+
+namespace alcove::passes {
+namespace {
+
+constexpr std::array kEstimators{Estimator::bitmask, Estimator::connected};
+
+class BackFaces : public PassTest {
+ protected:
+  HostImage visibility(const TestView& view, const Drawing& drawing, const HostImage& backs,
+                       const OcclusionSettings& settings) {
+    return run_occlusion({.view = view.view,
+                          .depth_ndc = drawing.depth_ndc,
+                          .normal_vs = &drawing.normal_vs,
+                          .back_depth_ndc = &backs},
+                         settings)
+        .visibility;
+  }
+};
+
+// Nothing is hidden but by what the two depths show.
+OcclusionSettings exact(Estimator estimator, float radius) {
+  OcclusionSettings settings = quality_settings(Quality::reference, radius);
+  settings.estimator = estimator;
+  settings.slices = 16;
+  settings.fill = 0.0f;
+  settings.thickness_unit = ThicknessUnit::back_faces;
+  return settings;
+}
+
+OcclusionSettings of_thickness(OcclusionSettings settings, float thickness) {
+  settings.thickness_unit = ThicknessUnit::radius;
+  settings.thickness = thickness;
+  return settings;
+}
+
+//            ____
+//           |____|   a slab, endless along y: from a point of the floor it covers the angles
+//        .´ .´       between the sight of its near upper and of its far lower edge
+//   ____x_____________
+TEST_F(BackFaces, ASlabAboveAFloorHasTheClosedForm) {
+  const TestView view = orthographic_view("orthographic", 4.0, 4.0, 0.1, 20.0);
+  const double near = 0.3, far = 0.7, bottom = 0.8, top = 1.0, floor = 4.0;
+  Scene scene = box({near, -100.0, bottom - floor}, {far, 100.0, top - floor});
+  scene.push_back(plane({0.0, 0.0, -floor}, {0.0, 0.0, 1.0}));
+  const Drawing drawing = draw(view, 128, 128, scene);
+  const HostImage backs = draw_back_faces(view, 128, 128, scene);
+  const auto mean_error = [&](const OcclusionSettings& settings) {
+    const HostImage image = visibility(view, drawing, backs, settings);
+    double sum = 0.0;
+    for (std::uint32_t x = 44; x < 66; ++x) {
+      const double at = (x + 0.5 - 64) * 8.0 / 128;
+      const double truth = 1.0 - 0.5 * ((far - at) / std::hypot(far - at, bottom) -
+                                        (near - at) / std::hypot(near - at, top));
+      sum += std::abs(image.at(x, 64) - truth) / 22;
+    }
+    return sum;
+  };
+  for (const Estimator estimator : kEstimators) {
+    SCOPED_TRACE(static_cast<int>(estimator));
+    const OcclusionSettings settings = exact(estimator, 8.0f);
+    const double error = mean_error(settings);
+    EXPECT_LT(error, 0.02);
+    EXPECT_LT(5.0 * error, mean_error(of_thickness(settings, 0.15f))) << "far thicker than it is";
+    EXPECT_LT(2.0 * error, mean_error(of_thickness(settings, 1e-3f))) << "far thinner";
+  }
+}
+
+// A ball of radius r, its centre at a distance d under an angle t to the normal, hides
+// cos t (r / d)^2 of a surface where it stands whole above its tangent plane.
+TEST_F(BackFaces, ABallAboveAFloorHasTheClosedFormInEveryView) {
+  const glm::dvec3 centre(0.05, -0.1, -3.1);
+  const double radius = 0.35, floor = 4.0;
+  const Scene scene{plane({0.0, 0.0, -floor}, {0.0, 0.0, 1.0}), sphere(centre, radius)};
+  for (const TestView& view : test_views()) {
+    const Drawing drawing = draw(view, 72, 48, scene);
+    const HostImage backs = draw_back_faces(view, 72, 48, scene);
+    const auto mean_error = [&](const OcclusionSettings& settings) {
+      const HostImage image = visibility(view, drawing, backs, settings);
+      double sum = 0.0;
+      int count = 0;
+      for (std::uint32_t y = 0; y < image.height; ++y) {
+        for (std::uint32_t x = 0; x < image.width; ++x) {
+          const auto hit = cast(scene, drawing.camera.ray(x + 0.5, y + 0.5));
+          const glm::dvec3 away = centre - hit->position;
+          const double distance = glm::length(away);
+          if (hit->position.z < -floor + 1e-6 && distance < 1.6) {
+            const double truth = 1.0 - away.z / distance * radius * radius / (distance * distance);
+            sum += std::abs(image.at(x, y) - truth);
+            ++count;
+          }
+        }
+      }
+      return sum / count;
+    };
+    for (const Estimator estimator : kEstimators) {
+      SCOPED_TRACE(testing::Message() << view.name << ", " << static_cast<int>(estimator));
+      const OcclusionSettings settings = exact(estimator, 3.0f);
+      const double error = mean_error(settings);
+      EXPECT_LT(error, 0.01);
+      EXPECT_LT(2.0 * error, mean_error(of_thickness(settings, 1.0f)));
+    }
+  }
+}
+
+TEST_F(BackFaces, ASolidThickerThanTheRadiusOccludesAsHorizonsDo) {
+  const float radius = 1.2f;
+  Scene scene = box({0.31, -50.0, -20.0}, {50.0, 50.0, -3.5});
+  scene.push_back(plane({0.0, 0.0, -4.0}, {0.0, 0.0, 1.0}));
+  for (const TestView& view : {test_views()[2], orthographic_view("", 3.0, 2.0, 0.1, 50.0)}) {
+    SCOPED_TRACE(view.name);
+    const Drawing drawing = draw(view, 60, 40, scene);
+    const HostImage backs = draw_back_faces(view, 60, 40, scene);
+    for (const Estimator estimator : kEstimators) {
+      OcclusionSettings settings = exact(estimator, radius);
+      const HostImage image = visibility(view, drawing, backs, settings);
+      const HostImage thick = visibility(view, drawing, backs, of_thickness(settings, 1e4f));
+      settings.estimator = Estimator::horizons;
+      const HostImage horizons = visibility(view, drawing, backs, settings);
+      for (std::size_t i = 0; i < image.texels.size(); ++i) {
+        EXPECT_NEAR(image.texels[i], thick.texels[i], 1e-5);
+        if (estimator == Estimator::bitmask) {
+          EXPECT_NEAR(image.texels[i], horizons.texels[i], 0.02);
+        }
+      }
+    }
+  }
+}
+
+// Of the sky, what is not a number, a face that is seen from behind, and one before the front.
+TEST_F(BackFaces, WithoutABackFaceBehindTheFrontTheSettingsThicknessCounts) {
+  Scene scene = box({0.31, -50.0, -20.0}, {0.6, 50.0, -3.5});
+  scene.push_back(plane({0.0, 0.0, -4.0}, {0.3, 0.1, 1.0}));
+  for (const TestView& view : test_views()) {
+    SCOPED_TRACE(view.name);
+    const Drawing drawing = draw(view, 60, 40, scene);
+    for (const Estimator estimator : kEstimators) {
+      OcclusionSettings settings = exact(estimator, 1.2f);
+      settings.thickness = 0.2f;
+      const HostImage expected =
+          visibility(view, drawing, drawing.depth_ndc, of_thickness(settings, 0.2f));
+      HostImage backs = drawing.depth_ndc;
+      EXPECT_EQ(visibility(view, drawing, backs, settings).texels, expected.texels);
+      const float sky = drawing.camera.sky();
+      for (const float none : {sky, 1.0f - sky, std::numeric_limits<float>::quiet_NaN()}) {
+        std::ranges::fill(backs.texels, none);
+        EXPECT_EQ(visibility(view, drawing, backs, settings).texels, expected.texels) << none;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace alcove::passes
