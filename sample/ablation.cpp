@@ -89,6 +89,8 @@ void add_occluders(TrialList& list, const OcclusionSettings& base) {
   list.add(part, "everything behind it", [](OcclusionSettings& s) { s.fill = 1.0f; });
   list.add(part, "a third as thick", [](OcclusionSettings& s) { s.thickness /= 3.0f; });
   list.add(part, "three times as thick", [](OcclusionSettings& s) { s.thickness *= 3.0f; });
+  list.add(part, "as thick as back faces show",
+           [](OcclusionSettings& s) { s.thickness_unit = passes::ThicknessUnit::back_faces; });
 }
 
 void add_searches(TrialList& list) {

@@ -23,7 +23,16 @@ using framegraph::Graph;
 using framegraph::Texture;
 using Failure = tl::unexpected<std::string>;
 
-enum Target : std::size_t { kDepth, kNormal, kAlbedo, kMotion, kEmissive, kTargetCount };
+// The last is drawn only where the occlusion reads it.
+enum Target : std::size_t {
+  kDepth,
+  kNormal,
+  kAlbedo,
+  kMotion,
+  kEmissive,
+  kBackDepth,
+  kTargetCount
+};
 
 struct TargetFormat {
   VkFormat format;
@@ -34,7 +43,12 @@ constexpr std::array<TargetFormat, kTargetCount> kTargets{
      {kNormalFormat, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT},
      {kAlbedoFormat, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT},
      {kMotionFormat, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT},
-     {kEmissiveFormat, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT}}};
+     {kEmissiveFormat, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT},
+     {kDepthFormat, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT}}};
+
+bool needs_back_depth(const passes::OcclusionSettings& settings) {
+  return passes::needs_back_depth(settings.estimator, settings.thickness_unit);
+}
 
 // Processor time that all threads of the process have spent, in milliseconds.
 double processor_ms() {
@@ -139,7 +153,7 @@ struct FrameRenderer::State {
   State(Gpu& on, VkExtent2D of_size, NormalSource source)
       : gpu(on), size(of_size), normals(source) {}
 
-  tl::expected<void, std::string> create_targets();
+  tl::expected<void, std::string> create_target(Target target);
   // Nothing is drawn again while the view and the one before it stay the same.
   tl::expected<void, std::string> draw_gbuffer(const FrameRequest& request, FrameCost& cost);
   passes::Frame frame_of(Graph& graph, const FrameRequest& request);
@@ -158,22 +172,21 @@ struct FrameRenderer::State {
   NormalSource normals;
   std::unique_ptr<GbufferRenderer> gbuffer;
   std::optional<GbufferView> drawn_view;  // what the targets hold
+  bool back_faces_drawn = false;          // of that view
   std::vector<PassTime> gbuffer_times;    // of their last drawing
   std::array<std::unique_ptr<GpuImage>, kTargetCount> targets;
   std::unique_ptr<HostBuffer> environment;  // uploaded in the frame that is lit
   framegraph::MemoryStatistics memory;
 };
 
-tl::expected<void, std::string> FrameRenderer::State::create_targets() {
-  for (std::size_t i = 0; i < kTargetCount; ++i) {
-    auto made = GpuImage::create(
-        gpu.device(), kTargets[i].format, size,
-        kTargets[i].attachment | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
-    if (!made) {
-      return Failure(std::move(made.error()));
-    }
-    targets[i] = std::move(*made);
+tl::expected<void, std::string> FrameRenderer::State::create_target(Target target) {
+  auto made = GpuImage::create(
+      gpu.device(), kTargets[target].format, size,
+      kTargets[target].attachment | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
+  if (!made) {
+    return Failure(std::move(made.error()));
   }
+  targets[target] = std::move(*made);
   return {};
 }
 
@@ -188,18 +201,26 @@ void FrameRenderer::State::append_times(FrameCost& cost, bool occlusion) {
 
 tl::expected<void, std::string> FrameRenderer::State::draw_gbuffer(const FrameRequest& request,
                                                                    FrameCost& cost) {
-  if (drawn_view == request.view) {
+  const bool back_faces = needs_back_depth(request.occlusion);
+  if (drawn_view == request.view && (back_faces_drawn || !back_faces)) {
     cost.gpu = gbuffer_times;
     return {};
   }
-  const auto declare = [&](Graph& graph) -> tl::expected<void, std::string> {
-    std::array<Texture, kTargetCount> filled;
-    for (std::size_t i = 0; i < kTargetCount; ++i) {
-      filled[i] = graph.import_texture("g-buffer", targets[i]->import_to_fill(kSampledState));
+  if (back_faces && !targets[kBackDepth]) {
+    if (auto made = create_target(kBackDepth); !made) {
+      return made;
     }
+  }
+  const auto declare = [&](Graph& graph) -> tl::expected<void, std::string> {
+    const auto fill = [&](Target target) {
+      return graph.import_texture("g-buffer", targets[target]->import_to_fill(kSampledState));
+    };
     (void)gbuffer->add(
         graph, request.view,
-        {filled[kDepth], filled[kNormal], filled[kAlbedo], filled[kMotion], filled[kEmissive]});
+        {fill(kDepth), fill(kNormal), fill(kAlbedo), fill(kMotion), fill(kEmissive)});
+    if (back_faces) {
+      (void)gbuffer->add_back_faces(graph, request.view, fill(kBackDepth));
+    }
     return {};
   };
   auto report = gpu.run(declare);
@@ -208,6 +229,7 @@ tl::expected<void, std::string> FrameRenderer::State::draw_gbuffer(const FrameRe
   }
   append_times(cost, false);
   drawn_view = request.view;
+  back_faces_drawn = back_faces;
   gbuffer_times = cost.gpu;
   return {};
 }
@@ -248,6 +270,9 @@ tl::expected<Declared, std::string> FrameRenderer::State::declare_occlusion(
   }
   if (request.motion_vectors) {
     inputs.motion = import(kMotion);
+  }
+  if (needs_back_depth(settings)) {
+    inputs.back_depth_ndc = import(kBackDepth);
   }
   if (request.index == 0 || request.restart) {
     graph.reset_histories();
@@ -399,8 +424,10 @@ tl::expected<std::unique_ptr<FrameRenderer>, std::string> FrameRenderer::create(
     return Failure(std::move(gbuffer.error()));
   }
   state->gbuffer = std::move(*gbuffer);
-  if (auto made = state->create_targets(); !made) {
-    return Failure(std::move(made.error()));
+  for (const Target target : {kDepth, kNormal, kAlbedo, kMotion, kEmissive}) {
+    if (auto made = state->create_target(target); !made) {
+      return Failure(std::move(made.error()));
+    }
   }
   return std::unique_ptr<FrameRenderer>(new FrameRenderer(std::move(state)));
 }

@@ -58,7 +58,10 @@ struct GbufferRenderer::State {
   tl::expected<void, std::string> create_layout();
   tl::expected<void, std::string> create_pipeline(bool geometric_normals);
   tl::expected<void, std::string> create_set();
-  void record(RecordContext& context, const Gbuffer& gbuffer, bool reversed_z) const;
+  void write_parameters(const GbufferView& view);
+  // Draws all faces or, with VK_CULL_MODE_FRONT_BIT, the back ones alone.
+  void record(RecordContext& context, const Gbuffer& gbuffer, bool reversed_z,
+              VkCullModeFlags culled) const;
   void begin_rendering(RecordContext& context, const Gbuffer& gbuffer, bool reversed_z) const;
 
   uint32_t texture_count() const { return static_cast<uint32_t>(textures->descriptors().size()); }
@@ -194,7 +197,7 @@ struct ShaderModule {
   ShaderModule& operator=(const ShaderModule&) = delete;
 };
 
-// The state that never changes, as Vulkan wants it: attributes of Vertex, no culling, no blending.
+// The state that never changes, as Vulkan wants it: attributes of Vertex, no blending.
 struct FixedState {
   VkVertexInputBindingDescription binding{0, sizeof(Vertex), VK_VERTEX_INPUT_RATE_VERTEX};
   std::array<VkVertexInputAttributeDescription, 4> attributes{
@@ -217,7 +220,7 @@ struct FixedState {
       .scissorCount = 1};
   VkPipelineRasterizationStateCreateInfo rasterisation{
       .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO,
-      .cullMode = VK_CULL_MODE_NONE,
+      .frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE,
       .lineWidth = 1.0f};
   VkPipelineMultisampleStateCreateInfo multisample{
       .sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
@@ -227,10 +230,11 @@ struct FixedState {
       .sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
       .attachmentCount = 4,
       .pAttachments = attachments.data()};
-  std::array<VkDynamicState, 2> dynamic_states{VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
+  std::array<VkDynamicState, 3> dynamic_states{VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR,
+                                               VK_DYNAMIC_STATE_CULL_MODE};
   VkPipelineDynamicStateCreateInfo dynamic{
       .sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO,
-      .dynamicStateCount = 2,
+      .dynamicStateCount = 3,
       .pDynamicStates = dynamic_states.data()};
   VkPipelineRenderingCreateInfo rendering{
       .sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO,
@@ -331,10 +335,11 @@ void GbufferRenderer::State::begin_rendering(RecordContext& context, const Gbuff
   context.vk.vkCmdSetScissor(context.commands, 0, 1, &area);
 }
 
-void GbufferRenderer::State::record(RecordContext& context, const Gbuffer& gbuffer,
-                                    bool reversed_z) const {
+void GbufferRenderer::State::record(RecordContext& context, const Gbuffer& gbuffer, bool reversed_z,
+                                    VkCullModeFlags culled) const {
   begin_rendering(context, gbuffer, reversed_z);
   const auto& vk = context.vk;
+  vk.vkCmdSetCullMode(context.commands, culled);
   vk.vkCmdBindPipeline(context.commands, VK_PIPELINE_BIND_POINT_GRAPHICS,
                        reversed_z ? reversed_pipeline : pipeline);
   vk.vkCmdBindDescriptorSets(context.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, 1, &set,
@@ -367,19 +372,21 @@ tl::expected<std::unique_ptr<GbufferRenderer>, std::string> GbufferRenderer::cre
   return std::unique_ptr<GbufferRenderer>(new GbufferRenderer(std::move(state)));
 }
 
-Gbuffer GbufferRenderer::add(Graph& graph, const GbufferView& view, const Gbuffer& targets) {
-  maths::GbufferParameters parameters;
-  parameters.clip_from_world = view.clip_from_view * view.view_from_world;
-  parameters.previous_clip_from_world =
-      view.previous_clip_from_view * view.previous_view_from_world;
-  parameters.world_from_moving = view.world_from_moving;
-  parameters.previous_world_from_moving = view.previous_world_from_moving;
+void GbufferRenderer::State::write_parameters(const GbufferView& view) {
+  maths::GbufferParameters frame;
+  frame.clip_from_world = view.clip_from_view * view.view_from_world;
+  frame.previous_clip_from_world = view.previous_clip_from_view * view.previous_view_from_world;
+  frame.world_from_moving = view.world_from_moving;
+  frame.previous_world_from_moving = view.previous_world_from_moving;
   const glm::mat4 world_from_view = glm::inverse(view.view_from_world);
   const bool perspective = view.clip_from_view[2][3] != 0.0f;
-  parameters.eye_ws = perspective ? glm::vec4(glm::vec3(world_from_view[3]), 1.0f)
-                                  : glm::vec4(glm::vec3(world_from_view[2]), 0.0f);
-  std::memcpy(state_->parameters->bytes().data(), &parameters, sizeof(parameters));
+  frame.eye_ws = perspective ? glm::vec4(glm::vec3(world_from_view[3]), 1.0f)
+                             : glm::vec4(glm::vec3(world_from_view[2]), 0.0f);
+  std::memcpy(parameters->bytes().data(), &frame, sizeof(frame));
+}
 
+Gbuffer GbufferRenderer::add(Graph& graph, const GbufferView& view, const Gbuffer& targets) {
+  state_->write_parameters(view);
   Gbuffer gbuffer = targets;
   auto pass = graph.add_pass("g-buffer");
   gbuffer.depth = pass.write(targets.depth, framegraph::access::depth_attachment, {},
@@ -391,9 +398,20 @@ Gbuffer GbufferRenderer::add(Graph& graph, const GbufferView& view, const Gbuffe
     }
   }
   pass.record([state = state_.get(), gbuffer, reversed = view.reversed_z](RecordContext& context) {
-    state->record(context, gbuffer, reversed);
+    state->record(context, gbuffer, reversed, VK_CULL_MODE_NONE);
   });
   return gbuffer;
+}
+
+Texture GbufferRenderer::add_back_faces(Graph& graph, const GbufferView& view, Texture depth) {
+  state_->write_parameters(view);
+  auto pass = graph.add_pass("back faces");
+  depth =
+      pass.write(depth, framegraph::access::depth_attachment, {}, framegraph::Contents::discard);
+  pass.record([state = state_.get(), depth, reversed = view.reversed_z](RecordContext& context) {
+    state->record(context, {.depth = depth}, reversed, VK_CULL_MODE_FRONT_BIT);
+  });
+  return depth;
 }
 
 }  // namespace alcove::sample

@@ -57,6 +57,11 @@ class GbufferRenderer {
   // parameters are shared.
   [[nodiscard]] Gbuffer add(framegraph::Graph& graph, const GbufferView& view,
                             const Gbuffer& targets);
+  // Adds the pass that fills a texture like Gbuffer::depth with the nearest back faces, for a frame
+  // that draws the same view.
+  [[nodiscard]] framegraph::Texture add_back_faces(framegraph::Graph& graph,
+                                                   const GbufferView& view,
+                                                   framegraph::Texture depth);
 
  private:
   struct State;

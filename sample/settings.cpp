@@ -20,8 +20,10 @@ constexpr std::array<std::pair<std::string_view, passes::Estimator>, 4> kEstimat
      {"connected", passes::Estimator::connected}}};
 constexpr std::array<std::pair<std::string_view, passes::Weighting>, 2> kWeightings{
     {{"cosine", passes::Weighting::cosine}, {"uniform", passes::Weighting::uniform}}};
-constexpr std::array<std::pair<std::string_view, passes::ThicknessUnit>, 2> kThicknessUnits{
-    {{"radius", passes::ThicknessUnit::radius}, {"distance", passes::ThicknessUnit::distance}}};
+constexpr std::array<std::pair<std::string_view, passes::ThicknessUnit>, 3> kThicknessUnits{
+    {{"radius", passes::ThicknessUnit::radius},
+     {"distance", passes::ThicknessUnit::distance},
+     {"back_faces", passes::ThicknessUnit::back_faces}}};
 constexpr std::array<std::pair<std::string_view, passes::Pattern>, 3> kPatterns{
     {{"golden", passes::Pattern::golden},
      {"hilbert", passes::Pattern::hilbert},

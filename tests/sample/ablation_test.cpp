@@ -44,6 +44,26 @@ class AblationTest : public testing::Test {
     }
   }
 
+  // Ray-traced visibility of what `images` show, and where there are surfaces.
+  struct Truth {
+    Image<float> visibility;
+    Mask surfaces;
+  };
+  Truth truth_of(const FrameImages& images) const {
+    const Image<float> depth = linear_depth(setup_.camera, images.depth_ndc);
+    Truth truth{{}, Mask(depth.width, depth.height)};
+    for (std::size_t i = 0; i < depth.pixels.size(); ++i) {
+      truth.surfaces.pixels[i] = std::isfinite(depth.pixels[i]) ? 1 : 0;
+    }
+    const auto rays = RayScene::create(scene_);
+    EXPECT_TRUE(rays);
+    truth.visibility =
+        occlusion_truth(*rays, surface_points(*rays, setup_.camera, images.normal_ws, depth),
+                        {.radius = base_.radius, .spp = 64}, nullptr)
+            .visibility;
+    return truth;
+  }
+
   const Scene scene_ = builtin_scene();
   const StillSetup setup_{scene_.cameras.front(), 240, 135, 12, NormalSource::kGeometric};
   const OcclusionSettings base_ = passes::quality_settings(Quality::medium, default_radius(scene_));
@@ -54,19 +74,8 @@ TEST_F(AblationTest, ConnectedSamplesAreNearestToTheTruth) {
   ASSERT_TRUE(gpu);
   auto ablation = Ablation::create(*gpu, scene_, setup_, base_);
   ASSERT_TRUE(ablation) << ablation.error();
-  const FrameImages& base = ablation->base();
-  const Image<float> depth = linear_depth(setup_.camera, base.depth_ndc);
-  Mask surfaces(depth.width, depth.height);
-  for (std::size_t i = 0; i < depth.pixels.size(); ++i) {
-    surfaces.pixels[i] = std::isfinite(depth.pixels[i]) ? 1 : 0;
-  }
-  const auto rays = RayScene::create(scene_);
-  ASSERT_TRUE(rays);
-  const Image<float> truth =
-      occlusion_truth(*rays, surface_points(*rays, setup_.camera, base.normal_ws, depth),
-                      {.radius = base_.radius, .spp = 64}, nullptr)
-          .visibility;
-  const double connected = compare_images(base.visibility, truth, surfaces).rmse;
+  const auto [truth, surfaces] = truth_of(ablation->base());
+  const double connected = compare_images(ablation->base().visibility, truth, surfaces).rmse;
   EXPECT_GT(connected, 0.01);
   for (const Trial& trial : trials_of(base_)) {
     if (trial.part != "estimator") {
@@ -82,6 +91,47 @@ TEST_F(AblationTest, ConnectedSamplesAreNearestToTheTruth) {
     EXPECT_EQ(result->cost.bytes, ablation->base_bytes());
     expect_valid(*other);
   }
+  expect_valid(*gpu);
+}
+
+TEST_F(AblationTest, BackFacesAreNearerToTheTruthThanOneThickness) {
+  const auto gpu = open();
+  const auto other = open();
+  ASSERT_TRUE(gpu && other);
+  auto ablation = Ablation::create(*gpu, scene_, setup_, base_);
+  ASSERT_TRUE(ablation) << ablation.error();
+  const auto [truth, surfaces] = truth_of(ablation->base());
+  Trial trial{"occluders", "back faces", base_};
+  trial.settings.thickness_unit = passes::ThicknessUnit::back_faces;
+  const auto result = ablation->run(*other, trial);
+  ASSERT_TRUE(result) << result.error();
+  EXPECT_LT(1.02 * compare_images(result->visibility, truth, surfaces).rmse,
+            compare_images(ablation->base().visibility, truth, surfaces).rmse);
+  expect_valid(*other);
+}
+
+// By one renderer, in frames that read them and frames that do not.
+TEST_F(AblationTest, BackFacesAreDrawnFromTheFrameOnThatAsksForThem) {
+  const auto gpu = open();
+  ASSERT_TRUE(gpu);
+  OcclusionSettings asking = base_;
+  asking.thickness_unit = passes::ThicknessUnit::back_faces;
+  const auto renderer =
+      FrameRenderer::create(*gpu, scene_, {setup_.width, setup_.height}, setup_.normals);
+  ASSERT_TRUE(renderer) << renderer.error();
+  const CameraMatrices m = camera_matrices(setup_.camera, setup_.width, setup_.height);
+  FrameRequest request;
+  request.view = {m.view_from_world, m.clip_from_view, m.view_from_world, m.clip_from_view};
+  std::vector<Image<float>> images;
+  for (const OcclusionSettings& settings : {base_, asking, base_, asking}) {
+    request.occlusion = settings;
+    const auto drawn = (*renderer)->draw_and_read(request);
+    ASSERT_TRUE(drawn) << drawn.error();
+    images.push_back(drawn->visibility);
+  }
+  EXPECT_EQ(images[0].pixels, images[2].pixels);
+  EXPECT_EQ(images[1].pixels, images[3].pixels);
+  EXPECT_NE(images[0].pixels, images[1].pixels);
   expect_valid(*gpu);
 }
 
