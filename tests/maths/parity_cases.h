@@ -11,6 +11,7 @@
 #include "maths/history.h"
 #include "maths/lobe_slice.h"
 #include "maths/multi_bounce.h"
+#include "maths/octahedral.h"
 #include "maths/packing.h"
 #include "maths/projection.h"
 #include "maths/pyramid.h"
