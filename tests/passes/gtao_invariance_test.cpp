@@ -285,6 +285,30 @@ TEST_F(GtaoInvariance, DepthBuffersOfNothingButNonsenseGiveFiniteImages) {
   }
 }
 
+// Noise hangs on pixel and frame alone: where both eyes see the same, they show the same.
+TEST_F(GtaoInvariance, BothEyesOfAFrameHaveTheSameNoise) {
+  const TestView view = test_views().front();
+  const Drawing drawing = draw(view, kWidth, kHeight, gtao_scenes().front().scene);
+  for (const Pattern pattern : {Pattern::golden, Pattern::hilbert, Pattern::memo}) {
+    OcclusionSettings settings = quality_settings(Quality::medium, 0.5f);
+    settings.pattern = pattern;
+    for (std::uint32_t index = 0; index < 4; ++index) {
+      run([&](framegraph::Graph& graph) {
+        const Frame frame{graph, gpu().kernels(), view.view, index, view.view};
+        const OcclusionInputs inputs{.depth_ndc = upload(graph, drawing.depth_ndc),
+                                     .normals = upload(graph, drawing.normal_vs),
+                                     .normals_in_view_space = true};
+        for (const std::string_view eye : {"left", "right"}) {
+          const auto outputs = add_occlusion(frame, inputs, settings, eye);
+          ASSERT_TRUE(outputs) << outputs.error().message;
+          read_back(graph, outputs->visibility);
+        }
+      });
+      EXPECT_EQ(result(0).texels, result(1).texels);
+    }
+  }
+}
+
 TEST_F(GtaoInvariance, SkyIsOpenAndOccludesNothing) {
   for (const TestView& view : test_views()) {
     SCOPED_TRACE(view.name);

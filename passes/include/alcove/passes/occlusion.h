@@ -85,7 +85,9 @@ struct OcclusionOutputs {
 };
 
 // What is not read afterwards is culled by the graph, with all that only leads there. Bent normals
-// are in the space of the given normals, in view space where none are given.
+// are in the space of the given normals, in view space where none are given. Several views of a
+// frame (both eyes, say) take a call each, with histories of their own; noise hangs on pixel and
+// frame alone, so it is the same in all.
 [[nodiscard]] tl::expected<OcclusionOutputs, Error> add_occlusion(
     const Frame& frame, const OcclusionInputs& inputs, const OcclusionSettings& settings,
     std::string_view history_name = "occlusion");
