@@ -144,10 +144,14 @@ ALCOVE_INLINE vec4 parity_of_storage(uint which, vec4 a, vec4 b) {
       lobe.visible = a.x * a.y;
       lobe.open = a.x;
       lobe = unpack_lobe(pack_lobe(lobe));
+      // A word of whole bytes and the surface that it stands for: packing rounds, and a byte more
+      // or less is a quarter of the weight.
+      uvec3 bytes = uvec3(uint(b.x * 255.0f), uint(b.y * 255.0f), uint(b.z * 255.0f));
       LobeSurface surface;
-      surface.normal = parity_direction(b.x, b.y);
-      surface.roughness = b.z;
-      return vec4(lobe.visible, lobe.open, lobe_weight(surface, pack_lobe_surface(surface)),
+      surface.normal = normalize(vec3(bytes) * (2.0f / 255.0f) - vec3(1.0f));
+      surface.roughness = a.w;
+      uint word = bytes.x | (bytes.y << 8u) | (bytes.z << 16u) | (uint(a.w * 255.0f) << 24u);
+      return vec4(lobe.visible, lobe.open, lobe_weight(surface, word),
                   lobe_angle(a.z * kPi, a.w, b.w).phi);
     }
   }
