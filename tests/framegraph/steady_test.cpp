@@ -72,7 +72,7 @@ bool same_bytes(const GraphDescription& a, const GraphDescription& b) {
          same_bytes(a.outputs, b.outputs);
 }
 
-// The same few frames in any order, some of them begun and not ended.
+// The same few frames in any order, some of them empty and some wrong.
 void declare_one_of_few(Graph& graph, Dice& order) {
   graph.reset();
   graph.reset_histories();

@@ -163,7 +163,7 @@ class Graph {
 
   void keep_name(std::string_view name, GraphDescription::Name& to);
   void keep_long_name(std::string_view name, GraphDescription::Name& to);
-  // The records differ from those that lay there before this frame.
+  // Called where a record is not what lay there: from now on this frame repeats no other.
   void changed();
   template <typename Record>
   void add(Records<Record>& records, const Record& record);
@@ -322,12 +322,14 @@ inline PassBuilder Graph::add_pass(std::string_view name, QueueClass queue) {
   return {*this, index};
 }
 
-// Whether stages, access bits and layout, and the resource, are as kPlain has them.
+// Whether stages, access bits and layout are as kPlain has them.
 constexpr bool Graph::access_fits(const Access& access, ResourceKind kind, bool writes) {
   return access.stages != 0 && access.access != 0 &&
          ((access.access & kWriteBits) != 0) == writes &&
          (kind == ResourceKind::buffer || layout_is_usable(access.layout));
 }
+
+// Whether the resource is.
 inline bool Graph::is_plain(const ResourceRecord& resource, ResourceKind kind) {
   return resource.mips == 1 && resource.layers == 1 && resource.kind == kind &&
          resource.origin == Origin::transient;
