@@ -6,6 +6,7 @@
 #include "frame_renderer.h"
 #include "load_scene.h"
 #include "settings.h"
+#include "surfaces.h"
 
 namespace alcove::sample {
 namespace {

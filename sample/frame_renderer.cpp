@@ -11,10 +11,11 @@
 
 #include "alcove/framegraph/access.h"
 #include "alcove/passes/apply.h"
-#include "alcove/passes/environment.h"
 #include "alcove/passes/multi_bounce.h"
 #include "gpu_image.h"
+#include "probe.h"
 #include "read_back.h"
+#include "surfaces.h"
 
 namespace alcove::sample {
 namespace {
@@ -157,11 +158,10 @@ struct FrameRenderer::State {
   // Nothing is drawn again while the view and the one before it stay the same.
   tl::expected<void, std::string> draw_gbuffer(const FrameRequest& request, FrameCost& cost);
   passes::Frame frame_of(Graph& graph, const FrameRequest& request);
+  Surfaces surfaces_of(const Declared& declared, const FrameRequest& request) const;
   tl::expected<Declared, std::string> declare_occlusion(Graph& graph, const FrameRequest& request);
   tl::expected<void, std::string> declare_light(Graph& graph, const FrameRequest& request,
                                                 Declared& declared);
-  tl::expected<passes::Environment, std::string> declare_environment(Graph& graph,
-                                                                     const FrameRequest& request);
   tl::expected<void, std::string> declare_lit(Graph& graph, const FrameRequest& request,
                                               Declared& declared);
   void turn_to_world(const FrameRequest& request, FrameImages& images) const;
@@ -243,6 +243,19 @@ passes::Frame FrameRenderer::State::frame_of(Graph& graph, const FrameRequest& r
            to_matrix(request.view.previous_view_from_world)}};
 }
 
+Surfaces FrameRenderer::State::surfaces_of(const Declared& declared,
+                                           const FrameRequest& request) const {
+  Surfaces surfaces{.gbuffer = {.depth = declared.depth,
+                                .normal = declared.normal,
+                                .albedo = declared.albedo,
+                                .emissive = declared.emissive},
+                    .normals = normals};
+  if (request.light != nullptr && !request.light->roughness.empty()) {
+    surfaces.roughness = request.light->roughness.front();
+  }
+  return surfaces;
+}
+
 tl::expected<Declared, std::string> FrameRenderer::State::declare_occlusion(
     Graph& graph, const FrameRequest& request) {
   const auto import = [&](Target target) {
@@ -253,21 +266,9 @@ tl::expected<Declared, std::string> FrameRenderer::State::declare_occlusion(
                     .albedo = import(kAlbedo),
                     .emissive = import(kEmissive)};
   const passes::Frame frame = frame_of(graph, request);
-  passes::OcclusionInputs inputs{.depth_ndc = declared.depth};
-  if (normals != NormalSource::kDepth) {
-    inputs.normals = declared.normal;
-  }
-  passes::OcclusionSettings settings = request.occlusion;
-  std::vector<float> roughness;
-  if (request.light != nullptr) {
-    roughness = request.light->roughness;
-  }
-  if (roughness.empty()) {
-    inputs.roughness = declared.albedo;
-    settings.roughness_channel = 3;
-  } else {
-    settings.roughness = roughness.front();
-  }
+  const Surfaces surfaces = surfaces_of(declared, request);
+  passes::OcclusionInputs inputs = occlusion_inputs(surfaces);
+  passes::OcclusionSettings settings = occlusion_settings(surfaces, request.occlusion);
   if (request.motion_vectors) {
     inputs.motion = import(kMotion);
   }
@@ -286,6 +287,8 @@ tl::expected<Declared, std::string> FrameRenderer::State::declare_occlusion(
     declared.specular_occlusion.push_back(outputs->specular);
   }
   // More of them are found again from the start, in histories of their own.
+  const std::vector<float> roughness =
+      request.light != nullptr ? request.light->roughness : std::vector<float>();
   for (std::size_t i = 1; i < roughness.size() && outputs->specular; ++i) {
     settings.roughness = roughness[i];
     auto more = passes::add_occlusion(frame, inputs, settings, "roughness " + std::to_string(i));
@@ -317,58 +320,26 @@ tl::expected<void, std::string> FrameRenderer::State::declare_light(Graph& graph
                                             : declare_lit(graph, request, declared);
 }
 
-tl::expected<passes::Environment, std::string> FrameRenderer::State::declare_environment(
-    Graph& graph, const FrameRequest& request) {
-  const EnvironmentImage& image = request.light->environment;
-  auto buffer = HostBuffer::create(gpu.device(), image.pixels.size() * sizeof(glm::vec4),
-                                   VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
-  if (!buffer) {
-    return Failure(std::move(buffer.error()));
-  }
-  environment = std::move(*buffer);
-  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-    const glm::vec4 texel(image.pixels[i], 1.0f);
-    std::memcpy(environment->bytes().data() + i * sizeof(texel), &texel, sizeof(texel));
-  }
-  const Texture source = graph.create_texture(
-      "equirectangular",
-      {VK_FORMAT_R32G32B32A32_SFLOAT, framegraph::Extent::absolute(image.width, image.height)});
-  auto made =
-      passes::add_environment(frame_of(graph, request), add_copy(graph, *environment, source));
-  if (!made) {
-    return Failure(std::move(made.error().message));
-  }
-  return *made;
-}
-
 // Lights the surfaces with the environment; emission is not shown, the truth knows of none.
 tl::expected<void, std::string> FrameRenderer::State::declare_lit(Graph& graph,
                                                                   const FrameRequest& request,
                                                                   Declared& declared) {
-  const auto probe = declare_environment(graph, request);
+  const auto probe =
+      add_probe(frame_of(graph, request), gpu, request.light->environment, environment);
   if (!probe) {
     return Failure(probe.error());
   }
   const passes::OcclusionOutputs& outputs = declared.outputs;
-  const std::vector<float>& given = request.light->roughness;
+  const Surfaces surfaces = surfaces_of(declared, request);
   std::string error;
   const auto light = [&](passes::ApplyInputs inputs, bool multi_bounce, bool parts) {
-    inputs.depth = outputs.linear_depth;
-    inputs.normals = outputs.normals;
-    inputs.albedo = declared.albedo;
-    if (given.empty()) {
-      inputs.roughness = declared.albedo;
-    }
-    inputs.metallic = declared.emissive;
+    give_surfaces(inputs, surfaces, outputs);
     inputs.harmonics = probe->harmonics;
     inputs.map = probe->map;
-    inputs.normals_in_view_space = normals == NormalSource::kDepth;
-    auto lit = passes::add_apply(frame_of(graph, request), inputs,
-                                 {.multi_bounce = multi_bounce,
-                                  .roughness = given.empty() ? 0.0f : given.front(),
-                                  .roughness_channel = 3,
-                                  .metallic_channel = 3,
-                                  .parts = parts});
+    passes::ApplySettings settings = apply_settings(surfaces);
+    settings.multi_bounce = multi_bounce;
+    settings.parts = parts;
+    auto lit = passes::add_apply(frame_of(graph, request), inputs, settings);
     if (!lit) {
       error = std::move(lit.error().message);
     }
@@ -405,12 +376,6 @@ void FrameRenderer::State::turn_to_world(const FrameRequest& request, FrameImage
       bent = world_from_view * bent;
     }
   }
-}
-
-passes::Matrix to_matrix(const glm::mat4& matrix) {
-  passes::Matrix result;
-  std::memcpy(result.data(), &matrix, sizeof(result));
-  return result;
 }
 
 FrameRenderer::FrameRenderer(std::unique_ptr<State> state) : state_(std::move(state)) {}

@@ -95,9 +95,6 @@ class FrameRenderer {
   std::unique_ptr<State> state_;
 };
 
-// A matrix as the passes take it.
-[[nodiscard]] passes::Matrix to_matrix(const glm::mat4& matrix);
-
 }  // namespace alcove::sample
 
 #endif  // ALCOVE_SAMPLE_FRAME_RENDERER_H_

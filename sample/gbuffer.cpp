@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstring>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -23,6 +24,11 @@ using Failure = tl::unexpected<std::string>;
 
 constexpr std::array<VkFormat, 4> kColourFormats{kNormalFormat, kAlbedoFormat, kMotionFormat,
                                                  kEmissiveFormat};
+
+// From one frame's parameters to the next's: a multiple of the largest alignment that a device may
+// ask for.
+constexpr std::uint32_t kParameterStride = 512;
+static_assert(sizeof(maths::GbufferParameters) <= kParameterStride && kParameterStride % 256 == 0);
 
 // That read what each draw pushes.
 constexpr VkShaderStageFlags kDrawStages =
@@ -58,10 +64,11 @@ struct GbufferRenderer::State {
   tl::expected<void, std::string> create_layout();
   tl::expected<void, std::string> create_pipeline(bool geometric_normals);
   tl::expected<void, std::string> create_set();
-  void write_parameters(const GbufferView& view);
+  // Returns where in the parameters those of the view are.
+  std::uint32_t write_parameters(const GbufferView& view);
   // Draws all faces or, with VK_CULL_MODE_FRONT_BIT, the back ones alone.
   void record(RecordContext& context, const Gbuffer& gbuffer, bool reversed_z,
-              VkCullModeFlags culled) const;
+              std::uint32_t parameters_at, VkCullModeFlags culled) const;
   void begin_rendering(RecordContext& context, const Gbuffer& gbuffer, bool reversed_z) const;
 
   uint32_t texture_count() const { return static_cast<uint32_t>(textures->descriptors().size()); }
@@ -71,7 +78,9 @@ struct GbufferRenderer::State {
   std::vector<TriangleDraw> draws;
   std::vector<maths::GbufferDraw> constants;
   std::unique_ptr<HostBuffer> vertices;
-  std::unique_ptr<HostBuffer> parameters;
+  std::unique_ptr<HostBuffer> parameters;  // one for each frame in flight
+  std::optional<GbufferView> written;      // of the latest
+  std::uint32_t latest = 0;
   std::unique_ptr<GpuTextures> textures;
   VkDescriptorSetLayout set_layout = VK_NULL_HANDLE;
   VkPipelineLayout layout = VK_NULL_HANDLE;
@@ -100,7 +109,7 @@ tl::expected<void, std::string> GbufferRenderer::State::upload(const Scene& scen
   }
   vertices = std::move(*vertex_buffer);
   std::ranges::copy(bytes, vertices->bytes().begin());
-  auto uniform = HostBuffer::create(gpu.device(), sizeof(maths::GbufferParameters),
+  auto uniform = HostBuffer::create(gpu.device(), kParameterStride * gpu.frames_in_flight(),
                                     VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
   if (!uniform) {
     return Failure(std::move(uniform.error()));
@@ -119,7 +128,7 @@ tl::expected<void, std::string> GbufferRenderer::State::upload(const Scene& scen
 
 tl::expected<void, std::string> GbufferRenderer::State::create_layout() {
   const std::array<VkDescriptorSetLayoutBinding, 2> bindings{
-      {{0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1,
+      {{0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, 1,
         VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, nullptr},
        {1, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, texture_count(), VK_SHADER_STAGE_FRAGMENT_BIT,
         nullptr}}};
@@ -143,7 +152,7 @@ tl::expected<void, std::string> GbufferRenderer::State::create_layout() {
 
 tl::expected<void, std::string> GbufferRenderer::State::create_set() {
   const std::array<VkDescriptorPoolSize, 2> sizes{
-      {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1},
+      {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, 1},
        {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, texture_count()}}};
   const VkDescriptorPoolCreateInfo pool_info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
                                              .maxSets = 1,
@@ -160,14 +169,14 @@ tl::expected<void, std::string> GbufferRenderer::State::create_set() {
   if (result != VK_SUCCESS) {
     return failure("the descriptor set", result);
   }
-  const VkDescriptorBufferInfo buffer{parameters->buffer(), 0, VK_WHOLE_SIZE};
+  const VkDescriptorBufferInfo buffer{parameters->buffer(), 0, sizeof(maths::GbufferParameters)};
   const std::vector<VkDescriptorImageInfo>& images = textures->descriptors();
   const std::array<VkWriteDescriptorSet, 2> writes{
       {{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
         .dstSet = set,
         .dstBinding = 0,
         .descriptorCount = 1,
-        .descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,
+        .descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC,
         .pBufferInfo = &buffer},
        {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
         .dstSet = set,
@@ -336,14 +345,14 @@ void GbufferRenderer::State::begin_rendering(RecordContext& context, const Gbuff
 }
 
 void GbufferRenderer::State::record(RecordContext& context, const Gbuffer& gbuffer, bool reversed_z,
-                                    VkCullModeFlags culled) const {
+                                    std::uint32_t parameters_at, VkCullModeFlags culled) const {
   begin_rendering(context, gbuffer, reversed_z);
   const auto& vk = context.vk;
   vk.vkCmdSetCullMode(context.commands, culled);
   vk.vkCmdBindPipeline(context.commands, VK_PIPELINE_BIND_POINT_GRAPHICS,
                        reversed_z ? reversed_pipeline : pipeline);
   vk.vkCmdBindDescriptorSets(context.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, 1, &set,
-                             0, nullptr);
+                             1, &parameters_at);
   const VkBuffer buffer = vertices->buffer();
   const VkDeviceSize offset = 0;
   vk.vkCmdBindVertexBuffers(context.commands, 0, 1, &buffer, &offset);
@@ -372,7 +381,12 @@ tl::expected<std::unique_ptr<GbufferRenderer>, std::string> GbufferRenderer::cre
   return std::unique_ptr<GbufferRenderer>(new GbufferRenderer(std::move(state)));
 }
 
-void GbufferRenderer::State::write_parameters(const GbufferView& view) {
+std::uint32_t GbufferRenderer::State::write_parameters(const GbufferView& view) {
+  if (written == view) {
+    return latest * kParameterStride;
+  }
+  written = view;
+  latest = (latest + 1) % gpu.frames_in_flight();
   maths::GbufferParameters frame;
   frame.clip_from_world = view.clip_from_view * view.view_from_world;
   frame.previous_clip_from_world = view.previous_clip_from_view * view.previous_view_from_world;
@@ -382,11 +396,12 @@ void GbufferRenderer::State::write_parameters(const GbufferView& view) {
   const bool perspective = view.clip_from_view[2][3] != 0.0f;
   frame.eye_ws = perspective ? glm::vec4(glm::vec3(world_from_view[3]), 1.0f)
                              : glm::vec4(glm::vec3(world_from_view[2]), 0.0f);
-  std::memcpy(parameters->bytes().data(), &frame, sizeof(frame));
+  std::memcpy(parameters->bytes().data() + latest * kParameterStride, &frame, sizeof(frame));
+  return latest * kParameterStride;
 }
 
 Gbuffer GbufferRenderer::add(Graph& graph, const GbufferView& view, const Gbuffer& targets) {
-  state_->write_parameters(view);
+  const std::uint32_t at = state_->write_parameters(view);
   Gbuffer gbuffer = targets;
   auto pass = graph.add_pass("g-buffer");
   gbuffer.depth = pass.write(targets.depth, framegraph::access::depth_attachment, {},
@@ -397,20 +412,22 @@ Gbuffer GbufferRenderer::add(Graph& graph, const GbufferView& view, const Gbuffe
                            framegraph::Contents::discard);
     }
   }
-  pass.record([state = state_.get(), gbuffer, reversed = view.reversed_z](RecordContext& context) {
-    state->record(context, gbuffer, reversed, VK_CULL_MODE_NONE);
-  });
+  pass.record(
+      [state = state_.get(), gbuffer, reversed = view.reversed_z, at](RecordContext& context) {
+        state->record(context, gbuffer, reversed, at, VK_CULL_MODE_NONE);
+      });
   return gbuffer;
 }
 
 Texture GbufferRenderer::add_back_faces(Graph& graph, const GbufferView& view, Texture depth) {
-  state_->write_parameters(view);
+  const std::uint32_t at = state_->write_parameters(view);
   auto pass = graph.add_pass("back faces");
   depth =
       pass.write(depth, framegraph::access::depth_attachment, {}, framegraph::Contents::discard);
-  pass.record([state = state_.get(), depth, reversed = view.reversed_z](RecordContext& context) {
-    state->record(context, {.depth = depth}, reversed, VK_CULL_MODE_FRONT_BIT);
-  });
+  pass.record(
+      [state = state_.get(), depth, reversed = view.reversed_z, at](RecordContext& context) {
+        state->record(context, {.depth = depth}, reversed, at, VK_CULL_MODE_FRONT_BIT);
+      });
   return depth;
 }
 

@@ -53,8 +53,8 @@ class GbufferRenderer {
   GbufferRenderer(const GbufferRenderer&) = delete;
   GbufferRenderer& operator=(const GbufferRenderer&) = delete;
 
-  // Adds the pass that fills `targets` and returns their filled versions. One frame at a time: the
-  // parameters are shared.
+  // Adds the pass that fills `targets` and returns their filled versions. All views of a frame
+  // are the same: parameters are kept for each frame in flight, not for each view.
   [[nodiscard]] Gbuffer add(framegraph::Graph& graph, const GbufferView& view,
                             const Gbuffer& targets);
   // Adds the pass that fills a texture like Gbuffer::depth with the nearest back faces, for a frame

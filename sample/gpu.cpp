@@ -88,6 +88,7 @@ tl::expected<std::unique_ptr<Gpu>, std::string> Gpu::create(
   }
   std::unique_ptr<Gpu> made(new Gpu);
   made->device_ = std::move(*device);
+  made->frames_in_flight_ = executor_options.frames_in_flight;
   if (const VkResult result = made->create_commands(); result != VK_SUCCESS) {
     return failure("create a command buffer", result);
   }
@@ -114,22 +115,35 @@ Gpu::~Gpu() {
   }
 }
 
-tl::expected<framegraph::FrameReport, std::string> Gpu::run(const Declare& declare) {
+tl::expected<framegraph::FrameReport, std::string> Gpu::record(const Declare& declare,
+                                                               VkCommandBuffer commands,
+                                                               std::uint32_t slot) {
   graph_.reset();
   kernels_->begin_frame();
+  std::string error;
   if (auto declared = declare(graph_); !declared) {
-    return Failure(std::move(declared.error()));
+    error = std::move(declared.error());
+  } else if (auto report = executor_->record(graph_, commands, {slot}); !report) {
+    error = framegraph::to_string(report.error());
+  } else {
+    return *report;
   }
+  // The kernels have counted a frame that nobody will wait for.
+  vkDeviceWaitIdle(device_->device());
+  return Failure(std::move(error));
+}
+
+tl::expected<framegraph::FrameReport, std::string> Gpu::run(const Declare& declare) {
   const VkCommandBufferBeginInfo begin{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                        .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
   VkResult result = vkBeginCommandBuffer(commands_, &begin);
   if (result != VK_SUCCESS) {
     return failure("begin a frame's commands", result);
   }
-  auto report = executor_->record(graph_, commands_);
+  auto report = record(declare, commands_, 0);
   result = vkEndCommandBuffer(commands_);
   if (!report) {
-    return Failure(framegraph::to_string(report.error()));
+    return report;
   }
   if (result == VK_SUCCESS) {
     result = submit_and_wait();
@@ -137,7 +151,7 @@ tl::expected<framegraph::FrameReport, std::string> Gpu::run(const Declare& decla
   if (result != VK_SUCCESS) {
     return failure("run a frame", result);
   }
-  return *report;
+  return report;
 }
 
 VkResult Gpu::submit_and_wait() {

@@ -59,6 +59,14 @@ class Gpu {
   // graph comes back as one sentence (several lines where several things are wrong).
   using Declare = std::function<tl::expected<void, std::string>(framegraph::Graph&)>;
   [[nodiscard]] tl::expected<framegraph::FrameReport, std::string> run(const Declare& declare);
+  // The same for a caller with frames in flight, who submits `commands` himself (they are in the
+  // recording state, of the device's family). `slot` takes turns from 0 to frames_in_flight() - 1;
+  // the device must have finished what was last recorded with it. After an error it is idle, and
+  // the slot can be tried again.
+  [[nodiscard]] tl::expected<framegraph::FrameReport, std::string> record(const Declare& declare,
+                                                                          VkCommandBuffer commands,
+                                                                          std::uint32_t slot);
+  std::uint32_t frames_in_flight() const { return frames_in_flight_; }
 
   // Of the frame that ran last.
   std::span<const framegraph::PassTiming> timings() { return executor_->timings(); }
@@ -75,6 +83,7 @@ class Gpu {
   std::unique_ptr<framegraph::Executor> executor_;
   std::unique_ptr<passes::Kernels> kernels_;
   framegraph::Graph graph_;
+  std::uint32_t frames_in_flight_ = 1;
 };
 
 // Adds a pass that fills mip 0 of `target` from tightly packed texels in `source`, and returns the

@@ -9,17 +9,19 @@ VkImageAspectFlags aspect_of(VkFormat format) {
 tl::expected<std::unique_ptr<GpuImage>, std::string> GpuImage::create(const VulkanDevice& owner,
                                                                       VkFormat format,
                                                                       VkExtent2D size,
-                                                                      VkImageUsageFlags usage) {
+                                                                      VkImageUsageFlags usage,
+                                                                      std::uint32_t mips) {
   std::unique_ptr<GpuImage> made(new GpuImage(owner));
   made->format_ = format;
   made->size_ = size;
+  made->mips_ = mips;
   made->usage_ = usage;
   const VkDevice device = owner.device();
   const VkImageCreateInfo info{.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
                                .imageType = VK_IMAGE_TYPE_2D,
                                .format = format,
                                .extent = {size.width, size.height, 1},
-                               .mipLevels = 1,
+                               .mipLevels = mips,
                                .arrayLayers = 1,
                                .samples = VK_SAMPLE_COUNT_1_BIT,
                                .usage = usage};
@@ -42,7 +44,7 @@ tl::expected<std::unique_ptr<GpuImage>, std::string> GpuImage::create(const Vulk
                                      .image = made->image_,
                                      .viewType = VK_IMAGE_VIEW_TYPE_2D,
                                      .format = format,
-                                     .subresourceRange = {aspect_of(format), 0, 1, 0, 1}};
+                                     .subresourceRange = {aspect_of(format), 0, mips, 0, 1}};
     result = vkCreateImageView(device, &view, nullptr, &made->view_);
   }
   if (result != VK_SUCCESS) {
@@ -63,7 +65,7 @@ framegraph::ImportedTexture GpuImage::import() const {
   framegraph::ImportedTexture import;
   import.image = image_;
   import.view = view_;
-  import.desc = {format_, framegraph::Extent::absolute(size_.width, size_.height)};
+  import.desc = {format_, framegraph::Extent::absolute(size_.width, size_.height), mips_};
   import.usage = usage_;
   return import;
 }

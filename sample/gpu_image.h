@@ -10,12 +10,13 @@
 
 namespace alcove::sample {
 
-// An image of one mip with memory and a view of its own, that lives from frame to frame. The graph
-// imports it; between frames it rests in the state that it was left in.
+// An image with memory and a view of its own (of all its mips), that lives from frame to frame. The
+// graph imports it; between frames it rests in the state that it was left in.
 class GpuImage {
  public:
   [[nodiscard]] static tl::expected<std::unique_ptr<GpuImage>, std::string> create(
-      const VulkanDevice& device, VkFormat format, VkExtent2D size, VkImageUsageFlags usage);
+      const VulkanDevice& device, VkFormat format, VkExtent2D size, VkImageUsageFlags usage,
+      std::uint32_t mips = 1);
   ~GpuImage();
   GpuImage(const GpuImage&) = delete;
   GpuImage& operator=(const GpuImage&) = delete;
@@ -37,6 +38,7 @@ class GpuImage {
   VkImageView view_ = VK_NULL_HANDLE;
   VkFormat format_ = VK_FORMAT_UNDEFINED;
   VkExtent2D size_{};
+  std::uint32_t mips_ = 1;
   VkImageUsageFlags usage_ = 0;
 };
 

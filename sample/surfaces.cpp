@@ -1,0 +1,59 @@
+#include "surfaces.h"
+
+#include <cstring>
+
+namespace alcove::sample {
+namespace {
+
+// Where the g-buffer has them: roughness beside the albedo, metallic beside emission.
+constexpr std::uint32_t kAlpha = 3;
+
+}  // namespace
+
+passes::OcclusionInputs occlusion_inputs(const Surfaces& surfaces) {
+  passes::OcclusionInputs inputs{.depth_ndc = surfaces.gbuffer.depth};
+  if (surfaces.normals != NormalSource::kDepth) {
+    inputs.normals = surfaces.gbuffer.normal;
+  }
+  if (!surfaces.roughness) {
+    inputs.roughness = surfaces.gbuffer.albedo;
+  }
+  return inputs;
+}
+
+passes::OcclusionSettings occlusion_settings(const Surfaces& surfaces,
+                                             const passes::OcclusionSettings& settings) {
+  passes::OcclusionSettings result = settings;
+  if (surfaces.roughness) {
+    result.roughness = *surfaces.roughness;
+  } else {
+    result.roughness_channel = kAlpha;
+  }
+  return result;
+}
+
+void give_surfaces(passes::ApplyInputs& inputs, const Surfaces& surfaces,
+                   const passes::OcclusionOutputs& outputs) {
+  inputs.depth = outputs.linear_depth;
+  inputs.normals = outputs.normals;
+  inputs.albedo = surfaces.gbuffer.albedo;
+  if (!surfaces.roughness) {
+    inputs.roughness = surfaces.gbuffer.albedo;
+  }
+  inputs.metallic = surfaces.gbuffer.emissive;
+  inputs.normals_in_view_space = surfaces.normals == NormalSource::kDepth;
+}
+
+passes::ApplySettings apply_settings(const Surfaces& surfaces) {
+  return {.roughness = surfaces.roughness.value_or(0.0f),
+          .roughness_channel = kAlpha,
+          .metallic_channel = kAlpha};
+}
+
+passes::Matrix to_matrix(const glm::mat4& matrix) {
+  passes::Matrix result;
+  std::memcpy(result.data(), &matrix, sizeof(result));
+  return result;
+}
+
+}  // namespace alcove::sample

@@ -1,0 +1,37 @@
+#ifndef ALCOVE_SAMPLE_SURFACES_H_
+#define ALCOVE_SAMPLE_SURFACES_H_
+
+#include <optional>
+
+#include "alcove/passes/apply.h"
+#include "alcove/passes/occlusion.h"
+#include "gbuffer.h"
+#include "options.h"
+
+namespace alcove::sample {
+
+// What a frame knows of the surfaces that it shows, and how the passes are given it: alike wherever
+// the sample draws.
+struct Surfaces {
+  Gbuffer gbuffer;
+  NormalSource normals = NormalSource::kShading;
+  std::optional<float> roughness;  // perceptual, of every surface; none: of their materials
+};
+
+// Depth, normals and roughness; motion and back faces are left to the caller.
+[[nodiscard]] passes::OcclusionInputs occlusion_inputs(const Surfaces& surfaces);
+// The settings with the roughness of the surfaces.
+[[nodiscard]] passes::OcclusionSettings occlusion_settings(
+    const Surfaces& surfaces, const passes::OcclusionSettings& settings);
+
+// Fills in all that is known of the surfaces but their occlusion.
+void give_surfaces(passes::ApplyInputs& inputs, const Surfaces& surfaces,
+                   const passes::OcclusionOutputs& outputs);
+[[nodiscard]] passes::ApplySettings apply_settings(const Surfaces& surfaces);
+
+// A matrix as the passes take it.
+[[nodiscard]] passes::Matrix to_matrix(const glm::mat4& matrix);
+
+}  // namespace alcove::sample
+
+#endif  // ALCOVE_SAMPLE_SURFACES_H_
