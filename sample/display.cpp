@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "camera.h"
-
 namespace alcove::sample {
 namespace {
 
@@ -29,23 +27,6 @@ Image<glm::vec3> display_colours(const Image<glm::vec3>& radiance, float exposur
     }
   }
   return colours;
-}
-
-Image<glm::vec3> with_sky(const Rendering& rendering, Image<glm::vec3> picture) {
-  const Camera& camera = rendering.camera;
-  const Image<float> depth = linear_depth(rendering);
-  const CameraMatrices matrices = camera_matrices(camera, picture.width, picture.height);
-  for (std::uint32_t y = 0; y < picture.height; ++y) {
-    for (std::uint32_t x = 0; x < picture.width; ++x) {
-      if (!std::isfinite(depth.at(x, y))) {
-        const Ray ray = camera_ray(matrices, camera.orthographic,
-                                   {static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f},
-                                   picture.width, picture.height);
-        picture.at(x, y) = radiance(rendering.light.environment, ray.direction_ws);
-      }
-    }
-  }
-  return picture;
 }
 
 }  // namespace alcove::sample

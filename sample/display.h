@@ -2,7 +2,7 @@
 #define ALCOVE_SAMPLE_DISPLAY_H_
 
 #include "environment.h"
-#include "rendering.h"
+#include "image.h"
 
 namespace alcove::sample {
 
@@ -10,9 +10,6 @@ namespace alcove::sample {
 // in its mean comes out bright but not white; then the shoulder and sRGB.
 [[nodiscard]] float exposure_of(const EnvironmentImage& environment);
 [[nodiscard]] Image<glm::vec3> display_colours(const Image<glm::vec3>& radiance, float exposure);
-
-// The picture with the environment where the scene is not.
-[[nodiscard]] Image<glm::vec3> with_sky(const Rendering& rendering, Image<glm::vec3> picture);
 
 }  // namespace alcove::sample
 

@@ -268,7 +268,7 @@ tl::expected<Declared, std::string> FrameRenderer::State::declare_occlusion(
   const passes::Frame frame = frame_of(graph, request);
   const Surfaces surfaces = surfaces_of(declared, request);
   passes::OcclusionInputs inputs = occlusion_inputs(surfaces);
-  passes::OcclusionSettings settings = occlusion_settings(surfaces, request.occlusion);
+  passes::OcclusionSettings settings = with_roughness(request.occlusion, surfaces);
   if (request.motion_vectors) {
     inputs.motion = import(kMotion);
   }

@@ -34,11 +34,6 @@ struct FrameRequest {
   const LightRequest* light = nullptr;  // null: none
 };
 
-struct PassTime {
-  std::string pass;
-  double milliseconds;
-};
-
 // What a frame cost.
 struct FrameCost {
   std::vector<PassTime> gpu;  // each pass by GPU timestamps, g-buffer first

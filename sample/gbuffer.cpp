@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "gpu_textures.h"
+#include "shader_module.h"
 #include "shaders/gbuffer.h"
 #include "spirv/gbuffer_fragment.h"
 #include "spirv/gbuffer_vertex.h"
@@ -189,22 +190,6 @@ tl::expected<void, std::string> GbufferRenderer::State::create_set() {
 }
 
 namespace {
-
-struct ShaderModule {
-  VkDevice device;
-  VkShaderModule module = VK_NULL_HANDLE;
-  VkResult result;
-
-  ShaderModule(VkDevice on, std::span<const uint32_t> code) : device(on) {
-    const VkShaderModuleCreateInfo info{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
-                                        .codeSize = code.size_bytes(),
-                                        .pCode = code.data()};
-    result = vkCreateShaderModule(device, &info, nullptr, &module);
-  }
-  ~ShaderModule() { vkDestroyShaderModule(device, module, nullptr); }
-  ShaderModule(const ShaderModule&) = delete;
-  ShaderModule& operator=(const ShaderModule&) = delete;
-};
 
 // The state that never changes, as Vulkan wants it: attributes of Vertex, no blending.
 struct FixedState {

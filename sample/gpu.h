@@ -42,6 +42,12 @@ class HostBuffer {
   VkBufferUsageFlags usage_ = 0;
 };
 
+// GPU time of a pass.
+struct PassTime {
+  std::string pass;
+  double milliseconds;
+};
+
 // What the sample and the tests run frames with: one graph, its executor and the kernels.
 class Gpu {
  public:

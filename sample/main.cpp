@@ -24,6 +24,8 @@ tl::expected<void, std::string> run(const Options& options) {
       return alcove::sample::run_ablate(options);
     case Command::kGraph:
       return alcove::sample::run_graph(options);
+    case Command::kView:
+      return alcove::sample::run_view(options);
     default:
       return alcove::sample::run_doctor(options);
   }

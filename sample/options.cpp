@@ -131,6 +131,8 @@ uint32_t default_frames(Command command) {
       return kPathFrames;
     case Command::kAblate:
       return kAblationFrames;
+    case Command::kView:
+      return 0;
     default:
       return 1;
   }
@@ -228,6 +230,16 @@ void add_frames(CLI::App& app, Raw& raw) {
       ->group(group);
 }
 
+void add_window(CLI::App& app, Raw& raw) {
+  const std::string group = "View";
+  app.add_option("--frames", raw.frames, "how many to draw; else until the window is closed")
+      ->type_name("N")
+      ->group(group);
+  app.add_option("--orbit", raw.orbit, "turn about the target by so much per frame")
+      ->type_name("DEGREES")
+      ->group(group);
+}
+
 void add_motion(CLI::App& app, Raw& raw) {
   static const std::map<std::string, std::optional<MotionKind>> kPaths = [] {
     std::map<std::string, std::optional<MotionKind>> paths{{"all", std::nullopt}};
@@ -305,15 +317,19 @@ void add_environment(CLI::App& app, Raw& raw) {
       ->group("Light");
 }
 
-void add_output(CLI::App& app, Raw& raw) {
-  app.add_option("--out", raw.options.out, "folder for images and report.json; out")
-      ->type_name("DIR");
+void add_device(CLI::App& app, Raw& raw) {
   app.add_option("--device", raw.options.device,
                  "which Vulkan device, as `alcove doctor` numbers them")
       ->type_name("N")
       ->check(CLI::Range(0, 255).description(""));
   app.add_flag("--validation", raw.options.validation,
                "run under the Khronos validation layers and fail on any message");
+}
+
+void add_output(CLI::App& app, Raw& raw) {
+  app.add_option("--out", raw.options.out, "folder for images and report.json; out")
+      ->type_name("DIR");
+  add_device(app, raw);
 }
 
 void add_scene(CLI::App& app, Raw& raw) {
@@ -373,9 +389,22 @@ std::vector<Subcommand> add_commands(CLI::App& app, Raw& raw) {
   graph->add_option("--format", raw.options.graph_format, "text, json or dot (Graphviz); text")
       ->transform(CLI::CheckedTransformer(kFormats).description(""))
       ->type_name("NAME");
+  CLI::App* view = app.add_subcommand(
+      "view", "a window to orbit a scene in and see what each setting does and costs");
+  add_scene(*view, raw);
+  add_view(*view, raw);
+  add_window(*view, raw);
+  add_occlusion(*view, raw);
+  add_environment(*view, raw);
+  view->add_option("--out", raw.options.out,
+                   "folder for screenshots, else where alcove was started; with it, the last of "
+                   "--frames is written too")
+      ->type_name("DIR");
+  add_device(*view, raw);
   CLI::App* doctor = app.add_subcommand("doctor", "the Vulkan devices here and what they lack");
   return {{render, Command::kRender}, {compare, Command::kCompare}, {motion, Command::kMotion},
-          {ablate, Command::kAblate}, {graph, Command::kGraph},     {doctor, Command::kDoctor}};
+          {ablate, Command::kAblate}, {graph, Command::kGraph},     {view, Command::kView},
+          {doctor, Command::kDoctor}};
 }
 
 Options finished(const CLI::App& app, const Raw& raw, Command command) {
@@ -383,6 +412,7 @@ Options finished(const CLI::App& app, const Raw& raw, Command command) {
   options.command = command;
   options.use_cache = !raw.no_cache;
   if (command == Command::kDoctor) return options;
+  if (command == Command::kView && app.count("--out") == 0) options.out.clear();
   read_view(app, raw, options.view);
   read_frames(app, raw, command, options.view);
   read_occlusion(app, raw, options.occlusion);

@@ -15,7 +15,7 @@
 
 namespace alcove::sample {
 
-enum class Command { kRender, kCompare, kMotion, kAblate, kGraph, kDoctor };
+enum class Command { kRender, kCompare, kMotion, kAblate, kGraph, kView, kDoctor };
 enum class Quality { kLow, kMedium, kHigh, kUltra, kReference };
 enum class NormalSource { kShading, kGeometric, kDepth };
 enum class GraphFormat { kText, kJson, kDot };
@@ -28,8 +28,8 @@ struct ViewOptions {
   bool reversed_z = false;
   uint32_t width = 960;
   uint32_t height = 540;
-  uint32_t frames = 1;
-  float orbit = 0.0f;  // radians per frame
+  uint32_t frames = 1;  // 0: `view` draws until its window is closed
+  float orbit = 0.0f;   // radians per frame
 };
 
 struct OcclusionOptions {
@@ -48,8 +48,8 @@ struct Options {
   bool lit = false;                   // compare: also trace the lit picture
   ViewOptions view;
   OcclusionOptions occlusion;
-  std::filesystem::path out = "out";
-  std::optional<MotionKind> path;  // motion: none for all of them
+  std::filesystem::path out = "out";  // empty: `view` was given none
+  std::optional<MotionKind> path;     // motion: none for all of them
   GraphFormat graph_format = GraphFormat::kText;
   int device = -1;
   bool validation = false;

@@ -181,6 +181,23 @@ Image<float> linear_depth(const Rendering& rendering) {
   return linear_depth(rendering.camera, rendering.images.depth_ndc);
 }
 
+Image<glm::vec3> with_sky(const Rendering& rendering, Image<glm::vec3> picture) {
+  const Camera& camera = rendering.camera;
+  const Image<float> depth = linear_depth(rendering);
+  const CameraMatrices matrices = camera_matrices(camera, picture.width, picture.height);
+  for (std::uint32_t y = 0; y < picture.height; ++y) {
+    for (std::uint32_t x = 0; x < picture.width; ++x) {
+      if (!std::isfinite(depth.at(x, y))) {
+        const Ray ray = camera_ray(matrices, camera.orthographic,
+                                   {static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f},
+                                   picture.width, picture.height);
+        picture.at(x, y) = radiance(rendering.light.environment, ray.direction_ws);
+      }
+    }
+  }
+  return picture;
+}
+
 namespace {
 
 // Directions as colours: each component from -1..1 to 0..1.

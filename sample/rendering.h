@@ -40,6 +40,9 @@ struct Rendering {
 // Distance along the view axis, infinity in the sky.
 [[nodiscard]] Image<float> linear_depth(const Rendering& rendering);
 
+// The picture with the environment where the scene is not.
+[[nodiscard]] Image<glm::vec3> with_sky(const Rendering& rendering, Image<glm::vec3> picture);
+
 // What the specular occlusion of index `i` was made for: materials, or r30 for a roughness of 0.3.
 [[nodiscard]] std::string roughness_name(const LightRequest& light, std::size_t i);
 

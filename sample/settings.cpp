@@ -1,10 +1,10 @@
 #include "settings.h"
 
-#include <array>
 #include <charconv>
 #include <nlohmann/json.hpp>
-#include <string_view>
 #include <utility>
+
+#include "setting_names.h"
 
 namespace alcove::sample {
 namespace {
@@ -12,35 +12,6 @@ namespace {
 using passes::OcclusionSettings;
 using Failure = tl::unexpected<std::string>;
 using Json = nlohmann::ordered_json;
-
-constexpr std::array<std::pair<std::string_view, passes::Estimator>, 4> kEstimators{
-    {{"horizons", passes::Estimator::horizons},
-     {"heuristic", passes::Estimator::heuristic},
-     {"bitmask", passes::Estimator::bitmask},
-     {"connected", passes::Estimator::connected}}};
-constexpr std::array<std::pair<std::string_view, passes::Weighting>, 2> kWeightings{
-    {{"cosine", passes::Weighting::cosine}, {"uniform", passes::Weighting::uniform}}};
-constexpr std::array<std::pair<std::string_view, passes::ThicknessUnit>, 3> kThicknessUnits{
-    {{"radius", passes::ThicknessUnit::radius},
-     {"distance", passes::ThicknessUnit::distance},
-     {"back_faces", passes::ThicknessUnit::back_faces}}};
-constexpr std::array<std::pair<std::string_view, passes::Pattern>, 3> kPatterns{
-    {{"golden", passes::Pattern::golden},
-     {"hilbert", passes::Pattern::hilbert},
-     {"memo", passes::Pattern::memo}}};
-constexpr std::array<std::pair<std::string_view, passes::Precision>, 3> kPrecisions{
-    {{"unorm8", passes::Precision::unorm8},
-     {"float16", passes::Precision::float16},
-     {"float32", passes::Precision::float32}}};
-constexpr std::array<std::pair<std::string_view, passes::Specular>, 6> kSpeculars{
-    {{"none", passes::Specular::none},
-     {"slices", passes::Specular::slices},
-     {"table", passes::Specular::table},
-     {"cone", passes::Specular::cone},
-     {"smooth_cone", passes::Specular::smooth_cone},
-     {"lagarde", passes::Specular::lagarde}}};
-constexpr std::array<std::pair<std::string_view, bool>, 2> kBooleans{
-    {{"false", false}, {"true", true}}};
 
 // Each overload reads `text` into a setting; what it takes, when that fails.
 std::string parse(const std::string& text, float& value) {
@@ -55,11 +26,10 @@ std::string parse(const std::string& text, std::uint32_t& value) {
   return whole ? "" : "a whole number";
 }
 
-template <typename Value, std::size_t size>
-std::string parse_name(const std::string& text, Value& value,
-                       const std::array<std::pair<std::string_view, Value>, size>& names) {
+template <typename Choice>
+std::string parse(const std::string& text, Choice& value) {
   std::string all;
-  for (const auto& [name, meaning] : names) {
+  for (const auto& [name, meaning] : choices(value)) {
     if (text == name) {
       value = meaning;
       return "";
@@ -69,72 +39,11 @@ std::string parse_name(const std::string& text, Value& value,
   return "one of " + all;
 }
 
-std::string parse(const std::string& text, passes::Estimator& value) {
-  return parse_name(text, value, kEstimators);
-}
-std::string parse(const std::string& text, passes::Weighting& value) {
-  return parse_name(text, value, kWeightings);
-}
-std::string parse(const std::string& text, passes::ThicknessUnit& value) {
-  return parse_name(text, value, kThicknessUnits);
-}
-std::string parse(const std::string& text, passes::Pattern& value) {
-  return parse_name(text, value, kPatterns);
-}
-std::string parse(const std::string& text, passes::Precision& value) {
-  return parse_name(text, value, kPrecisions);
-}
-std::string parse(const std::string& text, passes::Specular& value) {
-  return parse_name(text, value, kSpeculars);
-}
-std::string parse(const std::string& text, bool& value) {
-  return parse_name(text, value, kBooleans);
-}
-
-template <typename Value, std::size_t size>
-std::string name_of(Value value,
-                    const std::array<std::pair<std::string_view, Value>, size>& names) {
-  for (const auto& [name, meaning] : names) {
-    if (meaning == value) {
-      return std::string(name);
-    }
-  }
-  return "";
-}
-
 Json show(float value) { return value; }
 Json show(std::uint32_t value) { return value; }
-Json show(bool value) { return value; }
-Json show(passes::Estimator value) { return name_of(value, kEstimators); }
-Json show(passes::Weighting value) { return name_of(value, kWeightings); }
-Json show(passes::ThicknessUnit value) { return name_of(value, kThicknessUnits); }
-Json show(passes::Pattern value) { return name_of(value, kPatterns); }
-Json show(passes::Precision value) { return name_of(value, kPrecisions); }
-Json show(passes::Specular value) { return name_of(value, kSpeculars); }
-
-// Calls `visit(name, field)` for every setting.
-template <typename Settings, typename Visit>
-void for_each_setting(Settings& settings, const Visit& visit) {
-  visit("radius", settings.radius);
-  visit("slices", settings.slices);
-  visit("steps", settings.steps);
-  visit("estimator", settings.estimator);
-  visit("weighting", settings.weighting);
-  visit("thickness", settings.thickness);
-  visit("thickness_unit", settings.thickness_unit);
-  visit("fill", settings.fill);
-  visit("blend", settings.blend);
-  visit("falloff", settings.falloff);
-  visit("divisor", settings.divisor);
-  visit("pattern", settings.pattern);
-  visit("depth_mips", settings.depth_mips);
-  visit("filter_reach", settings.filter_reach);
-  visit("filter_tolerance_px", settings.filter_tolerance_px);
-  visit("history_frames", settings.history_frames);
-  visit("clamp_width", settings.clamp_width);
-  visit("bent_normal", settings.bent_normal);
-  visit("specular", settings.specular);
-  visit("precision", settings.precision);
+template <typename Choice>
+Json show(Choice value) {
+  return std::string(name_of_choice(value));
 }
 
 tl::expected<void, std::string> set(OcclusionSettings& settings, const std::string& name,
@@ -158,6 +67,8 @@ tl::expected<void, std::string> set(OcclusionSettings& settings, const std::stri
   return {};
 }
 
+}  // namespace
+
 passes::Quality to_quality(Quality quality) {
   switch (quality) {
     case Quality::kLow:
@@ -172,8 +83,6 @@ passes::Quality to_quality(Quality quality) {
       return passes::Quality::reference;
   }
 }
-
-}  // namespace
 
 tl::expected<OcclusionSettings, std::string> occlusion_settings(const OcclusionOptions& options,
                                                                 const Scene& scene) {

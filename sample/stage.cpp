@@ -9,11 +9,15 @@ namespace alcove::sample {
 
 using Failure = tl::unexpected<std::string>;
 
-tl::expected<std::unique_ptr<Gpu>, std::string> open_gpu(const Options& options) {
-  return Gpu::create({.validation = options.validation, .index = options.device});
+tl::expected<std::unique_ptr<Gpu>, std::string> open_gpu(
+    const Options& options, const std::vector<const char*>& surface_extensions) {
+  return Gpu::create({.validation = options.validation,
+                      .index = options.device,
+                      .surface_extensions = surface_extensions});
 }
 
-tl::expected<Stage, std::string> stage_of(const Options& options) {
+tl::expected<Stage, std::string> stage_of(const Options& options,
+                                          const std::vector<const char*>& surface_extensions) {
   Stage stage;
   auto scene = load_scene(options.scene);
   if (!scene) {
@@ -30,7 +34,7 @@ tl::expected<Stage, std::string> stage_of(const Options& options) {
     return Failure(settings.error());
   }
   stage.settings = *settings;
-  auto gpu = open_gpu(options);
+  auto gpu = open_gpu(options, surface_extensions);
   if (!gpu) {
     return Failure(std::move(gpu.error()));
   }

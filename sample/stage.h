@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 #include <tl/expected.hpp>
+#include <vector>
 
 #include "alcove/passes/occlusion.h"
 #include "camera.h"
@@ -22,11 +23,13 @@ struct Stage {
 };
 
 // Loads the scene, finds camera and settings and opens the device, in this order: the cheapest
-// mistake is told first.
-[[nodiscard]] tl::expected<Stage, std::string> stage_of(const Options& options);
+// mistake is told first. `surface_extensions` are those of a window to present to.
+[[nodiscard]] tl::expected<Stage, std::string> stage_of(
+    const Options& options, const std::vector<const char*>& surface_extensions = {});
 
 // The device that the options name, opened anew: what is drawn on it has histories of its own.
-[[nodiscard]] tl::expected<std::unique_ptr<Gpu>, std::string> open_gpu(const Options& options);
+[[nodiscard]] tl::expected<std::unique_ptr<Gpu>, std::string> open_gpu(
+    const Options& options, const std::vector<const char*>& surface_extensions = {});
 
 // One sentence where the validation layers said anything.
 [[nodiscard]] tl::expected<void, std::string> check_validation(const Gpu& gpu);

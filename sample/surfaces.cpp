@@ -21,8 +21,8 @@ passes::OcclusionInputs occlusion_inputs(const Surfaces& surfaces) {
   return inputs;
 }
 
-passes::OcclusionSettings occlusion_settings(const Surfaces& surfaces,
-                                             const passes::OcclusionSettings& settings) {
+passes::OcclusionSettings with_roughness(const passes::OcclusionSettings& settings,
+                                         const Surfaces& surfaces) {
   passes::OcclusionSettings result = settings;
   if (surfaces.roughness) {
     result.roughness = *surfaces.roughness;

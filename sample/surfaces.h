@@ -21,8 +21,8 @@ struct Surfaces {
 // Depth, normals and roughness; motion and back faces are left to the caller.
 [[nodiscard]] passes::OcclusionInputs occlusion_inputs(const Surfaces& surfaces);
 // The settings with the roughness of the surfaces.
-[[nodiscard]] passes::OcclusionSettings occlusion_settings(
-    const Surfaces& surfaces, const passes::OcclusionSettings& settings);
+[[nodiscard]] passes::OcclusionSettings with_roughness(const passes::OcclusionSettings& settings,
+                                                       const Surfaces& surfaces);
 
 // Fills in all that is known of the surfaces but their occlusion.
 void give_surfaces(passes::ApplyInputs& inputs, const Surfaces& surfaces,

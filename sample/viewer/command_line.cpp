@@ -1,0 +1,132 @@
+#include "command_line.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include "setting_names.h"
+#include "settings.h"
+
+namespace alcove::sample {
+namespace {
+
+using passes::OcclusionSettings;
+
+constexpr std::array<std::pair<std::string_view, Quality>, 5> kQualities{
+    {{"low", Quality::kLow},
+     {"medium", Quality::kMedium},
+     {"high", Quality::kHigh},
+     {"ultra", Quality::kUltra},
+     {"reference", Quality::kReference}}};
+
+// Each overload gives the text of a value that reads back as the same.
+template <typename Number>
+std::string number_text(Number value) {
+  std::array<char, 64> text{};
+  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
+  return {text.data(), end};
+}
+
+std::string text_of(float value) { return std::isinf(value) ? "inf" : number_text(value); }
+std::string text_of(std::uint32_t value) { return number_text(value); }
+std::string text_of(const glm::vec3& v) {
+  return text_of(v.x) + "," + text_of(v.y) + "," + text_of(v.z);
+}
+template <typename Choice>
+std::string text_of(Choice value) {
+  return std::string(name_of_choice(value));
+}
+
+// The settings that are other than those of a quality, as --set takes them.
+std::vector<std::string> changes(Quality quality, const OcclusionSettings& settings) {
+  const OcclusionSettings preset = passes::quality_settings(to_quality(quality), settings.radius);
+  std::vector<std::string> before, result;
+  for_each_setting(preset, [&](const char* name, const auto& value) {
+    before.push_back(std::string(name) + "=" + text_of(value));
+  });
+  std::size_t i = 0;
+  for_each_setting(settings, [&](const char* name, const auto& value) {
+    std::string now = std::string(name) + "=" + text_of(value);
+    if (now != before[i++]) {
+      result.push_back(std::move(now));
+    }
+  });
+  return result;
+}
+
+void append_camera(const Camera& camera, std::vector<std::string>& to) {
+  to.insert(to.end(), {"--eye", text_of(camera.eye_ws), "--target", text_of(camera.target_ws),
+                       "--up", text_of(camera.up_ws)});
+  if (camera.orthographic) {
+    to.insert(to.end(), {"--ortho-height", text_of(camera.ortho_height)});
+  } else {
+    to.insert(to.end(), {"--fov-y", text_of(glm::degrees(camera.fov_y))});
+  }
+  to.insert(to.end(), {"--near", text_of(camera.near_plane), "--far", text_of(camera.far_plane)});
+  if (camera.reversed_z) {
+    to.emplace_back("--reversed-z");
+  }
+}
+
+// By the quality that is nearest.
+void append_settings(const OcclusionSettings& settings, std::vector<std::string>& to) {
+  const auto nearest = std::ranges::min_element(kQualities, {}, [&](const auto& quality) {
+    return changes(quality.second, settings).size();
+  });
+  to.insert(to.end(),
+            {"--quality", std::string(nearest->first), "--radius", text_of(settings.radius)});
+  for (const std::string& change : changes(nearest->second, settings)) {
+    to.insert(to.end(), {"--set", change});
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> render_arguments(const Options& options, const Shot& shot) {
+  std::vector<std::string> arguments{"alcove", "render"};
+  if (!options.scene.empty()) {
+    arguments.push_back(options.scene);
+  }
+  if (!options.view.camera.empty()) {
+    arguments.insert(arguments.end(), {"--camera", options.view.camera});
+  }
+  append_camera(shot.camera, arguments);
+  arguments.insert(arguments.end(), {"--size", text_of(shot.width) + "x" + text_of(shot.height)});
+  append_settings(shot.settings, arguments);
+  if (options.occlusion.normals != NormalSource::kShading) {
+    const bool geometric = options.occlusion.normals == NormalSource::kGeometric;
+    arguments.insert(arguments.end(), {"--normals", geometric ? "geometric" : "depth"});
+  }
+  if (shot.roughness) {
+    arguments.insert(arguments.end(), {"--roughness", text_of(*shot.roughness)});
+  }
+  if (!options.environment.empty()) {
+    arguments.insert(arguments.end(), {"--environment", options.environment.string()});
+  }
+  if (shot.settings.history_frames > 1) {
+    arguments.insert(arguments.end(), {"--frames", text_of(shot.settings.history_frames)});
+  }
+  return arguments;
+}
+
+std::string shell_line(const std::vector<std::string>& arguments) {
+  constexpr const char* kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=,:+";
+  std::string line;
+  for (const std::string& argument : arguments) {
+    line += line.empty() ? "" : " ";
+    if (!argument.empty() && argument.find_first_not_of(kPlain) == std::string::npos) {
+      line += argument;
+      continue;
+    }
+    line += '\'';
+    for (const char c : argument) {
+      line += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    }
+    line += '\'';
+  }
+  return line;
+}
+
+}  // namespace alcove::sample

@@ -1,0 +1,171 @@
+#include "panel.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+
+#include "orbit_camera.h"
+#include "setting_widgets.h"
+
+namespace alcove::sample {
+namespace {
+
+const ImVec4 kRefused{1.0f, 0.45f, 0.35f, 1.0f};
+constexpr const char* kKeys =
+    "left drag     orbit\n"
+    "right drag    pan (middle too)\n"
+    "wheel         nearer, farther\n"
+    "1 to 9        what is shown\n"
+    "Home          back to the first view\n"
+    "R             reset the settings\n"
+    "P             screenshot and command\n"
+    "H             hide this panel\n"
+    "Escape        close";
+
+template <typename Choice, std::size_t size>
+void combo(const char* label, Choice& value, const std::array<std::string_view, size>& names) {
+  const auto now = static_cast<std::size_t>(value);
+  if (ImGui::BeginCombo(label, names[now].data())) {
+    for (std::size_t i = 0; i < size; ++i) {
+      if (ImGui::Selectable(names[i].data(), i == now)) {
+        value = static_cast<Choice>(i);
+      }
+    }
+    ImGui::EndCombo();
+  }
+}
+
+void lay_out_picture(ViewState& state) {
+  combo("show", state.picture, kPictureNames);
+  combo("beside", state.comparison, kComparisonNames);
+  if (state.comparison != Comparison::kNone) {
+    ImGui::SliderFloat("split", &state.split, 0.0f, 1.0f, "%.2f");
+  }
+  if (ImGui::Button("keep these settings to compare with")) {
+    state.kept = state.settings;
+    state.comparison = Comparison::kKept;
+  }
+}
+
+void lay_out_qualities(ViewState& state, const PanelFacts& facts) {
+  constexpr std::array<std::pair<const char*, passes::Quality>, 5> kPresets{
+      {{"low", passes::Quality::low},
+       {"medium", passes::Quality::medium},
+       {"high", passes::Quality::high},
+       {"ultra", passes::Quality::ultra},
+       {"reference", passes::Quality::reference}}};
+  for (const auto& [name, quality] : kPresets) {
+    if (ImGui::Button(name)) {
+      state.settings = passes::quality_settings(quality, state.settings.radius);
+    }
+    ImGui::SameLine();
+  }
+  if (ImGui::Button("reset")) {
+    state.settings = facts.first_settings;
+  }
+}
+
+void lay_out_roughness(ViewState& state) {
+  bool of_materials = !state.roughness;
+  if (ImGui::Checkbox("roughness of the materials", &of_materials)) {
+    constexpr float kMiddle = 0.5f;
+    state.roughness = of_materials ? std::nullopt : std::optional(kMiddle);
+  }
+  if (state.roughness) {
+    ImGui::SliderFloat("roughness", &*state.roughness, 0.0f, 1.0f, "%.2f");
+  }
+}
+
+void lay_out_times(const PanelFacts& facts) {
+  const double total = std::max(facts.times.total_ms(), 1e-6);
+  if (ImGui::BeginTable("times", 3, ImGuiTableFlags_SizingStretchProp)) {
+    for (const PassTime& time : facts.times.passes()) {
+      ImGui::TableNextColumn();
+      ImGui::TextUnformatted(time.pass.c_str());
+      ImGui::TableNextColumn();
+      ImGui::Text("%7.3f", time.milliseconds);
+      ImGui::TableNextColumn();
+      ImGui::ProgressBar(static_cast<float>(time.milliseconds / total),
+                         {-1.0f, ImGui::GetTextLineHeight()}, "");
+    }
+    ImGui::EndTable();
+  }
+  ImGui::Text("together %.3f ms on the device", facts.times.total_ms());
+  const auto mib = [](VkDeviceSize bytes) { return static_cast<double>(bytes) / 1048576.0; };
+  ImGui::Text("transients %.1f MiB (unshared %.1f)", mib(facts.memory.aliased),
+              mib(facts.memory.unaliased));
+  ImGui::Text("histories %.1f MiB, held in all %.1f", mib(facts.memory.history),
+              mib(facts.memory.allocated));
+}
+
+bool section(const char* name) {
+  return ImGui::CollapsingHeader(name, ImGuiTreeNodeFlags_DefaultOpen);
+}
+
+}  // namespace
+
+bool lay_out_panel(ViewState& state, const PanelFacts& facts) {
+  const float unit = ImGui::GetFontSize();
+  ImGui::SetNextWindowPos({0.5f * unit, 0.5f * unit}, ImGuiCond_FirstUseEver);
+  ImGui::SetNextWindowSize({27.0f * unit, static_cast<float>(facts.height) - unit},
+                           ImGuiCond_FirstUseEver);
+  bool screenshot = false;
+  if (ImGui::Begin("alcove")) {
+    ImGui::PushItemWidth(-11.0f * unit);
+    ImGui::Text("%ux%u  %.1f frames a second", facts.width, facts.height,
+                static_cast<double>(ImGui::GetIO().Framerate));
+    ImGui::TextDisabled("%s", facts.device.c_str());
+    if (!facts.refusal.empty()) {
+      ImGui::PushStyleColor(ImGuiCol_Text, kRefused);
+      ImGui::TextWrapped("%s The picture is drawn with the settings before.",
+                         facts.refusal.c_str());
+      ImGui::PopStyleColor();
+    }
+    if (section("Picture")) {
+      lay_out_picture(state);
+    }
+    if (section("Occlusion")) {
+      lay_out_qualities(state, facts);
+      lay_out_settings(state.settings, facts.first_settings.radius);
+      lay_out_roughness(state);
+    }
+    if (section("Cost")) {
+      lay_out_times(facts);
+    }
+    if (section("Take with you")) {
+      screenshot = ImGui::Button("screenshot and command (P)");
+      ImGui::TextWrapped("%s", facts.message.c_str());
+    }
+    if (ImGui::CollapsingHeader("Keys")) {
+      ImGui::TextUnformatted(kKeys);
+    }
+    ImGui::PopItemWidth();
+  }
+  ImGui::End();
+  return screenshot;
+}
+
+void move_camera_by_mouse(Camera& camera) {
+  const ImGuiIO& io = ImGui::GetIO();
+  if (io.WantCaptureMouse) {
+    return;
+  }
+  const float height = std::max(io.DisplaySize.y, 1.0f);
+  const glm::vec2 share(io.MouseDelta.x / height, io.MouseDelta.y / height);
+  constexpr float kTurnOfHeight = glm::pi<float>();
+  if (ImGui::IsMouseDragging(ImGuiMouseButton_Left, 0.0f)) {
+    camera = turned(camera, kTurnOfHeight * share);
+  }
+  if (ImGui::IsMouseDragging(ImGuiMouseButton_Right, 0.0f) ||
+      ImGui::IsMouseDragging(ImGuiMouseButton_Middle, 0.0f)) {
+    camera = panned(camera, share);
+  }
+  constexpr float kStep = 0.9f;
+  if (io.MouseWheel != 0.0f) {
+    camera = dollied(camera, std::pow(kStep, io.MouseWheel));
+  }
+}
+
+}  // namespace alcove::sample

@@ -1,0 +1,243 @@
+#include "scene_frame.h"
+
+#include <utility>
+
+#include "alcove/passes/multi_bounce.h"
+#include "display.h"
+
+namespace alcove::sample {
+namespace {
+
+using framegraph::Graph;
+using framegraph::Texture;
+using passes::OcclusionSettings;
+using Failure = tl::unexpected<std::string>;
+
+// What is fully coloured, in parts of the image.
+constexpr float kFullMotion = 0.02f;
+
+bool has_back_faces(const OcclusionSettings& settings) {
+  return passes::needs_back_depth(settings.estimator, settings.thickness_unit);
+}
+
+// The settings with what the picture shows asked for too.
+OcclusionSettings with_outputs(OcclusionSettings settings, Picture picture) {
+  const bool lit = picture == Picture::kLit;
+  settings.bent_normal = settings.bent_normal || lit || picture == Picture::kBentNormal;
+  if ((lit || picture == Picture::kSpecularOcclusion) &&
+      settings.specular == passes::Specular::none) {
+    settings.specular = passes::Specular::slices;
+  }
+  return settings;
+}
+
+bool reads_albedo(Picture picture) {
+  return picture == Picture::kLit || picture == Picture::kMultiBounce ||
+         picture == Picture::kAlbedo;
+}
+
+glm::mat3 ray_from_ndc(const Camera& camera, const CameraMatrices& matrices) {
+  const glm::mat3 rotation(matrices.world_from_view);
+  if (camera.orthographic) {
+    return {glm::vec3(0.0f), glm::vec3(0.0f), -rotation[2]};
+  }
+  const glm::mat4& p = matrices.clip_from_view;
+  return rotation * glm::mat3(1.0f / p[0][0], 0.0f, 0.0f,  //
+                              0.0f, 1.0f / p[1][1], 0.0f,  //
+                              p[2][0] / p[0][0], p[2][1] / p[1][1], -1.0f);
+}
+
+}  // namespace
+
+tl::expected<std::unique_ptr<SceneFrame>, std::string> SceneFrame::create(
+    Gpu& gpu, const Scene& scene, const EnvironmentImage& environment, NormalSource normals,
+    VkFormat format) {
+  std::unique_ptr<SceneFrame> made(new SceneFrame(gpu, normals));
+  auto gbuffer = GbufferRenderer::create(gpu, scene, normals == NormalSource::kGeometric);
+  if (!gbuffer) {
+    return Failure(std::move(gbuffer.error()));
+  }
+  made->gbuffer_ = std::move(*gbuffer);
+  auto probe = Probe::create(gpu, environment);
+  if (!probe) {
+    return Failure(std::move(probe.error()));
+  }
+  made->probe_ = std::move(*probe);
+  auto picture = PicturePass::create(gpu, format);
+  if (!picture) {
+    return Failure(std::move(picture.error()));
+  }
+  made->picture_ = std::move(*picture);
+  made->exposure_ = exposure_of(environment);
+  return made;
+}
+
+void SceneFrame::begin(Graph& graph, const ViewState& state, VkExtent3D size) {
+  const CameraMatrices matrices = camera_matrices(state.camera, size.width, size.height);
+  view_ = {matrices.view_from_world, matrices.clip_from_view, matrices.view_from_world,
+           matrices.clip_from_view, state.camera.reversed_z};
+  ray_from_ndc_ = ray_from_ndc(state.camera, matrices);
+  drawing_ = {state.settings, compared_settings(state), state.roughness};
+  if (drawn_ != drawing_) {
+    index_ = 0;
+    graph.reset_histories();
+  } else {
+    view_.previous_view_from_world = drawn_view_->view_from_world;
+    view_.previous_clip_from_view = drawn_view_->clip_from_view;
+  }
+}
+
+void SceneFrame::advance() {
+  drawn_view_ = view_;
+  drawn_ = drawing_;
+  ++index_;
+}
+
+passes::Frame SceneFrame::frame_of(Graph& graph) const {
+  return {graph,
+          gpu_.kernels(),
+          {to_matrix(view_.clip_from_view), to_matrix(view_.view_from_world)},
+          index_,
+          {to_matrix(view_.previous_clip_from_view), to_matrix(view_.previous_view_from_world)}};
+}
+
+tl::expected<Texture, std::string> SceneFrame::declare(Graph& graph, Texture target,
+                                                       const ViewState& state) {
+  begin(graph, state, graph.extent(target));
+  const OcclusionSettings settings = with_outputs(state.settings, state.picture);
+  const std::optional<OcclusionSettings> compared = compared_settings(state);
+  const bool specular = settings.specular != passes::Specular::none ||
+                        (compared && compared->specular != passes::Specular::none);
+
+  const auto create = [&](bool wanted, const char* name, VkFormat format) {
+    return wanted ? graph.create_texture(name, {format, framegraph::Extent::relative(target)})
+                  : Texture{};
+  };
+  Surfaces surfaces{.normals = normals_, .roughness = state.roughness};
+  surfaces.gbuffer =
+      gbuffer_->add(graph, view_,
+                    {create(true, "depth", kDepthFormat),
+                     create(normals_ != NormalSource::kDepth, "normals", kNormalFormat),
+                     create(reads_albedo(state.picture) || (specular && !state.roughness), "albedo",
+                            kAlbedoFormat),
+                     create(state.picture == Picture::kMotion, "motion", kMotionFormat),
+                     create(state.picture == Picture::kLit, "emissive", kEmissiveFormat)});
+  Texture back_depth;
+  if (has_back_faces(settings) || (compared && has_back_faces(*compared))) {
+    back_depth =
+        gbuffer_->add_back_faces(graph, view_, create(true, "back-face depth", kDepthFormat));
+  }
+
+  Shown shown = shown_of(state);
+  auto picture = picture_of(graph, state, surfaces, back_depth, settings, "occlusion", shown);
+  if (!picture) {
+    return picture;
+  }
+  shown.texture = *picture;
+  if (compared) {
+    auto other = picture_of(graph, state, surfaces, back_depth,
+                            with_outputs(*compared, state.picture), "compared", shown);
+    if (!other) {
+      return other;
+    }
+    shown.other = *other;
+    shown.split = state.split * static_cast<float>(graph.extent(target).width);
+  }
+  return picture_->add(graph, target, shown);
+}
+
+Shown SceneFrame::shown_of(const ViewState& state) const {
+  Shown shown;
+  switch (state.picture) {
+    case Picture::kLit:
+      shown.show = maths::kShowRadiance;
+      shown.world_from_shown = ray_from_ndc_;
+      shown.scale = exposure_;
+      break;
+    case Picture::kMultiBounce:
+    case Picture::kAlbedo:
+      shown.show = maths::kShowColour;
+      break;
+    case Picture::kBentNormal:
+    case Picture::kNormals:
+      shown.show = maths::kShowDirection;
+      if (normals_ == NormalSource::kDepth) {
+        shown.world_from_shown = glm::transpose(glm::mat3(view_.view_from_world));
+      }
+      break;
+    case Picture::kDepth:
+      shown.show = maths::kShowDepth;
+      shown.scale = glm::distance(state.camera.eye_ws, state.camera.target_ws);
+      break;
+    case Picture::kMotion:
+      shown.show = maths::kShowMotion;
+      shown.scale = 1.0f / kFullMotion;
+      break;
+    default:
+      shown.show = maths::kShowGrey;
+  }
+  return shown;
+}
+
+// The texture that is shown of the frame drawn with `settings`.
+tl::expected<Texture, std::string> SceneFrame::picture_of(
+    Graph& graph, const ViewState& state, const Surfaces& surfaces, Texture back_depth,
+    const OcclusionSettings& settings, std::string_view history_name, Shown& shown) {
+  passes::OcclusionInputs inputs = occlusion_inputs(surfaces);
+  inputs.back_depth_ndc = back_depth;
+  const auto outputs = passes::add_occlusion(frame_of(graph), inputs,
+                                             with_roughness(settings, surfaces), history_name);
+  if (!outputs) {
+    return Failure(outputs.error().message);
+  }
+  // What the settings ask for is made, and timed, whether it is shown or not.
+  for (const Texture output : {outputs->visibility, outputs->bent_normal, outputs->specular}) {
+    if (output) {
+      graph.output(output);
+    }
+  }
+  switch (state.picture) {
+    case Picture::kLit:
+      return add_lit(graph, surfaces, *outputs, shown);
+    case Picture::kMultiBounce:
+      return passes::add_multi_bounce(frame_of(graph),
+                                      {outputs->visibility, surfaces.gbuffer.albedo},
+                                      settings.precision)
+          .map_error([](const passes::Error& error) { return error.message; });
+    case Picture::kBentNormal:
+      return outputs->bent_normal;
+    case Picture::kSpecularOcclusion:
+      return outputs->specular;
+    case Picture::kNormals:
+      return outputs->normals;
+    case Picture::kDepth:
+      return outputs->linear_depth;
+    case Picture::kAlbedo:
+      return surfaces.gbuffer.albedo;
+    case Picture::kMotion:
+      return surfaces.gbuffer.motion;
+    default:
+      return outputs->visibility;
+  }
+}
+
+tl::expected<Texture, std::string> SceneFrame::add_lit(Graph& graph, const Surfaces& surfaces,
+                                                       const passes::OcclusionOutputs& outputs,
+                                                       Shown& shown) {
+  passes::ApplyInputs inputs{.visibility = outputs.visibility,
+                             .bent_normal = outputs.bent_normal,
+                             .specular_occlusion = outputs.specular};
+  give_surfaces(inputs, surfaces, outputs);
+  const passes::Environment light = probe_->import(graph);
+  inputs.harmonics = light.harmonics;
+  inputs.map = light.map;
+  auto lit = passes::add_apply(frame_of(graph), inputs, apply_settings(surfaces));
+  if (!lit) {
+    return Failure(std::move(lit.error().message));
+  }
+  shown.linear_depth = outputs.linear_depth;
+  shown.environment = light.map;
+  return lit->lit;
+}
+
+}  // namespace alcove::sample

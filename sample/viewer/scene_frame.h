@@ -1,0 +1,75 @@
+#ifndef ALCOVE_SAMPLE_VIEWER_SCENE_FRAME_H_
+#define ALCOVE_SAMPLE_VIEWER_SCENE_FRAME_H_
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <tl/expected.hpp>
+
+#include "environment.h"
+#include "gbuffer.h"
+#include "gpu.h"
+#include "options.h"
+#include "picture_pass.h"
+#include "probe.h"
+#include "surfaces.h"
+#include "view_state.h"
+
+namespace alcove::sample {
+
+// Declares the frames of the window: g-buffer, occlusion and what is made of it, each only as far
+// as the picture that is shown needs it. One graph, nothing outside of it but the scene's triangles
+// and textures and the light.
+class SceneFrame {
+ public:
+  // `format` is the window's. Both references must outlive it.
+  [[nodiscard]] static tl::expected<std::unique_ptr<SceneFrame>, std::string> create(
+      Gpu& gpu, const Scene& scene, const EnvironmentImage& environment, NormalSource normals,
+      VkFormat format);
+
+  // Adds the passes that draw `target` and returns its drawn version.
+  [[nodiscard]] tl::expected<framegraph::Texture, std::string> declare(framegraph::Graph& graph,
+                                                                       framegraph::Texture target,
+                                                                       const ViewState& state);
+  // To be called when the declared frame was handed to the device: the next one goes on from it.
+  void advance();
+
+ private:
+  // What the frame before was drawn with: where it differs, histories begin anew.
+  struct Drawn {
+    passes::OcclusionSettings settings;
+    std::optional<passes::OcclusionSettings> compared;
+    std::optional<float> roughness;
+    bool operator==(const Drawn&) const = default;
+  };
+
+  SceneFrame(Gpu& gpu, NormalSource normals) : gpu_(gpu), normals_(normals) {}
+  void begin(framegraph::Graph& graph, const ViewState& state, VkExtent3D size);
+  passes::Frame frame_of(framegraph::Graph& graph) const;
+  tl::expected<framegraph::Texture, std::string> picture_of(
+      framegraph::Graph& graph, const ViewState& state, const Surfaces& surfaces,
+      framegraph::Texture back_depth, const passes::OcclusionSettings& settings,
+      std::string_view history_name, Shown& shown);
+  tl::expected<framegraph::Texture, std::string> add_lit(framegraph::Graph& graph,
+                                                         const Surfaces& surfaces,
+                                                         const passes::OcclusionOutputs& outputs,
+                                                         Shown& shown);
+  Shown shown_of(const ViewState& state) const;
+
+  Gpu& gpu_;
+  NormalSource normals_;
+  std::unique_ptr<GbufferRenderer> gbuffer_;
+  std::unique_ptr<Probe> probe_;
+  std::unique_ptr<PicturePass> picture_;
+  float exposure_ = 1.0f;
+  std::uint32_t index_ = 0;
+  GbufferView view_;              // of the frame that is declared
+  glm::mat3 ray_from_ndc_{1.0f};  // the same: from (ndc x, ndc y, 1)
+  Drawn drawing_;
+  std::optional<GbufferView> drawn_view_;
+  std::optional<Drawn> drawn_;
+};
+
+}  // namespace alcove::sample
+
+#endif  // ALCOVE_SAMPLE_VIEWER_SCENE_FRAME_H_

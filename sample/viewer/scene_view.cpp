@@ -1,0 +1,206 @@
+#include "scene_view.h"
+
+#include <GLFW/glfw3.h>
+#include <imgui.h>
+
+#include <iostream>
+#include <utility>
+
+#include "command_line.h"
+#include "screenshot.h"
+
+namespace alcove::sample {
+namespace {
+
+using framegraph::Graph;
+using framegraph::Texture;
+using Failure = tl::unexpected<std::string>;
+
+ViewState first_state(const Stage& stage, const Options& options) {
+  ViewState state;
+  state.camera = stage.camera;
+  state.settings = stage.settings;
+  if (!options.occlusion.roughness.empty()) {
+    state.roughness = options.occlusion.roughness.front();
+  }
+  return state;
+}
+
+}  // namespace
+
+tl::expected<std::unique_ptr<SceneView>, std::string> SceneView::create(const Options& options) {
+  std::unique_ptr<SceneView> made(new SceneView(options));
+  auto window = Window::create({options.view.width, options.view.height}, "alcove");
+  if (!window) {
+    return Failure(std::move(window.error()));
+  }
+  made->window_ = std::move(*window);
+  auto stage = stage_of(options, Window::instance_extensions());
+  if (!stage) {
+    return Failure(std::move(stage.error()));
+  }
+  made->stage_ = std::move(*stage);
+  const auto environment = load_environment(options.environment);
+  if (!environment) {
+    return Failure(environment.error());
+  }
+  Gpu& gpu = *made->stage_.gpu;
+  auto presenter = Presenter::create(gpu, *made->window_);
+  if (!presenter) {
+    return Failure(std::move(presenter.error()));
+  }
+  made->presenter_ = std::move(*presenter);
+  const VkFormat format = made->presenter_->format();
+  auto frame =
+      SceneFrame::create(gpu, made->stage_.scene, *environment, options.occlusion.normals, format);
+  if (!frame) {
+    return Failure(std::move(frame.error()));
+  }
+  made->frame_ = std::move(*frame);
+  auto gui = Gui::create(gpu, *made->window_, format);
+  if (!gui) {
+    return Failure(std::move(gui.error()));
+  }
+  made->gui_ = std::move(*gui);
+  made->state_ = first_state(made->stage_, options);
+  made->good_ = {made->state_.settings, made->state_.roughness};
+  made->facts_.first_settings = made->state_.settings;
+  made->facts_.device = gpu.device().properties().deviceName;
+  made->window_->show();
+  return made;
+}
+
+SceneView::~SceneView() {
+  if (presenter_) {
+    presenter_->wait();
+  }
+}
+
+void SceneView::take_keys() {
+  if (ImGui::GetIO().WantTextInput) {
+    return;  // a number is being typed
+  }
+  for (const int key : window_->pressed_keys()) {
+    if (key >= GLFW_KEY_1 && key < GLFW_KEY_1 + static_cast<int>(kPictureNames.size())) {
+      state_.picture = static_cast<Picture>(key - GLFW_KEY_1);
+    }
+    switch (key) {
+      case GLFW_KEY_HOME:
+        state_.camera = stage_.camera;
+        break;
+      case GLFW_KEY_R:
+        state_.settings = facts_.first_settings;
+        break;
+      case GLFW_KEY_P:
+        take_screenshot();
+        break;
+      case GLFW_KEY_H:
+        panel_shown_ = !panel_shown_;
+        break;
+      case GLFW_KEY_ESCAPE:
+        window_->close();
+        break;
+      default:
+        break;
+    }
+  }
+}
+
+void SceneView::lay_out() {
+  gui_->begin();
+  take_keys();
+  move_camera_by_mouse(state_.camera);
+  facts_.width = presenter_->size().width;
+  facts_.height = presenter_->size().height;
+  facts_.times.add(presenter_->timings());
+  if (panel_shown_ && lay_out_panel(state_, facts_)) {
+    take_screenshot();
+  }
+  gui_->end();
+}
+
+tl::expected<void, std::string> SceneView::draw_choice(const Choice& choice,
+                                                    const HostBuffer* read_back) {
+  ViewState state = state_;
+  state.settings = choice.settings;
+  state.roughness = choice.roughness;
+  auto report = presenter_->draw([&](Graph& graph, Texture target) {
+    return frame_->declare(graph, target, state).map([&](Texture drawn) {
+      drawn = gui_->add(graph, drawn);
+      if (read_back != nullptr) {
+        add_read_back(graph, drawn, *read_back);
+      }
+    });
+  });
+  if (!report) {
+    return Failure(std::move(report.error()));
+  }
+  frame_->advance();
+  facts_.memory = report->memory;
+  ++drawn_frames_;
+  return {};
+}
+
+tl::expected<void, std::string> SceneView::draw_chosen(const HostBuffer* read_back) {
+  const Choice chosen{state_.settings, state_.roughness};
+  if (refused_ == chosen) {
+    return draw_choice(good_, read_back);
+  }
+  auto drawn = draw_choice(chosen, read_back);
+  if (drawn) {
+    good_ = chosen;
+    refused_.reset();
+    facts_.refusal.clear();
+    return {};
+  }
+  refused_ = chosen;
+  facts_.refusal = std::move(drawn.error());
+  return draw_choice(good_, read_back);
+}
+
+tl::expected<void, std::string> SceneView::draw_and_write() {
+  const VkExtent2D size = presenter_->size();
+  constexpr VkDeviceSize kTexelBytes = 4;
+  auto buffer = HostBuffer::create(stage_.gpu->device(), kTexelBytes * size.width * size.height,
+                                   VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+  if (!buffer) {
+    return Failure(std::move(buffer.error()));
+  }
+  if (auto drawn = draw_chosen(buffer->get()); !drawn) {
+    return drawn;
+  }
+  presenter_->wait();
+  const auto file = write_screenshot(options_.out, **buffer, size, presenter_->format());
+  if (!file) {
+    return Failure(file.error());
+  }
+  const std::string command = shell_line(render_arguments(
+      options_, {state_.camera, good_.settings, good_.roughness, size.width, size.height}));
+  std::cout << file->string() << "\n" << command << std::endl;
+  window_->copy_to_clipboard(command);
+  facts_.message = file->string() + " is written; the clipboard has: " + command;
+  return {};
+}
+
+tl::expected<bool, std::string> SceneView::draw() {
+  window_->poll();
+  if (window_->is_closed()) {
+    return false;
+  }
+  const auto prepared = presenter_->prepare();
+  if (!prepared) {
+    return Failure(prepared.error());
+  }
+  if (!*prepared) {
+    return true;
+  }
+  lay_out();
+  const bool write = std::exchange(screenshot_, false);
+  if (auto drawn = write ? draw_and_write() : draw_chosen(nullptr); !drawn) {
+    return Failure(std::move(drawn.error()));
+  }
+  state_.camera = orbited(state_.camera, options_.view.orbit);
+  return true;
+}
+
+}  // namespace alcove::sample

@@ -1,0 +1,75 @@
+#ifndef ALCOVE_SAMPLE_VIEWER_SCENE_VIEW_H_
+#define ALCOVE_SAMPLE_VIEWER_SCENE_VIEW_H_
+
+#include <memory>
+#include <string>
+#include <tl/expected.hpp>
+
+#include "gui.h"
+#include "panel.h"
+#include "presenter.h"
+#include "scene_frame.h"
+#include "stage.h"
+#include "view_state.h"
+#include "window.h"
+
+namespace alcove::sample {
+
+// A scene in a window: what `alcove view` runs, frame by frame.
+class SceneView {
+ public:
+  // Opens the window before the scene is loaded: where there is no display, that is told first.
+  [[nodiscard]] static tl::expected<std::unique_ptr<SceneView>, std::string> create(
+      const Options& options);
+  ~SceneView();
+  SceneView(const SceneView&) = delete;
+  SceneView& operator=(const SceneView&) = delete;
+
+  // Takes in what the user did and draws a frame. False: the window is closed, nothing is drawn.
+  [[nodiscard]] tl::expected<bool, std::string> draw();
+  // Frames that were presented: none while the window is minimised.
+  std::uint32_t drawn_frames() const { return drawn_frames_; }
+  // The next frame is also written to a file, with the command that draws its like.
+  void take_screenshot() { screenshot_ = true; }
+
+  ViewState& state() { return state_; }
+  const PanelFacts& facts() const { return facts_; }
+  Window& window() { return *window_; }
+  const Gpu& gpu() const { return *stage_.gpu; }
+  const Scene& scene() const { return stage_.scene; }
+
+ private:
+  // What the passes may refuse.
+  struct Choice {
+    passes::OcclusionSettings settings;
+    std::optional<float> roughness;
+    bool operator==(const Choice&) const = default;
+  };
+
+  explicit SceneView(const Options& options) : options_(options) {}
+  void take_keys();
+  void lay_out();
+  // Where `read_back` is not null, the window's image goes there.
+  tl::expected<void, std::string> draw_choice(const Choice& choice, const HostBuffer* read_back);
+  // Falls back on the last choice that could be drawn.
+  tl::expected<void, std::string> draw_chosen(const HostBuffer* read_back);
+  tl::expected<void, std::string> draw_and_write();
+
+  Options options_;
+  std::unique_ptr<Window> window_;  // outlives what is on it
+  Stage stage_;
+  std::unique_ptr<Presenter> presenter_;
+  std::unique_ptr<SceneFrame> frame_;
+  std::unique_ptr<Gui> gui_;
+  ViewState state_;
+  Choice good_;                    // the last that could be drawn
+  std::optional<Choice> refused_;  // the one that is chosen and cannot
+  PanelFacts facts_;
+  bool panel_shown_ = true;
+  bool screenshot_ = false;
+  std::uint32_t drawn_frames_ = 0;
+};
+
+}  // namespace alcove::sample
+
+#endif  // ALCOVE_SAMPLE_VIEWER_SCENE_VIEW_H_

@@ -1,0 +1,32 @@
+#include "screenshot.h"
+
+#include <utility>
+
+#include "image_io.h"
+#include "read_back.h"
+
+namespace alcove::sample {
+
+tl::expected<std::filesystem::path, std::string> write_screenshot(
+    const std::filesystem::path& folder, const HostBuffer& buffer, VkExtent2D size,
+    VkFormat format) {
+  const bool blue_first = format == VK_FORMAT_B8G8R8A8_UNORM;
+  const auto image = to_image<glm::vec3, Byte4>(buffer, size, [&](Byte4 texel) {
+    if (blue_first) {
+      std::swap(texel[0], texel[2]);
+    }
+    return from_bytes(texel);
+  });
+  if (!folder.empty()) {
+    if (auto made = create_folder(folder); !made) {
+      return tl::unexpected(std::move(made.error()));
+    }
+  }
+  std::filesystem::path file = folder / "view.png";
+  for (int i = 2; std::filesystem::exists(file); ++i) {
+    file = folder / ("view-" + std::to_string(i) + ".png");
+  }
+  return write_png(file, image).map([&] { return file; });
+}
+
+}  // namespace alcove::sample

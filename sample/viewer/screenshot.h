@@ -1,0 +1,21 @@
+#ifndef ALCOVE_SAMPLE_VIEWER_SCREENSHOT_H_
+#define ALCOVE_SAMPLE_VIEWER_SCREENSHOT_H_
+
+#include <filesystem>
+#include <string>
+#include <tl/expected.hpp>
+
+#include "gpu.h"
+
+namespace alcove::sample {
+
+// Writes an image of the window that was read back, in a format that Swapchain chooses, to view.png
+// in the folder, or view-2.png and so on where there is one; returns the file. The folder is made;
+// an empty one is where alcove was started.
+[[nodiscard]] tl::expected<std::filesystem::path, std::string> write_screenshot(
+    const std::filesystem::path& folder, const HostBuffer& buffer, VkExtent2D size,
+    VkFormat format);
+
+}  // namespace alcove::sample
+
+#endif  // ALCOVE_SAMPLE_VIEWER_SCREENSHOT_H_

@@ -1,0 +1,67 @@
+#ifndef ALCOVE_SAMPLE_VIEWER_VIEW_STATE_H_
+#define ALCOVE_SAMPLE_VIEWER_VIEW_STATE_H_
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "alcove/passes/occlusion.h"
+#include "camera.h"
+
+namespace alcove::sample {
+
+// What of a frame the window shows.
+enum class Picture : std::uint8_t {
+  kVisibility,
+  kLit,
+  kMultiBounce,
+  kBentNormal,
+  kSpecularOcclusion,
+  kNormals,
+  kDepth,
+  kAlbedo,
+  kMotion,
+};
+inline constexpr std::array<std::string_view, 9> kPictureNames{
+    "visibility", "lit",   "multi-bounce", "bent normal", "specular occlusion",
+    "normals",    "depth", "albedo",       "motion"};
+
+// What the right of the window is drawn with.
+enum class Comparison : std::uint8_t { kNone, kHorizons, kReference, kKept };
+inline constexpr std::array<std::string_view, 4> kComparisonNames{
+    "nothing", "infinitely thick occluders", "reference quality", "the settings kept"};
+
+// All that can be chosen in the window.
+struct ViewState {
+  Camera camera;
+  passes::OcclusionSettings settings;
+  std::optional<float> roughness;  // of every surface; none: of their materials
+  Picture picture = Picture::kVisibility;
+  Comparison comparison = Comparison::kNone;
+  passes::OcclusionSettings kept;  // of Comparison::kKept
+  float split = 0.5f;              // where the right begins, in parts of the width
+};
+
+// The settings of the right; none where nothing is compared.
+[[nodiscard]] inline std::optional<passes::OcclusionSettings> compared_settings(
+    const ViewState& state) {
+  passes::OcclusionSettings settings = state.settings;
+  switch (state.comparison) {
+    case Comparison::kHorizons:
+      settings.estimator = passes::Estimator::horizons;
+      return settings;
+    case Comparison::kReference:
+      settings = passes::quality_settings(passes::Quality::reference, settings.radius);
+      settings.specular = state.settings.specular;
+      return settings;
+    case Comparison::kKept:
+      return state.kept;
+    default:
+      return std::nullopt;
+  }
+}
+
+}  // namespace alcove::sample
+
+#endif  // ALCOVE_SAMPLE_VIEWER_VIEW_STATE_H_

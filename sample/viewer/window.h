@@ -1,0 +1,52 @@
+#ifndef ALCOVE_SAMPLE_VIEWER_WINDOW_H_
+#define ALCOVE_SAMPLE_VIEWER_WINDOW_H_
+
+#include <vulkan/vulkan.h>
+
+#include <memory>
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
+struct GLFWwindow;
+
+namespace alcove::sample {
+
+// A window on the machine's display, hidden until show(). One at a time, on the main thread.
+class Window {
+ public:
+  // The error says why no window can be opened here.
+  [[nodiscard]] static tl::expected<std::unique_ptr<Window>, std::string> create(
+      VkExtent2D size, const std::string& title);
+  ~Window();
+  Window(const Window&) = delete;
+  Window& operator=(const Window&) = delete;
+
+  // What a Vulkan instance needs to present to it.
+  [[nodiscard]] static std::vector<const char*> instance_extensions();
+  [[nodiscard]] tl::expected<VkSurfaceKHR, std::string> create_surface(VkInstance instance) const;
+
+  void show();
+  // Takes in what happened since the last call; waits for something to happen where there is
+  // nothing to draw.
+  void poll();
+  bool is_closed() const;
+  void close();
+  // In pixels; nothing where it is minimised.
+  VkExtent2D size() const;
+  void resize(VkExtent2D size);
+  float content_scale() const;
+  // GLFW's numbers of the keys that were pressed before the last poll(), in order.
+  const std::vector<int>& pressed_keys() const { return pressed_keys_; }
+  void copy_to_clipboard(const std::string& text);
+  GLFWwindow* handle() const { return window_; }
+
+ private:
+  Window() = default;
+  GLFWwindow* window_ = nullptr;
+  std::vector<int> pressed_keys_;
+};
+
+}  // namespace alcove::sample
+
+#endif  // ALCOVE_SAMPLE_VIEWER_WINDOW_H_
