@@ -4,6 +4,8 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 
 #include "setting_names.h"
 #include "settings.h"
@@ -38,6 +40,19 @@ std::string text_of(Choice value) {
   return std::string(name_of_choice(value));
 }
 
+// The shortest that is read as the same angle.
+std::string degrees_text(float radians) {
+  std::array<char, 32> text{};
+  for (int digits = 3; digits <= 9; ++digits) {
+    std::snprintf(text.data(), text.size(), "%.*g", digits,
+                  static_cast<double>(glm::degrees(radians)));
+    if (glm::radians(std::strtof(text.data(), nullptr)) == radians) {
+      break;
+    }
+  }
+  return text.data();
+}
+
 // The settings that are other than those of a quality, as --set takes them.
 std::vector<std::string> changes(Quality quality, const OcclusionSettings& settings) {
   const OcclusionSettings preset = passes::quality_settings(to_quality(quality), settings.radius);
@@ -61,7 +76,7 @@ void append_camera(const Camera& camera, std::vector<std::string>& to) {
   if (camera.orthographic) {
     to.insert(to.end(), {"--ortho-height", text_of(camera.ortho_height)});
   } else {
-    to.insert(to.end(), {"--fov-y", text_of(glm::degrees(camera.fov_y))});
+    to.insert(to.end(), {"--fov-y", degrees_text(camera.fov_y)});
   }
   to.insert(to.end(), {"--near", text_of(camera.near_plane), "--far", text_of(camera.far_plane)});
   if (camera.reversed_z) {

@@ -21,7 +21,7 @@ constexpr const char* kKeys =
     "Home          back to the first view\n"
     "R             reset the settings\n"
     "P             screenshot and command\n"
-    "H             hide this panel\n"
+    "H             hide all but the picture\n"
     "Escape        close";
 
 template <typename Choice, std::size_t size>
@@ -37,16 +37,18 @@ void combo(const char* label, Choice& value, const std::array<std::string_view, 
   }
 }
 
-void lay_out_picture(ViewState& state) {
+void lay_out_picture(ViewState& state, const PanelFacts& facts) {
   combo("show", state.picture, kPictureNames);
   combo("beside", state.comparison, kComparisonNames);
   if (state.comparison != Comparison::kNone) {
     ImGui::SliderFloat("split", &state.split, 0.0f, 1.0f, "%.2f");
   }
+  ImGui::BeginDisabled(!facts.refusal.empty());
   if (ImGui::Button("keep these settings to compare with")) {
     state.kept = state.settings;
     state.comparison = Comparison::kKept;
   }
+  ImGui::EndDisabled();
 }
 
 void lay_out_qualities(ViewState& state, const PanelFacts& facts) {
@@ -78,73 +80,87 @@ void lay_out_roughness(ViewState& state) {
   }
 }
 
-void lay_out_times(const PanelFacts& facts) {
-  const double total = std::max(facts.times.total_ms(), 1e-6);
-  if (ImGui::BeginTable("times", 3, ImGuiTableFlags_SizingStretchProp)) {
-    for (const PassTime& time : facts.times.passes()) {
-      ImGui::TableNextColumn();
-      ImGui::TextUnformatted(time.pass.c_str());
-      ImGui::TableNextColumn();
-      ImGui::Text("%7.3f", time.milliseconds);
-      ImGui::TableNextColumn();
-      ImGui::ProgressBar(static_cast<float>(time.milliseconds / total),
-                         {-1.0f, ImGui::GetTextLineHeight()}, "");
-    }
-    ImGui::EndTable();
-  }
-  ImGui::Text("together %.3f ms on the device", facts.times.total_ms());
-  const auto mib = [](VkDeviceSize bytes) { return static_cast<double>(bytes) / 1048576.0; };
-  ImGui::Text("transients %.1f MiB (unshared %.1f)", mib(facts.memory.aliased),
-              mib(facts.memory.unaliased));
-  ImGui::Text("histories %.1f MiB, held in all %.1f", mib(facts.memory.history),
-              mib(facts.memory.allocated));
-}
-
 bool section(const char* name) {
   return ImGui::CollapsingHeader(name, ImGuiTreeNodeFlags_DefaultOpen);
 }
 
-}  // namespace
-
-bool lay_out_panel(ViewState& state, const PanelFacts& facts) {
+// At the left edge, as high as the window.
+bool lay_out_choices(ViewState& state, const PanelFacts& facts) {
   const float unit = ImGui::GetFontSize();
-  ImGui::SetNextWindowPos({0.5f * unit, 0.5f * unit}, ImGuiCond_FirstUseEver);
-  ImGui::SetNextWindowSize({27.0f * unit, static_cast<float>(facts.height) - unit},
-                           ImGuiCond_FirstUseEver);
+  ImGui::SetNextWindowPos({0.0f, 0.0f});
+  ImGui::SetNextWindowSize({26.0f * unit, static_cast<float>(facts.height)});
+  constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize;
   bool screenshot = false;
-  if (ImGui::Begin("alcove")) {
+  if (ImGui::Begin("settings", nullptr, kFixed)) {
     ImGui::PushItemWidth(-11.0f * unit);
-    ImGui::Text("%ux%u  %.1f frames a second", facts.width, facts.height,
-                static_cast<double>(ImGui::GetIO().Framerate));
-    ImGui::TextDisabled("%s", facts.device.c_str());
     if (!facts.refusal.empty()) {
       ImGui::PushStyleColor(ImGuiCol_Text, kRefused);
-      ImGui::TextWrapped("%s The picture is drawn with the settings before.",
-                         facts.refusal.c_str());
+      ImGui::TextWrapped("%s What is drawn are the settings before.", facts.refusal.c_str());
       ImGui::PopStyleColor();
     }
-    if (section("Picture")) {
-      lay_out_picture(state);
+    if (section("picture")) {
+      lay_out_picture(state, facts);
     }
-    if (section("Occlusion")) {
+    if (section("occlusion")) {
       lay_out_qualities(state, facts);
       lay_out_settings(state.settings, facts.first_settings.radius);
       lay_out_roughness(state);
     }
-    if (section("Cost")) {
-      lay_out_times(facts);
-    }
-    if (section("Take with you")) {
+    if (section("take with you")) {
       screenshot = ImGui::Button("screenshot and command (P)");
       ImGui::TextWrapped("%s", facts.message.c_str());
     }
-    if (ImGui::CollapsingHeader("Keys")) {
+    if (section("mouse and keys")) {
       ImGui::TextUnformatted(kKeys);
     }
     ImGui::PopItemWidth();
   }
   ImGui::End();
   return screenshot;
+}
+
+void lay_out_times(const SmoothedTimes& times) {
+  const float unit = ImGui::GetFontSize();
+  const double total = std::max(times.total_ms(), 1e-6);
+  if (ImGui::BeginTable("times", 3, ImGuiTableFlags_SizingFixedFit)) {
+    for (const PassTime& time : times.passes()) {
+      ImGui::TableNextColumn();
+      ImGui::TextUnformatted(time.pass.c_str());
+      ImGui::TableNextColumn();
+      ImGui::Text("%8.3f", time.milliseconds);
+      ImGui::TableNextColumn();
+      ImGui::ProgressBar(static_cast<float>(time.milliseconds / total),
+                         {6.0f * unit, ImGui::GetTextLineHeight()}, "");
+    }
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted("together");
+    ImGui::TableNextColumn();
+    ImGui::Text("%8.3f ms", times.total_ms());
+    ImGui::EndTable();
+  }
+}
+
+// In the upper right corner.
+void lay_out_cost(const PanelFacts& facts) {
+  ImGui::SetNextWindowPos({static_cast<float>(facts.width), 0.0f}, ImGuiCond_Always, {1.0f, 0.0f});
+  if (ImGui::Begin("cost", nullptr, ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize)) {
+    ImGui::TextUnformatted(facts.device.c_str());
+    ImGui::Text("%ux%u, %.1f frames a second", facts.width, facts.height,
+                static_cast<double>(ImGui::GetIO().Framerate));
+    lay_out_times(facts.times);
+    const auto mib = [](VkDeviceSize bytes) { return static_cast<double>(bytes) / 1048576.0; };
+    ImGui::Text("transients %.1f MiB (unshared %.1f)", mib(facts.memory.aliased),
+                mib(facts.memory.unaliased));
+    ImGui::Text("histories  %.1f MiB", mib(facts.memory.history));
+  }
+  ImGui::End();
+}
+
+}  // namespace
+
+bool lay_out_panel(ViewState& state, const PanelFacts& facts) {
+  lay_out_cost(facts);
+  return lay_out_choices(state, facts);
 }
 
 void move_camera_by_mouse(Camera& camera) {

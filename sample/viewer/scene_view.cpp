@@ -120,7 +120,7 @@ void SceneView::lay_out() {
 }
 
 tl::expected<void, std::string> SceneView::draw_choice(const Choice& choice,
-                                                    const HostBuffer* read_back) {
+                                                       const HostBuffer* read_back) {
   ViewState state = state_;
   state.settings = choice.settings;
   state.roughness = choice.roughness;
@@ -158,7 +158,7 @@ tl::expected<void, std::string> SceneView::draw_chosen(const HostBuffer* read_ba
   return draw_choice(good_, read_back);
 }
 
-tl::expected<void, std::string> SceneView::draw_and_write() {
+tl::expected<void, std::string> SceneView::draw_and_read() {
   const VkExtent2D size = presenter_->size();
   constexpr VkDeviceSize kTexelBytes = 4;
   auto buffer = HostBuffer::create(stage_.gpu->device(), kTexelBytes * size.width * size.height,
@@ -170,12 +170,18 @@ tl::expected<void, std::string> SceneView::draw_and_write() {
     return drawn;
   }
   presenter_->wait();
-  const auto file = write_screenshot(options_.out, **buffer, size, presenter_->format());
+  screenshot_ = screenshot(**buffer, size, presenter_->format());
+  return {};
+}
+
+tl::expected<void, std::string> SceneView::write() {
+  const auto file = write_screenshot(options_.out, screenshot_);
   if (!file) {
     return Failure(file.error());
   }
-  const std::string command = shell_line(render_arguments(
-      options_, {state_.camera, good_.settings, good_.roughness, size.width, size.height}));
+  const std::string command =
+      shell_line(render_arguments(options_, {state_.camera, good_.settings, good_.roughness,
+                                             screenshot_.width, screenshot_.height}));
   std::cout << file->string() << "\n" << command << std::endl;
   window_->copy_to_clipboard(command);
   facts_.message = file->string() + " is written; the clipboard has: " + command;
@@ -195,8 +201,9 @@ tl::expected<bool, std::string> SceneView::draw() {
     return true;
   }
   lay_out();
-  const bool write = std::exchange(screenshot_, false);
-  if (auto drawn = write ? draw_and_write() : draw_chosen(nullptr); !drawn) {
+  auto drawn = std::exchange(wanted_, false) ? draw_and_read().and_then([&] { return write(); })
+                                             : draw_chosen(nullptr);
+  if (!drawn) {
     return Failure(std::move(drawn.error()));
   }
   state_.camera = orbited(state_.camera, options_.view.orbit);

@@ -30,7 +30,10 @@ class SceneView {
   // Frames that were presented: none while the window is minimised.
   std::uint32_t drawn_frames() const { return drawn_frames_; }
   // The next frame is also written to a file, with the command that draws its like.
-  void take_screenshot() { screenshot_ = true; }
+  void take_screenshot() { wanted_ = true; }
+  const Image<glm::vec3>& last_screenshot() const { return screenshot_; }
+  // Whether anything but the picture is shown.
+  void show_panel(bool shown) { panel_shown_ = shown; }
 
   ViewState& state() { return state_; }
   const PanelFacts& facts() const { return facts_; }
@@ -53,7 +56,8 @@ class SceneView {
   tl::expected<void, std::string> draw_choice(const Choice& choice, const HostBuffer* read_back);
   // Falls back on the last choice that could be drawn.
   tl::expected<void, std::string> draw_chosen(const HostBuffer* read_back);
-  tl::expected<void, std::string> draw_and_write();
+  tl::expected<void, std::string> draw_and_read();
+  tl::expected<void, std::string> write();
 
   Options options_;
   std::unique_ptr<Window> window_;  // outlives what is on it
@@ -66,7 +70,8 @@ class SceneView {
   std::optional<Choice> refused_;  // the one that is chosen and cannot
   PanelFacts facts_;
   bool panel_shown_ = true;
-  bool screenshot_ = false;
+  bool wanted_ = false;  // a screenshot
+  Image<glm::vec3> screenshot_;
   std::uint32_t drawn_frames_ = 0;
 };
 

@@ -7,16 +7,18 @@
 
 namespace alcove::sample {
 
-tl::expected<std::filesystem::path, std::string> write_screenshot(
-    const std::filesystem::path& folder, const HostBuffer& buffer, VkExtent2D size,
-    VkFormat format) {
+Image<glm::vec3> screenshot(const HostBuffer& buffer, VkExtent2D size, VkFormat format) {
   const bool blue_first = format == VK_FORMAT_B8G8R8A8_UNORM;
-  const auto image = to_image<glm::vec3, Byte4>(buffer, size, [&](Byte4 texel) {
+  return to_image<glm::vec3, Byte4>(buffer, size, [&](Byte4 texel) {
     if (blue_first) {
       std::swap(texel[0], texel[2]);
     }
     return from_bytes(texel);
   });
+}
+
+tl::expected<std::filesystem::path, std::string> write_screenshot(
+    const std::filesystem::path& folder, const Image<glm::vec3>& image) {
   if (!folder.empty()) {
     if (auto made = create_folder(folder); !made) {
       return tl::unexpected(std::move(made.error()));

@@ -5,16 +5,20 @@
 #include <string>
 #include <tl/expected.hpp>
 
+#include "glm.h"
 #include "gpu.h"
+#include "image.h"
 
 namespace alcove::sample {
 
-// Writes an image of the window that was read back, in a format that Swapchain chooses, to view.png
-// in the folder, or view-2.png and so on where there is one; returns the file. The folder is made;
-// an empty one is where alcove was started.
+// The window's image as it was read back, in a format that Swapchain chooses.
+[[nodiscard]] Image<glm::vec3> screenshot(const HostBuffer& buffer, VkExtent2D size,
+                                          VkFormat format);
+
+// Writes it to view.png in the folder, or view-2.png and so on where there is one; returns the
+// file. The folder is made; an empty one is where alcove was started.
 [[nodiscard]] tl::expected<std::filesystem::path, std::string> write_screenshot(
-    const std::filesystem::path& folder, const HostBuffer& buffer, VkExtent2D size,
-    VkFormat format);
+    const std::filesystem::path& folder, const Image<glm::vec3>& image);
 
 }  // namespace alcove::sample
 
