@@ -30,7 +30,8 @@ ViewState first_state(const Stage& stage, const Options& options) {
 
 tl::expected<std::unique_ptr<SceneView>, std::string> SceneView::create(const Options& options) {
   std::unique_ptr<SceneView> made(new SceneView(options));
-  auto window = Window::create({options.view.width, options.view.height}, "alcove");
+  auto window = Window::create({options.view.width, options.view.height},
+                               "alcove: " + (options.scene.empty() ? "builtin" : options.scene));
   if (!window) {
     return Failure(std::move(window.error()));
   }

@@ -1,0 +1,166 @@
+// Needs a display; ctest gives it one of its own. Everything under the validation layers.
+#include "viewer/scene_view.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "frame_renderer.h"
+#include "temporary_folder.h"
+
+namespace alcove::sample {
+namespace {
+
+using testing::HasSubstr;
+
+class SceneViewTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    options_.command = Command::kView;
+    options_.view.width = 160;
+    options_.view.height = 90;
+    options_.validation = true;
+    options_.out = folder_.path;
+    open();
+  }
+  void TearDown() override {
+    const auto valid = check_validation(view_->gpu());
+    EXPECT_TRUE(valid) << valid.error();
+  }
+
+  void open() {
+    view_.reset();
+    auto made = SceneView::create(options_);
+    ASSERT_TRUE(made) << made.error();
+    view_ = std::move(*made);
+  }
+
+  // Draws until so many more frames are presented.
+  void draw(std::uint32_t frames) {
+    const std::uint32_t until = view_->drawn_frames() + frames;
+    for (int i = 0; i < 1000 && view_->drawn_frames() < until; ++i) {
+      const auto drawn = view_->draw();
+      ASSERT_TRUE(drawn) << drawn.error();
+      ASSERT_TRUE(*drawn);
+    }
+    ASSERT_EQ(view_->drawn_frames(), until);
+  }
+
+  const Image<glm::vec3>& draw_and_look() {
+    view_->take_screenshot();
+    draw(1);
+    return view_->last_screenshot();
+  }
+
+  TemporaryFolder folder_;
+  Options options_;
+  std::unique_ptr<SceneView> view_;
+};
+
+bool is_plain(const Image<glm::vec3>& image) {
+  return std::ranges::all_of(image.pixels,
+                             [&](const glm::vec3& x) { return x == image.pixels.front(); });
+}
+
+TEST_F(SceneViewTest, EveryPictureIsDrawnAloneAndBesideAnother) {
+  view_->show_panel(false);
+  for (std::size_t i = 0; i < kPictureNames.size(); ++i) {
+    SCOPED_TRACE(kPictureNames[i]);
+    view_->state().picture = static_cast<Picture>(i);
+    for (const Comparison comparison : {Comparison::kNone, Comparison::kHorizons}) {
+      view_->state().comparison = comparison;
+      draw(2);
+      const bool nothing_moves = view_->state().picture == Picture::kMotion;
+      EXPECT_EQ(is_plain(draw_and_look()), nothing_moves && comparison == Comparison::kNone);
+      EXPECT_EQ(view_->facts().refusal, "");
+    }
+  }
+}
+
+TEST_F(SceneViewTest, ThePictureIsWhatRenderDraws) {
+  view_->show_panel(false);
+  const Image<glm::vec3> seen = draw_and_look();
+  const ViewState& state = view_->state();
+  const auto gpu = open_gpu(options_);
+  ASSERT_TRUE(gpu) << gpu.error();
+  const VkExtent2D size{seen.width, seen.height};
+  const auto renderer =
+      FrameRenderer::create(**gpu, view_->scene(), size, options_.occlusion.normals);
+  ASSERT_TRUE(renderer) << renderer.error();
+  const CameraMatrices matrices = camera_matrices(state.camera, size.width, size.height);
+  FrameRequest request;
+  request.view = {matrices.view_from_world, matrices.clip_from_view, matrices.view_from_world,
+                  matrices.clip_from_view, state.camera.reversed_z};
+  request.occlusion = state.settings;
+  const auto images = (*renderer)->draw_and_read(request);
+  ASSERT_TRUE(images) << images.error();
+  ASSERT_EQ(images->visibility.pixels.size(), seen.pixels.size());
+  for (std::size_t i = 0; i < seen.pixels.size(); ++i) {
+    ASSERT_NEAR(seen.pixels[i].r, images->visibility.pixels[i], 0.003f) << "pixel " << i;
+  }
+}
+
+TEST_F(SceneViewTest, TheImagesFollowTheWindowsSize) {
+  draw(2);
+  for (const VkExtent2D size : {VkExtent2D{320, 200}, {97, 61}, {240, 135}}) {
+    view_->window().resize(size);
+    for (int i = 0; i < 100 && view_->facts().width != size.width; ++i) {
+      draw(1);
+    }
+    EXPECT_EQ(view_->facts().width, size.width);
+    EXPECT_EQ(view_->facts().height, size.height);
+    EXPECT_FALSE(is_plain(draw_and_look()));
+  }
+}
+
+TEST_F(SceneViewTest, ASettingThatIsRefusedIsToldAndThePictureStays) {
+  view_->show_panel(false);
+  draw(40);  // the history is full
+  view_->state().settings.slices = 900;
+  draw(3);
+  EXPECT_THAT(view_->facts().refusal, HasSubstr("900 slices"));
+  EXPECT_FALSE(is_plain(draw_and_look()));
+  view_->state().settings.slices = 2;
+  draw(3);
+  EXPECT_EQ(view_->facts().refusal, "");
+}
+
+TEST_F(SceneViewTest, BackFacesAndAKeptComparisonAreDrawn) {
+  ViewState& state = view_->state();
+  state.kept = state.settings;
+  state.kept.thickness_unit = passes::ThicknessUnit::back_faces;
+  state.comparison = Comparison::kKept;
+  state.settings.specular = passes::Specular::table;
+  draw(3);
+  EXPECT_EQ(view_->facts().refusal, "");
+}
+
+TEST_F(SceneViewTest, AMovingCameraAndNormalsFromDepthAreDrawn) {
+  options_.occlusion.normals = NormalSource::kDepth;
+  options_.view.orbit = 0.02f;
+  open();
+  for (const Picture picture : {Picture::kBentNormal, Picture::kLit, Picture::kMotion}) {
+    view_->state().picture = picture;
+    draw(3);
+    EXPECT_FALSE(is_plain(draw_and_look()));
+  }
+}
+
+TEST_F(SceneViewTest, TimesAndMemoryAreTold) {
+  draw(4);
+  EXPECT_GT(view_->facts().times.total_ms(), 0.0);
+  EXPECT_GT(view_->facts().memory.aliased, 0u);
+}
+
+TEST_F(SceneViewTest, AClosedWindowDrawsNothing) {
+  draw(1);
+  view_->window().close();
+  const auto drawn = view_->draw();
+  ASSERT_TRUE(drawn) << drawn.error();
+  EXPECT_FALSE(*drawn);
+}
+
+}  // namespace
+}  // namespace alcove::sample
