@@ -120,17 +120,14 @@ tl::expected<framegraph::FrameReport, std::string> Gpu::record(const Declare& de
                                                                std::uint32_t slot) {
   graph_.reset();
   kernels_->begin_frame();
-  std::string error;
   if (auto declared = declare(graph_); !declared) {
-    error = std::move(declared.error());
-  } else if (auto report = executor_->record(graph_, commands, {slot}); !report) {
-    error = framegraph::to_string(report.error());
-  } else {
-    return *report;
+    return Failure(std::move(declared.error()));
   }
-  // The kernels have counted a frame that nobody will wait for.
-  vkDeviceWaitIdle(device_->device());
-  return Failure(std::move(error));
+  auto report = executor_->record(graph_, commands, {slot});
+  if (!report) {
+    return Failure(framegraph::to_string(report.error()));
+  }
+  return *report;
 }
 
 tl::expected<framegraph::FrameReport, std::string> Gpu::run(const Declare& declare) {

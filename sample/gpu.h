@@ -67,8 +67,8 @@ class Gpu {
   [[nodiscard]] tl::expected<framegraph::FrameReport, std::string> run(const Declare& declare);
   // The same for a caller with frames in flight, who submits `commands` himself (they are in the
   // recording state, of the device's family). `slot` takes turns from 0 to frames_in_flight() - 1;
-  // the device must have finished what was last recorded with it. After an error it is idle, and
-  // the slot can be tried again.
+  // the device must have finished what was last recorded with it, and after an error all that was
+  // recorded before: the kernels have counted a frame that there is none of.
   [[nodiscard]] tl::expected<framegraph::FrameReport, std::string> record(const Declare& declare,
                                                                           VkCommandBuffer commands,
                                                                           std::uint32_t slot);

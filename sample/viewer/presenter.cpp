@@ -96,6 +96,16 @@ VkResult Presenter::wait_for_slot() {
   return result;
 }
 
+VkResult Presenter::wait_for_frames() const {
+  VkResult result = VK_SUCCESS;
+  for (const Slot& slot : slots_) {
+    if (result == VK_SUCCESS) {
+      result = vkWaitForFences(gpu_.device().device(), 1, &slot.finished, VK_TRUE, UINT64_MAX);
+    }
+  }
+  return result;
+}
+
 tl::expected<bool, std::string> Presenter::prepare() {
   const VkExtent2D size = window_.size();
   if (size.width == 0 || size.height == 0) {
@@ -143,7 +153,8 @@ tl::expected<framegraph::FrameReport, std::string> Presenter::draw(const Declare
       slot.commands, slot_);
   result = vkEndCommandBuffer(slot.commands);
   if (!report) {
-    return report;
+    result = wait_for_frames();
+    return result == VK_SUCCESS ? report : failure("finish the frames before", result);
   }
   if (result == VK_SUCCESS) {
     result = submit(slot);

@@ -49,6 +49,7 @@ class Presenter {
   tl::expected<void, std::string> create_swapchain();
   // Waits for the frame that had the next one's slot and takes its timings.
   VkResult wait_for_slot();
+  VkResult wait_for_frames() const;
   VkResult submit(const Slot& slot) const;
 
   Gpu& gpu_;
