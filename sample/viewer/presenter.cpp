@@ -156,6 +156,13 @@ tl::expected<framegraph::FrameReport, std::string> Presenter::draw(const Declare
     result = wait_for_frames();
     return result == VK_SUCCESS ? report : failure("finish the frames before", result);
   }
+  // The graph orders frames of different plans by a barrier over everything, but validation across
+  // submits does not follow that into the first changes of layout. A wait it does follow, and plans
+  // only change where a choice does.
+  if (result == VK_SUCCESS && (report->compiled || report->plan != plan_)) {
+    result = wait_for_frames();
+  }
+  plan_ = report->plan;
   if (result == VK_SUCCESS) {
     result = submit(slot);
   }

@@ -63,6 +63,7 @@ class Presenter {
   bool acquired_ = false;   // the swapchain has an image for it
   bool outdated_ = false;   // the window is no longer what the swapchain was made for
   std::vector<PassTime> timings_;
+  const framegraph::Plan* plan_ = nullptr;  // of the last frame: only to be compared
 };
 
 }  // namespace alcove::sample

@@ -79,6 +79,20 @@ TEST_F(SceneViewTest, EveryPictureIsDrawnAloneAndBesideAnother) {
   }
 }
 
+TEST_F(SceneViewTest, ChoicesMayChangeWhileFramesAreInFlight) {
+  for (const std::uint32_t frames : {1, 2, 3}) {
+    for (std::size_t i = 0; i < kPictureNames.size(); ++i) {
+      view_->state().picture = static_cast<Picture>(i);
+      view_->state().comparison = static_cast<Comparison>(i % 2);
+      view_->state().settings.history_frames = i % 3 == 0 ? 0 : 8;
+      draw(frames);
+      const auto valid = check_validation(view_->gpu());
+      ASSERT_TRUE(valid) << kPictureNames[i] << " after " << frames << ": "
+                         << valid.error().substr(0, 600);
+    }
+  }
+}
+
 TEST_F(SceneViewTest, ThePictureIsWhatRenderDraws) {
   view_->show_panel(false);
   const Image<glm::vec3> seen = draw_and_look();
