@@ -110,7 +110,7 @@ void lay_out_settings(OcclusionSettings& settings, float radius) {
     ImGui::BeginDisabled(!has_effect(name, settings));
     widget(name, value, std::string_view(name) == "radius" ? radius : 1.0f);
     ImGui::EndDisabled();
-    if (ImGui::IsItemHovered()) {
+    if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) {
       ImGui::SetTooltip("%s", about(name).help);
     }
   });

@@ -30,7 +30,7 @@ inline constexpr std::array<std::string_view, 9> kPictureNames{
 // What the right of the window is drawn with.
 enum class Comparison : std::uint8_t { kNone, kHorizons, kReference, kKept };
 inline constexpr std::array<std::string_view, 4> kComparisonNames{
-    "nothing", "infinitely thick occluders", "reference quality", "the settings kept"};
+    "nothing", "infinite thickness", "reference quality", "settings kept"};
 
 // All that can be chosen in the window.
 struct ViewState {
