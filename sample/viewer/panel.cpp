@@ -88,7 +88,7 @@ bool section(const char* name) {
 bool lay_out_choices(ViewState& state, const PanelFacts& facts) {
   const float unit = ImGui::GetFontSize();
   ImGui::SetNextWindowPos({0.0f, 0.0f});
-  ImGui::SetNextWindowSize({26.0f * unit, static_cast<float>(facts.height)});
+  ImGui::SetNextWindowSize({26.0f * unit, ImGui::GetIO().DisplaySize.y});
   constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize;
   bool screenshot = false;
   if (ImGui::Begin("settings", nullptr, kFixed)) {
@@ -142,7 +142,7 @@ void lay_out_times(const SmoothedTimes& times) {
 
 // In the upper right corner.
 void lay_out_cost(const PanelFacts& facts) {
-  ImGui::SetNextWindowPos({static_cast<float>(facts.width), 0.0f}, ImGuiCond_Always, {1.0f, 0.0f});
+  ImGui::SetNextWindowPos({ImGui::GetIO().DisplaySize.x, 0.0f}, ImGuiCond_Always, {1.0f, 0.0f});
   if (ImGui::Begin("cost", nullptr, ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize)) {
     ImGui::TextUnformatted(facts.device.c_str());
     ImGui::Text("%ux%u, %.1f frames a second", facts.width, facts.height,
