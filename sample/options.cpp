@@ -322,8 +322,10 @@ void add_device(CLI::App& app, Raw& raw) {
                  "which Vulkan device, as `alcove doctor` numbers them")
       ->type_name("N")
       ->check(CLI::Range(0, 255).description(""));
-  app.add_flag("--validation", raw.options.validation,
-               "run under the Khronos validation layers and fail on any message");
+  app.add_flag(
+      "--validation", raw.options.validation,
+      "run under the Khronos validation layers and the graph's own checks, and fail on any "
+      "message");
 }
 
 void add_output(CLI::App& app, Raw& raw) {

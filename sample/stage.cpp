@@ -11,9 +11,13 @@ using Failure = tl::unexpected<std::string>;
 
 tl::expected<std::unique_ptr<Gpu>, std::string> open_gpu(
     const Options& options, const std::vector<const char*>& surface_extensions) {
+  framegraph::ExecutorOptions executor;
+  executor.verify = executor.verify || options.validation;
+  executor.check_uses = executor.check_uses || options.validation;
   return Gpu::create({.validation = options.validation,
                       .index = options.device,
-                      .surface_extensions = surface_extensions});
+                      .surface_extensions = surface_extensions},
+                     executor);
 }
 
 tl::expected<Stage, std::string> stage_of(const Options& options,

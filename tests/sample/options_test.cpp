@@ -26,6 +26,19 @@ TEST(Options, DefaultsAreTheBuiltInSceneAt960By540) {
   EXPECT_EQ(options->view.height, 540u);
 }
 
+TEST(Options, AWindowStaysOpenAndWritesNothingUnlessToldOtherwise) {
+  const auto plain = parse({"view", "scene.glb"});
+  ASSERT_TRUE(plain) << plain.error().text;
+  EXPECT_EQ(plain->command, Command::kView);
+  EXPECT_EQ(plain->view.frames, 0u);
+  EXPECT_TRUE(plain->out.empty());
+  const auto told = parse({"view", "--frames", "3", "--out", "x", "--quality", "low"});
+  ASSERT_TRUE(told) << told.error().text;
+  EXPECT_EQ(told->view.frames, 3u);
+  EXPECT_EQ(told->out, "x");
+  EXPECT_FALSE(parse({"view", "--frames", "0"}));
+}
+
 TEST(Options, AFullCommandLineIsUnderstood) {
   const auto options =
       parse({"compare",  "scene.glb", "--eye",         "-9,5.5,-0.4", "--target",    "5,3.2,-0.3",
