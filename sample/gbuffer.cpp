@@ -80,8 +80,8 @@ struct GbufferRenderer::State {
   std::vector<maths::GbufferDraw> constants;
   std::unique_ptr<HostBuffer> vertices;
   std::unique_ptr<HostBuffer> parameters;  // one for each frame in flight
-  std::optional<GbufferView> written;      // of the latest
-  std::uint32_t latest = 0;
+  std::optional<GbufferView> written;      // the latest of them
+  std::uint32_t latest = 0;                // where it is
   std::unique_ptr<GpuTextures> textures;
   VkDescriptorSetLayout set_layout = VK_NULL_HANDLE;
   VkPipelineLayout layout = VK_NULL_HANDLE;
@@ -110,8 +110,9 @@ tl::expected<void, std::string> GbufferRenderer::State::upload(const Scene& scen
   }
   vertices = std::move(*vertex_buffer);
   std::ranges::copy(bytes, vertices->bytes().begin());
-  auto uniform = HostBuffer::create(gpu.device(), kParameterStride * gpu.frames_in_flight(),
-                                    VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
+  auto uniform =
+      HostBuffer::create(gpu.device(), VkDeviceSize{kParameterStride} * gpu.frames_in_flight(),
+                         VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
   if (!uniform) {
     return Failure(std::move(uniform.error()));
   }
@@ -368,10 +369,10 @@ tl::expected<std::unique_ptr<GbufferRenderer>, std::string> GbufferRenderer::cre
 
 std::uint32_t GbufferRenderer::State::write_parameters(const GbufferView& view) {
   if (written == view) {
-    return latest * kParameterStride;
+    return latest;
   }
   written = view;
-  latest = (latest + 1) % gpu.frames_in_flight();
+  latest = (latest + kParameterStride) % (kParameterStride * gpu.frames_in_flight());
   maths::GbufferParameters frame;
   frame.clip_from_world = view.clip_from_view * view.view_from_world;
   frame.previous_clip_from_world = view.previous_clip_from_view * view.previous_view_from_world;
@@ -381,8 +382,8 @@ std::uint32_t GbufferRenderer::State::write_parameters(const GbufferView& view) 
   const bool perspective = view.clip_from_view[2][3] != 0.0f;
   frame.eye_ws = perspective ? glm::vec4(glm::vec3(world_from_view[3]), 1.0f)
                              : glm::vec4(glm::vec3(world_from_view[2]), 0.0f);
-  std::memcpy(parameters->bytes().data() + latest * kParameterStride, &frame, sizeof(frame));
-  return latest * kParameterStride;
+  std::memcpy(parameters->bytes().data() + latest, &frame, sizeof(frame));
+  return latest;
 }
 
 Gbuffer GbufferRenderer::add(Graph& graph, const GbufferView& view, const Gbuffer& targets) {

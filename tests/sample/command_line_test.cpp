@@ -15,6 +15,7 @@ const Options kDefaults;
 
 tl::expected<Options, Stop> parse(const std::vector<std::string>& arguments) {
   std::vector<const char*> texts;
+  texts.reserve(arguments.size());
   for (const std::string& argument : arguments) {
     texts.push_back(argument.c_str());
   }
