@@ -4,46 +4,12 @@
 #include <cmath>
 #include <utility>
 
-#include "median.h"
-
 namespace alcove::sample {
 namespace {
 
-using Failure = tl::unexpected<std::string>;
 using passes::Estimator;
 using passes::OcclusionSettings;
 using passes::Pattern;
-
-// Pairs of frames whose times make the median; one more, the first, also compiles shaders.
-constexpr std::uint32_t kTimedPairs = 11;
-
-FrameRequest request_of(const StillSetup& setup, const OcclusionSettings& settings,
-                        std::uint32_t frame) {
-  const CameraMatrices m = camera_matrices(setup.camera, setup.width, setup.height);
-  FrameRequest request;
-  request.view = {m.view_from_world, m.clip_from_view, m.view_from_world, m.clip_from_view,
-                  setup.camera.reversed_z};
-  request.index = frame;
-  request.occlusion = settings;
-  request.occlusion.specular = passes::Specular::none;
-  request.occlusion.bent_normal = false;
-  return request;
-}
-
-tl::expected<FrameImages, std::string> draw_frames(FrameRenderer& renderer, const StillSetup& setup,
-                                                   const OcclusionSettings& settings) {
-  for (std::uint32_t i = 0; i + 1 < setup.frames; ++i) {
-    if (auto cost = renderer.draw(request_of(setup, settings, i)); !cost) {
-      return Failure(std::move(cost.error()));
-    }
-  }
-  return renderer.draw_and_read(request_of(setup, settings, setup.frames - 1));
-}
-
-std::uint64_t bytes_of(const FrameRenderer& renderer) {
-  const framegraph::MemoryStatistics& memory = renderer.memory();
-  return memory.aliased + memory.history;
-}
 
 class TrialList {
  public:
@@ -184,69 +150,6 @@ std::vector<Twins> twins_of(const Camera& camera, std::uint32_t height) {
   all.push_back({"this size, and twice as large", camera, camera, 2});
   all.push_back(orthographic_twins(camera, height));
   return all;
-}
-
-tl::expected<FrameImages, std::string> draw_still(Gpu& gpu, const Scene& scene,
-                                                  const StillSetup& setup,
-                                                  const OcclusionSettings& settings) {
-  const auto renderer =
-      FrameRenderer::create(gpu, scene, {setup.width, setup.height}, setup.normals);
-  if (!renderer) {
-    return Failure(renderer.error());
-  }
-  return draw_frames(**renderer, setup, settings);
-}
-
-tl::expected<Ablation, std::string> Ablation::create(Gpu& gpu, const Scene& scene,
-                                                     const StillSetup& setup,
-                                                     const OcclusionSettings& base) {
-  Ablation made(scene, setup, base);
-  auto renderer = FrameRenderer::create(gpu, scene, {setup.width, setup.height}, setup.normals);
-  if (!renderer) {
-    return Failure(std::move(renderer.error()));
-  }
-  made.renderer_ = std::move(*renderer);
-  auto images = draw_frames(*made.renderer_, setup, base);
-  if (!images) {
-    return Failure(std::move(images.error()));
-  }
-  made.base_ = std::move(*images);
-  made.next_frame_ = setup.frames;
-  return made;
-}
-
-std::uint64_t Ablation::base_bytes() const { return bytes_of(*renderer_); }
-
-tl::expected<TrialResult, std::string> Ablation::run(Gpu& gpu, const Trial& trial) {
-  const auto renderer =
-      FrameRenderer::create(gpu, scene_, {setup_.width, setup_.height}, setup_.normals);
-  if (!renderer) {
-    return Failure(renderer.error());
-  }
-  auto images = draw_frames(**renderer, setup_, trial.settings);
-  if (!images) {
-    return Failure(std::move(images.error()));
-  }
-  TrialResult result{std::move(images->visibility), {}};
-  std::vector<double> gpu_ratios;
-  std::vector<double> processor_ratios;
-  for (std::uint32_t i = 0; i <= kTimedPairs; ++i) {
-    const auto base = renderer_->draw(request_of(setup_, settings_, next_frame_++));
-    if (!base) {
-      return Failure(base.error());
-    }
-    const auto other = (*renderer)->draw(request_of(setup_, trial.settings, setup_.frames + i));
-    if (!other) {
-      return Failure(other.error());
-    }
-    if (i > 0) {
-      gpu_ratios.push_back(other->occlusion_ms / base->occlusion_ms);
-      processor_ratios.push_back(other->cpu_ms / base->cpu_ms);
-    }
-  }
-  result.cost = {median(std::move(gpu_ratios)), median(std::move(processor_ratios)),
-                 bytes_of(**renderer)};
-  return result;
 }
 
 }  // namespace alcove::sample

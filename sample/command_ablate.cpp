@@ -13,7 +13,7 @@
 #include "settings.h"
 #include "stage.h"
 #include "surface_points.h"
-#include "truths.h"
+#include "trial_errors.h"
 
 namespace alcove::sample {
 namespace {
@@ -22,66 +22,11 @@ using Failure = tl::unexpected<std::string>;
 using Done = tl::expected<void, std::string>;
 using Json = nlohmann::ordered_json;
 
-// A line of the table.
-struct Row {
-  std::string part;
-  std::string name;
-  ErrorSummary scene;
-  ErrorSummary height_field;
-  TrialCost cost;
-};
-
 // How far two images are apart that should look the same.
 struct TwinsRow {
   std::string name;
   ErrorSummary difference;
 };
-
-StillSetup setup_of(const Options& options, const Camera& camera) {
-  return {camera, options.view.width, options.view.height, options.view.frames,
-          options.occlusion.normals};
-}
-
-tl::expected<std::vector<Row>, std::string> run_trials(const Stage& stage, const Options& options) {
-  auto ablation =
-      Ablation::create(*stage.gpu, stage.scene, setup_of(options, stage.camera), stage.settings);
-  if (!ablation) {
-    return Failure(std::move(ablation.error()));
-  }
-  const FrameImages& base = ablation->base();
-  const auto truths = truths_of(
-      {stage.scene, stage.camera, stage.settings.radius, base.depth_ndc, base.normal_ws}, options);
-  if (!truths) {
-    return Failure(truths.error());
-  }
-  const auto row = [&](const Trial& trial, const TrialResult& result) {
-    return Row{trial.part, trial.name,
-               compare_images(result.visibility, truths->scene.visibility, truths->surfaces),
-               compare_images(result.visibility, truths->height_field.visibility, truths->surfaces),
-               result.cost};
-  };
-  std::vector<Row> rows;
-  rows.push_back(
-      row({"", "as it is", stage.settings}, {base.visibility, {.bytes = ablation->base_bytes()}}));
-  const std::vector<Trial> trials = trials_of(stage.settings);
-  const Progress progress = print_progress("changes");
-  for (const Trial& trial : trials) {
-    const auto gpu = open_gpu(options);
-    if (!gpu) {
-      return Failure(gpu.error());
-    }
-    const auto result = ablation->run(**gpu, trial);
-    if (!result) {
-      return Failure(result.error());
-    }
-    if (auto valid = check_validation(**gpu); !valid) {
-      return Failure(std::move(valid.error()));
-    }
-    rows.push_back(row(trial, *result));
-    progress(static_cast<double>(rows.size() - 1) / static_cast<double>(trials.size()));
-  }
-  return rows;
-}
 
 // The mean of each block of `scale` pixels a side.
 Image<float> shrunk(const Image<float>& image, std::uint32_t scale) {
@@ -114,8 +59,8 @@ Mask common_surfaces(const Twins& twins, const FrameImages& images, const FrameI
 
 tl::expected<TwinsRow, std::string> run_twins(Gpu& gpu, const Stage& stage, const Options& options,
                                               const Twins& twins) {
-  const StillSetup first = setup_of(options, twins.first);
-  StillSetup second = setup_of(options, twins.second);
+  const StillSetup first = still_setup(options, twins.first);
+  StillSetup second = still_setup(options, twins.second);
   second.width *= twins.scale;
   second.height *= twins.scale;
   const auto images = draw_still(gpu, stage.scene, first, stage.settings);
@@ -131,19 +76,19 @@ tl::expected<TwinsRow, std::string> run_twins(Gpu& gpu, const Stage& stage, cons
                                  common_surfaces(twins, *images, *others))};
 }
 
-std::string table_of(const std::vector<Row>& rows) {
+std::string table_of(const std::vector<TrialErrors>& rows) {
   std::ostringstream out;
   out << "RMSE of visibility over " << rows.front().scene.count
       << " pixels, and cost beside the first row's\n"
       << "  " << std::left << std::setw(43) << "" << std::right
       << "scene truth   height field    bias   GPU   processor   MiB\n";
   std::string part;
-  for (const Row& row : rows) {
-    const bool begins = row.part != part;
-    part = row.part;
-    out << "  " << std::left << std::setw(11) << (begins ? part : "") << std::setw(32) << row.name
-        << std::right << std::fixed << std::setprecision(4) << std::setw(10) << row.scene.rmse
-        << std::setw(15) << row.height_field.rmse << std::showpos << std::setw(10)
+  for (const TrialErrors& row : rows) {
+    const bool begins = row.trial.part != part;
+    part = row.trial.part;
+    out << "  " << std::left << std::setw(11) << (begins ? part : "") << std::setw(32)
+        << row.trial.name << std::right << std::fixed << std::setprecision(4) << std::setw(10)
+        << row.scene.rmse << std::setw(15) << row.height_field.rmse << std::showpos << std::setw(10)
         << std::setprecision(3) << row.scene.bias << std::noshowpos << std::setprecision(2)
         << std::setw(6) << row.cost.gpu << std::setw(10) << row.cost.processor
         << std::setprecision(1) << std::setw(9) << static_cast<double>(row.cost.bytes) / 1048576.0
@@ -164,9 +109,9 @@ std::string table_of(const std::vector<TwinsRow>& rows) {
   return out.str();
 }
 
-Json to_json(const Row& row) {
-  return {{"part", row.part},
-          {"change", row.name},
+Json to_json(const TrialErrors& row) {
+  return {{"part", row.trial.part},
+          {"change", row.trial.name},
           {"scene_truth", to_json(row.scene)},
           {"height_field_truth", to_json(row.height_field)},
           {"gpu_time_ratio", row.cost.gpu},
@@ -185,11 +130,11 @@ Done run_ablate(const Options& options) {
   if (auto made = create_folder(options.out); !made) {
     return made;
   }
-  const auto rows = run_trials(*stage, options);
-  if (!rows) {
-    return Failure(rows.error());
+  const auto trials = run_trials(*stage, options, trials_of(stage->settings), "changes");
+  if (!trials) {
+    return Failure(trials.error());
   }
-  std::cout << table_of(*rows) << std::flush;
+  std::cout << table_of(trials->rows) << std::flush;
   std::vector<TwinsRow> twins_rows;
   for (const Twins& twins : twins_of(stage->camera, options.view.height)) {
     auto row = run_twins(*stage->gpu, *stage, options, twins);
@@ -206,7 +151,7 @@ Done run_ablate(const Options& options) {
   report["device"] = stage->gpu->device().properties().deviceName;
   report["settings"] = to_json(stage->settings);
   report["frames"] = options.view.frames;
-  for (const Row& row : *rows) {
+  for (const TrialErrors& row : trials->rows) {
     report["changes"].push_back(to_json(row));
   }
   for (const TwinsRow& row : twins_rows) {

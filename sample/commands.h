@@ -13,6 +13,8 @@ namespace alcove::sample {
 [[nodiscard]] tl::expected<void, std::string> run_compare(const Options& options);
 [[nodiscard]] tl::expected<void, std::string> run_motion(const Options& options);
 [[nodiscard]] tl::expected<void, std::string> run_ablate(const Options& options);
+[[nodiscard]] tl::expected<void, std::string> run_bench(const Options& options);
+[[nodiscard]] tl::expected<void, std::string> run_recommend(const Options& options);
 [[nodiscard]] tl::expected<void, std::string> run_graph(const Options& options);
 [[nodiscard]] tl::expected<void, std::string> run_view(const Options& options);
 [[nodiscard]] tl::expected<void, std::string> run_doctor(const Options& options);

@@ -22,6 +22,10 @@ tl::expected<void, std::string> run(const Options& options) {
       return alcove::sample::run_motion(options);
     case Command::kAblate:
       return alcove::sample::run_ablate(options);
+    case Command::kBench:
+      return alcove::sample::run_bench(options);
+    case Command::kRecommend:
+      return alcove::sample::run_recommend(options);
     case Command::kGraph:
       return alcove::sample::run_graph(options);
     case Command::kView:

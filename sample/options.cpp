@@ -15,6 +15,7 @@ struct Raw {
   std::string eye, target, up, size, far_plane, roughness;
   std::vector<std::string> set;
   double fov_y = 0, ortho_height = 0, near_plane = 0, radius = 0, orbit = 0;
+  double budget_ms = 0, tolerance = 0;
   int64_t frames = 0, spp = 256;  // 0 frames: as many as the command draws by itself
   bool no_cache = false;
 };
@@ -82,7 +83,8 @@ constexpr int64_t kMostFrames = 100000;
 // Of `alcove motion`: fewer leave nothing to compare.
 constexpr uint32_t kFewestPathFrames = 12;
 constexpr uint32_t kPathFrames = 48;
-constexpr uint32_t kAblationFrames = 32;
+// Of the commands that compare settings: as many as the history averages.
+constexpr uint32_t kComparedFrames = 32;
 
 bool positive(double value) { return std::isfinite(value) && value > 0.0; }
 
@@ -130,7 +132,9 @@ uint32_t default_frames(Command command) {
     case Command::kMotion:
       return kPathFrames;
     case Command::kAblate:
-      return kAblationFrames;
+    case Command::kBench:
+    case Command::kRecommend:
+      return kComparedFrames;
     case Command::kView:
       return 0;
     default:
@@ -310,6 +314,42 @@ void add_occlusion(CLI::App& app, Raw& raw) {
       ->group(group);
 }
 
+// The truth of a standing camera and what is compared with it.
+void add_comparison(CLI::App& app, Raw& raw) {
+  add_view(app, raw);
+  app.add_option("--frames", raw.frames,
+                 "how many are drawn with each setting, the camera standing; the last is compared; "
+                 "32")
+      ->type_name("N")
+      ->group("View");
+  add_occlusion(app, raw);
+  app.add_flag("--no-cache", raw.no_cache, "compute the truths anew");
+}
+
+void add_limits(CLI::App& app, Raw& raw) {
+  app.add_option("--budget-ms", raw.budget_ms,
+                 "the most GPU time that the occlusion passes may take: the least error in it")
+      ->type_name("MS");
+  app.add_option("--tolerance", raw.tolerance,
+                 "the most error, RMSE of visibility: the least time for it")
+      ->type_name("E");
+}
+
+void read_limits(const CLI::App& app, const Raw& raw, Options& options) {
+  if (app.count("--budget-ms") + app.count("--tolerance") != 1) {
+    throw Mistake{"recommend: give either --budget-ms or --tolerance"};
+  }
+  if (app.count("--budget-ms") != 0) {
+    if (!positive(raw.budget_ms)) {
+      refuse("--budget-ms", shown(raw.budget_ms), "a time above 0 in milliseconds");
+    }
+    options.budget_ms = raw.budget_ms;
+    return;
+  }
+  if (!positive(raw.tolerance)) refuse("--tolerance", shown(raw.tolerance), "an error above 0");
+  options.tolerance = raw.tolerance;
+}
+
 void add_environment(CLI::App& app, Raw& raw) {
   app.add_option("--environment", raw.options.environment,
                  "light all around, an equirectangular .hdr or .exr; a sky that is made")
@@ -375,15 +415,23 @@ std::vector<Subcommand> add_commands(CLI::App& app, Raw& raw) {
   CLI::App* ablate = app.add_subcommand(
       "ablate", "what each part of the occlusion costs and what it buys, one row for each");
   add_scene(*ablate, raw);
-  add_view(*ablate, raw);
-  ablate
-      ->add_option("--frames", raw.frames,
-                   "how many are drawn of each row, the camera standing; the last is compared; 32")
-      ->type_name("N")
-      ->group("View");
-  add_occlusion(*ablate, raw);
+  add_comparison(*ablate, raw);
   add_output(*ablate, raw);
-  ablate->add_flag("--no-cache", raw.no_cache, "compute the truths anew");
+  CLI::App* bench = app.add_subcommand(
+      "bench",
+      "the trade of speed for accuracy: time and error of many settings, as a table, a plot "
+      "and JSON");
+  bench
+      ->add_option("SCENE", raw.options.scenes, "any number of scenes, each seen by its own camera")
+      ->type_name("");
+  add_comparison(*bench, raw);
+  add_output(*bench, raw);
+  CLI::App* recommend = app.add_subcommand(
+      "recommend", "the least settings that hold: within a time, or within an error");
+  add_scene(*recommend, raw);
+  add_limits(*recommend, raw);
+  add_comparison(*recommend, raw);
+  add_device(*recommend, raw);
   CLI::App* graph = app.add_subcommand("graph", "the compiled plan of a frame; needs no device");
   add_view(*graph, raw);
   add_frames(*graph, raw);
@@ -404,9 +452,10 @@ std::vector<Subcommand> add_commands(CLI::App& app, Raw& raw) {
       ->type_name("DIR");
   add_device(*view, raw);
   CLI::App* doctor = app.add_subcommand("doctor", "the Vulkan devices here and what they lack");
-  return {{render, Command::kRender}, {compare, Command::kCompare}, {motion, Command::kMotion},
-          {ablate, Command::kAblate}, {graph, Command::kGraph},     {view, Command::kView},
-          {doctor, Command::kDoctor}};
+  return {
+      {render, Command::kRender}, {compare, Command::kCompare}, {motion, Command::kMotion},
+      {ablate, Command::kAblate}, {bench, Command::kBench},     {recommend, Command::kRecommend},
+      {graph, Command::kGraph},   {view, Command::kView},       {doctor, Command::kDoctor}};
 }
 
 Options finished(const CLI::App& app, const Raw& raw, Command command) {
@@ -418,6 +467,7 @@ Options finished(const CLI::App& app, const Raw& raw, Command command) {
   read_view(app, raw, options.view);
   read_frames(app, raw, command, options.view);
   read_occlusion(app, raw, options.occlusion);
+  if (command == Command::kRecommend) read_limits(app, raw, options);
   return options;
 }
 
@@ -438,6 +488,7 @@ tl::expected<Options, Stop> parse_options(int argc, const char* const* argv) {
       "  alcove compare groove:60 --radius 1\n"
       "  alcove motion scene.gltf --path strafe\n"
       "  alcove ablate scene.gltf --quality high\n"
+      "  alcove recommend scene.gltf --tolerance 0.05\n"
       "  alcove render --eye -6,0.55,-4.6 --target 0,0.75,-2.9 --quality ultra",
       "alcove");
   Raw raw;

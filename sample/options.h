@@ -15,7 +15,17 @@
 
 namespace alcove::sample {
 
-enum class Command { kRender, kCompare, kMotion, kAblate, kGraph, kView, kDoctor };
+enum class Command {
+  kRender,
+  kCompare,
+  kMotion,
+  kAblate,
+  kBench,
+  kRecommend,
+  kGraph,
+  kView,
+  kDoctor
+};
 enum class Quality { kLow, kMedium, kHigh, kUltra, kReference };
 enum class NormalSource { kShading, kGeometric, kDepth };
 enum class GraphFormat { kText, kJson, kDot };
@@ -44,12 +54,15 @@ struct OcclusionOptions {
 struct Options {
   Command command = Command::kRender;
   std::string scene;                  // empty: the built-in one
+  std::vector<std::string> scenes;    // bench: any number, each as `scene`
   std::filesystem::path environment;  // .hdr or .exr; empty: the procedural sky
   bool lit = false;                   // compare: also trace the lit picture
   ViewOptions view;
   OcclusionOptions occlusion;
   std::filesystem::path out = "out";  // empty: `view` was given none
-  std::optional<MotionKind> path;     // motion: none for all of them
+  // recommend: one of the two. Milliseconds of GPU time; RMSE of visibility.
+  std::optional<double> budget_ms, tolerance;
+  std::optional<MotionKind> path;  // motion: none for all of them
   GraphFormat graph_format = GraphFormat::kText;
   int device = -1;
   bool validation = false;

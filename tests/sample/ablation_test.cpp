@@ -72,7 +72,7 @@ class AblationTest : public testing::Test {
 TEST_F(AblationTest, ConnectedSamplesAreNearestToTheTruth) {
   const auto gpu = open();
   ASSERT_TRUE(gpu);
-  auto ablation = Ablation::create(*gpu, scene_, setup_, base_);
+  auto ablation = TrialRunner::create(*gpu, scene_, setup_, base_);
   ASSERT_TRUE(ablation) << ablation.error();
   const auto [truth, surfaces] = truth_of(ablation->base());
   const double connected = compare_images(ablation->base().visibility, truth, surfaces).rmse;
@@ -98,7 +98,7 @@ TEST_F(AblationTest, BackFacesAreNearerToTheTruthThanOneThickness) {
   const auto gpu = open();
   const auto other = open();
   ASSERT_TRUE(gpu && other);
-  auto ablation = Ablation::create(*gpu, scene_, setup_, base_);
+  auto ablation = TrialRunner::create(*gpu, scene_, setup_, base_);
   ASSERT_TRUE(ablation) << ablation.error();
   const auto [truth, surfaces] = truth_of(ablation->base());
   Trial trial{"occluders", "back faces", base_};
@@ -139,7 +139,7 @@ TEST_F(AblationTest, AFrameWithoutHistoryHoldsFewerBytes) {
   const auto gpu = open();
   const auto other = open();
   ASSERT_TRUE(gpu && other);
-  auto ablation = Ablation::create(*gpu, scene_, setup_, base_);
+  auto ablation = TrialRunner::create(*gpu, scene_, setup_, base_);
   ASSERT_TRUE(ablation) << ablation.error();
   Trial trial{"history", "none", base_};
   trial.settings.history_frames = 0;

@@ -1,4 +1,4 @@
-#include "viewer/command_line.h"
+#include "command_line.h"
 
 #include <gtest/gtest.h>
 

@@ -104,6 +104,35 @@ TEST(Options, MotionTakesAPathAndEnoughFramesToCompare) {
   }
 }
 
+TEST(Options, BenchTakesAnyNumberOfScenes) {
+  const auto none = parse({"bench"});
+  ASSERT_TRUE(none) << none.error().text;
+  EXPECT_EQ(none->command, Command::kBench);
+  EXPECT_TRUE(none->scenes.empty());
+  EXPECT_EQ(none->view.frames, 32u);
+  const auto two = parse({"bench", "step", "corner", "--size", "64x64"});
+  ASSERT_TRUE(two) << two.error().text;
+  EXPECT_EQ(two->scenes, (std::vector<std::string>{"step", "corner"}));
+}
+
+TEST(Options, RecommendTakesATimeOrAnError) {
+  const auto time = parse({"recommend", "step", "--budget-ms", "0.5"});
+  ASSERT_TRUE(time) << time.error().text;
+  EXPECT_EQ(time->budget_ms, 0.5);
+  EXPECT_FALSE(time->tolerance);
+  EXPECT_EQ(parse({"recommend", "--tolerance", "0.05"})->tolerance, 0.05);
+  for (const auto& wrong : std::vector<std::vector<const char*>>{
+           {"recommend"},
+           {"recommend", "--tolerance", "0.05", "--budget-ms", "1"},
+           {"recommend", "--tolerance", "0"},
+           {"recommend", "--budget-ms", "inf"}}) {
+    const auto options = parse(wrong);
+    ASSERT_FALSE(options);
+    EXPECT_EQ(options.error().status, 2);
+    EXPECT_THAT(options.error().text, HasSubstr(wrong.size() == 3 ? wrong[1] : "--budget-ms"));
+  }
+}
+
 TEST(Options, NearMustBeBeforeFar) {
   const auto options = parse({"render", "--near", "5", "--far", "2"});
   ASSERT_FALSE(options);

@@ -1,5 +1,5 @@
-#ifndef ALCOVE_SAMPLE_VIEWER_COMMAND_LINE_H_
-#define ALCOVE_SAMPLE_VIEWER_COMMAND_LINE_H_
+#ifndef ALCOVE_SAMPLE_COMMAND_LINE_H_
+#define ALCOVE_SAMPLE_COMMAND_LINE_H_
 
 #include <cstdint>
 #include <optional>
@@ -30,4 +30,4 @@ struct Shot {
 
 }  // namespace alcove::sample
 
-#endif  // ALCOVE_SAMPLE_VIEWER_COMMAND_LINE_H_
+#endif  // ALCOVE_SAMPLE_COMMAND_LINE_H_

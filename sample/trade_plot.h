@@ -1,0 +1,16 @@
+#ifndef ALCOVE_SAMPLE_TRADE_PLOT_H_
+#define ALCOVE_SAMPLE_TRADE_PLOT_H_
+
+#include <string>
+
+#include "trade.h"
+
+namespace alcove::sample {
+
+// Error over GPU time as an SVG file: time on a logarithmic axis, the front as a line, its points
+// named. There is at least one point, and all times are over 0.
+[[nodiscard]] std::string plot_of(const Trade& trade, const std::string& title);
+
+}  // namespace alcove::sample
+
+#endif  // ALCOVE_SAMPLE_TRADE_PLOT_H_

@@ -1,0 +1,106 @@
+#include "trade.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "trade_plot.h"
+
+namespace alcove::sample {
+namespace {
+
+using passes::OcclusionSettings;
+
+TradePoint point(const std::string& name, double gpu_ms, double rmse) {
+  return {name, {}, rmse, 0.5 * rmse, gpu_ms, 2.0 * gpu_ms, 1000};
+}
+
+TEST(WaysToSpend, AreEachThereOnceWithTheQualitiesAmongThem) {
+  for (const passes::Quality quality : {passes::Quality::low, passes::Quality::medium,
+                                        passes::Quality::high, passes::Quality::ultra}) {
+    const OcclusionSettings base = passes::quality_settings(quality, 0.5f);
+    const std::vector<Trial> ways = ways_to_spend(base);
+    EXPECT_GE(ways.size(), 16u);
+    std::vector<OcclusionSettings> seen;
+    for (const Trial& way : ways) {
+      EXPECT_EQ(std::ranges::count(seen, way.settings), 0) << way.name;
+      seen.push_back(way.settings);
+    }
+    // A fill that was chosen is kept; ultra's differs from the others'.
+    if (quality != passes::Quality::ultra) {
+      EXPECT_EQ(std::ranges::count(seen, base), 1);
+      EXPECT_EQ(
+          std::ranges::count(seen, passes::quality_settings(passes::Quality::ultra, base.radius)),
+          1);
+    }
+  }
+}
+
+TEST(WaysToSpend, KeepWhatWasChosen) {
+  OcclusionSettings base = passes::quality_settings(passes::Quality::medium, 2.0f);
+  base.history_frames = 0;
+  base.estimator = passes::Estimator::horizons;
+  base.fill = 0.1f;
+  for (const Trial& way : ways_to_spend(base)) {
+    OcclusionSettings settings = way.settings;
+    settings.divisor = base.divisor;
+    settings.slices = base.slices;
+    settings.steps = base.steps;
+    EXPECT_EQ(settings, base) << way.name;
+  }
+}
+
+TEST(Trade, TheFrontIsWhatNothingIsBothFasterAndNearerThan) {
+  const Trade trade =
+      trade_of({point("slow", 9, 0.01), point("fast", 1, 0.1), point("worse", 4, 0.2),
+                point("fair", 3, 0.05), point("equal", 5, 0.05)});
+  std::vector<std::string> names;
+  for (const TradePoint& each : trade.points) {
+    names.push_back(each.name);
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"fast", "fair", "worse", "equal", "slow"}));
+  EXPECT_EQ(trade.on_front, (std::vector<bool>{true, true, false, false, true}));
+}
+
+TEST(Trade, ChoosesTheLeastThatHolds) {
+  const std::vector<TradePoint> points{point("fast", 1, 0.1), point("fair", 3, 0.05),
+                                       point("slow", 9, 0.01)};
+  EXPECT_EQ(nearest_within_ms(points, 3.0)->name, "fair");
+  EXPECT_EQ(nearest_within_ms(points, 100.0)->name, "slow");
+  EXPECT_EQ(nearest_within_ms(points, 0.5), nullptr);
+  EXPECT_EQ(fastest_within_rmse(points, 0.05)->name, "fair");
+  EXPECT_EQ(fastest_within_rmse(points, 1.0)->name, "fast");
+  EXPECT_EQ(fastest_within_rmse(points, 0.005), nullptr);
+}
+
+TEST(Trade, OverScenesTimesAreMeansAndErrorsRootMeanSquares) {
+  const std::vector<std::vector<TradePoint>> scenes{{point("a", 1, 0.3)}, {point("a", 3, 0.4)}};
+  const std::vector<TradePoint> all = over_scenes(scenes);
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_DOUBLE_EQ(all[0].gpu_ms, 2.0);
+  EXPECT_DOUBLE_EQ(all[0].processor_ms, 4.0);
+  EXPECT_NEAR(all[0].rmse, std::sqrt(0.125), 1e-12);
+  EXPECT_EQ(all[0].bytes, 1000u);
+}
+
+TEST(TradePlot, NamesTheFrontAndEscapesText) {
+  const std::string plot =
+      plot_of(trade_of({point("fast", 1, 0.1), point("a < b", 30, 0.05), point("off", 40, 0.06)}),
+              "scene & size");
+  EXPECT_NE(plot.find(">fast</text>"), std::string::npos);
+  EXPECT_NE(plot.find(">a &lt; b</text>"), std::string::npos);
+  EXPECT_NE(plot.find("scene &amp; size"), std::string::npos);
+  EXPECT_EQ(plot.find(">off</text>"), std::string::npos);
+  EXPECT_EQ(plot.find("nan"), std::string::npos);
+  EXPECT_EQ(plot.find("inf"), std::string::npos);
+}
+
+TEST(TradePlot, OnePointHasAPlotToo) {
+  const std::string plot = plot_of(trade_of({point("only", 1, 0.0)}), "one");
+  EXPECT_NE(plot.find("<circle"), std::string::npos);
+  EXPECT_EQ(plot.find("nan"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace alcove::sample
