@@ -110,18 +110,24 @@ void draw_front(std::ostream& out, const Trade& trade, const Axes& axes) {
   out << "\"/>\n";
 }
 
+// The front's names stand by turns right above and left below the line, clear of each other.
 void draw_points(std::ostream& out, const Trade& trade, const Axes& axes) {
+  bool above = true;
   for (std::size_t i = 0; i < trade.points.size(); ++i) {
     const TradePoint& point = trade.points[i];
     const double x = axes.x(point.gpu_ms);
     const double y = axes.y(point.rmse);
-    out << "<circle cx=\"" << x << "\" cy=\"" << y << "\" r=\"4\" fill=\""
-        << (trade.on_front[i] ? "#1f6f8b" : "#bbb") << "\"><title>" << escaped(point.name) << ", "
-        << number(point.rmse) << ", " << number(point.gpu_ms) << " ms</title></circle>\n";
-    if (trade.on_front[i]) {
-      const bool right = x > kWidth - 0.3 * kPlotWidth;
-      draw_label(out, x + (right ? -8 : 8), y - 7, right ? "end" : "start", point.name);
+    out << "<g><title>" << escaped(point.name) << ", " << number(point.rmse) << ", "
+        << number(point.gpu_ms) << " ms</title><circle cx=\"" << x << "\" cy=\"" << y
+        << "\" r=\"4\" fill=\"" << (trade.on_front[i] ? "#1f6f8b" : "#bbb") << "\"/></g>\n";
+    if (!trade.on_front[i]) {
+      continue;
     }
+    const double wide = 0.2 * kPlotWidth;
+    const bool right = x < kLeft + wide || (above && x < kWidth - kRight - wide);
+    draw_label(out, x + (right ? 8 : -8), y + (above ? -7 : 16), right ? "start" : "end",
+               point.name);
+    above = !above;
   }
 }
 
