@@ -37,6 +37,7 @@ layout(constant_id = 6) const bool kStill = false;  // nothing moved since the l
 layout(constant_id = 7) const bool kRoughnessTexture = false;
 layout(constant_id = 8) const int kRoughnessChannel = 0;
 layout(constant_id = 9) const bool kFresh = true;  // there is no history to read yet
+layout(constant_id = 10) const bool kVisibility = true;  // else it is found but not written
 
 #ifdef LOBE
 const bool kLobe = true;
@@ -53,8 +54,9 @@ layout(set = 0, binding = 1, SIGNAL_FORMAT) uniform readonly uimage2D signal_ima
 layout(set = 0, binding = 2, rg32ui) uniform readonly uimage2D bent_image;
 layout(set = 0, binding = 3, r32f) uniform readonly image2D line_image;  // LineSample::line
 layout(set = 0, binding = 4) uniform texture2D normal_image;             // xyz
+// Bound to another result and never written where it is not wanted, as is the next.
 layout(set = 0, binding = 5) uniform writeonly image2D visibility_image;
-// In the space of the normals; bound to the visibility and never written where there is none.
+// In the space of the normals.
 layout(set = 0, binding = 6) uniform writeonly image2D bent_normal_image;
 #ifdef HISTORY
 layout(set = 0, binding = 7) uniform texture2D motion_image;  // where there is none, the normals
@@ -231,8 +233,10 @@ Neighbourhood gather(Surface surface, int reach, float narrowness) {
 }
 
 void store(ivec2 pixel, Sum sum) {
-  float visibility = mean_visibility(sum.signal.visible, sum.signal.open);
-  imageStore(visibility_image, pixel, vec4(visibility));
+  if (kVisibility) {
+    float visibility = mean_visibility(sum.signal.visible, sum.signal.open);
+    imageStore(visibility_image, pixel, vec4(visibility));
+  }
   if (kBentNormal) {
     vec3 fallback = texelFetch(normal_image, pixel, 0).xyz;
     vec3 bent = finish_bent_normal(mat3(parameters.normal_from_view) * sum.bent, fallback);

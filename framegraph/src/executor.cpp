@@ -189,6 +189,7 @@ tl::expected<FrameReport, Errors> Executor::Implementation::prepare(Graph& graph
                                                                     CachedPlan*& cached) {
   if (auto right = check_slot(info.slot); !right) return tl::unexpected(std::move(right.error()));
   begin_frame(info);
+  pool->retire_histories(graph.histories(), frame);
   FrameReport report;
   auto found = plan_for(graph, one_queue, report.compiled);
   if (!found) return tl::unexpected(std::move(found.error()));

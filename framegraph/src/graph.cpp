@@ -182,7 +182,7 @@ Texture Graph::import_texture(std::string_view name, const ImportedTexture& impo
   external.has_departure = has_departure(import.departure);
   external.has_handle = import.image != VK_NULL_HANDLE;
   add(description_.externals, external);
-  imports_.push_back({import.image, import.view, VK_NULL_HANDLE, kNone});
+  imports_.push_back({import.image, import.view, VK_NULL_HANDLE, kNone, import.first_layer});
   return {add_resource(name, record), 0, tag_};
 }
 
@@ -262,6 +262,8 @@ Buffer BufferHistory::previous(std::uint32_t age) const {
 void Graph::reset_history(std::string_view name) { histories_.invalidate(name); }
 
 void Graph::reset_histories() { histories_.invalidate_all(); }
+
+void Graph::drop_history(std::string_view name) { histories_.drop(name); }
 
 void Graph::output(Texture texture) {
   const bool known = texture.graph == tag_ && texture.index < description_.resources.size();

@@ -1,5 +1,6 @@
 #include "alcove/framegraph/history.h"
 
+#include <algorithm>
 #include <cstring>
 
 namespace alcove::framegraph {
@@ -18,7 +19,7 @@ std::uint32_t HistoryTable::declare(std::string_view name, const ResourceRecord&
   for (std::uint32_t i = 0; i < entries_.size(); ++i) {
     HistoryEntry& entry = entries_[i];
     // Two histories of one name in one frame are two histories.
-    if (entry.declared || entry.name != name) continue;
+    if (entry.declared || entry.dropped || entry.name != name) continue;
     entry.declared = true;
     if (std::memcmp(&entry.record, &record, sizeof record) == 0) return i;
     entry.record = record;
@@ -33,12 +34,25 @@ std::uint32_t HistoryTable::declare(std::string_view name, const ResourceRecord&
     }
     return i;
   }
-  entries_.push_back({});
-  HistoryEntry& entry = entries_.back();
-  entry.name = name;
-  entry.record = record;
-  entry.declared = true;
-  return static_cast<std::uint32_t>(entries_.size() - 1);
+  auto place = std::find_if(entries_.begin(), entries_.end(),
+                            [](const HistoryEntry& entry) { return entry.dropped; });
+  if (place == entries_.end()) place = entries_.insert(place, HistoryEntry{});
+  // The generation goes on: what the place held before is of an earlier one.
+  const std::uint32_t generation = place->generation;
+  *place = {};
+  place->name = name;
+  place->record = record;
+  place->generation = generation;
+  place->declared = true;
+  return static_cast<std::uint32_t>(place - entries_.begin());
+}
+
+void HistoryTable::drop(std::string_view name) {
+  for (HistoryEntry& entry : entries_) {
+    if (entry.declared || entry.dropped || entry.name != name) continue;
+    entry.dropped = true;
+    ++entry.generation;
+  }
 }
 
 void HistoryTable::invalidate(std::string_view name) {

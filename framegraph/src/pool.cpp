@@ -114,16 +114,28 @@ VkResult Pool::history(std::uint32_t entry, std::uint32_t generation, std::uint3
   return VK_SUCCESS;
 }
 
+void Pool::retire_histories(const HistoryTable& table, std::uint64_t frame) {
+  const auto gone = [&](HistoryImage& history) {
+    const auto& entries = table.entries();
+    if (history.entry >= entries.size() || entries[history.entry].generation == history.generation)
+      return false;
+    retired_.push_back({frame, std::move(history.physical), {}});
+    return true;
+  };
+  if (std::erase_if(histories_, gone) != 0) ++generation_;
+}
+
 Physical& Pool::import(const ResourceRecord& record, const ImportHandles& handles) {
   for (auto& physical : imports_) {
     if (physical->image == handles.image && physical->buffer == handles.buffer &&
-        same(physical->record, record))
+        physical->layer == handles.layer && same(physical->record, record))
       return *physical;
   }
   auto made = std::make_unique<Physical>();
   made->record = record;
   made->image = handles.image;
   made->buffer = handles.buffer;
+  made->layer = handles.layer;
   made->owned = false;
   imports_.push_back(std::move(made));
   return *imports_.back();
@@ -151,7 +163,7 @@ VkImageView Pool::view(Physical& physical, const Range& range) {
                                             : VK_IMAGE_VIEW_TYPE_2D;
   info.format = physical.record.format;
   info.subresourceRange = {view_aspect(physical.record.format), range.base_mip, range.mips,
-                           range.base_layer, range.layers};
+                           physical.layer + range.base_layer, range.layers};
   VkImageView view = VK_NULL_HANDLE;
   if (device_.vk.vkCreateImageView(device_.handles.device, &info, nullptr, &view) != VK_SUCCESS)
     return VK_NULL_HANDLE;

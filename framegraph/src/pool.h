@@ -30,7 +30,8 @@ struct Physical {
   VkBuffer buffer = VK_NULL_HANDLE;
   VkDeviceMemory own_memory = VK_NULL_HANDLE;
   VkDeviceSize own_size = 0;
-  bool owned = true;  // false for imports: only the views are the pool's
+  bool owned = true;        // false for imports: only the views are the pool's
+  std::uint32_t layer = 0;  // of an import: the image's that is the first of the texture
   std::vector<CachedView> views;
   std::uint64_t last_frame = 0;
 };
@@ -54,7 +55,9 @@ class Pool {
                                  std::uint32_t position, const ResourceRecord& record,
                                  VkFlags usage, std::string_view name, std::uint64_t frame,
                                  Physical*& found);
-  // A stand-in for an import: its views are cached by image.
+  // Retires what belongs to no entry any more: dropped, or made anew in another shape.
+  void retire_histories(const HistoryTable& table, std::uint64_t frame);
+  // A stand-in for an import: its views are cached by image and layer.
   Physical& import(const ResourceRecord& record, const ImportHandles& handles);
   void forget(VkImage image, std::uint64_t frame);
   // The view of a range, made on first use; null when the device is out of memory. Several threads

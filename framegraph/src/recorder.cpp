@@ -136,7 +136,7 @@ VkImageMemoryBarrier2 Recorder::image_barrier(const Transition& t) const {
   barrier.dstQueueFamilyIndex = family(t, t.dst_queue);
   barrier.image = physical.image;
   barrier.subresourceRange = {aspects(physical.record.format), t.range.base_mip, t.range.mips,
-                              t.range.base_layer, t.range.layers};
+                              physical.layer + t.range.base_layer, t.range.layers};
   return barrier;
 }
 

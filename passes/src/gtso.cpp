@@ -2,7 +2,6 @@
 
 #include <array>
 #include <utility>
-#include <vector>
 
 #include "check_inputs.h"
 #include "gtso_parameters.h"
@@ -28,15 +27,17 @@ tl::expected<void, Error> check(const Frame& frame, const GtsoInputs& inputs,
                                 std::to_string(settings.roughness_channel) +
                                 " of its texture; channels are 0 to 3."});
   }
-  std::vector<NamedInput> named{{"visibility", inputs.visibility},
-                                {"normals", inputs.normals},
-                                {"linear depth", inputs.depth}};
-  if (settings.model != SpecularModel::lagarde) {
-    named.push_back({"bent normals", inputs.bent_normal});
-  }
-  if (inputs.roughness) {
-    named.push_back({"roughness", inputs.roughness});
-  }
+  const auto or_visibility = [&](bool needed, Texture texture) {
+    return needed ? texture : inputs.visibility;
+  };
+  const std::array<NamedInput, 6> named{
+      {{"visibility", inputs.visibility},
+       {"normals", inputs.normals},
+       {"linear depth", inputs.depth},
+       {"bent normals",
+        or_visibility(settings.model != SpecularModel::lagarde, inputs.bent_normal)},
+       {"roughness", or_visibility(bool(inputs.roughness), inputs.roughness)},
+       {"a texture for specular occlusion", or_visibility(bool(inputs.into), inputs.into)}}};
   return check_inputs(frame.graph, "specular occlusion", named);
 }
 
@@ -73,9 +74,11 @@ tl::expected<Texture, Error> add_gtso(const Frame& frame, const GtsoInputs& give
   if (!kernel) {
     return tl::unexpected(kernel.error());
   }
-  Texture result = frame.graph.create_texture(
-      "specular occlusion",
-      {scalar_format(settings.precision), framegraph::Extent::relative(inputs.depth)});
+  Texture result = inputs.into
+                       ? inputs.into
+                       : frame.graph.create_texture("specular occlusion",
+                                                    {scalar_format(settings.precision),
+                                                     framegraph::Extent::relative(inputs.depth)});
   auto pass = frame.graph.add_pass("specular occlusion");
   declare_reads(pass, inputs);
   result = pass.write(result, framegraph::access::storage_write_compute, {},

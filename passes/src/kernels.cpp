@@ -334,7 +334,12 @@ tl::expected<Kernels, Error> Kernels::create(const framegraph::DeviceHandles& de
 }
 
 void Kernels::begin_frame() {
-  state_->slot = (state_->slot + 1) % state_->slots.size();
+  begin_frame(static_cast<std::uint32_t>((state_->slot + 1) % state_->slots.size()));
+}
+
+void Kernels::begin_frame(std::uint32_t slot) {
+  assert(slot < state_->slots.size());
+  state_->slot = slot;
   state_->dispatches = 0;
 }
 
@@ -397,6 +402,10 @@ void Kernels::dispatch(framegraph::RecordContext& context, Kernel kernel,
 }
 
 std::size_t Kernels::pipeline_count() const { return state_->pipelines.size(); }
+
+VkDeviceSize Kernels::memory_bytes() const {
+  return VkDeviceSize{state_->slots.size()} * kMaxDispatches * kMaxParameterBytes + table_bytes();
+}
 
 std::size_t Kernels::table_bytes() const {
   std::size_t bytes = 0;

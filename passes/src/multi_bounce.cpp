@@ -14,8 +14,10 @@ using framegraph::Texture;
 
 tl::expected<Texture, Error> add_multi_bounce(const Frame& frame, const MultiBounceInputs& inputs,
                                               Precision precision) {
-  const std::array<NamedInput, 2> named{
-      {{"visibility", inputs.visibility}, {"albedo", inputs.albedo}}};
+  const std::array<NamedInput, 3> named{
+      {{"visibility", inputs.visibility},
+       {"albedo", inputs.albedo},
+       {"a texture for multi-bounce", inputs.into ? inputs.into : inputs.visibility}}};
   if (auto good = check_inputs(frame.graph, "multi-bounce", named); !good) {
     return tl::unexpected(std::move(good.error()));
   }
@@ -23,8 +25,11 @@ tl::expected<Texture, Error> add_multi_bounce(const Frame& frame, const MultiBou
   if (!kernel) {
     return tl::unexpected(kernel.error());
   }
-  Texture result = frame.graph.create_texture(
-      "multi-bounce", {colour_format(precision), framegraph::Extent::relative(inputs.visibility)});
+  Texture result = inputs.into
+                       ? inputs.into
+                       : frame.graph.create_texture(
+                             "multi-bounce", {colour_format(precision),
+                                              framegraph::Extent::relative(inputs.visibility)});
   auto pass = frame.graph.add_pass("multi-bounce");
   pass.read(inputs.visibility, framegraph::access::sampled_compute);
   pass.read(inputs.albedo, framegraph::access::sampled_compute);

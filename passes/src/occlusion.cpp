@@ -38,7 +38,8 @@ tl::expected<OcclusionOutputs, Error> add_model(const Frame& frame, OcclusionOut
                    .normals = outputs.normals,
                    .depth = outputs.linear_depth,
                    .roughness = inputs.roughness,
-                   .normals_in_view_space = in_view_space},
+                   .normals_in_view_space = in_view_space,
+                   .into = inputs.into.specular},
                   {.model = model_of(settings.specular),
                    .roughness = settings.roughness,
                    .roughness_channel = settings.roughness_channel,
@@ -138,16 +139,18 @@ tl::expected<OcclusionOutputs, Error> add_occlusion(const Frame& frame,
   if (!signal) {
     return tl::unexpected(signal.error());
   }
-  const ReconstructSettings reconstruct{.reach = settings.filter_reach,
-                                        .tolerance_px = settings.filter_tolerance_px,
-                                        .history_frames = settings.history_frames,
-                                        .clamp_width = settings.clamp_width,
-                                        .roughness = settings.roughness,
-                                        .roughness_channel = settings.roughness_channel,
-                                        .precision = settings.precision};
+  const ReconstructSettings reconstruct{
+      .reach = settings.filter_reach,
+      .tolerance_px = settings.filter_tolerance_px,
+      .history_frames = settings.history_frames,
+      .clamp_width = settings.clamp_width,
+      .visibility = settings.visibility || by_model(settings.specular),
+      .roughness = settings.roughness,
+      .roughness_channel = settings.roughness_channel,
+      .precision = settings.precision};
   const auto filtered = add_reconstruct(
-      frame, {*signal, *line, normals, in_view_space, inputs.motion, inputs.roughness}, reconstruct,
-      history_name);
+      frame, {*signal, *line, normals, in_view_space, inputs.motion, inputs.roughness, inputs.into},
+      reconstruct, history_name);
   if (!filtered) {
     return tl::unexpected(filtered.error());
   }

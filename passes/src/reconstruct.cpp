@@ -2,7 +2,9 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <initializer_list>
+#include <memory_resource>
 #include <span>
 #include <string>
 
@@ -48,12 +50,33 @@ tl::expected<void, Error> check(const ReconstructSettings& settings) {
 
 tl::expected<void, Error> check_textures(const Frame& frame, const ReconstructInputs& inputs) {
   const auto or_line = [&](Texture texture) { return texture ? texture : inputs.line_depth; };
-  const std::array<NamedInput, 4> needed{{{"line depth", inputs.line_depth},
-                                          {"normals", inputs.normals},
-                                          {"motion vectors", or_line(inputs.motion)},
-                                          {"roughness", or_line(inputs.roughness)}}};
+  const std::array<NamedInput, 7> needed{
+      {{"line depth", inputs.line_depth},
+       {"normals", inputs.normals},
+       {"motion vectors", or_line(inputs.motion)},
+       {"roughness", or_line(inputs.roughness)},
+       {"a texture for visibility", or_line(inputs.into.visibility)},
+       {"a texture for bent normals", or_line(inputs.into.bent_normal)},
+       {"a texture for specular occlusion", or_line(inputs.into.specular)}}};
   return check_inputs(frame.graph, "reconstruct", needed);
 }
+
+// The history of bent normals that goes with one of this name. On the stack, so that a steady frame
+// allocates nothing for it.
+class BentHistoryName {
+ public:
+  explicit BentHistoryName(std::string_view history_name) {
+    constexpr std::string_view kAfter = " bent normal";
+    text_.reserve(history_name.size() + kAfter.size());
+    text_.append(history_name).append(kAfter);
+  }
+  operator std::string_view() const { return text_; }
+
+ private:
+  std::array<std::byte, 128> room_;
+  std::pmr::monotonic_buffer_resource memory_{room_.data(), room_.size()};
+  std::pmr::string text_{&memory_};
+};
 
 // All that the pass touches; null where it is not wanted.
 struct Textures {
@@ -73,28 +96,32 @@ Textures create_textures(const Frame& frame, const ReconstructInputs& inputs,
   const VkExtent3D extent = graph.extent(inputs.line_depth);
   const auto size = framegraph::Extent::absolute(extent.width, extent.height);
   Textures textures{.inputs = inputs};
-  textures.result.visibility =
-      graph.create_texture("visibility", {scalar_format(settings.precision), size});
+  const auto given_or = [&](Texture into, std::string_view name, VkFormat format) {
+    return into ? into : graph.create_texture(name, {format, size});
+  };
+  if (settings.visibility) {
+    textures.result.visibility =
+        given_or(inputs.into.visibility, "visibility", scalar_format(settings.precision));
+  }
   if (inputs.signal.bent) {
     textures.result.bent_normal =
-        graph.create_texture("bent normal", {direction_format(settings.precision), size});
+        given_or(inputs.into.bent_normal, "bent normal", direction_format(settings.precision));
   }
   if (inputs.signal.lobe) {
     textures.result.specular =
-        graph.create_texture("specular occlusion", {scalar_format(settings.precision), size});
+        given_or(inputs.into.specular, "specular occlusion", scalar_format(settings.precision));
   }
   if (settings.history_frames == 0) {
     return textures;
   }
-  const std::string name(history_name);
   const TextureHistory history =
-      graph.create_texture_history(name, {signal_format(inputs.signal.lobe), size});
+      graph.create_texture_history(history_name, {signal_format(inputs.signal.lobe), size});
   valid = history.validity == framegraph::HistoryValidity::valid;
   textures.history = history.previous();
   textures.next_history = history.current;
   if (inputs.signal.bent) {
-    const TextureHistory bent =
-        graph.create_texture_history(name + " bent normal", {VK_FORMAT_R16G16B16A16_SFLOAT, size});
+    const TextureHistory bent = graph.create_texture_history(BentHistoryName(history_name),
+                                                             {VK_FORMAT_R16G16B16A16_SFLOAT, size});
     valid = valid && bent.validity == framegraph::HistoryValidity::valid;
     textures.bent_history = bent.previous();
     textures.next_bent_history = bent.current;
@@ -143,6 +170,14 @@ struct Bindings {
   }
 };
 
+// A result that is wanted.
+Texture any_of(const Occlusion& results) {
+  if (results.visibility) {
+    return results.visibility;
+  }
+  return results.bent_normal ? results.bent_normal : results.specular;
+}
+
 // In the order of the shader's bindings; what is not wanted is bound to something of its kind.
 Bindings bindings_of(RecordContext& context, const Textures& textures) {
   const auto view_or = [&](Texture texture, Texture instead) {
@@ -150,14 +185,15 @@ Bindings bindings_of(RecordContext& context, const Textures& textures) {
   };
   const ReconstructInputs& in = textures.inputs;
   const Occlusion& out = textures.result;
+  const Texture written = any_of(out);
   Bindings bindings;
   bindings.add({context.view(in.signal.signal), view_or(in.signal.bent, in.signal.signal),
-                context.view(in.line_depth), context.view(in.normals), context.view(out.visibility),
-                view_or(out.bent_normal, out.visibility)});
+                context.view(in.line_depth), context.view(in.normals),
+                view_or(out.visibility, written), view_or(out.bent_normal, written)});
   if (textures.history) {
     bindings.add({view_or(in.motion, in.normals), context.view(textures.history),
                   view_or(textures.bent_history, in.normals), context.view(textures.next_history),
-                  view_or(textures.next_bent_history, out.visibility)});
+                  view_or(textures.next_bent_history, written)});
   }
   if (in.signal.lobe) {
     bindings.add({view_or(in.roughness, in.normals), context.view(out.specular)});
@@ -241,6 +277,11 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& frame, const Reconst
   if (auto good = check_textures(frame, inputs); !good) {
     return tl::unexpected(good.error());
   }
+  if (!settings.visibility && !inputs.signal.bent && !inputs.signal.lobe) {
+    return tl::unexpected(Error{
+        "The filter is asked for no visibility, and its signal has neither bent normals nor a "
+        "lobe; ask for one of the three."});
+  }
   const auto projection = projection_of(frame, frame.view, inputs.line_depth);
   const auto previous = projection_of(frame, frame.previous_view, inputs.line_depth);
   if (!projection || !previous) {
@@ -259,7 +300,8 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& frame, const Reconst
                              static_cast<std::uint32_t>(still),
                              static_cast<std::uint32_t>(bool(inputs.roughness)),
                              settings.roughness_channel,
-                             static_cast<std::uint32_t>(!history_valid)};
+                             static_cast<std::uint32_t>(!history_valid),
+                             static_cast<std::uint32_t>(settings.visibility)};
   const auto kernel = frame.kernels.get(shader_of(history, inputs.signal.lobe), constants);
   if (!kernel) {
     return tl::unexpected(kernel.error());
@@ -275,9 +317,14 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& frame, const Reconst
     const Bindings bindings = bindings_of(context, textures);
     const std::span<const VkImageView> bound(bindings.views.data(), bindings.count);
     kernels.dispatch(context, kernel, bound, bytes_of(parameters),
-                     cells_of(context.extent(textures.result.visibility), divisor));
+                     cells_of(context.extent(textures.inputs.line_depth), divisor));
   });
   return textures.result;
+}
+
+void drop_reconstruct_history(Graph& graph, std::string_view history_name) {
+  graph.drop_history(history_name);
+  graph.drop_history(BentHistoryName(history_name));
 }
 
 }  // namespace alcove::passes

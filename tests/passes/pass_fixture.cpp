@@ -91,13 +91,19 @@ void PassTest::TearDown() {
 }
 
 Texture PassTest::upload(Graph& graph, const HostImage& image, VkFormat format) {
+  return fill(
+      graph,
+      graph.create_texture(
+          "uploaded", {format == VK_FORMAT_UNDEFINED ? uploaded_format(image.channels) : format,
+                       framegraph::Extent::absolute(image.width, image.height)}),
+      image);
+}
+
+Texture PassTest::fill(Graph& graph, Texture target, const HostImage& image) {
   const std::size_t bytes = image.texels.size() * sizeof(float);
   auto buffer = sample::HostBuffer::create(gpu_->device(), bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
   EXPECT_TRUE(buffer) << buffer.error();
   std::memcpy((*buffer)->bytes().data(), image.texels.data(), bytes);
-  const Texture target = graph.create_texture(
-      "uploaded", {format == VK_FORMAT_UNDEFINED ? uploaded_format(image.channels) : format,
-                   framegraph::Extent::absolute(image.width, image.height)});
   uploads_.push_back(std::move(*buffer));
   return sample::add_copy(graph, *uploads_.back(), target);
 }

@@ -36,6 +36,9 @@ class PassTest : public testing::Test {
   // A `format` of 32-bit channels takes the floats by their bits.
   framegraph::Texture upload(framegraph::Graph& graph, const HostImage& image,
                              VkFormat format = VK_FORMAT_UNDEFINED);
+  // Has `target`, of such a format, filled with `image`.
+  framegraph::Texture fill(framegraph::Graph& graph, framegraph::Texture target,
+                           const HostImage& image);
   // Has `texture`, of any format that the passes write, read back: result() gives it as floats once
   // the frame has run.
   void read_back(framegraph::Graph& graph, framegraph::Texture texture, std::uint32_t mip = 0);

@@ -96,6 +96,7 @@ struct ImportHandles {
   VkImageView view = VK_NULL_HANDLE;
   VkBuffer buffer = VK_NULL_HANDLE;
   std::uint32_t history = kNone;  // of a history slot: index into the graph's histories
+  std::uint32_t layer = 0;        // of the image: the texture's first
 };
 
 class Graph {
@@ -120,6 +121,9 @@ class Graph {
   // From the next create_*_history on, nothing of the named history (or of all) is valid.
   void reset_history(std::string_view name);
   void reset_histories();
+  // Forgets the named history, unless this frame declared it (or, after its record, the frame did):
+  // the executor frees its memory in the next frames that it records, as the device gets done.
+  void drop_history(std::string_view name);
 
   PassBuilder add_pass(std::string_view name, QueueClass queue = QueueClass::graphics);
 

@@ -32,6 +32,7 @@ struct HistoryEntry {
   std::uint32_t head = 0;               // physical position of slot 0
   std::uint32_t generation = 0;         // changes when new physical resources are needed
   bool declared = false;                // in the frame that is being declared
+  bool dropped = false;                 // the place is free
 
   std::uint32_t physical(std::uint32_t slot) const { return (head + slot) % record.slots; }
 };
@@ -42,6 +43,8 @@ class HistoryTable {
   std::uint32_t declare(std::string_view name, const ResourceRecord& record);
   void invalidate(std::string_view name);
   void invalidate_all();
+  // Frees the place of a history that is not declared in this frame.
+  void drop(std::string_view name);
   void begin_frame();
 
   const std::vector<HistoryEntry>& entries() const { return entries_; }

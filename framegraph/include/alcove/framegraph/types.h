@@ -104,6 +104,9 @@ struct ImportedTexture {
   VkImageView view = VK_NULL_HANDLE;  // of the whole image
   TextureDesc desc;                   // the extent must be absolute
   VkImageUsageFlags usage = 0;
+  // Of an array, of which desc.layers are imported, and in `view`. Barriers and views count from
+  // it; a callback that takes the image itself has to.
+  std::uint32_t first_layer = 0;
   State arrival;
   // With a departure the graph leaves the image so, and a write to it is an output of the frame.
   // Without one (layout undefined and no stages) a write that nobody reads is culled.

@@ -38,6 +38,7 @@ struct GtsoInputs {
   framegraph::Texture depth;        // linear, as add_depth_pyramid makes it
   framegraph::Texture roughness;    // perceptual, [0,1]; null: GtsoSettings::roughness
   bool normals_in_view_space = false;
+  framegraph::Texture into;  // to be written, whole; null: a transient of GtsoSettings::precision
 };
 
 // Out: one channel, the visible share of the GGX lobe of each pixel, [0,1], 1 open, which

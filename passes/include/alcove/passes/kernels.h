@@ -68,6 +68,9 @@ class Kernels {
   // Takes back the descriptors and parameters of the frame that was recorded `frames_in_flight`
   // frames ago; that frame must have finished on the device.
   void begin_frame();
+  // The same for a caller that numbers its frames in flight: `slot` is below `frames_in_flight`,
+  // and the frame that was last recorded with it must have finished on the device.
+  void begin_frame(std::uint32_t slot);
 
   // The pipeline of `shader` with specialisation constants 0, 1, 2... of these values.
   [[nodiscard]] tl::expected<Kernel, Error> get(Shader shader,
@@ -75,6 +78,9 @@ class Kernels {
 
   // Bytes of the tables that the shaders in use look up; one that is not used has none.
   [[nodiscard]] std::size_t table_bytes() const;
+
+  // Bytes of device memory: parameters of all frames in flight, and those tables.
+  [[nodiscard]] VkDeviceSize memory_bytes() const;
 
   // Records a dispatch that covers `size` pixels (and layers) with 8x8 groups. Binding 0 is a
   // uniform buffer with `parameters`; the views follow in the order of the shader's bindings,

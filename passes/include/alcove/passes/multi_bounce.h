@@ -8,6 +8,7 @@ namespace alcove::passes {
 struct MultiBounceInputs {
   framegraph::Texture visibility;  // one channel, [0,1], 1 open
   framegraph::Texture albedo;      // linear RGB, [0,1], as large as the visibility
+  framegraph::Texture into;        // to be written, whole; null: a transient of `precision`
 };
 
 // Out: RGB, the share of the environment's light that reaches each pixel after any number of

@@ -46,6 +46,7 @@ struct OcclusionSettings {
   float filter_tolerance_px = 1.5f;  // distance from the tangent plane, in sizes of a pixel
   std::uint32_t history_frames = 0;  // that are averaged, 0 to 255; 0 keeps none
   float clamp_width = 0.0f;          // of history, in deviations of this frame; 0 leaves it free
+  bool visibility = true;            // off where only the next two are wanted
   bool bent_normal = false;
   Specular specular = Specular::none;
   float roughness = 0.5f;               // perceptual, [0,1], of every pixel where no texture has it
@@ -72,10 +73,13 @@ struct OcclusionInputs {
   // value is taken: where it is sky, not a number or not behind `depth_ndc` by more than a
   // ten-thousandth of the distance, the occluder's thickness is that of the settings.
   framegraph::Texture back_depth_ndc;
+  // As ReconstructInputs::into: textures of the caller's for the results that the settings ask for.
+  Occlusion into;
 };
 
 struct OcclusionOutputs {
-  framegraph::Texture visibility;  // one channel, [0,1], 1 open
+  // One channel, [0,1], 1 open; null where neither the settings nor their specular model want it.
+  framegraph::Texture visibility;
   framegraph::Texture
       bent_normal;  // xyz unit, in the space of `normals`; null where none was asked for
   framegraph::Texture specular;      // one channel, multiplies specular probe light, [0,1], 1 open;

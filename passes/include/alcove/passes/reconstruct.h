@@ -22,9 +22,19 @@ struct ReconstructSettings {
   std::uint32_t history_frames = 0;
   // History is held to so many standard deviations of this frame's neighbourhood; 0 leaves it free.
   float clamp_width = 0.0f;
+  bool visibility = true;  // also write it: off where only what else the signal has is wanted
   float roughness = 0.5f;  // as GtaoSettings has them; read where the signal has a lobe
   std::uint32_t roughness_channel = 0;
   Precision precision = Precision::unorm8;
+};
+
+struct Occlusion {
+  // One channel, [0,1], 1 open, as large as the depth; null where none is wanted.
+  framegraph::Texture visibility;
+  framegraph::Texture bent_normal;  // xyz unit, in the space of the normals; null where the signal
+                                    // has none
+  framegraph::Texture specular;  // one channel, the visible share of the GGX lobe, [0,1], 1 open;
+                                 // null where the signal has no lobe
 };
 
 struct ReconstructInputs {
@@ -37,14 +47,9 @@ struct ReconstructInputs {
   // the last few frames say.
   framegraph::Texture motion;
   framegraph::Texture roughness;  // as GtaoInputs::roughness
-};
-
-struct Occlusion {
-  framegraph::Texture visibility;   // one channel, [0,1], 1 open, as large as the depth
-  framegraph::Texture bent_normal;  // xyz unit, in the space of the normals; null where the signal
-                                    // has none
-  framegraph::Texture specular;  // one channel, the visible share of the GGX lobe, [0,1], 1 open;
-                                 // null where the signal has no lobe
+  // Textures of the depth's size, of the caller's, that results are written to, whole; null: a
+  // transient of ReconstructSettings::precision. Read only where the result is wanted.
+  Occlusion into;
 };
 
 // `history_name` tells the histories of one graph apart: each view needs its own. A history begins
@@ -53,5 +58,9 @@ struct Occlusion {
 [[nodiscard]] tl::expected<Occlusion, Error> add_reconstruct(
     const Frame& frame, const ReconstructInputs& inputs, const ReconstructSettings& settings,
     std::string_view history_name = "occlusion");
+
+// Gives back the memory of the histories of this name that the frame being declared, or declared
+// last, does not have, once the device is done with them: see Graph::drop_history.
+void drop_reconstruct_history(framegraph::Graph& graph, std::string_view history_name);
 
 }  // namespace alcove::passes

@@ -1,0 +1,308 @@
+// Alcove from C: ambient occlusion recorded into an engine's own command buffer, on its own device.
+//
+//   alcoveCreateContext once                 AlcoveSettings from alcoveGetSettings, changed at will
+//   frame: wait for the fence of slot s;     alcoveRecordFrame into a command buffer in recording
+//          end it, submit it with that fence
+//   alcoveDestroyContext when the device has finished
+//
+// Space. View space is right-handed with the camera along -Z, clip space is Vulkan's (y down, depth
+// 0 to 1), matrices are column-major: row r of column c at 4 * c + r. Lengths are in the scene's
+// units. A visibility of 1 is open.
+//
+// Threads. One thread at a time per context, and that without any lock; contexts share nothing.
+//
+// Errors. A call that fails records nothing, and alcoveGetMessage says in a sentence what was
+// wrong; at worst a history begins anew. Where memory or the device gives out in the middle of a
+// frame, what was recorded of it, and the command buffer with it, is to be thrown away; the next
+// one may be tried. No exception leaves the library, and nothing is printed.
+//
+// Versions. A struct that may grow begins with struct_size, which the caller sets to sizeof the
+// struct: so the library knows which version of this header the caller was compiled with. Structs
+// grow at their end, and what an older caller does not have stays off. Values of enums never
+// change.
+#ifndef ALCOVE_ALCOVE_H_
+#define ALCOVE_ALCOVE_H_
+
+#include <stddef.h>
+#include <stdint.h>
+#include <vulkan/vulkan_core.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define ALCOVE_VERSION VK_MAKE_API_VERSION(0, 0, 1, 0)  // of this header
+#define ALCOVE_MAX_VIEWS 8                              // of a frame
+#define ALCOVE_MAX_FRAMES_IN_FLIGHT 8
+#define ALCOVE_MAX_NAME 32      // of a pass, its end included
+#define ALCOVE_MAX_MESSAGE 512  // the same; longer ones are cut
+
+typedef enum AlcoveResult {
+  ALCOVE_SUCCESS = 0,
+  ALCOVE_ERROR_INVALID_INPUT = -1,  // what the caller gave
+  ALCOVE_ERROR_UNSUPPORTED = -2,    // what the device lacks
+  ALCOVE_ERROR_OUT_OF_HOST_MEMORY = -3,
+  ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY = -4,
+  ALCOVE_ERROR_DEVICE_LOST = -5,
+  ALCOVE_ERROR_VULKAN = -6,    // another of Vulkan's: the message has its number
+  ALCOVE_ERROR_INTERNAL = -7,  // the library's own fault
+  ALCOVE_RESULT_MAX_ENUM = 0x7fffffff
+} AlcoveResult;
+
+// ALCOVE_VERSION of the library.
+uint32_t alcoveGetVersion(void);
+
+typedef enum AlcoveQuality {
+  ALCOVE_QUALITY_LOW = 0,     // one search in 4x4 pixels a frame, and history
+  ALCOVE_QUALITY_MEDIUM = 1,  // one in 2x2
+  ALCOVE_QUALITY_HIGH = 2,    // every pixel
+  ALCOVE_QUALITY_ULTRA = 3,
+  ALCOVE_QUALITY_REFERENCE = 4,  // a still image to compare with
+  ALCOVE_QUALITY_MAX_ENUM = 0x7fffffff
+} AlcoveQuality;
+
+// What stands behind the front of an occluder.
+typedef enum AlcoveEstimator {
+  ALCOVE_ESTIMATOR_HORIZONS = 0,   // everything
+  ALCOVE_ESTIMATOR_HEURISTIC = 1,  // the same, but lower samples further out pull horizons down
+  ALCOVE_ESTIMATOR_BITMASK = 2,    // each sample is as thick as `thickness` says
+  ALCOVE_ESTIMATOR_CONNECTED = 3,  // and samples of one surface are joined
+  ALCOVE_ESTIMATOR_MAX_ENUM = 0x7fffffff
+} AlcoveEstimator;
+
+typedef enum AlcoveWeighting {
+  ALCOVE_WEIGHTING_COSINE = 0,   // of the angle to the normal
+  ALCOVE_WEIGHTING_UNIFORM = 1,  // 1: solid angle
+  ALCOVE_WEIGHTING_MAX_ENUM = 0x7fffffff
+} AlcoveWeighting;
+
+typedef enum AlcoveThicknessUnit {
+  ALCOVE_THICKNESS_UNIT_RADIUS = 0,      // parts of the radius
+  ALCOVE_THICKNESS_UNIT_DISTANCE = 1,    // parts of the occluder's distance from the eye
+  ALCOVE_THICKNESS_UNIT_BACK_FACES = 2,  // AlcoveView::back_depth; the radius where that has none
+  ALCOVE_THICKNESS_UNIT_MAX_ENUM = 0x7fffffff
+} AlcoveThicknessUnit;
+
+// How directions are spread over pixels and frames.
+typedef enum AlcovePattern {
+  ALCOVE_PATTERN_GOLDEN = 0,
+  ALCOVE_PATTERN_HILBERT = 1,
+  ALCOVE_PATTERN_MEMO = 2,
+  ALCOVE_PATTERN_MAX_ENUM = 0x7fffffff
+} AlcovePattern;
+
+// How specular occlusion is found, where AlcoveView::specular asks for it.
+typedef enum AlcoveSpecular {
+  ALCOVE_SPECULAR_SLICES = 1,  // by the slices that find visibility: the most exact
+  // From visibility and bent normal.
+  ALCOVE_SPECULAR_TABLE = 2,
+  ALCOVE_SPECULAR_CONE = 3,
+  ALCOVE_SPECULAR_SMOOTH_CONE = 4,
+  // From visibility alone.
+  ALCOVE_SPECULAR_LAGARDE = 5,
+  ALCOVE_SPECULAR_MAX_ENUM = 0x7fffffff
+} AlcoveSpecular;
+
+// Of results that others are made from and that no image was given for; an image has its own.
+typedef enum AlcovePrecision {
+  ALCOVE_PRECISION_UNORM8 = 0,
+  ALCOVE_PRECISION_FLOAT16 = 1,
+  ALCOVE_PRECISION_FLOAT32 = 2,
+  ALCOVE_PRECISION_MAX_ENUM = 0x7fffffff
+} AlcovePrecision;
+
+// alcove/passes/occlusion.h says more of each.
+typedef struct AlcoveSettings {
+  uint32_t struct_size;
+  float radius;     // scene units, over 0: occluders beyond it do not count
+  uint32_t slices;  // a pixel, 1 to 64
+  uint32_t steps;   // a side of a slice, 2 to 64
+  AlcoveEstimator estimator;
+  AlcoveWeighting weighting;
+  float thickness;  // of occluders, at least 0 (bitmask, connected)
+  AlcoveThicknessUnit thickness_unit;
+  float fill;     // share of what is hidden behind them that occludes too, [0,1]
+  float blend;    // of a horizon towards each lower sample, [0,1] (heuristic)
+  float falloff;  // last part of the radius, over which occluders fade, [0,1] (horizons, heuristic)
+  uint32_t divisor;  // one search a frame in so many pixels a side: 1, 2 or 4
+  AlcovePattern pattern;
+  uint32_t depth_mips;        // of linear depth, 1 to 5
+  uint32_t filter_reach;      // blocks on each side, 0 to 3; 0: no filter
+  float filter_tolerance_px;  // distance from the tangent plane, in sizes of a pixel, over 0
+  uint32_t history_frames;    // that are averaged, 0 to 255; 0: no history and no memory for it
+  float clamp_width;  // of history, in deviations of this frame, at least 0; 0 leaves it free
+  AlcoveSpecular specular;
+  float roughness;             // perceptual, [0,1], of every pixel where no image has it
+  uint32_t roughness_channel;  // of AlcoveView::roughness, 0 to 3
+  AlcovePrecision precision;
+} AlcoveSettings;
+
+// Fills `settings`, whose struct_size is set, with those of a quality at a radius (scene units,
+// over 0). ALCOVE_ERROR_INVALID_INPUT where one of the three is none.
+AlcoveResult alcoveGetSettings(AlcoveQuality quality, float radius, AlcoveSettings* settings);
+
+// Writes the settings as lines of `name = value`, at most `size` bytes with the closing zero.
+// Returns the bytes that all of it takes without that zero, 0 where the settings are none. `text`
+// may be null where `size` is 0.
+size_t alcovePrintSettings(const AlcoveSettings* settings, char* text, size_t size);
+
+typedef struct AlcoveContext AlcoveContext;
+
+// The engine's own; all of it outlives the context.
+typedef struct AlcoveContextInfo {
+  uint32_t struct_size;
+  uint32_t queue_family;  // of the queue that frames are submitted to: one that computes
+  VkInstance instance;    // as the device, made for Vulkan 1.3
+  VkPhysicalDevice physical_device;
+  // With the features synchronization2 and shaderStorageImageWriteWithoutFormat enabled.
+  VkDevice device;
+  PFN_vkGetInstanceProcAddr get_instance_proc_addr;
+  // What the device was made with, chained as for vkCreateDevice: then a feature that the engine
+  // forgot to enable is named. Null: only what the physical device has is checked.
+  const VkPhysicalDeviceFeatures2* enabled_features;
+  uint32_t frames_in_flight;  // 1 to ALCOVE_MAX_FRAMES_IN_FLIGHT
+  VkBool32 debug_utils;       // VK_EXT_debug_utils is enabled: passes and images get names
+  VkBool32 timestamps;        // the device times each pass: alcoveGetTimings
+} AlcoveContextInfo;
+
+// `message` may be null; else it has room for ALCOVE_MAX_MESSAGE bytes and gets the sentence where
+// there is an error, and is empty where there is none. On an error *context is null.
+AlcoveResult alcoveCreateContext(const AlcoveContextInfo* info, AlcoveContext** context,
+                                 char* message);
+
+// The device must have finished all that was recorded. Null is fine.
+void alcoveDestroyContext(AlcoveContext* context);
+
+// What the last call on this context that failed had to say; empty before there is one. Valid until
+// the next call. Never null.
+const char* alcoveGetMessage(const AlcoveContext* context);
+
+typedef struct AlcoveState {
+  VkPipelineStageFlags2 stages;
+  VkAccessFlags2 access;
+  VkImageLayout layout;
+} AlcoveState;
+
+// An image of the engine's: 2D, optimal tiling, one mip, one sample, of the queue family of the
+// context or shared. Zeroed: there is none.
+typedef struct AlcoveImage {
+  VkImage image;
+  // 2D, of the layer, of the depth aspect alone in formats that have it. Null: the library makes
+  // one and keeps it; call alcoveForgetImage before the image is destroyed.
+  VkImageView view;
+  VkFormat format;
+  uint32_t width;  // pixels; all images of a view have one size
+  uint32_t height;
+  uint32_t layer;  // of an array of images, both eyes' say
+  // That the image was made with. Inputs need SAMPLED. Outputs need STORAGE, and SAMPLED where
+  // others are made from them: visibility with multi-bounce or a specular model but slices, bent
+  // normals with the models that read them.
+  VkImageUsageFlags usage;
+  // Who wrote it last (of an output: who read or wrote it last), and in which layout it is then.
+  // The first barrier waits for these stages. An output may come in VK_IMAGE_LAYOUT_UNDEFINED: all
+  // of it is overwritten.
+  AlcoveState arrival;
+  // Who uses it next, and in which layout: the last barrier puts it there and makes it visible to
+  // these stages, also where no pass reads it. Needed.
+  AlcoveState departure;
+} AlcoveImage;
+
+typedef struct AlcoveCamera {
+  float clip_from_view[16];   // any projection: finite, infinite, reversed, off-centre, jittered,
+                              // flipped in Y, orthographic
+  float view_from_world[16];  // rotation and translation only
+} AlcoveCamera;
+
+// One view of a frame: an eye, a part of a split screen. Outputs that have no image are not made,
+// and cost neither a pass nor memory.
+typedef struct AlcoveView {
+  uint32_t struct_size;
+  uint32_t id;             // any number, other in each view of a frame: each id has its own history
+  VkBool32 reset_history;  // forget it, at a cut say. A change of size does so by itself
+  VkBool32 normals_in_view_space;  // else in world space
+  const AlcoveSettings* settings;
+  AlcoveCamera camera;
+  AlcoveCamera previous_camera;  // when this id was last recorded; unread with reset_history
+
+  // Inputs.
+  AlcoveImage depth;    // as clip_from_view has it: any depth format, or R32_SFLOAT. Needed
+  AlcoveImage normals;  // xyz unit, signed; none: made from depth, and in view space
+  AlcoveImage
+      motion;  // xy: uv of this frame minus uv of the last, signed; none: only the camera moves
+  AlcoveImage roughness;   // perceptual, [0,1]; none: AlcoveSettings::roughness
+  AlcoveImage back_depth;  // of the nearest back faces, as depth; needed with
+                           // ALCOVE_THICKNESS_UNIT_BACK_FACES (bitmask, connected), else unread
+  AlcoveImage albedo;      // linear RGB, [0,1], for multi_bounce
+
+  // Outputs. Formats are any that the device can store to, of at least so many channels.
+  AlcoveImage visibility;    // 1 channel, [0,1]: R8_UNORM will do
+  AlcoveImage bent_normal;   // 3, signed: xyz unit, in the space of the normals; R8G8B8A8_SNORM
+  AlcoveImage specular;      // 1, [0,1]: multiplies specular probe light
+  AlcoveImage multi_bounce;  // 3, RGB, [0,1]: visibility with the light that occluders send back
+} AlcoveView;
+
+typedef struct AlcoveFrame {
+  uint32_t struct_size;
+  uint32_t index;       // counts frames: it turns the noise and moves the searched pixels
+  uint32_t slot;        // in flight, below frames_in_flight: what was recorded with it has finished
+  uint32_t view_count;  // 1 to ALCOVE_MAX_VIEWS
+  const AlcoveView* views;
+} AlcoveFrame;
+
+// Records the passes of all views into `commands`: a primary command buffer in recording, of the
+// context's queue family, outside a render pass. Frames are submitted in the order in which they
+// are recorded, all to one queue. A frame like the one before allocates nothing.
+//
+// It binds compute pipelines and descriptor set 0 and leaves them bound; other state is untouched.
+// Barriers: each image from its arrival to SHADER_READ_ONLY_OPTIMAL (inputs) or GENERAL (outputs),
+// for compute shaders, before its first use; to its departure after the last. In between only the
+// library's own memory is concerned, but that a frame which differs from the one before begins with
+// a full barrier. One image may serve as several inputs, described alike; an output serves as
+// nothing else.
+//
+// Errors, with nothing recorded: a null pointer, a size that is none, an enum's unknown value, a
+// number out of range or that is not finite, a format or a usage that does not do, images that
+// differ in size, a frame without a view, a view without an output.
+AlcoveResult alcoveRecordFrame(AlcoveContext* context, VkCommandBuffer commands,
+                               const AlcoveFrame* frame);
+
+// Bytes of device memory of the frame recorded last; zeros before there is one.
+typedef struct AlcoveMemory {
+  uint32_t struct_size;
+  uint64_t transients;           // live during the frame, sharing memory
+  uint64_t transients_unshared;  // what they were, were each given memory of its own
+  uint64_t history;              // of all views
+  uint64_t allocated;            // all that the context holds, parameters and tables too
+} AlcoveMemory;
+
+// Fills `memory`, whose struct_size is set.
+AlcoveResult alcoveGetMemory(AlcoveContext* context, AlcoveMemory* memory);
+
+typedef struct AlcoveTiming {
+  char pass[ALCOVE_MAX_NAME];
+  double milliseconds;
+} AlcoveTiming;
+
+// Device time of each pass, in order, of the frame last recorded with `slot`, once it has finished.
+// `timings` null: *count becomes how many there are; else it says for how many there is room and
+// becomes how many were written. None without timestamps.
+AlcoveResult alcoveGetTimings(AlcoveContext* context, uint32_t slot, uint32_t* count,
+                              AlcoveTiming* timings);
+
+// The plan of the frame recorded last, for people: passes, barriers, memory. As alcovePrintSettings
+// writes; 0 where there is no such frame, or no memory for its text.
+size_t alcovePrintPlan(AlcoveContext* context, char* text, size_t size);
+
+// Forgets a view and its history. The memory is freed in the next frames that are recorded, once
+// the device has finished those that used it. An id that was never recorded is fine.
+AlcoveResult alcoveDropView(AlcoveContext* context, uint32_t id);
+
+// To be called before the engine destroys an image that it gave without a view: another may get the
+// same handle. An image that was never given is fine.
+AlcoveResult alcoveForgetImage(AlcoveContext* context, VkImage image);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif  // ALCOVE_ALCOVE_H_

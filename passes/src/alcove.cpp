@@ -1,0 +1,409 @@
+#include "alcove/alcove.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <memory>
+#include <new>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "alcove/framegraph/executor.h"
+#include "alcove/framegraph/print.h"
+#include "alcove/passes/kernels.h"
+#include "alcove/passes/reconstruct.h"
+#include "c_failure.h"
+#include "c_images.h"
+#include "c_view.h"
+
+using namespace alcove;
+using passes::Failure;
+using passes::invalid;
+
+namespace {
+
+using Message = std::array<char, ALCOVE_MAX_MESSAGE>;
+using Result = tl::expected<void, Failure>;
+
+void write(Message& message, std::string_view text) {
+  const std::size_t length = std::min(text.size(), message.size() - 1);
+  std::copy_n(text.data(), length, message.data());
+  message[length] = '\0';
+}
+
+// The passes of a view need no more dispatches than their share of a frame.
+constexpr std::uint32_t kPassesOfAView = 8;
+static_assert(ALCOVE_MAX_VIEWS * kPassesOfAView <= passes::Kernels::kMaxDispatches);
+
+}  // namespace
+
+struct AlcoveContext {
+  AlcoveContext(framegraph::Executor made_executor, passes::Kernels made_kernels,
+                const AlcoveContextInfo& info)
+      : frames_in_flight(info.frames_in_flight),
+        executor(std::move(made_executor)),
+        kernels(std::move(made_kernels)) {}
+
+  std::uint32_t frames_in_flight;
+  framegraph::Executor executor;
+  passes::Kernels kernels;
+  framegraph::Graph graph;
+  passes::ImageTable images;
+  framegraph::FrameReport report;  // of the frame recorded last; its plan null before there is one
+  Message message{};
+};
+
+namespace {
+
+// Runs `call`, which gives a Result, and keeps what it says of a failure. Nothing is thrown beyond.
+template <typename Call>
+AlcoveResult guarded(Message& message, const Call& call) {
+  try {
+    const Result result = call();
+    if (result) {
+      return ALCOVE_SUCCESS;
+    }
+    write(message, result.error().message);
+    return result.error().result;
+  } catch (const std::bad_alloc&) {
+    write(message, "The host has no memory left.");
+    return ALCOVE_ERROR_OUT_OF_HOST_MEMORY;
+  } catch (...) {
+    write(message, "The library failed for a reason that it does not know.");
+    return ALCOVE_ERROR_INTERNAL;
+  }
+}
+
+tl::unexpected<Failure> unsupported(std::string message) {
+  return tl::unexpected(Failure{ALCOVE_ERROR_UNSUPPORTED, std::move(message)});
+}
+
+struct Features {
+  bool synchronization2 = false;
+  bool write_without_format = false;
+};
+
+Features features_in(const VkPhysicalDeviceFeatures2& chain) {
+  Features found;
+  found.write_without_format = chain.features.shaderStorageImageWriteWithoutFormat != VK_FALSE;
+  for (auto* next = static_cast<const VkBaseInStructure*>(chain.pNext); next != nullptr;
+       next = next->pNext) {
+    if (next->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES) {
+      const auto* vulkan13 = reinterpret_cast<const VkPhysicalDeviceVulkan13Features*>(next);
+      found.synchronization2 |= vulkan13->synchronization2 != VK_FALSE;
+    }
+    if (next->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES) {
+      const auto* alone = reinterpret_cast<const VkPhysicalDeviceSynchronization2Features*>(next);
+      found.synchronization2 |= alone->synchronization2 != VK_FALSE;
+    }
+  }
+  return found;
+}
+
+Result check_features(const Features& features, std::string_view who, const char* remedy) {
+  const char* missing = !features.synchronization2       ? "synchronization2"
+                        : !features.write_without_format ? "shaderStorageImageWriteWithoutFormat"
+                                                         : nullptr;
+  if (missing == nullptr) {
+    return {};
+  }
+  return unsupported(std::string(who) + " has no feature " + missing + ", which is needed; " +
+                     remedy + ".");
+}
+
+template <typename Function>
+Function instance_function(const AlcoveContextInfo& info, const char* name) {
+  return reinterpret_cast<Function>(info.get_instance_proc_addr(info.instance, name));
+}
+
+Result check_device(const AlcoveContextInfo& info) {
+  const auto get_properties =
+      instance_function<PFN_vkGetPhysicalDeviceProperties>(info, "vkGetPhysicalDeviceProperties");
+  const auto get_features =
+      instance_function<PFN_vkGetPhysicalDeviceFeatures2>(info, "vkGetPhysicalDeviceFeatures2");
+  const auto get_families = instance_function<PFN_vkGetPhysicalDeviceQueueFamilyProperties2>(
+      info, "vkGetPhysicalDeviceQueueFamilyProperties2");
+  if (get_properties == nullptr || get_features == nullptr || get_families == nullptr) {
+    return unsupported("The instance is older than Vulkan 1.3; create it for that version.");
+  }
+  VkPhysicalDeviceProperties properties{};
+  get_properties(info.physical_device, &properties);
+  const std::string name = std::string("The device '") + properties.deviceName + "'";
+  if (properties.apiVersion < VK_API_VERSION_1_3) {
+    return unsupported(name + " is below Vulkan 1.3; choose another or update its driver.");
+  }
+  VkPhysicalDeviceVulkan13Features vulkan13{
+      .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
+  VkPhysicalDeviceFeatures2 has{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
+                                .pNext = &vulkan13};
+  get_features(info.physical_device, &has);
+  if (auto right = check_features(features_in(has), name, "choose another"); !right) {
+    return right;
+  }
+  if (info.enabled_features != nullptr) {
+    if (auto right = check_features(features_in(*info.enabled_features),
+                                    "AlcoveContextInfo::enabled_features",
+                                    "enable it when the device is created");
+        !right) {
+      return right;
+    }
+  }
+  std::uint32_t count = 0;
+  get_families(info.physical_device, &count, nullptr);
+  std::vector<VkQueueFamilyProperties2> families(
+      count, {.sType = VK_STRUCTURE_TYPE_QUEUE_FAMILY_PROPERTIES_2});
+  get_families(info.physical_device, &count, families.data());
+  if (info.queue_family >= count) {
+    return invalid("AlcoveContextInfo::queue_family is " + std::to_string(info.queue_family) +
+                   ", but the device has " + std::to_string(count) + " families.");
+  }
+  const VkQueueFamilyProperties& family = families[info.queue_family].queueFamilyProperties;
+  if ((family.queueFlags & VK_QUEUE_COMPUTE_BIT) == 0) {
+    return invalid("Queue family " + std::to_string(info.queue_family) +
+                   " does not compute; give one that does.");
+  }
+  if (info.timestamps != VK_FALSE && family.timestampValidBits == 0) {
+    return unsupported("Queue family " + std::to_string(info.queue_family) +
+                       " has no timestamps; set AlcoveContextInfo::timestamps to VK_FALSE.");
+  }
+  return {};
+}
+
+Result check(const AlcoveContextInfo* info) {
+  if (info == nullptr) {
+    return invalid("There is no AlcoveContextInfo.");
+  }
+  if (auto right = passes::check_size(info->struct_size, sizeof *info, "AlcoveContextInfo");
+      !right) {
+    return right;
+  }
+  const std::pair<const char*, bool> needed[] = {
+      {"instance", info->instance != VK_NULL_HANDLE},
+      {"physical_device", info->physical_device != VK_NULL_HANDLE},
+      {"device", info->device != VK_NULL_HANDLE},
+      {"get_instance_proc_addr", info->get_instance_proc_addr != nullptr}};
+  for (const auto& [name, given] : needed) {
+    if (!given) {
+      return invalid(std::string("AlcoveContextInfo::") + name + " is null.");
+    }
+  }
+  if (info->frames_in_flight < 1 || info->frames_in_flight > ALCOVE_MAX_FRAMES_IN_FLIGHT) {
+    return invalid("AlcoveContextInfo::frames_in_flight is " +
+                   std::to_string(info->frames_in_flight) + "; it must be 1 to 8.");
+  }
+  return check_device(*info);
+}
+
+Result create(const AlcoveContextInfo& info, AlcoveContext*& context) {
+  framegraph::DeviceHandles handles;
+  handles.instance = info.instance;
+  handles.physical_device = info.physical_device;
+  handles.device = info.device;
+  handles.get_instance_proc_addr = info.get_instance_proc_addr;
+  handles.queues[0].family = info.queue_family;
+  handles.debug_utils = info.debug_utils != VK_FALSE;
+  framegraph::ExecutorOptions options;
+  options.frames_in_flight = info.frames_in_flight;
+  options.timestamps = info.timestamps != VK_FALSE;
+  auto executor = framegraph::Executor::create(handles, options);
+  if (!executor) {
+    return tl::unexpected(passes::failure_of(executor.error()));
+  }
+  auto kernels = passes::Kernels::create(handles, info.frames_in_flight);
+  if (!kernels) {
+    return tl::unexpected(passes::failure_of(kernels.error(), "The context"));
+  }
+  context =
+      std::make_unique<AlcoveContext>(std::move(*executor), std::move(*kernels), info).release();
+  return {};
+}
+
+Result check(const AlcoveContext& context, VkCommandBuffer commands, const AlcoveFrame* frame) {
+  if (commands == VK_NULL_HANDLE || frame == nullptr) {
+    return invalid(frame == nullptr ? "There is no AlcoveFrame."
+                                    : "There is no command buffer to record into.");
+  }
+  if (auto right = passes::check_size(frame->struct_size, sizeof *frame, "AlcoveFrame"); !right) {
+    return right;
+  }
+  if (frame->slot >= context.frames_in_flight) {
+    return invalid("AlcoveFrame::slot is " + std::to_string(frame->slot) +
+                   "; it must be below the " + std::to_string(context.frames_in_flight) +
+                   " frames in flight.");
+  }
+  if (frame->view_count < 1 || frame->view_count > ALCOVE_MAX_VIEWS || frame->views == nullptr) {
+    return invalid("The frame has " +
+                   std::to_string(frame->views == nullptr ? 0 : frame->view_count) +
+                   " views; it must have 1 to 8.");
+  }
+  for (std::uint32_t i = 0; i < frame->view_count; ++i) {
+    const AlcoveView& view = frame->views[i];
+    if (auto right = passes::check_size(view.struct_size, sizeof view, "AlcoveView"); !right) {
+      return right;
+    }
+    for (std::uint32_t before = 0; before < i; ++before) {
+      if (frame->views[before].id == view.id) {
+        return invalid("Two views of the frame have the id " + std::to_string(view.id) +
+                       "; give each its own.");
+      }
+    }
+  }
+  return {};
+}
+
+Result record(AlcoveContext& context, VkCommandBuffer commands, const AlcoveFrame* frame) {
+  if (auto right = check(context, commands, frame); !right) {
+    return right;
+  }
+  // What was declared goes now, and with it what the last plan was made from.
+  context.report = {};
+  context.graph.reset();
+  context.images.reset();
+  context.kernels.begin_frame(frame->slot);
+  for (std::uint32_t i = 0; i < frame->view_count; ++i) {
+    if (auto added = passes::add_view(context.graph, context.kernels, context.images,
+                                      frame->views[i], frame->index);
+        !added) {
+      return added;
+    }
+  }
+  const auto report = context.executor.record(context.graph, commands, {frame->slot});
+  if (!report) {
+    return tl::unexpected(passes::failure_of(report.error()));
+  }
+  context.report = *report;
+  // What a view does not remember any more, because its settings or outputs changed.
+  for (std::uint32_t i = 0; i < frame->view_count; ++i) {
+    passes::drop_reconstruct_history(context.graph, passes::ViewName(frame->views[i].id));
+  }
+  return {};
+}
+
+// As snprintf does: at most `size` bytes, the closing zero among them; what all would take.
+std::size_t copy_text(std::string_view from, char* text, std::size_t size) {
+  if (text != nullptr && size > 0) {
+    const std::size_t length = std::min(from.size(), size - 1);
+    std::copy_n(from.data(), length, text);
+    text[length] = '\0';
+  }
+  return from.size();
+}
+
+}  // namespace
+
+uint32_t alcoveGetVersion(void) { return ALCOVE_VERSION; }
+
+AlcoveResult alcoveCreateContext(const AlcoveContextInfo* info, AlcoveContext** context,
+                                 char* message) {
+  Message said{};
+  const AlcoveResult result = guarded(said, [&]() -> Result {
+    if (context == nullptr) {
+      return invalid("There is no place for the context.");
+    }
+    *context = nullptr;
+    return check(info).and_then([&] { return create(*info, *context); });
+  });
+  if (message != nullptr) {
+    std::memcpy(message, said.data(), said.size());
+  }
+  return result;
+}
+
+void alcoveDestroyContext(AlcoveContext* context) { delete context; }
+
+const char* alcoveGetMessage(const AlcoveContext* context) {
+  return context == nullptr ? "There is no context." : context->message.data();
+}
+
+AlcoveResult alcoveRecordFrame(AlcoveContext* context, VkCommandBuffer commands,
+                               const AlcoveFrame* frame) {
+  if (context == nullptr) {
+    return ALCOVE_ERROR_INVALID_INPUT;
+  }
+  return guarded(context->message, [&] { return record(*context, commands, frame); });
+}
+
+AlcoveResult alcoveGetMemory(AlcoveContext* context, AlcoveMemory* memory) {
+  if (context == nullptr) {
+    return ALCOVE_ERROR_INVALID_INPUT;
+  }
+  return guarded(context->message, [&]() -> Result {
+    if (memory == nullptr) {
+      return invalid("There is no AlcoveMemory.");
+    }
+    if (auto right = passes::check_size(memory->struct_size, sizeof *memory, "AlcoveMemory");
+        !right) {
+      return right;
+    }
+    const framegraph::MemoryStatistics& found = context->report.memory;
+    const bool recorded = context->report.plan != nullptr;
+    *memory = {.struct_size = sizeof *memory,
+               .transients = found.aliased,
+               .transients_unshared = found.unaliased,
+               .history = found.history,
+               .allocated = recorded ? found.allocated + context->kernels.memory_bytes() : 0};
+    return {};
+  });
+}
+
+AlcoveResult alcoveGetTimings(AlcoveContext* context, uint32_t slot, uint32_t* count,
+                              AlcoveTiming* timings) {
+  if (context == nullptr) {
+    return ALCOVE_ERROR_INVALID_INPUT;
+  }
+  return guarded(context->message, [&]() -> Result {
+    if (count == nullptr) {
+      return invalid("There is no place for the number of timings.");
+    }
+    if (slot >= context->frames_in_flight) {
+      return invalid("Slot " + std::to_string(slot) + " is not below the " +
+                     std::to_string(context->frames_in_flight) + " frames in flight.");
+    }
+    const auto found = context->executor.timings(slot);
+    const auto there = static_cast<std::uint32_t>(found.size());
+    *count = timings == nullptr ? there : std::min(*count, there);
+    for (std::uint32_t i = 0; timings != nullptr && i < *count; ++i) {
+      copy_text(found[i].name, timings[i].pass, sizeof timings[i].pass);
+      timings[i].milliseconds = found[i].milliseconds;
+    }
+    return {};
+  });
+}
+
+size_t alcovePrintPlan(AlcoveContext* context, char* text, size_t size) {
+  copy_text("", text, size);
+  if (context == nullptr || context->report.plan == nullptr) {
+    return 0;
+  }
+  std::size_t length = 0;
+  guarded(context->message, [&]() -> Result {
+    length = copy_text(framegraph::print_text(context->graph.description(), *context->report.plan),
+                       text, size);
+    return {};
+  });
+  return length;
+}
+
+AlcoveResult alcoveDropView(AlcoveContext* context, uint32_t id) {
+  if (context == nullptr) {
+    return ALCOVE_ERROR_INVALID_INPUT;
+  }
+  return guarded(context->message, [&]() -> Result {
+    // The frame that declared it is over; its plan can still be printed.
+    context->graph.histories().begin_frame();
+    passes::drop_reconstruct_history(context->graph, passes::ViewName(id));
+    return {};
+  });
+}
+
+AlcoveResult alcoveForgetImage(AlcoveContext* context, VkImage image) {
+  if (context == nullptr) {
+    return ALCOVE_ERROR_INVALID_INPUT;
+  }
+  return guarded(context->message, [&]() -> Result {
+    context->executor.forget(image);
+    return {};
+  });
+}

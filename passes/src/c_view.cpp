@@ -1,0 +1,164 @@
+#include "c_view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <initializer_list>
+#include <utility>
+
+#include "alcove/passes/multi_bounce.h"
+#include "alcove/passes/occlusion.h"
+#include "c_settings.h"
+
+namespace alcove::passes {
+namespace {
+
+using framegraph::Texture;
+using Kind = ImageRole::Kind;
+
+constexpr ImageRole kDepth{"depth", Kind::depth};
+constexpr ImageRole kNormals{"normals", Kind::signed_colour, 3};
+constexpr ImageRole kMotion{"motion vectors", Kind::signed_colour, 2};
+constexpr ImageRole kBackDepth{"back-face depth", Kind::depth};
+constexpr ImageRole kAlbedo{"albedo", Kind::colour, 3};
+constexpr ImageRole kVisibility{"visibility", Kind::colour, 1, true};
+constexpr ImageRole kBentNormal{"bent normals", Kind::signed_colour, 3, true};
+constexpr ImageRole kSpecular{"specular occlusion", Kind::colour, 1, true};
+constexpr ImageRole kMultiBounce{"multi-bounce", Kind::colour, 3, true};
+
+struct Textures {
+  OcclusionInputs inputs;
+  Texture albedo;
+  Texture multi_bounce;
+};
+
+std::string sentence_begin(const AlcoveView& view) { return "View " + std::to_string(view.id); }
+
+// A rotation leaves its axes at right angles and of length 1. Engines scale rarely, and hand over
+// transposed matrices often.
+bool is_rotation_and_translation(const float (&m)[16]) {
+  constexpr float kSlack = 1e-3f;
+  for (int a = 0; a < 3; ++a) {
+    for (int b = a; b < 3; ++b) {
+      const float dot =
+          m[4 * a] * m[4 * b] + m[4 * a + 1] * m[4 * b + 1] + m[4 * a + 2] * m[4 * b + 2];
+      if (!(std::abs(dot - (a == b ? 1.0f : 0.0f)) <= kSlack)) {
+        return false;
+      }
+    }
+  }
+  return m[3] == 0.0f && m[7] == 0.0f && m[11] == 0.0f && m[15] == 1.0f && std::isfinite(m[12]) &&
+         std::isfinite(m[13]) && std::isfinite(m[14]);
+}
+
+// Projections are checked by the passes.
+tl::expected<View, Failure> to_view(const AlcoveView& view, const AlcoveCamera& camera,
+                                    const char* name) {
+  if (!is_rotation_and_translation(camera.view_from_world)) {
+    return invalid(sentence_begin(view) + ": " + name +
+                   ".view_from_world is no rotation and translation; it must be column-major, "
+                   "without scale and finite.");
+  }
+  View result;
+  std::copy_n(camera.clip_from_view, 16, result.clip_from_view.begin());
+  std::copy_n(camera.view_from_world, 16, result.view_from_world.begin());
+  return result;
+}
+
+tl::expected<Textures, Failure> import_images(framegraph::Graph& graph, ImageTable& images,
+                                              const AlcoveView& view,
+                                              const OcclusionSettings& settings) {
+  // A texture need have no more channels than are read.
+  const ImageRole roughness{"roughness", Kind::colour,
+                            std::min(settings.roughness_channel, 3u) + 1};
+  Textures textures;
+  textures.inputs.normals_in_view_space = view.normals_in_view_space != VK_FALSE;
+  struct Import {
+    const ImageRole& role;
+    const AlcoveImage& image;
+    Texture& texture;
+  };
+  for (const Import& import : std::initializer_list<Import>{
+           {kDepth, view.depth, textures.inputs.depth_ndc},
+           {kNormals, view.normals, textures.inputs.normals},
+           {kMotion, view.motion, textures.inputs.motion},
+           {roughness, view.roughness, textures.inputs.roughness},
+           {kBackDepth, view.back_depth, textures.inputs.back_depth_ndc},
+           {kAlbedo, view.albedo, textures.albedo},
+           {kVisibility, view.visibility, textures.inputs.into.visibility},
+           {kBentNormal, view.bent_normal, textures.inputs.into.bent_normal},
+           {kSpecular, view.specular, textures.inputs.into.specular},
+           {kMultiBounce, view.multi_bounce, textures.multi_bounce}}) {
+    auto texture = images.import(graph, import.role, import.image, view.depth, view.id);
+    if (!texture) {
+      return tl::unexpected(std::move(texture.error()));
+    }
+    import.texture = *texture;
+  }
+  const auto lacks = [&](const char* what) {
+    return invalid(sentence_begin(view) + " has no image " + what);
+  };
+  if (!textures.inputs.depth_ndc) {
+    return lacks("of depth, which everything is made from.");
+  }
+  if (textures.multi_bounce && !textures.albedo) {
+    return lacks("of albedo, which multi-bounce is made from.");
+  }
+  const Occlusion& into = textures.inputs.into;
+  if (!into.visibility && !into.bent_normal && !into.specular && !textures.multi_bounce) {
+    return lacks("to write to; give one of visibility, bent_normal, specular and multi_bounce.");
+  }
+  return textures;
+}
+
+tl::expected<void, Failure> add_passes(const Frame& frame, const Textures& textures,
+                                       const AlcoveView& view, const OcclusionSettings& settings) {
+  const auto outputs = add_occlusion(frame, textures.inputs, settings, ViewName(view.id));
+  if (!outputs) {
+    return tl::unexpected(failure_of(outputs.error(), sentence_begin(view)));
+  }
+  if (!textures.multi_bounce) {
+    return {};
+  }
+  const auto multi_bounce = add_multi_bounce(
+      frame, {outputs->visibility, textures.albedo, textures.multi_bounce}, settings.precision);
+  if (!multi_bounce) {
+    return tl::unexpected(failure_of(multi_bounce.error(), sentence_begin(view)));
+  }
+  return {};
+}
+
+}  // namespace
+
+ViewName::ViewName(std::uint32_t id) {
+  std::snprintf(text_.data(), text_.size(), "view %u", static_cast<unsigned>(id));
+}
+
+tl::expected<void, Failure> add_view(framegraph::Graph& graph, Kernels& kernels, ImageTable& images,
+                                     const AlcoveView& view, std::uint32_t frame_index) {
+  auto given = to_settings(view.settings);
+  if (!given) {
+    return tl::unexpected(std::move(given.error()));
+  }
+  OcclusionSettings& settings = given->settings;
+  const bool reset = view.reset_history != VK_FALSE;
+  auto now = to_view(view, view.camera, "camera");
+  auto before = reset ? now : to_view(view, view.previous_camera, "previous_camera");
+  if (!now || !before) {
+    return tl::unexpected(std::move(now ? before.error() : now.error()));
+  }
+  auto textures = import_images(graph, images, view, settings);
+  if (!textures) {
+    return tl::unexpected(std::move(textures.error()));
+  }
+  const Occlusion& into = textures->inputs.into;
+  settings.visibility = into.visibility || textures->multi_bounce;
+  settings.bent_normal = bool(into.bent_normal);
+  settings.specular = into.specular ? given->specular : Specular::none;
+  if (reset) {
+    graph.reset_history(ViewName(view.id));
+  }
+  return add_passes({graph, kernels, *now, frame_index, *before}, *textures, view, settings);
+}
+
+}  // namespace alcove::passes

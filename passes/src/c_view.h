@@ -1,0 +1,26 @@
+// One view of the C interface, declared in the graph.
+#pragma once
+
+#include "alcove/alcove.h"
+#include "alcove/passes/frame.h"
+#include "c_failure.h"
+#include "c_images.h"
+
+namespace alcove::passes {
+
+// The name of a view's history: of the stack, since a steady frame allocates nothing.
+class ViewName {
+ public:
+  explicit ViewName(std::uint32_t id);
+  operator std::string_view() const { return text_.data(); }
+
+ private:
+  std::array<char, 16> text_{};  // "view 4294967295"
+};
+
+// Adds the passes of `view` to the graph.
+[[nodiscard]] tl::expected<void, Failure> add_view(framegraph::Graph& graph, Kernels& kernels,
+                                                   ImageTable& images, const AlcoveView& view,
+                                                   std::uint32_t frame_index);
+
+}  // namespace alcove::passes

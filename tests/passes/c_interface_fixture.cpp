@@ -1,0 +1,258 @@
+#include "c_interface_fixture.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "alcove/passes/multi_bounce.h"
+#include "c_settings.h"
+
+namespace alcove::passes {
+namespace {
+
+using framegraph::Graph;
+using framegraph::Texture;
+
+constexpr VkImageUsageFlags kInputUsage =
+    VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+constexpr VkImageUsageFlags kOutputUsage =
+    VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+
+VkFormat format_of(std::uint32_t channels) {
+  return channels == 1   ? VK_FORMAT_R32_SFLOAT
+         : channels == 2 ? VK_FORMAT_R32G32_SFLOAT
+                         : VK_FORMAT_R32G32B32A32_SFLOAT;
+}
+
+framegraph::State to_state(const AlcoveState& state) {
+  return {state.stages, state.access, state.layout};
+}
+
+framegraph::ImportedTexture import_of(const AlcoveImage& image) {
+  return {.image = image.image,
+          .desc = {image.format, framegraph::Extent::absolute(image.width, image.height)},
+          .usage = image.usage,
+          .first_layer = image.layer,
+          .arrival = to_state(image.departure),
+          .departure = to_state(image.departure)};
+}
+
+HostImage uniform(std::uint32_t width, std::uint32_t height, std::vector<float> texel) {
+  HostImage image{width, height, {}, static_cast<std::uint32_t>(texel.size())};
+  for (std::size_t i = 0; i < std::size_t{width} * height; ++i) {
+    image.texels.insert(image.texels.end(), texel.begin(), texel.end());
+  }
+  return image;
+}
+
+AlcoveCamera to_camera(const View& view) {
+  AlcoveCamera camera;
+  std::ranges::copy(view.clip_from_view, camera.clip_from_view);
+  std::ranges::copy(view.view_from_world, camera.view_from_world);
+  return camera;
+}
+
+}  // namespace
+
+GivenView given_view(const TestView& view, std::uint32_t width, std::uint32_t height,
+                     const Scene& scene) {
+  const Drawing drawing = draw(view, width, height, scene);
+  GivenView given{.view = view.view,
+                  .depth_ndc = drawing.depth_ndc,
+                  .normals = drawing.normal_vs,
+                  .motion = uniform(width, height, {0.01f, -0.02f}),
+                  .roughness = uniform(width, height, {0.3f, 0.6f}),
+                  .back_depth_ndc = draw_back_faces(view, width, height, scene),
+                  .albedo = uniform(width, height, {0.8f, 0.4f, 0.1f, 1.0f})};
+  given.previous_view = given.view;
+  given.settings = quality_settings(Quality::medium, 0.5f);
+  given.settings.roughness_channel = 1;
+  given.settings.precision = Precision::float32;
+  return given;
+}
+
+void CInterface::SetUp() {
+  PassTest::SetUp();
+  if (!HasFatalFailure()) {
+    engine_ = std::make_unique<Engine>(gpu().device());
+  }
+}
+
+void CInterface::TearDown() {
+  engine_.reset();
+  PassTest::TearDown();
+}
+
+Context CInterface::create_context() {
+  AlcoveContextInfo info = engine_->context_info();
+  info.debug_utils = VK_TRUE;
+  AlcoveContext* made = nullptr;
+  char message[ALCOVE_MAX_MESSAGE];
+  EXPECT_EQ(alcoveCreateContext(&info, &made, message), ALCOVE_SUCCESS) << message;
+  EXPECT_STREQ(message, "");
+  return Context(made);
+}
+
+AlcoveImage CInterface::input(const HostImage& contents) {
+  if (contents.texels.empty()) {
+    return {};
+  }
+  const AlcoveImage image = engine_->make_image(format_of(contents.channels), contents.width,
+                                                contents.height, kInputUsage);
+  fill_image(image, contents, image.departure);
+  return image;
+}
+
+void CInterface::fill_image(const AlcoveImage& image, const HostImage& contents,
+                            AlcoveState departure) {
+  run([&](Graph& graph) {
+    framegraph::ImportedTexture import = import_of(image);
+    import.departure = to_state(departure);
+    fill(graph, graph.import_texture("image", import), contents);
+  });
+}
+
+AlcoveImage CInterface::output(VkFormat format, std::uint32_t width, std::uint32_t height) {
+  AlcoveImage image = engine_->make_image(format, width, height, kOutputUsage);
+  image.arrival.layout = VK_IMAGE_LAYOUT_UNDEFINED;
+  return image;
+}
+
+HostImage CInterface::read(const AlcoveImage& image) {
+  if (image.image == VK_NULL_HANDLE) {
+    return {};
+  }
+  run([&](Graph& graph) { read_back(graph, graph.import_texture("image", import_of(image))); });
+  return result();
+}
+
+AlcoveView CInterface::view_of(const GivenView& given, AlcoveSettings& settings) {
+  settings = from_settings(given.settings);
+  AlcoveView view{.struct_size = sizeof(AlcoveView),
+                  .id = given.id,
+                  .reset_history = given.reset ? VK_TRUE : VK_FALSE,
+                  .normals_in_view_space = given.normals_in_view_space ? VK_TRUE : VK_FALSE,
+                  .settings = &settings,
+                  .camera = to_camera(given.view),
+                  .previous_camera = to_camera(given.previous_view),
+                  .depth = input(given.depth_ndc),
+                  .normals = input(given.normals),
+                  .motion = input(given.motion),
+                  .roughness = input(given.roughness),
+                  .back_depth = input(given.back_depth_ndc),
+                  .albedo = input(given.albedo)};
+  const bool bytes = given.settings.precision == Precision::unorm8;
+  const VkFormat scalar = bytes ? VK_FORMAT_R8_UNORM : VK_FORMAT_R32_SFLOAT;
+  const VkFormat direction = bytes ? VK_FORMAT_R8G8B8A8_SNORM : VK_FORMAT_R32G32B32A32_SFLOAT;
+  const auto wanted = [&](bool is_wanted, VkFormat format) {
+    return is_wanted ? output(format, given.depth_ndc.width, given.depth_ndc.height)
+                     : AlcoveImage{};
+  };
+  view.visibility = wanted(given.settings.visibility, scalar);
+  view.bent_normal = wanted(given.settings.bent_normal, direction);
+  view.specular = wanted(given.settings.specular != Specular::none, scalar);
+  view.multi_bounce = wanted(given.multi_bounce, VK_FORMAT_R32G32B32A32_SFLOAT);
+  return view;
+}
+
+void CInterface::run_frame(AlcoveContext& context, std::span<const AlcoveView> views,
+                           std::uint32_t index) {
+  const AlcoveFrame frame{.struct_size = sizeof(AlcoveFrame),
+                          .index = index,
+                          .slot = index % Engine::kSlots,
+                          .view_count = static_cast<std::uint32_t>(views.size()),
+                          .views = views.data()};
+  engine_->submit(frame.slot, [&](VkCommandBuffer commands) {
+    EXPECT_EQ(alcoveRecordFrame(&context, commands, &frame), ALCOVE_SUCCESS)
+        << alcoveGetMessage(&context);
+  });
+}
+
+Results CInterface::results_of(const AlcoveView& view) {
+  return {read(view.visibility), read(view.bent_normal), read(view.specular),
+          read(view.multi_bounce)};
+}
+
+std::vector<Results> CInterface::run_by_c(AlcoveContext& context, std::span<const GivenView> given,
+                                          std::uint32_t index) {
+  std::vector<AlcoveSettings> settings(given.size());
+  std::vector<AlcoveView> views;
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    views.push_back(view_of(given[i], settings[i]));
+  }
+  run_frame(context, views, index);
+  std::vector<Results> results;
+  for (const AlcoveView& view : views) {
+    results.push_back(results_of(view));
+  }
+  engine_->wait();
+  return results;
+}
+
+Results CInterface::run_by_cpp(const GivenView& given, std::uint32_t index) {
+  const std::string name = "by C++ " + std::to_string(given.id);
+  run([&](Graph& graph) {
+    if (given.reset) {
+      graph.reset_history(name);
+    }
+    const auto upload_of = [&](const HostImage& image) {
+      return image.texels.empty() ? Texture{} : upload(graph, image);
+    };
+    const Frame frame{graph, gpu().kernels(), given.view, index, given.previous_view};
+    OcclusionSettings settings = given.settings;
+    settings.visibility = settings.visibility || given.multi_bounce;
+    const auto outputs = add_occlusion(frame,
+                                       {.depth_ndc = upload_of(given.depth_ndc),
+                                        .normals = upload_of(given.normals),
+                                        .normals_in_view_space = given.normals_in_view_space,
+                                        .motion = upload_of(given.motion),
+                                        .roughness = upload_of(given.roughness),
+                                        .back_depth_ndc = upload_of(given.back_depth_ndc)},
+                                       settings, name);
+    ASSERT_TRUE(outputs) << outputs.error().message;
+    if (given.settings.visibility) {
+      read_back(graph, outputs->visibility);
+    }
+    if (given.settings.bent_normal) {
+      read_back(graph, outputs->bent_normal);
+    }
+    if (given.settings.specular != Specular::none) {
+      read_back(graph, outputs->specular);
+    }
+    if (given.multi_bounce) {
+      const auto made = add_multi_bounce(frame, {outputs->visibility, upload_of(given.albedo)},
+                                         Precision::float32);
+      ASSERT_TRUE(made) << made.error().message;
+      read_back(graph, *made);
+    }
+  });
+  std::size_t next = 0;
+  const auto take = [&](bool wanted) { return wanted ? result(next++) : HostImage{}; };
+  Results results;
+  results.visibility = take(given.settings.visibility);
+  results.bent_normal = take(given.settings.bent_normal);
+  results.specular = take(given.settings.specular != Specular::none);
+  results.multi_bounce = take(given.multi_bounce);
+  return results;
+}
+
+std::string CInterface::plan_of(AlcoveContext& context) {
+  std::string text(alcovePrintPlan(&context, nullptr, 0) + 1, '\0');
+  alcovePrintPlan(&context, text.data(), text.size());
+  text.pop_back();
+  return text;
+}
+
+AlcoveMemory CInterface::memory_of(AlcoveContext& context) {
+  AlcoveMemory memory{.struct_size = sizeof(AlcoveMemory)};
+  EXPECT_EQ(alcoveGetMemory(&context, &memory), ALCOVE_SUCCESS) << alcoveGetMessage(&context);
+  return memory;
+}
+
+void expect_equal(const Results& found, const Results& expected) {
+  EXPECT_EQ(found.visibility.texels, expected.visibility.texels);
+  EXPECT_EQ(found.bent_normal.texels, expected.bent_normal.texels);
+  EXPECT_EQ(found.specular.texels, expected.specular.texels);
+  EXPECT_EQ(found.multi_bounce.texels, expected.multi_bounce.texels);
+}
+
+}  // namespace alcove::passes

@@ -1,0 +1,84 @@
+// Frames by the C interface, and the same by the C++ functions.
+#ifndef ALCOVE_TESTS_PASSES_C_INTERFACE_FIXTURE_H_
+#define ALCOVE_TESTS_PASSES_C_INTERFACE_FIXTURE_H_
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "drawing.h"
+#include "engine.h"
+#include "pass_fixture.h"
+
+namespace alcove::passes {
+
+// What a view of a frame is given. Empty images are not given.
+struct GivenView {
+  std::uint32_t id = 0;
+  View view;
+  View previous_view = view;
+  bool reset = false;
+  HostImage depth_ndc;
+  HostImage normals;
+  bool normals_in_view_space = true;
+  HostImage motion;
+  HostImage roughness;
+  HostImage back_depth_ndc;
+  HostImage albedo;
+  OcclusionSettings settings;  // their flags tell the outputs that are wanted
+  bool multi_bounce = false;
+};
+
+struct Results {
+  HostImage visibility;
+  HostImage bent_normal;
+  HostImage specular;
+  HostImage multi_bounce;
+};
+
+// A view with every input, of a scene; its settings and camera are the tests' to change.
+GivenView given_view(const TestView& view, std::uint32_t width, std::uint32_t height,
+                     const Scene& scene);
+
+class CInterface : public PassTest {
+ protected:
+  void SetUp() override;
+  void TearDown() override;
+
+  Context create_context();
+
+  // An image that holds `contents`.
+  AlcoveImage input(const HostImage& contents);
+  // Fills an image that rests, and leaves it in `departure`.
+  void fill_image(const AlcoveImage& image, const HostImage& contents, AlcoveState departure);
+  AlcoveImage output(VkFormat format, std::uint32_t width, std::uint32_t height);
+  HostImage read(const AlcoveImage& image);
+
+  // The images of a view, made for it; `settings` must live as long as the view is used.
+  AlcoveView view_of(const GivenView& given, AlcoveSettings& settings);
+  // Records, submits and waits for a frame, which has to succeed.
+  void run_frame(AlcoveContext& context, std::span<const AlcoveView> views, std::uint32_t index);
+  Results results_of(const AlcoveView& view);
+
+  std::vector<Results> run_by_c(AlcoveContext& context, std::span<const GivenView> views,
+                                std::uint32_t index);
+  // Its history is the fixture's, by the view's id.
+  Results run_by_cpp(const GivenView& given, std::uint32_t index);
+
+  std::string plan_of(AlcoveContext& context);
+  AlcoveMemory memory_of(AlcoveContext& context);
+
+  Engine& engine() { return *engine_; }
+
+ private:
+  std::unique_ptr<Engine> engine_;
+};
+
+void expect_equal(const Results& found, const Results& expected);
+
+}  // namespace alcove::passes
+
+#endif  // ALCOVE_TESTS_PASSES_C_INTERFACE_FIXTURE_H_

@@ -1,0 +1,322 @@
+// The C interface gives what the C++ functions give, bit for bit.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstring>
+
+#include "c_interface_fixture.h"
+#include "c_program.h"
+#include "gtao_scenes.h"
+
+namespace alcove::passes {
+namespace {
+
+TestView moved(TestView view, std::uint32_t frame) {
+  view.view.view_from_world[12] = 0.03f * static_cast<float>(frame);
+  return view;
+}
+
+// A frame of a camera that moves, or cuts in frame `cut`.
+GivenView frame_of(std::uint32_t frame, std::uint32_t width, std::uint32_t height,
+                   std::uint32_t cut = ~0u) {
+  GivenView given = given_view(moved(test_views()[2], frame), width, height, ball_on_floor());
+  given.previous_view = moved(test_views()[2], frame == 0 ? 0 : frame - 1).view;
+  given.reset = frame == cut;
+  given.motion = {};
+  return given;
+}
+
+TEST_F(CInterface, FramesWithHistoryAreTheSameAsByCpp) {
+  const Context context = create_context();
+  for (std::uint32_t i = 0; i < 5; ++i) {
+    GivenView given = frame_of(i, 33, 17, 3);
+    given.settings.bent_normal = true;
+    given.settings.specular = Specular::slices;
+    given.multi_bounce = true;
+    const std::vector<Results> found = run_by_c(*context, {&given, 1}, i);
+    expect_equal(found[0], run_by_cpp(given, i));
+  }
+}
+
+TEST_F(CInterface, EverySettingReachesThePasses) {
+  struct Case {
+    const char* name;
+    void (*change)(GivenView&);
+    std::uint32_t frames = 1;
+  };
+  const Case cases[] = {
+      {"quality low", [](GivenView& g) { g.settings = quality_settings(Quality::low, 0.4f); }},
+      {"quality high", [](GivenView& g) { g.settings = quality_settings(Quality::high, 0.4f); }},
+      {"bytes", [](GivenView& g) { g.settings.precision = Precision::unorm8; }},
+      {"horizons with falloff",
+       [](GivenView& g) {
+         g.settings.estimator = Estimator::horizons;
+         g.settings.falloff = 0.5f;
+       }},
+      {"heuristic",
+       [](GivenView& g) {
+         g.settings.estimator = Estimator::heuristic;
+         g.settings.blend = 0.3f;
+       }},
+      {"bitmask",
+       [](GivenView& g) {
+         g.settings.estimator = Estimator::bitmask;
+         g.settings.thickness = 0.05f;
+         g.settings.fill = 0.9f;
+       }},
+      {"thickness by distance",
+       [](GivenView& g) { g.settings.thickness_unit = ThicknessUnit::distance; }},
+      {"thickness by back faces",
+       [](GivenView& g) { g.settings.thickness_unit = ThicknessUnit::back_faces; }},
+      {"solid angle", [](GivenView& g) { g.settings.weighting = Weighting::uniform; }},
+      {"hilbert", [](GivenView& g) { g.settings.pattern = Pattern::hilbert; }},
+      {"memo", [](GivenView& g) { g.settings.pattern = Pattern::memo; }},
+      {"slices and steps",
+       [](GivenView& g) {
+         g.settings.slices = 3;
+         g.settings.steps = 5;
+       }},
+      {"filter",
+       [](GivenView& g) {
+         g.settings.filter_reach = 1;
+         g.settings.filter_tolerance_px = 0.5f;
+         g.settings.history_frames = 0;
+       }},
+      {"history",
+       [](GivenView& g) {
+         g.settings.history_frames = 2;
+         g.settings.clamp_width = 1.0f;
+       },
+       2},
+      {"motion", [](GivenView& g) { g.motion = given_view(test_views()[2], 16, 12, {}).motion; },
+       2},
+      {"normals from depth",
+       [](GivenView& g) {
+         g.normals = {};
+         g.settings.depth_mips = 3;
+       }},
+      {"normals in world space", [](GivenView& g) { g.normals_in_view_space = false; }},
+      {"table",
+       [](GivenView& g) {
+         g.settings.specular = Specular::table;
+         g.settings.bent_normal = true;
+       }},
+      {"cone", [](GivenView& g) { g.settings.specular = Specular::cone; }},
+      {"smooth cone", [](GivenView& g) { g.settings.specular = Specular::smooth_cone; }},
+      {"lagarde, one roughness",
+       [](GivenView& g) {
+         g.settings.specular = Specular::lagarde;
+         g.settings.roughness = 0.2f;
+         g.roughness = {};
+       }},
+      {"roughness of another channel",
+       [](GivenView& g) {
+         g.settings.specular = Specular::slices;
+         g.settings.roughness_channel = 0;
+       }},
+  };
+  const Context context = create_context();
+  std::uint32_t index = 0;
+  for (const Case& each : cases) {
+    SCOPED_TRACE(each.name);
+    for (std::uint32_t frame = 0; frame < each.frames; ++frame, ++index) {
+      GivenView given = frame_of(frame, 16, 12, 0);
+      each.change(given);
+      const std::vector<Results> found = run_by_c(*context, {&given, 1}, index);
+      expect_equal(found[0], run_by_cpp(given, index));
+    }
+  }
+}
+
+TEST_F(CInterface, EachOutputAloneIsTheSameAsByCpp) {
+  const std::array<void (*)(GivenView&), 4> only{
+      [](GivenView& g) { g.settings.visibility = true; },
+      [](GivenView& g) { g.settings.bent_normal = true; },
+      [](GivenView& g) { g.settings.specular = Specular::slices; },
+      [](GivenView& g) { g.multi_bounce = true; }};
+  const Context context = create_context();
+  for (std::uint32_t i = 0; i < only.size(); ++i) {
+    SCOPED_TRACE(i);
+    for (std::uint32_t frame = 0; frame < 2; ++frame) {
+      GivenView given = frame_of(frame, 16, 12);
+      given.id = i;
+      given.settings.visibility = false;
+      only.at(i)(given);
+      const std::vector<Results> found = run_by_c(*context, {&given, 1}, frame);
+      expect_equal(found[0], run_by_cpp(given, frame));
+    }
+  }
+}
+
+TEST_F(CInterface, ImagesOfAnySizeAreTheSameAsByCpp) {
+  const Context context = create_context();
+  const std::pair<std::uint32_t, std::uint32_t> sizes[] = {{1, 1}, {1, 7}, {5, 1}, {3, 2}, {31, 9}};
+  std::uint32_t index = 0;
+  for (const auto& [width, height] : sizes) {
+    for (std::uint32_t frame = 0; frame < 2; ++frame, ++index) {
+      GivenView given = frame_of(frame, width, height);
+      given.settings.bent_normal = true;
+      const std::vector<Results> found = run_by_c(*context, {&given, 1}, index);
+      expect_equal(found[0], run_by_cpp(given, index));
+    }
+  }
+}
+
+TEST_F(CInterface, ViewsOfAFrameAreTheSameAsEachAlone) {
+  const Context context = create_context();
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    std::vector<GivenView> views(3, frame_of(i, 16, 12));
+    views[0].id = 4000000000u;
+    views[1] = given_view(test_views()[0], 9, 20, groove(0.8));
+    views[1].id = 7;
+    views[1].settings.bent_normal = true;
+    views[2].id = 0;
+    views[2].settings.history_frames = 0;
+    views[2].reset = i == 2;
+    if (i == 2) {
+      views.erase(views.begin());  // a view that is not recorded keeps its history
+    }
+    const std::vector<Results> found = run_by_c(*context, views, i);
+    for (std::size_t v = 0; v < views.size(); ++v) {
+      SCOPED_TRACE(views[v].id);
+      expect_equal(found[v], run_by_cpp(views[v], i));
+    }
+  }
+}
+
+TEST_F(CInterface, EightViewsWithEverythingFitAFrame) {
+  const Context context = create_context();
+  std::vector<GivenView> views;
+  for (std::uint32_t id = 0; id < ALCOVE_MAX_VIEWS; ++id) {
+    views.push_back(frame_of(id, 8, 6));
+    views.back().id = id;
+    views.back().normals = {};
+    views.back().settings.thickness_unit = ThicknessUnit::back_faces;
+    views.back().settings.bent_normal = true;
+    views.back().settings.specular = Specular::table;
+    views.back().multi_bounce = true;
+  }
+  const std::vector<Results> found = run_by_c(*context, views, 0);
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    expect_equal(found[v], run_by_cpp(views[v], 0));
+  }
+}
+
+// Both layers of an image that rests, one after the other.
+void copy(VkCommandBuffer commands, const AlcoveImage& image, const sample::HostBuffer& buffer) {
+  const VkImageMemoryBarrier2 barrier{.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
+                                      .srcStageMask = kResting.stages,
+                                      .dstStageMask = VK_PIPELINE_STAGE_2_COPY_BIT,
+                                      .dstAccessMask = VK_ACCESS_2_TRANSFER_READ_BIT,
+                                      .oldLayout = kResting.layout,
+                                      .newLayout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                                      .image = image.image,
+                                      .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 2}};
+  const VkDependencyInfo dependency{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
+                                    .imageMemoryBarrierCount = 1,
+                                    .pImageMemoryBarriers = &barrier};
+  vkCmdPipelineBarrier2(commands, &dependency);
+  const VkBufferImageCopy region{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 2},
+                                 .imageExtent = {image.width, image.height, 1}};
+  vkCmdCopyImageToBuffer(commands, image.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                         buffer.buffer(), 1, &region);
+}
+
+// Both eyes in the layers of one array, each with an image view of the library's.
+TEST_F(CInterface, LayersOfAnArrayAreImagesOfTheirOwn) {
+  const Context context = create_context();
+  constexpr VkImageUsageFlags kStored =
+      VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+  AlcoveImage both = engine().make_image(VK_FORMAT_R32_SFLOAT, 16, 12, kStored, 2);
+  std::vector<GivenView> given{frame_of(0, 16, 12),
+                               given_view(test_views()[0], 16, 12, groove(0.8))};
+  std::array<AlcoveSettings, 2> settings{};
+  std::vector<AlcoveView> views;
+  for (std::uint32_t eye = 0; eye < 2; ++eye) {
+    given[eye].id = eye;
+    views.push_back(view_of(given[eye], settings[eye]));
+    views[eye].visibility = both;
+    views[eye].visibility.layer = eye;
+  }
+  run_frame(*context, views, 0);
+  const auto bytes = sample::HostBuffer::create(gpu().device(), 2 * 16 * 12 * sizeof(float),
+                                                VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+  ASSERT_TRUE(bytes) << bytes.error();
+  engine().submit(1, [&](VkCommandBuffer commands) { copy(commands, both, **bytes); });
+  engine().wait();
+  for (std::uint32_t eye = 0; eye < 2; ++eye) {
+    Results found;
+    found.visibility.texels.resize(16 * 12);
+    const std::size_t size = 16 * 12 * sizeof(float);
+    std::memcpy(found.visibility.texels.data(), (*bytes)->bytes().data() + eye * size, size);
+    expect_equal(found, run_by_cpp(given[eye], 0));
+  }
+}
+
+TEST_F(CInterface, DepthMayComeInADepthFormatAndAnyLayout) {
+  const Context context = create_context();
+  GivenView given = frame_of(0, 16, 12);
+  AlcoveSettings settings;
+  AlcoveView view = view_of(given, settings);
+  view.depth =
+      engine().make_image(VK_FORMAT_D32_SFLOAT, 16, 12,
+                          VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
+                              VK_IMAGE_USAGE_TRANSFER_DST_BIT);
+  const AlcoveState attached{VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
+                             VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
+                             VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL};
+  fill_image(view.depth, given.depth_ndc, attached);
+  view.depth.arrival = attached;
+  view.depth.departure = {VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT,
+                          VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT,
+                          VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL};
+  view.visibility.departure.layout = VK_IMAGE_LAYOUT_GENERAL;
+  run_frame(*context, {&view, 1}, 0);
+  expect_equal(results_of(view), run_by_cpp(given, 0));
+}
+
+TEST_F(CInterface, OneImageMayBeSeveralInputs) {
+  const Context context = create_context();
+  GivenView given = frame_of(0, 16, 12);
+  given.roughness = given.albedo;  // packed: roughness is its green
+  given.settings.specular = Specular::slices;
+  given.multi_bounce = true;
+  AlcoveSettings settings;
+  AlcoveView view = view_of(given, settings);
+  view.roughness = view.albedo;
+  run_frame(*context, {&view, 1}, 0);
+  expect_equal(results_of(view), run_by_cpp(given, 0));
+}
+
+TEST_F(CInterface, AReferenceIsTheSameAsByCpp) {
+  const Context context = create_context();
+  GivenView given = frame_of(0, 6, 4);
+  given.settings = quality_settings(Quality::reference, 0.5f);
+  expect_equal(run_by_c(*context, {&given, 1}, 0)[0], run_by_cpp(given, 0));
+}
+
+TEST_F(CInterface, AProgramInCRecordsAFrame) {
+  const AlcoveContextInfo info = engine().context_info();
+  GivenView given = frame_of(0, 16, 12);
+  given.settings = quality_settings(Quality::high, 0.5f);
+  given.settings.estimator = Estimator::horizons;
+  given.normals = {};
+  given.roughness = {};
+  AlcoveSettings unused;
+  AlcoveView view = view_of(given, unused);
+  AlcoveContext* made = nullptr;
+  char text[ALCOVE_MAX_MESSAGE] = "";
+  engine().submit(0, [&](VkCommandBuffer commands) {
+    EXPECT_EQ(run_c_program(&info, &view.camera, &view.depth, &view.visibility, commands, &made,
+                            text, sizeof text),
+              ALCOVE_SUCCESS)
+        << text;
+  });
+  const Context context(made);
+  EXPECT_NE(std::strstr(text, "bytes of transients"), nullptr) << text;
+  expect_equal(results_of(view), run_by_cpp(given, 0));
+  engine().wait();
+}
+
+}  // namespace
+}  // namespace alcove::passes

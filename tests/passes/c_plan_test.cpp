@@ -1,0 +1,219 @@
+// What a frame by the C interface costs: nothing for what was not asked for, no allocation for a
+// frame like the one before, and no memory for what was dropped.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "c_interface_fixture.h"
+#include "framegraph/allocation_counter.h"
+#include "gtao_scenes.h"
+
+namespace alcove::passes {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+class CPlan : public CInterface {
+ protected:
+  GivenView least() {
+    GivenView given = given_view(test_views()[2], 32, 24, groove(0.8));
+    given.settings.estimator = Estimator::horizons;
+    given.settings.steps = 4;
+    given.settings.history_frames = 0;
+    given.settings.visibility = false;
+    given.motion = {};
+    return given;
+  }
+  AlcoveMemory memory_of_frame(const Context& context, const GivenView& given) {
+    (void)run_by_c(*context, {&given, 1}, index_++);
+    return memory_of(*context);
+  }
+
+ private:
+  std::uint32_t index_ = 0;
+};
+
+TEST_F(CPlan, AnOutputAloneHasNoPassAndNoMemoryOfTheOthers) {
+  const Context context = create_context();
+  GivenView visibility = least();
+  visibility.settings.visibility = true;
+  const VkDeviceSize bytes = memory_of_frame(context, visibility).transients_unshared;
+  std::string plan = plan_of(*context);
+  EXPECT_THAT(plan, HasSubstr("visibility of view 0"));
+  for (const char* absent : {"bent", "specular", "multi-bounce", "normals from depth"}) {
+    EXPECT_THAT(plan, Not(HasSubstr(absent)));
+  }
+
+  GivenView bent = least();
+  bent.settings.bent_normal = true;
+  EXPECT_GT(memory_of_frame(context, bent).transients_unshared, bytes) << "of the search";
+  plan = plan_of(*context);
+  EXPECT_THAT(plan, HasSubstr("bent normals of view 0"));
+  EXPECT_THAT(plan, Not(HasSubstr("visibility")));
+  EXPECT_THAT(plan, Not(HasSubstr("specular")));
+
+  GivenView specular = least();
+  specular.settings.specular = Specular::slices;
+  EXPECT_GT(memory_of_frame(context, specular).transients_unshared, bytes) << "of the search";
+  plan = plan_of(*context);
+  EXPECT_THAT(plan, HasSubstr("specular occlusion of view 0"));
+  EXPECT_THAT(plan, Not(HasSubstr("visibility")));
+  EXPECT_THAT(plan, Not(HasSubstr("bent")));
+
+  // Multi-bounce is made from visibility, which is a transient where no image is given.
+  GivenView multi_bounce = least();
+  multi_bounce.multi_bounce = true;
+  EXPECT_GT(memory_of_frame(context, multi_bounce).transients_unshared, bytes);
+  EXPECT_THAT(plan_of(*context), Not(HasSubstr("visibility of view 0")));
+  multi_bounce.settings.visibility = true;
+  EXPECT_EQ(memory_of_frame(context, multi_bounce).transients_unshared, bytes);
+}
+
+TEST_F(CPlan, HistoryTakesMemoryOnlyWhereItIsOnAndUntilItIsDropped) {
+  const Context context = create_context();
+  GivenView given = least();
+  given.settings.bent_normal = true;
+  EXPECT_EQ(memory_of_frame(context, given).history, 0u);
+  given.settings.history_frames = 8;
+  const VkDeviceSize with_bent = memory_of_frame(context, given).history;
+  EXPECT_GT(with_bent, 0u);
+  given.id = 1;
+  EXPECT_EQ(memory_of_frame(context, given).history, 2 * with_bent);
+
+  given.settings.visibility = true;
+  given.settings.bent_normal = false;
+  (void)memory_of_frame(context, given);
+  EXPECT_LT(memory_of_frame(context, given).history, 2 * with_bent) << "an output less";
+  given.settings.history_frames = 0;
+  (void)memory_of_frame(context, given);
+  EXPECT_EQ(memory_of_frame(context, given).history, with_bent) << "of the other view";
+  EXPECT_EQ(alcoveDropView(context.get(), 0), ALCOVE_SUCCESS);
+  EXPECT_EQ(alcoveDropView(context.get(), 99), ALCOVE_SUCCESS) << "never recorded";
+  const AlcoveMemory dropped = memory_of_frame(context, given);
+  EXPECT_EQ(dropped.history, 0u);
+  // One that comes back begins anew, as do others in its place.
+  for (const std::uint32_t id : {0u, 5u}) {
+    given.id = id;
+    given.settings.history_frames = 8;
+    EXPECT_GT(memory_of_frame(context, given).history, 0u);
+  }
+}
+
+TEST_F(CPlan, AViewThatWasDroppedBeginsAnew) {
+  const Context context = create_context();
+  GivenView given = least();
+  given.settings.visibility = true;
+  given.settings.history_frames = 8;
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    (void)run_by_c(*context, {&given, 1}, i);
+  }
+  EXPECT_EQ(alcoveDropView(context.get(), given.id), ALCOVE_SUCCESS);
+  const Results again = run_by_c(*context, {&given, 1}, 3)[0];
+  given.id = 77;
+  expect_equal(again, run_by_c(*context, {&given, 1}, 3)[0]);
+}
+
+TEST_F(CPlan, TimingsNameThePassesOfAFinishedFrame) {
+  const Context context = create_context();
+  std::uint32_t count = 99;
+  EXPECT_EQ(alcoveGetTimings(context.get(), 0, &count, nullptr), ALCOVE_SUCCESS);
+  EXPECT_EQ(count, 0u) << "before there is a frame";
+  GivenView given = least();
+  given.settings.visibility = true;
+  (void)run_by_c(*context, {&given, 1}, 0);
+  EXPECT_EQ(alcoveGetTimings(context.get(), 0, &count, nullptr), ALCOVE_SUCCESS);
+  ASSERT_EQ(count, 3u);
+  std::array<AlcoveTiming, 5> timings{};
+  count = timings.size();
+  EXPECT_EQ(alcoveGetTimings(context.get(), 0, &count, timings.data()), ALCOVE_SUCCESS);
+  ASSERT_EQ(count, 3u);
+  EXPECT_STREQ(timings[0].pass, "line depth");
+  EXPECT_STREQ(timings[1].pass, "gtao");
+  EXPECT_STREQ(timings[2].pass, "reconstruct");
+  for (const AlcoveTiming& timing : timings) {
+    EXPECT_GE(timing.milliseconds, 0.0);
+  }
+  count = 1;
+  EXPECT_EQ(alcoveGetTimings(context.get(), 0, &count, timings.data()), ALCOVE_SUCCESS);
+  EXPECT_EQ(count, 1u);
+}
+
+TEST_F(CPlan, SettingsAreFilledPrintedAndPassedBack) {
+  for (int quality = ALCOVE_QUALITY_LOW; quality <= ALCOVE_QUALITY_REFERENCE; ++quality) {
+    AlcoveSettings settings{.struct_size = sizeof(AlcoveSettings)};
+    ASSERT_EQ(alcoveGetSettings(static_cast<AlcoveQuality>(quality), 2.5f, &settings),
+              ALCOVE_SUCCESS);
+    std::string text(alcovePrintSettings(&settings, nullptr, 0), '\0');
+    EXPECT_EQ(alcovePrintSettings(&settings, text.data(), text.size() + 1), text.size());
+    EXPECT_THAT(text, HasSubstr("radius = 2.5\n"));
+    EXPECT_THAT(text, HasSubstr("specular = slices\n"));
+    EXPECT_EQ(std::ranges::count(text, '\n'), 21);
+    char little[8];
+    EXPECT_EQ(alcovePrintSettings(&settings, little, sizeof little), text.size());
+    EXPECT_EQ(std::string(little), text.substr(0, 7));
+  }
+  EXPECT_EQ(alcoveGetVersion(), static_cast<std::uint32_t>(ALCOVE_VERSION));
+}
+
+// On a device without validation, which allocates.
+TEST(CSteadyFrame, AllocatesNothing) {
+  const auto device = sample::VulkanDevice::create();
+  ASSERT_TRUE(device) << device.error();
+  Engine engine(**device);
+  AlcoveContextInfo info = engine.context_info();
+  AlcoveContext* made = nullptr;
+  ASSERT_EQ(alcoveCreateContext(&info, &made, nullptr), ALCOVE_SUCCESS);
+  const Context context(made);
+  AlcoveSettings settings{.struct_size = sizeof settings};
+  ASSERT_EQ(alcoveGetSettings(ALCOVE_QUALITY_MEDIUM, 0.5f, &settings), ALCOVE_SUCCESS);
+  settings.specular = ALCOVE_SPECULAR_TABLE;
+  const auto make = [&](VkFormat format) {
+    return engine.make_image(format, 24, 16,
+                             VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT);
+  };
+  std::array<AlcoveView, 2> views{};
+  for (std::uint32_t i = 0; i < views.size(); ++i) {
+    AlcoveView& view = views.at(i);
+    view = {.struct_size = sizeof view,
+            .id = 4000000000u + i,
+            .settings = &settings,
+            .depth = make(VK_FORMAT_R32_SFLOAT),
+            .normals = make(VK_FORMAT_R16G16B16A16_SFLOAT),
+            .roughness = make(VK_FORMAT_R8_UNORM),
+            .albedo = make(VK_FORMAT_R8G8B8A8_UNORM),
+            .visibility = make(VK_FORMAT_R8_UNORM),
+            .bent_normal = make(VK_FORMAT_R8G8B8A8_SNORM),
+            .specular = make(VK_FORMAT_R8_UNORM),
+            .multi_bounce = make(VK_FORMAT_R8G8B8A8_UNORM)};
+    std::ranges::copy(test_views()[2].view.clip_from_view, view.camera.clip_from_view);
+    std::ranges::copy(kIdentity, view.camera.view_from_world);
+  }
+  AlcoveFrame frame{.struct_size = sizeof frame, .view_count = views.size(), .views = views.data()};
+  std::size_t steady = 0;
+  for (frame.index = 0; frame.index < 30; ++frame.index) {
+    frame.slot = frame.index % Engine::kSlots;
+    for (AlcoveView& view : views) {
+      view.previous_camera = view.camera;
+      view.camera.view_from_world[12] = std::sin(static_cast<float>(frame.index));
+    }
+    engine.submit(frame.slot, [&](VkCommandBuffer commands) {
+      const std::size_t before = framegraph::allocations();
+      EXPECT_EQ(alcoveRecordFrame(context.get(), commands, &frame), ALCOVE_SUCCESS)
+          << alcoveGetMessage(context.get());
+      AlcoveMemory memory{.struct_size = sizeof memory};
+      EXPECT_EQ(alcoveGetMemory(context.get(), &memory), ALCOVE_SUCCESS);
+      std::uint32_t count = 0;
+      EXPECT_EQ(alcoveGetTimings(context.get(), 1 - frame.slot, &count, nullptr), ALCOVE_SUCCESS);
+      steady += frame.index < 10 ? 0 : framegraph::allocations() - before;
+    });
+  }
+  engine.wait();
+  EXPECT_EQ(steady, 0u);
+}
+
+}  // namespace
+}  // namespace alcove::passes

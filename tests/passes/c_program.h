@@ -1,0 +1,22 @@
+// What c_program.c, compiled as C99, does.
+#ifndef ALCOVE_TESTS_PASSES_C_PROGRAM_H_
+#define ALCOVE_TESTS_PASSES_C_PROGRAM_H_
+
+#include "alcove/alcove.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+// Records one frame of visibility from depth into `commands`, prints what it costs into `text` (of
+// `size` bytes) and gives the context back.
+AlcoveResult run_c_program(const AlcoveContextInfo* info, const AlcoveCamera* camera,
+                           const AlcoveImage* depth, const AlcoveImage* visibility,
+                           VkCommandBuffer commands, AlcoveContext** context, char* text,
+                           size_t size);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif  // ALCOVE_TESTS_PASSES_C_PROGRAM_H_

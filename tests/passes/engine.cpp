@@ -1,0 +1,113 @@
+#include "engine.h"
+
+#include <gtest/gtest.h>
+
+namespace alcove::passes {
+
+Engine::Engine(const sample::VulkanDevice& device) : device_(device) {
+  const VkCommandPoolCreateInfo pool{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
+                                     .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
+                                     .queueFamilyIndex = device.queue_family()};
+  EXPECT_EQ(vkCreateCommandPool(device.device(), &pool, nullptr, &pool_), VK_SUCCESS);
+  for (Slot& slot : slots_) {
+    const VkCommandBufferAllocateInfo commands{
+        .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+        .commandPool = pool_,
+        .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
+        .commandBufferCount = 1};
+    EXPECT_EQ(vkAllocateCommandBuffers(device.device(), &commands, &slot.commands), VK_SUCCESS);
+    const VkFenceCreateInfo fence{.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO,
+                                  .flags = VK_FENCE_CREATE_SIGNALED_BIT};
+    EXPECT_EQ(vkCreateFence(device.device(), &fence, nullptr, &slot.fence), VK_SUCCESS);
+  }
+}
+
+Engine::~Engine() {
+  wait();
+  for (const Slot& slot : slots_) {
+    vkDestroyFence(device_.device(), slot.fence, nullptr);
+  }
+  vkDestroyCommandPool(device_.device(), pool_, nullptr);
+  for (const Image& image : images_) {
+    vkDestroyImage(device_.device(), image.image, nullptr);
+    vkFreeMemory(device_.device(), image.memory, nullptr);
+  }
+}
+
+AlcoveContextInfo Engine::context_info() const {
+  return {.struct_size = sizeof(AlcoveContextInfo),
+          .queue_family = device_.queue_family(),
+          .instance = device_.instance(),
+          .physical_device = device_.physical_device(),
+          .device = device_.device(),
+          .get_instance_proc_addr = vkGetInstanceProcAddr,
+          .frames_in_flight = kSlots,
+          .timestamps = VK_TRUE};
+}
+
+AlcoveImage Engine::make_image(VkFormat format, std::uint32_t width, std::uint32_t height,
+                               VkImageUsageFlags usage, std::uint32_t layers) {
+  const VkImageCreateInfo info{.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+                               .imageType = VK_IMAGE_TYPE_2D,
+                               .format = format,
+                               .extent = {width, height, 1},
+                               .mipLevels = 1,
+                               .arrayLayers = layers,
+                               .samples = VK_SAMPLE_COUNT_1_BIT,
+                               .usage = usage};
+  Image made;
+  EXPECT_EQ(vkCreateImage(device_.device(), &info, nullptr, &made.image), VK_SUCCESS);
+  VkMemoryRequirements needs;
+  vkGetImageMemoryRequirements(device_.device(), made.image, &needs);
+  const VkMemoryAllocateInfo allocation{
+      .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+      .allocationSize = needs.size,
+      .memoryTypeIndex =
+          device_.memory_type(needs.memoryTypeBits, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT)};
+  EXPECT_EQ(vkAllocateMemory(device_.device(), &allocation, nullptr, &made.memory), VK_SUCCESS);
+  EXPECT_EQ(vkBindImageMemory(device_.device(), made.image, made.memory, 0), VK_SUCCESS);
+  images_.push_back(made);
+  submit(0, [&](VkCommandBuffer commands) {
+    const bool depth = format == VK_FORMAT_D32_SFLOAT;
+    const VkImageMemoryBarrier2 barrier{
+        .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
+        .dstStageMask = kResting.stages,
+        .dstAccessMask = kResting.access,
+        .newLayout = kResting.layout,
+        .image = made.image,
+        .subresourceRange = {static_cast<VkImageAspectFlags>(depth ? VK_IMAGE_ASPECT_DEPTH_BIT
+                                                                   : VK_IMAGE_ASPECT_COLOR_BIT),
+                             0, 1, 0, layers}};
+    const VkDependencyInfo dependency{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
+                                      .imageMemoryBarrierCount = 1,
+                                      .pImageMemoryBarriers = &barrier};
+    vkCmdPipelineBarrier2(commands, &dependency);
+  });
+  wait();
+  return {.image = made.image,
+          .format = format,
+          .width = width,
+          .height = height,
+          .usage = usage,
+          .arrival = kResting,
+          .departure = kResting};
+}
+
+void Engine::submit(std::uint32_t slot, const std::function<void(VkCommandBuffer)>& record) {
+  const Slot& used = slots_.at(slot);
+  EXPECT_EQ(vkWaitForFences(device_.device(), 1, &used.fence, VK_TRUE, UINT64_MAX), VK_SUCCESS);
+  EXPECT_EQ(vkResetFences(device_.device(), 1, &used.fence), VK_SUCCESS);
+  const VkCommandBufferBeginInfo begin{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
+                                       .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
+  EXPECT_EQ(vkBeginCommandBuffer(used.commands, &begin), VK_SUCCESS);
+  record(used.commands);
+  EXPECT_EQ(vkEndCommandBuffer(used.commands), VK_SUCCESS);
+  const VkSubmitInfo submission{.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
+                                .commandBufferCount = 1,
+                                .pCommandBuffers = &used.commands};
+  EXPECT_EQ(vkQueueSubmit(device_.queue(), 1, &submission, used.fence), VK_SUCCESS);
+}
+
+void Engine::wait() { EXPECT_EQ(vkQueueWaitIdle(device_.queue()), VK_SUCCESS); }
+
+}  // namespace alcove::passes

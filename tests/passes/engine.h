@@ -1,0 +1,63 @@
+// An engine as the C interface meets it: images, a camera and command buffers of its own.
+#ifndef ALCOVE_TESTS_PASSES_ENGINE_H_
+#define ALCOVE_TESTS_PASSES_ENGINE_H_
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "alcove/alcove.h"
+#include "vulkan_device.h"
+
+namespace alcove::passes {
+
+class Engine {
+ public:
+  static constexpr std::uint32_t kSlots = 2;
+
+  explicit Engine(const sample::VulkanDevice& device);
+  ~Engine();
+  Engine(const Engine&) = delete;
+  Engine& operator=(const Engine&) = delete;
+
+  AlcoveContextInfo context_info() const;
+
+  // An image that rests as fragment shaders read it; its contents are undefined so far.
+  AlcoveImage make_image(VkFormat format, std::uint32_t width, std::uint32_t height,
+                         VkImageUsageFlags usage, std::uint32_t layers = 1);
+
+  // Has `record` record into the commands of `slot`, whose frame before has finished, and submits
+  // them, whatever was recorded; does not wait.
+  void submit(std::uint32_t slot, const std::function<void(VkCommandBuffer)>& record);
+  void wait();
+
+ private:
+  struct Image {
+    VkImage image = VK_NULL_HANDLE;
+    VkDeviceMemory memory = VK_NULL_HANDLE;
+  };
+  struct Slot {
+    VkCommandBuffer commands = VK_NULL_HANDLE;
+    VkFence fence = VK_NULL_HANDLE;
+  };
+  const sample::VulkanDevice& device_;
+  VkCommandPool pool_ = VK_NULL_HANDLE;
+  std::array<Slot, kSlots> slots_;
+  std::vector<Image> images_;
+};
+
+// How an engine's images rest between frames.
+inline constexpr AlcoveState kResting{VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
+                                      VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
+                                      VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+
+struct DestroyContext {
+  void operator()(AlcoveContext* context) const { alcoveDestroyContext(context); }
+};
+using Context = std::unique_ptr<AlcoveContext, DestroyContext>;
+
+}  // namespace alcove::passes
+
+#endif  // ALCOVE_TESTS_PASSES_ENGINE_H_
