@@ -90,16 +90,19 @@ void Graph::add(Records<Record>& records, const Record& record) {
   changed();
 }
 
+// What has the room of the records grows before them: where memory gives out nothing has less.
 void Graph::grow_resources() {
+  const std::size_t capacity = description_.resources.next_capacity();
+  description_.resource_names.resize(capacity);
+  versions_.resize(capacity);
   description_.resources.grow();
-  description_.resource_names.resize(description_.resources.capacity());
-  versions_.resize(description_.resources.capacity());
 }
 
 void Graph::grow_passes() {
+  const std::size_t capacity = description_.passes.next_capacity();
+  description_.pass_names.resize(capacity);
+  callbacks_.resize(capacity);
   description_.passes.grow();
-  description_.pass_names.resize(description_.passes.capacity());
-  callbacks_.resize(description_.passes.capacity());
 }
 
 ResourceRecord Graph::texture_record(const TextureDesc& desc) const {

@@ -11,6 +11,13 @@ namespace {
 // Frames after which what is unused is destroyed.
 constexpr std::uint64_t kPatience = 120;
 
+// Room for `more`, made before what is to be put there: where memory gives out nothing is lost.
+template <typename Value>
+void make_room(std::vector<Value>& values, std::size_t more = 1) {
+  const std::size_t needed = values.size() + more;
+  if (needed > values.capacity()) values.reserve(std::max(needed, 2 * values.size()));
+}
+
 bool same(const ResourceRecord& a, const ResourceRecord& b) {
   // Where a resource came from does not matter to what it is.
   return a.kind == b.kind && a.size == b.size && a.format == b.format && a.width == b.width &&
@@ -42,6 +49,7 @@ VkResult Pool::reserve(const Plan& plan, std::uint64_t frame) {
       heap = heaps_.end() - 1;
     }
     if (heap->size >= wanted.size) continue;
+    make_room(retired_, transients_.size() + 1);
     VkDeviceMemory memory = VK_NULL_HANDLE;
     if (const VkResult result = allocate(wanted.memory_types, wanted.size, memory)) return result;
     // Everything in the old memory goes with it; other heaps' transients are cheap to make again.
@@ -68,6 +76,7 @@ VkResult Pool::transient(const ResourceRecord& record, const Plan& plan, const P
       return VK_SUCCESS;
     }
   }
+  make_room(transients_);
   auto made = std::make_unique<Physical>();
   made->record = record;
   made->usage = placement.usage;
@@ -93,6 +102,8 @@ VkResult Pool::history(std::uint32_t entry, std::uint32_t generation, std::uint3
     found = there->physical.get();
     return VK_SUCCESS;
   }
+  make_room(histories_);
+  make_room(retired_);
   auto made = std::make_unique<Physical>();
   made->record = record;
   made->usage = usage;
@@ -115,6 +126,7 @@ VkResult Pool::history(std::uint32_t entry, std::uint32_t generation, std::uint3
 }
 
 void Pool::retire_histories(const HistoryTable& table, std::uint64_t frame) {
+  make_room(retired_, histories_.size());
   const auto gone = [&](HistoryImage& history) {
     const auto& entries = table.entries();
     if (history.entry >= entries.size() || entries[history.entry].generation == history.generation)
@@ -142,6 +154,7 @@ Physical& Pool::import(const ResourceRecord& record, const ImportHandles& handle
 }
 
 void Pool::forget(VkImage image, std::uint64_t frame) {
+  make_room(retired_, imports_.size());
   std::erase_if(imports_, [&](std::unique_ptr<Physical>& physical) {
     if (physical->image != image) return false;
     retired_.push_back({frame, std::move(physical), {}});
@@ -155,6 +168,7 @@ VkImageView Pool::view(Physical& physical, const Range& range) {
   for (const CachedView& cached : physical.views) {
     if (cached.range == range) return cached.view;
   }
+  make_room(physical.views);
   VkImageViewCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
   info.image = physical.image;

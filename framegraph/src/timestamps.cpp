@@ -10,6 +10,9 @@ VkResult Timestamps::begin_frame(VkCommandBuffer commands, std::uint32_t passes)
   count_ = 0;
   read_ = false;
   if (passes > capacity_) {
+    names_.resize(std::max<std::size_t>(names_.size(), passes));
+    ticks_.resize(2 * std::size_t{passes});
+    timings_.reserve(passes);
     device_.vk.vkDestroyQueryPool(device_.handles.device, pool_, nullptr);
     pool_ = VK_NULL_HANDLE;
     capacity_ = 0;
@@ -21,9 +24,6 @@ VkResult Timestamps::begin_frame(VkCommandBuffer commands, std::uint32_t passes)
         device_.vk.vkCreateQueryPool(device_.handles.device, &info, nullptr, &pool_);
     if (result != VK_SUCCESS) return result;
     capacity_ = passes;
-    names_.resize(std::max<std::size_t>(names_.size(), passes));
-    ticks_.resize(2 * std::size_t{passes});
-    timings_.reserve(passes);
   }
   if (passes > 0) device_.vk.vkCmdResetQueryPool(commands, pool_, 0, 2 * passes);
   return VK_SUCCESS;

@@ -65,6 +65,24 @@ tl::expected<View, Failure> to_view(const AlcoveView& view, const AlcoveCamera& 
   return result;
 }
 
+tl::expected<void, Failure> check_given(const AlcoveView& view) {
+  const auto lacks = [&](const char* what) {
+    return invalid(sentence_begin(view) + " has no image " + what);
+  };
+  const auto given = [](const AlcoveImage& image) { return image.image != VK_NULL_HANDLE; };
+  if (!given(view.depth)) {
+    return lacks("of depth, which everything is made from.");
+  }
+  if (given(view.multi_bounce) && !given(view.albedo)) {
+    return lacks("of albedo, which multi-bounce is made from.");
+  }
+  if (!given(view.visibility) && !given(view.bent_normal) && !given(view.specular) &&
+      !given(view.multi_bounce)) {
+    return lacks("to write to; give one of visibility, bent_normal, specular and multi_bounce.");
+  }
+  return {};
+}
+
 tl::expected<Textures, Failure> import_images(framegraph::Graph& graph, ImageTable& images,
                                               const AlcoveView& view,
                                               const OcclusionSettings& settings) {
@@ -94,19 +112,6 @@ tl::expected<Textures, Failure> import_images(framegraph::Graph& graph, ImageTab
       return tl::unexpected(std::move(texture.error()));
     }
     import.texture = *texture;
-  }
-  const auto lacks = [&](const char* what) {
-    return invalid(sentence_begin(view) + " has no image " + what);
-  };
-  if (!textures.inputs.depth_ndc) {
-    return lacks("of depth, which everything is made from.");
-  }
-  if (textures.multi_bounce && !textures.albedo) {
-    return lacks("of albedo, which multi-bounce is made from.");
-  }
-  const Occlusion& into = textures.inputs.into;
-  if (!into.visibility && !into.bent_normal && !into.specular && !textures.multi_bounce) {
-    return lacks("to write to; give one of visibility, bent_normal, specular and multi_bounce.");
   }
   return textures;
 }
@@ -146,6 +151,9 @@ tl::expected<void, Failure> add_view(framegraph::Graph& graph, Kernels& kernels,
   auto before = reset ? now : to_view(view, view.previous_camera, "previous_camera");
   if (!now || !before) {
     return tl::unexpected(std::move(now ? before.error() : now.error()));
+  }
+  if (auto right = check_given(view); !right) {
+    return right;
   }
   auto textures = import_images(graph, images, view, settings);
   if (!textures) {

@@ -370,6 +370,10 @@ tl::expected<Kernel, Error> Kernels::get(Shader shader, std::span<const std::uin
                 .pName = "main",
                 .pSpecializationInfo = &specialisation},
       .layout = s.pipeline_layouts[index]};
+  // Room first: where memory gives out no pipeline is lost.
+  if (s.pipelines.size() == s.pipelines.capacity()) {
+    s.pipelines.reserve(2 * s.pipelines.size() + 8);
+  }
   Pipeline made{shader, {constants.begin(), constants.end()}, VK_NULL_HANDLE};
   if (const VkResult result = s.vk.vkCreateComputePipelines(s.device, VK_NULL_HANDLE, 1, &info,
                                                             nullptr, &made.pipeline);
@@ -385,6 +389,10 @@ void Kernels::dispatch(framegraph::RecordContext& context, Kernel kernel,
                        VkExtent3D size) {
   State& s = *state_;
   assert(s.dispatches < kMaxDispatches);
+  // A view that could not be made is an error that the frame's record returns.
+  if (std::ranges::find(views, VkImageView{VK_NULL_HANDLE}) != views.end()) {
+    return;
+  }
   const VkDescriptorSet set = s.next_set(kernel.shader);
   if (set == VK_NULL_HANDLE) {
     return;

@@ -1,0 +1,382 @@
+// Bad input of any kind is an error value and a sentence; nothing is recorded, and the next frame
+// is as if it had never been.
+#include <gmock/gmock.h>
+
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <random>
+#include <string>
+
+#include "c_interface_fixture.h"
+#include "gtao_scenes.h"
+
+namespace alcove::passes {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+
+bool is_a_sentence(const std::string& text) {
+  return !text.empty() && text.back() == '.' && std::isupper(static_cast<unsigned char>(text[0]));
+}
+
+// A value that an enum does not have.
+template <typename Enum>
+void set_number(Enum& value, std::uint32_t number) {
+  std::memcpy(&value, &number, sizeof number);
+}
+
+class CBadInput : public CInterface {
+ protected:
+  void SetUp() override {
+    CInterface::SetUp();
+    if (HasFatalFailure()) {
+      return;
+    }
+    context_ = create_context();
+    given_ = given_view(test_views()[2], 16, 12, groove(0.8));
+    given_.settings.bent_normal = true;
+    given_.settings.specular = Specular::slices;
+    given_.multi_bounce = true;
+    view_ = view_of(given_, settings_);
+  }
+  void TearDown() override {
+    if (engine_is_there()) {
+      engine().wait();
+    }
+    context_.reset();
+    CInterface::TearDown();
+  }
+  bool engine_is_there() { return context_ != nullptr; }
+
+  struct Spoilt {
+    AlcoveFrame frame;
+    std::array<AlcoveView, 9> views;
+    AlcoveSettings settings;
+  };
+  // What alcoveRecordFrame says of a frame that `spoil` changed.
+  std::string error_of(const std::function<void(Spoilt&)>& spoil) {
+    Spoilt spoilt{};
+    spoilt.settings = settings_;
+    spoilt.views.fill(view_);
+    for (std::uint32_t i = 0; i < spoilt.views.size(); ++i) {
+      spoilt.views.at(i).id = i;
+      spoilt.views.at(i).settings = &spoilt.settings;
+    }
+    spoilt.frame = {.struct_size = sizeof(AlcoveFrame),
+                    .slot = 1,
+                    .view_count = 1,
+                    .views = spoilt.views.data()};
+    spoil(spoilt);
+    engine().submit(1, [&](VkCommandBuffer commands) {
+      EXPECT_EQ(alcoveRecordFrame(context_.get(), commands, &spoilt.frame),
+                ALCOVE_ERROR_INVALID_INPUT);
+    });
+    return alcoveGetMessage(context_.get());
+  }
+
+  void expect_a_good_frame() {
+    run_frame(*context_, {&view_, 1}, 0);
+    engine().wait();
+    given_.reset = true;  // by C the view was never recorded before
+    expect_equal(results_of(view_), run_by_cpp(given_, 0));
+  }
+
+  AlcoveContext* context() { return context_.get(); }
+  AlcoveView& view() { return view_; }
+
+ private:
+  Context context_;
+  GivenView given_;
+  AlcoveSettings settings_{};
+  AlcoveView view_{};
+};
+
+TEST_F(CBadInput, AFrameThatIsNoneIsNamed) {
+  struct Case {
+    const char* names;
+    std::function<void(Spoilt&)> spoil;
+  };
+  const Case cases[] = {
+      {"AlcoveFrame::struct_size is 0", [](Spoilt& s) { s.frame.struct_size = 0; }},
+      {"AlcoveFrame::struct_size", [](Spoilt& s) { s.frame.struct_size = ~0u; }},
+      {"slot is 2", [](Spoilt& s) { s.frame.slot = 2; }},
+      {"slot is 4294967295", [](Spoilt& s) { s.frame.slot = ~0u; }},
+      {"0 views", [](Spoilt& s) { s.frame.view_count = 0; }},
+      {"9 views", [](Spoilt& s) { s.frame.view_count = 9; }},
+      {"0 views", [](Spoilt& s) { s.frame.views = nullptr; }},
+      {"AlcoveView::struct_size", [](Spoilt& s) { s.views[0].struct_size -= 1; }},
+      {"id 1",
+       [](Spoilt& s) {
+         s.frame.view_count = 2;
+         s.views[0].id = s.views[1].id;
+       }},
+      {"no settings", [](Spoilt& s) { s.views[0].settings = nullptr; }},
+      {"given twice", [](Spoilt& s) { s.frame.view_count = 2; }},
+  };
+  for (const Case& bad : cases) {
+    const std::string said = error_of(bad.spoil);
+    EXPECT_THAT(said, HasSubstr(bad.names));
+    EXPECT_PRED1(is_a_sentence, said);
+  }
+  expect_a_good_frame();
+}
+
+TEST_F(CBadInput, EverySettingOutOfRangeIsNamed) {
+  struct Case {
+    const char* names;
+    std::function<void(AlcoveSettings&)> spoil;
+  };
+  const Case cases[] = {
+      {"AlcoveSettings::struct_size", [](AlcoveSettings& s) { s.struct_size = 4; }},
+      {"radius", [](AlcoveSettings& s) { s.radius = 0.0f; }},
+      {"radius", [](AlcoveSettings& s) { s.radius = kNaN; }},
+      {"slices", [](AlcoveSettings& s) { s.slices = 65; }},
+      {"steps", [](AlcoveSettings& s) { s.steps = 1; }},
+      {"estimator is 4,", [](AlcoveSettings& s) { set_number(s.estimator, 4); }},
+      {"estimator is 4294967295", [](AlcoveSettings& s) { set_number(s.estimator, ~0u); }},
+      {"weighting is 2", [](AlcoveSettings& s) { set_number(s.weighting, 2); }},
+      {"thickness", [](AlcoveSettings& s) { s.thickness = kNaN; }},
+      {"thickness_unit is 3", [](AlcoveSettings& s) { set_number(s.thickness_unit, 3); }},
+      {"fill", [](AlcoveSettings& s) { s.fill = 1.5f; }},
+      {"blend", [](AlcoveSettings& s) { s.blend = -1.0f; }},
+      {"falloff", [](AlcoveSettings& s) { s.falloff = 2.0f; }},
+      {"divided by 3", [](AlcoveSettings& s) { s.divisor = 3; }},
+      {"pattern is 3", [](AlcoveSettings& s) { set_number(s.pattern, 3); }},
+      {"mips", [](AlcoveSettings& s) { s.depth_mips = 0; }},
+      {"reach", [](AlcoveSettings& s) { s.filter_reach = 4; }},
+      {"tolerance", [](AlcoveSettings& s) { s.filter_tolerance_px = 0.0f; }},
+      {"history", [](AlcoveSettings& s) { s.history_frames = 256; }},
+      {"clamp", [](AlcoveSettings& s) { s.clamp_width = kNaN; }},
+      {"specular is 0", [](AlcoveSettings& s) { set_number(s.specular, 0); }},
+      {"specular is 6", [](AlcoveSettings& s) { set_number(s.specular, 6); }},
+      {"roughness", [](AlcoveSettings& s) { s.roughness = kNaN; }},
+      {"channel", [](AlcoveSettings& s) { s.roughness_channel = 7; }},
+      {"precision is 3", [](AlcoveSettings& s) { set_number(s.precision, 3); }},
+  };
+  for (const Case& bad : cases) {
+    const std::string said = error_of([&](Spoilt& s) {
+      s.views[0].roughness = {};
+      bad.spoil(s.settings);
+    });
+    EXPECT_THAT(said, HasSubstr(bad.names));
+    EXPECT_PRED1(is_a_sentence, said);
+  }
+  expect_a_good_frame();
+}
+
+TEST_F(CBadInput, ACameraThatIsNoneIsNamed) {
+  struct Case {
+    const char* names;
+    std::function<void(AlcoveView&)> spoil;
+  };
+  const Case cases[] = {
+      {"camera.view_from_world", [](AlcoveView& v) { v.camera.view_from_world[13] = kNaN; }},
+      {"camera.view_from_world", [](AlcoveView& v) { v.camera.view_from_world[0] = kNaN; }},
+      {"camera.view_from_world", [](AlcoveView& v) { v.camera.view_from_world[0] = 2.0f; }},
+      // Row-major: the translation lies in the last row.
+      {"column-major", [](AlcoveView& v) { v.camera.view_from_world[3] = 5.0f; }},
+      {"previous_camera.view_from_world", [](AlcoveView& v) { v.previous_camera = {}; }},
+      {"The view cannot be used", [](AlcoveView& v) { v.camera.clip_from_view[0] = kNaN; }},
+      {"The view cannot be used", [](AlcoveView& v) { v.camera.clip_from_view[11] = 1.0f; }},
+      {"The view cannot be used",
+       [](AlcoveView& v) { v.previous_camera.clip_from_view[5] = 0.0f; }},
+  };
+  for (const Case& bad : cases) {
+    const std::string said = error_of([&](Spoilt& s) { bad.spoil(s.views[0]); });
+    EXPECT_THAT(said, HasSubstr(bad.names));
+    EXPECT_PRED1(is_a_sentence, said);
+  }
+  // What was before a cut is not read.
+  view().reset_history = VK_TRUE;
+  view().previous_camera = {};
+  expect_a_good_frame();
+}
+
+TEST_F(CBadInput, AnImageThatDoesNotDoIsNamed) {
+  struct Case {
+    const char* names;
+    std::function<void(AlcoveView&)> spoil;
+  };
+  const Case cases[] = {
+      {"no image of depth", [](AlcoveView& v) { v.depth = {}; }},
+      {"depth is 0x12", [](AlcoveView& v) { v.depth.width = 0; }},
+      {"normals is 16x0", [](AlcoveView& v) { v.normals.height = 0; }},
+      {"depth", [](AlcoveView& v) { v.depth.format = VK_FORMAT_R8G8B8A8_UNORM; }},
+      {"depth", [](AlcoveView& v) { v.depth.format = VK_FORMAT_UNDEFINED; }},
+      {"normals is 15x12", [](AlcoveView& v) { v.normals.width = 15; }},
+      {"normals has VkFormat", [](AlcoveView& v) { v.normals.format = VK_FORMAT_R8G8B8A8_UNORM; }},
+      {"normals has VkFormat", [](AlcoveView& v) { v.normals.format = VK_FORMAT_R16G16_SFLOAT; }},
+      {"motion vectors has VkFormat",
+       [](AlcoveView& v) { v.motion.format = VK_FORMAT_R32G32_UINT; }},
+      {"roughness has VkFormat", [](AlcoveView& v) { v.roughness.format = VK_FORMAT_R8_UNORM; }},
+      {"back-face depth is 16x13", [](AlcoveView& v) { v.back_depth.height = 13; }},
+      {"albedo has VkFormat", [](AlcoveView& v) { v.albedo.format = VK_FORMAT_BC7_SRGB_BLOCK; }},
+      {"no image of albedo", [](AlcoveView& v) { v.albedo = {}; }},
+      {"visibility has VkFormat",
+       [](AlcoveView& v) { v.visibility.format = VK_FORMAT_D32_SFLOAT; }},
+      {"bent normals has VkFormat",
+       [](AlcoveView& v) { v.bent_normal.format = VK_FORMAT_R8G8B8A8_UNORM; }},
+      {"multi-bounce has VkFormat",
+       [](AlcoveView& v) { v.multi_bounce.format = VK_FORMAT_R32_SFLOAT; }},
+      {"specular occlusion is 1x1",
+       [](AlcoveView& v) { v.specular.width = v.specular.height = 1; }},
+      {"without VK_IMAGE_USAGE_SAMPLED_BIT", [](AlcoveView& v) { v.albedo.usage = 0; }},
+      {"without VK_IMAGE_USAGE_STORAGE_BIT",
+       [](AlcoveView& v) { v.bent_normal.usage = VK_IMAGE_USAGE_SAMPLED_BIT; }},
+      // Multi-bounce reads it.
+      {"visibility of view 0",
+       [](AlcoveView& v) { v.visibility.usage = VK_IMAGE_USAGE_STORAGE_BIT; }},
+      {"no layout to be left in",
+       [](AlcoveView& v) { v.specular.departure.layout = VK_IMAGE_LAYOUT_UNDEFINED; }},
+      {"without contents",
+       [](AlcoveView& v) { v.depth.arrival.layout = VK_IMAGE_LAYOUT_UNDEFINED; }},
+      {"given twice", [](AlcoveView& v) { v.specular = v.visibility; }},
+      {"given twice",
+       [](AlcoveView& v) {
+         v.motion = v.roughness;
+         v.motion.departure.stages = VK_PIPELINE_STAGE_2_COPY_BIT;
+       }},
+      {"no image to write to",
+       [](AlcoveView& v) {
+         v.visibility = v.bent_normal = v.specular = v.multi_bounce = AlcoveImage{};
+       }},
+  };
+  for (const Case& bad : cases) {
+    const std::string said = error_of([&](Spoilt& s) { bad.spoil(s.views[0]); });
+    EXPECT_THAT(said, HasSubstr(bad.names));
+    EXPECT_PRED1(is_a_sentence, said);
+  }
+  expect_a_good_frame();
+}
+
+TEST_F(CBadInput, BackFacesThatAreReadButNotGivenAreNamed) {
+  const std::string said = error_of([](Spoilt& s) {
+    s.settings.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES;
+    s.views[0].back_depth = {};
+  });
+  EXPECT_THAT(said, HasSubstr("back-face depth"));
+  EXPECT_PRED1(is_a_sentence, said);
+}
+
+TEST_F(CBadInput, NullPointersAreErrors) {
+  AlcoveFrame frame{.struct_size = sizeof frame};
+  EXPECT_EQ(alcoveRecordFrame(context(), VK_NULL_HANDLE, &frame), ALCOVE_ERROR_INVALID_INPUT);
+  EXPECT_THAT(alcoveGetMessage(context()), HasSubstr("command buffer"));
+  EXPECT_EQ(alcoveRecordFrame(nullptr, VK_NULL_HANDLE, &frame), ALCOVE_ERROR_INVALID_INPUT);
+  engine().submit(0, [&](VkCommandBuffer commands) {
+    EXPECT_EQ(alcoveRecordFrame(context(), commands, nullptr), ALCOVE_ERROR_INVALID_INPUT);
+  });
+  EXPECT_EQ(alcoveGetMemory(context(), nullptr), ALCOVE_ERROR_INVALID_INPUT);
+  EXPECT_EQ(alcoveGetMemory(nullptr, nullptr), ALCOVE_ERROR_INVALID_INPUT);
+  AlcoveMemory memory{};
+  EXPECT_EQ(alcoveGetMemory(context(), &memory), ALCOVE_ERROR_INVALID_INPUT);
+  EXPECT_THAT(alcoveGetMessage(context()), HasSubstr("AlcoveMemory::struct_size"));
+  std::uint32_t count = 0;
+  EXPECT_EQ(alcoveGetTimings(context(), 0, nullptr, nullptr), ALCOVE_ERROR_INVALID_INPUT);
+  EXPECT_EQ(alcoveGetTimings(context(), 2, &count, nullptr), ALCOVE_ERROR_INVALID_INPUT);
+  EXPECT_EQ(alcoveGetTimings(nullptr, 0, &count, nullptr), ALCOVE_ERROR_INVALID_INPUT);
+  EXPECT_EQ(alcovePrintPlan(nullptr, nullptr, 0), 0u);
+  EXPECT_EQ(alcoveDropView(nullptr, 0), ALCOVE_ERROR_INVALID_INPUT);
+  EXPECT_EQ(alcoveForgetImage(nullptr, VK_NULL_HANDLE), ALCOVE_ERROR_INVALID_INPUT);
+  EXPECT_EQ(alcoveForgetImage(context(), VK_NULL_HANDLE), ALCOVE_SUCCESS);
+  EXPECT_STRNE(alcoveGetMessage(nullptr), "");
+  alcoveDestroyContext(nullptr);
+  expect_a_good_frame();
+}
+
+TEST_F(CBadInput, AContextThatCannotBeIsNamed) {
+  struct Case {
+    const char* names;
+    std::function<void(AlcoveContextInfo&)> spoil;
+  };
+  const Case cases[] = {
+      {"struct_size", [](AlcoveContextInfo& i) { i.struct_size = 0; }},
+      {"instance is null", [](AlcoveContextInfo& i) { i.instance = VK_NULL_HANDLE; }},
+      {"physical_device is null", [](AlcoveContextInfo& i) { i.physical_device = VK_NULL_HANDLE; }},
+      {"device is null", [](AlcoveContextInfo& i) { i.device = VK_NULL_HANDLE; }},
+      {"get_instance_proc_addr is null",
+       [](AlcoveContextInfo& i) { i.get_instance_proc_addr = nullptr; }},
+      {"frames_in_flight is 0", [](AlcoveContextInfo& i) { i.frames_in_flight = 0; }},
+      {"frames_in_flight is 9", [](AlcoveContextInfo& i) { i.frames_in_flight = 9; }},
+      {"queue_family is 4294967295", [](AlcoveContextInfo& i) { i.queue_family = ~0u; }},
+  };
+  char message[ALCOVE_MAX_MESSAGE];
+  for (const Case& bad : cases) {
+    AlcoveContextInfo info = engine().context_info();
+    bad.spoil(info);
+    AlcoveContext* made = context();
+    EXPECT_EQ(alcoveCreateContext(&info, &made, message), ALCOVE_ERROR_INVALID_INPUT);
+    EXPECT_EQ(made, nullptr);
+    EXPECT_THAT(message, HasSubstr(bad.names));
+    EXPECT_PRED1(is_a_sentence, message);
+  }
+  AlcoveContext* made = nullptr;
+  EXPECT_EQ(alcoveCreateContext(nullptr, &made, nullptr), ALCOVE_ERROR_INVALID_INPUT);
+  const AlcoveContextInfo info = engine().context_info();
+  EXPECT_EQ(alcoveCreateContext(&info, nullptr, message), ALCOVE_ERROR_INVALID_INPUT);
+  EXPECT_PRED1(is_a_sentence, message);
+}
+
+TEST_F(CBadInput, SettingsOfNoQualityAreErrors) {
+  AlcoveSettings settings{.struct_size = sizeof settings};
+  AlcoveQuality quality = ALCOVE_QUALITY_LOW;
+  EXPECT_EQ(alcoveGetSettings(quality, 1.0f, nullptr), ALCOVE_ERROR_INVALID_INPUT);
+  for (const float radius : {0.0f, -1.0f, kNaN, std::numeric_limits<float>::infinity()}) {
+    EXPECT_EQ(alcoveGetSettings(quality, radius, &settings), ALCOVE_ERROR_INVALID_INPUT);
+  }
+  set_number(quality, 5);
+  EXPECT_EQ(alcoveGetSettings(quality, 1.0f, &settings), ALCOVE_ERROR_INVALID_INPUT);
+  settings.struct_size = 12;
+  EXPECT_EQ(alcoveGetSettings(ALCOVE_QUALITY_LOW, 1.0f, &settings), ALCOVE_ERROR_INVALID_INPUT);
+  char text[64] = "before";
+  EXPECT_EQ(alcovePrintSettings(&settings, text, sizeof text), 0u);
+  EXPECT_STREQ(text, "");
+  EXPECT_EQ(alcovePrintSettings(nullptr, text, sizeof text), 0u);
+  EXPECT_EQ(alcoveGetSettings(ALCOVE_QUALITY_LOW, 1.0f, nullptr), ALCOVE_ERROR_INVALID_INPUT);
+}
+
+// Whatever the numbers of settings and cameras are, a frame is recorded or refused in a sentence.
+TEST_F(CBadInput, RandomNumbersAreRecordedOrRefused) {
+  const std::uint32_t seed = std::random_device{}();
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  std::mt19937 random(seed);
+  const std::array<float, 8> floats{0.0f, -0.0f, 1.0f, -1.0f, 1e30f, 1e-30f, kNaN, -1e38f};
+  constexpr std::size_t kFirst = offsetof(AlcoveSettings, radius);
+  constexpr std::size_t kCount = (sizeof(AlcoveSettings) - kFirst) / 4;
+  int refused = 0;
+  for (int i = 0; i < 60; ++i) {
+    AlcoveSettings settings{.struct_size = sizeof settings};
+    ASSERT_EQ(alcoveGetSettings(ALCOVE_QUALITY_LOW, 0.5f, &settings), ALCOVE_SUCCESS);
+    AlcoveView changed = view();
+    changed.settings = &settings;
+    const std::uint32_t small = random() % 8;
+    const float number = floats.at(random() % floats.size());
+    char* const field = reinterpret_cast<char*>(&settings) + kFirst + 4 * (random() % kCount);
+    if (random() % 2 == 0) {
+      std::memcpy(field, &small, 4);
+    } else if (random() % 2 == 0) {
+      std::memcpy(field, &number, 4);
+    } else {
+      changed.camera.clip_from_view[random() % 16] = number;
+    }
+    const AlcoveFrame frame{.struct_size = sizeof frame, .view_count = 1, .views = &changed};
+    engine().submit(0, [&](VkCommandBuffer commands) {
+      const AlcoveResult result = alcoveRecordFrame(context(), commands, &frame);
+      if (result != ALCOVE_SUCCESS) {
+        ++refused;
+        EXPECT_EQ(result, ALCOVE_ERROR_INVALID_INPUT) << alcoveGetMessage(context());
+        EXPECT_PRED1(is_a_sentence, alcoveGetMessage(context()));
+      }
+    });
+  }
+  EXPECT_GT(refused, 0);
+  engine().wait();
+}
+
+}  // namespace
+}  // namespace alcove::passes

@@ -1,0 +1,241 @@
+// A device that lacks something, and memory that gives out anywhere: an error value and a sentence,
+// nothing thrown and nothing leaked.
+#include <gmock/gmock.h>
+
+#include <array>
+#include <string>
+
+#include "c_interface_fixture.h"
+#include "framegraph/allocation_counter.h"
+#include "framegraph/failing_device.h"
+#include "gtao_scenes.h"
+
+namespace alcove::passes {
+namespace {
+
+using testing::HasSubstr;
+
+bool has_synchronization2 = true;
+bool has_write_without_format = true;
+std::uint32_t api_version = VK_API_VERSION_1_3;
+const char* missing_function = "";
+
+VKAPI_ATTR void VKAPI_CALL get_features(VkPhysicalDevice device, VkPhysicalDeviceFeatures2* all) {
+  vkGetPhysicalDeviceFeatures2(device, all);
+  auto* vulkan13 = static_cast<VkPhysicalDeviceVulkan13Features*>(all->pNext);
+  vulkan13->synchronization2 = has_synchronization2 ? VK_TRUE : VK_FALSE;
+  all->features.shaderStorageImageWriteWithoutFormat =
+      has_write_without_format ? VK_TRUE : VK_FALSE;
+}
+
+VKAPI_ATTR void VKAPI_CALL get_properties(VkPhysicalDevice device,
+                                          VkPhysicalDeviceProperties* properties) {
+  vkGetPhysicalDeviceProperties(device, properties);
+  properties->apiVersion = api_version;
+}
+
+VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_device_proc_addr(VkDevice device, const char* name) {
+  return std::string(name) == missing_function ? nullptr : vkGetDeviceProcAddr(device, name);
+}
+
+VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_instance_proc_addr(VkInstance instance,
+                                                                const char* name) {
+  const std::string wanted(name);
+  if (wanted == "vkGetPhysicalDeviceFeatures2") {
+    return reinterpret_cast<PFN_vkVoidFunction>(&get_features);
+  }
+  if (wanted == "vkGetPhysicalDeviceProperties") {
+    return reinterpret_cast<PFN_vkVoidFunction>(&get_properties);
+  }
+  if (wanted == "vkGetDeviceProcAddr") {
+    return reinterpret_cast<PFN_vkVoidFunction>(&get_device_proc_addr);
+  }
+  return wanted == missing_function ? nullptr : vkGetInstanceProcAddr(instance, name);
+}
+
+class CFailure : public CInterface {
+ protected:
+  void SetUp() override {
+    CInterface::SetUp();
+    has_synchronization2 = has_write_without_format = true;
+    api_version = VK_API_VERSION_1_3;
+    missing_function = "";
+    framegraph::failing::fail_at(0);
+    framegraph::failing::lose(false);
+  }
+
+  std::string error_of_context(const AlcoveContextInfo& info, AlcoveResult expected) {
+    char message[ALCOVE_MAX_MESSAGE];
+    AlcoveContext* made = nullptr;
+    EXPECT_EQ(alcoveCreateContext(&info, &made, message), expected) << message;
+    const Context context(made);
+    return message;
+  }
+};
+
+TEST_F(CFailure, WhatADeviceLacksIsNamed) {
+  AlcoveContextInfo info = engine().context_info();
+  info.get_instance_proc_addr = get_instance_proc_addr;
+  EXPECT_EQ(error_of_context(info, ALCOVE_SUCCESS), "");
+  has_synchronization2 = false;
+  EXPECT_THAT(error_of_context(info, ALCOVE_ERROR_UNSUPPORTED),
+              HasSubstr("has no feature synchronization2"));
+  has_synchronization2 = true;
+  has_write_without_format = false;
+  EXPECT_THAT(error_of_context(info, ALCOVE_ERROR_UNSUPPORTED),
+              HasSubstr("has no feature shaderStorageImageWriteWithoutFormat"));
+  has_write_without_format = true;
+  api_version = VK_API_VERSION_1_2;
+  EXPECT_THAT(error_of_context(info, ALCOVE_ERROR_UNSUPPORTED), HasSubstr("below Vulkan 1.3"));
+  api_version = VK_API_VERSION_1_3;
+  missing_function = "vkCmdPipelineBarrier2";
+  EXPECT_THAT(error_of_context(info, ALCOVE_ERROR_UNSUPPORTED), HasSubstr("vkCmdPipelineBarrier2"));
+  missing_function = "vkGetPhysicalDeviceQueueFamilyProperties2";
+  EXPECT_THAT(error_of_context(info, ALCOVE_ERROR_UNSUPPORTED), HasSubstr("instance"));
+}
+
+TEST_F(CFailure, AFeatureThatTheEngineDidNotEnableIsNamed) {
+  AlcoveContextInfo info = engine().context_info();
+  VkPhysicalDeviceVulkan13Features vulkan13{
+      .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
+  VkPhysicalDeviceFeatures2 enabled{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
+                                    .pNext = &vulkan13};
+  enabled.features.shaderStorageImageWriteWithoutFormat = VK_TRUE;
+  info.enabled_features = &enabled;
+  EXPECT_THAT(error_of_context(info, ALCOVE_ERROR_UNSUPPORTED), HasSubstr("synchronization2"));
+  vulkan13.synchronization2 = VK_TRUE;
+  EXPECT_EQ(error_of_context(info, ALCOVE_SUCCESS), "");
+  enabled.features.shaderStorageImageWriteWithoutFormat = VK_FALSE;
+  EXPECT_THAT(error_of_context(info, ALCOVE_ERROR_UNSUPPORTED),
+              HasSubstr("shaderStorageImageWriteWithoutFormat"));
+}
+
+// Nothing is submitted of a frame that failed midway.
+void throw_away(VkCommandBuffer commands) {
+  vkResetCommandBuffer(commands, 0);
+  const VkCommandBufferBeginInfo begin{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
+  vkBeginCommandBuffer(commands, &begin);
+}
+
+// Makes a context and records two frames; the first thing that fails, and what is said of it.
+struct Outcome {
+  AlcoveResult result = ALCOVE_SUCCESS;
+  std::string message;
+};
+Outcome run_two_frames(const AlcoveContextInfo& info, const AlcoveView& view, Engine& engine) {
+  Outcome outcome;
+  char message[ALCOVE_MAX_MESSAGE];
+  AlcoveContext* made = nullptr;
+  outcome.result = alcoveCreateContext(&info, &made, message);
+  const Context context(made);
+  std::string said = message;
+  const AlcoveFrame frame{.struct_size = sizeof frame, .view_count = 1, .views = &view};
+  for (int i = 0; i < 2 && outcome.result == ALCOVE_SUCCESS; ++i) {
+    engine.submit(0, [&](VkCommandBuffer commands) {
+      outcome.result = alcoveRecordFrame(context.get(), commands, &frame);
+      if (outcome.result != ALCOVE_SUCCESS) {
+        throw_away(commands);
+      }
+    });
+    said = alcoveGetMessage(context.get());
+  }
+  engine.wait();
+  outcome.message = said;
+  return outcome;
+}
+
+TEST_F(CFailure, RunningOutOfDeviceMemoryAnywhereIsAnErrorAndLeaksNothing) {
+  GivenView given = given_view(test_views()[2], 8, 6, groove(0.8));
+  given.settings.estimator = Estimator::horizons;
+  AlcoveSettings settings;
+  const AlcoveView view = view_of(given, settings);
+  AlcoveContextInfo info = engine().context_info();
+  info.get_instance_proc_addr = framegraph::failing::get_instance_proc_addr;
+  bool failed = true;
+  for (int call = 1; failed; ++call) {
+    SCOPED_TRACE(call);
+    framegraph::failing::fail_at(call);
+    const Outcome outcome = run_two_frames(info, view, engine());
+    EXPECT_EQ(framegraph::failing::alive(), 0);
+    failed = framegraph::failing::calls() >= call;
+    EXPECT_EQ(outcome.result, failed ? ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY : ALCOVE_SUCCESS)
+        << outcome.message;
+    EXPECT_EQ(outcome.message.empty(), !failed);
+    ASSERT_LT(call, 500);
+  }
+}
+
+// Calls `call` of the library with its allocation number `which` failing; whether there was one.
+template <typename Call>
+bool call_without_memory(std::size_t which, const Call& call) {
+  framegraph::fail_allocation(which);
+  call();
+  const bool failed = framegraph::allocation_failed();
+  framegraph::fail_allocation(0);
+  return failed;
+}
+
+TEST_F(CFailure, AContextWithoutHostMemoryIsAnErrorAndLeaksNothing) {
+  AlcoveContextInfo info = engine().context_info();
+  info.get_instance_proc_addr = framegraph::failing::get_instance_proc_addr;
+  bool failed = true;
+  for (std::size_t which = 1; failed; ++which) {
+    SCOPED_TRACE(which);
+    char message[ALCOVE_MAX_MESSAGE];
+    AlcoveContext* made = nullptr;
+    AlcoveResult result = ALCOVE_SUCCESS;
+    failed =
+        call_without_memory(which, [&] { result = alcoveCreateContext(&info, &made, message); });
+    EXPECT_EQ(result, failed ? ALCOVE_ERROR_OUT_OF_HOST_MEMORY : ALCOVE_SUCCESS) << message;
+    EXPECT_EQ(made == nullptr, failed);
+    alcoveDestroyContext(made);
+    EXPECT_EQ(framegraph::failing::alive(), 0);
+    ASSERT_LT(which, 2000u);
+  }
+}
+
+// Frames of ever other sizes, so that each is compiled and gets memory anew.
+TEST_F(CFailure, AFrameWithoutHostMemoryIsAnErrorAndTheNextOneIsRecorded) {
+  GivenView given = given_view(test_views()[2], 64, 48, groove(0.8));
+  given.settings.bent_normal = true;
+  AlcoveSettings settings;
+  AlcoveView view = view_of(given, settings);
+  AlcoveContextInfo info = engine().context_info();
+  info.get_instance_proc_addr = framegraph::failing::get_instance_proc_addr;
+  AlcoveContext* made = nullptr;
+  ASSERT_EQ(alcoveCreateContext(&info, &made, nullptr), ALCOVE_SUCCESS);
+  Context context(made);
+  const AlcoveFrame frame{.struct_size = sizeof frame, .view_count = 1, .views = &view};
+  bool failed = true;
+  for (std::size_t which = 1; failed; ++which) {
+    SCOPED_TRACE(which);
+    for (AlcoveImage* image :
+         {&view.depth, &view.normals, &view.motion, &view.roughness, &view.back_depth, &view.albedo,
+          &view.visibility, &view.bent_normal}) {
+      image->width = 8 + static_cast<std::uint32_t>(which % 56);
+      image->height = 8 + static_cast<std::uint32_t>(which / 56);
+    }
+    for (const std::size_t fails : {which, std::size_t{0}}) {
+      engine().submit(0, [&](VkCommandBuffer commands) {
+        AlcoveResult result = ALCOVE_SUCCESS;
+        const bool now = call_without_memory(
+            fails, [&] { result = alcoveRecordFrame(context.get(), commands, &frame); });
+        EXPECT_EQ(result, now ? ALCOVE_ERROR_OUT_OF_HOST_MEMORY : ALCOVE_SUCCESS)
+            << alcoveGetMessage(context.get());
+        if (fails != 0) {
+          failed = now;
+        }
+        if (now) {
+          throw_away(commands);
+        }
+      });
+    }
+    ASSERT_LT(which, 2000u);
+  }
+  engine().wait();
+  context.reset();
+  EXPECT_EQ(framegraph::failing::alive(), 0);
+}
+
+}  // namespace
+}  // namespace alcove::passes

@@ -288,6 +288,23 @@ TEST_F(CInterface, OneImageMayBeSeveralInputs) {
   expect_equal(results_of(view), run_by_cpp(given, 0));
 }
 
+TEST_F(CInterface, AnImageThatIsForgottenMayBeDestroyed) {
+  const Context context = create_context();
+  const GivenView given = frame_of(0, 16, 12);
+  AlcoveSettings settings;
+  AlcoveView view = view_of(given, settings);
+  view.reset_history = VK_TRUE;
+  const Results expected = run_by_cpp(given, 0);
+  for (std::uint32_t round = 0; round < 4; ++round) {
+    run_frame(*context, {&view, 1}, 0);
+    expect_equal(results_of(view), expected);
+    engine().wait();
+    EXPECT_EQ(alcoveForgetImage(context.get(), view.visibility.image), ALCOVE_SUCCESS);
+    engine().destroy_image(view.visibility);
+    view.visibility = output(view.visibility.format, 16, 12);
+  }
+}
+
 TEST_F(CInterface, AReferenceIsTheSameAsByCpp) {
   const Context context = create_context();
   GivenView given = frame_of(0, 6, 4);

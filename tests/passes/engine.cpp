@@ -93,6 +93,17 @@ AlcoveImage Engine::make_image(VkFormat format, std::uint32_t width, std::uint32
           .departure = kResting};
 }
 
+void Engine::destroy_image(const AlcoveImage& image) {
+  std::erase_if(images_, [&](const Image& made) {
+    if (made.image != image.image) {
+      return false;
+    }
+    vkDestroyImage(device_.device(), made.image, nullptr);
+    vkFreeMemory(device_.device(), made.memory, nullptr);
+    return true;
+  });
+}
+
 void Engine::submit(std::uint32_t slot, const std::function<void(VkCommandBuffer)>& record) {
   const Slot& used = slots_.at(slot);
   EXPECT_EQ(vkWaitForFences(device_.device(), 1, &used.fence, VK_TRUE, UINT64_MAX), VK_SUCCESS);

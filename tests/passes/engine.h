@@ -28,6 +28,9 @@ class Engine {
   AlcoveImage make_image(VkFormat format, std::uint32_t width, std::uint32_t height,
                          VkImageUsageFlags usage, std::uint32_t layers = 1);
 
+  // The device has finished with it.
+  void destroy_image(const AlcoveImage& image);
+
   // Has `record` record into the commands of `slot`, whose frame before has finished, and submits
   // them, whatever was recorded; does not wait.
   void submit(std::uint32_t slot, const std::function<void(VkCommandBuffer)>& record);

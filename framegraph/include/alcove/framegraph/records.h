@@ -22,9 +22,11 @@ class Records {
   void clear() { size_ = 0; }
   bool is_full() const { return size_ == capacity_; }
   std::size_t capacity() const { return capacity_; }
+  std::size_t next_capacity() const { return 2 * size_ + 16; }
   void grow() {
-    capacity_ = 2 * size_ + 16;
-    values_.resize(capacity_ + 1);
+    const std::size_t capacity = next_capacity();
+    values_.resize(capacity + 1);
+    capacity_ = capacity;
   }
 
   // What lies at the next place: repeat() makes it the next value, where there is room. There
