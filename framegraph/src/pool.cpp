@@ -95,6 +95,8 @@ VkResult Pool::transient(const ResourceRecord& record, const Plan& plan, const P
 VkResult Pool::history(std::uint32_t entry, std::uint32_t generation, std::uint32_t position,
                        const ResourceRecord& record, VkFlags usage, std::string_view name,
                        std::uint64_t frame, Physical*& found) {
+  make_room(histories_);
+  make_room(retired_);
   auto there = std::find_if(histories_.begin(), histories_.end(), [&](const HistoryImage& h) {
     return h.entry == entry && h.position == position;
   });
@@ -102,8 +104,6 @@ VkResult Pool::history(std::uint32_t entry, std::uint32_t generation, std::uint3
     found = there->physical.get();
     return VK_SUCCESS;
   }
-  make_room(histories_);
-  make_room(retired_);
   auto made = std::make_unique<Physical>();
   made->record = record;
   made->usage = usage;
