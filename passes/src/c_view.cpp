@@ -38,10 +38,11 @@ std::string sentence_begin(const AlcoveView& view) { return "View " + std::to_st
 // transposed matrices often.
 bool is_rotation_and_translation(const float (&m)[16]) {
   constexpr float kSlack = 1e-3f;
-  for (int a = 0; a < 3; ++a) {
-    for (int b = a; b < 3; ++b) {
-      const float dot =
-          m[4 * a] * m[4 * b] + m[4 * a + 1] * m[4 * b + 1] + m[4 * a + 2] * m[4 * b + 2];
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (std::size_t b = a; b < 3; ++b) {
+      const float* const u = m + 4 * a;
+      const float* const v = m + 4 * b;
+      const float dot = u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
       if (!(std::abs(dot - (a == b ? 1.0f : 0.0f)) <= kSlack)) {
         return false;
       }

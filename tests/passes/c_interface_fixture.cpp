@@ -176,6 +176,7 @@ std::vector<Results> CInterface::run_by_c(AlcoveContext& context, std::span<cons
                                           std::uint32_t index) {
   std::vector<AlcoveSettings> settings(given.size());
   std::vector<AlcoveView> views;
+  views.reserve(given.size());
   for (std::size_t i = 0; i < given.size(); ++i) {
     views.push_back(view_of(given[i], settings[i]));
   }
