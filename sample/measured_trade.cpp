@@ -44,6 +44,10 @@ tl::expected<std::vector<TradePoint>, std::string> measure_trade(const Stage& st
     points.push_back(point_of(errors, report->base_times));
   }
   points.front().name = own_name;
+  if (!std::ranges::all_of(points, [](const TradePoint& point) { return point.gpu_ms > 0; })) {
+    return tl::unexpected("The device " + std::string(stage.gpu->device().properties().deviceName) +
+                          " does not time its passes; choose another with --device.");
+  }
   return points;
 }
 
