@@ -50,6 +50,10 @@ maths::GbufferDraw draw_constants(const Material& material, const GpuTextures& t
   draw.base_colour_texture = textures.index_of(material.base_color_texture, true);
   draw.metallic_roughness_texture = textures.index_of(material.metal_roughness_texture, false);
   draw.emissive_texture = textures.index_of(material.emissive_texture, true);
+  if (material.normal_texture.image >= 0) {
+    draw.normal_texture = textures.index_of(material.normal_texture, false);
+  }
+  draw.normal_scale = material.normal_scale;
   return draw;
 }
 
@@ -195,16 +199,19 @@ namespace {
 // The state that never changes, as Vulkan wants it: attributes of Vertex, no blending.
 struct FixedState {
   VkVertexInputBindingDescription binding{0, sizeof(Vertex), VK_VERTEX_INPUT_RATE_VERTEX};
-  std::array<VkVertexInputAttributeDescription, 4> attributes{
+  std::array<VkVertexInputAttributeDescription, 6> attributes{
       {{0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, position_ws)},
        {1, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, normal_ws)},
        {2, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, face_normal_ws)},
-       {3, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(Vertex, uv)}}};
+       {3, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Vertex, tangent_ws)},
+       // Two sets of coordinates each.
+       {4, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Vertex, base_color_uv)},
+       {5, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Vertex, emissive_uv)}}};
   VkPipelineVertexInputStateCreateInfo vertices{
       .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO,
       .vertexBindingDescriptionCount = 1,
       .pVertexBindingDescriptions = &binding,
-      .vertexAttributeDescriptionCount = 4,
+      .vertexAttributeDescriptionCount = static_cast<uint32_t>(attributes.size()),
       .pVertexAttributeDescriptions = attributes.data()};
   VkPipelineInputAssemblyStateCreateInfo assembly{
       .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,

@@ -46,7 +46,7 @@ inline constexpr VkFormat kEmissiveFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
 class GbufferRenderer {
  public:
   // Uploads the scene. `geometric_normals` draws each triangle's own normal instead of the
-  // interpolated one. Both references must outlive the renderer.
+  // interpolated one that normal maps bend. Both references must outlive the renderer.
   [[nodiscard]] static tl::expected<std::unique_ptr<GbufferRenderer>, std::string> create(
       Gpu& gpu, const Scene& scene, bool geometric_normals);
   ~GbufferRenderer();

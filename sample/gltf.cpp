@@ -107,6 +107,10 @@ std::span<const uint8_t> json_of(std::span<const uint8_t> bytes) {
   return bytes.subspan(20, length);
 }
 
+bool is_read(const std::string& extension) {
+  return extension == "KHR_mesh_quantization" || extension == "KHR_texture_transform";
+}
+
 // What tinygltf would answer with a crash or all memory.
 tl::expected<void, std::string> check_json(std::span<const uint8_t> json) {
   constexpr size_t kDeepest = 64;
@@ -125,7 +129,7 @@ tl::expected<void, std::string> check_json(std::span<const uint8_t> json) {
     for (const auto& name : *required) {
       const std::string text = name.is_string() ? name.get<std::string>() : "?";
       const bool appearance_only = text.starts_with("KHR_materials_");
-      if (!appearance_only && text != "KHR_mesh_quantization") {
+      if (!appearance_only && !is_read(text)) {
         return Failure("it requires the extension " + text +
                        ", which is not read here; export it without");
       }
@@ -324,6 +328,13 @@ tl::expected<Scene, std::string> build_scene(const tinygltf::Model& model,
   if (scene.meshes.empty()) return Failure("it has no triangles");
   if (!model.animations.empty()) {
     scene.warnings.push_back("Animations are left out: nodes stand as the file places them.");
+  }
+  for (const auto* extensions : {&model.extensionsUsed, &model.extensionsRequired}) {
+    for (const std::string& extension : *extensions) {
+      if (!is_read(extension)) {
+        scene.warnings.push_back("The extension " + extension + " is left out.");
+      }
+    }
   }
   drop_repeats(scene.warnings);
   scene.bounds_ws = bounds_of(scene.meshes);

@@ -3,6 +3,7 @@
 #include <stb_image.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "gltf_accessor.h"
+#include "gltf_texture_transform.h"
 
 namespace alcove::sample {
 namespace {
@@ -18,6 +20,29 @@ using Failure = tl::unexpected<std::string>;
 
 constexpr int32_t kUntried = -2;
 constexpr int32_t kUnreadable = -1;
+
+// What of a texture's use its kinds have in common.
+struct TextureReference {
+  const char* role;
+  int index;  // below 0: none
+  int set;
+  const tinygltf::ExtensionMap* extensions;
+};
+
+template <class Info>
+TextureReference reference(const char* role, const Info& info) {
+  return {role, info.index, coordinate_set(info.texCoord, info.extensions), &info.extensions};
+}
+
+constexpr size_t kNormal = 3;
+
+std::array<TextureReference, 4> references(const tinygltf::Material& material) {
+  const auto& pbr = material.pbrMetallicRoughness;
+  return {reference("base colour", pbr.baseColorTexture),
+          reference("metal and roughness", pbr.metallicRoughnessTexture),
+          reference("emission", material.emissiveTexture),
+          reference("normal map", material.normalTexture)};
+}
 
 // Adds materials to a scene, and images as materials ask for them.
 class MaterialReader {
@@ -30,7 +55,8 @@ class MaterialReader {
   tl::expected<void, std::string> add(const tinygltf::Material& material);
 
  private:
-  tl::expected<TextureUse, std::string> texture(int index);
+  tl::expected<void, std::string> add_textures(const tinygltf::Material& in, Material& out);
+  tl::expected<TextureUse, std::string> texture(const TextureReference& reference);
   tl::expected<int32_t, std::string> image(size_t index);
   tl::expected<int32_t, std::string> decode(const std::string& name,
                                             std::span<const uint8_t> bytes);
@@ -66,19 +92,41 @@ tl::expected<void, std::string> MaterialReader::add(const tinygltf::Material& in
   out.alpha_mode = in.alphaMode == "MASK" ? AlphaMode::kMask : AlphaMode::kOpaque;
   out.alpha_cutoff = clamped(in.alphaCutoff, 0.0, 1e6, 0.5);
   out.double_sided = in.doubleSided;
-  for (auto [index, use] : {std::pair{pbr.baseColorTexture.index, &out.base_color_texture},
-                            {pbr.metallicRoughnessTexture.index, &out.metal_roughness_texture},
-                            {in.emissiveTexture.index, &out.emissive_texture}}) {
-    auto read = texture(index);
-    if (!read) return Failure("material \"" + in.name + "\" " + read.error());
-    *use = *read;
+  if (auto added = add_textures(in, out); !added) {
+    return Failure("material \"" + in.name + "\" " + added.error());
   }
   scene_.materials.push_back(std::move(out));
   return {};
 }
 
-tl::expected<TextureUse, std::string> MaterialReader::texture(int index) {
+tl::expected<void, std::string> MaterialReader::add_textures(const tinygltf::Material& in,
+                                                             Material& out) {
+  const auto all = references(in);
+  const std::array<TextureUse*, 4> uses{&out.base_color_texture, &out.metal_roughness_texture,
+                                        &out.emissive_texture, &out.normal_texture};
+  const int set = coordinate_set(in);
+  for (size_t i = 0; i < all.size(); ++i) {
+    auto read = texture(all[i]);
+    if (!read) return Failure(read.error());
+    *uses[i] = *read;
+    if (all[i].index < 0 || all[i].set == set) continue;
+    // The vertices' normals are better than a map that lies wrongly on them.
+    if (i == kNormal) out.normal_texture = {};
+    scene_.warnings.push_back("Material \"" + in.name + "\" has its " + all[i].role +
+                              " by texture coordinates " + std::to_string(all[i].set) +
+                              ", the rest by " + std::to_string(set) +
+                              (i == kNormal ? ": it is left out." : ": all are read by these."));
+  }
+  if (!std::isfinite(static_cast<float>(in.normalTexture.scale))) {
+    return Failure("has a normal map whose scale is not finite");
+  }
+  out.normal_scale = clamped(in.normalTexture.scale, -1e6, 1e6, 1.0);
+  return {};
+}
+
+tl::expected<TextureUse, std::string> MaterialReader::texture(const TextureReference& reference) {
   TextureUse use;
+  const int index = reference.index;
   if (index < 0) return use;
   if (static_cast<size_t>(index) >= model_.textures.size()) {
     return Failure("has no texture " + std::to_string(index));
@@ -92,7 +140,15 @@ tl::expected<TextureUse, std::string> MaterialReader::texture(int index) {
     use.wrap_u = wrap_of(sampler.wrapS);
     use.wrap_v = wrap_of(sampler.wrapT);
   }
-  if (texture.source < 0) return use;
+  const auto transform = texture_transform(*reference.extensions);
+  if (!transform) return Failure(transform.error());
+  use.texture_from_mesh_uv = *transform;
+  if (texture.source < 0) {
+    // Such as one that only an extension names.
+    scene_.warnings.push_back("texture " + std::to_string(index) +
+                              " has no image that is read here and is left out.");
+    return use;
+  }
   if (static_cast<size_t>(texture.source) >= model_.images.size()) {
     return Failure("has a texture without its image " + std::to_string(texture.source));
   }
@@ -121,7 +177,7 @@ tl::expected<int32_t, std::string> MaterialReader::image(size_t index) {
 tl::expected<int32_t, std::string> MaterialReader::decode(const std::string& name,
                                                           std::span<const uint8_t> bytes) {
   const auto unreadable = [&](const std::string& why) {
-    scene_.warnings.push_back(name + " " + why + " and reads white.");
+    scene_.warnings.push_back(name + " " + why + " and is left out.");
     return kUnreadable;
   };
   if (bytes.empty()) return unreadable("is missing");
@@ -151,6 +207,13 @@ tl::expected<int32_t, std::string> MaterialReader::decode(const std::string& nam
 }
 
 }  // namespace
+
+int coordinate_set(const tinygltf::Material& material) {
+  for (const TextureReference& texture : references(material)) {
+    if (texture.index >= 0) return texture.set;
+  }
+  return 0;
+}
 
 tl::expected<void, std::string> add_materials(const tinygltf::Model& model, uint64_t most_pixels,
                                               Scene& scene) {

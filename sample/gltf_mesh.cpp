@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gltf_accessor.h"
+#include "gltf_material.h"
 
 namespace alcove::sample {
 namespace {
@@ -82,6 +83,27 @@ tl::expected<std::vector<glm::vec3>, std::string> world_normals(const tinygltf::
   return out;
 }
 
+// Tangents of the file in world space; zero where the file's are useless.
+tl::expected<std::vector<glm::vec4>, std::string> world_tangents(const tinygltf::Model& model,
+                                                                 int accessor,
+                                                                 const glm::dmat4& transform,
+                                                                 uint64_t most) {
+  const auto values = read_floats(model, accessor, 4, most);
+  if (!values) return Failure(values.error());
+  const glm::dmat3 m(transform);
+  const float side = glm::determinant(m) < 0.0 ? -1.0f : 1.0f;
+  std::vector<glm::vec4> out(values->size() / 4);
+  for (size_t i = 0; i < out.size(); ++i) {
+    const float* in = &(*values)[4 * i];
+    const glm::dvec3 t = m * glm::dvec3(in[0], in[1], in[2]);
+    const double length = glm::length(t);
+    const bool useful = std::isfinite(length) && length > 0.0;
+    out[i] =
+        glm::vec4(useful ? glm::vec3(t / length) : glm::vec3(0.0f), in[3] < 0.0f ? -side : side);
+  }
+  return out;
+}
+
 // The face's normal times twice its area.
 glm::dvec3 face_normal(const Mesh& mesh, size_t first) {
   const glm::dvec3 a(mesh.positions_ws[mesh.indices[first]]);
@@ -136,14 +158,13 @@ void mend_normals(Mesh& mesh) {
   }
 }
 
-// The texture coordinates that the base colour uses; zero where there are none.
+// The texture coordinates that the material is read by; zero where there are none.
 tl::expected<std::vector<glm::vec2>, std::string> texture_coordinates(
     const tinygltf::Model& model, const tinygltf::Primitive& primitive, size_t vertices) {
   std::vector<glm::vec2> out(vertices, glm::vec2(0.0f));
   int set = 0;
   if (primitive.material >= 0) {
-    const auto& material = model.materials[static_cast<size_t>(primitive.material)];
-    set = material.pbrMetallicRoughness.baseColorTexture.texCoord;
+    set = coordinate_set(model.materials[static_cast<size_t>(primitive.material)]);
   }
   const int accessor = attribute(primitive, "TEXCOORD_" + std::to_string(set));
   if (accessor < 0) return out;
@@ -185,6 +206,9 @@ tl::expected<void, std::string> add_primitive(const tinygltf::Model& model,
   if (primitive.material >= static_cast<int>(model.materials.size())) {
     return refuse("has no material " + std::to_string(primitive.material));
   }
+  if (attribute(primitive, "COLOR_0") >= 0) {
+    scene.warnings.push_back("Mesh " + name + " has colours of its vertices, which are left out.");
+  }
   const int position = attribute(primitive, "POSITION");
   if (position < 0) return {};
 
@@ -219,6 +243,13 @@ tl::expected<void, std::string> add_primitive(const tinygltf::Model& model,
     if (normals->size() != vertices) return refuse("has normals for some of its vertices only");
     mesh.normals_ws = std::move(*normals);
     mend_normals(mesh);
+    // Without normals glTF has tangents ignored.
+    if (const int tangent = attribute(primitive, "TANGENT"); tangent >= 0) {
+      auto tangents = world_tangents(model, tangent, world_from_mesh, vertices);
+      if (!tangents) return refuse(tangents.error());
+      if (tangents->size() != vertices) return refuse("has tangents for some of its vertices only");
+      mesh.tangents_ws = std::move(*tangents);
+    }
   } else {
     make_flat_normals(mesh);
   }

@@ -134,7 +134,8 @@ tl::expected<std::unique_ptr<GpuTextures>, std::string> GpuTextures::create(Gpu&
     done =
         done.and_then([&] { return made->add_use(scene, material.base_color_texture, true); })
             .and_then([&] { return made->add_use(scene, material.metal_roughness_texture, false); })
-            .and_then([&] { return made->add_use(scene, material.emissive_texture, true); });
+            .and_then([&] { return made->add_use(scene, material.emissive_texture, true); })
+            .and_then([&] { return made->add_use(scene, material.normal_texture, false); });
   }
   done = done.and_then([&] { return made->upload(gpu, scene); });
   if (!done) {

@@ -298,9 +298,10 @@ void add_occlusion(CLI::App& app, Raw& raw) {
       ->take_all()
       ->expected(1)
       ->group(group);
-  app.add_option("--normals", occlusion.normals,
-                 "that the pass is given, and the truth with it: shading (of the vertices), "
-                 "geometric (of the triangles) or depth (made from the depth buffer); shading")
+  app.add_option(
+         "--normals", occlusion.normals,
+         "that the pass is given, and the truth with it: shading (of vertices and normal maps), "
+         "geometric (of the triangles) or depth (made from the depth buffer); shading")
       ->transform(CLI::CheckedTransformer(kSources).description(""))
       ->type_name("NAME")
       ->group(group);

@@ -69,9 +69,16 @@ float default_radius(const Scene& scene) {
   return diagonal > 0.0f ? 0.05f * diagonal : 1.0f;
 }
 
-glm::vec4 sample_texture(const Scene& scene, const TextureUse& use, glm::vec2 uv) {
+glm::vec2 texture_uv(const TextureUse& use, glm::vec2 mesh_uv) {
+  const glm::vec2 uv = use.texture_from_mesh_uv * glm::vec3(mesh_uv, 1.0f);
+  // Large numbers may cancel as infinities.
+  return std::isfinite(uv.x) && std::isfinite(uv.y) ? uv : glm::vec2(0.0f);
+}
+
+glm::vec4 sample_texture(const Scene& scene, const TextureUse& use, glm::vec2 mesh_uv) {
   if (use.image < 0) return glm::vec4(1.0f);
   const TextureImage& image = scene.images[static_cast<size_t>(use.image)];
+  const glm::vec2 uv = texture_uv(use, mesh_uv);
   // Far out, a float holds no fraction of a texel; the bound keeps the cast below defined.
   constexpr float kFar = 1e9f;
   const glm::vec2 at = glm::clamp(uv * glm::vec2(image.width, image.height) - 0.5f,

@@ -10,8 +10,8 @@
 
 namespace alcove::sample {
 
-// 8-bit RGBA, top row first. Base colour and emission are sRGB, roughness and metal linear: the
-// material says which by where it uses the image.
+// 8-bit RGBA, top row first. Base colour and emission are sRGB; roughness, metal and normals
+// linear: the material says which by where it uses the image.
 struct TextureImage {
   std::string name;
   uint32_t width = 0;
@@ -26,6 +26,7 @@ struct TextureUse {
   int32_t image = -1;
   Wrap wrap_u = Wrap::kRepeat;
   Wrap wrap_v = Wrap::kRepeat;
+  glm::mat3x2 texture_from_mesh_uv{1.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f};  // finite
 };
 
 // A g-buffer holds one surface a pixel, and an occluder either blocks or does not: what is blended
@@ -42,20 +43,25 @@ struct Material {
   TextureUse metal_roughness_texture;  // green: roughness, blue: metal
   glm::vec3 emissive{0.0f};            // >= 0
   TextureUse emissive_texture;
+  // Tangent space: x along u, y against v (up in the image), z along the normal. Off without image.
+  TextureUse normal_texture;
+  float normal_scale = 1.0f;  // of x and y; -1e6..1e6
   AlphaMode alpha_mode = AlphaMode::kOpaque;
   float alpha_cutoff = 0.5f;  // of kMask: kept where alpha >= cutoff
   bool double_sided = false;
 };
 
-// Triangles of one material in world space, counter-clockwise from the front. The three vertex
-// arrays have one length; every index is below it. Normals are unit, uvs zero where there were
-// none.
+// Triangles of one material in world space, counter-clockwise from the front. The vertex arrays
+// have one length; every index is below it. Normals are unit, uvs zero where there were none.
+// Tangents are the file's, unit or zero, w the side of the bitangent w * cross(normal, tangent); an
+// empty array leaves them to be made (tangents.h).
 struct Mesh {
   std::string name;
   uint32_t material = 0;  // indexes Scene::materials
   std::vector<glm::vec3> positions_ws;
   std::vector<glm::vec3> normals_ws;
   std::vector<glm::vec2> uvs;
+  std::vector<glm::vec4> tangents_ws;
   std::vector<uint32_t> indices;  // 3 per triangle
   // Drawn where GbufferView::world_from_moving puts it, from a space of its own; traced as it
   // stands.
@@ -92,8 +98,12 @@ struct Scene {
 // The radius where none is given, in scene units.
 [[nodiscard]] float default_radius(const Scene& scene);
 
-// An image's texel by wrapped coordinates, 0..1 as stored (no sRGB decoding), bilinear, mip 0.
-[[nodiscard]] glm::vec4 sample_texture(const Scene& scene, const TextureUse& use, glm::vec2 uv);
+// Where a use looks for its texel, by the mesh's coordinates. Finite.
+[[nodiscard]] glm::vec2 texture_uv(const TextureUse& use, glm::vec2 mesh_uv);
+
+// An image's texel by the mesh's coordinates, 0..1 as stored (no sRGB decoding), bilinear, mip 0.
+[[nodiscard]] glm::vec4 sample_texture(const Scene& scene, const TextureUse& use,
+                                       glm::vec2 mesh_uv);
 
 // sRGB to linear, per channel.
 [[nodiscard]] float srgb_to_linear(float encoded);

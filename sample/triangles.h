@@ -14,7 +14,11 @@ struct Vertex {
   glm::vec3 position_ws;
   glm::vec3 normal_ws;
   glm::vec3 face_normal_ws;  // unit, by the winding
-  glm::vec2 uv;
+  glm::vec4 tangent_ws;      // of the normal map; zero where there is none
+  glm::vec2 base_color_uv;   // these as each texture is looked up
+  glm::vec2 metal_roughness_uv;
+  glm::vec2 emissive_uv;
+  glm::vec2 normal_uv;
 };
 
 struct TriangleDraw {

@@ -41,16 +41,19 @@ void add_vector(CacheKey& key, const std::vector<T>& values) {
   key.add(std::as_bytes(std::span(values)));
 }
 
-void add_use(CacheKey& key, const TextureUse& use) {
-  key.add(use.image);
-  key.add(static_cast<uint8_t>(use.wrap_u));
-  key.add(static_cast<uint8_t>(use.wrap_v));
-}
-
 template <int size>
 void add_components(CacheKey& key, const glm::vec<size, float>& vector) {
   for (int i = 0; i < size; ++i) {
     key.add(vector[i]);
+  }
+}
+
+void add_use(CacheKey& key, const TextureUse& use) {
+  key.add(use.image);
+  key.add(static_cast<uint8_t>(use.wrap_u));
+  key.add(static_cast<uint8_t>(use.wrap_v));
+  for (int column = 0; column < 3; ++column) {
+    add_components(key, use.texture_from_mesh_uv[column]);
   }
 }
 

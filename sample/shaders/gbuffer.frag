@@ -13,37 +13,59 @@ layout(push_constant) uniform Draw { GbufferDraw draw; };
 layout(location = 0) in vec3 position_ws;
 layout(location = 1) in vec3 normal_ws;
 layout(location = 2) flat in vec3 face_normal_ws;
-layout(location = 3) in vec2 uv;
-layout(location = 4) in vec4 clip;
-layout(location = 5) in vec4 previous_clip;
+layout(location = 3) in vec4 tangent_ws;  // w: the side of the bitangent
+layout(location = 4) in vec4 surface_uv;  // of base colour, of metal and roughness
+layout(location = 5) in vec4 detail_uv;   // of emission, of the normal map
+layout(location = 6) in vec4 clip;
+layout(location = 7) in vec4 previous_clip;
 
 layout(location = 0) out vec4 out_normal_ws;  // unit, towards the eye
 layout(location = 1) out vec4 out_albedo;     // linear RGB; alpha: perceptual roughness
 layout(location = 2) out vec2 out_motion_uv;  // where this surface is, minus where it was
 layout(location = 3) out vec4 out_emissive;   // linear RGB; alpha: metallic
 
+// The vertices' normal as the normal map bends it; `normal` itself where there is no map or nothing
+// to lay it along. Not unit.
+vec3 mapped_normal(vec3 normal) {
+  vec3 across = tangent_ws.xyz - normal * dot(normal, tangent_ws.xyz);
+  float squared = dot(across, across);
+  if (draw.normal_texture == 0u || !(squared > 1e-12)) {
+    return normal;
+  }
+  vec3 tangent = across * inversesqrt(squared);
+  vec3 bitangent = cross(normal, tangent) * (tangent_ws.w < 0.0 ? -1.0 : 1.0);
+  vec3 texel = texture(textures[draw.normal_texture], detail_uv.zw).xyz * 2.0 - 1.0;
+  vec2 slope = texel.xy * draw.normal_scale;
+  return tangent * slope.x + bitangent * slope.y + normal * texel.z;
+}
+
 // Both faces of a triangle are seen, so normals are turned to the side that is.
 vec3 facing_normal() {
   vec3 to_eye = parameters.eye_ws.xyz - position_ws * parameters.eye_ws.w;
   vec3 face = dot(face_normal_ws, to_eye) < 0.0 ? -face_normal_ws : face_normal_ws;
-  if (kGeometricNormals) {
+  float squared = dot(normal_ws, normal_ws);
+  if (kGeometricNormals || !(squared > 1e-12)) {
     return face;
   }
-  float squared = dot(normal_ws, normal_ws);
-  vec3 shading = squared > 1e-12 ? normal_ws * inversesqrt(squared) : face;
-  return dot(shading, face) < 0.0 ? -shading : shading;
+  vec3 normal = normal_ws * inversesqrt(squared);
+  vec3 mapped = mapped_normal(normal);
+  // A map turns with the vertices' normal, and bends no further than into the face.
+  vec3 shading = dot(normal, face) < 0.0 ? -mapped : mapped;
+  shading -= face * min(dot(shading, face), 0.0);
+  squared = dot(shading, shading);
+  return squared > 1e-12 ? shading * inversesqrt(squared) : face;
 }
 
 void main() {
-  vec4 base = draw.base_colour * texture(textures[draw.base_colour_texture], uv);
+  vec4 base = draw.base_colour * texture(textures[draw.base_colour_texture], surface_uv.xy);
   if (base.a < draw.alpha_cutoff) {
     discard;
   }
   // glTF: roughness in green, metal in blue.
-  vec4 surface = texture(textures[draw.metallic_roughness_texture], uv);
+  vec4 surface = texture(textures[draw.metallic_roughness_texture], surface_uv.zw);
   out_normal_ws = vec4(facing_normal(), 0.0);
   out_albedo = vec4(base.rgb, draw.roughness * surface.g);
   out_motion_uv = 0.5 * (clip.xy / clip.w - previous_clip.xy / previous_clip.w);
-  vec3 emissive = draw.emissive.rgb * texture(textures[draw.emissive_texture], uv).rgb;
+  vec3 emissive = draw.emissive.rgb * texture(textures[draw.emissive_texture], detail_uv.xy).rgb;
   out_emissive = vec4(emissive, draw.metallic * surface.b);
 }

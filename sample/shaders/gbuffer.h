@@ -25,6 +25,8 @@ struct GbufferDraw {
   uint base_colour_texture;
   uint metallic_roughness_texture;
   uint emissive_texture;
+  uint normal_texture;  // 0: none
+  float normal_scale;   // of its x and y
   uint moves;  // 1: positions and normals are those of GbufferParameters::world_from_moving
 };
 

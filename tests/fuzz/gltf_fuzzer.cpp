@@ -2,6 +2,7 @@
 #include <cstdint>
 
 #include "gltf.h"
+#include "tangents.h"
 
 // Any bytes are a scene or a sentence. Small limits keep each run short.
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
@@ -13,6 +14,12 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
       if (i >= mesh.positions_ws.size()) __builtin_trap();
     }
     if (mesh.material >= scene->materials.size()) __builtin_trap();
+    const auto& map = scene->materials[mesh.material].normal_texture;
+    for (const glm::vec4& t : alcove::sample::corner_tangents(mesh, map)) {
+      // Neither unit nor zero: not a number, or a length that is not taken out.
+      const float squared = glm::dot(glm::vec3(t), glm::vec3(t));
+      if (!(squared == 0.0f || (squared > 0.99f && squared < 1.01f))) __builtin_trap();
+    }
   }
   return 0;
 }

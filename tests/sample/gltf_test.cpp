@@ -147,6 +147,76 @@ TEST(Gltf, MirroringTurnsTheWindingSoThatFacesKeepTheirSide) {
   EXPECT_EQ(scene.meshes[0].normals_ws[0], glm::vec3(0, 0, 1));
 }
 
+// A triangle whose one material uses texture 0, which has no image, in these ways.
+GltfMaker textured(const nlohmann::json& base_colour, const nlohmann::json& normal_map) {
+  GltfMaker maker = GltfMaker::triangle();
+  maker.json["textures"] = {nlohmann::json::object()};
+  maker.json["materials"] = {{{"name", "tiles"},
+                              {"pbrMetallicRoughness", {{"baseColorTexture", base_colour}}},
+                              {"normalTexture", normal_map}}};
+  maker.primitive()["material"] = 0;
+  return maker;
+}
+
+nlohmann::json transformed(const nlohmann::json& transform) {
+  return {{"index", 0}, {"extensions", {{"KHR_texture_transform", transform}}}};
+}
+
+TEST(Gltf, TextureTransformsScaleThenTurnCounterClockwiseThenMove) {
+  // The lower left quarter of the image, turned: the extension's own example.
+  const nlohmann::json quarter = {
+      {"offset", {0, 1}}, {"rotation", 1.57079632679}, {"scale", {0.5, 0.5}}};
+  const nlohmann::json uneven = {{"offset", {3, 5}}, {"rotation", 0.5}, {"scale", {2, -4}}};
+  GltfMaker maker = textured(transformed(quarter), transformed(uneven));
+  maker.json["extensionsRequired"] = {"KHR_texture_transform"};
+  const Scene scene = parsed(maker.gltf());
+  ASSERT_EQ(scene.materials.size(), 2u);
+  const TextureUse& base = scene.materials[0].base_color_texture;
+  EXPECT_LT(glm::distance(texture_uv(base, {0, 0}), glm::vec2(0, 1)), 1e-6f);
+  EXPECT_LT(glm::distance(texture_uv(base, {1, 0}), glm::vec2(0, 0.5)), 1e-6f);
+  EXPECT_LT(glm::distance(texture_uv(base, {0, 1}), glm::vec2(0.5, 1)), 1e-6f);
+  const TextureUse& normal = scene.materials[0].normal_texture;
+  const float c = std::cos(0.5f), s = std::sin(0.5f);
+  EXPECT_LT(glm::distance(texture_uv(normal, {1, 0}), glm::vec2(3 + 2 * c, 5 - 2 * s)), 1e-5f);
+  EXPECT_LT(glm::distance(texture_uv(normal, {0, 1}), glm::vec2(3 - 4 * s, 5 - 4 * c)), 1e-5f);
+}
+
+TEST(Gltf, TextureCoordinatesAreOfTheSetThatTheTransformNames) {
+  GltfMaker maker = textured(transformed({{"texCoord", 1}}), transformed({{"texCoord", 1}}));
+  const int uvs = maker.view<float>({0, 0, 7, 0, 0, 7});
+  maker.primitive()["attributes"]["TEXCOORD_1"] = maker.accessor(uvs, 5126, "VEC2", 3);
+  EXPECT_EQ(parsed(maker.gltf()).meshes[0].uvs[1], glm::vec2(7, 0));
+}
+
+TEST(Gltf, WhatIsLeftOutIsSaid) {
+  GltfMaker maker = textured({{"index", 0}}, {{"index", 0}, {"texCoord", 1}});
+  maker.json["extensionsUsed"] = {"KHR_texture_transform", "KHR_materials_unlit"};
+  maker.primitive()["attributes"]["COLOR_0"] = maker.primitive()["attributes"]["POSITION"];
+  const Scene scene = parsed(maker.gltf());
+  EXPECT_THAT(scene.warnings,
+              testing::UnorderedElementsAre(
+                  "The extension KHR_materials_unlit is left out.",
+                  "Material \"tiles\" has its normal map by texture coordinates 1, the rest by 0: "
+                  "it is left out.",
+                  "Mesh 0 has colours of its vertices, which are left out.",
+                  "texture 0 has no image that is read here and is left out."));
+}
+
+TEST(Gltf, TangentsTurnWithTheNodeAndMirrorWithIt) {
+  GltfMaker maker = GltfMaker::triangle();
+  const int normals = maker.view<float>({0, 0, 1, 0, 0, 1, 0, 0, 1});
+  const int tangents = maker.view<float>({1, 0, 0, 1, 0, 0, 0, 1, NAN, 0, 0, -1});
+  auto& attributes = maker.primitive()["attributes"];
+  attributes["NORMAL"] = maker.accessor(normals, 5126, "VEC3", 3);
+  attributes["TANGENT"] = maker.accessor(tangents, 5126, "VEC4", 3);
+  maker.json["nodes"][0]["scale"] = {-2, 1, 1};
+  const Scene scene = parsed(maker.gltf());
+  ASSERT_EQ(scene.meshes[0].tangents_ws.size(), 3u);
+  EXPECT_EQ(scene.meshes[0].tangents_ws[0], glm::vec4(-1, 0, 0, -1));
+  EXPECT_EQ(scene.meshes[0].tangents_ws[1], glm::vec4(0, 0, 0, -1));
+  EXPECT_EQ(scene.meshes[0].tangents_ws[2], glm::vec4(0, 0, 0, 1));
+}
+
 TEST(Gltf, CamerasOfEveryKindArrive) {
   GltfMaker maker = GltfMaker::triangle();
   maker.json["scenes"][0]["nodes"] = {0, 1, 2, 3};
@@ -264,6 +334,29 @@ const Hostile kHostile[] = {
     {"UnknownRequiredExtension",
      [](GltfMaker& m) { m.json["extensionsRequired"] = {"KHR_draco_mesh_compression"}; },
      "KHR_draco_mesh_compression"},
+    {"NormalScalePastAFloat",
+     [](GltfMaker& m) {
+       m = textured({{"index", 0}}, {{"index", 0}, {"scale", 1e300}});
+     },
+     "material \"tiles\" has a normal map whose scale is not finite"},
+    {"TransformPastAFloat",
+     [](GltfMaker& m) {
+       m = textured(transformed({{"offset", {0, -1e39}}}), {{"index", 0}});
+     },
+     "material \"tiles\" has a texture transform"},
+    {"NoSuchNormalMap",
+     [](GltfMaker& m) {
+       m = textured({{"index", 0}}, {{"index", 4}});
+     },
+     "material \"tiles\" has no texture 4"},
+    {"ShortTangents",
+     [](GltfMaker& m) {
+       const int normals = m.accessor(0, 5126, "VEC3", 3);
+       const int tangents = m.accessor(m.view<float>({1, 0, 0, 1}), 5126, "VEC4", 1);
+       m.primitive()["attributes"]["NORMAL"] = normals;
+       m.primitive()["attributes"]["TANGENT"] = tangents;
+     },
+     "tangents for some"},
     {"NoTriangles", [](GltfMaker& m) { m.primitive()["mode"] = 0; }, "no triangles"},
 };
 INSTANTIATE_TEST_SUITE_P(All, HostileGltf, testing::ValuesIn(kHostile),

@@ -1,0 +1,216 @@
+// A quad with a normal map, drawn and read back: the normals that the occlusion and the truths get.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "frame_renderer.h"
+#include "surface_points.h"
+#include "tangents.h"
+#include "truth.h"
+
+namespace alcove::sample {
+namespace {
+
+constexpr std::uint32_t kSize = 16;
+constexpr float kByte = 1.0f / 127.0f;  // a step of an 8-bit map
+
+// What the map of these tests says, as its bytes hold it: right, up and towards the viewer.
+const glm::vec3 kTilt(0.48f, 0.36f, 0.8f);
+
+TextureImage map_of(const glm::vec3& normal) {
+  TextureImage image{"map", 1, 1, {0, 0, 0, 255}};
+  for (int c = 0; c < 3; ++c) {
+    image.rgba[static_cast<std::size_t>(c)] =
+        static_cast<std::uint8_t>(std::lround(127.5f * (normal[c] + 1.0f)));
+  }
+  return image;
+}
+
+// A quad of two halves that share the vertices between them, facing +Z, u to the right and v down.
+Scene quad(const glm::vec3& normal = kTilt) {
+  Scene scene;
+  scene.images.push_back(map_of(normal));
+  scene.materials.emplace_back();
+  scene.materials[0].normal_texture.image = 0;
+  scene.meshes.emplace_back();
+  Mesh& mesh = scene.meshes[0];
+  for (const float x : {-1.0f, 0.0f, 1.0f}) {
+    for (const float y : {-1.0f, 1.0f}) {
+      mesh.positions_ws.emplace_back(x, y, 0.0f);
+      mesh.normals_ws.emplace_back(0.0f, 0.0f, 1.0f);
+      mesh.uvs.emplace_back(0.5f * (x + 1.0f), 0.5f * (1.0f - y));
+    }
+  }
+  mesh.indices = {0, 2, 3, 0, 3, 1, 2, 4, 5, 2, 5, 3};
+  scene.bounds_ws = bounds_of(scene.meshes);
+  return scene;
+}
+
+Camera camera_at(float z) {
+  Camera camera;
+  camera.eye_ws = {0.0f, 0.0f, z};
+  camera.target_ws = glm::vec3(0.0f);
+  camera.orthographic = true;
+  return camera;
+}
+
+class NormalMap : public testing::Test {
+ protected:
+  void SetUp() override {
+    auto made = Gpu::create({.validation = true}, {.verify = true, .check_uses = true});
+    ASSERT_TRUE(made) << made.error();
+    gpu_ = std::move(*made);
+  }
+  void TearDown() override {
+    if (gpu_) {
+      for (const std::string& message : gpu_->device().validation_messages()) {
+        ADD_FAILURE() << message;
+      }
+    }
+  }
+
+  FrameImages draw(const Scene& scene, const Camera& camera = camera_at(3.0f),
+                   NormalSource normals = NormalSource::kShading) {
+    auto renderer = FrameRenderer::create(*gpu_, scene, {kSize, kSize}, normals);
+    EXPECT_TRUE(renderer) << renderer.error();
+    const CameraMatrices matrices = camera_matrices(camera, kSize, kSize);
+    const FrameRequest request{.view = {.view_from_world = matrices.view_from_world,
+                                        .clip_from_view = matrices.clip_from_view,
+                                        .previous_view_from_world = matrices.view_from_world,
+                                        .previous_clip_from_view = matrices.clip_from_view},
+                               .occlusion = passes::quality_settings(passes::Quality::low, 0.2f)};
+    auto images = (*renderer)->draw_and_read(request);
+    EXPECT_TRUE(images) << images.error();
+    return images ? std::move(*images) : FrameImages{};
+  }
+
+  // Everywhere on the quad, which fills the picture.
+  static void expect_normal(const FrameImages& images, const glm::vec3& normal) {
+    ASSERT_EQ(images.normal_ws.pixels.size(), std::size_t{kSize} * kSize);
+    for (const glm::vec3& n : images.normal_ws.pixels) {
+      ASSERT_NEAR(glm::length(n), 1.0f, 2e-3f);
+      ASSERT_LT(glm::distance(n, glm::normalize(normal)), kByte) << n.x << ' ' << n.y << ' ' << n.z;
+    }
+  }
+
+  std::unique_ptr<Gpu> gpu_;
+};
+
+TEST_F(NormalMap, TiltsRightAlongUAndUpAgainstV) { expect_normal(draw(quad()), kTilt); }
+
+TEST_F(NormalMap, ScaleIsOfXAndY) {
+  for (const float scale : {-1.0f, 0.0f, 0.5f, 1e6f}) {
+    Scene scene = quad();
+    scene.materials[0].normal_scale = scale;
+    expect_normal(draw(scene), kTilt * glm::vec3(scale, scale, 1.0f));
+  }
+}
+
+TEST_F(NormalMap, TangentsOfTheFileAgreeWithThoseThatAreMade) {
+  Scene scene = quad();
+  scene.meshes[0].tangents_ws.assign(6, glm::vec4(1.0f, 0.0f, 0.0f, 1.0f));
+  expect_normal(draw(scene), kTilt);
+  scene.meshes[0].tangents_ws.assign(6, glm::vec4(-1.0f, 0.0f, 0.0f, -1.0f));
+  expect_normal(draw(scene), kTilt * glm::vec3(-1.0f, 1.0f, 1.0f));
+}
+
+TEST_F(NormalMap, MirroredHalvesTiltAgainstEachOtherThoughTheyShareVertices) {
+  Scene scene = quad();
+  for (glm::vec2& uv : scene.meshes[0].uvs) uv.x = std::abs(uv.x - 0.5f);
+  const FrameImages images = draw(scene);
+  for (std::uint32_t y = 0; y < kSize; ++y) {
+    for (std::uint32_t x = 0; x < kSize; ++x) {
+      const glm::vec3 normal = kTilt * glm::vec3(x < kSize / 2 ? -1.0f : 1.0f, 1.0f, 1.0f);
+      EXPECT_LT(glm::distance(images.normal_ws.at(x, y), normal), kByte) << x << ' ' << y;
+    }
+  }
+}
+
+TEST_F(NormalMap, TurnsWithTheTransformOfItsTexture) {
+  Scene scene = quad();
+  // u of the map is v of the mesh, v of the map is -u.
+  scene.materials[0].normal_texture.texture_from_mesh_uv = {0.0f, -1.0f, 1.0f, 0.0f, 0.0f, 1.0f};
+  expect_normal(draw(scene), {kTilt.y, -kTilt.x, kTilt.z});
+}
+
+TEST_F(NormalMap, SeenFromBehindTurnsWithTheSurface) {
+  expect_normal(draw(quad(), camera_at(-3.0f)), -kTilt);
+}
+
+TEST_F(NormalMap, LeavesTheVerticesNormalWhereThereIsNothingToLayItAlong) {
+  Scene scene = quad();
+  for (glm::vec2& uv : scene.meshes[0].uvs) uv = glm::vec2(0.25f);
+  expect_normal(draw(scene), {0.0f, 0.0f, 1.0f});
+  scene = quad();
+  scene.meshes[0].tangents_ws.assign(6, glm::vec4(0.0f));
+  expect_normal(draw(scene), {0.0f, 0.0f, 1.0f});
+  scene.meshes[0].tangents_ws.assign(6, glm::vec4(0.0f, 0.0f, 1.0f, 1.0f));
+  expect_normal(draw(scene), {0.0f, 0.0f, 1.0f});
+}
+
+TEST_F(NormalMap, BendsNoFurtherThanIntoTheFace) {
+  expect_normal(draw(quad({0.6f, 0.0f, -0.8f})), {1.0f, 0.0f, 0.0f});
+  expect_normal(draw(quad({0.0f, 0.0f, -1.0f}), camera_at(-3.0f)), {0.0f, 0.0f, -1.0f});
+}
+
+TEST_F(NormalMap, IsOfShadingNormalsAlone) {
+  expect_normal(draw(quad(), camera_at(3.0f), NormalSource::kGeometric), {0.0f, 0.0f, 1.0f});
+}
+
+TEST_F(NormalMap, TruthIsOfTheNormalsThatTheOcclusionWasGiven) {
+  const Scene scene = quad();
+  const Camera camera = camera_at(3.0f);
+  const FrameImages images = draw(scene, camera);
+  const auto rays = RayScene::create(scene);
+  ASSERT_TRUE(rays);
+  const auto points =
+      surface_points(*rays, camera, images.normal_ws, linear_depth(camera, images.depth_ndc));
+  const auto truth = occlusion_truth(*rays, points, {.radius = 0.2f, .spp = 1024}, nullptr);
+  // Of the cosine lobe about a tilted normal, a plane leaves (1 + cos) / 2.
+  EXPECT_NEAR(truth.visibility.at(kSize / 2, kSize / 2), 0.5f * (1.0f + kTilt.z), 0.01f);
+}
+
+TEST_F(NormalMap, CutOutsFollowTheirTransformInRasteriserAndRayTracerAlike) {
+  Scene scene = quad();
+  Material& material = scene.materials[0];
+  material.normal_texture = {};
+  material.alpha_mode = AlphaMode::kMask;
+  // Opaque left of the middle; at four times the coordinates and a quarter turn, in strips.
+  scene.images[0] = {"mask", 2, 1, {255, 255, 255, 255, 255, 255, 255, 0}};
+  material.base_color_texture.image = 0;
+  material.base_color_texture.texture_from_mesh_uv = {0.0f, -2.0f, 2.0f, 0.0f, 0.0f, 1.0f};
+  const Camera camera = camera_at(3.0f);
+  const Image<float> drawn = linear_depth(camera, draw(scene, camera).depth_ndc);
+  const auto rays = RayScene::create(scene);
+  ASSERT_TRUE(rays);
+  const Image<float> traced = cast_gbuffer(*rays, camera, kSize, kSize).depth_vs;
+  for (std::uint32_t y = 0; y < kSize; ++y) {
+    for (std::uint32_t x = 0; x < kSize; ++x) {
+      const bool solid = y % (kSize / 2) < kSize / 4;
+      EXPECT_EQ(std::isfinite(drawn.at(x, y)), solid) << x << ' ' << y;
+      EXPECT_EQ(std::isfinite(traced.at(x, y)), solid) << x << ' ' << y;
+    }
+  }
+}
+
+TEST(Tangents, AreUnitOrZeroAndPerpendicularToNormalsOfACurvedMesh) {
+  Scene scene = quad();
+  Mesh& mesh = scene.meshes[0];
+  for (std::size_t v = 0; v < mesh.positions_ws.size(); ++v) {
+    const float angle = 0.5f * std::numbers::pi_v<float> * mesh.positions_ws[v].x;
+    mesh.normals_ws[v] = {std::sin(angle), 0.0f, std::cos(angle)};
+    mesh.positions_ws[v] = {std::sin(angle), mesh.positions_ws[v].y, std::cos(angle)};
+  }
+  const std::vector<glm::vec4> tangents = corner_tangents(mesh, {});
+  ASSERT_EQ(tangents.size(), mesh.indices.size());
+  for (std::size_t i = 0; i < tangents.size(); ++i) {
+    const glm::vec3 normal = mesh.normals_ws[mesh.indices[i]];
+    const glm::vec3 along(normal.z, 0.0f, -normal.x);
+    EXPECT_LT(glm::distance(glm::vec3(tangents[i]), along), 1e-5f) << i;
+    EXPECT_EQ(tangents[i].w, 1.0f);
+  }
+}
+
+}  // namespace
+}  // namespace alcove::sample
