@@ -27,6 +27,7 @@ layout(location = 3) out vec4 out_emissive;   // linear RGB; alpha: metallic
 // The vertices' normal as the normal map bends it; `normal` itself where there is no map or nothing
 // to lay it along. Not unit.
 vec3 mapped_normal(vec3 normal) {
+  vec3 texel = texture(textures[draw.normal_texture], detail_uv.zw).xyz * 2.0 - 1.0;
   vec3 across = tangent_ws.xyz - normal * dot(normal, tangent_ws.xyz);
   float squared = dot(across, across);
   if (draw.normal_texture == 0u || !(squared > 1e-12)) {
@@ -34,7 +35,6 @@ vec3 mapped_normal(vec3 normal) {
   }
   vec3 tangent = across * inversesqrt(squared);
   vec3 bitangent = cross(normal, tangent) * (tangent_ws.w < 0.0 ? -1.0 : 1.0);
-  vec3 texel = texture(textures[draw.normal_texture], detail_uv.zw).xyz * 2.0 - 1.0;
   vec2 slope = texel.xy * draw.normal_scale;
   return tangent * slope.x + bitangent * slope.y + normal * texel.z;
 }
