@@ -142,7 +142,7 @@ TEST_F(CPlan, TimingsNameThePassesOfAFinishedFrame) {
   EXPECT_EQ(count, 1u);
 }
 
-TEST_F(CPlan, SettingsAreFilledPrintedAndPassedBack) {
+TEST(CSettings, AreFilledPrintedAndPassedBack) {
   for (int quality = ALCOVE_QUALITY_LOW; quality <= ALCOVE_QUALITY_REFERENCE; ++quality) {
     AlcoveSettings settings{.struct_size = sizeof(AlcoveSettings)};
     ASSERT_EQ(alcoveGetSettings(static_cast<AlcoveQuality>(quality), 2.5f, &settings),
