@@ -15,13 +15,6 @@ namespace {
 
 using passes::OcclusionSettings;
 
-constexpr std::array<std::pair<std::string_view, Quality>, 5> kQualities{
-    {{"low", Quality::kLow},
-     {"medium", Quality::kMedium},
-     {"high", Quality::kHigh},
-     {"ultra", Quality::kUltra},
-     {"reference", Quality::kReference}}};
-
 // Each overload gives the text of a value that reads back as the same.
 template <typename Number>
 std::string number_text(Number value) {

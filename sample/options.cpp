@@ -224,24 +224,16 @@ void add_view(CLI::App& app, Raw& raw) {
       ->group(group);
 }
 
-void add_frames(CLI::App& app, Raw& raw) {
-  const std::string group = "View";
-  app.add_option("--frames", raw.frames, "how many to render; the last is written")
-      ->type_name("N")
-      ->group(group);
-  app.add_option("--orbit", raw.orbit, "turn about the target by so much per frame")
-      ->type_name("DEGREES")
-      ->group(group);
+void add_frames(CLI::App& app, Raw& raw, const std::string& group, const std::string& text) {
+  app.add_option("--frames", raw.frames, text)->type_name("N")->group(group);
 }
 
-void add_window(CLI::App& app, Raw& raw) {
-  const std::string group = "View";
-  app.add_option("--frames", raw.frames, "how many to draw; else until the window is closed")
-      ->type_name("N")
-      ->group(group);
+// Frames of a camera that may turn.
+void add_course(CLI::App& app, Raw& raw, const std::string& text) {
+  add_frames(app, raw, "View", text);
   app.add_option("--orbit", raw.orbit, "turn about the target by so much per frame")
       ->type_name("DEGREES")
-      ->group(group);
+      ->group("View");
 }
 
 void add_motion(CLI::App& app, Raw& raw) {
@@ -267,27 +259,21 @@ void add_motion(CLI::App& app, Raw& raw) {
          "ground), cut (to elsewhere) or all of them; all")
       ->type_name("NAME")
       ->group(group);
-  app.add_option("--frames", raw.frames,
-                 "how long each path is, from the view given on; three of its frames are compared "
-                 "with the ray-traced truth; 48")
-      ->type_name("N")
-      ->group(group);
+  add_frames(app, raw, group,
+             "how long each path is, from the view given on; three of its frames are compared with "
+             "the ray-traced truth; 48");
 }
 
 void add_occlusion(CLI::App& app, Raw& raw) {
   OcclusionOptions& occlusion = raw.options.occlusion;
-  static const std::map<std::string, Quality> kQualities = {{"low", Quality::kLow},
-                                                            {"medium", Quality::kMedium},
-                                                            {"high", Quality::kHigh},
-                                                            {"ultra", Quality::kUltra},
-                                                            {"reference", Quality::kReference}};
+  static const std::map<std::string, Quality> kByName(kQualities.begin(), kQualities.end());
   static const std::map<std::string, NormalSource> kSources = {
       {"shading", NormalSource::kShading},
       {"geometric", NormalSource::kGeometric},
       {"depth", NormalSource::kDepth}};
   const std::string group = "Occlusion";
   app.add_option("--quality", occlusion.quality, "low, medium, high, ultra or reference; medium")
-      ->transform(CLI::CheckedTransformer(kQualities).description(""))
+      ->transform(CLI::CheckedTransformer(kByName).description(""))
       ->type_name("NAME")
       ->group(group);
   app.add_option("--radius", raw.radius, "how far an occluder counts, scene units")
@@ -318,11 +304,8 @@ void add_occlusion(CLI::App& app, Raw& raw) {
 // The truth of a standing camera and what is compared with it.
 void add_comparison(CLI::App& app, Raw& raw) {
   add_view(app, raw);
-  app.add_option("--frames", raw.frames,
-                 "how many are drawn with each setting, the camera standing; the last is compared; "
-                 "32")
-      ->type_name("N")
-      ->group("View");
+  add_frames(app, raw, "View",
+             "how many are drawn with each setting, the camera standing; the last is compared; 32");
   add_occlusion(app, raw);
   app.add_flag("--no-cache", raw.no_cache, "compute the truths anew");
 }
@@ -396,7 +379,7 @@ std::vector<Subcommand> add_commands(CLI::App& app, Raw& raw) {
   for (CLI::App* sub : {render, compare}) {
     add_scene(*sub, raw);
     add_view(*sub, raw);
-    add_frames(*sub, raw);
+    add_course(*sub, raw, "how many to render; the last is written");
     add_occlusion(*sub, raw);
     add_environment(*sub, raw);
     add_output(*sub, raw);
@@ -435,7 +418,7 @@ std::vector<Subcommand> add_commands(CLI::App& app, Raw& raw) {
   add_device(*recommend, raw);
   CLI::App* graph = app.add_subcommand("graph", "the compiled plan of a frame; needs no device");
   add_view(*graph, raw);
-  add_frames(*graph, raw);
+  add_course(*graph, raw, "how many to render; the last is written");
   add_occlusion(*graph, raw);
   graph->add_option("--format", raw.options.graph_format, "text, json or dot (Graphviz); text")
       ->transform(CLI::CheckedTransformer(kFormats).description(""))
@@ -444,7 +427,7 @@ std::vector<Subcommand> add_commands(CLI::App& app, Raw& raw) {
       "view", "a window to orbit a scene in and see what each setting does and costs");
   add_scene(*view, raw);
   add_view(*view, raw);
-  add_window(*view, raw);
+  add_course(*view, raw, "how many to draw; else until the window is closed");
   add_occlusion(*view, raw);
   add_environment(*view, raw);
   view->add_option("--out", raw.options.out,

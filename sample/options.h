@@ -1,10 +1,12 @@
 #ifndef ALCOVE_SAMPLE_OPTIONS_H_
 #define ALCOVE_SAMPLE_OPTIONS_H_
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <tl/expected.hpp>
 #include <utility>
 #include <vector>
@@ -27,6 +29,12 @@ enum class Command {
   kDoctor
 };
 enum class Quality { kLow, kMedium, kHigh, kUltra, kReference };
+inline constexpr std::array<std::pair<std::string_view, Quality>, 5> kQualities{
+    {{"low", Quality::kLow},
+     {"medium", Quality::kMedium},
+     {"high", Quality::kHigh},
+     {"ultra", Quality::kUltra},
+     {"reference", Quality::kReference}}};
 enum class NormalSource { kShading, kGeometric, kDepth };
 enum class GraphFormat { kText, kJson, kDot };
 

@@ -58,7 +58,8 @@ std::string_view name_of_choice(Choice value) {
   return "";
 }
 
-// Calls `visit(name, field)` for every setting but roughness, which is the surfaces'.
+// Calls `visit(name, field)` for every setting but roughness, which is the surfaces', and
+// visibility, which the sample always draws.
 template <typename Settings, typename Visit>
 void for_each_setting(Settings& settings, const Visit& visit) {
   visit("radius", settings.radius);

@@ -6,6 +6,9 @@
 #include <limits>
 #include <utility>
 
+#include "options.h"
+#include "settings.h"
+
 namespace alcove::sample {
 namespace {
 
@@ -65,16 +68,14 @@ class WayList {
 
 std::vector<Trial> ways_to_spend(const OcclusionSettings& base) {
   WayList list(base);
-  constexpr std::array<std::pair<const char*, passes::Quality>, 4> kQualities{
-      {{"low", passes::Quality::low},
-       {"medium", passes::Quality::medium},
-       {"high", passes::Quality::high},
-       {"ultra", passes::Quality::ultra}}};
   // What is filled in behind fronts belongs to a quality as far as it was not chosen.
   const float usual_fill = passes::quality_settings(passes::Quality::medium, base.radius).fill;
   for (const auto& [name, quality] : kQualities) {
-    const OcclusionSettings preset = passes::quality_settings(quality, base.radius);
-    list.add(name, {preset.divisor, preset.slices, preset.steps},
+    if (quality == Quality::kReference) {
+      continue;
+    }
+    const OcclusionSettings preset = passes::quality_settings(to_quality(quality), base.radius);
+    list.add(std::string(name), {preset.divisor, preset.slices, preset.steps},
              base.fill == usual_fill ? preset.fill : base.fill);
   }
   for (const Spending& spending : kSpendings) {
