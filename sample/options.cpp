@@ -198,6 +198,23 @@ void read_occlusion(const CLI::App& app, const Raw& raw, OcclusionOptions& occlu
   }
 }
 
+// An option that takes one of several names.
+template <typename Choice>
+CLI::Option* add_choice(CLI::App& app, const std::string& option, Choice& chosen,
+                        const std::map<std::string, Choice>& by_name, const std::string& text) {
+  const auto choose = [option, &chosen, by_name](const std::string& name) {
+    const auto found = by_name.find(name);
+    if (found != by_name.end()) {
+      chosen = found->second;
+      return;
+    }
+    std::string names;
+    for (const auto& [known, meaning] : by_name) names += (names.empty() ? "" : ", ") + known;
+    refuse(option, name, "one of " + names);
+  };
+  return app.add_option_function<std::string>(option, choose, text)->type_name("NAME");
+}
+
 void add_view(CLI::App& app, Raw& raw) {
   ViewOptions& view = raw.options.view;
   const std::string group = "View";
@@ -243,21 +260,10 @@ void add_motion(CLI::App& app, Raw& raw) {
     return paths;
   }();
   const std::string group = "Motion";
-  app.add_option_function<std::string>(
-         "--path",
-         [&raw](const std::string& name) {
-           const auto path = kPaths.find(name);
-           if (path == kPaths.end()) {
-             throw CLI::ValidationError("--path", name +
-                                                      " is none of orbit, dolly, strafe, object, "
-                                                      "cut and all");
-           }
-           raw.options.path = path->second;
-         },
-         "orbit (about the middle of the view), dolly (towards it), strafe (past a "
-         "column that is put near the eye), object (the camera stands, a block slides over the "
-         "ground), cut (to elsewhere) or all of them; all")
-      ->type_name("NAME")
+  add_choice(app, "--path", raw.options.path, kPaths,
+             "orbit (about the middle of the view), dolly (towards it), strafe (past a column that "
+             "is put near the eye), object (the camera stands, a block slides over the ground), "
+             "cut (to elsewhere) or all of them; all")
       ->group(group);
   add_frames(app, raw, group,
              "how long each path is, from the view given on; three of its frames are compared with "
@@ -272,9 +278,8 @@ void add_occlusion(CLI::App& app, Raw& raw) {
       {"geometric", NormalSource::kGeometric},
       {"depth", NormalSource::kDepth}};
   const std::string group = "Occlusion";
-  app.add_option("--quality", occlusion.quality, "low, medium, high, ultra or reference; medium")
-      ->transform(CLI::CheckedTransformer(kByName).description(""))
-      ->type_name("NAME")
+  add_choice(app, "--quality", occlusion.quality, kByName,
+             "low, medium, high, ultra or reference; medium")
       ->group(group);
   app.add_option("--radius", raw.radius, "how far an occluder counts, scene units")
       ->type_name("LENGTH")
@@ -284,12 +289,10 @@ void add_occlusion(CLI::App& app, Raw& raw) {
       ->take_all()
       ->expected(1)
       ->group(group);
-  app.add_option(
-         "--normals", occlusion.normals,
-         "that the pass is given, and the truth with it: shading (of vertices and normal maps), "
-         "geometric (of the triangles) or depth (made from the depth buffer); shading")
-      ->transform(CLI::CheckedTransformer(kSources).description(""))
-      ->type_name("NAME")
+  add_choice(
+      app, "--normals", occlusion.normals, kSources,
+      "that the pass is given, and the truth with it: shading (of vertices and normal maps), "
+      "geometric (of the triangles) or depth (made from the depth buffer); shading")
       ->group(group);
   app.add_option("--roughness", raw.roughness,
                  "perceptual roughness for specular occlusion over that of the materials; several "
@@ -420,9 +423,8 @@ std::vector<Subcommand> add_commands(CLI::App& app, Raw& raw) {
   add_view(*graph, raw);
   add_course(*graph, raw, "how many to render; the last is written");
   add_occlusion(*graph, raw);
-  graph->add_option("--format", raw.options.graph_format, "text, json or dot (Graphviz); text")
-      ->transform(CLI::CheckedTransformer(kFormats).description(""))
-      ->type_name("NAME");
+  add_choice(*graph, "--format", raw.options.graph_format, kFormats,
+             "text, json or dot (Graphviz); text");
   CLI::App* view = app.add_subcommand(
       "view", "a window to orbit a scene in and see what each setting does and costs");
   add_scene(*view, raw);
