@@ -39,15 +39,18 @@ ALCOVE_INLINE SliceNoise spatial_pattern(uvec2 pixel, uint frame) {
   return noise;
 }
 
-// The memo's 4x4 block, turned from frame to frame by the golden ratio (directions) and an R2
-// number (offsets): no frame repeats, and any run of frames covers both evenly. Where searches
-// move through a block of pixels (`moves`), each is back in its place or beside it after four
-// frames: then it is a quarter of such numbers, so that what a pixel itself is searched for is as
-// even. (The memo's six rotations would meet the period of four.)
+// A 4x4 block of 16 directions in the order of ordered dithering (Bayer 1973), turned from frame to
+// frame by the golden ratio (directions) and an R2 number (offsets): no frame repeats, and any run
+// of frames covers both evenly. Where searches move through a block of pixels (`moves`), each is
+// back in its place or beside it after four frames: then it is a quarter of such numbers, so that
+// what a pixel itself is searched for is as even. (The memo's six rotations would meet the period
+// of four.) The order keeps what moves over the image even too: the memo's, a lattice, steps in
+// pace with some velocities, and what moves so is searched for few directions.
 ALCOVE_INLINE SliceNoise golden_pattern(uvec2 pixel, uint frame, bool moves) {
   uint x = pixel.x & 3u;
   uint y = pixel.y & 3u;
-  uint cell = (((x + y) & 3u) << 2u) + x;
+  uint odd = x ^ y;
+  uint cell = ((odd & 1u) << 3u) | ((y & 1u) << 2u) | (odd & 2u) | (y >> 1u);
   uint offset = (y + 4u - x) & 3u;
   // Fractions of 2^32, exact for every frame: of 1.6180339887 and 0.7548776662, or of a quarter of
   // 1.6180339887 and of 2.5698402910.
