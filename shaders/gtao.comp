@@ -390,26 +390,20 @@ uvec2 pack_scaled_lobe(LobeSurface surface, Signal lobe) {
   return uvec2(pack_lobe(lobe), pack_lobe_surface(surface));
 }
 
-void main() {
-  ivec2 block = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(block * kDivisor, size_px()))) {
-    return;
-  }
-  ivec2 pixel = min(block * kDivisor + ivec2(parameters.phase), size_px() - 1);
-  float centre_line = imageLoad(line_image, pixel).r;
-  if (centre_line == sky_line(kPerspective)) {
-    uint open = pack_signal(Signal(1.0, 1.0));
-    imageStore(signal_image, block,
-               uvec4(open, floatBitsToUint(sky_line(kPerspective)), 0u, 0u));
-    if (kBentNormal) {
-      imageStore(bent_image, block, uvec4(0u));
-    }
-    return;
-  }
-  Surface surface = fetch_surface(pixel, centre_line);
-  ViewBasis basis = make_view_basis(surface.view);
-  SliceNoise noise = noise_at(uvec2(block));
+// What a search leaves at its block.
+struct Found {
+  uvec4 signal;
+  uvec2 bent;
+};
 
+Found found_in_sky() {
+  return Found(uvec4(pack_signal(Signal(1.0, 1.0)), floatBitsToUint(sky_line(kPerspective)), 0u, 0u),
+               uvec2(0u));
+}
+
+Found search_pixel(ivec2 pixel, float line, SliceNoise noise) {
+  Surface surface = fetch_surface(pixel, line);
+  ViewBasis basis = make_view_basis(surface.view);
   SliceSum sum = SliceSum(0.0, 0.0, vec3(0.0), no_lobe());
   uint i = 0;
   do {
@@ -419,10 +413,10 @@ void main() {
     }
     vec3 direction = slice_direction(basis, angle.phi);
     Slice slice = make_slice(surface.normal, direction, surface.view);
-    SliceLine line = make_slice_line(parameters.slope.xy, direction, surface.view);
-    Search ahead = make_search(surface, line, slice, 1.0, noise.offset);
-    Search behind = make_search(surface, line, slice, -1.0, noise.offset);
-    SliceSum more = kBitmask ? bitmask_slice(surface, line, slice, direction, ahead, behind)
+    SliceLine slice_line = make_slice_line(parameters.slope.xy, direction, surface.view);
+    Search ahead = make_search(surface, slice_line, slice, 1.0, noise.offset);
+    Search behind = make_search(surface, slice_line, slice, -1.0, noise.offset);
+    SliceSum more = kBitmask ? bitmask_slice(surface, slice_line, slice, direction, ahead, behind)
                              : horizon_slice(surface, slice, direction, ahead, behind);
     sum.visible += angle.weight * more.visible;
     sum.open += angle.weight * more.open;
@@ -435,9 +429,24 @@ void main() {
   uvec2 lobe = kLobe ? pack_scaled_lobe(surface.lobe, Signal(sum.lobe.visible * mean,
                                                              sum.lobe.open * mean))
                      : uvec2(0u);
-  imageStore(signal_image, block, uvec4(pack_signal(Signal(sum.visible * mean, sum.open * mean)),
-                                        floatBitsToUint(centre_line), lobe));
+  Signal signal = Signal(sum.visible * mean, sum.open * mean);
+  return Found(uvec4(pack_signal(signal), floatBitsToUint(line), lobe),
+               kBentNormal ? pack_direction(sum.bent * mean) : uvec2(0u));
+}
+
+void main() {
+  ivec2 block = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(block * kDivisor, size_px()))) {
+    return;
+  }
+  ivec2 pixel = min(block * kDivisor + ivec2(parameters.phase), size_px() - 1);
+  float line = imageLoad(line_image, pixel).r;
+  Found found = found_in_sky();
+  if (line != sky_line(kPerspective)) {
+    found = search_pixel(pixel, line, noise_at(uvec2(block)));
+  }
+  imageStore(signal_image, block, found.signal);
   if (kBentNormal) {
-    imageStore(bent_image, block, uvec4(pack_direction(sum.bent * mean), 0u, 0u));
+    imageStore(bent_image, block, uvec4(found.bent, 0u, 0u));
   }
 }
