@@ -240,7 +240,8 @@ passes::Frame FrameRenderer::State::frame_of(Graph& graph, const FrameRequest& r
           {to_matrix(request.view.clip_from_view), to_matrix(request.view.view_from_world)},
           request.index,
           {to_matrix(request.view.previous_clip_from_view),
-           to_matrix(request.view.previous_view_from_world)}};
+           to_matrix(request.view.previous_view_from_world)},
+          request.still_frames};
 }
 
 Surfaces FrameRenderer::State::surfaces_of(const Declared& declared,

@@ -27,9 +27,10 @@ struct LightRequest {
 // What one frame is drawn with.
 struct FrameRequest {
   GbufferView view;
-  std::uint32_t index = 0;      // counts frames; 0 begins anew
-  bool restart = false;         // begins anew too: nothing of the frames before is kept
-  bool motion_vectors = false;  // the occlusion is given them; else only the camera moves
+  std::uint32_t index = 0;         // counts frames; 0 begins anew
+  bool restart = false;            // begins anew too: nothing of the frames before is kept
+  std::uint32_t still_frames = 0;  // as passes::Frame has them
+  bool motion_vectors = false;     // the occlusion is given them; else only the camera moves
   passes::OcclusionSettings occlusion;
   const LightRequest* light = nullptr;  // null: none
 };

@@ -72,6 +72,7 @@ class Run {
     request.view = {now.view_from_world, now.clip_from_view, before.view_from_world,
                     before.clip_from_view, camera_.reversed_z};
     request.index = frame;
+    request.still_frames = options_.view.orbit == 0.0f ? frame : 0;
     request.occlusion = settings_;
     switch (outputs) {
       case Outputs::kVisibility:
@@ -98,17 +99,18 @@ class Run {
   LightRequest timed_light_;  // one roughness, and no light
 };
 
-// Draws the first frames of the run, timed; a short run's last frame is drawn
-// again until its time is known.
+// Draws the run and times its last frames; a short run's last frame is drawn again until its time
+// is known.
 tl::expected<Costs, std::string> time_run(FrameRenderer& renderer, const Run& run,
                                           std::uint32_t frames, Outputs outputs) {
   std::vector<FrameCost> costs;
-  for (std::uint32_t i = 0; i <= kTimedFrames; ++i) {
+  const std::uint32_t drawn = std::max(frames, kTimedFrames + 1);
+  for (std::uint32_t i = 0; i < drawn; ++i) {
     auto cost = renderer.draw(run.request(std::min(i, frames - 1), outputs));
     if (!cost) {
       return Failure(std::move(cost.error()));
     }
-    if (i > 0) {
+    if (i + kTimedFrames >= drawn) {
       costs.push_back(std::move(*cost));
     }
   }

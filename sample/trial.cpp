@@ -20,6 +20,7 @@ FrameRequest request_of(const StillSetup& setup, const OcclusionSettings& settin
   request.view = {m.view_from_world, m.clip_from_view, m.view_from_world, m.clip_from_view,
                   setup.camera.reversed_z};
   request.index = frame;
+  request.still_frames = frame;
   request.occlusion = settings;
   request.occlusion.specular = passes::Specular::none;
   request.occlusion.bent_normal = false;

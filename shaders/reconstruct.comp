@@ -38,6 +38,8 @@ layout(constant_id = 7) const bool kRoughnessTexture = false;
 layout(constant_id = 8) const int kRoughnessChannel = 0;
 layout(constant_id = 9) const bool kFresh = true;  // there is no history to read yet
 layout(constant_id = 10) const bool kVisibility = true;  // else it is found but not written
+// Still for so long that only pixels which this frame's searches reached have anything to learn.
+layout(constant_id = 11) const bool kSettled = false;
 
 #ifdef LOBE
 const bool kLobe = true;
@@ -399,9 +401,15 @@ History advance(Surface surface, Found corners[4], History history) {
   return next;
 }
 
-void reconstruct(Surface surface, Found corners[4]) {
+// Stores are many to a pixel and take turns on a processor: the sky has none of its own.
+void reconstruct(Surface surface, bool sky, Found corners[4]) {
   History next = advance(surface, corners, read_history(surface));
-  imageStore(next_history_image, surface.pixel, pack_history(next, surface.depth));
+  uvec4 packed = pack_history(next, surface.depth);
+  if (sky) {
+    next.sum = no_sum();
+    packed = uvec4(0u);
+  }
+  imageStore(next_history_image, surface.pixel, packed);
   if (kBentNormal) {
     imageStore(next_bent_history_image, surface.pixel, vec4(next.sum.bent, 0.0));
   }
@@ -410,23 +418,51 @@ void reconstruct(Surface surface, Found corners[4]) {
 
 #else
 
-void reconstruct(Surface surface, Found corners[4]) {
+void reconstruct(Surface surface, bool sky, Found corners[4]) {
   float width = float(kDivisor) * (kReach > 1 ? 1.5 : 1.0);
-  store(surface.pixel, gather(surface, kReach, narrowness_of(width)).sum);
+  Sum sum = gather(surface, kReach, narrowness_of(width)).sum;
+  if (sky) {
+    sum = no_sum();
+  }
+  store(surface.pixel, sum);
 }
 
 #endif
 
 void reconstruct_pixel(ivec2 pixel, Found corners[4]) {
   float line = imageLoad(line_image, pixel).r;
-  if (line == sky_line(kPerspective)) {
-    store(pixel, no_sum());
+  reconstruct(fetch_surface(pixel, line), line == sky_line(kPerspective), corners);
+}
+
+// As reconstruct_pixel, for a pixel of which this frame tells nothing new.
+void keep_pixel(ivec2 pixel) {
 #ifdef HISTORY
-    imageStore(next_history_image, pixel, uvec4(0u));
-#endif
-    return;
+  uvec4 stored = imageLoad(history_image, pixel);
+  imageStore(next_history_image, pixel, stored);
+  Sum sum = no_sum();
+  sum.signal = unpack_signal(stored.x);
+  if (kBentNormal) {
+    vec4 bent = texelFetch(bent_history_image, pixel, 0);
+    imageStore(next_bent_history_image, pixel, bent);
+    sum.bent = bent.xyz;
   }
-  reconstruct(fetch_surface(pixel, line), corners);
+  sum.lobe = Signal(uintBitsToFloat(stored.z), uintBitsToFloat(stored.w));
+  store(pixel, sum);
+#endif
+}
+
+// Pixels of a cell, a bit each by rows from the first, a searched one: those next to a searched one of
+// a cell of 4x4, the searched one itself of a smaller.
+const uint kCell = kDivisor == 4 ? 0xffffu : kDivisor == 2 ? 0xfu : 1u;
+const uint kReached = kSettled && kBetween ? (kDivisor == 4 ? 0x101bu : 1u) : kCell;
+
+ivec2 pixel_of_bit(ivec2 first, uint bits) {
+  int i = findLSB(bits);
+  return first + ivec2(i % kDivisor, i / kDivisor);
+}
+
+bool inside(ivec2 pixel) {
+  return all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, size_px()));
 }
 
 // Each invocation has kDivisor x kDivisor pixels: with kBetween those of the cell between four searched
@@ -443,12 +479,22 @@ void main() {
       corners[i] = fetch_block(clamp(cell + ivec2(i & 1, i >> 1), ivec2(0), last_block()));
     }
   }
-  int i = 0;
+  uint reached = kReached;
   do {
-    ivec2 pixel = first + ivec2(i % kDivisor, i / kDivisor);
-    if (all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, size_px()))) {
+    ivec2 pixel = pixel_of_bit(first, reached);
+    if (inside(pixel)) {
       reconstruct_pixel(pixel, corners);
     }
-    ++i;
-  } while (i < kDivisor * kDivisor);
+    reached &= reached - 1;
+  } while (reached != 0);
+  if (kReached != kCell) {
+    uint rest = kCell ^ kReached;
+    do {
+      ivec2 pixel = pixel_of_bit(first, rest);
+      if (inside(pixel)) {
+        keep_pixel(pixel);
+      }
+      rest &= rest - 1;
+    } while (rest != 0);
+  }
 }

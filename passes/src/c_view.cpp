@@ -167,7 +167,8 @@ tl::expected<void, Failure> add_view(framegraph::Graph& graph, Kernels& kernels,
   if (reset) {
     graph.reset_history(ViewName(view.id));
   }
-  return add_passes({graph, kernels, *now, frame_index, *before}, *textures, view, settings);
+  return add_passes({graph, kernels, *now, frame_index, *before, reset ? 0 : view.still_frames},
+                    *textures, view, settings);
 }
 
 }  // namespace alcove::passes

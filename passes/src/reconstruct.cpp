@@ -26,6 +26,8 @@ namespace {
 
 constexpr std::uint32_t kMaxReach = 3;
 constexpr std::uint32_t kMaxHistoryFrames = 255;
+// Still frames after which every pixel of a block of 4 has been searched once.
+constexpr std::uint32_t kSettledFrames = 16;
 
 tl::expected<void, Error> check(const ReconstructSettings& settings) {
   if (!(settings.tolerance_px > 0.0f) || !std::isfinite(settings.tolerance_px)) {
@@ -271,6 +273,10 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& frame, const Reconst
     return tl::unexpected(good.error());
   }
   ReconstructInputs inputs = given;
+  const bool same_view = frame.view == frame.previous_view;
+  if (same_view && frame.still_frames > 0) {
+    inputs.motion = {};
+  }
   if (!inputs.signal.lobe) {
     inputs.roughness = {};
   }
@@ -290,7 +296,8 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& frame, const Reconst
   bool history_valid = false;
   Textures textures = create_textures(frame, inputs, settings, history_name, history_valid);
   const bool history = settings.history_frames > 0;
-  const bool still = history_valid && !inputs.motion && frame.view == frame.previous_view;
+  const bool still = history_valid && !inputs.motion && same_view;
+  const bool settled = still && frame.still_frames >= kSettledFrames;
   const std::array constants{inputs.signal.divisor,
                              settings.reach,
                              static_cast<std::uint32_t>(bool(inputs.signal.bent)),
@@ -301,7 +308,8 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& frame, const Reconst
                              static_cast<std::uint32_t>(bool(inputs.roughness)),
                              settings.roughness_channel,
                              static_cast<std::uint32_t>(!history_valid),
-                             static_cast<std::uint32_t>(settings.visibility)};
+                             static_cast<std::uint32_t>(settings.visibility),
+                             static_cast<std::uint32_t>(settled)};
   const auto kernel = frame.kernels.get(shader_of(history, inputs.signal.lobe), constants);
   if (!kernel) {
     return tl::unexpected(kernel.error());

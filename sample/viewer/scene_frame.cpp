@@ -80,10 +80,14 @@ void SceneFrame::begin(Graph& graph, const ViewState& state, VkExtent3D size) {
   drawing_ = {state.settings, compared_settings(state), state.roughness};
   if (drawn_ != drawing_) {
     index_ = 0;
+    still_frames_ = 0;
     graph.reset_histories();
   } else {
     view_.previous_view_from_world = drawn_view_->view_from_world;
     view_.previous_clip_from_view = drawn_view_->clip_from_view;
+    const bool same = view_.view_from_world == view_.previous_view_from_world &&
+                      view_.clip_from_view == view_.previous_clip_from_view;
+    still_frames_ = same ? still_frames_ + 1 : 0;
   }
 }
 
@@ -98,7 +102,8 @@ passes::Frame SceneFrame::frame_of(Graph& graph) const {
           gpu_.kernels(),
           {to_matrix(view_.clip_from_view), to_matrix(view_.view_from_world)},
           index_,
-          {to_matrix(view_.previous_clip_from_view), to_matrix(view_.previous_view_from_world)}};
+          {to_matrix(view_.previous_clip_from_view), to_matrix(view_.previous_view_from_world)},
+          still_frames_};
 }
 
 tl::expected<Texture, std::string> SceneFrame::declare(Graph& graph, Texture target,

@@ -131,6 +131,7 @@ AlcoveView CInterface::view_of(const GivenView& given, AlcoveSettings& settings)
                   .id = given.id,
                   .reset_history = given.reset ? VK_TRUE : VK_FALSE,
                   .normals_in_view_space = given.normals_in_view_space ? VK_TRUE : VK_FALSE,
+                  .still_frames = given.still_frames,
                   .settings = &settings,
                   .camera = to_camera(given.view),
                   .previous_camera = to_camera(given.previous_view),
@@ -198,7 +199,8 @@ Results CInterface::run_by_cpp(const GivenView& given, std::uint32_t index) {
     const auto upload_of = [&](const HostImage& image) {
       return image.texels.empty() ? Texture{} : upload(graph, image);
     };
-    const Frame frame{graph, gpu().kernels(), given.view, index, given.previous_view};
+    const Frame frame{graph, gpu().kernels(),     given.view,
+                      index, given.previous_view, given.reset ? 0 : given.still_frames};
     OcclusionSettings settings = given.settings;
     settings.visibility = settings.visibility || given.multi_bounce;
     const auto outputs = add_occlusion(frame,

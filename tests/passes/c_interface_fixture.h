@@ -21,6 +21,7 @@ struct GivenView {
   View view;
   View previous_view = view;
   bool reset = false;
+  std::uint32_t still_frames = 0;
   HostImage depth_ndc;
   HostImage normals;
   bool normals_in_view_space = true;

@@ -38,6 +38,18 @@ TEST_F(CInterface, FramesWithHistoryAreTheSameAsByCpp) {
   }
 }
 
+TEST_F(CInterface, AStillViewIsTheSameAsByCpp) {
+  const Context context = create_context();
+  for (std::uint32_t i = 0; i < 20; ++i) {
+    GivenView given = frame_of(0, 33, 17);
+    given.settings = quality_settings(Quality::low, 0.4f);
+    given.still_frames = i;
+    given.reset = i == 18;
+    const std::vector<Results> found = run_by_c(*context, {&given, 1}, i);
+    expect_equal(found[0], run_by_cpp(given, i));
+  }
+}
+
 TEST_F(CInterface, EverySettingReachesThePasses) {
   struct Case {
     const char* name;

@@ -35,6 +35,7 @@ class Reconstruct : public PassTest {
     View previous_view = view;
     std::uint32_t index = 0;
     bool reset = false;
+    std::uint32_t still_frames = 0;
   };
 
   // The signal as a search would store it, with the depth of the pixel that it searched.
@@ -65,7 +66,8 @@ class Reconstruct : public PassTest {
       if (input.reset) {
         graph.reset_history("occlusion");
       }
-      const Frame frame{graph, gpu().kernels(), input.view, input.index, input.previous_view};
+      const Frame frame{graph,       gpu().kernels(),     input.view,
+                        input.index, input.previous_view, input.still_frames};
       const auto line = add_line_depth(frame, upload(graph, input.drawing.depth_ndc));
       ASSERT_TRUE(line) << line.error().message;
       ReconstructInputs inputs{
@@ -229,6 +231,80 @@ TEST_F(Reconstruct, AStaticViewConverges) {
     mean += texel / static_cast<double>(last.texels.size());
   }
   EXPECT_NEAR(mean, 0.5, 0.01);
+}
+
+// From the 16th frame of a still view on, what a search did not reach stays as it was.
+TEST_F(Reconstruct, ASettledViewBringsForwardWhatItsSearchesReached) {
+  const TestView view = test_views()[2];
+  Surface half = plane({0.0, 0.0, -3.0}, {0.0, 0.0, 1.0});
+  half.keep = [](const glm::dvec3& p) { return p.x < 0.4; };
+  const Drawing drawing = draw(view, 33, 23, {half});
+  for (const std::uint32_t divisor : {1u, 2u, 4u}) {
+    SCOPED_TRACE(testing::Message() << "by " << divisor);
+    // The last two frames of a run whose camera is known to stand still up to frame `known`.
+    const auto run_still = [&](std::uint32_t known) {
+      std::mt19937 random(11);
+      std::uniform_real_distribution<float> noise(0.1f, 0.9f);
+      std::array<HostImage, 2> last;
+      for (std::uint32_t frame = 0; frame <= 16; ++frame) {
+        const HostImage signal =
+            signal_of((33 + divisor - 1) / divisor, (23 + divisor - 1) / divisor,
+                      [&](std::uint32_t, std::uint32_t) { return noise(random); });
+        last[0] = std::move(last[1]);
+        last[1] = reconstruct({.view = view.view,
+                               .drawing = drawing,
+                               .signal = signal,
+                               .divisor = divisor,
+                               .index = frame,
+                               .reset = frame == 0,
+                               .still_frames = frame <= known ? frame : 0},
+                              precise(1, 32));
+      }
+      return last;
+    };
+    const auto [before, settled] = run_still(16);
+    const auto [same, all] = run_still(15);
+    EXPECT_THAT(same.texels, testing::Pointwise(testing::FloatEq(), before.texels));
+    // Frame 16 searches the first pixel of each block.
+    for (std::uint32_t y = 0; y < 23; ++y) {
+      for (std::uint32_t x = 0; x < 33; ++x) {
+        const std::uint32_t aside = std::min(x % divisor, divisor - x % divisor);
+        const std::uint32_t below = std::min(y % divisor, divisor - y % divisor);
+        const bool reached = divisor == 4 ? aside + below <= 1 : aside + below == 0;
+        if (reached) {
+          ASSERT_EQ(settled.at(x, y), all.at(x, y)) << "at " << x << ", " << y;
+        } else {
+          // What is stored has 16 bits.
+          ASSERT_NEAR(settled.at(x, y), before.at(x, y), 2e-5) << "at " << x << ", " << y;
+        }
+        if (drawing.is_sky(x, y)) {
+          ASSERT_EQ(settled.at(x, y), 1.0f) << "at " << x << ", " << y;
+        }
+      }
+    }
+  }
+}
+
+TEST_F(Reconstruct, MotionVectorsOfAStillViewAreNotRead) {
+  const TestView view = test_views()[2];
+  const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(30.0, 4.0)});
+  std::mt19937 random(3);
+  const HostImage first = noise_signal(random);
+  const HostImage second = noise_signal(random);
+  HostImage wrong{kWidth, kHeight, {}, 2};
+  wrong.texels.assign(std::size_t{kWidth} * kHeight * 2, 0.25f);
+  const auto second_frame = [&](const HostImage* motion) {
+    (void)reconstruct({.view = view.view, .drawing = drawing, .signal = first, .reset = true},
+                      precise(1, 8));
+    return reconstruct({.view = view.view,
+                        .drawing = drawing,
+                        .signal = second,
+                        .motion = motion,
+                        .index = 1,
+                        .still_frames = 1},
+                       precise(1, 8));
+  };
+  EXPECT_EQ(second_frame(&wrong).texels, second_frame(nullptr).texels);
 }
 
 // A history of many more frames than it counts: what is stored must neither drift nor lock.
