@@ -258,7 +258,7 @@ struct History {
   float recent;  // visibility of the last few frames, to tell change by
 };
 
-const float kDepthTolerance = 0.01;  // of the depth, for a surface seen head-on
+const float kDepthTolerance = 0.004;  // of the depth, for a surface seen head-on
 const float kLargestDepth = 6e4;     // of a half
 
 uvec4 pack_history(History history, float depth) {
@@ -324,7 +324,11 @@ History read_history(Surface surface) {
       ivec2 corner = ivec2(i & 1, i >> 1);
       ivec2 texel = clamp(ivec2(first) + corner, ivec2(0), size_px() - 1);
       vec2 near = abs(1.0 - vec2(corner) - part);
-      weight_sum += add_history(found, surface, texel, before.z, near.x * near.y * before.w);
+      // Where the surface's tangent plane passes that texel; it hardly turns from frame to frame.
+      vec2 offset = vec2(corner) - part;
+      float line = (kPerspective ? 1.0 / before.z : before.z) + dot(offset, surface.gradient);
+      float depth = kPerspective ? 1.0 / max(line, 0.5 / before.z) : line;
+      weight_sum += add_history(found, surface, texel, depth, near.x * near.y * before.w);
     }
   }
   float scale = weight_sum < 0.05 ? 0.0 : 1.0 / weight_sum;

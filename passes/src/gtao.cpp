@@ -52,7 +52,7 @@ tl::expected<void, Error> check(const GtaoSettings& settings) {
   if (settings.slices < 1 || settings.slices > 64 || settings.steps < 2 || settings.steps > 64) {
     return tl::unexpected(Error{"There are " + std::to_string(settings.slices) + " slices of " +
                                 std::to_string(settings.steps) +
-                                " steps; each number must be 1 to 64."});
+                                " steps; there must be 1 to 64 slices and 2 to 64 steps."});
   }
   if (settings.divisor != 1 && settings.divisor != 2 && settings.divisor != 4) {
     return tl::unexpected(Error{"The resolution is divided by " + std::to_string(settings.divisor) +

@@ -46,7 +46,7 @@ enum class Weighting : std::uint8_t {
 
 // How directions are spread over pixels and frames (shaders/maths/sampling.h).
 enum class Pattern : std::uint8_t {
-  golden,   // the memo's 4x4 block, turned by the golden ratio from frame to frame
+  golden,   // a 4x4 block in the order of ordered dithering, turned by the golden ratio each frame
   hilbert,  // Hilbert curve and R2 sequence
   memo,     // the memo's 4x4 block and six rotations
 };
