@@ -273,7 +273,7 @@ uvec4 pack_history(History history, float depth) {
 }
 
 // Where the surface was on the last frame's image: xy in pixels, z its depth there, w 0 if it was
-// not on it.
+// not on it (and z then no more than a number that can be divided by).
 vec4 reproject(Surface surface) {
   float scale = kPerspective ? surface.depth : 1.0;
   vec4 before = parameters.previous_from_pixel * vec4(surface.centre * scale, surface.depth, 1.0);
@@ -284,7 +284,7 @@ vec4 reproject(Surface surface) {
   }
   bool seen = before.w > 1e-6 && all(greaterThanEqual(position, vec2(0.0))) &&
               all(lessThanEqual(position, vec2(size_px())));
-  return seen ? vec4(position, before.z, 1.0) : vec4(0.0);
+  return seen ? vec4(position, before.z, 1.0) : vec4(0.0, 0.0, 1.0, 0.0);
 }
 
 // A texel of history, all of it or none as its depth tells whether it is of the same surface.

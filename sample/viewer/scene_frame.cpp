@@ -78,6 +78,8 @@ void SceneFrame::begin(Graph& graph, const ViewState& state, VkExtent3D size) {
            matrices.clip_from_view, state.camera.reversed_z};
   ray_from_ndc_ = ray_from_ndc(state.camera, matrices);
   drawing_ = {state.settings, compared_settings(state), state.roughness};
+  const Kept kept{with_outputs(state.settings, state.picture), size.width, size.height};
+  const bool same_kind = std::exchange(kept_, kept) == kept;
   if (drawn_ != drawing_) {
     index_ = 0;
     still_frames_ = 0;
@@ -85,7 +87,7 @@ void SceneFrame::begin(Graph& graph, const ViewState& state, VkExtent3D size) {
   } else {
     view_.previous_view_from_world = drawn_view_->view_from_world;
     view_.previous_clip_from_view = drawn_view_->clip_from_view;
-    const bool same = view_.view_from_world == view_.previous_view_from_world &&
+    const bool same = same_kind && view_.view_from_world == view_.previous_view_from_world &&
                       view_.clip_from_view == view_.previous_clip_from_view;
     still_frames_ = same ? still_frames_ + 1 : 0;
   }

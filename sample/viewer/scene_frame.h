@@ -35,6 +35,13 @@ class SceneFrame {
   void advance();
 
  private:
+  // What decides the kind and size of histories: where it differs, nothing stands still.
+  struct Kept {
+    passes::OcclusionSettings settings;
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    bool operator==(const Kept&) const = default;
+  };
   // What the frame before was drawn with: where it differs, histories begin anew.
   struct Drawn {
     passes::OcclusionSettings settings;
@@ -69,6 +76,7 @@ class SceneFrame {
   Drawn drawing_;
   std::optional<GbufferView> drawn_view_;
   std::optional<Drawn> drawn_;
+  Kept kept_;  // of the frame before
 };
 
 }  // namespace alcove::sample

@@ -221,8 +221,9 @@ typedef struct AlcoveView {
   VkBool32 reset_history;  // forget it, at a cut say. A change of size does so by itself
   VkBool32 normals_in_view_space;  // else in world space
   // Frames in a row, up to this one, that show the very same of this id as the one before each; 0:
-  // this one differs, or nobody knows. Saves time from 1 on, and more from 16 on: `motion` is then
-  // not read. Unread with reset_history, after which it starts again.
+  // this one differs, or nobody knows. It starts again after reset_history (with which it is not
+  // read) and where size, settings or outputs change. From 1 on `motion` is not read; from 16 on a
+  // search at lower resolution brings forward only the pixels that it reached.
   uint32_t still_frames;
   const AlcoveSettings* settings;
   AlcoveCamera camera;

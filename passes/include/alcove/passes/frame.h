@@ -38,9 +38,10 @@ struct Frame {
   View view;
   std::uint32_t index = 0;    // counts frames: it turns the noise and moves the searched pixels
   View previous_view = view;  // of the frame before: what history is reprojected with
-  // Frames in a row, without a cut and up to this one, that show the very same as the one before
-  // each; 0: this one differs, or nobody knows. Motion vectors are not read then. From the 16th on
-  // a search at lower resolution brings forward only the pixels that it reached.
+  // Frames in a row, up to this one, that show the very same as the one before each; 0: this one
+  // differs, or nobody knows. It starts again wherever histories do: after a cut, and where size,
+  // settings or wanted results change. From 1 on motion vectors are not read; from 16 on a search
+  // at lower resolution brings forward only the pixels that it reached.
   std::uint32_t still_frames = 0;
 };
 
