@@ -79,12 +79,18 @@ void append_camera(const Camera& camera, std::vector<std::string>& to) {
 
 // By the quality that is nearest.
 void append_settings(const OcclusionSettings& settings, std::vector<std::string>& to) {
-  const auto nearest = std::ranges::min_element(kQualities, {}, [&](const auto& quality) {
-    return changes(quality.second, settings).size();
-  });
-  to.insert(to.end(),
-            {"--quality", std::string(nearest->first), "--radius", text_of(settings.radius)});
-  for (const std::string& change : changes(nearest->second, settings)) {
+  std::size_t nearest = 0;
+  std::vector<std::string> fewest = changes(Quality::kLow, settings);
+  for (std::size_t i = 1; i < kQualityNames.size(); ++i) {
+    std::vector<std::string> more = changes(static_cast<Quality>(i), settings);
+    if (more.size() < fewest.size()) {
+      nearest = i;
+      fewest = std::move(more);
+    }
+  }
+  to.insert(to.end(), {"--quality", std::string(kQualityNames[nearest]), "--radius",
+                       text_of(settings.radius)});
+  for (const std::string& change : fewest) {
     to.insert(to.end(), {"--set", change});
   }
 }
@@ -103,8 +109,8 @@ std::vector<std::string> render_arguments(const Options& options, const Shot& sh
   arguments.insert(arguments.end(), {"--size", text_of(shot.width) + "x" + text_of(shot.height)});
   append_settings(shot.settings, arguments);
   if (options.occlusion.normals != NormalSource::kShading) {
-    const bool geometric = options.occlusion.normals == NormalSource::kGeometric;
-    arguments.insert(arguments.end(), {"--normals", geometric ? "geometric" : "depth"});
+    arguments.insert(arguments.end(),
+                     {"--normals", std::string(name_of(options.occlusion.normals))});
   }
   if (shot.roughness) {
     arguments.insert(arguments.end(), {"--roughness", text_of(*shot.roughness)});

@@ -2,6 +2,7 @@
 #define ALCOVE_SAMPLE_OPTIONS_H_
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -11,9 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "camera.h"
+#include "glm.h"
 #include "motion_paths.h"
-#include "scene.h"
 
 namespace alcove::sample {
 
@@ -28,15 +28,18 @@ enum class Command {
   kView,
   kDoctor
 };
+// Names are in the order of the enum.
 enum class Quality { kLow, kMedium, kHigh, kUltra, kReference };
-inline constexpr std::array<std::pair<std::string_view, Quality>, 5> kQualities{
-    {{"low", Quality::kLow},
-     {"medium", Quality::kMedium},
-     {"high", Quality::kHigh},
-     {"ultra", Quality::kUltra},
-     {"reference", Quality::kReference}}};
+inline constexpr std::array<std::string_view, 5> kQualityNames{"low", "medium", "high", "ultra",
+                                                               "reference"};
 enum class NormalSource { kShading, kGeometric, kDepth };
+inline constexpr std::array<std::string_view, 3> kNormalSourceNames{"shading", "geometric",
+                                                                    "depth"};
+constexpr std::string_view name_of(NormalSource source) {
+  return kNormalSourceNames[static_cast<std::size_t>(source)];
+}
 enum class GraphFormat { kText, kJson, kDot };
+inline constexpr std::array<std::string_view, 3> kGraphFormatNames{"text", "json", "dot"};
 
 // Only what was typed; the camera of the scene fills the rest. Angles already in radians.
 struct ViewOptions {
@@ -87,11 +90,6 @@ struct Stop {
 // Never exits and never prints. Each value is checked alone and against the others here; what needs
 // the scene is checked by camera_of.
 [[nodiscard]] tl::expected<Options, Stop> parse_options(int argc, const char* const* argv);
-
-// The camera that the options ask of this scene. Errors: a camera the scene does not have (its
-// names are listed), an eye at the target, near not before far.
-[[nodiscard]] tl::expected<Camera, std::string> camera_of(const ViewOptions& view,
-                                                          const Scene& scene);
 
 }  // namespace alcove::sample
 

@@ -30,17 +30,6 @@ Json camera_json(const Camera& camera) {
   return json;
 }
 
-const char* name_of(NormalSource source) {
-  switch (source) {
-    case NormalSource::kShading:
-      return "shading";
-    case NormalSource::kGeometric:
-      return "geometric";
-    default:
-      return "depth";
-  }
-}
-
 Json costs_json(const Costs& costs) {
   Json json;
   for (const PassTime& pass : costs.passes) {

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "camera_of.h"
 #include "load_scene.h"
 #include "settings.h"
 

@@ -70,12 +70,10 @@ std::vector<Trial> ways_to_spend(const OcclusionSettings& base) {
   WayList list(base);
   // What is filled in behind fronts belongs to a quality as far as it was not chosen.
   const float usual_fill = passes::quality_settings(passes::Quality::medium, base.radius).fill;
-  for (const auto& [name, quality] : kQualities) {
-    if (quality == Quality::kReference) {
-      continue;
-    }
+  for (const Quality quality : {Quality::kLow, Quality::kMedium, Quality::kHigh, Quality::kUltra}) {
     const OcclusionSettings preset = passes::quality_settings(to_quality(quality), base.radius);
-    list.add(std::string(name), {preset.divisor, preset.slices, preset.steps},
+    list.add(std::string(kQualityNames[static_cast<std::size_t>(quality)]),
+             {preset.divisor, preset.slices, preset.steps},
              base.fill == usual_fill ? preset.fill : base.fill);
   }
   for (const Spending& spending : kSpendings) {

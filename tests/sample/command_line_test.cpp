@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "builtin_scene.h"
+#include "camera_of.h"
 #include "settings.h"
 
 namespace alcove::sample {

@@ -5,8 +5,6 @@
 
 #include <cmath>
 
-#include "builtin_scene.h"
-
 namespace alcove::sample {
 namespace {
 
@@ -147,37 +145,15 @@ TEST(Options, HelpTeachesAndAsksForNoRun) {
   const auto one = parse({"render", "--help"});
   ASSERT_FALSE(one);
   EXPECT_THAT(one.error().text, HasSubstr("--radius"));
+  const auto after_a_mistake = parse({"render", "--eye", "there", "--help"});
+  ASSERT_FALSE(after_a_mistake);
+  EXPECT_EQ(after_a_mistake.error().text, one.error().text);
 }
 
 TEST(Options, NoCommandAndUnknownOnesAreMistakes) {
   EXPECT_EQ(parse({}).error().status, 2);
   EXPECT_EQ(parse({"paint"}).error().status, 2);
   EXPECT_EQ(parse({"render", "--colour", "red"}).error().status, 2);
-}
-
-TEST(Options, CameraTakesTheScenesAndThenWhatWasTyped) {
-  const Scene scene = builtin_scene();
-  ViewOptions view;
-  view.camera = "court";
-  view.fov_y = 0.5f;
-  const auto camera = camera_of(view, scene);
-  ASSERT_TRUE(camera);
-  EXPECT_EQ(camera->eye_ws, find_camera(scene, "court")->eye_ws);
-  EXPECT_EQ(camera->fov_y, 0.5f);
-}
-
-TEST(Options, CameraThatTheSceneLacksIsRefusedWithThoseItHas) {
-  ViewOptions view;
-  view.camera = "kitchen";
-  const auto camera = camera_of(view, builtin_scene());
-  ASSERT_FALSE(camera);
-  EXPECT_THAT(camera.error(), HasSubstr("court"));
-}
-
-TEST(Options, EyeOnTheTargetIsRefused) {
-  ViewOptions view;
-  view.eye_ws = view.target_ws = glm::vec3(1.0f);
-  EXPECT_FALSE(camera_of(view, builtin_scene()));
 }
 
 }  // namespace

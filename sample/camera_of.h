@@ -1,0 +1,20 @@
+#ifndef ALCOVE_SAMPLE_CAMERA_OF_H_
+#define ALCOVE_SAMPLE_CAMERA_OF_H_
+
+#include <string>
+#include <tl/expected.hpp>
+
+#include "camera.h"
+#include "options.h"
+#include "scene.h"
+
+namespace alcove::sample {
+
+// The camera that the options ask of this scene. Errors: a camera the scene does not have (its
+// names are listed), an eye at the target, near not before far.
+[[nodiscard]] tl::expected<Camera, std::string> camera_of(const ViewOptions& view,
+                                                          const Scene& scene);
+
+}  // namespace alcove::sample
+
+#endif  // ALCOVE_SAMPLE_CAMERA_OF_H_

@@ -1,0 +1,39 @@
+#include "camera_of.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "builtin_scene.h"
+
+namespace alcove::sample {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(CameraOf, TakesTheScenesAndThenWhatWasTyped) {
+  const Scene scene = builtin_scene();
+  ViewOptions view;
+  view.camera = "court";
+  view.fov_y = 0.5f;
+  const auto camera = camera_of(view, scene);
+  ASSERT_TRUE(camera);
+  EXPECT_EQ(camera->eye_ws, find_camera(scene, "court")->eye_ws);
+  EXPECT_EQ(camera->fov_y, 0.5f);
+}
+
+TEST(CameraOf, ACameraThatTheSceneLacksIsRefusedWithThoseItHas) {
+  ViewOptions view;
+  view.camera = "kitchen";
+  const auto camera = camera_of(view, builtin_scene());
+  ASSERT_FALSE(camera);
+  EXPECT_THAT(camera.error(), HasSubstr("court"));
+}
+
+TEST(CameraOf, EyeOnTheTargetIsRefused) {
+  ViewOptions view;
+  view.eye_ws = view.target_ws = glm::vec3(1.0f);
+  EXPECT_FALSE(camera_of(view, builtin_scene()));
+}
+
+}  // namespace
+}  // namespace alcove::sample
