@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <utility>
 
 #include "setting_names.h"
 #include "settings.h"
@@ -14,6 +15,7 @@ namespace alcove::sample {
 namespace {
 
 using passes::OcclusionSettings;
+using passes::Quality;
 
 // Each overload gives the text of a value that reads back as the same.
 template <typename Number>
@@ -30,7 +32,7 @@ std::string text_of(const glm::vec3& v) {
 }
 template <typename Choice>
 std::string text_of(Choice value) {
-  return std::string(name_of_choice(value));
+  return std::string(passes::name_of(value));
 }
 
 // The shortest that is read as the same angle.
@@ -48,14 +50,14 @@ std::string degrees_text(float radians) {
 
 // The settings that are other than those of a quality, as --set takes them.
 std::vector<std::string> changes(Quality quality, const OcclusionSettings& settings) {
-  const OcclusionSettings preset = passes::quality_settings(to_quality(quality), settings.radius);
+  const OcclusionSettings preset = passes::quality_settings(quality, settings.radius);
   std::vector<std::string> before, result;
-  for_each_setting(preset, [&](const char* name, const auto& value) {
-    before.push_back(std::string(name) + "=" + text_of(value));
+  for_each_setting(preset, [&](const SettingInfo& info, const auto& value) {
+    before.push_back(std::string(info.name) + "=" + text_of(value));
   });
   std::size_t i = 0;
-  for_each_setting(settings, [&](const char* name, const auto& value) {
-    std::string now = std::string(name) + "=" + text_of(value);
+  for_each_setting(settings, [&](const SettingInfo& info, const auto& value) {
+    std::string now = std::string(info.name) + "=" + text_of(value);
     if (now != before[i++]) {
       result.push_back(std::move(now));
     }
@@ -79,16 +81,16 @@ void append_camera(const Camera& camera, std::vector<std::string>& to) {
 
 // By the quality that is nearest.
 void append_settings(const OcclusionSettings& settings, std::vector<std::string>& to) {
-  std::size_t nearest = 0;
-  std::vector<std::string> fewest = changes(Quality::kLow, settings);
-  for (std::size_t i = 1; i < kQualityNames.size(); ++i) {
+  Quality nearest = Quality::low;
+  std::vector<std::string> fewest = changes(nearest, settings);
+  for (std::size_t i = 1; i < passes::kNames<Quality>.size(); ++i) {
     std::vector<std::string> more = changes(static_cast<Quality>(i), settings);
     if (more.size() < fewest.size()) {
-      nearest = i;
+      nearest = static_cast<Quality>(i);
       fewest = std::move(more);
     }
   }
-  to.insert(to.end(), {"--quality", std::string(kQualityNames[nearest]), "--radius",
+  to.insert(to.end(), {"--quality", std::string(passes::name_of(nearest)), "--radius",
                        text_of(settings.radius)});
   for (const std::string& change : fewest) {
     to.insert(to.end(), {"--set", change});

@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "alcove/passes/setting_names.h"
 #include "option_value.h"
 
 namespace alcove::sample {
@@ -158,7 +159,8 @@ void add_occlusion(CLI::App& app, OcclusionOptions& occlusion) {
   const Group group(app, "Occlusion");
   group.add("--quality", "NAME", "low, medium, high, ultra or reference; medium",
             [&](const OptionValue& given) {
-              occlusion.quality = static_cast<Quality>(given.one_of(kQualityNames));
+              occlusion.quality =
+                  static_cast<passes::Quality>(given.one_of(passes::kNames<passes::Quality>));
             });
   group.add("--radius", "LENGTH", "how far an occluder counts, scene units",
             [&](const OptionValue& given) { occlusion.radius = given.length(); });

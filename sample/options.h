@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "alcove/passes/occlusion.h"
 #include "glm.h"
 #include "motion_paths.h"
 
@@ -29,9 +30,6 @@ enum class Command {
   kDoctor
 };
 // Names are in the order of the enum.
-enum class Quality { kLow, kMedium, kHigh, kUltra, kReference };
-inline constexpr std::array<std::string_view, 5> kQualityNames{"low", "medium", "high", "ultra",
-                                                               "reference"};
 enum class NormalSource { kShading, kGeometric, kDepth };
 inline constexpr std::array<std::string_view, 3> kNormalSourceNames{"shading", "geometric",
                                                                     "depth"};
@@ -54,7 +52,7 @@ struct ViewOptions {
 };
 
 struct OcclusionOptions {
-  Quality quality = Quality::kMedium;
+  passes::Quality quality = passes::Quality::medium;
   std::optional<float> radius;  // scene units; none: default_radius(scene)
   NormalSource normals = NormalSource::kShading;
   std::vector<std::pair<std::string, std::string>> set;  // --set name=value, in order

@@ -1,87 +1,80 @@
 #ifndef ALCOVE_SAMPLE_SETTING_NAMES_H_
 #define ALCOVE_SAMPLE_SETTING_NAMES_H_
 
-#include <array>
-#include <string_view>
-#include <utility>
-
 #include "alcove/passes/occlusion.h"
+#include "alcove/passes/setting_names.h"
 
 // The occlusion settings by the names that --set, report.json and the window know them by.
 namespace alcove::sample {
 
-inline constexpr std::array<std::pair<std::string_view, passes::Estimator>, 4> kEstimators{
-    {{"horizons", passes::Estimator::horizons},
-     {"heuristic", passes::Estimator::heuristic},
-     {"bitmask", passes::Estimator::bitmask},
-     {"connected", passes::Estimator::connected}}};
-inline constexpr std::array<std::pair<std::string_view, passes::Weighting>, 2> kWeightings{
-    {{"cosine", passes::Weighting::cosine}, {"uniform", passes::Weighting::uniform}}};
-inline constexpr std::array<std::pair<std::string_view, passes::ThicknessUnit>, 3> kThicknessUnits{
-    {{"radius", passes::ThicknessUnit::radius},
-     {"distance", passes::ThicknessUnit::distance},
-     {"back_faces", passes::ThicknessUnit::back_faces}}};
-inline constexpr std::array<std::pair<std::string_view, passes::Pattern>, 3> kPatterns{
-    {{"golden", passes::Pattern::golden},
-     {"hilbert", passes::Pattern::hilbert},
-     {"memo", passes::Pattern::memo}}};
-inline constexpr std::array<std::pair<std::string_view, passes::Precision>, 3> kPrecisions{
-    {{"unorm8", passes::Precision::unorm8},
-     {"float16", passes::Precision::float16},
-     {"float32", passes::Precision::float32}}};
-inline constexpr std::array<std::pair<std::string_view, passes::Specular>, 6> kSpeculars{
-    {{"none", passes::Specular::none},
-     {"slices", passes::Specular::slices},
-     {"table", passes::Specular::table},
-     {"cone", passes::Specular::cone},
-     {"smooth_cone", passes::Specular::smooth_cone},
-     {"lagarde", passes::Specular::lagarde}}};
-inline constexpr std::array<std::pair<std::string_view, bool>, 2> kBooleans{
-    {{"false", false}, {"true", true}}};
+// What people are told of a setting.
+struct SettingInfo {
+  const char* name;
+  const char* help;
+  // Of the window's slider for a number; the radius in parts of the scene's usual one.
+  float low = 0;
+  float high = 0;
+  // Whether it has an effect beside the others; null: always.
+  bool (*matters)(const passes::OcclusionSettings& settings) = nullptr;
+};
 
-// The choices that a setting has.
-constexpr const auto& choices(passes::Estimator) { return kEstimators; }
-constexpr const auto& choices(passes::Weighting) { return kWeightings; }
-constexpr const auto& choices(passes::ThicknessUnit) { return kThicknessUnits; }
-constexpr const auto& choices(passes::Pattern) { return kPatterns; }
-constexpr const auto& choices(passes::Precision) { return kPrecisions; }
-constexpr const auto& choices(passes::Specular) { return kSpeculars; }
-constexpr const auto& choices(bool) { return kBooleans; }
-
-template <typename Choice>
-std::string_view name_of_choice(Choice value) {
-  for (const auto& [name, meaning] : choices(value)) {
-    if (meaning == value) {
-      return name;
-    }
-  }
-  return "";
+inline bool has_thickness(const passes::OcclusionSettings& settings) {
+  return settings.estimator == passes::Estimator::bitmask ||
+         settings.estimator == passes::Estimator::connected;
 }
 
-// Calls `visit(name, field)` for every setting but roughness, which is the surfaces', and
+// Calls `visit(info, field)` for every setting but roughness, which is the surfaces', and
 // visibility, which the sample always draws.
 template <typename Settings, typename Visit>
 void for_each_setting(Settings& settings, const Visit& visit) {
-  visit("radius", settings.radius);
-  visit("slices", settings.slices);
-  visit("steps", settings.steps);
-  visit("estimator", settings.estimator);
-  visit("weighting", settings.weighting);
-  visit("thickness", settings.thickness);
-  visit("thickness_unit", settings.thickness_unit);
-  visit("fill", settings.fill);
-  visit("blend", settings.blend);
-  visit("falloff", settings.falloff);
-  visit("divisor", settings.divisor);
-  visit("pattern", settings.pattern);
-  visit("depth_mips", settings.depth_mips);
-  visit("filter_reach", settings.filter_reach);
-  visit("filter_tolerance_px", settings.filter_tolerance_px);
-  visit("history_frames", settings.history_frames);
-  visit("clamp_width", settings.clamp_width);
-  visit("bent_normal", settings.bent_normal);
-  visit("specular", settings.specular);
-  visit("precision", settings.precision);
+  using Of = const passes::OcclusionSettings&;
+  using Info = SettingInfo;
+  visit(Info{"radius", "Occluders beyond it do not count; scene units.", 0.05f, 10.0f},
+        settings.radius);
+  visit(Info{"slices", "Directions searched in a pixel and frame.", 1, 64}, settings.slices);
+  visit(Info{"steps", "Samples on each side of a slice.", 2, 64}, settings.steps);
+  visit(Info{"estimator",
+             "What stands behind an occluder's front: everything (horizons; heuristic lets them "
+             "sink), or a thickness for each sample (bitmask) or for each connected surface "
+             "(connected)."},
+        settings.estimator);
+  visit(Info{"weighting", "What a visible direction counts: by its cosine, or all alike."},
+        settings.weighting);
+  visit(Info{"thickness", "Of occluders, in its unit.", 0.0f, 1.0f, has_thickness},
+        settings.thickness);
+  visit(Info{"thickness_unit",
+             "Parts of the radius or of the distance from the eye, or where the scene's back faces "
+             "are.",
+             0, 0, has_thickness},
+        settings.thickness_unit);
+  visit(Info{"fill", "How much of what is hidden behind occluders occludes too.", 0.0f, 1.0f,
+             has_thickness},
+        settings.fill);
+  visit(Info{"blend", "How far each lower sample pulls the horizon down (heuristic).", 0.0f, 1.0f,
+             [](Of s) { return s.estimator == passes::Estimator::heuristic; }},
+        settings.blend);
+  visit(Info{"falloff", "Last part of the radius, over which occluders fade.", 0.0f, 1.0f,
+             [](Of s) { return !has_thickness(s); }},
+        settings.falloff);
+  visit(Info{"divisor", "One search a frame in a block of so many pixels a side: 1, 2 or 4.", 1, 4},
+        settings.divisor);
+  visit(Info{"pattern", "How directions are spread over pixels and frames."}, settings.pattern);
+  visit(Info{"depth_mips", "Levels of the depth pyramid that far samples read.", 1, 5},
+        settings.depth_mips);
+  visit(Info{"filter_reach", "Blocks on each side that a pixel learns from; 0: no filter.", 0, 3},
+        settings.filter_reach);
+  visit(Info{"filter_tolerance_px",
+             "How far from the tangent plane a neighbour still counts, in pixels.", 0.1f, 8.0f,
+             [](Of s) { return s.filter_reach > 0; }},
+        settings.filter_tolerance_px);
+  visit(Info{"history_frames", "Frames that are averaged; 0: no history.", 0, 255},
+        settings.history_frames);
+  visit(Info{"clamp_width", "Deviations that history is held to; 0: free.", 0.0f, 8.0f,
+             [](Of s) { return s.history_frames > 0; }},
+        settings.clamp_width);
+  visit(Info{"bent_normal", "Also the mean visible direction."}, settings.bent_normal);
+  visit(Info{"specular", "How specular occlusion is found."}, settings.specular);
+  visit(Info{"precision", "Bits of the results."}, settings.precision);
 }
 
 }  // namespace alcove::sample

@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <nlohmann/json.hpp>
+#include <string_view>
 #include <utility>
 
 #include "setting_names.h"
@@ -29,9 +30,10 @@ std::string parse(const std::string& text, std::uint32_t& value) {
 template <typename Choice>
 std::string parse(const std::string& text, Choice& value) {
   std::string all;
-  for (const auto& [name, meaning] : choices(value)) {
+  for (std::size_t i = 0; i < passes::kNames<Choice>.size(); ++i) {
+    const std::string_view name = passes::kNames<Choice>[i];
     if (text == name) {
-      value = meaning;
+      value = static_cast<Choice>(i);
       return "";
     }
     all += (all.empty() ? "" : ", ") + std::string(name);
@@ -43,7 +45,7 @@ Json show(float value) { return value; }
 Json show(std::uint32_t value) { return value; }
 template <typename Choice>
 Json show(Choice value) {
-  return std::string(name_of_choice(value));
+  return std::string(passes::name_of(value));
 }
 
 tl::expected<void, std::string> set(OcclusionSettings& settings, const std::string& name,
@@ -51,9 +53,9 @@ tl::expected<void, std::string> set(OcclusionSettings& settings, const std::stri
   bool known = false;
   std::string wants;
   std::string names;
-  for_each_setting(settings, [&](const char* setting, auto& field) {
-    names += (names.empty() ? "" : ", ") + std::string(setting);
-    if (name == setting) {
+  for_each_setting(settings, [&](const SettingInfo& info, auto& field) {
+    names += (names.empty() ? "" : ", ") + std::string(info.name);
+    if (name == info.name) {
       known = true;
       wants = parse(value, field);
     }
@@ -69,25 +71,10 @@ tl::expected<void, std::string> set(OcclusionSettings& settings, const std::stri
 
 }  // namespace
 
-passes::Quality to_quality(Quality quality) {
-  switch (quality) {
-    case Quality::kLow:
-      return passes::Quality::low;
-    case Quality::kMedium:
-      return passes::Quality::medium;
-    case Quality::kHigh:
-      return passes::Quality::high;
-    case Quality::kUltra:
-      return passes::Quality::ultra;
-    default:
-      return passes::Quality::reference;
-  }
-}
-
 tl::expected<OcclusionSettings, std::string> occlusion_settings(const OcclusionOptions& options,
                                                                 const Scene& scene) {
-  OcclusionSettings settings = passes::quality_settings(
-      to_quality(options.quality), options.radius.value_or(default_radius(scene)));
+  OcclusionSettings settings =
+      passes::quality_settings(options.quality, options.radius.value_or(default_radius(scene)));
   for (const auto& [name, value] : options.set) {
     if (auto done = set(settings, name, value); !done) {
       return Failure(std::move(done.error()));
@@ -98,8 +85,8 @@ tl::expected<OcclusionSettings, std::string> occlusion_settings(const OcclusionO
 
 Json to_json(const OcclusionSettings& settings) {
   Json json;
-  for_each_setting(settings,
-                   [&](const char* name, const auto& field) { json[name] = show(field); });
+  for_each_setting(
+      settings, [&](const SettingInfo& info, const auto& field) { json[info.name] = show(field); });
   return json;
 }
 

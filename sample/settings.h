@@ -15,8 +15,6 @@ namespace alcove::sample {
 [[nodiscard]] tl::expected<passes::OcclusionSettings, std::string> occlusion_settings(
     const OcclusionOptions& options, const Scene& scene);
 
-[[nodiscard]] passes::Quality to_quality(Quality quality);
-
 // Every setting by the name that --set knows it by.
 [[nodiscard]] nlohmann::ordered_json to_json(const passes::OcclusionSettings& settings);
 

@@ -6,13 +6,13 @@
 #include <limits>
 #include <utility>
 
-#include "options.h"
-#include "settings.h"
+#include "alcove/passes/setting_names.h"
 
 namespace alcove::sample {
 namespace {
 
 using passes::OcclusionSettings;
+using passes::Quality;
 
 // What a way to spend differs by.
 struct Spending {
@@ -69,11 +69,10 @@ class WayList {
 std::vector<Trial> ways_to_spend(const OcclusionSettings& base) {
   WayList list(base);
   // What is filled in behind fronts belongs to a quality as far as it was not chosen.
-  const float usual_fill = passes::quality_settings(passes::Quality::medium, base.radius).fill;
-  for (const Quality quality : {Quality::kLow, Quality::kMedium, Quality::kHigh, Quality::kUltra}) {
-    const OcclusionSettings preset = passes::quality_settings(to_quality(quality), base.radius);
-    list.add(std::string(kQualityNames[static_cast<std::size_t>(quality)]),
-             {preset.divisor, preset.slices, preset.steps},
+  const float usual_fill = passes::quality_settings(Quality::medium, base.radius).fill;
+  for (const Quality quality : {Quality::low, Quality::medium, Quality::high, Quality::ultra}) {
+    const OcclusionSettings preset = passes::quality_settings(quality, base.radius);
+    list.add(std::string(passes::name_of(quality)), {preset.divisor, preset.slices, preset.steps},
              base.fill == usual_fill ? preset.fill : base.fill);
   }
   for (const Spending& spending : kSpendings) {

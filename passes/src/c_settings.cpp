@@ -1,23 +1,17 @@
 #include "c_settings.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <span>
+#include <optional>
+#include <type_traits>
+#include <utility>
+
+#include "alcove/passes/setting_names.h"
 
 namespace alcove::passes {
 namespace {
-
-// By number. A gap is no value.
-constexpr std::array kEstimators{"horizons", "heuristic", "bitmask", "connected"};
-constexpr std::array kWeightings{"cosine", "uniform"};
-constexpr std::array kThicknessUnits{"radius", "distance", "back_faces"};
-constexpr std::array kPatterns{"golden", "hilbert", "memo"};
-constexpr std::array<const char*, 6> kSpeculars{nullptr, "slices",      "table",
-                                                "cone",  "smooth_cone", "lagarde"};
-constexpr std::array kPrecisions{"unorm8", "float16", "float32"};
 
 // The two sets of enums have the same numbers.
 template <typename Ours, typename Theirs>
@@ -59,52 +53,68 @@ std::uint32_t number_of(const Theirs& value) {
   return number;
 }
 
-const char* name_of(std::span<const char* const> names, std::uint32_t number) {
-  return number < names.size() ? names[number] : nullptr;
+// Calls `visit(name, value in C, value in C++)` for every setting that both have.
+template <typename Theirs, typename Ours, typename Visit>
+void for_each_setting(Theirs& theirs, Ours& ours, const Visit& visit) {
+  visit("radius", theirs.radius, ours.radius);
+  visit("slices", theirs.slices, ours.slices);
+  visit("steps", theirs.steps, ours.steps);
+  visit("estimator", theirs.estimator, ours.estimator);
+  visit("weighting", theirs.weighting, ours.weighting);
+  visit("thickness", theirs.thickness, ours.thickness);
+  visit("thickness_unit", theirs.thickness_unit, ours.thickness_unit);
+  visit("fill", theirs.fill, ours.fill);
+  visit("blend", theirs.blend, ours.blend);
+  visit("falloff", theirs.falloff, ours.falloff);
+  visit("divisor", theirs.divisor, ours.divisor);
+  visit("pattern", theirs.pattern, ours.pattern);
+  visit("depth_mips", theirs.depth_mips, ours.depth_mips);
+  visit("filter_reach", theirs.filter_reach, ours.filter_reach);
+  visit("filter_tolerance_px", theirs.filter_tolerance_px, ours.filter_tolerance_px);
+  visit("history_frames", theirs.history_frames, ours.history_frames);
+  visit("clamp_width", theirs.clamp_width, ours.clamp_width);
+  visit("specular", theirs.specular, ours.specular);
+  visit("roughness", theirs.roughness, ours.roughness);
+  visit("roughness_channel", theirs.roughness_channel, ours.roughness_channel);
+  visit("precision", theirs.precision, ours.precision);
 }
 
-// Calls `visit(name, field)` for every number, and `visit(name, field, names)` for every enum.
-template <typename Visit>
-void for_each_setting(const AlcoveSettings& settings, const Visit& visit) {
-  visit("radius", settings.radius);
-  visit("slices", settings.slices);
-  visit("steps", settings.steps);
-  visit("estimator", settings.estimator, kEstimators);
-  visit("weighting", settings.weighting, kWeightings);
-  visit("thickness", settings.thickness);
-  visit("thickness_unit", settings.thickness_unit, kThicknessUnits);
-  visit("fill", settings.fill);
-  visit("blend", settings.blend);
-  visit("falloff", settings.falloff);
-  visit("divisor", settings.divisor);
-  visit("pattern", settings.pattern, kPatterns);
-  visit("depth_mips", settings.depth_mips);
-  visit("filter_reach", settings.filter_reach);
-  visit("filter_tolerance_px", settings.filter_tolerance_px);
-  visit("history_frames", settings.history_frames);
-  visit("clamp_width", settings.clamp_width);
-  visit("specular", settings.specular, kSpeculars);
-  visit("roughness", settings.roughness);
-  visit("roughness_channel", settings.roughness_channel);
-  visit("precision", settings.precision, kPrecisions);
-}
+// An enum that has no such value.
+struct Unknown {
+  const char* setting;
+  std::uint32_t number;
+};
 
-// Finds the first enum that has no such value.
-struct FindUnknown {
-  const char*& name;
-  std::uint32_t& number;
+// Copies from C, and says where it cannot.
+struct ReadSetting {
+  std::optional<Unknown>& unknown;
 
-  void operator()(const char* /*setting*/, float /*value*/) const {}
-  void operator()(const char* /*setting*/, std::uint32_t /*value*/) const {}
-  template <typename Theirs>
-  void operator()(const char* setting, const Theirs& value,
-                  std::span<const char* const> names) const {
-    if (name == nullptr && name_of(names, number_of(value)) == nullptr) {
-      name = setting;
-      number = number_of(value);
+  template <typename Theirs, typename Ours>
+  void operator()(const char* name, const Theirs& theirs, Ours& ours) const {
+    if constexpr (std::is_enum_v<Ours>) {
+      const std::uint32_t number = number_of(theirs);
+      // In C an output that nobody wants has no image; there is no value for it.
+      const bool none = std::is_same_v<Ours, Specular> && number == 0;
+      if (number < kNames<Ours>.size() && !none) {
+        ours = static_cast<Ours>(number);
+      } else if (!unknown) {
+        unknown = {name, number};
+      }
+    } else {
+      ours = theirs;
     }
   }
 };
+
+tl::expected<OcclusionSettings, Unknown> read(const AlcoveSettings& given) {
+  OcclusionSettings settings;
+  std::optional<Unknown> unknown;
+  for_each_setting(given, settings, ReadSetting{unknown});
+  if (unknown) {
+    return tl::unexpected(*unknown);
+  }
+  return settings;
+}
 
 // Lines of `name = value`, as far as there is room.
 struct Print {
@@ -119,15 +129,15 @@ struct Print {
         std::snprintf(room ? text + length : nullptr, room ? size - length : 0, format, values...);
     length += static_cast<std::size_t>(std::max(more, 0));
   }
-  void operator()(const char* name, float value) const {
-    line("%s = %g\n", name, static_cast<double>(value));
-  }
-  void operator()(const char* name, std::uint32_t value) const {
-    line("%s = %u\n", name, static_cast<unsigned>(value));
-  }
-  template <typename Theirs>
-  void operator()(const char* name, const Theirs& value, std::span<const char* const> names) const {
-    line("%s = %s\n", name, name_of(names, number_of(value)));
+  template <typename Theirs, typename Ours>
+  void operator()(const char* name, const Theirs& /*theirs*/, const Ours& ours) const {
+    if constexpr (std::is_enum_v<Ours>) {
+      line("%s = %s\n", name, name_of(ours).data());
+    } else if constexpr (std::is_same_v<Ours, float>) {
+      line("%s = %g\n", name, static_cast<double>(ours));
+    } else {
+      line("%s = %u\n", name, static_cast<unsigned>(ours));
+    }
   }
 };
 
@@ -140,63 +150,25 @@ tl::expected<GivenSettings, Failure> to_settings(const AlcoveSettings* given) {
   if (auto right = check_size(given->struct_size, sizeof *given, "AlcoveSettings"); !right) {
     return tl::unexpected(std::move(right.error()));
   }
-  const char* unknown = nullptr;
-  std::uint32_t number = 0;
-  for_each_setting(*given, FindUnknown{unknown, number});
-  if (unknown != nullptr) {
-    return invalid("AlcoveSettings::" + std::string(unknown) + " is " + std::to_string(number) +
+  auto settings = read(*given);
+  if (!settings) {
+    const auto [setting, number] = settings.error();
+    return invalid("AlcoveSettings::" + std::string(setting) + " is " + std::to_string(number) +
                    ", which is none of its values.");
   }
-  GivenSettings result;
-  result.specular = static_cast<Specular>(number_of(given->specular));
-  result.settings = {.radius = given->radius,
-                     .slices = given->slices,
-                     .steps = given->steps,
-                     .estimator = static_cast<Estimator>(number_of(given->estimator)),
-                     .weighting = static_cast<Weighting>(number_of(given->weighting)),
-                     .thickness = given->thickness,
-                     .thickness_unit = static_cast<ThicknessUnit>(number_of(given->thickness_unit)),
-                     .fill = given->fill,
-                     .blend = given->blend,
-                     .falloff = given->falloff,
-                     .divisor = given->divisor,
-                     .pattern = static_cast<Pattern>(number_of(given->pattern)),
-                     .depth_mips = given->depth_mips,
-                     .filter_reach = given->filter_reach,
-                     .filter_tolerance_px = given->filter_tolerance_px,
-                     .history_frames = given->history_frames,
-                     .clamp_width = given->clamp_width,
-                     .roughness = given->roughness,
-                     .roughness_channel = given->roughness_channel,
-                     .precision = static_cast<Precision>(number_of(given->precision))};
-  return result;
+  const Specular specular = std::exchange(settings->specular, Specular::none);
+  return GivenSettings{*settings, specular};
 }
 
 AlcoveSettings from_settings(const OcclusionSettings& settings) {
-  return {.struct_size = sizeof(AlcoveSettings),
-          .radius = settings.radius,
-          .slices = settings.slices,
-          .steps = settings.steps,
-          .estimator = static_cast<AlcoveEstimator>(settings.estimator),
-          .weighting = static_cast<AlcoveWeighting>(settings.weighting),
-          .thickness = settings.thickness,
-          .thickness_unit = static_cast<AlcoveThicknessUnit>(settings.thickness_unit),
-          .fill = settings.fill,
-          .blend = settings.blend,
-          .falloff = settings.falloff,
-          .divisor = settings.divisor,
-          .pattern = static_cast<AlcovePattern>(settings.pattern),
-          .depth_mips = settings.depth_mips,
-          .filter_reach = settings.filter_reach,
-          .filter_tolerance_px = settings.filter_tolerance_px,
-          .history_frames = settings.history_frames,
-          .clamp_width = settings.clamp_width,
-          .specular = settings.specular == Specular::none
-                          ? ALCOVE_SPECULAR_SLICES
-                          : static_cast<AlcoveSpecular>(settings.specular),
-          .roughness = settings.roughness,
-          .roughness_channel = settings.roughness_channel,
-          .precision = static_cast<AlcovePrecision>(settings.precision)};
+  AlcoveSettings result{.struct_size = sizeof(AlcoveSettings)};
+  for_each_setting(result, settings, [](const char* /*name*/, auto& theirs, const auto& ours) {
+    theirs = static_cast<std::remove_reference_t<decltype(theirs)>>(ours);
+  });
+  if (settings.specular == Specular::none) {
+    result.specular = ALCOVE_SPECULAR_SLICES;
+  }
+  return result;
 }
 
 }  // namespace alcove::passes
@@ -221,16 +193,14 @@ size_t alcovePrintSettings(const AlcoveSettings* settings, char* text, size_t si
   if (text == nullptr && size > 0) {
     return 0;
   }
-  const char* unknown = nullptr;
-  std::uint32_t number = 0;
   if (settings == nullptr || settings->struct_size != sizeof *settings) {
     return 0;
   }
-  for_each_setting(*settings, FindUnknown{unknown, number});
-  if (unknown != nullptr) {
+  const auto known = read(*settings);
+  if (!known) {
     return 0;
   }
   std::size_t length = 0;
-  for_each_setting(*settings, Print{text, size, length});
+  for_each_setting(*settings, *known, Print{text, size, length});
   return length;
 }

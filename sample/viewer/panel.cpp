@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
+#include "alcove/passes/setting_names.h"
 #include "orbit_camera.h"
 #include "setting_widgets.h"
 
@@ -52,14 +53,9 @@ void lay_out_picture(ViewState& state, const PanelFacts& facts) {
 }
 
 void lay_out_qualities(ViewState& state, const PanelFacts& facts) {
-  constexpr std::array<std::pair<const char*, passes::Quality>, 5> kPresets{
-      {{"low", passes::Quality::low},
-       {"medium", passes::Quality::medium},
-       {"high", passes::Quality::high},
-       {"ultra", passes::Quality::ultra},
-       {"reference", passes::Quality::reference}}};
-  for (const auto& [name, quality] : kPresets) {
-    if (ImGui::Button(name)) {
+  for (std::size_t i = 0; i < passes::kNames<passes::Quality>.size(); ++i) {
+    const auto quality = static_cast<passes::Quality>(i);
+    if (ImGui::Button(passes::name_of(quality).data())) {
       state.settings = passes::quality_settings(quality, state.settings.radius);
     }
     ImGui::SameLine();

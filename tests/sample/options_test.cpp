@@ -51,7 +51,7 @@ TEST(Options, AFullCommandLineIsUnderstood) {
   EXPECT_TRUE(options->lit);
   EXPECT_EQ(*options->view.eye_ws, glm::vec3(-9, 5.5f, -0.4f));
   EXPECT_TRUE(std::isinf(*options->view.far_plane));
-  EXPECT_EQ(options->occlusion.quality, Quality::kUltra);
+  EXPECT_EQ(options->occlusion.quality, passes::Quality::ultra);
   EXPECT_EQ(options->occlusion.normals, NormalSource::kGeometric);
   EXPECT_EQ(options->occlusion.set.size(), 2u);
   EXPECT_EQ(options->occlusion.set[1].second, "5");

@@ -1,0 +1,44 @@
+// The names of what settings can be, for files, panels and messages.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string_view>
+
+#include "alcove/passes/occlusion.h"
+
+namespace alcove::passes {
+
+// In the order of the enum. Each ends with a zero, so data() is a C string.
+template <typename Choice>
+inline constexpr std::array<std::string_view, 0> kNames{};
+template <>
+inline constexpr auto kNames<bool> = std::to_array<std::string_view>({"false", "true"});
+template <>
+inline constexpr auto kNames<Quality> = std::to_array<std::string_view>({"low", "medium", "high",
+                                                                         "ultra", "reference"});
+template <>
+inline constexpr auto kNames<Estimator> = std::to_array<std::string_view>({"horizons", "heuristic",
+                                                                           "bitmask", "connected"});
+template <>
+inline constexpr auto kNames<Weighting> = std::to_array<std::string_view>({"cosine", "uniform"});
+template <>
+inline constexpr auto kNames<ThicknessUnit> = std::to_array<std::string_view>({"radius", "distance",
+                                                                               "back_faces"});
+template <>
+inline constexpr auto kNames<Pattern> = std::to_array<std::string_view>({"golden", "hilbert",
+                                                                         "memo"});
+template <>
+inline constexpr auto kNames<Specular> =
+    std::to_array<std::string_view>({"none", "slices", "table", "cone", "smooth_cone", "lagarde"});
+template <>
+inline constexpr auto kNames<Precision> = std::to_array<std::string_view>({"unorm8", "float16",
+                                                                           "float32"});
+
+// Of a value that its enum has.
+template <typename Choice>
+constexpr std::string_view name_of(Choice value) {
+  return kNames<Choice>[static_cast<std::size_t>(value)];
+}
+
+}  // namespace alcove::passes
