@@ -28,6 +28,25 @@ bool by_model(Specular specular) {
   return specular != Specular::none && specular != Specular::slices;
 }
 
+GtaoSettings gtao_settings(const OcclusionSettings& settings) {
+  GtaoSettings result{static_cast<const SearchSettings&>(settings)};
+  result.bent_normal = settings.bent_normal ||
+                       (by_model(settings.specular) && settings.specular != Specular::lagarde);
+  result.lobe = settings.specular == Specular::slices;
+  result.roughness = settings.roughness;
+  result.roughness_channel = settings.roughness_channel;
+  return result;
+}
+
+ReconstructSettings reconstruct_settings(const OcclusionSettings& settings) {
+  ReconstructSettings result{static_cast<const FilterSettings&>(settings)};
+  result.visibility = settings.visibility || by_model(settings.specular);
+  result.roughness = settings.roughness;
+  result.roughness_channel = settings.roughness_channel;
+  result.precision = settings.precision;
+  return result;
+}
+
 // Specular occlusion from what was found, into `outputs`.
 tl::expected<OcclusionOutputs, Error> add_model(const Frame& frame, OcclusionOutputs outputs,
                                                 const OcclusionInputs& inputs, bool in_view_space,
@@ -104,24 +123,6 @@ tl::expected<OcclusionOutputs, Error> add_occlusion(const Frame& frame,
     }
     normals = *made;
   }
-  const GtaoSettings gtao{
-      .radius = settings.radius,
-      .slices = settings.slices,
-      .steps = settings.steps,
-      .estimator = settings.estimator,
-      .weighting = settings.weighting,
-      .thickness = settings.thickness,
-      .thickness_unit = settings.thickness_unit,
-      .fill = settings.fill,
-      .blend = settings.blend,
-      .falloff = settings.falloff,
-      .divisor = settings.divisor,
-      .pattern = settings.pattern,
-      .bent_normal = settings.bent_normal ||
-                     (by_model(settings.specular) && settings.specular != Specular::lagarde),
-      .lobe = settings.specular == Specular::slices,
-      .roughness = settings.roughness,
-      .roughness_channel = settings.roughness_channel};
   const auto line = add_line_depth(frame, inputs.depth_ndc);
   if (!line) {
     return tl::unexpected(line.error());
@@ -134,23 +135,14 @@ tl::expected<OcclusionOutputs, Error> add_occlusion(const Frame& frame,
     }
     back_line = *made;
   }
-  const auto signal =
-      add_gtao(frame, {*line, normals, in_view_space, inputs.roughness, back_line}, gtao);
+  const auto signal = add_gtao(frame, {*line, normals, in_view_space, inputs.roughness, back_line},
+                               gtao_settings(settings));
   if (!signal) {
     return tl::unexpected(signal.error());
   }
-  const ReconstructSettings reconstruct{
-      .reach = settings.filter_reach,
-      .tolerance_px = settings.filter_tolerance_px,
-      .history_frames = settings.history_frames,
-      .clamp_width = settings.clamp_width,
-      .visibility = settings.visibility || by_model(settings.specular),
-      .roughness = settings.roughness,
-      .roughness_channel = settings.roughness_channel,
-      .precision = settings.precision};
   const auto filtered = add_reconstruct(
       frame, {*signal, *line, normals, in_view_space, inputs.motion, inputs.roughness, inputs.into},
-      reconstruct, history_name);
+      reconstruct_settings(settings), history_name);
   if (!filtered) {
     return tl::unexpected(filtered.error());
   }

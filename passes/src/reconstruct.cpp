@@ -30,13 +30,13 @@ constexpr std::uint32_t kMaxHistoryFrames = 255;
 constexpr std::uint32_t kSettledFrames = 16;
 
 tl::expected<void, Error> check(const ReconstructSettings& settings) {
-  if (!(settings.tolerance_px > 0.0f) || !std::isfinite(settings.tolerance_px)) {
+  if (!(settings.filter_tolerance_px > 0.0f) || !std::isfinite(settings.filter_tolerance_px)) {
     return tl::unexpected(Error{"The filter's tolerance is " +
-                                std::to_string(settings.tolerance_px) +
+                                std::to_string(settings.filter_tolerance_px) +
                                 " pixels; it must be over 0 and finite."});
   }
-  if (settings.reach > kMaxReach) {
-    return tl::unexpected(Error{"The filter's reach is " + std::to_string(settings.reach) +
+  if (settings.filter_reach > kMaxReach) {
+    return tl::unexpected(Error{"The filter's reach is " + std::to_string(settings.filter_reach) +
                                 "; it must be 0 to 3 blocks."});
   }
   if (settings.history_frames > kMaxHistoryFrames) {
@@ -247,7 +247,8 @@ maths::ReconstructParameters parameters_of(const Frame& frame, const maths::Proj
   parameters.plane_from_normal =
       maths::mat4(maths::transpose(maths::mat3(from_pixel)) * maths::mat3(to_view));
   parameters.normal_from_view = maths::transpose(to_view);
-  parameters.tolerance = 1.0f / (settings.tolerance_px * std::abs(maths::ray_per_px(projection).y));
+  parameters.tolerance =
+      1.0f / (settings.filter_tolerance_px * std::abs(maths::ray_per_px(projection).y));
   parameters.longest = static_cast<float>(settings.history_frames);
   parameters.clamp_width = settings.clamp_width;
   parameters.roughness = settings.roughness;
@@ -299,7 +300,7 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& frame, const Reconst
   const bool still = history_valid && !inputs.motion && same_view;
   const bool settled = still && frame.still_frames >= kSettledFrames;
   const std::array constants{inputs.signal.divisor,
-                             settings.reach,
+                             settings.filter_reach,
                              static_cast<std::uint32_t>(bool(inputs.signal.bent)),
                              static_cast<std::uint32_t>(bool(inputs.motion)),
                              static_cast<std::uint32_t>(is_perspective(*projection)),

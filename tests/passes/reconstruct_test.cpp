@@ -88,7 +88,11 @@ class Reconstruct : public PassTest {
 };
 
 ReconstructSettings precise(std::uint32_t reach, std::uint32_t history_frames) {
-  return {.reach = reach, .history_frames = history_frames, .precision = Precision::float32};
+  ReconstructSettings settings;
+  settings.filter_reach = reach;
+  settings.history_frames = history_frames;
+  settings.precision = Precision::float32;
+  return settings;
 }
 
 // The signal of slices that are all open by `weight` and visible by `visibility` of it.

@@ -51,7 +51,8 @@ enum class Pattern : std::uint8_t {
   memo,     // the memo's 4x4 block and six rotations
 };
 
-struct GtaoSettings {
+// How occluders are searched and what they count.
+struct SearchSettings {
   float radius = 0.5f;       // scene units, over 0: occluders beyond it do not count
   std::uint32_t slices = 1;  // a pixel, 1 to 64; with the noise of a 4x4 block, 16 times as many
   std::uint32_t steps = 12;  // a side of a slice, 2 to 64: 2 * slices * steps depth fetches a pixel
@@ -68,6 +69,11 @@ struct GtaoSettings {
   // frame to frame.
   std::uint32_t divisor = 1;
   Pattern pattern = Pattern::golden;
+
+  friend bool operator==(const SearchSettings&, const SearchSettings&) = default;
+};
+
+struct GtaoSettings : SearchSettings {
   bool bent_normal = false;  // also write the mean visible direction
   // Also write how much of each surface's GGX lobe its slices see (shaders/maths/lobe_slice.h).
   bool lobe = false;

@@ -24,29 +24,11 @@ enum class Specular : std::uint8_t {
 
 enum class Quality : std::uint8_t { low, medium, high, ultra, reference };
 
-// Everything that can be chosen, in scene units. quality_settings() gives a start.
-struct OcclusionSettings {
-  float radius = 0.5f;       // scene units, over 0: occluders beyond it do not count
-  std::uint32_t slices = 1;  // a pixel, 1 to 64
-  std::uint32_t steps = 12;  // a side of a slice, 2 to 64
-  Estimator estimator = Estimator::connected;
-  Weighting weighting = Weighting::cosine;  // of visibility; bent normals have the cosine always
-  // Of occluders, for bitmask and connected samples.
-  float thickness = 0.15f;  // at least 0
-  ThicknessUnit thickness_unit = ThicknessUnit::radius;
-  float fill = 0.4f;  // share of what is hidden behind them that occludes too, [0,1]
-  // For horizons and heuristic.
-  float blend = 0.05f;   // of a horizon towards each lower sample, [0,1] (heuristic)
-  float falloff = 0.0f;  // last part of the radius, over which occluders fade, [0,1]; 0: none
-  // One search a frame in a block of so many pixels a side: 1, 2 or 4.
-  std::uint32_t divisor = 1;
-  Pattern pattern = Pattern::golden;
-  std::uint32_t depth_mips = 1;      // levels of the depth pyramid, 1 to 5
-  std::uint32_t filter_reach = 2;    // blocks on each side, 0 to 3; 0 leaves the filter out
-  float filter_tolerance_px = 1.5f;  // distance from the tangent plane, in sizes of a pixel
-  std::uint32_t history_frames = 0;  // that are averaged, 0 to 255; 0 keeps none
-  float clamp_width = 0.0f;          // of history, in deviations of this frame; 0 leaves it free
-  bool visibility = true;            // off where only the next two are wanted
+// Everything that can be chosen: what gtao.h and reconstruct.h say of searches and filter, and what
+// follows. quality_settings() gives a start.
+struct OcclusionSettings : SearchSettings, FilterSettings {
+  std::uint32_t depth_mips = 1;  // levels of the depth pyramid, 1 to 5
+  bool visibility = true;        // off where only the next two are wanted
   bool bent_normal = false;
   Specular specular = Specular::none;
   float roughness = 0.5f;               // perceptual, [0,1], of every pixel where no texture has it

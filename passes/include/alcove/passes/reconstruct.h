@@ -9,19 +9,24 @@
 
 namespace alcove::passes {
 
-struct ReconstructSettings {
+struct FilterSettings {
   // Blocks on each side that a pixel looks at while it has little history, or none, 0 to 3. 2
   // covers the 4x4 pattern of a full-resolution search; 1 is enough for a lower one. 0 filters
   // nothing.
-  std::uint32_t reach = 2;
+  std::uint32_t filter_reach = 2;
   // How far a neighbour lies from the pixel's tangent plane when it counts a quarter, in sizes of a
   // pixel there, over 0.
-  float tolerance_px = 1.5f;
+  float filter_tolerance_px = 1.5f;
   // Frames that are averaged, 0 to 255. 0 keeps no history and allocates none: for engines whose
   // own temporal filter comes after.
   std::uint32_t history_frames = 0;
   // History is held to so many standard deviations of this frame's neighbourhood; 0 leaves it free.
   float clamp_width = 0.0f;
+
+  friend bool operator==(const FilterSettings&, const FilterSettings&) = default;
+};
+
+struct ReconstructSettings : FilterSettings {
   bool visibility = true;  // also write it: off where only what else the signal has is wanted
   float roughness = 0.5f;  // as GtaoSettings has them; read where the signal has a lobe
   std::uint32_t roughness_channel = 0;
