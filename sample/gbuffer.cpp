@@ -256,24 +256,13 @@ struct FixedState {
 }  // namespace
 
 tl::expected<void, std::string> GbufferRenderer::State::create_pipeline(bool geometric_normals) {
-  const ShaderModule vertex(device, kGbufferVertex);
-  const ShaderModule fragment(device, kGbufferFragment);
-  if (vertex.result != VK_SUCCESS || fragment.result != VK_SUCCESS) {
-    return failure("a shader", std::min(vertex.result, fragment.result));
-  }
   const std::array<uint32_t, 2> values{texture_count(), geometric_normals ? 1u : 0u};
   const std::array<VkSpecializationMapEntry, 2> entries{{{0, 0, 4}, {1, 4, 4}}};
   const VkSpecializationInfo specialisation{2, entries.data(), sizeof(values), values.data()};
-  const std::array<VkPipelineShaderStageCreateInfo, 2> stages{
-      {{.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-        .stage = VK_SHADER_STAGE_VERTEX_BIT,
-        .module = vertex.module,
-        .pName = "main"},
-       {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-        .stage = VK_SHADER_STAGE_FRAGMENT_BIT,
-        .module = fragment.module,
-        .pName = "main",
-        .pSpecializationInfo = &specialisation}}};
+  const ShaderStages stages(device, kGbufferVertex, kGbufferFragment, &specialisation);
+  if (stages.result != VK_SUCCESS) {
+    return failure("a shader", stages.result);
+  }
   const FixedState fixed;
   for (const bool reversed : {false, true}) {
     const VkPipelineDepthStencilStateCreateInfo depth{
@@ -284,8 +273,8 @@ tl::expected<void, std::string> GbufferRenderer::State::create_pipeline(bool geo
     const VkGraphicsPipelineCreateInfo info{
         .sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
         .pNext = &fixed.rendering,
-        .stageCount = static_cast<uint32_t>(stages.size()),
-        .pStages = stages.data(),
+        .stageCount = static_cast<uint32_t>(stages.infos.size()),
+        .pStages = stages.infos.data(),
         .pVertexInputState = &fixed.vertices,
         .pInputAssemblyState = &fixed.assembly,
         .pViewportState = &fixed.viewport,

@@ -3,6 +3,8 @@
 
 #include <vulkan/vulkan.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 
@@ -23,6 +25,31 @@ struct ShaderModule {
   ~ShaderModule() { vkDestroyShaderModule(device, module, nullptr); }
   ShaderModule(const ShaderModule&) = delete;
   ShaderModule& operator=(const ShaderModule&) = delete;
+};
+
+// What a graphics pipeline draws with, while it is made; `result` says whether there is all of it.
+struct ShaderStages {
+  ShaderModule vertex;
+  ShaderModule fragment;
+  VkResult result;
+  std::array<VkPipelineShaderStageCreateInfo, 2> infos;
+
+  // `fragment_constants` specialises the fragment shader, outlives this and may be null.
+  ShaderStages(VkDevice device, std::span<const uint32_t> vertex_code,
+               std::span<const uint32_t> fragment_code,
+               const VkSpecializationInfo* fragment_constants = nullptr)
+      : vertex(device, vertex_code),
+        fragment(device, fragment_code),
+        result(std::min(vertex.result, fragment.result)),
+        infos{{{.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                .stage = VK_SHADER_STAGE_VERTEX_BIT,
+                .module = vertex.module,
+                .pName = "main"},
+               {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                .stage = VK_SHADER_STAGE_FRAGMENT_BIT,
+                .module = fragment.module,
+                .pName = "main",
+                .pSpecializationInfo = fragment_constants}}} {}
 };
 
 }  // namespace alcove::sample

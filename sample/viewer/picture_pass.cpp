@@ -102,20 +102,10 @@ VkResult PicturePass::create_layout() {
 }
 
 VkResult PicturePass::create_pipeline(VkFormat format) {
-  const ShaderModule vertex(device_.device(), kPictureVertex);
-  const ShaderModule fragment(device_.device(), kPictureFragment);
-  if (vertex.result != VK_SUCCESS || fragment.result != VK_SUCCESS) {
-    return std::min(vertex.result, fragment.result);
+  const ShaderStages stages(device_.device(), kPictureVertex, kPictureFragment);
+  if (stages.result != VK_SUCCESS) {
+    return stages.result;
   }
-  const std::array<VkPipelineShaderStageCreateInfo, 2> stages{
-      {{.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-        .stage = VK_SHADER_STAGE_VERTEX_BIT,
-        .module = vertex.module,
-        .pName = "main"},
-       {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-        .stage = VK_SHADER_STAGE_FRAGMENT_BIT,
-        .module = fragment.module,
-        .pName = "main"}}};
   const VkPipelineVertexInputStateCreateInfo vertices{
       .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
   const VkPipelineInputAssemblyStateCreateInfo assembly{
@@ -144,18 +134,19 @@ VkResult PicturePass::create_pipeline(VkFormat format) {
       .sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO,
       .colorAttachmentCount = 1,
       .pColorAttachmentFormats = &format};
-  const VkGraphicsPipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
-                                          .pNext = &rendering,
-                                          .stageCount = static_cast<std::uint32_t>(stages.size()),
-                                          .pStages = stages.data(),
-                                          .pVertexInputState = &vertices,
-                                          .pInputAssemblyState = &assembly,
-                                          .pViewportState = &viewport,
-                                          .pRasterizationState = &rasterisation,
-                                          .pMultisampleState = &multisample,
-                                          .pColorBlendState = &blend,
-                                          .pDynamicState = &dynamic,
-                                          .layout = layout_};
+  const VkGraphicsPipelineCreateInfo info{
+      .sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
+      .pNext = &rendering,
+      .stageCount = static_cast<std::uint32_t>(stages.infos.size()),
+      .pStages = stages.infos.data(),
+      .pVertexInputState = &vertices,
+      .pInputAssemblyState = &assembly,
+      .pViewportState = &viewport,
+      .pRasterizationState = &rasterisation,
+      .pMultisampleState = &multisample,
+      .pColorBlendState = &blend,
+      .pDynamicState = &dynamic,
+      .layout = layout_};
   return vkCreateGraphicsPipelines(device_.device(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline_);
 }
 

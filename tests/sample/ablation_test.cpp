@@ -8,6 +8,7 @@
 
 #include "builtin_scene.h"
 #include "errors.h"
+#include "gpu_test.h"
 #include "ray_scene.h"
 #include "surface_points.h"
 #include "truth.h"
@@ -33,17 +34,6 @@ TEST(Trials, ChangeOneThingEachAndNeverNothing) {
 
 class AblationTest : public testing::Test {
  protected:
-  std::unique_ptr<Gpu> open() {
-    auto made = Gpu::create({.validation = true}, {.verify = true, .check_uses = true});
-    EXPECT_TRUE(made) << made.error();
-    return made ? std::move(*made) : nullptr;
-  }
-  static void expect_valid(const Gpu& gpu) {
-    for (const std::string& message : gpu.device().validation_messages()) {
-      ADD_FAILURE() << message;
-    }
-  }
-
   // Ray-traced visibility of what `images` show, and where there are surfaces.
   struct Truth {
     Image<float> visibility;
@@ -70,7 +60,7 @@ class AblationTest : public testing::Test {
 };
 
 TEST_F(AblationTest, ConnectedSamplesAreNearestToTheTruth) {
-  const auto gpu = open();
+  const auto gpu = open_validated();
   ASSERT_TRUE(gpu);
   auto ablation = TrialRunner::create(*gpu, scene_, setup_, base_);
   ASSERT_TRUE(ablation) << ablation.error();
@@ -82,21 +72,19 @@ TEST_F(AblationTest, ConnectedSamplesAreNearestToTheTruth) {
       continue;
     }
     SCOPED_TRACE(trial.name);
-    const auto other = open();
+    const auto other = open_validated();
     ASSERT_TRUE(other);
     const auto result = ablation->run(*other, trial);
     ASSERT_TRUE(result) << result.error();
     EXPECT_GT(compare_images(result->visibility, truth, surfaces).rmse, 1.02 * connected);
     EXPECT_GT(result->cost.processor, 0.0);
     EXPECT_EQ(result->cost.bytes, ablation->base_bytes());
-    expect_valid(*other);
   }
-  expect_valid(*gpu);
 }
 
 TEST_F(AblationTest, BackFacesAreNearerToTheTruthThanOneThickness) {
-  const auto gpu = open();
-  const auto other = open();
+  const auto gpu = open_validated();
+  const auto other = open_validated();
   ASSERT_TRUE(gpu && other);
   auto ablation = TrialRunner::create(*gpu, scene_, setup_, base_);
   ASSERT_TRUE(ablation) << ablation.error();
@@ -107,12 +95,11 @@ TEST_F(AblationTest, BackFacesAreNearerToTheTruthThanOneThickness) {
   ASSERT_TRUE(result) << result.error();
   EXPECT_LT(1.02 * compare_images(result->visibility, truth, surfaces).rmse,
             compare_images(ablation->base().visibility, truth, surfaces).rmse);
-  expect_valid(*other);
 }
 
 // By one renderer, in frames that read them and frames that do not.
 TEST_F(AblationTest, BackFacesAreDrawnFromTheFrameOnThatAsksForThem) {
-  const auto gpu = open();
+  const auto gpu = open_validated();
   ASSERT_TRUE(gpu);
   OcclusionSettings asking = base_;
   asking.thickness_unit = passes::ThicknessUnit::back_faces;
@@ -132,12 +119,11 @@ TEST_F(AblationTest, BackFacesAreDrawnFromTheFrameOnThatAsksForThem) {
   EXPECT_EQ(images[0].pixels, images[2].pixels);
   EXPECT_EQ(images[1].pixels, images[3].pixels);
   EXPECT_NE(images[0].pixels, images[1].pixels);
-  expect_valid(*gpu);
 }
 
 TEST_F(AblationTest, AFrameWithoutHistoryHoldsFewerBytes) {
-  const auto gpu = open();
-  const auto other = open();
+  const auto gpu = open_validated();
+  const auto other = open_validated();
   ASSERT_TRUE(gpu && other);
   auto ablation = TrialRunner::create(*gpu, scene_, setup_, base_);
   ASSERT_TRUE(ablation) << ablation.error();
@@ -149,7 +135,7 @@ TEST_F(AblationTest, AFrameWithoutHistoryHoldsFewerBytes) {
 }
 
 TEST_F(AblationTest, WhatShouldChangeNothingChangesLittle) {
-  const auto gpu = open();
+  const auto gpu = open_validated();
   ASSERT_TRUE(gpu);
   for (const Twins& twins : twins_of(setup_.camera, setup_.height)) {
     if (twins.scale != 1 || twins.further > 0.0f) {
@@ -166,7 +152,6 @@ TEST_F(AblationTest, WhatShouldChangeNothingChangesLittle) {
     const Mask all(setup_.width, setup_.height, 1);
     EXPECT_LT(compare_images(images->visibility, others->visibility, all).rmse, 0.004);
   }
-  expect_valid(*gpu);
 }
 
 }  // namespace

@@ -4,21 +4,11 @@
 
 #include <cmath>
 
+#include "analytic_points.h"
 #include "analytic_scenes.h"
 
 namespace alcove::sample {
 namespace {
-
-SurfacePoints points_of(const AnalyticScene& analytic) {
-  const auto count = static_cast<uint32_t>(analytic.points.size());
-  SurfacePoints out{{count, 1}, {count, 1}, {count, 1}};
-  for (uint32_t i = 0; i < count; ++i) {
-    out.position_ws.at(i, 0) = analytic.points[i].position_ws;
-    out.normal_ws.at(i, 0) = analytic.points[i].normal_ws;
-  }
-  out.geometric_normal_ws = out.normal_ws;
-  return out;
-}
 
 SurfaceMaterials materials_of(const SurfacePoints& points, const glm::vec3& albedo, float roughness,
                               float metallic) {

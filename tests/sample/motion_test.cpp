@@ -2,26 +2,14 @@
 #include <gtest/gtest.h>
 
 #include "builtin_scene.h"
+#include "gpu_test.h"
 #include "motion_run.h"
 
 namespace alcove::sample {
 namespace {
 
-class Motion : public testing::Test {
+class Motion : public GpuTest {
  protected:
-  void SetUp() override {
-    auto made = Gpu::create({.validation = true}, {.verify = true, .check_uses = true});
-    ASSERT_TRUE(made) << made.error();
-    gpu_ = std::move(*made);
-  }
-  void TearDown() override {
-    if (gpu_) {
-      for (const std::string& message : gpu_->device().validation_messages()) {
-        ADD_FAILURE() << message;
-      }
-    }
-  }
-
   static MotionSetup setup() {
     const float radius = default_radius(builtin_scene());
     return {.occlusion = passes::quality_settings(passes::Quality::medium, radius),
@@ -39,12 +27,10 @@ class Motion : public testing::Test {
         frames};
   }
   MotionReport run(MotionKind kind) {
-    auto report = run_motion(*gpu_, builtin_scene(), path_of(kind, 36), setup());
+    auto report = run_motion(gpu(), builtin_scene(), path_of(kind, 36), setup());
     EXPECT_TRUE(report) << report.error();
     return report.value_or(MotionReport{});
   }
-
-  std::unique_ptr<Gpu> gpu_;
 };
 
 TEST_F(Motion, FramesOfAMovingCameraAreNearlyAsGoodAsStillOnes) {
@@ -70,7 +56,7 @@ TEST_F(Motion, AnObjectThatMovesLeavesTheRestAsItIs) {
 }
 
 TEST_F(Motion, NothingIsLeftOfWhatWasBeforeACut) {
-  const auto report = run_cut(*gpu_, builtin_scene(), path_of(MotionKind::kCut, 32), setup());
+  const auto report = run_cut(gpu(), builtin_scene(), path_of(MotionKind::kCut, 32), setup());
   ASSERT_TRUE(report) << report.error();
   ASSERT_GE(report->after.size(), 4u);
   for (const CutErrors& errors : report->after) {

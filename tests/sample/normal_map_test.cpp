@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "frame_renderer.h"
+#include "gpu_test.h"
 #include "surface_points.h"
 #include "tangents.h"
 #include "truth.h"
@@ -55,24 +56,11 @@ Camera camera_at(float z) {
   return camera;
 }
 
-class NormalMap : public testing::Test {
+class NormalMap : public GpuTest {
  protected:
-  void SetUp() override {
-    auto made = Gpu::create({.validation = true}, {.verify = true, .check_uses = true});
-    ASSERT_TRUE(made) << made.error();
-    gpu_ = std::move(*made);
-  }
-  void TearDown() override {
-    if (gpu_) {
-      for (const std::string& message : gpu_->device().validation_messages()) {
-        ADD_FAILURE() << message;
-      }
-    }
-  }
-
   FrameImages draw(const Scene& scene, const Camera& camera = camera_at(3.0f),
                    NormalSource normals = NormalSource::kShading) {
-    auto renderer = FrameRenderer::create(*gpu_, scene, {kSize, kSize}, normals);
+    auto renderer = FrameRenderer::create(gpu(), scene, {kSize, kSize}, normals);
     EXPECT_TRUE(renderer) << renderer.error();
     const CameraMatrices matrices = camera_matrices(camera, kSize, kSize);
     const FrameRequest request{.view = {.view_from_world = matrices.view_from_world,
@@ -93,8 +81,6 @@ class NormalMap : public testing::Test {
       ASSERT_LT(glm::distance(n, glm::normalize(normal)), kByte) << n.x << ' ' << n.y << ' ' << n.z;
     }
   }
-
-  std::unique_ptr<Gpu> gpu_;
 };
 
 TEST_F(NormalMap, TiltsRightAlongUAndUpAgainstV) { expect_normal(draw(quad()), kTilt); }

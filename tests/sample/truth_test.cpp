@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "analytic_points.h"
 #include "analytic_scenes.h"
 #include "builtin_scene.h"
 #include "errors.h"
@@ -11,17 +12,6 @@
 
 namespace alcove::sample {
 namespace {
-
-SurfacePoints points_of(const AnalyticScene& analytic) {
-  const auto count = static_cast<uint32_t>(analytic.points.size());
-  SurfacePoints out{{count, 1}, {count, 1}, {count, 1}};
-  for (uint32_t i = 0; i < count; ++i) {
-    out.position_ws.at(i, 0) = analytic.points[i].position_ws;
-    out.normal_ws.at(i, 0) = analytic.points[i].normal_ws;
-  }
-  out.geometric_normal_ws = out.normal_ws;
-  return out;
-}
 
 class ClosedForm : public testing::TestWithParam<const char*> {};
 

@@ -1,0 +1,25 @@
+#ifndef ALCOVE_TESTS_SAMPLE_ANALYTIC_POINTS_H_
+#define ALCOVE_TESTS_SAMPLE_ANALYTIC_POINTS_H_
+
+#include <cstdint>
+
+#include "analytic_scenes.h"
+#include "surface_points.h"
+
+// The points of an analytic scene as a truth takes them: a row of pixels.
+namespace alcove::sample {
+
+inline SurfacePoints points_of(const AnalyticScene& analytic) {
+  const auto count = static_cast<std::uint32_t>(analytic.points.size());
+  SurfacePoints out{{count, 1}, {count, 1}, {count, 1}};
+  for (std::uint32_t i = 0; i < count; ++i) {
+    out.position_ws.at(i, 0) = analytic.points[i].position_ws;
+    out.normal_ws.at(i, 0) = analytic.points[i].normal_ws;
+  }
+  out.geometric_normal_ws = out.normal_ws;
+  return out;
+}
+
+}  // namespace alcove::sample
+
+#endif  // ALCOVE_TESTS_SAMPLE_ANALYTIC_POINTS_H_

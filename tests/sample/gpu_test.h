@@ -1,0 +1,44 @@
+#ifndef ALCOVE_TESTS_SAMPLE_GPU_TEST_H_
+#define ALCOVE_TESTS_SAMPLE_GPU_TEST_H_
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "gpu.h"
+
+// A device under validation for tests, which fail by what the layers say of it.
+namespace alcove::sample {
+
+struct ReportAndClose {
+  void operator()(Gpu* gpu) const {
+    for (const std::string& message : gpu->device().validation_messages()) {
+      ADD_FAILURE() << message;
+    }
+    delete gpu;
+  }
+};
+using ValidatedGpu = std::unique_ptr<Gpu, ReportAndClose>;
+
+// Null, and the test fails, where there is no device.
+inline ValidatedGpu open_validated() {
+  auto made = Gpu::create({.validation = true}, {.verify = true, .check_uses = true});
+  EXPECT_TRUE(made) << made.error();
+  return ValidatedGpu(made ? made->release() : nullptr);
+}
+
+// For tests that need one of them.
+class GpuTest : public testing::Test {
+ protected:
+  void SetUp() override { ASSERT_TRUE(gpu_); }
+  Gpu& gpu() { return *gpu_; }
+
+ private:
+  const ValidatedGpu gpu_ = open_validated();
+};
+
+}  // namespace alcove::sample
+
+#endif  // ALCOVE_TESTS_SAMPLE_GPU_TEST_H_
