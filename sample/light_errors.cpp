@@ -57,9 +57,7 @@ Image<float> specular_of_truth(const Rendering& rendering, const OcclusionTruth&
   Image<float> result(roughness.width, roughness.height, 1.0f);
   for (std::size_t i = 0; i < result.pixels.size(); ++i) {
     if (light.sampled.pixels[i] != 0) {
-      const glm::vec3 view =
-          viewer.orthographic ? viewer.view_ws
-                              : glm::normalize(viewer.eye_ws - light.points.position_ws.pixels[i]);
+      const glm::vec3 view = view_from(viewer, light.points.position_ws.pixels[i]);
       result.pixels[i] = specular_of(rendering.settings.specular, truth.visibility.pixels[i],
                                      truth.bent_normal_ws.pixels[i],
                                      light.points.normal_ws.pixels[i], view, roughness.pixels[i]);
@@ -118,12 +116,16 @@ LightErrors light_errors_of(const Rendering& rendering, const Truths& truths,
   const Image<float> open(visibility.width, visibility.height, 1.0f);
   for (std::size_t i = 0; i < roughness.size(); ++i) {
     const Image<float>& truth = light.specular[i];
+    const SpecularLimits& limits = light.specular_limits[i];
     errors.specular.push_back(
         {roughness_name(rendering.light, i),
          compare_images(images.specular_occlusion[i], truth, light.sampled),
          compare_images(specular_of_truth(rendering, truths.scene, light, roughness[i]), truth,
                         light.sampled),
-         compare_images(open, truth, light.sampled)});
+         compare_images(open, truth, light.sampled),
+         compare_images(limits.polynomials, truth, light.sampled),
+         compare_images(limits.depth, truth, light.sampled),
+         compare_images(limits.depth_polynomials, truth, light.sampled)});
   }
   return errors;
 }
@@ -135,9 +137,13 @@ nlohmann::ordered_json to_json(const LightErrors& errors) {
                           {"true_visibility_unbounced", to_json(errors.unbounced_truth)},
                           {"true_visibility_best_rmse", errors.bounced_best}};
   for (const SpecularErrors& one : errors.specular) {
-    json["specular_occlusion"][one.name] = {{"pipeline", to_json(one.pipeline)},
-                                            {"true_inputs", to_json(one.true_inputs)},
-                                            {"none", to_json(one.none)}};
+    json["specular_occlusion"][one.name] = {
+        {"pipeline", to_json(one.pipeline)},
+        {"true_inputs", to_json(one.true_inputs)},
+        {"true_polynomials", to_json(one.polynomials)},
+        {"height_field", to_json(one.depth)},
+        {"height_field_polynomials", to_json(one.depth_polynomials)},
+        {"none", to_json(one.none)}};
   }
   return json;
 }
@@ -152,7 +158,10 @@ std::string light_error_table(const LightErrors& errors) {
   for (const SpecularErrors& one : errors.specular) {
     text << "RMSE of specular occlusion, " << std::left << std::setw(10) << one.name << std::right
          << one.pipeline.rmse << " (with true visibility and bent normal " << one.true_inputs.rmse
-         << ", with none " << one.none.rmse << ")\n";
+         << ", with none " << one.none.rmse << ")\n"
+         << "  fifteen polynomials of the true visibility " << one.polynomials.rmse
+         << ", of the height field's " << one.depth_polynomials.rmse
+         << "; the lobe itself in the height field " << one.depth.rmse << "\n";
   }
   return text.str();
 }

@@ -83,6 +83,41 @@ class Tracer {
     return truth;
   }
 
+  std::vector<SpecularLimits> specular_limits(const std::vector<Image<float>>& roughness,
+                                              const Image<float>& depth) const {
+    const auto key_of = [&](const Image<float>& one, const char* part) {
+      CacheKey key = key_;
+      key.add(std::string(part));
+      key.add(one);
+      key.add(depth);
+      return key;
+    };
+    // Calls `part(key, image)` for every image until one says no.
+    const auto all_parts = [&](std::vector<SpecularLimits>& limits, const auto& part) {
+      for (std::size_t i = 0; i < limits.size(); ++i) {
+        if (!part(key_of(roughness[i], "polynomials"), limits[i].polynomials) ||
+            !part(key_of(roughness[i], "depth"), limits[i].depth) ||
+            !part(key_of(roughness[i], "depth polynomials"), limits[i].depth_polynomials)) {
+          return false;
+        }
+      }
+      return true;
+    };
+    const Image<float> empty(depth.width, depth.height);
+    std::vector<SpecularLimits> limits(roughness.size(), {empty, empty, empty});
+    if (!all_parts(limits, [&](const CacheKey& key, Image<float>& image) {
+          return cache_.read(key, image);
+        })) {
+      limits = sample::specular_limits(rays_, points_, depth, rendering_.camera, roughness,
+                                       settings_, print_progress("limits of specular occlusion"));
+      all_parts(limits, [&](const CacheKey& key, const Image<float>& image) {
+        cache_.write(key, image);
+        return true;
+      });
+    }
+    return limits;
+  }
+
   LitTruth lit(const Image<float>& roughness) const {
     const SurfaceMaterials materials{rendering_.images.albedo, roughness,
                                      rendering_.images.metallic};
@@ -161,6 +196,7 @@ tl::expected<LightTruths, std::string> light_truths_of(const Rendering& renderin
   for (const Image<float>& roughness : roughness_images(rendering)) {
     truths.specular.push_back(tracer.specular(roughness));
   }
+  truths.specular_limits = tracer.specular_limits(roughness_images(rendering), depth);
   if (options.lit) {
     truths.lit = tracer.lit(roughness_images(rendering).front());
   }

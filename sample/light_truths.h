@@ -9,6 +9,7 @@
 #include "errors.h"
 #include "lit_truth.h"
 #include "rendering.h"
+#include "specular_limits.h"
 #include "truth.h"
 
 namespace alcove::sample {
@@ -21,8 +22,9 @@ struct LightTruths {
   Mask sampled;             // not sky
   SurfacePoints points;
   Image<glm::vec3> interreflection;
-  std::vector<Image<float>> specular;  // for each of roughness_images()
-  std::optional<LitTruth> lit;         // with --lit, for the first of them
+  std::vector<Image<float>> specular;           // for each of roughness_images()
+  std::vector<SpecularLimits> specular_limits;  // likewise
+  std::optional<LitTruth> lit;                  // with --lit, for the first of them
 };
 
 // The perceptual roughness that each specular occlusion of a rendering was made for.

@@ -188,8 +188,7 @@ LitTruth lit_truth(const RayScene& scene, const SurfacePoints& points,
   const Tracer tracer(scene.impl(), environment, settings.radius);
   const auto shade = [&](size_t pixel) {
     const glm::vec3& position = points.position_ws.pixels[pixel];
-    const glm::vec3 view =
-        viewer.orthographic ? viewer.view_ws : glm::normalize(viewer.eye_ws - position);
+    const glm::vec3 view = view_from(viewer, position);
     const Surface surface = make_surface(
         tracer.reflectance(), points.normal_ws.pixels[pixel], view, materials.albedo.pixels[pixel],
         materials.roughness.pixels[pixel], materials.metallic.pixels[pixel]);

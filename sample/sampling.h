@@ -1,6 +1,7 @@
 #ifndef ALCOVE_SAMPLE_SAMPLING_H_
 #define ALCOVE_SAMPLE_SAMPLING_H_
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <glm/gtc/constants.hpp>
@@ -77,6 +78,36 @@ struct Frame {
   const float z2 = std::max(z * z, 1e-12f);
   return 0.5f * (std::sqrt(1.0f + alpha * alpha * (1.0f - z2) / z2) - 1.0f);
 }
+
+// A light of a GGX lobe, and what it counts there.
+struct LobeLight {
+  glm::vec3 direction;  // local frame
+  float weight;         // 0 under the surface
+};
+
+// The GGX lobe that a view sees, with Smith's correlated masking and without Fresnel, by sampling
+// visible normals: weighted means over its lights are means over BRDF times cosine.
+class LobeSampler {
+ public:
+  // `view`: unit, local frame; below the horizon by interpolation, it is taken along it.
+  LobeSampler(glm::vec3 view, float roughness) : alpha_(std::max(roughness * roughness, 1e-4f)) {
+    view.z = std::max(view.z, 1e-3f);
+    view_ = glm::normalize(view);
+    view_lambda_ = ggx_lambda(view_.z, alpha_);
+  }
+  [[nodiscard]] LobeLight at(const glm::vec2& u) const {
+    const glm::vec3 h = visible_normal(view_, alpha_, u);
+    const glm::vec3 l = 2.0f * glm::dot(view_, h) * h - view_;
+    if (l.z <= 0.0f) return {l, 0.0f};
+    // f cos / pdf of visible normals: the masking of l given that of the view.
+    return {l, (1.0f + view_lambda_) / (1.0f + view_lambda_ + ggx_lambda(l.z, alpha_))};
+  }
+
+ private:
+  float alpha_;
+  glm::vec3 view_;
+  float view_lambda_;
+};
 
 }  // namespace alcove::sample
 

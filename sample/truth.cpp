@@ -80,14 +80,9 @@ OpenRays trace_hemisphere(const RayScene::Impl& scene, const glm::vec3& origin, 
   return open;
 }
 
-// The open share of the GGX lobe about the mirror direction of `view`.
+// The open share of a GGX lobe.
 float trace_lobe(const RayScene::Impl& scene, const glm::vec3& origin, const Frame& frame,
-                 const glm::vec3& view, float alpha, const TruthSettings& settings, uint64_t seed) {
-  // Below the horizon by interpolation, the view is taken along it.
-  glm::vec3 v = frame.to_local(view);
-  v.z = std::max(v.z, 1e-3f);
-  v = glm::normalize(v);
-  const float view_lambda = ggx_lambda(v.z, alpha);
+                 const LobeSampler& lobe, const TruthSettings& settings, uint64_t seed) {
   double open = 0.0, all = 0.0;
   std::array<glm::vec3, kPacket> directions;
   std::array<float, kPacket> weights{};
@@ -95,12 +90,10 @@ float trace_lobe(const RayScene::Impl& scene, const glm::vec3& origin, const Fra
     const uint32_t most = std::min(kPacket, settings.spp - first);
     uint32_t count = 0;
     for (uint32_t i = 0; i < most; ++i) {
-      const glm::vec3 h = visible_normal(v, alpha, r2_point(first + i, seed));
-      const glm::vec3 l = 2.0f * glm::dot(v, h) * h - v;
-      if (l.z <= 0.0f) continue;
-      // f cos / pdf of visible normals: the masking of l given that of v.
-      weights[count] = (1.0f + view_lambda) / (1.0f + view_lambda + ggx_lambda(l.z, alpha));
-      directions[count++] = frame.to_world(l);
+      const LobeLight light = lobe.at(r2_point(first + i, seed));
+      if (light.weight <= 0.0f) continue;
+      weights[count] = light.weight;
+      directions[count++] = frame.to_world(light.direction);
     }
     if (count == 0) continue;
     const uint32_t blocked =
@@ -190,18 +183,20 @@ Viewer viewer_of(const Camera& camera) {
   return {camera.orthographic, camera.eye_ws, glm::normalize(camera.eye_ws - camera.target_ws)};
 }
 
+glm::vec3 view_from(const Viewer& viewer, const glm::vec3& position_ws) {
+  return viewer.orthographic ? viewer.view_ws : glm::normalize(viewer.eye_ws - position_ws);
+}
+
 Image<float> specular_truth(const RayScene& scene, const SurfacePoints& points,
                             const Image<float>& roughness, const Viewer& viewer,
                             const TruthSettings& settings, const Progress& progress) {
   Image<float> out(points.normal_ws.width, points.normal_ws.height, 1.0f);
   for_each_surface(points, settings.seed, progress, [&](size_t pixel, uint64_t seed) {
-    const glm::vec3& position = points.position_ws.pixels[pixel];
-    const glm::vec3 view =
-        viewer.orthographic ? viewer.view_ws : glm::normalize(viewer.eye_ws - position);
-    const float r = roughness.pixels[pixel];
-    out.pixels[pixel] = trace_lobe(scene.impl(), ray_start(scene, points, pixel),
-                                   frame_of(points.normal_ws.pixels[pixel]), view,
-                                   std::max(r * r, 1e-4f), settings, seed);
+    const Frame frame = frame_of(points.normal_ws.pixels[pixel]);
+    const glm::vec3 view = view_from(viewer, points.position_ws.pixels[pixel]);
+    out.pixels[pixel] =
+        trace_lobe(scene.impl(), ray_start(scene, points, pixel), frame,
+                   LobeSampler(frame.to_local(view), roughness.pixels[pixel]), settings, seed);
   });
   return out;
 }

@@ -93,6 +93,8 @@ struct Viewer {
   glm::vec3 view_ws{0.0f, 0.0f, 1.0f};
 };
 [[nodiscard]] Viewer viewer_of(const Camera& camera);
+// From a point towards the eye, unit.
+[[nodiscard]] glm::vec3 view_from(const Viewer& viewer, const glm::vec3& position_ws);
 [[nodiscard]] Image<float> specular_truth(const RayScene& scene, const SurfacePoints& points,
                                           const Image<float>& roughness, const Viewer& viewer,
                                           const TruthSettings& settings,
