@@ -8,6 +8,7 @@ namespace alcove::sample {
 namespace {
 
 using passes::Estimator;
+using passes::Grouping;
 using passes::OcclusionSettings;
 using passes::Pattern;
 
@@ -81,6 +82,14 @@ void add_searches(TrialList& list) {
   list.add(part, "Hilbert and R2", [](OcclusionSettings& s) { s.pattern = Pattern::hilbert; });
   list.add(part, "the memo's, six rotations",
            [](OcclusionSettings& s) { s.pattern = Pattern::memo; });
+  part = "snapping";
+  list.add(part, "to texels", [](OcclusionSettings& s) { s.parts.snapping = true; });
+  list.add(part, "not reckoned with", [](OcclusionSettings& s) { s.parts.snapping = false; });
+  part = "grouping";
+  list.add(part, "neighbours",
+           [](OcclusionSettings& s) { s.parts.grouping = Grouping::neighbours; });
+  list.add(part, "one direction (deinterleaved)",
+           [](OcclusionSettings& s) { s.parts.grouping = Grouping::pattern; });
 }
 
 void add_reconstruction(TrialList& list, const OcclusionSettings& base) {

@@ -59,7 +59,12 @@ void for_each_setting(Settings& settings, const Visit& visit) {
   visit(Info{"divisor", "One search a frame in a block of so many pixels a side: 1, 2 or 4.", 1, 4},
         settings.divisor);
   visit(Info{"pattern", "How directions are spread over pixels and frames."}, settings.pattern);
-  visit(Info{"depth_mips", "Levels of the depth pyramid that far samples read.", 1, 5},
+  visit(Info{"snapping", "Samples lie where their texels do, else where they were asked for."},
+        settings.parts.snapping);
+  visit(Info{"grouping", "Searches that run together: neighbours, or those of one direction."},
+        settings.parts.grouping);
+  visit(Info{"depth_mips", "Levels of the linear depth that is handed on; no search reads them.", 1,
+             5},
         settings.depth_mips);
   visit(Info{"filter_reach", "Blocks on each side that a pixel learns from; 0: no filter.", 0, 3},
         settings.filter_reach);

@@ -37,6 +37,8 @@ layout(constant_id = 9) const bool kUniformWeight = false;
 layout(constant_id = 10) const bool kFalloff = false;
 layout(constant_id = 11) const bool kThicknessOfDistance = false;  // else of the radius
 layout(constant_id = 12) const bool kBackFaces = false;  // tell the thickness, where there are any
+layout(constant_id = 13) const bool kSnapping = true;  // reckon with it
+layout(constant_id = 14) const bool kByPattern = false;  // groups are, else by place
 
 const bool kHeuristic = kEstimator == 1;
 const bool kBitmask = kEstimator >= 2;
@@ -160,11 +162,12 @@ LineSample fetch_sample(Search search, uint k) {
   ivec2 texel = search.pixel + (search.reach_px > 0.0 ? ivec2(snapped) : ivec2(0));
   float line = imageLoad(line_image, texel).r;
   // Only across the line: along it a sample stays where it was found.
-  float along_px = dot(snapped, search.line.direction_px);
+  float along_px = kSnapping ? dot(snapped, search.line.direction_px) : found.offset_px;
   float on_plane = dot(snapped, search.tangent.gradient);
   float share = tangent_share(search.tangent, line - search.tangent.line - on_plane,
                               found.offset_px);
-  found.line = max(line + share * (along_px * search.gradient - on_plane), 0.1 * line);
+  float moved = max(line + share * (along_px * search.gradient - on_plane), 0.1 * line);
+  found.line = kSnapping ? moved : line;
   found.point = slice_point(search.line, along_px, found.line, search.depth, kPerspective);
   if (kBackFaces) {
     float back = imageLoad(back_image, texel).r;
@@ -434,8 +437,13 @@ Found search_pixel(ivec2 pixel, float line, SliceNoise noise) {
                kBentNormal ? pack_direction(sum.bent * mean) : uvec2(0u));
 }
 
+uvec2 searched_block() {
+  return kByPattern ? block_by_pattern(gl_WorkGroupID.xy, gl_LocalInvocationID.xy)
+                    : gl_GlobalInvocationID.xy;
+}
+
 void main() {
-  ivec2 block = ivec2(gl_GlobalInvocationID.xy);
+  ivec2 block = ivec2(searched_block());
   if (any(greaterThanEqual(block * kDivisor, size_px()))) {
     return;
   }

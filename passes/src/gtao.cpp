@@ -79,6 +79,13 @@ OcclusionSignal create_signal(const Frame& frame, Texture depth, const GtaoSetti
   return result;
 }
 
+// Threads for `blocks`: with groups by pattern a whole number of block_by_pattern()'s.
+VkExtent3D searches(VkExtent3D blocks, bool by_pattern) {
+  const std::uint32_t whole = by_pattern ? 32 : 1;
+  return {(blocks.width + whole - 1) / whole * whole, (blocks.height + whole - 1) / whole * whole,
+          1};
+}
+
 }  // namespace
 
 bool needs_back_depth(Estimator estimator, ThicknessUnit unit) {
@@ -105,6 +112,7 @@ tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame, const GtaoInpu
     return tl::unexpected(projection.error());
   }
   const bool of_distance = settings.thickness_unit == ThicknessUnit::distance;
+  const bool by_pattern = settings.parts.grouping == Grouping::pattern;
   const std::array constants{settings.slices,
                              settings.steps,
                              static_cast<std::uint32_t>(settings.bent_normal),
@@ -117,7 +125,9 @@ tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame, const GtaoInpu
                              static_cast<std::uint32_t>(settings.weighting == Weighting::uniform),
                              static_cast<std::uint32_t>(settings.falloff > 0.0f),
                              static_cast<std::uint32_t>(of_distance),
-                             static_cast<std::uint32_t>(by_back_faces)};
+                             static_cast<std::uint32_t>(by_back_faces),
+                             static_cast<std::uint32_t>(settings.parts.snapping),
+                             static_cast<std::uint32_t>(by_pattern)};
   const auto kernel =
       frame.kernels.get(settings.lobe ? Shader::gtao_lobe : Shader::gtao, constants);
   if (!kernel) {
@@ -153,7 +163,7 @@ tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame, const GtaoInpu
       settings.falloff,
       settings.roughness};
   pass.record([&kernels = frame.kernels, kernel = *kernel, inputs, result, parameters, rough,
-               by_back_faces](RecordContext& context) {
+               by_back_faces, by_pattern](RecordContext& context) {
     const VkImageView line = context.view(inputs.line_depth);
     const VkImageView normals = context.view(inputs.normals);
     const VkImageView signal = context.view(result.signal);
@@ -165,7 +175,8 @@ tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame, const GtaoInpu
                            rough ? context.view(inputs.roughness) : normals};
     // Without a lobe the last binding does not exist.
     const std::span<const VkImageView> bound(views.data(), views.size() - (result.lobe ? 0 : 1));
-    kernels.dispatch(context, kernel, bound, bytes_of(parameters), context.extent(result.signal));
+    kernels.dispatch(context, kernel, bound, bytes_of(parameters),
+                     searches(context.extent(result.signal), by_pattern));
   });
   return result;
 }

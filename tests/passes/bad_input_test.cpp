@@ -147,9 +147,11 @@ TEST_F(BadInput, ImagesOfUnequalSizesAreNamed) {
         add_occlusion(frame, {.depth_ndc = depth, .motion = upload(graph, small.depth_ndc)}, {});
     ASSERT_FALSE(motion);
     EXPECT_THAT(motion.error().message, HasSubstr("motion vectors of 16x11"));
+    OcclusionSettings by_back_faces;
+    by_back_faces.thickness_unit = ThicknessUnit::back_faces;
     const auto back_faces =
         add_occlusion(frame, {.depth_ndc = depth, .back_depth_ndc = upload(graph, small.depth_ndc)},
-                      {.thickness_unit = ThicknessUnit::back_faces});
+                      by_back_faces);
     ASSERT_FALSE(back_faces);
     EXPECT_THAT(back_faces.error().message, HasSubstr("back-face depth of 16x11"));
     read_back(graph, depth);

@@ -58,5 +58,31 @@ TEST_F(Gtao, OpenPlaneIsFullyVisibleAtAnyTilt) {
   }
 }
 
+// What reckoning with it buys: the same planes, tilted, without it.
+TEST_F(Gtao, WhereSnappingIsNotReckonedWithATiltedPlaneOccludesItself) {
+  const TestView view = test_views()[2];
+  for (const Estimator estimator : {Estimator::horizons, Estimator::connected}) {
+    OcclusionSettings settings = precise(Quality::medium);
+    settings.estimator = estimator;
+    for (const float degrees : {60.0f, 75.0f}) {
+      SCOPED_TRACE(testing::Message() << "tilted " << degrees << " degrees");
+      const PlaneScene plane = plane_scene(view, 96, 64, degrees);
+      double lowest[2];
+      for (const bool snapping : {false, true}) {
+        settings.parts.snapping = snapping;
+        const HostImage visibility = run_occlusion({.view = view.view,
+                                                    .depth_ndc = plane.depth_ndc,
+                                                    .normal_vs = &plane.normal_vs,
+                                                    .reset = true},
+                                                   settings)
+                                         .visibility;
+        lowest[snapping ? 1 : 0] = *std::ranges::min_element(visibility.texels);
+      }
+      EXPECT_LT(lowest[0], 0.98);
+      EXPECT_GE(lowest[1], 1.0 - 1.0 / 255.0);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace alcove::passes

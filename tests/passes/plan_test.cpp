@@ -158,6 +158,23 @@ TEST_F(OcclusionPlan, BackFacesCostOnlyWhereTheThicknessIsReadFromThem) {
   EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines + 1);
 }
 
+TEST_F(OcclusionPlan, PartsOfASearchCostNoPassAndNoByteAndAPipelineOnlyWhereTheyAreChanged) {
+  const Kept as_it_is = kept(least());
+  std::size_t pipelines = gpu().kernels().pipeline_count();
+  (void)kept(least());
+  EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines);
+  for (const SearchParts& parts :
+       {SearchParts{.snapping = false}, SearchParts{.grouping = Grouping::pattern}}) {
+    OcclusionSettings changed = least();
+    changed.parts = parts;
+    const Kept found = kept(changed);
+    EXPECT_EQ(found.passes, as_it_is.passes);
+    EXPECT_EQ(found.transients, as_it_is.transients);
+    EXPECT_EQ(found.bytes, as_it_is.bytes);
+    EXPECT_EQ(gpu().kernels().pipeline_count(), ++pipelines);
+  }
+}
+
 TEST_F(OcclusionPlan, SpecularOcclusionCostsOnlyWhereItIsOn) {
   const Kept without = kept(least());
   OcclusionSettings settings = least();

@@ -22,11 +22,16 @@ using passes::Quality;
 TEST(Trials, ChangeOneThingEachAndNeverNothing) {
   for (const Quality quality : {Quality::low, Quality::medium, Quality::high, Quality::ultra}) {
     const OcclusionSettings base = passes::quality_settings(quality, 0.5f);
-    std::set<std::string> names;
+    std::set<std::string> names, parts;
     for (const Trial& trial : trials_of(base)) {
       EXPECT_FALSE(trial.settings == base) << trial.name;
       EXPECT_TRUE(names.insert(trial.part + trial.name).second) << trial.name;
       EXPECT_EQ(trial.settings.radius, base.radius) << trial.name;
+      parts.insert(trial.part);
+    }
+    for (const char* part : {"estimator", "occluders", "resolution", "work", "pattern", "snapping",
+                             "grouping", "filter", "history"}) {
+      EXPECT_TRUE(parts.contains(part)) << part;
     }
     EXPECT_GT(names.size(), 15u);
   }
@@ -95,6 +100,44 @@ TEST_F(AblationTest, BackFacesAreNearerToTheTruthThanOneThickness) {
   ASSERT_TRUE(result) << result.error();
   EXPECT_LT(1.02 * compare_images(result->visibility, truth, surfaces).rmse,
             compare_images(ablation->base().visibility, truth, surfaces).rmse);
+}
+
+TEST_F(AblationTest, SnappingKeepsOpenSurfacesOpen) {
+  const auto gpu = open();
+  const auto other = open();
+  ASSERT_TRUE(gpu && other);
+  auto ablation = TrialRunner::create(*gpu, scene_, setup_, base_);
+  ASSERT_TRUE(ablation) << ablation.error();
+  auto [truth, open_surfaces] = truth_of(ablation->base());
+  for (std::size_t i = 0; i < truth.pixels.size(); ++i) {
+    open_surfaces.pixels[i] = open_surfaces.pixels[i] != 0 && truth.pixels[i] >= 1.0f ? 1 : 0;
+  }
+  Trial trial{"snapping", "not reckoned with", base_};
+  trial.settings.parts.snapping = false;
+  const auto result = ablation->run(*other, trial);
+  ASSERT_TRUE(result) << result.error();
+  const double with = compare_images(ablation->base().visibility, truth, open_surfaces).bias;
+  const double without = compare_images(result->visibility, truth, open_surfaces).bias;
+  EXPECT_GT(with, -0.005);
+  EXPECT_LT(without, 2.0 * with - 0.003);
+  EXPECT_EQ(result->cost.bytes, ablation->base_bytes());
+  expect_valid(*other);
+}
+
+TEST_F(AblationTest, SearchesOfOneDirectionTogetherDrawTheSameInTheSameMemory) {
+  const auto gpu = open();
+  const auto other = open();
+  ASSERT_TRUE(gpu && other);
+  auto ablation = TrialRunner::create(*gpu, scene_, setup_, base_);
+  ASSERT_TRUE(ablation) << ablation.error();
+  Trial trial{"grouping", "one direction", base_};
+  trial.settings.parts.grouping = passes::Grouping::pattern;
+  const auto result = ablation->run(*other, trial);
+  ASSERT_TRUE(result) << result.error();
+  const Mask all(setup_.width, setup_.height, 1);
+  EXPECT_LT(compare_images(result->visibility, ablation->base().visibility, all).rmse, 1e-4);
+  EXPECT_EQ(result->cost.bytes, ablation->base_bytes());
+  expect_valid(*other);
 }
 
 // By one renderer, in frames that read them and frames that do not.

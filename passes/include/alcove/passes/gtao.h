@@ -51,6 +51,22 @@ enum class Pattern : std::uint8_t {
   memo,     // the memo's 4x4 block and six rotations
 };
 
+// Which searches a group of the device's threads makes together. The image is the same.
+enum class Grouping : std::uint8_t {
+  neighbours,  // of 8x8 blocks
+  pattern,     // of every fourth block each way, which the 4x4 patterns give one direction
+};
+
+// Parts of a search that are there to be measured (`alcove ablate`): the defaults suit engines.
+struct SearchParts {
+  // Whether a sample lies where its texel does; else where it was asked for, so that tilted planes
+  // occlude themselves.
+  bool snapping = true;
+  Grouping grouping = Grouping::neighbours;
+
+  friend bool operator==(const SearchParts&, const SearchParts&) = default;
+};
+
 // How occluders are searched and what they count.
 struct SearchSettings {
   float radius = 0.5f;       // scene units, over 0: occluders beyond it do not count
@@ -69,6 +85,7 @@ struct SearchSettings {
   // frame to frame.
   std::uint32_t divisor = 1;
   Pattern pattern = Pattern::golden;
+  SearchParts parts;
 
   friend bool operator==(const SearchSettings&, const SearchSettings&) = default;
 };
