@@ -58,6 +58,8 @@ void add_occluders(TrialList& list, const OcclusionSettings& base) {
   list.add(part, "three times as thick", [](OcclusionSettings& s) { s.thickness *= 3.0f; });
   list.add(part, "as thick as back faces show",
            [](OcclusionSettings& s) { s.thickness_unit = passes::ThicknessUnit::back_faces; });
+  list.add(part, "and what the first layer hides",
+           [](OcclusionSettings& s) { s.depth_layers = 2; });
 }
 
 void add_searches(TrialList& list) {

@@ -35,6 +35,9 @@ tl::expected<void, std::string> declare(framegraph::Graph& graph, Gpu& gpu, cons
   if (passes::needs_back_depth(settings.estimator, settings.thickness_unit)) {
     inputs.back_depth_ndc = texture("back-face depth", VK_FORMAT_R32_SFLOAT);
   }
+  if (passes::needs_second_depth(settings.estimator, settings.depth_layers)) {
+    inputs.second_depth_ndc = texture("second depth", VK_FORMAT_R32_SFLOAT);
+  }
   const auto outputs = passes::add_occlusion(frame, inputs, settings);
   if (!outputs) {
     return tl::unexpected(outputs.error().message);

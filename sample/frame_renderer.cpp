@@ -24,7 +24,7 @@ using framegraph::Graph;
 using framegraph::Texture;
 using Failure = tl::unexpected<std::string>;
 
-// The last is drawn only where the occlusion reads it.
+// The last two are drawn only where the occlusion reads them.
 enum Target : std::size_t {
   kDepth,
   kNormal,
@@ -32,6 +32,7 @@ enum Target : std::size_t {
   kMotion,
   kEmissive,
   kBackDepth,
+  kSecondDepth,
   kTargetCount
 };
 
@@ -45,11 +46,8 @@ constexpr std::array<TargetFormat, kTargetCount> kTargets{
      {kAlbedoFormat, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT},
      {kMotionFormat, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT},
      {kEmissiveFormat, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT},
+     {kDepthFormat, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT},
      {kDepthFormat, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT}}};
-
-bool needs_back_depth(const passes::OcclusionSettings& settings) {
-  return passes::needs_back_depth(settings.estimator, settings.thickness_unit);
-}
 
 // Processor time that all threads of the process have spent, in milliseconds.
 double processor_ms() {
@@ -172,7 +170,7 @@ struct FrameRenderer::State {
   NormalSource normals;
   std::unique_ptr<GbufferRenderer> gbuffer;
   std::optional<GbufferView> drawn_view;  // what the targets hold
-  bool back_faces_drawn = false;          // of that view
+  HiddenDepths drawn_depths;              // of that view
   std::vector<PassTime> gbuffer_times;    // of their last drawing
   std::array<std::unique_ptr<GpuImage>, kTargetCount> targets;
   std::unique_ptr<HostBuffer> environment;  // uploaded in the frame that is lit
@@ -201,25 +199,31 @@ void FrameRenderer::State::append_times(FrameCost& cost, bool occlusion) {
 
 tl::expected<void, std::string> FrameRenderer::State::draw_gbuffer(const FrameRequest& request,
                                                                    FrameCost& cost) {
-  const bool back_faces = needs_back_depth(request.occlusion);
-  if (drawn_view == request.view && (back_faces_drawn || !back_faces)) {
+  const HiddenDepths hidden = hidden_depths_of(request.occlusion);
+  if (drawn_view == request.view && drawn_depths.covers(hidden)) {
     cost.gpu = gbuffer_times;
     return {};
   }
-  if (back_faces && !targets[kBackDepth]) {
-    if (auto made = create_target(kBackDepth); !made) {
-      return made;
+  for (const auto& [wanted, target] :
+       {std::pair(hidden.back_faces, kBackDepth), {hidden.second_layer, kSecondDepth}}) {
+    if (wanted && !targets[target]) {
+      if (auto made = create_target(target); !made) {
+        return made;
+      }
     }
   }
   const auto declare = [&](Graph& graph) -> tl::expected<void, std::string> {
     const auto fill = [&](Target target) {
       return graph.import_texture("g-buffer", targets[target]->import_to_fill(kSampledState));
     };
-    (void)gbuffer->add(
-        graph, request.view,
-        {fill(kDepth), fill(kNormal), fill(kAlbedo), fill(kMotion), fill(kEmissive)});
-    if (back_faces) {
+    const Gbuffer drawn =
+        gbuffer->add(graph, request.view,
+                     {fill(kDepth), fill(kNormal), fill(kAlbedo), fill(kMotion), fill(kEmissive)});
+    if (hidden.back_faces) {
       (void)gbuffer->add_back_faces(graph, request.view, fill(kBackDepth));
+    }
+    if (hidden.second_layer) {
+      (void)gbuffer->add_second_layer(graph, request.view, drawn.depth, fill(kSecondDepth));
     }
     return {};
   };
@@ -229,7 +233,7 @@ tl::expected<void, std::string> FrameRenderer::State::draw_gbuffer(const FrameRe
   }
   append_times(cost, false);
   drawn_view = request.view;
-  back_faces_drawn = back_faces;
+  drawn_depths = hidden;
   gbuffer_times = cost.gpu;
   return {};
 }
@@ -267,14 +271,14 @@ tl::expected<Declared, std::string> FrameRenderer::State::declare_occlusion(
                     .albedo = import(kAlbedo),
                     .emissive = import(kEmissive)};
   const passes::Frame frame = frame_of(graph, request);
-  const Surfaces surfaces = surfaces_of(declared, request);
+  Surfaces surfaces = surfaces_of(declared, request);
+  const HiddenDepths hidden = hidden_depths_of(request.occlusion);
+  surfaces.back_depth = hidden.back_faces ? import(kBackDepth) : Texture{};
+  surfaces.second_depth = hidden.second_layer ? import(kSecondDepth) : Texture{};
   passes::OcclusionInputs inputs = occlusion_inputs(surfaces);
   passes::OcclusionSettings settings = with_roughness(request.occlusion, surfaces);
   if (request.motion_vectors) {
     inputs.motion = import(kMotion);
-  }
-  if (needs_back_depth(settings)) {
-    inputs.back_depth_ndc = import(kBackDepth);
   }
   if (request.index == 0 || request.restart) {
     graph.reset_histories();

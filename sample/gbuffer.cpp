@@ -8,11 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "gbuffer_pipelines.h"
 #include "gpu_textures.h"
-#include "shader_module.h"
 #include "shaders/gbuffer.h"
-#include "spirv/gbuffer_fragment.h"
-#include "spirv/gbuffer_vertex.h"
 #include "triangles.h"
 
 namespace alcove::sample {
@@ -23,17 +21,10 @@ using framegraph::RecordContext;
 using framegraph::Texture;
 using Failure = tl::unexpected<std::string>;
 
-constexpr std::array<VkFormat, 4> kColourFormats{kNormalFormat, kAlbedoFormat, kMotionFormat,
-                                                 kEmissiveFormat};
-
 // From one frame's parameters to the next's: a multiple of the largest alignment that a device may
 // ask for.
 constexpr std::uint32_t kParameterStride = 512;
 static_assert(sizeof(maths::GbufferParameters) <= kParameterStride && kParameterStride % 256 == 0);
-
-// That read what each draw pushes.
-constexpr VkShaderStageFlags kDrawStages =
-    VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
 
 Failure failure(const char* what, VkResult result) {
   return Failure(std::string("The device could not create ") + what + " of the g-buffer (" +
@@ -60,20 +51,24 @@ maths::GbufferDraw draw_constants(const Material& material, const GpuTextures& t
 }  // namespace
 
 struct GbufferRenderer::State {
+  // How the scene is drawn.
+  struct Drawing {
+    bool reversed_z = false;
+    std::uint32_t parameters_at = 0;
+    VkCullModeFlags culled = VK_CULL_MODE_NONE;
+    Texture first;  // depth of what is left out, with what lies before it; null: nothing is
+  };
   explicit State(Gpu& owner) : gpu(owner), device(owner.device().device()) {}
   State(const State&) = delete;
   State& operator=(const State&) = delete;
   ~State();
 
   tl::expected<void, std::string> upload(const Scene& scene);
-  tl::expected<void, std::string> create_layout();
-  tl::expected<void, std::string> create_pipeline(bool geometric_normals);
-  tl::expected<void, std::string> create_set();
+  tl::expected<void, std::string> create_sets();
   // Returns where in the parameters those of the view are.
   std::uint32_t write_parameters(const GbufferView& view);
-  // Draws all faces or, with VK_CULL_MODE_FRONT_BIT, the back ones alone.
-  void record(RecordContext& context, const Gbuffer& gbuffer, bool reversed_z,
-              std::uint32_t parameters_at, VkCullModeFlags culled) const;
+  void record(RecordContext& context, const Gbuffer& gbuffer, const Drawing& drawing) const;
+  void bind_first_layer(RecordContext& context, Texture depth) const;
   void begin_rendering(RecordContext& context, const Gbuffer& gbuffer, bool reversed_z) const;
 
   uint32_t texture_count() const { return static_cast<uint32_t>(textures->descriptors().size()); }
@@ -87,21 +82,13 @@ struct GbufferRenderer::State {
   std::optional<GbufferView> written;      // the latest of them
   std::uint32_t latest = 0;                // where it is
   std::unique_ptr<GpuTextures> textures;
-  VkDescriptorSetLayout set_layout = VK_NULL_HANDLE;
-  VkPipelineLayout layout = VK_NULL_HANDLE;
-  VkPipeline pipeline = VK_NULL_HANDLE;           // nearer is less
-  VkPipeline reversed_pipeline = VK_NULL_HANDLE;  // nearer is greater
+  std::unique_ptr<GbufferPipelines> pipelines;
   VkDescriptorPool pool = VK_NULL_HANDLE;
   VkDescriptorSet set = VK_NULL_HANDLE;
+  std::vector<VkDescriptorSet> layer_sets;  // one for each frame in flight
 };
 
-GbufferRenderer::State::~State() {
-  vkDestroyDescriptorPool(device, pool, nullptr);
-  vkDestroyPipeline(device, pipeline, nullptr);
-  vkDestroyPipeline(device, reversed_pipeline, nullptr);
-  vkDestroyPipelineLayout(device, layout, nullptr);
-  vkDestroyDescriptorSetLayout(device, set_layout, nullptr);
-}
+GbufferRenderer::State::~State() { vkDestroyDescriptorPool(device, pool, nullptr); }
 
 tl::expected<void, std::string> GbufferRenderer::State::upload(const Scene& scene) {
   const Triangles triangles = flatten(scene);
@@ -132,49 +119,33 @@ tl::expected<void, std::string> GbufferRenderer::State::upload(const Scene& scen
   return {};
 }
 
-tl::expected<void, std::string> GbufferRenderer::State::create_layout() {
-  const std::array<VkDescriptorSetLayoutBinding, 2> bindings{
-      {{0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, 1,
-        VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, nullptr},
-       {1, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, texture_count(), VK_SHADER_STAGE_FRAGMENT_BIT,
-        nullptr}}};
-  const VkDescriptorSetLayoutCreateInfo set_info{
-      .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
-      .bindingCount = static_cast<uint32_t>(bindings.size()),
-      .pBindings = bindings.data()};
-  VkResult result = vkCreateDescriptorSetLayout(device, &set_info, nullptr, &set_layout);
-  if (result != VK_SUCCESS) {
-    return failure("the descriptor set layout", result);
-  }
-  const VkPushConstantRange range{kDrawStages, 0, sizeof(maths::GbufferDraw)};
-  const VkPipelineLayoutCreateInfo info{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
-                                        .setLayoutCount = 1,
-                                        .pSetLayouts = &set_layout,
-                                        .pushConstantRangeCount = 1,
-                                        .pPushConstantRanges = &range};
-  result = vkCreatePipelineLayout(device, &info, nullptr, &layout);
-  return result == VK_SUCCESS ? tl::expected<void, std::string>() : failure("the layout", result);
-}
-
-tl::expected<void, std::string> GbufferRenderer::State::create_set() {
-  const std::array<VkDescriptorPoolSize, 2> sizes{
+tl::expected<void, std::string> GbufferRenderer::State::create_sets() {
+  const uint32_t frames = gpu.frames_in_flight();
+  const std::array<VkDescriptorPoolSize, 3> sizes{
       {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, 1},
-       {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, texture_count()}}};
+       {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, texture_count()},
+       {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, frames}}};
   const VkDescriptorPoolCreateInfo pool_info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-                                             .maxSets = 1,
+                                             .maxSets = 1 + frames,
                                              .poolSizeCount = static_cast<uint32_t>(sizes.size()),
                                              .pPoolSizes = sizes.data()};
   VkResult result = vkCreateDescriptorPool(device, &pool_info, nullptr, &pool);
-  const VkDescriptorSetAllocateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
-                                         .descriptorPool = pool,
-                                         .descriptorSetCount = 1,
-                                         .pSetLayouts = &set_layout};
+  std::vector<VkDescriptorSetLayout> layouts(1 + frames, pipelines->layer_set());
+  layouts.back() = pipelines->scene_set();
+  const VkDescriptorSetAllocateInfo info{
+      .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
+      .descriptorPool = pool,
+      .descriptorSetCount = static_cast<uint32_t>(layouts.size()),
+      .pSetLayouts = layouts.data()};
+  layer_sets.resize(layouts.size());
   if (result == VK_SUCCESS) {
-    result = vkAllocateDescriptorSets(device, &info, &set);
+    result = vkAllocateDescriptorSets(device, &info, layer_sets.data());
   }
   if (result != VK_SUCCESS) {
-    return failure("the descriptor set", result);
+    return failure("the descriptor sets", result);
   }
+  set = layer_sets.back();
+  layer_sets.pop_back();
   const VkDescriptorBufferInfo buffer{parameters->buffer(), 0, sizeof(maths::GbufferParameters)};
   const std::vector<VkDescriptorImageInfo>& images = textures->descriptors();
   const std::array<VkWriteDescriptorSet, 2> writes{
@@ -194,109 +165,10 @@ tl::expected<void, std::string> GbufferRenderer::State::create_set() {
   return {};
 }
 
-namespace {
-
-// The state that never changes, as Vulkan wants it: attributes of Vertex, no blending.
-struct FixedState {
-  VkVertexInputBindingDescription binding{0, sizeof(Vertex), VK_VERTEX_INPUT_RATE_VERTEX};
-  std::array<VkVertexInputAttributeDescription, 6> attributes{
-      {{0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, position_ws)},
-       {1, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, normal_ws)},
-       {2, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, face_normal_ws)},
-       {3, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Vertex, tangent_ws)},
-       // Two sets of coordinates each.
-       {4, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Vertex, base_color_uv)},
-       {5, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Vertex, emissive_uv)}}};
-  VkPipelineVertexInputStateCreateInfo vertices{
-      .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO,
-      .vertexBindingDescriptionCount = 1,
-      .pVertexBindingDescriptions = &binding,
-      .vertexAttributeDescriptionCount = static_cast<uint32_t>(attributes.size()),
-      .pVertexAttributeDescriptions = attributes.data()};
-  VkPipelineInputAssemblyStateCreateInfo assembly{
-      .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
-      .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST};
-  VkPipelineViewportStateCreateInfo viewport{
-      .sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO,
-      .viewportCount = 1,
-      .scissorCount = 1};
-  VkPipelineRasterizationStateCreateInfo rasterisation{
-      .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO,
-      .frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE,
-      .lineWidth = 1.0f};
-  VkPipelineMultisampleStateCreateInfo multisample{
-      .sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
-      .rasterizationSamples = VK_SAMPLE_COUNT_1_BIT};
-  std::array<VkPipelineColorBlendAttachmentState, 4> attachments{};
-  VkPipelineColorBlendStateCreateInfo blend{
-      .sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
-      .attachmentCount = 4,
-      .pAttachments = attachments.data()};
-  std::array<VkDynamicState, 3> dynamic_states{VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR,
-                                               VK_DYNAMIC_STATE_CULL_MODE};
-  VkPipelineDynamicStateCreateInfo dynamic{
-      .sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO,
-      .dynamicStateCount = 3,
-      .pDynamicStates = dynamic_states.data()};
-  VkPipelineRenderingCreateInfo rendering{
-      .sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO,
-      .colorAttachmentCount = static_cast<uint32_t>(kColourFormats.size()),
-      .pColorAttachmentFormats = kColourFormats.data(),
-      .depthAttachmentFormat = kDepthFormat};
-
-  FixedState() {
-    for (auto& attachment : attachments) {
-      attachment.colorWriteMask = 0xf;
-    }
-  }
-  FixedState(const FixedState&) = delete;
-  FixedState& operator=(const FixedState&) = delete;
-};
-
-}  // namespace
-
-tl::expected<void, std::string> GbufferRenderer::State::create_pipeline(bool geometric_normals) {
-  const std::array<uint32_t, 2> values{texture_count(), geometric_normals ? 1u : 0u};
-  const std::array<VkSpecializationMapEntry, 2> entries{{{0, 0, 4}, {1, 4, 4}}};
-  const VkSpecializationInfo specialisation{2, entries.data(), sizeof(values), values.data()};
-  const ShaderStages stages(device, kGbufferVertex, kGbufferFragment, &specialisation);
-  if (stages.result != VK_SUCCESS) {
-    return failure("a shader", stages.result);
-  }
-  const FixedState fixed;
-  for (const bool reversed : {false, true}) {
-    const VkPipelineDepthStencilStateCreateInfo depth{
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,
-        .depthTestEnable = VK_TRUE,
-        .depthWriteEnable = VK_TRUE,
-        .depthCompareOp = reversed ? VK_COMPARE_OP_GREATER : VK_COMPARE_OP_LESS};
-    const VkGraphicsPipelineCreateInfo info{
-        .sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
-        .pNext = &fixed.rendering,
-        .stageCount = static_cast<uint32_t>(stages.infos.size()),
-        .pStages = stages.infos.data(),
-        .pVertexInputState = &fixed.vertices,
-        .pInputAssemblyState = &fixed.assembly,
-        .pViewportState = &fixed.viewport,
-        .pRasterizationState = &fixed.rasterisation,
-        .pMultisampleState = &fixed.multisample,
-        .pDepthStencilState = &depth,
-        .pColorBlendState = &fixed.blend,
-        .pDynamicState = &fixed.dynamic,
-        .layout = layout};
-    const VkResult result = vkCreateGraphicsPipelines(device, VK_NULL_HANDLE, 1, &info, nullptr,
-                                                      reversed ? &reversed_pipeline : &pipeline);
-    if (result != VK_SUCCESS) {
-      return failure("the pipeline", result);
-    }
-  }
-  return {};
-}
-
 void GbufferRenderer::State::begin_rendering(RecordContext& context, const Gbuffer& gbuffer,
                                              bool reversed_z) const {
-  std::array<VkRenderingAttachmentInfo, kColourFormats.size()> colours;
   const std::array targets{gbuffer.normal, gbuffer.albedo, gbuffer.motion, gbuffer.emissive};
+  std::array<VkRenderingAttachmentInfo, std::tuple_size_v<decltype(targets)>> colours;
   for (std::size_t i = 0; i < targets.size(); ++i) {
     // Without a view, what would be written is dropped.
     colours[i] = {.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
@@ -326,15 +198,35 @@ void GbufferRenderer::State::begin_rendering(RecordContext& context, const Gbuff
   context.vk.vkCmdSetScissor(context.commands, 0, 1, &area);
 }
 
-void GbufferRenderer::State::record(RecordContext& context, const Gbuffer& gbuffer, bool reversed_z,
-                                    std::uint32_t parameters_at, VkCullModeFlags culled) const {
-  begin_rendering(context, gbuffer, reversed_z);
+void GbufferRenderer::State::bind_first_layer(RecordContext& context, Texture depth) const {
+  const VkDescriptorSet layer = layer_sets[context.frame_slot];
+  const VkDescriptorImageInfo image{.imageView = context.view(depth),
+                                    .imageLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+  const VkWriteDescriptorSet write{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                   .dstSet = layer,
+                                   .descriptorCount = 1,
+                                   .descriptorType = VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE,
+                                   .pImageInfo = &image};
+  vkUpdateDescriptorSets(device, 1, &write, 0, nullptr);
+  context.vk.vkCmdBindDescriptorSets(context.commands, VK_PIPELINE_BIND_POINT_GRAPHICS,
+                                     pipelines->layout(), 1, 1, &layer, 0, nullptr);
+}
+
+void GbufferRenderer::State::record(RecordContext& context, const Gbuffer& gbuffer,
+                                    const Drawing& drawing) const {
+  begin_rendering(context, gbuffer, drawing.reversed_z);
+  using Kind = GbufferPipelines::Kind;
+  const Kind kind = drawing.first ? Kind::second_layer : Kind::all;
   const auto& vk = context.vk;
-  vk.vkCmdSetCullMode(context.commands, culled);
+  vk.vkCmdSetCullMode(context.commands, drawing.culled);
   vk.vkCmdBindPipeline(context.commands, VK_PIPELINE_BIND_POINT_GRAPHICS,
-                       reversed_z ? reversed_pipeline : pipeline);
+                       pipelines->pipeline(kind, drawing.reversed_z));
+  const VkPipelineLayout layout = pipelines->layout();
   vk.vkCmdBindDescriptorSets(context.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, 1, &set,
-                             1, &parameters_at);
+                             1, &drawing.parameters_at);
+  if (drawing.first) {
+    bind_first_layer(context, drawing.first);
+  }
   const VkBuffer buffer = vertices->buffer();
   const VkDeviceSize offset = 0;
   vk.vkCmdBindVertexBuffers(context.commands, 0, 1, &buffer, &offset);
@@ -353,11 +245,16 @@ GbufferRenderer::~GbufferRenderer() = default;
 tl::expected<std::unique_ptr<GbufferRenderer>, std::string> GbufferRenderer::create(
     Gpu& gpu, const Scene& scene, bool geometric_normals) {
   auto state = std::make_unique<State>(gpu);
-  auto done = state->upload(scene)
-                  .and_then([&] { return state->create_layout(); })
-                  .and_then([&] { return state->create_pipeline(geometric_normals); })
-                  .and_then([&] { return state->create_set(); });
-  if (!done) {
+  if (auto done = state->upload(scene); !done) {
+    return Failure(std::move(done.error()));
+  }
+  auto pipelines =
+      GbufferPipelines::create(state->device, state->texture_count(), geometric_normals);
+  if (!pipelines) {
+    return Failure(std::move(pipelines.error()));
+  }
+  state->pipelines = std::move(*pipelines);
+  if (auto done = state->create_sets(); !done) {
     return Failure(std::move(done.error()));
   }
   return std::unique_ptr<GbufferRenderer>(new GbufferRenderer(std::move(state)));
@@ -376,6 +273,8 @@ std::uint32_t GbufferRenderer::State::write_parameters(const GbufferView& view) 
   frame.previous_world_from_moving = view.previous_world_from_moving;
   const glm::mat4 world_from_view = glm::inverse(view.view_from_world);
   const bool perspective = view.clip_from_view[2][3] != 0.0f;
+  frame.depth_unproject = {-view.clip_from_view[3][3], view.clip_from_view[3][2],
+                           -view.clip_from_view[2][3], view.clip_from_view[2][2]};
   frame.eye_ws = perspective ? glm::vec4(glm::vec3(world_from_view[3]), 1.0f)
                              : glm::vec4(glm::vec3(world_from_view[2]), 0.0f);
   std::memcpy(parameters->bytes().data() + latest, &frame, sizeof(frame));
@@ -396,7 +295,7 @@ Gbuffer GbufferRenderer::add(Graph& graph, const GbufferView& view, const Gbuffe
   }
   pass.record(
       [state = state_.get(), gbuffer, reversed = view.reversed_z, at](RecordContext& context) {
-        state->record(context, gbuffer, reversed, at, VK_CULL_MODE_NONE);
+        state->record(context, gbuffer, {reversed, at});
       });
   return gbuffer;
 }
@@ -408,7 +307,21 @@ Texture GbufferRenderer::add_back_faces(Graph& graph, const GbufferView& view, T
       pass.write(depth, framegraph::access::depth_attachment, {}, framegraph::Contents::discard);
   pass.record(
       [state = state_.get(), depth, reversed = view.reversed_z, at](RecordContext& context) {
-        state->record(context, {.depth = depth}, reversed, at, VK_CULL_MODE_FRONT_BIT);
+        state->record(context, {.depth = depth}, {reversed, at, VK_CULL_MODE_FRONT_BIT});
+      });
+  return depth;
+}
+
+Texture GbufferRenderer::add_second_layer(Graph& graph, const GbufferView& view, Texture first,
+                                          Texture depth) {
+  const std::uint32_t at = state_->write_parameters(view);
+  auto pass = graph.add_pass("second layer");
+  pass.read(first, framegraph::access::sampled_fragment);
+  depth =
+      pass.write(depth, framegraph::access::depth_attachment, {}, framegraph::Contents::discard);
+  pass.record(
+      [state = state_.get(), first, depth, reversed = view.reversed_z, at](RecordContext& context) {
+        state->record(context, {.depth = depth}, {reversed, at, VK_CULL_MODE_BACK_BIT, first});
       });
   return depth;
 }

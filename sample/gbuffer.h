@@ -62,6 +62,12 @@ class GbufferRenderer {
   [[nodiscard]] framegraph::Texture add_back_faces(framegraph::Graph& graph,
                                                    const GbufferView& view,
                                                    framegraph::Texture depth);
+  // The same of the nearest front faces that lie behind Gbuffer::depth by more than a thousandth of
+  // its distance: `first`, of the same view.
+  [[nodiscard]] framegraph::Texture add_second_layer(framegraph::Graph& graph,
+                                                     const GbufferView& view,
+                                                     framegraph::Texture first,
+                                                     framegraph::Texture depth);
 
  private:
   struct State;

@@ -50,6 +50,9 @@ void for_each_setting(Settings& settings, const Visit& visit) {
   visit(Info{"fill", "How much of what is hidden behind occluders occludes too.", 0.0f, 1.0f,
              has_thickness},
         settings.fill);
+  visit(Info{"depth_layers", "Layers of depth that occlude: the first, and what it hides: 1 or 2.",
+             1, 2, has_thickness},
+        settings.depth_layers);
   visit(Info{"blend", "How far each lower sample pulls the horizon down (heuristic).", 0.0f, 1.0f,
              [](Of s) { return s.estimator == passes::Estimator::heuristic; }},
         settings.blend);

@@ -10,6 +10,19 @@ constexpr std::uint32_t kAlpha = 3;
 
 }  // namespace
 
+HiddenDepths HiddenDepths::with(const HiddenDepths& other) const {
+  return {back_faces || other.back_faces, second_layer || other.second_layer};
+}
+
+bool HiddenDepths::covers(const HiddenDepths& other) const {
+  return (back_faces || !other.back_faces) && (second_layer || !other.second_layer);
+}
+
+HiddenDepths hidden_depths_of(const passes::OcclusionSettings& settings) {
+  return {passes::needs_back_depth(settings.estimator, settings.thickness_unit),
+          passes::needs_second_depth(settings.estimator, settings.depth_layers)};
+}
+
 passes::OcclusionInputs occlusion_inputs(const Surfaces& surfaces) {
   passes::OcclusionInputs inputs{.depth_ndc = surfaces.gbuffer.depth};
   if (surfaces.normals != NormalSource::kDepth) {
@@ -18,6 +31,8 @@ passes::OcclusionInputs occlusion_inputs(const Surfaces& surfaces) {
   if (!surfaces.roughness) {
     inputs.roughness = surfaces.gbuffer.albedo;
   }
+  inputs.back_depth_ndc = surfaces.back_depth;
+  inputs.second_depth_ndc = surfaces.second_depth;
   return inputs;
 }
 

@@ -14,11 +14,24 @@ namespace alcove::sample {
 // the sample draws.
 struct Surfaces {
   Gbuffer gbuffer;
+  framegraph::Texture back_depth;    // as GbufferRenderer::add_back_faces fills it; may be null
+  framegraph::Texture second_depth;  // as GbufferRenderer::add_second_layer does; may be null
   NormalSource normals = NormalSource::kShading;
   std::optional<float> roughness;  // perceptual, of every surface; none: of their materials
 };
 
-// Depth, normals and roughness; motion and back faces are left to the caller.
+// Which depths beyond the g-buffer's are read.
+struct HiddenDepths {
+  bool back_faces = false;
+  bool second_layer = false;
+
+  // With those that another reads.
+  [[nodiscard]] HiddenDepths with(const HiddenDepths& other) const;
+  [[nodiscard]] bool covers(const HiddenDepths& other) const;
+};
+[[nodiscard]] HiddenDepths hidden_depths_of(const passes::OcclusionSettings& settings);
+
+// Depths, normals and roughness; motion is left to the caller.
 [[nodiscard]] passes::OcclusionInputs occlusion_inputs(const Surfaces& surfaces);
 // The settings with the roughness of the surfaces.
 [[nodiscard]] passes::OcclusionSettings with_roughness(const passes::OcclusionSettings& settings,

@@ -37,8 +37,9 @@ layout(constant_id = 9) const bool kUniformWeight = false;
 layout(constant_id = 10) const bool kFalloff = false;
 layout(constant_id = 11) const bool kThicknessOfDistance = false;  // else of the radius
 layout(constant_id = 12) const bool kBackFaces = false;  // tell the thickness, where there are any
-layout(constant_id = 13) const bool kSnapping = true;  // reckon with it
-layout(constant_id = 14) const bool kByPattern = false;  // groups are, else by place
+layout(constant_id = 13) const bool kSnapping = true;  // samples lie where their texels do
+layout(constant_id = 14) const bool kByPattern = false;  // block_by_pattern() groups the searches
+layout(constant_id = 15) const bool kSecondLayer = false;  // second_image occludes too
 
 const bool kHeuristic = kEstimator == 1;
 const bool kBitmask = kEstimator >= 2;
@@ -56,8 +57,10 @@ layout(set = 0, binding = 3) uniform writeonly uimage2D signal_image;
 layout(set = 0, binding = 4) uniform writeonly uimage2D bent_image;
 // LineSample::line of the back faces; bound to the front's and never read without kBackFaces.
 layout(set = 0, binding = 5, r32f) uniform readonly image2D back_image;
+// The same of what lies behind the first surface; so is it without kSecondLayer.
+layout(set = 0, binding = 6, r32f) uniform readonly image2D second_image;
 #ifdef LOBE
-layout(set = 0, binding = 6) uniform texture2D roughness_image;  // perceptual
+layout(set = 0, binding = 7) uniform texture2D roughness_image;  // perceptual
 const bool kLobe = true;
 #else
 const bool kLobe = false;
@@ -153,14 +156,15 @@ vec2 settings_back(LineSample here) {
   return here.point.xy - vec2(0.0, thickness);
 }
 
-LineSample fetch_sample(Search search, uint k) {
+// Layers of depth: 0, and 1 behind it.
+LineSample fetch_sample(Search search, uint layer, uint k) {
   float t = (float(k) + search.offset) * (1.0 / float(kStepCount));
   LineSample found;
   found.offset_px = kNearestStep + search.reach_px * (t * t);
   vec2 snapped = roundEven(search.line.direction_px * found.offset_px);
   // A side with nothing to search may lie outside the image.
   ivec2 texel = search.pixel + (search.reach_px > 0.0 ? ivec2(snapped) : ivec2(0));
-  float line = imageLoad(line_image, texel).r;
+  float line = layer == 0u ? imageLoad(line_image, texel).r : imageLoad(second_image, texel).r;
   // Only across the line: along it a sample stays where it was found.
   float along_px = kSnapping ? dot(snapped, search.line.direction_px) : found.offset_px;
   float on_plane = dot(snapped, search.tangent.gradient);
@@ -199,7 +203,7 @@ float find_horizon(Search search) {
   float horizon = -1.0;
   uint k = 0;
   do {
-    horizon = next_horizon(horizon, search, fetch_sample(search, k).point);
+    horizon = next_horizon(horizon, search, fetch_sample(search, 0u, k).point);
     ++k;
   } while (k < kStepCount);
   return search.reach_px > 0.0 ? horizon : -1.0;
@@ -291,20 +295,20 @@ void pass_sample(inout Sheet sheet, inout LineSample here, Side side, float x_pe
 // in one would be a program of thousands of lines.
 const uint kTurn = 4;
 
-// The sectors that the samples of a side occlude.
-uint find_occluders(Surface surface, Search search, Side side) {
-  LineSample here = fetch_sample(search, 1);
-  Sheet sheet = begin_sheet(surface, side, fetch_sample(search, 0), here);
+// The sectors that the samples of a layer occlude on a side.
+uint find_in_layer(Surface surface, Search search, Side side, uint layer) {
+  LineSample here = fetch_sample(search, layer, 1);
+  Sheet sheet = begin_sheet(surface, side, fetch_sample(search, layer, 0), here);
   const uint rest = (kStepCount - 2) % kTurn;
   uint k = 2;
   [[unroll]] for (uint i = 0; i < rest; ++i) {
-    pass_sample(sheet, here, side, search.line.x_per_step, fetch_sample(search, k + i));
+    pass_sample(sheet, here, side, search.line.x_per_step, fetch_sample(search, layer, k + i));
   }
   k += rest;
   if (k < kStepCount) {
     do {
       [[unroll]] for (uint i = 0; i < kTurn; ++i) {
-        pass_sample(sheet, here, side, search.line.x_per_step, fetch_sample(search, k + i));
+        pass_sample(sheet, here, side, search.line.x_per_step, fetch_sample(search, layer, k + i));
       }
       k += kTurn;
     } while (k < kStepCount);
@@ -312,6 +316,11 @@ uint find_occluders(Surface surface, Search search, Side side) {
   // Nothing tells how it ends: joined only if the way to it did not bend.
   extend_sheet(sheet, side, search.line.x_per_step, here, -sheet.bend);
   return search.reach_px > 0.0 ? sheet.sectors : 0u;
+}
+
+uint find_occluders(Surface surface, Search search, Side side) {
+  uint sectors = find_in_layer(surface, search, side, 0u);
+  return kSecondLayer ? sectors | find_in_layer(surface, search, side, 1u) : sectors;
 }
 
 // What a slice adds to the pixel's sums.

@@ -64,6 +64,7 @@ void for_each_setting(Theirs& theirs, Ours& ours, const Visit& visit) {
   visit("thickness", theirs.thickness, ours.thickness);
   visit("thickness_unit", theirs.thickness_unit, ours.thickness_unit);
   visit("fill", theirs.fill, ours.fill);
+  visit("depth_layers", theirs.depth_layers, ours.depth_layers);
   visit("blend", theirs.blend, ours.blend);
   visit("falloff", theirs.falloff, ours.falloff);
   visit("divisor", theirs.divisor, ours.divisor);

@@ -20,6 +20,7 @@ constexpr ImageRole kDepth{"depth", Kind::depth};
 constexpr ImageRole kNormals{"normals", Kind::signed_colour, 3};
 constexpr ImageRole kMotion{"motion vectors", Kind::signed_colour, 2};
 constexpr ImageRole kBackDepth{"back-face depth", Kind::depth};
+constexpr ImageRole kSecondDepth{"second depth", Kind::depth};
 constexpr ImageRole kAlbedo{"albedo", Kind::colour, 3};
 constexpr ImageRole kVisibility{"visibility", Kind::colour, 1, true};
 constexpr ImageRole kBentNormal{"bent normals", Kind::signed_colour, 3, true};
@@ -103,6 +104,7 @@ tl::expected<Textures, Failure> import_images(framegraph::Graph& graph, ImageTab
            {kMotion, view.motion, textures.inputs.motion},
            {roughness, view.roughness, textures.inputs.roughness},
            {kBackDepth, view.back_depth, textures.inputs.back_depth_ndc},
+           {kSecondDepth, view.second_depth, textures.inputs.second_depth_ndc},
            {kAlbedo, view.albedo, textures.albedo},
            {kVisibility, view.visibility, textures.inputs.into.visibility},
            {kBentNormal, view.bent_normal, textures.inputs.into.bent_normal},

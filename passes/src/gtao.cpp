@@ -58,6 +58,10 @@ tl::expected<void, Error> check(const GtaoSettings& settings) {
     return tl::unexpected(Error{"The resolution is divided by " + std::to_string(settings.divisor) +
                                 "; it must be 1, 2 or 4."});
   }
+  if (settings.depth_layers < 1 || settings.depth_layers > 2) {
+    return tl::unexpected(Error{"There are " + std::to_string(settings.depth_layers) +
+                                " layers of depth; there must be 1 or 2."});
+  }
   if (!is_share(settings.roughness) || settings.roughness_channel > 3) {
     return tl::unexpected(Error{"The roughness is " + std::to_string(settings.roughness) +
                                 " and its texture's channel " +
@@ -92,6 +96,10 @@ bool needs_back_depth(Estimator estimator, ThicknessUnit unit) {
   return has_thickness(estimator) && unit == ThicknessUnit::back_faces;
 }
 
+bool needs_second_depth(Estimator estimator, std::uint32_t depth_layers) {
+  return has_thickness(estimator) && depth_layers > 1;
+}
+
 tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame, const GtaoInputs& inputs,
                                               const GtaoSettings& settings) {
   if (auto good = check(settings); !good) {
@@ -99,11 +107,13 @@ tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame, const GtaoInpu
   }
   const bool rough = settings.lobe && inputs.roughness;
   const bool by_back_faces = needs_back_depth(settings.estimator, settings.thickness_unit);
-  const std::array<NamedInput, 4> needed{
+  const bool two_layers = needs_second_depth(settings.estimator, settings.depth_layers);
+  const std::array<NamedInput, 5> needed{
       {{"line depth", inputs.line_depth},
        {"normals", inputs.normals},
        {"roughness", rough ? inputs.roughness : inputs.normals},
-       {"back-face depth", by_back_faces ? inputs.back_line_depth : inputs.line_depth}}};
+       {"back-face depth", by_back_faces ? inputs.back_line_depth : inputs.line_depth},
+       {"second depth", two_layers ? inputs.second_line_depth : inputs.line_depth}}};
   if (auto good = check_inputs(frame.graph, "gtao", needed); !good) {
     return tl::unexpected(good.error());
   }
@@ -127,7 +137,8 @@ tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame, const GtaoInpu
                              static_cast<std::uint32_t>(of_distance),
                              static_cast<std::uint32_t>(by_back_faces),
                              static_cast<std::uint32_t>(settings.parts.snapping),
-                             static_cast<std::uint32_t>(by_pattern)};
+                             static_cast<std::uint32_t>(by_pattern),
+                             static_cast<std::uint32_t>(two_layers)};
   const auto kernel =
       frame.kernels.get(settings.lobe ? Shader::gtao_lobe : Shader::gtao, constants);
   if (!kernel) {
@@ -149,6 +160,9 @@ tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame, const GtaoInpu
   if (by_back_faces) {
     pass.read(inputs.back_line_depth, framegraph::access::storage_read_compute);
   }
+  if (two_layers) {
+    pass.read(inputs.second_line_depth, framegraph::access::storage_read_compute);
+  }
   const SearchPhase phase = search_phase(settings.divisor, frame.index);
   const maths::vec2 per_px = maths::ray_per_px(*projection);
   const maths::GtaoParameters parameters{
@@ -163,7 +177,7 @@ tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame, const GtaoInpu
       settings.falloff,
       settings.roughness};
   pass.record([&kernels = frame.kernels, kernel = *kernel, inputs, result, parameters, rough,
-               by_back_faces, by_pattern](RecordContext& context) {
+               by_back_faces, two_layers, by_pattern](RecordContext& context) {
     const VkImageView line = context.view(inputs.line_depth);
     const VkImageView normals = context.view(inputs.normals);
     const VkImageView signal = context.view(result.signal);
@@ -172,6 +186,7 @@ tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame, const GtaoInpu
                            signal,
                            result.bent ? context.view(result.bent) : signal,
                            by_back_faces ? context.view(inputs.back_line_depth) : line,
+                           two_layers ? context.view(inputs.second_line_depth) : line,
                            rough ? context.view(inputs.roughness) : normals};
     // Without a lobe the last binding does not exist.
     const std::span<const VkImageView> bound(views.data(), views.size() - (result.lobe ? 0 : 1));

@@ -13,7 +13,7 @@ namespace alcove::passes {
 namespace {
 
 constexpr std::size_t kShaderCount = static_cast<std::size_t>(Shader::count);
-constexpr std::size_t kMaxConstants = 16;
+constexpr std::size_t kMaxConstants = 24;
 constexpr std::size_t kMaxBindings = 17;  // the parameters among them
 constexpr std::uint32_t kGroupSize = 8;
 

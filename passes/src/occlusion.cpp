@@ -135,8 +135,17 @@ tl::expected<OcclusionOutputs, Error> add_occlusion(const Frame& frame,
     }
     back_line = *made;
   }
-  const auto signal = add_gtao(frame, {*line, normals, in_view_space, inputs.roughness, back_line},
-                               gtao_settings(settings));
+  framegraph::Texture second_line;
+  if (inputs.second_depth_ndc && needs_second_depth(settings.estimator, settings.depth_layers)) {
+    auto made = add_line_depth(frame, inputs.second_depth_ndc, "second line depth");
+    if (!made) {
+      return tl::unexpected(std::move(made.error()));
+    }
+    second_line = *made;
+  }
+  const auto signal =
+      add_gtao(frame, {*line, normals, in_view_space, inputs.roughness, back_line, second_line},
+               gtao_settings(settings));
   if (!signal) {
     return tl::unexpected(signal.error());
   }

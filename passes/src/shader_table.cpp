@@ -30,9 +30,9 @@ const ShaderSource& shader_source(Shader shader) {
       {kDepthPyramid, "sttttt"},
       {kNormals, "st"},
       {kLineDepth, "st"},
-      {kGtao, "tsttt"},
+      {kGtao, "tstttt"},
       {kGtaoLobe,
-       "tsttt"
+       "tstttt"
        "s"},
       {kReconstruct, "tttstt"},
       {kReconstructHistory,

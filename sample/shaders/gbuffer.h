@@ -12,6 +12,8 @@ struct GbufferParameters {
   mat4 previous_clip_from_world;  // without jitter differences: motion is of surfaces alone
   mat4 world_from_moving;         // of draws that move; rotation and translation
   mat4 previous_world_from_moving;
+  // Linear depth is (x * depth_ndc + y) / (z * depth_ndc + w), as Projection has it.
+  vec4 depth_unproject;
   vec4 eye_ws;  // w = 1: a position; w = 0: the direction towards the eye
 };
 

@@ -16,10 +16,6 @@ using Failure = tl::unexpected<std::string>;
 // What is fully coloured, in parts of the image.
 constexpr float kFullMotion = 0.02f;
 
-bool has_back_faces(const OcclusionSettings& settings) {
-  return passes::needs_back_depth(settings.estimator, settings.thickness_unit);
-}
-
 // The settings with what the picture shows asked for too.
 OcclusionSettings with_outputs(OcclusionSettings settings, Picture picture) {
   const bool lit = picture == Picture::kLit;
@@ -129,21 +125,26 @@ tl::expected<Texture, std::string> SceneFrame::declare(Graph& graph, Texture tar
                             kAlbedoFormat),
                      create(state.picture == Picture::kMotion, "motion", kMotionFormat),
                      create(state.picture == Picture::kLit, "emissive", kEmissiveFormat)});
-  Texture back_depth;
-  if (has_back_faces(settings) || (compared && has_back_faces(*compared))) {
-    back_depth =
+  const HiddenDepths hidden =
+      hidden_depths_of(settings).with(compared ? hidden_depths_of(*compared) : HiddenDepths{});
+  if (hidden.back_faces) {
+    surfaces.back_depth =
         gbuffer_->add_back_faces(graph, view_, create(true, "back-face depth", kDepthFormat));
+  }
+  if (hidden.second_layer) {
+    surfaces.second_depth = gbuffer_->add_second_layer(graph, view_, surfaces.gbuffer.depth,
+                                                       create(true, "second depth", kDepthFormat));
   }
 
   Shown shown = shown_of(state);
-  auto picture = picture_of(graph, state, surfaces, back_depth, settings, "occlusion", shown);
+  auto picture = picture_of(graph, state, surfaces, settings, "occlusion", shown);
   if (!picture) {
     return picture;
   }
   shown.texture = *picture;
   if (compared) {
-    auto other = picture_of(graph, state, surfaces, back_depth,
-                            with_outputs(*compared, state.picture), "compared", shown);
+    auto other = picture_of(graph, state, surfaces, with_outputs(*compared, state.picture),
+                            "compared", shown);
     if (!other) {
       return other;
     }
@@ -187,12 +188,12 @@ Shown SceneFrame::shown_of(const ViewState& state) const {
 }
 
 // The texture that is shown of the frame drawn with `settings`.
-tl::expected<Texture, std::string> SceneFrame::picture_of(
-    Graph& graph, const ViewState& state, const Surfaces& surfaces, Texture back_depth,
-    const OcclusionSettings& settings, std::string_view history_name, Shown& shown) {
-  passes::OcclusionInputs inputs = occlusion_inputs(surfaces);
-  inputs.back_depth_ndc = back_depth;
-  const auto outputs = passes::add_occlusion(frame_of(graph), inputs,
+tl::expected<Texture, std::string> SceneFrame::picture_of(Graph& graph, const ViewState& state,
+                                                          const Surfaces& surfaces,
+                                                          const OcclusionSettings& settings,
+                                                          std::string_view history_name,
+                                                          Shown& shown) {
+  const auto outputs = passes::add_occlusion(frame_of(graph), occlusion_inputs(surfaces),
                                              with_roughness(settings, surfaces), history_name);
   if (!outputs) {
     return Failure(outputs.error().message);

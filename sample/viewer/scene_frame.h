@@ -55,8 +55,7 @@ class SceneFrame {
   passes::Frame frame_of(framegraph::Graph& graph) const;
   tl::expected<framegraph::Texture, std::string> picture_of(
       framegraph::Graph& graph, const ViewState& state, const Surfaces& surfaces,
-      framegraph::Texture back_depth, const passes::OcclusionSettings& settings,
-      std::string_view history_name, Shown& shown);
+      const passes::OcclusionSettings& settings, std::string_view history_name, Shown& shown);
   tl::expected<framegraph::Texture, std::string> add_lit(framegraph::Graph& graph,
                                                          const Surfaces& surfaces,
                                                          const passes::OcclusionOutputs& outputs,

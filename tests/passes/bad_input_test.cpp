@@ -88,6 +88,9 @@ TEST_F(BadInput, EverySettingOutOfRangeIsNamed) {
       {"roughness", [](View&, OcclusionSettings& s) { s.roughness = 1.1f; }},
       {"roughness", [](View&, OcclusionSettings& s) { s.roughness = kNaN; }},
       {"channel", [](View&, OcclusionSettings& s) { s.roughness_channel = 4; }},
+      {"layers", [](View&, OcclusionSettings& s) { s.depth_layers = 0; }},
+      {"layers", [](View&, OcclusionSettings& s) { s.depth_layers = 3; }},
+      {"needs a texture of second depth", [](View&, OcclusionSettings& s) { s.depth_layers = 2; }},
       {"needs a texture of back-face depth",
        [](View&, OcclusionSettings& s) { s.thickness_unit = ThicknessUnit::back_faces; }},
   };
@@ -154,6 +157,13 @@ TEST_F(BadInput, ImagesOfUnequalSizesAreNamed) {
                       by_back_faces);
     ASSERT_FALSE(back_faces);
     EXPECT_THAT(back_faces.error().message, HasSubstr("back-face depth of 16x11"));
+    OcclusionSettings two_layers;
+    two_layers.depth_layers = 2;
+    const auto second = add_occlusion(
+        frame, {.depth_ndc = depth, .second_depth_ndc = upload(graph, small.depth_ndc)},
+        two_layers);
+    ASSERT_FALSE(second);
+    EXPECT_THAT(second.error().message, HasSubstr("second depth of 16x11"));
     read_back(graph, depth);
   });
   expect_a_good_frame();

@@ -215,6 +215,7 @@ TEST_F(CBadInput, AnImageThatDoesNotDoIsNamed) {
        [](AlcoveView& v) { v.motion.format = VK_FORMAT_R32G32_UINT; }},
       {"roughness has VkFormat", [](AlcoveView& v) { v.roughness.format = VK_FORMAT_R8_UNORM; }},
       {"back-face depth is 16x13", [](AlcoveView& v) { v.back_depth.height = 13; }},
+      {"second depth is 16x13", [](AlcoveView& v) { v.second_depth.height = 13; }},
       {"albedo has VkFormat", [](AlcoveView& v) { v.albedo.format = VK_FORMAT_BC7_SRGB_BLOCK; }},
       {"no image of albedo", [](AlcoveView& v) { v.albedo = {}; }},
       {"visibility has VkFormat",
@@ -260,6 +261,15 @@ TEST_F(CBadInput, BackFacesThatAreReadButNotGivenAreNamed) {
     s.views[0].back_depth = {};
   });
   EXPECT_THAT(said, HasSubstr("back-face depth"));
+  EXPECT_PRED1(is_a_sentence, said);
+}
+
+TEST_F(CBadInput, ASecondLayerThatIsReadButNotGivenIsNamed) {
+  const std::string said = error_of([](Spoilt& s) {
+    s.settings.depth_layers = 2;
+    s.views[0].second_depth = {};
+  });
+  EXPECT_THAT(said, HasSubstr("second depth"));
   EXPECT_PRED1(is_a_sentence, said);
 }
 

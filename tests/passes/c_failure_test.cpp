@@ -213,8 +213,8 @@ TEST_F(CFailure, AFrameWithoutHostMemoryIsAnErrorAndTheNextOneIsRecorded) {
   for (; failed; ++which) {
     SCOPED_TRACE(which);
     for (AlcoveImage* image :
-         {&view.depth, &view.normals, &view.motion, &view.roughness, &view.back_depth, &view.albedo,
-          &view.visibility, &view.bent_normal}) {
+         {&view.depth, &view.normals, &view.motion, &view.roughness, &view.back_depth,
+          &view.second_depth, &view.albedo, &view.visibility, &view.bent_normal}) {
       image->width = 8 + static_cast<std::uint32_t>(which % 56);
       image->height = 8 + static_cast<std::uint32_t>(which / 56);
     }

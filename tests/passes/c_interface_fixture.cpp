@@ -62,6 +62,7 @@ GivenView given_view(const TestView& view, std::uint32_t width, std::uint32_t he
                   .motion = uniform(width, height, {0.01f, -0.02f}),
                   .roughness = uniform(width, height, {0.3f, 0.6f}),
                   .back_depth_ndc = draw_back_faces(view, width, height, scene),
+                  .second_depth_ndc = draw_second_layer(view, width, height, scene),
                   .albedo = uniform(width, height, {0.8f, 0.4f, 0.1f, 1.0f})};
   given.previous_view = given.view;
   given.settings = quality_settings(Quality::medium, 0.5f);
@@ -140,6 +141,7 @@ AlcoveView CInterface::view_of(const GivenView& given, AlcoveSettings& settings)
                   .motion = input(given.motion),
                   .roughness = input(given.roughness),
                   .back_depth = input(given.back_depth_ndc),
+                  .second_depth = input(given.second_depth_ndc),
                   .albedo = input(given.albedo)};
   const bool bytes = given.settings.precision == Precision::unorm8;
   const VkFormat scalar = bytes ? VK_FORMAT_R8_UNORM : VK_FORMAT_R32_SFLOAT;
@@ -209,7 +211,8 @@ Results CInterface::run_by_cpp(const GivenView& given, std::uint32_t index) {
                                         .normals_in_view_space = given.normals_in_view_space,
                                         .motion = upload_of(given.motion),
                                         .roughness = upload_of(given.roughness),
-                                        .back_depth_ndc = upload_of(given.back_depth_ndc)},
+                                        .back_depth_ndc = upload_of(given.back_depth_ndc),
+                                        .second_depth_ndc = upload_of(given.second_depth_ndc)},
                                        settings, name);
     ASSERT_TRUE(outputs) << outputs.error().message;
     if (given.settings.visibility) {

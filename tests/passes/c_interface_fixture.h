@@ -28,6 +28,7 @@ struct GivenView {
   HostImage motion;
   HostImage roughness;
   HostImage back_depth_ndc;
+  HostImage second_depth_ndc;
   HostImage albedo;
   OcclusionSettings settings;  // their flags tell the outputs that are wanted
   bool multi_bounce = false;

@@ -80,6 +80,7 @@ TEST_F(CInterface, EverySettingReachesThePasses) {
        [](GivenView& g) { g.settings.thickness_unit = ThicknessUnit::distance; }},
       {"thickness by back faces",
        [](GivenView& g) { g.settings.thickness_unit = ThicknessUnit::back_faces; }},
+      {"two layers", [](GivenView& g) { g.settings.depth_layers = 2; }},
       {"solid angle", [](GivenView& g) { g.settings.weighting = Weighting::uniform; }},
       {"hilbert", [](GivenView& g) { g.settings.pattern = Pattern::hilbert; }},
       {"memo", [](GivenView& g) { g.settings.pattern = Pattern::memo; }},
@@ -204,6 +205,7 @@ TEST_F(CInterface, EightViewsWithEverythingFitAFrame) {
     views.back().id = id;
     views.back().normals = {};
     views.back().settings.thickness_unit = ThicknessUnit::back_faces;
+    views.back().settings.depth_layers = 2;
     views.back().settings.bent_normal = true;
     views.back().settings.specular = Specular::table;
     views.back().multi_bounce = true;

@@ -120,12 +120,17 @@ bool Drawing::is_sky(std::uint32_t x, std::uint32_t y) const {
   return std::isnan(depth) || depth == camera.sky();
 }
 
-Drawing draw(const TestView& view, std::uint32_t width, std::uint32_t height, const Scene& scene) {
+namespace {
+
+// Of what `hit_by` finds along each pixel's ray.
+template <typename HitBy>
+Drawing draw_hits(const TestView& view, std::uint32_t width, std::uint32_t height,
+                  const Scene& scene, const HitBy& hit_by) {
   Drawing drawing{
       TestCamera(view.view, width, height), scene, {width, height, {}, 1}, {width, height, {}, 4}};
   for (std::uint32_t y = 0; y < height; ++y) {
     for (std::uint32_t x = 0; x < width; ++x) {
-      const auto hit = cast(scene, drawing.camera.ray(x + 0.5, y + 0.5));
+      const std::optional<Hit> hit = hit_by(drawing.camera.ray(x + 0.5, y + 0.5));
       const double depth = hit ? drawing.camera.project(hit->position).z : -1.0;
       const bool seen = depth > 0.0 && depth < 1.0;
       drawing.depth_ndc.texels.push_back(seen ? static_cast<float>(depth) : drawing.camera.sky());
@@ -138,17 +143,43 @@ Drawing draw(const TestView& view, std::uint32_t width, std::uint32_t height, co
   return drawing;
 }
 
-HostImage draw_back_faces(const TestView& view, std::uint32_t width, std::uint32_t height,
-                          const Scene& scene) {
-  Scene backs = scene;
-  for (Surface& surface : backs) {
-    surface.meet = [all = surface.meet](const Ray& ray) {
+// Of each surface the hits that `kept(hit, ray)` says.
+template <typename Kept>
+Scene with_hits(const Scene& scene, const Kept& kept) {
+  Scene result = scene;
+  for (Surface& surface : result) {
+    surface.meet = [all = surface.meet, kept](const Ray& ray) {
       std::vector<Hit> hits = all(ray);
-      std::erase_if(hits, [&](const Hit& hit) { return glm::dot(hit.normal, ray.along) <= 0.0; });
+      std::erase_if(hits, [&](const Hit& hit) { return !kept(hit, ray); });
       return hits;
     };
   }
+  return result;
+}
+
+}  // namespace
+
+Drawing draw(const TestView& view, std::uint32_t width, std::uint32_t height, const Scene& scene) {
+  return draw_hits(view, width, height, scene, [&](const Ray& ray) { return cast(scene, ray); });
+}
+
+HostImage draw_back_faces(const TestView& view, std::uint32_t width, std::uint32_t height,
+                          const Scene& scene) {
+  const Scene backs = with_hits(
+      scene, [](const Hit& hit, const Ray& ray) { return glm::dot(hit.normal, ray.along) > 0.0; });
   return draw(view, width, height, backs).depth_ndc;
+}
+
+HostImage draw_second_layer(const TestView& view, std::uint32_t width, std::uint32_t height,
+                            const Scene& scene) {
+  const auto behind_first = [&](const Ray& ray) {
+    const auto first = cast(scene, ray);
+    const Scene behind = with_hits(scene, [&](const Hit& hit, const Ray& along) {
+      return first && hit.t > 1.001 * first->t && glm::dot(hit.normal, along.along) < 0.0;
+    });
+    return cast(behind, ray);
+  };
+  return draw_hits(view, width, height, scene, behind_first).depth_ndc;
 }
 
 }  // namespace alcove::passes

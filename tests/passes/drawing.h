@@ -84,6 +84,10 @@ Drawing draw(const TestView& view, std::uint32_t width, std::uint32_t height, co
 HostImage draw_back_faces(const TestView& view, std::uint32_t width, std::uint32_t height,
                           const Scene& scene);
 
+// The depth of the nearest faces towards the eye behind what draw() shows.
+HostImage draw_second_layer(const TestView& view, std::uint32_t width, std::uint32_t height,
+                            const Scene& scene);
+
 }  // namespace alcove::passes
 
 #endif  // ALCOVE_TESTS_PASSES_DRAWING_H_

@@ -301,12 +301,14 @@ TEST_F(GtaoInvariance, DepthBuffersOfNothingButNonsenseGiveFiniteImages) {
         settings.filter_reach = 2;
         settings.history_frames = 8;
         settings.thickness_unit = given ? ThicknessUnit::back_faces : ThicknessUnit::radius;
+        settings.depth_layers = given ? 2 : 1;
         for (int frame = 0; frame < 2; ++frame) {
           const OcclusionImages images =
               run_occlusion({.view = view.view,
                              .depth_ndc = drawing.depth_ndc,
                              .normal_vs = given ? &drawing.normal_vs : nullptr,
-                             .back_depth_ndc = &backs},
+                             .back_depth_ndc = &backs,
+                             .second_depth_ndc = &backs},
                             settings);
           EXPECT_THAT(images.visibility.texels,
                       testing::Each(testing::AllOf(testing::Ge(0.0f), testing::Le(1.0f))));

@@ -157,6 +157,9 @@ PassTest::OcclusionImages PassTest::run_occlusion(const OcclusionFrame& given,
     if (given.back_depth_ndc != nullptr) {
       inputs.back_depth_ndc = upload(graph, *given.back_depth_ndc);
     }
+    if (given.second_depth_ndc != nullptr) {
+      inputs.second_depth_ndc = upload(graph, *given.second_depth_ndc);
+    }
     const auto outputs = add_occlusion(frame, inputs, settings);
     ASSERT_TRUE(outputs) << outputs.error().message;
     read_back(graph, outputs->visibility);

@@ -58,6 +58,7 @@ class PassTest : public testing::Test {
     std::uint32_t index = 0;
     bool reset = false;                         // forgets the history first
     const HostImage* back_depth_ndc = nullptr;  // null: none
+    const HostImage* second_depth_ndc = nullptr;
   };
   struct OcclusionImages {
     HostImage visibility;

@@ -35,7 +35,7 @@ class OcclusionPlan : public PassTest {
   };
 
   Kept kept(const OcclusionSettings& settings, Reads reads = {}, bool normals_given = true,
-            bool back_faces_given = false) {
+            bool hidden_depths_given = false) {
     const Drawing drawing = draw(test_views()[2], 32, 24, groove(0.8));
     Kept found;
     run([&](Graph& graph) {
@@ -45,8 +45,9 @@ class OcclusionPlan : public PassTest {
       if (normals_given) {
         inputs.normals = upload(graph, drawing.normal_vs);
       }
-      if (back_faces_given) {
+      if (hidden_depths_given) {
         inputs.back_depth_ndc = upload(graph, drawing.depth_ndc);
+        inputs.second_depth_ndc = upload(graph, drawing.depth_ndc);
       }
       const auto outputs = add_occlusion(frame, inputs, settings);
       ASSERT_TRUE(outputs) << outputs.error().message;
@@ -173,6 +174,31 @@ TEST_F(OcclusionPlan, PartsOfASearchCostNoPassAndNoByteAndAPipelineOnlyWhereThey
     EXPECT_EQ(found.bytes, as_it_is.bytes);
     EXPECT_EQ(gpu().kernels().pipeline_count(), ++pipelines);
   }
+}
+
+TEST_F(OcclusionPlan, ASecondLayerCostsOnlyWhereItIsSearched) {
+  const Kept horizons = kept(least());
+  OcclusionSettings settings = least();
+  settings.depth_layers = 2;
+  const Kept unread = kept(settings);
+  EXPECT_EQ(unread.passes, horizons.passes) << "what is hidden lies within infinite thickness";
+  EXPECT_EQ(unread.bytes, horizons.bytes);
+
+  settings.estimator = Estimator::connected;
+  settings.depth_layers = 1;
+  const Kept one = kept(settings);
+  const std::size_t pipelines = gpu().kernels().pipeline_count();
+  const Kept given = kept(settings, {}, true, true);
+  EXPECT_EQ(given.passes, one.passes);
+  EXPECT_EQ(given.transients, one.transients);
+  EXPECT_EQ(given.bytes, one.bytes);
+  EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines);
+
+  settings.depth_layers = 2;
+  const Kept two = kept(settings, {}, true, true);
+  EXPECT_THAT(two.passes, ElementsAre("line depth", "second line depth", "gtao", "reconstruct"));
+  EXPECT_THAT(two.transients, Contains("second line depth"));
+  EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines + 1);
 }
 
 TEST_F(OcclusionPlan, SpecularOcclusionCostsOnlyWhereItIsOn) {

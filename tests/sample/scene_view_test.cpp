@@ -143,11 +143,12 @@ TEST_F(SceneViewTest, ASettingThatIsRefusedIsToldAndThePictureStays) {
   EXPECT_EQ(view_->facts().refusal, "");
 }
 
-TEST_F(SceneViewTest, BackFacesAndAKeptComparisonAreDrawn) {
+TEST_F(SceneViewTest, HiddenDepthsAndAKeptComparisonAreDrawn) {
   ViewState& state = view_->state();
   state.kept = state.settings;
   state.kept.thickness_unit = passes::ThicknessUnit::back_faces;
   state.comparison = Comparison::kKept;
+  state.settings.depth_layers = 2;
   state.settings.specular = passes::Specular::table;
   draw(3);
   EXPECT_EQ(view_->facts().refusal, "");

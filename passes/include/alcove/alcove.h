@@ -121,8 +121,9 @@ typedef struct AlcoveSettings {
   AlcoveWeighting weighting;
   float thickness;  // of occluders, at least 0 (bitmask, connected)
   AlcoveThicknessUnit thickness_unit;
-  float fill;     // share of what is hidden behind them that occludes too, [0,1]
-  float blend;    // of a horizon towards each lower sample, [0,1] (heuristic)
+  float fill;             // share of what is hidden behind them that occludes too, [0,1]
+  uint32_t depth_layers;  // that are searched: 1, or 2 with AlcoveView::second_depth
+  float blend;            // of a horizon towards each lower sample, [0,1] (heuristic)
   float falloff;  // last part of the radius, over which occluders fade, [0,1] (horizons, heuristic)
   uint32_t divisor;  // one search a frame in so many pixels a side: 1, 2 or 4
   AlcovePattern pattern;
@@ -234,10 +235,13 @@ typedef struct AlcoveView {
   AlcoveImage normals;  // xyz unit, signed; none: made from depth, and in view space
   AlcoveImage
       motion;  // xy: uv of this frame minus uv of the last, signed; none: only the camera moves
-  AlcoveImage roughness;   // perceptual, [0,1]; none: AlcoveSettings::roughness
-  AlcoveImage back_depth;  // of the nearest back faces, as depth; needed with
-                           // ALCOVE_THICKNESS_UNIT_BACK_FACES (bitmask, connected), else unread
-  AlcoveImage albedo;      // linear RGB, [0,1], for multi_bounce
+  AlcoveImage roughness;     // perceptual, [0,1]; none: AlcoveSettings::roughness
+  AlcoveImage back_depth;    // of the nearest back faces, as depth; needed with
+                             // ALCOVE_THICKNESS_UNIT_BACK_FACES (bitmask, connected), else unread
+  AlcoveImage second_depth;  // of the nearest front faces behind `depth` (see
+                             // alcove/passes/occlusion.h), as depth; needed with two depth_layers
+                             // (bitmask, connected), else unread
+  AlcoveImage albedo;        // linear RGB, [0,1], for multi_bounce
 
   // Outputs. Formats are any that the device can store to, of at least so many channels.
   AlcoveImage visibility;    // 1 channel, [0,1]: R8_UNORM will do

@@ -38,6 +38,9 @@ enum class ThicknessUnit : std::uint8_t {
 // an engine has to draw back faces at all.
 [[nodiscard]] bool needs_back_depth(Estimator estimator, ThicknessUnit unit);
 
+// The same of GtaoInputs::second_line_depth and OcclusionInputs::second_depth_ndc.
+[[nodiscard]] bool needs_second_depth(Estimator estimator, std::uint32_t depth_layers);
+
 // What a visible direction weighs.
 enum class Weighting : std::uint8_t {
   cosine,   // of its angle to the normal: what diffuse surfaces reflect
@@ -77,7 +80,8 @@ struct SearchSettings {
   // Of occluders, for bitmask and connected samples.
   float thickness = 0.15f;  // at least 0
   ThicknessUnit thickness_unit = ThicknessUnit::radius;
-  float fill = 0.4f;  // share of what is hidden behind them that occludes too, [0,1]
+  float fill = 0.4f;               // share of what is hidden behind them that occludes too, [0,1]
+  std::uint32_t depth_layers = 1;  // that are searched: 1, or 2 with what lies behind the first
   // For horizons and heuristic.
   float blend = 0.05f;   // of a horizon towards each lower sample, [0,1] (heuristic)
   float falloff = 0.0f;  // last part of the radius, over which occluders fade, [0,1]; 0: none
@@ -105,6 +109,8 @@ struct GtaoInputs {
   framegraph::Texture roughness;  // perceptual, [0,1]; null: GtaoSettings::roughness
   // Of OcclusionInputs::back_depth_ndc, as add_line_depth makes it; only where needs_back_depth().
   framegraph::Texture back_line_depth;
+  // The same of OcclusionInputs::second_depth_ndc; only where needs_second_depth().
+  framegraph::Texture second_line_depth;
 };
 
 // What filters and history work on: sums over slices, one texel a block.

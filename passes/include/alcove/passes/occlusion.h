@@ -55,6 +55,12 @@ struct OcclusionInputs {
   // value is taken: where it is sky, not a number or not behind `depth_ndc` by more than a
   // ten-thousandth of the distance, the occluder's thickness is that of the settings.
   framegraph::Texture back_depth_ndc;
+  // For two depth_layers, where needs_second_depth(); else ignored. The depth of the scene drawn
+  // once more, all else alike, with back faces culled and fragments discarded that do not lie
+  // behind `depth_ndc`, by a thousandth of its distance say: the nearest front face that the first
+  // one hides. A solid's own back face would only say again how thick it is. Any value is taken:
+  // where it is sky or not a number nothing is hidden.
+  framegraph::Texture second_depth_ndc;
   // As ReconstructInputs::into: textures of the caller's for the results that the settings ask for.
   Occlusion into;
 };

@@ -1,0 +1,137 @@
+// Two layers of depth: what the first hides occludes as if it were seen.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "drawing.h"
+#include "pass_fixture.h"
+
+namespace alcove::passes {
+namespace {
+
+constexpr std::array kEstimators{Estimator::bitmask, Estimator::connected};
+
+class SecondLayer : public PassTest {
+ protected:
+  HostImage visibility(const TestView& view, const Drawing& drawing, const HostImage& second,
+                       const OcclusionSettings& settings) {
+    return run_occlusion({.view = view.view,
+                          .depth_ndc = drawing.depth_ndc,
+                          .normal_vs = &drawing.normal_vs,
+                          .second_depth_ndc = &second},
+                         settings)
+        .visibility;
+  }
+};
+
+OcclusionSettings exact(Estimator estimator, float radius) {
+  OcclusionSettings settings = quality_settings(Quality::reference, radius);
+  settings.estimator = estimator;
+  settings.slices = 16;
+  settings.fill = 0.0f;
+  settings.thickness = 1.0f;
+  return settings;
+}
+
+OcclusionSettings of_layers(OcclusionSettings settings, std::uint32_t layers) {
+  settings.depth_layers = layers;
+  return settings;
+}
+
+//          _______________   a plate beyond the radius, over
+//
+//                   _______  a step: from a point of the floor it covers all that is lower than
+//   ____x__________|         its edge
+TEST_F(SecondLayer, AStepUnderAPlateHasTheClosedForm) {
+  const TestView view = orthographic_view("orthographic", 4.0, 4.0, 0.1, 20.0);
+  const double step = 0.35, height = 0.3, floor = 4.0;
+  Scene scene = box({step, -100.0, -2.0 * floor}, {100.0, 100.0, height - floor});
+  scene.push_back(plane({0.0, 0.0, -floor}, {0.0, 0.0, 1.0}));
+  const Scene plate = box({0.1, -100.0, -0.8}, {100.0, 100.0, -0.6});
+  scene.insert(scene.end(), plate.begin(), plate.end());
+  const Drawing drawing = draw(view, 128, 128, scene);
+  const HostImage second = draw_second_layer(view, 128, 128, scene);
+  const auto mean_error = [&](const OcclusionSettings& settings) {
+    const HostImage image = visibility(view, drawing, second, settings);
+    double sum = 0.0;
+    for (std::uint32_t x = 52; x < 66; ++x) {
+      const double away = step - (x + 0.5 - 64) * 8.0 / 128;
+      const double truth = 1.0 - 0.5 * (1.0 - away / std::hypot(away, height));
+      sum += std::abs(image.at(x, 64) - truth) / 14;
+    }
+    return sum;
+  };
+  for (const Estimator estimator : kEstimators) {
+    SCOPED_TRACE(static_cast<int>(estimator));
+    const OcclusionSettings settings = exact(estimator, 1.5f);
+    const double error = mean_error(of_layers(settings, 2));
+    EXPECT_LT(error, 0.02);
+    EXPECT_LT(5.0 * error, mean_error(settings)) << "one layer does not see the step";
+  }
+}
+
+Scene tilted_and_box() {
+  Scene scene = box({0.31, -50.0, -20.0}, {0.6, 50.0, -3.5});
+  scene.push_back(plane({0.0, 0.0, -4.0}, {0.3, 0.1, 1.0}));
+  return scene;
+}
+
+// The sky, what is not a number, and the first layer again.
+TEST_F(SecondLayer, WhereNothingIsHiddenOneLayerIsAll) {
+  const Scene scene = tilted_and_box();
+  for (const TestView& view : test_views()) {
+    SCOPED_TRACE(view.name);
+    const Drawing drawing = draw(view, 60, 40, scene);
+    for (const Estimator estimator : kEstimators) {
+      OcclusionSettings settings = exact(estimator, 1.2f);
+      settings.thickness = 0.2f;
+      settings.fill = 0.4f;
+      HostImage second = drawing.depth_ndc;
+      const HostImage expected = visibility(view, drawing, second, settings);
+      settings.depth_layers = 2;
+      EXPECT_EQ(visibility(view, drawing, second, settings).texels, expected.texels);
+      for (const float none : {drawing.camera.sky(), std::numeric_limits<float>::quiet_NaN()}) {
+        std::ranges::fill(second.texels, none);
+        EXPECT_EQ(visibility(view, drawing, second, settings).texels, expected.texels) << none;
+      }
+    }
+  }
+}
+
+// A layer adds sectors and takes none away.
+TEST_F(SecondLayer, WhatIsHiddenOnlyDarkens) {
+  Scene scene = tilted_and_box();
+  scene.push_back(sphere({-0.2, 0.1, -2.6}, 0.3));
+  for (const TestView& view : test_views()) {
+    SCOPED_TRACE(view.name);
+    const Drawing drawing = draw(view, 60, 40, scene);
+    const HostImage second = draw_second_layer(view, 60, 40, scene);
+    for (const Estimator estimator : kEstimators) {
+      const OcclusionSettings settings = exact(estimator, 1.2f);
+      const HostImage one = visibility(view, drawing, second, settings);
+      const HostImage two = visibility(view, drawing, second, of_layers(settings, 2));
+      double darker = 0.0;
+      for (std::size_t i = 0; i < one.texels.size(); ++i) {
+        EXPECT_LE(two.texels[i], one.texels[i] + 1e-4f);
+        darker += one.texels[i] - two.texels[i];
+      }
+      EXPECT_GT(darker, 1.0);
+    }
+  }
+}
+
+TEST_F(SecondLayer, HorizonsDoNotReadIt) {
+  const Scene scene = tilted_and_box();
+  const TestView view = test_views().front();
+  const Drawing drawing = draw(view, 60, 40, scene);
+  const OcclusionSettings settings = exact(Estimator::horizons, 1.2f);
+  const HostImage second = draw_second_layer(view, 60, 40, scene);
+  EXPECT_EQ(visibility(view, drawing, second, of_layers(settings, 2)).texels,
+            visibility(view, drawing, second, settings).texels);
+}
+
+}  // namespace
+}  // namespace alcove::passes
