@@ -86,7 +86,7 @@ void add_searches(TrialList& list) {
            [](OcclusionSettings& s) { s.pattern = Pattern::memo; });
   part = "snapping";
   list.add(part, "to texels", [](OcclusionSettings& s) { s.parts.snapping = true; });
-  list.add(part, "not reckoned with", [](OcclusionSettings& s) { s.parts.snapping = false; });
+  list.add(part, "none", [](OcclusionSettings& s) { s.parts.snapping = false; });
   part = "grouping";
   list.add(part, "neighbours",
            [](OcclusionSettings& s) { s.parts.grouping = Grouping::neighbours; });

@@ -58,7 +58,7 @@ TEST_F(Gtao, OpenPlaneIsFullyVisibleAtAnyTilt) {
   }
 }
 
-// What reckoning with it buys: the same planes, tilted, without it.
+// What snapping buys: the same planes, tilted, without it.
 TEST_F(Gtao, WhereSnappingIsNotReckonedWithATiltedPlaneOccludesItself) {
   const TestView view = test_views()[2];
   for (const Estimator estimator : {Estimator::horizons, Estimator::connected}) {

@@ -104,7 +104,7 @@ TEST_F(SecondLayer, WhereNothingIsHiddenOneLayerIsAll) {
 // A layer adds sectors and takes none away.
 TEST_F(SecondLayer, WhatIsHiddenOnlyDarkens) {
   Scene scene = tilted_and_box();
-  scene.push_back(sphere({-0.2, 0.1, -2.6}, 0.3));
+  scene.push_back(sphere({0.36, 0.1, -2.2}, 0.35));
   for (const TestView& view : test_views()) {
     SCOPED_TRACE(view.name);
     const Drawing drawing = draw(view, 60, 40, scene);
