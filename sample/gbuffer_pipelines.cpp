@@ -9,6 +9,7 @@
 #include "spirv/gbuffer_fragment.h"
 #include "spirv/gbuffer_vertex.h"
 #include "spirv/second_layer_fragment.h"
+#include "spirv/second_layer_vertex.h"
 #include "triangles.h"
 
 namespace alcove::sample {
@@ -20,13 +21,14 @@ constexpr std::array<VkFormat, 4> kColourFormats{kNormalFormat, kAlbedoFormat, k
 // The state that never changes, as Vulkan wants it: attributes of Vertex, no blending.
 struct FixedState {
   VkVertexInputBindingDescription binding{0, sizeof(Vertex), VK_VERTEX_INPUT_RATE_VERTEX};
+  // The first two are all that the second layer reads.
   std::array<VkVertexInputAttributeDescription, 6> attributes{
       {{0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, position_ws)},
+       // Two sets of coordinates, as in the last.
+       {4, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Vertex, base_color_uv)},
        {1, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, normal_ws)},
        {2, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, face_normal_ws)},
        {3, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Vertex, tangent_ws)},
-       // Two sets of coordinates each.
-       {4, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Vertex, base_color_uv)},
        {5, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Vertex, emissive_uv)}}};
   VkPipelineVertexInputStateCreateInfo vertices{
       .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO,
@@ -65,7 +67,10 @@ struct FixedState {
       .pColorAttachmentFormats = kColourFormats.data(),
       .depthAttachmentFormat = kDepthFormat};
 
-  FixedState() {
+  explicit FixedState(bool depth_alone) {
+    if (depth_alone) {
+      vertices.vertexAttributeDescriptionCount = 2;
+    }
     for (auto& attachment : attachments) {
       attachment.colorWriteMask = 0xf;
     }
@@ -139,14 +144,15 @@ VkResult GbufferPipelines::create_pipelines(Kind kind, std::uint32_t texture_cou
   const std::array<uint32_t, 2> values{texture_count, geometric_normals ? 1u : 0u};
   const std::array<VkSpecializationMapEntry, 2> entries{{{0, 0, 4}, {1, 4, 4}}};
   const VkSpecializationInfo specialisation{2, entries.data(), sizeof(values), values.data()};
-  const std::span<const uint32_t> fragment = kind == Kind::second_layer
-                                                 ? std::span<const uint32_t>(kSecondLayerFragment)
-                                                 : std::span<const uint32_t>(kGbufferFragment);
-  const ShaderStages stages(device_, kGbufferVertex, fragment, &specialisation);
+  const bool second = kind == Kind::second_layer;
+  using Code = std::span<const uint32_t>;
+  const ShaderStages stages(device_, second ? Code(kSecondLayerVertex) : Code(kGbufferVertex),
+                            second ? Code(kSecondLayerFragment) : Code(kGbufferFragment),
+                            &specialisation);
   if (stages.result != VK_SUCCESS) {
     return stages.result;
   }
-  const FixedState fixed;
+  const FixedState fixed(second);
   for (const bool reversed : {false, true}) {
     const VkPipelineDepthStencilStateCreateInfo depth{
         .sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,

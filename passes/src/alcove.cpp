@@ -34,7 +34,7 @@ void write(Message& message, std::string_view text) {
 }
 
 // The passes of a view need no more dispatches than their share of a frame.
-constexpr std::uint32_t kPassesOfAView = 8;
+constexpr std::uint32_t kPassesOfAView = 9;
 static_assert(ALCOVE_MAX_VIEWS * kPassesOfAView <= passes::Kernels::kMaxDispatches);
 
 }  // namespace

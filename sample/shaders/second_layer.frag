@@ -14,7 +14,7 @@ layout(set = 0, binding = 1) uniform sampler2D textures[kTextureCount];
 layout(set = 1, binding = 0) uniform texture2D first_depth;  // as gl_FragCoord.z has it
 layout(push_constant) uniform Draw { GbufferDraw draw; };
 
-layout(location = 4) in vec4 surface_uv;
+layout(location = 0) in vec2 base_colour_uv;
 
 float linear_depth(float depth_ndc) {
   vec4 p = parameters.depth_unproject;
@@ -22,7 +22,7 @@ float linear_depth(float depth_ndc) {
 }
 
 void main() {
-  vec4 base = draw.base_colour * texture(textures[draw.base_colour_texture], surface_uv.xy);
+  vec4 base = draw.base_colour * texture(textures[draw.base_colour_texture], base_colour_uv);
   float first = linear_depth(texelFetch(first_depth, ivec2(gl_FragCoord.xy), 0).r);
   // The same surface, drawn again, rounds to within this.
   if (base.a < draw.alpha_cutoff || linear_depth(gl_FragCoord.z) <= first * 1.001) {

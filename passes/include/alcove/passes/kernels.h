@@ -54,7 +54,7 @@ struct Kernel {
 class Kernels {
  public:
   // Passes use at most this many dispatches, and this many bytes of parameters, in a frame.
-  static constexpr std::uint32_t kMaxDispatches = 64;
+  static constexpr std::uint32_t kMaxDispatches = 72;
   static constexpr std::uint32_t kMaxParameterBytes = 1024;
 
   // `device` must outlive the kernels. `frames_in_flight` is how many frames may be recorded before
