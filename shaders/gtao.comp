@@ -259,8 +259,10 @@ Sheet begin_sheet(Surface surface, Side side, LineSample here, LineSample next) 
 
 // Adds a sample, `bend` of the line at it: its thickness, and the sheet between it and the last one
 // if they are joined, as far as it runs within the radius.
-void extend_sheet(inout Sheet sheet, Side side, float x_per_step, LineSample here, float bend) {
-  bool joined = kConnected && samples_join(sheet.bend, bend);
+void extend_sheet(inout Sheet sheet, Side side, float x_per_step, uint layer, LineSample here,
+                  float bend) {
+  bool joined = kConnected && (layer == 0u ? samples_join(sheet.bend, bend)
+                                           : hidden_samples_join(sheet.bend, bend));
   float excess = radius_excess(here.point, parameters.radius);
   bool inside = excess <= 0.0;
   float apart = kConnected ? edge_share(kStepCount) * sheet.step_px * x_per_step : 0.0;
@@ -281,11 +283,11 @@ void extend_sheet(inout Sheet sheet, Side side, float x_per_step, LineSample her
 
 // Adds `here`, now that the sample `next` after it tells how the line bends at it.
 void pass_sample(inout Sheet sheet, inout LineSample here, Side side, float x_per_step,
-                 LineSample next) {
+                 uint layer, LineSample next) {
   float rise = next.line - here.line;
   float step_px = next.offset_px - here.offset_px;
   float bend = sharp_bend(sheet.rise, sheet.step_px, rise, step_px, side.sharp);
-  extend_sheet(sheet, side, x_per_step, here, bend);
+  extend_sheet(sheet, side, x_per_step, layer, here, bend);
   sheet.rise = rise;
   sheet.step_px = step_px;
   here = next;
@@ -302,19 +304,21 @@ uint find_in_layer(Surface surface, Search search, Side side, uint layer) {
   const uint rest = (kStepCount - 2) % kTurn;
   uint k = 2;
   [[unroll]] for (uint i = 0; i < rest; ++i) {
-    pass_sample(sheet, here, side, search.line.x_per_step, fetch_sample(search, layer, k + i));
+    pass_sample(sheet, here, side, search.line.x_per_step, layer,
+                fetch_sample(search, layer, k + i));
   }
   k += rest;
   if (k < kStepCount) {
     do {
       [[unroll]] for (uint i = 0; i < kTurn; ++i) {
-        pass_sample(sheet, here, side, search.line.x_per_step, fetch_sample(search, layer, k + i));
+        pass_sample(sheet, here, side, search.line.x_per_step, layer,
+                    fetch_sample(search, layer, k + i));
       }
       k += kTurn;
     } while (k < kStepCount);
   }
   // Nothing tells how it ends: joined only if the way to it did not bend.
-  extend_sheet(sheet, side, search.line.x_per_step, here, -sheet.bend);
+  extend_sheet(sheet, side, search.line.x_per_step, layer, here, -sheet.bend);
   return search.reach_px > 0.0 ? sheet.sectors : 0u;
 }
 

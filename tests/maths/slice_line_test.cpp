@@ -193,6 +193,14 @@ TEST(ConnectedSamples, JoinAlongAPlaneAndAcrossACreaseButNotOverAGap) {
   EXPECT_FALSE(maths::samples_join(2.0f, -1.0f)) << "one surface in front of another";
 }
 
+TEST(ConnectedSamples, OfWhatIsHiddenJoinAlongAPlaneAlone) {
+  EXPECT_TRUE(maths::hidden_samples_join(0.0f, 0.0f)) << "a plane";
+  EXPECT_TRUE(maths::hidden_samples_join(0.0f, -3.0f)) << "a plane that ends";
+  EXPECT_TRUE(maths::hidden_samples_join(2.0f, 0.0f)) << "and one that begins";
+  EXPECT_FALSE(maths::hidden_samples_join(2.0f, 1.0f)) << "shreds";
+  EXPECT_FALSE(maths::hidden_samples_join(2.0f, -1.0f)) << "one surface in front of another";
+}
+
 TEST(ConnectedSamples, OnlySharpBendsCountAndTheirSignIsTheTurns) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
