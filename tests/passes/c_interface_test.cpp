@@ -253,16 +253,17 @@ TEST_F(CInterface, LayersOfAnArrayAreImagesOfTheirOwn) {
     views[eye].visibility.layer = eye;
   }
   run_frame(*context, views, 0);
-  const auto bytes = sample::HostBuffer::create(gpu().device(), 2 * 16 * 12 * sizeof(float),
-                                                VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+  constexpr std::size_t kTexels = 16UL * 12;
+  constexpr std::size_t kSize = kTexels * sizeof(float);  // of an eye, bytes
+  const auto bytes =
+      sample::HostBuffer::create(gpu().device(), 2 * kSize, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
   ASSERT_TRUE(bytes) << bytes.error();
   engine().submit(1, [&](VkCommandBuffer commands) { copy(commands, both, **bytes); });
   engine().wait();
   for (std::uint32_t eye = 0; eye < 2; ++eye) {
     Results found;
-    found.visibility.texels.resize(16 * 12);
-    const std::size_t size = 16 * 12 * sizeof(float);
-    std::memcpy(found.visibility.texels.data(), (*bytes)->bytes().data() + eye * size, size);
+    found.visibility.texels.resize(kTexels);
+    std::memcpy(found.visibility.texels.data(), (*bytes)->bytes().data() + eye * kSize, kSize);
     expect_equal(found, run_by_cpp(given[eye], 0));
   }
 }
