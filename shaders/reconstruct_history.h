@@ -1,0 +1,160 @@
+// The history part of reconstruct.comp, which includes it: what a pixel has gathered over the frames,
+// found where its surface was, held to what is seen now, and this frame added.
+#ifndef ALCOVE_RECONSTRUCT_HISTORY_H
+#define ALCOVE_RECONSTRUCT_HISTORY_H
+
+// What a pixel has gathered so far.
+struct History {
+  Sum sum;       // weighted means over frames
+  float count;   // frames; 0 where nothing of this surface is known
+  float recent;  // visibility of the last few frames, to tell change by
+};
+
+const float kDepthTolerance = 0.004;  // of the depth, for a surface seen head-on
+const float kLargestDepth = 6e4;     // of a half
+
+uvec4 pack_history(History history, float depth) {
+  // A normal that is not a number must not stay in the history.
+  Signal lobe = history.sum.lobe;
+  if (!(lobe.visible >= 0.0 && lobe.visible <= lobe.open && lobe.open < 1e30)) {
+    lobe = Signal(0.0, 0.0);
+  }
+  return uvec4(pack_signal(history.sum.signal),
+               pack_history_state(min(depth, kLargestDepth), history.count, history.recent),
+               floatBitsToUint(lobe.visible), floatBitsToUint(lobe.open));
+}
+
+// Where the surface was on the last frame's image: xy in pixels, z its depth there, w 0 if it was
+// not on it (and z then no more than a number that can be divided by).
+vec4 reproject(Surface surface) {
+  float scale = kPerspective ? surface.depth : 1.0;
+  vec4 before = parameters.previous_from_pixel * vec4(surface.centre * scale, surface.depth, 1.0);
+  vec2 position = before.xy / before.w;
+  if (kMotion) {
+    vec2 motion = texelFetch(motion_image, surface.pixel, 0).rg;
+    position = surface.centre - motion * vec2(size_px());
+  }
+  bool seen = before.w > 1e-6 && all(greaterThanEqual(position, vec2(0.0))) &&
+              all(lessThanEqual(position, vec2(size_px())));
+  return seen ? vec4(position, before.z, 1.0) : vec4(0.0, 0.0, 1.0, 0.0);
+}
+
+// A texel of history, all of it or none as its depth tells whether it is of the same surface.
+float add_history(inout History history, Surface surface, ivec2 texel, float depth, float share) {
+  uvec4 stored = imageLoad(history_image, texel);
+  HistoryState state = unpack_history_state(stored.y);
+  float weight = share * history_weight(min(depth, kLargestDepth), state.depth,
+                                        kDepthTolerance, surface.slant);
+  Sum here = no_sum();
+  here.signal = unpack_signal(stored.x);
+  if (kBentNormal) {
+    here.bent = texelFetch(bent_history_image, texel, 0).xyz;
+  }
+  here.lobe = Signal(uintBitsToFloat(stored.z), uintBitsToFloat(stored.w));
+  add(history.sum, weight, here);
+  history.count += weight * state.count;
+  history.recent += weight * state.recent;
+  return weight;
+}
+
+History read_history(Surface surface) {
+  History found;
+  found.sum = no_sum();
+  found.count = 0.0;
+  found.recent = 0.0;
+  float weight_sum = 0.0;
+  if (kFresh) {
+    return found;
+  }
+  if (kStill) {
+    weight_sum = add_history(found, surface, surface.pixel, surface.depth, 1.0);
+  } else {
+    vec4 before = reproject(surface);
+    vec2 first = floor(before.xy - 0.5);
+    vec2 part = before.xy - 0.5 - first;
+    for (int i = 0; i < 4; ++i) {
+      ivec2 corner = ivec2(i & 1, i >> 1);
+      ivec2 texel = clamp(ivec2(first) + corner, ivec2(0), size_px() - 1);
+      vec2 near = abs(1.0 - vec2(corner) - part);
+      // Where the surface's tangent plane passes that texel; it hardly turns from frame to frame.
+      vec2 offset = vec2(corner) - part;
+      float line = (kPerspective ? 1.0 / before.z : before.z) + dot(offset, surface.gradient);
+      float depth = kPerspective ? 1.0 / max(line, 0.5 / before.z) : line;
+      weight_sum += add_history(found, surface, texel, depth, near.x * near.y * before.w);
+    }
+  }
+  float scale = weight_sum < 0.05 ? 0.0 : 1.0 / weight_sum;
+  History history;
+  history.sum = no_sum();
+  add(history.sum, scale, found.sum);
+  history.count = found.count * scale;
+  history.recent = found.recent * scale;
+  return history;
+}
+
+// A block of 4 gives a pixel few searches of its own even in time.
+const float kWidth = kDivisor > 2 ? 2.5 : 1.0;
+
+// Wide while a pixel has little of its own, then hardly more than the pixel itself.
+float window_width(float count) { return max(0.58 * kWidth, 2.0 * inversesqrt(count + 1.0)); }
+
+// What this frame found around a pixel that holds so many frames.
+Neighbourhood look_around(Surface surface, Found corners[4], float count) {
+  float narrowness = narrowness_of(window_width(count));
+  if (!kBetween) {
+    return gather(surface, kFresh ? kReach : min(kReach, 1), narrowness);
+  }
+  Neighbourhood sum = Neighbourhood(no_sum(), vec3(0.0));
+  for (int i = 0; i < 4; ++i) {
+    add_block(sum, surface, narrowness, corners[i]);
+  }
+  return sum;
+}
+
+void clamp_history(inout History history, Spread spread) {
+  float before = mean_visibility(history.sum.signal.visible, history.sum.signal.open);
+  float after = clamp_to_spread(before, spread, parameters.clamp_width);
+  if (history.count > 0.0) {
+    history.sum.signal.visible = after * history.sum.signal.open;
+    history.count = count_after_clamp(history.count, before, after, 0.25);
+  }
+}
+
+// Where something moves, visibility changes on surfaces that stand still: what the last few frames say
+// then replaces what all of them do.
+void follow_change(inout History history, Signal now) {
+  float before = mean_visibility(history.sum.signal.visible, history.sum.signal.open);
+  history.recent = recent_visibility(history.recent, history.count,
+                                     mean_visibility(now.visible, now.open));
+  float changed = history.count > 0.0 ? visibility_changed(before, history.recent) : 0.0;
+  history.sum.signal.visible =
+      mix(before, history.recent, changed) * history.sum.signal.open;
+  history.count = mix(history.count, min(history.count, kRecentFrames), changed);
+}
+
+// The pixel's sums with this frame's neighbourhood added.
+History advance(Surface surface, Found corners[4], History history) {
+  Neighbourhood now = look_around(surface, corners, history.count);
+  if (kClamp) {
+    vec3 moments = now.moments / now.moments.x;
+    clamp_history(history, spread_of_sums(moments.y, moments.z, 1.0));
+  }
+  if (kMotion) {
+    follow_change(history, now.sum.signal);
+  }
+  // Not divided by the weight found: a frame that searched the pixel itself counts for more than one
+  // that searched its neighbours. Divided by the window's size, so that wide ones do not.
+  float width = window_width(history.count);
+  float fresh = accumulation_weight(history.count, parameters.longest);
+  float scale = 0.42 * kWidth * kWidth / (width * width) * fresh;
+  History next;
+  next.sum = no_sum();
+  add(next.sum, 1.0 - fresh, history.sum);
+  add(next.sum, scale, now.sum);
+  next.count = next_count(history.count, parameters.longest);
+  next.recent = kMotion ? history.recent
+                        : mean_visibility(next.sum.signal.visible, next.sum.signal.open);
+  return next;
+}
+
+#endif

@@ -1,0 +1,59 @@
+#ifndef ALCOVE_TESTS_PASSES_RECONSTRUCT_FIXTURE_H_
+#define ALCOVE_TESTS_PASSES_RECONSTRUCT_FIXTURE_H_
+
+#include <cstdint>
+#include <random>
+
+#include "alcove/passes/reconstruct.h"
+#include "drawing.h"
+#include "pass_fixture.h"
+
+namespace alcove::passes {
+
+// The pass alone, fed with signals that the tests write.
+class Reconstruct : public PassTest {
+ protected:
+  static constexpr std::uint32_t kWidth = 32;
+  static constexpr std::uint32_t kHeight = 24;
+
+  struct Input {
+    View view;
+    const Drawing& drawing;
+    const HostImage& signal;  // two channels, one texel a block
+    std::uint32_t divisor = 1;
+    const HostImage* motion = nullptr;
+    View previous_view = view;
+    std::uint32_t index = 0;
+    bool reset = false;
+    std::uint32_t still_frames = 0;
+  };
+
+  // Visibility.
+  HostImage reconstruct(const Input& input, const ReconstructSettings& settings);
+  static HostImage noise_signal(std::mt19937& random);
+};
+
+[[nodiscard]] ReconstructSettings precise(std::uint32_t reach, std::uint32_t history_frames);
+
+// The signal of slices that are all open by `weight` and visible by `visibility` of it.
+template <typename Visibility>
+HostImage signal_of(std::uint32_t width, std::uint32_t height, const Visibility& visibility) {
+  HostImage signal{width, height, {}, 2};
+  for (std::uint32_t y = 0; y < height; ++y) {
+    for (std::uint32_t x = 0; x < width; ++x) {
+      const float weight = 0.8f + 0.1f * static_cast<float>((x + y) % 3);
+      signal.texels.push_back(visibility(x, y) * weight);
+      signal.texels.push_back(weight);
+    }
+  }
+  return signal;
+}
+
+[[nodiscard]] HostImage constant_signal(std::uint32_t width, std::uint32_t height,
+                                        float visibility);
+
+[[nodiscard]] double variance(const HostImage& image);
+
+}  // namespace alcove::passes
+
+#endif  // ALCOVE_TESTS_PASSES_RECONSTRUCT_FIXTURE_H_

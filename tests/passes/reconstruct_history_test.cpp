@@ -1,0 +1,308 @@
+// The history, fed with signals that the tests write.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+
+#include "gtao_scenes.h"
+#include "reconstruct_fixture.h"
+
+namespace alcove::passes {
+namespace {
+
+TEST_F(Reconstruct, AStaticViewConverges) {
+  const TestView view = test_views()[2];
+  const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(30.0, 4.0)});
+  const std::uint32_t seed = 17;
+  SCOPED_TRACE(testing::Message() << "seed " << seed);
+  std::mt19937 random(seed);
+  std::vector<double> variances;
+  HostImage last;
+  for (std::uint32_t frame = 0; frame < 40; ++frame) {
+    const HostImage signal = noise_signal(random);
+    last = reconstruct({.view = view.view, .drawing = drawing, .signal = signal, .index = frame},
+                       precise(1, 32));
+    variances.push_back(variance(last));
+  }
+  EXPECT_LT(variances[7], 0.5 * variances[0]);
+  EXPECT_LT(variances[39], 0.1 * variances[0]);
+  double mean = 0.0;
+  for (const float texel : last.texels) {
+    mean += texel / static_cast<double>(last.texels.size());
+  }
+  EXPECT_NEAR(mean, 0.5, 0.01);
+}
+
+// From the 16th frame of a still view on, what a search did not reach stays as it was.
+TEST_F(Reconstruct, ASettledViewBringsForwardWhatItsSearchesReached) {
+  const TestView view = test_views()[2];
+  Surface half = plane({0.0, 0.0, -3.0}, {0.0, 0.0, 1.0});
+  half.keep = [](const glm::dvec3& p) { return p.x < 0.4; };
+  const Drawing drawing = draw(view, 33, 23, {half});
+  for (const std::uint32_t divisor : {1u, 2u, 4u}) {
+    SCOPED_TRACE(testing::Message() << "by " << divisor);
+    // The last two frames of a run whose camera is known to stand still up to frame `known`.
+    const auto run_still = [&](std::uint32_t known) {
+      std::mt19937 random(11);
+      std::uniform_real_distribution<float> noise(0.1f, 0.9f);
+      std::array<HostImage, 2> last;
+      for (std::uint32_t frame = 0; frame <= 16; ++frame) {
+        const HostImage signal =
+            signal_of((33 + divisor - 1) / divisor, (23 + divisor - 1) / divisor,
+                      [&](std::uint32_t, std::uint32_t) { return noise(random); });
+        last[0] = std::move(last[1]);
+        last[1] = reconstruct({.view = view.view,
+                               .drawing = drawing,
+                               .signal = signal,
+                               .divisor = divisor,
+                               .index = frame,
+                               .reset = frame == 0,
+                               .still_frames = frame <= known ? frame : 0},
+                              precise(1, 32));
+      }
+      return last;
+    };
+    const auto [before, settled] = run_still(16);
+    const auto [same, all] = run_still(15);
+    EXPECT_THAT(same.texels, testing::Pointwise(testing::FloatEq(), before.texels));
+    // Frame 16 searches the first pixel of each block.
+    for (std::uint32_t y = 0; y < 23; ++y) {
+      for (std::uint32_t x = 0; x < 33; ++x) {
+        const std::uint32_t aside = std::min(x % divisor, divisor - x % divisor);
+        const std::uint32_t below = std::min(y % divisor, divisor - y % divisor);
+        const bool reached = divisor == 4 ? aside + below <= 1 : aside + below == 0;
+        if (reached) {
+          ASSERT_EQ(settled.at(x, y), all.at(x, y)) << "at " << x << ", " << y;
+        } else {
+          // What is stored has 16 bits.
+          ASSERT_NEAR(settled.at(x, y), before.at(x, y), 2e-5) << "at " << x << ", " << y;
+        }
+        if (drawing.is_sky(x, y)) {
+          ASSERT_EQ(settled.at(x, y), 1.0f) << "at " << x << ", " << y;
+        }
+      }
+    }
+  }
+}
+
+TEST_F(Reconstruct, MotionVectorsOfAStillViewAreNotRead) {
+  const TestView view = test_views()[2];
+  const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(30.0, 4.0)});
+  std::mt19937 random(3);
+  const HostImage first = noise_signal(random);
+  const HostImage second = noise_signal(random);
+  HostImage wrong{kWidth, kHeight, {}, 2};
+  wrong.texels.assign(std::size_t{kWidth} * kHeight * 2, 0.25f);
+  const auto second_frame = [&](const HostImage* motion) {
+    (void)reconstruct({.view = view.view, .drawing = drawing, .signal = first, .reset = true},
+                      precise(1, 8));
+    return reconstruct({.view = view.view,
+                        .drawing = drawing,
+                        .signal = second,
+                        .motion = motion,
+                        .index = 1,
+                        .still_frames = 1},
+                       precise(1, 8));
+  };
+  EXPECT_EQ(second_frame(&wrong).texels, second_frame(nullptr).texels);
+}
+
+// A history of many more frames than it counts: what is stored must neither drift nor lock.
+TEST_F(Reconstruct, HundredsOfEqualFramesDoNotDrift) {
+  const TestView view = test_views()[2];
+  const Drawing drawing = draw(view, 9, 7, {tilted_plane(30.0, 4.0)});
+  for (const float visibility : {0.013f, 0.37f, 0.985f, 1.0f}) {
+    SCOPED_TRACE(visibility);
+    const HostImage signal = constant_signal(9, 7, visibility);
+    HostImage found;
+    for (std::uint32_t frame = 0; frame < 250; ++frame) {
+      found = reconstruct({.view = view.view,
+                           .drawing = drawing,
+                           .signal = signal,
+                           .index = frame,
+                           .reset = frame == 0},
+                          precise(1, 255));
+    }
+    EXPECT_THAT(found.texels, testing::Each(testing::FloatNear(visibility, 2e-3f)));
+    // From a wrong start the history comes back to within what it can store.
+    const HostImage wrong = constant_signal(9, 7, 1.0f - visibility);
+    for (std::uint32_t frame = 0; frame < 130; ++frame) {
+      found = reconstruct({.view = view.view,
+                           .drawing = drawing,
+                           .signal = frame == 0 ? wrong : signal,
+                           .index = frame,
+                           .reset = frame == 0},
+                          precise(1, 8));
+    }
+    EXPECT_THAT(found.texels, testing::Each(testing::FloatNear(visibility, 4e-3f)));
+  }
+}
+
+TEST_F(Reconstruct, ARestartForgetsWhatWas) {
+  const TestView view = test_views()[2];
+  const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(30.0, 4.0)});
+  const Drawing smaller = draw(view, kWidth - 3, kHeight, {tilted_plane(30.0, 4.0)});
+  const HostImage dark = constant_signal(kWidth, kHeight, 0.1f);
+  const HostImage bright = constant_signal(kWidth, kHeight, 0.9f);
+  const HostImage bright_smaller = constant_signal(kWidth - 3, kHeight, 0.9f);
+  const ReconstructSettings settings = precise(1, 32);
+  const auto gather_dark = [&] {
+    for (std::uint32_t frame = 0; frame < 6; ++frame) {
+      (void)reconstruct({.view = view.view, .drawing = drawing, .signal = dark, .index = frame},
+                        settings);
+    }
+  };
+
+  gather_dark();
+  const HostImage kept =
+      reconstruct({.view = view.view, .drawing = drawing, .signal = bright}, settings);
+  EXPECT_THAT(kept.texels, testing::Each(testing::Lt(0.5f)));
+  gather_dark();
+  const HostImage reset = reconstruct(
+      {.view = view.view, .drawing = drawing, .signal = bright, .reset = true}, settings);
+  EXPECT_THAT(reset.texels, testing::Each(testing::FloatNear(0.9f, 2e-3f)));
+  gather_dark();
+  const HostImage resized =
+      reconstruct({.view = view.view, .drawing = smaller, .signal = bright_smaller}, settings);
+  EXPECT_THAT(resized.texels, testing::Each(testing::FloatNear(0.9f, 2e-3f)));
+}
+
+// The eye leaps sideways: what it could not see before starts anew, what it could goes on.
+TEST_F(Reconstruct, WhatACameraJumpUncoversStartsAnew) {
+  const TestView view = test_views()[2];
+  const double leap = 0.8;
+  Scene before = step(0.3, 1.5, 5.0);
+  const Drawing first = draw(view, kWidth, kHeight, before);
+  // The world stands still; in the view space of the eye that moved it lies `leap` to the left.
+  const Drawing second = draw(view, kWidth, kHeight, step(0.3 - leap, 1.5, 5.0));
+  View moved = view.view;
+  moved.view_from_world[12] = static_cast<float>(-leap);
+
+  const HostImage dark = constant_signal(kWidth, kHeight, 0.1f);
+  const HostImage bright = constant_signal(kWidth, kHeight, 0.9f);
+  for (std::uint32_t frame = 0; frame < 8; ++frame) {
+    (void)reconstruct({.view = view.view, .drawing = first, .signal = dark, .index = frame},
+                      precise(1, 32));
+  }
+  const HostImage found = reconstruct(
+      {.view = moved, .drawing = second, .signal = bright, .previous_view = view.view, .index = 8},
+      precise(1, 32));
+  int anew = 0;
+  int gone_on = 0;
+  for (std::uint32_t y = 0; y < kHeight; ++y) {
+    for (std::uint32_t x = 0; x < kWidth; ++x) {
+      const auto hit = cast(second.scene, second.camera.ray(x + 0.5, y + 0.5));
+      const glm::dvec3 was = hit->position + glm::dvec3(leap, 0.0, 0.0);
+      const glm::dvec3 pixel = first.camera.project(was);
+      // Margins of a pixel or two: there some of the four texels are of another surface.
+      const bool outside = pixel.x < -0.5 || pixel.x > kWidth + 0.5;
+      const bool well_inside =
+          pixel.x > 2.0 && pixel.x < kWidth - 2.0 && pixel.y > 2.0 && pixel.y < kHeight - 2.0;
+      bool hidden = true;
+      bool seen = true;
+      for (const double aside : {-1.5, 0.0, 1.5}) {
+        const auto there = cast(first.scene, first.camera.ray(pixel.x + aside, pixel.y));
+        const bool same = there && std::abs(there->position.z - was.z) < 0.02 * std::abs(was.z);
+        hidden = hidden && !same;
+        seen = seen && same;
+      }
+      if (std::abs(hit->normal.z) < 0.5) {
+        continue;
+      }
+      if (outside || hidden) {
+        ASSERT_NEAR(found.at(x, y), 0.9f, 0.01) << "at " << x << ", " << y;
+        ++anew;
+      } else if (seen && well_inside) {
+        ASSERT_LT(found.at(x, y), 0.6f) << "at " << x << ", " << y;
+        ++gone_on;
+      }
+    }
+  }
+  EXPECT_GT(anew, 30);
+  EXPECT_GT(gone_on, 200);
+}
+
+// A plane slides by three pixels a frame and carries a pattern: with motion vectors the pattern
+// stays sharp, without them it is smeared.
+TEST_F(Reconstruct, MotionVectorsFollowAMovingPlane) {
+  const TestView view = test_views()[2];
+  const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(0.0, 4.0)});
+  const std::uint32_t speed = 3;
+  const auto pattern_at = [&](std::uint32_t frame) {
+    return signal_of(kWidth, kHeight, [&](std::uint32_t x, std::uint32_t) {
+      return (x + 300 - speed * frame) % 16 < 8 ? 0.9f : 0.1f;
+    });
+  };
+  HostImage motion{kWidth, kHeight, {}, 2};
+  for (std::uint32_t i = 0; i < kWidth * kHeight; ++i) {
+    motion.texels.push_back(static_cast<float>(speed) / static_cast<float>(kWidth));
+    motion.texels.push_back(0.0f);
+  }
+  for (const bool given : {true, false}) {
+    HostImage found;
+    HostImage signal;
+    for (std::uint32_t frame = 0; frame < 10; ++frame) {
+      signal = pattern_at(frame);
+      found = reconstruct({.view = view.view,
+                           .drawing = drawing,
+                           .signal = signal,
+                           .motion = given ? &motion : nullptr,
+                           .index = frame,
+                           .reset = frame == 0},
+                          precise(0, 32));
+    }
+    // Where the plane was on the image ever since the first frame.
+    double error = 0.0;
+    int count = 0;
+    for (std::uint32_t y = 0; y < kHeight; ++y) {
+      for (std::uint32_t x = 28; x < kWidth; ++x) {
+        const std::size_t i = std::size_t{y} * kWidth + x;
+        error += std::abs(found.texels[i] - signal.texels[i * 2] / signal.texels[i * 2 + 1]);
+        ++count;
+      }
+    }
+    if (given) {
+      EXPECT_LT(error / count, 0.12);
+    } else {
+      EXPECT_GT(error / count, 0.2);
+    }
+  }
+}
+
+// What shaded a plane moves away, and then shades it again: the plane itself stands still.
+TEST_F(Reconstruct, WhereThingsMoveAShadeLeavesNoTrail) {
+  const TestView view = test_views()[2];
+  const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(30.0, 4.0)});
+  const HostImage motion{kWidth, kHeight, std::vector<float>(std::size_t{kWidth} * kHeight * 2), 2};
+  const HostImage shaded = constant_signal(kWidth, kHeight, 0.6f);
+  const HostImage open = constant_signal(kWidth, kHeight, 1.0f);
+  const std::uint32_t long_ago = 30;
+  const std::uint32_t soon = 12;
+  for (const bool given : {true, false}) {
+    std::vector<HostImage> found;
+    for (std::uint32_t frame = 0; frame < long_ago + 2 * soon; ++frame) {
+      const bool is_open = frame >= long_ago && frame < long_ago + soon;
+      found.push_back(reconstruct({.view = view.view,
+                                   .drawing = drawing,
+                                   .signal = is_open ? open : shaded,
+                                   .motion = given ? &motion : nullptr,
+                                   .index = frame,
+                                   .reset = frame == 0},
+                                  precise(1, 32)));
+    }
+    const auto left = testing::Each(testing::Gt(0.95f));
+    const auto back = testing::Each(testing::Lt(0.72f));
+    EXPECT_THAT(found[long_ago - 1].texels, testing::Each(testing::FloatNear(0.6f, 5e-3f)));
+    if (given) {
+      EXPECT_THAT(found[long_ago + soon - 1].texels, left);
+      EXPECT_THAT(found[long_ago + 2 * soon - 1].texels, back);
+    } else {
+      EXPECT_THAT(found[long_ago + soon - 1].texels, testing::Each(testing::Lt(0.8f)));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace alcove::passes
