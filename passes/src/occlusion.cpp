@@ -28,6 +28,14 @@ bool by_model(Specular specular) {
   return specular != Specular::none && specular != Specular::slices;
 }
 
+// Line depth of a depth that few settings read; null where they do not, or it was not given.
+tl::expected<framegraph::Texture, Error> add_hidden_line(const Frame& frame,
+                                                         framegraph::Texture depth_ndc, bool read,
+                                                         std::string_view name) {
+  return read && depth_ndc ? add_line_depth(frame, depth_ndc, name)
+                           : tl::expected<framegraph::Texture, Error>(framegraph::Texture{});
+}
+
 GtaoSettings gtao_settings(const OcclusionSettings& settings) {
   GtaoSettings result{static_cast<const SearchSettings&>(settings)};
   result.bent_normal = settings.bent_normal ||
@@ -127,24 +135,17 @@ tl::expected<OcclusionOutputs, Error> add_occlusion(const Frame& frame,
   if (!line) {
     return tl::unexpected(line.error());
   }
-  framegraph::Texture back_line;
-  if (inputs.back_depth_ndc && needs_back_depth(settings.estimator, settings.thickness_unit)) {
-    auto made = add_line_depth(frame, inputs.back_depth_ndc, "back line depth");
-    if (!made) {
-      return tl::unexpected(std::move(made.error()));
-    }
-    back_line = *made;
-  }
-  framegraph::Texture second_line;
-  if (inputs.second_depth_ndc && needs_second_depth(settings.estimator, settings.depth_layers)) {
-    auto made = add_line_depth(frame, inputs.second_depth_ndc, "second line depth");
-    if (!made) {
-      return tl::unexpected(std::move(made.error()));
-    }
-    second_line = *made;
+  const auto back_line = add_hidden_line(
+      frame, inputs.back_depth_ndc, needs_back_depth(settings.estimator, settings.thickness_unit),
+      "back line depth");
+  const auto second_line = add_hidden_line(
+      frame, inputs.second_depth_ndc, needs_second_depth(settings.estimator, settings.depth_layers),
+      "second line depth");
+  if (!back_line || !second_line) {
+    return tl::unexpected(back_line ? second_line.error() : back_line.error());
   }
   const auto signal =
-      add_gtao(frame, {*line, normals, in_view_space, inputs.roughness, back_line, second_line},
+      add_gtao(frame, {*line, normals, in_view_space, inputs.roughness, *back_line, *second_line},
                gtao_settings(settings));
   if (!signal) {
     return tl::unexpected(signal.error());
