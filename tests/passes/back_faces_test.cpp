@@ -2,37 +2,18 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
-#include "drawing.h"
-#include "pass_fixture.h"
+#include "hidden_depths.h"
 
 namespace alcove::passes {
 namespace {
 
-constexpr std::array kEstimators{Estimator::bitmask, Estimator::connected};
+class BackFaces : public HiddenDepthTest {};
 
-class BackFaces : public PassTest {
- protected:
-  HostImage visibility(const TestView& view, const Drawing& drawing, const HostImage& backs,
-                       const OcclusionSettings& settings) {
-    return run_occlusion({.view = view.view,
-                          .depth_ndc = drawing.depth_ndc,
-                          .normal_vs = &drawing.normal_vs,
-                          .back_depth_ndc = &backs},
-                         settings)
-        .visibility;
-  }
-};
-
-// Nothing is hidden but by what the two depths show.
 OcclusionSettings exact(Estimator estimator, float radius) {
-  OcclusionSettings settings = quality_settings(Quality::reference, radius);
-  settings.estimator = estimator;
-  settings.slices = 16;
-  settings.fill = 0.0f;
+  OcclusionSettings settings = without_fill(estimator, radius);
   settings.thickness_unit = ThicknessUnit::back_faces;
   return settings;
 }
@@ -65,7 +46,7 @@ TEST_F(BackFaces, ASlabAboveAFloorHasTheClosedForm) {
     }
     return sum;
   };
-  for (const Estimator estimator : kEstimators) {
+  for (const Estimator estimator : kThickEstimators) {
     SCOPED_TRACE(static_cast<int>(estimator));
     const OcclusionSettings settings = exact(estimator, 8.0f);
     const double error = mean_error(settings);
@@ -102,7 +83,7 @@ TEST_F(BackFaces, ABallAboveAFloorHasTheClosedFormInEveryView) {
       }
       return sum / count;
     };
-    for (const Estimator estimator : kEstimators) {
+    for (const Estimator estimator : kThickEstimators) {
       SCOPED_TRACE(testing::Message() << view.name << ", " << static_cast<int>(estimator));
       const OcclusionSettings settings = exact(estimator, 3.0f);
       const double error = mean_error(settings);
@@ -120,7 +101,7 @@ TEST_F(BackFaces, ASolidThickerThanTheRadiusOccludesAsHorizonsDo) {
     SCOPED_TRACE(view.name);
     const Drawing drawing = draw(view, 60, 40, scene);
     const HostImage backs = draw_back_faces(view, 60, 40, scene);
-    for (const Estimator estimator : kEstimators) {
+    for (const Estimator estimator : kThickEstimators) {
       OcclusionSettings settings = exact(estimator, radius);
       const HostImage image = visibility(view, drawing, backs, settings);
       const HostImage thick = visibility(view, drawing, backs, of_thickness(settings, 1e4f));
@@ -143,7 +124,7 @@ TEST_F(BackFaces, WithoutABackFaceBehindTheFrontTheSettingsThicknessCounts) {
   for (const TestView& view : test_views()) {
     SCOPED_TRACE(view.name);
     const Drawing drawing = draw(view, 60, 40, scene);
-    for (const Estimator estimator : kEstimators) {
+    for (const Estimator estimator : kThickEstimators) {
       OcclusionSettings settings = exact(estimator, 1.2f);
       settings.thickness = 0.2f;
       const HostImage expected =

@@ -2,36 +2,18 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
-#include "drawing.h"
-#include "pass_fixture.h"
+#include "hidden_depths.h"
 
 namespace alcove::passes {
 namespace {
 
-constexpr std::array kEstimators{Estimator::bitmask, Estimator::connected};
-
-class SecondLayer : public PassTest {
- protected:
-  HostImage visibility(const TestView& view, const Drawing& drawing, const HostImage& second,
-                       const OcclusionSettings& settings) {
-    return run_occlusion({.view = view.view,
-                          .depth_ndc = drawing.depth_ndc,
-                          .normal_vs = &drawing.normal_vs,
-                          .second_depth_ndc = &second},
-                         settings)
-        .visibility;
-  }
-};
+class SecondLayer : public HiddenDepthTest {};
 
 OcclusionSettings exact(Estimator estimator, float radius) {
-  OcclusionSettings settings = quality_settings(Quality::reference, radius);
-  settings.estimator = estimator;
-  settings.slices = 16;
-  settings.fill = 0.0f;
+  OcclusionSettings settings = without_fill(estimator, radius);
   settings.thickness = 1.0f;
   return settings;
 }
@@ -64,7 +46,7 @@ TEST_F(SecondLayer, AStepUnderAPlateHasTheClosedForm) {
     }
     return sum;
   };
-  for (const Estimator estimator : kEstimators) {
+  for (const Estimator estimator : kThickEstimators) {
     SCOPED_TRACE(static_cast<int>(estimator));
     const OcclusionSettings settings = exact(estimator, 1.5f);
     const double error = mean_error(of_layers(settings, 2));
@@ -85,7 +67,7 @@ TEST_F(SecondLayer, WhereNothingIsHiddenOneLayerIsAll) {
   for (const TestView& view : test_views()) {
     SCOPED_TRACE(view.name);
     const Drawing drawing = draw(view, 60, 40, scene);
-    for (const Estimator estimator : kEstimators) {
+    for (const Estimator estimator : kThickEstimators) {
       OcclusionSettings settings = exact(estimator, 1.2f);
       settings.thickness = 0.2f;
       settings.fill = 0.4f;
@@ -109,7 +91,7 @@ TEST_F(SecondLayer, WhatIsHiddenOnlyDarkens) {
     SCOPED_TRACE(view.name);
     const Drawing drawing = draw(view, 60, 40, scene);
     const HostImage second = draw_second_layer(view, 60, 40, scene);
-    for (const Estimator estimator : kEstimators) {
+    for (const Estimator estimator : kThickEstimators) {
       const OcclusionSettings settings = exact(estimator, 1.2f);
       const HostImage one = visibility(view, drawing, second, settings);
       const HostImage two = visibility(view, drawing, second, of_layers(settings, 2));
