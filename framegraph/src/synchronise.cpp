@@ -281,6 +281,7 @@ void Synchroniser::depart() {
     if (resource.external == kNone) continue;
     const ExternalRecord& external = graph_.externals[resource.external];
     const bool used = plan_.placements[r].first != kNone;
+    if (external.has_departure && used) end_reads(r, external.departure);
     if (external.has_departure && (used || external.departure.layout != external.arrival.layout))
       use(end, outside_use(r, external.departure));
     if (used && resource.origin == Origin::history) leave(r);
@@ -291,6 +292,25 @@ void Synchroniser::depart() {
     last.batch_count = 1;
   }
   if (!s_.releases.empty()) add_releases();
+}
+
+// Whoever has it next waits for its own uses alone, so these come after reads that they do not
+// cover. A change or a write does by itself.
+void Synchroniser::end_reads(std::uint32_t resource, const State& departure) {
+  const bool texture = graph_.resources[resource].kind == ResourceKind::texture;
+  if ((departure.access & kWriteBits) != 0 || departure.stages == 0 ||
+      (departure.stages & VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT) != 0)
+    return;
+  const std::uint32_t last = workspace_.first_sub[resource + 1];
+  for (std::uint32_t sub = workspace_.first_sub[resource]; sub < last; ++sub) {
+    const UseState& state = s_.states[sub];
+    if (state.queue != queue_ || (texture && state.layout != departure.layout)) continue;
+    Transition wanted;
+    wanted.src_stages = state.read_stages & ~departure.stages;
+    wanted.dst_stages = departure.stages;
+    if (wanted.src_stages != 0)
+      add_memory(state.read_time, static_cast<std::uint32_t>(plan_.passes.size()), wanted);
+  }
 }
 
 AccessRecord Synchroniser::outside_use(std::uint32_t resource, const State& state) const {

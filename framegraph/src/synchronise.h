@@ -56,6 +56,7 @@ class Synchroniser {
   void read_again(std::uint32_t position, const AccessRecord& access, UseState& state);
   void write_again(std::uint32_t position, const AccessRecord& access, UseState& state);
   void depart();
+  void end_reads(std::uint32_t resource, const State& departure);
   void split();
   std::uint32_t set_position(std::uint32_t position) const;
   bool can_split(const Batch& batch) const;

@@ -40,6 +40,7 @@ struct Operation {
   bool writes = false;
   bool discards = false;
   bool releases = false;  // to another queue: nothing on this one follows it
+  bool departs = false;   // the use after the frame: it comes after reads in other stages too
   std::uint32_t frame = 0;
   std::uint32_t step = 0;  // steps at or above this come after it
   const Transition* change = nullptr;
@@ -114,7 +115,7 @@ class Oracle {
       const std::uint32_t external = graph_.resources[r].external;
       if (external != kNone && graph_.externals[external].has_departure &&
           plan_.placements[r].first != kNone)
-        outside(r, graph_.externals[external].departure, frame, 0);
+        outside(r, graph_.externals[external].departure, frame, 0, true);
     }
   }
 
@@ -149,7 +150,8 @@ class Oracle {
       set_at_[e] = {operations_.size(), static_cast<std::uint32_t>(steps_.size())};
   }
 
-  void outside(std::uint32_t resource, const State& state, std::uint32_t frame, std::size_t queue) {
+  void outside(std::uint32_t resource, const State& state, std::uint32_t frame, std::size_t queue,
+               bool departs = false) {
     const ResourceRecord& r = graph_.resources[resource];
     AccessRecord access;
     access.stages = state.stages;
@@ -157,7 +159,10 @@ class Oracle {
     access.flags = plain_access(state.access) & kWriteMask ? kWrite : 0u;
     access.resource = resource;
     access.range = {0, static_cast<std::uint16_t>(r.mips), 0, static_cast<std::uint16_t>(r.layers)};
-    if (state.stages != 0) add_access(access, queue, frame);
+    if (state.stages == 0) return;
+    const std::size_t first = operations_.size();
+    add_access(access, queue, frame);
+    for (std::size_t i = first; i < operations_.size(); ++i) operations_[i].departs = departs;
   }
 
   void add_access(const AccessRecord& access, std::size_t queue, std::uint32_t frame) {
@@ -228,7 +233,8 @@ class Oracle {
   bool conflict(std::size_t x_index, std::size_t y_index) const {
     const Operation& x = operations_[x_index];
     const Operation& y = operations_[y_index];
-    if (!x.writes && !y.writes) return false;
+    const bool leaves = y.departs && (x.queue != y.queue || (x.stages & ~y.stages) != 0);
+    if (!x.writes && !y.writes && !leaves) return false;
     // One pass's accesses, and one command's changes, are not ordered among themselves.
     if (x.queue == y.queue && x.step == y.step && (x.change != nullptr) == (y.change != nullptr))
       return false;

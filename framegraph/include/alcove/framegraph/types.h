@@ -109,7 +109,8 @@ struct ImportedTexture {
   std::uint32_t first_layer = 0;
   State arrival;
   // With a departure the graph leaves the image so, and a write to it is an output of the frame.
-  // Without one (layout undefined and no stages) a write that nobody reads is culled.
+  // All that the frame does with it comes before what is done at these stages later. Without one
+  // (layout undefined and no stages) a write that nobody reads is culled.
   State departure;
 };
 
