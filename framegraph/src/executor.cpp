@@ -29,7 +29,10 @@ struct Executor::Implementation {
                                             CachedPlan*& cached);
   tl::expected<void, Errors> check_slot(std::uint32_t slot) const;
   bool starts_anew(const CachedPlan& cached) const;
+  tl::expected<FrameReport, Errors> record(Graph& graph, VkCommandBuffer commands,
+                                           const FrameInfo& info);
   void finish(Graph& graph, const CachedPlan& cached);
+  void give_up(Graph& graph, std::uint32_t slot);
   void begin_frame(const FrameInfo& info);
   Timestamps& timestamps_of(std::size_t slot, std::size_t queue) {
     return *timestamps[slot * kQueueClasses + queue];
@@ -50,6 +53,25 @@ struct Executor::Implementation {
   const CachedPlan* before = nullptr;  // the plan of the frame before
   std::uint64_t before_generation = 0;
   std::unique_ptr<Submitter> submitter;  // destroyed first: it waits for the device
+};
+
+// A frame from its beginning; given up where nothing of it will run.
+struct Executor::Attempt {
+  Attempt(Implementation& implementation, Graph& of, const FrameInfo& with)
+      : self(implementation), graph(of), info(with) {
+    graph.histories().begin_end();
+    self.begin_frame(info);
+  }
+  ~Attempt() {
+    if (!runs) self.give_up(graph, info.slot);
+  }
+  Attempt(const Attempt&) = delete;
+  Attempt& operator=(const Attempt&) = delete;
+
+  Implementation& self;
+  Graph& graph;
+  FrameInfo info;
+  bool runs = false;
 };
 
 tl::expected<Executor, Errors> Executor::create(const DeviceHandles& device,
@@ -129,7 +151,7 @@ VkResult Executor::Implementation::find_external(const Graph& graph, CachedPlan&
           ? kEveryBufferUsage
           : device.limits.formats.query(device.limits.formats.context, record.format) &
                 ~(VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSIENT_ATTACHMENT_BIT);
-  return pool->history(handles.history, entry.generation, entry.physical(record.slot), record,
+  return pool->history(graph.histories(), handles.history, entry.physical(record.slot), record,
                        usage, description.resource_name(resource), frame, found);
 }
 
@@ -187,8 +209,6 @@ tl::expected<FrameReport, Errors> Executor::Implementation::prepare(Graph& graph
                                                                     const FrameInfo& info,
                                                                     bool one_queue,
                                                                     CachedPlan*& cached) {
-  if (auto right = check_slot(info.slot); !right) return tl::unexpected(std::move(right.error()));
-  begin_frame(info);
   pool->retire_histories(graph.histories(), frame);
   FrameReport report;
   auto found = plan_for(graph, one_queue, report.compiled);
@@ -201,7 +221,8 @@ tl::expected<FrameReport, Errors> Executor::Implementation::prepare(Graph& graph
   if (!events_of_frame)
     return tl::unexpected(vulkan_error(events_of_frame.error(), "events cannot be created"));
   const RecordedFrame recorded{&graph,           &cached->plan,      &cached->physical,
-                               *events_of_frame, options.check_uses, info.slot};
+                               *events_of_frame, options.check_uses, starts_anew(*cached),
+                               info.slot};
   if (const VkResult result = crew->begin(recorded))
     return tl::unexpected(vulkan_error(result, "command buffers cannot be used again"));
   report.plan = &cached->plan;
@@ -219,45 +240,70 @@ tl::expected<FrameReport, Errors> Executor::Implementation::prepare(Graph& graph
 void Executor::Implementation::finish(Graph& graph, const CachedPlan& cached) {
   before = &cached;
   before_generation = pool->generation();
+  HistoryTable& histories = graph.histories();
   const GraphDescription& description = graph.description();
   for (const FinalState& final : cached.plan.finals) {
     const ResourceRecord& record = description.resources[final.resource];
-    HistoryEntry& entry = graph.histories().entry(graph.imports()[record.external].history);
-    HistorySlot& slot = entry.slots[entry.physical(record.slot)];
+    const std::uint32_t index = graph.imports()[record.external].history;
+    const HistoryEntry& entry = histories.entry(index);
+    HistorySlot slot = entry.slots[entry.physical(record.slot)];
     slot.state = final.state;
     slot.queue = final.queue;
     if (record.slot == 0 && final.written) slot.validity = HistoryValidity::valid;
+    histories.leave(index, record.slot, slot);
   }
   for (const FinalState& final : cached.plan.finals) {
     const ResourceRecord& record = description.resources[final.resource];
-    if (record.slot != 0 || !final.written) continue;
-    HistoryEntry& entry = graph.histories().entry(graph.imports()[record.external].history);
-    // The oldest slot is the next to be written.
-    entry.head = (entry.head + record.slots - 1) % record.slots;
+    if (record.slot == 0 && final.written)
+      histories.rotate(graph.imports()[record.external].history);
   }
 }
 
-tl::expected<FrameReport, Errors> Executor::record(Graph& graph, VkCommandBuffer commands,
-                                                   const FrameInfo& info) {
-  Implementation& self = *implementation_;
+// What was begun with this slot does not run. Frames before it may still do.
+void Executor::Implementation::give_up(Graph& graph, std::uint32_t slot) {
+  graph.histories().undo();
+  slot_frames[slot] = finished;
+  before = nullptr;
+  for (std::size_t q = 0; q < kQueueClasses; ++q) timestamps_of(slot, q).forget();
+}
+
+tl::expected<FrameReport, Errors> Executor::Implementation::record(Graph& graph,
+                                                                   VkCommandBuffer commands,
+                                                                   const FrameInfo& info) {
   CachedPlan* cached = nullptr;
-  auto report = self.prepare(graph, info, true, cached);
+  auto report = prepare(graph, info, true, cached);
   if (!report) return report;
-  Timestamps* timestamps = self.options.timestamps ? &self.timestamps_of(info.slot, 0) : nullptr;
+  Timestamps* timestamps = options.timestamps ? &timestamps_of(info.slot, 0) : nullptr;
   if (timestamps) {
     const VkResult result =
         timestamps->begin_frame(commands, static_cast<std::uint32_t>(cached->plan.passes.size()));
     if (result != VK_SUCCESS)
       return tl::unexpected(vulkan_error(result, "timestamps cannot be created"));
   }
-  if (self.starts_anew(*cached)) self.crew->full_barrier(commands);
-  const VkResult result = self.crew->submission(cached->plan.submissions[0], commands, timestamps);
+  if (starts_anew(*cached)) crew->full_barrier(commands);
+  const VkResult result = crew->submission(cached->plan.submissions[0], commands, timestamps);
   if (result != VK_SUCCESS)
     return tl::unexpected(vulkan_error(result, "the frame cannot be recorded"));
-  self.finish(graph, *cached);
-  if (Errors errors = self.crew->take_errors(); !errors.empty())
+  if (Errors errors = crew->take_errors(); !errors.empty())
     return tl::unexpected(std::move(errors));
+  finish(graph, *cached);
   return report;
+}
+
+tl::expected<FrameReport, Errors> Executor::record(Graph& graph, VkCommandBuffer commands,
+                                                   const FrameInfo& info) {
+  Implementation& self = *implementation_;
+  if (auto right = self.check_slot(info.slot); !right)
+    return tl::unexpected(std::move(right.error()));
+  Attempt attempt(self, graph, info);
+  auto report = self.record(graph, commands, info);
+  attempt.runs = report.has_value();
+  return report;
+}
+
+void Executor::discard(Graph& graph, const FrameInfo& info) {
+  if (!implementation_->check_slot(info.slot)) return;
+  implementation_->give_up(graph, info.slot);
 }
 
 tl::expected<FrameReport, Errors> Executor::submit(Graph& graph, const FrameInfo& info) {
@@ -270,6 +316,7 @@ tl::expected<FrameReport, Errors> Executor::submit(Graph& graph, const FrameInfo
     return tl::unexpected(std::move(errors));
   }
   if (auto waited = wait(info.slot); !waited) return tl::unexpected(std::move(waited.error()));
+  Attempt attempt(self, graph, info);
   CachedPlan* cached = nullptr;
   auto report = self.prepare(graph, info, false, cached);
   if (!report) return report;
@@ -284,10 +331,12 @@ tl::expected<FrameReport, Errors> Executor::submit(Graph& graph, const FrameInfo
                                                  self.starts_anew(*cached));
   if (result != VK_SUCCESS) {
     // Half a frame may have written to any of them.
-    if (self.submitter->stopped_midway()) graph.histories().invalidate_all();
+    attempt.runs = self.submitter->stopped_midway();
+    if (attempt.runs) graph.histories().invalidate_all();
     self.before = nullptr;
     return tl::unexpected(vulkan_error(result, "the frame cannot be submitted"));
   }
+  attempt.runs = true;
   self.finish(graph, *cached);
   if (Errors errors = self.crew->take_errors(); !errors.empty())
     return tl::unexpected(std::move(errors));

@@ -16,6 +16,7 @@ void invalidate_slots(HistoryEntry& entry, HistoryValidity reason) {
 }  // namespace
 
 std::uint32_t HistoryTable::declare(std::string_view name, const ResourceRecord& record) {
+  ended_.clear();
   for (std::uint32_t i = 0; i < entries_.size(); ++i) {
     HistoryEntry& entry = entries_[i];
     // Two histories of one name in one frame are two histories.
@@ -63,6 +64,27 @@ void HistoryTable::invalidate(std::string_view name) {
 
 void HistoryTable::invalidate_all() {
   for (HistoryEntry& entry : entries_) invalidate_slots(entry, HistoryValidity::reset);
+}
+
+void HistoryTable::leave(std::uint32_t index, std::uint32_t slot, const HistorySlot& left) {
+  HistoryEntry& entry = entries_[index];
+  const std::uint32_t position = entry.physical(slot);
+  ended_.push_back({index, entry.head, position, entry.slots[position]});
+  entry.slots[position] = left;
+}
+
+// The oldest slot is the next to be written.
+void HistoryTable::rotate(std::uint32_t index) {
+  HistoryEntry& entry = entries_[index];
+  entry.head = (entry.head + entry.record.slots - 1) % entry.record.slots;
+}
+
+void HistoryTable::undo() {
+  for (const Before& before : ended_) {
+    entries_[before.index].head = before.head;
+    entries_[before.index].slots[before.position] = before.slot;
+  }
+  ended_.clear();
 }
 
 void HistoryTable::begin_frame() {

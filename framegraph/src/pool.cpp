@@ -18,6 +18,11 @@ void make_room(std::vector<Value>& values, std::size_t more = 1) {
   if (needed > values.capacity()) values.reserve(std::max(needed, 2 * values.size()));
 }
 
+bool is_of(const std::weak_ptr<const char>& life, const HistoryTable& table) {
+  const auto own = table.life();
+  return !life.owner_before(own) && !own.owner_before(life);
+}
+
 bool same(const ResourceRecord& a, const ResourceRecord& b) {
   // Where a resource came from does not matter to what it is.
   return a.kind == b.kind && a.size == b.size && a.format == b.format && a.width == b.width &&
@@ -92,13 +97,14 @@ VkResult Pool::transient(const ResourceRecord& record, const Plan& plan, const P
   return VK_SUCCESS;
 }
 
-VkResult Pool::history(std::uint32_t entry, std::uint32_t generation, std::uint32_t position,
+VkResult Pool::history(const HistoryTable& table, std::uint32_t entry, std::uint32_t position,
                        const ResourceRecord& record, VkFlags usage, std::string_view name,
                        std::uint64_t frame, Physical*& found) {
   make_room(histories_);
   make_room(retired_);
+  const std::uint32_t generation = table.entries()[entry].generation;
   auto there = std::find_if(histories_.begin(), histories_.end(), [&](const HistoryImage& h) {
-    return h.entry == entry && h.position == position;
+    return h.entry == entry && h.position == position && is_of(h.table, table);
   });
   if (there != histories_.end() && there->generation == generation) {
     found = there->physical.get();
@@ -113,7 +119,7 @@ VkResult Pool::history(std::uint32_t entry, std::uint32_t generation, std::uint3
     return result;
   }
   if (there == histories_.end()) {
-    histories_.push_back({entry, generation, position, std::move(made)});
+    histories_.push_back({table.life(), entry, generation, position, std::move(made)});
     there = histories_.end() - 1;
   } else {
     retired_.push_back({frame, std::move(there->physical), {}});
@@ -128,9 +134,10 @@ VkResult Pool::history(std::uint32_t entry, std::uint32_t generation, std::uint3
 void Pool::retire_histories(const HistoryTable& table, std::uint64_t frame) {
   make_room(retired_, histories_.size());
   const auto gone = [&](HistoryImage& history) {
-    const auto& entries = table.entries();
-    if (history.entry >= entries.size() || entries[history.entry].generation == history.generation)
-      return false;
+    const bool stays = is_of(history.table, table)
+                           ? table.entries()[history.entry].generation == history.generation
+                           : !history.table.expired();
+    if (stays) return false;
     retired_.push_back({frame, std::move(history.physical), {}});
     return true;
   };

@@ -51,11 +51,12 @@ class Pool {
                                    const Placement& placement, std::string_view name,
                                    Physical*& found);
   // One slot of a history, with memory of its own.
-  [[nodiscard]] VkResult history(std::uint32_t entry, std::uint32_t generation,
+  [[nodiscard]] VkResult history(const HistoryTable& table, std::uint32_t entry,
                                  std::uint32_t position, const ResourceRecord& record,
                                  VkFlags usage, std::string_view name, std::uint64_t frame,
                                  Physical*& found);
-  // Retires what belongs to no entry any more: dropped, or made anew in another shape.
+  // Retires what belongs to no entry any more: dropped, made anew in another shape, or of a graph
+  // that is gone. Other graphs' histories stay.
   void retire_histories(const HistoryTable& table, std::uint64_t frame);
   // A stand-in for an import: its views are cached by image and layer.
   Physical& import(const ResourceRecord& record, const ImportHandles& handles);
@@ -78,6 +79,7 @@ class Pool {
     VkDeviceSize size = 0;
   };
   struct HistoryImage {
+    std::weak_ptr<const char> table;  // HistoryTable::life()
     std::uint32_t entry = 0;
     std::uint32_t generation = 0;
     std::uint32_t position = 0;

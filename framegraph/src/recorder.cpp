@@ -15,6 +15,7 @@ void Recorder::begin(const RecordedFrame& frame) {
   slot_ = frame.slot;
   errors_.clear();
   shares_with_buffers_ = false;
+  starts_anew_ = frame.starts_anew;
   const GraphDescription& description = graph_->description();
   for (std::uint32_t r = 0; r < plan_->placements.size(); ++r) {
     if (plan_->placements[r].heap != kNone && description.resources[r].kind == ResourceKind::buffer)
@@ -57,7 +58,7 @@ void Recorder::pass(const PlannedPass& planned, VkCommandBuffer commands, Timest
   const std::string_view name = graph_->description().pass_name(planned.pass);
   const bool label = device_.handles.debug_utils && device_.vk.vkCmdBeginDebugUtilsLabelEXT;
   if (label) begin_label(name, commands);
-  if (timestamps) timestamps->begin_pass(commands, time, name);
+  if (timestamps) timestamps->begin_pass(commands, time, planned.pass, name);
   RecordContext context(commands, device_.vk, *this, planned.pass);
   context.resources_id = pool_.generation();
   context.frame_slot = slot_;
@@ -128,6 +129,11 @@ VkImageMemoryBarrier2 Recorder::image_barrier(const Transition& t) const {
   barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
   barrier.srcStageMask = t.src_stages;
   barrier.srcAccessMask = t.src_access;
+  // After full_barrier() there is nothing left to make available. The validation layers (1.3.239)
+  // follow that barrier into a change of layout only where this one names an access of its own,
+  // and else take what another plan wrote last for a hazard: told so, at no cost.
+  if (starts_anew_ && t.old_layout == VK_IMAGE_LAYOUT_UNDEFINED)
+    barrier.srcAccessMask |= VK_ACCESS_2_MEMORY_WRITE_BIT;
   barrier.dstStageMask = t.dst_stages;
   barrier.dstAccessMask = t.dst_access;
   barrier.oldLayout = t.old_layout;
@@ -273,6 +279,14 @@ HistoryValidity RecordContext::validity(Texture texture) const {
 
 HistoryValidity RecordContext::validity(Buffer buffer) const {
   return validity(Texture{buffer.index, buffer.version, buffer.graph});
+}
+
+void RecordContext::fail(std::string_view what, VkResult result) const {
+  recorder_.errors_.push_back(
+      {ErrorCode::vulkan,
+       std::string("pass '").append(pass_name()).append("' cannot be recorded: no ").append(what) +
+           " could be made",
+       result, pass_, kNone, 0});
 }
 
 std::string_view RecordContext::pass_name() const {

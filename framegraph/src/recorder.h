@@ -20,6 +20,7 @@ struct RecordedFrame {
   const std::vector<Physical*>* physical = nullptr;
   std::span<const VkEvent> events;  // of the plan's split barriers
   bool check_uses = false;
+  bool starts_anew = false;  // what came before was of another plan: it begins with full_barrier()
   std::uint32_t slot = 0;
 };
 
@@ -67,6 +68,7 @@ class Recorder {
   std::span<const VkEvent> events_;
   bool check_uses_ = false;
   bool shares_with_buffers_ = false;  // the plan has transient buffers
+  bool starts_anew_ = false;
   std::uint32_t slot_ = 0;
   std::vector<VkImageMemoryBarrier2> images_;
   std::vector<VkBufferMemoryBarrier2> buffers_;

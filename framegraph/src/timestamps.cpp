@@ -10,7 +10,7 @@ VkResult Timestamps::begin_frame(VkCommandBuffer commands, std::uint32_t passes)
   count_ = 0;
   read_ = false;
   if (passes > capacity_) {
-    names_.resize(std::max<std::size_t>(names_.size(), passes));
+    passes_.resize(std::max<std::size_t>(passes_.size(), passes));
     ticks_.resize(2 * std::size_t{passes});
     timings_.reserve(passes);
     device_.vk.vkDestroyQueryPool(device_.handles.device, pool_, nullptr);
@@ -29,8 +29,10 @@ VkResult Timestamps::begin_frame(VkCommandBuffer commands, std::uint32_t passes)
   return VK_SUCCESS;
 }
 
-void Timestamps::begin_pass(VkCommandBuffer commands, std::uint32_t number, std::string_view name) {
-  names_[number].assign(name);
+void Timestamps::begin_pass(VkCommandBuffer commands, std::uint32_t number, std::uint32_t pass,
+                            std::string_view name) {
+  passes_[number].number = pass;
+  passes_[number].name.assign(name);
   device_.vk.vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pool_,
                                   2 * number);
 }
@@ -51,7 +53,8 @@ std::span<const PassTiming> Timestamps::read() {
     timings_.clear();
     for (std::size_t i = 0; i < count_; ++i) {
       const std::uint64_t ticks = ticks_[2 * i + 1] - ticks_[2 * i];
-      timings_.push_back({names_[i], static_cast<double>(ticks) * milliseconds});
+      timings_.push_back(
+          {passes_[i].name, passes_[i].number, static_cast<double>(ticks) * milliseconds});
     }
     read_ = true;
   }

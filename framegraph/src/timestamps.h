@@ -26,18 +26,24 @@ class Timestamps {
     return count_ - passes;
   }
   // Different passes may be recorded at the same time.
-  void begin_pass(VkCommandBuffer commands, std::uint32_t number, std::string_view name);
+  // `pass` is its number in the graph.
+  void begin_pass(VkCommandBuffer commands, std::uint32_t number, std::uint32_t pass,
+                  std::string_view name);
   void end_pass(VkCommandBuffer commands, std::uint32_t number);
   // Empty when the device has not finished.
   std::span<const PassTiming> read();
 
  private:
+  struct Pass {
+    std::uint32_t number = 0;
+    std::string name;
+  };
   const DeviceContext& device_;
   VkQueryPool pool_ = VK_NULL_HANDLE;
   std::uint32_t capacity_ = 0;
   std::uint32_t count_ = 0;
   bool read_ = false;
-  std::vector<std::string> names_;
+  std::vector<Pass> passes_;
   std::vector<std::uint64_t> ticks_;
   std::vector<PassTiming> timings_;
 };

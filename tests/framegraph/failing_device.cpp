@@ -43,8 +43,18 @@ using Buffer = Wrapped<&vkCreateBuffer, &vkDestroyBuffer>;
 using View = Wrapped<&vkCreateImageView, &vkDestroyImageView>;
 using Queries = Wrapped<&vkCreateQueryPool, &vkDestroyQueryPool>;
 using Pool = Wrapped<&vkCreateCommandPool, &vkDestroyCommandPool>;
+using DescriptorPool = Wrapped<&vkCreateDescriptorPool, &vkDestroyDescriptorPool>;
+using Module = Wrapped<&vkCreateShaderModule, &vkDestroyShaderModule>;
 using Event = Wrapped<&vkCreateEvent, &vkDestroyEvent>;
 using Semaphore = Wrapped<&vkCreateSemaphore, &vkDestroySemaphore>;
+
+// Freed with their pool.
+VKAPI_ATTR VkResult VKAPI_CALL allocate_sets(VkDevice device,
+                                             const VkDescriptorSetAllocateInfo* info,
+                                             VkDescriptorSet* sets) {
+  if (++call_count == failing_call) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+  return vkAllocateDescriptorSets(device, info, sets);
+}
 
 VKAPI_ATTR VkResult VKAPI_CALL submit(VkQueue queue, std::uint32_t count, const VkSubmitInfo2* info,
                                       VkFence fence) {
@@ -80,6 +90,9 @@ PFN_vkVoidFunction VKAPI_CALL get_device_proc_addr(VkDevice device, const char* 
       ALCOVE_WRAP(Queries, "vkCreateQueryPool", "vkDestroyQueryPool"),
       ALCOVE_WRAP(Pool, "vkCreateCommandPool", "vkDestroyCommandPool"),
       ALCOVE_WRAP(Event, "vkCreateEvent", "vkDestroyEvent"),
+      ALCOVE_WRAP(DescriptorPool, "vkCreateDescriptorPool", "vkDestroyDescriptorPool"),
+      ALCOVE_WRAP(Module, "vkCreateShaderModule", "vkDestroyShaderModule"),
+      {"vkAllocateDescriptorSets", reinterpret_cast<PFN_vkVoidFunction>(&allocate_sets)},
       ALCOVE_WRAP(Semaphore, "vkCreateSemaphore", "vkDestroySemaphore"),
       {"vkQueueSubmit2", reinterpret_cast<PFN_vkVoidFunction>(&submit)},
       {"vkWaitSemaphores", reinterpret_cast<PFN_vkVoidFunction>(&wait_semaphores)},

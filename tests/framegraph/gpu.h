@@ -145,11 +145,21 @@ class Gpu {
     return import;
   }
 
-  // Records one frame, runs it and waits.
+  // Records one frame, runs it and waits; on an error it is thrown away.
   tl::expected<FrameReport, Errors> run(Executor& executor, Graph& graph) {
     begin();
     auto report = executor.record(graph, commands_);
-    end_and_wait();
+    if (report)
+      end_and_wait();
+    else
+      vkEndCommandBuffer(commands_);
+    return report;
+  }
+  // Records one frame and throws its commands away.
+  tl::expected<FrameReport, Errors> record(Executor& executor, Graph& graph) {
+    begin();
+    auto report = executor.record(graph, commands_);
+    vkEndCommandBuffer(commands_);
     return report;
   }
 

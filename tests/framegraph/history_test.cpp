@@ -14,6 +14,7 @@ struct Frame {
   bool wanted = true;       // false: the writer is culled
   bool by_compute = false;  // read as a storage image of a kernel instead of a copy
   std::uint32_t size = 8;
+  bool discarded = false;  // recorded, but never run
 };
 
 class History : public testing::Test {
@@ -38,31 +39,34 @@ class History : public testing::Test {
   }
 
   void run(const Frame& frame) {
-    graph_.reset();
+    graph_->reset();
     kernels_->reset();
-    const TextureHistory history = graph_.create_texture_history(
+    const TextureHistory history = graph_->create_texture_history(
         "history", {VK_FORMAT_R32_UINT, Extent::absolute(frame.size, frame.size)}, kSlots);
     validity_ = history.validity;
-    Buffer out = graph_.import_buffer("host", Gpu::imported(host_));
-    PassBuilder mark = graph_.add_pass("mark");
+    Buffer out = graph_->import_buffer("host", Gpu::imported(host_));
+    PassBuilder mark = graph_->add_pass("mark");
     out = mark.write(out, buffer_access::fill, Contents::discard);
     mark.record([out](RecordContext& c) {
       c.vk.vkCmdFillBuffer(c.commands, c.buffer(out), 0, VK_WHOLE_SIZE, 0xffff);
     });
     Texture current = history.current;
     if (frame.writes) current = write(current, frame.value);
-    if (frame.writes && frame.wanted) graph_.output(current);
+    if (frame.writes && frame.wanted) graph_->output(current);
     for (std::uint32_t age = 1; age < kSlots && frame.wanted; ++age) {
       if (!frame.writes && validity_ != HistoryValidity::valid) continue;
       out = frame.by_compute ? read_by_kernel(history.previous(age), out, age)
                              : read_by_copy(history.previous(age), out, age);
     }
-    const auto report = gpu_.run(*executor_, graph_);
+    const auto report =
+        frame.discarded ? gpu_.record(*executor_, *graph_) : gpu_.run(*executor_, *graph_);
     ASSERT_TRUE(report) << to_string(report.error());
+    history_bytes_ = report->memory.history;
+    if (frame.discarded) executor_->discard(*graph_);
   }
 
   Texture write(Texture texture, std::uint32_t value) {
-    PassBuilder pass = graph_.add_pass("write");
+    PassBuilder pass = graph_->add_pass("write");
     texture = pass.write(texture, access::clear);
     pass.record([texture, value](RecordContext& c) {
       VkClearColorValue color{};
@@ -75,7 +79,7 @@ class History : public testing::Test {
   }
 
   Buffer read_by_copy(Texture texture, Buffer out, std::uint32_t age) {
-    PassBuilder pass = graph_.add_pass("copy");
+    PassBuilder pass = graph_->add_pass("copy");
     pass.read(texture, access::transfer_source);
     out = pass.write(out, buffer_access::transfer_destination);
     pass.record([=](RecordContext& c) {
@@ -92,10 +96,10 @@ class History : public testing::Test {
 
   // The same slot through other accesses, usages and layouts: into a texture, and that to the host.
   Buffer read_by_kernel(Texture texture, Buffer out, std::uint32_t age) {
-    Texture zero = graph_.create_texture("zero", {VK_FORMAT_R32_UINT, Extent::absolute(1, 1)});
+    Texture zero = graph_->create_texture("zero", {VK_FORMAT_R32_UINT, Extent::absolute(1, 1)});
     zero = write(zero, 0);
-    Texture mixed = graph_.create_texture("mixed", {VK_FORMAT_R32_UINT, Extent::absolute(1, 1)});
-    PassBuilder pass = graph_.add_pass("mix");
+    Texture mixed = graph_->create_texture("mixed", {VK_FORMAT_R32_UINT, Extent::absolute(1, 1)});
+    PassBuilder pass = graph_->add_pass("mix");
     pass.read(texture, access::sampled_compute);
     pass.read(zero, access::storage_read_compute);
     mixed = pass.write(mixed, access::storage_write_compute);
@@ -104,7 +108,7 @@ class History : public testing::Test {
       kernels_->mix_texture(c, c.view(texture), c.view(zero), c.view(mixed), c.extent(mixed), 0,
                             false);
     });
-    PassBuilder copy_pass = graph_.add_pass("copy mixed");
+    PassBuilder copy_pass = graph_->add_pass("copy mixed");
     copy_pass.read(mixed, access::transfer_source);
     out = copy_pass.write(out, buffer_access::transfer_destination);
     copy_pass.record([=](RecordContext& c) {
@@ -127,8 +131,9 @@ class History : public testing::Test {
   std::unique_ptr<ChecksumKernels> kernels_;
   std::unique_ptr<Executor> executor_;
   HostBuffer host_;
-  Graph graph_;
+  std::unique_ptr<Graph> graph_ = std::make_unique<Graph>();
   HistoryValidity validity_ = HistoryValidity::valid;
+  VkDeviceSize history_bytes_ = 0;
 };
 
 constexpr std::uint32_t kNothing = 0xffff;
@@ -164,8 +169,8 @@ TEST_F(History, AFrameThatCullsTheWriterLeavesTheSlotsWhereTheyAre) {
 
 TEST_F(History, AFrameWithoutTheHistoryLeavesItAlone) {
   run({1});
-  graph_.reset();
-  ASSERT_TRUE(gpu_.run(*executor_, graph_));
+  graph_->reset();
+  ASSERT_TRUE(gpu_.run(*executor_, *graph_));
   run({2});
   EXPECT_EQ(validity_, HistoryValidity::valid);
   EXPECT_EQ(slot(1), 1u);
@@ -186,13 +191,54 @@ TEST_F(History, AResizeMakesItInvalidAndSaysWhy) {
 TEST_F(History, AResetMakesItInvalidAndSaysWhy) {
   run({1});
   run({2});
-  graph_.reset_history("history");
+  graph_->reset_history("history");
   run({3});
   EXPECT_EQ(validity_, HistoryValidity::reset);
   EXPECT_EQ(slot(1), kNothing);
   run({4});
   EXPECT_EQ(slot(1), 3u);
   EXPECT_EQ(slot(2), kNothing);
+}
+
+TEST_F(History, AFrameThatIsDiscardedNeverWas) {
+  run({.value = 1});
+  run({.value = 99, .discarded = true});
+  run({.value = 2});
+  EXPECT_EQ(slot(1), 1u);
+  // The first of its kind, and one after a change of size.
+  run({.value = 98, .size = 16, .discarded = true});
+  EXPECT_EQ(validity_, HistoryValidity::resized);
+  run({.value = 3, .size = 16});
+  EXPECT_EQ(validity_, HistoryValidity::resized);
+  run({.value = 97, .size = 16, .discarded = true});
+  executor_->discard(*graph_);
+  run({.value = 4, .size = 16});
+  EXPECT_EQ(slot(1), 3u);
+}
+
+TEST_F(History, GraphsOfOneExecutorHaveTheirOwn) {
+  run({.value = 1});
+  const VkDeviceSize bytes = history_bytes_;
+  // The same name and place, but another size.
+  auto other = std::make_unique<Graph>();
+  std::swap(graph_, other);
+  run({.value = 10, .size = 16});
+  EXPECT_EQ(validity_, HistoryValidity::first_frame);
+  EXPECT_GT(history_bytes_, bytes);
+  run({.value = 11, .size = 16});
+  EXPECT_EQ(slot(1), 10u);
+  std::swap(graph_, other);
+  run({.value = 2});
+  EXPECT_EQ(slot(1), 1u);
+  // One that is gone leaves nothing to those that come.
+  other = std::make_unique<Graph>();
+  run({.value = 3});
+  EXPECT_EQ(history_bytes_, bytes);
+  std::swap(graph_, other);
+  other.reset();
+  run({.value = 20, .size = 4});
+  EXPECT_EQ(validity_, HistoryValidity::first_frame);
+  EXPECT_LE(history_bytes_, bytes);
 }
 
 TEST_F(History, ContentsSurviveAChangeOfAccess) {

@@ -81,6 +81,7 @@ struct FrameReport {
 
 struct PassTiming {
   std::string_view name;
+  std::uint32_t pass = kNone;  // its number in the graph, as PassBuilder::index() had it
   double milliseconds = 0.0;
 };
 
@@ -94,10 +95,15 @@ class Executor {
   ~Executor();
 
   // Records the frame into `commands`, a primary command buffer of the graphics family in the
-  // recording state, outside a render pass. All passes run on its queue. On an error nothing of the
-  // graph is recorded, except that an undeclared use is found while recording.
+  // recording state, outside a render pass. All passes run on its queue. Commands are submitted in
+  // the order of their recording, once, to one queue. On an error nothing of the graph is recorded,
+  // except that an undeclared use is found, and memory may give out, while recording: `commands` is
+  // to be thrown away then. Histories are as before the frame.
   [[nodiscard]] tl::expected<FrameReport, Errors> record(Graph& graph, VkCommandBuffer commands,
                                                          const FrameInfo& frame = {});
+  // Where commands are not submitted after all: to be called before anything else of this graph or
+  // executor. It is then as if that frame had not been recorded; without, histories are lost.
+  void discard(Graph& graph, const FrameInfo& frame = {});
 
   // Records and submits on as many queues as there are. Waits itself for what was last submitted
   // with this slot. Not to be mixed with record() on one executor unless the caller orders the two.
@@ -122,6 +128,7 @@ class Executor {
 
  private:
   struct Implementation;
+  struct Attempt;
   explicit Executor(std::unique_ptr<Implementation> implementation);
   std::unique_ptr<Implementation> implementation_;
 };

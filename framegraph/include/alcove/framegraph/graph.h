@@ -11,8 +11,9 @@
 //
 // Declaring never fails: what is wrong is kept and comes back from compile as errors, all of them.
 // Order of declaration is program order: a pass reads what passes before it wrote. One thread
-// declares; a graph may be used by one executor only. A steady frame allocates nothing once reset()
-// has been through the first.
+// declares; a graph may be used by one executor only, which may run several graphs: their frames
+// are numbered together. Memory of a graph's histories goes some frames after the graph. A steady
+// frame allocates nothing once reset() has been through the first.
 #pragma once
 
 #include <cstddef>

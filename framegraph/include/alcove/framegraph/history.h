@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -39,6 +40,10 @@ struct HistoryEntry {
 
 class HistoryTable {
  public:
+  HistoryTable() = default;
+  HistoryTable(const HistoryTable&) = delete;
+  HistoryTable& operator=(const HistoryTable&) = delete;
+
   // Finds or makes the entry; a changed record invalidates it.
   std::uint32_t declare(std::string_view name, const ResourceRecord& record);
   void invalidate(std::string_view name);
@@ -47,11 +52,29 @@ class HistoryTable {
   void drop(std::string_view name);
   void begin_frame();
 
+  // At the end of a frame, after begin_end(): how it left a slot, and that slot 0 becomes slot 1.
+  // undo() takes that back, until a history is declared again: the frame does not run.
+  void begin_end() { ended_.clear(); }
+  void leave(std::uint32_t index, std::uint32_t slot, const HistorySlot& left);
+  void rotate(std::uint32_t index);
+  void undo();
+
   const std::vector<HistoryEntry>& entries() const { return entries_; }
   HistoryEntry& entry(std::uint32_t index) { return entries_[index]; }
+  // By which executors tell the histories of one graph from another's; expires with the table.
+  std::weak_ptr<const char> life() const { return life_; }
 
  private:
+  // What a slot was before the frame left it otherwise.
+  struct Before {
+    std::uint32_t index = 0;
+    std::uint32_t head = 0;
+    std::uint32_t position = 0;
+    HistorySlot slot;
+  };
   std::vector<HistoryEntry> entries_;
+  std::vector<Before> ended_;
+  std::shared_ptr<const char> life_ = std::make_shared<const char>('\0');
 };
 
 }  // namespace alcove::framegraph

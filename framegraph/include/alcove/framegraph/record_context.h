@@ -44,6 +44,9 @@ class RecordContext {
   HistoryValidity validity(Texture texture) const;
   HistoryValidity validity(Buffer buffer) const;
   std::string_view pass_name() const;
+  // What the pass needs could not be made: record() returns an error with this, and nothing of the
+  // frame is to run. `what` is named in its sentence.
+  void fail(std::string_view what, VkResult result) const;
 
  private:
   friend class Recorder;

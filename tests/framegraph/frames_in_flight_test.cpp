@@ -1,0 +1,196 @@
+// What frames that follow each other without a wait owe one another.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include "failing_device.h"
+#include "gpu.h"
+
+namespace alcove::framegraph {
+namespace {
+
+class FramesInFlight : public testing::Test {
+ protected:
+  static constexpr std::uint32_t kSlots = 4;
+
+  void SetUp() override {
+    ASSERT_EQ(gpu_.problem(), "");
+    failing::fail_at(0);
+    failing::lose(false);
+    const VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO, nullptr,
+                                       VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
+                                       gpu_.device().queue_family()};
+    vkCreateCommandPool(gpu_.device().device(), &pool, nullptr, &pool_);
+    const VkCommandBufferAllocateInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, nullptr,
+                                           pool_, VK_COMMAND_BUFFER_LEVEL_PRIMARY, kSlots};
+    vkAllocateCommandBuffers(gpu_.device().device(), &info, commands_.data());
+  }
+  void TearDown() override {
+    wait();
+    vkDestroyCommandPool(gpu_.device().device(), pool_, nullptr);
+    EXPECT_EQ(gpu_.messages(), "");
+  }
+
+  Executor make() {
+    DeviceHandles handles = gpu_.handles();
+    handles.get_instance_proc_addr = failing::get_instance_proc_addr;
+    auto made = Executor::create(handles, {.frames_in_flight = kSlots, .timestamps = false});
+    EXPECT_TRUE(made.has_value());
+    return std::move(*made);
+  }
+
+  tl::expected<FrameReport, Errors> record(Executor& executor, Graph& graph, std::uint32_t slot) {
+    const VkCommandBufferBeginInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO, nullptr,
+                                        VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT, nullptr};
+    vkBeginCommandBuffer(commands_.at(slot), &info);
+    auto report = executor.record(graph, commands_.at(slot), {slot});
+    vkEndCommandBuffer(commands_.at(slot));
+    return report;
+  }
+  // The slot's frame before has finished; this one has not when it returns.
+  void run(Executor& executor, Graph& graph, std::uint32_t slot) {
+    const auto report = record(executor, graph, slot);
+    ASSERT_TRUE(report) << to_string(report.error());
+    VkSubmitInfo submit{VK_STRUCTURE_TYPE_SUBMIT_INFO};
+    submit.commandBufferCount = 1;
+    submit.pCommandBuffers = &commands_.at(slot);
+    vkQueueSubmit(gpu_.device().queue(), 1, &submit, VK_NULL_HANDLE);
+  }
+
+  void wait() { vkDeviceWaitIdle(gpu_.device().device()); }
+
+  Gpu gpu_;
+  VkCommandPool pool_ = VK_NULL_HANDLE;
+  std::array<VkCommandBuffer, kSlots> commands_{};
+};
+
+void add_clear(Graph& graph, Texture& texture, const char* name = "clear") {
+  PassBuilder pass = graph.add_pass(name);
+  texture = pass.write(texture, access::clear, {}, Contents::discard);
+  pass.record([texture](RecordContext& c) {
+    const VkClearColorValue color{};
+    const VkImageSubresourceRange range{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+    c.vk.vkCmdClearColorImage(c.commands, c.image(texture), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                              &color, 1, &range);
+  });
+}
+
+// The frame before copied into it.
+ImportedBuffer arriving(const HostBuffer& host) {
+  ImportedBuffer import = Gpu::imported(host);
+  import.arrival = {VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                    VK_IMAGE_LAYOUT_UNDEFINED};
+  return import;
+}
+
+void add_read(Graph& graph, Texture texture, Buffer& out) {
+  PassBuilder pass = graph.add_pass("copy");
+  pass.read(texture, access::transfer_source);
+  out = pass.write(out, buffer_access::transfer_destination);
+  pass.record([=](RecordContext& c) {
+    VkBufferImageCopy copy{};
+    copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+    copy.imageExtent = {1, 1, 1};
+    c.vk.vkCmdCopyImageToBuffer(c.commands, c.image(texture), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                                c.buffer(out), 1, &copy);
+  });
+}
+
+void declare(Graph& graph, std::uint32_t size) {
+  graph.reset();
+  Texture texture =
+      graph.create_texture("texture", {VK_FORMAT_R32_UINT, Extent::absolute(size, 4)});
+  add_clear(graph, texture);
+  graph.output(texture);
+}
+
+// One plan writes the texture last and the other reads it last, so that each finds it otherwise
+// than it would leave it itself. Validation looks across the submissions.
+TEST_F(FramesInFlight, OfDifferentPlansNeedNoWait) {
+  Executor executor = make();
+  const HostBuffer host = gpu_.make_host_buffer(4);
+  Graph graph;
+  for (std::uint32_t frame = 0; frame < kSlots; ++frame) {
+    const bool written_last = frame % 2 == 0;
+    graph.reset();
+    Buffer out = graph.import_buffer("out", arriving(host));
+    Texture texture =
+        graph.create_texture("texture", {VK_FORMAT_R32_UINT, Extent::absolute(16, 16)});
+    add_clear(graph, texture);
+    if (!written_last) add_clear(graph, texture, "again");
+    add_read(graph, texture, out);
+    if (written_last) {
+      add_clear(graph, texture, "again");
+      graph.output(texture);
+    }
+    run(executor, graph, frame);
+  }
+  wait();
+}
+
+// An image is read by one stage of the frame and then, in the same layout, by another of the
+// caller's, for which alone the next frame waits.
+TEST_F(FramesInFlight, WhatComesAfterADepartureComesAfterTheFramesReads) {
+  Executor executor = make();
+  const HostBuffer host = gpu_.make_host_buffer(4);
+  const TextureDesc desc{VK_FORMAT_R32_UINT, Extent::absolute(16, 16)};
+  constexpr VkImageUsageFlags kUsage =
+      VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  const VkImage image = gpu_.make_image(desc, kUsage);
+  Graph graph;
+  for (std::uint32_t frame = 0; frame < kSlots; ++frame) {
+    graph.reset();
+    Buffer out = graph.import_buffer("out", arriving(host));
+    Texture texture = graph.import_texture(
+        "image", {.image = image,
+                  .desc = desc,
+                  .usage = kUsage,
+                  .arrival = {VK_PIPELINE_STAGE_2_BLIT_BIT, 0, VK_IMAGE_LAYOUT_UNDEFINED},
+                  .departure = {VK_PIPELINE_STAGE_2_BLIT_BIT, VK_ACCESS_2_TRANSFER_READ_BIT,
+                                VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL}});
+    add_clear(graph, texture);
+    add_read(graph, texture, out);
+    run(executor, graph, frame);
+  }
+  wait();
+}
+
+// A frame that never runs says nothing of those that were recorded before it.
+TEST_F(FramesInFlight, ARefusedOrDiscardedFrameFreesNothingThatMayBeInUse) {
+  Executor executor = make();
+  Graph graph;
+  declare(graph, 4);
+  run(executor, graph, 0);
+  declare(graph, 64);  // needs more memory: what the frame before used goes when it may
+  run(executor, graph, 1);
+  wait();  // of which the executor knows nothing
+  const int alive = failing::alive();
+  for (const bool refused : {true, false, true}) {
+    // The frame of slot 0 is done; that of slot 1 may not be.
+    declare(graph, refused ? 0 : 64);
+    EXPECT_EQ(record(executor, graph, 0).has_value(), !refused);
+    if (!refused) executor.discard(graph, {0});
+    EXPECT_EQ(failing::alive(), alive);
+  }
+  declare(graph, 64);
+  run(executor, graph, 1);
+  EXPECT_LT(failing::alive(), alive);
+  wait();
+}
+
+TEST_F(FramesInFlight, APassThatCannotBeRecordedFailsTheFrame) {
+  Executor executor = make();
+  Graph graph;
+  PassBuilder pass = graph.add_pass("poor");
+  pass.side_effect();
+  pass.record([](RecordContext& c) { c.fail("ladder", VK_ERROR_OUT_OF_POOL_MEMORY); });
+  const auto report = record(executor, graph, 0);
+  ASSERT_FALSE(report);
+  EXPECT_EQ(report.error()[0].result, VK_ERROR_OUT_OF_POOL_MEMORY);
+  EXPECT_THAT(report.error()[0].message,
+              testing::HasSubstr("pass 'poor' cannot be recorded: no ladder could be made"));
+}
+
+}  // namespace
+}  // namespace alcove::framegraph
