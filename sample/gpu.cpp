@@ -119,7 +119,7 @@ tl::expected<framegraph::FrameReport, std::string> Gpu::record(const Declare& de
                                                                VkCommandBuffer commands,
                                                                std::uint32_t slot) {
   graph_.reset();
-  kernels_->begin_frame();
+  kernels_->begin_frame(slot);
   if (auto declared = declare(graph_); !declared) {
     return Failure(std::move(declared.error()));
   }

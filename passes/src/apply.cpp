@@ -84,21 +84,19 @@ std::vector<NamedInput> named_inputs(const ApplyInputs& inputs) {
 tl::expected<Kernel, Error> kernel_of(const Frame& frame, const ApplyInputs& inputs,
                                       const ApplySettings& settings) {
   const auto flag = [](bool on) { return static_cast<std::uint32_t>(on); };
-  const std::array constants{
-      flag(bool(inputs.bent_normal)),
-      flag(bool(inputs.visibility)),
+  const std::array diffuse{
+      flag(bool(inputs.bent_normal)), flag(bool(inputs.visibility)),
       flag(settings.multi_bounce && (inputs.visibility || inputs.specular_occlusion)),
-      flag(bool(inputs.light)),
-      flag(settings.parts),
-      flag(bool(inputs.roughness)),
-      settings.roughness_channel,
-      flag(bool(inputs.metallic)),
-      settings.metallic_channel,
-      flag(bool(inputs.specular_occlusion))};
-  constexpr std::size_t kDiffuseConstants = 5;
-  return inputs.map
-             ? frame.kernels.get(Shader::apply_specular, constants)
-             : frame.kernels.get(Shader::apply, std::span(constants).first(kDiffuseConstants));
+      flag(bool(inputs.light)), flag(settings.parts)};
+  if (!inputs.map) {
+    return frame.kernels.get(Shader::apply, diffuse);
+  }
+  const auto [bent, visible, bounces, light, parts] = diffuse;
+  return frame.kernels.get(
+      Shader::apply_specular,
+      std::array{bent, visible, bounces, light, parts, flag(bool(inputs.roughness)),
+                 settings.roughness_channel, flag(bool(inputs.metallic)), settings.metallic_channel,
+                 flag(bool(inputs.specular_occlusion))});
 }
 
 Texture write_light(const Frame& frame, framegraph::PassBuilder& pass, const char* name,

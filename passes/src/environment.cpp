@@ -59,7 +59,7 @@ struct Step {
 };
 
 tl::expected<Texture, Error> add_step(const Frame& frame, const Step& step) {
-  const auto kernel = frame.kernels.get(step.shader, {});
+  const auto kernel = frame.kernels.get(step.shader);
   if (!kernel) {
     return tl::unexpected(kernel.error());
   }

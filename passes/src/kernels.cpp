@@ -13,7 +13,6 @@ namespace alcove::passes {
 namespace {
 
 constexpr std::size_t kShaderCount = static_cast<std::size_t>(Shader::count);
-constexpr std::size_t kMaxConstants = 24;
 constexpr std::size_t kMaxBindings = 17;  // the parameters among them
 constexpr std::uint32_t kGroupSize = 8;
 
@@ -86,7 +85,7 @@ struct Kernels::State {
   void destroy_buffer(const HostBuffer& buffer) const;
   tl::expected<void, Error> create_module(std::size_t shader);
   tl::expected<void, Error> create_table(std::size_t shader);
-  VkDescriptorSet next_set(Shader shader);
+  VkResult next_set(Shader shader, VkDescriptorSet& set);
   VkDeviceSize write_parameters(std::span<const std::byte> bytes);
   void write_set(VkDescriptorSet set, Shader shader, std::span<const VkImageView> views,
                  VkDeviceSize offset, VkDeviceSize size);
@@ -245,11 +244,12 @@ tl::expected<void, Error> Kernels::State::create_module(std::size_t shader) {
 
 // The set of this dispatch: the one it had last time where the shader is the same, else a new one.
 // The pools are sized for the worst frame, so an allocation can fail only for lack of memory.
-VkDescriptorSet Kernels::State::next_set(Shader shader) {
+VkResult Kernels::State::next_set(Shader shader, VkDescriptorSet& set) {
   FrameSlot& frame = slots[slot];
   Set& found = frame.sets[dispatches];
   if (found.shader == shader) {
-    return found.set;
+    set = found.set;
+    return VK_SUCCESS;
   }
   if (found.set != VK_NULL_HANDLE) {
     vk.vkFreeDescriptorSets(device, frame.pool, 1, &found.set);
@@ -259,11 +259,12 @@ VkDescriptorSet Kernels::State::next_set(Shader shader) {
       .descriptorPool = frame.pool,
       .descriptorSetCount = 1,
       .pSetLayouts = &set_layouts[static_cast<std::size_t>(shader)]};
-  found = {shader, VK_NULL_HANDLE};
-  if (vk.vkAllocateDescriptorSets(device, &info, &found.set) != VK_SUCCESS) {
-    found = {};
+  found = {};
+  const VkResult result = vk.vkAllocateDescriptorSets(device, &info, &set);
+  if (result == VK_SUCCESS) {
+    found = {shader, set};
   }
-  return found.set;
+  return result;
 }
 
 VkDeviceSize Kernels::State::write_parameters(std::span<const std::byte> bytes) {
@@ -333,17 +334,14 @@ tl::expected<Kernels, Error> Kernels::create(const framegraph::DeviceHandles& de
   return Kernels(std::move(state));
 }
 
-void Kernels::begin_frame() {
-  begin_frame(static_cast<std::uint32_t>((state_->slot + 1) % state_->slots.size()));
-}
-
 void Kernels::begin_frame(std::uint32_t slot) {
   assert(slot < state_->slots.size());
   state_->slot = slot;
   state_->dispatches = 0;
 }
 
-tl::expected<Kernel, Error> Kernels::get(Shader shader, std::span<const std::uint32_t> constants) {
+tl::expected<Kernel, Error> Kernels::get_pipeline(Shader shader,
+                                                  std::span<const std::uint32_t> constants) {
   State& s = *state_;
   for (const Pipeline& made : s.pipelines) {
     if (made.shader == shader && std::ranges::equal(made.constants, constants)) {
@@ -388,13 +386,17 @@ void Kernels::dispatch(framegraph::RecordContext& context, Kernel kernel,
                        std::span<const VkImageView> views, std::span<const std::byte> parameters,
                        VkExtent3D size) {
   State& s = *state_;
-  assert(s.dispatches < kMaxDispatches);
+  if (s.dispatches == kMaxDispatches) {
+    context.fail("dispatch after Kernels::kMaxDispatches of them", VK_ERROR_OUT_OF_POOL_MEMORY);
+    return;
+  }
   // A view that could not be made is an error that the frame's record returns.
   if (std::ranges::find(views, VkImageView{VK_NULL_HANDLE}) != views.end()) {
     return;
   }
-  const VkDescriptorSet set = s.next_set(kernel.shader);
-  if (set == VK_NULL_HANDLE) {
+  VkDescriptorSet set = VK_NULL_HANDLE;
+  if (const VkResult result = s.next_set(kernel.shader, set); result != VK_SUCCESS) {
+    context.fail("descriptor set", result);
     return;
   }
   const VkDeviceSize offset = s.write_parameters(parameters);

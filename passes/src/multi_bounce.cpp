@@ -21,7 +21,7 @@ tl::expected<Texture, Error> add_multi_bounce(const Frame& frame, const MultiBou
   if (auto good = check_inputs(frame.graph, "multi-bounce", named); !good) {
     return tl::unexpected(std::move(good.error()));
   }
-  const auto kernel = frame.kernels.get(Shader::multi_bounce, {});
+  const auto kernel = frame.kernels.get(Shader::multi_bounce);
   if (!kernel) {
     return tl::unexpected(kernel.error());
   }

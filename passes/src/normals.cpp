@@ -21,7 +21,7 @@ tl::expected<Texture, Error> add_normals(const Frame& frame, Texture depth) {
   if (!projection) {
     return tl::unexpected(projection.error());
   }
-  const auto kernel = frame.kernels.get(Shader::normals, {});
+  const auto kernel = frame.kernels.get(Shader::normals);
   if (!kernel) {
     return tl::unexpected(kernel.error());
   }

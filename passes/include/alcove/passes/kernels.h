@@ -1,6 +1,7 @@
 // The compute pipelines of the passes, and the descriptors and parameters that a frame gives them.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -56,6 +57,7 @@ class Kernels {
   // Passes use at most this many dispatches, and this many bytes of parameters, in a frame.
   static constexpr std::uint32_t kMaxDispatches = 72;
   static constexpr std::uint32_t kMaxParameterBytes = 1024;
+  static constexpr std::size_t kMaxConstants = 24;  // of a pipeline
 
   // `device` must outlive the kernels. `frames_in_flight` is how many frames may be recorded before
   // the first of them has finished on the device.
@@ -65,16 +67,18 @@ class Kernels {
   Kernels& operator=(Kernels&&) noexcept;
   ~Kernels();
 
-  // Takes back the descriptors and parameters of the frame that was recorded `frames_in_flight`
-  // frames ago; that frame must have finished on the device.
-  void begin_frame();
-  // The same for a caller that numbers its frames in flight: `slot` is below `frames_in_flight`,
-  // and the frame that was last recorded with it must have finished on the device.
+  // Takes back the descriptors and parameters of the frame that was last recorded with `slot`
+  // (below `frames_in_flight`), which must have finished on the device: FrameInfo::slot.
   void begin_frame(std::uint32_t slot);
 
   // The pipeline of `shader` with specialisation constants 0, 1, 2... of these values.
-  [[nodiscard]] tl::expected<Kernel, Error> get(Shader shader,
-                                                std::span<const std::uint32_t> constants);
+  template <std::size_t N>
+  requires(N <= kMaxConstants)
+      [[nodiscard]] tl::expected<Kernel, Error> get(Shader shader,
+                                                    const std::array<std::uint32_t, N>& constants) {
+    return get_pipeline(shader, constants);
+  }
+  [[nodiscard]] tl::expected<Kernel, Error> get(Shader shader) { return get_pipeline(shader, {}); }
 
   // Bytes of the tables that the shaders in use look up; one that is not used has none.
   [[nodiscard]] std::size_t table_bytes() const;
@@ -85,7 +89,8 @@ class Kernels {
   // Records a dispatch that covers `size` pixels (and layers) with 8x8 groups. Binding 0 is a
   // uniform buffer with `parameters`; the views follow in the order of the shader's bindings,
   // sampled ones in SHADER_READ_ONLY_OPTIMAL, stored ones in GENERAL; the shader's table comes
-  // last.
+  // last. Where memory gives out, or the frame has kMaxDispatches already, Executor::record() gives
+  // the error.
   void dispatch(framegraph::RecordContext& context, Kernel kernel,
                 std::span<const VkImageView> views, std::span<const std::byte> parameters,
                 VkExtent3D size);
@@ -96,6 +101,8 @@ class Kernels {
  private:
   struct State;
   explicit Kernels(std::unique_ptr<State> state);
+  // At most kMaxConstants.
+  tl::expected<Kernel, Error> get_pipeline(Shader shader, std::span<const std::uint32_t> constants);
   std::unique_ptr<State> state_;
 };
 
