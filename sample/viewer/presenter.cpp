@@ -96,16 +96,6 @@ VkResult Presenter::wait_for_slot() {
   return result;
 }
 
-VkResult Presenter::wait_for_frames() const {
-  VkResult result = VK_SUCCESS;
-  for (const Slot& slot : slots_) {
-    if (result == VK_SUCCESS) {
-      result = vkWaitForFences(gpu_.device().device(), 1, &slot.finished, VK_TRUE, UINT64_MAX);
-    }
-  }
-  return result;
-}
-
 tl::expected<bool, std::string> Presenter::prepare() {
   const VkExtent2D size = window_.size();
   if (size.width == 0 || size.height == 0) {
@@ -153,16 +143,8 @@ tl::expected<framegraph::FrameReport, std::string> Presenter::draw(const Declare
       slot.commands, slot_);
   result = vkEndCommandBuffer(slot.commands);
   if (!report) {
-    result = wait_for_frames();
-    return result == VK_SUCCESS ? report : failure("finish the frames before", result);
+    return report;
   }
-  // The graph orders frames of different plans by a barrier over everything, but validation across
-  // submits does not follow that into the first changes of layout. A wait it does follow, and plans
-  // only change where a choice does.
-  if (result == VK_SUCCESS && (report->compiled || report->plan != plan_)) {
-    result = wait_for_frames();
-  }
-  plan_ = report->plan;
   if (result == VK_SUCCESS) {
     result = submit(slot);
   }

@@ -49,7 +49,6 @@ class Presenter {
   tl::expected<void, std::string> create_swapchain();
   // Waits for the frame that had the next one's slot and takes its timings.
   VkResult wait_for_slot();
-  VkResult wait_for_frames() const;
   VkResult submit(const Slot& slot) const;
 
   Gpu& gpu_;
@@ -63,7 +62,6 @@ class Presenter {
   bool acquired_ = false;   // the swapchain has an image for it
   bool outdated_ = false;   // the window is no longer what the swapchain was made for
   std::vector<PassTime> timings_;
-  const framegraph::Plan* plan_ = nullptr;  // of the last frame: only to be compared
 };
 
 }  // namespace alcove::sample
