@@ -32,10 +32,10 @@ vec4 reproject(Surface surface) {
   vec2 position = before.xy / before.w;
   if (kMotion) {
     vec2 motion = texelFetch(motion_image, surface.pixel, 0).rg;
-    position = surface.centre - motion * vec2(size_px());
+    position = surface.centre * parameters.previous_size.zw - motion * parameters.previous_size.xy;
   }
   bool seen = before.w > 1e-6 && all(greaterThanEqual(position, vec2(0.0))) &&
-              all(lessThanEqual(position, vec2(size_px())));
+              all(lessThanEqual(position, parameters.previous_size.xy));
   return seen ? vec4(position, before.z, 1.0) : vec4(0.0, 0.0, 1.0, 0.0);
 }
 
@@ -70,11 +70,12 @@ History read_history(Surface surface) {
     weight_sum = add_history(found, surface, surface.pixel, surface.depth, 1.0);
   } else {
     vec4 before = reproject(surface);
+    ivec2 last = ivec2(parameters.previous_size.xy) - 1;
     vec2 first = floor(before.xy - 0.5);
     vec2 part = before.xy - 0.5 - first;
     for (int i = 0; i < 4; ++i) {
       ivec2 corner = ivec2(i & 1, i >> 1);
-      ivec2 texel = clamp(ivec2(first) + corner, ivec2(0), size_px() - 1);
+      ivec2 texel = clamp(ivec2(first) + corner, ivec2(0), last);
       vec2 near = abs(1.0 - vec2(corner) - part);
       // Where the surface's tangent plane passes that texel; it hardly turns from frame to frame.
       vec2 offset = vec2(corner) - part;

@@ -13,11 +13,13 @@ struct ReconstructParameters {
   // constant on the plane, x and y in pixels.
   mat4 plane_from_normal;
   mat4 normal_from_view;  // rotation from view space to the space of the normals
-  vec2 phase;             // which pixel of each block was searched this frame
-  float tolerance;        // scale of distances from the tangent plane, in depths
-  float longest;          // frames that history counts at most
-  float clamp_width;      // history is held to so many deviations of this frame's neighbourhood
-  float roughness;        // perceptual, of every surface where no texture has it
+  // Of the frame before: xy its size in pixels, zw that in parts of this frame's.
+  vec4 previous_size;
+  vec2 phase;         // which pixel of each block was searched this frame
+  float tolerance;    // scale of distances from the tangent plane, in depths
+  float longest;      // frames that history counts at most
+  float clamp_width;  // history is held to so many deviations of this frame's neighbourhood
+  float roughness;    // perceptual, of every surface where no texture has it
 };
 
 ALCOVE_MATHS_END

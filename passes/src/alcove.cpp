@@ -39,6 +39,23 @@ static_assert(ALCOVE_MAX_VIEWS * kPassesOfAView <= passes::Kernels::kMaxDispatch
 
 }  // namespace
 
+namespace {
+
+// The views of a frame, by the number of the first pass that comes after each.
+struct ViewPasses {
+  struct View {
+    std::uint32_t id = 0;
+    std::uint32_t end = 0;
+  };
+  std::array<View, ALCOVE_MAX_VIEWS> views{};
+
+  std::uint32_t view_of(std::uint32_t pass) const {
+    return std::ranges::find_if(views, [pass](const View& view) { return pass < view.end; })->id;
+  }
+};
+
+}  // namespace
+
 struct AlcoveContext {
   AlcoveContext(framegraph::Executor made_executor, passes::Kernels made_kernels,
                 const AlcoveContextInfo& info)
@@ -52,6 +69,10 @@ struct AlcoveContext {
   framegraph::Graph graph;
   passes::ImageTable images;
   framegraph::FrameReport report;  // of the frame recorded last; its plan null before there is one
+  std::uint32_t slot = 0;          // of that frame
+  bool may_discard = false;        // it was recorded by the last alcoveRecordFrame
+  // Of each slot's frame.
+  std::array<ViewPasses, ALCOVE_MAX_FRAMES_IN_FLIGHT> passes_of_views{};
   Message message{};
 };
 
@@ -254,6 +275,7 @@ Result check(const AlcoveContext& context, VkCommandBuffer commands, const Alcov
 }
 
 Result record(AlcoveContext& context, VkCommandBuffer commands, const AlcoveFrame* frame) {
+  context.may_discard = false;
   if (auto right = check(context, commands, frame); !right) {
     return right;
   }
@@ -262,18 +284,24 @@ Result record(AlcoveContext& context, VkCommandBuffer commands, const AlcoveFram
   context.graph.reset();
   context.images.reset();
   context.kernels.begin_frame(frame->slot);
+  ViewPasses passes;
   for (std::uint32_t i = 0; i < frame->view_count; ++i) {
     if (auto added = passes::add_view(context.graph, context.kernels, context.images,
                                       frame->views[i], frame->index);
         !added) {
       return added;
     }
+    passes.views[i] = {frame->views[i].id,
+                       static_cast<std::uint32_t>(context.graph.description().passes.size())};
   }
   const auto report = context.executor.record(context.graph, commands, {frame->slot});
   if (!report) {
     return tl::unexpected(passes::failure_of(report.error()));
   }
   context.report = *report;
+  context.slot = frame->slot;
+  context.may_discard = true;
+  context.passes_of_views[frame->slot] = passes;
   // What a view does not remember any more, because its settings or outputs changed.
   for (std::uint32_t i = 0; i < frame->view_count; ++i) {
     passes::drop_reconstruct_history(context.graph, passes::ViewName(frame->views[i].id));
@@ -325,6 +353,20 @@ AlcoveResult alcoveRecordFrame(AlcoveContext* context, VkCommandBuffer commands,
   return guarded(context->message, [&] { return record(*context, commands, frame); });
 }
 
+AlcoveResult alcoveDiscardFrame(AlcoveContext* context) {
+  if (context == nullptr) {
+    return ALCOVE_ERROR_INVALID_INPUT;
+  }
+  return guarded(context->message, [&]() -> Result {
+    if (context->may_discard) {
+      context->executor.discard(context->graph, {context->slot});
+      context->report = {};
+    }
+    context->may_discard = false;
+    return {};
+  });
+}
+
 AlcoveResult alcoveGetMemory(AlcoveContext* context, AlcoveMemory* memory) {
   if (context == nullptr) {
     return ALCOVE_ERROR_INVALID_INPUT;
@@ -366,6 +408,7 @@ AlcoveResult alcoveGetTimings(AlcoveContext* context, uint32_t slot, uint32_t* c
     *count = timings == nullptr ? there : std::min(*count, there);
     for (std::uint32_t i = 0; timings != nullptr && i < *count; ++i) {
       copy_text(found[i].name, timings[i].pass, sizeof timings[i].pass);
+      timings[i].view = context->passes_of_views[slot].view_of(found[i].pass);
       timings[i].milliseconds = found[i].milliseconds;
     }
     return {};

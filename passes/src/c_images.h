@@ -22,6 +22,8 @@ struct ImageRole {
 // The images of one frame. One that serves as several inputs is one texture of the graph.
 class ImageTable {
  public:
+  static constexpr std::size_t kImagesOfAView = 11;
+
   void reset() { count_ = 0; }
 
   // The image of view `view` as a texture of `graph`, null where there is none. Its size must be
@@ -38,7 +40,6 @@ class ImageTable {
     framegraph::Texture texture;
     bool output = false;
   };
-  static constexpr std::size_t kImagesOfAView = 10;
   std::array<Entry, ALCOVE_MAX_VIEWS * kImagesOfAView> entries_;
   std::size_t count_ = 0;
 };

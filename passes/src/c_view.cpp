@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <initializer_list>
 #include <utility>
 
 #include "alcove/passes/multi_bounce.h"
@@ -85,6 +84,22 @@ tl::expected<void, Failure> check_given(const AlcoveView& view) {
   return {};
 }
 
+// What few settings read.
+tl::expected<void, Failure> check_hidden(const AlcoveView& view,
+                                         const OcclusionSettings& settings) {
+  if (needs_back_depth(settings.estimator, settings.thickness_unit) &&
+      view.back_depth.image == VK_NULL_HANDLE) {
+    return invalid(sentence_begin(view) +
+                   " has no image of back_depth, which its settings' thickness_unit needs.");
+  }
+  if (needs_second_depth(settings.estimator, settings.depth_layers) &&
+      view.second_depth.image == VK_NULL_HANDLE) {
+    return invalid(sentence_begin(view) +
+                   " has no image of second_depth, which its settings' depth_layers need.");
+  }
+  return {};
+}
+
 tl::expected<Textures, Failure> import_images(framegraph::Graph& graph, ImageTable& images,
                                               const AlcoveView& view,
                                               const OcclusionSettings& settings) {
@@ -98,18 +113,20 @@ tl::expected<Textures, Failure> import_images(framegraph::Graph& graph, ImageTab
     const AlcoveImage& image;
     Texture& texture;
   };
-  for (const Import& import : std::initializer_list<Import>{
-           {kDepth, view.depth, textures.inputs.depth_ndc},
-           {kNormals, view.normals, textures.inputs.normals},
-           {kMotion, view.motion, textures.inputs.motion},
-           {roughness, view.roughness, textures.inputs.roughness},
-           {kBackDepth, view.back_depth, textures.inputs.back_depth_ndc},
-           {kSecondDepth, view.second_depth, textures.inputs.second_depth_ndc},
-           {kAlbedo, view.albedo, textures.albedo},
-           {kVisibility, view.visibility, textures.inputs.into.visibility},
-           {kBentNormal, view.bent_normal, textures.inputs.into.bent_normal},
-           {kSpecular, view.specular, textures.inputs.into.specular},
-           {kMultiBounce, view.multi_bounce, textures.multi_bounce}}) {
+  // As many as a view has: else it does not compile.
+  const Import imports[ImageTable::kImagesOfAView] = {
+      {kDepth, view.depth, textures.inputs.depth_ndc},
+      {kNormals, view.normals, textures.inputs.normals},
+      {kMotion, view.motion, textures.inputs.motion},
+      {roughness, view.roughness, textures.inputs.roughness},
+      {kBackDepth, view.back_depth, textures.inputs.back_depth_ndc},
+      {kSecondDepth, view.second_depth, textures.inputs.second_depth_ndc},
+      {kAlbedo, view.albedo, textures.albedo},
+      {kVisibility, view.visibility, textures.inputs.into.visibility},
+      {kBentNormal, view.bent_normal, textures.inputs.into.bent_normal},
+      {kSpecular, view.specular, textures.inputs.into.specular},
+      {kMultiBounce, view.multi_bounce, textures.multi_bounce}};
+  for (const Import& import : imports) {
     auto texture = images.import(graph, import.role, import.image, view.depth, view.id);
     if (!texture) {
       return tl::unexpected(std::move(texture.error()));
@@ -155,7 +172,8 @@ tl::expected<void, Failure> add_view(framegraph::Graph& graph, Kernels& kernels,
   if (!now || !before) {
     return tl::unexpected(std::move(now ? before.error() : now.error()));
   }
-  if (auto right = check_given(view); !right) {
+  auto right = check_given(view).and_then([&] { return check_hidden(view, settings); });
+  if (!right) {
     return right;
   }
   auto textures = import_images(graph, images, view, settings);
@@ -169,8 +187,12 @@ tl::expected<void, Failure> add_view(framegraph::Graph& graph, Kernels& kernels,
   if (reset) {
     graph.reset_history(ViewName(view.id));
   }
-  return add_passes({graph, kernels, *now, frame_index, *before, reset ? 0 : view.still_frames},
-                    *textures, view, settings);
+  Frame frame{graph, kernels, *now, frame_index, *before, reset ? 0 : view.still_frames};
+  frame.largest_size = {view.largest_width, view.largest_height};
+  if (!reset) {
+    frame.previous_size = {view.previous_width, view.previous_height};
+  }
+  return add_passes(frame, *textures, view, settings);
 }
 
 }  // namespace alcove::passes

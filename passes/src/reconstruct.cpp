@@ -80,6 +80,35 @@ class BentHistoryName {
   std::pmr::string text_{&memory_};
 };
 
+// Pixels, each within the last.
+struct Sizes {
+  VkExtent2D now;
+  VkExtent2D previous;
+  VkExtent2D largest;
+};
+
+tl::expected<Sizes, Error> sizes_of(const Frame& frame, Texture depth) {
+  const VkExtent3D extent = frame.graph.extent(depth);
+  const VkExtent2D now{extent.width, extent.height};
+  const auto or_now = [&](VkExtent2D given) {
+    return given.width == 0 && given.height == 0 ? now : given;
+  };
+  const Sizes sizes{now, or_now(frame.previous_size), or_now(frame.largest_size)};
+  const auto fits = [&](VkExtent2D size) {
+    return size.width > 0 && size.height > 0 && size.width <= sizes.largest.width &&
+           size.height <= sizes.largest.height;
+  };
+  if (fits(sizes.now) && fits(sizes.previous)) {
+    return sizes;
+  }
+  const auto text = [](VkExtent2D size) {
+    return std::to_string(size.width) + "x" + std::to_string(size.height);
+  };
+  return tl::unexpected(Error{"The depth has " + text(sizes.now) + " pixels and had " +
+                              text(sizes.previous) + " in the frame before; both must be within " +
+                              text(sizes.largest) + ", the largest size."});
+}
+
 // All that the pass touches; null where it is not wanted.
 struct Textures {
   ReconstructInputs inputs;
@@ -92,11 +121,11 @@ struct Textures {
 
 // Declares the textures that the pass writes. `valid` is whether last frame's history can be read.
 Textures create_textures(const Frame& frame, const ReconstructInputs& inputs,
-                         const ReconstructSettings& settings, std::string_view history_name,
-                         bool& valid) {
+                         const ReconstructSettings& settings, const Sizes& sizes,
+                         std::string_view history_name, bool& valid) {
   Graph& graph = frame.graph;
-  const VkExtent3D extent = graph.extent(inputs.line_depth);
-  const auto size = framegraph::Extent::absolute(extent.width, extent.height);
+  const auto size = framegraph::Extent::absolute(sizes.now.width, sizes.now.height);
+  const auto largest = framegraph::Extent::absolute(sizes.largest.width, sizes.largest.height);
   Textures textures{.inputs = inputs};
   const auto given_or = [&](Texture into, std::string_view name, VkFormat format) {
     return into ? into : graph.create_texture(name, {format, size});
@@ -117,13 +146,13 @@ Textures create_textures(const Frame& frame, const ReconstructInputs& inputs,
     return textures;
   }
   const TextureHistory history =
-      graph.create_texture_history(history_name, {signal_format(inputs.signal.lobe), size});
+      graph.create_texture_history(history_name, {signal_format(inputs.signal.lobe), largest});
   valid = history.validity == framegraph::HistoryValidity::valid;
   textures.history = history.previous();
   textures.next_history = history.current;
   if (inputs.signal.bent) {
-    const TextureHistory bent = graph.create_texture_history(BentHistoryName(history_name),
-                                                             {VK_FORMAT_R16G16B16A16_SFLOAT, size});
+    const TextureHistory bent = graph.create_texture_history(
+        BentHistoryName(history_name), {VK_FORMAT_R16G16B16A16_SFLOAT, largest});
     valid = valid && bent.validity == framegraph::HistoryValidity::valid;
     textures.bent_history = bent.previous();
     textures.next_bent_history = bent.current;
@@ -251,6 +280,7 @@ maths::ReconstructParameters parameters_of(const Frame& frame, const maths::Proj
       1.0f / (settings.filter_tolerance_px * std::abs(maths::ray_per_px(projection).y));
   parameters.longest = static_cast<float>(settings.history_frames);
   parameters.clamp_width = settings.clamp_width;
+  parameters.previous_size = maths::vec4(previous.size_px, previous.size_px / projection.size_px);
   parameters.roughness = settings.roughness;
   return parameters;
 }
@@ -289,15 +319,21 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& frame, const Reconst
         "The filter is asked for no visibility, and its signal has neither bent normals nor a "
         "lobe; ask for one of the three."});
   }
-  const auto projection = projection_of(frame, frame.view, inputs.line_depth);
-  const auto previous = projection_of(frame, frame.previous_view, inputs.line_depth);
+  const auto sizes = sizes_of(frame, inputs.line_depth);
+  if (!sizes) {
+    return tl::unexpected(sizes.error());
+  }
+  const auto projection = projection_of(frame.view, sizes->now);
+  const auto previous = projection_of(frame.previous_view, sizes->previous);
   if (!projection || !previous) {
     return tl::unexpected(projection ? previous.error() : projection.error());
   }
   bool history_valid = false;
-  Textures textures = create_textures(frame, inputs, settings, history_name, history_valid);
+  Textures textures = create_textures(frame, inputs, settings, *sizes, history_name, history_valid);
   const bool history = settings.history_frames > 0;
-  const bool still = history_valid && !inputs.motion && same_view;
+  const bool same_size =
+      sizes->now.width == sizes->previous.width && sizes->now.height == sizes->previous.height;
+  const bool still = history_valid && !inputs.motion && same_view && same_size;
   const bool settled = still && frame.still_frames >= kSettledFrames;
   const std::array constants{inputs.signal.divisor,
                              settings.filter_reach,

@@ -18,14 +18,20 @@ namespace alcove::passes {
   return result;
 }
 
-// The projection of a view over the whole of `texture`, or what is wrong with it.
-[[nodiscard]] inline tl::expected<maths::Projection, Error> projection_of(
-    const Frame& frame, const View& view, framegraph::Texture texture) {
-  const VkExtent3D extent = frame.graph.extent(texture);
-  return maths::make_projection(to_mat4(view.clip_from_view), extent.width, extent.height)
+// The projection of a view over an image of `size` pixels, or what is wrong with it.
+[[nodiscard]] inline tl::expected<maths::Projection, Error> projection_of(const View& view,
+                                                                          VkExtent2D size) {
+  return maths::make_projection(to_mat4(view.clip_from_view), size.width, size.height)
       .map_error([](const char* why) {
         return Error{"The view cannot be used: " + std::string(why) + "."};
       });
+}
+
+// The same over the whole of `texture`.
+[[nodiscard]] inline tl::expected<maths::Projection, Error> projection_of(
+    const Frame& frame, const View& view, framegraph::Texture texture) {
+  const VkExtent3D extent = frame.graph.extent(texture);
+  return projection_of(view, {extent.width, extent.height});
 }
 
 // The rotation that turns normals into view space.
@@ -51,7 +57,8 @@ namespace alcove::passes {
 
 template <typename Parameters>
 [[nodiscard]] std::span<const std::byte> bytes_of(const Parameters& parameters) {
-  static_assert(std::is_trivially_copyable_v<Parameters>);
+  static_assert(std::is_trivially_copyable_v<Parameters> &&
+                sizeof(Parameters) <= Kernels::kMaxParameterBytes);
   return std::as_bytes(std::span(&parameters, 1));
 }
 

@@ -260,7 +260,7 @@ TEST_F(CBadInput, BackFacesThatAreReadButNotGivenAreNamed) {
     s.settings.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES;
     s.views[0].back_depth = {};
   });
-  EXPECT_THAT(said, HasSubstr("back-face depth"));
+  EXPECT_THAT(said, HasSubstr("no image of back_depth"));
   EXPECT_PRED1(is_a_sentence, said);
 }
 
@@ -269,7 +269,7 @@ TEST_F(CBadInput, ASecondLayerThatIsReadButNotGivenIsNamed) {
     s.settings.depth_layers = 2;
     s.views[0].second_depth = {};
   });
-  EXPECT_THAT(said, HasSubstr("second depth"));
+  EXPECT_THAT(said, HasSubstr("no image of second_depth"));
   EXPECT_PRED1(is_a_sentence, said);
 }
 

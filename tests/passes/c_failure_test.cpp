@@ -110,13 +110,6 @@ TEST_F(CFailure, AFeatureThatTheEngineDidNotEnableIsNamed) {
               HasSubstr("shaderStorageImageWriteWithoutFormat"));
 }
 
-// Nothing is submitted of a frame that failed midway.
-void throw_away(VkCommandBuffer commands) {
-  vkResetCommandBuffer(commands, 0);
-  const VkCommandBufferBeginInfo begin{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
-  vkBeginCommandBuffer(commands, &begin);
-}
-
 // Makes a context and records two frames; the first thing that fails, and what is said of it.
 struct Outcome {
   AlcoveResult result = ALCOVE_SUCCESS;

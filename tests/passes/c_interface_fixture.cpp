@@ -136,6 +136,10 @@ AlcoveView CInterface::view_of(const GivenView& given, AlcoveSettings& settings)
                   .settings = &settings,
                   .camera = to_camera(given.view),
                   .previous_camera = to_camera(given.previous_view),
+                  .largest_width = given.largest_size.width,
+                  .largest_height = given.largest_size.height,
+                  .previous_width = given.previous_size.width,
+                  .previous_height = given.previous_size.height,
                   .depth = input(given.depth_ndc),
                   .normals = input(given.normals),
                   .motion = input(given.motion),
@@ -170,6 +174,17 @@ void CInterface::run_frame(AlcoveContext& context, std::span<const AlcoveView> v
   });
 }
 
+void CInterface::record_and_throw_away(AlcoveContext& context, const AlcoveView& view,
+                                       std::uint32_t index) {
+  const AlcoveFrame frame{
+      .struct_size = sizeof(AlcoveFrame), .index = index, .view_count = 1, .views = &view};
+  engine_->submit(0, [&](VkCommandBuffer commands) {
+    EXPECT_EQ(alcoveRecordFrame(&context, commands, &frame), ALCOVE_SUCCESS)
+        << alcoveGetMessage(&context);
+    throw_away(commands);
+  });
+}
+
 Results CInterface::results_of(const AlcoveView& view) {
   return {read(view.visibility), read(view.bent_normal), read(view.specular),
           read(view.multi_bounce)};
@@ -201,8 +216,14 @@ Results CInterface::run_by_cpp(const GivenView& given, std::uint32_t index) {
     const auto upload_of = [&](const HostImage& image) {
       return image.texels.empty() ? Texture{} : upload(graph, image);
     };
-    const Frame frame{graph, gpu().kernels(),     given.view,
-                      index, given.previous_view, given.reset ? 0 : given.still_frames};
+    const Frame frame{.graph = graph,
+                      .kernels = gpu().kernels(),
+                      .view = given.view,
+                      .index = index,
+                      .previous_view = given.previous_view,
+                      .still_frames = given.reset ? 0 : given.still_frames,
+                      .largest_size = given.largest_size,
+                      .previous_size = given.reset ? VkExtent2D{} : given.previous_size};
     OcclusionSettings settings = given.settings;
     settings.visibility = settings.visibility || given.multi_bounce;
     const auto outputs = add_occlusion(frame,

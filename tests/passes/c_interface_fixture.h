@@ -22,6 +22,8 @@ struct GivenView {
   View previous_view = view;
   bool reset = false;
   std::uint32_t still_frames = 0;
+  VkExtent2D largest_size{};
+  VkExtent2D previous_size{};
   HostImage depth_ndc;
   HostImage normals;
   bool normals_in_view_space = true;
@@ -63,6 +65,8 @@ class CInterface : public PassTest {
   AlcoveView view_of(const GivenView& given, AlcoveSettings& settings);
   // Records, submits and waits for a frame, which has to succeed.
   void run_frame(AlcoveContext& context, std::span<const AlcoveView> views, std::uint32_t index);
+  // The same, but of the frame nothing is submitted.
+  void record_and_throw_away(AlcoveContext& context, const AlcoveView& view, std::uint32_t index);
   Results results_of(const AlcoveView& view);
 
   std::vector<Results> run_by_c(AlcoveContext& context, std::span<const GivenView> views,

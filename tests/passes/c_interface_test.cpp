@@ -203,7 +203,10 @@ TEST_F(CInterface, EightViewsWithEverythingFitAFrame) {
   for (std::uint32_t id = 0; id < ALCOVE_MAX_VIEWS; ++id) {
     views.push_back(frame_of(id, 8, 6));
     views.back().id = id;
-    views.back().normals = {};
+    views.back().motion = given_view(test_views()[2], 8, 6, {}).motion;
+    if (id % 2 == 1) {
+      views.back().normals = {};  // a pass more, an image less
+    }
     views.back().settings.thickness_unit = ThicknessUnit::back_faces;
     views.back().settings.depth_layers = 2;
     views.back().settings.bent_normal = true;
@@ -213,6 +216,65 @@ TEST_F(CInterface, EightViewsWithEverythingFitAFrame) {
   const std::vector<Results> found = run_by_c(*context, views, 0);
   for (std::size_t v = 0; v < views.size(); ++v) {
     expect_equal(found[v], run_by_cpp(views[v], 0));
+  }
+}
+
+TEST_F(CInterface, EveryImageOfEightViewsIsTaken) {
+  const Context context = create_context();
+  std::vector<GivenView> views;
+  for (std::uint32_t id = 0; id < ALCOVE_MAX_VIEWS; ++id) {
+    views.push_back(given_view(test_views()[2], 8, 6, groove(0.8)));
+    views.back().id = id;
+    views.back().settings.bent_normal = true;
+    views.back().settings.specular = Specular::slices;
+    views.back().multi_bounce = true;
+  }
+  const std::vector<Results> found = run_by_c(*context, views, 0);
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    expect_equal(found[v], run_by_cpp(views[v], 0));
+  }
+}
+
+// An output that others are made from is read by the library and then by the engine, for which
+// alone the next frame waits.
+TEST_F(CInterface, FramesOfTheSameImagesNeedNoWait) {
+  const Context context = create_context();
+  GivenView given = frame_of(0, 33, 17);
+  given.settings.bent_normal = true;
+  given.settings.specular = Specular::table;
+  given.multi_bounce = true;
+  AlcoveSettings settings;
+  const AlcoveView view = view_of(given, settings);
+  for (std::uint32_t i = 0; i < 6; ++i) {
+    run_frame(*context, {&view, 1}, i);
+  }
+  engine().wait();
+}
+
+// As where the window is gone once all has been recorded: what was recorded is never submitted.
+TEST_F(CInterface, AFrameThatIsDiscardedNeverWas) {
+  const Context context = create_context();
+  EXPECT_EQ(alcoveDiscardFrame(context.get()), ALCOVE_SUCCESS) << "before there is one";
+  std::uint32_t index = 0;
+  for (const bool discarded : {true, false, false, true, true, false}) {
+    GivenView given = frame_of(index, 33, 17);
+    given.settings.bent_normal = discarded;  // another plan
+    if (discarded) {
+      AlcoveSettings settings;
+      const AlcoveView view = view_of(given, settings);
+      record_and_throw_away(*context, view, index);
+      EXPECT_EQ(alcoveDiscardFrame(context.get()), ALCOVE_SUCCESS);
+      std::uint32_t count = 99;
+      EXPECT_EQ(alcoveGetTimings(context.get(), 0, &count, nullptr), ALCOVE_SUCCESS);
+      EXPECT_EQ(count, 0u);
+      continue;
+    }
+    const std::vector<Results> found = run_by_c(*context, {&given, 1}, index);
+    expect_equal(found[0], run_by_cpp(given, index));
+    EXPECT_EQ(alcoveRecordFrame(context.get(), VK_NULL_HANDLE, nullptr),
+              ALCOVE_ERROR_INVALID_INPUT);
+    EXPECT_EQ(alcoveDiscardFrame(context.get()), ALCOVE_SUCCESS) << "of the frame that was refused";
+    ++index;
   }
 }
 

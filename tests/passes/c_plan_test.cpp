@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <set>
 #include <string>
 
 #include "c_interface_fixture.h"
@@ -140,6 +142,34 @@ TEST_F(CPlan, TimingsNameThePassesOfAFinishedFrame) {
   count = 1;
   EXPECT_EQ(alcoveGetTimings(context.get(), 0, &count, timings.data()), ALCOVE_SUCCESS);
   EXPECT_EQ(count, 1u);
+}
+
+TEST_F(CPlan, TimingsNameTheViewOfEachPass) {
+  const Context context = create_context();
+  std::array<GivenView, 3> given;
+  for (GivenView& view : given) {
+    view = least();
+    view.settings.visibility = true;
+  }
+  given[0].id = 4000000000u;
+  given[1].id = 7;
+  given[1].normals = {};  // passes of its own
+  given[2].id = 0;
+  (void)run_by_c(*context, given, 0);
+  std::array<AlcoveTiming, 16> timings{};
+  std::uint32_t count = timings.size();
+  EXPECT_EQ(alcoveGetTimings(context.get(), 0, &count, timings.data()), ALCOVE_SUCCESS);
+  std::map<std::uint32_t, std::multiset<std::string>> passes;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    passes[timings.at(i).view].insert(timings.at(i).pass);
+  }
+  const std::multiset<std::string> plain{"gtao", "line depth", "reconstruct"};
+  std::multiset<std::string> with_normals = plain;
+  with_normals.insert({"depth pyramid", "normals"});
+  EXPECT_EQ(passes.size(), given.size());
+  EXPECT_EQ(passes[given[0].id], plain);
+  EXPECT_EQ(passes[given[1].id], with_normals);
+  EXPECT_EQ(passes[given[2].id], plain);
 }
 
 TEST(CSettings, AreFilledPrintedAndPassedBack) {

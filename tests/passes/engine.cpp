@@ -119,6 +119,12 @@ void Engine::submit(std::uint32_t slot, const std::function<void(VkCommandBuffer
   EXPECT_EQ(vkQueueSubmit(device_.queue(), 1, &submission, used.fence), VK_SUCCESS);
 }
 
+void throw_away(VkCommandBuffer commands) {
+  vkResetCommandBuffer(commands, 0);
+  const VkCommandBufferBeginInfo begin{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
+  vkBeginCommandBuffer(commands, &begin);
+}
+
 void Engine::wait() { EXPECT_EQ(vkQueueWaitIdle(device_.queue()), VK_SUCCESS); }
 
 }  // namespace alcove::passes

@@ -51,6 +51,9 @@ class Engine {
   std::vector<Image> images_;
 };
 
+// So that nothing is submitted of what was recorded.
+void throw_away(VkCommandBuffer commands);
+
 // How an engine's images rest between frames.
 inline constexpr AlcoveState kResting{VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
                                       VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,

@@ -3,7 +3,7 @@
 //   alcoveCreateContext once                 AlcoveSettings from alcoveGetSettings, changed at will
 //   frame: wait for the fence of slot s;     alcoveRecordFrame into a command buffer in recording
 //          end it, submit it with that fence
-//   alcoveDestroyContext when the device has finished
+//   alcoveDestroyContext when the device has finished, before or after the engine's images go
 //
 // Space. View space is right-handed with the camera along -Z, clip space is Vulkan's (y down, depth
 // 0 to 1), matrices are column-major: row r of column c at 4 * c + r. Lengths are in the scene's
@@ -178,6 +178,8 @@ void alcoveDestroyContext(AlcoveContext* context);
 // the next call. Never null.
 const char* alcoveGetMessage(const AlcoveContext* context);
 
+// What another queue does is ordered by the engine's semaphores: `stages` are then those at which
+// the context's queue waits for them, or VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, without access.
 typedef struct AlcoveState {
   VkPipelineStageFlags2 stages;
   VkAccessFlags2 access;
@@ -192,7 +194,10 @@ typedef struct AlcoveImage {
   // one and keeps it; call alcoveForgetImage before the image is destroyed.
   VkImageView view;
   VkFormat format;
-  uint32_t width;  // pixels; all images of a view have one size
+  // Pixels that are read or written, from the first on: all of the image, or fewer (dynamic
+  // resolution). Those of a view are alike. The others of an output are left as they were, but that
+  // a change from VK_IMAGE_LAYOUT_UNDEFINED forgets them.
+  uint32_t width;
   uint32_t height;
   uint32_t layer;  // of an array of images, both eyes' say
   // That the image was made with. Inputs need SAMPLED. Outputs need STORAGE, and SAMPLED where
@@ -201,7 +206,7 @@ typedef struct AlcoveImage {
   VkImageUsageFlags usage;
   // Who wrote it last (of an output: who read or wrote it last), and in which layout it is then.
   // The first barrier waits for these stages. An output may come in VK_IMAGE_LAYOUT_UNDEFINED: all
-  // of it is overwritten.
+  // its pixels are overwritten.
   AlcoveState arrival;
   // Who uses it next, and in which layout: the last barrier puts it there and makes it visible to
   // these stages, also where no pass reads it. Needed.
@@ -219,7 +224,8 @@ typedef struct AlcoveCamera {
 typedef struct AlcoveView {
   uint32_t struct_size;
   uint32_t id;             // any number, other in each view of a frame: each id has its own history
-  VkBool32 reset_history;  // forget it, at a cut say. A change of size does so by itself
+  VkBool32 reset_history;  // forget it, at a cut say. A change of size does so by itself, but for
+                           // largest_width
   VkBool32 normals_in_view_space;  // else in world space
   // Frames in a row, up to this one, that show the very same of this id as the one before each; 0:
   // this one differs, or nobody knows. It starts again after reset_history (with which it is not
@@ -229,6 +235,14 @@ typedef struct AlcoveView {
   const AlcoveSettings* settings;
   AlcoveCamera camera;
   AlcoveCamera previous_camera;  // when this id was last recorded; unread with reset_history
+  // Dynamic resolution: history has room for `largest`, and goes on while the size changes within
+  // it. Zeros: it is as large as depth, and a change of size begins it anew. A change of `largest`
+  // does in any case.
+  uint32_t largest_width;
+  uint32_t largest_height;
+  // Of depth, when this id was last recorded. Zeros: as now. Unread with reset_history.
+  uint32_t previous_width;
+  uint32_t previous_height;
 
   // Inputs.
   AlcoveImage depth;    // as clip_from_view has it: any depth format, or R32_SFLOAT. Needed
@@ -260,7 +274,8 @@ typedef struct AlcoveFrame {
 
 // Records the passes of all views into `commands`: a primary command buffer in recording, of the
 // context's queue family, outside a render pass. Frames are submitted in the order in which they
-// are recorded, all to one queue. A frame like the one before allocates nothing.
+// are recorded, each once and all to one queue; else alcoveDiscardFrame. A frame like the one
+// before allocates nothing.
 //
 // It binds compute pipelines and descriptor set 0 and leaves them bound; other state is untouched.
 // Barriers: each image from its arrival to SHADER_READ_ONLY_OPTIMAL (inputs) or GENERAL (outputs),
@@ -274,6 +289,12 @@ typedef struct AlcoveFrame {
 // differ in size, a frame without a view, a view without an output.
 AlcoveResult alcoveRecordFrame(AlcoveContext* context, VkCommandBuffer commands,
                                const AlcoveFrame* frame);
+
+// To be called where what was just recorded is not submitted after all, since the window is gone
+// say, and before anything else of this context. It is then as if that frame had not been recorded;
+// without this call the next ones would read histories that nobody wrote. After a frame that
+// failed, or none, there is nothing to do.
+AlcoveResult alcoveDiscardFrame(AlcoveContext* context);
 
 // Bytes of device memory of the frame recorded last; zeros before there is one.
 typedef struct AlcoveMemory {
@@ -289,6 +310,7 @@ AlcoveResult alcoveGetMemory(AlcoveContext* context, AlcoveMemory* memory);
 
 typedef struct AlcoveTiming {
   char pass[ALCOVE_MAX_NAME];
+  uint32_t view;  // AlcoveView::id
   double milliseconds;
 } AlcoveTiming;
 

@@ -43,6 +43,10 @@ struct Frame {
   // settings or wanted results change. From 1 on motion vectors are not read; from 16 on a search
   // at lower resolution brings forward only the pixels that it reached.
   std::uint32_t still_frames = 0;
+  // Where the size of the depth changes and history is to go on (dynamic resolution). Zero is as
+  // the depth is now.
+  VkExtent2D largest_size{};   // that histories have room for; another begins them anew
+  VkExtent2D previous_size{};  // of the depth in the frame before, within it
 };
 
 }  // namespace alcove::passes
