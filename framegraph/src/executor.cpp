@@ -273,15 +273,15 @@ tl::expected<FrameReport, Errors> Executor::Implementation::record(Graph& graph,
   CachedPlan* cached = nullptr;
   auto report = prepare(graph, info, true, cached);
   if (!report) return report;
-  Timestamps* timestamps = options.timestamps ? &timestamps_of(info.slot, 0) : nullptr;
-  if (timestamps) {
+  Timestamps* times = options.timestamps ? &timestamps_of(info.slot, 0) : nullptr;
+  if (times) {
     const VkResult result =
-        timestamps->begin_frame(commands, static_cast<std::uint32_t>(cached->plan.passes.size()));
+        times->begin_frame(commands, static_cast<std::uint32_t>(cached->plan.passes.size()));
     if (result != VK_SUCCESS)
       return tl::unexpected(vulkan_error(result, "timestamps cannot be created"));
   }
   if (starts_anew(*cached)) crew->full_barrier(commands);
-  const VkResult result = crew->submission(cached->plan.submissions[0], commands, timestamps);
+  const VkResult result = crew->submission(cached->plan.submissions[0], commands, times);
   if (result != VK_SUCCESS)
     return tl::unexpected(vulkan_error(result, "the frame cannot be recorded"));
   if (Errors errors = crew->take_errors(); !errors.empty())
