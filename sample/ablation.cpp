@@ -87,6 +87,9 @@ void add_searches(TrialList& list) {
   part = "snapping";
   list.add(part, "to texels", [](OcclusionSettings& s) { s.parts.snapping = true; });
   list.add(part, "none", [](OcclusionSettings& s) { s.parts.snapping = false; });
+  part = "border";
+  list.add(part, "surfaces go on", [](OcclusionSettings& s) { s.parts.continuation = true; });
+  list.add(part, "surfaces end", [](OcclusionSettings& s) { s.parts.continuation = false; });
   part = "grouping";
   list.add(part, "neighbours",
            [](OcclusionSettings& s) { s.parts.grouping = Grouping::neighbours; });

@@ -64,6 +64,8 @@ void for_each_setting(Settings& settings, const Visit& visit) {
   visit(Info{"pattern", "How directions are spread over pixels and frames."}, settings.pattern);
   visit(Info{"snapping", "Samples lie where their texels do, else where they were asked for."},
         settings.parts.snapping);
+  visit(Info{"continuation", "Surfaces that leave the image go on beyond its border."},
+        settings.parts.continuation);
   visit(Info{"grouping", "Searches that run together: neighbours, or those of one direction."},
         settings.parts.grouping);
   visit(Info{"depth_mips", "Levels of the linear depth that is handed on; no search reads them.", 1,

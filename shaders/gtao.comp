@@ -40,6 +40,7 @@ layout(constant_id = 12) const bool kBackFaces = false;  // tell the thickness, 
 layout(constant_id = 13) const bool kSnapping = true;  // samples lie where their texels do
 layout(constant_id = 14) const bool kByPattern = false;  // block_by_pattern() groups the searches
 layout(constant_id = 15) const bool kSecondLayer = false;  // second_image occludes too
+layout(constant_id = 16) const bool kContinuation = true;  // surfaces go on beyond the image
 
 const bool kHeuristic = kEstimator == 1;
 const bool kBitmask = kEstimator >= 2;
@@ -116,6 +117,7 @@ struct Search {
   ivec2 pixel;
   SliceLine line;  // outwards
   float reach_px;  // from the first step to the last; 0 where there is nothing to search
+  float beyond_px;  // of the radius beyond the image's border, as far as surfaces go on there
   float offset;    // of the steps, [0,1)
   float depth;     // linear, of the shaded point
   TangentLine tangent;
@@ -139,6 +141,7 @@ Search make_search(Surface surface, SliceLine line, Slice slice, float side, flo
   float apart = max(distance_px - kNearestStep, 0.25 * float(kStepCount));
   bool empty = min(distance_px, border) < kNearestStep;
   search.reach_px = empty ? 0.0 : max(min(apart, border - kNearestStep), 1e-3);
+  search.beyond_px = clamp(distance_px - border, 0.0, kContinuedReaches * search.reach_px);
   search.offset = offset;
   search.depth = surface.depth;
   search.tangent = surface.tangent;
@@ -293,6 +296,17 @@ void pass_sample(inout Sheet sheet, inout LineSample here, Side side, float x_pe
   here = next;
 }
 
+// Those of a surface that leaves the image and did not bend before: it is taken to go on as it left,
+// until it leaves the radius. `way` is the last step's, `x_beyond` how far it goes on (x w).
+uint sectors_beyond(Sheet sheet, Side side, vec3 way, float x_beyond) {
+  vec3 end = continued_point(sheet.last.point, way, x_beyond);
+  float excess = radius_excess(end, parameters.radius);
+  vec2 leaves = radius_crossing(end, excess, sheet.last.point, sheet.excess);
+  float position = sector_position(side.per_bearing, excess > 0.0 ? leaves : end.xy);
+  bool goes_on = x_beyond > 0.0 && sheet.bend == 0.0 && sheet.excess <= 0.0;
+  return goes_on ? sectors_between(sheet.position, position) : 0u;
+}
+
 // Samples that are searched in one turn of the loop: a turn costs as much as half a sample, and all
 // in one would be a program of thousands of lines.
 const uint kTurn = 4;
@@ -318,7 +332,11 @@ uint find_in_layer(Surface surface, Search search, Side side, uint layer) {
     } while (k < kStepCount);
   }
   // Nothing tells how it ends: joined only if the way to it did not bend.
+  vec3 way = here.point - sheet.last.point;
   extend_sheet(sheet, side, search.line.x_per_step, layer, here, -sheet.bend);
+  if (kContinuation && kConnected) {
+    sheet.sectors |= sectors_beyond(sheet, side, way, search.beyond_px * search.line.x_per_step);
+  }
   return search.reach_px > 0.0 ? sheet.sectors : 0u;
 }
 

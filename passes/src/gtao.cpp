@@ -138,7 +138,8 @@ tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame, const GtaoInpu
                              static_cast<std::uint32_t>(by_back_faces),
                              static_cast<std::uint32_t>(settings.parts.snapping),
                              static_cast<std::uint32_t>(by_pattern),
-                             static_cast<std::uint32_t>(two_layers)};
+                             static_cast<std::uint32_t>(two_layers),
+                             static_cast<std::uint32_t>(settings.parts.continuation)};
   const auto kernel =
       frame.kernels.get(settings.lobe ? Shader::gtao_lobe : Shader::gtao, constants);
   if (!kernel) {

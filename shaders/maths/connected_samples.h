@@ -5,7 +5,8 @@
 // behind them; taken as thin, walls leak light between their samples. So two consecutive samples
 // are joined into a sheet when depth alone says that they continue one surface (samples_join),
 // every sample has a thickness (along the view vector, or as far as its back face), and the edge of
-// a surface that appears between two samples is placed between them (edge_share). What is hidden
+// a surface that appears between two samples is placed between them (edge_share). A surface that
+// leaves the image goes on as it left (continued_point). What is hidden
 // behind a front stays unknown: the mean of thin and infinitely thick, `fill` of the latter, errs
 // less than either (see the README's table).
 #ifndef ALCOVE_MATHS_CONNECTED_SAMPLES_H
@@ -63,6 +64,20 @@ ALCOVE_INLINE vec2 radius_crossing(vec3 here, float here_excess, vec3 there, flo
   float of_here = abs(there_excess);
   float of_there = abs(here_excess);
   return vec2(here.x * of_here + there.x * of_there, here.y * of_here + there.y * of_there);
+}
+
+// How far a surface goes on beyond the image's border, as a multiple of the way it was searched to
+// there.
+const float kContinuedReaches = 4.0f;
+
+// Where a plane gets to that went `way` over the last step, all as slice_point() gives points, `x`
+// (x w) further on; before that, where it reaches a tenth of the depth of `here` in w, and at
+// `here` if it went nowhere.
+ALCOVE_INLINE vec3 continued_point(vec3 here, vec3 way, float x) {
+  float steps = way.x > 0.0f ? x / way.x : 0.0f;
+  float away = max(-way.z, 0.0f);
+  steps = min(steps, 0.9f * here.z / max(away, 1e-30f));
+  return here + way * steps;
 }
 
 ALCOVE_MATHS_END

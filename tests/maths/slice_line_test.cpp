@@ -234,5 +234,32 @@ TEST(ConnectedSamples, ASheetIsCutWhereItLeavesTheRadius) {
   }
 }
 
+TEST(ConnectedSamples, APlaneGoesOnWhereItWent) {
+  RandomInput random;
+  for (int i = 0; i < 2000; ++i) {
+    const Setting s(random);
+    // A plane in the image: `line` is linear along it.
+    const float line = line_of(s.depth, s.perspective());
+    const float slope = line * random.uniform(-0.004f, 0.004f);
+    const auto at = [&](float offset) {
+      return maths::slice_point(s.line, offset, line + slope * offset, s.depth, s.perspective());
+    };
+    const float last = random.uniform(2.0f, 30.0f), here = last + random.uniform(1.0f, 20.0f);
+    const float further = random.uniform(0.0f, 100.0f);
+    const vec3 expected = at(here + further);
+    const vec3 found =
+        maths::continued_point(at(here), at(here) - at(last), further * s.line.x_per_step);
+    EXPECT_LT(distance(found, expected), 1e-3f * length(expected));
+  }
+}
+
+TEST(ConnectedSamples, APlaneThatGoesOnStaysInFrontOfTheEye) {
+  const vec3 here(1.0f, 2.0f, 0.5f);
+  EXPECT_EQ(maths::continued_point(here, vec3(0.0f, 1.0f, 0.1f), 3.0f), here) << "went nowhere";
+  const vec3 end = maths::continued_point(here, vec3(1.0f, 1.0f, -0.1f), 1e6f);
+  EXPECT_NEAR(end.z, 0.05f, 1e-6f);
+  EXPECT_NEAR(end.x, 5.5f, 1e-5f);
+}
+
 }  // namespace
 }  // namespace alcove::maths_test

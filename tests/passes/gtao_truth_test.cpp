@@ -269,6 +269,52 @@ TEST_F(GtaoTruth, WhatLiesBeyondTheRadiusDoesNotOcclude) {
   }
 }
 
+// The columns of an image from `first` on, `count` of `width`, as an image of their own.
+TestView columns_of(TestView view, std::uint32_t width, std::uint32_t first, std::uint32_t count) {
+  auto& m = view.view.clip_from_view;
+  const float scale = static_cast<float>(width) / static_cast<float>(count);
+  const float shift =
+      (static_cast<float>(width) - 2.0f * static_cast<float>(first)) / static_cast<float>(count) -
+      1.0f;
+  for (std::size_t column = 0; column < 4; ++column) {
+    m[4 * column] = m[4 * column] * scale + m[4 * column + 3] * shift;
+  }
+  return view;
+}
+
+// A groove whose right wall all but leaves the image, beside the same groove seen whole.
+TEST_F(GtaoTruth, AWallThatLeavesTheImageOccludesAsIfItWereSeen) {
+  constexpr std::uint32_t kWhole = 192, kPart = 108, kHeight = 40;
+  constexpr float kRadius = 1.2f;
+  for (const TestView& view : {perspective_view("perspective", 1.2, 5.8, 0.1, 100.0, true),
+                               orthographic_view("orthographic", 3.0, 0.6, 0.1, 20.0)}) {
+    SCOPED_TRACE(view.name);
+    const Drawing whole = draw(view, kWhole, kHeight, groove(0.8));
+    const TestView part_view = columns_of(view, kWhole, 0, kPart);
+    const Drawing part = draw(part_view, kPart, kHeight, groove(0.8));
+    const auto seen = [&](const TestView& of, const Drawing& drawing, bool continuation) {
+      OcclusionSettings settings = exact(Estimator::connected, kRadius);
+      settings.steps = 12;
+      settings.parts.continuation = continuation;
+      return run_occlusion({of.view, drawing.depth_ndc, &drawing.normal_vs}, settings).visibility;
+    };
+    const HostImage truth = seen(view, whole, true);
+    double off[2] = {0.0, 0.0};
+    for (const bool continuation : {false, true}) {
+      const HostImage found = seen(part_view, part, continuation);
+      int count = 0;
+      for (std::uint32_t y = 10; y < kHeight - 10; ++y) {
+        for (std::uint32_t x = 82; x < 96; ++x, ++count) {
+          off[continuation ? 1 : 0] += std::abs(found.at(x, y) - truth.at(x, y));
+        }
+      }
+      off[continuation ? 1 : 0] /= count;
+    }
+    EXPECT_GT(off[0], 0.05);
+    EXPECT_LT(off[1], 0.01);
+  }
+}
+
 TEST_F(GtaoTruth, BentNormalsMeetBruteForce) {
   const float radius = 1.2f;
   for (const TestView& view : {test_views()[2], test_views()[5]}) {

@@ -165,7 +165,8 @@ TEST_F(OcclusionPlan, PartsOfASearchCostNoPassAndNoByteAndAPipelineOnlyWhereThey
   (void)kept(least());
   EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines);
   for (const SearchParts& parts :
-       {SearchParts{.snapping = false}, SearchParts{.grouping = Grouping::pattern}}) {
+       {SearchParts{.snapping = false}, SearchParts{.continuation = false},
+        SearchParts{.grouping = Grouping::pattern}}) {
     OcclusionSettings changed = least();
     changed.parts = parts;
     const Kept found = kept(changed);

@@ -30,7 +30,7 @@ TEST(Trials, ChangeOneThingEachAndNeverNothing) {
       parts.insert(trial.part);
     }
     for (const char* part : {"estimator", "occluders", "resolution", "work", "pattern", "snapping",
-                             "grouping", "filter", "history"}) {
+                             "border", "grouping", "filter", "history"}) {
       EXPECT_TRUE(parts.contains(part)) << part;
     }
     EXPECT_GT(names.size(), 15u);

@@ -65,6 +65,8 @@ struct SearchParts {
   // Whether a sample lies where its texel does; else where it was asked for, so that tilted planes
   // occlude themselves.
   bool snapping = true;
+  // Whether surfaces that leave the image go on beyond its border as they left (connected samples).
+  bool continuation = true;
   Grouping grouping = Grouping::neighbours;
 
   friend bool operator==(const SearchParts&, const SearchParts&) = default;
