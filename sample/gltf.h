@@ -17,11 +17,11 @@ namespace alcove::sample {
 // Taken: node transforms (matrix or TRS, any hierarchy; mirrored ones turn the winding), triangle
 // lists, strips and fans with and without indices, every accessor type (normalised, interleaved,
 // sparse), embedded, binary and external buffers and images, metal-roughness materials with normal
-// maps and tangents, KHR_texture_transform, alpha mask, cameras. Missing normals are made from the
-// faces. Left out, with a warning in the scene: points and lines, vertex colours, morph targets,
-// skins, animation, sets of texture coordinates but one for each material, extensions; an extension
-// that a file requires and that changes shapes is an error. Left out without: baked occlusion,
-// which is what is found here. Alpha blend counts as opaque.
+// maps and tangents, samplers, two sets of texture coordinates, KHR_texture_transform, alpha mask,
+// cameras. Missing normals are made from the faces. Left out, with a warning in the scene: points
+// and lines, vertex colours, morph targets, skins, animation, further sets of texture coordinates,
+// extensions; an extension that a file requires and that changes shapes is an error. Left out
+// without: baked occlusion, which is what is found here. Alpha blend counts as opaque.
 //
 // The file may be hostile: every index, offset, stride and count is checked before it is used, what
 // a file may grow to is bounded by GltfLimits, and external files must lie in the scene's folder.

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "gltf_accessor.h"
+#include "gltf_sampler.h"
 #include "gltf_texture_transform.h"
 
 namespace alcove::sample {
@@ -33,8 +34,6 @@ template <class Info>
 TextureReference reference(const char* role, const Info& info) {
   return {role, info.index, coordinate_set(info.texCoord, info.extensions), &info.extensions};
 }
-
-constexpr size_t kNormal = 3;
 
 std::array<TextureReference, 4> references(const tinygltf::Material& material) {
   const auto& pbr = material.pbrMetallicRoughness;
@@ -71,12 +70,6 @@ float clamped(double value, double low, double high, double otherwise) {
   return static_cast<float>(std::isfinite(value) ? std::clamp(value, low, high) : otherwise);
 }
 
-Wrap wrap_of(int mode) {
-  if (mode == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return Wrap::kClamp;
-  if (mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT) return Wrap::kMirror;
-  return Wrap::kRepeat;
-}
-
 tl::expected<void, std::string> MaterialReader::add(const tinygltf::Material& in) {
   Material out;
   out.name = in.name;
@@ -104,18 +97,17 @@ tl::expected<void, std::string> MaterialReader::add_textures(const tinygltf::Mat
   const auto all = references(in);
   const std::array<TextureUse*, 4> uses{&out.base_color_texture, &out.metal_roughness_texture,
                                         &out.emissive_texture, &out.normal_texture};
-  const int set = coordinate_set(in);
   for (size_t i = 0; i < all.size(); ++i) {
+    if (all[i].index < 0) continue;
+    if (all[i].set != 0 && all[i].set != 1) {
+      scene_.warnings.push_back("Material \"" + in.name + "\" has its " + all[i].role +
+                                " by texture coordinates " + std::to_string(all[i].set) +
+                                ", neither 0 nor 1: it is left out.");
+      continue;
+    }
     auto read = texture(all[i]);
     if (!read) return Failure(read.error());
     *uses[i] = *read;
-    if (all[i].index < 0 || all[i].set == set) continue;
-    // The vertices' normals are better than a map that lies wrongly on them.
-    if (i == kNormal) out.normal_texture = {};
-    scene_.warnings.push_back("Material \"" + in.name + "\" has its " + all[i].role +
-                              " by texture coordinates " + std::to_string(all[i].set) +
-                              ", the rest by " + std::to_string(set) +
-                              (i == kNormal ? ": it is left out." : ": all are read by these."));
   }
   if (!std::isfinite(static_cast<float>(in.normalTexture.scale))) {
     return Failure("has a normal map whose scale is not finite");
@@ -126,8 +118,8 @@ tl::expected<void, std::string> MaterialReader::add_textures(const tinygltf::Mat
 
 tl::expected<TextureUse, std::string> MaterialReader::texture(const TextureReference& reference) {
   TextureUse use;
+  use.uv_set = static_cast<uint32_t>(reference.set);
   const int index = reference.index;
-  if (index < 0) return use;
   if (static_cast<size_t>(index) >= model_.textures.size()) {
     return Failure("has no texture " + std::to_string(index));
   }
@@ -136,9 +128,13 @@ tl::expected<TextureUse, std::string> MaterialReader::texture(const TextureRefer
     if (static_cast<size_t>(texture.sampler) >= model_.samplers.size()) {
       return Failure("has a texture without its sampler " + std::to_string(texture.sampler));
     }
-    const tinygltf::Sampler& sampler = model_.samplers[static_cast<size_t>(texture.sampler)];
-    use.wrap_u = wrap_of(sampler.wrapS);
-    use.wrap_v = wrap_of(sampler.wrapT);
+    const auto sampler = read_sampler(model_.samplers[static_cast<size_t>(texture.sampler)]);
+    if (sampler) {
+      use.sampler = *sampler;
+    } else {
+      scene_.warnings.push_back("sampler " + std::to_string(texture.sampler) + " " +
+                                sampler.error() + " and is left out.");
+    }
   }
   const auto transform = texture_transform(*reference.extensions);
   if (!transform) return Failure(transform.error());
@@ -207,13 +203,6 @@ tl::expected<int32_t, std::string> MaterialReader::decode(const std::string& nam
 }
 
 }  // namespace
-
-int coordinate_set(const tinygltf::Material& material) {
-  for (const TextureReference& texture : references(material)) {
-    if (texture.index >= 0) return texture.set;
-  }
-  return 0;
-}
 
 tl::expected<void, std::string> add_materials(const tinygltf::Model& model, uint64_t most_pixels,
                                               Scene& scene) {

@@ -13,15 +13,12 @@ namespace alcove::sample {
 
 // The model's materials, plus one default at the end for primitives that name none, and those of
 // its images that a material uses. Images are taken from buffer views, or from the encoded bytes
-// that the loader left in Image::image. A warning: an image that cannot be read, which is left out
-// (white; no normal map), and textures by several sets of coordinates. An error: more than
-// `most_pixels` in all, a texture that does not exist, numbers that are not finite.
+// that the loader left in Image::image. A warning: an image that cannot be read and a texture by
+// coordinates beyond the second set, which are left out (white; no normal map), and a sampler of
+// values that glTF does not have. An error: more than `most_pixels` in all, a texture that does not
+// exist, numbers that are not finite.
 [[nodiscard]] tl::expected<void, std::string> add_materials(const tinygltf::Model& model,
                                                             uint64_t most_pixels, Scene& scene);
-
-// The set of texture coordinates that the material's textures are read by: the base colour's, or
-// that of the first texture there is.
-[[nodiscard]] int coordinate_set(const tinygltf::Material& material);
 
 }  // namespace alcove::sample
 

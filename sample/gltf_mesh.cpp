@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "gltf_accessor.h"
-#include "gltf_material.h"
 
 namespace alcove::sample {
 namespace {
@@ -134,6 +133,7 @@ void make_flat_normals(Mesh& mesh) {
       flat.positions_ws.push_back(mesh.positions_ws[v]);
       flat.normals_ws.push_back(normal);
       flat.uvs.push_back(mesh.uvs[v]);
+      if (!mesh.second_uvs.empty()) flat.second_uvs.push_back(mesh.second_uvs[v]);
     }
   }
   flat.indices.resize(flat.positions_ws.size());
@@ -141,6 +141,7 @@ void make_flat_normals(Mesh& mesh) {
   mesh.positions_ws = std::move(flat.positions_ws);
   mesh.normals_ws = std::move(flat.normals_ws);
   mesh.uvs = std::move(flat.uvs);
+  mesh.second_uvs = std::move(flat.second_uvs);
   mesh.indices = std::move(flat.indices);
 }
 
@@ -158,26 +159,52 @@ void mend_normals(Mesh& mesh) {
   }
 }
 
-// The texture coordinates that the material is read by; zero where there are none.
+bool reads_by(const Material& material, uint32_t uv_set) {
+  const auto uses = {&material.base_color_texture, &material.metal_roughness_texture,
+                     &material.emissive_texture, &material.normal_texture};
+  return std::any_of(uses.begin(), uses.end(), [&](const TextureUse* use) {
+    return use->image >= 0 && use->uv_set == uv_set;
+  });
+}
+
+// Texture coordinates of the file; empty where it has none, zero where they are useless.
 tl::expected<std::vector<glm::vec2>, std::string> texture_coordinates(
-    const tinygltf::Model& model, const tinygltf::Primitive& primitive, size_t vertices) {
-  std::vector<glm::vec2> out(vertices, glm::vec2(0.0f));
-  int set = 0;
-  if (primitive.material >= 0) {
-    set = coordinate_set(model.materials[static_cast<size_t>(primitive.material)]);
-  }
-  const int accessor = attribute(primitive, "TEXCOORD_" + std::to_string(set));
-  if (accessor < 0) return out;
+    const tinygltf::Model& model, const tinygltf::Primitive& primitive, uint32_t uv_set,
+    size_t vertices) {
+  const int accessor = attribute(primitive, "TEXCOORD_" + std::to_string(uv_set));
+  if (accessor < 0) return {};
   const auto values = read_floats(model, accessor, 2, vertices);
   if (!values) return Failure(values.error());
   if (values->size() != 2 * vertices) {
     return Failure("has texture coordinates for some of its vertices only");
   }
+  std::vector<glm::vec2> out(vertices, glm::vec2(0.0f));
   for (size_t i = 0; i < vertices; ++i) {
     const glm::vec2 uv((*values)[2 * i], (*values)[2 * i + 1]);
     if (std::isfinite(uv.x) && std::isfinite(uv.y)) out[i] = uv;
   }
   return out;
+}
+
+// The sets that the mesh's material reads textures by, and the first in any case.
+tl::expected<void, std::string> add_texture_coordinates(const tinygltf::Model& model,
+                                                        const tinygltf::Primitive& primitive,
+                                                        Mesh& mesh, Scene& scene) {
+  const size_t vertices = mesh.positions_ws.size();
+  for (const uint32_t set : {0u, 1u}) {
+    const bool read = reads_by(scene.materials[mesh.material], set);
+    if (set == 1 && !read) continue;
+    auto uvs = texture_coordinates(model, primitive, set, vertices);
+    if (!uvs) return Failure(uvs.error());
+    if (read && uvs->empty()) {
+      scene.warnings.push_back("Mesh " + mesh.name + " lacks the texture coordinates " +
+                               std::to_string(set) +
+                               " that its material names: they are taken to be zero.");
+    }
+    (set == 0 ? mesh.uvs : mesh.second_uvs) = std::move(*uvs);
+  }
+  mesh.uvs.resize(vertices, glm::vec2(0.0f));
+  return {};
 }
 
 tl::expected<std::vector<uint32_t>, std::string> vertex_order(const tinygltf::Model& model,
@@ -221,10 +248,10 @@ tl::expected<void, std::string> add_primitive(const tinygltf::Model& model,
   const size_t vertices = positions->size();
   auto order = vertex_order(model, primitive, vertices, budget.indices);
   if (!order) return refuse(order.error());
-  auto uvs = texture_coordinates(model, primitive, vertices);
-  if (!uvs) return refuse(uvs.error());
   mesh.positions_ws = std::move(*positions);
-  mesh.uvs = std::move(*uvs);
+  if (auto added = add_texture_coordinates(model, primitive, mesh, scene); !added) {
+    return refuse(added.error());
+  }
   mesh.indices = as_list(*order, mode);
   if (mesh.indices.size() > budget.indices || mesh.indices.size() > budget.vertices) {
     return refuse("takes the scene past the number of triangles that is read here");

@@ -187,8 +187,8 @@ Texture add_copy(Graph& graph, const HostBuffer& source, Texture target) {
   const framegraph::Buffer from = graph.import_buffer("upload", source.import());
   auto pass = graph.add_pass("upload");
   pass.read(from, framegraph::buffer_access::transfer_source);
-  const Texture filled = pass.write(target, framegraph::access::transfer_destination, {},
-                                    framegraph::Contents::discard);
+  const Texture filled = pass.write(target, framegraph::access::transfer_destination,
+                                    framegraph::Range::mip(0), framegraph::Contents::discard);
   pass.record([from, filled](RecordContext& context) {
     const VkBufferImageCopy copy{.imageSubresource = {aspect_of(context.format(filled)), 0, 0, 1},
                                  .imageExtent = context.extent(filled)};
@@ -196,6 +196,37 @@ Texture add_copy(Graph& graph, const HostBuffer& source, Texture target) {
                                       VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
   });
   return filled;
+}
+
+Texture add_mips(Graph& graph, Texture texture, std::uint32_t mips) {
+  for (std::uint32_t mip = 1; mip < mips; ++mip) {
+    auto pass = graph.add_pass("mip");
+    pass.read(texture, framegraph::access::blit_source, framegraph::Range::mip(mip - 1));
+    texture = pass.write(texture, framegraph::access::blit_destination, framegraph::Range::mip(mip),
+                         framegraph::Contents::discard);
+    pass.record([texture, mip](RecordContext& context) {
+      const auto corner = [&](std::uint32_t of) {
+        const VkExtent3D size = context.extent(texture, of);
+        return VkOffset3D{static_cast<int32_t>(size.width), static_cast<int32_t>(size.height), 1};
+      };
+      const VkImageBlit2 region{.sType = VK_STRUCTURE_TYPE_IMAGE_BLIT_2,
+                                .srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip - 1, 0, 1},
+                                .srcOffsets = {{}, corner(mip - 1)},
+                                .dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip, 0, 1},
+                                .dstOffsets = {{}, corner(mip)}};
+      const VkImage image = context.image(texture);
+      const VkBlitImageInfo2 blit{.sType = VK_STRUCTURE_TYPE_BLIT_IMAGE_INFO_2,
+                                  .srcImage = image,
+                                  .srcImageLayout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                                  .dstImage = image,
+                                  .dstImageLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                                  .regionCount = 1,
+                                  .pRegions = &region,
+                                  .filter = VK_FILTER_LINEAR};
+      context.vk.vkCmdBlitImage2(context.commands, &blit);
+    });
+  }
+  return texture;
 }
 
 void add_read_back(Graph& graph, Texture texture, const HostBuffer& target, std::uint32_t mip) {

@@ -97,6 +97,13 @@ class Gpu {
 framegraph::Texture add_copy(framegraph::Graph& graph, const HostBuffer& source,
                              framegraph::Texture target);
 
+// Adds passes that fill the other mips of a colour texture of `mips`, each from the one before with
+// half its sides, rounded down: by linear blits, which its format must support. Where sides are
+// even that is the mean of four texels, of sRGB formats in linear light. Returns the filled
+// version.
+framegraph::Texture add_mips(framegraph::Graph& graph, framegraph::Texture texture,
+                             std::uint32_t mips);
+
 // Adds a pass that copies mip `mip` of `texture` (colour, or the depth of D32_SFLOAT) to `target`,
 // tightly packed, and makes it an output of the frame.
 void add_read_back(framegraph::Graph& graph, framegraph::Texture texture, const HostBuffer& target,

@@ -22,6 +22,7 @@ class GpuImage {
   GpuImage& operator=(const GpuImage&) = delete;
 
   VkImageView view() const { return view_; }
+  std::uint32_t mips() const { return mips_; }
 
   // For a frame that fills the image, whatever it holds, and leaves it in `departure`.
   framegraph::ImportedTexture import_to_fill(framegraph::State departure) const;

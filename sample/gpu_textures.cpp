@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <span>
 #include <utility>
 
@@ -9,6 +10,9 @@ namespace alcove::sample {
 namespace {
 
 using Failure = tl::unexpected<std::string>;
+
+constexpr VkImageUsageFlags kUsage =
+    VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
 
 constexpr std::array<uint8_t, 4> kWhite{255, 255, 255, 255};
 
@@ -21,6 +25,10 @@ VkSamplerAddressMode address_mode(Wrap wrap) {
     default:
       return VK_SAMPLER_ADDRESS_MODE_REPEAT;
   }
+}
+
+VkFilter vulkan_filter(Filter filter) {
+  return filter == Filter::kNearest ? VK_FILTER_NEAREST : VK_FILTER_LINEAR;
 }
 
 std::span<const uint8_t> texels_of(const Scene& scene, std::int32_t image) {
@@ -49,8 +57,10 @@ tl::expected<std::size_t, std::string> GpuTextures::add_texture(const Scene& sce
                    std::to_string(size.height) + " texels; the device takes at most " +
                    std::to_string(largest) + " a side.");
   }
-  auto made = GpuImage::create(device_, srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM,
-                               size, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
+  // Vulkan has every device blit both formats linearly.
+  auto made = GpuImage::create(
+      device_, srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM, size, kUsage,
+      static_cast<std::uint32_t>(std::bit_width(std::max(size.width, size.height))));
   if (!made) {
     return Failure(std::move(made.error()));
   }
@@ -58,26 +68,38 @@ tl::expected<std::size_t, std::string> GpuTextures::add_texture(const Scene& sce
   return textures_.size() - 1;
 }
 
-tl::expected<VkSampler, std::string> GpuTextures::add_sampler(Wrap wrap_u, Wrap wrap_v) {
-  const VkSamplerCreateInfo info{.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
-                                 .magFilter = VK_FILTER_LINEAR,
-                                 .minFilter = VK_FILTER_LINEAR,
-                                 .addressModeU = address_mode(wrap_u),
-                                 .addressModeV = address_mode(wrap_v),
-                                 .addressModeW = VK_SAMPLER_ADDRESS_MODE_REPEAT};
-  VkSampler sampler = VK_NULL_HANDLE;
-  if (const VkResult result = vkCreateSampler(device_.device(), &info, nullptr, &sampler);
+tl::expected<VkSampler, std::string> GpuTextures::add_sampler(const Sampler& sampler) {
+  constexpr float kMostAnisotropy = 8.0f;
+  // A file that asks for blocks or for no mips is to have them.
+  const bool smooth = sampler.magnify == Filter::kLinear && sampler.minify == Filter::kLinear &&
+                      sampler.mips == MipFilter::kLinear;
+  const float anisotropy = smooth ? std::min(kMostAnisotropy, device_.max_anisotropy()) : 1.0f;
+  const VkSamplerCreateInfo info{
+      .sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
+      .magFilter = vulkan_filter(sampler.magnify),
+      .minFilter = vulkan_filter(sampler.minify),
+      .mipmapMode = sampler.mips == MipFilter::kLinear ? VK_SAMPLER_MIPMAP_MODE_LINEAR
+                                                       : VK_SAMPLER_MIPMAP_MODE_NEAREST,
+      .addressModeU = address_mode(sampler.wrap_u),
+      .addressModeV = address_mode(sampler.wrap_v),
+      .addressModeW = VK_SAMPLER_ADDRESS_MODE_REPEAT,
+      .anisotropyEnable = anisotropy > 1.0f,
+      .maxAnisotropy = anisotropy,
+      // Below a half mip 0 is the nearest, and above 0 texels are still minified.
+      .maxLod = sampler.mips == MipFilter::kNone ? 0.25f : VK_LOD_CLAMP_NONE};
+  VkSampler made = VK_NULL_HANDLE;
+  if (const VkResult result = vkCreateSampler(device_.device(), &info, nullptr, &made);
       result != VK_SUCCESS) {
     return Failure("The device could not create a sampler of the scene's textures (" +
                    std::string(result_name(result)) + ").");
   }
-  samplers_.push_back(sampler);
-  return sampler;
+  samplers_.push_back(made);
+  return made;
 }
 
 tl::expected<void, std::string> GpuTextures::add_use(const Scene& scene, const TextureUse& use,
                                                      bool srgb) {
-  const Use wanted{use.image, srgb, use.wrap_u, use.wrap_v};
+  const Use wanted{use.image, srgb, use.sampler};
   if (std::ranges::find(uses_, wanted) != uses_.end()) {
     return {};
   }
@@ -85,15 +107,13 @@ tl::expected<void, std::string> GpuTextures::add_use(const Scene& scene, const T
   if (!texture) {
     return Failure(texture.error());
   }
-  // Few wrap modes occur, so a sampler is shared by looking for a use with the same.
-  const auto like = std::ranges::find_if(uses_, [&](const Use& other) {
-    return other.wrap_u == use.wrap_u && other.wrap_v == use.wrap_v;
-  });
+  // Few samplers occur, so one is shared by looking for a use with the same.
+  const auto like = std::ranges::find(uses_, use.sampler, &Use::sampler);
   VkSampler sampler = VK_NULL_HANDLE;
   if (like != uses_.end()) {
     sampler = descriptors_[static_cast<std::size_t>(like - uses_.begin())].sampler;
   } else {
-    const auto made = add_sampler(use.wrap_u, use.wrap_v);
+    const auto made = add_sampler(use.sampler);
     if (!made) {
       return Failure(made.error());
     }
@@ -106,7 +126,7 @@ tl::expected<void, std::string> GpuTextures::add_use(const Scene& scene, const T
 }
 
 tl::expected<void, std::string> GpuTextures::upload(Gpu& gpu, const Scene& scene) {
-  std::vector<std::unique_ptr<HostBuffer>> sources;
+  // A frame for each, so that no two are held by the host once more.
   for (const Texture& texture : textures_) {
     const auto texels = std::as_bytes(texels_of(scene, texture.image));
     auto source = HostBuffer::create(device_, texels.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
@@ -114,16 +134,17 @@ tl::expected<void, std::string> GpuTextures::upload(Gpu& gpu, const Scene& scene
       return Failure(std::move(source.error()));
     }
     std::ranges::copy(texels, (*source)->bytes().begin());
-    sources.push_back(std::move(*source));
-  }
-  const auto declare = [&](framegraph::Graph& graph) -> tl::expected<void, std::string> {
-    for (std::size_t i = 0; i < sources.size(); ++i) {
-      const auto import = textures_[i].gpu->import_to_fill(kSampledState);
-      add_copy(graph, *sources[i], graph.import_texture("scene texture", import));
+    const auto declare = [&](framegraph::Graph& graph) -> tl::expected<void, std::string> {
+      const auto target =
+          graph.import_texture("scene texture", texture.gpu->import_to_fill(kSampledState));
+      add_mips(graph, add_copy(graph, **source, target), texture.gpu->mips());
+      return {};
+    };
+    if (auto done = gpu.run(declare); !done) {
+      return Failure(std::move(done.error()));
     }
-    return {};
-  };
-  return gpu.run(declare).map([](const framegraph::FrameReport&) {});
+  }
+  return {};
 }
 
 tl::expected<std::unique_ptr<GpuTextures>, std::string> GpuTextures::create(Gpu& gpu,
@@ -151,7 +172,7 @@ GpuTextures::~GpuTextures() {
 }
 
 std::uint32_t GpuTextures::index_of(const TextureUse& use, bool srgb) const {
-  const Use wanted{use.image, srgb, use.wrap_u, use.wrap_v};
+  const Use wanted{use.image, srgb, use.sampler};
   const auto found = std::ranges::find(uses_, wanted);
   return found == uses_.end() ? 0 : static_cast<std::uint32_t>(found - uses_.begin());
 }

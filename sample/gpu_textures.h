@@ -15,11 +15,10 @@
 namespace alcove::sample {
 
 // The images of a scene on the device as its materials use them: one descriptor for each image,
-// wrap mode and encoding that occurs, after a white one at index 0. Bilinear, one mip: the truth
-// samples the same texels, so that both see the same cut-outs.
+// sampler and encoding that occurs, after a white one at index 0. Mips go down to one texel.
 class GpuTextures {
  public:
-  // Uploads through a frame of its own.
+  // Uploads through frames of its own.
   [[nodiscard]] static tl::expected<std::unique_ptr<GpuTextures>, std::string> create(
       Gpu& gpu, const Scene& scene);
   ~GpuTextures();
@@ -35,8 +34,7 @@ class GpuTextures {
   struct Use {
     std::int32_t image;
     bool srgb;
-    Wrap wrap_u;
-    Wrap wrap_v;
+    Sampler sampler;
     bool operator==(const Use&) const = default;
   };
   struct Texture {
@@ -49,7 +47,7 @@ class GpuTextures {
   tl::expected<void, std::string> add_use(const Scene& scene, const TextureUse& use, bool srgb);
   tl::expected<std::size_t, std::string> add_texture(const Scene& scene, std::int32_t image,
                                                      bool srgb);
-  tl::expected<VkSampler, std::string> add_sampler(Wrap wrap_u, Wrap wrap_v);
+  tl::expected<VkSampler, std::string> add_sampler(const Sampler& sampler);
   tl::expected<void, std::string> upload(Gpu& gpu, const Scene& scene);
 
   const VulkanDevice& device_;

@@ -11,10 +11,9 @@ constexpr uint32_t kPacket = 16;
 
 // Base colour's alpha where a triangle of a masked mesh is hit.
 float alpha_at(const Scene& scene, const Mesh& mesh, uint32_t triangle, float u, float v) {
-  const uint32_t* i = &mesh.indices[size_t{3} * triangle];
-  const glm::vec2 uv = (1.0f - u - v) * mesh.uvs[i[0]] + u * mesh.uvs[i[1]] + v * mesh.uvs[i[2]];
   const Material& material = scene.materials[mesh.material];
-  return material.base_color.a * sample_texture(scene, material.base_color_texture, uv).a;
+  const MeshUvs uvs = uvs_within(mesh, triangle, u, v);
+  return material.base_color.a * sample_texture(scene, material.base_color_texture, uvs).a;
 }
 
 // Rays go through texels whose alpha is below the cutoff.
@@ -118,7 +117,7 @@ std::optional<Hit> RayScene::Impl::nearest(const glm::vec3& origin, const glm::v
   // A back face turns its vertices' normals with it, whatever side of the ray they are on.
   const float side = glm::dot(normal, direction) > 0.0f ? -1.0f : 1.0f;
   hit.shading_normal_ws = length > 1e-6f ? side * smooth / length : hit.geometric_normal_ws;
-  hit.uv = w * mesh.uvs[i[0]] + u * mesh.uvs[i[1]] + v * mesh.uvs[i[2]];
+  hit.uvs = uvs_within(mesh, query.hit.primID, u, v);
   return hit;
 }
 
@@ -164,7 +163,7 @@ glm::vec3 albedo_at(const Scene& scene, const Hit& hit) {
   const Material& material = scene.materials[hit.material];
   glm::vec3 out(material.base_color);
   if (material.base_color_texture.image < 0) return out;
-  const glm::vec4 texel = sample_texture(scene, material.base_color_texture, hit.uv);
+  const glm::vec4 texel = sample_texture(scene, material.base_color_texture, hit.uvs);
   for (int c = 0; c < 3; ++c) out[c] *= srgb_to_linear(texel[c]);
   return out;
 }

@@ -18,7 +18,7 @@ struct Hit {
   uint32_t material;
   glm::vec3 geometric_normal_ws;
   glm::vec3 shading_normal_ws;
-  glm::vec2 uv;
+  MeshUvs uvs;
 };
 
 // Embree's tree over a scene, and the questions that the truths ask of it.

@@ -69,27 +69,43 @@ float default_radius(const Scene& scene) {
   return diagonal > 0.0f ? 0.05f * diagonal : 1.0f;
 }
 
-glm::vec2 texture_uv(const TextureUse& use, glm::vec2 mesh_uv) {
-  const glm::vec2 uv = use.texture_from_mesh_uv * glm::vec3(mesh_uv, 1.0f);
+MeshUvs uvs_at(const Mesh& mesh, uint32_t vertex) {
+  return {mesh.uvs[vertex], mesh.second_uvs.empty() ? glm::vec2(0.0f) : mesh.second_uvs[vertex]};
+}
+
+MeshUvs uvs_within(const Mesh& mesh, uint32_t triangle, float u, float v) {
+  const uint32_t* i = &mesh.indices[size_t{3} * triangle];
+  const auto mean = [&](const std::vector<glm::vec2>& uvs) {
+    return (1.0f - u - v) * uvs[i[0]] + u * uvs[i[1]] + v * uvs[i[2]];
+  };
+  return {mean(mesh.uvs), mesh.second_uvs.empty() ? glm::vec2(0.0f) : mean(mesh.second_uvs)};
+}
+
+glm::vec2 texture_uv(const TextureUse& use, const MeshUvs& mesh_uvs) {
+  const glm::vec2 uv = use.texture_from_mesh_uv * glm::vec3(mesh_uvs[use.uv_set], 1.0f);
   // Large numbers may cancel as infinities.
   return std::isfinite(uv.x) && std::isfinite(uv.y) ? uv : glm::vec2(0.0f);
 }
 
-glm::vec4 sample_texture(const Scene& scene, const TextureUse& use, glm::vec2 mesh_uv) {
+glm::vec4 sample_texture(const Scene& scene, const TextureUse& use, const MeshUvs& mesh_uvs) {
   if (use.image < 0) return glm::vec4(1.0f);
   const TextureImage& image = scene.images[static_cast<size_t>(use.image)];
-  const glm::vec2 uv = texture_uv(use, mesh_uv);
+  const Sampler& sampler = use.sampler;
+  const bool nearest = sampler.magnify == Filter::kNearest;
+  const glm::vec2 uv = texture_uv(use, mesh_uvs);
   // Far out, a float holds no fraction of a texel; the bound keeps the cast below defined.
   constexpr float kFar = 1e9f;
-  const glm::vec2 at = glm::clamp(uv * glm::vec2(image.width, image.height) - 0.5f,
-                                  glm::vec2(-kFar), glm::vec2(kFar));
+  const glm::vec2 at =
+      glm::clamp(uv * glm::vec2(image.width, image.height) - (nearest ? 0.0f : 0.5f),
+                 glm::vec2(-kFar), glm::vec2(kFar));
   const glm::vec2 corner = glm::floor(at);
   const glm::vec2 f = at - corner;
   const auto x = static_cast<int64_t>(corner.x), y = static_cast<int64_t>(corner.y);
-  const uint32_t x0 = wrapped(x, image.width, use.wrap_u);
-  const uint32_t x1 = wrapped(x + 1, image.width, use.wrap_u);
-  const uint32_t y0 = wrapped(y, image.height, use.wrap_v);
-  const uint32_t y1 = wrapped(y + 1, image.height, use.wrap_v);
+  const uint32_t x0 = wrapped(x, image.width, sampler.wrap_u);
+  const uint32_t y0 = wrapped(y, image.height, sampler.wrap_v);
+  if (nearest) return texel(image, x0, y0);
+  const uint32_t x1 = wrapped(x + 1, image.width, sampler.wrap_u);
+  const uint32_t y1 = wrapped(y + 1, image.height, sampler.wrap_v);
   return glm::mix(glm::mix(texel(image, x0, y0), texel(image, x1, y0), f.x),
                   glm::mix(texel(image, x0, y1), texel(image, x1, y1), f.x), f.y);
 }

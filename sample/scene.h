@@ -1,6 +1,7 @@
 #ifndef ALCOVE_SAMPLE_SCENE_H_
 #define ALCOVE_SAMPLE_SCENE_H_
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -20,12 +21,25 @@ struct TextureImage {
 };
 
 enum class Wrap : uint8_t { kRepeat, kClamp, kMirror };
+enum class Filter : uint8_t { kLinear, kNearest };
+enum class MipFilter : uint8_t { kLinear, kNearest, kNone };  // kNone: mip 0 alone is read
+
+// How an image is read at its edges, and between texels and mips.
+struct Sampler {
+  Wrap wrap_u = Wrap::kRepeat;
+  Wrap wrap_v = Wrap::kRepeat;
+  Filter magnify = Filter::kLinear;
+  Filter minify = Filter::kLinear;
+  MipFilter mips = MipFilter::kLinear;
+
+  bool operator==(const Sampler&) const = default;
+};
 
 // An image as a material uses it. `image` indexes Scene::images; -1 is none, and reads white.
 struct TextureUse {
   int32_t image = -1;
-  Wrap wrap_u = Wrap::kRepeat;
-  Wrap wrap_v = Wrap::kRepeat;
+  Sampler sampler;
+  uint32_t uv_set = 0;  // 0: Mesh::uvs, 1: Mesh::second_uvs
   glm::mat3x2 texture_from_mesh_uv{1.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f};  // finite
 };
 
@@ -52,7 +66,8 @@ struct Material {
 };
 
 // Triangles of one material in world space, counter-clockwise from the front. The vertex arrays
-// have one length; every index is below it. Normals are unit, uvs zero where there were none.
+// have one length; every index is below it. Normals are unit, uvs zero where there were none; the
+// second ones are empty where no texture of the material is read by them, and read as zero.
 // Tangents are the file's, unit or zero, w the side of the bitangent w * cross(normal, tangent); an
 // empty array leaves them to be made (tangents.h).
 struct Mesh {
@@ -61,6 +76,7 @@ struct Mesh {
   std::vector<glm::vec3> positions_ws;
   std::vector<glm::vec3> normals_ws;
   std::vector<glm::vec2> uvs;
+  std::vector<glm::vec2> second_uvs;
   std::vector<glm::vec4> tangents_ws;
   std::vector<uint32_t> indices;  // 3 per triangle
   // Drawn where GbufferView::world_from_moving puts it, from a space of its own; traced as it
@@ -98,12 +114,19 @@ struct Scene {
 // The radius where none is given, in scene units.
 [[nodiscard]] float default_radius(const Scene& scene);
 
-// Where a use looks for its texel, by the mesh's coordinates. Finite.
-[[nodiscard]] glm::vec2 texture_uv(const TextureUse& use, glm::vec2 mesh_uv);
+// A mesh's texture coordinates at a point of it, by TextureUse::uv_set.
+using MeshUvs = std::array<glm::vec2, 2>;
+[[nodiscard]] MeshUvs uvs_at(const Mesh& mesh, uint32_t vertex);
+// Where a triangle's corners weigh 1 - u - v, u and v.
+[[nodiscard]] MeshUvs uvs_within(const Mesh& mesh, uint32_t triangle, float u, float v);
 
-// An image's texel by the mesh's coordinates, 0..1 as stored (no sRGB decoding), bilinear, mip 0.
+// Where a use looks for its texel, by the mesh's coordinates. Finite.
+[[nodiscard]] glm::vec2 texture_uv(const TextureUse& use, const MeshUvs& mesh_uvs);
+
+// An image's texel by the mesh's coordinates, 0..1 as stored (no sRGB decoding), as its sampler
+// magnifies it: mip 0.
 [[nodiscard]] glm::vec4 sample_texture(const Scene& scene, const TextureUse& use,
-                                       glm::vec2 mesh_uv);
+                                       const MeshUvs& mesh_uvs);
 
 // sRGB to linear, per channel.
 [[nodiscard]] float srgb_to_linear(float encoded);

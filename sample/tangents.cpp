@@ -55,7 +55,7 @@ std::vector<glm::vec4> corner_tangents(const Mesh& mesh, const TextureUse& map) 
     std::array<glm::dvec2, 3> uvs;
     for (size_t k = 0; k < 3; ++k) {
       corners[k] = mesh.positions_ws[mesh.indices[i + k]];
-      uvs[k] = texture_uv(map, mesh.uvs[mesh.indices[i + k]]);
+      uvs[k] = texture_uv(map, uvs_at(mesh, mesh.indices[i + k]));
     }
     const Layout layout = layout_of(corners, uvs);
     const glm::dvec3 face = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);

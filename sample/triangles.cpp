@@ -27,15 +27,15 @@ void append_mesh(const Mesh& mesh, const Material& material, std::vector<Vertex>
     }
     for (std::size_t i = first; i < first + 3; ++i) {
       const uint32_t v = mesh.indices[i];
-      const glm::vec2 uv = mesh.uvs[v];
+      const MeshUvs uvs = uvs_at(mesh, v);
       vertices.push_back({.position_ws = mesh.positions_ws[v],
                           .normal_ws = mesh.normals_ws[v],
                           .face_normal_ws = glm::vec3(area / length),
                           .tangent_ws = tangents[i],
-                          .base_color_uv = texture_uv(material.base_color_texture, uv),
-                          .metal_roughness_uv = texture_uv(material.metal_roughness_texture, uv),
-                          .emissive_uv = texture_uv(material.emissive_texture, uv),
-                          .normal_uv = texture_uv(material.normal_texture, uv)});
+                          .base_color_uv = texture_uv(material.base_color_texture, uvs),
+                          .metal_roughness_uv = texture_uv(material.metal_roughness_texture, uvs),
+                          .emissive_uv = texture_uv(material.emissive_texture, uvs),
+                          .normal_uv = texture_uv(material.normal_texture, uvs)});
     }
   }
 }

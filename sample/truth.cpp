@@ -44,7 +44,8 @@ void store_hit(const Scene& scene, const Hit& hit, const Ray& ray, const glm::ve
                size_t pixel, GBuffer& out) {
   const glm::vec3 offset = ray.direction_ws * hit.distance;
   const Material& material = scene.materials[hit.material];
-  const glm::vec4 metal_roughness = sample_texture(scene, material.metal_roughness_texture, hit.uv);
+  const glm::vec4 metal_roughness =
+      sample_texture(scene, material.metal_roughness_texture, hit.uvs);
   out.depth_vs.pixels[pixel] = glm::dot(offset, forward);
   out.position_ws.pixels[pixel] = ray.origin_ws + offset;
   out.geometric_normal_ws.pixels[pixel] = hit.geometric_normal_ws;

@@ -50,8 +50,10 @@ void add_components(CacheKey& key, const glm::vec<size, float>& vector) {
 
 void add_use(CacheKey& key, const TextureUse& use) {
   key.add(use.image);
-  key.add(static_cast<uint8_t>(use.wrap_u));
-  key.add(static_cast<uint8_t>(use.wrap_v));
+  key.add(static_cast<uint8_t>(use.sampler.wrap_u));
+  key.add(static_cast<uint8_t>(use.sampler.wrap_v));
+  key.add(static_cast<uint8_t>(use.sampler.magnify));
+  key.add(use.uv_set);
   for (int column = 0; column < 3; ++column) {
     add_components(key, use.texture_from_mesh_uv[column]);
   }
@@ -87,6 +89,7 @@ void CacheKey::add(const Scene& scene) {
     add_vector(*this, mesh.positions_ws);
     add_vector(*this, mesh.normals_ws);
     add_vector(*this, mesh.uvs);
+    add_vector(*this, mesh.second_uvs);
     add_vector(*this, mesh.indices);
   }
   for (const Material& material : scene.materials) {

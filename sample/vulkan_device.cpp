@@ -270,6 +270,12 @@ tl::expected<void, std::string> VulkanDevice::create_device(bool presentation) {
   enabled.v12.timelineSemaphore = VK_TRUE;
   enabled.v12.hostQueryReset = VK_TRUE;
   enabled.all.features.shaderStorageImageWriteWithoutFormat = VK_TRUE;
+  VkPhysicalDeviceFeatures optional;
+  vkGetPhysicalDeviceFeatures(physical_device_, &optional);
+  enabled.all.features.samplerAnisotropy = optional.samplerAnisotropy;
+  if (optional.samplerAnisotropy) {
+    max_anisotropy_ = properties_.limits.maxSamplerAnisotropy;
+  }
   std::vector<const char*> extensions;
   if (presentation) {
     extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);

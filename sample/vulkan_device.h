@@ -50,6 +50,8 @@ class VulkanDevice {
   uint32_t queue_family() const { return queue_family_; }
   const VkPhysicalDeviceProperties& properties() const { return properties_; }
   const std::string& driver() const { return driver_; }
+  // What samplers may ask for; 1 where the device has no anisotropic filter.
+  float max_anisotropy() const { return max_anisotropy_; }
 
   // What the validation layers said so far, errors and warnings, each message once as it came.
   const std::vector<std::string>& validation_messages() const { return messages_; }
@@ -76,6 +78,7 @@ class VulkanDevice {
   VkPhysicalDeviceProperties properties_{};
   VkPhysicalDeviceMemoryProperties memory_{};
   std::string driver_;
+  float max_anisotropy_ = 1.0f;
   std::vector<std::string> messages_;
 };
 

@@ -1,14 +1,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
-#include "gbuffer.h"
+#include "cut_out.h"
 
-layout(constant_id = 0) const uint kTextureCount = 1;
 layout(constant_id = 1) const bool kGeometricNormals = false;
 
 layout(set = 0, binding = 0) uniform Parameters { GbufferParameters parameters; };
-layout(set = 0, binding = 1) uniform sampler2D textures[kTextureCount];
-layout(push_constant) uniform Draw { GbufferDraw draw; };
 
 layout(location = 0) in vec3 position_ws;
 layout(location = 1) in vec3 normal_ws;
@@ -24,10 +21,9 @@ layout(location = 1) out vec4 out_albedo;     // linear RGB; alpha: perceptual r
 layout(location = 2) out vec2 out_motion_uv;  // where this surface is, minus where it was
 layout(location = 3) out vec4 out_emissive;   // linear RGB; alpha: metallic
 
-// The vertices' normal as the normal map bends it; `normal` itself where there is no map or nothing
-// to lay it along. Not unit.
-vec3 mapped_normal(vec3 normal) {
-  vec3 texel = texture(textures[draw.normal_texture], detail_uv.zw).xyz * 2.0 - 1.0;
+// The vertices' normal as the normal map's `texel` bends it; `normal` itself where there is no map
+// or nothing to lay it along. Not unit.
+vec3 mapped_normal(vec3 normal, vec3 texel) {
   vec3 across = tangent_ws.xyz - normal * dot(normal, tangent_ws.xyz);
   float squared = dot(across, across);
   if (draw.normal_texture == 0u || !(squared > 1e-12)) {
@@ -40,7 +36,7 @@ vec3 mapped_normal(vec3 normal) {
 }
 
 // Both faces of a triangle are seen, so normals are turned to the side that is.
-vec3 facing_normal() {
+vec3 facing_normal(vec3 texel) {
   vec3 to_eye = parameters.eye_ws.xyz - position_ws * parameters.eye_ws.w;
   vec3 face = dot(face_normal_ws, to_eye) < 0.0 ? -face_normal_ws : face_normal_ws;
   float squared = dot(normal_ws, normal_ws);
@@ -48,7 +44,7 @@ vec3 facing_normal() {
     return face;
   }
   vec3 normal = normal_ws * inversesqrt(squared);
-  vec3 mapped = mapped_normal(normal);
+  vec3 mapped = mapped_normal(normal, texel);
   // A map turns with the vertices' normal, and bends no further than into the face.
   vec3 shading = dot(normal, face) < 0.0 ? -mapped : mapped;
   shading -= face * min(dot(shading, face), 0.0);
@@ -57,15 +53,17 @@ vec3 facing_normal() {
 }
 
 void main() {
-  vec4 base = draw.base_colour * texture(textures[draw.base_colour_texture], surface_uv.xy);
-  if (base.a < draw.alpha_cutoff) {
+  // All before any fragment is dropped or branches: mips go by the differences between neighbours.
+  vec3 base = texture(textures[draw.base_colour_texture], surface_uv.xy).rgb;
+  // glTF: roughness in green, metal in blue.
+  vec2 surface = texture(textures[draw.metallic_roughness_texture], surface_uv.zw).gb;
+  vec3 emissive = texture(textures[draw.emissive_texture], detail_uv.xy).rgb;
+  vec3 bend = texture(textures[draw.normal_texture], detail_uv.zw).xyz * 2.0 - 1.0;
+  if (is_cut_out(surface_uv.xy)) {
     discard;
   }
-  // glTF: roughness in green, metal in blue.
-  vec4 surface = texture(textures[draw.metallic_roughness_texture], surface_uv.zw);
-  out_normal_ws = vec4(facing_normal(), 0.0);
-  out_albedo = vec4(base.rgb, draw.roughness * surface.g);
+  out_normal_ws = vec4(facing_normal(bend), 0.0);
+  out_albedo = vec4(draw.base_colour.rgb * base, draw.roughness * surface.x);
   out_motion_uv = 0.5 * (clip.xy / clip.w - previous_clip.xy / previous_clip.w);
-  vec3 emissive = draw.emissive.rgb * texture(textures[draw.emissive_texture], detail_uv.xy).rgb;
-  out_emissive = vec4(emissive, draw.metallic * surface.b);
+  out_emissive = vec4(draw.emissive.rgb * emissive, draw.metallic * surface.y);
 }
