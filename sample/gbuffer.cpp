@@ -37,7 +37,10 @@ maths::GbufferDraw draw_constants(const Material& material, const GpuTextures& t
   draw.emissive = glm::vec4(material.emissive, 0.0f);
   draw.metallic = material.metallic;
   draw.roughness = material.roughness;
-  draw.alpha_cutoff = material.alpha_mode == AlphaMode::kOpaque ? 0.0f : material.alpha_cutoff;
+  if (material.alpha_mode == AlphaMode::kMask) {
+    draw.alpha_cutoff = material.alpha_cutoff;
+    draw.mask_texture = textures.index_of(mask_of(material), true);
+  }
   draw.base_colour_texture = textures.index_of(material.base_color_texture, true);
   draw.metallic_roughness_texture = textures.index_of(material.metal_roughness_texture, false);
   draw.emissive_texture = textures.index_of(material.emissive_texture, true);

@@ -38,6 +38,13 @@ std::span<const uint8_t> texels_of(const Scene& scene, std::int32_t image) {
 
 }  // namespace
 
+TextureUse mask_of(const Material& material) {
+  TextureUse use = material.base_color_texture;
+  use.sampler.minify = use.sampler.magnify;
+  use.sampler.mips = MipFilter::kNone;
+  return use;
+}
+
 tl::expected<std::size_t, std::string> GpuTextures::add_texture(const Scene& scene,
                                                                 std::int32_t image, bool srgb) {
   const auto found = std::ranges::find_if(textures_, [&](const Texture& texture) {
@@ -157,6 +164,9 @@ tl::expected<std::unique_ptr<GpuTextures>, std::string> GpuTextures::create(Gpu&
             .and_then([&] { return made->add_use(scene, material.metal_roughness_texture, false); })
             .and_then([&] { return made->add_use(scene, material.emissive_texture, true); })
             .and_then([&] { return made->add_use(scene, material.normal_texture, false); });
+    if (material.alpha_mode == AlphaMode::kMask) {
+      done = done.and_then([&] { return made->add_use(scene, mask_of(material), true); });
+    }
   }
   done = done.and_then([&] { return made->upload(gpu, scene); });
   if (!done) {

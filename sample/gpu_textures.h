@@ -14,6 +14,11 @@
 
 namespace alcove::sample {
 
+// How a mask reads its base colour: mip 0, as the ray tracer does, so that both cut out the same
+// and what is far keeps its coverage. By a sampler of its own, since not every driver takes a given
+// mip from an anisotropic one.
+[[nodiscard]] TextureUse mask_of(const Material& material);
+
 // The images of a scene on the device as its materials use them: one descriptor for each image,
 // sampler and encoding that occurs, after a white one at index 0. Mips go down to one texel.
 class GpuTextures {

@@ -9,12 +9,11 @@ layout(constant_id = 0) const uint kTextureCount = 1;
 layout(set = 0, binding = 1) uniform sampler2D textures[kTextureCount];
 layout(push_constant) uniform Draw { GbufferDraw draw; };
 
-// By mip 0, as the ray tracer reads it: both cut out the same, and what is far keeps its coverage.
 bool is_cut_out(vec2 base_colour_uv) {
   if (draw.alpha_cutoff <= 0.0) {
     return false;
   }
-  float alpha = textureLod(textures[draw.base_colour_texture], base_colour_uv, 0.0).a;
+  float alpha = textureLod(textures[draw.mask_texture], base_colour_uv, 0.0).a;
   return draw.base_colour.a * alpha < draw.alpha_cutoff;
 }
 

@@ -25,6 +25,7 @@ struct GbufferDraw {
   float roughness;     // perceptual
   float alpha_cutoff;  // below it a fragment is dropped; 0 for opaque materials
   uint base_colour_texture;
+  uint mask_texture;  // base colour as masks read it
   uint metallic_roughness_texture;
   uint emissive_texture;
   uint normal_texture;  // 0: none

@@ -14,6 +14,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
       if (i >= mesh.positions_ws.size()) __builtin_trap();
     }
     if (mesh.material >= scene->materials.size()) __builtin_trap();
+    const size_t vertices = mesh.positions_ws.size(), second = mesh.second_uvs.size();
+    if (mesh.uvs.size() != vertices || (second != 0 && second != vertices)) __builtin_trap();
     const auto& map = scene->materials[mesh.material].normal_texture;
     for (const glm::vec4& t : alcove::sample::corner_tangents(mesh, map)) {
       // Neither unit nor zero: not a number, or a length that is not taken out.

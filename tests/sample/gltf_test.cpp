@@ -172,34 +172,119 @@ TEST(Gltf, TextureTransformsScaleThenTurnCounterClockwiseThenMove) {
   const Scene scene = parsed(maker.gltf());
   ASSERT_EQ(scene.materials.size(), 2u);
   const TextureUse& base = scene.materials[0].base_color_texture;
-  EXPECT_LT(glm::distance(texture_uv(base, {0, 0}), glm::vec2(0, 1)), 1e-6f);
-  EXPECT_LT(glm::distance(texture_uv(base, {1, 0}), glm::vec2(0, 0.5)), 1e-6f);
-  EXPECT_LT(glm::distance(texture_uv(base, {0, 1}), glm::vec2(0.5, 1)), 1e-6f);
+  EXPECT_LT(glm::distance(texture_uv(base, {glm::vec2(0, 0)}), glm::vec2(0, 1)), 1e-6f);
+  EXPECT_LT(glm::distance(texture_uv(base, {glm::vec2(1, 0)}), glm::vec2(0, 0.5)), 1e-6f);
+  EXPECT_LT(glm::distance(texture_uv(base, {glm::vec2(0, 1)}), glm::vec2(0.5, 1)), 1e-6f);
   const TextureUse& normal = scene.materials[0].normal_texture;
   const float c = std::cos(0.5f), s = std::sin(0.5f);
-  EXPECT_LT(glm::distance(texture_uv(normal, {1, 0}), glm::vec2(3 + 2 * c, 5 - 2 * s)), 1e-5f);
-  EXPECT_LT(glm::distance(texture_uv(normal, {0, 1}), glm::vec2(3 - 4 * s, 5 - 4 * c)), 1e-5f);
+  EXPECT_LT(glm::distance(texture_uv(normal, {glm::vec2(1, 0)}), glm::vec2(3 + 2 * c, 5 - 2 * s)),
+            1e-5f);
+  EXPECT_LT(glm::distance(texture_uv(normal, {glm::vec2(0, 1)}), glm::vec2(3 - 4 * s, 5 - 4 * c)),
+            1e-5f);
 }
 
-TEST(Gltf, TextureCoordinatesAreOfTheSetThatTheTransformNames) {
-  GltfMaker maker = textured(transformed({{"texCoord", 1}}), transformed({{"texCoord", 1}}));
-  const int uvs = maker.view<float>({0, 0, 7, 0, 0, 7});
-  maker.primitive()["attributes"]["TEXCOORD_1"] = maker.accessor(uvs, 5126, "VEC2", 3);
-  EXPECT_EQ(parsed(maker.gltf()).meshes[0].uvs[1], glm::vec2(7, 0));
+// The same with an image, and with both sets of coordinates in the mesh.
+GltfMaker painted(const nlohmann::json& base_colour, const nlohmann::json& normal_map) {
+  GltfMaker maker = textured(base_colour, normal_map);
+  maker.json.erase("textures");
+  maker.white_texture();
+  auto& attributes = maker.primitive()["attributes"];
+  const int first = maker.view<float>({0, 0, 3, 0, 0, 3});
+  const int second = maker.view<float>({0, 0, 7, 0, 0, 7});
+  attributes["TEXCOORD_0"] = maker.accessor(first, 5126, "VEC2", 3);
+  attributes["TEXCOORD_1"] = maker.accessor(second, 5126, "VEC2", 3);
+  return maker;
+}
+
+TEST(Gltf, EachTextureHasTheSetThatItOrItsTransformNames) {
+  nlohmann::json overridden = transformed({{"texCoord", 1}});
+  overridden["texCoord"] = 0;
+  for (const nlohmann::json& second : {nlohmann::json{{"index", 0}, {"texCoord", 1}}, overridden}) {
+    const Scene scene = parsed(painted({{"index", 0}}, second).gltf());
+    ASSERT_EQ(scene.meshes.size(), 1u);
+    const Mesh& mesh = scene.meshes[0];
+    EXPECT_THAT(mesh.uvs, testing::ElementsAre(glm::vec2(0), glm::vec2(3, 0), glm::vec2(0, 3)));
+    EXPECT_THAT(mesh.second_uvs,
+                testing::ElementsAre(glm::vec2(0), glm::vec2(7, 0), glm::vec2(0, 7)));
+    const Material& material = scene.materials[mesh.material];
+    EXPECT_EQ(texture_uv(material.base_color_texture, uvs_at(mesh, 1)), glm::vec2(3, 0));
+    EXPECT_EQ(texture_uv(material.normal_texture, uvs_at(mesh, 1)), glm::vec2(7, 0));
+    EXPECT_THAT(scene.warnings, testing::IsEmpty());
+  }
+}
+
+TEST(Gltf, ASecondSetThatNoTextureNamesIsNotKept) {
+  const Scene scene = parsed(painted({{"index", 0}}, {{"index", 0}}).gltf());
+  EXPECT_TRUE(scene.meshes[0].second_uvs.empty());
+}
+
+TEST(Gltf, ASetThatTheMeshLacksIsSaid) {
+  for (const std::string set : {"0", "1"}) {
+    GltfMaker maker = painted({{"index", 0}}, {{"index", 0}, {"texCoord", 1}});
+    maker.primitive()["attributes"].erase("TEXCOORD_" + set);
+    const Scene scene = parsed(maker.gltf());
+    EXPECT_THAT(scene.warnings, testing::ElementsAre("Mesh 0 lacks the texture coordinates " + set +
+                                                     " that its material names: they are taken "
+                                                     "to be zero."));
+    const glm::vec2 read = uvs_at(scene.meshes[0], 1)[set == "0" ? 0 : 1];
+    EXPECT_EQ(read, glm::vec2(0));
+  }
+}
+
+TEST(Gltf, SamplersAreReadAndFiltersNotGivenAreSmooth) {
+  GltfMaker maker = painted({{"index", 0}}, {{"index", 1}});
+  maker.white_texture();
+  maker.json["samplers"] = {
+      {{"wrapS", 33071}, {"wrapT", 33648}, {"magFilter", 9728}, {"minFilter", 9985}},
+      nlohmann::json::object()};
+  maker.json["textures"][0]["sampler"] = 0;
+  maker.json["textures"][1]["sampler"] = 1;
+  const Material material = parsed(maker.gltf()).materials[0];
+  EXPECT_EQ(material.base_color_texture.sampler,
+            (Sampler{Wrap::kClamp, Wrap::kMirror, Filter::kNearest, Filter::kLinear,
+                     MipFilter::kNearest}));
+  EXPECT_EQ(material.normal_texture.sampler, Sampler{});
+  const std::pair<int, Sampler> filters[] = {
+      {9728, {.minify = Filter::kNearest, .mips = MipFilter::kNone}},
+      {9729, {.mips = MipFilter::kNone}},
+      {9984, {.minify = Filter::kNearest, .mips = MipFilter::kNearest}},
+      {9986, {.minify = Filter::kNearest}},
+      {9987, {}}};
+  for (const auto& [filter, sampler] : filters) {
+    maker.json["samplers"][1]["minFilter"] = filter;
+    EXPECT_EQ(parsed(maker.gltf()).materials[0].normal_texture.sampler, sampler) << filter;
+  }
+}
+
+TEST(Gltf, SamplersOfValuesThatGltfHasNotAreLeftOut) {
+  const std::pair<nlohmann::json, std::string> samplers[] = {
+      {{{"wrapS", 33070}}, "sampler 0 has a wrap mode that glTF has not and is left out."},
+      {{{"wrapT", -1}}, "sampler 0 has a wrap mode that glTF has not and is left out."},
+      {{{"magFilter", 9987}}, "sampler 0 has a filter that glTF has not and is left out."},
+      {{{"minFilter", 7}}, "sampler 0 has a filter that glTF has not and is left out."}};
+  for (const auto& [sampler, warning] : samplers) {
+    GltfMaker maker = painted({{"index", 0}}, {{"index", 0}});
+    maker.json["samplers"] = {sampler};
+    maker.json["textures"][0]["sampler"] = 0;
+    const Scene scene = parsed(maker.gltf());
+    EXPECT_THAT(scene.warnings, testing::ElementsAre(warning));
+    EXPECT_EQ(scene.materials[0].base_color_texture.sampler, Sampler{});
+  }
 }
 
 TEST(Gltf, WhatIsLeftOutIsSaid) {
-  GltfMaker maker = textured({{"index", 0}}, {{"index", 0}, {"texCoord", 1}});
+  GltfMaker maker = textured({{"index", 0}}, {{"index", 0}, {"texCoord", 2}});
   maker.json["extensionsUsed"] = {"KHR_texture_transform", "KHR_materials_unlit"};
   maker.primitive()["attributes"]["COLOR_0"] = maker.primitive()["attributes"]["POSITION"];
   const Scene scene = parsed(maker.gltf());
-  EXPECT_THAT(scene.warnings,
-              testing::UnorderedElementsAre(
-                  "The extension KHR_materials_unlit is left out.",
-                  "Material \"tiles\" has its normal map by texture coordinates 1, the rest by 0: "
-                  "it is left out.",
-                  "Mesh 0 has colours of its vertices, which are left out.",
-                  "texture 0 has no image that is read here and is left out."));
+  EXPECT_THAT(
+      scene.warnings,
+      testing::UnorderedElementsAre(
+          "The extension KHR_materials_unlit is left out.",
+          "Material \"tiles\" has its normal map by texture coordinates 2, neither 0 nor 1: "
+          "it is left out.",
+          "Mesh 0 has colours of its vertices, which are left out.",
+          "texture 0 has no image that is read here and is left out."));
 }
 
 TEST(Gltf, TangentsTurnWithTheNodeAndMirrorWithIt) {
@@ -357,6 +442,19 @@ const Hostile kHostile[] = {
        m.primitive()["attributes"]["TANGENT"] = tangents;
      },
      "tangents for some"},
+    {"ShortSecondTextureCoordinates",
+     [](GltfMaker& m) {
+       m = painted({{"index", 0}}, {{"index", 0}, {"texCoord", 1}});
+       const int uvs = m.accessor(m.view<float>({0, 0}), 5126, "VEC2", 1);
+       m.primitive()["attributes"]["TEXCOORD_1"] = uvs;
+     },
+     "texture coordinates for some"},
+    {"NoSuchSampler",
+     [](GltfMaker& m) {
+       m = painted({{"index", 0}}, {{"index", 0}});
+       m.json["textures"][0]["sampler"] = 3;
+     },
+     "material \"tiles\" has a texture without its sampler 3"},
     {"NoTriangles", [](GltfMaker& m) { m.primitive()["mode"] = 0; }, "no triangles"},
 };
 INSTANTIATE_TEST_SUITE_P(All, HostileGltf, testing::ValuesIn(kHostile),

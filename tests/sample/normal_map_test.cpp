@@ -4,8 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "frame_renderer.h"
-#include "gpu_test.h"
+#include "quad_test.h"
 #include "surface_points.h"
 #include "tangents.h"
 #include "truth.h"
@@ -28,49 +27,18 @@ TextureImage map_of(const glm::vec3& normal) {
   return image;
 }
 
-// A quad of two halves that share the vertices between them, facing +Z, u to the right and v down.
 Scene quad(const glm::vec3& normal = kTilt) {
-  Scene scene;
+  Scene scene = plain_quad();
   scene.images.push_back(map_of(normal));
-  scene.materials.emplace_back();
   scene.materials[0].normal_texture.image = 0;
-  scene.meshes.emplace_back();
-  Mesh& mesh = scene.meshes[0];
-  for (const float x : {-1.0f, 0.0f, 1.0f}) {
-    for (const float y : {-1.0f, 1.0f}) {
-      mesh.positions_ws.emplace_back(x, y, 0.0f);
-      mesh.normals_ws.emplace_back(0.0f, 0.0f, 1.0f);
-      mesh.uvs.emplace_back(0.5f * (x + 1.0f), 0.5f * (1.0f - y));
-    }
-  }
-  mesh.indices = {0, 2, 3, 0, 3, 1, 2, 4, 5, 2, 5, 3};
-  scene.bounds_ws = bounds_of(scene.meshes);
   return scene;
 }
 
-Camera camera_at(float z) {
-  Camera camera;
-  camera.eye_ws = {0.0f, 0.0f, z};
-  camera.target_ws = glm::vec3(0.0f);
-  camera.orthographic = true;
-  return camera;
-}
-
-class NormalMap : public GpuTest {
+class NormalMap : public QuadTest {
  protected:
   FrameImages draw(const Scene& scene, const Camera& camera = camera_at(3.0f),
                    NormalSource normals = NormalSource::kShading) {
-    auto renderer = FrameRenderer::create(gpu(), scene, {kSize, kSize}, normals);
-    EXPECT_TRUE(renderer) << renderer.error();
-    const CameraMatrices matrices = camera_matrices(camera, kSize, kSize);
-    const FrameRequest request{.view = {.view_from_world = matrices.view_from_world,
-                                        .clip_from_view = matrices.clip_from_view,
-                                        .previous_view_from_world = matrices.view_from_world,
-                                        .previous_clip_from_view = matrices.clip_from_view},
-                               .occlusion = passes::quality_settings(passes::Quality::low, 0.2f)};
-    auto images = (*renderer)->draw_and_read(request);
-    EXPECT_TRUE(images) << images.error();
-    return images ? std::move(*images) : FrameImages{};
+    return QuadTest::draw(scene, kSize, camera, normals);
   }
 
   // Everywhere on the quad, which fills the picture.
@@ -142,6 +110,18 @@ TEST_F(NormalMap, BendsNoFurtherThanIntoTheFace) {
     EXPECT_NEAR(glm::length(n), 1.0f, 2e-3f);
     EXPECT_GT(n.z, -1e-3f);
   }
+}
+
+TEST_F(NormalMap, TiltsAgainstEachOtherCancelWhereTexelsAreSmallerThanPixels) {
+  Scene scene = quad();
+  TextureImage& map = scene.images[0];
+  const TextureImage right = map_of(kTilt), left = map_of(kTilt * glm::vec3(-1.0f, -1.0f, 1.0f));
+  map = {"ripples", 8 * kSize, 8 * kSize, {}};
+  for (std::uint32_t i = 0; i < map.width * map.height; ++i) {
+    const std::vector<std::uint8_t>& texel = i % 2 == 0 ? right.rgba : left.rgba;
+    map.rgba.insert(map.rgba.end(), texel.begin(), texel.end());
+  }
+  expect_normal(draw(scene), {0.0f, 0.0f, 1.0f});
 }
 
 TEST_F(NormalMap, IsOfShadingNormalsAlone) {

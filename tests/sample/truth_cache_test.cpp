@@ -64,7 +64,7 @@ TEST(TruthCache, WritingLeavesNoTemporaryFiles) {
 
 TEST(TruthCache, KeyChangesWithSceneAndCamera) {
   const Scene scene = builtin_scene();
-  CacheKey key, moved, recoloured, turned;
+  CacheKey key, moved, recoloured, laid, blocky, turned;
   key.add(scene);
   Scene other = scene;
   other.meshes[0].positions_ws[0].x += 1e-3f;
@@ -72,10 +72,18 @@ TEST(TruthCache, KeyChangesWithSceneAndCamera) {
   other = scene;
   other.materials[0].base_color.g *= 0.5f;
   recoloured.add(other);
+  other = scene;
+  other.materials[0].base_color_texture.uv_set = 1;
+  laid.add(other);
+  other = scene;
+  other.materials[0].base_color_texture.sampler.magnify = Filter::kNearest;
+  blocky.add(other);
   turned.add(scene);
   turned.add(scene.cameras[0]);
   EXPECT_NE(key.hex(), moved.hex());
   EXPECT_NE(key.hex(), recoloured.hex());
+  EXPECT_NE(key.hex(), laid.hex());
+  EXPECT_NE(key.hex(), blocky.hex());
   EXPECT_NE(key.hex(), turned.hex());
 }
 

@@ -1,0 +1,60 @@
+#ifndef ALCOVE_TESTS_SAMPLE_QUAD_TEST_H_
+#define ALCOVE_TESTS_SAMPLE_QUAD_TEST_H_
+
+#include <cstdint>
+#include <utility>
+
+#include "frame_renderer.h"
+#include "gpu_test.h"
+
+// A quad that fills the picture, drawn and read back.
+namespace alcove::sample {
+
+// Two halves that share the vertices between them, facing +Z, u to the right and v down, of one
+// material.
+inline Scene plain_quad() {
+  Scene scene;
+  scene.materials.emplace_back();
+  scene.meshes.emplace_back();
+  Mesh& mesh = scene.meshes[0];
+  for (const float x : {-1.0f, 0.0f, 1.0f}) {
+    for (const float y : {-1.0f, 1.0f}) {
+      mesh.positions_ws.emplace_back(x, y, 0.0f);
+      mesh.normals_ws.emplace_back(0.0f, 0.0f, 1.0f);
+      mesh.uvs.emplace_back(0.5f * (x + 1.0f), 0.5f * (1.0f - y));
+    }
+  }
+  mesh.indices = {0, 2, 3, 0, 3, 1, 2, 4, 5, 2, 5, 3};
+  scene.bounds_ws = bounds_of(scene.meshes);
+  return scene;
+}
+
+inline Camera camera_at(float z) {
+  Camera camera;
+  camera.eye_ws = {0.0f, 0.0f, z};
+  camera.target_ws = glm::vec3(0.0f);
+  camera.orthographic = true;
+  return camera;
+}
+
+class QuadTest : public GpuTest {
+ protected:
+  FrameImages draw(const Scene& scene, std::uint32_t size, const Camera& camera = camera_at(3.0f),
+                   NormalSource normals = NormalSource::kShading) {
+    auto renderer = FrameRenderer::create(gpu(), scene, {size, size}, normals);
+    EXPECT_TRUE(renderer) << renderer.error();
+    const CameraMatrices matrices = camera_matrices(camera, size, size);
+    const FrameRequest request{.view = {.view_from_world = matrices.view_from_world,
+                                        .clip_from_view = matrices.clip_from_view,
+                                        .previous_view_from_world = matrices.view_from_world,
+                                        .previous_clip_from_view = matrices.clip_from_view},
+                               .occlusion = passes::quality_settings(passes::Quality::low, 0.2f)};
+    auto images = (*renderer)->draw_and_read(request);
+    EXPECT_TRUE(images) << images.error();
+    return images ? std::move(*images) : FrameImages{};
+  }
+};
+
+}  // namespace alcove::sample
+
+#endif  // ALCOVE_TESTS_SAMPLE_QUAD_TEST_H_
