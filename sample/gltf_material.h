@@ -15,7 +15,7 @@ namespace alcove::sample {
 // its images that a material uses. Images are taken from buffer views, or from the encoded bytes
 // that the loader left in Image::image. A warning: an image that cannot be read and a texture by
 // coordinates beyond the second set, which are left out (white; no normal map), and a sampler of
-// values that glTF does not have. An error: more than `most_pixels` in all, a texture that does not
+// values unknown to glTF. An error: more than `most_pixels` in all, a texture that does not
 // exist, numbers that are not finite.
 [[nodiscard]] tl::expected<void, std::string> add_materials(const tinygltf::Model& model,
                                                             uint64_t most_pixels, Scene& scene);

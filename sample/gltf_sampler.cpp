@@ -54,13 +54,13 @@ MipFilter mip_filter_of(int filter) {
 
 tl::expected<Sampler, std::string> read_sampler(const tinygltf::Sampler& in) {
   const auto wrap_u = wrap_of(in.wrapS), wrap_v = wrap_of(in.wrapT);
-  if (!wrap_u || !wrap_v) return tl::unexpected<std::string>("has a wrap mode that glTF has not");
+  if (!wrap_u || !wrap_v) return tl::unexpected<std::string>("has a wrap mode unknown to glTF");
   const auto magnify = filter_of(in.magFilter), minify = filter_of(in.minFilter);
   // Nothing lies between mips where there is but one.
   const bool magnifies =
       in.magFilter == kNotGiven || mip_filter_of(in.magFilter) == MipFilter::kNone;
   if (!magnify || !minify || !magnifies) {
-    return tl::unexpected<std::string>("has a filter that glTF has not");
+    return tl::unexpected<std::string>("has a filter unknown to glTF");
   }
   return Sampler{*wrap_u, *wrap_v, *magnify, *minify, mip_filter_of(in.minFilter)};
 }

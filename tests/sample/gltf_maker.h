@@ -1,11 +1,16 @@
 #ifndef ALCOVE_TESTS_SAMPLE_GLTF_MAKER_H_
 #define ALCOVE_TESTS_SAMPLE_GLTF_MAKER_H_
 
+#include <gtest/gtest.h>
+
 #include <cstdint>
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "gltf.h"
 
 namespace alcove::sample {
 
@@ -112,6 +117,40 @@ class GltfMaker {
     return out;
   }
 };
+
+// A triangle whose one material uses texture 0, which has no image, in these ways.
+inline GltfMaker textured(const nlohmann::json& base_colour, const nlohmann::json& normal_map) {
+  GltfMaker maker = GltfMaker::triangle();
+  maker.json["textures"] = {nlohmann::json::object()};
+  maker.json["materials"] = {{{"name", "tiles"},
+                              {"pbrMetallicRoughness", {{"baseColorTexture", base_colour}}},
+                              {"normalTexture", normal_map}}};
+  maker.primitive()["material"] = 0;
+  return maker;
+}
+
+inline nlohmann::json transformed(const nlohmann::json& transform) {
+  return {{"index", 0}, {"extensions", {{"KHR_texture_transform", transform}}}};
+}
+
+// The same with an image, and with both sets of coordinates in the mesh.
+inline GltfMaker painted(const nlohmann::json& base_colour, const nlohmann::json& normal_map) {
+  GltfMaker maker = textured(base_colour, normal_map);
+  maker.json.erase("textures");
+  maker.white_texture();
+  auto& attributes = maker.primitive()["attributes"];
+  const int first = maker.view<float>({0, 0, 3, 0, 0, 3});
+  const int second = maker.view<float>({0, 0, 7, 0, 0, 7});
+  attributes["TEXCOORD_0"] = maker.accessor(first, 5126, "VEC2", 3);
+  attributes["TEXCOORD_1"] = maker.accessor(second, 5126, "VEC2", 3);
+  return maker;
+}
+
+inline Scene parsed(const std::vector<uint8_t>& bytes) {
+  auto scene = parse_gltf(bytes, "test.gltf", "");
+  EXPECT_TRUE(scene) << (scene ? "" : scene.error());
+  return scene ? std::move(*scene) : Scene{};
+}
 
 }  // namespace alcove::sample
 
