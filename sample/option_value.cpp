@@ -79,7 +79,7 @@ glm::vec3 OptionValue::vector() const {
 
 std::vector<float> OptionValue::numbers(std::size_t most, float low, float high,
                                         const std::string& wanted) const {
-  const std::vector<float> values = numbers_of(text);
+  std::vector<float> values = numbers_of(text);
   const bool within =
       std::ranges::all_of(values, [&](float value) { return value >= low && value <= high; });
   if (values.empty() || values.size() > most || !within) refuse(wanted);

@@ -200,6 +200,7 @@ std::vector<Results> CInterface::run_by_c(AlcoveContext& context, std::span<cons
   }
   run_frame(context, views, index);
   std::vector<Results> results;
+  results.reserve(views.size());
   for (const AlcoveView& view : views) {
     results.push_back(results_of(view));
   }

@@ -92,9 +92,9 @@ TEST_F(AblationTest, HiddenDepthsAreNearerToTheTruth) {
   ASSERT_TRUE(gpu);
   auto ablation = TrialRunner::create(*gpu, scene_, setup_, base_);
   ASSERT_TRUE(ablation) << ablation.error();
-  const auto [truth, surfaces] = truth_of(ablation->base());
+  const Truth truth = truth_of(ablation->base());
   const auto error_of = [&](const Image<float>& visibility) {
-    return compare_images(visibility, truth, surfaces).rmse;
+    return compare_images(visibility, truth.visibility, truth.surfaces).rmse;
   };
   const double base = error_of(ablation->base().visibility);
   Trial back_faces{"occluders", "back faces", base_};
