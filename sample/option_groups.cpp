@@ -141,6 +141,7 @@ void add_motion(CLI::App& app, Options& options) {
             "cut (to elsewhere) or all of them; all",
             [&](const OptionValue& given) {
               std::vector<std::string> names;
+              names.reserve(kMotionKinds.size() + 1);
               for (const MotionKind kind : kMotionKinds) names.push_back(name_of(kind));
               names.emplace_back("all");
               const std::size_t which =
