@@ -3,8 +3,9 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
-// Ground-truth ambient occlusion: per pixel a few slices around the view vector, in each the two
-// horizons of the depth buffer, integrated in closed form. Jimenez et al. 2016, section 4.
+// Ground-truth ambient occlusion: per pixel a few slices around the view vector, in each what the depth
+// buffer leaves open between its two horizons (Jimenez et al. 2016, section 4), or of its sectors
+// (gtao_sectors.h), integrated in closed form.
 //
 // Writes two numbers a pixel, the visible part of its slices and the whole of them when open: filters
 // and history add up each, and only the last divides. The mean of the pixels' own ratios would be
@@ -45,9 +46,6 @@ layout(constant_id = 16) const bool kContinuation = true;  // surfaces go on bey
 const bool kHeuristic = kEstimator == 1;
 const bool kBitmask = kEstimator >= 2;
 const bool kConnected = kEstimator == 3;
-
-// Bend of the line between two samples, in depths for each pixel's width, that parts two surfaces.
-const float kSharpBend = 4.0;
 
 layout(set = 0, binding = 0) uniform Parameters { GtaoParameters parameters; };
 layout(set = 0, binding = 1, r32f) uniform readonly image2D line_image;  // LineSample::line
@@ -105,88 +103,8 @@ Surface fetch_surface(ivec2 pixel, float line) {
   return surface;
 }
 
-// Pixels from the surface to the border of the image along a direction.
-float border_distance(vec2 centre, vec2 direction) {
-  vec2 border = mix(vec2(0.0), vec2(size_px()), greaterThan(direction, vec2(0.0)));
-  vec2 distance = (border - centre) / direction;
-  return min(direction.x != 0.0 ? distance.x : 1e9, direction.y != 0.0 ? distance.y : 1e9) - 0.01;
-}
-
-// One side of a slice, as it is searched.
-struct Search {
-  ivec2 pixel;
-  SliceLine line;  // outwards
-  float reach_px;  // from the first step to the last; 0 where there is nothing to search
-  float beyond_px;  // of the radius beyond the image's border, as far as surfaces go on there
-  float offset;    // of the steps, [0,1)
-  float depth;     // linear, of the shaded point
-  TangentLine tangent;
-  float gradient;  // of the tangent line, outwards
-  float lowest;    // cosine of the tangent plane's horizon
-};
-
-Search make_search(Surface surface, SliceLine line, Slice slice, float side, float offset) {
-  Search search;
-  search.pixel = surface.pixel;
-  search.line = line;
-  search.line.direction_px *= side;
-  search.line.y_per_step *= side;
-  // Where the surface faces away from a side, what stands above its tangent plane within the radius
-  // lies nearer by the cosine of gamma.
-  search.lowest = tangent_horizon(slice, side);
-  float share = search.lowest > 0.0 ? slice.cosine : 1.0;
-  float distance_px = slice_radius_px(line, parameters.radius * share, surface.depth, kPerspective);
-  float border = border_distance(surface.centre, search.line.direction_px);
-  // Steps stay apart where the radius spans few pixels, and inside the image always.
-  float apart = max(distance_px - kNearestStep, 0.25 * float(kStepCount));
-  bool empty = min(distance_px, border) < kNearestStep;
-  search.reach_px = empty ? 0.0 : max(min(apart, border - kNearestStep), 1e-3);
-  search.beyond_px = clamp(distance_px - border, 0.0, kContinuedReaches * search.reach_px);
-  search.offset = offset;
-  search.depth = surface.depth;
-  search.tangent = surface.tangent;
-  search.gradient = dot(search.line.direction_px, surface.tangent.gradient);
-  return search;
-}
-
-// A sample's linear depth, times w.
-float distance_w(LineSample here) { return kPerspective ? 1.0 : here.line; }
-
-// The far end of an occluder of the settings' thickness.
-vec2 settings_back(LineSample here) {
-  // As slice_point() gives lengths, times w; w times the distance is 1 in perspective.
-  float thickness = parameters.thickness * (kThicknessOfDistance ? distance_w(here) : here.point.z);
-  return here.point.xy - vec2(0.0, thickness);
-}
-
-// Layers of depth: 0, and 1 behind it.
-LineSample fetch_sample(Search search, uint layer, uint k) {
-  float t = (float(k) + search.offset) * (1.0 / float(kStepCount));
-  LineSample found;
-  found.offset_px = kNearestStep + search.reach_px * (t * t);
-  vec2 snapped = roundEven(search.line.direction_px * found.offset_px);
-  // A side with nothing to search may lie outside the image.
-  ivec2 texel = search.pixel + (search.reach_px > 0.0 ? ivec2(snapped) : ivec2(0));
-  float line = layer == 0u ? imageLoad(line_image, texel).r : imageLoad(second_image, texel).r;
-  // Only across the line: along it a sample stays where it was found.
-  float along_px = kSnapping ? dot(snapped, search.line.direction_px) : found.offset_px;
-  float on_plane = dot(snapped, search.tangent.gradient);
-  float share = tangent_share(search.tangent, line - search.tangent.line - on_plane,
-                              found.offset_px);
-  float moved = max(line + share * (along_px * search.gradient - on_plane), 0.1 * line);
-  found.line = kSnapping ? moved : line;
-  found.point = slice_point(search.line, along_px, found.line, search.depth, kPerspective);
-  if (kBackFaces) {
-    float back = imageLoad(back_image, texel).r;
-    // Not before the front where that was moved.
-    vec3 end = slice_point(search.line, along_px, farther_line(found.line, back, kPerspective),
-                           search.depth, kPerspective);
-    found.back = ends_occluder(line, back, kPerspective) ? end.xy : settings_back(found);
-  }
-  return found;
-}
-
-float squared_length(vec2 v) { return dot(v, v); }
+#include "gtao_search.h"
+#include "gtao_sectors.h"
 
 // `horizon` (a cosine) after a sample of its side.
 float next_horizon(float horizon, Search search, vec3 point) {
@@ -210,139 +128,6 @@ float find_horizon(Search search) {
     ++k;
   } while (k < kStepCount);
   return search.reach_px > 0.0 ? horizon : -1.0;
-}
-
-// A side of a slice as the bitmask sees it.
-struct Side {
-  vec2 height;        // above the tangent plane, of each unit of a point of the slice's plane
-  float sharp;        // bend that parts two surfaces
-  float per_bearing;  // sectors
-};
-
-Side make_side(Surface surface, SliceLine line, Slice slice, float side) {
-  Side made;
-  made.height = vec2(side * slice.along, slice.toward);
-  made.sharp = kSharpBend * line.x_per_step * (kPerspective ? surface.tangent.line : 1.0);
-  made.per_bearing = sectors_per_bearing(slice, side);
-  return made;
-}
-
-// What the search holds on to from sample to sample.
-struct Sheet {
-  LineSample last;
-  float rise;      // of `line` over the last step
-  float step_px;   // the last step
-  float bend;      // sharp, at the last sample
-  float position;  // of the last sample's front, in sectors
-  float excess;    // radius_excess() of it
-  uint sectors;    // occluded so far
-};
-
-float back_position(Side side, LineSample here) {
-  return sector_position(side.per_bearing, kBackFaces ? here.back : settings_back(here));
-}
-
-// The first sample stands alone. Its edge is drawn in unless it lies on the surface's own plane.
-Sheet begin_sheet(Surface surface, Side side, LineSample here, LineSample next) {
-  Sheet sheet;
-  sheet.last = here;
-  sheet.rise = next.line - here.line;
-  sheet.step_px = next.offset_px - here.offset_px;
-  sheet.bend = sharp_bend(here.line - surface.tangent.line, here.offset_px, sheet.rise,
-                          sheet.step_px, side.sharp);
-  float height = dot(here.point.xy, side.height);
-  bool above = height * abs(height) > 0.04 * squared_length(here.point.xy);
-  float drawn = kConnected && above ? edge_share(kStepCount) : 0.0;
-  sheet.position = sector_position(side.per_bearing, here.point.xy * vec2(1.0 - drawn, 1.0));
-  sheet.excess = radius_excess(here.point, parameters.radius);
-  uint covered = sectors_between(sheet.position, back_position(side, here));
-  sheet.sectors = sheet.excess <= 0.0 ? covered : 0u;
-  return sheet;
-}
-
-// Adds a sample, `bend` of the line at it: its thickness, and the sheet between it and the last one
-// if they are joined, as far as it runs within the radius.
-void extend_sheet(inout Sheet sheet, Side side, float x_per_step, uint layer, LineSample here,
-                  float bend) {
-  bool joined = kConnected && (layer == 0u ? samples_join(sheet.bend, bend)
-                                           : hidden_samples_join(sheet.bend, bend));
-  float excess = radius_excess(here.point, parameters.radius);
-  bool inside = excess <= 0.0;
-  float apart = kConnected ? edge_share(kStepCount) * sheet.step_px * x_per_step : 0.0;
-  float drawn = joined ? 0.0 : apart;
-  vec2 front = vec2(here.point.x - drawn, here.point.y);
-  vec2 leaves = radius_crossing(here.point, excess, sheet.last.point, sheet.excess);
-  float position = sector_position(side.per_bearing, inside ? front : leaves);
-  float end = inside ? back_position(side, here) : position;
-  bool continued = joined && sheet.excess <= 0.0;
-  float joint = continued ? sheet.position : position;
-  uint covered = sectors_between(min(min(position, end), joint), max(max(position, end), joint));
-  sheet.sectors |= inside || continued ? covered : 0u;
-  sheet.last = here;
-  sheet.bend = bend;
-  sheet.position = position;
-  sheet.excess = excess;
-}
-
-// Adds `here`, now that the sample `next` after it tells how the line bends at it.
-void pass_sample(inout Sheet sheet, inout LineSample here, Side side, float x_per_step,
-                 uint layer, LineSample next) {
-  float rise = next.line - here.line;
-  float step_px = next.offset_px - here.offset_px;
-  float bend = sharp_bend(sheet.rise, sheet.step_px, rise, step_px, side.sharp);
-  extend_sheet(sheet, side, x_per_step, layer, here, bend);
-  sheet.rise = rise;
-  sheet.step_px = step_px;
-  here = next;
-}
-
-// Those of a surface that leaves the image and did not bend before: it is taken to go on as it left,
-// until it leaves the radius. `way` is the last step's, `x_beyond` how far it goes on (x w).
-uint sectors_beyond(Sheet sheet, Side side, vec3 way, float x_beyond) {
-  vec3 end = continued_point(sheet.last.point, way, x_beyond);
-  float excess = radius_excess(end, parameters.radius);
-  vec2 leaves = radius_crossing(end, excess, sheet.last.point, sheet.excess);
-  float position = sector_position(side.per_bearing, excess > 0.0 ? leaves : end.xy);
-  bool goes_on = x_beyond > 0.0 && sheet.bend == 0.0 && sheet.excess <= 0.0;
-  return goes_on ? sectors_between(sheet.position, position) : 0u;
-}
-
-// Samples that are searched in one turn of the loop: a turn costs as much as half a sample, and all
-// in one would be a program of thousands of lines.
-const uint kTurn = 4;
-
-// The sectors that the samples of a layer occlude on a side.
-uint find_in_layer(Surface surface, Search search, Side side, uint layer) {
-  LineSample here = fetch_sample(search, layer, 1);
-  Sheet sheet = begin_sheet(surface, side, fetch_sample(search, layer, 0), here);
-  const uint rest = (kStepCount - 2) % kTurn;
-  uint k = 2;
-  [[unroll]] for (uint i = 0; i < rest; ++i) {
-    pass_sample(sheet, here, side, search.line.x_per_step, layer,
-                fetch_sample(search, layer, k + i));
-  }
-  k += rest;
-  if (k < kStepCount) {
-    do {
-      [[unroll]] for (uint i = 0; i < kTurn; ++i) {
-        pass_sample(sheet, here, side, search.line.x_per_step, layer,
-                    fetch_sample(search, layer, k + i));
-      }
-      k += kTurn;
-    } while (k < kStepCount);
-  }
-  // Nothing tells how it ends: joined only if the way to it did not bend.
-  vec3 way = here.point - sheet.last.point;
-  extend_sheet(sheet, side, search.line.x_per_step, layer, here, -sheet.bend);
-  if (kContinuation && kConnected) {
-    sheet.sectors |= sectors_beyond(sheet, side, way, search.beyond_px * search.line.x_per_step);
-  }
-  return search.reach_px > 0.0 ? sheet.sectors : 0u;
-}
-
-uint find_occluders(Surface surface, Search search, Side side) {
-  uint sectors = find_in_layer(surface, search, side, 0u);
-  return kSecondLayer ? sectors | find_in_layer(surface, search, side, 1u) : sectors;
 }
 
 // What a slice adds to the pixel's sums.

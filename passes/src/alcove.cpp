@@ -8,12 +8,12 @@
 #include <string>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 #include "alcove/framegraph/executor.h"
 #include "alcove/framegraph/print.h"
 #include "alcove/passes/kernels.h"
 #include "alcove/passes/reconstruct.h"
+#include "c_context_info.h"
 #include "c_failure.h"
 #include "c_images.h"
 #include "c_view.h"
@@ -36,10 +36,6 @@ void write(Message& message, std::string_view text) {
 // The passes of a view need no more dispatches than their share of a frame.
 constexpr std::uint32_t kPassesOfAView = 9;
 static_assert(ALCOVE_MAX_VIEWS * kPassesOfAView <= passes::Kernels::kMaxDispatches);
-
-}  // namespace
-
-namespace {
 
 // The views of a frame, by the number of the first pass that comes after each.
 struct ViewPasses {
@@ -95,126 +91,6 @@ AlcoveResult guarded(Message& message, const Call& call) {
     write(message, "The library failed for a reason that it does not know.");
     return ALCOVE_ERROR_INTERNAL;
   }
-}
-
-tl::unexpected<Failure> unsupported(std::string message) {
-  return tl::unexpected(Failure{ALCOVE_ERROR_UNSUPPORTED, std::move(message)});
-}
-
-struct Features {
-  bool synchronization2 = false;
-  bool write_without_format = false;
-};
-
-Features features_in(const VkPhysicalDeviceFeatures2& chain) {
-  Features found;
-  found.write_without_format = chain.features.shaderStorageImageWriteWithoutFormat != VK_FALSE;
-  for (auto* next = static_cast<const VkBaseInStructure*>(chain.pNext); next != nullptr;
-       next = next->pNext) {
-    if (next->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES) {
-      const auto* vulkan13 = reinterpret_cast<const VkPhysicalDeviceVulkan13Features*>(next);
-      found.synchronization2 |= vulkan13->synchronization2 != VK_FALSE;
-    }
-    if (next->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES) {
-      const auto* alone = reinterpret_cast<const VkPhysicalDeviceSynchronization2Features*>(next);
-      found.synchronization2 |= alone->synchronization2 != VK_FALSE;
-    }
-  }
-  return found;
-}
-
-Result check_features(const Features& features, std::string_view who, const char* remedy) {
-  const char* missing = !features.synchronization2       ? "synchronization2"
-                        : !features.write_without_format ? "shaderStorageImageWriteWithoutFormat"
-                                                         : nullptr;
-  if (missing == nullptr) {
-    return {};
-  }
-  return unsupported(std::string(who) + " has no feature " + missing + ", which is needed; " +
-                     remedy + ".");
-}
-
-template <typename Function>
-Function instance_function(const AlcoveContextInfo& info, const char* name) {
-  return reinterpret_cast<Function>(info.get_instance_proc_addr(info.instance, name));
-}
-
-Result check_device(const AlcoveContextInfo& info) {
-  const auto get_properties =
-      instance_function<PFN_vkGetPhysicalDeviceProperties>(info, "vkGetPhysicalDeviceProperties");
-  const auto get_features =
-      instance_function<PFN_vkGetPhysicalDeviceFeatures2>(info, "vkGetPhysicalDeviceFeatures2");
-  const auto get_families = instance_function<PFN_vkGetPhysicalDeviceQueueFamilyProperties2>(
-      info, "vkGetPhysicalDeviceQueueFamilyProperties2");
-  if (get_properties == nullptr || get_features == nullptr || get_families == nullptr) {
-    return unsupported("The instance is older than Vulkan 1.3; create it for that version.");
-  }
-  VkPhysicalDeviceProperties properties{};
-  get_properties(info.physical_device, &properties);
-  const std::string name = std::string("The device '") + properties.deviceName + "'";
-  if (properties.apiVersion < VK_API_VERSION_1_3) {
-    return unsupported(name + " is below Vulkan 1.3; choose another or update its driver.");
-  }
-  VkPhysicalDeviceVulkan13Features vulkan13{
-      .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
-  VkPhysicalDeviceFeatures2 has{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
-                                .pNext = &vulkan13};
-  get_features(info.physical_device, &has);
-  if (auto right = check_features(features_in(has), name, "choose another"); !right) {
-    return right;
-  }
-  if (info.enabled_features != nullptr) {
-    if (auto right = check_features(features_in(*info.enabled_features),
-                                    "AlcoveContextInfo::enabled_features",
-                                    "enable it when the device is created");
-        !right) {
-      return right;
-    }
-  }
-  std::uint32_t count = 0;
-  get_families(info.physical_device, &count, nullptr);
-  std::vector<VkQueueFamilyProperties2> families(
-      count, {.sType = VK_STRUCTURE_TYPE_QUEUE_FAMILY_PROPERTIES_2});
-  get_families(info.physical_device, &count, families.data());
-  if (info.queue_family >= count) {
-    return invalid("AlcoveContextInfo::queue_family is " + std::to_string(info.queue_family) +
-                   ", but the device has " + std::to_string(count) + " families.");
-  }
-  const VkQueueFamilyProperties& family = families[info.queue_family].queueFamilyProperties;
-  if ((family.queueFlags & VK_QUEUE_COMPUTE_BIT) == 0) {
-    return invalid("Queue family " + std::to_string(info.queue_family) +
-                   " does not compute; give one that does.");
-  }
-  if (info.timestamps != VK_FALSE && family.timestampValidBits == 0) {
-    return unsupported("Queue family " + std::to_string(info.queue_family) +
-                       " has no timestamps; set AlcoveContextInfo::timestamps to VK_FALSE.");
-  }
-  return {};
-}
-
-Result check(const AlcoveContextInfo* info) {
-  if (info == nullptr) {
-    return invalid("There is no AlcoveContextInfo.");
-  }
-  if (auto right = passes::check_size(info->struct_size, sizeof *info, "AlcoveContextInfo");
-      !right) {
-    return right;
-  }
-  const std::pair<const char*, bool> needed[] = {
-      {"instance", info->instance != VK_NULL_HANDLE},
-      {"physical_device", info->physical_device != VK_NULL_HANDLE},
-      {"device", info->device != VK_NULL_HANDLE},
-      {"get_instance_proc_addr", info->get_instance_proc_addr != nullptr}};
-  for (const auto& [name, given] : needed) {
-    if (!given) {
-      return invalid(std::string("AlcoveContextInfo::") + name + " is null.");
-    }
-  }
-  if (info->frames_in_flight < 1 || info->frames_in_flight > ALCOVE_MAX_FRAMES_IN_FLIGHT) {
-    return invalid("AlcoveContextInfo::frames_in_flight is " +
-                   std::to_string(info->frames_in_flight) + "; it must be 1 to 8.");
-  }
-  return check_device(*info);
 }
 
 Result create(const AlcoveContextInfo& info, AlcoveContext*& context) {
@@ -331,7 +207,7 @@ AlcoveResult alcoveCreateContext(const AlcoveContextInfo* info, AlcoveContext** 
       return invalid("There is no place for the context.");
     }
     *context = nullptr;
-    return check(info).and_then([&] { return create(*info, *context); });
+    return passes::check(info).and_then([&] { return create(*info, *context); });
   });
   if (message != nullptr) {
     std::memcpy(message, said.data(), said.size());

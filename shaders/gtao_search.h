@@ -1,0 +1,89 @@
+// The search part of gtao.comp, which includes it: where the samples of one side of a slice lie, and what
+// the depth buffer shows there.
+#ifndef ALCOVE_GTAO_SEARCH_H
+#define ALCOVE_GTAO_SEARCH_H
+
+// Pixels from the surface to the border of the image along a direction.
+float border_distance(vec2 centre, vec2 direction) {
+  vec2 border = mix(vec2(0.0), vec2(size_px()), greaterThan(direction, vec2(0.0)));
+  vec2 distance = (border - centre) / direction;
+  return min(direction.x != 0.0 ? distance.x : 1e9, direction.y != 0.0 ? distance.y : 1e9) - 0.01;
+}
+
+// One side of a slice, as it is searched.
+struct Search {
+  ivec2 pixel;
+  SliceLine line;  // outwards
+  float reach_px;  // from the first step to the last; 0 where there is nothing to search
+  float beyond_px;  // of the radius beyond the image's border, as far as surfaces go on there
+  float offset;    // of the steps, [0,1)
+  float depth;     // linear, of the shaded point
+  TangentLine tangent;
+  float gradient;  // of the tangent line, outwards
+  float lowest;    // cosine of the tangent plane's horizon
+};
+
+Search make_search(Surface surface, SliceLine line, Slice slice, float side, float offset) {
+  Search search;
+  search.pixel = surface.pixel;
+  search.line = line;
+  search.line.direction_px *= side;
+  search.line.y_per_step *= side;
+  // Where the surface faces away from a side, what stands above its tangent plane within the radius
+  // lies nearer by the cosine of gamma.
+  search.lowest = tangent_horizon(slice, side);
+  float share = search.lowest > 0.0 ? slice.cosine : 1.0;
+  float distance_px = slice_radius_px(line, parameters.radius * share, surface.depth, kPerspective);
+  float border = border_distance(surface.centre, search.line.direction_px);
+  // Steps stay apart where the radius spans few pixels, and inside the image always.
+  float apart = max(distance_px - kNearestStep, 0.25 * float(kStepCount));
+  bool empty = min(distance_px, border) < kNearestStep;
+  search.reach_px = empty ? 0.0 : max(min(apart, border - kNearestStep), 1e-3);
+  search.beyond_px = clamp(distance_px - border, 0.0, kContinuedReaches * search.reach_px);
+  search.offset = offset;
+  search.depth = surface.depth;
+  search.tangent = surface.tangent;
+  search.gradient = dot(search.line.direction_px, surface.tangent.gradient);
+  return search;
+}
+
+// A sample's linear depth, times w.
+float distance_w(LineSample here) { return kPerspective ? 1.0 : here.line; }
+
+// The far end of an occluder of the settings' thickness.
+vec2 settings_back(LineSample here) {
+  // As slice_point() gives lengths, times w; w times the distance is 1 in perspective.
+  float thickness = parameters.thickness * (kThicknessOfDistance ? distance_w(here) : here.point.z);
+  return here.point.xy - vec2(0.0, thickness);
+}
+
+// Layers of depth: 0, and 1 behind it.
+LineSample fetch_sample(Search search, uint layer, uint k) {
+  float t = (float(k) + search.offset) * (1.0 / float(kStepCount));
+  LineSample found;
+  found.offset_px = kNearestStep + search.reach_px * (t * t);
+  vec2 snapped = roundEven(search.line.direction_px * found.offset_px);
+  // A side with nothing to search may lie outside the image.
+  ivec2 texel = search.pixel + (search.reach_px > 0.0 ? ivec2(snapped) : ivec2(0));
+  float line = layer == 0u ? imageLoad(line_image, texel).r : imageLoad(second_image, texel).r;
+  // Only across the line: along it a sample stays where it was found.
+  float along_px = kSnapping ? dot(snapped, search.line.direction_px) : found.offset_px;
+  float on_plane = dot(snapped, search.tangent.gradient);
+  float share = tangent_share(search.tangent, line - search.tangent.line - on_plane,
+                              found.offset_px);
+  float moved = max(line + share * (along_px * search.gradient - on_plane), 0.1 * line);
+  found.line = kSnapping ? moved : line;
+  found.point = slice_point(search.line, along_px, found.line, search.depth, kPerspective);
+  if (kBackFaces) {
+    float back = imageLoad(back_image, texel).r;
+    // Not before the front where that was moved.
+    vec3 end = slice_point(search.line, along_px, farther_line(found.line, back, kPerspective),
+                           search.depth, kPerspective);
+    found.back = ends_occluder(line, back, kPerspective) ? end.xy : settings_back(found);
+  }
+  return found;
+}
+
+float squared_length(vec2 v) { return dot(v, v); }
+
+#endif

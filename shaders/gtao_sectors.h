@@ -1,0 +1,142 @@
+// The bitmask part of gtao.comp, which includes it: which sectors of a side the samples occlude, joined
+// into sheets (maths/connected_samples.h) or each by itself.
+#ifndef ALCOVE_GTAO_SECTORS_H
+#define ALCOVE_GTAO_SECTORS_H
+
+// Bend of the line between two samples, in depths for each pixel's width, that parts two surfaces.
+const float kSharpBend = 4.0;
+
+// A side of a slice as the bitmask sees it.
+struct Side {
+  vec2 height;        // above the tangent plane, of each unit of a point of the slice's plane
+  float sharp;        // bend that parts two surfaces
+  float per_bearing;  // sectors
+};
+
+Side make_side(Surface surface, SliceLine line, Slice slice, float side) {
+  Side made;
+  made.height = vec2(side * slice.along, slice.toward);
+  made.sharp = kSharpBend * line.x_per_step * (kPerspective ? surface.tangent.line : 1.0);
+  made.per_bearing = sectors_per_bearing(slice, side);
+  return made;
+}
+
+// What the search holds on to from sample to sample.
+struct Sheet {
+  LineSample last;
+  float rise;      // of `line` over the last step
+  float step_px;   // the last step
+  float bend;      // sharp, at the last sample
+  float position;  // of the last sample's front, in sectors
+  float excess;    // radius_excess() of it
+  uint sectors;    // occluded so far
+};
+
+float back_position(Side side, LineSample here) {
+  return sector_position(side.per_bearing, kBackFaces ? here.back : settings_back(here));
+}
+
+// The first sample stands alone. Its edge is drawn in unless it lies on the surface's own plane.
+Sheet begin_sheet(Surface surface, Side side, LineSample here, LineSample next) {
+  Sheet sheet;
+  sheet.last = here;
+  sheet.rise = next.line - here.line;
+  sheet.step_px = next.offset_px - here.offset_px;
+  sheet.bend = sharp_bend(here.line - surface.tangent.line, here.offset_px, sheet.rise,
+                          sheet.step_px, side.sharp);
+  float height = dot(here.point.xy, side.height);
+  bool above = height * abs(height) > 0.04 * squared_length(here.point.xy);
+  float drawn = kConnected && above ? edge_share(kStepCount) : 0.0;
+  sheet.position = sector_position(side.per_bearing, here.point.xy * vec2(1.0 - drawn, 1.0));
+  sheet.excess = radius_excess(here.point, parameters.radius);
+  uint covered = sectors_between(sheet.position, back_position(side, here));
+  sheet.sectors = sheet.excess <= 0.0 ? covered : 0u;
+  return sheet;
+}
+
+// Adds a sample, `bend` of the line at it: its thickness, and the sheet between it and the last one
+// if they are joined, as far as it runs within the radius.
+void extend_sheet(inout Sheet sheet, Side side, float x_per_step, uint layer, LineSample here,
+                  float bend) {
+  bool joined = kConnected && (layer == 0u ? samples_join(sheet.bend, bend)
+                                           : hidden_samples_join(sheet.bend, bend));
+  float excess = radius_excess(here.point, parameters.radius);
+  bool inside = excess <= 0.0;
+  float apart = kConnected ? edge_share(kStepCount) * sheet.step_px * x_per_step : 0.0;
+  float drawn = joined ? 0.0 : apart;
+  vec2 front = vec2(here.point.x - drawn, here.point.y);
+  vec2 leaves = radius_crossing(here.point, excess, sheet.last.point, sheet.excess);
+  float position = sector_position(side.per_bearing, inside ? front : leaves);
+  float end = inside ? back_position(side, here) : position;
+  bool continued = joined && sheet.excess <= 0.0;
+  float joint = continued ? sheet.position : position;
+  uint covered = sectors_between(min(min(position, end), joint), max(max(position, end), joint));
+  sheet.sectors |= inside || continued ? covered : 0u;
+  sheet.last = here;
+  sheet.bend = bend;
+  sheet.position = position;
+  sheet.excess = excess;
+}
+
+// Adds `here`, now that the sample `next` after it tells how the line bends at it.
+void pass_sample(inout Sheet sheet, inout LineSample here, Side side, float x_per_step,
+                 uint layer, LineSample next) {
+  float rise = next.line - here.line;
+  float step_px = next.offset_px - here.offset_px;
+  float bend = sharp_bend(sheet.rise, sheet.step_px, rise, step_px, side.sharp);
+  extend_sheet(sheet, side, x_per_step, layer, here, bend);
+  sheet.rise = rise;
+  sheet.step_px = step_px;
+  here = next;
+}
+
+// Those of a surface that leaves the image and did not bend before: it is taken to go on as it left,
+// until it leaves the radius. `way` is the last step's, `x_beyond` how far it goes on (x w).
+uint sectors_beyond(Sheet sheet, Side side, vec3 way, float x_beyond) {
+  vec3 end = continued_point(sheet.last.point, way, x_beyond);
+  float excess = radius_excess(end, parameters.radius);
+  vec2 leaves = radius_crossing(end, excess, sheet.last.point, sheet.excess);
+  float position = sector_position(side.per_bearing, excess > 0.0 ? leaves : end.xy);
+  bool goes_on = x_beyond > 0.0 && sheet.bend == 0.0 && sheet.excess <= 0.0;
+  return goes_on ? sectors_between(sheet.position, position) : 0u;
+}
+
+// Samples that are searched in one turn of the loop: a turn costs as much as half a sample, and all
+// in one would be a program of thousands of lines.
+const uint kTurn = 4;
+
+// The sectors that the samples of a layer occlude on a side.
+uint find_in_layer(Surface surface, Search search, Side side, uint layer) {
+  LineSample here = fetch_sample(search, layer, 1);
+  Sheet sheet = begin_sheet(surface, side, fetch_sample(search, layer, 0), here);
+  const uint rest = (kStepCount - 2) % kTurn;
+  uint k = 2;
+  [[unroll]] for (uint i = 0; i < rest; ++i) {
+    pass_sample(sheet, here, side, search.line.x_per_step, layer,
+                fetch_sample(search, layer, k + i));
+  }
+  k += rest;
+  if (k < kStepCount) {
+    do {
+      [[unroll]] for (uint i = 0; i < kTurn; ++i) {
+        pass_sample(sheet, here, side, search.line.x_per_step, layer,
+                    fetch_sample(search, layer, k + i));
+      }
+      k += kTurn;
+    } while (k < kStepCount);
+  }
+  // Nothing tells how it ends: joined only if the way to it did not bend.
+  vec3 way = here.point - sheet.last.point;
+  extend_sheet(sheet, side, search.line.x_per_step, layer, here, -sheet.bend);
+  if (kContinuation && kConnected) {
+    sheet.sectors |= sectors_beyond(sheet, side, way, search.beyond_px * search.line.x_per_step);
+  }
+  return search.reach_px > 0.0 ? sheet.sectors : 0u;
+}
+
+uint find_occluders(Surface surface, Search search, Side side) {
+  uint sectors = find_in_layer(surface, search, side, 0u);
+  return kSecondLayer ? sectors | find_in_layer(surface, search, side, 1u) : sectors;
+}
+
+#endif
