@@ -5,13 +5,13 @@
 #include <cmath>
 #include <cstring>
 #include <ctime>
-#include <functional>
 #include <optional>
 #include <utility>
 
 #include "alcove/framegraph/access.h"
 #include "alcove/passes/apply.h"
 #include "alcove/passes/multi_bounce.h"
+#include "frame_read_back.h"
 #include "gpu_image.h"
 #include "probe.h"
 #include "read_back.h"
@@ -58,96 +58,6 @@ double processor_ms() {
 
 }  // namespace
 
-// The occlusion's frame: what it was given and what it makes.
-struct Declared {
-  Texture depth;
-  Texture normal;
-  Texture albedo;
-  Texture emissive;
-  passes::OcclusionOutputs outputs;
-  Texture multi_bounce;
-  std::vector<Texture> specular_occlusion;
-  passes::AppliedLight lit;
-  Texture unoccluded;
-  Texture unbent;
-  Texture occluded;
-  Texture bounced;
-};
-
-// A texture that is read back and where its texels go.
-struct Wanted {
-  Texture texture;
-  std::function<void(const HostBuffer&, FrameImages&)> store;
-};
-
-// What a frame has of its light.
-void append_lit(const Declared& declared, VkExtent2D size, std::vector<Wanted>& wanted) {
-  const auto colours = [&](Texture texture, Image<glm::vec3> LitImages::*image) {
-    if (texture) {
-      wanted.push_back({texture, [=](const HostBuffer& buffer, FrameImages& images) {
-                          images.lit.*image = to_image<glm::vec3, Half4>(buffer, size, from_half);
-                        }});
-    }
-  };
-  colours(declared.lit.lit, &LitImages::all);
-  colours(declared.lit.diffuse, &LitImages::diffuse);
-  colours(declared.lit.specular, &LitImages::specular);
-  colours(declared.unoccluded, &LitImages::unoccluded);
-  colours(declared.unbent, &LitImages::unbent);
-  colours(declared.occluded, &LitImages::occluded);
-  colours(declared.bounced, &LitImages::bounced);
-}
-
-void append_surfaces(const Declared& declared, VkExtent2D size, std::vector<Wanted>& wanted) {
-  wanted.push_back({declared.depth, [size](const HostBuffer& buffer, FrameImages& images) {
-                      images.depth_ndc =
-                          to_image<float, float>(buffer, size, [](float x) { return x; });
-                    }});
-  wanted.push_back(
-      {declared.outputs.normals, [size](const HostBuffer& buffer, FrameImages& images) {
-         images.normal_ws = to_image<glm::vec3, Half4>(buffer, size, from_half);
-       }});
-  wanted.push_back({declared.albedo, [size](const HostBuffer& buffer, FrameImages& images) {
-                      images.albedo = to_image<glm::vec3, Byte4>(buffer, size, from_bytes);
-                      images.roughness = to_image<float, Byte4>(
-                          buffer, size, [](const Byte4& t) { return float(t[3]) / 255.0f; });
-                    }});
-  wanted.push_back({declared.emissive, [size](const HostBuffer& buffer, FrameImages& images) {
-                      images.metallic = to_image<float, Half4>(
-                          buffer, size, [](const Half4& t) { return half_to_float(t[3]); });
-                    }});
-}
-
-// Everything that is read back of a frame.
-std::vector<Wanted> wanted_of(const Declared& declared, VkExtent2D size,
-                              passes::Precision precision) {
-  std::vector<Wanted> wanted;
-  append_surfaces(declared, size, wanted);
-  wanted.push_back(
-      {declared.outputs.visibility, [=](const HostBuffer& buffer, FrameImages& images) {
-         images.visibility = read_visibility(buffer, size, precision);
-       }});
-  if (declared.outputs.bent_normal) {
-    wanted.push_back(
-        {declared.outputs.bent_normal, [=](const HostBuffer& buffer, FrameImages& images) {
-           images.bent_normal_ws = read_vectors(buffer, size, precision);
-         }});
-  }
-  if (declared.multi_bounce) {
-    wanted.push_back({declared.multi_bounce, [=](const HostBuffer& buffer, FrameImages& images) {
-                        images.multi_bounce = read_colours(buffer, size, precision);
-                      }});
-  }
-  for (const Texture texture : declared.specular_occlusion) {
-    wanted.push_back({texture, [=](const HostBuffer& buffer, FrameImages& images) {
-                        images.specular_occlusion.push_back(
-                            read_visibility(buffer, size, precision));
-                      }});
-  }
-  append_lit(declared, size, wanted);
-  return wanted;
-}
-
 struct FrameRenderer::State {
   State(Gpu& on, VkExtent2D of_size, NormalSource source)
       : gpu(on), size(of_size), normals(source) {}
@@ -156,12 +66,13 @@ struct FrameRenderer::State {
   // Nothing is drawn again while the view and the one before it stay the same.
   tl::expected<void, std::string> draw_gbuffer(const FrameRequest& request, FrameCost& cost);
   passes::Frame frame_of(Graph& graph, const FrameRequest& request);
-  Surfaces surfaces_of(const Declared& declared, const FrameRequest& request) const;
-  tl::expected<Declared, std::string> declare_occlusion(Graph& graph, const FrameRequest& request);
+  Surfaces surfaces_of(const DeclaredFrame& declared, const FrameRequest& request) const;
+  tl::expected<DeclaredFrame, std::string> declare_occlusion(Graph& graph,
+                                                             const FrameRequest& request);
   tl::expected<void, std::string> declare_light(Graph& graph, const FrameRequest& request,
-                                                Declared& declared);
+                                                DeclaredFrame& declared);
   tl::expected<void, std::string> declare_lit(Graph& graph, const FrameRequest& request,
-                                              Declared& declared);
+                                              DeclaredFrame& declared);
   void turn_to_world(const FrameRequest& request, FrameImages& images) const;
   void append_times(FrameCost& cost, bool occlusion);
 
@@ -248,7 +159,7 @@ passes::Frame FrameRenderer::State::frame_of(Graph& graph, const FrameRequest& r
           request.still_frames};
 }
 
-Surfaces FrameRenderer::State::surfaces_of(const Declared& declared,
+Surfaces FrameRenderer::State::surfaces_of(const DeclaredFrame& declared,
                                            const FrameRequest& request) const {
   Surfaces surfaces{.gbuffer = {.depth = declared.depth,
                                 .normal = declared.normal,
@@ -261,15 +172,15 @@ Surfaces FrameRenderer::State::surfaces_of(const Declared& declared,
   return surfaces;
 }
 
-tl::expected<Declared, std::string> FrameRenderer::State::declare_occlusion(
+tl::expected<DeclaredFrame, std::string> FrameRenderer::State::declare_occlusion(
     Graph& graph, const FrameRequest& request) {
   const auto import = [&](Target target) {
     return graph.import_texture("g-buffer", targets[target]->import_to_read(kSampledState));
   };
-  Declared declared{.depth = import(kDepth),
-                    .normal = import(kNormal),
-                    .albedo = import(kAlbedo),
-                    .emissive = import(kEmissive)};
+  DeclaredFrame declared{.depth = import(kDepth),
+                         .normal = import(kNormal),
+                         .albedo = import(kAlbedo),
+                         .emissive = import(kEmissive)};
   const passes::Frame frame = frame_of(graph, request);
   Surfaces surfaces = surfaces_of(declared, request);
   const HiddenDepths hidden = hidden_depths_of(request.occlusion);
@@ -308,7 +219,7 @@ tl::expected<Declared, std::string> FrameRenderer::State::declare_occlusion(
 // Adds what is made of visibility and bent normal; nothing without bent normals.
 tl::expected<void, std::string> FrameRenderer::State::declare_light(Graph& graph,
                                                                     const FrameRequest& request,
-                                                                    Declared& declared) {
+                                                                    DeclaredFrame& declared) {
   const passes::OcclusionOutputs& outputs = declared.outputs;
   if (!outputs.bent_normal || request.light == nullptr) {
     return {};
@@ -328,7 +239,7 @@ tl::expected<void, std::string> FrameRenderer::State::declare_light(Graph& graph
 // Lights the surfaces with the environment; emission is not shown, the truth knows of none.
 tl::expected<void, std::string> FrameRenderer::State::declare_lit(Graph& graph,
                                                                   const FrameRequest& request,
-                                                                  Declared& declared) {
+                                                                  DeclaredFrame& declared) {
   const auto probe =
       add_probe(frame_of(graph, request), gpu, request.light->environment, environment);
   if (!probe) {
@@ -409,7 +320,7 @@ tl::expected<FrameCost, std::string> FrameRenderer::draw(const FrameRequest& req
   }
   const double before = processor_ms();
   auto report = state_->gpu.run([&](Graph& graph) {
-    return state_->declare_occlusion(graph, request).map([&](const Declared& declared) {
+    return state_->declare_occlusion(graph, request).map([&](const DeclaredFrame& declared) {
       graph.output(declared.outputs.visibility);
       if (request.occlusion.bent_normal) {
         graph.output(declared.outputs.bent_normal);
