@@ -8,6 +8,7 @@ struct History {
   Sum sum;       // weighted means over frames
   float count;   // frames; 0 where nothing of this surface is known
   float recent;  // visibility of the last few frames, to tell change by
+  float between;  // how far from texels' centres it was read: 0 at one, to 0.5 amid four
 };
 
 const float kDepthTolerance = 0.004;  // of the depth, for a surface seen head-on
@@ -39,8 +40,9 @@ vec4 reproject(Surface surface) {
   return seen ? vec4(position, before.z, 1.0) : vec4(0.0, 0.0, 1.0, 0.0);
 }
 
-// A texel of history, all of it or none as its depth tells whether it is of the same surface.
-float add_history(inout History history, Surface surface, ivec2 texel, float depth, float share) {
+// A texel of history, all of it or none as its depth tells whether it is of the same surface. x is what
+// it weighs, y and z that times its visibility and the square of that.
+vec3 add_history(inout History history, Surface surface, ivec2 texel, float depth, float share) {
   uvec4 stored = imageLoad(history_image, texel);
   HistoryState state = unpack_history_state(stored.y);
   float weight = share * history_weight(min(depth, kLargestDepth), state.depth,
@@ -54,7 +56,8 @@ float add_history(inout History history, Surface surface, ivec2 texel, float dep
   add(history.sum, weight, here);
   history.count += weight * state.count;
   history.recent += weight * state.recent;
-  return weight;
+  float visibility = mean_visibility(here.signal.visible, here.signal.open);
+  return weight * vec3(1.0, visibility, visibility * visibility);
 }
 
 History read_history(Surface surface) {
@@ -62,17 +65,19 @@ History read_history(Surface surface) {
   found.sum = no_sum();
   found.count = 0.0;
   found.recent = 0.0;
-  float weight_sum = 0.0;
+  found.between = 0.0;
+  vec3 moments = vec3(0.0);
   if (kFresh) {
     return found;
   }
   if (kStill) {
-    weight_sum = add_history(found, surface, surface.pixel, surface.depth, 1.0);
+    moments = add_history(found, surface, surface.pixel, surface.depth, 1.0);
   } else {
     vec4 before = reproject(surface);
     ivec2 last = ivec2(parameters.previous_size.xy) - 1;
     vec2 first = floor(before.xy - 0.5);
     vec2 part = before.xy - 0.5 - first;
+    found.between = dot(part, 1.0 - part);
     for (int i = 0; i < 4; ++i) {
       ivec2 corner = ivec2(i & 1, i >> 1);
       ivec2 texel = clamp(ivec2(first) + corner, ivec2(0), last);
@@ -81,27 +86,33 @@ History read_history(Surface surface) {
       vec2 offset = vec2(corner) - part;
       float line = (kPerspective ? 1.0 / before.z : before.z) + dot(offset, surface.gradient);
       float depth = kPerspective ? 1.0 / max(line, 0.5 / before.z) : line;
-      weight_sum += add_history(found, surface, texel, depth, near.x * near.y * before.w);
+      moments += add_history(found, surface, texel, depth, near.x * near.y * before.w);
     }
   }
-  float scale = weight_sum < 0.05 ? 0.0 : 1.0 / weight_sum;
+  float scale = moments.x < 0.05 ? 0.0 : 1.0 / moments.x;
+  vec2 means = moments.yz * scale;
   History history;
   history.sum = no_sum();
   add(history.sum, scale, found.sum);
-  history.count = found.count * scale;
+  history.count = count_after_blur(found.count * scale, max(means.y - means.x * means.x, 0.0));
   history.recent = found.recent * scale;
+  history.between = found.between;
   return history;
 }
 
 // A block of 4 gives a pixel few searches of its own even in time.
 const float kWidth = kDivisor > 2 ? 2.5 : 1.0;
 
-// Wide while a pixel has little of its own, then hardly more than the pixel itself.
-float window_width(float count) { return max(0.58 * kWidth, 2.0 * inversesqrt(count + 1.0)); }
+// Wide while a pixel has little of its own, then hardly more than the pixel itself, or as wide as
+// reading between texels blurs anyway.
+float window_width(History history) {
+  float own = 0.58 * kWidth;
+  return max(sqrt(own * own + 2.6 * history.between), 2.0 * inversesqrt(history.count + 1.0));
+}
 
-// What this frame found around a pixel that holds so many frames.
-Neighbourhood look_around(Surface surface, Found corners[4], float count) {
-  float narrowness = narrowness_of(window_width(count));
+// What this frame found around a pixel that holds this history.
+Neighbourhood look_around(Surface surface, Found corners[4], History history) {
+  float narrowness = narrowness_of(window_width(history));
   if (!kBetween) {
     return gather(surface, kFresh ? kReach : min(kReach, 1), narrowness);
   }
@@ -135,7 +146,7 @@ void follow_change(inout History history, Signal now) {
 
 // The pixel's sums with this frame's neighbourhood added.
 History advance(Surface surface, Found corners[4], History history) {
-  Neighbourhood now = look_around(surface, corners, history.count);
+  Neighbourhood now = look_around(surface, corners, history);
   if (kClamp) {
     vec3 moments = now.moments / now.moments.x;
     clamp_history(history, spread_of_sums(moments.y, moments.z, 1.0));
@@ -145,7 +156,7 @@ History advance(Surface surface, Found corners[4], History history) {
   }
   // Not divided by the weight found: a frame that searched the pixel itself counts for more than one
   // that searched its neighbours. Divided by the window's size, so that wide ones do not.
-  float width = window_width(history.count);
+  float width = window_width(history);
   float fresh = accumulation_weight(history.count, parameters.longest);
   float scale = 0.42 * kWidth * kWidth / (width * width) * fresh;
   History next;

@@ -56,6 +56,16 @@ ALCOVE_INLINE float count_after_clamp(float count, float before, float after, fl
   return mix(count, min(count, 1.0f), moved);
 }
 
+// Variance of the visibility that one frame finds, about.
+const float kFrameVariance = 0.05f;
+
+// The count to go on with after history was read between texels whose visibilities have this variance.
+// What that blurs no later frame brings back, so it counts as so much more noise: `count` frames have
+// kFrameVariance / count of it.
+ALCOVE_INLINE float count_after_blur(float count, float variance) {
+  return count / (1.0f + count * variance * (1.0f / kFrameVariance));
+}
+
 // What a texel of history knows besides its sums, in 32 bits.
 struct HistoryState {
   float depth;   // linear, [0,65504], to 2^-11 of itself

@@ -66,6 +66,20 @@ TEST(History, ClampKeepsWhatAgreesAndCountForgetsWhatMoved) {
   EXPECT_FLOAT_EQ(maths::count_after_clamp(21.0f, 0.7f, 0.6f, 0.2f), 11.0f);
 }
 
+TEST(History, WhatIsBlurredCountsAsNoiseOfItsVariance) {
+  RandomInput random;
+  for (int i = 0; i < 2000; ++i) {
+    const float count = random.uniform(1.0f, 255.0f);
+    const float variance = random.uniform(0.0f, 0.25f);
+    // The variance of a mean of so many frames, before and after.
+    const float before = maths::kFrameVariance / count;
+    const float after = maths::kFrameVariance / maths::count_after_blur(count, variance);
+    EXPECT_NEAR(after, before + variance, 1e-5f * after);
+  }
+  EXPECT_EQ(maths::count_after_blur(32.0f, 0.0f), 32.0f);
+  EXPECT_EQ(maths::count_after_blur(0.0f, 0.2f), 0.0f);
+}
+
 TEST(History, StateKeepsWhatItHolds) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
