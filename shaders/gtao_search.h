@@ -71,7 +71,7 @@ LineSample fetch_sample(Search search, uint layer, uint k) {
   float on_plane = dot(snapped, search.tangent.gradient);
   float share = tangent_share(search.tangent, line - search.tangent.line - on_plane,
                               found.offset_px);
-  float moved = max(line + share * (along_px * search.gradient - on_plane), 0.1 * line);
+  float moved = moved_line(line, share * (along_px * search.gradient - on_plane), kPerspective);
   found.line = kSnapping ? moved : line;
   found.point = slice_point(search.line, along_px, found.line, search.depth, kPerspective);
   if (kBackFaces) {

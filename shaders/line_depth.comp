@@ -26,6 +26,6 @@ void main() {
     return;
   }
   float ndc = texelFetch(depth_image, pixel, 0).r;
-  float line = parameters.line_from_ndc.x * ndc + parameters.line_from_ndc.y;
+  float line = line_of_ndc(parameters.line_from_ndc, ndc, kPerspective);
   imageStore(line_image, pixel, vec4(is_sky(ndc) ? sky_line(kPerspective) : line));
 }

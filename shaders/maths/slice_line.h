@@ -24,6 +24,13 @@ ALCOVE_INLINE float sky_line(bool perspective) {
   return perspective ? 1.0f / kSkyDepth : kSkyDepth;
 }
 
+// LineSample::line of a raw depth that is not the sky's, by line_from_ndc's scale and offset:
+// before the near plane it is the near plane's, beyond the sky the sky's.
+ALCOVE_INLINE float line_of_ndc(vec2 line_from_ndc, float depth_ndc, bool perspective) {
+  float line = line_from_ndc.x * clamp(depth_ndc, 0.0f, 1.0f) + line_from_ndc.y;
+  return perspective ? max(line, sky_line(true)) : min(line, sky_line(false));
+}
+
 // Whether a pixel's back face is where the occluder ends that begins at its front: it lies behind
 // by more than depth buffers round, and is not the sky. Both as LineSample::line.
 ALCOVE_INLINE bool ends_occluder(float front, float back, bool perspective) {
@@ -102,6 +109,12 @@ ALCOVE_INLINE TangentLine make_tangent_line(vec2 per_px, vec3 normal, vec3 view,
 // 0 off it, where an occluder stays where it was found.
 ALCOVE_INLINE float tangent_share(TangentLine t, float off_plane, float offset_px) {
   return max(1.0f - t.fading * abs(off_plane) / offset_px, 0.0f);
+}
+
+// A sample's `line` after a correction. In perspective it stays before the eye, and the sky afar.
+ALCOVE_INLINE float moved_line(float line, float by, bool perspective) {
+  float moved = line + by;
+  return perspective ? clamp(moved, 0.1f * line, 10.0f * line) : moved;
 }
 
 // Pixels along the line that a sphere of radius `radius` (scene units) around the point spans on

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "maths/connected_samples.h"
 #include "maths/make_projection.h"
@@ -139,6 +140,37 @@ TEST(SliceLine, ASampleOfTheTangentPlaneIsMovedAlongIt) {
     // A plane that passes behind the eye has no image there.
     if (!(depth > 0.0f) || depth > 10.0f * s.depth) continue;
     EXPECT_NEAR(dot(s.delta(exact, depth), s.normal), 0.0f, 2e-4f * depth);
+  }
+}
+
+TEST(SliceLine, AMovedSampleStaysBeforeTheEyeAndTheSkyAfar) {
+  RandomInput random;
+  for (int i = 0; i < 1000; ++i) {
+    const float line = random.log_uniform(1e-12f, 1e4f);
+    const float by = random.log_uniform(1e-6f, 1e6f) * (i % 2 == 0 ? 1.0f : -1.0f);
+    const float moved = maths::moved_line(line, by, true);
+    EXPECT_GT(moved, 0.0f);
+    EXPECT_LE(moved, 10.0f * line);
+    // Orthographic depth may be negative, and is moved all the way.
+    EXPECT_EQ(maths::moved_line(-line, by, false), -line + by);
+  }
+}
+
+TEST(SliceLine, RawDepthOfAnyKindIsBetweenTheNearPlaneAndTheSky) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  // Reversed and infinite with a near plane at 0.1; that of rounded matrices, whose far plane lies
+  // behind infinity; orthographic.
+  for (const float ndc : {-kInfinity, -1e30f, -1.0f, 0.0f, 1e-45f, 1e-38f, 0.5f, 0.99999994f, 1.0f,
+                          2.0f, 1e30f, kInfinity}) {
+    const float reversed = maths::line_of_ndc({10.0f, 0.0f}, ndc, true);
+    EXPECT_GE(reversed, maths::sky_line(true)) << ndc;
+    EXPECT_LE(reversed, 10.0f) << ndc;
+    const float rounded = maths::line_of_ndc({-10.0f, 9.9999994f}, ndc, true);
+    EXPECT_GE(rounded, maths::sky_line(true)) << ndc;
+    EXPECT_LE(rounded, 10.0f) << ndc;
+    const float orthographic = maths::line_of_ndc({20.0f, -10.0f}, ndc, false);
+    EXPECT_GE(orthographic, -10.0f) << ndc;
+    EXPECT_LE(orthographic, 10.0f) << ndc;
   }
 }
 
