@@ -12,7 +12,6 @@ struct History {
 };
 
 const float kDepthTolerance = 0.004;  // of the depth, for a surface seen head-on
-const float kLargestDepth = 6e4;     // of a half
 
 uvec4 pack_history(History history, float depth) {
   // A normal that is not a number must not stay in the history.
@@ -21,7 +20,8 @@ uvec4 pack_history(History history, float depth) {
     lobe = Signal(0.0, 0.0);
   }
   return uvec4(pack_signal(history.sum.signal),
-               pack_history_state(min(depth, kLargestDepth), history.count, history.recent),
+               pack_history_state(held_depth(parameters.history_depth.xy, depth), history.count,
+                                  history.recent),
                floatBitsToUint(lobe.visible), floatBitsToUint(lobe.open));
 }
 
@@ -35,7 +35,7 @@ vec4 reproject(Surface surface) {
     vec2 motion = texelFetch(motion_image, surface.pixel, 0).rg;
     position = surface.centre * parameters.previous_size.zw - motion * parameters.previous_size.xy;
   }
-  bool seen = before.w > 1e-6 && all(greaterThanEqual(position, vec2(0.0))) &&
+  bool seen = before.w > 0.0 && all(greaterThanEqual(position, vec2(0.0))) &&
               all(lessThanEqual(position, parameters.previous_size.xy));
   return seen ? vec4(position, before.z, 1.0) : vec4(0.0, 0.0, 1.0, 0.0);
 }
@@ -45,8 +45,8 @@ vec4 reproject(Surface surface) {
 vec3 add_history(inout History history, Surface surface, ivec2 texel, float depth, float share) {
   uvec4 stored = imageLoad(history_image, texel);
   HistoryState state = unpack_history_state(stored.y);
-  float weight = share * history_weight(min(depth, kLargestDepth), state.depth,
-                                        kDepthTolerance, surface.slant);
+  float weight = share * history_weight(held_depth(parameters.history_depth.zw, depth),
+                                        state.depth, kDepthTolerance, surface.slant);
   Sum here = no_sum();
   here.signal = unpack_signal(stored.x);
   if (kBentNormal) {

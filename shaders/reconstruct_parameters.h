@@ -15,6 +15,7 @@ struct ReconstructParameters {
   mat4 normal_from_view;  // rotation from view space to the space of the normals
   // Of the frame before: xy its size in pixels, zw that in parts of this frame's.
   vec4 previous_size;
+  vec4 history_depth;  // for held_depth(): xy of this frame, zw of the frame before
   vec2 phase;         // which pixel of each block was searched this frame
   float tolerance;    // scale of distances from the tangent plane, in depths
   float longest;      // frames that history counts at most

@@ -1,5 +1,6 @@
 #include "alcove/passes/reconstruct.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -263,16 +264,32 @@ maths::mat4 pixel_from_view(const maths::Projection& p) {
   return m;
 }
 
+// Scale and offset for maths::held_depth(). A perspective's near plane is at the least half of full
+// precision, 2^-14; an orthographic view, whose depths may begin anywhere, is held from its near
+// plane to its far plane. Powers of two, so that no digit is lost.
+maths::vec2 history_depth(const maths::Projection& p) {
+  constexpr float kLeast = 1e-30f;
+  const float near = p.near_far.x;
+  if (is_perspective(p)) {
+    return {std::ldexp(1.0f, -14 - std::ilogb(std::max(near, kLeast))), 0.0f};
+  }
+  const float scale = std::ldexp(1.0f, 14 - std::ilogb(std::max(p.near_far.y - near, kLeast)));
+  return {scale, -near * scale};
+}
+
 maths::ReconstructParameters parameters_of(const Frame& frame, const maths::Projection& projection,
                                            const maths::Projection& previous,
                                            bool normals_in_view_space,
                                            const ReconstructSettings& settings) {
   const maths::mat4 from_pixel = view_from_pixel(projection);
-  const maths::mat4 to_previous = to_mat4(frame.previous_view.view_from_world) *
-                                  maths::inverse(to_mat4(frame.view.view_from_world));
+  // In double: far from the world's origin the two all but cancel.
+  const maths::dmat4 to_previous =
+      maths::dmat4(to_mat4(frame.previous_view.view_from_world)) *
+      maths::inverse(maths::dmat4(to_mat4(frame.view.view_from_world)));
   const maths::mat4 to_view = view_from_normal(frame, normals_in_view_space);
   maths::ReconstructParameters parameters{};
-  parameters.previous_from_pixel = pixel_from_view(previous) * to_previous * from_pixel;
+  parameters.previous_from_pixel =
+      maths::mat4(maths::dmat4(pixel_from_view(previous)) * to_previous * maths::dmat4(from_pixel));
   parameters.plane_from_normal =
       maths::mat4(maths::transpose(maths::mat3(from_pixel)) * maths::mat3(to_view));
   parameters.normal_from_view = maths::transpose(to_view);
@@ -281,6 +298,7 @@ maths::ReconstructParameters parameters_of(const Frame& frame, const maths::Proj
   parameters.longest = static_cast<float>(settings.history_frames);
   parameters.clamp_width = settings.clamp_width;
   parameters.previous_size = maths::vec4(previous.size_px, previous.size_px / projection.size_px);
+  parameters.history_depth = maths::vec4(history_depth(projection), history_depth(previous));
   parameters.roughness = settings.roughness;
   return parameters;
 }

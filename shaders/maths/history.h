@@ -66,9 +66,15 @@ ALCOVE_INLINE float count_after_blur(float count, float variance) {
   return count / (1.0f + count * variance * (1.0f / kFrameVariance));
 }
 
+// Linear depth as history holds it, in a half: with a view's scale and offset (history_depth() in
+// reconstruct.cpp) it is [0,6e4], whatever the scene's unit.
+ALCOVE_INLINE float held_depth(vec2 scale_and_offset, float depth) {
+  return min(depth * scale_and_offset.x + scale_and_offset.y, 6e4f);
+}
+
 // What a texel of history knows besides its sums, in 32 bits.
 struct HistoryState {
-  float depth;   // linear, [0,65504], to 2^-11 of itself
+  float depth;   // linear, as held_depth() has it, to 2^-11 of itself
   float count;   // frames, [0,255], whole
   float recent;  // visibility of the last few frames, [0,1], to 2^-9
 };

@@ -101,6 +101,20 @@ TEST(History, StateKeepsWhatItHolds) {
   EXPECT_EQ(most.recent, 1.0f);
 }
 
+TEST(History, DepthOfAnyUnitIsHeldAlike) {
+  for (const int exponent : {-40, 0, 40}) {
+    // As a near plane at 0.125 units, brought to 2^-14.
+    const glm::vec2 scale(std::ldexp(1.0f, -11 - exponent), 0.0f);
+    for (const float depth : {0.125f, 1.0f, 4.7f, 1e6f}) {
+      const float held = maths::held_depth(scale, std::ldexp(depth, exponent));
+      EXPECT_EQ(held, std::ldexp(depth, -11));
+      EXPECT_NEAR(maths::unpack_history_state(maths::pack_history_state(held, 0.0f, 0.0f)).depth,
+                  held, held * std::ldexp(1.0f, -11));
+    }
+    EXPECT_EQ(maths::held_depth(scale, 1e30f), 6e4f);
+  }
+}
+
 TEST(History, ChangeIsToldFromTheNoiseOfAFewSearches) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {

@@ -62,6 +62,7 @@ const std::map<std::string, Offsets> kExpected = {
       ALCOVE_OFFSET(ReconstructParameters, plane_from_normal),
       ALCOVE_OFFSET(ReconstructParameters, normal_from_view),
       ALCOVE_OFFSET(ReconstructParameters, previous_size),
+      ALCOVE_OFFSET(ReconstructParameters, history_depth),
       ALCOVE_OFFSET(ReconstructParameters, phase), ALCOVE_OFFSET(ReconstructParameters, tolerance),
       ALCOVE_OFFSET(ReconstructParameters, longest),
       ALCOVE_OFFSET(ReconstructParameters, clamp_width),
