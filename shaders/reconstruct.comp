@@ -193,6 +193,7 @@ float narrowness_of(float width_px) { return 0.125 / (width_px * width_px); }
 float neighbour_weight(Surface surface, float narrowness, vec2 offset, float line) {
   float off_plane =
       (line - surface.line - dot(offset, surface.gradient)) * surface.stiffness;
+  off_plane = min(abs(off_plane), 1e8);  // whose fourth power still is a float
   float near = 1.0 + narrowness * dot(offset, offset);
   float level = 1.0 + off_plane * off_plane;
   float both = near * near * level;
