@@ -53,14 +53,15 @@ struct Light {
   vec3 specular;
 };
 
-vec3 fetch_direction(texture2D image, ivec2 pixel) {
-  return normalize(mat3(parameters.world_from_normal) * texelFetch(image, pixel, 0).xyz);
+vec3 fetch_direction(texture2D image, ivec2 pixel, vec3 instead) {
+  vec3 given = texelFetch(image, pixel, 0).xyz;
+  return has_direction(given) ? normalize(mat3(parameters.world_from_normal) * given) : instead;
 }
 
 // As far from the normal as the visibility lets it be, so that its noise does not show where a surface
 // is open.
 vec3 fetch_bent_normal(ivec2 pixel, vec3 normal, float visibility) {
-  vec3 bent = fetch_direction(bent_normal_image, pixel);
+  vec3 bent = fetch_direction(bent_normal_image, pixel, normal);
   return kVisibility ? raised_bent_normal(bent, normal, settled_visibility(visibility)) : bent;
 }
 
@@ -112,8 +113,9 @@ vec3 specular_light(ivec2 pixel, vec3 environment, vec3 occluder) {
 
 Light light_of(ivec2 pixel, vec3 normal, vec3 view) {
   vec3 base = texelFetch(albedo_image, pixel, 0).rgb;
-  float roughness = kRoughnessTexture ? texelFetch(roughness_image, pixel, 0)[kRoughnessChannel]
-                                      : parameters.roughness;
+  float roughness = kRoughnessTexture
+                        ? saturate(texelFetch(roughness_image, pixel, 0)[kRoughnessChannel])
+                        : parameters.roughness;
   float metallic = kMetallicTexture ? texelFetch(metallic_image, pixel, 0)[kMetallicChannel]
                                     : parameters.metallic;
   vec2 table_value = fetch_reflectance(dot(normal, view), roughness);
@@ -164,7 +166,8 @@ void main() {
   float depth = texelFetch(depth_image, pixel, 0).r;
   Light light = Light(vec3(0.0), vec3(0.0));
   if (!is_sky_depth(depth)) {
-    light = light_of(pixel, fetch_direction(normal_image, pixel), view_of(pixel, depth));
+    vec3 view = view_of(pixel, depth);
+    light = light_of(pixel, fetch_direction(normal_image, pixel, view), view);
   }
   store(pixel, light);
 }

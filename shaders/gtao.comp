@@ -80,8 +80,7 @@ ivec2 size_px() { return imageSize(line_image); }
 float fetch_roughness(ivec2 pixel) {
 #ifdef LOBE
   if (kRoughnessTexture) {
-    float roughness = texelFetch(roughness_image, pixel, 0)[kRoughnessChannel];
-    return roughness > 0.0 ? min(roughness, 1.0) : 0.0;  // 0 too where it is not a number
+    return saturate(texelFetch(roughness_image, pixel, 0)[kRoughnessChannel]);
   }
 #endif
   return parameters.roughness;
@@ -97,7 +96,8 @@ Surface fetch_surface(ivec2 pixel, float line) {
   vec3 given = texelFetch(normal_image, pixel, 0).xyz;
   vec3 normal = mat3(parameters.view_from_normal) * given;
   surface.normal = facing_normal(normalize(normal), surface.view);
-  surface.lobe = LobeSurface(given, fetch_roughness(pixel));
+  vec3 own = has_direction(given) ? given : surface.view * mat3(parameters.view_from_normal);
+  surface.lobe = LobeSurface(own, fetch_roughness(pixel));
   surface.tangent = make_tangent_line(parameters.slope.xy, surface.normal, surface.view,
                                       surface.depth, kPerspective);
   return surface;

@@ -32,14 +32,14 @@ layout(set = 0, binding = 7) readonly buffer Table { uint gtso_table[]; };
 const int kSmoothCone = 1;
 const int kLagarde = 2;
 
-vec3 fetch_direction(texture2D image, ivec2 pixel) {
-  return normalize(mat3(parameters.view_from_normal) * texelFetch(image, pixel, 0).xyz);
+vec3 fetch_direction(texture2D image, ivec2 pixel, vec3 instead) {
+  vec3 given = texelFetch(image, pixel, 0).xyz;
+  return has_direction(given) ? normalize(mat3(parameters.view_from_normal) * given) : instead;
 }
 
 float fetch_roughness(ivec2 pixel) {
-  return kRoughnessTexture
-             ? clamp(texelFetch(roughness_image, pixel, 0)[kRoughnessChannel], 0.0, 1.0)
-             : parameters.roughness;
+  return kRoughnessTexture ? saturate(texelFetch(roughness_image, pixel, 0)[kRoughnessChannel])
+                           : parameters.roughness;
 }
 
 #ifdef TABLE
@@ -74,7 +74,7 @@ float occlusion_of(ivec2 pixel, vec3 normal, vec3 view) {
   if (kModel == kLagarde) {
     return lagarde_specular_occlusion(dot(normal, view), visibility, alpha);
   }
-  vec3 bent = raised_bent_normal(fetch_direction(bent_normal_image, pixel), normal, visibility);
+  vec3 bent = raised_bent_normal(fetch_direction(bent_normal_image, pixel, normal), normal, visibility);
   vec3 reflection = mirror_direction(normal, view);
 #ifdef TABLE
   return occlusion_by_table(visibility, bent, normal, reflection, roughness);
@@ -95,7 +95,7 @@ void main() {
   if (!is_sky_depth(depth)) {
     vec2 uv = pixel_centre_uv(parameters.projection, uvec2(pixel));
     vec3 view = view_vector(parameters.projection, position_vs(parameters.projection, uv, depth));
-    result = occlusion_of(pixel, fetch_direction(normal_image, pixel), view);
+    result = occlusion_of(pixel, fetch_direction(normal_image, pixel, view), view);
   }
   imageStore(result_image, pixel, vec4(result));
 }

@@ -102,11 +102,17 @@ struct Sum {
 
 ivec2 size_px() { return imageSize(line_image); }
 
+// Towards the eye where none is given: what is no number there would stay in the history.
+vec3 fetch_normal(ivec2 pixel) {
+  vec3 normal = texelFetch(normal_image, pixel, 0).xyz;
+  return has_direction(normal) ? normal : parameters.normal_from_view[2].xyz;
+}
+
 LobeSurface fetch_lobe_surface(ivec2 pixel, vec3 normal) {
   LobeSurface surface = LobeSurface(normal, parameters.roughness);
 #ifdef LOBE
   if (kRoughnessTexture) {
-    surface.roughness = texelFetch(roughness_image, pixel, 0)[kRoughnessChannel];
+    surface.roughness = saturate(texelFetch(roughness_image, pixel, 0)[kRoughnessChannel]);
   }
 #endif
   return surface;
@@ -118,7 +124,7 @@ Surface fetch_surface(ivec2 pixel, float line) {
   surface.centre = vec2(pixel) + 0.5;
   surface.line = line;
   surface.depth = kPerspective ? 1.0 / surface.line : surface.line;
-  vec3 normal = texelFetch(normal_image, pixel, 0).xyz;
+  vec3 normal = fetch_normal(pixel);
   vec3 plane = mat3(parameters.plane_from_normal) * normal;
   // How the distance from the plane grows with depth along the pixel's ray. Seen edge-on, a plane
   // would run to any depth.
@@ -241,8 +247,8 @@ void store(ivec2 pixel, Sum sum) {
     imageStore(visibility_image, pixel, vec4(visibility));
   }
   if (kBentNormal) {
-    vec3 fallback = texelFetch(normal_image, pixel, 0).xyz;
-    vec3 bent = finish_bent_normal(mat3(parameters.normal_from_view) * sum.bent, fallback);
+    vec3 bent =
+        finish_bent_normal(mat3(parameters.normal_from_view) * sum.bent, fetch_normal(pixel));
     imageStore(bent_normal_image, pixel, vec4(bent, 0.0));
   }
 #ifdef LOBE

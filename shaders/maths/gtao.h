@@ -45,7 +45,7 @@ ALCOVE_INLINE float open_slice(Slice s) { return s.toward + slice_gamma(s) * s.a
 
 // Sum of visibilities over sum of weights, in [0,1]. Nothing weighed means nothing known: open.
 ALCOVE_INLINE float mean_visibility(float visibility_sum, float weight_sum) {
-  return weight_sum > 0.0f ? clamp(visibility_sum / weight_sum, 0.0f, 1.0f) : 1.0f;
+  return weight_sum > 0.0f ? saturate(visibility_sum / weight_sum) : 1.0f;
 }
 
 // Visibility of one side without the cosine of the normal (the memo's appendix A), from the view

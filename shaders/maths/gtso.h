@@ -19,7 +19,7 @@ ALCOVE_MATHS_BEGIN
 // visibility), turns so little into 5 degrees, which would cost an open surface the whole of a
 // sharp lobe at grazing angles.
 ALCOVE_INLINE float settled_visibility(float visibility) {
-  return clamp(visibility * (128.0f / 127.0f), 0.0f, 1.0f);
+  return saturate(visibility * (128.0f / 127.0f));
 }
 
 // The direction that mirrors `view` in the surface. A view from under it, as interpolated normals

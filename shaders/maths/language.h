@@ -23,4 +23,17 @@ using namespace glm;
 #define ALCOVE_MATHS_END
 #endif
 
+ALCOVE_MATHS_BEGIN
+
+// x cut to [0,1]; 0 where it is not a number, for which clamp() may give anything.
+ALCOVE_INLINE float saturate(float x) { return x > 0.0f ? min(x, 1.0f) : 0.0f; }
+
+// Whether a vector can be made unit: it is neither zero nor infinite nor not a number.
+ALCOVE_INLINE bool has_direction(vec3 v) {
+  float squared = dot(v, v);
+  return squared > 1e-12f && squared < 1e12f;
+}
+
+ALCOVE_MATHS_END
+
 #endif

@@ -10,11 +10,11 @@
 ALCOVE_MATHS_BEGIN
 
 // Visibility brightened by interreflection, one channel. `visibility` and `albedo` in [0,1]
-// (clamped); the result is at least the visibility and at most 1, and grows with both. The cubic
+// (saturated); the result is at least the visibility and at most 1, and grows with both. The cubic
 // alone gives 0.9996 to 1.0001 at visibility 1, hence both bounds.
 ALCOVE_INLINE float multi_bounce_channel(float visibility, float albedo) {
-  float v = clamp(visibility, 0.0f, 1.0f);
-  float p = clamp(albedo, 0.0f, 1.0f);
+  float v = saturate(visibility);
+  float p = saturate(albedo);
   float a = 2.0404f * p - 0.3324f;
   float b = -4.7951f * p + 0.6417f;
   float c = 2.7552f * p + 0.6903f;

@@ -75,7 +75,8 @@ ALCOVE_INLINE float lobe_weight(LobeSurface own, uint neighbour) {
   float agreement = scaled.x * float(neighbour & 255u) +
                     scaled.y * float((neighbour >> 8u) & 255u) +
                     scaled.z * float((neighbour >> 16u) & 255u) - offset;
-  float first = max(agreement, 0.0f);
+  // Bytes round unit vectors to no more than 1.007; longer ones must not outweigh all others.
+  float first = clamp(agreement, 0.0f, 1.01f);
   float squared = first * first;
   float fourth = squared * squared;
   float eighth = fourth * fourth;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace alcove::maths_test {
 namespace {
 
@@ -30,6 +32,12 @@ TEST(MultiBounce, IsTheMemosCubicBetweenItsBounds) {
   // Section 5 at visibility 0.5 and albedo 0.5: a = 0.6878, b = -1.75585, c = 2.0679.
   EXPECT_NEAR(maths::multi_bounce_channel(0.5f, 0.5f),
               ((0.5 * 0.6878 - 1.75585) * 0.5 + 2.0679) * 0.5, 1e-6);
+}
+
+TEST(MultiBounce, WhatIsNoNumberIsBlackAndOccluded) {
+  const float none = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(maths::multi_bounce_channel(none, 0.5f), 0.0f);
+  EXPECT_EQ(maths::multi_bounce_channel(0.4f, none), maths::multi_bounce_channel(0.4f, 0.0f));
 }
 
 TEST(MultiBounce, ChannelsDoNotMix) {

@@ -75,6 +75,8 @@ TEST(Signal, LobesWeighByNormalAndRoughness) {
     EXPECT_EQ(weight(normal, roughness < 0.5f ? roughness + 0.25f : roughness - 0.25f), 0.0f);
     const vec3 across = normalize(cross(normal, vec3(0.3f, 0.5f, 0.8f)));
     EXPECT_NEAR(weight(normalize(normal + across * 0.21f), roughness), 0.5f, 0.2f);
+    // Too long a normal counts for no more than a good one.
+    EXPECT_LT(weight(normal * 1e3f, roughness), 1.5f);
   }
 }
 

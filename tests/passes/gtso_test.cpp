@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -128,6 +129,37 @@ TEST_F(GtsoPass, AgreesWithTheFormulasInEveryView) {
         }
       }
     }
+  }
+}
+
+// Each pixel lacks one of its inputs, or some that none.
+TEST_F(GtsoPass, WhatIsNoNumberOrNoDirectionGivesAShareAllTheSame) {
+  constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+  constexpr std::array kWrong{kNaN, std::numeric_limits<float>::infinity(), 0.0f, -1e30f};
+  Inputs inputs = random_inputs();
+  for (std::uint32_t i = 0; i < kWidth * kHeight; ++i) {
+    const std::array<HostImage*, 5> images{&inputs.visibility, &inputs.bent, &inputs.normals,
+                                           &inputs.surface, &inputs.depth};
+    HostImage& image = *images.at(i % images.size());
+    std::fill_n(image.texels.begin() + static_cast<std::ptrdiff_t>(i * image.channels),
+                image.channels, kWrong.at(i / images.size() % kWrong.size()));
+  }
+  for (const SpecularModel model : kModels) {
+    run([&](Graph& graph) {
+      const Frame frame{graph, gpu().kernels(), test_views()[2].view, 0};
+      read_back(graph,
+                add(frame,
+                    {.visibility = upload(graph, inputs.visibility),
+                     .bent_normal = upload(graph, inputs.bent),
+                     .normals = upload(graph, inputs.normals),
+                     .depth = upload(graph, inputs.depth),
+                     .roughness = upload(graph, inputs.surface),
+                     .normals_in_view_space = true},
+                    {.model = model, .roughness_channel = 3, .precision = Precision::float32}));
+    });
+    EXPECT_THAT(result().texels,
+                testing::Each(testing::AllOf(testing::Ge(0.0f), testing::Le(1.0f))))
+        << "model " << static_cast<int>(model);
   }
 }
 
