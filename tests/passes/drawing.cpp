@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 #include <numbers>
+#include <utility>
 
 namespace alcove::passes {
 namespace {
@@ -161,6 +162,44 @@ Scene with_hits(const Scene& scene, const Kept& kept) {
 
 Drawing draw(const TestView& view, std::uint32_t width, std::uint32_t height, const Scene& scene) {
   return draw_hits(view, width, height, scene, [&](const Ray& ray) { return cast(scene, ray); });
+}
+
+Scene scaled(const Scene& scene, double scale) {
+  Scene result;
+  for (const Surface& surface : scene) {
+    Surface larger;
+    larger.meet = [=](const Ray& ray) {
+      std::vector<Hit> hits = surface.meet({ray.from / scale, ray.along / scale});
+      for (Hit& hit : hits) {
+        hit.position *= scale;
+      }
+      return hits;
+    };
+    if (surface.keep) {
+      larger.keep = [=](const glm::dvec3& p) { return surface.keep(p / scale); };
+    }
+    result.push_back(std::move(larger));
+  }
+  return result;
+}
+
+Scene shifted(const Scene& scene, const glm::dvec3& shift) {
+  Scene result;
+  for (const Surface& surface : scene) {
+    Surface further;
+    further.meet = [=](const Ray& ray) {
+      std::vector<Hit> hits = surface.meet({ray.from - shift, ray.along});
+      for (Hit& hit : hits) {
+        hit.position += shift;
+      }
+      return hits;
+    };
+    if (surface.keep) {
+      further.keep = [=](const glm::dvec3& p) { return surface.keep(p - shift); };
+    }
+    result.push_back(std::move(further));
+  }
+  return result;
 }
 
 HostImage draw_back_faces(const TestView& view, std::uint32_t width, std::uint32_t height,

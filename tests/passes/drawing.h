@@ -80,6 +80,10 @@ struct Drawing {
 
 Drawing draw(const TestView& view, std::uint32_t width, std::uint32_t height, const Scene& scene);
 
+// The same scene in other units, and elsewhere.
+Scene scaled(const Scene& scene, double scale);
+Scene shifted(const Scene& scene, const glm::dvec3& shift);
+
 // The depth of the nearest faces that look away from the eye.
 HostImage draw_back_faces(const TestView& view, std::uint32_t width, std::uint32_t height,
                           const Scene& scene);

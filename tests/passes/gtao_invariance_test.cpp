@@ -54,25 +54,6 @@ Difference difference(const HostImage& a, const HostImage& b) {
   return found;
 }
 
-Scene scaled(const Scene& scene, double scale) {
-  Scene result;
-  for (const Surface& surface : scene) {
-    Surface larger;
-    larger.meet = [=](const Ray& ray) {
-      std::vector<Hit> hits = surface.meet({ray.from / scale, ray.along / scale});
-      for (Hit& hit : hits) {
-        hit.position *= scale;
-      }
-      return hits;
-    };
-    if (surface.keep) {
-      larger.keep = [=](const glm::dvec3& p) { return surface.keep(p / scale); };
-    }
-    result.push_back(std::move(larger));
-  }
-  return result;
-}
-
 TEST_F(GtaoInvariance, TheSceneMayHaveAnyUnit) {
   for (const Estimator estimator : kEstimators) {
     for (const NamedScene& scene : gtao_scenes()) {
@@ -122,22 +103,7 @@ TEST_F(GtaoInvariance, AnOrthographicViewIsANarrowPerspectiveFromAfar) {
   for (const Estimator estimator : kEstimators) {
     for (const NamedScene& scene : gtao_scenes()) {
       SCOPED_TRACE(scene.name);
-      Scene moved;
-      for (const Surface& surface : scene.scene) {
-        const glm::dvec3 shift(0.0, 0.0, -away);
-        Surface further;
-        further.meet = [=](const Ray& ray) {
-          std::vector<Hit> hits = surface.meet({ray.from - shift, ray.along});
-          for (Hit& hit : hits) {
-            hit.position += shift;
-          }
-          return hits;
-        };
-        if (surface.keep) {
-          further.keep = [=](const glm::dvec3& p) { return surface.keep(p - shift); };
-        }
-        moved.push_back(std::move(further));
-      }
+      const Scene moved = shifted(scene.scene, {0.0, 0.0, -away});
       const OcclusionSettings settings = unfiltered(estimator, 1.0f);
       const Difference apart =
           difference(visibility(flat, draw(flat, kWidth, kHeight, scene.scene), settings),

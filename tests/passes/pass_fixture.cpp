@@ -145,7 +145,13 @@ PassTest::OcclusionImages PassTest::run_occlusion(const OcclusionFrame& given,
     if (given.reset) {
       graph.reset_histories();
     }
-    const Frame frame{graph, gpu_->kernels(), given.view, given.index, given.previous_view};
+    const Frame frame{.graph = graph,
+                      .kernels = gpu_->kernels(),
+                      .view = given.view,
+                      .index = given.index,
+                      .previous_view = given.previous_view,
+                      .largest_size = given.largest_size,
+                      .previous_size = given.previous_size};
     OcclusionInputs inputs{.depth_ndc = upload(graph, given.depth_ndc),
                            .normals_in_view_space = true};
     if (given.normal_vs != nullptr) {
@@ -153,6 +159,9 @@ PassTest::OcclusionImages PassTest::run_occlusion(const OcclusionFrame& given,
     }
     if (given.motion != nullptr) {
       inputs.motion = upload(graph, *given.motion);
+    }
+    if (given.roughness != nullptr) {
+      inputs.roughness = upload(graph, *given.roughness);
     }
     if (given.back_depth_ndc != nullptr) {
       inputs.back_depth_ndc = upload(graph, *given.back_depth_ndc);

@@ -59,6 +59,9 @@ class PassTest : public testing::Test {
     bool reset = false;                         // forgets the history first
     const HostImage* back_depth_ndc = nullptr;  // null: none
     const HostImage* second_depth_ndc = nullptr;
+    const HostImage* roughness = nullptr;
+    VkExtent2D previous_size{};  // as Frame has them
+    VkExtent2D largest_size{};
   };
   struct OcclusionImages {
     HostImage visibility;

@@ -1,0 +1,311 @@
+// The whole of add_occlusion where numbers are largest, smallest or none at all.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "gtao_scenes.h"
+#include "pass_fixture.h"
+
+namespace alcove::passes {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr std::uint32_t kWidth = 57;
+constexpr std::uint32_t kHeight = 39;
+
+// Visibility, bent normals and specular occlusion, by kernels that compile soon.
+OcclusionSettings everything(Quality quality, float radius) {
+  OcclusionSettings settings = quality_settings(quality, radius);
+  settings.estimator = Estimator::horizons;
+  settings.steps = 6;
+  settings.bent_normal = true;
+  settings.specular = Specular::slices;
+  settings.precision = Precision::float32;
+  return settings;
+}
+
+double rms(const HostImage& a, const HostImage& b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.texels.size(); ++i) {
+    sum += std::pow(double{a.texels[i]} - b.texels[i], 2.0);
+  }
+  return std::sqrt(sum / static_cast<double>(a.texels.size()));
+}
+
+View moved_by(View view, double x) {
+  view.view_from_world[12] = static_cast<float>(x);
+  return view;
+}
+
+class Extremes : public PassTest {
+ protected:
+  using Images = OcclusionImages;
+
+  // The images of so many frames in which the camera goes aside by `step` each, and no surface
+  // moves on the image: history is told apart by depth alone.
+  std::vector<Images> strafe(const TestView& view, const Scene& scene, double step,
+                             const OcclusionSettings& settings, std::uint32_t frames) {
+    const Drawing drawing = draw(view, kWidth, kHeight, scene);
+    std::vector<Images> images;
+    for (std::uint32_t i = 0; i < frames; ++i) {
+      images.push_back(run_occlusion({.view = moved_by(view.view, -step * i),
+                                      .depth_ndc = drawing.depth_ndc,
+                                      .normal_vs = &drawing.normal_vs,
+                                      .previous_view = moved_by(view.view, -step * (i - 1.0)),
+                                      .index = i,
+                                      .reset = i == 0},
+                                     settings));
+    }
+    return images;
+  }
+
+  static void expect_sound(const Images& images) {
+    const auto in_range = testing::Each(testing::AllOf(testing::Ge(0.0f), testing::Le(1.0f)));
+    EXPECT_THAT(images.visibility.texels, in_range);
+    EXPECT_THAT(images.specular.texels, in_range);
+    for (std::size_t i = 0; i < images.bent_normal.texels.size(); i += 4) {
+      const float* bent = &images.bent_normal.texels[i];
+      ASSERT_NEAR(std::hypot(bent[0], bent[1], bent[2]), 1.0, 1e-3) << "pixel " << i / 4;
+    }
+  }
+};
+
+TEST_F(Extremes, HistoryKnowsNoUnitOfLength) {
+  for (const bool orthographic : {false, true}) {
+    std::vector<Images> expected;
+    for (const int exponent : {0, -30, 17, 30}) {
+      SCOPED_TRACE(testing::Message() << (orthographic ? "orthographic, " : "perspective, ")
+                                      << "in units of 2^" << -exponent);
+      const double unit = std::ldexp(1.0, exponent);
+      const TestView view =
+          orthographic ? orthographic_view("", 3.0 * unit, 2.0 * unit, 0.125 * unit, 16.125 * unit)
+                       : perspective_view("", 1.2, 1.8, 0.125 * unit, kInfinity, true);
+      const std::vector<Images> found =
+          strafe(view, scaled(ball_on_floor(), unit), 0.05 * unit,
+                 everything(Quality::medium, static_cast<float>(unit)), 3);
+      if (exponent == 0) {
+        expected = found;
+      }
+      for (std::size_t i = 0; i < found.size(); ++i) {
+        EXPECT_EQ(found[i].visibility.texels, expected[i].visibility.texels) << "frame " << i;
+        EXPECT_EQ(found[i].bent_normal.texels, expected[i].bent_normal.texels) << "frame " << i;
+        EXPECT_EQ(found[i].specular.texels, expected[i].specular.texels) << "frame " << i;
+      }
+    }
+  }
+}
+
+// Before the eye or behind it, where engines put an orthographic near plane too.
+TEST_F(Extremes, OrthographicDepthMayBeginAnywhere) {
+  const OcclusionSettings settings = everything(Quality::medium, 1.0f);
+  for (const NamedScene& scene : gtao_scenes()) {
+    std::vector<Images> expected;
+    for (const double shift : {0.0, 4.125, 1024.0, -1024.0}) {
+      SCOPED_TRACE(testing::Message() << scene.name << " moved by " << shift);
+      const TestView view = orthographic_view("", 3.0, 2.0, 0.125 - shift, 16.125 - shift);
+      const std::vector<Images> found =
+          strafe(view, shifted(scene.scene, {0.0, 0.0, shift}), 0.05, settings, 4);
+      if (shift == 0.0) {
+        expected = found;
+      }
+      for (std::size_t i = 0; i < found.size(); ++i) {
+        EXPECT_LT(rms(found[i].visibility, expected[i].visibility), 0.002) << "frame " << i;
+      }
+    }
+  }
+}
+
+// A view that turns about all axes, so far out that its floats cannot tell a hundredth.
+TEST_F(Extremes, FarFromTheWorldsOriginHistoryIsKept) {
+  const TestView view = test_views()[2];
+  const Drawing drawing = draw(view, kWidth, kHeight, ball_on_floor());
+  const OcclusionSettings settings = everything(Quality::medium, 1.0f);
+  const auto last_of = [&](double distance) {
+    const double cosine = std::cos(0.7), sine = std::sin(0.7);
+    glm::dmat4 turned(1.0);
+    turned[0] = {cosine, 0.0, -sine, 0.0};
+    turned[2] = {sine, 0.0, cosine, 0.0};
+    turned[3] = turned * glm::dvec4(-distance * glm::dvec3(1.0, 0.3, -0.8), 1.0);
+    View now = view.view;
+    for (std::size_t i = 0; i < 16; ++i) {
+      now.view_from_world[i] = static_cast<float>(turned[i / 4][i % 4]);
+    }
+    Images images;
+    View before = now;
+    for (std::uint32_t i = 0; i < 8; ++i) {
+      // To and fro by the least that a float can.
+      now.view_from_world[12] = std::nextafter(now.view_from_world[12], i % 2 == 0 ? 1e9f : -1e9f);
+      images = run_occlusion({.view = now,
+                              .depth_ndc = drawing.depth_ndc,
+                              .normal_vs = &drawing.normal_vs,
+                              .previous_view = before,
+                              .index = i,
+                              .reset = i == 0},
+                             settings);
+      before = now;
+    }
+    return images;
+  };
+  EXPECT_LT(rms(last_of(1e5).visibility, last_of(0.0).visibility), 1e-3);
+}
+
+TEST_F(Extremes, WhatIsNoNormalOrRoughnessIsGoneWithItsFrame) {
+  constexpr std::array kHoles{0u, 20 * kWidth + 28, 20 * kWidth + 29, 7 * kWidth + 40};
+  for (const TestView& view : {test_views()[2], test_views().back()}) {
+    const Drawing clean = draw(view, kWidth, kHeight, ball_on_floor());
+    const HostImage smooth{kWidth, kHeight, std::vector<float>(kWidth * kHeight, 0.4f), 1};
+    const OcclusionSettings settings = everything(Quality::high, 1.0f);
+    // Of which frame 1 has `wrong` for normals or roughness.
+    const auto frames = [&](float wrong, bool in_normals) {
+      std::vector<Images> images;
+      for (std::uint32_t i = 0; i < 5; ++i) {
+        HostImage normals = clean.normal_vs;
+        HostImage roughness = smooth;
+        HostImage& holed = in_normals ? normals : roughness;
+        for (const std::uint32_t hole : kHoles) {
+          const auto texel =
+              holed.texels.begin() + static_cast<std::ptrdiff_t>(hole * holed.channels);
+          std::fill_n(texel, i == 1 ? holed.channels : 0, wrong);
+        }
+        images.push_back(run_occlusion({.view = moved_by(view.view, 0.01 * i),
+                                        .depth_ndc = clean.depth_ndc,
+                                        .normal_vs = &normals,
+                                        .previous_view = moved_by(view.view, 0.01 * (i - 1.0)),
+                                        .index = i,
+                                        .reset = i == 0,
+                                        .roughness = &roughness},
+                                       settings));
+      }
+      return images;
+    };
+    const std::vector<Images> expected = frames(0.4f, false);
+    const float infinity = std::numeric_limits<float>::infinity();
+    for (const float wrong : {kNaN, infinity, 0.0f, -1e30f}) {
+      for (const bool in_normals : {true, false}) {
+        SCOPED_TRACE(testing::Message() << view.name << ": " << wrong
+                                        << (in_normals ? " in normals" : " as roughness"));
+        const std::vector<Images> found = frames(wrong, in_normals);
+        for (const Images& images : found) {
+          expect_sound(images);
+        }
+        // A fourth of what is held was found with another normal.
+        EXPECT_LT(rms(found[4].visibility, expected[4].visibility), 2e-3);
+        EXPECT_LT(rms(found[4].bent_normal, expected[4].bent_normal), 4e-3);
+        EXPECT_LT(rms(found[4].specular, expected[4].specular), 4e-3);
+      }
+    }
+  }
+}
+
+// Where every search of a block meets something ten thousand million times nearer, the others'
+// weights are tiny, and are not nothing.
+TEST_F(Extremes, WhatLiesFarBehindWhatWasSearchedKeepsItsShade) {
+  constexpr std::uint32_t kSide = 64;
+  const TestView view = perspective_view("", 1.2, 1.2, 0.01, kInfinity, true);
+  std::vector<double> means;
+  for (const double distance : {1e4, 1e10}) {
+    Drawing far = draw(view, kSide, kSide, groove(0.3, distance));
+    const Drawing near = draw(view, kSide, kSide, {plane({0.0, 0.0, -1.0}, {0.0, 0.0, 1.0})});
+    for (std::uint32_t i = 0; i < kSide * kSide; i += i % kSide == kSide - 4 ? 3 * kSide + 4 : 4) {
+      far.depth_ndc.texels[i] = near.depth_ndc.texels[i];
+      std::copy_n(&near.normal_vs.texels[std::size_t{i} * 4], 4,
+                  &far.normal_vs.texels[std::size_t{i} * 4]);
+    }
+    OcclusionSettings settings = everything(Quality::low, static_cast<float>(0.3 * distance));
+    settings.estimator = Estimator::connected;
+    settings.history_frames = 0;
+    const Images images = run_occlusion(
+        {.view = view.view, .depth_ndc = far.depth_ndc, .normal_vs = &far.normal_vs}, settings);
+    expect_sound(images);
+    double sum = 0.0;
+    for (const float texel : images.visibility.texels) {
+      sum += texel;
+    }
+    means.push_back(sum / (kSide * kSide));
+  }
+  EXPECT_LT(means[0], 0.997);
+  EXPECT_NEAR(means[1], means[0], 1e-4);
+}
+
+TEST_F(Extremes, AnyRadiusIsSound) {
+  for (const TestView& view : {test_views()[2], test_views().back()}) {
+    const Drawing drawing = draw(view, kWidth, kHeight, ball_on_floor());
+    std::vector<HostImage> largest;
+    for (const float radius : {1e-30f, 1e-5f, 1e-3f, 1.0f, 1e6f, 1e12f, 1e30f, 3e38f}) {
+      SCOPED_TRACE(testing::Message() << view.name << ", radius " << radius);
+      OcclusionSettings settings = everything(Quality::high, radius);
+      settings.estimator = Estimator::connected;
+      settings.history_frames = 0;
+      const Images images = run_occlusion(
+          {.view = view.view, .depth_ndc = drawing.depth_ndc, .normal_vs = &drawing.normal_vs},
+          settings);
+      expect_sound(images);
+      if (radius <= 1e-3f) {
+        EXPECT_THAT(images.visibility.texels, testing::Each(1.0f));
+      }
+      if (radius >= 1e6f) {
+        largest.push_back(images.visibility);
+      }
+    }
+    for (const HostImage& visibility : largest) {
+      EXPECT_EQ(visibility.texels, largest[0].texels);
+    }
+  }
+}
+
+TEST_F(Extremes, APlaneIsOpenUnderTheNarrowestAndTheWidestAngle) {
+  const auto view_of = [](double degrees) {
+    const double scale = 1.0 / std::tan(degrees * std::numbers::pi / 360.0);
+    return perspective_view("", scale / 1.5, scale, 0.1, kInfinity, true);
+  };
+  TestView aside = perspective_view("", 1.2, 1.8, 0.1, kInfinity, true);
+  aside.view.clip_from_view[8] = 5.0f;
+  aside.view.clip_from_view[9] = -8.0f;
+  for (const auto& [name, view] : {std::pair{"1 degree", view_of(1.0)},
+                                   {"170 degrees", view_of(170.0)},
+                                   {"off-centre", aside}}) {
+    for (const double tilt : {0.0, 60.0, 85.0}) {
+      SCOPED_TRACE(testing::Message() << name << ", tilted " << tilt << " degrees");
+      const Drawing drawing = draw(view, 96, 64, {tilted_plane(tilt, 4.0)});
+      OcclusionSettings settings = everything(Quality::reference, 0.5f);
+      settings.slices = 4;
+      settings.steps = 16;
+      const Images images = run_occlusion(
+          {.view = view.view, .depth_ndc = drawing.depth_ndc, .normal_vs = &drawing.normal_vs},
+          settings);
+      EXPECT_GE(*std::ranges::min_element(images.visibility.texels), 1.0f - 1.0f / 255.0f);
+    }
+  }
+}
+
+TEST_F(Extremes, TheSizeMayJumpToAPixelAndBack) {
+  constexpr VkExtent2D kLargest{64, 48};
+  constexpr std::array<VkExtent2D, 9> kSizes{
+      {{1, 1}, {64, 48}, {1, 1}, {1, 48}, {64, 1}, {3, 5}, {2, 2}, {63, 47}, {1, 1}}};
+  const TestView view = test_views()[2];
+  const OcclusionSettings settings = everything(Quality::low, 1.0f);
+  // The last frames of the counter, over its end.
+  std::uint32_t index = std::numeric_limits<std::uint32_t>::max() - 4;
+  VkExtent2D previous = kSizes[0];
+  for (const VkExtent2D size : kSizes) {
+    SCOPED_TRACE(testing::Message() << size.width << " x " << size.height);
+    const Drawing drawing = draw(view, size.width, size.height, ball_on_floor());
+    const Images images = run_occlusion({.view = view.view,
+                                         .depth_ndc = drawing.depth_ndc,
+                                         .normal_vs = &drawing.normal_vs,
+                                         .index = index++,
+                                         .previous_size = previous,
+                                         .largest_size = kLargest},
+                                        settings);
+    expect_sound(images);
+    previous = size;
+  }
+}
+
+}  // namespace
+}  // namespace alcove::passes
