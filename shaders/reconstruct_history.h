@@ -90,11 +90,14 @@ History read_history(Surface surface) {
     }
   }
   float scale = moments.x < 0.05 ? 0.0 : 1.0 / moments.x;
-  vec2 means = moments.yz * scale;
   History history;
   history.sum = no_sum();
   add(history.sum, scale, found.sum);
-  history.count = count_after_blur(found.count * scale, max(means.y - means.x * means.x, 0.0));
+  history.count = found.count * scale;
+  if (!kStill) {
+    vec2 means = moments.yz * scale;
+    history.count = count_after_blur(history.count, max(means.y - means.x * means.x, 0.0));
+  }
   history.recent = found.recent * scale;
   history.between = found.between;
   return history;
