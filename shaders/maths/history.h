@@ -59,9 +59,9 @@ ALCOVE_INLINE float count_after_clamp(float count, float before, float after, fl
 // Variance of the visibility that one frame finds, about.
 const float kFrameVariance = 0.05f;
 
-// The count to go on with after history was read between texels whose visibilities have this variance.
-// What that blurs no later frame brings back, so it counts as so much more noise: `count` frames have
-// kFrameVariance / count of it.
+// The count to go on with after history was read between texels whose visibilities have this
+// variance. What that blurs no later frame brings back, so it counts as so much more noise: `count`
+// frames have kFrameVariance / count of it.
 ALCOVE_INLINE float count_after_blur(float count, float variance) {
   return count / (1.0f + count * variance * (1.0f / kFrameVariance));
 }
