@@ -126,7 +126,8 @@ TEST_F(Extremes, OrthographicDepthMayBeginAnywhere) {
 TEST_F(Extremes, FarFromTheWorldsOriginHistoryIsKept) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, kWidth, kHeight, ball_on_floor());
-  const HostImage motion{kWidth, kHeight, std::vector<float>(2 * kWidth * kHeight, 0.0f), 2};
+  const HostImage motion{kWidth, kHeight,
+                         std::vector<float>(std::size_t{2} * kWidth * kHeight, 0.0f), 2};
   const OcclusionSettings settings = everything(Quality::medium, 1.0f);
   const auto visibility_at = [&](double distance) {
     glm::dmat4 turned = glm::rotate(glm::dmat4(1.0), 0.9, glm::dvec3(0.3, 0.7, -0.2));
@@ -156,7 +157,8 @@ TEST_F(Extremes, WhatIsNoNormalOrRoughnessIsGoneWithItsFrame) {
   constexpr std::array kHoles{0u, 20 * kWidth + 28, 20 * kWidth + 29, 7 * kWidth + 40};
   for (const TestView& view : {test_views()[2], test_views().back()}) {
     const Drawing clean = draw(view, kWidth, kHeight, ball_on_floor());
-    const HostImage smooth{kWidth, kHeight, std::vector<float>(kWidth * kHeight, 0.4f), 1};
+    const HostImage smooth{kWidth, kHeight, std::vector<float>(std::size_t{kWidth} * kHeight, 0.4f),
+                           1};
     const OcclusionSettings settings = everything(Quality::high, 1.0f);
     // Of which frame 1 has `wrong` for normals or roughness.
     const auto frames = [&](float wrong, bool in_normals) {
@@ -166,8 +168,7 @@ TEST_F(Extremes, WhatIsNoNormalOrRoughnessIsGoneWithItsFrame) {
         HostImage roughness = smooth;
         HostImage& holed = in_normals ? normals : roughness;
         for (const std::uint32_t hole : kHoles) {
-          const auto texel =
-              holed.texels.begin() + static_cast<std::ptrdiff_t>(hole * holed.channels);
+          const auto texel = holed.texels.begin() + std::ptrdiff_t{hole} * holed.channels;
           std::fill_n(texel, i == 1 ? holed.channels : 0, wrong);
         }
         images.push_back(run_occlusion({.view = moved_by(view.view, 0.01 * i),

@@ -141,8 +141,8 @@ TEST_F(GtsoPass, WhatIsNoNumberOrNoDirectionGivesAShareAllTheSame) {
     const std::array<HostImage*, 5> images{&inputs.visibility, &inputs.bent, &inputs.normals,
                                            &inputs.surface, &inputs.depth};
     HostImage& image = *images.at(i % images.size());
-    std::fill_n(image.texels.begin() + static_cast<std::ptrdiff_t>(i * image.channels),
-                image.channels, kWrong.at(i / images.size() % kWrong.size()));
+    std::fill_n(image.texels.begin() + std::ptrdiff_t{i} * image.channels, image.channels,
+                kWrong.at(i / images.size() % kWrong.size()));
   }
   for (const SpecularModel model : kModels) {
     run([&](Graph& graph) {
