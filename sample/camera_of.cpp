@@ -5,6 +5,17 @@
 #include "option_value.h"
 
 namespace alcove::sample {
+namespace {
+
+// Whether the squares of the lengths that make a view are numbers above 0.
+bool has_axes(const Camera& camera) {
+  const glm::vec3 back = camera.eye_ws - camera.target_ws;
+  return std::isnormal(glm::dot(back, back)) &&
+         std::isnormal(glm::dot(camera.up_ws, camera.up_ws)) &&
+         std::isfinite(glm::dot(camera.eye_ws, camera.eye_ws));
+}
+
+}  // namespace
 
 tl::expected<Camera, std::string> camera_of(const ViewOptions& view, const Scene& scene) {
   const Camera* named = find_camera(scene, view.camera);
@@ -32,6 +43,11 @@ tl::expected<Camera, std::string> camera_of(const ViewOptions& view, const Scene
   }
   if (camera.eye_ws == camera.target_ws) {
     return tl::unexpected<std::string>("--eye and --target are one point: move one of them");
+  }
+  if (!has_axes(camera)) {
+    return tl::unexpected<std::string>(
+        "--eye, --target and --up are too large or too near each other for a view to be made: give "
+        "lengths from 1e-15 to 1e15");
   }
   if (!(camera.near_plane < camera.far_plane)) {
     return tl::unexpected("the near plane (" + shown(camera.near_plane) +

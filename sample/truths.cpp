@@ -1,5 +1,6 @@
 #include "truths.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <utility>
@@ -86,6 +87,11 @@ tl::expected<Truths, std::string> truths_of(const TruthFrame& frame, const Optio
   truths.surfaces = Mask(depth.width, depth.height);
   for (std::size_t i = 0; i < depth.pixels.size(); ++i) {
     truths.surfaces.pixels[i] = std::isfinite(depth.pixels[i]) ? 1 : 0;
+  }
+  if (std::ranges::count(truths.surfaces.pixels, 1) == 0) {
+    return tl::unexpected<std::string>(
+        "the view shows nothing but sky: turn it with --eye and --target, or widen --near and "
+        "--far");
   }
   auto scene = scene_truth(frame, options, depth);
   if (!scene) {

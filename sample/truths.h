@@ -28,8 +28,9 @@ struct Truths {
   Mask surfaces;                  // pixels that are not sky
 };
 
-// Computes them, or takes them from the cache on disk. Points are where primary rays through the
-// pixel centres meet the scene, normals those that the occlusion was given. Progress on stderr.
+// Computes them, or takes them from the cache on disk; a view of sky alone has none. Points are
+// where primary rays through the pixel centres meet the scene, normals those that the occlusion was
+// given. Progress on stderr.
 [[nodiscard]] tl::expected<Truths, std::string> truths_of(const TruthFrame& frame,
                                                           const Options& options);
 

@@ -35,5 +35,20 @@ TEST(CameraOf, EyeOnTheTargetIsRefused) {
   EXPECT_FALSE(camera_of(view, builtin_scene()));
 }
 
+TEST(CameraOf, LengthsWhoseSquaresAreNoNumbersAreRefused) {
+  ViewOptions view;
+  view.eye_ws = glm::vec3(0.0f, 0.0f, 1.0f);
+  view.target_ws = glm::vec3(0.0f);
+  ASSERT_TRUE(camera_of(view, builtin_scene()));
+  for (const float scale : {1e-30f, 1e30f}) {
+    ViewOptions scaled = view;
+    scaled.eye_ws = scale * *view.eye_ws;
+    EXPECT_FALSE(camera_of(scaled, builtin_scene())) << scale;
+    scaled = view;
+    scaled.up_ws = glm::vec3(0.0f, scale, 0.0f);
+    EXPECT_FALSE(camera_of(scaled, builtin_scene())) << scale;
+  }
+}
+
 }  // namespace
 }  // namespace alcove::sample
