@@ -120,7 +120,8 @@ tl::expected<void, std::string> run_compare(const Options& options) {
         }
         std::cout << time_table(*rendering) << error_table(errors)
                   << light_error_table(light_errors) << lit_table
-                  << "Images and report.json are in " << options.out.string() << "\n";
+                  << "Images and report.json are in " << options.out.string()
+                  << "; error.png is red where too dark, blue where too bright\n";
       });
 }
 

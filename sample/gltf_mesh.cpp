@@ -54,7 +54,8 @@ tl::expected<std::vector<glm::vec3>, std::string> world_positions(const tinygltf
     out[i] = glm::vec3(transform * local);
     if (!finite(out[i]) ||
         std::max({std::abs(out[i].x), std::abs(out[i].y), std::abs(out[i].z)}) > kFarthest) {
-      return Failure("has a vertex " + std::to_string(i) + " that is not a finite position");
+      return Failure("has a vertex " + std::to_string(i) +
+                     " that is not a finite position within 1e15 of the origin");
     }
   }
   return out;

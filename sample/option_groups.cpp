@@ -88,7 +88,8 @@ void add_scenes(CLI::App& app, std::vector<std::string>& scenes) {
 
 void add_view(CLI::App& app, ViewOptions& view) {
   const Group group(app, "View");
-  group.add("--camera", "NAME", "a camera of the scene, by name; else its first",
+  group.add("--camera", "NAME",
+            "a camera of the scene, by name; else its first, else a view of all of it",
             [&](const OptionValue& given) { view.camera = given.text; });
   group.add("--eye", "X,Y,Z", "where the camera stands, scene units",
             [&](const OptionValue& given) { view.eye_ws = given.vector(); });
@@ -104,7 +105,7 @@ void add_view(CLI::App& app, ViewOptions& view) {
   });
   group.add("--ortho-height", "LENGTH", "orthographic, so many units high",
             [&](const OptionValue& given) { view.ortho_height = given.length(); });
-  group.add("--near", "LENGTH", "near plane",
+  group.add("--near", "LENGTH", "near plane; the camera's, as is the far one",
             [&](const OptionValue& given) { view.near_plane = given.length(); });
   group.add("--far", "LENGTH", "far plane, or inf", [&](const OptionValue& given) {
     const bool infinite = given.text == "inf" || given.text == "infinity";
@@ -163,7 +164,8 @@ void add_occlusion(CLI::App& app, OcclusionOptions& occlusion) {
               occlusion.quality =
                   static_cast<passes::Quality>(given.one_of(passes::kNames<passes::Quality>));
             });
-  group.add("--radius", "LENGTH", "how far an occluder counts, scene units",
+  group.add("--radius", "LENGTH",
+            "how far an occluder counts, scene units; a twentieth of the scene's diagonal",
             [&](const OptionValue& given) { occlusion.radius = given.length(); });
   group.add_repeatable(
       "--set", "NAME=VALUE", "one parameter of the pass over the preset; may be repeated",
