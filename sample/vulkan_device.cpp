@@ -272,8 +272,9 @@ tl::expected<void, std::string> VulkanDevice::create_device(bool presentation) {
   enabled.all.features.shaderStorageImageWriteWithoutFormat = VK_TRUE;
   VkPhysicalDeviceFeatures optional;
   vkGetPhysicalDeviceFeatures(physical_device_, &optional);
-  enabled.all.features.samplerAnisotropy = optional.samplerAnisotropy;
-  if (optional.samplerAnisotropy) {
+  // Mesa's software device reads the whole of a texture for a pixel whose ellipse is long enough.
+  if (optional.samplerAnisotropy && properties_.deviceType != VK_PHYSICAL_DEVICE_TYPE_CPU) {
+    enabled.all.features.samplerAnisotropy = VK_TRUE;
     max_anisotropy_ = properties_.limits.maxSamplerAnisotropy;
   }
   std::vector<const char*> extensions;

@@ -50,7 +50,7 @@ class VulkanDevice {
   uint32_t queue_family() const { return queue_family_; }
   const VkPhysicalDeviceProperties& properties() const { return properties_; }
   const std::string& driver() const { return driver_; }
-  // What samplers may ask for; 1 where the device has no anisotropic filter.
+  // What samplers may ask for; 1 where the device has no anisotropic filter or is a processor.
   float max_anisotropy() const { return max_anisotropy_; }
 
   // What the validation layers said so far, errors and warnings, each message once as it came.
