@@ -11,7 +11,8 @@ struct History {
   float between;  // how far from texels' centres it was read: 0 at one, to 0.5 amid four
 };
 
-const float kDepthTolerance = 0.004;  // of the depth, for a surface seen head-on
+const float kDepthTolerance = 0.004;      // of the depth, for a surface seen head-on
+const float kPlaneTolerance = 1.0 / 3.0;  // of the filter's
 
 uvec4 pack_history(History history, float depth) {
   // A normal that is not a number must not stay in the history.
@@ -40,66 +41,88 @@ vec4 reproject(Surface surface) {
   return seen ? vec4(position, before.z, 1.0) : vec4(0.0, 0.0, 1.0, 0.0);
 }
 
-// A texel of history, all of it or none as its depth tells whether it is of the same surface. x is what
-// it weighs, y and z that times its visibility and the square of that.
-vec3 add_history(inout History history, Surface surface, ivec2 texel, float depth, float share) {
+// What was read of the last frame's texels, as sums over them.
+struct Read {
+  History history;
+  vec3 moments;  // of the visibility
+  float same;    // of one share: how much is of the same surface
+  float most;    // that a texel counts for
+};
+
+// A texel of history, all of it or none as its depth tells whether it is of the same surface; of those
+// the ones on the tangent plane count for most, so that nothing leaks across a crease.
+void add_history(inout Read read, Surface surface, ivec2 texel, float depth, float share) {
   uvec4 stored = imageLoad(history_image, texel);
   HistoryState state = unpack_history_state(stored.y);
-  float weight = share * history_weight(held_depth(parameters.history_depth.zw, depth),
-                                        state.depth, kDepthTolerance, surface.slant);
+  float expected = held_depth(parameters.history_depth.zw, depth);
+  float apart = held_apart(expected, state.depth);
+  float same = history_weight(expected, apart, kDepthTolerance, surface.slant);
+  float off_plane = apart / (kPerspective ? max(expected, 1e-6) : parameters.history_depth.z);
+  off_plane *= surface.slant * parameters.tolerance * (1.0 / kPlaneTolerance);
+  float level = 1.0 + min(off_plane * off_plane, 1e6);
+  float counts = same / (level * level);
+  float weight = share * counts;
   Sum here = no_sum();
   here.signal = unpack_signal(stored.x);
   if (kBentNormal) {
     here.bent = texelFetch(bent_history_image, texel, 0).xyz;
   }
   here.lobe = Signal(uintBitsToFloat(stored.z), uintBitsToFloat(stored.w));
-  add(history.sum, weight, here);
-  history.count += weight * state.count;
-  history.recent += weight * state.recent;
+  add(read.history.sum, weight, here);
+  read.history.count += weight * state.count;
+  read.history.recent += weight * state.recent;
   float visibility = mean_visibility(here.signal.visible, here.signal.open);
-  return weight * vec3(1.0, visibility, visibility * visibility);
+  read.moments += weight * vec3(1.0, visibility, visibility * visibility);
+  read.same += share * same;
+  read.most = max(read.most, counts);
+}
+
+History no_history() { return History(no_sum(), 0.0, 0.0, 0.0); }
+
+// Between texels, where the surface was.
+Read read_moved(Surface surface) {
+  Read read = Read(no_history(), vec3(0.0), 0.0, 0.0);
+  vec4 before = reproject(surface);
+  ivec2 last = ivec2(parameters.previous_size.xy) - 1;
+  vec2 first = floor(before.xy - 0.5);
+  vec2 part = before.xy - 0.5 - first;
+  read.history.between = dot(part, 1.0 - part);
+  for (int i = 0; i < 4; ++i) {
+    ivec2 corner = ivec2(i & 1, i >> 1);
+    ivec2 texel = clamp(ivec2(first) + corner, ivec2(0), last);
+    vec2 near = abs(1.0 - vec2(corner) - part);
+    // Where the surface's tangent plane passes that texel; it hardly turns from frame to frame.
+    vec2 offset = vec2(corner) - part;
+    float line = (kPerspective ? 1.0 / before.z : before.z) + dot(offset, surface.gradient);
+    float depth = kPerspective ? 1.0 / max(line, 0.5 / before.z) : line;
+    add_history(read, surface, texel, depth, near.x * near.y * before.w);
+  }
+  return read;
 }
 
 History read_history(Surface surface) {
-  History found;
-  found.sum = no_sum();
-  found.count = 0.0;
-  found.recent = 0.0;
-  found.between = 0.0;
-  vec3 moments = vec3(0.0);
   if (kFresh) {
-    return found;
+    return no_history();
   }
+  Read read;
   if (kStill) {
-    moments = add_history(found, surface, surface.pixel, surface.depth, 1.0);
+    read = Read(no_history(), vec3(0.0), 0.0, 0.0);
+    add_history(read, surface, surface.pixel, surface.depth, 1.0);
   } else {
-    vec4 before = reproject(surface);
-    ivec2 last = ivec2(parameters.previous_size.xy) - 1;
-    vec2 first = floor(before.xy - 0.5);
-    vec2 part = before.xy - 0.5 - first;
-    found.between = dot(part, 1.0 - part);
-    for (int i = 0; i < 4; ++i) {
-      ivec2 corner = ivec2(i & 1, i >> 1);
-      ivec2 texel = clamp(ivec2(first) + corner, ivec2(0), last);
-      vec2 near = abs(1.0 - vec2(corner) - part);
-      // Where the surface's tangent plane passes that texel; it hardly turns from frame to frame.
-      vec2 offset = vec2(corner) - part;
-      float line = (kPerspective ? 1.0 / before.z : before.z) + dot(offset, surface.gradient);
-      float depth = kPerspective ? 1.0 / max(line, 0.5 / before.z) : line;
-      moments += add_history(found, surface, texel, depth, near.x * near.y * before.w);
-    }
+    read = read_moved(surface);
   }
-  float scale = moments.x < 0.05 ? 0.0 : 1.0 / moments.x;
-  History history;
-  history.sum = no_sum();
-  add(history.sum, scale, found.sum);
-  history.count = found.count * scale;
+  float scale = read.same < 0.05 ? 0.0 : 1.0 / read.moments.x;
+  History history = no_history();
+  add(history.sum, scale, read.history.sum);
+  history.count = read.history.count * scale;
+  history.recent = read.history.recent * scale;
+  history.between = read.history.between;
   if (!kStill) {
-    vec2 means = moments.yz * scale;
-    history.count = count_after_blur(history.count, max(means.y - means.x * means.x, 0.0));
+    vec2 means = read.moments.yz * scale;
+    float variance = max(means.y - means.x * means.x, 0.0);
+    float missing = max(1.0 - read.moments.x / max(read.most, 1e-20), 0.0);
+    history.count = count_after_blur(history.count, variance, missing);
   }
-  history.recent = found.recent * scale;
-  history.between = found.between;
   return history;
 }
 

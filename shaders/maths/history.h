@@ -7,12 +7,17 @@
 
 ALCOVE_MATHS_BEGIN
 
+// How far a held depth lies from the expected one, beyond what holding it in a half explains.
+ALCOVE_INLINE float held_apart(float expected, float found) {
+  return max(abs(found - expected) - abs(expected) * (1.0f / 2048.0f), 0.0f);
+}
+
 // How far from the expected depth a texel of history may lie and still be the same surface, [0,1]:
-// 1 at the expected depth, 0 from `tolerance` times it on. `slant` is the cosine between normal and
-// view vector: a surface seen edge-on runs deep within one texel.
-ALCOVE_INLINE float history_weight(float expected, float found, float tolerance, float slant) {
+// 1 where it lies `apart` 0 from it, 0 from `tolerance` times it on. `slant` is the cosine between
+// normal and view vector: a surface seen edge-on runs deep within one texel.
+ALCOVE_INLINE float history_weight(float expected, float apart, float tolerance, float slant) {
   float reach = tolerance * max(abs(expected), 1e-6f) / max(slant, 0.1f);
-  return clamp(1.0f - abs(found - expected) / reach, 0.0f, 1.0f);
+  return clamp(1.0f - apart / reach, 0.0f, 1.0f);
 }
 
 // What this frame weighs when `count` frames are held already (0: none) and at most `longest`
@@ -59,10 +64,16 @@ ALCOVE_INLINE float count_after_clamp(float count, float before, float after, fl
 // Variance of the visibility that one frame finds, about.
 const float kFrameVariance = 0.05f;
 
+// Variance of the visibility, about, between a surface and what is read in its place where none of
+// its texels are.
+const float kUnseenVariance = 0.005f;
+
 // The count to go on with after history was read between texels whose visibilities have this
-// variance. What that blurs no later frame brings back, so it counts as so much more noise: `count`
-// frames have kFrameVariance / count of it.
-ALCOVE_INLINE float count_after_blur(float count, float variance) {
+// variance, `missing` of them, [0,1], being of other surfaces. What that blurs no later frame
+// brings back, so it counts as so much more noise: `count` frames have kFrameVariance / count of
+// it.
+ALCOVE_INLINE float count_after_blur(float count, float variance, float missing) {
+  variance += kUnseenVariance * missing;
   return count / (1.0f + count * variance * (1.0f / kFrameVariance));
 }
 

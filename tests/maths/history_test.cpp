@@ -12,11 +12,22 @@ namespace alcove::maths_test {
 namespace {
 
 TEST(History, DepthThatDiffersIsRejectedAndSlantedDepthGivenRoom) {
-  EXPECT_EQ(maths::history_weight(10.0f, 10.0f, 0.02f, 1.0f), 1.0f);
-  EXPECT_EQ(maths::history_weight(10.0f, 10.3f, 0.02f, 1.0f), 0.0f);
-  EXPECT_GT(maths::history_weight(10.0f, 10.3f, 0.02f, 0.2f), 0.5f);
+  EXPECT_EQ(maths::history_weight(10.0f, 0.0f, 0.02f, 1.0f), 1.0f);
+  EXPECT_EQ(maths::history_weight(10.0f, 0.3f, 0.02f, 1.0f), 0.0f);
+  EXPECT_GT(maths::history_weight(10.0f, 0.3f, 0.02f, 0.2f), 0.5f);
   EXPECT_EQ(maths::history_weight(10.0f, maths::kSkyDepth, 0.02f, 0.0f), 0.0f);
   EXPECT_TRUE(std::isfinite(maths::history_weight(0.0f, 0.0f, 0.02f, 0.0f)));
+}
+
+TEST(History, WhatAHalfRoundsAwayIsNoDistance) {
+  RandomInput random;
+  for (int i = 0; i < 2000; ++i) {
+    const float depth = std::exp(random.uniform(-7.0f, 11.0f));
+    const float held =
+        maths::unpack_history_state(maths::pack_history_state(depth, 0.0f, 0.0f)).depth;
+    EXPECT_EQ(maths::held_apart(depth, held), 0.0f);
+    EXPECT_NEAR(maths::held_apart(depth, 1.01f * depth), 0.01f * depth, 6e-4f * depth);
+  }
 }
 
 TEST(History, EqualFramesWeighTheSameUntilTheLongest) {
@@ -71,13 +82,14 @@ TEST(History, WhatIsBlurredCountsAsNoiseOfItsVariance) {
   for (int i = 0; i < 2000; ++i) {
     const float count = random.uniform(1.0f, 255.0f);
     const float variance = random.uniform(0.0f, 0.25f);
+    const float missing = random.uniform(0.0f, 1.0f);
     // The variance of a mean of so many frames, before and after.
     const float before = maths::kFrameVariance / count;
-    const float after = maths::kFrameVariance / maths::count_after_blur(count, variance);
-    EXPECT_NEAR(after, before + variance, 1e-5f * after);
+    const float after = maths::kFrameVariance / maths::count_after_blur(count, variance, missing);
+    EXPECT_NEAR(after, before + variance + maths::kUnseenVariance * missing, 1e-5f * after);
   }
-  EXPECT_EQ(maths::count_after_blur(32.0f, 0.0f), 32.0f);
-  EXPECT_EQ(maths::count_after_blur(0.0f, 0.2f), 0.0f);
+  EXPECT_EQ(maths::count_after_blur(32.0f, 0.0f, 0.0f), 32.0f);
+  EXPECT_EQ(maths::count_after_blur(0.0f, 0.2f, 1.0f), 0.0f);
 }
 
 TEST(History, StateKeepsWhatItHolds) {

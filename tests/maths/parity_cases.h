@@ -87,8 +87,9 @@ ALCOVE_INLINE vec4 parity_of_cameras(uint which, vec4 a, vec4 b, Projection p) {
       return vec4(view.x, view.y, along.x, along.y);
     }
     case 8u:
-      return vec4(history_weight(depth, depth * (1.0f + b.w * 0.01f), 0.02f, view.z),
-                  visibility_changed(b.x, b.y), clip_w(p, depth), view.z);
+      return vec4(
+          history_weight(depth, held_apart(depth, depth * (1.0f + b.w * 0.01f)), 0.02f, view.z),
+          visibility_changed(b.x, b.y), clip_w(p, depth), view.z);
   }
   return vec4(0.0f);
 }

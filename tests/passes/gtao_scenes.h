@@ -9,13 +9,14 @@
 
 namespace alcove::passes {
 
-// Two walls that meet in a line along y, `half_angle` (radians) between each and the view's axis.
-inline Scene groove(double half_angle, double bottom = 4.5) {
-  const glm::dvec3 through(0.0, 0.0, -bottom);
+// Two walls that meet in a line along y at x = `aside`, `half_angle` (radians) between each and the
+// view's axis.
+inline Scene groove(double half_angle, double bottom = 4.5, double aside = 0.0) {
+  const glm::dvec3 through(aside, 0.0, -bottom);
   Surface left = plane(through, {std::cos(half_angle), 0.0, std::sin(half_angle)});
-  left.keep = [](const glm::dvec3& p) { return p.x < 0.0; };
+  left.keep = [=](const glm::dvec3& p) { return p.x < aside; };
   Surface right = plane(through, {-std::cos(half_angle), 0.0, std::sin(half_angle)});
-  right.keep = [](const glm::dvec3& p) { return p.x >= 0.0; };
+  right.keep = [=](const glm::dvec3& p) { return p.x >= aside; };
   return {left, right};
 }
 
