@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 // Probe light on surfaces: diffuse from spherical harmonics along the bent normal, specular from a
-// prefiltered environment by the split sum, each with its occlusion. SPECULAR compiles the second in.
+// prefiltered environment by the split sum (compiled with SPECULAR), each with its occlusion.
 
 #include "apply_parameters.h"
 #include "maths/gtso.h"
@@ -58,8 +58,8 @@ vec3 fetch_direction(texture2D image, ivec2 pixel, vec3 instead) {
   return has_direction(given) ? normalize(mat3(parameters.world_from_normal) * given) : instead;
 }
 
-// As far from the normal as the visibility lets it be, so that its noise does not show where a surface
-// is open.
+// As far from the normal as the visibility lets it be, so that its noise does not show where a
+// surface is open.
 vec3 fetch_bent_normal(ivec2 pixel, vec3 normal, float visibility) {
   vec3 bent = fetch_direction(bent_normal_image, pixel, normal);
   return kVisibility ? raised_bent_normal(bent, normal, settled_visibility(visibility)) : bent;

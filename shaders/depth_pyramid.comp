@@ -2,9 +2,9 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
-// Linear depth and up to four smaller mips of it, in one dispatch: a group of 8x8 threads owns 16x16
-// pixels, and each mip is reduced from the one above in shared memory. The pyramid covers the image
-// rounded down, as Vulkan's mips do: the last odd row and column are in mip 0 only.
+// Linear depth and up to four smaller mips of it, in one dispatch: a group of 8x8 threads owns
+// 16x16 pixels, and each mip is reduced from the one above in shared memory. The pyramid covers the
+// image rounded down, as Vulkan's mips do: the last odd row and column are in mip 0 only.
 
 #include "depth_pyramid_parameters.h"
 #include "maths/pyramid.h"
@@ -36,9 +36,8 @@ float fetch_linear(ivec2 pixel) {
 
 float reduce_mip_0(ivec2 texel) {
   ivec2 pixel = texel * 2;
-  vec4 depths =
-      vec4(fetch_linear(pixel), fetch_linear(pixel + ivec2(1, 0)), fetch_linear(pixel + ivec2(0, 1)),
-           fetch_linear(pixel + ivec2(1, 1)));
+  vec4 depths = vec4(fetch_linear(pixel), fetch_linear(pixel + ivec2(1, 0)),
+                     fetch_linear(pixel + ivec2(0, 1)), fetch_linear(pixel + ivec2(1, 1)));
   return kMipCount > 1 ? average_depth(depths, parameters.reach) : 0.0;
 }
 
@@ -49,10 +48,10 @@ bool reduce_shared(uvec2 local, uint side, float reach, out float depth) {
   depth = 0.0;
   if (reduces) {
     uvec2 from = local * 2;
-    depth = average_depth(
-        vec4(shared_depth[from.y][from.x], shared_depth[from.y][from.x + 1],
-             shared_depth[from.y + 1][from.x], shared_depth[from.y + 1][from.x + 1]),
-        reach);
+    depth =
+        average_depth(vec4(shared_depth[from.y][from.x], shared_depth[from.y][from.x + 1],
+                           shared_depth[from.y + 1][from.x], shared_depth[from.y + 1][from.x + 1]),
+                      reach);
   }
   barrier();
   if (reduces) {

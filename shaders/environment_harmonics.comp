@@ -28,8 +28,8 @@ void sum_texels(uint thread) {
     uvec2 texel = uvec2(at % size, at / size);
     vec2 uv = (vec2(texel) + 0.5) / parameters.size;
     vec3 direction = map_direction(uv);
-    vec3 light = texelFetch(source_image, ivec2(texel), 0).rgb *
-                 map_texel_angle(uv, parameters.size);
+    vec3 light =
+        texelFetch(source_image, ivec2(texel), 0).rgb * map_texel_angle(uv, parameters.size);
     for (uint i = 0u; i < kHarmonics; ++i) {
       sums[i] += light * harmonic(i, direction);
     }

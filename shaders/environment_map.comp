@@ -2,8 +2,8 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
-// An equirectangular image as an octahedral map: the mean of several bilinear reads a texel. What is
-// not a number, or below 0, counts as black; infinity as the largest half.
+// An equirectangular image as an octahedral map: the mean of several bilinear reads a texel. What
+// is not a number, or below 0, counts as black; infinity as the largest half.
 
 #include "environment_parameters.h"
 #include "maths/environment_map.h"

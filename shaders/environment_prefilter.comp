@@ -34,8 +34,8 @@ vec3 prefilter(vec3 normal, float alpha) {
   mat3 world_from_lobe = frame_of(normal);
   vec4 sum = vec4(0.0);
   for (float i = 0.0; i < parameters.samples; i += 1.0) {
-    vec3 half_vector = sample_ggx_normal(up, alpha, fract(0.5 + i * 0.6180339887),
-                                         (i + 0.5) / parameters.samples);
+    vec3 half_vector =
+        sample_ggx_normal(up, alpha, fract(0.5 + i * 0.6180339887), (i + 0.5) / parameters.samples);
     vec3 light = reflect(-up, half_vector);
     if (light.z > 0.0) {
       float level = source_level(ggx_reflection_density(up, up, light, alpha));

@@ -3,15 +3,15 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
-// Ground-truth ambient occlusion: per pixel a few slices around the view vector, in each what the depth
-// buffer leaves open between its two horizons (Jimenez et al. 2016, section 4), or of its sectors
-// (gtao_sectors.h), integrated in closed form.
+// Ground-truth ambient occlusion: per pixel a few slices around the view vector, in each what the
+// depth buffer leaves open between its two horizons (Jimenez et al. 2016, section 4), or of its
+// sectors (gtao_sectors.h), integrated in closed form.
 //
-// Writes two numbers a pixel, the visible part of its slices and the whole of them when open: filters
-// and history add up each, and only the last divides. The mean of the pixels' own ratios would be
-// biased. The bent normal is written as a sum over slices too, in view space, and never normalised; and
-// so (compiled with LOBE) are the visible part and the whole of the surface's GGX lobe, by the same
-// horizons or sectors.
+// Writes two numbers a pixel, the visible part of its slices and the whole of them when open:
+// filters and history add up each, and only the last divides. The mean of the pixels' own ratios
+// would be biased. The bent normal is written as a sum over slices too, in view space, and never
+// normalised; and so (compiled with LOBE) are the visible part and the whole of the surface's GGX
+// lobe, by the same horizons or sectors.
 
 #include "gtao_parameters.h"
 #include "maths/bent_normal.h"
@@ -29,8 +29,8 @@ layout(constant_id = 0) const uint kSliceCount = 1;
 layout(constant_id = 1) const uint kStepCount = 12;
 layout(constant_id = 2) const bool kBentNormal = false;
 layout(constant_id = 3) const uint kEstimator = 0;  // as Estimator has them
-layout(constant_id = 4) const int kDivisor = 1;  // one search a block of so many pixels a side
-layout(constant_id = 5) const uint kPattern = 0;  // 0 golden, 1 Hilbert and R2, 2 the memo's
+layout(constant_id = 4) const int kDivisor = 1;     // one search a block of so many pixels a side
+layout(constant_id = 5) const uint kPattern = 0;    // 0 golden, 1 Hilbert and R2, 2 the memo's
 layout(constant_id = 6) const bool kPerspective = true;
 layout(constant_id = 7) const bool kRoughnessTexture = false;
 layout(constant_id = 8) const int kRoughnessChannel = 0;
@@ -38,7 +38,7 @@ layout(constant_id = 9) const bool kUniformWeight = false;
 layout(constant_id = 10) const bool kFalloff = false;
 layout(constant_id = 11) const bool kThicknessOfDistance = false;  // else of the radius
 layout(constant_id = 12) const bool kBackFaces = false;  // tell the thickness, where there are any
-layout(constant_id = 13) const bool kSnapping = true;  // samples lie where their texels do
+layout(constant_id = 13) const bool kSnapping = true;    // samples lie where their texels do
 layout(constant_id = 14) const bool kByPattern = false;  // block_by_pattern() groups the searches
 layout(constant_id = 15) const bool kSecondLayer = false;  // second_image occludes too
 layout(constant_id = 16) const bool kContinuation = true;  // surfaces go on beyond the image
@@ -91,7 +91,8 @@ Surface fetch_surface(ivec2 pixel, float line) {
   surface.pixel = pixel;
   surface.centre = vec2(pixel) + 0.5;
   surface.depth = kPerspective ? 1.0 / line : line;
-  vec2 slope = parameters.slope.zw + (kPerspective ? surface.centre * parameters.slope.xy : vec2(0.0));
+  vec2 slope =
+      parameters.slope.zw + (kPerspective ? surface.centre * parameters.slope.xy : vec2(0.0));
   surface.view = normalize(vec3(-slope, 1.0));
   vec3 given = texelFetch(normal_image, pixel, 0).xyz;
   vec3 normal = mat3(parameters.view_from_normal) * given;
@@ -151,10 +152,10 @@ SliceSum bitmask_slice(Surface surface, SliceLine line, Slice slice, vec3 direct
   uint ahead_sectors = find_occluders(surface, ahead, ahead_side);
   uint behind_sectors = find_occluders(surface, behind, behind_side);
   const PartRequest request = PartRequest(kUniformWeight, kBentNormal);
-  VisiblePart front = visible_part(slice, 1.0, ahead_side.per_bearing, ahead_sectors,
-                                   parameters.fill, request);
-  VisiblePart back = visible_part(slice, -1.0, behind_side.per_bearing, behind_sectors,
-                                  parameters.fill, request);
+  VisiblePart front =
+      visible_part(slice, 1.0, ahead_side.per_bearing, ahead_sectors, parameters.fill, request);
+  VisiblePart back =
+      visible_part(slice, -1.0, behind_side.per_bearing, behind_sectors, parameters.fill, request);
   SliceSum sum;
   sum.visible = front.arc + back.arc;
   sum.open = kUniformWeight ? 1.0
@@ -173,16 +174,15 @@ SliceSum bitmask_slice(Surface surface, SliceLine line, Slice slice, vec3 direct
   return sum;
 }
 
-SliceSum horizon_slice(Surface surface, Slice slice, vec3 direction, Search ahead,
-                       Search behind) {
+SliceSum horizon_slice(Surface surface, Slice slice, vec3 direction, Search ahead, Search behind) {
   float front = find_horizon(ahead);
   float back = find_horizon(behind);
   SliceSum sum;
   sum.visible = kUniformWeight ? uniform_slice_visibility(slice, front, back)
                                : slice_visibility(slice, front, back);
   sum.open = kUniformWeight ? 1.0 : open_slice(slice);
-  sum.bent = kBentNormal ? slice_bent_normal(slice, direction, surface.view, front, back)
-                         : vec3(0.0);
+  sum.bent =
+      kBentNormal ? slice_bent_normal(slice, direction, surface.view, front, back) : vec3(0.0);
   sum.lobe = no_lobe();
   if (kLobe) {
     LobeSlice lobe = lobe_of(surface, slice);
@@ -216,8 +216,9 @@ struct Found {
 };
 
 Found found_in_sky() {
-  return Found(uvec4(pack_signal(Signal(1.0, 1.0)), floatBitsToUint(sky_line(kPerspective)), 0u, 0u),
-               uvec2(0u));
+  return Found(
+      uvec4(pack_signal(Signal(1.0, 1.0)), floatBitsToUint(sky_line(kPerspective)), 0u, 0u),
+      uvec2(0u));
 }
 
 Found search_pixel(ivec2 pixel, float line, SliceNoise noise) {
@@ -245,9 +246,9 @@ Found search_pixel(ivec2 pixel, float line, SliceNoise noise) {
     ++i;
   } while (i < kSliceCount);
   float mean = 1.0 / float(kSliceCount);
-  uvec2 lobe = kLobe ? pack_scaled_lobe(surface.lobe, Signal(sum.lobe.visible * mean,
-                                                             sum.lobe.open * mean))
-                     : uvec2(0u);
+  uvec2 lobe =
+      kLobe ? pack_scaled_lobe(surface.lobe, Signal(sum.lobe.visible * mean, sum.lobe.open * mean))
+            : uvec2(0u);
   Signal signal = Signal(sum.visible * mean, sum.open * mean);
   return Found(uvec4(pack_signal(signal), floatBitsToUint(line), lobe),
                kBentNormal ? pack_direction(sum.bent * mean) : uvec2(0u));

@@ -1,5 +1,5 @@
-// The search part of gtao.comp, which includes it: where the samples of one side of a slice lie, and what
-// the depth buffer shows there.
+// The search part of gtao.comp, which includes it: where the samples of one side of a slice lie,
+// and what the depth buffer shows there.
 #ifndef ALCOVE_GTAO_SEARCH_H
 #define ALCOVE_GTAO_SEARCH_H
 
@@ -13,11 +13,11 @@ float border_distance(vec2 centre, vec2 direction) {
 // One side of a slice, as it is searched.
 struct Search {
   ivec2 pixel;
-  SliceLine line;  // outwards
-  float reach_px;  // from the first step to the last; 0 where there is nothing to search
+  SliceLine line;   // outwards
+  float reach_px;   // from the first step to the last; 0 where there is nothing to search
   float beyond_px;  // of the radius beyond the image's border, as far as surfaces go on there
-  float offset;    // of the steps, [0,1)
-  float depth;     // linear, of the shaded point
+  float offset;     // of the steps, [0,1)
+  float depth;      // linear, of the shaded point
   TangentLine tangent;
   float gradient;  // of the tangent line, outwards
   float lowest;    // cosine of the tangent plane's horizon
@@ -69,8 +69,8 @@ LineSample fetch_sample(Search search, uint layer, uint k) {
   // Only across the line: along it a sample stays where it was found.
   float along_px = kSnapping ? dot(snapped, search.line.direction_px) : found.offset_px;
   float on_plane = dot(snapped, search.tangent.gradient);
-  float share = tangent_share(search.tangent, line - search.tangent.line - on_plane,
-                              found.offset_px);
+  float share =
+      tangent_share(search.tangent, line - search.tangent.line - on_plane, found.offset_px);
   float moved = moved_line(line, share * (along_px * search.gradient - on_plane), kPerspective);
   found.line = kSnapping ? moved : line;
   found.point = slice_point(search.line, along_px, found.line, search.depth, kPerspective);

@@ -1,5 +1,5 @@
-// The bitmask part of gtao.comp, which includes it: which sectors of a side the samples occlude, joined
-// into sheets (maths/connected_samples.h) or each by itself.
+// The bitmask part of gtao.comp, which includes it: which sectors of a side the samples occlude,
+// joined into sheets (maths/connected_samples.h) or each by itself.
 #ifndef ALCOVE_GTAO_SECTORS_H
 #define ALCOVE_GTAO_SECTORS_H
 
@@ -79,8 +79,8 @@ void extend_sheet(inout Sheet sheet, Side side, float x_per_step, uint layer, Li
 }
 
 // Adds `here`, now that the sample `next` after it tells how the line bends at it.
-void pass_sample(inout Sheet sheet, inout LineSample here, Side side, float x_per_step,
-                 uint layer, LineSample next) {
+void pass_sample(inout Sheet sheet, inout LineSample here, Side side, float x_per_step, uint layer,
+                 LineSample next) {
   float rise = next.line - here.line;
   float step_px = next.offset_px - here.offset_px;
   float bend = sharp_bend(sheet.rise, sheet.step_px, rise, step_px, side.sharp);
@@ -90,8 +90,8 @@ void pass_sample(inout Sheet sheet, inout LineSample here, Side side, float x_pe
   here = next;
 }
 
-// Those of a surface that leaves the image and did not bend before: it is taken to go on as it left,
-// until it leaves the radius. `way` is the last step's, `x_beyond` how far it goes on (x w).
+// Those of a surface that leaves the image and did not bend before: it is taken to go on as it
+// left, until it leaves the radius. `way` is the last step's, `x_beyond` how far it goes on (x w).
 uint sectors_beyond(Sheet sheet, Side side, vec3 way, float x_beyond) {
   vec3 end = continued_point(sheet.last.point, way, x_beyond);
   float excess = radius_excess(end, parameters.radius);

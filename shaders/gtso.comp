@@ -2,8 +2,8 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
-// The visible share of each pixel's GGX lobe from its visibility and bent normal (Jimenez et al. 2016,
-// section 6), by one of the models of maths/gtso.h or, with TABLE, by the memo's table.
+// The visible share of each pixel's GGX lobe from its visibility and bent normal (Jimenez et al.
+// 2016, section 6), by one of the models of maths/gtso.h or, with TABLE, by the memo's table.
 
 #include "gtso_parameters.h"
 #include "maths/gtso.h"
@@ -19,8 +19,8 @@ layout(set = 0, binding = 0) uniform Parameters { GtsoParameters parameters; };
 layout(set = 0, binding = 1) uniform texture2D visibility_image;
 layout(set = 0, binding = 2) uniform texture2D bent_normal_image;  // unread by kLagarde
 layout(set = 0, binding = 3) uniform texture2D normal_image;
-layout(set = 0, binding = 4) uniform texture2D depth_image;        // linear
-layout(set = 0, binding = 5) uniform texture2D roughness_image;    // unread where there is none
+layout(set = 0, binding = 4) uniform texture2D depth_image;      // linear
+layout(set = 0, binding = 5) uniform texture2D roughness_image;  // unread where there is none
 layout(set = 0, binding = 6) uniform writeonly image2D result_image;
 
 #ifdef TABLE
@@ -56,8 +56,7 @@ float occlusion_by_table(float visibility, vec3 bent, vec3 normal, vec3 reflecti
   if (exact >= 0.0) {
     return exact;
   }
-  vec4 at =
-      gtso_coordinates(cone, bent_from_mirror, angle_between(normal, reflection), roughness);
+  vec4 at = gtso_coordinates(cone, bent_from_mirror, angle_between(normal, reflection), roughness);
   uvec4 entry = gtso_entry(at);
   float sum = 0.0;
   for (uint corner = 0u; corner < 16u; ++corner) {
@@ -74,7 +73,8 @@ float occlusion_of(ivec2 pixel, vec3 normal, vec3 view) {
   if (kModel == kLagarde) {
     return lagarde_specular_occlusion(dot(normal, view), visibility, alpha);
   }
-  vec3 bent = raised_bent_normal(fetch_direction(bent_normal_image, pixel, normal), normal, visibility);
+  vec3 bent =
+      raised_bent_normal(fetch_direction(bent_normal_image, pixel, normal), normal, visibility);
   vec3 reflection = mirror_direction(normal, view);
 #ifdef TABLE
   return occlusion_by_table(visibility, bent, normal, reflection, roughness);

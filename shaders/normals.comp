@@ -2,8 +2,8 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
-// Normals from depth. On each axis the neighbour is taken from the side whose two depths continue to
-// the pixel's own better: across a silhouette the other side belongs to another surface.
+// Normals from depth. On each axis the neighbour is taken from the side whose two depths continue
+// to the pixel's own better: across a silhouette the other side belongs to another surface.
 
 #include "maths/projection.h"
 #include "maths/slice.h"
@@ -25,10 +25,10 @@ vec3 fetch_position(ivec2 pixel, float depth) {
                      depth);
 }
 
-// How badly the line through the depths one and two pixels away misses the pixel's own. Depth itself
-// is no line on the image of a plane; its inverse is, in perspective, so that is compared there. The
-// step to the first counts for a little: on a strip two pixels wide both lines miss by the strip's
-// whole depth, and at a crease between planes a quarter of the step never outweighs the miss.
+// How badly the line through the depths one and two pixels away misses the pixel's own. Depth
+// itself is no line on the image of a plane; its inverse is, in perspective, so that is compared
+// there. The step to the first counts for a little: on a strip two pixels wide both lines miss by
+// the strip's whole depth, and at a crease between planes a quarter of the step never outweighs that.
 float miss(float depth, float one, float two) {
   vec3 line = vec3(depth, one, two);
   if (parameters.projection.eye.w > 0.0) {

@@ -3,18 +3,18 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
-// From searched pixels to every pixel: the memo's spatial filter, the upsampling of a search at lower
-// resolution, and (compiled with HISTORY) accumulation over frames. They read the same neighbourhood
-// with the same weights, so they are one pass, and what is off is not compiled in.
+// From searched pixels to every pixel: the memo's spatial filter, the upsampling of a search at
+// lower resolution, and (compiled with HISTORY) accumulation over frames. They read the same
+// neighbourhood with the same weights, so they are one pass, and what is off is not compiled in.
 //
 // A block of kDivisor x kDivisor pixels has one search a frame, of a pixel that moves through the
 // block from frame to frame: every pixel is searched at its own depth in time, and edges come back
 // sharp. Without a history a pixel looks at all blocks within reach; with one, at the four searched
 // pixels around it. They weigh by their distance on the image, in a window that narrows as a pixel
 // gathers frames, and by their distance from the pixel's tangent plane, so that a plane at any tilt
-// is filtered whole and nothing leaks across an edge. Sums are added up, visible and open parts each,
-// and divided last. Those of the GGX lobe weigh by normal and roughness too: the narrower the lobe,
-// the more of it hangs on where it points.
+// is filtered whole and nothing leaks across an edge. Sums are added up, visible and open parts
+// each, and divided last. Those of the GGX lobe weigh by normal and roughness too: the narrower the
+// lobe, the more of it hangs on where it points.
 
 #include "maths/bent_normal.h"
 #include "maths/gtao.h"
@@ -36,7 +36,7 @@ layout(constant_id = 5) const bool kClamp = false;
 layout(constant_id = 6) const bool kStill = false;  // nothing moved since the last frame
 layout(constant_id = 7) const bool kRoughnessTexture = false;
 layout(constant_id = 8) const int kRoughnessChannel = 0;
-layout(constant_id = 9) const bool kFresh = true;  // there is no history to read yet
+layout(constant_id = 9) const bool kFresh = true;        // there is no history to read yet
 layout(constant_id = 10) const bool kVisibility = true;  // else it is found but not written
 // Still for so long that only pixels which this frame's searches reached have anything to learn.
 layout(constant_id = 11) const bool kSettled = false;
@@ -51,7 +51,7 @@ const bool kLobe = false;
 
 layout(set = 0, binding = 0) uniform Parameters { ReconstructParameters parameters; };
 // What our own passes wrote is read as storage: a texel at a known place needs no sampler.
-layout(set = 0, binding = 1, SIGNAL_FORMAT) uniform readonly uimage2D signal_image;  // one texel a block
+layout(set = 0, binding = 1, SIGNAL_FORMAT) uniform readonly uimage2D signal_image;  // by blocks
 // Where there is none, the signal.
 layout(set = 0, binding = 2, rg32ui) uniform readonly uimage2D bent_image;
 layout(set = 0, binding = 3, r32f) uniform readonly image2D line_image;  // LineSample::line
@@ -84,12 +84,12 @@ const bool kBetween = false;
 
 struct Surface {
   ivec2 pixel;
-  vec2 centre;    // of the pixel, pixels
-  float line;     // linear along the image of any plane: 1/depth in perspective, depth otherwise
-  float depth;    // linear
-  vec2 gradient;  // of `line` on the tangent plane, for each pixel
+  vec2 centre;      // of the pixel, pixels
+  float line;       // linear along the image of any plane: 1/depth in perspective, depth otherwise
+  float depth;      // linear
+  vec2 gradient;    // of `line` on the tangent plane, for each pixel
   float stiffness;  // tolerances that a unit of `line` off the tangent plane stands for
-  float slant;    // cosine between normal and view vector, on the axis
+  float slant;      // cosine between normal and view vector, on the axis
   LobeSurface lobe;
 };
 
@@ -132,8 +132,7 @@ Surface fetch_surface(ivec2 pixel, float line) {
   surface.slant = max(abs(along), 0.02);
   float per_line = (along < 0.0 ? -1.0 : 1.0) / surface.slant;
   surface.gradient = plane.xy * (kPerspective ? surface.line * per_line : -per_line);
-  surface.stiffness =
-      surface.slant * parameters.tolerance * (kPerspective ? surface.depth : 1.0);
+  surface.stiffness = surface.slant * parameters.tolerance * (kPerspective ? surface.depth : 1.0);
   surface.lobe = fetch_lobe_surface(pixel, normal);
   return surface;
 }
@@ -187,18 +186,15 @@ Found fetch_block(ivec2 block) {
   return found;
 }
 
-ivec2 last_block() {
-  return (size_px() + (kDivisor - 1)) / kDivisor - 1;
-}
+ivec2 last_block() { return (size_px() + (kDivisor - 1)) / kDivisor - 1; }
 
 // A neighbour at distance d weighs 1 / (1 + narrowness d^2)^4.
 float narrowness_of(float width_px) { return 0.125 / (width_px * width_px); }
 
 // What a neighbour's search weighs: it falls with the distance on the image and with that from the
-// tangent plane, and never to nothing. Where no neighbour lies on the plane the nearest to it count.
+// tangent plane, and never to nothing: where no neighbour lies on it, the nearest to it count.
 float neighbour_weight(Surface surface, float narrowness, vec2 offset, float line) {
-  float off_plane =
-      (line - surface.line - dot(offset, surface.gradient)) * surface.stiffness;
+  float off_plane = (line - surface.line - dot(offset, surface.gradient)) * surface.stiffness;
   off_plane = min(abs(off_plane), 1e8);  // whose fourth power still is a float
   float near = 1.0 + narrowness * dot(offset, offset);
   float level = 1.0 + off_plane * off_plane;
@@ -310,8 +306,8 @@ void keep_pixel(ivec2 pixel) {
 #endif
 }
 
-// Pixels of a cell, a bit each by rows from the first, a searched one: those next to a searched one of
-// a cell of 4x4, the searched one itself of a smaller.
+// Pixels of a cell, a bit each by rows from the first, a searched one: those next to a searched one
+// of a cell of 4x4, the searched one itself of a smaller.
 const uint kCell = kDivisor == 4 ? 0xffffu : kDivisor == 2 ? 0xfu : 1u;
 const uint kReached = kSettled && kBetween ? (kDivisor == 4 ? 0x101bu : 1u) : kCell;
 
@@ -324,8 +320,8 @@ bool inside(ivec2 pixel) {
   return all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, size_px()));
 }
 
-// Each invocation has kDivisor x kDivisor pixels: with kBetween those of the cell between four searched
-// ones, which are fetched once for all of them, else those of a block.
+// Each invocation has kDivisor x kDivisor pixels: with kBetween those of the cell between four
+// searched ones, which are fetched once for all of them, else those of a block.
 void main() {
   ivec2 cell = ivec2(gl_GlobalInvocationID.xy) - (kBetween ? 1 : 0);
   ivec2 first = cell * kDivisor + (kBetween ? ivec2(parameters.phase) : ivec2(0));

@@ -1,13 +1,13 @@
-// The history part of reconstruct.comp, which includes it: what a pixel has gathered over the frames,
-// found where its surface was, held to what is seen now, and this frame added.
+// The history part of reconstruct.comp, which includes it: what a pixel has gathered over the
+// frames, found where its surface was, held to what is seen now, and this frame added.
 #ifndef ALCOVE_RECONSTRUCT_HISTORY_H
 #define ALCOVE_RECONSTRUCT_HISTORY_H
 
 // What a pixel has gathered so far.
 struct History {
-  Sum sum;       // weighted means over frames
-  float count;   // frames; 0 where nothing of this surface is known
-  float recent;  // visibility of the last few frames, to tell change by
+  Sum sum;        // weighted means over frames
+  float count;    // frames; 0 where nothing of this surface is known
+  float recent;   // visibility of the last few frames, to tell change by
   float between;  // how far from texels' centres it was read: 0 at one, to 0.5 amid four
 };
 
@@ -49,8 +49,8 @@ struct Read {
   float most;    // that a texel counts for
 };
 
-// A texel of history, all of it or none as its depth tells whether it is of the same surface; of those
-// the ones on the tangent plane count for most, so that nothing leaks across a crease.
+// A texel of history, all of it or none as its depth tells whether it is of the same surface; of
+// those the ones on the tangent plane count for most, so that nothing leaks across a crease.
 void add_history(inout Read read, Surface surface, ivec2 texel, float depth, float share) {
   uvec4 stored = imageLoad(history_image, texel);
   HistoryState state = unpack_history_state(stored.y);
@@ -158,15 +158,14 @@ void clamp_history(inout History history, Spread spread) {
   }
 }
 
-// Where something moves, visibility changes on surfaces that stand still: what the last few frames say
-// then replaces what all of them do.
+// Where something moves, visibility changes on surfaces that stand still: what the last few frames
+// say then replaces what all of them do.
 void follow_change(inout History history, Signal now) {
   float before = mean_visibility(history.sum.signal.visible, history.sum.signal.open);
-  history.recent = recent_visibility(history.recent, history.count,
-                                     mean_visibility(now.visible, now.open));
+  history.recent =
+      recent_visibility(history.recent, history.count, mean_visibility(now.visible, now.open));
   float changed = history.count > 0.0 ? visibility_changed(before, history.recent) : 0.0;
-  history.sum.signal.visible =
-      mix(before, history.recent, changed) * history.sum.signal.open;
+  history.sum.signal.visible = mix(before, history.recent, changed) * history.sum.signal.open;
   history.count = mix(history.count, min(history.count, kRecentFrames), changed);
 }
 
@@ -180,8 +179,8 @@ History advance(Surface surface, Found corners[4], History history) {
   if (kMotion) {
     follow_change(history, now.sum.signal);
   }
-  // Not divided by the weight found: a frame that searched the pixel itself counts for more than one
-  // that searched its neighbours. Divided by the window's size, so that wide ones do not.
+  // Not divided by the weight found: a frame that searched the pixel itself counts for more than
+  // one that searched its neighbours. Divided by the window's size, so that wide ones do not.
   float width = window_width(history);
   float fresh = accumulation_weight(history.count, parameters.longest);
   float scale = 0.42 * kWidth * kWidth / (width * width) * fresh;
@@ -190,8 +189,8 @@ History advance(Surface surface, Found corners[4], History history) {
   add(next.sum, 1.0 - fresh, history.sum);
   add(next.sum, scale, now.sum);
   next.count = next_count(history.count, parameters.longest);
-  next.recent = kMotion ? history.recent
-                        : mean_visibility(next.sum.signal.visible, next.sum.signal.open);
+  next.recent =
+      kMotion ? history.recent : mean_visibility(next.sum.signal.visible, next.sum.signal.open);
   return next;
 }
 

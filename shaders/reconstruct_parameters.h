@@ -16,11 +16,11 @@ struct ReconstructParameters {
   // Of the frame before: xy its size in pixels, zw that in parts of this frame's.
   vec4 previous_size;
   vec4 history_depth;  // for held_depth(): xy of this frame, zw of the frame before
-  vec2 phase;         // which pixel of each block was searched this frame
-  float tolerance;    // scale of distances from the tangent plane, in depths
-  float longest;      // frames that history counts at most
-  float clamp_width;  // history is held to so many deviations of this frame's neighbourhood
-  float roughness;    // perceptual, of every surface where no texture has it
+  vec2 phase;          // which pixel of each block was searched this frame
+  float tolerance;     // scale of distances from the tangent plane, in depths
+  float longest;       // frames that history counts at most
+  float clamp_width;   // history is held to so many deviations of this frame's neighbourhood
+  float roughness;     // perceptual, of every surface where no texture has it
 };
 
 ALCOVE_MATHS_END

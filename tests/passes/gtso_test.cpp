@@ -23,8 +23,6 @@ using framegraph::Graph;
 using framegraph::Texture;
 using glm::vec3;
 
-using GtsoPass = PassTest;
-
 constexpr std::uint32_t kWidth = 45;
 constexpr std::uint32_t kHeight = 31;
 constexpr float kSky = 1e12f;
@@ -69,6 +67,24 @@ Texture add(const Frame& frame, const GtsoInputs& inputs, const GtsoSettings& se
   return result.value_or(Texture{});
 }
 
+class GtsoPass : public PassTest {
+ protected:
+  void run_model(const View& view, const Inputs& inputs, SpecularModel model) {
+    run([&](Graph& graph) {
+      const Frame frame{graph, gpu().kernels(), view, 0};
+      read_back(graph,
+                add(frame,
+                    {.visibility = upload(graph, inputs.visibility),
+                     .bent_normal = upload(graph, inputs.bent),
+                     .normals = upload(graph, inputs.normals),
+                     .depth = upload(graph, inputs.depth),
+                     .roughness = upload(graph, inputs.surface),
+                     .normals_in_view_space = true},
+                    {.model = model, .roughness_channel = 3, .precision = Precision::float32}));
+    });
+  }
+};
+
 maths::Projection projection_of(const View& view) {
   maths::mat4 clip_from_view;
   std::memcpy(&clip_from_view[0][0], view.clip_from_view.data(), sizeof(clip_from_view));
@@ -110,18 +126,7 @@ TEST_F(GtsoPass, AgreesWithTheFormulasInEveryView) {
   for (const TestView& view : test_views()) {
     for (const SpecularModel model : kModels) {
       SCOPED_TRACE(testing::Message() << view.name << ", model " << static_cast<int>(model));
-      run([&](Graph& graph) {
-        const Frame frame{graph, gpu().kernels(), view.view, 0};
-        read_back(graph,
-                  add(frame,
-                      {.visibility = upload(graph, inputs.visibility),
-                       .bent_normal = upload(graph, inputs.bent),
-                       .normals = upload(graph, inputs.normals),
-                       .depth = upload(graph, inputs.depth),
-                       .roughness = upload(graph, inputs.surface),
-                       .normals_in_view_space = true},
-                      {.model = model, .roughness_channel = 3, .precision = Precision::float32}));
-      });
+      run_model(view.view, inputs, model);
       const maths::Projection projection = projection_of(view.view);
       for (std::uint32_t y = 0; y < kHeight; ++y) {
         for (std::uint32_t x = 0; x < kWidth; ++x) {
@@ -145,18 +150,7 @@ TEST_F(GtsoPass, WhatIsNoNumberOrNoDirectionGivesAShareAllTheSame) {
                 kWrong.at(i / images.size() % kWrong.size()));
   }
   for (const SpecularModel model : kModels) {
-    run([&](Graph& graph) {
-      const Frame frame{graph, gpu().kernels(), test_views()[2].view, 0};
-      read_back(graph,
-                add(frame,
-                    {.visibility = upload(graph, inputs.visibility),
-                     .bent_normal = upload(graph, inputs.bent),
-                     .normals = upload(graph, inputs.normals),
-                     .depth = upload(graph, inputs.depth),
-                     .roughness = upload(graph, inputs.surface),
-                     .normals_in_view_space = true},
-                    {.model = model, .roughness_channel = 3, .precision = Precision::float32}));
-    });
+    run_model(test_views()[2].view, inputs, model);
     EXPECT_THAT(result().texels,
                 testing::Each(testing::AllOf(testing::Ge(0.0f), testing::Le(1.0f))))
         << "model " << static_cast<int>(model);
