@@ -88,7 +88,7 @@ tl::expected<Truths, std::string> truths_of(const TruthFrame& frame, const Optio
   for (std::size_t i = 0; i < depth.pixels.size(); ++i) {
     truths.surfaces.pixels[i] = std::isfinite(depth.pixels[i]) ? 1 : 0;
   }
-  if (std::ranges::count(truths.surfaces.pixels, 1) == 0) {
+  if (std::ranges::find(truths.surfaces.pixels, 1) == truths.surfaces.pixels.end()) {
     return tl::unexpected<std::string>(
         "the view shows nothing but sky: turn it with --eye and --target, or widen --near and "
         "--far");

@@ -80,8 +80,7 @@ void add_history(inout Read read, Surface surface, ivec2 texel, float depth, flo
 History no_history() { return History(no_sum(), 0.0, 0.0, 0.0); }
 
 // Between texels, where the surface was.
-Read read_moved(Surface surface) {
-  Read read = Read(no_history(), vec3(0.0), 0.0, 0.0);
+void read_moved(inout Read read, Surface surface) {
   vec4 before = reproject(surface);
   ivec2 last = ivec2(parameters.previous_size.xy) - 1;
   vec2 first = floor(before.xy - 0.5);
@@ -97,19 +96,17 @@ Read read_moved(Surface surface) {
     float depth = kPerspective ? 1.0 / max(line, 0.5 / before.z) : line;
     add_history(read, surface, texel, depth, near.x * near.y * before.w);
   }
-  return read;
 }
 
 History read_history(Surface surface) {
   if (kFresh) {
     return no_history();
   }
-  Read read;
+  Read read = Read(no_history(), vec3(0.0), 0.0, 0.0);
   if (kStill) {
-    read = Read(no_history(), vec3(0.0), 0.0, 0.0);
     add_history(read, surface, surface.pixel, surface.depth, 1.0);
   } else {
-    read = read_moved(surface);
+    read_moved(read, surface);
   }
   float scale = read.same < 0.05 ? 0.0 : 1.0 / read.moments.x;
   History history = no_history();

@@ -1,0 +1,11 @@
+# `alcove ARGUMENTS` ends with status 1 and one sentence on stderr, which begins with SENTENCE.
+# ALCOVE: the program.
+separate_arguments(ARGUMENTS)
+execute_process(COMMAND ${ALCOVE} ${ARGUMENTS} RESULT_VARIABLE status OUTPUT_VARIABLE output
+  ERROR_VARIABLE error)
+if(NOT status EQUAL 1)
+  message(FATAL_ERROR "The status is ${status}, not 1.")
+endif()
+if(NOT error MATCHES "^alcove: ${SENTENCE}[^\n]*\n$" OR output)
+  message(FATAL_ERROR "Not the sentence that was expected: ${output}${error}")
+endif()
