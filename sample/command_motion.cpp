@@ -99,6 +99,7 @@ Json to_json(const MotionReport& report) {
            {{"with_history", report.flicker.with_history},
             {"without", report.flicker.without},
             {"still", report.flicker.still},
+            {"truth", report.flicker.truth},
             {"ratio", report.flicker.ratio()}}}};
 }
 
@@ -136,7 +137,8 @@ std::string table_of(MotionKind kind, const MotionReport& report) {
   const Flicker& flicker = report.flicker;
   out << std::setprecision(4) << "  change of visibility a frame      " << flicker.with_history
       << " with history, " << flicker.without << " without: ratio " << std::setprecision(3)
-      << flicker.ratio() << "; standing still " << std::setprecision(4) << flicker.still << "\n";
+      << flicker.ratio() << "; standing still " << std::setprecision(4) << flicker.still
+      << "; the truth's own at least " << flicker.truth << "\n";
   return out.str();
 }
 

@@ -112,6 +112,17 @@ std::size_t nearest_texel(const Retraced& retraced, std::size_t pixel, const Ima
   return nearest;
 }
 
+// Since the frame before, of a pixel whose surface all four texels there show.
+double change_at(std::size_t pixel, const Image<float>& now, const Image<float>& before,
+                 const Retraced& retraced) {
+  const Texels texels(retraced.position_px.pixels[pixel]);
+  float then = 0.0f;
+  for (int i = 0; i < 4; ++i) {
+    then += texels.weight(i) * before.pixels[static_cast<std::size_t>(texels.index(i, before))];
+  }
+  return now.pixels[pixel] - then;
+}
+
 }  // namespace
 
 Retraced retrace(const SeenFrame& now, const SeenFrame& before,
@@ -168,23 +179,31 @@ RunningMean& RunningMean::operator+=(const RunningMean& more) {
   return *this;
 }
 
-RunningMean visibility_change(const SeenFrame& now, const SeenFrame& before,
+RunningMean visibility_change(const Image<float>& now, const Image<float>& before,
                               const Retraced& retraced) {
   RunningMean change;
-  for (std::size_t pixel = 0; pixel < retraced.texels.pixels.size(); ++pixel) {
-    if (retraced.texels.pixels[pixel] != kAllTexels) {
-      continue;
+  for (std::size_t pixel = 0; pixel < now.pixels.size(); ++pixel) {
+    if (retraced.texels.pixels[pixel] == kAllTexels) {
+      change += {std::abs(change_at(pixel, now, before, retraced)), 1};
     }
-    const Texels texels(retraced.position_px.pixels[pixel]);
-    float then = 0.0f;
-    for (int i = 0; i < 4; ++i) {
-      const auto index = static_cast<std::size_t>(texels.index(i, before.visibility));
-      then += texels.weight(i) * before.visibility.pixels[index];
-    }
-    change.sum += std::abs(now.visibility.pixels[pixel] - then);
-    ++change.count;
   }
   return change;
+}
+
+RunningMean least_change(const TruthHalves& now, const TruthHalves& before,
+                         const Retraced& retraced) {
+  const auto in_direction = [](double change, double other) {
+    return other == 0.0 ? 0.0 : std::copysign(change, change * other);
+  };
+  RunningMean least;
+  for (std::size_t pixel = 0; pixel < now.first.pixels.size(); ++pixel) {
+    if (retraced.texels.pixels[pixel] == kAllTexels) {
+      const double first = change_at(pixel, now.first, before.first, retraced);
+      const double second = change_at(pixel, now.second, before.second, retraced);
+      least += {0.5 * (in_direction(first, second) + in_direction(second, first)), 1};
+    }
+  }
+  return least;
 }
 
 Mask surfaces_where(const SeenFrame& seen,

@@ -52,9 +52,9 @@ struct RunningMean {
   RunningMean& operator+=(const RunningMean& more);
 };
 
-// Absolute change of visibility since the frame before, where all four texels are the surface's,
-// read there bilinearly.
-[[nodiscard]] RunningMean visibility_change(const SeenFrame& now, const SeenFrame& before,
+// Absolute change of an image of visibility since the frame before, where all four texels are the
+// surface's, read there bilinearly.
+[[nodiscard]] RunningMean visibility_change(const Image<float>& now, const Image<float>& before,
                                             const Retraced& retraced);
 
 // Where surfaces are of which `choose` says so.
@@ -74,6 +74,11 @@ struct TruthHalves {
   Image<float> second;
 };
 [[nodiscard]] Image<float> mean_of(const TruthHalves& truth);
+
+// The same change of a truth, at least: each half is counted in the direction that the other tells,
+// so that noise adds nothing in the mean.
+[[nodiscard]] RunningMean least_change(const TruthHalves& now, const TruthHalves& before,
+                                       const Retraced& retraced);
 
 // Squared error against the mean of the halves, less what its noise adds. The mean may come out
 // below 0 by chance where there is no error.

@@ -160,6 +160,8 @@ struct Compared {
   std::uint32_t frame = 0;
   SeenFrame seen;
   Image<Age> ages;
+  SeenFrame before;
+  Retraced retraced;
 };
 
 // The path as it is walked.
@@ -206,14 +208,14 @@ tl::expected<Passed, std::string> pass_along(Walk& walk, bool history) {
       });
       ages = next_ages(*seen, retraced, ages);
       if (frame >= first_settled(path)) {
-        passed.change += visibility_change(*seen, before, retraced);
+        passed.change += visibility_change(seen->visibility, before.visibility, retraced);
       }
       const Speed speed = speed_of(retraced);
       passed.speed += {speed.mean, 1};
       passed.fast += {speed.percentile_95, 1};
-    }
-    if (history && is_compared(path, frame)) {
-      passed.compared.push_back({frame, *seen, ages});
+      if (history && is_compared(path, frame)) {
+        passed.compared.push_back({frame, *seen, ages, std::move(before), retraced});
+      }
     }
     before = std::move(*seen);
     progress(static_cast<double>(frame + 1 - first) / (path.frames() - first));
@@ -291,6 +293,7 @@ tl::expected<MotionReport, std::string> run_motion(Gpu& gpu, const Scene& scene,
   SquaresPair entered;
   SquaresPair passed_by;
   RunningMean still_change;
+  RunningMean truth_change;
   for (const Compared& compared : passed->compared) {
     auto standing = stand_at(*walk, compared.frame);
     if (!standing) {
@@ -300,6 +303,11 @@ tl::expected<MotionReport, std::string> run_motion(Gpu& gpu, const Scene& scene,
     if (!truth) {
       return Failure(truth.error());
     }
+    const auto truth_before = walk->truth(compared.frame - 1, compared.before);
+    if (!truth_before) {
+      return Failure(truth_before.error());
+    }
+    truth_change += least_change(*truth, *truth_before, compared.retraced);
     all.add(compared, *standing, *truth, surfaces_of(compared.seen));
     uncovered.add(compared, *standing, *truth, aged(compared.ages, true));
     entered.add(compared, *standing, *truth, aged(compared.ages, false));
@@ -316,7 +324,8 @@ tl::expected<MotionReport, std::string> run_motion(Gpu& gpu, const Scene& scene,
   report.uncovered = uncovered.errors();
   report.entered = entered.errors();
   report.passed_by = passed_by.errors();
-  report.flicker = {passed->change.mean(), unkept->change.mean(), still_change.mean()};
+  report.flicker = {passed->change.mean(), unkept->change.mean(), still_change.mean(),
+                    truth_change.mean()};
   return report;
 }
 

@@ -50,6 +50,7 @@ struct Flicker {
   double with_history = 0;
   double without = 0;  // of the same searches, filtered in space only
   double still = 0;    // with history, when nothing moves
+  double truth = 0;    // of the compared frames' truth, at least
 
   double ratio() const { return without > 0.0 ? with_history / without : 0.0; }
 };
