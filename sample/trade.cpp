@@ -29,9 +29,9 @@ constexpr std::array<Spending, 13> kSpendings{{{4, 1, 4},
                                                {2, 1, 16},
                                                {2, 1, 24},
                                                {2, 2, 16},
-                                               {1, 1, 6},
-                                               {1, 1, 16},
-                                               {1, 1, 32},
+                                               {2, 2, 10},
+                                               {1, 1, 12},
+                                               {1, 1, 24},
                                                {1, 2, 24},
                                                {1, 4, 32}}};
 
@@ -45,12 +45,11 @@ class WayList {
  public:
   explicit WayList(const OcclusionSettings& base) : base_(base) {}
 
-  void add(const std::string& name, const Spending& spending, float fill) {
+  void add(const std::string& name, const Spending& spending) {
     OcclusionSettings settings = base_;
     settings.divisor = spending.divisor;
     settings.slices = spending.slices;
     settings.steps = spending.steps;
-    settings.fill = fill;
     const bool known =
         std::ranges::any_of(ways_, [&](const Trial& way) { return way.settings == settings; });
     if (!known) {
@@ -68,15 +67,12 @@ class WayList {
 
 std::vector<Trial> ways_to_spend(const OcclusionSettings& base) {
   WayList list(base);
-  // What is filled in behind fronts belongs to a quality as far as it was not chosen.
-  const float usual_fill = passes::quality_settings(Quality::medium, base.radius).fill;
   for (const Quality quality : {Quality::low, Quality::medium, Quality::high, Quality::ultra}) {
     const OcclusionSettings preset = passes::quality_settings(quality, base.radius);
-    list.add(std::string(passes::name_of(quality)), {preset.divisor, preset.slices, preset.steps},
-             base.fill == usual_fill ? preset.fill : base.fill);
+    list.add(std::string(passes::name_of(quality)), {preset.divisor, preset.slices, preset.steps});
   }
   for (const Spending& spending : kSpendings) {
-    list.add(name_of(spending), spending, base.fill);
+    list.add(name_of(spending), spending);
   }
   return list.take();
 }

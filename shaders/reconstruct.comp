@@ -274,8 +274,7 @@ void reconstruct(Surface surface, bool sky, Found corners[4]) {
 #else
 
 void reconstruct(Surface surface, bool sky, Found corners[4]) {
-  float width = float(kDivisor) * (kReach > 1 ? 1.5 : 1.0);
-  Sum sum = gather(surface, kReach, narrowness_of(width)).sum;
+  Sum sum = gather(surface, kReach, narrowness_of(parameters.window_px)).sum;
   if (sky) {
     sum = no_sum();
   }

@@ -130,7 +130,8 @@ const float kWidth = kDivisor > 2 ? 2.5 : 1.0;
 // reading between texels blurs anyway.
 float window_width(History history) {
   float own = 0.58 * kWidth;
-  return max(sqrt(own * own + 2.6 * history.between), 2.0 * inversesqrt(history.count + 1.0));
+  return max(sqrt(own * own + 2.6 * history.between),
+             parameters.window_px * inversesqrt(history.count + 1.0));
 }
 
 // What this frame found around a pixel that holds this history.

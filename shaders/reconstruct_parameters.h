@@ -17,6 +17,7 @@ struct ReconstructParameters {
   vec4 previous_size;
   vec4 history_depth;  // for held_depth(): xy of this frame, zw of the frame before
   vec2 phase;          // which pixel of each block was searched this frame
+  float window_px;     // width of the window over one frame's searches
   float tolerance;     // scale of distances from the tangent plane, in depths
   float longest;       // frames that history counts at most
   float clamp_width;   // history is held to so many deviations of this frame's neighbourhood

@@ -74,7 +74,8 @@ tl::expected<void, Error> check(const GtaoSettings& settings) {
 // The textures that the pass writes, made for the graph but not yet written.
 OcclusionSignal create_signal(const Frame& frame, Texture depth, const GtaoSettings& settings) {
   const auto size = framegraph::Extent::relative(depth, settings.divisor);
-  OcclusionSignal result{.divisor = settings.divisor, .lobe = settings.lobe};
+  OcclusionSignal result{
+      .divisor = settings.divisor, .slices = settings.slices, .lobe = settings.lobe};
   result.signal =
       frame.graph.create_texture("occlusion signal", {signal_format(settings.lobe), size});
   if (settings.bent_normal) {

@@ -94,12 +94,15 @@ OcclusionSettings quality_settings(Quality quality, float radius) {
       settings.history_frames = 32;
       break;
     case Quality::high:
-      settings.steps = 12;
+      settings.divisor = 2;
+      settings.slices = 3;
+      settings.steps = 16;
       settings.history_frames = 32;
       break;
     case Quality::ultra:
+      settings.divisor = 2;
+      settings.slices = 4;
       settings.steps = 24;
-      settings.fill = 0.42f;
       settings.history_frames = 32;
       break;
     case Quality::reference:

@@ -277,6 +277,18 @@ maths::vec2 history_depth(const maths::Projection& p) {
   return {scale, -near * scale};
 }
 
+// The width of the window over one frame's searches: few slices are filtered far, many hardly
+// further than the blocks lie apart. By the error of first frames (`alcove compare --frames 1`).
+float window_px(const OcclusionSignal& signal) {
+  const float few = 1.1f / std::sqrt(static_cast<float>(signal.slices));
+  return static_cast<float>(signal.divisor) * std::max(few, 0.55f);
+}
+
+// As far as it weighs anything: of three slices on, blocks two away count a twentieth.
+std::uint32_t window_reach(const ReconstructSettings& settings, const OcclusionSignal& signal) {
+  return signal.slices > 2 ? std::min(settings.filter_reach, 1u) : settings.filter_reach;
+}
+
 maths::ReconstructParameters parameters_of(const Frame& frame, const maths::Projection& projection,
                                            const maths::Projection& previous,
                                            bool normals_in_view_space,
@@ -354,7 +366,7 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& frame, const Reconst
   const bool still = history_valid && !inputs.motion && same_view && same_size;
   const bool settled = still && frame.still_frames >= kSettledFrames;
   const std::array constants{inputs.signal.divisor,
-                             settings.filter_reach,
+                             window_reach(settings, inputs.signal),
                              static_cast<std::uint32_t>(bool(inputs.signal.bent)),
                              static_cast<std::uint32_t>(bool(inputs.motion)),
                              static_cast<std::uint32_t>(is_perspective(*projection)),
@@ -374,6 +386,7 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& frame, const Reconst
   const auto [phase_x, phase_y] = search_phase(inputs.signal.divisor, frame.index);
   maths::ReconstructParameters parameters =
       parameters_of(frame, *projection, *previous, inputs.normals_in_view_space, settings);
+  parameters.window_px = window_px(inputs.signal);
   parameters.phase = maths::vec2(static_cast<float>(phase_x), static_cast<float>(phase_y));
   pass.record([&kernels = frame.kernels, kernel = *kernel, textures, parameters,
                divisor = inputs.signal.divisor](RecordContext& context) {

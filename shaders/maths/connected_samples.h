@@ -48,9 +48,7 @@ ALCOVE_INLINE bool hidden_samples_join(float bend_here, float bend_there) {
 
 // Where between two samples the edge of the second one's surface is taken to be, if they are on
 // two: this part of the way back to the first. Coarser searches miss more of it.
-ALCOVE_INLINE float edge_share(uint steps) {
-  return steps > 16u ? 0.3f : (steps > 6u ? 0.5f : 0.75f);
-}
+ALCOVE_INLINE float edge_share(uint steps) { return steps > 6u ? 0.5f : 0.75f; }
 
 // By how much a point, as slice_point() gives it, lies beyond the radius, times its w; negative
 // within it.

@@ -50,7 +50,8 @@ HostImage Reconstruct::reconstruct(const Input& input, const ReconstructSettings
                                     packed_signal(input.view, input.drawing.depth_ndc, input.signal,
                                                   input.divisor, input.index),
                                     VK_FORMAT_R32G32_UINT),
-                   .divisor = input.divisor},
+                   .divisor = input.divisor,
+                   .slices = input.slices},
         .line_depth = *line,
         .normals = upload(graph, input.drawing.normal_vs),
         .normals_in_view_space = true};

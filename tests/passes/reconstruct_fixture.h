@@ -21,6 +21,7 @@ class Reconstruct : public PassTest {
     const Drawing& drawing;
     const HostImage& signal;  // two channels, one texel a block
     std::uint32_t divisor = 1;
+    std::uint32_t slices = 1;
     const HostImage* motion = nullptr;
     View previous_view = view;
     std::uint32_t index = 0;

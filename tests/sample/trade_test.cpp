@@ -29,13 +29,9 @@ TEST(WaysToSpend, AreEachThereOnceWithTheQualitiesAmongThem) {
       EXPECT_EQ(std::ranges::count(seen, way.settings), 0) << way.name;
       seen.push_back(way.settings);
     }
-    // A fill that was chosen is kept; ultra's differs from the others'.
-    if (quality != passes::Quality::ultra) {
-      EXPECT_EQ(std::ranges::count(seen, base), 1);
-      EXPECT_EQ(
-          std::ranges::count(seen, passes::quality_settings(passes::Quality::ultra, base.radius)),
-          1);
-    }
+    EXPECT_EQ(std::ranges::count(seen, base), 1);
+    EXPECT_EQ(
+        std::ranges::count(seen, passes::quality_settings(passes::Quality::ultra, base.radius)), 1);
   }
 }
 

@@ -125,6 +125,7 @@ struct OcclusionSignal {
   // halves; null where none is wanted.
   framegraph::Texture bent;
   std::uint32_t divisor = 1;  // pixels on a side of a block
+  std::uint32_t slices = 1;   // that were searched in each
   bool lobe = false;
 };
 

@@ -10,9 +10,9 @@
 namespace alcove::passes {
 
 struct FilterSettings {
-  // Blocks on each side that a pixel looks at while it has little history, or none, 0 to 3. 2
-  // covers the 4x4 pattern of a full-resolution search; 1 is enough for a lower one. 0 filters
-  // nothing.
+  // Blocks on each side that a pixel looks at, at most, while it has little history, or none, 0 to
+  // 3; 0 filters nothing. They weigh in a window that is the narrower the more slices were
+  // searched: of three on a block's own neighbours are all that count.
   std::uint32_t filter_reach = 2;
   // How far a neighbour lies from the pixel's tangent plane when it counts a quarter, in sizes of a
   // pixel there, over 0.
