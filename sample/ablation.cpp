@@ -68,7 +68,7 @@ void add_searches(TrialList& list) {
   list.add(part, "one in 2x2", [](OcclusionSettings& s) { s.divisor = 2; });
   list.add(part, "one in 4x4", [](OcclusionSettings& s) { s.divisor = 4; });
   // As many searches as every pixel has above.
-  list.add(part, "one in 2x2, four times the slices", [](OcclusionSettings& s) {
+  list.add(part, "one in 2x2, 4 times the slices", [](OcclusionSettings& s) {
     s.divisor = 2;
     s.slices = std::min(s.slices * 4, 64u);
   });
