@@ -28,7 +28,8 @@ vec3 fetch_position(ivec2 pixel, float depth) {
 // How badly the line through the depths one and two pixels away misses the pixel's own. Depth
 // itself is no line on the image of a plane; its inverse is, in perspective, so that is compared
 // there. The step to the first counts for a little: on a strip two pixels wide both lines miss by
-// the strip's whole depth, and at a crease between planes a quarter of the step never outweighs that.
+// the strip's whole depth, and at a crease between planes a quarter of the step never outweighs
+// that.
 float miss(float depth, float one, float two) {
   vec3 line = vec3(depth, one, two);
   if (parameters.projection.eye.w > 0.0) {
