@@ -4,8 +4,10 @@
 layout(local_size_x = 64) in;
 
 layout(binding = 0) uniform utexture2D sampled_input;
-layout(binding = 1, std430) readonly buffer Input { uint words[]; } from;
-layout(binding = 2, std430) buffer Result { uint words[]; } to;
+layout(binding = 1, std430) readonly buffer Input { uint words[]; }
+from;
+layout(binding = 2, std430) buffer Result { uint words[]; }
+to;
 layout(push_constant) uniform Parameters {
   uint seed;
   uint keep;

@@ -146,8 +146,8 @@ TEST(MotionErrors, TheNoiseOfATruthIsTakenFromItsError) {
   EXPECT_EQ(root({-1.0, 5}), 0.0);
 }
 
-// A truth that changes by 0.03 either way, drowned in noise: no more is found, and most of it, half
-// with so much.
+// A truth that stands still or changes by 0.03 either way, its halves as noisy as that: nothing is
+// found of the one, and of the other most and never more.
 TEST(MotionErrors, TheNoiseOfATruthIsNoChangeOfIt) {
   const auto seed = static_cast<std::uint32_t>(std::random_device{}());
   SCOPED_TRACE(testing::Message() << "seed " << seed);
