@@ -1,6 +1,5 @@
 // What each part of the occlusion costs and buys: the same view drawn with one thing changed.
-#ifndef ALCOVE_SAMPLE_ABLATION_H_
-#define ALCOVE_SAMPLE_ABLATION_H_
+#pragma once
 
 #include <cmath>
 #include <cstdint>
@@ -32,5 +31,3 @@ struct Twins {
 [[nodiscard]] std::vector<Twins> twins_of(const Camera& camera, std::uint32_t height);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_ABLATION_H_

@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_ANALYTIC_SCENES_H_
-#define ALCOVE_SAMPLE_ANALYTIC_SCENES_H_
+#pragma once
 
 #include <optional>
 #include <string>
@@ -50,5 +49,3 @@ struct AnalyticScene {
 [[nodiscard]] double visibility_in_pit(double radius, double depth);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_ANALYTIC_SCENES_H_

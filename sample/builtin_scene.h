@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_BUILTIN_SCENE_H_
-#define ALCOVE_SAMPLE_BUILTIN_SCENE_H_
+#pragma once
 
 #include "scene.h"
 
@@ -12,5 +11,3 @@ namespace alcove::sample {
 [[nodiscard]] Scene builtin_scene();
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_BUILTIN_SCENE_H_

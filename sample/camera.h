@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_CAMERA_H_
-#define ALCOVE_SAMPLE_CAMERA_H_
+#pragma once
 
 #include <cstdint>
 #include <string>
@@ -56,5 +55,3 @@ struct Ray {
 [[nodiscard]] Camera orbited(const Camera& camera, float angle);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_CAMERA_H_

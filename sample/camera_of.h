@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_CAMERA_OF_H_
-#define ALCOVE_SAMPLE_CAMERA_OF_H_
+#pragma once
 
 #include <string>
 #include <tl/expected.hpp>
@@ -16,5 +15,3 @@ namespace alcove::sample {
                                                           const Scene& scene);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_CAMERA_OF_H_

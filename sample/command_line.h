@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_COMMAND_LINE_H_
-#define ALCOVE_SAMPLE_COMMAND_LINE_H_
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -29,5 +28,3 @@ struct Shot {
 [[nodiscard]] std::string shell_line(const std::vector<std::string>& arguments);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_COMMAND_LINE_H_

@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_COMMANDS_H_
-#define ALCOVE_SAMPLE_COMMANDS_H_
+#pragma once
 
 #include <string>
 #include <tl/expected.hpp>
@@ -20,5 +19,3 @@ namespace alcove::sample {
 [[nodiscard]] tl::expected<void, std::string> run_doctor(const Options& options);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_COMMANDS_H_

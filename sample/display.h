@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_DISPLAY_H_
-#define ALCOVE_SAMPLE_DISPLAY_H_
+#pragma once
 
 #include "environment.h"
 #include "image.h"
@@ -12,5 +11,3 @@ namespace alcove::sample {
 [[nodiscard]] Image<glm::vec3> display_colours(const Image<glm::vec3>& radiance, float exposure);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_DISPLAY_H_

@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_ENVIRONMENT_H_
-#define ALCOVE_SAMPLE_ENVIRONMENT_H_
+#pragma once
 
 #include <filesystem>
 #include <string>
@@ -31,5 +30,3 @@ using EnvironmentImage = Image<glm::vec3>;
 [[nodiscard]] glm::vec3 mean_radiance(const EnvironmentImage& environment);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_ENVIRONMENT_H_

@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_ERRORS_H_
-#define ALCOVE_SAMPLE_ERRORS_H_
+#pragma once
 
 #include <cstdint>
 
@@ -50,5 +49,3 @@ struct OpenSurfaceSummary {
 [[nodiscard]] Image<glm::vec3> error_colours(const Image<float>& result, const Image<float>& truth);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_ERRORS_H_

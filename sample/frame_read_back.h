@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_FRAME_READ_BACK_H_
-#define ALCOVE_SAMPLE_FRAME_READ_BACK_H_
+#pragma once
 
 #include <functional>
 #include <vector>
@@ -40,5 +39,3 @@ struct Wanted {
                                             passes::Precision precision);
 
 }  // namespace alcove::sample
-
-#endif

@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_FRAME_RENDERER_H_
-#define ALCOVE_SAMPLE_FRAME_RENDERER_H_
+#pragma once
 
 #include <cstdint>
 #include <memory>
@@ -92,5 +91,3 @@ class FrameRenderer {
 };
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_FRAME_RENDERER_H_

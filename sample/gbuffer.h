@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_GBUFFER_H_
-#define ALCOVE_SAMPLE_GBUFFER_H_
+#pragma once
 
 #include <cstdint>
 #include <memory>
@@ -76,5 +75,3 @@ class GbufferRenderer {
 };
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_GBUFFER_H_

@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_GBUFFER_PIPELINES_H_
-#define ALCOVE_SAMPLE_GBUFFER_PIPELINES_H_
+#pragma once
 
 #include <array>
 #include <cstdint>
@@ -55,5 +54,3 @@ inline constexpr VkShaderStageFlags kDrawStages =
     VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_GBUFFER_PIPELINES_H_

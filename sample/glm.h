@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_GLM_H_
-#define ALCOVE_SAMPLE_GLM_H_
+#pragma once
 
 // GLM as the sample takes it: radians, depth 0..1. alcove_sample_scene defines the switches for
 // every target that links it; a file that is compiled without them must not silently differ.
@@ -8,5 +7,3 @@
 #endif
 
 #include <glm/glm.hpp>
-
-#endif  // ALCOVE_SAMPLE_GLM_H_

@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_GLTF_H_
-#define ALCOVE_SAMPLE_GLTF_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -41,5 +40,3 @@ struct GltfLimits {
                                                           const GltfLimits& limits = {});
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_GLTF_H_

@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_GLTF_ACCESSOR_H_
-#define ALCOVE_SAMPLE_GLTF_ACCESSOR_H_
+#pragma once
 
 #include <tiny_gltf.h>
 
@@ -30,5 +29,3 @@ namespace alcove::sample {
     const tinygltf::Model& model, int64_t accessor, uint64_t bound, uint64_t most);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_GLTF_ACCESSOR_H_

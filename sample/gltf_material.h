@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_GLTF_MATERIAL_H_
-#define ALCOVE_SAMPLE_GLTF_MATERIAL_H_
+#pragma once
 
 #include <tiny_gltf.h>
 
@@ -21,5 +20,3 @@ namespace alcove::sample {
                                                             uint64_t most_pixels, Scene& scene);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_GLTF_MATERIAL_H_

@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_GLTF_MESH_H_
-#define ALCOVE_SAMPLE_GLTF_MESH_H_
+#pragma once
 
 #include <tiny_gltf.h>
 
@@ -28,5 +27,3 @@ struct MeshBudget {
                                                             MeshBudget& budget, Scene& scene);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_GLTF_MESH_H_

@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_GLTF_SAMPLER_H_
-#define ALCOVE_SAMPLE_GLTF_SAMPLER_H_
+#pragma once
 
 #include <tiny_gltf.h>
 
@@ -15,5 +14,3 @@ namespace alcove::sample {
 [[nodiscard]] tl::expected<Sampler, std::string> read_sampler(const tinygltf::Sampler& in);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_GLTF_SAMPLER_H_

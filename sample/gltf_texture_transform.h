@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_GLTF_TEXTURE_TRANSFORM_H_
-#define ALCOVE_SAMPLE_GLTF_TEXTURE_TRANSFORM_H_
+#pragma once
 
 #include <tiny_gltf.h>
 
@@ -22,5 +21,3 @@ namespace alcove::sample {
 [[nodiscard]] int coordinate_set(int set, const tinygltf::ExtensionMap& extensions);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_GLTF_TEXTURE_TRANSFORM_H_

@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_GPU_H_
-#define ALCOVE_SAMPLE_GPU_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -113,5 +112,3 @@ void add_read_back(framegraph::Graph& graph, framegraph::Texture texture, const 
 [[nodiscard]] float half_to_float(std::uint16_t half);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_GPU_H_

@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_GPU_IMAGE_H_
-#define ALCOVE_SAMPLE_GPU_IMAGE_H_
+#pragma once
 
 #include <memory>
 #include <string>
@@ -52,5 +51,3 @@ inline constexpr framegraph::State kSampledState{
 [[nodiscard]] VkImageAspectFlags aspect_of(VkFormat format);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_GPU_IMAGE_H_

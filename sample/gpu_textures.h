@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_GPU_TEXTURES_H_
-#define ALCOVE_SAMPLE_GPU_TEXTURES_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -63,5 +62,3 @@ class GpuTextures {
 };
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_GPU_TEXTURES_H_

@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_HEIGHT_FIELD_H_
-#define ALCOVE_SAMPLE_HEIGHT_FIELD_H_
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -51,5 +50,3 @@ struct FieldPoint {
                                   const glm::vec3& direction);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_HEIGHT_FIELD_H_

@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_HEIGHT_FIELD_TRUTH_H_
-#define ALCOVE_SAMPLE_HEIGHT_FIELD_TRUTH_H_
+#pragma once
 
 #include "camera.h"
 #include "glm.h"
@@ -28,5 +27,3 @@ struct HeightFieldTruth {
                                                   const Progress& progress = {});
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_HEIGHT_FIELD_TRUTH_H_

@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_IMAGE_H_
-#define ALCOVE_SAMPLE_IMAGE_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -25,5 +24,3 @@ struct Image {
 };
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_IMAGE_H_

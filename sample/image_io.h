@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_IMAGE_IO_H_
-#define ALCOVE_SAMPLE_IMAGE_IO_H_
+#pragma once
 
 #include <filesystem>
 #include <functional>
@@ -46,5 +45,3 @@ namespace alcove::sample {
                                                          const std::string& text);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_IMAGE_IO_H_

@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_LIGHT_ERRORS_H_
-#define ALCOVE_SAMPLE_LIGHT_ERRORS_H_
+#pragma once
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -39,5 +38,3 @@ struct LightErrors {
 [[nodiscard]] std::string light_error_table(const LightErrors& errors);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_LIGHT_ERRORS_H_

@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_LIGHT_TRUTHS_H_
-#define ALCOVE_SAMPLE_LIGHT_TRUTHS_H_
+#pragma once
 
 #include <optional>
 #include <string>
@@ -35,5 +34,3 @@ struct LightTruths {
                                                                      const Options& options);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_LIGHT_TRUTHS_H_

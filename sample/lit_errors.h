@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_LIT_ERRORS_H_
-#define ALCOVE_SAMPLE_LIT_ERRORS_H_
+#pragma once
 
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
@@ -42,5 +41,3 @@ struct LitErrors {
                                                               const std::filesystem::path& folder);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_LIT_ERRORS_H_

@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_LIT_TRUTH_H_
-#define ALCOVE_SAMPLE_LIT_TRUTH_H_
+#pragma once
 
 #include "environment.h"
 #include "truth.h"
@@ -35,5 +34,3 @@ struct LitTruth {
                                  const Progress& progress = {});
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_LIT_TRUTH_H_

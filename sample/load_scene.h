@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_LOAD_SCENE_H_
-#define ALCOVE_SAMPLE_LOAD_SCENE_H_
+#pragma once
 
 #include <string>
 #include <tl/expected.hpp>
@@ -14,5 +13,3 @@ namespace alcove::sample {
 [[nodiscard]] tl::expected<Scene, std::string> load_scene(const std::string& what);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_LOAD_SCENE_H_

@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_MEASURED_TRADE_H_
-#define ALCOVE_SAMPLE_MEASURED_TRADE_H_
+#pragma once
 
 #include <nlohmann/json.hpp>
 #include <string>
@@ -22,5 +21,3 @@ namespace alcove::sample {
 [[nodiscard]] nlohmann::ordered_json to_json(const Trade& trade);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_MEASURED_TRADE_H_

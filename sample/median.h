@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_MEDIAN_H_
-#define ALCOVE_SAMPLE_MEDIAN_H_
+#pragma once
 
 #include <algorithm>
 #include <cstddef>
@@ -18,5 +17,3 @@ inline double median(std::vector<double> values) {
 }
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_MEDIAN_H_

@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_MOTION_ERRORS_H_
-#define ALCOVE_SAMPLE_MOTION_ERRORS_H_
+#pragma once
 
 #include <cstdint>
 #include <functional>
@@ -88,5 +87,3 @@ struct TruthHalves {
 [[nodiscard]] double root(const RunningMean& squares);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_MOTION_ERRORS_H_

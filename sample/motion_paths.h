@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_MOTION_PATHS_H_
-#define ALCOVE_SAMPLE_MOTION_PATHS_H_
+#pragma once
 
 #include <array>
 #include <cstdint>
@@ -74,5 +73,3 @@ class MotionPath {
 };
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_MOTION_PATHS_H_

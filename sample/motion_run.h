@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_MOTION_RUN_H_
-#define ALCOVE_SAMPLE_MOTION_RUN_H_
+#pragma once
 
 #include <cstdint>
 #include <filesystem>
@@ -94,5 +93,3 @@ struct CutReport {
                                                            const MotionSetup& setup);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_MOTION_RUN_H_

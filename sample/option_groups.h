@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_OPTION_GROUPS_H_
-#define ALCOVE_SAMPLE_OPTION_GROUPS_H_
+#pragma once
 
 #include <cstdint>
 #include <string>
@@ -38,5 +37,3 @@ void add_out(CLI::App& app, Options& options, const std::string& help);
 void check_together(const Options& options);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_OPTION_GROUPS_H_

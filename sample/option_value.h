@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_OPTION_VALUE_H_
-#define ALCOVE_SAMPLE_OPTION_VALUE_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -48,5 +47,3 @@ struct OptionValue {
 [[nodiscard]] std::string shown(double value);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_OPTION_VALUE_H_

@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_OPTIONS_H_
-#define ALCOVE_SAMPLE_OPTIONS_H_
+#pragma once
 
 #include <array>
 #include <cstddef>
@@ -90,5 +89,3 @@ struct Stop {
 [[nodiscard]] tl::expected<Options, Stop> parse_options(int argc, const char* const* argv);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_OPTIONS_H_

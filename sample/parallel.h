@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_PARALLEL_H_
-#define ALCOVE_SAMPLE_PARALLEL_H_
+#pragma once
 
 #include <cstdint>
 #include <functional>
@@ -14,5 +13,3 @@ void parallel_rows(uint32_t rows, const std::function<void(uint32_t)>& row,
                    const Progress& progress = {});
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_PARALLEL_H_

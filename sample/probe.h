@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_PROBE_H_
-#define ALCOVE_SAMPLE_PROBE_H_
+#pragma once
 
 #include <memory>
 #include <string>
@@ -34,5 +33,3 @@ class Probe {
 };
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_PROBE_H_

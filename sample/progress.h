@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_PROGRESS_H_
-#define ALCOVE_SAMPLE_PROGRESS_H_
+#pragma once
 
 #include <string>
 
@@ -12,5 +11,3 @@ namespace alcove::sample {
 [[nodiscard]] Progress print_progress(std::string name);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_PROGRESS_H_

@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_RAY_SCENE_H_
-#define ALCOVE_SAMPLE_RAY_SCENE_H_
+#pragma once
 
 #include <embree3/rtcore.h>
 
@@ -43,5 +42,3 @@ struct RayScene::Impl {
 [[nodiscard]] glm::vec3 albedo_at(const Scene& scene, const Hit& hit);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_RAY_SCENE_H_

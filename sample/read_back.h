@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_READ_BACK_H_
-#define ALCOVE_SAMPLE_READ_BACK_H_
+#pragma once
 
 #include <array>
 #include <cstdint>
@@ -90,5 +89,3 @@ inline Image<glm::vec3> read_colours(const HostBuffer& buffer, VkExtent2D size,
 }
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_READ_BACK_H_

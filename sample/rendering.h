@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_RENDERING_H_
-#define ALCOVE_SAMPLE_RENDERING_H_
+#pragma once
 
 #include <memory>
 #include <string>
@@ -55,5 +54,3 @@ struct Rendering {
                                                            const std::filesystem::path& folder);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_RENDERING_H_

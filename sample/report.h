@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_REPORT_H_
-#define ALCOVE_SAMPLE_REPORT_H_
+#pragma once
 
 #include <nlohmann/json.hpp>
 
@@ -21,5 +20,3 @@ namespace alcove::sample {
 [[nodiscard]] std::string time_table(const Rendering& rendering);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_REPORT_H_

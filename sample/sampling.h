@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_SAMPLING_H_
-#define ALCOVE_SAMPLE_SAMPLING_H_
+#pragma once
 
 #include <algorithm>
 #include <cmath>
@@ -110,5 +109,3 @@ class LobeSampler {
 };
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_SAMPLING_H_

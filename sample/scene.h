@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_SCENE_H_
-#define ALCOVE_SAMPLE_SCENE_H_
+#pragma once
 
 #include <array>
 #include <cstdint>
@@ -132,5 +131,3 @@ using MeshUvs = std::array<glm::vec2, 2>;
 [[nodiscard]] float srgb_to_linear(float encoded);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_SCENE_H_

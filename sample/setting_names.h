@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_SETTING_NAMES_H_
-#define ALCOVE_SAMPLE_SETTING_NAMES_H_
+#pragma once
 
 #include "alcove/passes/occlusion.h"
 #include "alcove/passes/setting_names.h"
@@ -88,5 +87,3 @@ void for_each_setting(Settings& settings, const Visit& visit) {
 }
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_SETTING_NAMES_H_

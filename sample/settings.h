@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_SETTINGS_H_
-#define ALCOVE_SAMPLE_SETTINGS_H_
+#pragma once
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -19,5 +18,3 @@ namespace alcove::sample {
 [[nodiscard]] nlohmann::ordered_json to_json(const passes::OcclusionSettings& settings);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_SETTINGS_H_

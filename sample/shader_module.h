@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_SHADER_MODULE_H_
-#define ALCOVE_SAMPLE_SHADER_MODULE_H_
+#pragma once
 
 #include <vulkan/vulkan.h>
 
@@ -53,5 +52,3 @@ struct ShaderStages {
 };
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_SHADER_MODULE_H_

@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_SHAPES_H_
-#define ALCOVE_SAMPLE_SHAPES_H_
+#pragma once
 
 #include <cstdint>
 #include <span>
@@ -48,5 +47,3 @@ class SceneBuilder {
 };
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_SHAPES_H_

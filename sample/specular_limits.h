@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_SPECULAR_LIMITS_H_
-#define ALCOVE_SAMPLE_SPECULAR_LIMITS_H_
+#pragma once
 
 #include <vector>
 
@@ -28,5 +27,3 @@ struct SpecularLimits {
     const Progress& progress = {});
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_SPECULAR_LIMITS_H_

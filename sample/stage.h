@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_STAGE_H_
-#define ALCOVE_SAMPLE_STAGE_H_
+#pragma once
 
 #include <memory>
 #include <string>
@@ -35,5 +34,3 @@ struct Stage {
 [[nodiscard]] tl::expected<void, std::string> check_validation(const Gpu& gpu);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_STAGE_H_

@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_SURFACE_POINTS_H_
-#define ALCOVE_SAMPLE_SURFACE_POINTS_H_
+#pragma once
 
 #include "camera.h"
 #include "glm.h"
@@ -20,5 +19,3 @@ namespace alcove::sample {
                                            const Image<float>& depth);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_SURFACE_POINTS_H_

@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_SURFACES_H_
-#define ALCOVE_SAMPLE_SURFACES_H_
+#pragma once
 
 #include <optional>
 
@@ -46,5 +45,3 @@ void give_surfaces(passes::ApplyInputs& inputs, const Surfaces& surfaces,
 [[nodiscard]] passes::Matrix to_matrix(const glm::mat4& matrix);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_SURFACES_H_

@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_TANGENTS_H_
-#define ALCOVE_SAMPLE_TANGENTS_H_
+#pragma once
 
 #include <vector>
 
@@ -16,5 +15,3 @@ namespace alcove::sample {
 [[nodiscard]] std::vector<glm::vec4> corner_tangents(const Mesh& mesh, const TextureUse& map);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_TANGENTS_H_

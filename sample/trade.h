@@ -1,6 +1,5 @@
 // The trade of speed for accuracy: what can be spent, what it buys, and the least that will do.
-#ifndef ALCOVE_SAMPLE_TRADE_H_
-#define ALCOVE_SAMPLE_TRADE_H_
+#pragma once
 
 #include <cstdint>
 #include <span>
@@ -46,5 +45,3 @@ struct Trade {
                                                     double rmse);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_TRADE_H_

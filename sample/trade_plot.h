@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_TRADE_PLOT_H_
-#define ALCOVE_SAMPLE_TRADE_PLOT_H_
+#pragma once
 
 #include <string>
 
@@ -12,5 +11,3 @@ namespace alcove::sample {
 [[nodiscard]] std::string plot_of(const Trade& trade, const std::string& title);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_TRADE_PLOT_H_

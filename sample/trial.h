@@ -1,6 +1,5 @@
 // A standing view drawn under changed settings, side by side with the settings as they were.
-#ifndef ALCOVE_SAMPLE_TRIAL_H_
-#define ALCOVE_SAMPLE_TRIAL_H_
+#pragma once
 
 #include <cstdint>
 #include <memory>
@@ -85,5 +84,3 @@ class TrialRunner {
 };
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_TRIAL_H_

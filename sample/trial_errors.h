@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_TRIAL_ERRORS_H_
-#define ALCOVE_SAMPLE_TRIAL_ERRORS_H_
+#pragma once
 
 #include <string>
 #include <tl/expected.hpp>
@@ -35,5 +34,3 @@ struct TrialReport {
                                                                 const std::string& progress);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_TRIAL_ERRORS_H_

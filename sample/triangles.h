@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_TRIANGLES_H_
-#define ALCOVE_SAMPLE_TRIANGLES_H_
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -37,5 +36,3 @@ struct Triangles {
 [[nodiscard]] Triangles flatten(const Scene& scene);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_TRIANGLES_H_

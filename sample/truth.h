@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_TRUTH_H_
-#define ALCOVE_SAMPLE_TRUTH_H_
+#pragma once
 
 #include <cstdint>
 #include <functional>
@@ -110,5 +109,3 @@ struct Viewer {
                                                      const Progress& progress = {});
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_TRUTH_H_

@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_TRUTH_CACHE_H_
-#define ALCOVE_SAMPLE_TRUTH_CACHE_H_
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -79,5 +78,3 @@ class TruthCache {
 };
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_TRUTH_CACHE_H_

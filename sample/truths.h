@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_TRUTHS_H_
-#define ALCOVE_SAMPLE_TRUTHS_H_
+#pragma once
 
 #include <string>
 #include <tl/expected.hpp>
@@ -35,5 +34,3 @@ struct Truths {
                                                           const Options& options);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_TRUTHS_H_

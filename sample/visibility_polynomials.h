@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_VISIBILITY_POLYNOMIALS_H_
-#define ALCOVE_SAMPLE_VISIBILITY_POLYNOMIALS_H_
+#pragma once
 
 #include <array>
 #include <cstddef>
@@ -29,5 +28,3 @@ void add_weighted(VisibilityPolynomials& sum, const VisibilityPolynomials& other
                                   const VisibilityPolynomials& lobe);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_VISIBILITY_POLYNOMIALS_H_

@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_VULKAN_DEVICE_H_
-#define ALCOVE_SAMPLE_VULKAN_DEVICE_H_
+#pragma once
 
 #include <vulkan/vulkan.h>
 
@@ -89,5 +88,3 @@ class VulkanDevice {
 [[nodiscard]] std::string_view result_name(VkResult result);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_VULKAN_DEVICE_H_

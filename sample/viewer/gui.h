@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_VIEWER_GUI_H_
-#define ALCOVE_SAMPLE_VIEWER_GUI_H_
+#pragma once
 
 #include <memory>
 #include <string>
@@ -45,5 +44,3 @@ class Gui {
 };
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_VIEWER_GUI_H_

@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_VIEWER_ORBIT_CAMERA_H_
-#define ALCOVE_SAMPLE_VIEWER_ORBIT_CAMERA_H_
+#pragma once
 
 #include "camera.h"
 
@@ -20,5 +19,3 @@ namespace alcove::sample {
 [[nodiscard]] Camera dollied(const Camera& camera, float factor);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_VIEWER_ORBIT_CAMERA_H_

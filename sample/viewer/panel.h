@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_VIEWER_PANEL_H_
-#define ALCOVE_SAMPLE_VIEWER_PANEL_H_
+#pragma once
 
 #include <string>
 
@@ -29,5 +28,3 @@ struct PanelFacts {
 void move_camera_by_mouse(Camera& camera);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_VIEWER_PANEL_H_

@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_VIEWER_PICTURE_PASS_H_
-#define ALCOVE_SAMPLE_VIEWER_PICTURE_PASS_H_
+#pragma once
 
 #include <memory>
 #include <string>
@@ -57,5 +56,3 @@ class PicturePass {
 };
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_VIEWER_PICTURE_PASS_H_

@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_VIEWER_PRESENTER_H_
-#define ALCOVE_SAMPLE_VIEWER_PRESENTER_H_
+#pragma once
 
 #include <functional>
 #include <memory>
@@ -65,5 +64,3 @@ class Presenter {
 };
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_VIEWER_PRESENTER_H_

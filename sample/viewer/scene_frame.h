@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_VIEWER_SCENE_FRAME_H_
-#define ALCOVE_SAMPLE_VIEWER_SCENE_FRAME_H_
+#pragma once
 
 #include <memory>
 #include <optional>
@@ -79,5 +78,3 @@ class SceneFrame {
 };
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_VIEWER_SCENE_FRAME_H_

@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_VIEWER_SCENE_VIEW_H_
-#define ALCOVE_SAMPLE_VIEWER_SCENE_VIEW_H_
+#pragma once
 
 #include <memory>
 #include <string>
@@ -76,5 +75,3 @@ class SceneView {
 };
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_VIEWER_SCENE_VIEW_H_

@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_VIEWER_SCREENSHOT_H_
-#define ALCOVE_SAMPLE_VIEWER_SCREENSHOT_H_
+#pragma once
 
 #include <filesystem>
 #include <string>
@@ -21,5 +20,3 @@ namespace alcove::sample {
     const std::filesystem::path& folder, const Image<glm::vec3>& image);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_VIEWER_SCREENSHOT_H_

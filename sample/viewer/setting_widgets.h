@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_VIEWER_SETTING_WIDGETS_H_
-#define ALCOVE_SAMPLE_VIEWER_SETTING_WIDGETS_H_
+#pragma once
 
 #include "alcove/passes/occlusion.h"
 
@@ -11,5 +10,3 @@ namespace alcove::sample {
 void lay_out_settings(passes::OcclusionSettings& settings, float radius);
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_VIEWER_SETTING_WIDGETS_H_

@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_VIEWER_SMOOTHED_TIMES_H_
-#define ALCOVE_SAMPLE_VIEWER_SMOOTHED_TIMES_H_
+#pragma once
 
 #include <vector>
 
@@ -20,5 +19,3 @@ class SmoothedTimes {
 };
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_VIEWER_SMOOTHED_TIMES_H_

@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_VIEWER_SWAPCHAIN_H_
-#define ALCOVE_SAMPLE_VIEWER_SWAPCHAIN_H_
+#pragma once
 
 #include <cstdint>
 #include <memory>
@@ -58,5 +57,3 @@ class Swapchain {
 };
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_VIEWER_SWAPCHAIN_H_

@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_VIEWER_VIEW_STATE_H_
-#define ALCOVE_SAMPLE_VIEWER_VIEW_STATE_H_
+#pragma once
 
 #include <array>
 #include <cstdint>
@@ -63,5 +62,3 @@ struct ViewState {
 }
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_VIEWER_VIEW_STATE_H_

@@ -1,5 +1,4 @@
-#ifndef ALCOVE_SAMPLE_VIEWER_WINDOW_H_
-#define ALCOVE_SAMPLE_VIEWER_WINDOW_H_
+#pragma once
 
 #include <vulkan/vulkan.h>
 
@@ -48,5 +47,3 @@ class Window {
 };
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_SAMPLE_VIEWER_WINDOW_H_

@@ -1,6 +1,5 @@
 // Frames by the C interface, and the same by the C++ functions.
-#ifndef ALCOVE_TESTS_PASSES_C_INTERFACE_FIXTURE_H_
-#define ALCOVE_TESTS_PASSES_C_INTERFACE_FIXTURE_H_
+#pragma once
 
 #include <cstdint>
 #include <map>
@@ -86,5 +85,3 @@ class CInterface : public PassTest {
 void expect_equal(const Results& found, const Results& expected);
 
 }  // namespace alcove::passes
-
-#endif  // ALCOVE_TESTS_PASSES_C_INTERFACE_FIXTURE_H_

@@ -1,6 +1,5 @@
 // What c_program.c, compiled as C99, does.
-#ifndef ALCOVE_TESTS_PASSES_C_PROGRAM_H_
-#define ALCOVE_TESTS_PASSES_C_PROGRAM_H_
+#pragma once
 
 #include "alcove/alcove.h"
 
@@ -18,5 +17,3 @@ AlcoveResult run_c_program(const AlcoveContextInfo* info, const AlcoveCamera* ca
 #ifdef __cplusplus
 }
 #endif
-
-#endif  // ALCOVE_TESTS_PASSES_C_PROGRAM_H_

@@ -1,7 +1,6 @@
 // Depth buffers and normals of simple surfaces, drawn by rays in double precision: what an engine
 // would hand to the passes, and the exact surfaces for references to search.
-#ifndef ALCOVE_TESTS_PASSES_DRAWING_H_
-#define ALCOVE_TESTS_PASSES_DRAWING_H_
+#pragma once
 
 #include <functional>
 #include <glm/glm.hpp>
@@ -93,5 +92,3 @@ HostImage draw_second_layer(const TestView& view, std::uint32_t width, std::uint
                             const Scene& scene);
 
 }  // namespace alcove::passes
-
-#endif  // ALCOVE_TESTS_PASSES_DRAWING_H_

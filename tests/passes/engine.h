@@ -1,6 +1,5 @@
 // An engine as the C interface meets it: images, a camera and command buffers of its own.
-#ifndef ALCOVE_TESTS_PASSES_ENGINE_H_
-#define ALCOVE_TESTS_PASSES_ENGINE_H_
+#pragma once
 
 #include <array>
 #include <cstdint>
@@ -65,5 +64,3 @@ struct DestroyContext {
 using Context = std::unique_ptr<AlcoveContext, DestroyContext>;
 
 }  // namespace alcove::passes
-
-#endif  // ALCOVE_TESTS_PASSES_ENGINE_H_

@@ -1,6 +1,5 @@
 // Reads of octahedral maps on the host, as the shaders read them.
-#ifndef ALCOVE_TESTS_PASSES_ENVIRONMENT_LOOKUP_H_
-#define ALCOVE_TESTS_PASSES_ENVIRONMENT_LOOKUP_H_
+#pragma once
 
 #include "maths/environment_map.h"
 #include "pass_fixture.h"
@@ -25,5 +24,3 @@ inline glm::vec3 look_up(const HostImage& map, glm::vec3 direction) {
 }
 
 }  // namespace alcove::passes
-
-#endif  // ALCOVE_TESTS_PASSES_ENVIRONMENT_LOOKUP_H_

@@ -1,6 +1,5 @@
 // Scenes for ambient occlusion, in view space about 4 units before the eye.
-#ifndef ALCOVE_TESTS_PASSES_GTAO_SCENES_H_
-#define ALCOVE_TESTS_PASSES_GTAO_SCENES_H_
+#pragma once
 
 #include <cmath>
 #include <string>
@@ -47,5 +46,3 @@ inline std::vector<NamedScene> gtao_scenes() {
 }
 
 }  // namespace alcove::passes
-
-#endif  // ALCOVE_TESTS_PASSES_GTAO_SCENES_H_

@@ -1,5 +1,4 @@
-#ifndef ALCOVE_TESTS_PASSES_HIDDEN_DEPTHS_H_
-#define ALCOVE_TESTS_PASSES_HIDDEN_DEPTHS_H_
+#pragma once
 
 #include <array>
 
@@ -37,5 +36,3 @@ class HiddenDepthTest : public PassTest {
 };
 
 }  // namespace alcove::passes
-
-#endif  // ALCOVE_TESTS_PASSES_HIDDEN_DEPTHS_H_

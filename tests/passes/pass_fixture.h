@@ -1,5 +1,4 @@
-#ifndef ALCOVE_TESTS_PASSES_PASS_FIXTURE_H_
-#define ALCOVE_TESTS_PASSES_PASS_FIXTURE_H_
+#pragma once
 
 #include <gtest/gtest.h>
 
@@ -88,5 +87,3 @@ class PassTest : public testing::Test {
 };
 
 }  // namespace alcove::passes
-
-#endif  // ALCOVE_TESTS_PASSES_PASS_FIXTURE_H_

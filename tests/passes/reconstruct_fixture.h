@@ -1,5 +1,4 @@
-#ifndef ALCOVE_TESTS_PASSES_RECONSTRUCT_FIXTURE_H_
-#define ALCOVE_TESTS_PASSES_RECONSTRUCT_FIXTURE_H_
+#pragma once
 
 #include <cstdint>
 #include <random>
@@ -56,5 +55,3 @@ HostImage signal_of(std::uint32_t width, std::uint32_t height, const Visibility&
 [[nodiscard]] double variance(const HostImage& image);
 
 }  // namespace alcove::passes
-
-#endif  // ALCOVE_TESTS_PASSES_RECONSTRUCT_FIXTURE_H_

@@ -1,7 +1,6 @@
 // What ambient occlusion should be, by brute force: every slice through the eye marched in steps of
 // half a pixel over the exact surfaces, integrated numerically in double precision.
-#ifndef ALCOVE_TESTS_PASSES_REFERENCE_OCCLUSION_H_
-#define ALCOVE_TESTS_PASSES_REFERENCE_OCCLUSION_H_
+#pragma once
 
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -21,5 +20,3 @@ ReferenceOcclusion reference_occlusion(const Drawing& drawing, std::uint32_t x, 
                                        double radius);
 
 }  // namespace alcove::passes
-
-#endif  // ALCOVE_TESTS_PASSES_REFERENCE_OCCLUSION_H_

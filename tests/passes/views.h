@@ -1,6 +1,5 @@
 // Views of every kind, and depth buffers of planes as they would draw them, in double precision.
-#ifndef ALCOVE_TESTS_PASSES_VIEWS_H_
-#define ALCOVE_TESTS_PASSES_VIEWS_H_
+#pragma once
 
 #include <string>
 #include <vector>
@@ -33,5 +32,3 @@ PlaneScene plane_scene(const TestView& view, std::uint32_t width, std::uint32_t 
                        float tilt_degrees);
 
 }  // namespace alcove::passes
-
-#endif  // ALCOVE_TESTS_PASSES_VIEWS_H_

@@ -1,5 +1,4 @@
-#ifndef ALCOVE_TESTS_SAMPLE_ANALYTIC_POINTS_H_
-#define ALCOVE_TESTS_SAMPLE_ANALYTIC_POINTS_H_
+#pragma once
 
 #include <cstdint>
 
@@ -21,5 +20,3 @@ inline SurfacePoints points_of(const AnalyticScene& analytic) {
 }
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_TESTS_SAMPLE_ANALYTIC_POINTS_H_

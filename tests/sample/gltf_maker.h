@@ -1,5 +1,4 @@
-#ifndef ALCOVE_TESTS_SAMPLE_GLTF_MAKER_H_
-#define ALCOVE_TESTS_SAMPLE_GLTF_MAKER_H_
+#pragma once
 
 #include <gtest/gtest.h>
 
@@ -153,5 +152,3 @@ inline Scene parsed(const std::vector<uint8_t>& bytes) {
 }
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_TESTS_SAMPLE_GLTF_MAKER_H_

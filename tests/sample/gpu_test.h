@@ -1,5 +1,4 @@
-#ifndef ALCOVE_TESTS_SAMPLE_GPU_TEST_H_
-#define ALCOVE_TESTS_SAMPLE_GPU_TEST_H_
+#pragma once
 
 #include <gtest/gtest.h>
 
@@ -40,5 +39,3 @@ class GpuTest : public testing::Test {
 };
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_TESTS_SAMPLE_GPU_TEST_H_

@@ -1,5 +1,4 @@
-#ifndef ALCOVE_TESTS_SAMPLE_QUAD_TEST_H_
-#define ALCOVE_TESTS_SAMPLE_QUAD_TEST_H_
+#pragma once
 
 #include <cstdint>
 #include <utility>
@@ -56,5 +55,3 @@ class QuadTest : public GpuTest {
 };
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_TESTS_SAMPLE_QUAD_TEST_H_

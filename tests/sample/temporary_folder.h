@@ -1,5 +1,4 @@
-#ifndef ALCOVE_TESTS_SAMPLE_TEMPORARY_FOLDER_H_
-#define ALCOVE_TESTS_SAMPLE_TEMPORARY_FOLDER_H_
+#pragma once
 
 #include <filesystem>
 #include <random>
@@ -21,5 +20,3 @@ struct TemporaryFolder {
 };
 
 }  // namespace alcove::sample
-
-#endif  // ALCOVE_TESTS_SAMPLE_TEMPORARY_FOLDER_H_
