@@ -1,5 +1,5 @@
-// The synchroniser: see synchronise.cpp, and handover.cpp for what goes from queue to queue,
-// split_barriers.cpp for events.
+// The synchroniser: see synchronise.cpp, externals.cpp for how imports and histories arrive and are
+// left, handover.cpp for what goes from queue to queue, split_barriers.cpp for events.
 #pragma once
 
 #include <algorithm>
@@ -36,7 +36,6 @@ class Synchroniser {
   void run();
 
  private:
-  void arrive();
   void find_last_uses();
   void find_last_owners();
   void take_over_memory(std::uint32_t resource);
@@ -47,21 +46,28 @@ class Synchroniser {
   void change_layout(std::uint32_t position, const AccessRecord& access, UseState& state,
                      const Range& range);
   void note_change(std::uint32_t position, const AccessRecord& access, UseState& state);
+  void read_again(std::uint32_t position, const AccessRecord& access, UseState& state);
+  void write_again(std::uint32_t position, const AccessRecord& access, UseState& state);
+
+  // externals.cpp
+  void arrive();
+  void depart();
+  void end_reads(std::uint32_t resource, const State& departure);
+  AccessRecord outside_use(std::uint32_t resource, const State& state) const;
+  void leave(std::uint32_t resource);
+
+  // handover.cpp
   bool change_queue(std::uint32_t position, const AccessRecord& access, UseState& state,
                     const Range& range);
   void take_without_giver(UseState& state, bool same_family) const;
   Transition release_of(const AccessRecord& access, const UseState& state,
                         const Range& range) const;
   void add_releases();
-  void read_again(std::uint32_t position, const AccessRecord& access, UseState& state);
-  void write_again(std::uint32_t position, const AccessRecord& access, UseState& state);
-  void depart();
-  void end_reads(std::uint32_t resource, const State& departure);
+
+  // split_barriers.cpp
   void split();
   std::uint32_t set_position(std::uint32_t position) const;
   bool can_split(const Batch& batch) const;
-  AccessRecord outside_use(std::uint32_t resource, const State& state) const;
-  void leave(std::uint32_t resource);
 
   Batch& batch_after(std::int32_t time, std::uint32_t position);
   Transition& next_image(std::int32_t time, std::uint32_t position);
