@@ -73,8 +73,8 @@ struct Workspace {
   } validate;
   struct Cull {
     std::vector<std::uint32_t> needed_by;  // by subresource
-    std::vector<std::uint32_t>
-        history_reader;  // by resource: of slot 0, the pass that reads an older one
+    // By resource, of a history's slot 0: the pass that reads an older one.
+    std::vector<std::uint32_t> history_reader;
   } cull;
   struct Reorder {
     // A link of a list: of the passes that follow `from`, or of the readers of a subresource.

@@ -247,8 +247,8 @@ typedef struct AlcoveView {
   // Inputs.
   AlcoveImage depth;    // as clip_from_view has it: any depth format, or R32_SFLOAT. Needed
   AlcoveImage normals;  // xyz unit, signed; none: made from depth, and in view space
-  AlcoveImage
-      motion;  // xy: uv of this frame minus uv of the last, signed; none: only the camera moves
+  // xy: uv of this frame minus uv of the last, signed; none: only the camera moves.
+  AlcoveImage motion;
   AlcoveImage roughness;     // perceptual, [0,1]; none: AlcoveSettings::roughness
   AlcoveImage back_depth;    // of the nearest back faces, as depth; needed with
                              // ALCOVE_THICKNESS_UNIT_BACK_FACES (bitmask, connected), else unread

@@ -45,8 +45,8 @@ struct OcclusionInputs {
   framegraph::Texture depth_ndc;       // as the view's projection wrote it
   framegraph::Texture normals;         // xyz unit; null: they are made from depth
   bool normals_in_view_space = false;  // else in world space
-  framegraph::Texture
-      motion;  // xy: uv of this frame minus uv of the last; null: only the camera moves
+  // xy: uv of this frame minus uv of the last; null: only the camera moves.
+  framegraph::Texture motion;
   framegraph::Texture roughness;  // perceptual, [0,1]; null: OcclusionSettings::roughness
   // For ThicknessUnit::back_faces, where needs_back_depth(); else ignored. The depth of the scene
   // drawn once more with front faces culled, and all else alike: projection, size, cleared to the
@@ -68,10 +68,10 @@ struct OcclusionInputs {
 struct OcclusionOutputs {
   // One channel, [0,1], 1 open; null where neither the settings nor their specular model want it.
   framegraph::Texture visibility;
-  framegraph::Texture
-      bent_normal;  // xyz unit, in the space of `normals`; null where none was asked for
-  framegraph::Texture specular;      // one channel, multiplies specular probe light, [0,1], 1 open;
-                                     // null where none was asked for
+  // xyz unit, in the space of `normals`; null where none was asked for.
+  framegraph::Texture bent_normal;
+  // One channel, multiplies specular probe light, [0,1], 1 open; null where none was asked for.
+  framegraph::Texture specular;
   framegraph::Texture linear_depth;  // as add_depth_pyramid makes it
   framegraph::Texture normals;       // those given, or those made from depth, in view space
 };
