@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "host_buffer.h"
 #include "shader_table.h"
 
 namespace alcove::passes {
@@ -31,13 +32,6 @@ struct Pipeline {
 struct Set {
   Shader shader = Shader::count;
   VkDescriptorSet set = VK_NULL_HANDLE;
-};
-
-// Memory that the host wrote and the device reads.
-struct HostBuffer {
-  VkBuffer buffer = VK_NULL_HANDLE;
-  VkDeviceMemory memory = VK_NULL_HANDLE;
-  std::byte* mapped = nullptr;
 };
 
 VkDescriptorType descriptor_type(char binding) {
@@ -67,8 +61,8 @@ struct Kernels::State {
   std::array<VkPipelineLayout, kShaderCount> pipeline_layouts{};
   std::vector<Pipeline> pipelines;
   std::vector<FrameSlot> slots;
-  std::array<HostBuffer, kShaderCount> tables{};
-  HostBuffer parameters;
+  std::array<std::unique_ptr<HostBuffer>, kShaderCount> tables;  // null: none, or not yet
+  std::unique_ptr<HostBuffer> parameters;
   std::size_t slot = 0;
   std::uint32_t dispatches = 0;
 
@@ -80,9 +74,8 @@ struct Kernels::State {
   tl::expected<void, Error> create_layouts();
   tl::expected<void, Error> create_slots(std::uint32_t count);
   tl::expected<void, Error> create_parameters(std::uint32_t slot_count);
-  tl::expected<void, Error> create_buffer(HostBuffer& made, VkDeviceSize size,
+  tl::expected<void, Error> create_buffer(std::unique_ptr<HostBuffer>& made, VkDeviceSize size,
                                           VkBufferUsageFlags usage, std::string_view what);
-  void destroy_buffer(const HostBuffer& buffer) const;
   tl::expected<void, Error> create_module(std::size_t shader);
   tl::expected<void, Error> create_table(std::size_t shader);
   VkResult next_set(Shader shader, VkDescriptorSet& set);
@@ -102,17 +95,10 @@ Kernels::State::~State() {
     vk.vkDestroyShaderModule(device, modules[i], nullptr);
     vk.vkDestroyPipelineLayout(device, pipeline_layouts[i], nullptr);
     vk.vkDestroyDescriptorSetLayout(device, set_layouts[i], nullptr);
-    destroy_buffer(tables[i]);
   }
   for (const FrameSlot& frame : slots) {
     vk.vkDestroyDescriptorPool(device, frame.pool, nullptr);
   }
-  destroy_buffer(parameters);
-}
-
-void Kernels::State::destroy_buffer(const HostBuffer& buffer) const {
-  vk.vkDestroyBuffer(device, buffer.buffer, nullptr);
-  vk.vkFreeMemory(device, buffer.memory, nullptr);
 }
 
 tl::expected<void, Error> Kernels::State::create_layouts() {
@@ -165,42 +151,14 @@ tl::expected<void, Error> Kernels::State::create_slots(std::uint32_t count) {
   return {};
 }
 
-tl::expected<void, Error> Kernels::State::create_buffer(HostBuffer& made, VkDeviceSize size,
-                                                        VkBufferUsageFlags usage,
+tl::expected<void, Error> Kernels::State::create_buffer(std::unique_ptr<HostBuffer>& made,
+                                                        VkDeviceSize size, VkBufferUsageFlags usage,
                                                         std::string_view what) {
-  const VkBufferCreateInfo info{
-      .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = size, .usage = usage};
-  if (const VkResult result = vk.vkCreateBuffer(device, &info, nullptr, &made.buffer);
-      result != VK_SUCCESS) {
-    return failure("the buffer of " + std::string(what), result);
+  auto created = HostBuffer::create(vk, physical_device, device, size, usage);
+  if (!created) {
+    return failure("the buffer of " + std::string(what), created.error());
   }
-  VkMemoryRequirements needs;
-  vk.vkGetBufferMemoryRequirements(device, made.buffer, &needs);
-  VkPhysicalDeviceMemoryProperties memory;
-  vk.vkGetPhysicalDeviceMemoryProperties(physical_device, &memory);
-  constexpr VkMemoryPropertyFlags kWanted =
-      VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-  std::uint32_t type = 0;
-  while (type < memory.memoryTypeCount &&
-         ((needs.memoryTypeBits >> type & 1u) == 0 ||
-          (memory.memoryTypes[type].propertyFlags & kWanted) != kWanted)) {
-    ++type;
-  }
-  const VkMemoryAllocateInfo allocation{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-                                        .allocationSize = needs.size,
-                                        .memoryTypeIndex = type};
-  VkResult result = vk.vkAllocateMemory(device, &allocation, nullptr, &made.memory);
-  void* pointer = nullptr;
-  if (result == VK_SUCCESS) {
-    result = vk.vkBindBufferMemory(device, made.buffer, made.memory, 0);
-  }
-  if (result == VK_SUCCESS) {
-    result = vk.vkMapMemory(device, made.memory, 0, VK_WHOLE_SIZE, 0, &pointer);
-  }
-  if (result != VK_SUCCESS) {
-    return failure("the memory of " + std::string(what), result);
-  }
-  made.mapped = static_cast<std::byte*>(pointer);
+  made = std::move(*created);
   return {};
 }
 
@@ -212,19 +170,12 @@ tl::expected<void, Error> Kernels::State::create_parameters(std::uint32_t slot_c
 // The table that a shader looks up, where it has one.
 tl::expected<void, Error> Kernels::State::create_table(std::size_t shader) {
   const std::span<const std::uint32_t> table = shader_source(static_cast<Shader>(shader)).table;
-  HostBuffer& made = tables[shader];
-  if (table.empty() || made.mapped != nullptr) {
+  std::unique_ptr<HostBuffer>& made = tables[shader];
+  if (table.empty() || made) {
     return {};
   }
-  if (auto created =
-          create_buffer(made, table.size_bytes(), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, "a table");
-      !created) {
-    destroy_buffer(made);
-    made = {};
-    return created;
-  }
-  std::memcpy(made.mapped, table.data(), table.size_bytes());
-  return {};
+  return create_buffer(made, table.size_bytes(), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, "a table")
+      .map([&] { std::memcpy(made->bytes(), table.data(), table.size_bytes()); });
 }
 
 tl::expected<void, Error> Kernels::State::create_module(std::size_t shader) {
@@ -270,7 +221,7 @@ VkResult Kernels::State::next_set(Shader shader, VkDescriptorSet& set) {
 VkDeviceSize Kernels::State::write_parameters(std::span<const std::byte> bytes) {
   assert(bytes.size() <= kMaxParameterBytes);
   const VkDeviceSize offset = (slot * kMaxDispatches + dispatches) * kMaxParameterBytes;
-  std::memcpy(parameters.mapped + offset, bytes.data(), bytes.size());
+  std::memcpy(parameters->bytes() + offset, bytes.data(), bytes.size());
   return offset;
 }
 
@@ -278,10 +229,11 @@ void Kernels::State::write_set(VkDescriptorSet set, Shader shader,
                                std::span<const VkImageView> views, VkDeviceSize offset,
                                VkDeviceSize size) {
   const std::string_view bindings = shader_source(shader).bindings;
-  const HostBuffer& table = tables[static_cast<std::size_t>(shader)];
-  assert(views.size() + (table.buffer != VK_NULL_HANDLE ? 1 : 0) == bindings.size());
-  const VkDescriptorBufferInfo buffer{parameters.buffer, offset, size};
-  const VkDescriptorBufferInfo table_buffer{table.buffer, 0, VK_WHOLE_SIZE};
+  const HostBuffer* const table = tables[static_cast<std::size_t>(shader)].get();
+  assert(views.size() + (table ? 1 : 0) == bindings.size());
+  const VkDescriptorBufferInfo buffer{parameters->buffer(), offset, size};
+  const VkDescriptorBufferInfo table_buffer{table ? table->buffer() : VK_NULL_HANDLE, 0,
+                                            VK_WHOLE_SIZE};
   std::array<VkDescriptorImageInfo, kMaxBindings> images;
   std::array<VkWriteDescriptorSet, kMaxBindings> writes;
   for (std::uint32_t i = 0; i <= bindings.size(); ++i) {
@@ -420,7 +372,7 @@ VkDeviceSize Kernels::memory_bytes() const {
 std::size_t Kernels::table_bytes() const {
   std::size_t bytes = 0;
   for (std::size_t i = 0; i < kShaderCount; ++i) {
-    if (state_->tables[i].mapped != nullptr) {
+    if (state_->tables[i]) {
       bytes += shader_source(static_cast<Shader>(i)).table.size_bytes();
     }
   }
