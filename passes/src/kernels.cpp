@@ -45,6 +45,16 @@ VkDescriptorType descriptor_type(char binding) {
   }
 }
 
+// Descriptors of a type that a dispatch of any shader binds at most.
+std::uint32_t most_bound(VkDescriptorType type) {
+  std::ptrdiff_t most = 0;
+  for (std::size_t i = 0; i < kShaderCount; ++i) {
+    const std::string_view bindings = shader_source(static_cast<Shader>(i)).bindings;
+    most = std::max(most, std::ranges::count(bindings, type, descriptor_type));
+  }
+  return static_cast<std::uint32_t>(most);
+}
+
 struct FrameSlot {
   VkDescriptorPool pool = VK_NULL_HANDLE;
   std::array<Set, Kernels::kMaxDispatches> sets;
@@ -131,11 +141,14 @@ tl::expected<void, Error> Kernels::State::create_layouts() {
 }
 
 tl::expected<void, Error> Kernels::State::create_slots(std::uint32_t count) {
+  const auto worst = [](VkDescriptorType type) {
+    return VkDescriptorPoolSize{type, kMaxDispatches * most_bound(type)};
+  };
   const std::array<VkDescriptorPoolSize, 4> sizes{
       {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, kMaxDispatches},
-       {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kMaxDispatches},
-       {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, kMaxDispatches * 8},
-       {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, kMaxDispatches * 6}}};
+       worst(VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
+       worst(VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE),
+       worst(VK_DESCRIPTOR_TYPE_STORAGE_IMAGE)}};
   const VkDescriptorPoolCreateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
                                         .flags = VK_DESCRIPTOR_POOL_CREATE_FREE_DESCRIPTOR_SET_BIT,
                                         .maxSets = kMaxDispatches,
