@@ -93,6 +93,12 @@ AlcoveResult guarded(Message& message, const Call& call) {
   }
 }
 
+// The same for a call on a context, which keeps what was said.
+template <typename Call>
+AlcoveResult guarded(AlcoveContext* context, const Call& call) {
+  return context == nullptr ? ALCOVE_ERROR_INVALID_INPUT : guarded(context->message, call);
+}
+
 Result create(const AlcoveContextInfo& info, AlcoveContext*& context) {
   framegraph::DeviceHandles handles;
   handles.instance = info.instance;
@@ -223,17 +229,11 @@ const char* alcoveGetMessage(const AlcoveContext* context) {
 
 AlcoveResult alcoveRecordFrame(AlcoveContext* context, VkCommandBuffer commands,
                                const AlcoveFrame* frame) {
-  if (context == nullptr) {
-    return ALCOVE_ERROR_INVALID_INPUT;
-  }
-  return guarded(context->message, [&] { return record(*context, commands, frame); });
+  return guarded(context, [&] { return record(*context, commands, frame); });
 }
 
 AlcoveResult alcoveDiscardFrame(AlcoveContext* context) {
-  if (context == nullptr) {
-    return ALCOVE_ERROR_INVALID_INPUT;
-  }
-  return guarded(context->message, [&]() -> Result {
+  return guarded(context, [&]() -> Result {
     if (context->may_discard) {
       context->executor.discard(context->graph, {context->slot});
       context->report = {};
@@ -244,10 +244,7 @@ AlcoveResult alcoveDiscardFrame(AlcoveContext* context) {
 }
 
 AlcoveResult alcoveGetMemory(AlcoveContext* context, AlcoveMemory* memory) {
-  if (context == nullptr) {
-    return ALCOVE_ERROR_INVALID_INPUT;
-  }
-  return guarded(context->message, [&]() -> Result {
+  return guarded(context, [&]() -> Result {
     if (memory == nullptr) {
       return invalid("There is no AlcoveMemory.");
     }
@@ -268,10 +265,7 @@ AlcoveResult alcoveGetMemory(AlcoveContext* context, AlcoveMemory* memory) {
 
 AlcoveResult alcoveGetTimings(AlcoveContext* context, uint32_t slot, uint32_t* count,
                               AlcoveTiming* timings) {
-  if (context == nullptr) {
-    return ALCOVE_ERROR_INVALID_INPUT;
-  }
-  return guarded(context->message, [&]() -> Result {
+  return guarded(context, [&]() -> Result {
     if (count == nullptr) {
       return invalid("There is no place for the number of timings.");
     }
@@ -297,7 +291,7 @@ size_t alcovePrintPlan(AlcoveContext* context, char* text, size_t size) {
     return 0;
   }
   std::size_t length = 0;
-  guarded(context->message, [&]() -> Result {
+  guarded(context, [&]() -> Result {
     length = copy_text(framegraph::print_text(context->graph.description(), *context->report.plan),
                        text, size);
     return {};
@@ -306,10 +300,7 @@ size_t alcovePrintPlan(AlcoveContext* context, char* text, size_t size) {
 }
 
 AlcoveResult alcoveDropView(AlcoveContext* context, uint32_t id) {
-  if (context == nullptr) {
-    return ALCOVE_ERROR_INVALID_INPUT;
-  }
-  return guarded(context->message, [&]() -> Result {
+  return guarded(context, [&]() -> Result {
     // The frame that declared it is over; its plan can still be printed.
     context->graph.histories().begin_frame();
     passes::drop_reconstruct_history(context->graph, passes::ViewName(id));
@@ -318,10 +309,7 @@ AlcoveResult alcoveDropView(AlcoveContext* context, uint32_t id) {
 }
 
 AlcoveResult alcoveForgetImage(AlcoveContext* context, VkImage image) {
-  if (context == nullptr) {
-    return ALCOVE_ERROR_INVALID_INPUT;
-  }
-  return guarded(context->message, [&]() -> Result {
+  return guarded(context, [&]() -> Result {
     context->executor.forget(image);
     return {};
   });
