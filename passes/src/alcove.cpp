@@ -139,7 +139,7 @@ Result check(const AlcoveContext& context, VkCommandBuffer commands, const Alcov
   if (frame->view_count < 1 || frame->view_count > ALCOVE_MAX_VIEWS || frame->views == nullptr) {
     return invalid("The frame has " +
                    std::to_string(frame->views == nullptr ? 0 : frame->view_count) +
-                   " views; it must have 1 to 8.");
+                   " views; it must have 1 to " + std::to_string(ALCOVE_MAX_VIEWS) + ".");
   }
   for (std::uint32_t i = 0; i < frame->view_count; ++i) {
     const AlcoveView& view = frame->views[i];

@@ -50,7 +50,7 @@ tl::expected<void, Error> check_probe(const Frame& frame, const ApplyInputs& inp
   if (harmonics.width != maths::kHarmonics || harmonics.height != 1) {
     return refusal("The pass probe light was given harmonics of " +
                    std::to_string(harmonics.width) + "x" + std::to_string(harmonics.height) +
-                   " texels; it needs 9x1.");
+                   " texels; it needs " + std::to_string(maths::kHarmonics) + "x1.");
   }
   if (inputs.map) {
     const VkExtent3D map = frame.graph.extent(inputs.map);

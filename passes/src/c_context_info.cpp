@@ -126,7 +126,8 @@ tl::expected<void, Failure> check(const AlcoveContextInfo* info) {
   }
   if (info->frames_in_flight < 1 || info->frames_in_flight > ALCOVE_MAX_FRAMES_IN_FLIGHT) {
     return invalid("AlcoveContextInfo::frames_in_flight is " +
-                   std::to_string(info->frames_in_flight) + "; it must be 1 to 8.");
+                   std::to_string(info->frames_in_flight) + "; it must be 1 to " +
+                   std::to_string(ALCOVE_MAX_FRAMES_IN_FLIGHT) + ".");
   }
   return check_device(*info);
 }

@@ -31,7 +31,7 @@ tl::expected<void, Error> check(const Frame& frame, Texture depth_ndc, std::uint
                                 float reach) {
   if (mips < 1 || mips > kMaxMips) {
     return tl::unexpected(Error{"The depth pyramid was asked for " + std::to_string(mips) +
-                                " mips; it must be 1 to 5."});
+                                " mips; it must be 1 to " + std::to_string(kMaxMips) + "."});
   }
   if (mips > 1 && (!(reach > 0.0f) || !std::isfinite(reach))) {
     return tl::unexpected(Error{"The depth pyramid's reach is " + std::to_string(reach) +

@@ -40,7 +40,7 @@ tl::expected<void, Error> check(const Frame& frame, Texture equirectangular,
                   "2 to " + std::to_string(most) + " at this size");
   }
   if (settings.samples < 1 || settings.samples > kMostSamples) {
-    return refuse("number of samples", settings.samples, "1 to 4096");
+    return refuse("number of samples", settings.samples, "1 to " + std::to_string(kMostSamples));
   }
   const std::array<NamedInput, 1> needed{{{"equirectangular light", equirectangular}}};
   return check_inputs(frame.graph, "environment", needed);
