@@ -20,11 +20,14 @@ tl::expected<std::span<const VkEvent>, VkResult> Events::begin_frame(std::uint32
   while (own.events.size() < count) {
     VkEventCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_EVENT_CREATE_INFO;
-    VkEvent event = VK_NULL_HANDLE;
+    // Its place first: where memory gives out no event is lost.
+    own.events.push_back(VK_NULL_HANDLE);
     const VkResult result =
-        device_.vk.vkCreateEvent(device_.handles.device, &info, nullptr, &event);
-    if (result != VK_SUCCESS) return tl::unexpected(result);
-    own.events.push_back(event);
+        device_.vk.vkCreateEvent(device_.handles.device, &info, nullptr, &own.events.back());
+    if (result != VK_SUCCESS) {
+      own.events.pop_back();
+      return tl::unexpected(result);
+    }
   }
   own.used = count;
   return std::span<const VkEvent>(own.events.data(), count);
