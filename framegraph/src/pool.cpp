@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "format_info.h"
+#include "aspects.h"
 
 namespace alcove::framegraph {
 namespace {

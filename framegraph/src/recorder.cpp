@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#include "format_info.h"
+#include "aspects.h"
 
 namespace alcove::framegraph {
 

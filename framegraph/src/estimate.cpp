@@ -1,14 +1,15 @@
-#include "format_info.h"
-
+// What resources take without a device that says so.
 #include <algorithm>
 #include <array>
+#include <cstddef>
 
 #include "alcove/framegraph/compile.h"
 
 namespace alcove::framegraph {
-
 namespace {
 
+// Bytes of a texel (of a 4x4 block for compressed formats, averaged to 1 byte a texel); 16 for
+// formats that are not listed: an estimate must not be too small.
 constexpr std::uint32_t find_texel_size(VkFormat format) {
   const auto in = [format](VkFormat first, VkFormat last) {
     return format >= first && format <= last;
@@ -55,36 +56,12 @@ constexpr auto kTexelSizes = [] {
   return sizes;
 }();
 
-inline std::uint32_t known_texel_size(VkFormat format) {
+inline std::uint32_t texel_size(VkFormat format) {
   const auto index = static_cast<std::size_t>(format);
   return index < kTexelSizes.size() ? kTexelSizes[index] : find_texel_size(format);
 }
 
 }  // namespace
-
-std::uint32_t texel_size(VkFormat format) { return known_texel_size(format); }
-
-VkImageAspectFlags aspects(VkFormat format) {
-  switch (format) {
-    case VK_FORMAT_D16_UNORM:
-    case VK_FORMAT_X8_D24_UNORM_PACK32:
-    case VK_FORMAT_D32_SFLOAT:
-      return VK_IMAGE_ASPECT_DEPTH_BIT;
-    case VK_FORMAT_S8_UINT:
-      return VK_IMAGE_ASPECT_STENCIL_BIT;
-    case VK_FORMAT_D16_UNORM_S8_UINT:
-    case VK_FORMAT_D24_UNORM_S8_UINT:
-    case VK_FORMAT_D32_SFLOAT_S8_UINT:
-      return VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT;
-    default:
-      return VK_IMAGE_ASPECT_COLOR_BIT;
-  }
-}
-
-VkImageAspectFlags view_aspect(VkFormat format) {
-  const VkImageAspectFlags all = aspects(format);
-  return (all & VK_IMAGE_ASPECT_DEPTH_BIT) ? VkImageAspectFlags{VK_IMAGE_ASPECT_DEPTH_BIT} : all;
-}
 
 MemoryRequirements estimate_requirements(const ResourceRecord& record) {
   constexpr VkDeviceSize kAlignment = 256;
@@ -97,7 +74,7 @@ MemoryRequirements estimate_requirements(const ResourceRecord& record) {
       };
       size += side(record.width) * side(record.height) * side(record.depth);
     }
-    size *= VkDeviceSize{known_texel_size(record.format)} * record.layers * record.samples;
+    size *= VkDeviceSize{texel_size(record.format)} * record.layers * record.samples;
   }
   return {(size + kAlignment - 1) & ~(kAlignment - 1), kAlignment, ~0u};
 }
