@@ -17,15 +17,18 @@ constexpr VkBufferUsageFlags kEveryBufferUsage =
     VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT |
     VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
 
+// What a frame may run on: record() has one queue, submit() all that the device gives.
+enum class Queues : std::uint8_t { one, all };
+
 }  // namespace
 
 struct Executor::Implementation {
   explicit Implementation(const ExecutorOptions& wanted) : options(wanted) {}
 
-  tl::expected<CachedPlan*, Errors> plan_for(const Graph& graph, bool one_queue, bool& compiled);
+  tl::expected<CachedPlan*, Errors> plan_for(const Graph& graph, Queues queues, bool& compiled);
   tl::expected<void, Errors> find_physical(const Graph& graph, CachedPlan& cached);
   VkResult find_external(const Graph& graph, CachedPlan& cached, std::uint32_t resource);
-  tl::expected<FrameReport, Errors> prepare(Graph& graph, const FrameInfo& info, bool one_queue,
+  tl::expected<FrameReport, Errors> prepare(Graph& graph, const FrameInfo& info, Queues queues,
                                             CachedPlan*& cached);
   tl::expected<void, Errors> check_slot(std::uint32_t slot) const;
   bool starts_anew(const CachedPlan& cached) const;
@@ -41,7 +44,7 @@ struct Executor::Implementation {
   ExecutorOptions options;
   DeviceContext device;
   Compiler compiler;
-  PlanCache plans[2];  // for record, on one queue, and for submit
+  PlanCache plans[2];  // by Queues
   std::unique_ptr<Pool> pool;
   std::unique_ptr<Events> events;
   std::unique_ptr<Crew> crew;
@@ -102,16 +105,16 @@ Executor& Executor::operator=(Executor&&) noexcept = default;
 Executor::~Executor() = default;
 
 tl::expected<CachedPlan*, Errors> Executor::Implementation::plan_for(const Graph& graph,
-                                                                     bool one_queue,
+                                                                     Queues queues,
                                                                      bool& compiled) {
   const GraphDescription& description = graph.description();
   compiled = false;
-  PlanCache& cache = plans[one_queue ? 0 : 1];
+  PlanCache& cache = plans[static_cast<std::size_t>(queues)];
   if (CachedPlan* cached = cache.find(description)) return cached;
   CachedPlan& room = cache.room(frame);
   if (before == &room) before = nullptr;
   Limits limits = device.limits;
-  if (one_queue) limits.queue_families[1] = limits.queue_families[2] = kNone;
+  if (queues == Queues::one) limits.queue_families[1] = limits.queue_families[2] = kNone;
   if (auto done = compiler.compile(description, limits, room.plan); !done)
     return tl::unexpected(std::move(done.error()));
   Errors errors;
@@ -207,11 +210,11 @@ bool Executor::Implementation::starts_anew(const CachedPlan& cached) const {
 
 tl::expected<FrameReport, Errors> Executor::Implementation::prepare(Graph& graph,
                                                                     const FrameInfo& info,
-                                                                    bool one_queue,
+                                                                    Queues queues,
                                                                     CachedPlan*& cached) {
   pool->retire_histories(graph.histories(), frame);
   FrameReport report;
-  auto found = plan_for(graph, one_queue, report.compiled);
+  auto found = plan_for(graph, queues, report.compiled);
   if (!found) return tl::unexpected(std::move(found.error()));
   cached = *found;
   if (auto done = find_physical(graph, *cached); !done)
@@ -271,7 +274,7 @@ tl::expected<FrameReport, Errors> Executor::Implementation::record(Graph& graph,
                                                                    VkCommandBuffer commands,
                                                                    const FrameInfo& info) {
   CachedPlan* cached = nullptr;
-  auto report = prepare(graph, info, true, cached);
+  auto report = prepare(graph, info, Queues::one, cached);
   if (!report) return report;
   Timestamps* times = options.timestamps ? &timestamps_of(info.slot, 0) : nullptr;
   if (times) {
@@ -318,7 +321,7 @@ tl::expected<FrameReport, Errors> Executor::submit(Graph& graph, const FrameInfo
   if (auto waited = wait(info.slot); !waited) return tl::unexpected(std::move(waited.error()));
   Attempt attempt(self, graph, info);
   CachedPlan* cached = nullptr;
-  auto report = self.prepare(graph, info, false, cached);
+  auto report = self.prepare(graph, info, Queues::all, cached);
   if (!report) return report;
   Timestamps* timestamps[kQueueClasses] = {};
   // Queues for transfers alone may have no timestamps.

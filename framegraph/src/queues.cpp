@@ -46,8 +46,7 @@ class QueueAssigner {
     s_.known_at.assign(count * kQueueClasses, -1);
     s_.opened.assign(count, 0);
     s_.opened_at.assign(count, 0);
-    std::fill(&known_[0][0], &known_[0][0] + kQueueClasses * kQueueClasses, -1);
-    std::fill(std::begin(known_open_), std::end(known_open_), std::uint8_t{0});
+    for (auto& of_queue : known_) std::fill(std::begin(of_queue), std::end(of_queue), -1);
     for (std::uint32_t position = 0; position < count; ++position) {
       find_wait_of(position);
       learn(position);
@@ -245,6 +244,7 @@ class QueueAssigner {
     }
   }
 
+  // By queue, of another: the last position that it knows to be done, -1 where it knows of none.
   std::int32_t known_[kQueueClasses][kQueueClasses] = {};
   // Queues whose opening submission is known to be done, as bits.
   std::uint8_t known_open_[kQueueClasses] = {};
