@@ -263,6 +263,15 @@ Results CInterface::run_by_cpp(const GivenView& given, std::uint32_t index) {
   return results;
 }
 
+void CInterface::expect_same_both_ways(AlcoveContext& context, std::span<const GivenView> views,
+                                       std::uint32_t index) {
+  const std::vector<Results> found = run_by_c(context, views, index);
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    SCOPED_TRACE("view " + std::to_string(views[i].id));
+    expect_equal(found[i], run_by_cpp(views[i], index));
+  }
+}
+
 std::string CInterface::plan_of(AlcoveContext& context) {
   std::string text(alcovePrintPlan(&context, nullptr, 0) + 1, '\0');
   alcovePrintPlan(&context, text.data(), text.size());

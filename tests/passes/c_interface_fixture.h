@@ -72,6 +72,9 @@ class CInterface : public PassTest {
                                 std::uint32_t index);
   // Its history is the fixture's, by the view's id.
   Results run_by_cpp(const GivenView& given, std::uint32_t index);
+  // Runs the frame both ways: each view's results have to be equal.
+  void expect_same_both_ways(AlcoveContext& context, std::span<const GivenView> views,
+                             std::uint32_t index);
 
   std::string plan_of(AlcoveContext& context);
   AlcoveMemory memory_of(AlcoveContext& context);

@@ -33,8 +33,7 @@ TEST_F(CInterface, FramesWithHistoryAreTheSameAsByCpp) {
     given.settings.bent_normal = true;
     given.settings.specular = Specular::slices;
     given.multi_bounce = true;
-    const std::vector<Results> found = run_by_c(*context, {&given, 1}, i);
-    expect_equal(found[0], run_by_cpp(given, i));
+    expect_same_both_ways(*context, {&given, 1}, i);
   }
 }
 
@@ -45,8 +44,7 @@ TEST_F(CInterface, AStillViewIsTheSameAsByCpp) {
     given.settings = quality_settings(Quality::low, 0.4f);
     given.still_frames = i;
     given.reset = i == 18;
-    const std::vector<Results> found = run_by_c(*context, {&given, 1}, i);
-    expect_equal(found[0], run_by_cpp(given, i));
+    expect_same_both_ways(*context, {&given, 1}, i);
   }
 }
 
@@ -135,8 +133,7 @@ TEST_F(CInterface, EverySettingReachesThePasses) {
     for (std::uint32_t frame = 0; frame < each.frames; ++frame, ++index) {
       GivenView given = frame_of(frame, 16, 12, 0);
       each.change(given);
-      const std::vector<Results> found = run_by_c(*context, {&given, 1}, index);
-      expect_equal(found[0], run_by_cpp(given, index));
+      expect_same_both_ways(*context, {&given, 1}, index);
     }
   }
 }
@@ -155,8 +152,7 @@ TEST_F(CInterface, EachOutputAloneIsTheSameAsByCpp) {
       given.id = i;
       given.settings.visibility = false;
       only.at(i)(given);
-      const std::vector<Results> found = run_by_c(*context, {&given, 1}, frame);
-      expect_equal(found[0], run_by_cpp(given, frame));
+      expect_same_both_ways(*context, {&given, 1}, frame);
     }
   }
 }
@@ -169,8 +165,7 @@ TEST_F(CInterface, ImagesOfAnySizeAreTheSameAsByCpp) {
     for (std::uint32_t frame = 0; frame < 2; ++frame, ++index) {
       GivenView given = frame_of(frame, width, height);
       given.settings.bent_normal = true;
-      const std::vector<Results> found = run_by_c(*context, {&given, 1}, index);
-      expect_equal(found[0], run_by_cpp(given, index));
+      expect_same_both_ways(*context, {&given, 1}, index);
     }
   }
 }
@@ -189,11 +184,7 @@ TEST_F(CInterface, ViewsOfAFrameAreTheSameAsEachAlone) {
     if (i == 2) {
       views.erase(views.begin());  // a view that is not recorded keeps its history
     }
-    const std::vector<Results> found = run_by_c(*context, views, i);
-    for (std::size_t v = 0; v < views.size(); ++v) {
-      SCOPED_TRACE(views[v].id);
-      expect_equal(found[v], run_by_cpp(views[v], i));
-    }
+    expect_same_both_ways(*context, views, i);
   }
 }
 
@@ -213,10 +204,7 @@ TEST_F(CInterface, EightViewsWithEverythingFitAFrame) {
     views.back().settings.specular = Specular::table;
     views.back().multi_bounce = true;
   }
-  const std::vector<Results> found = run_by_c(*context, views, 0);
-  for (std::size_t v = 0; v < views.size(); ++v) {
-    expect_equal(found[v], run_by_cpp(views[v], 0));
-  }
+  expect_same_both_ways(*context, views, 0);
 }
 
 TEST_F(CInterface, EveryImageOfEightViewsIsTaken) {
@@ -229,10 +217,7 @@ TEST_F(CInterface, EveryImageOfEightViewsIsTaken) {
     views.back().settings.specular = Specular::slices;
     views.back().multi_bounce = true;
   }
-  const std::vector<Results> found = run_by_c(*context, views, 0);
-  for (std::size_t v = 0; v < views.size(); ++v) {
-    expect_equal(found[v], run_by_cpp(views[v], 0));
-  }
+  expect_same_both_ways(*context, views, 0);
 }
 
 // An output that others are made from is read by the library and then by the engine, for which
@@ -269,8 +254,7 @@ TEST_F(CInterface, AFrameThatIsDiscardedNeverWas) {
       EXPECT_EQ(count, 0u);
       continue;
     }
-    const std::vector<Results> found = run_by_c(*context, {&given, 1}, index);
-    expect_equal(found[0], run_by_cpp(given, index));
+    expect_same_both_ways(*context, {&given, 1}, index);
     EXPECT_EQ(alcoveRecordFrame(context.get(), VK_NULL_HANDLE, nullptr),
               ALCOVE_ERROR_INVALID_INPUT);
     EXPECT_EQ(alcoveDiscardFrame(context.get()), ALCOVE_SUCCESS) << "of the frame that was refused";
@@ -278,115 +262,11 @@ TEST_F(CInterface, AFrameThatIsDiscardedNeverWas) {
   }
 }
 
-// Both layers of an image that rests, one after the other.
-void copy(VkCommandBuffer commands, const AlcoveImage& image, const sample::HostBuffer& buffer) {
-  const VkImageMemoryBarrier2 barrier{.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
-                                      .srcStageMask = kResting.stages,
-                                      .dstStageMask = VK_PIPELINE_STAGE_2_COPY_BIT,
-                                      .dstAccessMask = VK_ACCESS_2_TRANSFER_READ_BIT,
-                                      .oldLayout = kResting.layout,
-                                      .newLayout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                                      .image = image.image,
-                                      .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 2}};
-  const VkDependencyInfo dependency{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
-                                    .imageMemoryBarrierCount = 1,
-                                    .pImageMemoryBarriers = &barrier};
-  vkCmdPipelineBarrier2(commands, &dependency);
-  const VkBufferImageCopy region{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 2},
-                                 .imageExtent = {image.width, image.height, 1}};
-  vkCmdCopyImageToBuffer(commands, image.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                         buffer.buffer(), 1, &region);
-}
-
-// Both eyes in the layers of one array, each with an image view of the library's.
-TEST_F(CInterface, LayersOfAnArrayAreImagesOfTheirOwn) {
-  const Context context = create_context();
-  constexpr VkImageUsageFlags kStored =
-      VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
-  AlcoveImage both = engine().make_image(VK_FORMAT_R32_SFLOAT, 16, 12, kStored, 2);
-  std::vector<GivenView> given{frame_of(0, 16, 12),
-                               given_view(test_views()[0], 16, 12, groove(0.8))};
-  std::array<AlcoveSettings, 2> settings{};
-  std::vector<AlcoveView> views;
-  for (std::uint32_t eye = 0; eye < 2; ++eye) {
-    given[eye].id = eye;
-    views.push_back(view_of(given[eye], settings[eye]));
-    views[eye].visibility = both;
-    views[eye].visibility.layer = eye;
-  }
-  run_frame(*context, views, 0);
-  constexpr std::size_t kTexels = 16UL * 12;
-  constexpr std::size_t kSize = kTexels * sizeof(float);  // of an eye, bytes
-  const auto bytes =
-      sample::HostBuffer::create(gpu().device(), 2 * kSize, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
-  ASSERT_TRUE(bytes) << bytes.error();
-  engine().submit(1, [&](VkCommandBuffer commands) { copy(commands, both, **bytes); });
-  engine().wait();
-  for (std::uint32_t eye = 0; eye < 2; ++eye) {
-    Results found;
-    found.visibility.texels.resize(kTexels);
-    std::memcpy(found.visibility.texels.data(), (*bytes)->bytes().data() + eye * kSize, kSize);
-    expect_equal(found, run_by_cpp(given[eye], 0));
-  }
-}
-
-TEST_F(CInterface, DepthMayComeInADepthFormatAndAnyLayout) {
-  const Context context = create_context();
-  GivenView given = frame_of(0, 16, 12);
-  AlcoveSettings settings;
-  AlcoveView view = view_of(given, settings);
-  view.depth =
-      engine().make_image(VK_FORMAT_D32_SFLOAT, 16, 12,
-                          VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
-                              VK_IMAGE_USAGE_TRANSFER_DST_BIT);
-  const AlcoveState attached{VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
-                             VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
-                             VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL};
-  fill_image(view.depth, given.depth_ndc, attached);
-  view.depth.arrival = attached;
-  view.depth.departure = {VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT,
-                          VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT,
-                          VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL};
-  view.visibility.departure.layout = VK_IMAGE_LAYOUT_GENERAL;
-  run_frame(*context, {&view, 1}, 0);
-  expect_equal(results_of(view), run_by_cpp(given, 0));
-}
-
-TEST_F(CInterface, OneImageMayBeSeveralInputs) {
-  const Context context = create_context();
-  GivenView given = frame_of(0, 16, 12);
-  given.roughness = given.albedo;  // packed: roughness is its green
-  given.settings.specular = Specular::slices;
-  given.multi_bounce = true;
-  AlcoveSettings settings;
-  AlcoveView view = view_of(given, settings);
-  view.roughness = view.albedo;
-  run_frame(*context, {&view, 1}, 0);
-  expect_equal(results_of(view), run_by_cpp(given, 0));
-}
-
-TEST_F(CInterface, AnImageThatIsForgottenMayBeDestroyed) {
-  const Context context = create_context();
-  const GivenView given = frame_of(0, 16, 12);
-  AlcoveSettings settings;
-  AlcoveView view = view_of(given, settings);
-  view.reset_history = VK_TRUE;
-  const Results expected = run_by_cpp(given, 0);
-  for (std::uint32_t round = 0; round < 4; ++round) {
-    run_frame(*context, {&view, 1}, 0);
-    expect_equal(results_of(view), expected);
-    engine().wait();
-    EXPECT_EQ(alcoveForgetImage(context.get(), view.visibility.image), ALCOVE_SUCCESS);
-    engine().destroy_image(view.visibility);
-    view.visibility = output(view.visibility.format, 16, 12);
-  }
-}
-
 TEST_F(CInterface, AReferenceIsTheSameAsByCpp) {
   const Context context = create_context();
   GivenView given = frame_of(0, 6, 4);
   given.settings = quality_settings(Quality::reference, 0.5f);
-  expect_equal(run_by_c(*context, {&given, 1}, 0)[0], run_by_cpp(given, 0));
+  expect_same_both_ways(*context, {&given, 1}, 0);
 }
 
 TEST_F(CInterface, AProgramInCRecordsAFrame) {
