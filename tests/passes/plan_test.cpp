@@ -1,11 +1,8 @@
 // Model only what is required: what is off or unread has no pass, no memory and no pipeline.
 #include <gmock/gmock.h>
 
-#include <algorithm>
-#include <string>
-
-#include "alcove/framegraph/compile.h"
 #include "gtao_scenes.h"
+#include "kept.h"
 #include "pass_fixture.h"
 
 namespace alcove::passes {
@@ -15,6 +12,12 @@ using framegraph::Graph;
 using testing::Contains;
 using testing::ElementsAre;
 using testing::Not;
+
+// What a frame is given beside depth.
+struct Given {
+  bool normals = true;
+  bool hidden_depths = false;
+};
 
 // Which outputs of add_occlusion the frame reads.
 struct Reads {
@@ -26,26 +29,17 @@ struct Reads {
 
 class OcclusionPlan : public PassTest {
  protected:
-  // What of the passes a compiled frame keeps; uploads and read-backs are left out.
-  struct Kept {
-    std::vector<std::string> passes;
-    std::vector<std::string> transients;
-    std::vector<std::string> histories;
-    std::uint64_t bytes = 0;  // of the transients
-  };
-
-  Kept kept(const OcclusionSettings& settings, Reads reads = {}, bool normals_given = true,
-            bool hidden_depths_given = false) {
+  Kept kept(const OcclusionSettings& settings, Reads reads = {}, Given given = {}) {
     const Drawing drawing = draw(test_views()[2], 32, 24, groove(0.8));
     Kept found;
     run([&](Graph& graph) {
       const Frame frame{graph, gpu().kernels(), test_views()[2].view, 0};
       OcclusionInputs inputs{.depth_ndc = upload(graph, drawing.depth_ndc),
                              .normals_in_view_space = true};
-      if (normals_given) {
+      if (given.normals) {
         inputs.normals = upload(graph, drawing.normal_vs);
       }
-      if (hidden_depths_given) {
+      if (given.hidden_depths) {
         inputs.back_depth_ndc = upload(graph, drawing.depth_ndc);
         inputs.second_depth_ndc = upload(graph, drawing.depth_ndc);
       }
@@ -64,30 +58,8 @@ class OcclusionPlan : public PassTest {
       if (reads.specular) {
         read_back(graph, outputs->specular);
       }
-      const auto plan = framegraph::compile(graph);
-      ASSERT_TRUE(plan) << framegraph::to_string(plan.error());
-      found = describe(graph.description(), *plan);
+      found = kept_of(graph);
     });
-    return found;
-  }
-
-  static Kept describe(const framegraph::GraphDescription& graph, const framegraph::Plan& plan) {
-    Kept found;
-    for (const framegraph::PlannedPass& pass : plan.passes) {
-      const std::string name(graph.pass_name(pass.pass));
-      if (name != "upload" && name != "read back") {
-        found.passes.push_back(name);
-      }
-    }
-    for (std::uint32_t i = 0; i < graph.resources.size(); ++i) {
-      const std::string name(graph.resource_name(i));
-      if (graph.resources[i].origin == framegraph::Origin::history) {
-        found.histories.push_back(name);
-      } else if (plan.placements[i].heap != framegraph::kNone && name != "uploaded") {
-        found.transients.push_back(name);
-        found.bytes += plan.placements[i].size;
-      }
-    }
     return found;
   }
 };
@@ -110,9 +82,9 @@ TEST_F(OcclusionPlan, TheLeastFrameIsThreePassesAndThreeTextures) {
 }
 
 TEST_F(OcclusionPlan, NormalsAreMadeOnlyWhereNoneAreGiven) {
-  EXPECT_THAT(kept(least(), {}, true).passes, Not(Contains("normals")));
+  EXPECT_THAT(kept(least()).passes, Not(Contains("normals")));
   const std::size_t pipelines = gpu().kernels().pipeline_count();
-  const Kept made = kept(least(), {}, false);
+  const Kept made = kept(least(), {}, {.normals = false});
   EXPECT_THAT(made.passes, Contains("normals"));
   EXPECT_THAT(made.transients, Contains("normals from depth"));
   EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines + 1);
@@ -145,14 +117,14 @@ TEST_F(OcclusionPlan, BackFacesCostOnlyWhereTheThicknessIsReadFromThem) {
   settings.thickness_unit = ThicknessUnit::radius;
   const Kept constant = kept(settings);
   const std::size_t pipelines = gpu().kernels().pipeline_count();
-  const Kept given = kept(settings, {}, true, true);
-  EXPECT_EQ(given.passes, constant.passes);
-  EXPECT_EQ(given.transients, constant.transients);
-  EXPECT_EQ(given.bytes, constant.bytes);
+  const Kept unasked = kept(settings, {}, {.hidden_depths = true});
+  EXPECT_EQ(unasked.passes, constant.passes);
+  EXPECT_EQ(unasked.transients, constant.transients);
+  EXPECT_EQ(unasked.bytes, constant.bytes);
   EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines);
 
   settings.thickness_unit = ThicknessUnit::back_faces;
-  const Kept read = kept(settings, {}, true, true);
+  const Kept read = kept(settings, {}, {.hidden_depths = true});
   EXPECT_THAT(read.passes, ElementsAre("line depth", "back line depth", "gtao", "reconstruct"));
   EXPECT_THAT(read.transients, Contains("back line depth"));
   // Another search; back faces go through the kernel that the front's depth does.
@@ -189,14 +161,14 @@ TEST_F(OcclusionPlan, ASecondLayerCostsOnlyWhereItIsSearched) {
   settings.depth_layers = 1;
   const Kept one = kept(settings);
   const std::size_t pipelines = gpu().kernels().pipeline_count();
-  const Kept given = kept(settings, {}, true, true);
-  EXPECT_EQ(given.passes, one.passes);
-  EXPECT_EQ(given.transients, one.transients);
-  EXPECT_EQ(given.bytes, one.bytes);
+  const Kept unasked = kept(settings, {}, {.hidden_depths = true});
+  EXPECT_EQ(unasked.passes, one.passes);
+  EXPECT_EQ(unasked.transients, one.transients);
+  EXPECT_EQ(unasked.bytes, one.bytes);
   EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines);
 
   settings.depth_layers = 2;
-  const Kept two = kept(settings, {}, true, true);
+  const Kept two = kept(settings, {}, {.hidden_depths = true});
   EXPECT_THAT(two.passes, ElementsAre("line depth", "second line depth", "gtao", "reconstruct"));
   EXPECT_THAT(two.transients, Contains("second line depth"));
   EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines + 1);
@@ -237,10 +209,11 @@ TEST_F(OcclusionPlan, ALowerResolutionOfTheSearchTakesLessMemory) {
 }
 
 TEST_F(OcclusionPlan, WhatNobodyReadsIsCulledWithAllThatLeadsThere) {
-  const Kept depth_only = kept(least(), {.visibility = false, .linear_depth = true}, false);
+  const Kept depth_only =
+      kept(least(), {.visibility = false, .linear_depth = true}, {.normals = false});
   EXPECT_THAT(depth_only.passes, ElementsAre("depth pyramid"));
   EXPECT_THAT(depth_only.transients, ElementsAre("linear depth"));
-  EXPECT_THAT(kept(least(), {.visibility = false}, false).passes, testing::IsEmpty());
+  EXPECT_THAT(kept(least(), {.visibility = false}, {.normals = false}).passes, testing::IsEmpty());
 }
 
 TEST_F(OcclusionPlan, AFrameThatWasDeclaredBeforeMakesNoPipeline) {
