@@ -208,6 +208,31 @@ tl::expected<void, std::string> add_texture_coordinates(const tinygltf::Model& m
   return {};
 }
 
+// Normals and tangents of the file's `vertices`; flat normals where it has none, and glTF then has
+// tangents ignored.
+tl::expected<void, std::string> add_normals(const tinygltf::Model& model,
+                                            const tinygltf::Primitive& primitive,
+                                            const glm::dmat4& transform, size_t vertices,
+                                            Mesh& mesh) {
+  const int normal = attribute(primitive, "NORMAL");
+  if (normal < 0) {
+    make_flat_normals(mesh);
+    return {};
+  }
+  auto normals = world_normals(model, normal, transform, vertices);
+  if (!normals) return Failure(normals.error());
+  if (normals->size() != vertices) return Failure("has normals for some of its vertices only");
+  mesh.normals_ws = std::move(*normals);
+  mend_normals(mesh);
+  const int tangent = attribute(primitive, "TANGENT");
+  if (tangent < 0) return {};
+  auto tangents = world_tangents(model, tangent, transform, vertices);
+  if (!tangents) return Failure(tangents.error());
+  if (tangents->size() != vertices) return Failure("has tangents for some of its vertices only");
+  mesh.tangents_ws = std::move(*tangents);
+  return {};
+}
+
 tl::expected<std::vector<uint32_t>, std::string> vertex_order(const tinygltf::Model& model,
                                                               const tinygltf::Primitive& primitive,
                                                               size_t vertices, uint64_t most) {
@@ -265,21 +290,8 @@ tl::expected<void, std::string> add_primitive(const tinygltf::Model& model,
   drop_flat_faces(mesh);
   if (mesh.indices.empty()) return {};
 
-  if (const int normal = attribute(primitive, "NORMAL"); normal >= 0) {
-    auto normals = world_normals(model, normal, world_from_mesh, vertices);
-    if (!normals) return refuse(normals.error());
-    if (normals->size() != vertices) return refuse("has normals for some of its vertices only");
-    mesh.normals_ws = std::move(*normals);
-    mend_normals(mesh);
-    // Without normals glTF has tangents ignored.
-    if (const int tangent = attribute(primitive, "TANGENT"); tangent >= 0) {
-      auto tangents = world_tangents(model, tangent, world_from_mesh, vertices);
-      if (!tangents) return refuse(tangents.error());
-      if (tangents->size() != vertices) return refuse("has tangents for some of its vertices only");
-      mesh.tangents_ws = std::move(*tangents);
-    }
-  } else {
-    make_flat_normals(mesh);
+  if (auto added = add_normals(model, primitive, world_from_mesh, vertices, mesh); !added) {
+    return refuse(added.error());
   }
   budget.vertices -= std::min<uint64_t>(budget.vertices, mesh.positions_ws.size());
   budget.indices -= mesh.indices.size();

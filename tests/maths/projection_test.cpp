@@ -305,27 +305,19 @@ TEST(MakeProjection, RefusesWhatIsNoProjectionAndSaysWhy) {
     return p ? std::string() : std::string(p.error());
   };
   EXPECT_EQ(fault(good), "");
-  mat4 m = good;
-  m[1][2] = kNan;
-  EXPECT_NE(fault(m).find("not finite"), std::string::npos);
-  m = good;
-  m[0][0] = 0;
-  EXPECT_NE(fault(m).find("flattens"), std::string::npos);
-  m = good;
-  m[0][1] = 0.5f;
-  EXPECT_NE(fault(m).find("mixes x and y"), std::string::npos);
-  m = good;
-  m[0][3] = 0.5f;
-  EXPECT_NE(fault(m).find("tilts"), std::string::npos);
-  m = good;
-  m[1][2] = 0.5f;
-  EXPECT_NE(fault(m).find("oblique"), std::string::npos);
-  m = good;
-  m[2][3] = 1.0f;
-  EXPECT_NE(fault(m).find("+Z"), std::string::npos);
-  m = good;
-  m[3][2] = 0.0f;
-  EXPECT_NE(fault(m).find("same depth"), std::string::npos);
+  struct Case {
+    int column, row;
+    float value;
+    const char* why;
+  };
+  for (const Case& wrong :
+       {Case{1, 2, kNan, "not finite"}, Case{0, 0, 0.0f, "flattens"},
+        Case{0, 1, 0.5f, "mixes x and y"}, Case{0, 3, 0.5f, "tilts"}, Case{1, 2, 0.5f, "oblique"},
+        Case{2, 3, 1.0f, "+Z"}, Case{3, 2, 0.0f, "same depth"}}) {
+    mat4 m = good;
+    m[wrong.column][wrong.row] = wrong.value;
+    EXPECT_NE(fault(m).find(wrong.why), std::string::npos) << wrong.why;
+  }
   EXPECT_NE(fault(mat4(0.0f)), "");
   EXPECT_FALSE(maths::make_projection(good, 0, 16).has_value());
   EXPECT_FALSE(maths::make_projection(good, 16, 0).has_value());
