@@ -166,15 +166,14 @@ GBuffer cast_gbuffer(const RayScene& scene, const Camera& camera, uint32_t width
 OcclusionTruth occlusion_truth(const RayScene& scene, const SurfacePoints& points,
                                const TruthSettings& settings, const Progress& progress) {
   const uint32_t width = points.normal_ws.width, height = points.normal_ws.height;
-  OcclusionTruth out{{width, height, 1.0f}, {width, height}, {width, height}};
+  OcclusionTruth out{{width, height, 1.0f}, {width, height}};
   for_each_surface(points, settings.seed, progress, [&](size_t pixel, uint64_t seed) {
     const glm::vec3& normal = points.normal_ws.pixels[pixel];
     const OpenRays open = trace_hemisphere(scene.impl(), ray_start(scene, points, pixel),
                                            frame_of(normal), settings, seed);
-    const auto rays = static_cast<float>(settings.spp);
     const float length = glm::length(open.sum);
-    out.visibility.pixels[pixel] = static_cast<float>(open.count) / rays;
-    out.bent_mean_ws.pixels[pixel] = open.sum / rays;
+    out.visibility.pixels[pixel] =
+        static_cast<float>(open.count) / static_cast<float>(settings.spp);
     out.bent_normal_ws.pixels[pixel] = length > 1e-6f ? open.sum / length : normal;
   });
   return out;

@@ -51,9 +51,9 @@ struct TruthSettings {
 // Cosine-weighted visibility, memo eq. 2: the share of spp rays that meet nothing within the
 // radius.
 struct OcclusionTruth {
-  Image<float> visibility;        // 0..1, 1 is open
-  Image<glm::vec3> bent_mean_ws;  // mean of V w over cosine-weighted w; length 2/3 on an open plane
-  // Unit form of bent_mean_ws; the normal where nothing is visible, zero in the sky.
+  Image<float> visibility;  // 0..1, 1 is open
+  // Unit, along the cosine-weighted mean of visible directions; the normal where nothing is
+  // visible, zero in the sky.
   Image<glm::vec3> bent_normal_ws;
 };
 

@@ -16,8 +16,25 @@ namespace {
 constexpr std::uint32_t kTruthVersion = 1;
 constexpr std::uint32_t kHeightFieldSlices = 24;
 
-TruthCache cache_of(const Options& options) {
-  return TruthCache(options.use_cache ? TruthCache::default_folder() : std::filesystem::path());
+// A truth by its key from the cache, else as `compute` gives it, which is kept there.
+template <typename Truth, typename Compute>
+tl::expected<Truth, std::string> cached(const Options& options, const Image<float>& depth,
+                                        const CacheKey& key, const Compute& compute) {
+  CacheKey bent_key = key;
+  bent_key.add(std::string("bent"));
+  const TruthCache cache(options.use_cache ? TruthCache::default_folder()
+                                           : std::filesystem::path());
+  tl::expected<Truth, std::string> truth =
+      Truth{{depth.width, depth.height}, {depth.width, depth.height}};
+  if (cache.read(key, truth->visibility) && cache.read(bent_key, truth->bent_normal_ws)) {
+    return truth;
+  }
+  truth = compute();
+  if (truth) {
+    cache.write(key, truth->visibility);
+    cache.write(bent_key, truth->bent_normal_ws);
+  }
+  return truth;
 }
 
 tl::expected<OcclusionTruth, std::string> scene_truth(const TruthFrame& frame,
@@ -33,24 +50,12 @@ tl::expected<OcclusionTruth, std::string> scene_truth(const TruthFrame& frame,
   key.add(settings.spp);
   key.add(depth);
   key.add(frame.normal_ws);
-  CacheKey bent_key = key;
-  bent_key.add(std::string("bent"));
-  const TruthCache cache = cache_of(options);
-  OcclusionTruth truth{Image<float>(depth.width, depth.height),
-                       Image<glm::vec3>(depth.width, depth.height),
-                       Image<glm::vec3>(depth.width, depth.height)};
-  if (cache.read(key, truth.visibility) && cache.read(bent_key, truth.bent_normal_ws)) {
-    return truth;
-  }
-  auto rays = RayScene::create(frame.scene);
-  if (!rays) {
-    return tl::unexpected(std::move(rays.error()));
-  }
-  truth = occlusion_truth(*rays, surface_points(*rays, frame.camera, frame.normal_ws, depth),
-                          settings, print_progress("scene truth"));
-  cache.write(key, truth.visibility);
-  cache.write(bent_key, truth.bent_normal_ws);
-  return truth;
+  return cached<OcclusionTruth>(options, depth, key, [&] {
+    return RayScene::create(frame.scene).map([&](const RayScene& rays) {
+      return occlusion_truth(rays, surface_points(rays, frame.camera, frame.normal_ws, depth),
+                             settings, print_progress("scene truth"));
+    });
+  });
 }
 
 HeightFieldTruth depth_truth(const TruthFrame& frame, const Options& options,
@@ -64,19 +69,11 @@ HeightFieldTruth depth_truth(const TruthFrame& frame, const Options& options,
   key.add(settings.slices);
   key.add(depth);
   key.add(frame.normal_ws);
-  CacheKey bent_key = key;
-  bent_key.add(std::string("bent"));
-  const TruthCache cache = cache_of(options);
-  HeightFieldTruth truth{Image<float>(depth.width, depth.height),
-                         Image<glm::vec3>(depth.width, depth.height)};
-  if (cache.read(key, truth.visibility) && cache.read(bent_key, truth.bent_normal_ws)) {
-    return truth;
-  }
-  truth = height_field_truth(depth, frame.normal_ws, frame.camera, settings,
-                             print_progress("height-field truth"));
-  cache.write(key, truth.visibility);
-  cache.write(bent_key, truth.bent_normal_ws);
-  return truth;
+  const auto compute = [&] {
+    return height_field_truth(depth, frame.normal_ws, frame.camera, settings,
+                              print_progress("height-field truth"));
+  };
+  return cached<HeightFieldTruth>(options, depth, key, compute).value();  // nothing of it can fail
 }
 
 }  // namespace
