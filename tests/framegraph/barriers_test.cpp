@@ -83,6 +83,24 @@ TEST(Barriers, TheDeferredFrameCannotDoWithACommandFewer) {
   expect_no_command_too_many("deferred frame", graph.description(), limits, *plan);
 }
 
+TEST(Barriers, AWriteAfterReadsThatSawTheLastWriteMakesNothingVisible) {
+  Graph graph;
+  Texture texture = graph.create_texture("t", {VK_FORMAT_R8_UNORM, Extent::absolute(8, 8)});
+  PassBuilder writer = graph.add_pass("writer");
+  texture = writer.write(texture, access::storage_write_compute);
+  PassBuilder reader = graph.add_pass("reader");
+  reader.read(texture, access::storage_read_compute);
+  reader.side_effect();
+  PassBuilder updater = graph.add_pass("updater");
+  texture = updater.write(texture, access::storage_read_write_compute);
+  graph.output(texture);
+  const auto plan = compile(graph);
+  ASSERT_TRUE(plan);
+  ASSERT_EQ(plan->transitions.size(), 3u);
+  EXPECT_EQ(plan->transitions[2].src_access, VK_ACCESS_2_NONE);
+  EXPECT_EQ(plan->transitions[2].dst_access, VK_ACCESS_2_NONE);
+}
+
 // With as few commands as this, little is left to split: each waits for the pass before it, as a
 // rule.
 TEST(Barriers, FewCommandsHaveWorkBetween) {

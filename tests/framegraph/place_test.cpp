@@ -14,6 +14,30 @@ namespace {
 
 constexpr double kMebibyte = 1 << 20;
 
+TEST(Place, AnEstimateIsOfTheBytesOfAFormatsTexels) {
+  struct Case {
+    VkFormat format;
+    VkDeviceSize bytes;  // a texel
+  };
+  for (const auto& [format, bytes] :
+       {Case{VK_FORMAT_R8_UNORM, 1}, Case{VK_FORMAT_R5G6B5_UNORM_PACK16, 2},
+        Case{VK_FORMAT_R16_SFLOAT, 2}, Case{VK_FORMAT_R8G8B8A8_SRGB, 4},
+        Case{VK_FORMAT_R16G16_SFLOAT, 4}, Case{VK_FORMAT_R32_UINT, 4},
+        Case{VK_FORMAT_B10G11R11_UFLOAT_PACK32, 4}, Case{VK_FORMAT_D16_UNORM, 2},
+        Case{VK_FORMAT_D32_SFLOAT, 4}, Case{VK_FORMAT_R16G16B16A16_SFLOAT, 8},
+        Case{VK_FORMAT_R32G32_SFLOAT, 8}, Case{VK_FORMAT_R32G32B32A32_SFLOAT, 16},
+        Case{VK_FORMAT_R64G64_SFLOAT, 16}}) {
+    ResourceRecord record;
+    record.format = format;
+    record.width = 256;
+    record.height = 3;
+    EXPECT_EQ(estimate_requirements(record).size, 256 * 3 * bytes) << format;
+    record.layers = 2;
+    record.samples = 4;
+    EXPECT_EQ(estimate_requirements(record).size, 256 * 3 * 8 * bytes) << format;
+  }
+}
+
 TEST(Place, TheDeferredFrameMeetsItsLowerBound) {
   Graph graph;
   declare_deferred_frame(graph, 1920, 1080);

@@ -1,0 +1,90 @@
+// Queues wait for each other no more than they must.
+#include <gtest/gtest.h>
+
+#include "alcove/framegraph/compile.h"
+#include "alcove/framegraph/verify.h"
+#include "fake_handle.h"
+
+namespace alcove::framegraph {
+namespace {
+
+const TextureDesc kDesc{VK_FORMAT_R8_UNORM, Extent::absolute(8, 8)};
+
+class Queues : public testing::Test {
+ protected:
+  Queues() {
+    limits_.queue_families[1] = 1;
+    limits_.queue_families[2] = 2;
+  }
+  Texture make(const char* name) { return graph_.create_texture(name, kDesc); }
+  // It departs to the compute shaders of whoever comes next.
+  Texture import(const char* name) {
+    const State state{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_READ_BIT,
+                      VK_IMAGE_LAYOUT_GENERAL};
+    return graph_.import_texture(
+        name, {.image = fake_handle<VkImage>(),
+               .desc = kDesc,
+               .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
+               .arrival = state,
+               .departure = state});
+  }
+  Plan compiled() {
+    const auto plan = compile(graph_, limits_);
+    EXPECT_TRUE(plan) << to_string(plan.error());
+    const auto right = verify(graph_.description(), limits_, *plan);
+    EXPECT_TRUE(right) << to_string(right.error());
+    return *plan;
+  }
+  Graph graph_;
+  Limits limits_;
+};
+
+//   a (graphics) -- x --> b (compute) -- z --> c (transfer)
+//         +--------------- y -------------------^
+TEST_F(Queues, AWaitThatAnotherImpliesIsLeftOut) {
+  PassBuilder a = graph_.add_pass("a");
+  const Texture x = a.write(make("x"), access::storage_write_compute);
+  const Texture y = a.write(make("y"), access::storage_write_compute);
+  PassBuilder b = graph_.add_pass("b", QueueClass::compute);
+  b.read(x, access::storage_read_compute);
+  const Texture z = b.write(make("z"), access::storage_write_compute);
+  PassBuilder c = graph_.add_pass("c", QueueClass::transfer);
+  c.read(y, access::transfer_source);
+  c.read(z, access::transfer_source);
+  c.side_effect();
+  const Plan plan = compiled();
+  ASSERT_EQ(plan.submissions.size(), 3u);
+  ASSERT_EQ(plan.submissions[2].wait_count, 1u);
+  EXPECT_EQ(plan.waits[plan.submissions[2].first_wait].submission, 1u) << "not for a as well";
+}
+
+TEST_F(Queues, TheEndOfAFrameWaitsForTheLastOfAChainAlone) {
+  Texture x = import("x");
+  Texture y = import("y");
+  PassBuilder first = graph_.add_pass("first", QueueClass::compute);
+  x = first.write(x, access::storage_write_compute, {}, Contents::discard);
+  const Texture between = first.write(make("between"), access::storage_write_compute);
+  PassBuilder second = graph_.add_pass("second", QueueClass::transfer);
+  second.read(between, access::transfer_source);
+  y = second.write(y, access::transfer_destination, {}, Contents::discard);
+  const Plan plan = compiled();
+  const Submission& last = plan.submissions.back();
+  EXPECT_EQ(last.pass_count, 0u);
+  ASSERT_EQ(last.wait_count, 1u);
+  EXPECT_EQ(plan.submissions[plan.waits[last.first_wait].submission].queue, QueueClass::transfer);
+}
+
+TEST_F(Queues, WhatGraphicsUsedBeforeTheFrameIsWaitedForOnce) {
+  const Texture x = import("x");
+  const Texture y = import("y");
+  for (const Texture texture : {x, y}) {
+    PassBuilder pass = graph_.add_pass("reads", QueueClass::compute);
+    pass.read(texture, access::storage_read_compute);
+    pass.side_effect();
+  }
+  const Plan plan = compiled();
+  EXPECT_EQ(plan.passes[0].submission, plan.passes[1].submission);
+}
+
+}  // namespace
+}  // namespace alcove::framegraph
