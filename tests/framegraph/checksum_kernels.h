@@ -2,8 +2,8 @@
 #pragma once
 
 #include <mutex>
-#include "alcove/framegraph/framegraph.h"
 
+#include "alcove/framegraph/framegraph.h"
 #include "gpu.h"
 
 namespace alcove::framegraph {
