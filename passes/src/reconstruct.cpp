@@ -387,6 +387,9 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& frame, const Reconst
   maths::ReconstructParameters parameters =
       parameters_of(frame, *projection, *previous, inputs.normals_in_view_space, settings);
   parameters.window_px = window_px(inputs.signal);
+  if (settled) {  // nothing to follow: all frames count alike
+    parameters.longest = static_cast<float>(kMaxHistoryFrames);
+  }
   parameters.phase = maths::vec2(static_cast<float>(phase_x), static_cast<float>(phase_y));
   pass.record([&kernels = frame.kernels, kernel = *kernel, textures, parameters,
                divisor = inputs.signal.divisor](RecordContext& context) {

@@ -87,6 +87,28 @@ TEST_F(Reconstruct, ASettledViewBringsForwardWhatItsSearchesReached) {
   }
 }
 
+// However short the history: where nothing moves there is nothing to follow.
+TEST_F(Reconstruct, ASettledViewAveragesAllItsFrames) {
+  const TestView view = test_views()[2];
+  const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(30.0, 4.0)});
+  const auto variance_after = [&](bool still) {
+    std::mt19937 random(5);
+    HostImage last;
+    for (std::uint32_t frame = 0; frame < 80; ++frame) {
+      const HostImage signal = noise_signal(random);
+      last = reconstruct({.view = view.view,
+                          .drawing = drawing,
+                          .signal = signal,
+                          .index = frame,
+                          .reset = frame == 0,
+                          .still_frames = still ? frame : 0},
+                         precise(1, 8));
+    }
+    return variance(last);
+  };
+  EXPECT_LT(variance_after(true), 0.35 * variance_after(false));
+}
+
 TEST_F(Reconstruct, MotionVectorsOfAStillViewAreNotRead) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(30.0, 4.0)});

@@ -17,8 +17,8 @@ struct FilterSettings {
   // How far a neighbour lies from the pixel's tangent plane when it counts a quarter, in sizes of a
   // pixel there, over 0.
   float filter_tolerance_px = 1.5f;
-  // Frames that are averaged, 0 to 255. 0 keeps no history and allocates none: for engines whose
-  // own temporal filter comes after.
+  // Frames that are averaged, 0 to 255; once Frame::still_frames is 16, up to 255 in any case. 0
+  // keeps no history and allocates none: for engines whose own temporal filter comes after.
   std::uint32_t history_frames = 0;
   // History is held to so many standard deviations of this frame's neighbourhood; 0 leaves it free.
   float clamp_width = 0.0f;
