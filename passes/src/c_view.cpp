@@ -1,13 +1,13 @@
 #include "c_view.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <utility>
 
 #include "alcove/passes/multi_bounce.h"
 #include "alcove/passes/occlusion.h"
 #include "c_settings.h"
+#include "view_parameters.h"
 
 namespace alcove::passes {
 namespace {
@@ -34,35 +34,17 @@ struct Textures {
 
 std::string sentence_begin(const AlcoveView& view) { return "View " + std::to_string(view.id); }
 
-// A rotation leaves its axes at right angles and of length 1. Engines scale rarely, and hand over
-// transposed matrices often.
-bool is_rotation_and_translation(const float (&m)[16]) {
-  constexpr float kSlack = 1e-3f;
-  for (std::size_t a = 0; a < 3; ++a) {
-    for (std::size_t b = a; b < 3; ++b) {
-      const float* const u = m + 4 * a;
-      const float* const v = m + 4 * b;
-      const float dot = u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
-      if (!(std::abs(dot - (a == b ? 1.0f : 0.0f)) <= kSlack)) {
-        return false;
-      }
-    }
-  }
-  return m[3] == 0.0f && m[7] == 0.0f && m[11] == 0.0f && m[15] == 1.0f && std::isfinite(m[12]) &&
-         std::isfinite(m[13]) && std::isfinite(m[14]);
-}
-
 // Projections are checked by the passes.
 tl::expected<View, Failure> to_view(const AlcoveView& view, const AlcoveCamera& camera,
                                     const char* name) {
-  if (!is_rotation_and_translation(camera.view_from_world)) {
+  View result;
+  std::copy_n(camera.clip_from_view, 16, result.clip_from_view.begin());
+  std::copy_n(camera.view_from_world, 16, result.view_from_world.begin());
+  if (!is_rotation_and_translation(result.view_from_world)) {
     return invalid(sentence_begin(view) + ": " + name +
                    ".view_from_world is no rotation and translation; it must be column-major, "
                    "without scale and finite.");
   }
-  View result;
-  std::copy_n(camera.clip_from_view, 16, result.clip_from_view.begin());
-  std::copy_n(camera.view_from_world, 16, result.view_from_world.begin());
   return result;
 }
 

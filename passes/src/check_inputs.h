@@ -1,6 +1,7 @@
 // What a pass asks of the textures that it is given.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -36,6 +37,30 @@ struct NamedInput {
     }
   }
   return {};
+}
+
+// What a search may be of, and so the signal that it leaves.
+[[nodiscard]] inline tl::expected<void, Error> check_search(std::uint32_t divisor,
+                                                            std::uint32_t slices) {
+  if (divisor != 1 && divisor != 2 && divisor != 4) {
+    return tl::unexpected(Error{"The resolution is divided by " + std::to_string(divisor) +
+                                "; it must be 1, 2 or 4."});
+  }
+  if (slices < 1 || slices > 64) {
+    return tl::unexpected(
+        Error{"There are " + std::to_string(slices) + " slices; there must be 1 to 64."});
+  }
+  return {};
+}
+
+[[nodiscard]] inline tl::expected<void, Error> check_roughness(float roughness,
+                                                               std::uint32_t channel) {
+  if (roughness >= 0.0f && roughness <= 1.0f && channel <= 3) {
+    return {};
+  }
+  return tl::unexpected(Error{"The roughness is " + std::to_string(roughness) +
+                              " and its texture's channel " + std::to_string(channel) +
+                              "; the first must be 0 to 1, the second 0 to 3."});
 }
 
 }  // namespace alcove::passes

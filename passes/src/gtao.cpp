@@ -49,26 +49,17 @@ tl::expected<void, Error> check(const GtaoSettings& settings) {
     return tl::unexpected(Error{"The occlusion radius is " + std::to_string(settings.radius) +
                                 "; it must be a length over 0 in the scene's units."});
   }
-  if (settings.slices < 1 || settings.slices > 64 || settings.steps < 2 || settings.steps > 64) {
-    return tl::unexpected(Error{"There are " + std::to_string(settings.slices) + " slices of " +
-                                std::to_string(settings.steps) +
-                                " steps; there must be 1 to 64 slices and 2 to 64 steps."});
-  }
-  if (settings.divisor != 1 && settings.divisor != 2 && settings.divisor != 4) {
-    return tl::unexpected(Error{"The resolution is divided by " + std::to_string(settings.divisor) +
-                                "; it must be 1, 2 or 4."});
+  if (settings.steps < 2 || settings.steps > 64) {
+    return tl::unexpected(
+        Error{"There are " + std::to_string(settings.steps) + " steps; there must be 2 to 64."});
   }
   if (settings.depth_layers < 1 || settings.depth_layers > 2) {
     return tl::unexpected(Error{"There are " + std::to_string(settings.depth_layers) +
                                 " layers of depth; there must be 1 or 2."});
   }
-  if (!is_share(settings.roughness) || settings.roughness_channel > 3) {
-    return tl::unexpected(Error{"The roughness is " + std::to_string(settings.roughness) +
-                                " and its texture's channel " +
-                                std::to_string(settings.roughness_channel) +
-                                "; the first must be 0 to 1, the second 0 to 3."});
-  }
-  return check_occluders(settings);
+  return check_search(settings.divisor, settings.slices)
+      .and_then([&] { return check_roughness(settings.roughness, settings.roughness_channel); })
+      .and_then([&] { return check_occluders(settings); });
 }
 
 // The textures that the pass writes, made for the graph but not yet written.
@@ -79,7 +70,7 @@ OcclusionSignal create_signal(const Frame& frame, Texture depth, const GtaoSetti
   result.signal =
       frame.graph.create_texture("occlusion signal", {signal_format(settings.lobe), size});
   if (settings.bent_normal) {
-    result.bent = frame.graph.create_texture("bent signal", {VK_FORMAT_R32G32_UINT, size});
+    result.bent = frame.graph.create_texture("bent signal", {kBentSignalFormat, size});
   }
   return result;
 }

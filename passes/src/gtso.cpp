@@ -18,14 +18,8 @@ namespace {
 
 tl::expected<void, Error> check(const Frame& frame, const GtsoInputs& inputs,
                                 const GtsoSettings& settings) {
-  if (!(settings.roughness >= 0.0f && settings.roughness <= 1.0f)) {
-    return tl::unexpected(Error{"The roughness for specular occlusion is " +
-                                std::to_string(settings.roughness) + "; it must be 0 to 1."});
-  }
-  if (settings.roughness_channel > 3) {
-    return tl::unexpected(Error{"Roughness is asked from channel " +
-                                std::to_string(settings.roughness_channel) +
-                                " of its texture; channels are 0 to 3."});
+  if (auto good = check_roughness(settings.roughness, settings.roughness_channel); !good) {
+    return good;
   }
   const auto or_visibility = [&](bool needed, Texture texture) {
     return needed ? texture : inputs.visibility;

@@ -289,7 +289,7 @@ tl::expected<Kernels, Error> Kernels::create(const framegraph::DeviceHandles& de
   }
   state->physical_device = device.physical_device;
   state->device = device.device;
-  const std::uint32_t slot_count = std::max(frames_in_flight, 1u);
+  const std::uint32_t slot_count = std::clamp(frames_in_flight, 1u, 8u);
   auto done = state->create_layouts()
                   .and_then([&] { return state->create_slots(slot_count); })
                   .and_then([&] { return state->create_parameters(slot_count); });
@@ -300,7 +300,6 @@ tl::expected<Kernels, Error> Kernels::create(const framegraph::DeviceHandles& de
 }
 
 void Kernels::begin_frame(std::uint32_t slot) {
-  assert(slot < state_->slots.size());
   state_->slot = slot;
   state_->dispatches = 0;
 }
@@ -351,8 +350,14 @@ void Kernels::dispatch(framegraph::RecordContext& context, Kernel kernel,
                        std::span<const VkImageView> views, std::span<const std::byte> parameters,
                        VkExtent3D size) {
   State& s = *state_;
+  if (s.slot >= s.slots.size()) {
+    context.fail("dispatch of a slot that is not below the frames in flight of Kernels::create",
+                 VK_ERROR_OUT_OF_POOL_MEMORY);
+    return;
+  }
   if (s.dispatches == kMaxDispatches) {
-    context.fail("dispatch after Kernels::kMaxDispatches of them", VK_ERROR_OUT_OF_POOL_MEMORY);
+    context.fail("dispatch after Kernels::kMaxDispatches of them since Kernels::begin_frame",
+                 VK_ERROR_OUT_OF_POOL_MEMORY);
     return;
   }
   // A view that could not be made is an error that the frame's record returns.

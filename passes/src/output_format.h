@@ -37,5 +37,6 @@ namespace alcove::passes {
 [[nodiscard]] inline VkFormat signal_format(bool lobe) {
   return lobe ? VK_FORMAT_R32G32B32A32_UINT : VK_FORMAT_R32G32_UINT;
 }
+inline constexpr VkFormat kBentSignalFormat = VK_FORMAT_R32G32_UINT;
 
 }  // namespace alcove::passes

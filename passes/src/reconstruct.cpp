@@ -9,7 +9,7 @@
 #include <span>
 #include <string>
 
-#include "check_inputs.h"
+#include "check_reconstruct.h"
 #include "maths/slice_line.h"
 #include "output_format.h"
 #include "reconstruct_parameters.h"
@@ -25,44 +25,8 @@ using framegraph::TextureHistory;
 
 namespace {
 
-constexpr std::uint32_t kMaxReach = 3;
-constexpr std::uint32_t kMaxHistoryFrames = 255;
 // Still frames after which every pixel of a block of 4 has been searched once.
 constexpr std::uint32_t kSettledFrames = 16;
-
-tl::expected<void, Error> check(const ReconstructSettings& settings) {
-  if (!(settings.filter_tolerance_px > 0.0f) || !std::isfinite(settings.filter_tolerance_px)) {
-    return tl::unexpected(Error{"The filter's tolerance is " +
-                                std::to_string(settings.filter_tolerance_px) +
-                                " pixels; it must be over 0 and finite."});
-  }
-  if (settings.filter_reach > kMaxReach) {
-    return tl::unexpected(Error{"The filter's reach is " + std::to_string(settings.filter_reach) +
-                                "; it must be 0 to 3 blocks."});
-  }
-  if (settings.history_frames > kMaxHistoryFrames) {
-    return tl::unexpected(Error{"The history is " + std::to_string(settings.history_frames) +
-                                " frames long; it must be 0 to 255."});
-  }
-  if (!(settings.clamp_width >= 0.0f) || !std::isfinite(settings.clamp_width)) {
-    return tl::unexpected(Error{"The history's clamp is " + std::to_string(settings.clamp_width) +
-                                " deviations wide; it must be at least 0 and finite."});
-  }
-  return {};
-}
-
-tl::expected<void, Error> check_textures(const Frame& frame, const ReconstructInputs& inputs) {
-  const auto or_line = [&](Texture texture) { return texture ? texture : inputs.line_depth; };
-  const std::array<NamedInput, 7> needed{
-      {{"line depth", inputs.line_depth},
-       {"normals", inputs.normals},
-       {"motion vectors", or_line(inputs.motion)},
-       {"roughness", or_line(inputs.roughness)},
-       {"a texture for visibility", or_line(inputs.into.visibility)},
-       {"a texture for bent normals", or_line(inputs.into.bent_normal)},
-       {"a texture for specular occlusion", or_line(inputs.into.specular)}}};
-  return check_inputs(frame.graph, "reconstruct", needed);
-}
 
 // The history of bent normals that goes with one of this name. On the stack, so that a steady frame
 // allocates nothing for it.
@@ -81,35 +45,6 @@ class BentHistoryName {
   std::pmr::string text_{&memory_};
 };
 
-// Pixels, each within the last.
-struct Sizes {
-  VkExtent2D now;
-  VkExtent2D previous;
-  VkExtent2D largest;
-};
-
-tl::expected<Sizes, Error> sizes_of(const Frame& frame, Texture depth) {
-  const VkExtent3D extent = frame.graph.extent(depth);
-  const VkExtent2D now{extent.width, extent.height};
-  const auto or_now = [&](VkExtent2D given) {
-    return given.width == 0 && given.height == 0 ? now : given;
-  };
-  const Sizes sizes{now, or_now(frame.previous_size), or_now(frame.largest_size)};
-  const auto fits = [&](VkExtent2D size) {
-    return size.width > 0 && size.height > 0 && size.width <= sizes.largest.width &&
-           size.height <= sizes.largest.height;
-  };
-  if (fits(sizes.now) && fits(sizes.previous)) {
-    return sizes;
-  }
-  const auto text = [](VkExtent2D size) {
-    return std::to_string(size.width) + "x" + std::to_string(size.height);
-  };
-  return tl::unexpected(Error{"The depth has " + text(sizes.now) + " pixels and had " +
-                              text(sizes.previous) + " in the frame before; both must be within " +
-                              text(sizes.largest) + ", the largest size."});
-}
-
 // All that the pass touches; null where it is not wanted.
 struct Textures {
   ReconstructInputs inputs;
@@ -122,7 +57,7 @@ struct Textures {
 
 // Declares the textures that the pass writes. `valid` is whether last frame's history can be read.
 Textures create_textures(const Frame& frame, const ReconstructInputs& inputs,
-                         const ReconstructSettings& settings, const Sizes& sizes,
+                         const ReconstructSettings& settings, const ReconstructSizes& sizes,
                          std::string_view history_name, bool& valid) {
   Graph& graph = frame.graph;
   const auto size = framegraph::Extent::absolute(sizes.now.width, sizes.now.height);
@@ -330,9 +265,6 @@ VkExtent3D cells_of(VkExtent3D size, std::uint32_t divisor) {
 tl::expected<Occlusion, Error> add_reconstruct(const Frame& frame, const ReconstructInputs& given,
                                                const ReconstructSettings& settings,
                                                std::string_view history_name) {
-  if (auto good = check(settings); !good) {
-    return tl::unexpected(good.error());
-  }
   ReconstructInputs inputs = given;
   const bool same_view = frame.view == frame.previous_view;
   if (same_view && frame.still_frames > 0) {
@@ -341,15 +273,10 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& frame, const Reconst
   if (!inputs.signal.lobe) {
     inputs.roughness = {};
   }
-  if (auto good = check_textures(frame, inputs); !good) {
+  if (auto good = check_reconstruct(frame, inputs, settings); !good) {
     return tl::unexpected(good.error());
   }
-  if (!settings.visibility && !inputs.signal.bent && !inputs.signal.lobe) {
-    return tl::unexpected(Error{
-        "The filter is asked for no visibility, and its signal has neither bent normals nor a "
-        "lobe; ask for one of the three."});
-  }
-  const auto sizes = sizes_of(frame, inputs.line_depth);
+  const auto sizes = reconstruct_sizes(frame, inputs.line_depth);
   if (!sizes) {
     return tl::unexpected(sizes.error());
   }

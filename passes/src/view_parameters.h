@@ -1,6 +1,7 @@
 // What the passes' C++ needs of a View, in the types that the shaders share.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <type_traits>
@@ -18,9 +19,32 @@ namespace alcove::passes {
   return result;
 }
 
-// The projection of a view over an image of `size` pixels, or what is wrong with it.
+// A rotation leaves its axes at right angles and of length 1. Engines scale rarely, and hand over
+// transposed matrices often.
+[[nodiscard]] inline bool is_rotation_and_translation(const Matrix& m) {
+  constexpr float kSlack = 1e-3f;
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (std::size_t b = a; b < 3; ++b) {
+      const float* const u = &m[4 * a];
+      const float* const v = &m[4 * b];
+      const float dot = u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+      if (!(std::abs(dot - (a == b ? 1.0f : 0.0f)) <= kSlack)) {
+        return false;
+      }
+    }
+  }
+  return m[3] == 0.0f && m[7] == 0.0f && m[11] == 0.0f && m[15] == 1.0f && std::isfinite(m[12]) &&
+         std::isfinite(m[13]) && std::isfinite(m[14]);
+}
+
+// The projection of a view over an image of `size` pixels, or what is wrong with the view.
 [[nodiscard]] inline tl::expected<maths::Projection, Error> projection_of(const View& view,
                                                                           VkExtent2D size) {
+  if (!is_rotation_and_translation(view.view_from_world)) {
+    return tl::unexpected(
+        Error{"The view cannot be used: view_from_world is no rotation and translation; it must "
+              "be column-major, without scale and finite."});
+  }
   return maths::make_projection(to_mat4(view.clip_from_view), size.width, size.height)
       .map_error([](const char* why) {
         return Error{"The view cannot be used: " + std::string(why) + "."};

@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 
+#include "alcove/passes/line_depth.h"
 #include "gtao_scenes.h"
 #include "pass_fixture.h"
 
@@ -117,6 +118,79 @@ TEST_F(BadInput, AProjectionThatIsNoneIsNamed) {
     EXPECT_THAT(said, HasSubstr("view"));
     EXPECT_PRED1(is_a_sentence, said);
   }
+  expect_a_good_frame();
+}
+
+TEST_F(BadInput, AViewThatIsNoRotationAndTranslationIsNamed) {
+  for (const float bad : {0.0f, 2.0f, kNaN, kInfinity}) {
+    const std::string said =
+        error_of([&](View& view, OcclusionSettings&) { view.view_from_world[5] = bad; });
+    EXPECT_THAT(said, HasSubstr("view_from_world"));
+    EXPECT_PRED1(is_a_sentence, said);
+  }
+  EXPECT_THAT(error_of([](View& view, OcclusionSettings&) { view.view_from_world[13] = kNaN; }),
+              HasSubstr("view_from_world"));
+  expect_a_good_frame();
+}
+
+TEST_F(BadInput, ASignalThatNoSearchLeavesIsNamed) {
+  struct Case {
+    const char* names;
+    std::function<void(OcclusionSignal&, ReconstructSettings&)> spoil;
+  };
+  const std::vector<Case> cases{
+      {"divided by 0", [](OcclusionSignal& s, ReconstructSettings&) { s.divisor = 0; }},
+      {"divided by 3", [](OcclusionSignal& s, ReconstructSettings&) { s.divisor = 3; }},
+      {"divided by 4294967295", [](OcclusionSignal& s, ReconstructSettings&) { s.divisor = ~0u; }},
+      {"0 slices", [](OcclusionSignal& s, ReconstructSettings&) { s.slices = 0; }},
+      {"65 slices", [](OcclusionSignal& s, ReconstructSettings&) { s.slices = 65; }},
+      {"a signal of 8x6", [](OcclusionSignal& s, ReconstructSettings&) { s.divisor = 1; }},
+      {"a signal of 0x0", [](OcclusionSignal& s, ReconstructSettings&) { s.signal = {}; }},
+      {"a signal of 8x6", [](OcclusionSignal& s, ReconstructSettings&) { s.lobe = true; }},
+      {"a bent signal of 16x12",
+       [](OcclusionSignal& s, ReconstructSettings&) { s.bent.index = 0; }},
+      {"roughness", [](OcclusionSignal&, ReconstructSettings& s) { s.roughness = kNaN; }},
+      {"channel", [](OcclusionSignal&, ReconstructSettings& s) { s.roughness_channel = 4; }},
+  };
+  const Drawing drawing = draw(test_views()[2], 16, 12, groove(0.8));
+  for (const Case& bad : cases) {
+    run([&](Graph& graph) {
+      const Frame frame{graph, gpu().kernels(), test_views()[2].view, 0};
+      const framegraph::Texture depth = upload(graph, drawing.depth_ndc);  // the first: number 0
+      const framegraph::Texture normals = upload(graph, drawing.normal_vs);
+      const auto line = add_line_depth(frame, depth);
+      ASSERT_TRUE(line);
+      GtaoSettings search;
+      search.divisor = 2;
+      search.bent_normal = true;
+      const auto signal = add_gtao(frame, {*line, normals, true}, search);
+      ASSERT_TRUE(signal);
+      OcclusionSignal spoilt = *signal;
+      ReconstructSettings settings;
+      bad.spoil(spoilt, settings);
+      const auto result = add_reconstruct(
+          frame, {.signal = spoilt, .line_depth = *line, .normals = normals}, settings);
+      ASSERT_FALSE(result);
+      EXPECT_THAT(result.error().message, HasSubstr(bad.names));
+      EXPECT_PRED1(is_a_sentence, result.error().message);
+      read_back(graph, depth);
+    });
+  }
+  expect_a_good_frame();
+}
+
+TEST_F(BadInput, ASlotThatTheKernelsDoNotHaveIsNamed) {
+  const Drawing drawing = draw(test_views()[2], 16, 12, groove(0.8));
+  const auto report = gpu().run([&](Graph& graph) -> tl::expected<void, std::string> {
+    gpu().kernels().begin_frame(8);
+    const Frame frame{graph, gpu().kernels(), test_views()[2].view, 0};
+    const auto outputs = add_occlusion(frame, {upload(graph, drawing.depth_ndc)}, {});
+    EXPECT_TRUE(outputs);
+    graph.output(outputs->visibility);
+    return {};
+  });
+  ASSERT_FALSE(report);
+  EXPECT_THAT(report.error(), HasSubstr("frames in flight"));
   expect_a_good_frame();
 }
 

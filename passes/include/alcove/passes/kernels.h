@@ -59,8 +59,9 @@ class Kernels {
   static constexpr std::uint32_t kMaxParameterBytes = 1024;
   static constexpr std::size_t kMaxConstants = 24;  // of a pipeline
 
-  // `device` must outlive the kernels. `frames_in_flight` is how many frames may be recorded before
-  // the first of them has finished on the device.
+  // `device` must outlive the kernels. `frames_in_flight`, 1 to 8, is how many frames may be
+  // recorded before the first of them has finished on the device:
+  // ExecutorOptions::frames_in_flight.
   [[nodiscard]] static tl::expected<Kernels, Error> create(const framegraph::DeviceHandles& device,
                                                            std::uint32_t frames_in_flight);
   Kernels(Kernels&&) noexcept;
@@ -68,7 +69,8 @@ class Kernels {
   ~Kernels();
 
   // Takes back the descriptors and parameters of the frame that was last recorded with `slot`
-  // (below `frames_in_flight`), which must have finished on the device: FrameInfo::slot.
+  // (below `frames_in_flight`), which must have finished on the device: FrameInfo::slot. Once a
+  // frame, before it is recorded.
   void begin_frame(std::uint32_t slot);
 
   // The pipeline of `shader` with specialisation constants 0, 1, 2... of these values.
@@ -89,8 +91,8 @@ class Kernels {
   // Records a dispatch that covers `size` pixels (and layers) with 8x8 groups. Binding 0 is a
   // uniform buffer with `parameters`; the views follow in the order of the shader's bindings,
   // sampled ones in SHADER_READ_ONLY_OPTIMAL, stored ones in GENERAL; the shader's table comes
-  // last. Where memory gives out, or the frame has kMaxDispatches already, Executor::record() gives
-  // the error.
+  // last. Where memory gives out, there is no such slot, or the frame has kMaxDispatches already,
+  // Executor::record() gives the error.
   void dispatch(framegraph::RecordContext& context, Kernel kernel,
                 std::span<const VkImageView> views, std::span<const std::byte> parameters,
                 VkExtent3D size);

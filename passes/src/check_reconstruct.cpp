@@ -1,0 +1,120 @@
+#include "check_reconstruct.h"
+
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "check_inputs.h"
+#include "output_format.h"
+
+namespace alcove::passes {
+namespace {
+
+using framegraph::Texture;
+
+constexpr std::uint32_t kMaxReach = 3;
+constexpr std::uint32_t kMaxHistoryFrames = 255;
+
+tl::expected<void, Error> check_settings(const ReconstructSettings& settings) {
+  if (!(settings.filter_tolerance_px > 0.0f) || !std::isfinite(settings.filter_tolerance_px)) {
+    return tl::unexpected(Error{"The filter's tolerance is " +
+                                std::to_string(settings.filter_tolerance_px) +
+                                " pixels; it must be over 0 and finite."});
+  }
+  if (settings.filter_reach > kMaxReach) {
+    return tl::unexpected(Error{"The filter's reach is " + std::to_string(settings.filter_reach) +
+                                "; it must be 0 to 3 blocks."});
+  }
+  if (settings.history_frames > kMaxHistoryFrames) {
+    return tl::unexpected(Error{"The history is " + std::to_string(settings.history_frames) +
+                                " frames long; it must be 0 to 255."});
+  }
+  if (!(settings.clamp_width >= 0.0f) || !std::isfinite(settings.clamp_width)) {
+    return tl::unexpected(Error{"The history's clamp is " + std::to_string(settings.clamp_width) +
+                                " deviations wide; it must be at least 0 and finite."});
+  }
+  return check_roughness(settings.roughness, settings.roughness_channel);
+}
+
+tl::expected<void, Error> check_textures(const Frame& frame, const ReconstructInputs& inputs) {
+  const auto or_line = [&](Texture texture) { return texture ? texture : inputs.line_depth; };
+  const std::array<NamedInput, 7> needed{
+      {{"line depth", inputs.line_depth},
+       {"normals", inputs.normals},
+       {"motion vectors", or_line(inputs.motion)},
+       {"roughness", or_line(inputs.roughness)},
+       {"a texture for visibility", or_line(inputs.into.visibility)},
+       {"a texture for bent normals", or_line(inputs.into.bent_normal)},
+       {"a texture for specular occlusion", or_line(inputs.into.specular)}}};
+  return check_inputs(frame.graph, "reconstruct", needed);
+}
+
+// What the shader takes for granted of a texture of the signal, which may be of the caller's
+// making.
+tl::expected<void, Error> check_blocks(const Frame& frame, Texture depth, std::uint32_t divisor,
+                                       Texture texture, VkFormat format, const char* name) {
+  const VkExtent3D pixels = frame.graph.extent(depth);
+  const VkExtent3D found = frame.graph.extent(texture);
+  const VkFormat found_format = frame.graph.format(texture);
+  const VkExtent2D blocks{(pixels.width + divisor - 1) / divisor,
+                          (pixels.height + divisor - 1) / divisor};
+  if (found.width == blocks.width && found.height == blocks.height && found_format == format) {
+    return {};
+  }
+  return tl::unexpected(Error{
+      "The pass reconstruct was given " + std::string(name) + " of " + std::to_string(found.width) +
+      "x" + std::to_string(found.height) + " texels and VkFormat " + std::to_string(found_format) +
+      "; it needs " + std::to_string(blocks.width) + "x" + std::to_string(blocks.height) +
+      ", one a block, and VkFormat " + std::to_string(format) + "."});
+}
+
+tl::expected<void, Error> check_signal(const Frame& frame, const ReconstructInputs& inputs) {
+  const OcclusionSignal& signal = inputs.signal;
+  const auto check = [&](Texture texture, VkFormat format, const char* name) {
+    return check_blocks(frame, inputs.line_depth, signal.divisor, texture, format, name);
+  };
+  return check_search(signal.divisor, signal.slices)
+      .and_then([&] { return check(signal.signal, signal_format(signal.lobe), "a signal"); })
+      .and_then([&] {
+        return signal.bent ? check(signal.bent, kBentSignalFormat, "a bent signal")
+                           : tl::expected<void, Error>();
+      });
+}
+
+}  // namespace
+
+tl::expected<void, Error> check_reconstruct(const Frame& frame, const ReconstructInputs& inputs,
+                                            const ReconstructSettings& settings) {
+  if (!settings.visibility && !inputs.signal.bent && !inputs.signal.lobe) {
+    return tl::unexpected(Error{
+        "The filter is asked for no visibility, and its signal has neither bent normals nor a "
+        "lobe; ask for one of the three."});
+  }
+  return check_settings(settings)
+      .and_then([&] { return check_textures(frame, inputs); })
+      .and_then([&] { return check_signal(frame, inputs); });
+}
+
+tl::expected<ReconstructSizes, Error> reconstruct_sizes(const Frame& frame, Texture depth) {
+  const VkExtent3D extent = frame.graph.extent(depth);
+  const VkExtent2D now{extent.width, extent.height};
+  const auto or_now = [&](VkExtent2D given) {
+    return given.width == 0 && given.height == 0 ? now : given;
+  };
+  const ReconstructSizes sizes{now, or_now(frame.previous_size), or_now(frame.largest_size)};
+  const auto fits = [&](VkExtent2D size) {
+    return size.width > 0 && size.height > 0 && size.width <= sizes.largest.width &&
+           size.height <= sizes.largest.height;
+  };
+  if (fits(sizes.now) && fits(sizes.previous)) {
+    return sizes;
+  }
+  const auto text = [](VkExtent2D size) {
+    return std::to_string(size.width) + "x" + std::to_string(size.height);
+  };
+  return tl::unexpected(Error{"The depth has " + text(sizes.now) + " pixels and had " +
+                              text(sizes.previous) + " in the frame before; both must be within " +
+                              text(sizes.largest) + ", the largest size."});
+}
+
+}  // namespace alcove::passes
