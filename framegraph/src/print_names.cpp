@@ -55,6 +55,30 @@ constexpr Bit kAccesses[] = {
     {VK_ACCESS_2_MEMORY_WRITE_BIT, "memory write"},
 };
 
+// As Vulkan names them, without what all have in common.
+constexpr Bit kImageUsages[] = {
+    {VK_IMAGE_USAGE_TRANSFER_SRC_BIT, "TRANSFER_SRC"},
+    {VK_IMAGE_USAGE_TRANSFER_DST_BIT, "TRANSFER_DST"},
+    {VK_IMAGE_USAGE_SAMPLED_BIT, "SAMPLED"},
+    {VK_IMAGE_USAGE_STORAGE_BIT, "STORAGE"},
+    {VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, "COLOR_ATTACHMENT"},
+    {VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, "DEPTH_STENCIL_ATTACHMENT"},
+    {VK_IMAGE_USAGE_TRANSIENT_ATTACHMENT_BIT, "TRANSIENT_ATTACHMENT"},
+    {VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT, "INPUT_ATTACHMENT"},
+};
+
+constexpr Bit kBufferUsages[] = {
+    {VK_BUFFER_USAGE_TRANSFER_SRC_BIT, "TRANSFER_SRC"},
+    {VK_BUFFER_USAGE_TRANSFER_DST_BIT, "TRANSFER_DST"},
+    {VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT, "UNIFORM_TEXEL_BUFFER"},
+    {VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT, "STORAGE_TEXEL_BUFFER"},
+    {VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, "UNIFORM_BUFFER"},
+    {VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, "STORAGE_BUFFER"},
+    {VK_BUFFER_USAGE_INDEX_BUFFER_BIT, "INDEX_BUFFER"},
+    {VK_BUFFER_USAGE_VERTEX_BUFFER_BIT, "VERTEX_BUFFER"},
+    {VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, "INDIRECT_BUFFER"},
+};
+
 template <std::size_t kCount>
 std::string join(std::uint64_t bits, const Bit (&names)[kCount]) {
   if (bits == 0) return "none";
@@ -77,6 +101,10 @@ std::string join(std::uint64_t bits, const Bit (&names)[kCount]) {
 std::string stage_names(VkPipelineStageFlags2 stages) { return join(stages, kStages); }
 
 std::string access_names(VkAccessFlags2 accesses) { return join(accesses, kAccesses); }
+
+std::string usage_names(ResourceKind kind, VkFlags usage) {
+  return kind == ResourceKind::texture ? join(usage, kImageUsages) : join(usage, kBufferUsages);
+}
 
 std::string layout_name(VkImageLayout layout) {
   switch (layout) {

@@ -1,4 +1,4 @@
-// Short names for stages, accesses, layouts and formats.
+// Short names for stages, accesses, usages, layouts and formats.
 #pragma once
 
 #include <string>
@@ -13,6 +13,7 @@ namespace alcove::framegraph {
 // Bits joined by '|'; "none" for none.
 std::string stage_names(VkPipelineStageFlags2 stages);
 std::string access_names(VkAccessFlags2 accesses);
+std::string usage_names(ResourceKind kind, VkFlags usage);
 std::string layout_name(VkImageLayout layout);
 std::string queue_name(QueueClass queue);
 std::string byte_size(VkDeviceSize bytes);

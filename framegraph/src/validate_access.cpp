@@ -1,3 +1,4 @@
+#include "print_names.h"
 #include "validate.h"
 
 namespace alcove::framegraph {
@@ -101,32 +102,23 @@ struct Checker {
 
   void usage() {
     const ResourceRecord& r = v.graph.resources[access.resource];
+    const auto names = [&](VkFlags usage) { return usage_names(r.kind, usage); };
     if (r.origin == Origin::imported) {
-      const VkFlags missing = access.usage & ~v.graph.externals[r.external].usage;
+      const VkFlags has = v.graph.externals[r.external].usage;
+      const VkFlags missing = access.usage & ~has;
       if (missing != 0)
-        bad(ErrorCode::missing_usage, subject() + " with usage bits " + hex(access.usage) +
-                                          ", but it was imported with " +
-                                          hex(v.graph.externals[r.external].usage) +
-                                          ": create it with " + hex(missing) + " too");
+        bad(ErrorCode::missing_usage, subject() + " with usage " + names(access.usage) +
+                                          ", but it was imported with " + names(has) +
+                                          ": create it with " + names(missing) + " too");
     }
     if (r.kind != ResourceKind::texture || v.limits.formats.query == nullptr) return;
     const VkFlags missing =
         access.usage & ~v.limits.formats.query(v.limits.formats.context, r.format);
     if (missing != 0)
       bad(ErrorCode::unsupported_format,
-          subject() + " with usage bits " + hex(missing) + ", which format " +
+          subject() + " with usage " + names(missing) + ", which format " +
               std::to_string(static_cast<int>(r.format)) +
               " does not support on this device: choose another format");
-  }
-
-  static std::string hex(VkFlags flags) {
-    static constexpr char kDigits[] = "0123456789abcdef";
-    std::string text;
-    do {
-      text.insert(text.begin(), kDigits[flags & 15]);
-      flags >>= 4;
-    } while (flags != 0);
-    return "0x" + text;
   }
 };
 

@@ -19,8 +19,8 @@ namespace alcove::passes {
   return result;
 }
 
-// A rotation leaves its axes at right angles and of length 1. Engines scale rarely, and hand over
-// transposed matrices often.
+// A rotation leaves its axes at right angles and of length 1, and so does a mirror, which a
+// left-handed world needs. Engines scale rarely, and hand over transposed matrices often.
 [[nodiscard]] inline bool is_rotation_and_translation(const Matrix& m) {
   constexpr float kSlack = 1e-3f;
   for (std::size_t a = 0; a < 3; ++a) {

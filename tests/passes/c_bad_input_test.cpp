@@ -222,6 +222,8 @@ TEST_F(CBadInput, AnImageThatDoesNotDoIsNamed) {
        [](AlcoveView& v) { v.visibility.format = VK_FORMAT_D32_SFLOAT; }},
       {"bent normals has VkFormat",
        [](AlcoveView& v) { v.bent_normal.format = VK_FORMAT_R8G8B8A8_UNORM; }},
+      {"visibility of view 0' with usage SAMPLED",
+       [](AlcoveView& v) { v.visibility.usage = VK_IMAGE_USAGE_STORAGE_BIT; }},
       {"multi-bounce has VkFormat",
        [](AlcoveView& v) { v.multi_bounce.format = VK_FORMAT_R32_SFLOAT; }},
       {"specular occlusion is 1x1",

@@ -188,6 +188,30 @@ TEST_F(CInterface, ViewsOfAFrameAreTheSameAsEachAlone) {
   }
 }
 
+// Its world looks the same in a mirror, and so do its normals.
+TEST_F(CInterface, ALeftHandedWorldLooksTheSame) {
+  const Context context = create_context();
+  const auto mirror = [](HostImage& image) {
+    for (std::size_t i = 2; i < image.texels.size(); i += image.channels) {
+      image.texels[i] = -image.texels[i];
+    }
+  };
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    std::vector<GivenView> views(2, frame_of(i, 16, 12));
+    for (GivenView& view : views) {
+      view.normals_in_view_space = false;
+      view.settings.bent_normal = true;
+    }
+    views[1].id = 1;
+    views[1].view.view_from_world[10] = -1.0f;
+    views[1].previous_view.view_from_world[10] = -1.0f;
+    mirror(views[1].normals);
+    std::vector<Results> found = run_by_c(*context, views, i);
+    mirror(found[1].bent_normal);
+    expect_equal(found[1], found[0]);
+  }
+}
+
 TEST_F(CInterface, EightViewsWithEverythingFitAFrame) {
   const Context context = create_context();
   std::vector<GivenView> views;

@@ -9,7 +9,8 @@
 // 0 to 1), matrices are column-major: row r of column c at 4 * c + r. Lengths are in the scene's
 // units. A visibility of 1 is open.
 //
-// Threads. One thread at a time per context, and that without any lock; contexts share nothing.
+// Threads. A context is for one thread at a time, and takes no lock; contexts, also of one device,
+// share nothing.
 //
 // Errors. A call that fails records nothing, and alcoveGetMessage says in a sentence what was
 // wrong; at worst a history begins anew. Where memory or the device gives out in the middle of a
@@ -213,14 +214,17 @@ typedef struct AlcoveImage {
   AlcoveState departure;
 } AlcoveImage;
 
+// As depth was drawn, jitter included. Where an engine's view space looks along +Z, the third
+// column of its clip_from_view and the third row of its view_from_world change sign, and so does z
+// of normals in view space.
 typedef struct AlcoveCamera {
   float clip_from_view[16];   // any projection: finite, infinite, reversed, off-centre, jittered,
                               // flipped in Y, orthographic
-  float view_from_world[16];  // rotation and translation only
+  float view_from_world[16];  // rotation and translation only; a reflection for left-handed worlds
 } AlcoveCamera;
 
-// One view of a frame: an eye, a part of a split screen. Outputs that have no image are not made,
-// and cost neither a pass nor memory.
+// One view of a frame: an eye, a part of a split screen, in images or layers of its own. Outputs
+// that have no image are not made, and cost neither a pass nor memory.
 typedef struct AlcoveView {
   uint32_t struct_size;
   uint32_t id;             // any number, other in each view of a frame: each id has its own history
@@ -247,8 +251,9 @@ typedef struct AlcoveView {
 
   // Inputs.
   AlcoveImage depth;    // as clip_from_view has it: any depth format, or R32_SFLOAT. Needed
-  AlcoveImage normals;  // xyz unit, signed; none: made from depth, and in view space
-  // xy: uv of this frame minus uv of the last, signed; none: only the camera moves.
+  AlcoveImage normals;  // xyz unit, as they are: signed; none: made from depth, and in view space
+  // xy: uv in this frame's image minus uv in the last's (y down, so with the jitter of both
+  // cameras), signed; none: only the camera moves.
   AlcoveImage motion;
   AlcoveImage roughness;     // perceptual, [0,1]; none: AlcoveSettings::roughness
   AlcoveImage back_depth;    // of the nearest back faces, as depth; needed with
@@ -258,7 +263,8 @@ typedef struct AlcoveView {
                              // (bitmask, connected), else unread
   AlcoveImage albedo;        // linear RGB, [0,1], for multi_bounce
 
-  // Outputs. Formats are any that the device can store to, of at least so many channels.
+  // Outputs. Formats are any that the device can store to, of at least so many channels. The sky
+  // (depth at the far plane, or not a number) is open, its bent normal the normal.
   AlcoveImage visibility;    // 1 channel, [0,1]: R8_UNORM will do
   AlcoveImage bent_normal;   // 3, signed: xyz unit, in the space of the normals; R8G8B8A8_SNORM
   AlcoveImage specular;      // 1, [0,1]: multiplies specular probe light
@@ -277,6 +283,11 @@ typedef struct AlcoveFrame {
 // context's queue family, outside a render pass. Frames are submitted in the order in which they
 // are recorded, each once and all to one queue; else alcoveDiscardFrame. A frame like the one
 // before allocates nothing.
+//
+// Pipelines are made when a frame first needs them, which may take the driver a second: by
+// settings, images given, and whether a view is in perspective, has history and is still, but not
+// by size. So two frames of a small image, recorded and submitted while loading, make those of a
+// view.
 //
 // It binds compute pipelines and descriptor set 0 and leaves them bound; other state is untouched.
 // Barriers: each image from its arrival to SHADER_READ_ONLY_OPTIMAL (inputs) or GENERAL (outputs),
@@ -297,7 +308,8 @@ AlcoveResult alcoveRecordFrame(AlcoveContext* context, VkCommandBuffer commands,
 // failed, or none, there is nothing to do.
 AlcoveResult alcoveDiscardFrame(AlcoveContext* context);
 
-// Bytes of device memory of the frame recorded last; zeros before there is one.
+// Bytes of device memory of the frame recorded last; zeros before there is one, and after one that
+// failed or was discarded. What transients share grows with the largest frame, and stays.
 typedef struct AlcoveMemory {
   uint32_t struct_size;
   uint64_t transients;           // live during the frame, sharing memory

@@ -1,4 +1,8 @@
 // What every pass of a frame is given: the graph it is added to, the kernels, and the view.
+//
+//   once:   Executor::create, Kernels::create, for as many frames in flight
+//   frame:  wait for the fence of slot s;  graph.reset(); kernels.begin_frame(s);
+//           import textures, add passes;  executor.record(graph, commands, {s})
 #pragma once
 
 #include <array>

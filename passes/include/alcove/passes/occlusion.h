@@ -45,9 +45,8 @@ struct OcclusionInputs {
   framegraph::Texture depth_ndc;       // as the view's projection wrote it
   framegraph::Texture normals;         // xyz unit; null: they are made from depth
   bool normals_in_view_space = false;  // else in world space
-  // xy: uv of this frame minus uv of the last; null: only the camera moves.
-  framegraph::Texture motion;
-  framegraph::Texture roughness;  // perceptual, [0,1]; null: OcclusionSettings::roughness
+  framegraph::Texture motion;          // as ReconstructInputs::motion; null: only the camera moves
+  framegraph::Texture roughness;       // perceptual, [0,1]; null: OcclusionSettings::roughness
   // For ThicknessUnit::back_faces, where needs_back_depth(); else ignored. The depth of the scene
   // drawn once more with front faces culled, and all else alike: projection, size, cleared to the
   // sky, the nearest face kept (LESS, GREATER where depth is reversed). The nearest, because that

@@ -43,13 +43,13 @@ struct Occlusion {
 };
 
 struct ReconstructInputs {
-  OcclusionSignal signal;          // as add_gtao writes it
+  OcclusionSignal signal;          // as add_gtao writes it, of this frame's index
   framegraph::Texture line_depth;  // as add_line_depth makes it
   framegraph::Texture normals;     // as GtaoInputs::normals
   bool normals_in_view_space = false;
-  // xy: uv of this frame minus uv of the last; null: only the camera moves. Where it is given,
-  // things may, and with them the visibility of surfaces that stand still: history is held to what
-  // the last few frames say.
+  // xy: uv in this frame's image minus uv in the last's, y down, so with the jitter of both views;
+  // null: only the camera moves. Where it is given, things may, and with them the visibility of
+  // surfaces that stand still: history is held to what the last few frames say.
   framegraph::Texture motion;
   framegraph::Texture roughness;  // as GtaoInputs::roughness
   // Textures of the depth's size, of the caller's, that results are written to, whole; null: a
