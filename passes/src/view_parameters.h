@@ -37,6 +37,13 @@ namespace alcove::passes {
          std::isfinite(m[13]) && std::isfinite(m[14]);
 }
 
+// Whether the 1 by which a perspective has w from z stands where the depth of its near plane does.
+// Such a matrix is a perspective too, of a scaled w and between other planes, and nobody's.
+[[nodiscard]] inline bool is_transposed(const Matrix& clip_from_view) {
+  const float w_from_z = std::abs(clip_from_view[11]);
+  return std::abs(clip_from_view[14]) == 1.0f && w_from_z != 1.0f && w_from_z != 0.0f;
+}
+
 // The projection of a view over an image of `size` pixels, or what is wrong with the view.
 [[nodiscard]] inline tl::expected<maths::Projection, Error> projection_of(const View& view,
                                                                           VkExtent2D size) {
@@ -44,6 +51,10 @@ namespace alcove::passes {
     return tl::unexpected(
         Error{"The view cannot be used: view_from_world is no rotation and translation; it must "
               "be column-major, without scale and finite."});
+  }
+  if (is_transposed(view.clip_from_view)) {
+    return tl::unexpected(
+        Error{"The view cannot be used: clip_from_view is transposed; it must be column-major."});
   }
   return maths::make_projection(to_mat4(view.clip_from_view), size.width, size.height)
       .map_error([](const char* why) {

@@ -133,6 +133,22 @@ TEST_F(BadInput, AViewThatIsNoRotationAndTranslationIsNamed) {
   expect_a_good_frame();
 }
 
+TEST_F(BadInput, ATransposedProjectionIsNamed) {
+  for (const TestView& test : test_views()) {
+    if (test.orthographic) {
+      continue;
+    }
+    SCOPED_TRACE(test.name);
+    const std::string said = error_of([&](View& view, OcclusionSettings&) {
+      for (std::size_t i = 0; i < 16; ++i) {
+        view.clip_from_view[i] = test.view.clip_from_view[4 * (i % 4) + i / 4];
+      }
+    });
+    EXPECT_THAT(said, HasSubstr("transposed"));
+    EXPECT_PRED1(is_a_sentence, said);
+  }
+}
+
 TEST_F(BadInput, ASignalThatNoSearchLeavesIsNamed) {
   struct Case {
     const char* names;

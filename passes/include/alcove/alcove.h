@@ -214,9 +214,9 @@ typedef struct AlcoveImage {
   AlcoveState departure;
 } AlcoveImage;
 
-// As depth was drawn, jitter included. Where an engine's view space looks along +Z, the third
-// column of its clip_from_view and the third row of its view_from_world change sign, and so does z
-// of normals in view space.
+// As depth was drawn, jitter included. Where the viewport has a negative height, the second row of
+// an engine's clip_from_view changes sign. Where its view space looks along +Z, the third column of
+// clip_from_view and the third row of view_from_world do, and z of normals in view space.
 typedef struct AlcoveCamera {
   float clip_from_view[16];   // any projection: finite, infinite, reversed, off-centre, jittered,
                               // flipped in Y, orthographic

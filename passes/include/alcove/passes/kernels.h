@@ -59,9 +59,9 @@ class Kernels {
   static constexpr std::uint32_t kMaxParameterBytes = 1024;
   static constexpr std::size_t kMaxConstants = 24;  // of a pipeline
 
-  // `device` must outlive the kernels. `frames_in_flight`, 1 to 8, is how many frames may be
-  // recorded before the first of them has finished on the device:
-  // ExecutorOptions::frames_in_flight.
+  // `device`, made with the feature shaderStorageImageWriteWithoutFormat, must outlive the kernels.
+  // `frames_in_flight`, 1 to 8, is how many frames may be recorded before the first of them has
+  // finished on the device: ExecutorOptions::frames_in_flight.
   [[nodiscard]] static tl::expected<Kernels, Error> create(const framegraph::DeviceHandles& device,
                                                            std::uint32_t frames_in_flight);
   Kernels(Kernels&&) noexcept;
