@@ -143,7 +143,8 @@ TEST_F(Validate, AnImportWithoutTheNeededUsageIsRefused) {
   Texture texture = graph_.import_texture("swap", import);
   PassBuilder writer = pass("writer");
   (void)writer.write(texture, access::storage_write_compute);
-  expect(ErrorCode::missing_usage, "with usage STORAGE, but it was imported with SAMPLED: create it with STORAGE too");
+  expect(ErrorCode::missing_usage,
+         "with usage STORAGE, but it was imported with SAMPLED: create it with STORAGE too");
 }
 
 TEST_F(Validate, AnImportWithoutItsHandleIsRefused) {
