@@ -13,7 +13,6 @@ namespace {
 using framegraph::Texture;
 
 constexpr std::uint32_t kMaxReach = 3;
-constexpr std::uint32_t kMaxHistoryFrames = 255;
 
 tl::expected<void, Error> check_settings(const ReconstructSettings& settings) {
   if (!(settings.filter_tolerance_px > 0.0f) || !std::isfinite(settings.filter_tolerance_px)) {
@@ -27,7 +26,8 @@ tl::expected<void, Error> check_settings(const ReconstructSettings& settings) {
   }
   if (settings.history_frames > kMaxHistoryFrames) {
     return tl::unexpected(Error{"The history is " + std::to_string(settings.history_frames) +
-                                " frames long; it must be 0 to 255."});
+                                " frames long; it must be 0 to " +
+                                std::to_string(kMaxHistoryFrames) + "."});
   }
   if (!(settings.clamp_width >= 0.0f) || !std::isfinite(settings.clamp_width)) {
     return tl::unexpected(Error{"The history's clamp is " + std::to_string(settings.clamp_width) +

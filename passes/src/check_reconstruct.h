@@ -1,9 +1,14 @@
 // What add_reconstruct() asks of what it is given.
 #pragma once
 
+#include <cstdint>
+
 #include "alcove/passes/reconstruct.h"
 
 namespace alcove::passes {
+
+// The most that a pixel's history counts.
+inline constexpr std::uint32_t kMaxHistoryFrames = 255;
 
 // What is wrong with settings or textures.
 [[nodiscard]] tl::expected<void, Error> check_reconstruct(const Frame& frame,
