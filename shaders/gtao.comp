@@ -21,6 +21,7 @@
 #include "maths/sampling.h"
 #include "maths/signal.h"
 #include "maths/slice_line.h"
+#include "maths/unseen.h"
 #include "maths/visibility_bitmask.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -42,10 +43,12 @@ layout(constant_id = 13) const bool kSnapping = true;    // samples lie where th
 layout(constant_id = 14) const bool kByPattern = false;  // block_by_pattern() groups the searches
 layout(constant_id = 15) const bool kSecondLayer = false;  // second_image occludes too
 layout(constant_id = 16) const bool kContinuation = true;  // surfaces go on beyond the image
+layout(constant_id = 17) const bool kUnseen = true;        // is left out, with connected samples
 
 const bool kHeuristic = kEstimator == 1;
 const bool kBitmask = kEstimator >= 2;
 const bool kConnected = kEstimator == 3;
+const bool kLeaveOutUnseen = kConnected && kUnseen;
 
 layout(set = 0, binding = 0) uniform Parameters { GtaoParameters parameters; };
 layout(set = 0, binding = 1, r32f) uniform readonly image2D line_image;  // LineSample::line
@@ -145,31 +148,54 @@ LobeSlice lobe_of(Surface surface, Slice slice) {
   return make_lobe_slice(slice, surface.lobe.roughness * surface.lobe.roughness);
 }
 
+UnseenArc unseen_arc(Slice slice, float sign, Side side, Occluders found) {
+  return make_unseen_arc(slice, sign, side.per_bearing, found.sectors, found.unseen,
+                         side.radius_px);
+}
+
+Signal leave_out(Signal sum, float part) {
+  return Signal(max(sum.visible - part, 0.0), sum.open - part);
+}
+
 SliceSum bitmask_slice(Surface surface, SliceLine line, Slice slice, vec3 direction, Search ahead,
                        Search behind) {
   Side ahead_side = make_side(surface, line, slice, 1.0);
   Side behind_side = make_side(surface, line, slice, -1.0);
-  uint ahead_sectors = find_occluders(surface, ahead, ahead_side);
-  uint behind_sectors = find_occluders(surface, behind, behind_side);
+  Occluders ahead_found = find_occluders(surface, ahead, ahead_side);
+  Occluders behind_found = find_occluders(surface, behind, behind_side);
   const PartRequest request = PartRequest(kUniformWeight, kBentNormal);
-  VisiblePart front =
-      visible_part(slice, 1.0, ahead_side.per_bearing, ahead_sectors, parameters.fill, request);
-  VisiblePart back =
-      visible_part(slice, -1.0, behind_side.per_bearing, behind_sectors, parameters.fill, request);
+  VisiblePart front = visible_part(slice, 1.0, ahead_side.per_bearing, ahead_found.sectors,
+                                   parameters.fill, request);
+  VisiblePart back = visible_part(slice, -1.0, behind_side.per_bearing, behind_found.sectors,
+                                  parameters.fill, request);
   SliceSum sum;
   sum.visible = front.arc + back.arc;
   sum.open = kUniformWeight ? 1.0
                             : light_arc(slice, 1.0, tangent_light(slice, 1.0)) +
                                   light_arc(slice, -1.0, tangent_light(slice, -1.0));
+  UnseenArc ahead_unseen, behind_unseen;
+  if (kLeaveOutUnseen) {
+    ahead_unseen = unseen_arc(slice, 1.0, ahead_side, ahead_found);
+    behind_unseen = unseen_arc(slice, -1.0, behind_side, behind_found);
+    Signal seen = leave_out(Signal(sum.visible, sum.open),
+                            unseen_part(ahead_unseen, slice, 1.0, kUniformWeight) +
+                                unseen_part(behind_unseen, slice, -1.0, kUniformWeight));
+    sum.visible = seen.visible;
+    sum.open = seen.open;
+  }
   vec2 bent = front.bent + back.bent;
   sum.bent = direction * bent.x + surface.view * bent.y;
   sum.lobe = no_lobe();
   if (kLobe) {
     LobeSlice lobe = lobe_of(surface, slice);
     sum.lobe.visible =
-        visible_lobe(lobe, 1.0, ahead_side.per_bearing, ahead_sectors, parameters.fill) +
-        visible_lobe(lobe, -1.0, behind_side.per_bearing, behind_sectors, parameters.fill);
+        visible_lobe(lobe, 1.0, ahead_side.per_bearing, ahead_found.sectors, parameters.fill) +
+        visible_lobe(lobe, -1.0, behind_side.per_bearing, behind_found.sectors, parameters.fill);
     sum.lobe.open = lobe.open;
+    if (kLeaveOutUnseen) {
+      sum.lobe = leave_out(
+          sum.lobe, unseen_lobe(ahead_unseen, lobe, 1.0) + unseen_lobe(behind_unseen, lobe, -1.0));
+    }
   }
   return sum;
 }

@@ -1,5 +1,6 @@
 // The bitmask part of gtao.comp, which includes it: which sectors of a side the samples occlude,
-// joined into sheets (maths/connected_samples.h) or each by itself.
+// joined into sheets (maths/connected_samples.h) or each by itself, and what of it they do not show
+// (maths/unseen.h).
 #ifndef ALCOVE_GTAO_SECTORS_H
 #define ALCOVE_GTAO_SECTORS_H
 
@@ -11,6 +12,7 @@ struct Side {
   vec2 height;        // above the tangent plane, of each unit of a point of the slice's plane
   float sharp;        // bend that parts two surfaces
   float per_bearing;  // sectors
+  float radius_px;
 };
 
 Side make_side(Surface surface, SliceLine line, Slice slice, float side) {
@@ -18,6 +20,7 @@ Side make_side(Surface surface, SliceLine line, Slice slice, float side) {
   made.height = vec2(side * slice.along, slice.toward);
   made.sharp = kSharpBend * line.x_per_step * (kPerspective ? surface.tangent.line : 1.0);
   made.per_bearing = sectors_per_bearing(slice, side);
+  made.radius_px = slice_radius_px(line, parameters.radius, surface.depth, kPerspective);
   return made;
 }
 
@@ -30,14 +33,24 @@ struct Sheet {
   float position;  // of the last sample's front, in sectors
   float excess;    // radius_excess() of it
   uint sectors;    // occluded so far
+  Unseen unseen;   // so far
 };
 
 float back_position(Side side, LineSample here) {
   return sector_position(side.per_bearing, kBackFaces ? here.back : settings_back(here));
 }
 
+// Only the last layer's samples tell what none shows.
+bool tells_unseen(uint layer) { return kLeaveOutUnseen && layer == (kSecondLayer ? 1u : 0u); }
+
+// `excess` is the sample's, `width_px` that of the column it stands for.
+Unseen pass_column(Unseen unseen, LineSample here, float excess, float width_px) {
+  bool hides = excess > 0.0 && here.point.y > 0.0;
+  return add_unseen(unseen, hides ? here.offset_px : 1e9, hides ? width_px : 0.0);
+}
+
 // The first sample stands alone. Its edge is drawn in unless it lies on the surface's own plane.
-Sheet begin_sheet(Surface surface, Side side, LineSample here, LineSample next) {
+Sheet begin_sheet(Surface surface, Side side, uint layer, LineSample here, LineSample next) {
   Sheet sheet;
   sheet.last = here;
   sheet.rise = next.line - here.line;
@@ -51,6 +64,10 @@ Sheet begin_sheet(Surface surface, Side side, LineSample here, LineSample next) 
   sheet.excess = radius_excess(here.point, parameters.radius);
   uint covered = sectors_between(sheet.position, back_position(side, here));
   sheet.sectors = sheet.excess <= 0.0 ? covered : 0u;
+  sheet.unseen = nothing_unseen();
+  if (tells_unseen(layer)) {
+    sheet.unseen = pass_column(sheet.unseen, here, sheet.excess, here.offset_px);
+  }
   return sheet;
 }
 
@@ -72,6 +89,9 @@ void extend_sheet(inout Sheet sheet, Side side, float x_per_step, uint layer, Li
   float joint = continued ? sheet.position : position;
   uint covered = sectors_between(min(min(position, end), joint), max(max(position, end), joint));
   sheet.sectors |= inside || continued ? covered : 0u;
+  if (tells_unseen(layer)) {
+    sheet.unseen = pass_column(sheet.unseen, here, excess, sheet.step_px);
+  }
   sheet.last = here;
   sheet.bend = bend;
   sheet.position = position;
@@ -105,10 +125,15 @@ uint sectors_beyond(Sheet sheet, Side side, vec3 way, float x_beyond) {
 // in one would be a program of thousands of lines.
 const uint kTurn = 4;
 
-// The sectors that the samples of a layer occlude on a side.
-uint find_in_layer(Surface surface, Search search, Side side, uint layer) {
+// What was found on a side.
+struct Occluders {
+  uint sectors;
+  Unseen unseen;
+};
+
+Occluders find_in_layer(Surface surface, Search search, Side side, uint layer) {
   LineSample here = fetch_sample(search, layer, 1);
-  Sheet sheet = begin_sheet(surface, side, fetch_sample(search, layer, 0), here);
+  Sheet sheet = begin_sheet(surface, side, layer, fetch_sample(search, layer, 0), here);
   const uint rest = (kStepCount - 2) % kTurn;
   uint k = 2;
   [[unroll]] for (uint i = 0; i < rest; ++i) {
@@ -128,15 +153,29 @@ uint find_in_layer(Surface surface, Search search, Side side, uint layer) {
   // Nothing tells how it ends: joined only if the way to it did not bend.
   vec3 way = here.point - sheet.last.point;
   extend_sheet(sheet, side, search.line.x_per_step, layer, here, -sheet.bend);
+  uint beyond = 0u;
   if (kContinuation && kConnected) {
-    sheet.sectors |= sectors_beyond(sheet, side, way, search.beyond_px * search.line.x_per_step);
+    float on_px = min(search.beyond_px, kContinuedReaches * search.reach_px);
+    beyond = sectors_beyond(sheet, side, way, on_px * search.line.x_per_step);
   }
-  return search.reach_px > 0.0 ? sheet.sectors : 0u;
+  Occluders found = Occluders(sheet.sectors | beyond, sheet.unseen);
+  if (search.reach_px <= 0.0) found = Occluders(0u, nothing_unseen());
+  // Beyond the border the first layer tells.
+  if (kLeaveOutUnseen && layer == 0u && beyond == 0u && search.beyond_px > 0.0) {
+    found.unseen =
+        add_beyond_border(found.unseen, here.offset_px, search.beyond_px, side.radius_px);
+  }
+  return found;
 }
 
-uint find_occluders(Surface surface, Search search, Side side) {
-  uint sectors = find_in_layer(surface, search, side, 0u);
-  return kSecondLayer ? sectors | find_in_layer(surface, search, side, 1u) : sectors;
+Occluders find_occluders(Surface surface, Search search, Side side) {
+  Occluders found = find_in_layer(surface, search, side, 0u);
+  if (kSecondLayer) {
+    Occluders behind = find_in_layer(surface, search, side, 1u);
+    found.sectors |= behind.sectors;
+    found.unseen = add_unseen(found.unseen, behind.unseen.first_px, behind.unseen.width_px);
+  }
+  return found;
 }
 
 #endif

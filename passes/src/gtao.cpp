@@ -1,5 +1,6 @@
 #include "alcove/passes/gtao.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <span>
@@ -17,6 +18,9 @@ using framegraph::RecordContext;
 using framegraph::Texture;
 
 namespace {
+
+// Scene units: what a radius spans in pixels stays finite, and nothing lies as far.
+constexpr float kLargestRadius = 1e25f;
 
 bool is_share(float value) { return value >= 0.0f && value <= 1.0f; }
 
@@ -131,7 +135,8 @@ tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame, const GtaoInpu
                              static_cast<std::uint32_t>(settings.parts.snapping),
                              static_cast<std::uint32_t>(by_pattern),
                              static_cast<std::uint32_t>(two_layers),
-                             static_cast<std::uint32_t>(settings.parts.continuation)};
+                             static_cast<std::uint32_t>(settings.parts.continuation),
+                             static_cast<std::uint32_t>(settings.parts.unseen)};
   const auto kernel =
       frame.kernels.get(settings.lobe ? Shader::gtao_lobe : Shader::gtao, constants);
   if (!kernel) {
@@ -162,7 +167,7 @@ tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame, const GtaoInpu
       view_from_normal(frame, inputs.normals_in_view_space),
       maths::vec4(per_px, projection->uv_to_slope.z, projection->uv_to_slope.w),
       maths::vec2(static_cast<float>(phase.x), static_cast<float>(phase.y)),
-      settings.radius,
+      std::min(settings.radius, kLargestRadius),
       frame.index,
       settings.thickness * (of_distance ? 1.0f : settings.radius),
       settings.fill,

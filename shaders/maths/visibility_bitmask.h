@@ -56,7 +56,7 @@ ALCOVE_INLINE uint sectors_between(float from, float to) {
 
 // What is asked of a side.
 struct PartRequest {
-  bool uniform_weight;  // uniform_arc() in place of light_arc()
+  bool uniform_weight;  // of part_arc()
   bool bent;
 };
 
@@ -66,9 +66,14 @@ struct VisiblePart {
   vec2 bent;  // zero where it was not asked for
 };
 
+// A side from the view vector to a light, cosine-weighted or not.
+ALCOVE_INLINE float part_arc(Slice s, float side, vec2 light, bool uniform_weight) {
+  return uniform_weight ? uniform_arc(light) : light_arc(s, side, light);
+}
+
 ALCOVE_INLINE VisiblePart add_part(VisiblePart sum, float weight, Slice s, float side, vec2 light,
                                    PartRequest request) {
-  sum.arc += weight * (request.uniform_weight ? uniform_arc(light) : light_arc(s, side, light));
+  sum.arc += weight * part_arc(s, side, light, request.uniform_weight);
   if (request.bent) sum.bent += bent_light_arc(s, side, light) * weight;
   return sum;
 }

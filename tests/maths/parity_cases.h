@@ -17,6 +17,7 @@
 #include "maths/pyramid.h"
 #include "maths/sampling.h"
 #include "maths/signal.h"
+#include "maths/unseen.h"
 #include "maths/visibility_bitmask.h"
 
 ALCOVE_MATHS_BEGIN
@@ -196,11 +197,20 @@ ALCOVE_INLINE vec4 parity_of_sampling(uint which, vec4 a, vec4 b) {
                   visible_lobe(lobe, 1.0f, sectors_per_bearing(s, 1.0f), hash(pixel.x), 0.4f),
                   visible_lobe(lobe, -1.0f, sectors_per_bearing(s, -1.0f), hash(pixel.y), 0.0f));
     }
+    case 24u: {
+      Slice s = parity_slice(a);
+      LobeSlice lobe = make_lobe_slice(s, 0.05f + 0.95f * b.x);
+      Unseen unseen = add_beyond_border(add_unseen(nothing_unseen(), b.y, b.z), b.w, b.z, 0.5f);
+      // Sectors are whole: only without occluders does a rounding not move an end.
+      UnseenArc arc = make_unseen_arc(s, 1.0f, sectors_per_bearing(s, 1.0f), 0u, unseen, 1.0f);
+      return vec4(unseen_part(arc, s, 1.0f, false), unseen_part(arc, s, 1.0f, true),
+                  unseen_lobe(arc, lobe, 1.0f), arc.share);
+    }
   }
   return vec4(0.0f);
 }
 
-const uint kParityCases = 24u;
+const uint kParityCases = 25u;
 
 // Four results of case `which` for eight numbers in [0,1).
 ALCOVE_INLINE vec4 parity_case(uint which, vec4 a, vec4 b, Projection p) {

@@ -52,6 +52,7 @@ constexpr Bound kBounds[] = {
     {"lobe of slices", 1e-3, 1e-3},
     {"golden pattern", 0.0, 0.0},
     {"lobe signal", 1e-4, 4e-3},
+    {"unseen parts", 1e-3, 1e-3},
 };
 static_assert(std::size(kBounds) == maths::kParityCases);
 

@@ -20,6 +20,7 @@ OcclusionSettings exact(Estimator estimator, float radius) {
   OcclusionSettings settings = quality_settings(Quality::reference, radius);
   settings.estimator = estimator;
   settings.fill = 1.0f;
+  settings.parts.unseen = false;
   return settings;
 }
 
@@ -267,19 +268,6 @@ TEST_F(GtaoTruth, WhatLiesBeyondTheRadiusDoesNotOcclude) {
       }
     }
   }
-}
-
-// The columns of an image from `first` on, `count` of `width`, as an image of their own.
-TestView columns_of(TestView view, std::uint32_t width, std::uint32_t first, std::uint32_t count) {
-  auto& m = view.view.clip_from_view;
-  const float scale = static_cast<float>(width) / static_cast<float>(count);
-  const float shift =
-      (static_cast<float>(width) - 2.0f * static_cast<float>(first)) / static_cast<float>(count) -
-      1.0f;
-  for (std::size_t column = 0; column < 4; ++column) {
-    m[4 * column] = m[4 * column] * scale + m[4 * column + 3] * shift;
-  }
-  return view;
 }
 
 // A groove whose right wall all but leaves the image, beside the same groove seen whole.

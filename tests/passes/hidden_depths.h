@@ -17,6 +17,7 @@ inline OcclusionSettings without_fill(Estimator estimator, float radius) {
   settings.estimator = estimator;
   settings.slices = 16;
   settings.fill = 0.0f;
+  settings.parts.unseen = false;
   return settings;
 }
 

@@ -138,7 +138,7 @@ TEST_F(OcclusionPlan, PartsOfASearchCostNoPassAndNoByteAndAPipelineOnlyWhereThey
   EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines);
   for (const SearchParts& parts :
        {SearchParts{.snapping = false}, SearchParts{.continuation = false},
-        SearchParts{.grouping = Grouping::pattern}}) {
+        SearchParts{.unseen = false}, SearchParts{.grouping = Grouping::pattern}}) {
     OcclusionSettings changed = least();
     changed.parts = parts;
     const Kept found = kept(changed);

@@ -91,8 +91,10 @@ TEST(CommandLine, EverySettingIsReadBack) {
   settings.falloff = 0.25f;
   settings.divisor = 4;
   settings.pattern = passes::Pattern::memo;
-  settings.parts = {
-      .snapping = false, .continuation = false, .grouping = passes::Grouping::pattern};
+  settings.parts = {.snapping = false,
+                    .continuation = false,
+                    .unseen = false,
+                    .grouping = passes::Grouping::pattern};
   settings.depth_mips = 5;
   settings.filter_reach = 0;
   settings.filter_tolerance_px = 2.5f;

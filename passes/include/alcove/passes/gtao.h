@@ -67,6 +67,9 @@ struct SearchParts {
   bool snapping = true;
   // Whether surfaces that leave the image go on beyond its border as they left (connected samples).
   bool continuation = true;
+  // Whether what foregrounds and the image's border hide is left out of visibility, neither open
+  // nor occluded (connected samples, shaders/maths/unseen.h); else it counts as open.
+  bool unseen = true;
   Grouping grouping = Grouping::neighbours;
 
   friend bool operator==(const SearchParts&, const SearchParts&) = default;
@@ -82,7 +85,7 @@ struct SearchSettings {
   // Of occluders, for bitmask and connected samples.
   float thickness = 0.15f;  // at least 0
   ThicknessUnit thickness_unit = ThicknessUnit::radius;
-  float fill = 0.4f;               // share of what is hidden behind them that occludes too, [0,1]
+  float fill = 0.35f;              // share of what is hidden behind them that occludes too, [0,1]
   std::uint32_t depth_layers = 1;  // that are searched: 1, or 2 with what lies behind the first
   // For horizons and heuristic.
   float blend = 0.05f;   // of a horizon towards each lower sample, [0,1] (heuristic)

@@ -1,0 +1,86 @@
+// Directions of a slice of which the depth buffer tells nothing, and what becomes of them.
+//
+// A surface that stands before the whole sphere of the radius hides all that its columns of the
+// image have of it, and beyond the image's border nothing is shown at all: whether anything
+// occludes there is not known. Taken as open, as horizons take it, what foregrounds hide is too
+// bright wherever it was measured, the more so the more of a direction's way is hidden. So a share
+// of these directions is left out of the visible part and of the whole alike: as much of them is
+// taken to be open as of the rest, and an open plane stays exactly open beside anything before it.
+// A mean direction has no whole to be left out of, and keeps them. After no paper that we know.
+#ifndef ALCOVE_MATHS_UNSEEN_H
+#define ALCOVE_MATHS_UNSEEN_H
+
+#include "gtao.h"
+#include "language.h"
+#include "lobe_slice.h"
+#include "slice.h"
+#include "visibility_bitmask.h"
+
+ALCOVE_MATHS_BEGIN
+
+// The columns along one side of a slice's line that show nothing of the sphere.
+struct Unseen {
+  float first_px;  // offset of the innermost from the shaded pixel
+  float width_px;  // of all together
+};
+
+ALCOVE_INLINE Unseen nothing_unseen() {
+  Unseen none;
+  none.first_px = 1e9f;
+  none.width_px = 0.0f;
+  return none;
+}
+
+ALCOVE_INLINE Unseen add_unseen(Unseen sum, float offset_px, float width_px) {
+  sum.first_px = min(sum.first_px, offset_px);
+  sum.width_px += width_px;
+  return sum;
+}
+
+// The same of `beyond_px` of the radius that lie beyond the border, the last sample before it at
+// `offset_px`. They count by half: what left the image mostly goes on there.
+ALCOVE_INLINE Unseen add_beyond_border(Unseen sum, float offset_px, float beyond_px,
+                                       float radius_px) {
+  return add_unseen(sum, offset_px, 0.5f * min(beyond_px, radius_px));
+}
+
+// Visible directions, from nearer the view vector outwards, of which a share is left out.
+struct UnseenArc {
+  vec2 from;  // sine and cosine of the angle to the view vector
+  vec2 to;
+  float share;  // [0,kMostUnseen]
+};
+
+// Something of every slice counts.
+const float kMostUnseen = 0.98f;
+
+// From where a direction within the radius meets the innermost column to the first occluder, if any
+// (`occluded` as visible_part() has it). The share is the square root of what part of the radius
+// the columns are wide, which errs less than the part itself or all. `radius_px` is
+// slice_radius_px().
+ALCOVE_INLINE UnseenArc make_unseen_arc(Slice s, float side, float per_bearing, uint occluded,
+                                        Unseen unseen, float radius_px) {
+  UnseenArc arc;
+  float x = min(unseen.first_px / radius_px, 1.0f);
+  arc.from = vec2(x, sqrt(1.0f - x * x));
+  arc.to = occluded == 0u ? tangent_light(s, side)
+                          : bearing_light(float(findLSB(occluded)) / per_bearing);
+  float share = min(sqrt(unseen.width_px / radius_px), kMostUnseen);
+  arc.share = arc.to.y < arc.from.y ? share : 0.0f;
+  return arc;
+}
+
+// What is left out of a side, as part_arc() weighs it.
+ALCOVE_INLINE float unseen_part(UnseenArc arc, Slice s, float side, bool uniform_weight) {
+  return arc.share *
+         (part_arc(s, side, arc.to, uniform_weight) - part_arc(s, side, arc.from, uniform_weight));
+}
+
+// The same of the lobe.
+ALCOVE_INLINE float unseen_lobe(UnseenArc arc, LobeSlice lobe, float side) {
+  return arc.share * (lobe_light_arc(lobe, side, arc.to) - lobe_light_arc(lobe, side, arc.from));
+}
+
+ALCOVE_MATHS_END
+
+#endif

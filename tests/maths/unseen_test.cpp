@@ -1,0 +1,137 @@
+#include "maths/unseen.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+#include "random_input.h"
+#include "slice_truth.h"
+
+namespace alcove::maths_test {
+namespace {
+
+using maths::Slice;
+using maths::Unseen;
+using maths::UnseenArc;
+
+constexpr float kRadiusPx = 40.0f;
+
+// A side of a slice with columns that show nothing, drawn at random.
+struct Case {
+  Slice slice;
+  float side;
+  float per_bearing;
+  std::uint32_t occluded;
+  Unseen unseen;
+
+  explicit Case(RandomInput& random)
+      : slice(slice_of(random.uniform(0.05f, 1.0f), random.uniform(-1.5f, 1.5f))),
+        side(random.bits() % 2 == 0 ? 1.0f : -1.0f),
+        per_bearing(maths::sectors_per_bearing(slice, side)),
+        occluded(random.bits() % 3 == 0 ? 0u : 0xffffffffu << random.bits() % 32),
+        unseen(maths::nothing_unseen()) {
+    const float first = random.uniform(0.0f, 1.2f) * kRadiusPx;
+    const float width = random.uniform(0.0f, 0.3f) * kRadiusPx;
+    for (unsigned k = random.bits() % 4; k > 0; --k) {
+      unseen = maths::add_unseen(unseen, first + float(k - 1) * width, width);
+    }
+  }
+
+  UnseenArc arc() const {
+    return maths::make_unseen_arc(slice, side, per_bearing, occluded, unseen, kRadiusPx);
+  }
+
+  double tangent() const { return std::acos(double(maths::tangent_horizon(slice, side))); }
+
+  // Angle to the view vector at which the unseen directions begin, and that at which they end.
+  double begins() const { return std::asin(std::min(1.0, double(unseen.first_px) / kRadiusPx)); }
+  double ends() const {
+    if (occluded == 0) return tangent();
+    const double y = 1.0 - std::countr_zero(occluded) / double(per_bearing);
+    return std::atan2(1.0 - std::abs(y), y);
+  }
+  double share() const {
+    return std::min(std::sqrt(double(unseen.width_px) / kRadiusPx), double(maths::kMostUnseen));
+  }
+
+  // Share of the integral of `density` over the directions.
+  template <typename Density>
+  double truth(Density density) const {
+    const double from = begins(), to = ends();
+    return from < to ? share() * integrate(density, from, to) : 0.0;
+  }
+};
+
+TEST(Unseen, ThePartLeftOutIsTheShareOfTheIntegral) {
+  RandomInput random;
+  double worst = 0.0, worst_uniform = 0.0, largest = 0.0;
+  for (int i = 0; i < 20000; ++i) {
+    const Case c(random);
+    const SliceTruth slice(c.slice);
+    const double found = maths::unseen_part(c.arc(), c.slice, c.side, false);
+    const double truth = c.truth([&](double t) { return slice.density(double(c.side) * t); });
+    const double uniform = maths::unseen_part(c.arc(), c.slice, c.side, true);
+    worst = std::max(worst, std::abs(found - truth));
+    worst_uniform = std::max(
+        worst_uniform, std::abs(uniform - c.truth([](double t) { return 0.5 * std::sin(t); })));
+    largest = std::max(largest, truth);
+  }
+  EXPECT_GT(largest, 0.5);
+  // light_arc() is within 2.4e-5, and is taken twice.
+  EXPECT_LT(worst, 6e-5);
+  EXPECT_LT(worst_uniform, 2e-6);
+}
+
+TEST(Unseen, ALobeLosesTheShareOfWhatItHasThere) {
+  RandomInput random;
+  for (int i = 0; i < 5000; ++i) {
+    const Case c(random);
+    const maths::LobeSlice lobe = maths::make_lobe_slice(c.slice, random.uniform(0.01f, 1.0f));
+    const auto up_to = [&](double angle) {
+      return double(maths::lobe_arc(c.slice, lobe, c.side, float(std::cos(angle))));
+    };
+    const double from = std::min(c.begins(), c.ends());
+    const double truth = c.share() * (up_to(c.ends()) - up_to(from));
+    EXPECT_NEAR(maths::unseen_lobe(c.arc(), lobe, c.side), truth, 2e-3 * lobe.open + 1e-6);
+  }
+}
+
+TEST(Unseen, WhatASideShowsCountsWhole) {
+  RandomInput random;
+  for (int i = 0; i < 1000; ++i) {
+    Case c(random);
+    c.unseen = maths::nothing_unseen();
+    EXPECT_EQ(maths::unseen_part(c.arc(), c.slice, c.side, false), 0.0f);
+    // Behind the first occluder `fill` decides.
+    c = Case(random);
+    c.occluded |= 1u;
+    EXPECT_EQ(maths::unseen_part(c.arc(), c.slice, c.side, false), 0.0f);
+  }
+}
+
+TEST(Unseen, TheBorderLeavesOutHalfTheWidthBeyondItAndNeverMoreThanHalfTheRadius) {
+  const Unseen some = maths::add_unseen(maths::nothing_unseen(), 7.0f, 2.0f);
+  const Unseen border = maths::add_beyond_border(some, 9.0f, 10.0f, kRadiusPx);
+  EXPECT_EQ(border.first_px, 7.0f);
+  EXPECT_EQ(border.width_px, 7.0f);
+  EXPECT_EQ(maths::add_beyond_border(some, 3.0f, 1e9f, kRadiusPx).first_px, 3.0f);
+  EXPECT_EQ(maths::add_beyond_border(some, 3.0f, 1e9f, kRadiusPx).width_px, 22.0f);
+}
+
+TEST(Unseen, SomethingOfEverySideCounts) {
+  RandomInput random;
+  for (int i = 0; i < 1000; ++i) {
+    Case c(random);
+    c.occluded = 0;
+    c.unseen = {.first_px = 0.0f, .width_px = 3.0f * kRadiusPx};
+    const float whole = maths::light_arc(c.slice, c.side, maths::tangent_light(c.slice, c.side));
+    EXPECT_LE(maths::unseen_part(c.arc(), c.slice, c.side, false),
+              maths::kMostUnseen * whole + 1e-6f);
+  }
+}
+
+}  // namespace
+}  // namespace alcove::maths_test
