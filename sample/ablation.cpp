@@ -90,7 +90,7 @@ void add_searches(TrialList& list) {
   part = "border";
   list.add(part, "surfaces go on", [](OcclusionSettings& s) { s.parts.continuation = true; });
   list.add(part, "surfaces end", [](OcclusionSettings& s) { s.parts.continuation = false; });
-  part = "what is not seen";
+  part = "unseen";
   list.add(part, "left out", [](OcclusionSettings& s) { s.parts.unseen = true; });
   list.add(part, "open", [](OcclusionSettings& s) { s.parts.unseen = false; });
   part = "grouping";

@@ -153,19 +153,11 @@ Occluders find_in_layer(Surface surface, Search search, Side side, uint layer) {
   // Nothing tells how it ends: joined only if the way to it did not bend.
   vec3 way = here.point - sheet.last.point;
   extend_sheet(sheet, side, search.line.x_per_step, layer, here, -sheet.bend);
-  uint beyond = 0u;
   if (kContinuation && kConnected) {
-    float on_px = min(search.beyond_px, kContinuedReaches * search.reach_px);
-    beyond = sectors_beyond(sheet, side, way, on_px * search.line.x_per_step);
+    sheet.sectors |= sectors_beyond(sheet, side, way, search.beyond_px * search.line.x_per_step);
   }
-  Occluders found = Occluders(sheet.sectors | beyond, sheet.unseen);
-  if (search.reach_px <= 0.0) found = Occluders(0u, nothing_unseen());
-  // Beyond the border the first layer tells.
-  if (kLeaveOutUnseen && layer == 0u && beyond == 0u && search.beyond_px > 0.0) {
-    found.unseen =
-        add_beyond_border(found.unseen, here.offset_px, search.beyond_px, side.radius_px);
-  }
-  return found;
+  if (search.reach_px <= 0.0) return Occluders(0u, nothing_unseen());
+  return Occluders(sheet.sectors, sheet.unseen);
 }
 
 Occluders find_occluders(Surface surface, Search search, Side side) {
@@ -173,7 +165,7 @@ Occluders find_occluders(Surface surface, Search search, Side side) {
   if (kSecondLayer) {
     Occluders behind = find_in_layer(surface, search, side, 1u);
     found.sectors |= behind.sectors;
-    found.unseen = add_unseen(found.unseen, behind.unseen.first_px, behind.unseen.width_px);
+    found.unseen = behind.unseen;
   }
   return found;
 }

@@ -1,6 +1,5 @@
 #include "alcove/passes/gtao.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <span>
@@ -18,9 +17,6 @@ using framegraph::RecordContext;
 using framegraph::Texture;
 
 namespace {
-
-// Scene units: what a radius spans in pixels stays finite, and nothing lies as far.
-constexpr float kLargestRadius = 1e25f;
 
 bool is_share(float value) { return value >= 0.0f && value <= 1.0f; }
 
@@ -167,7 +163,7 @@ tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame, const GtaoInpu
       view_from_normal(frame, inputs.normals_in_view_space),
       maths::vec4(per_px, projection->uv_to_slope.z, projection->uv_to_slope.w),
       maths::vec2(static_cast<float>(phase.x), static_cast<float>(phase.y)),
-      std::min(settings.radius, kLargestRadius),
+      settings.radius,
       frame.index,
       settings.thickness * (of_distance ? 1.0f : settings.radius),
       settings.fill,

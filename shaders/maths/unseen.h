@@ -1,12 +1,13 @@
 // Directions of a slice of which the depth buffer tells nothing, and what becomes of them.
 //
 // A surface that stands before the whole sphere of the radius hides all that its columns of the
-// image have of it, and beyond the image's border nothing is shown at all: whether anything
-// occludes there is not known. Taken as open, as horizons take it, what foregrounds hide is too
-// bright wherever it was measured, the more so the more of a direction's way is hidden. So a share
-// of these directions is left out of the visible part and of the whole alike: as much of them is
-// taken to be open as of the rest, and an open plane stays exactly open beside anything before it.
-// A mean direction has no whole to be left out of, and keeps them. After no paper that we know.
+// image have of it: whether anything occludes there is not known. Taken as open, as horizons take
+// it, what foregrounds hide is too bright wherever it was measured, the more so the more of a
+// direction's way is hidden. So a share of these directions is left out of the visible part and of
+// the whole alike: as much of them is taken to be open as of the rest, and an open plane stays
+// exactly open beside anything before it. A mean direction has no whole to be left out of, and
+// keeps them. Not so beyond the image's border: where little occludes what is seen of a wide
+// radius, leaving that out multiplies it. After no paper that we know.
 #ifndef ALCOVE_MATHS_UNSEEN_H
 #define ALCOVE_MATHS_UNSEEN_H
 
@@ -37,13 +38,6 @@ ALCOVE_INLINE Unseen add_unseen(Unseen sum, float offset_px, float width_px) {
   return sum;
 }
 
-// The same of `beyond_px` of the radius that lie beyond the border, the last sample before it at
-// `offset_px`. They count by half: what left the image mostly goes on there.
-ALCOVE_INLINE Unseen add_beyond_border(Unseen sum, float offset_px, float beyond_px,
-                                       float radius_px) {
-  return add_unseen(sum, offset_px, 0.5f * min(beyond_px, radius_px));
-}
-
 // Visible directions, from nearer the view vector outwards, of which a share is left out.
 struct UnseenArc {
   vec2 from;  // sine and cosine of the angle to the view vector
@@ -66,7 +60,7 @@ ALCOVE_INLINE UnseenArc make_unseen_arc(Slice s, float side, float per_bearing, 
   arc.to = occluded == 0u ? tangent_light(s, side)
                           : bearing_light(float(findLSB(occluded)) / per_bearing);
   float share = min(sqrt(unseen.width_px / radius_px), kMostUnseen);
-  arc.share = arc.to.y < arc.from.y ? share : 0.0f;
+  arc.share = unseen.width_px > 0.0f && arc.to.y < arc.from.y ? share : 0.0f;
   return arc;
 }
 

@@ -112,15 +112,6 @@ TEST(Unseen, WhatASideShowsCountsWhole) {
   }
 }
 
-TEST(Unseen, TheBorderLeavesOutHalfTheWidthBeyondItAndNeverMoreThanHalfTheRadius) {
-  const Unseen some = maths::add_unseen(maths::nothing_unseen(), 7.0f, 2.0f);
-  const Unseen border = maths::add_beyond_border(some, 9.0f, 10.0f, kRadiusPx);
-  EXPECT_EQ(border.first_px, 7.0f);
-  EXPECT_EQ(border.width_px, 7.0f);
-  EXPECT_EQ(maths::add_beyond_border(some, 3.0f, 1e9f, kRadiusPx).first_px, 3.0f);
-  EXPECT_EQ(maths::add_beyond_border(some, 3.0f, 1e9f, kRadiusPx).width_px, 22.0f);
-}
-
 TEST(Unseen, SomethingOfEverySideCounts) {
   RandomInput random;
   for (int i = 0; i < 1000; ++i) {
