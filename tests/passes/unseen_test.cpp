@@ -105,6 +105,31 @@ TEST_F(Unseen, AnOpenPlaneStaysExactlyOpenBesideAPlateBeforeIt) {
   }
 }
 
+TEST_F(Unseen, WhatASecondLayerShowsIsSeen) {
+  const TestView view = two_views()[1];
+  Scene covered = trench();
+  covered.push_back(plate(0.05));
+  const Drawing drawing = draw(view, kWidth, kHeight, covered);
+  const HostImage second = draw_second_layer(view, kWidth, kHeight, covered);
+  const auto seen = [&](bool unseen, std::uint32_t layers) {
+    OcclusionSettings settings = quality_settings(Quality::reference, kRadius);
+    settings.estimator = Estimator::connected;
+    settings.depth_layers = layers;
+    settings.parts.unseen = unseen;
+    return run_occlusion({.view = view.view,
+                          .depth_ndc = drawing.depth_ndc,
+                          .normal_vs = &drawing.normal_vs,
+                          .second_depth_ndc = &second},
+                         settings)
+        .visibility;
+  };
+  const auto left_out = [&](std::uint32_t layers) {
+    return mean_difference(seen(true, layers), seen(false, layers), kWidth / 2 - 4, kWidth / 2);
+  };
+  EXPECT_GT(left_out(1), 0.05);
+  EXPECT_LT(left_out(2), 0.2 * left_out(1));
+}
+
 TEST_F(Unseen, OnlyConnectedSamplesLeaveItOut) {
   const TestView view = two_views()[0];
   Scene covered = trench();
