@@ -65,7 +65,8 @@ void for_each_setting(Settings& settings, const Visit& visit) {
         settings.parts.snapping);
   visit(Info{"continuation", "Surfaces that leave the image go on beyond its border."},
         settings.parts.continuation);
-  visit(Info{"unseen", "What foregrounds hide is left out of visibility, else it is open."},
+  visit(Info{"unseen",
+             "What foregrounds and the border hide is left out of visibility, else it is open."},
         settings.parts.unseen);
   visit(Info{"grouping", "Searches that run together: neighbours, or those of one direction."},
         settings.parts.grouping);

@@ -148,9 +148,12 @@ LobeSlice lobe_of(Surface surface, Slice slice) {
   return make_lobe_slice(slice, surface.lobe.roughness * surface.lobe.roughness);
 }
 
-UnseenArc unseen_arc(Slice slice, float sign, Side side, Occluders found) {
-  return make_unseen_arc(slice, sign, side.per_bearing, found.sectors, found.unseen,
-                         side.radius_px);
+UnseenArc unseen_arc(Slice slice, float sign, Side side, Occluders found, Search search,
+                     Search other) {
+  float nearness = kPerspective ? parameters.radius / search.depth : 0.0;
+  Unseen unseen = add_beyond_border(found.unseen, found.border_px, search.beyond * side.radius_px,
+                                    border_share(other.beyond, nearness));
+  return make_unseen_arc(slice, sign, side.per_bearing, found.sectors, unseen, side.radius_px);
 }
 
 Signal leave_out(Signal sum, float part) {
@@ -175,8 +178,8 @@ SliceSum bitmask_slice(Surface surface, SliceLine line, Slice slice, vec3 direct
                                   light_arc(slice, -1.0, tangent_light(slice, -1.0));
   UnseenArc ahead_unseen, behind_unseen;
   if (kLeaveOutUnseen) {
-    ahead_unseen = unseen_arc(slice, 1.0, ahead_side, ahead_found);
-    behind_unseen = unseen_arc(slice, -1.0, behind_side, behind_found);
+    ahead_unseen = unseen_arc(slice, 1.0, ahead_side, ahead_found, ahead, behind);
+    behind_unseen = unseen_arc(slice, -1.0, behind_side, behind_found, behind, ahead);
     Signal seen = leave_out(Signal(sum.visible, sum.open),
                             unseen_part(ahead_unseen, slice, 1.0, kUniformWeight) +
                                 unseen_part(behind_unseen, slice, -1.0, kUniformWeight));

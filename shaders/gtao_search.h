@@ -16,6 +16,7 @@ struct Search {
   SliceLine line;   // outwards
   float reach_px;   // from the first step to the last; 0 where there is nothing to search
   float beyond_px;  // of the radius beyond the image's border, as far as surfaces go on there
+  float beyond;     // part of the radius that lies there, [0,1]
   float offset;     // of the steps, [0,1)
   float depth;      // linear, of the shaded point
   TangentLine tangent;
@@ -40,6 +41,7 @@ Search make_search(Surface surface, SliceLine line, Slice slice, float side, flo
   bool empty = min(distance_px, border) < kNearestStep;
   search.reach_px = empty ? 0.0 : max(min(apart, border - kNearestStep), 1e-3);
   search.beyond_px = clamp(distance_px - border, 0.0, kContinuedReaches * search.reach_px);
+  search.beyond = distance_px < kNearestStep ? 0.0 : max(1.0 - border / distance_px, 0.0);
   search.offset = offset;
   search.depth = surface.depth;
   search.tangent = surface.tangent;

@@ -46,7 +46,7 @@ bool tells_unseen(uint layer) { return kLeaveOutUnseen && layer == (kSecondLayer
 // `excess` is the sample's, `width_px` that of the column it stands for.
 Unseen pass_column(Unseen unseen, LineSample here, float excess, float width_px) {
   bool hides = excess > 0.0 && here.point.y > 0.0;
-  return add_unseen(unseen, hides ? here.offset_px : 1e9, hides ? width_px : 0.0);
+  return add_unseen(unseen, hides ? here.offset_px : kNowherePx, hides ? width_px : 0.0);
 }
 
 // The first sample stands alone. Its edge is drawn in unless it lies on the surface's own plane.
@@ -129,6 +129,8 @@ const uint kTurn = 4;
 struct Occluders {
   uint sectors;
   Unseen unseen;
+  float border_px;  // of the last sample, if nothing is known to go on beyond the image; else
+                    // kNowherePx
 };
 
 Occluders find_in_layer(Surface surface, Search search, Side side, uint layer) {
@@ -153,11 +155,15 @@ Occluders find_in_layer(Surface surface, Search search, Side side, uint layer) {
   // Nothing tells how it ends: joined only if the way to it did not bend.
   vec3 way = here.point - sheet.last.point;
   extend_sheet(sheet, side, search.line.x_per_step, layer, here, -sheet.bend);
+  uint beyond = 0u;
   if (kContinuation && kConnected) {
-    sheet.sectors |= sectors_beyond(sheet, side, way, search.beyond_px * search.line.x_per_step);
+    beyond = sectors_beyond(sheet, side, way, search.beyond_px * search.line.x_per_step);
   }
-  if (search.reach_px <= 0.0) return Occluders(0u, nothing_unseen());
-  return Occluders(sheet.sectors, sheet.unseen);
+  Occluders found = Occluders(sheet.sectors | beyond, sheet.unseen, 0.0);
+  if (search.reach_px <= 0.0) found = Occluders(0u, nothing_unseen(), 0.0);
+  bool known = beyond != 0u || here.line == sky_line(kPerspective);
+  found.border_px = known ? kNowherePx : here.offset_px;
+  return found;
 }
 
 Occluders find_occluders(Surface surface, Search search, Side side) {

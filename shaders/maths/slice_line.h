@@ -119,12 +119,12 @@ ALCOVE_INLINE float moved_line(float line, float by, bool perspective) {
 
 // Pixels along the line that a sphere of radius `radius` (scene units) around the point spans on
 // one side. In perspective the sphere bulges towards the eye, and one around the eye spans
-// everything.
+// everything: at most 1e30.
 ALCOVE_INLINE float slice_radius_px(SliceLine line, float radius, float centre_depth,
                                     bool perspective) {
   float across = radius / max((perspective ? centre_depth : 1.0f) * line.x_per_step, 1e-30f);
   float nearness = perspective ? radius / max(centre_depth * line.y_per_depth, 1e-30f) : 0.0f;
-  return across * inversesqrt(max(1.0f - nearness * nearness, 1e-6f));
+  return min(across * inversesqrt(max(1.0f - nearness * nearness, 1e-6f)), 1e30f);
 }
 
 ALCOVE_MATHS_END

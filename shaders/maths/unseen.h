@@ -1,13 +1,12 @@
 // Directions of a slice of which the depth buffer tells nothing, and what becomes of them.
 //
 // A surface that stands before the whole sphere of the radius hides all that its columns of the
-// image have of it: whether anything occludes there is not known. Taken as open, as horizons take
-// it, what foregrounds hide is too bright wherever it was measured, the more so the more of a
-// direction's way is hidden. So a share of these directions is left out of the visible part and of
-// the whole alike: as much of them is taken to be open as of the rest, and an open plane stays
-// exactly open beside anything before it. A mean direction has no whole to be left out of, and
-// keeps them. Not so beyond the image's border: where little occludes what is seen of a wide
-// radius, leaving that out multiplies it. After no paper that we know.
+// image have of it, and beyond the image's border nothing is shown at all: whether anything
+// occludes there is not known. Taken as open, as horizons take it, what is hidden is too bright
+// wherever it was measured, the more so the more of a direction's way is hidden. So a share of
+// these directions is left out of the visible part and of the whole alike: as much of them is taken
+// to be open as of the rest, and an open plane stays exactly open beside anything. A mean direction
+// has no whole to be left out of, and keeps them. After no paper that we know.
 #ifndef ALCOVE_MATHS_UNSEEN_H
 #define ALCOVE_MATHS_UNSEEN_H
 
@@ -19,6 +18,9 @@
 
 ALCOVE_MATHS_BEGIN
 
+// An offset where nothing is.
+const float kNowherePx = 1e9f;
+
 // The columns along one side of a slice's line that show nothing of the sphere.
 struct Unseen {
   float first_px;  // offset of the innermost from the shaded pixel
@@ -27,7 +29,7 @@ struct Unseen {
 
 ALCOVE_INLINE Unseen nothing_unseen() {
   Unseen none;
-  none.first_px = 1e9f;
+  none.first_px = kNowherePx;
   none.width_px = 0.0f;
   return none;
 }
@@ -36,6 +38,24 @@ ALCOVE_INLINE Unseen add_unseen(Unseen sum, float offset_px, float width_px) {
   sum.first_px = min(sum.first_px, offset_px);
   sum.width_px += width_px;
   return sum;
+}
+
+// Share of the directions that go far beyond the image's border on a side which is left out, [0,1].
+// Half: some scenes end where the image does, and others go on as they are. None where the other
+// side shows nothing of the radius either (`other_beyond`: the part of it that lies beyond the
+// border there), or where the sphere holds the eye (`nearness`: radius by distance, 0 in
+// orthographic views): the little that occludes in the middle of the image would be multiplied.
+ALCOVE_INLINE float border_share(float other_beyond, float nearness) {
+  float squared = nearness * nearness;
+  return 0.5f * (1.0f - other_beyond) * saturate(1.0f - squared * squared);
+}
+
+// Adds `beyond_px` of the radius beyond the image's border, the last sample before it at
+// `offset_px` (kNowherePx: nothing is hidden there), so that `share` is left out if that is all of
+// the radius.
+ALCOVE_INLINE Unseen add_beyond_border(Unseen sum, float offset_px, float beyond_px, float share) {
+  bool hides = beyond_px > 0.0f && offset_px < kNowherePx;
+  return add_unseen(sum, hides ? offset_px : kNowherePx, hides ? share * share * beyond_px : 0.0f);
 }
 
 // Visible directions, from nearer the view vector outwards, of which a share is left out.

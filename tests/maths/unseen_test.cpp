@@ -112,6 +112,35 @@ TEST(Unseen, WhatASideShowsCountsWhole) {
   }
 }
 
+TEST(Unseen, OfWhatLiesBeyondTheBorderAShareIsLeftOut) {
+  const Unseen some = maths::add_unseen(maths::nothing_unseen(), 7.0f, 2.0f);
+  const Unseen border = maths::add_beyond_border(some, 9.0f, 12.0f, 0.5f);
+  EXPECT_EQ(border.first_px, 7.0f);
+  EXPECT_EQ(border.width_px, 5.0f);
+  EXPECT_EQ(maths::add_beyond_border(some, 3.0f, 12.0f, 0.5f).first_px, 3.0f);
+  const Slice slice = maths::make_slice({0.0f, 0.0f, 1.0f}, {1.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 1.0f});
+  const Unseen all = maths::add_beyond_border(maths::nothing_unseen(), 0.0f, kRadiusPx, 0.3f);
+  const float per_bearing = maths::sectors_per_bearing(slice, 1.0f);
+  EXPECT_NEAR(maths::make_unseen_arc(slice, 1.0f, per_bearing, 0u, all, kRadiusPx).share, 0.3f,
+              1e-6f);
+}
+
+TEST(Unseen, AnImageThatShowsLittleOfTheRadiusTellsNothingOfTheRest) {
+  EXPECT_EQ(maths::border_share(0.0f, 0.0f), 0.5f);
+  EXPECT_EQ(maths::border_share(0.25f, 0.0f), 0.375f);
+  EXPECT_EQ(maths::border_share(1.0f, 0.0f), 0.0f);
+  EXPECT_EQ(maths::border_share(0.0f, 0.5f), 0.46875f);
+  for (const float nearness : {1.0f, 2.0f, 1e30f}) {
+    EXPECT_EQ(maths::border_share(0.0f, nearness), 0.0f);
+  }
+}
+
+TEST(Unseen, NothingBeyondTheBorderHidesNothing) {
+  const Unseen none = maths::nothing_unseen();
+  EXPECT_EQ(maths::add_beyond_border(none, 9.0f, 0.0f, 1.0f).first_px, none.first_px);
+  EXPECT_EQ(maths::add_beyond_border(none, maths::kNowherePx, 10.0f, 1.0f).width_px, 0.0f);
+}
+
 TEST(Unseen, SomethingOfEverySideCounts) {
   RandomInput random;
   for (int i = 0; i < 1000; ++i) {

@@ -270,19 +270,6 @@ TEST_F(GtaoTruth, WhatLiesBeyondTheRadiusDoesNotOcclude) {
   }
 }
 
-// The columns of an image from `first` on, `count` of `width`, as an image of their own.
-TestView columns_of(TestView view, std::uint32_t width, std::uint32_t first, std::uint32_t count) {
-  auto& m = view.view.clip_from_view;
-  const float scale = static_cast<float>(width) / static_cast<float>(count);
-  const float shift =
-      (static_cast<float>(width) - 2.0f * static_cast<float>(first)) / static_cast<float>(count) -
-      1.0f;
-  for (std::size_t column = 0; column < 4; ++column) {
-    m[4 * column] = m[4 * column] * scale + m[4 * column + 3] * shift;
-  }
-  return view;
-}
-
 // A groove whose right wall all but leaves the image, beside the same groove seen whole.
 TEST_F(GtaoTruth, AWallThatLeavesTheImageOccludesAsIfItWereSeen) {
   constexpr std::uint32_t kWhole = 192, kPart = 108, kHeight = 40;

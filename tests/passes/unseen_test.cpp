@@ -1,4 +1,4 @@
-// What foregrounds hide is left out of visibility.
+// What foregrounds and the image's border hide is left out of visibility.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -77,19 +77,55 @@ TEST_F(Unseen, HalfATrenchUnderAPlateIsTakenToBeAsTheOther) {
   }
 }
 
-// A ball on a floor, in a radius wider than the image: nothing stands before the sphere.
-TEST_F(Unseen, AWideRadiusLeavesNothingOutWhereNothingStandsBeforeIt) {
+TEST_F(Unseen, HalfATrenchInTheImageIsTakenToBeMoreAsTheOther) {
   for (const TestView& view : two_views()) {
     SCOPED_TRACE(view.name);
-    const Drawing drawing = draw(view, kWidth, kHeight, ball_on_floor());
-    EXPECT_LT(
-        mean_difference(visibility(view, drawing, true, Estimator::connected, 3.0f),
-                        visibility(view, drawing, false, Estimator::connected, 3.0f), 0, kWidth),
-        1e-3);
+    const HostImage truth = visibility(view, draw(view, kWidth, kHeight, trench()), true);
+    constexpr std::uint32_t kSeen = kWidth / 2 + 2;
+    const TestView part_view = columns_of(view, kWidth, 0, kSeen);
+    const Drawing drawing = draw(part_view, kSeen, kHeight, trench());
+    const auto error = [&](bool unseen) {
+      return mean_difference(visibility(part_view, drawing, unseen), truth, kWidth / 2 - 2,
+                             kWidth / 2);
+    };
+    EXPECT_GT(error(false), 0.1);
+    EXPECT_LT(error(true), 0.8 * error(false));
   }
 }
 
-TEST_F(Unseen, AnOpenPlaneStaysExactlyOpenBesideAPlateBeforeIt) {
+// A ball on a floor, in a radius wider than the image: what is seen occluded is not multiplied.
+TEST_F(Unseen, AWideRadiusLeavesLittleOut) {
+  for (const TestView& view : two_views()) {
+    SCOPED_TRACE(view.name);
+    const Drawing drawing = draw(view, kWidth, kHeight, ball_on_floor());
+    const auto seen = [&](bool unseen, float radius) {
+      return visibility(view, drawing, unseen, Estimator::connected, radius);
+    };
+    EXPECT_LT(mean_difference(seen(true, 3.0f), seen(false, 3.0f), 0, kWidth), 0.02);
+    EXPECT_LT(mean_difference(seen(true, 30.0f), seen(false, 30.0f), 0, kWidth), 0.02);
+  }
+}
+
+TEST_F(Unseen, TheBackgroundGoesOnBeyondTheBorder) {
+  for (const TestView& view : two_views()) {
+    SCOPED_TRACE(view.name);
+    // Half a trench, and beside its floor nothing.
+    Scene scene = trench();
+    for (Surface& surface : scene) {
+      const auto keep = surface.keep;
+      surface.keep = [keep](const glm::dvec3& p) { return p.x < 0.1 && (!keep || keep(p)); };
+    }
+    constexpr std::uint32_t kSeen = kWidth / 2 + 12;
+    const TestView part_view = columns_of(view, kWidth, 0, kSeen);
+    const Drawing drawing = draw(part_view, kSeen, kHeight, scene);
+    const HostImage whole = visibility(view, draw(view, kWidth, kHeight, scene), true);
+    EXPECT_LT(
+        mean_difference(visibility(part_view, drawing, true), whole, kWidth / 2 - 4, kWidth / 2),
+        2e-3);
+  }
+}
+
+TEST_F(Unseen, AnOpenPlaneStaysOpenBesideAPlateBeforeIt) {
   for (const TestView& view : test_views()) {
     for (const double tilt : {0.0, 30.0, 60.0}) {
       SCOPED_TRACE(testing::Message() << view.name << ", " << tilt);

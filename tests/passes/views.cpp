@@ -104,4 +104,16 @@ PlaneScene plane_scene(const TestView& view, std::uint32_t width, std::uint32_t 
   return scene;
 }
 
+TestView columns_of(TestView view, std::uint32_t width, std::uint32_t first, std::uint32_t count) {
+  auto& m = view.view.clip_from_view;
+  const float scale = static_cast<float>(width) / static_cast<float>(count);
+  const float shift =
+      (static_cast<float>(width) - 2.0f * static_cast<float>(first)) / static_cast<float>(count) -
+      1.0f;
+  for (std::size_t column = 0; column < 4; ++column) {
+    m[4 * column] = m[4 * column] * scale + m[4 * column + 3] * shift;
+  }
+  return view;
+}
+
 }  // namespace alcove::passes

@@ -31,4 +31,7 @@ struct PlaneScene {
 PlaneScene plane_scene(const TestView& view, std::uint32_t width, std::uint32_t height,
                        float tilt_degrees);
 
+// The columns of an image from `first` on, `count` of `width`, as an image of their own.
+TestView columns_of(TestView view, std::uint32_t width, std::uint32_t first, std::uint32_t count);
+
 }  // namespace alcove::passes
