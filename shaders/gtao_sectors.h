@@ -33,11 +33,18 @@ struct Sheet {
   float position;  // of the last sample's front, in sectors
   float excess;    // radius_excess() of it
   uint sectors;    // occluded so far
+  float front_px;  // width of the columns that show a front so far
   Unseen unseen;   // so far
 };
 
 float back_position(Side side, LineSample here) {
   return sector_position(side.per_bearing, kBackFaces ? here.back : settings_back(here));
+}
+
+// Whether rays beside the surface pass behind a sample: it stands above the tangent plane by more
+// than a sector, within the radius or nearer the eye.
+bool is_front(LineSample here, float excess, float position) {
+  return position < float(kSectorCount - 1u) && (excess <= 0.0 || here.point.y > 0.0);
 }
 
 // Only the last layer's samples tell what none shows.
@@ -64,6 +71,7 @@ Sheet begin_sheet(Surface surface, Side side, uint layer, LineSample here, LineS
   sheet.excess = radius_excess(here.point, parameters.radius);
   uint covered = sectors_between(sheet.position, back_position(side, here));
   sheet.sectors = sheet.excess <= 0.0 ? covered : 0u;
+  sheet.front_px = is_front(here, sheet.excess, sheet.position) ? here.offset_px : 0.0;
   sheet.unseen = nothing_unseen();
   if (tells_unseen(layer)) {
     sheet.unseen = pass_column(sheet.unseen, here, sheet.excess, here.offset_px);
@@ -89,6 +97,7 @@ void extend_sheet(inout Sheet sheet, Side side, float x_per_step, uint layer, Li
   float joint = continued ? sheet.position : position;
   uint covered = sectors_between(min(min(position, end), joint), max(max(position, end), joint));
   sheet.sectors |= inside || continued ? covered : 0u;
+  sheet.front_px += is_front(here, excess, position) ? sheet.step_px : 0.0;
   if (tells_unseen(layer)) {
     sheet.unseen = pass_column(sheet.unseen, here, excess, sheet.step_px);
   }
@@ -128,6 +137,7 @@ const uint kTurn = 4;
 // What was found on a side.
 struct Occluders {
   uint sectors;
+  float fill;  // of what is behind them
   Unseen unseen;
   float border_px;  // of the last sample, if nothing is known to go on beyond the image; else
                     // kNowherePx
@@ -159,8 +169,9 @@ Occluders find_in_layer(Surface surface, Search search, Side side, uint layer) {
   if (kContinuation && kConnected) {
     beyond = sectors_beyond(sheet, side, way, search.beyond_px * search.line.x_per_step);
   }
-  Occluders found = Occluders(sheet.sectors | beyond, sheet.unseen, 0.0);
-  if (search.reach_px <= 0.0) found = Occluders(0u, nothing_unseen(), 0.0);
+  float fill = fill_behind(sheet.front_px / (kNearestStep + search.reach_px), parameters.fill);
+  Occluders found = Occluders(sheet.sectors | beyond, fill, sheet.unseen, 0.0);
+  if (search.reach_px <= 0.0) found = Occluders(0u, 0.0, nothing_unseen(), 0.0);
   bool known = beyond != 0u || here.line == sky_line(kPerspective);
   found.border_px = known ? kNowherePx : here.offset_px;
   return found;

@@ -78,6 +78,16 @@ ALCOVE_INLINE VisiblePart add_part(VisiblePart sum, float weight, Slice s, float
   return sum;
 }
 
+// What part of what lies behind the occluders of a side counts as occluded, [0,1]. `front` is the
+// part of the side's way along the image, [0,1], whose columns show a front: a ray there is hidden
+// all the way behind a wall, and seen but for an inch behind a blade of grass. `fill` is the mean
+// over all `front`; 0 is nothing behind any front, 1 everything.
+ALCOVE_INLINE float fill_behind(float front, float fill) {
+  float exponent = 1.0f / max(fill, 1e-3f) - 1.0f;
+  float part = pow(clamp(front, 1e-6f, 1.0f), max(exponent, 0.0f));
+  return fill > 0.0f ? part : 0.0f;
+}
+
 // Exact over the visible sectors. What lies behind an occluder, up to the tangent plane, is
 // unknown: the part `fill` of it, [0,1], counts as occluded too. An open side is exactly its open
 // arc and a full one exactly 0.

@@ -184,8 +184,8 @@ ALCOVE_INLINE vec4 parity_of_sampling(uint which, vec4 a, vec4 b) {
       PartRequest request;
       request.uniform_weight = a.w < 0.5f;
       request.bent = true;
-      VisiblePart part =
-          visible_part(s, -1.0f, sectors_per_bearing(s, -1.0f), hash(pixel.x), b.x, request);
+      VisiblePart part = visible_part(s, -1.0f, sectors_per_bearing(s, -1.0f), hash(pixel.x),
+                                      fill_behind(b.y, b.x), request);
       return vec4(part.arc, part.bent.x, part.bent.y, radius_weight(b.y, 0.8f, b.z));
     }
     case 21u: {

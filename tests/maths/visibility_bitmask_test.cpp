@@ -178,6 +178,30 @@ TEST(VisibilityBitmask, FilledOccludersGiveTheHorizon) {
   }
 }
 
+TEST(VisibilityBitmask, WhatIsFilledBehindGrowsWithTheFrontAndIsTheSettingInTheMean) {
+  for (const float fill : {0.1f, 0.35f, 0.5f, 0.9f}) {
+    constexpr int kSteps = 4000;
+    double sum = 0.0;
+    float last = 0.0f;
+    for (int i = 0; i < kSteps; ++i) {
+      const float part = maths::fill_behind((float(i) + 0.5f) / kSteps, fill);
+      EXPECT_GE(part, last);
+      sum += part;
+      last = part;
+    }
+    // The mid-point rule meets the steep start of high powers' roots within this.
+    EXPECT_NEAR(sum / kSteps, fill, 2e-3) << fill;
+    EXPECT_EQ(maths::fill_behind(1.0f, fill), 1.0f);
+  }
+}
+
+TEST(VisibilityBitmask, NothingOrAllIsFilledAtTheEndsOfTheSetting) {
+  for (const float front : {0.0f, 1e-4f, 0.5f, 1.0f, 1.0001f}) {
+    EXPECT_EQ(maths::fill_behind(front, 0.0f), 0.0f);
+    EXPECT_EQ(maths::fill_behind(front, 1.0f), 1.0f);
+  }
+}
+
 TEST(VisibilityBitmask, SliceThatHoldsNothingStaysFinite) {
   const Slice s = maths::make_slice(vec3(0, 1, 0), vec3(1, 0, 0), vec3(0, 0, 1));
   for (const float side : {-1.0f, 1.0f}) {

@@ -247,6 +247,35 @@ TEST_F(GtaoTruth, ThicknessOfDistanceIsThatOfTheRadiusAtOneDistance) {
   }
 }
 
+// A slat before a wall hides little of a ray behind it, a board much.
+TEST_F(GtaoTruth, MoreIsFilledBehindAWideOccluderThanBehindANarrowOne) {
+  for (const TestView& view : {test_views()[2], test_views().back()}) {
+    SCOPED_TRACE(view.name);
+    const auto filled = [&](double width) {
+      Surface slat = plane({0.0, 0.0, -3.6}, {0.0, 0.0, 1.0});
+      slat.keep = [width](const glm::dvec3& p) { return p.x > 0.0 && p.x < width; };
+      const Drawing drawing = draw(view, 96, 40, {plane({0.0, 0.0, -4.0}, {0.0, 0.0, 1.0}), slat});
+      const auto beside = [&](float fill) {
+        OcclusionSettings settings = exact(Estimator::connected, 1.2f);
+        settings.fill = fill;
+        const HostImage image =
+            run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, settings).visibility;
+        double sum = 0.0;
+        for (std::uint32_t x = 36; x < 44; ++x) sum += image.at(x, 20);
+        return sum / 8.0;
+      };
+      const double none = beside(0.0f);
+      const double all = beside(1.0f);
+      EXPECT_GT(none - all, 0.01);
+      return (none - beside(0.35f)) / (none - all);
+    };
+    const double slat = filled(0.12);
+    const double board = filled(1.0);
+    EXPECT_LT(slat, 0.5 * board);
+    EXPECT_GT(board, 0.25);
+  }
+}
+
 TEST_F(GtaoTruth, WhatLiesBeyondTheRadiusDoesNotOcclude) {
   const TestView view = orthographic_view("orthographic", 4.0, 4.0, 0.1, 20.0);
   const double height = 0.5;

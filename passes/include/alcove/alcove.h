@@ -122,7 +122,8 @@ typedef struct AlcoveSettings {
   AlcoveWeighting weighting;
   float thickness;  // of occluders, at least 0 (bitmask, connected)
   AlcoveThicknessUnit thickness_unit;
-  float fill;             // share of what is hidden behind them that occludes too, [0,1]
+  float fill;             // part of what is hidden behind them that occludes too, [0,1]: 0 nothing,
+                          // 1 all, between the more the wider they are in the image
   uint32_t depth_layers;  // that are searched: 1, or 2 with AlcoveView::second_depth
   float blend;            // of a horizon towards each lower sample, [0,1] (heuristic)
   float falloff;  // last part of the radius, over which occluders fade, [0,1] (horizons, heuristic)
