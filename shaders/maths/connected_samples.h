@@ -6,9 +6,9 @@
 // are joined into a sheet when depth alone says that they continue one surface (samples_join),
 // every sample has a thickness (along the view vector, or as far as its back face), and the edge of
 // a surface that appears between two samples is placed between them (edge_share). A surface that
-// leaves the image goes on as it left (continued_point). What is hidden
-// behind a front stays unknown: the mean of thin and infinitely thick, `fill` of the latter, errs
-// less than either (see the README's table).
+// leaves the image goes on as it left (continued_point). What is hidden behind a front stays
+// unknown: something between thin and infinitely thick, the nearer to the latter the wider the
+// fronts stand in the image (fill_behind()), errs less than either (see the README's table).
 #ifndef ALCOVE_MATHS_CONNECTED_SAMPLES_H
 #define ALCOVE_MATHS_CONNECTED_SAMPLES_H
 
