@@ -167,8 +167,10 @@ SliceSum bitmask_slice(Surface surface, SliceLine line, Slice slice, vec3 direct
   Occluders ahead_found = find_occluders(surface, ahead, ahead_side);
   Occluders behind_found = find_occluders(surface, behind, behind_side);
   const PartRequest request = PartRequest(kUniformWeight, kBentNormal);
-  VisiblePart front = visible_part(slice, 1.0, ahead_side.per_bearing, ahead_found.sectors, ahead_found.fill, request);
-  VisiblePart back = visible_part(slice, -1.0, behind_side.per_bearing, behind_found.sectors, behind_found.fill, request);
+  VisiblePart front = visible_part(slice, 1.0, ahead_side.per_bearing, ahead_found.sectors,
+                                   ahead_found.fill, request);
+  VisiblePart back = visible_part(slice, -1.0, behind_side.per_bearing, behind_found.sectors,
+                                  behind_found.fill, request);
   SliceSum sum;
   sum.visible = front.arc + back.arc;
   sum.open = kUniformWeight ? 1.0

@@ -189,7 +189,7 @@ TEST(VisibilityBitmask, WhatIsFilledBehindGrowsWithTheFrontAndIsTheSettingInTheM
       sum += part;
       last = part;
     }
-    // The mid-point rule meets the steep start of high powers' roots within this.
+    // What the mid-point rule errs by where the part rises steeply from 0.
     EXPECT_NEAR(sum / kSteps, fill, 2e-3) << fill;
     EXPECT_EQ(maths::fill_behind(1.0f, fill), 1.0f);
   }

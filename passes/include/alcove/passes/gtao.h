@@ -67,8 +67,8 @@ struct SearchParts {
   bool snapping = true;
   // Whether surfaces that leave the image go on beyond its border as they left (connected samples).
   bool continuation = true;
-  // Whether what foregrounds and the border hide is left out of visibility, neither open nor
-  // occluded (connected samples, shaders/maths/unseen.h); else it counts as open.
+  // Whether what foregrounds and the image's border hide is left out of visibility, neither open
+  // nor occluded (connected samples, shaders/maths/unseen.h); else it counts as open.
   bool unseen = true;
   Grouping grouping = Grouping::neighbours;
 
