@@ -24,6 +24,14 @@ Side make_side(Surface surface, SliceLine line, Slice slice, float side) {
   return made;
 }
 
+// Rows of columns that show a front.
+struct Fronts {
+  float count;
+  float width_px;   // of all together
+  float before_px;  // the way before the first
+  bool last;        // whether the last column shows one
+};
+
 // What the search holds on to from sample to sample.
 struct Sheet {
   LineSample last;
@@ -33,7 +41,7 @@ struct Sheet {
   float position;  // of the last sample's front, in sectors
   float excess;    // radius_excess() of it
   uint sectors;    // occluded so far
-  float front_px;  // width of the columns that show a front so far
+  Fronts fronts;   // so far
   Unseen unseen;   // so far
 };
 
@@ -45,6 +53,20 @@ float back_position(Side side, LineSample here) {
 // than a sector, within the radius or nearer the eye.
 bool is_front(LineSample here, float excess, float position) {
   return position < float(kSectorCount - 1u) && (excess <= 0.0 || here.point.y > 0.0);
+}
+
+// Columns stand next to each other: `width_px` is this one's, which ends at `end_px`.
+Fronts add_column(Fronts fronts, bool front, float width_px, float end_px) {
+  fronts.count += front && !fronts.last ? 1.0 : 0.0;
+  fronts.width_px += front ? width_px : 0.0;
+  fronts.before_px = fronts.count > 0.0 ? fronts.before_px : end_px;
+  fronts.last = front;
+  return fronts;
+}
+
+// The mean width of a front, in parts of the way from the first on.
+float front_width(Fronts fronts, float way_px) {
+  return fronts.width_px / (max(fronts.count, 1.0) * max(way_px - fronts.before_px, 1e-3));
 }
 
 // Only the last layer's samples tell what none shows.
@@ -71,7 +93,9 @@ Sheet begin_sheet(Surface surface, Side side, uint layer, LineSample here, LineS
   sheet.excess = radius_excess(here.point, parameters.radius);
   uint covered = sectors_between(sheet.position, back_position(side, here));
   sheet.sectors = sheet.excess <= 0.0 ? covered : 0u;
-  sheet.front_px = is_front(here, sheet.excess, sheet.position) ? here.offset_px : 0.0;
+  bool front = is_front(here, sheet.excess, sheet.position);
+  sheet.fronts =
+      add_column(Fronts(0.0, 0.0, 0.0, false), front, here.offset_px, here.offset_px);
   sheet.unseen = nothing_unseen();
   if (tells_unseen(layer)) {
     sheet.unseen = pass_column(sheet.unseen, here, sheet.excess, here.offset_px);
@@ -97,7 +121,8 @@ void extend_sheet(inout Sheet sheet, Side side, float x_per_step, uint layer, Li
   float joint = continued ? sheet.position : position;
   uint covered = sectors_between(min(min(position, end), joint), max(max(position, end), joint));
   sheet.sectors |= inside || continued ? covered : 0u;
-  sheet.front_px += is_front(here, excess, position) ? sheet.step_px : 0.0;
+  sheet.fronts = add_column(sheet.fronts, is_front(here, excess, position), sheet.step_px,
+                            here.offset_px);
   if (tells_unseen(layer)) {
     sheet.unseen = pass_column(sheet.unseen, here, excess, sheet.step_px);
   }
@@ -169,7 +194,8 @@ Occluders find_in_layer(Surface surface, Search search, Side side, uint layer) {
   if (kContinuation && kConnected) {
     beyond = sectors_beyond(sheet, side, way, search.beyond_px * search.line.x_per_step);
   }
-  float fill = fill_behind(sheet.front_px / (kNearestStep + search.reach_px), parameters.fill);
+  float width = front_width(sheet.fronts, kNearestStep + search.reach_px);
+  float fill = fill_behind(width, parameters.fill);
   Occluders found = Occluders(sheet.sectors | beyond, fill, sheet.unseen, 0.0);
   if (search.reach_px <= 0.0) found = Occluders(0u, 0.0, nothing_unseen(), 0.0);
   bool known = beyond != 0u || here.line == sky_line(kPerspective);

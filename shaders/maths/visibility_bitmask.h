@@ -79,9 +79,10 @@ ALCOVE_INLINE VisiblePart add_part(VisiblePart sum, float weight, Slice s, float
 }
 
 // What part of what lies behind the occluders of a side counts as occluded, [0,1]. `front` is the
-// part of the side's way along the image, [0,1], whose columns show a front: a ray there is hidden
-// all the way behind a wall, and seen but for an inch behind a blade of grass. `fill` is the mean
-// over all `front`; 0 is nothing behind any front, 1 everything.
+// mean width of the fronts that the side's columns show, [0,1], in parts of its way along the image
+// from the first of them on: a ray is hidden all the way behind a wall, seen but for an inch behind
+// a blade of grass, and seen between the slats of a blind however much of the way they fill. `fill`
+// is the mean over all `front`; 0 is nothing behind any front, 1 everything.
 ALCOVE_INLINE float fill_behind(float front, float fill) {
   float exponent = 1.0f / max(fill, 1e-3f) - 1.0f;
   float part = pow(clamp(front, 1e-6f, 1.0f), max(exponent, 0.0f));

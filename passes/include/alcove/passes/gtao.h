@@ -87,7 +87,7 @@ struct SearchSettings {
   ThicknessUnit thickness_unit = ThicknessUnit::radius;
   // Part of what is hidden behind them that occludes too, [0,1]: 0 nothing, 1 all, between the more
   // the wider they are in the image (fill_behind(), shaders/maths/visibility_bitmask.h).
-  float fill = 0.35f;
+  float fill = 0.33f;
   std::uint32_t depth_layers = 1;  // that are searched: 1, or 2 with what lies behind the first
   // For horizons and heuristic.
   float blend = 0.05f;   // of a horizon towards each lower sample, [0,1] (heuristic)
