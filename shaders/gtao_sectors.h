@@ -94,8 +94,7 @@ Sheet begin_sheet(Surface surface, Side side, uint layer, LineSample here, LineS
   uint covered = sectors_between(sheet.position, back_position(side, here));
   sheet.sectors = sheet.excess <= 0.0 ? covered : 0u;
   bool front = is_front(here, sheet.excess, sheet.position);
-  sheet.fronts =
-      add_column(Fronts(0.0, 0.0, 0.0, false), front, here.offset_px, here.offset_px);
+  sheet.fronts = add_column(Fronts(0.0, 0.0, 0.0, false), front, here.offset_px, here.offset_px);
   sheet.unseen = nothing_unseen();
   if (tells_unseen(layer)) {
     sheet.unseen = pass_column(sheet.unseen, here, sheet.excess, here.offset_px);
@@ -121,8 +120,8 @@ void extend_sheet(inout Sheet sheet, Side side, float x_per_step, uint layer, Li
   float joint = continued ? sheet.position : position;
   uint covered = sectors_between(min(min(position, end), joint), max(max(position, end), joint));
   sheet.sectors |= inside || continued ? covered : 0u;
-  sheet.fronts = add_column(sheet.fronts, is_front(here, excess, position), sheet.step_px,
-                            here.offset_px);
+  sheet.fronts =
+      add_column(sheet.fronts, is_front(here, excess, position), sheet.step_px, here.offset_px);
   if (tells_unseen(layer)) {
     sheet.unseen = pass_column(sheet.unseen, here, excess, sheet.step_px);
   }

@@ -248,13 +248,16 @@ TEST_F(GtaoTruth, ThicknessOfDistanceIsThatOfTheRadiusAtOneDistance) {
 }
 
 // A slat before a wall hides little of a ray behind it, a board much.
-TEST_F(GtaoTruth, MoreIsFilledBehindAWideOccluderThanBehindANarrowOne) {
+TEST_F(GtaoTruth, MoreIsFilledBehindAWideOccluderThanBehindNarrowOnes) {
   for (const TestView& view : {test_views()[2], test_views().back()}) {
     SCOPED_TRACE(view.name);
-    const auto filled = [&](double width) {
-      Surface slat = plane({0.0, 0.0, -3.6}, {0.0, 0.0, 1.0});
-      slat.keep = [width](const glm::dvec3& p) { return p.x > 0.0 && p.x < width; };
-      const Drawing drawing = draw(view, 96, 40, {plane({0.0, 0.0, -4.0}, {0.0, 0.0, 1.0}), slat});
+    // Behind slats from x = 0 on, `apart` from each other.
+    const auto filled = [&](double width, double apart, int slats) {
+      Surface front = plane({0.0, 0.0, -3.6}, {0.0, 0.0, 1.0});
+      front.keep = [=](const glm::dvec3& p) {
+        return p.x > 0.0 && p.x < slats * apart && std::fmod(p.x, apart) < width;
+      };
+      const Drawing drawing = draw(view, 96, 40, {plane({0.0, 0.0, -4.0}, {0.0, 0.0, 1.0}), front});
       const auto beside = [&](float fill) {
         OcclusionSettings settings = exact(Estimator::connected, 1.2f);
         settings.fill = fill;
@@ -269,10 +272,14 @@ TEST_F(GtaoTruth, MoreIsFilledBehindAWideOccluderThanBehindANarrowOne) {
       EXPECT_GT(none - all, 0.01);
       return (none - beside(0.35f)) / (none - all);
     };
-    const double slat = filled(0.12);
-    const double board = filled(1.0);
+    const double slat = filled(0.12, 0.12, 1);
+    const double board = filled(1.0, 1.0, 1);
     EXPECT_LT(slat, 0.5 * board);
     EXPECT_GT(board, 0.25);
+    // As much of the way, in one piece and in three.
+    const double half = filled(0.6, 0.6, 1);
+    const double slats = filled(0.2, 0.4, 3);
+    EXPECT_LT(slats, 0.5 * half);
   }
 }
 
