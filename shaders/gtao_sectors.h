@@ -24,12 +24,12 @@ Side make_side(Surface surface, SliceLine line, Slice slice, float side) {
   return made;
 }
 
-// Rows of columns that show a front.
+// What a side shows that rays pass behind: a front is a row of columns whose samples is_front().
 struct Fronts {
   float count;
   float width_px;   // of all together
   float before_px;  // the way before the first
-  bool last;        // whether the last column shows one
+  bool last;        // whether the last column is of one
 };
 
 // What the search holds on to from sample to sample.
