@@ -103,10 +103,10 @@ void add_searches(TrialList& list) {
 void add_reconstruction(TrialList& list, const OcclusionSettings& base) {
   const char* part = "filter";
   list.add(part, "none", [](OcclusionSettings& s) { s.filter_reach = 0; });
-  // With a history only its first frame looks further than a block.
+  // With a history only its first frame looks further than one searched pixel.
   if (base.history_frames == 0) {
-    list.add(part, "1 block on each side", [](OcclusionSettings& s) { s.filter_reach = 1; });
-    list.add(part, "3 blocks on each side", [](OcclusionSettings& s) { s.filter_reach = 3; });
+    list.add(part, "1 on each side", [](OcclusionSettings& s) { s.filter_reach = 1; });
+    list.add(part, "3 on each side", [](OcclusionSettings& s) { s.filter_reach = 3; });
   }
   part = "history";
   list.add(part, "none, noise advances", [](OcclusionSettings& s) { s.history_frames = 0; });

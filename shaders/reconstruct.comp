@@ -9,12 +9,12 @@
 //
 // A block of kDivisor x kDivisor pixels has one search a frame, of a pixel that moves through the
 // block from frame to frame: every pixel is searched at its own depth in time, and edges come back
-// sharp. Without a history a pixel looks at all blocks within reach; with one, at the four searched
-// pixels around it. They weigh by their distance on the image, in a window that narrows as a pixel
-// gathers frames, and by their distance from the pixel's tangent plane, so that a plane at any tilt
-// is filtered whole and nothing leaks across an edge. Sums are added up, visible and open parts
-// each, and divided last. Those of the GGX lobe weigh by normal and roughness too: the narrower the
-// lobe, the more of it hangs on where it points.
+// sharp. With a history a pixel looks at the four searched ones around it; without one, at the 4x4
+// around it (`kReach` is 2). They weigh by their distance on the image, in a window that narrows as
+// a pixel gathers frames, and by their distance from the pixel's tangent plane, so that a plane at
+// any tilt is filtered whole and nothing leaks across an edge. Sums are added up, visible and open
+// parts each, and divided last. Those of the GGX lobe weigh by normal and roughness too: the
+// narrower the lobe, the more of it hangs on where it points.
 
 #include "maths/bent_normal.h"
 #include "maths/gtao.h"
@@ -75,12 +75,12 @@ layout(set = 0, binding = kFirstLobeBinding) uniform texture2D roughness_image; 
 layout(set = 0, binding = kFirstLobeBinding + 1) uniform writeonly image2D specular_image;
 #endif
 
-// Whether pixels look at the four searched ones around them; else at all within reach.
-#ifdef HISTORY
-const bool kBetween = kDivisor > 1 && kReach > 0 && !kFresh;
-#else
-const bool kBetween = false;
-#endif
+// Whether pixels lie between searched ones; else each was searched, or takes what its block has.
+const bool kBetween = kDivisor > 1 && kReach > 0;
+// Searched pixels that a pixel looks at: so many on each side, and its own where it has one.
+const int kSide = kFresh || kReach == 0 ? kReach : 1;
+const int kAcross = kBetween ? 2 * kSide : 2 * kSide + 1;
+const int kAround = kAcross * kAcross;
 
 struct Surface {
   ivec2 pixel;
@@ -224,15 +224,10 @@ void add_block(inout Neighbourhood sum, Surface surface, float narrowness, Found
   }
 }
 
-// All blocks within reach of the pixel's own; the outermost stand for those outside the image.
-Neighbourhood gather(Surface surface, int reach, float narrowness) {
-  ivec2 own = surface.pixel / kDivisor;
+Neighbourhood add_up(Surface surface, float narrowness, Found around[kAround]) {
   Neighbourhood sum = Neighbourhood(no_sum(), vec3(0.0));
-  [[unroll]] for (int y = -reach; y <= reach; ++y) {
-    [[unroll]] for (int x = -reach; x <= reach; ++x) {
-      ivec2 block = clamp(own + ivec2(x, y), ivec2(0), last_block());
-      add_block(sum, surface, narrowness, fetch_block(block));
-    }
+  [[unroll]] for (int i = 0; i < kAround; ++i) {
+    add_block(sum, surface, narrowness, around[i]);
   }
   return sum;
 }
@@ -257,8 +252,8 @@ void store(ivec2 pixel, Sum sum) {
 #include "reconstruct_history.h"
 
 // Stores are many to a pixel and take turns on a processor: the sky has none of its own.
-void reconstruct(Surface surface, bool sky, Found corners[4]) {
-  History next = advance(surface, corners, read_history(surface));
+void reconstruct(Surface surface, bool sky, Found around[kAround]) {
+  History next = advance(surface, around, read_history(surface));
   uvec4 packed = pack_history(next, surface.depth);
   if (sky) {
     next.sum = no_sum();
@@ -273,8 +268,8 @@ void reconstruct(Surface surface, bool sky, Found corners[4]) {
 
 #else
 
-void reconstruct(Surface surface, bool sky, Found corners[4]) {
-  Sum sum = gather(surface, kReach, narrowness_of(parameters.window_px)).sum;
+void reconstruct(Surface surface, bool sky, Found around[kAround]) {
+  Sum sum = add_up(surface, narrowness_of(parameters.window_px), around).sum;
   if (sky) {
     sum = no_sum();
   }
@@ -283,9 +278,9 @@ void reconstruct(Surface surface, bool sky, Found corners[4]) {
 
 #endif
 
-void reconstruct_pixel(ivec2 pixel, Found corners[4]) {
+void reconstruct_pixel(ivec2 pixel, Found around[kAround]) {
   float line = imageLoad(line_image, pixel).r;
-  reconstruct(fetch_surface(pixel, line), line == sky_line(kPerspective), corners);
+  reconstruct(fetch_surface(pixel, line), line == sky_line(kPerspective), around);
 }
 
 // As reconstruct_pixel, for a pixel of which this frame tells nothing new.
@@ -319,25 +314,25 @@ bool inside(ivec2 pixel) {
   return all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, size_px()));
 }
 
-// Each invocation has kDivisor x kDivisor pixels: with kBetween those of the cell between four
-// searched ones, which are fetched once for all of them, else those of a block.
+// Each invocation has the kDivisor x kDivisor pixels of a cell, which look at the same searched
+// ones: those are fetched once. With kBetween a cell lies between four searched pixels, else it is
+// a block. Beyond the image the outermost stand for those that there are not.
 void main() {
   ivec2 cell = ivec2(gl_GlobalInvocationID.xy) - (kBetween ? 1 : 0);
   ivec2 first = cell * kDivisor + (kBetween ? ivec2(parameters.phase) : ivec2(0));
   if (any(greaterThanEqual(first, size_px()))) {
     return;
   }
-  Found corners[4];
-  if (kBetween) {
-    for (int i = 0; i < 4; ++i) {
-      corners[i] = fetch_block(clamp(cell + ivec2(i & 1, i >> 1), ivec2(0), last_block()));
-    }
+  Found around[kAround];
+  [[unroll]] for (int i = 0; i < kAround; ++i) {
+    ivec2 block = cell + ivec2(i % kAcross, i / kAcross) - (kBetween ? kSide - 1 : kSide);
+    around[i] = fetch_block(clamp(block, ivec2(0), last_block()));
   }
   uint reached = kReached;
   do {
     ivec2 pixel = pixel_of_bit(first, reached);
     if (inside(pixel)) {
-      reconstruct_pixel(pixel, corners);
+      reconstruct_pixel(pixel, around);
     }
     reached &= reached - 1;
   } while (reached != 0);

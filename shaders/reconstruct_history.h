@@ -134,19 +134,6 @@ float window_width(History history) {
              parameters.window_px * inversesqrt(history.count + 1.0));
 }
 
-// What this frame found around a pixel that holds this history.
-Neighbourhood look_around(Surface surface, Found corners[4], History history) {
-  float narrowness = narrowness_of(window_width(history));
-  if (!kBetween) {
-    return gather(surface, kFresh ? kReach : min(kReach, 1), narrowness);
-  }
-  Neighbourhood sum = Neighbourhood(no_sum(), vec3(0.0));
-  for (int i = 0; i < 4; ++i) {
-    add_block(sum, surface, narrowness, corners[i]);
-  }
-  return sum;
-}
-
 void clamp_history(inout History history, Spread spread) {
   float before = mean_visibility(history.sum.signal.visible, history.sum.signal.open);
   float after = clamp_to_spread(before, spread, parameters.clamp_width);
@@ -168,8 +155,8 @@ void follow_change(inout History history, Signal now) {
 }
 
 // The pixel's sums with this frame's neighbourhood added.
-History advance(Surface surface, Found corners[4], History history) {
-  Neighbourhood now = look_around(surface, corners, history);
+History advance(Surface surface, Found around[kAround], History history) {
+  Neighbourhood now = add_up(surface, narrowness_of(window_width(history)), around);
   if (kClamp) {
     vec3 moments = now.moments / now.moments.x;
     clamp_history(history, spread_of_sums(moments.y, moments.z, 1.0));

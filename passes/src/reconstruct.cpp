@@ -219,11 +219,6 @@ float window_px(const OcclusionSignal& signal) {
   return static_cast<float>(signal.divisor) * std::max(few, 0.55f);
 }
 
-// As far as it weighs anything: of three slices on, blocks two away count a twentieth.
-std::uint32_t window_reach(const ReconstructSettings& settings, const OcclusionSignal& signal) {
-  return signal.slices > 2 ? std::min(settings.filter_reach, 1u) : settings.filter_reach;
-}
-
 maths::ReconstructParameters parameters_of(const Frame& frame, const maths::Projection& projection,
                                            const maths::Projection& previous,
                                            bool normals_in_view_space,
@@ -293,7 +288,7 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& frame, const Reconst
   const bool still = history_valid && !inputs.motion && same_view && same_size;
   const bool settled = still && frame.still_frames >= kSettledFrames;
   const std::array constants{inputs.signal.divisor,
-                             window_reach(settings, inputs.signal),
+                             settings.filter_reach,
                              static_cast<std::uint32_t>(bool(inputs.signal.bent)),
                              static_cast<std::uint32_t>(bool(inputs.motion)),
                              static_cast<std::uint32_t>(is_perspective(*projection)),

@@ -130,7 +130,7 @@ typedef struct AlcoveSettings {
   uint32_t divisor;  // one search a frame in so many pixels a side: 1, 2 or 4
   AlcovePattern pattern;
   uint32_t depth_mips;        // of linear depth, 1 to 5
-  uint32_t filter_reach;      // blocks on each side at most, 0 to 3; 0: no filter
+  uint32_t filter_reach;      // searched pixels on each side of one, 0 to 3; 0: no filter
   float filter_tolerance_px;  // distance from the tangent plane, in sizes of a pixel, over 0
   uint32_t history_frames;    // that are averaged, 0 to 255; 0: no history and no memory for it
   float clamp_width;  // of history, in deviations of this frame, at least 0; 0 leaves it free

@@ -10,9 +10,9 @@
 namespace alcove::passes {
 
 struct FilterSettings {
-  // Blocks on each side that a pixel looks at, at most, while it has little history, or none, 0 to
-  // 3; 0 filters nothing. They weigh in a window that is the narrower the more slices were
-  // searched: of three on a block's own neighbours are all that count.
+  // Searched pixels that a pixel looks at before it has a history, or without any: so many on each
+  // side, 0 to 3; then one. 0 filters nothing. They weigh in a window that is the narrower the more
+  // slices were searched.
   std::uint32_t filter_reach = 2;
   // How far a neighbour lies from the pixel's tangent plane when it counts a quarter, in sizes of a
   // pixel there, over 0.
