@@ -1,14 +1,104 @@
 // The spatial filter and the upsampling, fed with signals that the tests write.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <random>
 
 #include "gtao_scenes.h"
 #include "reconstruct_fixture.h"
+#include "search_phase.h"
 
 namespace alcove::passes {
 namespace {
+
+// Texels of a signal by one search in divisor x divisor pixels.
+std::uint32_t blocks(std::uint32_t pixels, std::uint32_t divisor) {
+  return (pixels + divisor - 1) / divisor;
+}
+
+// One coordinate of what a pixel looks at: the `i`th of the 2 x `reach` searched pixels around it.
+struct Searched {
+  std::uint32_t block;
+  std::uint32_t pixel;
+};
+
+Searched searched_around(std::uint32_t pixel, std::uint32_t size, std::uint32_t divisor,
+                         std::uint32_t phase, int reach, int i) {
+  const int step = static_cast<int>(divisor);
+  const int before = static_cast<int>(pixel) - static_cast<int>(phase);
+  const int cell = before >= 0 ? before / step : -1;
+  const int last = static_cast<int>(blocks(size, divisor)) - 1;
+  const auto block = static_cast<std::uint32_t>(std::clamp(cell - (reach - 1) + i, 0, last));
+  return {block, std::min(block * divisor + phase, size - 1)};
+}
+
+double squared_distance(std::uint32_t a, std::uint32_t b) {
+  const auto apart = static_cast<double>(a) - static_cast<double>(b);
+  return apart * apart;
+}
+
+// The mean that a pixel of a wall seen head-on has of the searches around it, on its first frame.
+double mean_around(const HostImage& signal, std::uint32_t x, std::uint32_t y, std::uint32_t width,
+                   std::uint32_t height, std::uint32_t divisor, SearchPhase phase, int reach) {
+  const double window_px = 1.1 * divisor;  // of one slice
+  double visible = 0.0;
+  double open = 0.0;
+  for (int j = 0; j < 2 * reach; ++j) {
+    const Searched row = searched_around(y, height, divisor, phase.y, reach, j);
+    for (int i = 0; i < 2 * reach; ++i) {
+      const Searched column = searched_around(x, width, divisor, phase.x, reach, i);
+      const double squared = squared_distance(column.pixel, x) + squared_distance(row.pixel, y);
+      const double weight = std::pow(1.0 + 0.125 * squared / (window_px * window_px), -4.0);
+      const std::size_t texel = (std::size_t{row.block} * signal.width + column.block) * 2;
+      visible += weight * signal.texels[texel];
+      open += weight * signal.texels[texel + 1];
+    }
+  }
+  return visible / open;
+}
+
+// As many on each side as the reach says, at any resolution, up to the last row and column.
+TEST_F(Reconstruct, WithoutAHistoryAPixelLooksAtTheSearchedOnesAroundIt) {
+  constexpr std::uint32_t kOddWidth = 33;
+  constexpr std::uint32_t kOddHeight = 23;
+  const TestView view = test_views()[2];
+  const Drawing drawing = draw(view, kOddWidth, kOddHeight, {tilted_plane(0.0, 4.0)});
+  const std::uint32_t seed = 11;
+  SCOPED_TRACE(testing::Message() << "seed " << seed);
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> noise(0.2f, 0.8f);
+  for (const std::uint32_t divisor : {2u, 4u}) {
+    const HostImage signal = signal_of(blocks(kOddWidth, divisor), blocks(kOddHeight, divisor),
+                                       [&](std::uint32_t, std::uint32_t) { return noise(random); });
+    for (const std::uint32_t reach : {1u, 2u, 3u}) {
+      for (const std::uint32_t index : {0u, 1u, 2u, 7u}) {
+        for (const std::uint32_t history : {0u, 16u}) {
+          SCOPED_TRACE(testing::Message() << "by " << divisor << ", reach " << reach << ", frame "
+                                          << index << ", history " << history);
+          const HostImage found = reconstruct({.view = view.view,
+                                               .drawing = drawing,
+                                               .signal = signal,
+                                               .divisor = divisor,
+                                               .index = index,
+                                               .reset = true},
+                                              precise(reach, history));
+          const SearchPhase phase = search_phase(divisor, index);
+          for (std::uint32_t y = 0; y < kOddHeight; ++y) {
+            for (std::uint32_t x = 0; x < kOddWidth; ++x) {
+              ASSERT_NEAR(found.at(x, y),
+                          mean_around(signal, x, y, kOddWidth, kOddHeight, divisor, phase,
+                                      static_cast<int>(reach)),
+                          2e-4)
+                  << "at " << x << ", " << y;
+            }
+          }
+        }
+      }
+    }
+  }
+}
 
 TEST_F(Reconstruct, AConstantSignalStaysConstantInAnySceneAtAnyResolution) {
   const TestView view = test_views()[2];
