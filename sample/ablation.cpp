@@ -105,8 +105,8 @@ void add_reconstruction(TrialList& list, const OcclusionSettings& base) {
   list.add(part, "none", [](OcclusionSettings& s) { s.filter_reach = 0; });
   // With a history only its first frame looks further than one searched pixel.
   if (base.history_frames == 0) {
-    list.add(part, "1 on each side", [](OcclusionSettings& s) { s.filter_reach = 1; });
-    list.add(part, "3 on each side", [](OcclusionSettings& s) { s.filter_reach = 3; });
+    list.add(part, "1 search on each side", [](OcclusionSettings& s) { s.filter_reach = 1; });
+    list.add(part, "3 searches on each side", [](OcclusionSettings& s) { s.filter_reach = 3; });
   }
   part = "history";
   list.add(part, "none, noise advances", [](OcclusionSettings& s) { s.history_frames = 0; });

@@ -33,6 +33,11 @@ class Reconstruct : public PassTest {
   static HostImage noise_signal(std::mt19937& random);
 };
 
+// Texels on a side of the signal of one search in divisor x divisor pixels.
+[[nodiscard]] constexpr std::uint32_t blocks(std::uint32_t pixels, std::uint32_t divisor) {
+  return (pixels + divisor - 1) / divisor;
+}
+
 [[nodiscard]] ReconstructSettings precise(std::uint32_t reach, std::uint32_t history_frames);
 
 // The signal of slices that are all open by `weight` and visible by `visibility` of it.

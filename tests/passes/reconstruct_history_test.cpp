@@ -50,7 +50,7 @@ TEST_F(Reconstruct, ASettledViewBringsForwardWhatItsSearchesReached) {
       std::array<HostImage, 2> last;
       for (std::uint32_t frame = 0; frame <= 16; ++frame) {
         const HostImage signal =
-            signal_of((33 + divisor - 1) / divisor, (23 + divisor - 1) / divisor,
+            signal_of(blocks(33, divisor), blocks(23, divisor),
                       [&](std::uint32_t, std::uint32_t) { return noise(random); });
         last[0] = std::move(last[1]);
         last[1] = reconstruct({.view = view.view,

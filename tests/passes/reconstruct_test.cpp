@@ -13,11 +13,6 @@
 namespace alcove::passes {
 namespace {
 
-// Texels of a signal by one search in divisor x divisor pixels.
-std::uint32_t blocks(std::uint32_t pixels, std::uint32_t divisor) {
-  return (pixels + divisor - 1) / divisor;
-}
-
 // One coordinate of what a pixel looks at: the `i`th of the 2 x `reach` searched pixels around it.
 struct Searched {
   std::uint32_t block;
@@ -110,8 +105,7 @@ TEST_F(Reconstruct, AConstantSignalStaysConstantInAnySceneAtAnyResolution) {
   for (const NamedScene& scene : scenes) {
     const Drawing drawing = draw(view, 33, 23, scene.scene);
     for (const std::uint32_t divisor : {1u, 2u, 4u}) {
-      const HostImage signal =
-          constant_signal((33 + divisor - 1) / divisor, (23 + divisor - 1) / divisor, 0.37f);
+      const HostImage signal = constant_signal(blocks(33, divisor), blocks(23, divisor), 0.37f);
       for (const std::uint32_t reach : {0u, 1u, 2u, 3u}) {
         for (const std::uint32_t history : {0u, 16u}) {
           SCOPED_TRACE(testing::Message() << scene.name << " by " << divisor << ", reach " << reach
