@@ -76,8 +76,8 @@ void for_each_setting(Settings& settings, const Visit& visit) {
   visit(Info{"filter_reach", "Blocks on each side that a pixel learns from; 0: no filter.", 0, 3},
         settings.filter_reach);
   visit(Info{"filter_tolerance_px",
-             "How far from the tangent plane a neighbour still counts, in pixels.", 0.1f, 8.0f,
-             [](Of s) { return s.filter_reach > 0; }},
+             "How far from the tangent plane a neighbour counts in a first frame, in pixels.", 0.1f,
+             8.0f, [](Of s) { return s.filter_reach > 0; }},
         settings.filter_tolerance_px);
   visit(Info{"history_frames", "Frames that are averaged; 0: no history.", 0, 255},
         settings.history_frames);

@@ -134,6 +134,14 @@ float window_width(History history) {
              parameters.window_px * inversesqrt(history.count + 1.0));
 }
 
+// How much nearer to the tangent plane a neighbour has to be than in a first frame: the more
+// searches a pixel has had of its own, the less it needs those off its plane, which see other
+// things.
+float stiffening(float count) {
+  const float own = 1.0 / float(kDivisor * kDivisor);  // in a frame
+  return min(1.0 + 4.0 * own * count, 5.0);
+}
+
 void clamp_history(inout History history, Spread spread) {
   float before = mean_visibility(history.sum.signal.visible, history.sum.signal.open);
   float after = clamp_to_spread(before, spread, parameters.clamp_width);
@@ -156,6 +164,7 @@ void follow_change(inout History history, Signal now) {
 
 // The pixel's sums with this frame's neighbourhood added.
 History advance(Surface surface, Found around[kAround], History history) {
+  surface.stiffness *= stiffening(history.count);
   Neighbourhood now = add_up(surface, narrowness_of(window_width(history)), around);
   if (kClamp) {
     vec3 moments = now.moments / now.moments.x;

@@ -163,6 +163,40 @@ TEST_F(Reconstruct, TheMoreSlicesTheLessIsFiltered) {
   EXPECT_LT(kept, 0.04) << "of the stripes' own variance";
 }
 
+// A neighbour on the other side of a crease, a fraction of a pixel off the tangent plane, helps a
+// pixel that knows nothing else, and is less and less asked once there are slices or frames.
+TEST_F(Reconstruct, TheMoreSearchesTheLessCrossesACrease) {
+  const TestView view = test_views()[2];
+  const Drawing drawing = draw(view, kWidth, kHeight, groove(0.8, 4.5));
+  const HostImage signal = signal_of(kWidth, kHeight, [&](std::uint32_t x, std::uint32_t y) {
+    return cast(drawing.scene, drawing.camera.ray(x + 0.5, y + 0.5))->normal.x > 0.0 ? 0.2f : 0.9f;
+  });
+  const auto leak = [&](const HostImage& found) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < found.texels.size(); ++i) {
+      sum += std::abs(found.texels[i] - signal.texels[i * 2] / signal.texels[i * 2 + 1]);
+    }
+    return sum;
+  };
+  const auto after = [&](std::uint32_t slices, std::uint32_t frames) {
+    HostImage found;
+    for (std::uint32_t frame = 0; frame < frames; ++frame) {
+      found = reconstruct({.view = view.view,
+                           .drawing = drawing,
+                           .signal = signal,
+                           .slices = slices,
+                           .index = frame,
+                           .reset = frame == 0},
+                          precise(2, 64));
+    }
+    return leak(found);
+  };
+  const double first = after(1, 1);
+  EXPECT_GT(first, 1.0) << "of all pixels";
+  EXPECT_LT(after(4, 1), 0.35 * first);
+  EXPECT_LT(after(1, 48), 0.1 * first);
+}
+
 TEST_F(Reconstruct, NothingLeaksAcrossADepthEdge) {
   for (const TestView& view : test_views()) {
     const Drawing drawing = draw(view, kWidth, kHeight, step(0.3, 1.0));
