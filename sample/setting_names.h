@@ -73,7 +73,8 @@ void for_each_setting(Settings& settings, const Visit& visit) {
   visit(Info{"depth_mips", "Levels of the linear depth that is handed on; no search reads them.", 1,
              5},
         settings.depth_mips);
-  visit(Info{"filter_reach", "Blocks on each side that a pixel learns from; 0: no filter.", 0, 3},
+  visit(Info{"filter_reach", "Searches on each side that a first frame looks at; 0: no filter.", 0,
+             3},
         settings.filter_reach);
   visit(Info{"filter_tolerance_px",
              "How far from the tangent plane a neighbour counts in a first frame, in pixels.", 0.1f,

@@ -136,7 +136,7 @@ float window_width(History history) {
 
 // How much nearer to the tangent plane a neighbour has to be than in a first frame: the more
 // searches a pixel has had of its own, the less it needs those off its plane, which see other
-// things.
+// things. By the error after 4 and 32 frames at each divisor (`alcove compare --frames`).
 float stiffening(float count) {
   const float own = 1.0 / float(kDivisor * kDivisor);  // in a frame
   return min(1.0 + 4.0 * own * count, 5.0);

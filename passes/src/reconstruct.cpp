@@ -309,7 +309,7 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& frame, const Reconst
   maths::ReconstructParameters parameters =
       parameters_of(frame, *projection, *previous, inputs.normals_in_view_space, settings);
   parameters.window_px = window_px(inputs.signal);
-  // As the window does: what has more slices needs neighbours off its plane less.
+  // Distances from the plane count for more with the slices, as the window narrows with them.
   parameters.tolerance *= std::sqrt(static_cast<float>(inputs.signal.slices));
   if (settled) {  // nothing to follow: all frames count alike
     parameters.longest = static_cast<float>(kMaxHistoryFrames);
