@@ -243,23 +243,7 @@ tl::expected<FrameReport, Errors> Executor::Implementation::prepare(Graph& graph
 void Executor::Implementation::finish(Graph& graph, const CachedPlan& cached) {
   before = &cached;
   before_generation = pool->generation();
-  HistoryTable& histories = graph.histories();
-  const GraphDescription& description = graph.description();
-  for (const FinalState& final : cached.plan.finals) {
-    const ResourceRecord& record = description.resources[final.resource];
-    const std::uint32_t index = graph.imports()[record.external].history;
-    const HistoryEntry& entry = histories.entry(index);
-    HistorySlot slot = entry.slots[entry.physical(record.slot)];
-    slot.state = final.state;
-    slot.queue = final.queue;
-    if (record.slot == 0 && final.written) slot.validity = HistoryValidity::valid;
-    histories.leave(index, record.slot, slot);
-  }
-  for (const FinalState& final : cached.plan.finals) {
-    const ResourceRecord& record = description.resources[final.resource];
-    if (record.slot == 0 && final.written)
-      histories.rotate(graph.imports()[record.external].history);
-  }
+  graph.leave_histories(cached.plan.finals);
 }
 
 // What was begun with this slot does not run. Frames before it may still do.

@@ -5,6 +5,19 @@
 namespace alcove::framegraph {
 namespace {
 
+// Whoever read it since saw what was written before. Others have yet to.
+void note_seen(UseState& state, const State& arrival) {
+  const bool every_access = (arrival.access & VK_ACCESS_2_MEMORY_READ_BIT) != 0;
+  const bool every_stage = (arrival.stages & VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT) != 0;
+  state.write_stages = arrival.stages;
+  state.write_time = kBeforeFrame;
+  state.seen_access = every_access ? kEveryAccess : arrival.access;
+  if (every_access && every_stage)
+    state.seen_stages = ~VkPipelineStageFlags2{VK_PIPELINE_STAGE_2_HOST_BIT};
+  else if (arrival.access != 0)
+    state.seen_stages = arrival.stages;
+}
+
 void note_external(UseState& state, const ExternalRecord& external) {
   const State& arrival = external.arrival;
   if (arrival.access & kWriteBits) {
@@ -14,6 +27,7 @@ void note_external(UseState& state, const ExternalRecord& external) {
   } else {
     state.read_stages = arrival.stages;
     state.read_time = kBeforeFrame;
+    if (arrival.stages != 0) note_seen(state, arrival);
   }
   if (!external.has_contents) return;
   state.layout = arrival.layout;
@@ -47,8 +61,7 @@ void Synchroniser::depart() {
     const ExternalRecord& external = graph_.externals[resource.external];
     const bool used = plan_.placements[r].first != kNone;
     if (external.has_departure && used) end_reads(r, external.departure);
-    if (external.has_departure && (used || external.departure.layout != external.arrival.layout))
-      use(end, outside_use(r, external.departure));
+    if (external.has_departure) use(end, outside_use(r, external.departure));
     if (used && resource.origin == Origin::history) leave(r);
   }
   if (batch_time_ == batch_time(end) && !plan_.batches.empty()) {
@@ -96,23 +109,32 @@ AccessRecord Synchroniser::outside_use(std::uint32_t resource, const State& stat
 void Synchroniser::leave(std::uint32_t resource) {
   const std::uint32_t first = workspace_.first_sub[resource];
   const std::uint32_t last = workspace_.first_sub[resource + 1];
-  FinalState final{resource, {}, QueueClass::graphics, 0};
+  FinalState final{resource, {}, QueueClass::graphics, Written::nothing};
+  std::uint32_t written = 0;
   bool one_layout = true;
+  bool seen_alike = true;
+  const UseState& lead = s_.states[first];
   for (std::uint32_t sub = first; sub < last; ++sub) {
     const UseState& state = s_.states[sub];
-    one_layout = one_layout && state.layout == s_.states[first].layout &&
-                 state.queue == s_.states[first].queue;
+    one_layout = one_layout && state.layout == lead.layout && state.queue == lead.queue;
+    seen_alike = seen_alike && state.read_stages == lead.read_stages &&
+                 state.seen_stages == lead.seen_stages && state.seen_access == lead.seen_access;
     final.state.stages |= state.read_stages != 0 ? state.read_stages : state.write_stages;
     if (state.read_stages == 0) final.state.access |= state.write_access;
-    final.written |= s_.last_uses[sub].write_stages != 0;
+    written += s_.last_uses[sub].write_stages != 0 ? 1 : 0;
   }
-  final.state.layout = s_.states[first].layout;
+  if (written != 0) final.written = written == last - first ? Written::whole : Written::part;
+  // What readers saw is told where it holds for all of them.
+  if (final.state.access == 0 && seen_alike && (lead.read_stages & ~lead.seen_stages) == 0)
+    final.state.access = reads_in(lead.seen_access);
+  final.state.layout = lead.layout;
   if (workspace_.several_queues) {
-    // Other queues' uses are not followed apart.
+    // Other queues' uses are not followed apart. The next frame waits for all of them.
+    const bool pending = written != 0 || (final.state.access & kWriteBits) != 0;
     final.state.stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-    if (final.written) final.state.access = VK_ACCESS_2_MEMORY_WRITE_BIT;
+    final.state.access = pending ? VK_ACCESS_2_MEMORY_WRITE_BIT : VK_ACCESS_2_MEMORY_READ_BIT;
   }
-  final.queue = one_layout ? s_.states[first].queue : QueueClass::graphics;
+  final.queue = one_layout ? lead.queue : QueueClass::graphics;
   if (!one_layout) {
     final.state = {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT,
                    VK_IMAGE_LAYOUT_GENERAL};

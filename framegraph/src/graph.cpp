@@ -233,6 +233,27 @@ std::uint32_t Graph::add_history(std::string_view name, ResourceRecord record, s
   return first;
 }
 
+void Graph::leave_histories(std::span<const FinalState> finals) {
+  for (const FinalState& final : finals) {
+    const ResourceRecord& record = description_.resources[final.resource];
+    const std::uint32_t index = imports_[record.external].history;
+    const HistoryEntry& entry = histories_.entry(index);
+    HistorySlot slot = entry.slots[entry.physical(record.slot)];
+    slot.state = final.state;
+    slot.queue = final.queue;
+    if (record.slot == 0 && final.written != Written::nothing) {
+      const bool whole = final.written == Written::whole;
+      slot.validity = whole ? HistoryValidity::valid : HistoryValidity::written_in_part;
+    }
+    histories_.leave(index, record.slot, slot);
+  }
+  for (const FinalState& final : finals) {
+    const ResourceRecord& record = description_.resources[final.resource];
+    if (record.slot == 0 && final.written != Written::nothing)
+      histories_.rotate(imports_[record.external].history);
+  }
+}
+
 TextureHistory Graph::create_texture_history(std::string_view name, const TextureDesc& desc,
                                              std::uint32_t slots) {
   TextureHistory history;

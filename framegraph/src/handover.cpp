@@ -52,7 +52,7 @@ void Synchroniser::take_without_giver(UseState& state, bool same_family) const {
   } else {
     // The wait covers all that commands do, but nothing that the host does.
     taken.seen_stages = ~VkPipelineStageFlags2{VK_PIPELINE_STAGE_2_HOST_BIT};
-    taken.seen_access = ~VkAccessFlags2{0};
+    taken.seen_access = kEveryAccess;
   }
   state = taken;
 }

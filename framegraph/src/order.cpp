@@ -207,6 +207,21 @@ class Orderer {
   std::uint32_t stamp_ = 0;
 };
 
+// Whether a queue that the frame has beside graphics held something that a pass uses.
+bool comes_from_elsewhere(const GraphDescription& graph, const Limits& limits, const Plan& plan,
+                          std::uint32_t pass) {
+  bool elsewhere = false;
+  for_each_live(graph, plan, pass, [&](const AccessRecord& access) {
+    const std::uint32_t external = graph.resources[access.resource].external;
+    if (external == kNone) return;
+    const ExternalRecord& record = graph.externals[external];
+    elsewhere |= record.queue != QueueClass::graphics &&
+                 limits.queue_families[static_cast<std::size_t>(record.queue)] != kNone &&
+                 (record.has_contents || record.arrival.stages != 0);
+  });
+  return elsewhere;
+}
+
 }  // namespace
 
 void order(const GraphDescription& graph, const Limits& limits, Workspace& workspace, Plan& plan) {
@@ -220,7 +235,8 @@ void order(const GraphDescription& graph, const Limits& limits, Workspace& works
     *planned = {};
     planned->pass = pass;
     planned->queue = own ? queue : QueueClass::graphics;
-    workspace.several_queues |= planned->queue != QueueClass::graphics;
+    workspace.several_queues |=
+        planned->queue != QueueClass::graphics || comes_from_elsewhere(graph, limits, plan, pass);
     ++planned;
   }
 }

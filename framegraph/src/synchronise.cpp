@@ -210,8 +210,11 @@ void Synchroniser::read_again(std::uint32_t position, const AccessRecord& access
       Transition wanted;
       wanted.src_stages = state.by_wait ? VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT : state.write_stages;
       wanted.src_access = state.write_access;
+      // Stages and accesses that see it are followed apart: all of one see by all of the other.
       wanted.dst_stages = access.stages;
+      if (access.access & ~state.seen_access) wanted.dst_stages |= state.seen_stages;
       wanted.dst_access = access.access;
+      if (access.stages & ~state.seen_stages) wanted.dst_access |= reads_in(state.seen_access);
       add_memory(state.write_time, position, wanted);
     }
     state.seen_stages |= access.stages;

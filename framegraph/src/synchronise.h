@@ -16,6 +16,14 @@ inline VkPipelineStageFlags2 waited_stages(const AccessRecord& access) {
   return stages != 0 ? stages : VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
 }
 
+// UseState::seen_access of what is seen in every way.
+inline constexpr VkAccessFlags2 kEveryAccess = ~VkAccessFlags2{0};
+
+// The same as barriers and states name it.
+inline VkAccessFlags2 reads_in(VkAccessFlags2 seen) {
+  return seen == kEveryAccess ? VK_ACCESS_2_MEMORY_READ_BIT : seen;
+}
+
 inline std::int32_t batch_time(std::uint32_t position) {
   return static_cast<std::int32_t>(2 * position);
 }

@@ -163,7 +163,6 @@ void Replay::check_departure(std::uint32_t resource) {
       fail(name(resource) + " does not leave with what was written for it");
     if (sub.released || (sub.family != kNone && sub.family != family(queue)))
       fail(name(resource) + " is left with another queue family than it came with");
-    if (plan_.placements[resource].first == kNone) continue;
     for (const Piece& piece : sub.reads) {
       // Whoever has it next waits for its own stages alone, or for what they come after.
       const bool waited_for = !is_write(departure.access) && piece.queue == queue &&
@@ -193,13 +192,26 @@ void Replay::check_final(const FinalState& final) {
     for (const Piece& piece : sub.reads) {
       if (piece.stage & ~stages) fail(name(final.resource) + " is read by a stage not told of");
     }
-    if (!sub.reads.empty()) continue;
-    for (const Piece& piece : sub.writes) {
-      if ((piece.stage & ~stages) || (piece.writes & ~expand_accesses(final.state.access)))
-        fail(name(final.resource) + " is written in a way not told of");
-    }
+    check_final_writes(final, sub);
     if (sub.family != kNone && sub.family != family(static_cast<std::uint8_t>(final.queue)))
       fail(name(final.resource) + " is said to be owned by another queue than it is");
+  }
+}
+
+void Replay::check_final_writes(const FinalState& final, const Sub& sub) {
+  const Stages stages = expand_stages(final.state.stages);
+  const Accesses accesses = expand_accesses(final.state.access);
+  const auto queue = static_cast<std::uint8_t>(final.queue);
+  for (const Piece& piece : sub.writes) {
+    if (is_write(accesses)) {
+      if (sub.reads.empty() && ((piece.stage & ~stages) || (piece.writes & ~accesses)))
+        fail(name(final.resource) + " is written in a way not told of");
+    } else if (!several_queues_ && stages != 0) {
+      const bool seen = accesses == 0 ? (piece.available[queue] & stages) != 0
+                                      : available(piece, queue, final.state.stages) &&
+                                            visible(piece, queue, final.state.stages, accesses);
+      if (!seen) fail(name(final.resource) + " is said to be seen by what does not see it");
+    }
   }
 }
 

@@ -66,10 +66,10 @@ void Replay::find_expected() {
 // a frame begins when all of the frame before is done; else commands just follow each other.
 void Replay::begin_frame(bool first) {
   where_ = first ? "at the start of the frame" : "at the start of the next frame";
-  const bool several =
+  several_queues_ =
       std::any_of(plan_.submissions.begin(), plan_.submissions.end(),
                   [](const Submission& s) { return s.queue != QueueClass::graphics; });
-  if (several) for_each_piece([](Piece& piece) { join(piece); });
+  if (several_queues_) for_each_piece([](Piece& piece) { join(piece); });
   for (std::uint32_t r = 0; r < resources_.size(); ++r) {
     const ResourceRecord& record = graph_.resources[r];
     for (Sub& sub : resources_[r].subs) {
@@ -81,14 +81,28 @@ void Replay::begin_frame(bool first) {
       const auto queue = static_cast<std::uint8_t>(external.queue);
       sub.writes.clear();
       sub.reads.clear();
-      append_pieces(is_write(external.arrival.access) ? sub.writes : sub.reads, queue,
-                    external.arrival.stages, external.arrival.access);
+      arrive(sub, queue, external.arrival);
       sub.layout = external.arrival.layout;
       if (!external.has_contents) continue;
       sub.content = kInitial;
       sub.family = family(queue);
     }
   }
+}
+
+// What was written before is seen by those who read it since, and by nobody else yet. Where no
+// access is told, none sees it, and it came before some of the stages only: all must be waited for.
+void Replay::arrive(Sub& sub, std::uint8_t queue, const State& arrival) {
+  if (is_write(arrival.access)) {
+    append_pieces(sub.writes, queue, arrival.stages, arrival.access);
+    return;
+  }
+  const Stages stages = expand_stages(arrival.stages);
+  const Accesses seen = expand_accesses(arrival.access);
+  for (Stages left = seen == 0 ? stages : 0; left != 0; left &= left - 1)
+    sub.writes.push_back(change_piece(queue, left & (~left + 1), 0));
+  if (seen != 0) sub.writes.push_back(change_piece(queue, stages, seen));
+  append_pieces(sub.reads, queue, arrival.stages, 0);
 }
 
 void Replay::submission(std::uint32_t index) {

@@ -41,6 +41,7 @@ class Replay {
   void find_overlaps();
   void find_expected();
   void begin_frame(bool first);
+  static void arrive(Sub& sub, std::uint8_t queue, const State& arrival);
   void submission(std::uint32_t index);
   void batches(std::uint32_t first, std::uint32_t count, std::uint32_t submission);
   void batch(const Batch& batch, QueueClass queue);
@@ -65,6 +66,7 @@ class Replay {
   void end_frame();
   void check_departure(std::uint32_t resource);
   void check_final(const FinalState& final);
+  void check_final_writes(const FinalState& final, const Sub& sub);
 
   template <typename Function>
   void for_each_piece(Function&& f);
@@ -82,8 +84,9 @@ class Replay {
   // By access, by subresource of its range: what must be there before it.
   std::vector<std::vector<std::uint32_t>> expected_;
   std::vector<std::vector<std::uint32_t>> last_;  // by resource: what must be there in the end
-  std::uint32_t signals_ = 0;                     // submissions of earlier frames
-  std::vector<std::uint32_t> set_in_;             // by event: the submission that set it
+  bool several_queues_ = false;
+  std::uint32_t signals_ = 0;          // submissions of earlier frames
+  std::vector<std::uint32_t> set_in_;  // by event: the submission that set it
   std::string where_;
 };
 

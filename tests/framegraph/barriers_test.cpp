@@ -9,6 +9,7 @@
 #include "alcove/framegraph/verify.h"
 #include "barrier_search.h"
 #include "deferred_frame.h"
+#include "fake_handle.h"
 #include "random_graph.h"
 
 namespace alcove::framegraph {
@@ -58,6 +59,126 @@ TEST(Barriers, ReadsAfterReadsCostNothing) {
   EXPECT_EQ(plan->transitions.size(), 2u);
   EXPECT_EQ(plan->transitions[1].dst_stages,
             VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT);
+}
+
+// Where a stage reads in a second way, and another stage read that way before it or does after.
+TEST(Barriers, WhatOneStageSeesInOneWayItDoesNotSeeInAnother) {
+  Graph graph;
+  Buffer data = graph.create_buffer("data", {64});
+  Buffer other = graph.create_buffer("other", {64});
+  PassBuilder writer = graph.add_pass("writer");
+  data = writer.write(data, buffer_access::storage_write_compute);
+  const auto add_reader = [&](const Access& access) {
+    PassBuilder reader = graph.add_pass("reader");
+    reader.read(data, access);
+    reader.side_effect();
+  };
+  add_reader(buffer_access::uniform_graphics);
+  // A barrier of its own between the two, which the second joins.
+  PassBuilder fill = graph.add_pass("fill");
+  other = fill.write(other, buffer_access::fill);
+  PassBuilder mixed = graph.add_pass("mixed");
+  mixed.read(other, buffer_access::storage_read_compute);
+  mixed.read(data, buffer_access::storage_read_compute);
+  mixed.side_effect();
+  add_reader(buffer_access::uniform_compute);
+  add_reader({VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_READ_BIT,
+              VK_IMAGE_LAYOUT_UNDEFINED});
+  const auto plan = compile(graph);
+  ASSERT_TRUE(plan) << to_string(plan.error());
+  const auto verified = verify(graph.description(), {}, *plan);
+  EXPECT_TRUE(verified) << to_string(verified.error());
+}
+
+State state_of(const Access& access) { return {access.stages, access.access, access.layout}; }
+
+class Arrivals : public testing::Test {
+ protected:
+  Texture import(const State& arrival, const State& departure = {}) {
+    return graph_.import_texture("import", {.image = fake_handle<VkImage>(),
+                                            .desc = {VK_FORMAT_R8_UNORM, Extent::absolute(8, 8)},
+                                            .usage = VK_IMAGE_USAGE_SAMPLED_BIT,
+                                            .arrival = arrival,
+                                            .departure = departure});
+  }
+  Plan compiled() {
+    const auto plan = compile(graph_);
+    EXPECT_TRUE(plan) << to_string(plan.error());
+    const auto right = verify(graph_.description(), {}, *plan);
+    EXPECT_TRUE(right) << to_string(right.error());
+    return *plan;
+  }
+  Graph graph_;
+};
+
+TEST_F(Arrivals, WhatOneStageReadIsYetToBeSeenByAnother) {
+  for (const Access& arrival : {access::sampled_compute, access::sampled_fragment}) {
+    graph_.reset();
+    const Texture texture = import(state_of(arrival));
+    PassBuilder reader = graph_.add_pass("reader");
+    reader.read(texture, access::sampled_fragment);
+    reader.side_effect();
+    const Plan plan = compiled();
+    const bool same = arrival.stages == access::sampled_fragment.stages;
+    ASSERT_EQ(plan.transitions.size(), same ? 0u : 1u);
+    if (same) continue;
+    EXPECT_EQ(plan.transitions[0].src_stages, arrival.stages);
+    EXPECT_EQ(plan.transitions[0].dst_access, access::sampled_fragment.access);
+  }
+}
+
+TEST_F(Arrivals, WhatNoPassReadsIsSeenByThoseItDepartsTo) {
+  const State written{VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                      VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
+                      VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+  import(written, state_of(access::sampled_fragment));
+  const Plan plan = compiled();
+  ASSERT_EQ(plan.transitions.size(), 1u);
+  EXPECT_EQ(plan.transitions[0].src_access, written.access);
+  EXPECT_EQ(plan.transitions[0].dst_stages, access::sampled_fragment.stages);
+}
+
+TEST_F(Arrivals, AHistoryIsSeenByWhateverReadsItNext) {
+  const auto declare = [&](const Access& own, const Access& old) {
+    graph_.reset();
+    const TextureHistory history =
+        graph_.create_texture_history("history", {VK_FORMAT_R8_UNORM, Extent::absolute(8, 8)});
+    PassBuilder reader = graph_.add_pass("reads the last frame's");
+    reader.read(history.previous(), old);
+    reader.side_effect();
+    PassBuilder writer = graph_.add_pass("writer");
+    const Texture current =
+        writer.write(history.current, access::storage_write_compute, {}, Contents::discard);
+    PassBuilder user = graph_.add_pass("reads its own");
+    user.read(current, own);
+    user.side_effect();
+  };
+  declare(access::sampled_compute, access::sampled_fragment);
+  graph_.leave_histories(compiled().finals);
+  declare(access::sampled_compute, access::sampled_fragment);
+  const Plan plan = compiled();
+  const PlannedPass& first = plan.passes[0];
+  ASSERT_EQ(first.batch_count, 1u) << "it was seen by compute alone";
+  const Transition& seen = plan.transitions[plan.batches[first.first_batch].first];
+  EXPECT_EQ(seen.src_stages, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
+  EXPECT_EQ(seen.dst_stages, VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT);
+}
+
+TEST_F(Arrivals, AHistoryThatWasWrittenInPartIsNotValid) {
+  const auto declare = [&](Range range) {
+    graph_.reset();
+    const TextureHistory history =
+        graph_.create_texture_history("history", {VK_FORMAT_R8_UNORM, Extent::absolute(8, 8), 2});
+    PassBuilder writer = graph_.add_pass("writer");
+    writer.write(history.current, access::storage_write_compute, range, Contents::discard);
+    writer.side_effect();
+    return history.validity;
+  };
+  declare(Range::mip(0));
+  graph_.leave_histories(compiled().finals);
+  EXPECT_EQ(declare({}), HistoryValidity::written_in_part);
+  graph_.leave_histories(compiled().finals);
+  EXPECT_EQ(declare({}), HistoryValidity::valid);
 }
 
 TEST(Barriers, NeighbouringMipsThatChangeAlikeAreOneBarrier) {

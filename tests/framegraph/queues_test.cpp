@@ -86,5 +86,26 @@ TEST_F(Queues, WhatGraphicsUsedBeforeTheFrameIsWaitedForOnce) {
   EXPECT_EQ(plan.passes[0].submission, plan.passes[1].submission);
 }
 
+// What another queue left comes by its release, in a frame without passes there too.
+TEST_F(Queues, AHistoryOfAnotherQueueComesToAFrameThatOnlyHasGraphics) {
+  const auto declare = [&](QueueClass queue) {
+    graph_.reset();
+    const TextureHistory history = graph_.create_texture_history("history", kDesc);
+    PassBuilder pass = graph_.add_pass("pass", queue);
+    if (queue == QueueClass::compute)
+      pass.write(history.current, access::storage_write_compute, {}, Contents::discard);
+    else
+      pass.read(history.previous(), access::sampled_fragment);
+    pass.side_effect();
+  };
+  declare(QueueClass::compute);
+  graph_.leave_histories(compiled().finals);
+  declare(QueueClass::graphics);
+  const Plan plan = compiled();
+  ASSERT_FALSE(plan.submissions.empty());
+  EXPECT_EQ(plan.submissions[0].queue, QueueClass::compute);
+  EXPECT_EQ(plan.submissions[0].batch_count, 1u) << "the release";
+}
+
 }  // namespace
 }  // namespace alcove::framegraph

@@ -14,8 +14,11 @@ constexpr Access kWrites[] = {access::storage_write_compute, access::storage_rea
                               access::color_attachment, access::transfer_destination,
                               access::clear};
 constexpr Access kBufferReads[] = {buffer_access::storage_read_compute,
-                                   buffer_access::uniform_graphics, buffer_access::vertex_buffer,
-                                   buffer_access::transfer_source, buffer_access::indirect};
+                                   buffer_access::uniform_graphics,
+                                   buffer_access::vertex_buffer,
+                                   buffer_access::transfer_source,
+                                   buffer_access::indirect,
+                                   buffer_access::uniform_compute};
 constexpr Access kBufferWrites[] = {buffer_access::storage_write_compute,
                                     buffer_access::storage_read_write_compute,
                                     buffer_access::transfer_destination, buffer_access::fill};
@@ -120,9 +123,14 @@ class Declarer {
                      VK_SAMPLE_COUNT_1_BIT};
       import.usage = ~VkImageUsageFlags{0};
       if (full)
-        import.arrival = {VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
-                          VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
-                          VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
+        import.arrival =
+            dice_.chance(128)
+                ? State{VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                        VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
+                        VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL}
+                : State{VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
+                        dice_.chance(128) ? VK_ACCESS_2_SHADER_SAMPLED_READ_BIT : VkAccessFlags2{0},
+                        VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
       if (departs)
         import.departure = {VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
                             VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
@@ -135,8 +143,10 @@ class Declarer {
       import.usage = ~VkBufferUsageFlags{0};
       import.has_contents = full;
       if (full)
-        import.arrival = {VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                          VK_IMAGE_LAYOUT_UNDEFINED};
+        import.arrival = {
+            VK_PIPELINE_STAGE_2_COPY_BIT,
+            dice_.chance(128) ? VK_ACCESS_2_TRANSFER_WRITE_BIT : VK_ACCESS_2_TRANSFER_READ_BIT,
+            VK_IMAGE_LAYOUT_UNDEFINED};
       if (departs) import.departure = buffer_access::host_read;
       known.buffer = graph_.import_buffer(numbered('i', known_.size()), import);
     }
@@ -144,16 +154,19 @@ class Declarer {
   }
 
   void add_history() {
-    TextureDesc desc{VK_FORMAT_R32_SFLOAT, Extent::absolute(side(), side())};
+    // Of one size, so that what a frame leaves is there in the next that has it.
+    TextureDesc desc{VK_FORMAT_R32_SFLOAT, Extent::absolute(16, 16), 1 + dice_.roll(2)};
     const TextureHistory history = graph_.create_texture_history("h", desc, 2 + dice_.roll(2));
     Known current;
+    current.mips = desc.mips;
     current.handle = history.current;
     keep(current, false);
     Known previous;
     previous.handle = history.previous(1);
+    previous.mips = desc.mips;
     previous.read_only = true;
     history_ = known_.size();
-    keep(previous, false);
+    keep(previous, history.validity == HistoryValidity::valid);
   }
 
   void add_pass(std::uint32_t index) {
@@ -180,8 +193,8 @@ class Declarer {
     Known& known = known_[chosen];
     if (known.last_pass == index) return;
     const bool old = known.read_only;
-    // A history is read only in frames that write it, which its writer must do first here.
-    if (old && !known_[history_ - 1].written[0]) return;
+    // A history without contents is read only in frames that write it, its writer first here.
+    if (old && !known.written[0] && !known_[history_ - 1].written[0]) return;
     Range range;
     const bool all =
         std::find(known.written.begin(), known.written.end(), false) == known.written.end();
@@ -199,7 +212,8 @@ class Declarer {
       if (options_.mistakes && dice_.chance(4)) handle.graph += 1;
       pass.read(handle, kReads[pick(dice_, queue, {0, 1, 2, 3, 4}, {0, 1, 3, 4}, {3})], range);
     } else {
-      pass.read(known.buffer, kBufferReads[pick(dice_, queue, {0, 1, 2, 3, 4}, {0, 3, 4}, {3})]);
+      pass.read(known.buffer,
+                kBufferReads[pick(dice_, queue, {0, 1, 2, 3, 4, 5}, {0, 3, 4, 5}, {3})]);
     }
   }
 

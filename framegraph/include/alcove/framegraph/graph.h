@@ -26,6 +26,7 @@
 #include "alcove/framegraph/access.h"
 #include "alcove/framegraph/description.h"
 #include "alcove/framegraph/history.h"
+#include "alcove/framegraph/plan.h"
 #include "alcove/framegraph/record_context.h"
 #include "alcove/framegraph/types.h"
 
@@ -137,9 +138,13 @@ class Graph {
   VkFormat format(Texture texture) const;
 
   const GraphDescription& description() const { return description_; }
+
+  // For executors.
   std::span<const ImportHandles> imports() const { return imports_; }
   HistoryTable& histories() { return histories_; }
   const HistoryTable& histories() const { return histories_; }
+  // Moves the histories on, as a frame that runs by a plan leaves them.
+  void leave_histories(std::span<const FinalState> finals);
 
   // Calls the callback of a pass.
   void call(std::uint32_t pass, RecordContext& context) const {

@@ -101,12 +101,16 @@ struct Heap {
   VkDeviceSize unaliased = 0;      // sum of the sizes
 };
 
-// How an import or history slot is left, for whoever uses it next.
+// How much of a history slot the live passes wrote.
+enum class Written : std::uint8_t { nothing, part, whole };
+
+// How a history slot is left, for whoever uses it next. Read accesses of the state are those that
+// see what was written before.
 struct FinalState {
   std::uint32_t resource = kNone;
   State state;
   QueueClass queue = QueueClass::graphics;
-  std::uint32_t written = 0;  // 0 or 1: by a live pass
+  Written written = Written::nothing;
 };
 
 struct Plan {

@@ -88,7 +88,8 @@ struct Range {
 
 // Where an imported resource comes from, or is to be left: the last (or next) stages and accesses
 // outside the graph and, for a texture, the layout. An arrival in VK_IMAGE_LAYOUT_UNDEFINED (for a
-// buffer: with no access) has no contents.
+// buffer: with no access) has no contents. What was written before an arrival by reads is visible
+// to them; to other stages, and to these in other ways, the graph makes it visible.
 struct State {
   VkPipelineStageFlags2 stages = 0;
   VkAccessFlags2 access = 0;
@@ -142,9 +143,10 @@ inline constexpr std::size_t kQueueClasses = 3;
 // Why a slot of a history resource has no contents, or that it has.
 enum class HistoryValidity : std::uint8_t {
   valid,
-  first_frame,  // never written so far
-  resized,      // the description changed: extent, format, mips, layers, samples or slot count
-  reset,        // Graph::reset_history was called
+  first_frame,      // never written so far
+  resized,          // the description changed: extent, format, mips, layers, samples or slot count
+  reset,            // Graph::reset_history was called
+  written_in_part,  // the frame that wrote it left out some mip or layer
 };
 
 }  // namespace alcove::framegraph
