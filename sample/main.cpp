@@ -4,8 +4,8 @@
 #include <iostream>
 #include <new>
 
-#include "commands.h"
-#include "options.h"
+#include "commands/commands.h"
+#include "options/options.h"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "gui.h"
+#include "viewer/gui.h"
 
 #include <imgui.h>
 #include <imgui_impl_glfw.h>

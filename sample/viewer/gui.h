@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "alcove/framegraph/graph.h"
-#include "gpu.h"
-#include "window.h"
+#include "device/gpu.h"
+#include "viewer/window.h"
 
 namespace alcove::sample {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "camera.h"
+#include "scene/camera.h"
 
 // How a mouse moves a camera about its target. Each gives the moved camera; the eye never reaches
 // the target.

@@ -1,4 +1,4 @@
-#include "panel.h"
+#include "viewer/panel.h"
 
 #include <imgui.h>
 
@@ -7,8 +7,8 @@
 #include <glm/gtc/constants.hpp>
 
 #include "alcove/passes/setting_names.h"
-#include "orbit_camera.h"
-#include "setting_widgets.h"
+#include "viewer/orbit_camera.h"
+#include "viewer/setting_widgets.h"
 
 namespace alcove::sample {
 namespace {

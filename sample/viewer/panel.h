@@ -3,8 +3,8 @@
 #include <string>
 
 #include "alcove/framegraph/executor.h"
-#include "smoothed_times.h"
-#include "view_state.h"
+#include "viewer/smoothed_times.h"
+#include "viewer/view_state.h"
 
 namespace alcove::sample {
 

@@ -1,4 +1,4 @@
-#include "picture_pass.h"
+#include "viewer/picture_pass.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "alcove/framegraph/access.h"
-#include "shader_module.h"
+#include "device/shader_module.h"
 #include "spirv/picture_fragment.h"
 #include "spirv/picture_vertex.h"
 

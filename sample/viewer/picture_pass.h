@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "alcove/framegraph/graph.h"
-#include "glm.h"
-#include "gpu.h"
+#include "device/gpu.h"
 #include "shaders/picture.h"
+#include "support/glm.h"
 
 namespace alcove::sample {
 

@@ -1,4 +1,4 @@
-#include "presenter.h"
+#include "viewer/presenter.h"
 
 #include <utility>
 

@@ -6,9 +6,9 @@
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "gpu.h"
-#include "swapchain.h"
-#include "window.h"
+#include "device/gpu.h"
+#include "viewer/swapchain.h"
+#include "viewer/window.h"
 
 namespace alcove::sample {
 

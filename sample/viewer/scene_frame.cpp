@@ -1,9 +1,9 @@
-#include "scene_frame.h"
+#include "viewer/scene_frame.h"
 
 #include <utility>
 
 #include "alcove/passes/multi_bounce.h"
-#include "display.h"
+#include "render/display.h"
 
 namespace alcove::sample {
 namespace {

@@ -5,14 +5,14 @@
 #include <string>
 #include <tl/expected.hpp>
 
-#include "environment.h"
-#include "gbuffer.h"
-#include "gpu.h"
-#include "options.h"
-#include "picture_pass.h"
-#include "probe.h"
-#include "surfaces.h"
-#include "view_state.h"
+#include "device/gpu.h"
+#include "options/options.h"
+#include "render/gbuffer.h"
+#include "render/probe.h"
+#include "render/surfaces.h"
+#include "scene/environment.h"
+#include "viewer/picture_pass.h"
+#include "viewer/view_state.h"
 
 namespace alcove::sample {
 

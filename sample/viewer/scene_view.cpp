@@ -1,4 +1,4 @@
-#include "scene_view.h"
+#include "viewer/scene_view.h"
 
 #include <GLFW/glfw3.h>
 #include <imgui.h>
@@ -6,8 +6,8 @@
 #include <iostream>
 #include <utility>
 
-#include "command_line.h"
-#include "screenshot.h"
+#include "options/render_command.h"
+#include "viewer/screenshot.h"
 
 namespace alcove::sample {
 namespace {

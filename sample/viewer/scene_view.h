@@ -4,13 +4,13 @@
 #include <string>
 #include <tl/expected.hpp>
 
-#include "gui.h"
-#include "panel.h"
-#include "presenter.h"
-#include "scene_frame.h"
-#include "stage.h"
-#include "view_state.h"
-#include "window.h"
+#include "render/stage.h"
+#include "viewer/gui.h"
+#include "viewer/panel.h"
+#include "viewer/presenter.h"
+#include "viewer/scene_frame.h"
+#include "viewer/view_state.h"
+#include "viewer/window.h"
 
 namespace alcove::sample {
 

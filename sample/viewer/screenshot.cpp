@@ -1,9 +1,9 @@
-#include "screenshot.h"
+#include "viewer/screenshot.h"
 
 #include <utility>
 
-#include "image_io.h"
-#include "read_back.h"
+#include "device/read_back.h"
+#include "support/image_io.h"
 
 namespace alcove::sample {
 

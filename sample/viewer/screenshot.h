@@ -4,9 +4,9 @@
 #include <string>
 #include <tl/expected.hpp>
 
-#include "glm.h"
-#include "gpu.h"
-#include "image.h"
+#include "device/gpu.h"
+#include "support/glm.h"
+#include "support/image.h"
 
 namespace alcove::sample {
 

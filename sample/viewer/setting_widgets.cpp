@@ -1,4 +1,4 @@
-#include "setting_widgets.h"
+#include "viewer/setting_widgets.h"
 
 #include <imgui.h>
 
@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "setting_names.h"
+#include "options/setting_table.h"
 
 namespace alcove::sample {
 namespace {

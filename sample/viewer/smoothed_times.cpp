@@ -1,4 +1,4 @@
-#include "smoothed_times.h"
+#include "viewer/smoothed_times.h"
 
 #include <algorithm>
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "gpu.h"
+#include "device/gpu.h"
 
 namespace alcove::sample {
 

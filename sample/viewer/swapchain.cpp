@@ -1,4 +1,4 @@
-#include "swapchain.h"
+#include "viewer/swapchain.h"
 
 #include <algorithm>
 #include <array>

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "alcove/passes/occlusion.h"
-#include "camera.h"
+#include "scene/camera.h"
 
 namespace alcove::sample {
 

@@ -1,4 +1,4 @@
-#include "window.h"
+#include "viewer/window.h"
 
 // GLFW declares its Vulkan functions where Vulkan's header comes first.
 #include <vulkan/vulkan.h>
@@ -7,7 +7,7 @@
 
 #include <cstdint>
 
-#include "vulkan_device.h"
+#include "device/vulkan_device.h"
 
 namespace alcove::sample {
 namespace {

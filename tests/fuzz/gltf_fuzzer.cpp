@@ -1,8 +1,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "gltf.h"
-#include "tangents.h"
+#include "scene/gltf.h"
+#include "scene/tangents.h"
 
 // Any bytes are a scene or a sentence. Small limits keep each run short.
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {

@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "compute_run.h"
+#include "device/vulkan_device.h"
 #include "maths/make_projection.h"
 #include "parity_cases.h"
 #include "parity_spirv.h"
 #include "random_input.h"
-#include "vulkan_device.h"
 
 namespace alcove::maths_test {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "alcove/passes/occlusion.h"
-#include "gpu.h"
+#include "device/gpu.h"
 
 namespace alcove::passes {
 

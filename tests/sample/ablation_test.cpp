@@ -1,17 +1,17 @@
 // The built-in scene with parts of the occlusion exchanged, small: what `alcove ablate` prints,
 // held to bounds.
-#include "ablation.h"
+#include "measure/ablation.h"
 
 #include <gtest/gtest.h>
 
 #include <set>
 
-#include "builtin_scene.h"
-#include "errors.h"
 #include "gpu_test.h"
-#include "ray_scene.h"
-#include "surface_points.h"
-#include "truth.h"
+#include "measure/errors.h"
+#include "scene/builtin_scene.h"
+#include "truth/ray_scene.h"
+#include "truth/surface_points.h"
+#include "truth/truth.h"
 
 namespace alcove::sample {
 namespace {

@@ -1,4 +1,4 @@
-#include "environment.h"
+#include "scene/environment.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <limits>
 #include <string>
 
-#include "image_io.h"
+#include "support/image_io.h"
 #include "temporary_folder.h"
 
 namespace alcove::sample {

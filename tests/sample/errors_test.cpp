@@ -1,4 +1,4 @@
-#include "errors.h"
+#include "measure/errors.h"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "gltf.h"
+#include "scene/gltf.h"
 
 namespace alcove::sample {
 

@@ -1,4 +1,4 @@
-#include "gltf.h"
+#include "scene/gltf.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

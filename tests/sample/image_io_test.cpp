@@ -1,4 +1,4 @@
-#include "image_io.h"
+#include "support/image_io.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,11 +1,11 @@
-#include "lit_truth.h"
+#include "truth/lit_truth.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "analytic_points.h"
-#include "analytic_scenes.h"
+#include "scene/analytic_scenes.h"
 
 namespace alcove::sample {
 namespace {

@@ -1,4 +1,4 @@
-#include "motion_errors.h"
+#include "measure/motion_errors.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
-#include "motion_paths.h"
+#include "measure/motion_paths.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "builtin_scene.h"
+#include "scene/builtin_scene.h"
 
 namespace alcove::sample {
 namespace {

@@ -1,9 +1,9 @@
 // The built-in scene in motion, small: what `alcove motion` prints, held to bounds.
 #include <gtest/gtest.h>
 
-#include "builtin_scene.h"
 #include "gpu_test.h"
-#include "motion_run.h"
+#include "measure/motion_run.h"
+#include "scene/builtin_scene.h"
 
 namespace alcove::sample {
 namespace {

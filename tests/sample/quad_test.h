@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <utility>
 
-#include "frame_renderer.h"
 #include "gpu_test.h"
+#include "render/frame_renderer.h"
 
 // A quad that fills the picture, drawn and read back.
 namespace alcove::sample {

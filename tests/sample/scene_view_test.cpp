@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "frame_renderer.h"
+#include "render/frame_renderer.h"
 #include "temporary_folder.h"
 
 namespace alcove::sample {

@@ -1,4 +1,4 @@
-#include "specular_limits.h"
+#include "truth/specular_limits.h"
 
 #include <gtest/gtest.h>
 
@@ -6,10 +6,10 @@
 #include <functional>
 #include <glm/gtc/constants.hpp>
 
-#include "analytic_scenes.h"
-#include "errors.h"
-#include "sampling.h"
-#include "visibility_polynomials.h"
+#include "measure/errors.h"
+#include "scene/analytic_scenes.h"
+#include "truth/sampling.h"
+#include "truth/visibility_polynomials.h"
 
 namespace alcove::sample {
 namespace {

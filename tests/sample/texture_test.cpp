@@ -9,9 +9,9 @@
 #include <span>
 #include <vector>
 
-#include "gpu_image.h"
+#include "device/gpu_image.h"
 #include "quad_test.h"
-#include "truth.h"
+#include "truth/truth.h"
 
 namespace alcove::sample {
 namespace {

@@ -1,4 +1,4 @@
-#include "trade.h"
+#include "measure/trade.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "trade_plot.h"
+#include "measure/trade_plot.h"
 
 namespace alcove::sample {
 namespace {

@@ -1,10 +1,10 @@
-#include "truth_cache.h"
+#include "truth/truth_cache.h"
 
 #include <gtest/gtest.h>
 
 #include <fstream>
 
-#include "builtin_scene.h"
+#include "scene/builtin_scene.h"
 #include "temporary_folder.h"
 
 namespace alcove::sample {

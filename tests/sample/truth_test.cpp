@@ -1,14 +1,14 @@
-#include "truth.h"
+#include "truth/truth.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "analytic_points.h"
-#include "analytic_scenes.h"
-#include "builtin_scene.h"
-#include "errors.h"
-#include "height_field_truth.h"
+#include "measure/errors.h"
+#include "scene/analytic_scenes.h"
+#include "scene/builtin_scene.h"
+#include "truth/height_field_truth.h"
 
 namespace alcove::sample {
 namespace {

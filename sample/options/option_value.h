@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "support/glm.h"
+
+namespace alcove::sample {
+
+// A mistake in the command line, in a sentence. Thrown within parse_options only, as CLI11's own
+// errors are.
+struct Mistake {
+  std::string text;
+};
+
+// A value as it was typed, and the option that it was typed for. Each conversion refuses what it
+// cannot take; `wanted` completes the sentence "give ...".
+struct OptionValue {
+  std::string option;
+  std::string text;
+
+  [[noreturn]] void refuse(const std::string& wanted) const;
+
+  // Within [low, high].
+  double number(double low, double high, const std::string& wanted) const;
+  std::int64_t whole_number(std::int64_t low, std::int64_t high, const std::string& wanted) const;
+  // Finite and above 0.
+  double positive(const std::string& wanted) const;
+  // The same, in the scene's units.
+  float length() const;
+  glm::vec3 vector() const;
+  // Numbers between commas, at least one and at most `most`, each within [low, high].
+  std::vector<float> numbers(std::size_t most, float low, float high,
+                             const std::string& wanted) const;
+  // Pixels, each of WIDTHxHEIGHT from 1 to 16384.
+  std::pair<std::uint32_t, std::uint32_t> size() const;
+  // Which of the names.
+  std::size_t one_of(std::span<const std::string_view> names) const;
+};
+
+// A number for people: without zeros at its end.
+[[nodiscard]] std::string shown(double value);
+
+}  // namespace alcove::sample

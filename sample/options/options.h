@@ -1,0 +1,91 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <tl/expected.hpp>
+#include <utility>
+#include <vector>
+
+#include "alcove/passes/occlusion.h"
+#include "measure/motion_paths.h"
+#include "support/glm.h"
+
+namespace alcove::sample {
+
+enum class Command {
+  kRender,
+  kCompare,
+  kMotion,
+  kAblate,
+  kBench,
+  kRecommend,
+  kGraph,
+  kView,
+  kDoctor
+};
+// Names are in the order of the enum.
+enum class NormalSource { kShading, kGeometric, kDepth };
+inline constexpr std::array<std::string_view, 3> kNormalSourceNames{"shading", "geometric",
+                                                                    "depth"};
+constexpr std::string_view name_of(NormalSource source) {
+  return kNormalSourceNames[static_cast<std::size_t>(source)];
+}
+enum class GraphFormat { kText, kJson, kDot };
+inline constexpr std::array<std::string_view, 3> kGraphFormatNames{"text", "json", "dot"};
+
+// Only what was typed; the camera of the scene fills the rest. Angles already in radians.
+struct ViewOptions {
+  std::string camera;  // name of a scene's camera; empty: the default one
+  std::optional<glm::vec3> eye_ws, target_ws, up_ws;
+  std::optional<float> fov_y, ortho_height, near_plane, far_plane;
+  bool reversed_z = false;
+  uint32_t width = 960;
+  uint32_t height = 540;
+  uint32_t frames = 1;  // 0: `view` draws until its window is closed
+  float orbit = 0.0f;   // radians per frame
+};
+
+struct OcclusionOptions {
+  passes::Quality quality = passes::Quality::medium;
+  std::optional<float> radius;  // scene units; none: default_radius(scene)
+  NormalSource normals = NormalSource::kShading;
+  std::vector<std::pair<std::string, std::string>> set;  // --set name=value, in order
+  std::vector<float> roughness;                          // overrides the materials; perceptual
+  uint32_t spp = 256;                                    // rays per pixel of the truth
+};
+
+struct Options {
+  Command command = Command::kRender;
+  std::string scene;                  // empty: the built-in one
+  std::vector<std::string> scenes;    // bench: any number, each as `scene`
+  std::filesystem::path environment;  // .hdr or .exr; empty: the procedural sky
+  bool lit = false;                   // compare: also trace the lit picture
+  ViewOptions view;
+  OcclusionOptions occlusion;
+  std::filesystem::path out = "out";  // empty: `view` was given none
+  // recommend: one of the two. Milliseconds of GPU time; RMSE of visibility.
+  std::optional<double> budget_ms, tolerance;
+  std::optional<MotionKind> path;  // motion: none for all of them
+  GraphFormat graph_format = GraphFormat::kText;
+  int device = -1;
+  bool validation = false;
+  bool use_cache = true;
+};
+
+// A command line that asks for no run: help (status 0, for stdout) or a mistake (status 2, one
+// sentence for stderr).
+struct Stop {
+  int status = 0;
+  std::string text;
+};
+
+// Never exits and never prints. Each value is checked alone and against the others here; what needs
+// the scene is checked by camera_of.
+[[nodiscard]] tl::expected<Options, Stop> parse_options(int argc, const char* const* argv);
+
+}  // namespace alcove::sample

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "alcove/passes/occlusion.h"
+#include "options/options.h"
+
+namespace alcove::sample {
+
+// A view of a scene and what its occlusion is found with.
+struct Shot {
+  Camera camera;
+  passes::OcclusionSettings settings;
+  std::optional<float> roughness;  // over that of the materials
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+};
+
+// What `alcove render` has to be called with to draw the shot: the program's name, then arguments
+// that parse_options reads back. Scene, environment, normals and the name of the camera are those
+// of `options`. As many frames as the history averages.
+[[nodiscard]] std::vector<std::string> render_arguments(const Options& options, const Shot& shot);
+
+// The arguments as a line for a POSIX shell, quoted where need be.
+[[nodiscard]] std::string shell_line(const std::vector<std::string>& arguments);
+
+}  // namespace alcove::sample

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <tl/expected.hpp>
+
+#include "alcove/framegraph/graph.h"
+#include "device/gpu.h"
+#include "scene/scene.h"
+
+namespace alcove::sample {
+
+// The camera of a frame, as matrices: from world to view space and on to Vulkan clip space; and
+// where the meshes stand that move.
+struct GbufferView {
+  glm::mat4 view_from_world{1.0f};
+  glm::mat4 clip_from_view{1.0f};
+  glm::mat4 previous_view_from_world{1.0f};
+  glm::mat4 previous_clip_from_view{1.0f};
+  bool reversed_z = false;
+  glm::mat4 world_from_moving{1.0f};  // rotation and translation of each Mesh::moves
+  glm::mat4 previous_world_from_moving{1.0f};
+
+  bool operator==(const GbufferView&) const = default;
+};
+
+// What a frame's rasterisation writes: of `size`, each with the format that is named. A null
+// texture is not drawn (depth must be there).
+struct Gbuffer {
+  framegraph::Texture depth;     // D32_SFLOAT, as the projection has it; sky at the far plane
+  framegraph::Texture normal;    // RGBA16_SFLOAT, xyz unit, world space, towards the eye
+  framegraph::Texture albedo;    // RGBA8_UNORM: linear RGB, alpha perceptual roughness
+  framegraph::Texture motion;    // RG16_SFLOAT: uv of this frame minus uv of the last
+  framegraph::Texture emissive;  // RGBA16_SFLOAT: linear RGB, alpha metallic
+};
+
+inline constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
+inline constexpr VkFormat kNormalFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
+inline constexpr VkFormat kAlbedoFormat = VK_FORMAT_R8G8B8A8_UNORM;
+inline constexpr VkFormat kMotionFormat = VK_FORMAT_R16G16_SFLOAT;
+inline constexpr VkFormat kEmissiveFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
+
+// Draws a scene: its triangles, textures and pipelines on one device.
+class GbufferRenderer {
+ public:
+  // Uploads the scene. `geometric_normals` draws each triangle's own normal instead of the
+  // interpolated one that normal maps bend. Both references must outlive the renderer.
+  [[nodiscard]] static tl::expected<std::unique_ptr<GbufferRenderer>, std::string> create(
+      Gpu& gpu, const Scene& scene, bool geometric_normals);
+  ~GbufferRenderer();
+  GbufferRenderer(const GbufferRenderer&) = delete;
+  GbufferRenderer& operator=(const GbufferRenderer&) = delete;
+
+  // Adds the pass that fills `targets` and returns their filled versions. All views of a frame
+  // are the same: parameters are kept for each frame in flight, not for each view.
+  [[nodiscard]] Gbuffer add(framegraph::Graph& graph, const GbufferView& view,
+                            const Gbuffer& targets);
+  // Adds the pass that fills a texture like Gbuffer::depth with the nearest back faces, for a frame
+  // that draws the same view.
+  [[nodiscard]] framegraph::Texture add_back_faces(framegraph::Graph& graph,
+                                                   const GbufferView& view,
+                                                   framegraph::Texture depth);
+  // The same of the nearest front faces that lie behind Gbuffer::depth by more than a thousandth of
+  // its distance: `first`, of the same view.
+  [[nodiscard]] framegraph::Texture add_second_layer(framegraph::Graph& graph,
+                                                     const GbufferView& view,
+                                                     framegraph::Texture first,
+                                                     framegraph::Texture depth);
+
+ private:
+  struct State;
+  explicit GbufferRenderer(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace alcove::sample

@@ -1,0 +1,185 @@
+#include "render/gbuffer_pipelines.h"
+
+#include <cstddef>
+#include <span>
+
+#include "device/shader_module.h"
+#include "render/gbuffer.h"
+#include "render/triangles.h"
+#include "shaders/gbuffer.h"
+#include "spirv/gbuffer_fragment.h"
+#include "spirv/gbuffer_vertex.h"
+#include "spirv/second_layer_fragment.h"
+#include "spirv/second_layer_vertex.h"
+
+namespace alcove::sample {
+namespace {
+
+constexpr std::array<VkFormat, 4> kColourFormats{kNormalFormat, kAlbedoFormat, kMotionFormat,
+                                                 kEmissiveFormat};
+
+// The state that never changes, as Vulkan wants it: attributes of Vertex, no blending.
+struct FixedState {
+  VkVertexInputBindingDescription binding{0, sizeof(Vertex), VK_VERTEX_INPUT_RATE_VERTEX};
+  // The first two are all that the second layer reads.
+  std::array<VkVertexInputAttributeDescription, 6> attributes{
+      {{0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, position_ws)},
+       // Two sets of coordinates, as in the last.
+       {4, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Vertex, base_color_uv)},
+       {1, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, normal_ws)},
+       {2, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, face_normal_ws)},
+       {3, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Vertex, tangent_ws)},
+       {5, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Vertex, emissive_uv)}}};
+  VkPipelineVertexInputStateCreateInfo vertices{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO,
+      .vertexBindingDescriptionCount = 1,
+      .pVertexBindingDescriptions = &binding,
+      .vertexAttributeDescriptionCount = static_cast<uint32_t>(attributes.size()),
+      .pVertexAttributeDescriptions = attributes.data()};
+  VkPipelineInputAssemblyStateCreateInfo assembly{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
+      .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST};
+  VkPipelineViewportStateCreateInfo viewport{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO,
+      .viewportCount = 1,
+      .scissorCount = 1};
+  VkPipelineRasterizationStateCreateInfo rasterisation{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO,
+      .frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE,
+      .lineWidth = 1.0f};
+  VkPipelineMultisampleStateCreateInfo multisample{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
+      .rasterizationSamples = VK_SAMPLE_COUNT_1_BIT};
+  std::array<VkPipelineColorBlendAttachmentState, 4> attachments{};
+  VkPipelineColorBlendStateCreateInfo blend{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
+      .attachmentCount = 4,
+      .pAttachments = attachments.data()};
+  std::array<VkDynamicState, 3> dynamic_states{VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR,
+                                               VK_DYNAMIC_STATE_CULL_MODE};
+  VkPipelineDynamicStateCreateInfo dynamic{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO,
+      .dynamicStateCount = 3,
+      .pDynamicStates = dynamic_states.data()};
+  VkPipelineRenderingCreateInfo rendering{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO,
+      .colorAttachmentCount = static_cast<uint32_t>(kColourFormats.size()),
+      .pColorAttachmentFormats = kColourFormats.data(),
+      .depthAttachmentFormat = kDepthFormat};
+
+  explicit FixedState(bool depth_alone) {
+    if (depth_alone) {
+      vertices.vertexAttributeDescriptionCount = 2;
+    }
+    for (auto& attachment : attachments) {
+      attachment.colorWriteMask = 0xf;
+    }
+  }
+  FixedState(const FixedState&) = delete;
+  FixedState& operator=(const FixedState&) = delete;
+};
+
+VkResult create_set_layout(VkDevice device, std::span<const VkDescriptorSetLayoutBinding> bindings,
+                           VkDescriptorSetLayout& made) {
+  const VkDescriptorSetLayoutCreateInfo info{
+      .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+      .bindingCount = static_cast<uint32_t>(bindings.size()),
+      .pBindings = bindings.data()};
+  return vkCreateDescriptorSetLayout(device, &info, nullptr, &made);
+}
+
+}  // namespace
+
+tl::expected<std::unique_ptr<GbufferPipelines>, std::string> GbufferPipelines::create(
+    VkDevice device, std::uint32_t texture_count, bool geometric_normals) {
+  std::unique_ptr<GbufferPipelines> made(new GbufferPipelines(device));
+  VkResult result = made->create_layout(texture_count);
+  for (const Kind kind : {Kind::all, Kind::second_layer}) {
+    if (result == VK_SUCCESS) {
+      result = made->create_pipelines(kind, texture_count, geometric_normals);
+    }
+  }
+  if (result != VK_SUCCESS) {
+    return tl::unexpected("The device could not create the pipelines of the g-buffer (" +
+                          std::string(result_name(result)) + ").");
+  }
+  return made;
+}
+
+GbufferPipelines::~GbufferPipelines() {
+  for (const VkPipeline pipeline : pipelines_) {
+    vkDestroyPipeline(device_, pipeline, nullptr);
+  }
+  vkDestroyPipelineLayout(device_, layout_, nullptr);
+  vkDestroyDescriptorSetLayout(device_, layer_set_, nullptr);
+  vkDestroyDescriptorSetLayout(device_, scene_set_, nullptr);
+}
+
+VkResult GbufferPipelines::create_layout(std::uint32_t texture_count) {
+  const std::array<VkDescriptorSetLayoutBinding, 2> scene{
+      {{0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, 1, kDrawStages, nullptr},
+       {1, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, texture_count, VK_SHADER_STAGE_FRAGMENT_BIT,
+        nullptr}}};
+  const std::array<VkDescriptorSetLayoutBinding, 1> layer{
+      {{0, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 1, VK_SHADER_STAGE_FRAGMENT_BIT, nullptr}}};
+  VkResult result = create_set_layout(device_, scene, scene_set_);
+  if (result == VK_SUCCESS) {
+    result = create_set_layout(device_, layer, layer_set_);
+  }
+  if (result != VK_SUCCESS) {
+    return result;
+  }
+  const std::array sets{scene_set_, layer_set_};
+  const VkPushConstantRange range{kDrawStages, 0, sizeof(maths::GbufferDraw)};
+  const VkPipelineLayoutCreateInfo info{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
+                                        .setLayoutCount = static_cast<uint32_t>(sets.size()),
+                                        .pSetLayouts = sets.data(),
+                                        .pushConstantRangeCount = 1,
+                                        .pPushConstantRanges = &range};
+  return vkCreatePipelineLayout(device_, &info, nullptr, &layout_);
+}
+
+VkResult GbufferPipelines::create_pipelines(Kind kind, std::uint32_t texture_count,
+                                            bool geometric_normals) {
+  const std::array<uint32_t, 2> values{texture_count, geometric_normals ? 1u : 0u};
+  const std::array<VkSpecializationMapEntry, 2> entries{{{0, 0, 4}, {1, 4, 4}}};
+  const VkSpecializationInfo specialisation{2, entries.data(), sizeof(values), values.data()};
+  const bool second = kind == Kind::second_layer;
+  using Code = std::span<const uint32_t>;
+  const ShaderStages stages(device_, second ? Code(kSecondLayerVertex) : Code(kGbufferVertex),
+                            second ? Code(kSecondLayerFragment) : Code(kGbufferFragment),
+                            &specialisation);
+  if (stages.result != VK_SUCCESS) {
+    return stages.result;
+  }
+  const FixedState fixed(second);
+  for (const bool reversed : {false, true}) {
+    const VkPipelineDepthStencilStateCreateInfo depth{
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,
+        .depthTestEnable = VK_TRUE,
+        .depthWriteEnable = VK_TRUE,
+        .depthCompareOp = reversed ? VK_COMPARE_OP_GREATER : VK_COMPARE_OP_LESS};
+    const VkGraphicsPipelineCreateInfo info{
+        .sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
+        .pNext = &fixed.rendering,
+        .stageCount = static_cast<uint32_t>(stages.infos.size()),
+        .pStages = stages.infos.data(),
+        .pVertexInputState = &fixed.vertices,
+        .pInputAssemblyState = &fixed.assembly,
+        .pViewportState = &fixed.viewport,
+        .pRasterizationState = &fixed.rasterisation,
+        .pMultisampleState = &fixed.multisample,
+        .pDepthStencilState = &depth,
+        .pColorBlendState = &fixed.blend,
+        .pDynamicState = &fixed.dynamic,
+        .layout = layout_};
+    const VkResult result = vkCreateGraphicsPipelines(device_, VK_NULL_HANDLE, 1, &info, nullptr,
+                                                      &pipelines_[index_of(kind, reversed)]);
+    if (result != VK_SUCCESS) {
+      return result;
+    }
+  }
+  return VK_SUCCESS;
+}
+
+}  // namespace alcove::sample

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <tl/expected.hpp>
+
+#include "device/vulkan_device.h"
+
+namespace alcove::sample {
+
+// The g-buffer's pipelines on a device, and the layouts of what they bind. Targets: normal, albedo,
+// motion and emission, each of which may be missing, and depth.
+class GbufferPipelines {
+ public:
+  // What a pipeline draws: everything, or the depth of the second layer.
+  enum class Kind : std::uint8_t { all, second_layer };
+
+  // For as many textures, at least 1. `device` must outlive the pipelines.
+  [[nodiscard]] static tl::expected<std::unique_ptr<GbufferPipelines>, std::string> create(
+      VkDevice device, std::uint32_t texture_count, bool geometric_normals);
+  ~GbufferPipelines();
+  GbufferPipelines(const GbufferPipelines&) = delete;
+  GbufferPipelines& operator=(const GbufferPipelines&) = delete;
+
+  // `reversed`: nearer is greater. Viewport, scissor and culling are dynamic.
+  [[nodiscard]] VkPipeline pipeline(Kind kind, bool reversed) const {
+    return pipelines_[index_of(kind, reversed)];
+  }
+  [[nodiscard]] VkPipelineLayout layout() const { return layout_; }
+  // Set 0: the frame's parameters (dynamic) and the scene's textures.
+  [[nodiscard]] VkDescriptorSetLayout scene_set() const { return scene_set_; }
+  // Set 1, for the second layer alone: the depth of the first.
+  [[nodiscard]] VkDescriptorSetLayout layer_set() const { return layer_set_; }
+
+ private:
+  explicit GbufferPipelines(VkDevice device) : device_(device) {}
+  static std::size_t index_of(Kind kind, bool reversed) {
+    return (kind == Kind::second_layer ? 2 : 0) + (reversed ? 1 : 0);
+  }
+  VkResult create_layout(std::uint32_t texture_count);
+  VkResult create_pipelines(Kind kind, std::uint32_t texture_count, bool geometric_normals);
+
+  VkDevice device_;
+  VkDescriptorSetLayout scene_set_ = VK_NULL_HANDLE;
+  VkDescriptorSetLayout layer_set_ = VK_NULL_HANDLE;
+  VkPipelineLayout layout_ = VK_NULL_HANDLE;
+  std::array<VkPipeline, 4> pipelines_{};
+};
+
+// That read what each draw pushes.
+inline constexpr VkShaderStageFlags kDrawStages =
+    VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
+
+}  // namespace alcove::sample

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <tl/expected.hpp>
+
+#include "alcove/passes/environment.h"
+#include "device/gpu.h"
+#include "device/gpu_image.h"
+#include "scene/environment.h"
+
+namespace alcove::sample {
+
+// Adds the passes that make a probe's light of an environment. `upload` gets the buffer that they
+// read: it must outlive the frame.
+[[nodiscard]] tl::expected<passes::Environment, std::string> add_probe(
+    const passes::Frame& frame, Gpu& gpu, const EnvironmentImage& image,
+    std::unique_ptr<HostBuffer>& upload);
+
+// The same light, made once and kept for all frames.
+class Probe {
+ public:
+  [[nodiscard]] static tl::expected<std::unique_ptr<Probe>, std::string> create(
+      Gpu& gpu, const EnvironmentImage& image);
+
+  // As the frame of this graph reads it.
+  [[nodiscard]] passes::Environment import(framegraph::Graph& graph) const;
+
+ private:
+  Probe() = default;
+  std::unique_ptr<GpuImage> harmonics_;
+  std::unique_ptr<GpuImage> map_;
+};
+
+}  // namespace alcove::sample

@@ -1,0 +1,283 @@
+#include "render/rendering.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "render/display.h"
+#include "render/stage.h"
+#include "scene/camera.h"
+#include "support/image_io.h"
+#include "support/median.h"
+#include "truth/surface_points.h"
+
+namespace alcove::sample {
+namespace {
+
+using Failure = tl::unexpected<std::string>;
+
+// Frames whose times make the median; one more, the first, also compiles shaders.
+constexpr std::uint32_t kTimedFrames = 9;
+
+// Passes are told apart by their place in the frame: every frame of a run has the same.
+Costs medians(const std::vector<FrameCost>& frames) {
+  const auto over_frames = [&](auto value) {
+    std::vector<double> values;
+    values.reserve(frames.size());
+    for (const FrameCost& frame : frames) {
+      values.push_back(value(frame));
+    }
+    return median(std::move(values));
+  };
+  Costs costs;
+  for (std::size_t i = 0; i < frames.back().gpu.size(); ++i) {
+    const double time = over_frames([i](const FrameCost& frame) {
+      return i < frame.gpu.size() ? frame.gpu[i].milliseconds : 0.0;
+    });
+    costs.passes.push_back({frames.back().gpu[i].pass, time});
+  }
+  costs.occlusion_ms = over_frames([](const FrameCost& frame) { return frame.occlusion_ms; });
+  costs.cpu_ms = over_frames([](const FrameCost& frame) { return frame.cpu_ms; });
+  return costs;
+}
+
+// What is asked of a frame.
+enum class Outputs : std::uint8_t {
+  kVisibility,  // and a bent normal, where the settings say so
+  kSpecular,    // and specular occlusion
+  kAll,
+};
+
+// The requests of a run's frames, by index: the camera orbits, and motion is from the frame before.
+class Run {
+ public:
+  Run(const Options& options, const Camera& camera, const passes::OcclusionSettings& settings,
+      const IndirectRequest& light)
+      : options_(options), camera_(camera), settings_(settings), light_(light) {
+    if (!light.roughness.empty()) {
+      timed_light_.roughness = {light.roughness.front()};
+    }
+  }
+
+  Camera camera(std::uint32_t frame) const {
+    return orbited(camera_, options_.view.orbit * static_cast<float>(frame));
+  }
+
+  FrameRequest request(std::uint32_t frame, Outputs outputs) const {
+    const CameraMatrices now = matrices(frame);
+    const CameraMatrices before = matrices(frame == 0 ? 0 : frame - 1);
+    FrameRequest request;
+    request.view = {now.view_from_world, now.clip_from_view, before.view_from_world,
+                    before.clip_from_view, camera_.reversed_z};
+    request.index = frame;
+    request.still_frames = options_.view.orbit == 0.0f ? frame : 0;
+    request.occlusion = settings_;
+    switch (outputs) {
+      case Outputs::kVisibility:
+        request.occlusion.specular = passes::Specular::none;
+        break;
+      case Outputs::kSpecular:
+        break;
+      case Outputs::kAll:
+        request.occlusion.bent_normal = true;
+    }
+    request.light = outputs == Outputs::kAll ? &light_ : &timed_light_;
+    return request;
+  }
+
+ private:
+  CameraMatrices matrices(std::uint32_t frame) const {
+    return camera_matrices(camera(frame), options_.view.width, options_.view.height);
+  }
+
+  const Options& options_;
+  Camera camera_;
+  passes::OcclusionSettings settings_;
+  const IndirectRequest& light_;
+  IndirectRequest timed_light_;  // one roughness, and no light
+};
+
+// Draws the run and times its last frames; a short run's last frame is drawn again until its time
+// is known.
+tl::expected<Costs, std::string> time_run(FrameRenderer& renderer, const Run& run,
+                                          std::uint32_t frames, Outputs outputs) {
+  std::vector<FrameCost> costs;
+  const std::uint32_t drawn = std::max(frames, kTimedFrames + 1);
+  for (std::uint32_t i = 0; i < drawn; ++i) {
+    auto cost = renderer.draw(run.request(std::min(i, frames - 1), outputs));
+    if (!cost) {
+      return Failure(std::move(cost.error()));
+    }
+    if (i + kTimedFrames >= drawn) {
+      costs.push_back(std::move(*cost));
+    }
+  }
+  return medians(costs);
+}
+
+tl::expected<FrameImages, std::string> draw_images(FrameRenderer& renderer, const Run& run,
+                                                   std::uint32_t frames) {
+  for (std::uint32_t i = 0; i + 1 < frames; ++i) {
+    if (auto cost = renderer.draw(run.request(i, Outputs::kAll)); !cost) {
+      return Failure(std::move(cost.error()));
+    }
+  }
+  return renderer.draw_and_read(run.request(frames - 1, Outputs::kAll));
+}
+
+}  // namespace
+
+tl::expected<Rendering, std::string> render(const Options& options) {
+  auto stage = stage_of(options);
+  if (!stage) {
+    return Failure(std::move(stage.error()));
+  }
+  Rendering result;
+  result.scene = std::move(stage->scene);
+  result.settings = stage->settings;
+  if (result.settings.specular == passes::Specular::none) {
+    result.settings.specular = passes::Specular::slices;
+  }
+  auto environment = load_environment(options.environment);
+  if (!environment) {
+    return Failure(std::move(environment.error()));
+  }
+  result.light = {options.occlusion.roughness, std::move(*environment), options.lit};
+  Gpu& gpu = *stage->gpu;
+  result.device = gpu.device().properties().deviceName;
+  result.driver = gpu.device().driver();
+
+  const Run run(options, stage->camera, result.settings, result.light);
+  const std::uint32_t frames = options.view.frames;
+  result.camera = run.camera(frames - 1);
+  auto renderer = FrameRenderer::create(
+      gpu, result.scene, {options.view.width, options.view.height}, options.occlusion.normals);
+  if (!renderer) {
+    return Failure(std::move(renderer.error()));
+  }
+  auto costs = time_run(**renderer, run, frames, Outputs::kVisibility);
+  if (!costs) {
+    return Failure(std::move(costs.error()));
+  }
+  result.costs = std::move(*costs);
+  result.memory = (*renderer)->memory();
+  costs = time_run(**renderer, run, frames, Outputs::kSpecular);
+  if (!costs) {
+    return Failure(std::move(costs.error()));
+  }
+  result.costs_with_specular = std::move(*costs);
+  auto images = draw_images(**renderer, run, frames);
+  if (!images) {
+    return Failure(std::move(images.error()));
+  }
+  result.images = std::move(*images);
+  if (auto valid = check_validation(gpu); !valid) {
+    return Failure(std::move(valid.error()));
+  }
+  return result;
+}
+
+Image<float> linear_depth(const Rendering& rendering) {
+  return linear_depth(rendering.camera, rendering.images.depth_ndc);
+}
+
+Image<glm::vec3> with_sky(const Rendering& rendering, Image<glm::vec3> picture) {
+  const Camera& camera = rendering.camera;
+  const Image<float> depth = linear_depth(rendering);
+  const CameraMatrices matrices = camera_matrices(camera, picture.width, picture.height);
+  for (std::uint32_t y = 0; y < picture.height; ++y) {
+    for (std::uint32_t x = 0; x < picture.width; ++x) {
+      if (!std::isfinite(depth.at(x, y))) {
+        const Ray ray = camera_ray(matrices, camera.orthographic,
+                                   {static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f},
+                                   picture.width, picture.height);
+        picture.at(x, y) = radiance(rendering.light.environment, ray.direction_ws);
+      }
+    }
+  }
+  return picture;
+}
+
+namespace {
+
+// Directions as colours: each component from -1..1 to 0..1.
+Image<glm::vec3> as_colours(const Image<glm::vec3>& directions) {
+  Image<glm::vec3> colours = directions;
+  for (glm::vec3& colour : colours.pixels) {
+    colour = colour * 0.5f + 0.5f;
+  }
+  return colours;
+}
+
+tl::expected<void, std::string> write_lit(const Rendering& rendering,
+                                          const std::filesystem::path& folder) {
+  const LitImages& lit = rendering.images.lit;
+  const float exposure = exposure_of(rendering.light.environment);
+  return write_exr(folder / "lit.exr", lit.all)
+      .and_then([&] {
+        return write_png(folder / "lit.png",
+                         display_colours(with_sky(rendering, lit.all), exposure));
+      })
+      .and_then([&] {
+        return write_png(folder / "lit_diffuse.png", display_colours(lit.diffuse, exposure));
+      })
+      .and_then([&] {
+        return write_png(folder / "lit_specular.png", display_colours(lit.specular, exposure));
+      });
+}
+
+tl::expected<void, std::string> write_light(const Rendering& rendering,
+                                            const std::filesystem::path& folder) {
+  const FrameImages& images = rendering.images;
+  auto written = write_exr(folder / "multi_bounce.exr", images.multi_bounce).and_then([&] {
+    return write_png(folder / "multi_bounce.png", images.multi_bounce);
+  });
+  for (std::size_t i = 0; written && i < images.specular_occlusion.size(); ++i) {
+    const std::string name = specular_name(rendering.light, i);
+    written = write_exr(folder / (name + ".exr"), images.specular_occlusion[i]).and_then([&] {
+      return write_png(folder / (name + ".png"), images.specular_occlusion[i]);
+    });
+  }
+  return written.and_then([&] { return write_lit(rendering, folder); });
+}
+
+}  // namespace
+
+std::string roughness_name(const IndirectRequest& light, std::size_t i) {
+  if (light.roughness.empty()) {
+    return "materials";
+  }
+  std::array<char, 32> percent{};
+  std::snprintf(percent.data(), percent.size(), "r%02g", 100.0 * light.roughness[i]);
+  return percent.data();
+}
+
+std::string specular_name(const IndirectRequest& light, std::size_t i) {
+  std::string name = "specular_occlusion";
+  if (light.roughness.size() > 1) {
+    name.append("_").append(roughness_name(light, i));
+  }
+  return name;
+}
+
+tl::expected<void, std::string> write_images(const Rendering& rendering,
+                                             const std::filesystem::path& folder) {
+  if (auto made = create_folder(folder); !made) {
+    return made;
+  }
+  const FrameImages& images = rendering.images;
+  return write_exr(folder / "ao.exr", images.visibility)
+      .and_then([&] { return write_png(folder / "ao.png", images.visibility); })
+      .and_then([&] { return write_exr(folder / "bent_normal.exr", images.bent_normal_ws); })
+      .and_then(
+          [&] { return write_png(folder / "bent_normal.png", as_colours(images.bent_normal_ws)); })
+      .and_then([&] { return write_light(rendering, folder); })
+      .and_then([&] { return write_exr(folder / "depth.exr", linear_depth(rendering)); })
+      .and_then([&] { return write_exr(folder / "normal.exr", images.normal_ws); })
+      .and_then([&] { return write_png(folder / "normal.png", as_colours(images.normal_ws)); })
+      .and_then([&] { return write_png(folder / "albedo.png", images.albedo); });
+}
+
+}  // namespace alcove::sample

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
+#include "device/gpu.h"
+#include "options/options.h"
+#include "render/frame_renderer.h"
+#include "scene/scene.h"
+
+namespace alcove::sample {
+
+// Medians over the frames of a run.
+struct Costs {
+  std::vector<PassTime> passes;  // GPU timestamps, milliseconds
+  double occlusion_ms = 0;       // of the occlusion passes together
+  double cpu_ms = 0;             // processor time of all threads for them
+};
+
+// Everything that `alcove render` knows of what it drew; `compare` adds truths to it.
+struct Rendering {
+  Scene scene;
+  Camera camera;  // of the last frame
+  passes::OcclusionSettings settings;
+  IndirectRequest light;
+  FrameImages images;  // of the last frame, with every output
+  Costs costs;         // with visibility as the only output
+  Costs costs_with_specular;
+  framegraph::MemoryStatistics memory;
+  std::string device;
+  std::string driver;
+};
+
+// Loads the scene, draws its frames and reads the last one back.
+[[nodiscard]] tl::expected<Rendering, std::string> render(const Options& options);
+
+// Distance along the view axis, infinity in the sky.
+[[nodiscard]] Image<float> linear_depth(const Rendering& rendering);
+
+// The picture with the environment where the scene is not.
+[[nodiscard]] Image<glm::vec3> with_sky(const Rendering& rendering, Image<glm::vec3> picture);
+
+// What the specular occlusion of index `i` was made for: materials, or r30 for a roughness of 0.3.
+[[nodiscard]] std::string roughness_name(const IndirectRequest& light, std::size_t i);
+
+// The name of the specular occlusion of index `i` without its ending: specular_occlusion, followed
+// by _r30 and the like where several roughness values were asked for.
+[[nodiscard]] std::string specular_name(const IndirectRequest& light, std::size_t i);
+
+// Writes the images of a rendering and creates the folder where it is missing.
+[[nodiscard]] tl::expected<void, std::string> write_images(const Rendering& rendering,
+                                                           const std::filesystem::path& folder);
+
+}  // namespace alcove::sample

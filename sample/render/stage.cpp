@@ -1,0 +1,57 @@
+#include "render/stage.h"
+
+#include <utility>
+
+#include "options/settings.h"
+#include "scene/camera_of.h"
+#include "scene/load_scene.h"
+
+namespace alcove::sample {
+
+using Failure = tl::unexpected<std::string>;
+
+tl::expected<std::unique_ptr<Gpu>, std::string> open_gpu(
+    const Options& options, const std::vector<const char*>& surface_extensions) {
+  framegraph::ExecutorOptions executor;
+  executor.verify = executor.verify || options.validation;
+  executor.check_uses = executor.check_uses || options.validation;
+  return Gpu::create({.validation = options.validation,
+                      .index = options.device,
+                      .surface_extensions = surface_extensions},
+                     executor);
+}
+
+tl::expected<Stage, std::string> stage_of(const Options& options,
+                                          const std::vector<const char*>& surface_extensions) {
+  Stage stage;
+  auto scene = load_scene(options.scene);
+  if (!scene) {
+    return Failure(std::move(scene.error()));
+  }
+  stage.scene = std::move(*scene);
+  const auto camera = camera_of(options.view, stage.scene);
+  if (!camera) {
+    return Failure(camera.error());
+  }
+  stage.camera = *camera;
+  const auto settings = occlusion_settings(options.occlusion, stage.scene);
+  if (!settings) {
+    return Failure(settings.error());
+  }
+  stage.settings = *settings;
+  auto gpu = open_gpu(options, surface_extensions);
+  if (!gpu) {
+    return Failure(std::move(gpu.error()));
+  }
+  stage.gpu = std::move(*gpu);
+  return stage;
+}
+
+tl::expected<void, std::string> check_validation(const Gpu& gpu) {
+  for (const std::string& message : gpu.device().validation_messages()) {
+    return Failure("The validation layer says: " + message);
+  }
+  return {};
+}
+
+}  // namespace alcove::sample

@@ -1,0 +1,381 @@
+#include "scene/gltf.h"
+
+#include <tiny_gltf.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <glm/gtc/quaternion.hpp>
+#include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
+
+#include "scene/gltf_material.h"
+#include "scene/gltf_mesh.h"
+
+namespace alcove::sample {
+namespace {
+
+using Failure = tl::unexpected<std::string>;
+namespace fs = std::filesystem;
+
+constexpr uint64_t kMostFileBytes = INT32_MAX;  // tinygltf counts in int
+
+// The only way in which tinygltf reaches the file system: files of the scene's own folder, up to a
+// number of bytes in all.
+struct FolderAccess {
+  fs::path folder;  // canonical; empty: no files at all
+  uint64_t bytes_left = kMostFileBytes;
+};
+
+bool lies_within(const fs::path& file, const fs::path& folder) {
+  const auto [end, rest] = std::mismatch(folder.begin(), folder.end(), file.begin(), file.end());
+  return end == folder.end() && rest != file.end();
+}
+
+bool file_exists(const std::string& name, void* user) {
+  const auto& access = *static_cast<FolderAccess*>(user);
+  if (access.folder.empty() || name.find('\0') != std::string::npos) return false;
+  std::error_code error;
+  const fs::path file = fs::canonical(name, error);
+  return !error && lies_within(file, access.folder) && fs::is_regular_file(file, error) && !error;
+}
+
+std::string same_path(const std::string& name, void*) { return name; }
+
+bool read_file(const fs::path& file, uint64_t most, std::vector<unsigned char>& out,
+               std::string& why) {
+  std::error_code error;
+  const uint64_t size = fs::file_size(file, error);
+  if (error) return why = error.message(), false;
+  if (size > most) return why = "the file is too large", false;
+  std::ifstream stream(file, std::ios::binary);
+  out.resize(size);
+  stream.read(reinterpret_cast<char*>(out.data()), static_cast<std::streamsize>(size));
+  if (!stream) return why = "the file cannot be read", false;
+  return true;
+}
+
+bool read_whole_file(std::vector<unsigned char>* out, std::string* error, const std::string& name,
+                     void* user) {
+  auto& access = *static_cast<FolderAccess*>(user);
+  if (!read_file(name, access.bytes_left, *out, *error)) return false;
+  access.bytes_left -= out->size();
+  return true;
+}
+
+// Keeps the encoded bytes; materials decode what they use. The bytes of an image in a buffer view
+// are not touched here: tinygltf has not checked that they lie within the buffer.
+bool keep_encoded(tinygltf::Image* image, const int, std::string*, std::string*, int, int,
+                  const unsigned char* bytes, int size, void*) {
+  if (image->bufferView < 0 && size > 0) image->image.assign(bytes, bytes + size);
+  return true;
+}
+
+// How deep brackets nest outside strings. JSON libraries recurse by it.
+size_t nesting(std::span<const uint8_t> json) {
+  size_t depth = 0, deepest = 0;
+  bool in_string = false;
+  for (size_t i = 0; i < json.size(); ++i) {
+    const uint8_t c = json[i];
+    if (in_string) {
+      if (c == '\\') ++i;
+      if (c == '"') in_string = false;
+    } else if (c == '"') {
+      in_string = true;
+    } else if (c == '{' || c == '[') {
+      deepest = std::max(deepest, ++depth);
+    } else if ((c == '}' || c == ']') && depth > 0) {
+      --depth;
+    }
+  }
+  return deepest;
+}
+
+bool is_binary(std::span<const uint8_t> bytes) {
+  return bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0;
+}
+
+// The JSON of either kind of file; empty where a binary one is cut short.
+std::span<const uint8_t> json_of(std::span<const uint8_t> bytes) {
+  if (!is_binary(bytes)) return bytes;
+  uint32_t length = 0;
+  if (bytes.size() < 20) return {};
+  std::memcpy(&length, bytes.data() + 12, sizeof(length));
+  if (length > bytes.size() - 20) return {};
+  return bytes.subspan(20, length);
+}
+
+bool is_read(const std::string& extension) {
+  return extension == "KHR_mesh_quantization" || extension == "KHR_texture_transform";
+}
+
+// What tinygltf would answer with a crash or all memory.
+tl::expected<void, std::string> check_json(std::span<const uint8_t> json) {
+  constexpr size_t kDeepest = 64;
+  if (nesting(json) > kDeepest) return Failure("its JSON is nested too deeply");
+  const auto root = nlohmann::json::parse(json.begin(), json.end(), nullptr, false);
+  if (!root.is_object()) return Failure("it is not glTF: its JSON cannot be read");
+  const auto buffers = root.find("buffers");
+  if (buffers != root.end() && buffers->is_array()) {
+    const auto without_uri = [](const auto& b) { return !b.is_object() || !b.contains("uri"); };
+    if (std::count_if(buffers->begin(), buffers->end(), without_uri) > 1) {
+      return Failure("only one buffer may lie in the file itself");
+    }
+  }
+  const auto required = root.find("extensionsRequired");
+  if (required != root.end() && required->is_array()) {
+    for (const auto& name : *required) {
+      const std::string text = name.is_string() ? name.get<std::string>() : "?";
+      const bool appearance_only = text.starts_with("KHR_materials_");
+      if (!appearance_only && !is_read(text)) {
+        return Failure("it requires the extension " + text +
+                       ", which is not read here; export it without");
+      }
+    }
+  }
+  return {};
+}
+
+std::string first_line(const std::string& text) {
+  const std::string line = text.substr(0, text.find('\n'));
+  return line.empty() ? "it is not glTF" : line;
+}
+
+tl::expected<tinygltf::Model, std::string> read_model(std::span<const uint8_t> bytes,
+                                                      const fs::path& folder) {
+  if (bytes.size() > kMostFileBytes) return Failure("the file is too large");
+  if (auto fine = check_json(json_of(bytes)); !fine) return Failure(fine.error());
+  FolderAccess access;
+  std::error_code ignored;
+  if (!folder.empty()) access.folder = fs::canonical(folder, ignored);
+  tinygltf::TinyGLTF loader;
+  loader.SetFsCallbacks({file_exists, same_path, read_whole_file, nullptr, &access});
+  loader.SetImageLoader(keep_encoded, nullptr);
+  tinygltf::Model model;
+  std::string error, warning;
+  bool read = false;
+  if (is_binary(bytes)) {
+    // tinygltf lets the binary chunk reach eight bytes past the end.
+    std::vector<unsigned char> padded(bytes.begin(), bytes.end());
+    padded.resize(bytes.size() + 16, 0);
+    read = loader.LoadBinaryFromMemory(&model, &error, &warning, padded.data(),
+                                       static_cast<unsigned>(bytes.size()), access.folder.string());
+  } else {
+    read = loader.LoadASCIIFromString(&model, &error, &warning,
+                                      reinterpret_cast<const char*>(bytes.data()),
+                                      static_cast<unsigned>(bytes.size()), access.folder.string());
+  }
+  if (!read) return Failure(first_line(error));
+  return model;
+}
+
+glm::dmat4 local_transform(const tinygltf::Node& node) {
+  glm::dmat4 m(1.0);
+  if (node.matrix.size() == 16) {
+    for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = node.matrix[static_cast<size_t>(i)];
+    return m;
+  }
+  if (node.rotation.size() == 4) {
+    const glm::dquat q(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
+    const double length = glm::length(q);
+    if (length > 0.0) m = glm::mat4_cast(q / length);
+  }
+  if (node.scale.size() == 3) {
+    for (int c = 0; c < 3; ++c) m[c] *= node.scale[static_cast<size_t>(c)];
+  }
+  if (node.translation.size() == 3) {
+    for (int c = 0; c < 3; ++c) m[3][c] = node.translation[static_cast<size_t>(c)];
+  }
+  return m;
+}
+
+bool positive(double value) { return std::isfinite(value) && value > 0.0; }
+
+// A node's camera. Nonsense in it leaves it out with a warning: the triangles are still good.
+void add_camera(const tinygltf::Model& model, const tinygltf::Node& node,
+                const glm::dmat4& world_from_node, Scene& scene) {
+  if (node.camera < 0) return;
+  const auto leave_out = [&] {
+    scene.warnings.push_back("Camera of node \"" + node.name + "\" is malformed and left out.");
+  };
+  if (static_cast<size_t>(node.camera) >= model.cameras.size()) return leave_out();
+  const tinygltf::Camera& in = model.cameras[static_cast<size_t>(node.camera)];
+  Camera out;
+  out.name = !in.name.empty() ? in.name : node.name;
+  if (out.name.empty()) out.name = "camera" + std::to_string(scene.cameras.size());
+  const glm::dvec3 eye(world_from_node[3]), back(world_from_node[2]), up(world_from_node[1]);
+  if (!positive(glm::length(back)) || !positive(glm::length(up)) ||
+      !std::isfinite(glm::length(eye))) {
+    return leave_out();
+  }
+  out.eye_ws = eye;
+  out.target_ws = eye - glm::normalize(back);
+  out.up_ws = glm::normalize(up);
+  if (out.eye_ws == out.target_ws) return leave_out();
+  double near_plane = 0.0, far_plane = 0.0;
+  if (in.type == "orthographic") {
+    out.orthographic = true;
+    out.ortho_height = static_cast<float>(2.0 * std::abs(in.orthographic.ymag));
+    near_plane = in.orthographic.znear;
+    far_plane = in.orthographic.zfar;
+    if (!positive(out.ortho_height)) return leave_out();
+  } else {
+    out.fov_y = static_cast<float>(in.perspective.yfov);
+    near_plane = in.perspective.znear;
+    far_plane = in.perspective.zfar > 0.0 ? in.perspective.zfar : INFINITY;
+    if (!positive(near_plane) || !positive(out.fov_y) || out.fov_y > 3.1f) return leave_out();
+  }
+  if (!std::isfinite(near_plane) || !(far_plane > near_plane)) return leave_out();
+  out.near_plane = static_cast<float>(near_plane);
+  out.far_plane = static_cast<float>(far_plane);
+  if (!(out.far_plane > out.near_plane)) return leave_out();
+  scene.cameras.push_back(std::move(out));
+}
+
+// The nodes to start from: those of the default scene, or every node that is nobody's child.
+tl::expected<std::vector<int>, std::string> root_nodes(const tinygltf::Model& model) {
+  if (!model.scenes.empty()) {
+    const int index = std::max(model.defaultScene, 0);
+    if (static_cast<size_t>(index) >= model.scenes.size()) {
+      return Failure("it has no scene " + std::to_string(index));
+    }
+    return model.scenes[static_cast<size_t>(index)].nodes;
+  }
+  std::vector<char> is_child(model.nodes.size(), 0);
+  for (const tinygltf::Node& node : model.nodes) {
+    for (const int child : node.children) {
+      if (child >= 0 && static_cast<size_t>(child) < is_child.size()) {
+        is_child[static_cast<size_t>(child)] = 1;
+      }
+    }
+  }
+  std::vector<int> roots;
+  for (size_t i = 0; i < is_child.size(); ++i) {
+    if (!is_child[i]) roots.push_back(static_cast<int>(i));
+  }
+  return roots;
+}
+
+tl::expected<void, std::string> add_mesh(const tinygltf::Model& model, const tinygltf::Node& node,
+                                         const glm::dmat4& world_from_node, MeshBudget& budget,
+                                         Scene& scene) {
+  if (node.mesh < 0) return {};
+  if (static_cast<size_t>(node.mesh) >= model.meshes.size()) {
+    return Failure("node \"" + node.name + "\" has no mesh " + std::to_string(node.mesh));
+  }
+  const tinygltf::Mesh& mesh = model.meshes[static_cast<size_t>(node.mesh)];
+  const std::string name = !mesh.name.empty() ? "\"" + mesh.name + "\"" : std::to_string(node.mesh);
+  for (const tinygltf::Primitive& primitive : mesh.primitives) {
+    if (!primitive.targets.empty()) {
+      scene.warnings.push_back("Mesh " + name + " has morph targets, which are left out.");
+    }
+    auto added = add_primitive(model, primitive, name, world_from_node, budget, scene);
+    if (!added) return added;
+  }
+  if (node.skin >= 0) {
+    scene.warnings.push_back("Mesh " + name + " is skinned and stands in its rest pose.");
+  }
+  return {};
+}
+
+// Every node once, from the roots; a second visit means a cycle or two parents.
+tl::expected<void, std::string> add_nodes(const tinygltf::Model& model, MeshBudget& budget,
+                                          Scene& scene) {
+  auto roots = root_nodes(model);
+  if (!roots) return Failure(roots.error());
+  std::vector<std::pair<int, glm::dmat4>> open;
+  for (auto root = roots->rbegin(); root != roots->rend(); ++root) {
+    open.emplace_back(*root, glm::dmat4(1.0));
+  }
+  std::vector<char> visited(model.nodes.size(), 0);
+  while (!open.empty()) {
+    const auto [index, world_from_parent] = open.back();
+    open.pop_back();
+    if (index < 0 || static_cast<size_t>(index) >= model.nodes.size()) {
+      return Failure("it has no node " + std::to_string(index));
+    }
+    if (std::exchange(visited[static_cast<size_t>(index)], 1)) {
+      return Failure("node " + std::to_string(index) +
+                     " is reached twice: nodes form a cycle or have two parents");
+    }
+    const tinygltf::Node& node = model.nodes[static_cast<size_t>(index)];
+    const glm::dmat4 world_from_node = world_from_parent * local_transform(node);
+    if (auto added = add_mesh(model, node, world_from_node, budget, scene); !added) return added;
+    add_camera(model, node, world_from_node, scene);
+    for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) {
+      open.emplace_back(*child, world_from_node);
+    }
+  }
+  return {};
+}
+
+// A warning once, however many parts it holds for.
+void drop_repeats(std::vector<std::string>& warnings) {
+  std::sort(warnings.begin(), warnings.end());
+  warnings.erase(std::unique(warnings.begin(), warnings.end()), warnings.end());
+}
+
+tl::expected<Scene, std::string> build_scene(const tinygltf::Model& model,
+                                             const GltfLimits& limits) {
+  Scene scene;
+  if (auto added = add_materials(model, limits.pixels, scene); !added) {
+    return Failure(added.error());
+  }
+  MeshBudget budget{limits.vertices, limits.indices};
+  if (auto added = add_nodes(model, budget, scene); !added) return Failure(added.error());
+  if (scene.meshes.empty()) return Failure("it has no triangles");
+  if (!model.animations.empty()) {
+    scene.warnings.push_back("Animations are left out: nodes stand as the file places them.");
+  }
+  for (const auto* extensions : {&model.extensionsUsed, &model.extensionsRequired}) {
+    for (const std::string& extension : *extensions) {
+      if (!is_read(extension)) {
+        scene.warnings.push_back("The extension " + extension + " is left out.");
+      }
+    }
+  }
+  drop_repeats(scene.warnings);
+  scene.bounds_ws = bounds_of(scene.meshes);
+  return scene;
+}
+
+}  // namespace
+
+tl::expected<Scene, std::string> parse_gltf(std::span<const uint8_t> bytes, const std::string& name,
+                                            const fs::path& folder, const GltfLimits& limits) {
+  const auto refuse = [&](const std::string& why) {
+    return Failure("cannot read " + name + ": " + why);
+  };
+  try {
+    const auto model = read_model(bytes, folder);
+    if (!model) return refuse(model.error());
+    auto scene = build_scene(*model, limits);
+    if (!scene) return refuse(scene.error());
+    scene->name = fs::path(name).stem().string();
+    return scene;
+  } catch (const std::exception& error) {
+    return refuse(error.what());
+  }
+}
+
+tl::expected<Scene, std::string> load_gltf(const fs::path& file) {
+  const auto refuse = [&](const std::string& why) {
+    return Failure("cannot read " + file.string() + ": " + why);
+  };
+  std::error_code error;
+  if (!fs::exists(file, error)) return refuse("there is no such file");
+  if (fs::is_directory(file, error)) return refuse("it is a folder; name the .gltf or .glb in it");
+  std::vector<unsigned char> bytes;
+  std::string why;
+  try {
+    if (!read_file(file, kMostFileBytes, bytes, why)) return refuse(why);
+    const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+    return parse_gltf(bytes, file.string(), folder);
+  } catch (const std::exception& exception) {
+    return refuse(exception.what());
+  }
+}
+
+}  // namespace alcove::sample

@@ -1,0 +1,256 @@
+#include "scene/gltf_accessor.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace alcove::sample {
+namespace {
+
+using Failure = tl::unexpected<std::string>;
+
+// Elements of one type at regular steps, all of them within the bytes.
+struct Elements {
+  const uint8_t* first = nullptr;  // null: every element is zero
+  uint64_t stride = 0;
+  uint64_t count = 0;
+  int component_type = 0;
+  int components = 0;
+  bool normalized = false;
+};
+
+uint64_t component_size(int type) {
+  switch (type) {
+    case TINYGLTF_COMPONENT_TYPE_BYTE:
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+      return 1;
+    case TINYGLTF_COMPONENT_TYPE_SHORT:
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+      return 2;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+    case TINYGLTF_COMPONENT_TYPE_FLOAT:
+      return 4;
+    default:
+      return 0;
+  }
+}
+
+int component_count(int type) {
+  switch (type) {
+    case TINYGLTF_TYPE_SCALAR:
+      return 1;
+    case TINYGLTF_TYPE_VEC2:
+      return 2;
+    case TINYGLTF_TYPE_VEC3:
+      return 3;
+    case TINYGLTF_TYPE_VEC4:
+      return 4;
+    default:
+      return 0;
+  }
+}
+
+template <class T>
+T load(const uint8_t* at) {
+  T value;
+  std::memcpy(&value, at, sizeof(T));
+  return value;
+}
+
+template <class T>
+float scaled(const uint8_t* at, bool normalized, float most) {
+  const auto value = static_cast<float>(load<T>(at));
+  return normalized ? std::max(value / most, -1.0f) : value;
+}
+
+float float_component(const uint8_t* at, int type, bool normalized) {
+  switch (type) {
+    case TINYGLTF_COMPONENT_TYPE_BYTE:
+      return scaled<int8_t>(at, normalized, 127.0f);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+      return scaled<uint8_t>(at, normalized, 255.0f);
+    case TINYGLTF_COMPONENT_TYPE_SHORT:
+      return scaled<int16_t>(at, normalized, 32767.0f);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+      return scaled<uint16_t>(at, normalized, 65535.0f);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+      return scaled<uint32_t>(at, normalized, 4294967295.0f);
+    default:
+      return load<float>(at);
+  }
+}
+
+uint32_t unsigned_component(const uint8_t* at, int type) {
+  if (type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE) return *at;
+  if (type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT) return load<uint16_t>(at);
+  return load<uint32_t>(at);
+}
+
+bool is_unsigned(int type) {
+  return type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
+         type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
+         type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
+}
+
+// `count` elements of `size` bytes from `offset` of a view, `stride` apart.
+tl::expected<const uint8_t*, std::string> elements_of(const tinygltf::Model& model, int64_t view,
+                                                      uint64_t offset, uint64_t count,
+                                                      uint64_t size, uint64_t stride) {
+  const auto bytes = view_bytes(model, view);
+  if (!bytes) return Failure(bytes.error());
+  const uint64_t length = bytes->size();
+  // Written so that nothing overflows: the last element must end within the view.
+  if (count > 0 && (offset > length || size > length - offset ||
+                    (count - 1) > (length - offset - size) / stride)) {
+    return Failure("reads past the end of buffer view " + std::to_string(view));
+  }
+  return bytes->data() + std::min(offset, length);
+}
+
+tl::expected<Elements, std::string> resolve(const tinygltf::Model& model, int64_t index,
+                                            uint64_t most) {
+  const auto refuse = [&](const std::string& why) {
+    return Failure("accessor " + std::to_string(index) + " " + why);
+  };
+  if (index < 0 || static_cast<uint64_t>(index) >= model.accessors.size()) {
+    return refuse("does not exist");
+  }
+  const tinygltf::Accessor& accessor = model.accessors[static_cast<size_t>(index)];
+  Elements out;
+  out.count = accessor.count;
+  out.component_type = accessor.componentType;
+  out.components = component_count(accessor.type);
+  out.normalized = accessor.normalized;
+  const uint64_t component = component_size(accessor.componentType);
+  if (component == 0 || out.components == 0) return refuse("has a type that is not read here");
+  if (out.count > most) return refuse("has too many elements: " + std::to_string(out.count));
+  const uint64_t size = component * static_cast<uint64_t>(out.components);
+  out.stride = size;
+  if (accessor.bufferView < 0) return out;
+  if (static_cast<size_t>(accessor.bufferView) >= model.bufferViews.size()) {
+    return refuse("has no buffer view " + std::to_string(accessor.bufferView));
+  }
+  const size_t stride = model.bufferViews[static_cast<size_t>(accessor.bufferView)].byteStride;
+  if (stride != 0) out.stride = stride;
+  if (out.stride < size) return refuse("has a stride that is less than its element");
+  const auto first =
+      elements_of(model, accessor.bufferView, accessor.byteOffset, out.count, size, out.stride);
+  if (!first) return refuse(first.error());
+  out.first = *first;
+  return out;
+}
+
+// The sparse part of an accessor: `put(target, bytes)` for each replaced element, target below the
+// accessor's count.
+template <class Put>
+tl::expected<void, std::string> for_each_sparse(const tinygltf::Model& model, int64_t index,
+                                                const Elements& elements, const Put& put) {
+  const auto& sparse = model.accessors[static_cast<size_t>(index)].sparse;
+  if (!sparse.isSparse) return {};
+  const std::string name = "accessor " + std::to_string(index) + " ";
+  if (sparse.count < 0 || static_cast<uint64_t>(sparse.count) > elements.count) {
+    return Failure(name + "has more sparse values than elements");
+  }
+  if (!is_unsigned(sparse.indices.componentType)) {
+    return Failure(name + "has sparse indices that are not unsigned integers");
+  }
+  if (sparse.indices.byteOffset < 0 || sparse.values.byteOffset < 0) {
+    return Failure(name + "has a negative sparse offset");
+  }
+  const auto count = static_cast<uint64_t>(sparse.count);
+  const uint64_t index_size = component_size(sparse.indices.componentType);
+  const uint64_t value_size =
+      component_size(elements.component_type) * static_cast<uint64_t>(elements.components);
+  const auto targets =
+      elements_of(model, sparse.indices.bufferView,
+                  static_cast<uint64_t>(sparse.indices.byteOffset), count, index_size, index_size);
+  if (!targets) return Failure(name + targets.error());
+  const auto values =
+      elements_of(model, sparse.values.bufferView, static_cast<uint64_t>(sparse.values.byteOffset),
+                  count, value_size, value_size);
+  if (!values) return Failure(name + values.error());
+  for (uint64_t i = 0; i < count; ++i) {
+    const uint32_t target =
+        unsigned_component(*targets + i * index_size, sparse.indices.componentType);
+    if (target >= elements.count) return Failure(name + "has a sparse index out of range");
+    put(target, *values + i * value_size);
+  }
+  return {};
+}
+
+}  // namespace
+
+tl::expected<std::span<const uint8_t>, std::string> view_bytes(const tinygltf::Model& model,
+                                                               int64_t view) {
+  const auto refuse = [&](const std::string& why) {
+    return Failure("buffer view " + std::to_string(view) + " " + why);
+  };
+  if (view < 0 || static_cast<uint64_t>(view) >= model.bufferViews.size()) {
+    return refuse("does not exist");
+  }
+  const tinygltf::BufferView& v = model.bufferViews[static_cast<size_t>(view)];
+  if (v.buffer < 0 || static_cast<size_t>(v.buffer) >= model.buffers.size()) {
+    return refuse("has no buffer " + std::to_string(v.buffer));
+  }
+  const auto& data = model.buffers[static_cast<size_t>(v.buffer)].data;
+  if (v.byteOffset > data.size() || v.byteLength > data.size() - v.byteOffset) {
+    return refuse("reaches past the end of its buffer");
+  }
+  return std::span<const uint8_t>(data.data() + v.byteOffset, v.byteLength);
+}
+
+tl::expected<std::vector<float>, std::string> read_floats(const tinygltf::Model& model,
+                                                          int64_t accessor, int components,
+                                                          uint64_t most) {
+  const auto elements = resolve(model, accessor, most);
+  if (!elements) return Failure(elements.error());
+  if (elements->components != components) {
+    return Failure("accessor " + std::to_string(accessor) + " has " +
+                   std::to_string(elements->components) + " components where " +
+                   std::to_string(components) + " belong");
+  }
+  const auto width = static_cast<size_t>(components);
+  const uint64_t step = component_size(elements->component_type);
+  std::vector<float> values(elements->count * width, 0.0f);
+  const auto put = [&](uint64_t target, const uint8_t* at) {
+    for (size_t c = 0; c < width; ++c) {
+      values[target * width + c] =
+          float_component(at + c * step, elements->component_type, elements->normalized);
+    }
+  };
+  if (elements->first) {
+    for (uint64_t i = 0; i < elements->count; ++i) put(i, elements->first + i * elements->stride);
+  }
+  if (auto sparse = for_each_sparse(model, accessor, *elements, put); !sparse) {
+    return Failure(sparse.error());
+  }
+  return values;
+}
+
+tl::expected<std::vector<uint32_t>, std::string> read_indices(const tinygltf::Model& model,
+                                                              int64_t accessor, uint64_t bound,
+                                                              uint64_t most) {
+  const auto elements = resolve(model, accessor, most);
+  if (!elements) return Failure(elements.error());
+  const std::string name = "accessor " + std::to_string(accessor) + " ";
+  if (elements->components != 1 || !is_unsigned(elements->component_type)) {
+    return Failure(name + "is used for indices and does not hold unsigned integers");
+  }
+  std::vector<uint32_t> values(elements->count, 0);
+  const auto put = [&](uint64_t target, const uint8_t* at) {
+    values[target] = unsigned_component(at, elements->component_type);
+  };
+  if (elements->first) {
+    for (uint64_t i = 0; i < elements->count; ++i) put(i, elements->first + i * elements->stride);
+  }
+  if (auto sparse = for_each_sparse(model, accessor, *elements, put); !sparse) {
+    return Failure(sparse.error());
+  }
+  const auto past =
+      std::find_if(values.begin(), values.end(), [&](uint32_t v) { return v >= bound; });
+  if (past != values.end()) {
+    return Failure(name + "has the index " + std::to_string(*past) + ", past the last vertex");
+  }
+  return values;
+}
+
+}  // namespace alcove::sample

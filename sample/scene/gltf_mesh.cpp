@@ -1,0 +1,302 @@
+#include "scene/gltf_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "scene/gltf_accessor.h"
+
+namespace alcove::sample {
+namespace {
+
+using Failure = tl::unexpected<std::string>;
+
+int attribute(const tinygltf::Primitive& primitive, const std::string& name) {
+  const auto found = primitive.attributes.find(name);
+  return found == primitive.attributes.end() ? -1 : found->second;
+}
+
+bool finite(const glm::vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+// Strips and fans as lists. Every second triangle of a strip turns, so that all keep one side.
+std::vector<uint32_t> as_list(const std::vector<uint32_t>& in, int mode) {
+  std::vector<uint32_t> out;
+  if (mode == TINYGLTF_MODE_TRIANGLES) {
+    out.assign(in.begin(), in.end() - static_cast<std::ptrdiff_t>(in.size() % 3));
+    return out;
+  }
+  for (size_t i = 2; i < in.size(); ++i) {
+    const bool fan = mode == TINYGLTF_MODE_TRIANGLE_FAN;
+    const size_t odd = fan ? 0 : i % 2;
+    const uint32_t a = fan ? in[0] : in[i - 2];
+    const uint32_t b = in[i - 1];
+    // A strip's triangle is (i, i+1+odd, i+2-odd); a fan's (0, i, i+1).
+    out.insert(out.end(), {a, odd ? in[i] : b, odd ? b : in[i]});
+  }
+  return out;
+}
+
+tl::expected<std::vector<glm::vec3>, std::string> world_positions(const tinygltf::Model& model,
+                                                                  int accessor,
+                                                                  const glm::dmat4& transform,
+                                                                  uint64_t most) {
+  const auto values = read_floats(model, accessor, 3, most);
+  if (!values) return Failure(values.error());
+  std::vector<glm::vec3> out(values->size() / 3);
+  // Beyond this, squares of lengths overflow.
+  constexpr float kFarthest = 1e15f;
+  for (size_t i = 0; i < out.size(); ++i) {
+    const glm::dvec4 local((*values)[3 * i], (*values)[3 * i + 1], (*values)[3 * i + 2], 1.0);
+    out[i] = glm::vec3(transform * local);
+    if (!finite(out[i]) ||
+        std::max({std::abs(out[i].x), std::abs(out[i].y), std::abs(out[i].z)}) > kFarthest) {
+      return Failure("has a vertex " + std::to_string(i) +
+                     " that is not a finite position within 1e15 of the origin");
+    }
+  }
+  return out;
+}
+
+// Normals of the file in world space; zero where the file's are useless.
+tl::expected<std::vector<glm::vec3>, std::string> world_normals(const tinygltf::Model& model,
+                                                                int accessor,
+                                                                const glm::dmat4& transform,
+                                                                uint64_t most) {
+  const auto values = read_floats(model, accessor, 3, most);
+  if (!values) return Failure(values.error());
+  // The cofactor matrix is the inverse transpose times the determinant, and exists where that is 0.
+  const glm::dmat3 m(transform);
+  const double side = glm::determinant(m) < 0.0 ? -1.0 : 1.0;
+  const glm::dmat3 cofactor(side * glm::cross(m[1], m[2]), side * glm::cross(m[2], m[0]),
+                            side * glm::cross(m[0], m[1]));
+  std::vector<glm::vec3> out(values->size() / 3);
+  for (size_t i = 0; i < out.size(); ++i) {
+    const glm::dvec3 n =
+        cofactor * glm::dvec3((*values)[3 * i], (*values)[3 * i + 1], (*values)[3 * i + 2]);
+    const double length = glm::length(n);
+    out[i] = std::isfinite(length) && length > 0.0 ? glm::vec3(n / length) : glm::vec3(0.0f);
+  }
+  return out;
+}
+
+// Tangents of the file in world space; zero where the file's are useless.
+tl::expected<std::vector<glm::vec4>, std::string> world_tangents(const tinygltf::Model& model,
+                                                                 int accessor,
+                                                                 const glm::dmat4& transform,
+                                                                 uint64_t most) {
+  const auto values = read_floats(model, accessor, 4, most);
+  if (!values) return Failure(values.error());
+  const glm::dmat3 m(transform);
+  const float side = glm::determinant(m) < 0.0 ? -1.0f : 1.0f;
+  std::vector<glm::vec4> out(values->size() / 4);
+  for (size_t i = 0; i < out.size(); ++i) {
+    const float* in = &(*values)[4 * i];
+    const glm::dvec3 t = m * glm::dvec3(in[0], in[1], in[2]);
+    const double length = glm::length(t);
+    const bool useful = std::isfinite(length) && length > 0.0;
+    out[i] =
+        glm::vec4(useful ? glm::vec3(t / length) : glm::vec3(0.0f), in[3] < 0.0f ? -side : side);
+  }
+  return out;
+}
+
+// The face's normal times twice its area.
+glm::dvec3 face_normal(const Mesh& mesh, size_t first) {
+  const glm::dvec3 a(mesh.positions_ws[mesh.indices[first]]);
+  const glm::dvec3 b(mesh.positions_ws[mesh.indices[first + 1]]);
+  const glm::dvec3 c(mesh.positions_ws[mesh.indices[first + 2]]);
+  return glm::cross(b - a, c - a);
+}
+
+// Faces without area have no normal, cover no pixel and stop no ray.
+void drop_flat_faces(Mesh& mesh) {
+  size_t kept = 0;
+  for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    const double length = glm::length(face_normal(mesh, i));
+    if (!(length > 0.0)) continue;
+    for (size_t c = 0; c < 3; ++c) mesh.indices[kept + c] = mesh.indices[i + c];
+    kept += 3;
+  }
+  mesh.indices.resize(kept);
+}
+
+// Flat normals, as glTF asks for where there are none: no vertex is shared any more.
+void make_flat_normals(Mesh& mesh) {
+  Mesh flat;
+  for (size_t i = 0; i < mesh.indices.size(); i += 3) {
+    const glm::vec3 normal(glm::normalize(face_normal(mesh, i)));
+    for (size_t c = 0; c < 3; ++c) {
+      const uint32_t v = mesh.indices[i + c];
+      flat.positions_ws.push_back(mesh.positions_ws[v]);
+      flat.normals_ws.push_back(normal);
+      flat.uvs.push_back(mesh.uvs[v]);
+      if (!mesh.second_uvs.empty()) flat.second_uvs.push_back(mesh.second_uvs[v]);
+    }
+  }
+  flat.indices.resize(flat.positions_ws.size());
+  std::iota(flat.indices.begin(), flat.indices.end(), 0u);
+  mesh.positions_ws = std::move(flat.positions_ws);
+  mesh.normals_ws = std::move(flat.normals_ws);
+  mesh.uvs = std::move(flat.uvs);
+  mesh.second_uvs = std::move(flat.second_uvs);
+  mesh.indices = std::move(flat.indices);
+}
+
+// Vertices whose normal the file left zero or not finite take the mean of their faces.
+void mend_normals(Mesh& mesh) {
+  std::vector<glm::dvec3> sums(mesh.positions_ws.size(), glm::dvec3(0.0));
+  for (size_t i = 0; i < mesh.indices.size(); i += 3) {
+    const glm::dvec3 normal = face_normal(mesh, i);
+    for (size_t c = 0; c < 3; ++c) sums[mesh.indices[i + c]] += normal;
+  }
+  for (size_t v = 0; v < sums.size(); ++v) {
+    if (mesh.normals_ws[v] != glm::vec3(0.0f)) continue;
+    const double length = glm::length(sums[v]);
+    mesh.normals_ws[v] = length > 0.0 ? glm::vec3(sums[v] / length) : glm::vec3(0, 1, 0);
+  }
+}
+
+bool reads_by(const Material& material, uint32_t uv_set) {
+  const auto uses = {&material.base_color_texture, &material.metal_roughness_texture,
+                     &material.emissive_texture, &material.normal_texture};
+  return std::any_of(uses.begin(), uses.end(), [&](const TextureUse* use) {
+    return use->image >= 0 && use->uv_set == uv_set;
+  });
+}
+
+// Texture coordinates of the file; empty where it has none, zero where they are useless.
+tl::expected<std::vector<glm::vec2>, std::string> texture_coordinates(
+    const tinygltf::Model& model, const tinygltf::Primitive& primitive, uint32_t uv_set,
+    size_t vertices) {
+  const int accessor = attribute(primitive, "TEXCOORD_" + std::to_string(uv_set));
+  if (accessor < 0) return {};
+  const auto values = read_floats(model, accessor, 2, vertices);
+  if (!values) return Failure(values.error());
+  if (values->size() != 2 * vertices) {
+    return Failure("has texture coordinates for some of its vertices only");
+  }
+  std::vector<glm::vec2> out(vertices, glm::vec2(0.0f));
+  for (size_t i = 0; i < vertices; ++i) {
+    const glm::vec2 uv((*values)[2 * i], (*values)[2 * i + 1]);
+    if (std::isfinite(uv.x) && std::isfinite(uv.y)) out[i] = uv;
+  }
+  return out;
+}
+
+// The sets that the mesh's material reads textures by, and the first in any case.
+tl::expected<void, std::string> add_texture_coordinates(const tinygltf::Model& model,
+                                                        const tinygltf::Primitive& primitive,
+                                                        Mesh& mesh, Scene& scene) {
+  const size_t vertices = mesh.positions_ws.size();
+  for (const uint32_t set : {0u, 1u}) {
+    const bool read = reads_by(scene.materials[mesh.material], set);
+    if (set == 1 && !read) continue;
+    auto uvs = texture_coordinates(model, primitive, set, vertices);
+    if (!uvs) return Failure(uvs.error());
+    if (read && uvs->empty()) {
+      scene.warnings.push_back("Mesh " + mesh.name + " lacks the texture coordinates " +
+                               std::to_string(set) +
+                               " that its material names: they are taken to be zero.");
+    }
+    (set == 0 ? mesh.uvs : mesh.second_uvs) = std::move(*uvs);
+  }
+  mesh.uvs.resize(vertices, glm::vec2(0.0f));
+  return {};
+}
+
+// Normals and tangents of the file's `vertices`; flat normals where it has none, and glTF then has
+// tangents ignored.
+tl::expected<void, std::string> add_normals(const tinygltf::Model& model,
+                                            const tinygltf::Primitive& primitive,
+                                            const glm::dmat4& transform, size_t vertices,
+                                            Mesh& mesh) {
+  const int normal = attribute(primitive, "NORMAL");
+  if (normal < 0) {
+    make_flat_normals(mesh);
+    return {};
+  }
+  auto normals = world_normals(model, normal, transform, vertices);
+  if (!normals) return Failure(normals.error());
+  if (normals->size() != vertices) return Failure("has normals for some of its vertices only");
+  mesh.normals_ws = std::move(*normals);
+  mend_normals(mesh);
+  const int tangent = attribute(primitive, "TANGENT");
+  if (tangent < 0) return {};
+  auto tangents = world_tangents(model, tangent, transform, vertices);
+  if (!tangents) return Failure(tangents.error());
+  if (tangents->size() != vertices) return Failure("has tangents for some of its vertices only");
+  mesh.tangents_ws = std::move(*tangents);
+  return {};
+}
+
+tl::expected<std::vector<uint32_t>, std::string> vertex_order(const tinygltf::Model& model,
+                                                              const tinygltf::Primitive& primitive,
+                                                              size_t vertices, uint64_t most) {
+  if (primitive.indices >= 0) return read_indices(model, primitive.indices, vertices, most);
+  std::vector<uint32_t> order(vertices);
+  std::iota(order.begin(), order.end(), 0u);
+  return order;
+}
+
+}  // namespace
+
+tl::expected<void, std::string> add_primitive(const tinygltf::Model& model,
+                                              const tinygltf::Primitive& primitive,
+                                              const std::string& name,
+                                              const glm::dmat4& world_from_mesh, MeshBudget& budget,
+                                              Scene& scene) {
+  const auto refuse = [&](const std::string& why) { return Failure("mesh " + name + " " + why); };
+  // -1 is tinygltf's for a mode that the file does not give: triangles.
+  const int mode = primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
+  if (mode < TINYGLTF_MODE_TRIANGLES || mode > TINYGLTF_MODE_TRIANGLE_FAN) {
+    scene.warnings.push_back("Mesh " + name + " has points or lines, which are left out.");
+    return {};
+  }
+  if (primitive.material >= static_cast<int>(model.materials.size())) {
+    return refuse("has no material " + std::to_string(primitive.material));
+  }
+  if (attribute(primitive, "COLOR_0") >= 0) {
+    scene.warnings.push_back("Mesh " + name + " has colours of its vertices, which are left out.");
+  }
+  const int position = attribute(primitive, "POSITION");
+  if (position < 0) return {};
+
+  Mesh mesh;
+  mesh.name = name;
+  mesh.material = static_cast<uint32_t>(
+      primitive.material < 0 ? model.materials.size() : static_cast<size_t>(primitive.material));
+  auto positions = world_positions(model, position, world_from_mesh, budget.vertices);
+  if (!positions) return refuse(positions.error());
+  const size_t vertices = positions->size();
+  auto order = vertex_order(model, primitive, vertices, budget.indices);
+  if (!order) return refuse(order.error());
+  mesh.positions_ws = std::move(*positions);
+  if (auto added = add_texture_coordinates(model, primitive, mesh, scene); !added) {
+    return refuse(added.error());
+  }
+  mesh.indices = as_list(*order, mode);
+  if (mesh.indices.size() > budget.indices || mesh.indices.size() > budget.vertices) {
+    return refuse("takes the scene past the number of triangles that is read here");
+  }
+  if (glm::determinant(glm::dmat3(world_from_mesh)) < 0.0) {
+    for (size_t i = 0; i < mesh.indices.size(); i += 3) {
+      std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
+    }
+  }
+  drop_flat_faces(mesh);
+  if (mesh.indices.empty()) return {};
+
+  if (auto added = add_normals(model, primitive, world_from_mesh, vertices, mesh); !added) {
+    return refuse(added.error());
+  }
+  budget.vertices -= std::min<uint64_t>(budget.vertices, mesh.positions_ws.size());
+  budget.indices -= mesh.indices.size();
+  scene.meshes.push_back(std::move(mesh));
+  return {};
+}
+
+}  // namespace alcove::sample

@@ -1,0 +1,133 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "scene/camera.h"
+#include "support/glm.h"
+
+namespace alcove::sample {
+
+// 8-bit RGBA, top row first. Base colour and emission are sRGB; roughness, metal and normals
+// linear: the material says which by where it uses the image.
+struct TextureImage {
+  std::string name;
+  uint32_t width = 0;
+  uint32_t height = 0;
+  std::vector<uint8_t> rgba;  // 4 * width * height
+};
+
+enum class Wrap : uint8_t { kRepeat, kClamp, kMirror };
+enum class Filter : uint8_t { kLinear, kNearest };
+enum class MipFilter : uint8_t { kLinear, kNearest, kNone };  // kNone: mip 0 alone is read
+
+// How an image is read at its edges, and between texels and mips.
+struct Sampler {
+  Wrap wrap_u = Wrap::kRepeat;
+  Wrap wrap_v = Wrap::kRepeat;
+  Filter magnify = Filter::kLinear;
+  Filter minify = Filter::kLinear;
+  MipFilter mips = MipFilter::kLinear;
+
+  bool operator==(const Sampler&) const = default;
+};
+
+// An image as a material uses it. `image` indexes Scene::images; -1 is none, and reads white.
+struct TextureUse {
+  int32_t image = -1;
+  Sampler sampler;
+  uint32_t uv_set = 0;  // 0: Mesh::uvs, 1: Mesh::second_uvs
+  glm::mat3x2 texture_from_mesh_uv{1.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f};  // finite
+};
+
+// A g-buffer holds one surface a pixel, and an occluder either blocks or does not: what is blended
+// counts as opaque, in the rasteriser and in the ray tracer alike.
+enum class AlphaMode : uint8_t { kOpaque, kMask };
+
+// Metal and roughness, after glTF 2.0 section 3.9. Factors are linear and multiply the texture.
+struct Material {
+  std::string name;
+  glm::vec4 base_color{1.0f};  // 0..1
+  TextureUse base_color_texture;
+  float metallic = 0.0f;               // 0..1
+  float roughness = 1.0f;              // perceptual, 0..1
+  TextureUse metal_roughness_texture;  // green: roughness, blue: metal
+  glm::vec3 emissive{0.0f};            // >= 0
+  TextureUse emissive_texture;
+  // Tangent space: x along u, y against v (up in the image), z along the normal. Off without image.
+  TextureUse normal_texture;
+  float normal_scale = 1.0f;  // of x and y; -1e6..1e6
+  AlphaMode alpha_mode = AlphaMode::kOpaque;
+  float alpha_cutoff = 0.5f;  // of kMask: kept where alpha >= cutoff
+  bool double_sided = false;
+};
+
+// Triangles of one material in world space, counter-clockwise from the front. The vertex arrays
+// have one length; every index is below it. Normals are unit, uvs zero where there were none; the
+// second ones are empty where no texture of the material is read by them, and read as zero.
+// Tangents are the file's, unit or zero, w the side of the bitangent w * cross(normal, tangent); an
+// empty array leaves them to be made (tangents.h).
+struct Mesh {
+  std::string name;
+  uint32_t material = 0;  // indexes Scene::materials
+  std::vector<glm::vec3> positions_ws;
+  std::vector<glm::vec3> normals_ws;
+  std::vector<glm::vec2> uvs;
+  std::vector<glm::vec2> second_uvs;
+  std::vector<glm::vec4> tangents_ws;
+  std::vector<uint32_t> indices;  // 3 per triangle
+  // Drawn where GbufferView::world_from_moving puts it, from a space of its own; traced as it
+  // stands.
+  bool moves = false;
+};
+
+struct Bounds {
+  glm::vec3 low{0.0f};
+  glm::vec3 high{0.0f};
+};
+
+// Everything that is drawn and traced, ready for both: no transforms, no instances. Materials hold
+// at least one entry wherever there is a mesh.
+struct Scene {
+  std::string name;
+  std::vector<Mesh> meshes;
+  std::vector<Material> materials;
+  std::vector<TextureImage> images;
+  std::vector<Camera> cameras;  // the first is the default view; may be empty
+  Bounds bounds_ws;
+  float suggested_radius = 0.0f;      // 0: take a twentieth of the bounds' diagonal
+  std::vector<std::string> warnings;  // one sentence each: what of the file was left out
+};
+
+[[nodiscard]] Bounds bounds_of(const std::vector<Mesh>& meshes);
+[[nodiscard]] uint64_t triangle_count(const Scene& scene);
+
+// A view from above and to the side that holds the whole of `bounds`.
+[[nodiscard]] Camera framing_camera(const Bounds& bounds);
+
+// The camera of that name, or for an empty name the first. Null when there is none.
+[[nodiscard]] const Camera* find_camera(const Scene& scene, const std::string& name);
+
+// The radius where none is given, in scene units.
+[[nodiscard]] float default_radius(const Scene& scene);
+
+// A mesh's texture coordinates at a point of it, by TextureUse::uv_set.
+using MeshUvs = std::array<glm::vec2, 2>;
+[[nodiscard]] MeshUvs uvs_at(const Mesh& mesh, uint32_t vertex);
+// Where a triangle's corners weigh 1 - u - v, u and v.
+[[nodiscard]] MeshUvs uvs_within(const Mesh& mesh, uint32_t triangle, float u, float v);
+
+// Where a use looks for its texel, by the mesh's coordinates. Finite.
+[[nodiscard]] glm::vec2 texture_uv(const TextureUse& use, const MeshUvs& mesh_uvs);
+
+// An image's texel by the mesh's coordinates, 0..1 as stored (no sRGB decoding), as its sampler
+// magnifies it: mip 0.
+[[nodiscard]] glm::vec4 sample_texture(const Scene& scene, const TextureUse& use,
+                                       const MeshUvs& mesh_uvs);
+
+// sRGB to linear, per channel.
+[[nodiscard]] float srgb_to_linear(float encoded);
+
+}  // namespace alcove::sample

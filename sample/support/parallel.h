@@ -1,0 +1,15 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "truth/truth.h"
+
+namespace alcove::sample {
+
+// Runs `row(y)` for every y below `rows` on all processors, in no order. `progress` is called by
+// the calling thread only. `row` must not throw.
+void parallel_rows(uint32_t rows, const std::function<void(uint32_t)>& row,
+                   const Progress& progress = {});
+
+}  // namespace alcove::sample

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "scene/camera.h"
+#include "scene/scene.h"
+#include "support/image.h"
+
+namespace alcove::sample {
+
+// Hash of everything a truth depends on. Add in a fixed order; two keys are equal only when all
+// that was added is (128 bits).
+class CacheKey {
+ public:
+  void add(std::span<const std::byte> bytes);
+  void add(const std::string& text);
+  void add(const Scene& scene);
+  void add(const Camera& camera);
+  template <class T>
+  requires std::is_arithmetic_v<T>
+  void add(T value) { add(std::as_bytes(std::span(&value, 1))); }
+  template <class T>
+  void add(const Image<T>& image) {
+    add(image.width);
+    add(image.height);
+    add(std::as_bytes(std::span(image.pixels)));
+  }
+  std::string hex() const;  // 32 digits
+
+ private:
+  uint64_t low_ = 0x9e3779b97f4a7c15u;
+  uint64_t high_ = 0xc2b2ae3d27d4eb4fu;
+};
+
+// Named float arrays on disk by key. An entry that is damaged, cut short or of another version
+// reads as absent, so it is computed anew; entries are written to a temporary name and renamed.
+// Several processes may share a folder. Failures to write are silent: a cache may always be empty.
+class TruthCache {
+ public:
+  // `$XDG_CACHE_HOME/alcove`, else `~/.cache/alcove`; empty (caches nothing) where neither is
+  // known.
+  [[nodiscard]] static std::filesystem::path default_folder();
+  explicit TruthCache(std::filesystem::path folder);
+
+  // Exactly `count` floats, or nothing.
+  [[nodiscard]] std::optional<std::vector<float>> read(const CacheKey& key, size_t count) const;
+  void write(const CacheKey& key, std::span<const float> values) const;
+
+  template <class T>
+  [[nodiscard]] bool read(const CacheKey& key, Image<T>& image) const {
+    auto values = read(key, floats_of(image).size());
+    if (!values) return false;
+    std::memcpy(image.pixels.data(), values->data(), values->size() * sizeof(float));
+    return true;
+  }
+  template <class T>
+  void write(const CacheKey& key, const Image<T>& image) const {
+    write(key, floats_of(image));
+  }
+
+ private:
+  template <class T>
+  static std::span<const float> floats_of(const Image<T>& image) {
+    const auto bytes = std::as_bytes(std::span(image.pixels));
+    static_assert(sizeof(T) % sizeof(float) == 0);
+    return {reinterpret_cast<const float*>(bytes.data()), bytes.size() / sizeof(float)};
+  }
+
+  std::filesystem::path folder_;
+};
+
+}  // namespace alcove::sample

@@ -1,0 +1,149 @@
+#include "options/render_command.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "options/settings.h"
+#include "scene/builtin_scene.h"
+#include "scene/camera_of.h"
+
+namespace alcove::sample {
+namespace {
+
+const Options kDefaults;
+
+tl::expected<Options, Stop> parse(const std::vector<std::string>& arguments) {
+  std::vector<const char*> texts;
+  texts.reserve(arguments.size());
+  for (const std::string& argument : arguments) {
+    texts.push_back(argument.c_str());
+  }
+  return parse_options(static_cast<int>(texts.size()), texts.data());
+}
+
+Shot some_shot() {
+  Shot shot;
+  shot.camera.eye_ws = {-7.4f, 1.0f / 3.0f, 1e-7f};
+  shot.camera.target_ws = {0.1f, 1.35f, -1.2f};
+  shot.camera.up_ws = {0.0f, 0.0f, 1.0f};
+  shot.camera.fov_y = glm::radians(60.0f);
+  shot.camera.near_plane = 0.05f;
+  shot.camera.far_plane = std::numeric_limits<float>::infinity();
+  shot.camera.reversed_z = true;
+  shot.settings = passes::quality_settings(passes::Quality::high, 0.7f);
+  shot.width = 641;
+  shot.height = 359;
+  return shot;
+}
+
+// That what is read back draws the same.
+void expect_round_trip(const Options& options, const Shot& shot) {
+  const std::vector<std::string> arguments = render_arguments(options, shot);
+  SCOPED_TRACE(shell_line(arguments));
+  const auto read = parse(arguments);
+  ASSERT_TRUE(read) << read.error().text;
+  EXPECT_EQ(read->command, Command::kRender);
+  EXPECT_EQ(read->scene, options.scene);
+  EXPECT_EQ(read->environment, options.environment);
+  EXPECT_EQ(read->occlusion.normals, options.occlusion.normals);
+  EXPECT_EQ(read->view.width, shot.width);
+  EXPECT_EQ(read->view.height, shot.height);
+  const Scene scene = builtin_scene();
+  const auto settings = occlusion_settings(read->occlusion, scene);
+  ASSERT_TRUE(settings) << settings.error();
+  EXPECT_EQ(*settings, shot.settings);
+  const auto camera = camera_of(read->view, scene);
+  ASSERT_TRUE(camera) << camera.error();
+  EXPECT_EQ(camera->eye_ws, shot.camera.eye_ws);
+  EXPECT_EQ(camera->target_ws, shot.camera.target_ws);
+  EXPECT_EQ(camera->up_ws, shot.camera.up_ws);
+  EXPECT_EQ(camera->near_plane, shot.camera.near_plane);
+  EXPECT_EQ(camera->far_plane, shot.camera.far_plane);
+  EXPECT_EQ(camera->reversed_z, shot.camera.reversed_z);
+  EXPECT_EQ(camera->orthographic, shot.camera.orthographic);
+  if (shot.camera.orthographic) {
+    EXPECT_EQ(camera->ortho_height, shot.camera.ortho_height);
+  } else {
+    EXPECT_EQ(camera->fov_y, shot.camera.fov_y);
+  }
+  const std::vector<float> roughness =
+      shot.roughness ? std::vector<float>{*shot.roughness} : std::vector<float>{};
+  EXPECT_EQ(read->occlusion.roughness, roughness);
+}
+
+TEST(CommandLine, AShotIsReadBackAsItIs) { expect_round_trip(kDefaults, some_shot()); }
+
+TEST(CommandLine, EverySettingIsReadBack) {
+  Shot shot = some_shot();
+  shot.roughness = 0.3f;
+  passes::OcclusionSettings& settings = shot.settings;
+  settings.radius = 0.1f;
+  settings.slices = 3;
+  settings.steps = 7;
+  settings.estimator = passes::Estimator::heuristic;
+  settings.weighting = passes::Weighting::uniform;
+  settings.thickness = 1.0f / 7.0f;
+  settings.thickness_unit = passes::ThicknessUnit::back_faces;
+  settings.fill = 0.123456789f;
+  settings.blend = 1e-6f;
+  settings.falloff = 0.25f;
+  settings.divisor = 4;
+  settings.pattern = passes::Pattern::memo;
+  settings.parts = {.snapping = false,
+                    .continuation = false,
+                    .unseen = false,
+                    .grouping = passes::Grouping::pattern};
+  settings.depth_mips = 5;
+  settings.filter_reach = 0;
+  settings.filter_tolerance_px = 2.5f;
+  settings.history_frames = 17;
+  settings.clamp_width = 1.5f;
+  settings.bent_normal = true;
+  settings.specular = passes::Specular::smooth_cone;
+  settings.precision = passes::Precision::float32;
+  expect_round_trip(kDefaults, shot);
+}
+
+TEST(CommandLine, SceneLightAndNormalsAreThoseOfTheOptions) {
+  Options options;
+  options.scene = "a scene's file.glb";
+  options.environment = "sky.hdr";
+  options.occlusion.normals = NormalSource::kGeometric;
+  expect_round_trip(options, some_shot());
+}
+
+TEST(CommandLine, AnOrthographicViewHasAHeight) {
+  Shot shot = some_shot();
+  shot.camera.orthographic = true;
+  shot.camera.ortho_height = 3.3f;
+  shot.camera.far_plane = 50.0f;
+  expect_round_trip(kDefaults, shot);
+}
+
+TEST(CommandLine, AnyAngleOfViewIsReadBack) {
+  Shot shot = some_shot();
+  for (float fov_y = 0.05f; fov_y < 2.9f; fov_y += 0.0717f) {
+    shot.camera.fov_y = fov_y;
+    const auto read = parse(render_arguments(kDefaults, shot));
+    ASSERT_TRUE(read);
+    // Not every float is some angle in degrees.
+    EXPECT_FLOAT_EQ(*read->view.fov_y, fov_y);
+  }
+}
+
+TEST(CommandLine, APresetNeedsNoOtherSetting) {
+  const std::string line = shell_line(render_arguments(kDefaults, some_shot()));
+  EXPECT_NE(line.find("--quality high --radius 0.7"), std::string::npos) << line;
+  EXPECT_EQ(line.find("--set"), std::string::npos) << line;
+  EXPECT_NE(line.find("--fov-y 60 "), std::string::npos) << line;
+}
+
+TEST(CommandLine, TheShellReadsWhatIsQuoted) {
+  EXPECT_EQ(shell_line({"alcove", "it's a file.glb", "", "$x"}),
+            R"(alcove 'it'\''s a file.glb' '' '$x')");
+}
+
+}  // namespace
+}  // namespace alcove::sample
