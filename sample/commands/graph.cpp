@@ -3,17 +3,15 @@
 #include "alcove/framegraph/compile.h"
 #include "alcove/framegraph/print.h"
 #include "commands/commands.h"
-#include "options/settings.h"
-#include "render/frame_renderer.h"
+#include "render/stage.h"
 #include "render/surfaces.h"
-#include "scene/load_scene.h"
 
 namespace alcove::sample {
 namespace {
 
-// The occlusion's frame as the sample declares it, with images that stand for an engine's.
-tl::expected<void, std::string> declare(framegraph::Graph& graph, Gpu& gpu, const Options& options,
-                                        const passes::OcclusionSettings& settings) {
+// The occlusion's frame as the sample declares it, with images that stand for the g-buffer's.
+tl::expected<void, std::string> declare(framegraph::Graph& graph, Stage& stage,
+                                        const Options& options) {
   const auto extent = framegraph::Extent::absolute(options.view.width, options.view.height);
   const auto texture = [&](const char* name, VkFormat format) {
     auto pass = graph.add_pass(name);
@@ -24,27 +22,36 @@ tl::expected<void, std::string> declare(framegraph::Graph& graph, Gpu& gpu, cons
     return filled;
   };
   const CameraMatrices matrices =
-      camera_matrices(Camera{}, options.view.width, options.view.height);
+      camera_matrices(stage.camera, options.view.width, options.view.height);
   passes::View view;
   view.clip_from_view = to_matrix(matrices.clip_from_view);
-  const passes::Frame frame{graph, gpu.kernels(), view, 0, view};
-  passes::OcclusionInputs inputs{.depth_ndc = texture("depth", VK_FORMAT_R32_SFLOAT)};
-  if (options.occlusion.normals != NormalSource::kDepth) {
-    inputs.normals = texture("normals", kNormalFormat);
+  view.view_from_world = to_matrix(matrices.view_from_world);
+  const HiddenDepths hidden = hidden_depths_of(stage.settings);
+  Surfaces surfaces;
+  surfaces.normals = options.occlusion.normals;
+  if (!options.occlusion.roughness.empty()) {
+    surfaces.roughness = options.occlusion.roughness.front();
   }
-  if (passes::needs_back_depth(settings.estimator, settings.thickness_unit)) {
-    inputs.back_depth_ndc = texture("back-face depth", VK_FORMAT_R32_SFLOAT);
+  surfaces.gbuffer.depth = texture("depth", VK_FORMAT_R32_SFLOAT);
+  surfaces.gbuffer.normal = texture("normals", kNormalFormat);
+  surfaces.gbuffer.albedo = texture("albedo and roughness", kAlbedoFormat);
+  if (hidden.back_faces) {
+    surfaces.back_depth = texture("back-face depth", VK_FORMAT_R32_SFLOAT);
   }
-  if (passes::needs_second_depth(settings.estimator, settings.depth_layers)) {
-    inputs.second_depth_ndc = texture("second depth", VK_FORMAT_R32_SFLOAT);
+  if (hidden.second_layer) {
+    surfaces.second_depth = texture("second depth", VK_FORMAT_R32_SFLOAT);
   }
-  const auto outputs = passes::add_occlusion(frame, inputs, settings);
+  const auto outputs =
+      passes::add_occlusion({graph, stage.gpu->kernels(), view}, occlusion_inputs(surfaces),
+                            with_roughness(stage.settings, surfaces));
   if (!outputs) {
     return tl::unexpected(outputs.error().message);
   }
-  graph.output(outputs->visibility);
-  if (outputs->bent_normal) {
-    graph.output(outputs->bent_normal);
+  for (const framegraph::Texture output :
+       {outputs->visibility, outputs->bent_normal, outputs->specular}) {
+    if (output) {
+      graph.output(output);
+    }
   }
   return {};
 }
@@ -52,24 +59,16 @@ tl::expected<void, std::string> declare(framegraph::Graph& graph, Gpu& gpu, cons
 }  // namespace
 
 tl::expected<void, std::string> run_graph(const Options& options) {
-  const auto scene = load_scene(options.scene);
-  if (!scene) {
-    return tl::unexpected(scene.error());
-  }
-  const auto settings = occlusion_settings(options.occlusion, *scene);
-  if (!settings) {
-    return tl::unexpected(settings.error());
-  }
-  auto gpu = Gpu::create({.validation = options.validation, .index = options.device});
-  if (!gpu) {
-    return tl::unexpected(gpu.error());
+  auto stage = stage_of(options);
+  if (!stage) {
+    return tl::unexpected(stage.error());
   }
   framegraph::Graph graph;
-  if (auto declared = declare(graph, **gpu, options, *settings); !declared) {
+  if (auto declared = declare(graph, *stage, options); !declared) {
     return tl::unexpected(declared.error());
   }
   const framegraph::GraphDescription& description = graph.description();
-  const auto plan = framegraph::compile(description, (*gpu)->executor().limits());
+  const auto plan = framegraph::compile(description, stage->gpu->executor().limits());
   if (!plan) {
     return tl::unexpected(framegraph::to_string(plan.error()));
   }

@@ -18,7 +18,7 @@ void add_output(CLI::App& app, Options& options) {
 void add_render(CLI::App& app, Options& options) {
   add_scene(app, options.scene);
   add_view(app, options.view);
-  add_course(app, options.view, "how many to render; the last is written");
+  add_course(app, options.view, "how many to render; 1. The last is written");
   add_occlusion(app, options.occlusion);
   add_light(app, options);
   add_output(app, options);
@@ -67,10 +67,11 @@ void add_recommend(CLI::App& app, Options& options) {
 }
 
 void add_graph(CLI::App& app, Options& options) {
+  add_scene(app, options.scene);
   add_view(app, options.view);
-  add_course(app, options.view, "how many to render; the last is written");
   add_occlusion(app, options.occlusion);
   add_format(app, options.graph_format);
+  add_device(app, options);
 }
 
 void add_window(CLI::App& app, Options& options) {
@@ -110,7 +111,7 @@ constexpr std::array<Entry, 9> kCommands{{
      add_bench},
     {Command::kRecommend, "recommend",
      "the least settings that hold: within a time, or within an error", add_recommend},
-    {Command::kGraph, "graph", "the compiled plan of a frame; needs no device", add_graph},
+    {Command::kGraph, "graph", "the compiled plan of a frame: passes, barriers, memory", add_graph},
     {Command::kView, "view",
      "a window to orbit a scene in and see what each setting does and costs", add_window},
     {Command::kDoctor, "doctor", "the Vulkan devices here and what they lack", add_nothing},
