@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <iostream>
@@ -136,7 +137,12 @@ Done run_ablate(const Options& options) {
   }
   std::cout << table_of(trials->rows) << std::flush;
   std::vector<TwinsRow> twins_rows;
+  const std::uint32_t largest = stage->gpu->device().properties().limits.maxImageDimension2D;
   for (const Twins& twins : twins_of(stage->camera, options.view.height)) {
+    if (twins.scale * std::max(options.view.width, options.view.height) > largest) {
+      std::cout << "Left out: " << twins.name << ", which the device has no image for\n";
+      continue;
+    }
     auto row = run_twins(*stage->gpu, *stage, options, twins);
     if (!row) {
       return Failure(std::move(row.error()));

@@ -115,9 +115,6 @@ tl::expected<void, std::string> run_compare(const Options& options) {
       })
       .and_then([&] { return write_text(options.out / "report.json", report.dump(2) + "\n"); })
       .map([&] {
-        for (const std::string& warning : rendering->scene.warnings) {
-          std::cout << "note: " << warning << "\n";
-        }
         std::cout << time_table(*rendering) << error_table(errors)
                   << indirect_error_table(indirect_errors) << lit_table
                   << "Images and report.json are in " << options.out.string()

@@ -17,9 +17,6 @@ tl::expected<void, std::string> run_render(const Options& options) {
                           report_of(*rendering, options).dump(2) + "\n");
       })
       .map([&] {
-        for (const std::string& warning : rendering->scene.warnings) {
-          std::cout << "note: " << warning << "\n";
-        }
         std::cout << time_table(*rendering) << "Images and report.json are in "
                   << options.out.string() << "\n";
       });

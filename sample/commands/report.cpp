@@ -4,6 +4,7 @@
 #include <limits>
 #include <sstream>
 
+#include "alcove/passes/setting_names.h"
 #include "options/settings.h"
 
 namespace alcove::sample {
@@ -53,6 +54,7 @@ Json report_of(const Rendering& rendering, const Options& options) {
   report["settings"] = to_json(rendering.settings);
   report.update(costs_json(rendering.costs));
   report["with_specular"] = costs_json(rendering.costs_with_specular);
+  report["with_specular"]["model"] = passes::name_of(specular_model(rendering.settings));
   report["memory"] = {{"transient_bytes", rendering.memory.aliased},
                       {"transient_bytes_without_aliasing", rendering.memory.unaliased},
                       {"transient_bytes_lower_bound", rendering.memory.lower_bound},

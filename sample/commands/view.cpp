@@ -10,9 +10,6 @@ tl::expected<void, std::string> run_view(const Options& options) {
   if (!view) {
     return tl::unexpected(std::move(view.error()));
   }
-  for (const std::string& warning : (*view)->scene().warnings) {
-    std::cout << "note: " << warning << "\n";
-  }
   const std::uint32_t frames = options.view.frames;
   while (frames == 0 || (*view)->drawn_frames() < frames) {
     if ((*view)->drawn_frames() + 1 == frames && !options.out.empty()) {

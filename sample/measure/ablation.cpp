@@ -31,20 +31,26 @@ class TrialList {
   std::vector<Trial> trials_;
 };
 
+// Only horizons and the heuristic have a falloff.
+void use(OcclusionSettings& settings, Estimator estimator) {
+  settings.estimator = estimator;
+  if (estimator == Estimator::bitmask || estimator == Estimator::connected) {
+    settings.falloff = 0.0f;
+  }
+}
+
 void add_estimators(TrialList& list) {
   const char* part = "estimator";
   list.add(part, "horizons, infinitely thick",
-           [](OcclusionSettings& s) { s.estimator = Estimator::horizons; });
+           [](OcclusionSettings& s) { use(s, Estimator::horizons); });
   list.add(part, "the memo's thickness heuristic",
-           [](OcclusionSettings& s) { s.estimator = Estimator::heuristic; });
+           [](OcclusionSettings& s) { use(s, Estimator::heuristic); });
   list.add(part, "plain bitmask", [](OcclusionSettings& s) {
-    s.estimator = Estimator::bitmask;
+    use(s, Estimator::bitmask);
     s.fill = 0.0f;
   });
-  list.add(part, "plain bitmask, filled",
-           [](OcclusionSettings& s) { s.estimator = Estimator::bitmask; });
-  list.add(part, "connected samples",
-           [](OcclusionSettings& s) { s.estimator = Estimator::connected; });
+  list.add(part, "plain bitmask, filled", [](OcclusionSettings& s) { use(s, Estimator::bitmask); });
+  list.add(part, "connected samples", [](OcclusionSettings& s) { use(s, Estimator::connected); });
 }
 
 void add_occluders(TrialList& list, const OcclusionSettings& base) {

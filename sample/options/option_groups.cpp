@@ -218,6 +218,13 @@ void add_light(CLI::App& app, Options& options) {
            [&](const OptionValue& given) { options.environment = given.text; });
 }
 
+void add_cut_blends(CLI::App& app, bool& cut_blends) {
+  Group(app).add_flag("--cut-blends",
+                      "cut materials that blend out at half their alpha, as leaves want it; else "
+                      "they are opaque",
+                      cut_blends);
+}
+
 void add_lit(CLI::App& app, bool& lit) {
   Group(app).add_flag(
       "--lit",

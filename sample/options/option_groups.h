@@ -28,6 +28,7 @@ void add_no_cache(CLI::App& app, bool& use_cache);
 // What `recommend` keeps to.
 void add_limits(CLI::App& app, Options& options);
 void add_light(CLI::App& app, Options& options);
+void add_cut_blends(CLI::App& app, bool& cut_blends);
 void add_lit(CLI::App& app, bool& lit);
 void add_format(CLI::App& app, GraphFormat& format);
 void add_device(CLI::App& app, Options& options);

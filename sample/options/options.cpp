@@ -17,6 +17,7 @@ void add_output(CLI::App& app, Options& options) {
 
 void add_render(CLI::App& app, Options& options) {
   add_scene(app, options.scene);
+  add_cut_blends(app, options.cut_blends);
   add_view(app, options.view);
   add_course(app, options.view, "how many to render; 1. The last is written");
   add_occlusion(app, options.occlusion);
@@ -32,6 +33,7 @@ void add_compare(CLI::App& app, Options& options) {
 
 void add_motion_command(CLI::App& app, Options& options) {
   add_scene(app, options.scene);
+  add_cut_blends(app, options.cut_blends);
   add_motion(app, options);
   add_view(app, options.view);
   add_occlusion(app, options.occlusion);
@@ -49,18 +51,21 @@ void add_comparison(CLI::App& app, Options& options) {
 
 void add_ablate(CLI::App& app, Options& options) {
   add_scene(app, options.scene);
+  add_cut_blends(app, options.cut_blends);
   add_comparison(app, options);
   add_output(app, options);
 }
 
 void add_bench(CLI::App& app, Options& options) {
   add_scenes(app, options.scenes);
+  add_cut_blends(app, options.cut_blends);
   add_comparison(app, options);
   add_output(app, options);
 }
 
 void add_recommend(CLI::App& app, Options& options) {
   add_scene(app, options.scene);
+  add_cut_blends(app, options.cut_blends);
   add_limits(app, options);
   add_comparison(app, options);
   add_device(app, options);
@@ -68,6 +73,7 @@ void add_recommend(CLI::App& app, Options& options) {
 
 void add_graph(CLI::App& app, Options& options) {
   add_scene(app, options.scene);
+  add_cut_blends(app, options.cut_blends);
   add_view(app, options.view);
   add_occlusion(app, options.occlusion);
   add_format(app, options.graph_format);
@@ -78,6 +84,7 @@ void add_window(CLI::App& app, Options& options) {
   options.view.frames = 0;
   options.out.clear();
   add_scene(app, options.scene);
+  add_cut_blends(app, options.cut_blends);
   add_view(app, options.view);
   add_course(app, options.view, "how many to draw; else until the window is closed");
   add_occlusion(app, options.occlusion);

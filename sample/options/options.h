@@ -63,6 +63,7 @@ struct Options {
   Command command = Command::kRender;
   std::string scene;                  // empty: the built-in one
   std::vector<std::string> scenes;    // bench: any number, each as `scene`
+  bool cut_blends = false;            // what blends is cut out, not opaque
   std::filesystem::path environment;  // .hdr or .exr; empty: the procedural sky
   bool lit = false;                   // compare: also trace the lit picture
   ViewOptions view;

@@ -82,6 +82,7 @@ struct FrameRenderer::State {
   std::unique_ptr<GbufferRenderer> gbuffer;
   std::optional<GbufferView> drawn_view;  // what the targets hold
   HiddenDepths drawn_depths;              // of that view
+  std::optional<HiddenDepths> compiled;   // what was ever drawn beside the g-buffer; none: nothing
   std::vector<PassTime> gbuffer_times;    // of their last drawing
   std::array<std::unique_ptr<GpuImage>, kTargetCount> targets;
   std::unique_ptr<HostBuffer> environment;  // uploaded in the frame that is lit
@@ -138,10 +139,15 @@ tl::expected<void, std::string> FrameRenderer::State::draw_gbuffer(const FrameRe
     }
     return {};
   };
-  auto report = gpu.run(declare);
-  if (!report) {
-    return Failure(std::move(report.error()));
+  // The first drawing also compiles shaders.
+  const int drawings = compiled && compiled->covers(hidden) ? 1 : 2;
+  for (int i = 0; i < drawings; ++i) {
+    auto report = gpu.run(declare);
+    if (!report) {
+      return Failure(std::move(report.error()));
+    }
   }
+  compiled = hidden.with(compiled.value_or(hidden));
   append_times(cost, false);
   drawn_view = request.view;
   drawn_depths = hidden;

@@ -79,7 +79,8 @@ struct GbufferRenderer::State {
   Gpu& gpu;
   VkDevice device;
   std::vector<TriangleDraw> draws;
-  std::vector<maths::GbufferDraw> constants;
+  std::vector<maths::GbufferDraw> constants;  // by material, as are the next
+  std::vector<bool> double_sided;
   std::unique_ptr<HostBuffer> vertices;
   std::unique_ptr<HostBuffer> parameters;  // one for each frame in flight
   std::optional<GbufferView> written;      // the latest of them
@@ -118,6 +119,7 @@ tl::expected<void, std::string> GbufferRenderer::State::upload(const Scene& scen
   textures = std::move(*made);
   for (const Material& material : scene.materials) {
     constants.push_back(draw_constants(material, *textures));
+    double_sided.push_back(material.double_sided);
   }
   return {};
 }
@@ -221,7 +223,6 @@ void GbufferRenderer::State::record(RecordContext& context, const Gbuffer& gbuff
   using Kind = GbufferPipelines::Kind;
   const Kind kind = drawing.first ? Kind::second_layer : Kind::all;
   const auto& vk = context.vk;
-  vk.vkCmdSetCullMode(context.commands, drawing.culled);
   vk.vkCmdBindPipeline(context.commands, VK_PIPELINE_BIND_POINT_GRAPHICS,
                        pipelines->pipeline(kind, drawing.reversed_z));
   const VkPipelineLayout layout = pipelines->layout();
@@ -236,6 +237,10 @@ void GbufferRenderer::State::record(RecordContext& context, const Gbuffer& gbuff
   for (const TriangleDraw& draw : draws) {
     maths::GbufferDraw pushed = constants[draw.material];
     pushed.moves = draw.moves ? 1 : 0;
+    // A sheet of two sides has no back that would only tell how thick it is.
+    const bool whole = drawing.first && double_sided[draw.material];
+    vk.vkCmdSetCullMode(context.commands,
+                        whole ? VkCullModeFlags{VK_CULL_MODE_NONE} : drawing.culled);
     vk.vkCmdPushConstants(context.commands, layout, kDrawStages, 0, sizeof(pushed), &pushed);
     vk.vkCmdDraw(context.commands, draw.vertex_count, 1, draw.first_vertex, 0);
   }

@@ -61,8 +61,8 @@ class GbufferRenderer {
   [[nodiscard]] framegraph::Texture add_back_faces(framegraph::Graph& graph,
                                                    const GbufferView& view,
                                                    framegraph::Texture depth);
-  // The same of the nearest front faces that lie behind Gbuffer::depth by more than a thousandth of
-  // its distance: `first`, of the same view.
+  // The same of the nearest front faces, and any faces of double-sided materials, that lie behind
+  // Gbuffer::depth by more than a thousandth of its distance: `first`, of the same view.
   [[nodiscard]] framegraph::Texture add_second_layer(framegraph::Graph& graph,
                                                      const GbufferView& view,
                                                      framegraph::Texture first,

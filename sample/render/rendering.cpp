@@ -11,6 +11,7 @@
 #include "scene/camera.h"
 #include "support/image_io.h"
 #include "support/median.h"
+#include "support/progress.h"
 #include "truth/surface_points.h"
 
 namespace alcove::sample {
@@ -45,8 +46,9 @@ Costs medians(const std::vector<FrameCost>& frames) {
 
 // What is asked of a frame.
 enum class Outputs : std::uint8_t {
-  kVisibility,  // and a bent normal, where the settings say so
-  kSpecular,    // and specular occlusion
+  kVisibility,   // by the settings as they are, with specular occlusion only where they have it
+  kSpecular,     // and specular occlusion
+  kBentNormals,  // visibility, bent normals and multi-bounce
   kAll,
 };
 
@@ -61,6 +63,8 @@ class Run {
     }
   }
 
+  std::uint32_t frames() const { return options_.view.frames; }
+
   Camera camera(std::uint32_t frame) const {
     return orbited(camera_, options_.view.orbit * static_cast<float>(frame));
   }
@@ -74,14 +78,11 @@ class Run {
     request.index = frame;
     request.still_frames = options_.view.orbit == 0.0f ? frame : 0;
     request.occlusion = settings_;
-    switch (outputs) {
-      case Outputs::kVisibility:
-        request.occlusion.specular = passes::Specular::none;
-        break;
-      case Outputs::kSpecular:
-        break;
-      case Outputs::kAll:
-        request.occlusion.bent_normal = true;
+    if (outputs == Outputs::kSpecular || outputs == Outputs::kAll) {
+      request.occlusion.specular = specular_model(settings_);
+    }
+    if (outputs == Outputs::kBentNormals || outputs == Outputs::kAll) {
+      request.occlusion.bent_normal = true;
     }
     request.light = outputs == Outputs::kAll ? &light_ : &timed_light_;
     return request;
@@ -99,17 +100,32 @@ class Run {
   IndirectRequest timed_light_;  // one roughness, and no light
 };
 
+// Tells how many of all frames that will be drawn have been.
+class FrameCounter {
+ public:
+  explicit FrameCounter(std::uint32_t total) : total_(total) {}
+  void count() { progress_(static_cast<double>(++drawn_) / total_); }
+
+ private:
+  Progress progress_ = print_progress("frames");
+  std::uint32_t drawn_ = 0;
+  std::uint32_t total_;
+};
+
+std::uint32_t timed_frames(const Run& run) { return std::max(run.frames(), kTimedFrames + 1); }
+
 // Draws the run and times its last frames; a short run's last frame is drawn again until its time
 // is known.
-tl::expected<Costs, std::string> time_run(FrameRenderer& renderer, const Run& run,
-                                          std::uint32_t frames, Outputs outputs) {
+tl::expected<Costs, std::string> time_run(FrameRenderer& renderer, const Run& run, Outputs outputs,
+                                          FrameCounter& counter) {
   std::vector<FrameCost> costs;
-  const std::uint32_t drawn = std::max(frames, kTimedFrames + 1);
+  const std::uint32_t drawn = timed_frames(run);
   for (std::uint32_t i = 0; i < drawn; ++i) {
-    auto cost = renderer.draw(run.request(std::min(i, frames - 1), outputs));
+    auto cost = renderer.draw(run.request(std::min(i, run.frames() - 1), outputs));
     if (!cost) {
       return Failure(std::move(cost.error()));
     }
+    counter.count();
     if (i + kTimedFrames >= drawn) {
       costs.push_back(std::move(*cost));
     }
@@ -117,17 +133,38 @@ tl::expected<Costs, std::string> time_run(FrameRenderer& renderer, const Run& ru
   return medians(costs);
 }
 
-tl::expected<FrameImages, std::string> draw_images(FrameRenderer& renderer, const Run& run,
-                                                   std::uint32_t frames) {
-  for (std::uint32_t i = 0; i + 1 < frames; ++i) {
-    if (auto cost = renderer.draw(run.request(i, Outputs::kAll)); !cost) {
+tl::expected<FrameImages, std::string> draw_run(FrameRenderer& renderer, const Run& run,
+                                                Outputs outputs, FrameCounter& counter) {
+  for (std::uint32_t i = 0; i + 1 < run.frames(); ++i) {
+    if (auto cost = renderer.draw(run.request(i, outputs)); !cost) {
       return Failure(std::move(cost.error()));
     }
+    counter.count();
   }
-  return renderer.draw_and_read(run.request(frames - 1, Outputs::kAll));
+  return renderer.draw_and_read(run.request(run.frames() - 1, outputs));
+}
+
+// Slices that look for lobes turn towards them and tell less of visibility: where the settings want
+// none, visibility is that of a run without, as it is timed.
+tl::expected<FrameImages, std::string> draw_images(FrameRenderer& renderer, const Run& run,
+                                                   bool one_run, FrameCounter& counter) {
+  auto all = draw_run(renderer, run, Outputs::kAll, counter);
+  if (!all || one_run) {
+    return all;
+  }
+  auto images = draw_run(renderer, run, Outputs::kBentNormals, counter);
+  if (images) {
+    images->specular_occlusion = std::move(all->specular_occlusion);
+    images->lit = std::move(all->lit);
+  }
+  return images;
 }
 
 }  // namespace
+
+passes::Specular specular_model(const passes::OcclusionSettings& settings) {
+  return settings.specular == passes::Specular::none ? passes::Specular::slices : settings.specular;
+}
 
 tl::expected<Rendering, std::string> render(const Options& options) {
   auto stage = stage_of(options);
@@ -137,9 +174,6 @@ tl::expected<Rendering, std::string> render(const Options& options) {
   Rendering result;
   result.scene = std::move(stage->scene);
   result.settings = stage->settings;
-  if (result.settings.specular == passes::Specular::none) {
-    result.settings.specular = passes::Specular::slices;
-  }
   auto environment = load_environment(options.environment);
   if (!environment) {
     return Failure(std::move(environment.error()));
@@ -150,25 +184,26 @@ tl::expected<Rendering, std::string> render(const Options& options) {
   result.driver = gpu.device().driver();
 
   const Run run(options, stage->camera, result.settings, result.light);
-  const std::uint32_t frames = options.view.frames;
-  result.camera = run.camera(frames - 1);
+  result.camera = run.camera(run.frames() - 1);
   auto renderer = FrameRenderer::create(
       gpu, result.scene, {options.view.width, options.view.height}, options.occlusion.normals);
   if (!renderer) {
     return Failure(std::move(renderer.error()));
   }
-  auto costs = time_run(**renderer, run, frames, Outputs::kVisibility);
+  const bool one_run = result.settings.specular == specular_model(result.settings);
+  FrameCounter counter(2 * timed_frames(run) + (one_run ? 1 : 2) * (run.frames() - 1));
+  auto costs = time_run(**renderer, run, Outputs::kVisibility, counter);
   if (!costs) {
     return Failure(std::move(costs.error()));
   }
   result.costs = std::move(*costs);
   result.memory = (*renderer)->memory();
-  costs = time_run(**renderer, run, frames, Outputs::kSpecular);
+  costs = time_run(**renderer, run, Outputs::kSpecular, counter);
   if (!costs) {
     return Failure(std::move(costs.error()));
   }
   result.costs_with_specular = std::move(*costs);
-  auto images = draw_images(**renderer, run, frames);
+  auto images = draw_images(**renderer, run, one_run, counter);
   if (!images) {
     return Failure(std::move(images.error()));
   }

@@ -25,13 +25,18 @@ struct Rendering {
   Camera camera;  // of the last frame
   passes::OcclusionSettings settings;
   IndirectRequest light;
-  FrameImages images;  // of the last frame, with every output
-  Costs costs;         // with visibility as the only output
-  Costs costs_with_specular;
+  // Of the last frame. Specular occlusion and what is lit with it are of a run of their own where
+  // the settings want none.
+  FrameImages images;
+  Costs costs;                // by the settings as they are
+  Costs costs_with_specular;  // and with specular occlusion
   framegraph::MemoryStatistics memory;
   std::string device;
   std::string driver;
 };
+
+// The model that specular occlusion is drawn by: slices where the settings want none.
+[[nodiscard]] passes::Specular specular_model(const passes::OcclusionSettings& settings);
 
 // Loads the scene, draws its frames and reads the last one back.
 [[nodiscard]] tl::expected<Rendering, std::string> render(const Options& options);

@@ -1,5 +1,6 @@
 #include "render/stage.h"
 
+#include <iostream>
 #include <utility>
 
 #include "options/settings.h"
@@ -24,11 +25,14 @@ tl::expected<std::unique_ptr<Gpu>, std::string> open_gpu(
 tl::expected<Stage, std::string> stage_of(const Options& options,
                                           const std::vector<const char*>& surface_extensions) {
   Stage stage;
-  auto scene = load_scene(options.scene);
+  auto scene = load_scene(options.scene, options.cut_blends);
   if (!scene) {
     return Failure(std::move(scene.error()));
   }
   stage.scene = std::move(*scene);
+  for (const std::string& warning : stage.scene.warnings) {
+    std::cerr << "note: " << warning << "\n";
+  }
   const auto camera = camera_of(options.view, stage.scene);
   if (!camera) {
     return Failure(camera.error());

@@ -22,7 +22,8 @@ struct Stage {
 };
 
 // Loads the scene, finds camera and settings and opens the device, in this order: the cheapest
-// mistake is told first. `surface_extensions` are those of a window to present to.
+// mistake is told first. What the scene left out goes to stderr as notes. `surface_extensions` are
+// those of a window to present to.
 [[nodiscard]] tl::expected<Stage, std::string> stage_of(
     const Options& options, const std::vector<const char*>& surface_extensions = {});
 

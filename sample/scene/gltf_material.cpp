@@ -82,7 +82,9 @@ tl::expected<void, std::string> MaterialReader::add(const tinygltf::Material& in
   for (size_t c = 0; c < 3 && c < in.emissiveFactor.size(); ++c) {
     out.emissive[static_cast<int>(c)] = clamped(in.emissiveFactor[c], 0.0, 1e6, 0.0);
   }
-  out.alpha_mode = in.alphaMode == "MASK" ? AlphaMode::kMask : AlphaMode::kOpaque;
+  out.alpha_mode = in.alphaMode == "MASK"    ? AlphaMode::kMask
+                   : in.alphaMode == "BLEND" ? AlphaMode::kBlend
+                                             : AlphaMode::kOpaque;
   out.alpha_cutoff = clamped(in.alphaCutoff, 0.0, 1e6, 0.5);
   out.double_sided = in.doubleSided;
   if (auto added = add_textures(in, out); !added) {

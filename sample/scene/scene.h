@@ -44,7 +44,11 @@ struct TextureUse {
 
 // A g-buffer holds one surface a pixel, and an occluder either blocks or does not: what is blended
 // counts as opaque, in the rasteriser and in the ray tracer alike.
-enum class AlphaMode : uint8_t { kOpaque, kMask };
+enum class AlphaMode : uint8_t {
+  kOpaque,
+  kMask,   // cut out below alpha_cutoff
+  kBlend,  // drawn and traced as opaque: a depth buffer has no half surfaces
+};
 
 // Metal and roughness, after glTF 2.0 section 3.9. Factors are linear and multiply the texture.
 struct Material {

@@ -42,7 +42,7 @@ bool attach(RTCDevice device, RTCScene tree, const Scene& scene, unsigned id) {
   if (room) {
     std::memcpy(vertices, mesh.positions_ws.data(), mesh.positions_ws.size() * sizeof(glm::vec3));
     std::memcpy(indices, mesh.indices.data(), mesh.indices.size() * sizeof(uint32_t));
-    if (scene.materials[mesh.material].alpha_mode != AlphaMode::kOpaque) {
+    if (scene.materials[mesh.material].alpha_mode == AlphaMode::kMask) {
       rtcSetGeometryUserData(geometry, const_cast<Scene*>(&scene));
       rtcSetGeometryIntersectFilterFunction(geometry, pass_cut_out);
       rtcSetGeometryOccludedFilterFunction(geometry, pass_cut_out);

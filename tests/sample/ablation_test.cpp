@@ -37,6 +37,17 @@ TEST(Trials, ChangeOneThingEachAndNeverNothing) {
   }
 }
 
+TEST(Trials, OnlyHorizonsKeepAFalloff) {
+  OcclusionSettings base = passes::quality_settings(Quality::medium, 0.5f);
+  base.estimator = passes::Estimator::horizons;
+  base.falloff = 0.5f;
+  for (const Trial& trial : trials_of(base)) {
+    const bool has_falloff = trial.settings.estimator == passes::Estimator::horizons ||
+                             trial.settings.estimator == passes::Estimator::heuristic;
+    EXPECT_EQ(trial.settings.falloff, has_falloff ? 0.5f : 0.0f) << trial.name;
+  }
+}
+
 class AblationTest : public testing::Test {
  protected:
   // Ray-traced visibility of what `images` show, and where there are surfaces.

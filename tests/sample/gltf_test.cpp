@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "gltf_maker.h"
+#include "scene/load_scene.h"
 #include "temporary_folder.h"
 
 namespace alcove::sample {
@@ -154,6 +155,25 @@ TEST(Gltf, WhatIsLeftOutIsSaid) {
           "it is left out.",
           "Mesh 0 has colours of its vertices, which are left out.",
           "texture 0 has no image that is read here and is left out."));
+}
+
+TEST(Gltf, WhatBlendsIsOpaqueUnlessItIsCutOutAndBothAreSaid) {
+  GltfMaker maker = GltfMaker::triangle();
+  maker.json["materials"] = {{{"name", "leaf"}, {"alphaMode", "BLEND"}}};
+  maker.primitive()["material"] = 0;
+  const TemporaryFolder folder;
+  const std::string file = (folder.path / "leaf.gltf").string();
+  const std::vector<uint8_t> bytes = maker.gltf();
+  std::ofstream(file, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()),
+             static_cast<std::streamsize>(bytes.size()));
+  for (const bool cut : {false, true}) {
+    const auto scene = load_scene(file, cut);
+    ASSERT_TRUE(scene) << scene.error();
+    EXPECT_EQ(scene->materials[0].alpha_mode, cut ? AlphaMode::kMask : AlphaMode::kBlend);
+    EXPECT_THAT(scene->warnings, testing::ElementsAre(testing::HasSubstr(
+                                     cut ? "\"leaf\" blends: it is cut out" : "--cut-blends")));
+  }
 }
 
 TEST(Gltf, TangentsTurnWithTheNodeAndMirrorWithIt) {
