@@ -151,8 +151,9 @@ LobeSlice lobe_of(Surface surface, Slice slice) {
 UnseenArc unseen_arc(Slice slice, float sign, Side side, Occluders found, Search search,
                      Search other) {
   float nearness = kPerspective ? parameters.radius / search.depth : 0.0;
-  Unseen unseen = add_beyond_border(found.unseen, found.border_px, search.beyond * side.radius_px,
-                                    border_share(other.beyond, nearness));
+  Unseen unseen =
+      add_beyond_border(mean_row(found.unseen), found.border_px, search.beyond * side.radius_px,
+                        border_share(other.beyond, nearness));
   return make_unseen_arc(slice, sign, side.per_bearing, found.sectors, unseen, side.radius_px);
 }
 

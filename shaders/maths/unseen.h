@@ -21,22 +21,37 @@ ALCOVE_MATHS_BEGIN
 // An offset where nothing is.
 const float kNowherePx = 1e9f;
 
-// The columns along one side of a slice's line that show nothing of the sphere.
+// The columns along one side of a slice's line that show nothing of the sphere. Those next to each
+// other are a row.
 struct Unseen {
   float first_px;  // offset of the innermost from the shaded pixel
   float width_px;  // of all together
+  float rows;
+  bool last;  // whether the last column is one
 };
 
 ALCOVE_INLINE Unseen nothing_unseen() {
   Unseen none;
   none.first_px = kNowherePx;
   none.width_px = 0.0f;
+  none.rows = 0.0f;
+  none.last = false;
   return none;
 }
 
-ALCOVE_INLINE Unseen add_unseen(Unseen sum, float offset_px, float width_px) {
-  sum.first_px = min(sum.first_px, offset_px);
-  sum.width_px += width_px;
+// Adds the next column, a sample at `offset_px` and `width_px` wide, which hides the sphere or not.
+ALCOVE_INLINE Unseen add_column(Unseen sum, bool hides, float offset_px, float width_px) {
+  sum.first_px = min(sum.first_px, hides ? offset_px : kNowherePx);
+  sum.width_px += hides ? width_px : 0.0f;
+  sum.rows += hides && !sum.last ? 1.0f : 0.0f;
+  sum.last = hides;
+  return sum;
+}
+
+// As wide as its rows are in the mean: past each of them the columns beside it show what goes on
+// there, so that many narrow ones, as leaves are, hide no more than one.
+ALCOVE_INLINE Unseen mean_row(Unseen sum) {
+  sum.width_px = sum.width_px / max(sum.rows, 1.0f);
   return sum;
 }
 
@@ -55,7 +70,7 @@ ALCOVE_INLINE float border_share(float other_beyond, float nearness) {
 // the radius.
 ALCOVE_INLINE Unseen add_beyond_border(Unseen sum, float offset_px, float beyond_px, float share) {
   bool hides = beyond_px > 0.0f && offset_px < kNowherePx;
-  return add_unseen(sum, hides ? offset_px : kNowherePx, hides ? share * share * beyond_px : 0.0f);
+  return add_column(sum, hides, offset_px, share * share * beyond_px);
 }
 
 // Visible directions, from nearer the view vector outwards, of which a share is left out.

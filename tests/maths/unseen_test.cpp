@@ -36,7 +36,7 @@ struct Case {
     const float first = random.uniform(0.0f, 1.2f) * kRadiusPx;
     const float width = random.uniform(0.0f, 0.3f) * kRadiusPx;
     for (unsigned k = random.bits() % 4; k > 0; --k) {
-      unseen = maths::add_unseen(unseen, first + float(k - 1) * width, width);
+      unseen = maths::add_column(unseen, true, first + float(k - 1) * width, width);
     }
   }
 
@@ -112,8 +112,22 @@ TEST(Unseen, WhatASideShowsCountsWhole) {
   }
 }
 
+TEST(Unseen, ManyNarrowRowsHideNoMoreThanOne) {
+  Unseen row = maths::add_column(maths::nothing_unseen(), true, 4.0f, 1.0f);
+  row = maths::add_column(row, true, 6.0f, 3.0f);
+  EXPECT_EQ(maths::mean_row(row).width_px, 4.0f) << "columns side by side are one row";
+  Unseen leaves = row;
+  for (int i = 1; i < 5; ++i) {
+    leaves = maths::add_column(leaves, false, 10.0f * float(i), 5.0f);
+    leaves = maths::add_column(leaves, true, 10.0f * float(i) + 5.0f, 4.0f);
+  }
+  EXPECT_EQ(maths::mean_row(leaves).width_px, 4.0f);
+  EXPECT_EQ(maths::mean_row(leaves).first_px, 4.0f);
+  EXPECT_EQ(maths::mean_row(maths::nothing_unseen()).width_px, 0.0f);
+}
+
 TEST(Unseen, OfWhatLiesBeyondTheBorderAShareIsLeftOut) {
-  const Unseen some = maths::add_unseen(maths::nothing_unseen(), 7.0f, 2.0f);
+  const Unseen some = maths::add_column(maths::nothing_unseen(), true, 7.0f, 2.0f);
   const Unseen border = maths::add_beyond_border(some, 9.0f, 12.0f, 0.5f);
   EXPECT_EQ(border.first_px, 7.0f);
   EXPECT_EQ(border.width_px, 5.0f);
