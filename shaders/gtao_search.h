@@ -83,8 +83,7 @@ LineSample fetch_sample(Search search, uint layer, uint k) {
     // Not before the front where that was moved.
     vec3 end = slice_point(search.line, along_px, farther_line(found.line, back, kPerspective),
                            search.depth, kPerspective);
-    found.back = end.xy;
-    found.backed = ends_occluder(line, back, kPerspective);
+    found.back = ends_occluder(line, back, kPerspective) ? end.xy : vec2(kNowherePx);
   }
   return found;
 }
