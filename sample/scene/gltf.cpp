@@ -323,7 +323,7 @@ tl::expected<Scene, std::string> build_scene(const tinygltf::Model& model,
   if (auto added = add_materials(model, limits.pixels, scene); !added) {
     return Failure(added.error());
   }
-  MeshBudget budget{limits.vertices, limits.indices};
+  MeshBudget budget{limits.primitives, limits.vertices, limits.indices};
   if (auto added = add_nodes(model, budget, scene); !added) return Failure(added.error());
   if (scene.meshes.empty()) return Failure("it has no triangles");
   if (!model.animations.empty()) {

@@ -26,7 +26,8 @@ namespace alcove::sample {
 // a file may grow to is bounded by GltfLimits, and external files must lie in the scene's folder.
 // Errors are one sentence with the file's name. Thread-safe.
 struct GltfLimits {
-  uint64_t vertices = uint64_t{1} << 25;  // of all meshes together, instances counted each
+  uint64_t primitives = uint64_t{1} << 20;  // as vertices
+  uint64_t vertices = uint64_t{1} << 25;    // of all meshes together, instances counted each
   uint64_t indices = uint64_t{3} << 25;
   uint64_t pixels = uint64_t{1} << 29;  // of all images together
 };

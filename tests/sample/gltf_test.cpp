@@ -370,5 +370,39 @@ TEST(Gltf, InstancesBeyondTheLimitAreRefused) {
   EXPECT_FALSE(scene);
 }
 
+// Reading them takes as long as if they had an area.
+TEST(Gltf, InstancesThatComeToNothingCountTowardsTheLimitToo) {
+  for (const bool indexed : {false, true}) {
+    GltfMaker maker = GltfMaker::triangle();
+    maker.json["accessors"][0].erase("bufferView");  // zeroes
+    if (indexed) {
+      maker.primitive()["indices"] =
+          maker.accessor(maker.view<uint16_t>({0, 1, 2, 2, 1, 0}), 5123, "SCALAR", 6);
+    }
+    maker.json["nodes"].clear();
+    for (int i = 0; i < 100; ++i) {
+      maker.json["nodes"].push_back({{"mesh", 0}});
+      maker.json["scenes"][0]["nodes"][static_cast<size_t>(i)] = i;
+    }
+    GltfLimits limits;
+    (indexed ? limits.indices : limits.vertices) = 200;
+    const auto scene = parse_gltf(maker.gltf(), "many.gltf", "", limits);
+    ASSERT_FALSE(scene);
+    EXPECT_THAT(scene.error(), testing::Not(HasSubstr("no triangles")));
+  }
+}
+
+TEST(Gltf, PartsThatAreLeftOutCountTowardsTheLimitToo) {
+  GltfMaker maker = GltfMaker::triangle();
+  maker.primitive()["mode"] = 1;
+  const nlohmann::json lines = maker.primitive();
+  for (int i = 0; i < 100; ++i) maker.json["meshes"][0]["primitives"].push_back(lines);
+  GltfLimits limits;
+  limits.primitives = 50;
+  const auto scene = parse_gltf(maker.gltf(), "lines.gltf", "", limits);
+  ASSERT_FALSE(scene);
+  EXPECT_THAT(scene.error(), HasSubstr("parts"));
+}
+
 }  // namespace
 }  // namespace alcove::sample
