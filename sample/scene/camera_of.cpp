@@ -28,6 +28,8 @@ tl::expected<Camera, std::string> camera_of(const ViewOptions& view, const Scene
   Camera camera = named ? *named : framing_camera(scene.bounds_ws);
   camera.eye_ws = view.eye_ws.value_or(camera.eye_ws);
   camera.target_ws = view.target_ws.value_or(camera.target_ws);
+  // A view that is typed stands upright: what is up for the scene's camera fits its own view.
+  if (view.eye_ws || view.target_ws) camera.up_ws = Camera().up_ws;
   camera.up_ws = view.up_ws.value_or(camera.up_ws);
   camera.near_plane = view.near_plane.value_or(camera.near_plane);
   camera.far_plane = view.far_plane.value_or(camera.far_plane);

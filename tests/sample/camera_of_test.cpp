@@ -29,6 +29,21 @@ TEST(CameraOf, ACameraThatTheSceneLacksIsRefusedWithThoseItHas) {
   EXPECT_THAT(camera.error(), HasSubstr("court"));
 }
 
+TEST(CameraOf, AViewThatIsTypedStandsUprightWhateverTheScenesCameraCallsUp) {
+  Scene scene;
+  scene.cameras = {{.name = "tilted", .up_ws = {0.6f, 0.8f, 0.0f}}};
+  ViewOptions view;
+  EXPECT_EQ(camera_of(view, scene)->up_ws, glm::vec3(0.6f, 0.8f, 0.0f));
+  view.eye_ws = glm::vec3(6.0f, 3.0f, -4.0f);
+  EXPECT_EQ(camera_of(view, scene)->up_ws, glm::vec3(0, 1, 0));
+  view.target_ws = glm::vec3(1, 0, -3);
+  EXPECT_EQ(camera_of(view, scene)->up_ws, glm::vec3(0, 1, 0));
+  view.eye_ws.reset();
+  EXPECT_EQ(camera_of(view, scene)->up_ws, glm::vec3(0, 1, 0));
+  view.up_ws = glm::vec3(0, 0, 1);
+  EXPECT_EQ(camera_of(view, scene)->up_ws, glm::vec3(0, 0, 1));
+}
+
 TEST(CameraOf, EyeOnTheTargetIsRefused) {
   ViewOptions view;
   view.eye_ws = view.target_ws = glm::vec3(1.0f);
