@@ -21,9 +21,11 @@ tl::expected<Camera, std::string> camera_of(const ViewOptions& view, const Scene
   const Camera* named = find_camera(scene, view.camera);
   if (!named && !view.camera.empty()) {
     std::string names;
-    for (const Camera& camera : scene.cameras) names += " " + camera.name;
-    return tl::unexpected("the scene has no camera " + view.camera + "; it has" +
-                          (names.empty() ? " none: use --eye and --target" : ":" + names));
+    for (const Camera& camera : scene.cameras) {
+      names += (names.empty() ? "\"" : ", \"") + camera.name + "\"";
+    }
+    return tl::unexpected("the scene has no camera \"" + view.camera + "\"; it has " +
+                          (names.empty() ? "none: use --eye and --target" : names));
   }
   Camera camera = named ? *named : framing_camera(scene.bounds_ws);
   camera.eye_ws = view.eye_ws.value_or(camera.eye_ws);

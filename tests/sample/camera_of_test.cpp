@@ -29,6 +29,15 @@ TEST(CameraOf, ACameraThatTheSceneLacksIsRefusedWithThoseItHas) {
   EXPECT_THAT(camera.error(), HasSubstr("court"));
 }
 
+TEST(CameraOf, NamesOfCamerasCannotBeTakenForOneAnother) {
+  Scene scene;
+  scene.cameras = {{.name = "great hall"}, {.name = "roof"}};
+  ViewOptions view;
+  view.camera = "hall";
+  EXPECT_EQ(camera_of(view, scene).error(),
+            "the scene has no camera \"hall\"; it has \"great hall\", \"roof\"");
+}
+
 TEST(CameraOf, AViewThatIsTypedStandsUprightWhateverTheScenesCameraCallsUp) {
   Scene scene;
   scene.cameras = {{.name = "tilted", .up_ws = {0.6f, 0.8f, 0.0f}}};
