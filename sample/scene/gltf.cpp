@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "scene/gltf_camera.h"
 #include "scene/gltf_material.h"
 #include "scene/gltf_mesh.h"
 
@@ -191,49 +192,6 @@ glm::dmat4 local_transform(const tinygltf::Node& node) {
   return m;
 }
 
-bool positive(double value) { return std::isfinite(value) && value > 0.0; }
-
-// A node's camera. Nonsense in it leaves it out with a warning: the triangles are still good.
-void add_camera(const tinygltf::Model& model, const tinygltf::Node& node,
-                const glm::dmat4& world_from_node, Scene& scene) {
-  if (node.camera < 0) return;
-  const auto leave_out = [&] {
-    scene.warnings.push_back("Camera of node \"" + node.name + "\" is malformed and left out.");
-  };
-  if (static_cast<size_t>(node.camera) >= model.cameras.size()) return leave_out();
-  const tinygltf::Camera& in = model.cameras[static_cast<size_t>(node.camera)];
-  Camera out;
-  out.name = !in.name.empty() ? in.name : node.name;
-  if (out.name.empty()) out.name = "camera" + std::to_string(scene.cameras.size());
-  const glm::dvec3 eye(world_from_node[3]), back(world_from_node[2]), up(world_from_node[1]);
-  if (!positive(glm::length(back)) || !positive(glm::length(up)) ||
-      !std::isfinite(glm::length(eye))) {
-    return leave_out();
-  }
-  out.eye_ws = eye;
-  out.target_ws = eye - glm::normalize(back);
-  out.up_ws = glm::normalize(up);
-  if (out.eye_ws == out.target_ws) return leave_out();
-  double near_plane = 0.0, far_plane = 0.0;
-  if (in.type == "orthographic") {
-    out.orthographic = true;
-    out.ortho_height = static_cast<float>(2.0 * std::abs(in.orthographic.ymag));
-    near_plane = in.orthographic.znear;
-    far_plane = in.orthographic.zfar;
-    if (!positive(out.ortho_height)) return leave_out();
-  } else {
-    out.fov_y = static_cast<float>(in.perspective.yfov);
-    near_plane = in.perspective.znear;
-    far_plane = in.perspective.zfar > 0.0 ? in.perspective.zfar : INFINITY;
-    if (!positive(near_plane) || !positive(out.fov_y) || out.fov_y > 3.1f) return leave_out();
-  }
-  if (!std::isfinite(near_plane) || !(far_plane > near_plane)) return leave_out();
-  out.near_plane = static_cast<float>(near_plane);
-  out.far_plane = static_cast<float>(far_plane);
-  if (!(out.far_plane > out.near_plane)) return leave_out();
-  scene.cameras.push_back(std::move(out));
-}
-
 // The nodes to start from: those of the default scene, or every node that is nobody's child.
 tl::expected<std::vector<int>, std::string> root_nodes(const tinygltf::Model& model) {
   if (!model.scenes.empty()) {
@@ -282,7 +240,7 @@ tl::expected<void, std::string> add_mesh(const tinygltf::Model& model, const tin
 
 // Every node once, from the roots; a second visit means a cycle or two parents.
 tl::expected<void, std::string> add_nodes(const tinygltf::Model& model, MeshBudget& budget,
-                                          Scene& scene) {
+                                          std::vector<PlacedCamera>& cameras, Scene& scene) {
   auto roots = root_nodes(model);
   if (!roots) return Failure(roots.error());
   std::vector<std::pair<int, glm::dmat4>> open;
@@ -303,7 +261,7 @@ tl::expected<void, std::string> add_nodes(const tinygltf::Model& model, MeshBudg
     const tinygltf::Node& node = model.nodes[static_cast<size_t>(index)];
     const glm::dmat4 world_from_node = world_from_parent * local_transform(node);
     if (auto added = add_mesh(model, node, world_from_node, budget, scene); !added) return added;
-    add_camera(model, node, world_from_node, scene);
+    add_camera(model, node, world_from_node, cameras, scene);
     for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) {
       open.emplace_back(*child, world_from_node);
     }
@@ -324,7 +282,8 @@ tl::expected<Scene, std::string> build_scene(const tinygltf::Model& model,
     return Failure(added.error());
   }
   MeshBudget budget{limits.primitives, limits.vertices, limits.indices};
-  if (auto added = add_nodes(model, budget, scene); !added) return Failure(added.error());
+  std::vector<PlacedCamera> cameras;
+  if (auto added = add_nodes(model, budget, cameras, scene); !added) return Failure(added.error());
   if (scene.meshes.empty()) return Failure("it has no triangles");
   if (!model.animations.empty()) {
     scene.warnings.push_back("Animations are left out: nodes stand as the file places them.");
@@ -338,6 +297,9 @@ tl::expected<Scene, std::string> build_scene(const tinygltf::Model& model,
   }
   drop_repeats(scene.warnings);
   scene.bounds_ws = bounds_of(scene.meshes);
+  for (const PlacedCamera& camera : cameras) {
+    scene.cameras.push_back(aimed(camera, scene.bounds_ws));
+  }
   return scene;
 }
 
