@@ -268,6 +268,18 @@ TEST(Gltf, ACameraWithItsBackToTheSceneStillLooksAhead) {
   EXPECT_LT(scene.cameras[0].target_ws.z, -7.0f);
 }
 
+TEST(Gltf, BoundsAreThoseOfTheTriangles) {
+  GltfMaker maker = GltfMaker::triangle();
+  const int positions = maker.view<float>({0, 0, 0, 1, 0, 0, 0, 1, 0, 1e6, 0, 0});
+  const int normals = maker.view<float>({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1});
+  maker.primitive()["attributes"] = {{"POSITION", maker.accessor(positions, 5126, "VEC3", 4)},
+                                     {"NORMAL", maker.accessor(normals, 5126, "VEC3", 4)}};
+  maker.primitive()["indices"] = maker.accessor(maker.view<uint16_t>({0, 1, 2}), 5123, "SCALAR", 3);
+  const Scene scene = parsed(maker.gltf());
+  EXPECT_EQ(scene.bounds_ws.low, glm::vec3(0));
+  EXPECT_EQ(scene.bounds_ws.high, glm::vec3(1, 1, 0));
+}
+
 TEST(Gltf, ExternalBufferIsReadFromTheFolderAndNowhereElse) {
   const TemporaryFolder folder;
   GltfMaker maker = GltfMaker::triangle();
