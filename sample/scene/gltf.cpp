@@ -144,6 +144,20 @@ std::string first_line(const std::string& text) {
   return line.empty() ? "it is not glTF" : line;
 }
 
+// One line that can be read, whatever the file has for names: they may be as long as the file, and
+// a URI may be the data itself.
+std::string readable(std::string text) {
+  constexpr size_t kMost = 200;
+  std::ranges::replace_if(
+      text, [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
+  if (text.size() <= kMost) return text;
+  const std::string data = "data:";
+  const size_t uri = text.find(data);
+  size_t end = uri < kMost ? uri + data.size() : kMost;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0u) == 0x80) --end;  // UTF-8
+  return text.substr(0, end) + "...";
+}
+
 tl::expected<tinygltf::Model, std::string> read_model(std::span<const uint8_t> bytes,
                                                       const fs::path& folder) {
   if (bytes.size() > kMostFileBytes) return Failure("the file is too large");
@@ -270,7 +284,8 @@ tl::expected<void, std::string> add_nodes(const tinygltf::Model& model, MeshBudg
 }
 
 // A warning once, however many parts it holds for.
-void drop_repeats(std::vector<std::string>& warnings) {
+void tidy(std::vector<std::string>& warnings) {
+  std::ranges::transform(warnings, warnings.begin(), readable);
   std::sort(warnings.begin(), warnings.end());
   warnings.erase(std::unique(warnings.begin(), warnings.end()), warnings.end());
 }
@@ -295,7 +310,7 @@ tl::expected<Scene, std::string> build_scene(const tinygltf::Model& model,
       }
     }
   }
-  drop_repeats(scene.warnings);
+  tidy(scene.warnings);
   scene.bounds_ws = bounds_of(scene.meshes);
   for (const PlacedCamera& camera : cameras) {
     scene.cameras.push_back(aimed(camera, scene.bounds_ws));
@@ -308,7 +323,7 @@ tl::expected<Scene, std::string> build_scene(const tinygltf::Model& model,
 tl::expected<Scene, std::string> parse_gltf(std::span<const uint8_t> bytes, const std::string& name,
                                             const fs::path& folder, const GltfLimits& limits) {
   const auto refuse = [&](const std::string& why) {
-    return Failure("cannot read " + name + ": " + why);
+    return Failure("cannot read " + name + ": " + readable(why));
   };
   try {
     const auto model = read_model(bytes, folder);

@@ -414,6 +414,28 @@ const Hostile kHostile[] = {
 INSTANTIATE_TEST_SUITE_P(All, HostileGltf, testing::ValuesIn(kHostile),
                          [](const auto& param) { return std::string(param.param.name); });
 
+TEST(Gltf, ASentenceStaysShortHoweverLongWhatItSpeaksOf) {
+  GltfMaker maker = GltfMaker::triangle();
+  nlohmann::json json = maker.json;
+  json["buffers"] = {
+      {{"byteLength", 36}, {"uri", "data:nonsense;base64," + std::string(2000000, 'A')}}};
+  const std::string text = json.dump();
+  const std::string data = refusal({text.begin(), text.end()});
+  EXPECT_LT(data.size(), 250u);
+  EXPECT_THAT(data, testing::Not(HasSubstr("AAAA")));
+  // A name, cut between two letters of it though each is two bytes.
+  std::string name = "x";
+  for (int i = 0; i < 1000; ++i) name += "\xc3\xa9";
+  maker.json["meshes"][0]["name"] = name;
+  maker.primitive()["attributes"]["COLOR_0"] = 0;
+  const Scene scene = parsed(maker.gltf());
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_LT(scene.warnings[0].size(), 250u);
+  EXPECT_THAT(scene.warnings[0], testing::EndsWith("\xc3\xa9..."));
+  maker.primitive()["attributes"]["POSITION"] = 9;
+  EXPECT_LT(refusal(maker.gltf()).size(), 250u);
+}
+
 TEST(Gltf, EveryCutOfAFileIsReadOrRefused) {
   const auto glb = GltfMaker::triangle().glb();
   for (size_t size = 0; size < glb.size(); ++size) {
