@@ -28,6 +28,7 @@ constexpr uint64_t kMostFileBytes = INT32_MAX;  // tinygltf counts in int
 struct FolderAccess {
   fs::path folder;  // canonical; empty: no files at all
   uint64_t bytes_left = kMostFileBytes;
+  std::vector<std::string> outside;  // as the scene names them: there, and not to be read
 };
 
 bool lies_within(const fs::path& file, const fs::path& folder) {
@@ -36,11 +37,16 @@ bool lies_within(const fs::path& file, const fs::path& folder) {
 }
 
 bool file_exists(const std::string& name, void* user) {
-  const auto& access = *static_cast<FolderAccess*>(user);
+  auto& access = *static_cast<FolderAccess*>(user);
   if (access.folder.empty() || name.find('\0') != std::string::npos) return false;
   std::error_code error;
   const fs::path file = fs::canonical(name, error);
-  return !error && lies_within(file, access.folder) && fs::is_regular_file(file, error) && !error;
+  if (error || !fs::is_regular_file(file, error)) return false;
+  if (lies_within(file, access.folder)) return true;
+  // tinygltf also looks where the program was started, which is not what the scene means.
+  const std::string within = (access.folder / "").string();
+  if (name.starts_with(within)) access.outside.push_back(name.substr(within.size()));
+  return false;
 }
 
 std::string same_path(const std::string& name, void*) { return name; }
@@ -158,6 +164,15 @@ std::string readable(std::string text) {
   return text.substr(0, end) + "...";
 }
 
+// An image that cannot be read is left out with a note; of these it has to say why.
+void name_images_outside(const FolderAccess& access, tinygltf::Model& model) {
+  for (tinygltf::Image& image : model.images) {
+    if (std::ranges::find(access.outside, image.uri) != access.outside.end()) {
+      image.uri += ", outside the scene's folder";
+    }
+  }
+}
+
 tl::expected<tinygltf::Model, std::string> read_model(std::span<const uint8_t> bytes,
                                                       const fs::path& folder) {
   if (bytes.size() > kMostFileBytes) return Failure("the file is too large");
@@ -182,7 +197,12 @@ tl::expected<tinygltf::Model, std::string> read_model(std::span<const uint8_t> b
                                       reinterpret_cast<const char*>(bytes.data()),
                                       static_cast<unsigned>(bytes.size()), access.folder.string());
   }
+  // Buffers come first, and the first that is not there ends it.
+  if (!read && !access.outside.empty()) {
+    return Failure(access.outside.back() + " lies outside the scene's folder");
+  }
   if (!read) return Failure(first_line(error));
+  name_images_outside(access, model);
   return model;
 }
 
@@ -342,8 +362,10 @@ tl::expected<Scene, std::string> load_gltf(const fs::path& file) {
     return Failure("cannot read " + file.string() + ": " + why);
   };
   std::error_code error;
-  if (!fs::exists(file, error)) return refuse("there is no such file");
-  if (fs::is_directory(file, error)) return refuse("it is a folder; name the .gltf or .glb in it");
+  const fs::file_status status = fs::status(file, error);
+  if (status.type() == fs::file_type::not_found) return refuse("there is no such file");
+  if (!fs::status_known(status)) return refuse(error.message());
+  if (fs::is_directory(status)) return refuse("it is a folder; name the .gltf or .glb in it");
   std::vector<unsigned char> bytes;
   std::string why;
   try {

@@ -305,6 +305,40 @@ TEST(Gltf, ExternalBufferIsReadFromTheFolderAndNowhereElse) {
   }
 }
 
+TEST(Gltf, AFileThatIsThereAndMayNotBeReadIsNotCalledMissing) {
+  const TemporaryFolder folder;
+  const std::filesystem::path inside = folder.path / "inside";
+  std::filesystem::create_directories(inside);
+  GltfMaker maker = painted({{"index", 0}}, {{"index", 0}});
+  std::ofstream(folder.path / "own.bin") << "elsewhere";
+  std::ofstream(folder.path / "t.png") << "elsewhere";
+  std::filesystem::create_symlink(folder.path / "own.bin", inside / "link.bin");
+  for (const std::string uri : {"../own.bin", "link.bin"}) {
+    nlohmann::json json = maker.json;
+    json["buffers"] = {{{"byteLength", maker.bytes.size()}, {"uri", uri}}};
+    std::ofstream(inside / "scene.gltf") << json.dump();
+    const auto scene = load_gltf(inside / "scene.gltf");
+    ASSERT_FALSE(scene);
+    EXPECT_THAT(scene.error(), HasSubstr(uri + " lies outside the scene's folder"));
+  }
+  maker.json["images"][0] = {{"uri", "../t.png"}};
+  const std::vector<uint8_t> bytes = maker.gltf();
+  const auto scene = parse_gltf(bytes, "test.gltf", inside);
+  ASSERT_TRUE(scene) << scene.error();
+  EXPECT_THAT(scene->warnings,
+              testing::Contains(HasSubstr("image 0 (../t.png, outside the scene's folder)")));
+}
+
+TEST(Gltf, WhatKeepsAFileFromBeingOpenedIsSaid) {
+  const TemporaryFolder folder;
+  std::filesystem::create_symlink("loop.gltf", folder.path / "loop.gltf");
+  const auto scene = load_gltf(folder.path / "loop.gltf");
+  ASSERT_FALSE(scene);
+  EXPECT_THAT(
+      scene.error(),
+      testing::EndsWith(std::make_error_code(std::errc::too_many_symbolic_link_levels).message()));
+}
+
 TEST(Gltf, MissingFileIsNamed) {
   const auto scene = load_gltf("no/such/scene.glb");
   ASSERT_FALSE(scene);
