@@ -118,12 +118,33 @@ bool is_read(const std::string& extension) {
   return extension == "KHR_mesh_quantization" || extension == "KHR_texture_transform";
 }
 
-// What tinygltf would answer with a crash or all memory.
+// tinygltf reads every version as if it were the second.
+tl::expected<void, std::string> check_version(const nlohmann::json& root) {
+  const auto asset = root.find("asset");
+  if (asset == root.end() || !asset->is_object()) return {};
+  const auto version = asset->find("version");
+  if (version == asset->end() || !version->is_string()) return {};
+  const auto text = version->get<std::string>();
+  if (text.substr(0, text.find('.')) == "2") return {};
+  return Failure("it is glTF " + text + ", and version 2 is what is read here");
+}
+
+tl::expected<void, std::string> check_binary_version(std::span<const uint8_t> bytes) {
+  uint32_t version = 0;
+  if (!is_binary(bytes) || bytes.size() < 8) return {};
+  std::memcpy(&version, bytes.data() + 4, sizeof(version));
+  if (version == 2) return {};
+  return Failure("it is binary glTF of version " + std::to_string(version) +
+                 ", and version 2 is what is read here");
+}
+
+// What tinygltf would answer with a crash, all memory or nonsense.
 tl::expected<void, std::string> check_json(std::span<const uint8_t> json) {
   constexpr size_t kDeepest = 64;
   if (nesting(json) > kDeepest) return Failure("its JSON is nested too deeply");
   const auto root = nlohmann::json::parse(json.begin(), json.end(), nullptr, false);
   if (!root.is_object()) return Failure("it is not glTF: its JSON cannot be read");
+  if (auto fine = check_version(root); !fine) return fine;
   const auto buffers = root.find("buffers");
   if (buffers != root.end() && buffers->is_array()) {
     const auto without_uri = [](const auto& b) { return !b.is_object() || !b.contains("uri"); };
@@ -176,6 +197,7 @@ void name_images_outside(const FolderAccess& access, tinygltf::Model& model) {
 tl::expected<tinygltf::Model, std::string> read_model(std::span<const uint8_t> bytes,
                                                       const fs::path& folder) {
   if (bytes.size() > kMostFileBytes) return Failure("the file is too large");
+  if (auto fine = check_binary_version(bytes); !fine) return Failure(fine.error());
   if (auto fine = check_json(json_of(bytes)); !fine) return Failure(fine.error());
   FolderAccess access;
   std::error_code ignored;

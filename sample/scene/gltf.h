@@ -11,7 +11,7 @@
 
 namespace alcove::sample {
 
-// Reads a .gltf or .glb file (by its content, not its name) into world-space triangles.
+// Reads a glTF 2 file, .gltf or .glb (by its content, not its name), into world-space triangles.
 //
 // Taken: node transforms (matrix or TRS, any hierarchy; mirrored ones turn the winding), triangle
 // lists, strips and fans with and without indices, every accessor type (normalised, interleaved,

@@ -470,6 +470,20 @@ TEST(Gltf, ASentenceStaysShortHoweverLongWhatItSpeaksOf) {
   EXPECT_LT(refusal(maker.gltf()).size(), 250u);
 }
 
+TEST(Gltf, OnlyTheSecondVersionIsRead) {
+  GltfMaker maker = GltfMaker::triangle();
+  for (const char* version : {"1.0", "3.0", "20.0"}) {
+    maker.json["asset"]["version"] = version;
+    EXPECT_THAT(refusal(maker.gltf()), HasSubstr("glTF " + std::string(version)));
+    EXPECT_THAT(refusal(maker.glb()), HasSubstr("glTF " + std::string(version)));
+  }
+  maker.json["asset"]["version"] = "2.1";
+  parsed(maker.gltf());
+  std::vector<uint8_t> glb = maker.glb();
+  glb[4] = 1;
+  EXPECT_THAT(refusal(glb), HasSubstr("binary glTF of version 1"));
+}
+
 TEST(Gltf, EveryCutOfAFileIsReadOrRefused) {
   const auto glb = GltfMaker::triangle().glb();
   for (size_t size = 0; size < glb.size(); ++size) {
