@@ -7,6 +7,9 @@
 namespace alcove::sample {
 
 tl::expected<void, std::string> run_render(const Options& options) {
+  if (auto made = create_folder(options.out); !made) {
+    return made;
+  }
   const auto rendering = render(options);
   if (!rendering) {
     return tl::unexpected(rendering.error());

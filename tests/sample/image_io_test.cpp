@@ -62,6 +62,16 @@ TEST(ImageIo, FullDiskIsReportedAndNothingIsLeft) {
   EXPECT_EQ(files_in(folder.path), 0u);
 }
 
+TEST(ImageIo, AFolderThatNothingCanBeWrittenToIsRefused) {
+  if (!std::filesystem::exists("/proc/self")) return;  // not Linux
+  const auto made = create_folder("/proc/self");
+  ASSERT_FALSE(made);
+  EXPECT_THAT(made.error(), testing::HasSubstr("/proc/self"));
+  const TemporaryFolder folder;
+  EXPECT_TRUE(create_folder(folder.path / "a" / "b"));
+  EXPECT_EQ(files_in(folder.path / "a" / "b"), 0u);
+}
+
 TEST(ImageIo, ImageWithoutPixelsIsRefused) {
   EXPECT_FALSE(write_exr("a.exr", Image<float>()));
   EXPECT_FALSE(write_png("a.png", Image<glm::vec3>()));
