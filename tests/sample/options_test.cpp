@@ -135,6 +135,8 @@ TEST(Options, NearMustBeBeforeFar) {
   const auto options = parse({"render", "--near", "5", "--far", "2"});
   ASSERT_FALSE(options);
   EXPECT_THAT(options.error().text, HasSubstr("--near"));
+  EXPECT_THAT(parse({"render", "--near", "1e-7", "--far", "1e-7"}).error().text,
+              HasSubstr("--near 1e-07:"));
 }
 
 TEST(Options, HelpTeachesAndAsksForNoRun) {
