@@ -60,7 +60,18 @@ void add_frames(const Group& group, ViewOptions& view, std::int64_t fewest,
   });
 }
 
+// A plane at the eye or behind it: only an orthographic view has that.
+void check_plane(const std::string& option, const std::optional<float>& plane,
+                 const ViewOptions& view) {
+  if (plane && !(*plane > 0.0f) && !view.ortho_height) {
+    throw Mistake{option + " " + shown(*plane) +
+                  ": give a length above 0, in the scene's units, or --ortho-height too"};
+  }
+}
+
 void check_view(const ViewOptions& view) {
+  check_plane("--near", view.near_plane, view);
+  check_plane("--far", view.far_plane, view);
   if (view.near_plane && view.far_plane && !(*view.near_plane < *view.far_plane)) {
     throw Mistake{"--near " + shown(*view.near_plane) + ": give a length below --far"};
   }
@@ -99,18 +110,27 @@ void add_view(CLI::App& app, ViewOptions& view) {
     view.up_ws = given.vector();
     if (*view.up_ws == glm::vec3(0.0f)) given.refuse("a direction, not zero");
   });
-  group.add("--fov-y", "DEGREES", "vertical angle of view; 60", [&](const OptionValue& given) {
-    view.fov_y = glm::radians(static_cast<float>(
-        given.number(1.0, 170.0, "the vertical angle of view in degrees, 1 to 170")));
-  });
+  group.add(
+      "--fov-y", "DEGREES", "vertical angle of view; the camera's", [&](const OptionValue& given) {
+        // As far as a file's camera may go.
+        view.fov_y = glm::radians(static_cast<float>(
+            given.number(0.001, 178.0, "the vertical angle of view in degrees, 0.001 to 178")));
+      });
   group.add("--ortho-height", "LENGTH", "orthographic, so many units high",
             [&](const OptionValue& given) { view.ortho_height = given.length(); });
-  group.add("--near", "LENGTH", "near plane; the camera's, as is the far one",
-            [&](const OptionValue& given) { view.near_plane = given.length(); });
+  constexpr double kLargest = std::numeric_limits<float>::max();
+  group.add("--near", "LENGTH",
+            "near plane; the camera's, as is the far one. An orthographic view's may lie behind it",
+            [&](const OptionValue& given) {
+              view.near_plane = static_cast<float>(
+                  given.number(-kLargest, kLargest, "a length above 0, in the scene's units"));
+            });
   group.add("--far", "LENGTH", "far plane, or inf", [&](const OptionValue& given) {
     const bool infinite = given.text == "inf" || given.text == "infinity";
-    view.far_plane = infinite ? std::numeric_limits<float>::infinity()
-                              : static_cast<float>(given.positive("a length above 0, or inf"));
+    view.far_plane =
+        infinite
+            ? std::numeric_limits<float>::infinity()
+            : static_cast<float>(given.number(-kLargest, kLargest, "a length above 0, or inf"));
   });
   group.add_flag("--reversed-z", "near at depth 1, far at 0: finer far away", view.reversed_z);
   group.add("--size", "WxH", "of the image in pixels; 960x540",

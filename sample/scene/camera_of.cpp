@@ -53,6 +53,10 @@ tl::expected<Camera, std::string> camera_of(const ViewOptions& view, const Scene
         "--eye, --target and --up are too large or too near each other for a view to be made: give "
         "lengths from 1e-15 to 1e15");
   }
+  if (!camera.orthographic && !(camera.near_plane > 0.0f)) {
+    return tl::unexpected("the near plane (" + shown(camera.near_plane) +
+                          ") of a perspective view must lie before the eye: give --near");
+  }
   if (!(camera.near_plane < camera.far_plane)) {
     return tl::unexpected("the near plane (" + shown(camera.near_plane) +
                           ") is not before the far plane (" + shown(camera.far_plane) +

@@ -37,7 +37,10 @@ bool read_lens(const tinygltf::Camera& in, Camera& out) {
     out.fov_y = static_cast<float>(in.perspective.yfov);
     near_plane = in.perspective.znear;
     far_plane = in.perspective.zfar > 0.0 ? in.perspective.zfar : INFINITY;
-    if (!positive(near_plane) || !positive(out.fov_y) || out.fov_y > 3.1f) return false;
+    // What --fov-y takes too, so that any camera can be typed.
+    constexpr float kNarrowest = 2e-5f, kWidest = 3.1f;
+    const bool opens = out.fov_y >= kNarrowest && out.fov_y <= kWidest;
+    if (!positive(near_plane) || !opens) return false;
   }
   if (!std::isfinite(near_plane) || !(far_plane > near_plane)) return false;
   out.near_plane = static_cast<float>(near_plane);

@@ -59,6 +59,19 @@ TEST(CameraOf, EyeOnTheTargetIsRefused) {
   EXPECT_FALSE(camera_of(view, builtin_scene()));
 }
 
+TEST(CameraOf, APerspectiveHasNoPlaneBehindItsEye) {
+  Scene scene;
+  scene.cameras = {{.name = "plan", .orthographic = true, .near_plane = -3.0f}};
+  ViewOptions view;
+  ASSERT_TRUE(camera_of(view, scene));
+  view.fov_y = 1.0f;
+  const auto camera = camera_of(view, scene);
+  ASSERT_FALSE(camera);
+  EXPECT_THAT(camera.error(), HasSubstr("--near"));
+  view.near_plane = 0.5f;
+  EXPECT_TRUE(camera_of(view, scene));
+}
+
 TEST(CameraOf, LengthsWhoseSquaresAreNoNumbersAreRefused) {
   ViewOptions view;
   view.eye_ws = glm::vec3(0.0f, 0.0f, 1.0f);

@@ -139,6 +139,26 @@ TEST(Options, NearMustBeBeforeFar) {
               HasSubstr("--near 1e-07:"));
 }
 
+TEST(Options, AnOrthographicViewMayReachBehindItsEye) {
+  const auto options = parse({"render", "--ortho-height", "4", "--near", "-20", "--far", "-0.5"});
+  ASSERT_TRUE(options) << options.error().text;
+  EXPECT_EQ(*options->view.near_plane, -20.0f);
+  EXPECT_EQ(*options->view.far_plane, -0.5f);
+  for (const char* plane : {"--near", "--far"}) {
+    const auto perspective = parse({"render", plane, "-20"});
+    ASSERT_FALSE(perspective);
+    EXPECT_THAT(perspective.error().text, testing::StartsWith(std::string(plane) + " -20: give"));
+    EXPECT_THAT(perspective.error().text, HasSubstr("--ortho-height"));
+  }
+  EXPECT_FALSE(parse({"render", "--ortho-height", "4", "--near", "inf"}));
+}
+
+TEST(Options, AngleOfViewMayBeAsWideAndAsNarrowAsAFilesCamera) {
+  EXPECT_EQ(*parse({"render", "--fov-y", "174.75"})->view.fov_y, glm::radians(174.75f));
+  EXPECT_EQ(*parse({"render", "--fov-y", "0.573"})->view.fov_y, glm::radians(0.573f));
+  EXPECT_FALSE(parse({"render", "--fov-y", "0"}));
+}
+
 TEST(Options, HelpTeachesAndAsksForNoRun) {
   const auto all = parse({"--help"});
   ASSERT_FALSE(all);
