@@ -1,6 +1,7 @@
 #include "options/option_groups.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -202,17 +203,31 @@ void add_occlusion(CLI::App& app, OcclusionOptions& occlusion) {
             [&](const OptionValue& given) {
               occlusion.normals = static_cast<NormalSource>(given.one_of(kNormalSourceNames));
             });
-  group.add("--roughness", "R,...",
-            "perceptual roughness for specular occlusion over that of the materials; several give "
-            "several images",
-            [&](const OptionValue& given) {
-              occlusion.roughness = given.numbers(
-                  16, 0.0f, 1.0f, "up to 16 numbers from 0 to 1, such as 0.1,0.3,0.6");
-            });
-  group.add("--spp", "N", "rays per pixel of the truth; 256", [&](const OptionValue& given) {
-    occlusion.spp =
-        static_cast<std::uint32_t>(given.whole_number(1, 65536, "rays per pixel, 1 to 65536"));
-  });
+}
+
+void add_roughness(CLI::App& app, OcclusionOptions& occlusion) {
+  Group(app, "Occlusion")
+      .add("--roughness", "R,...",
+           "perceptual roughness for specular occlusion over that of the materials; several give "
+           "several images",
+           [&](const OptionValue& given) {
+             const std::string wanted =
+                 "up to 16 numbers from 0 to 1, no two alike, such as 0.1,0.3,0.6";
+             occlusion.roughness = given.numbers(16, 0.0f, 1.0f, wanted);
+             // Images are named by their first six digits.
+             std::vector<float> sorted = occlusion.roughness;
+             std::ranges::sort(sorted);
+             const auto alike = [](float a, float b) { return b - a < 1e-5f; };
+             if (std::ranges::adjacent_find(sorted, alike) != sorted.end()) given.refuse(wanted);
+           });
+}
+
+void add_rays(CLI::App& app, OcclusionOptions& occlusion) {
+  Group(app, "Occlusion")
+      .add("--spp", "N", "rays per pixel of the truth; 256", [&](const OptionValue& given) {
+        occlusion.spp =
+            static_cast<std::uint32_t>(given.whole_number(1, 65536, "rays per pixel, 1 to 65536"));
+      });
 }
 
 void add_no_cache(CLI::App& app, bool& use_cache) {

@@ -21,12 +21,14 @@ void add_render(CLI::App& app, Options& options) {
   add_view(app, options.view);
   add_course(app, options.view, "how many to render; 1. The last is written");
   add_occlusion(app, options.occlusion);
+  add_roughness(app, options.occlusion);
   add_light(app, options);
   add_output(app, options);
 }
 
 void add_compare(CLI::App& app, Options& options) {
   add_render(app, options);
+  add_rays(app, options.occlusion);
   add_lit(app, options.lit);
   add_no_cache(app, options.use_cache);
 }
@@ -37,6 +39,7 @@ void add_motion_command(CLI::App& app, Options& options) {
   add_motion(app, options);
   add_view(app, options.view);
   add_occlusion(app, options.occlusion);
+  add_rays(app, options.occlusion);
   add_output(app, options);
   add_no_cache(app, options.use_cache);
 }
@@ -46,6 +49,7 @@ void add_comparison(CLI::App& app, Options& options) {
   add_view(app, options.view);
   add_standing(app, options.view);
   add_occlusion(app, options.occlusion);
+  add_rays(app, options.occlusion);
   add_no_cache(app, options.use_cache);
 }
 
@@ -76,6 +80,7 @@ void add_graph(CLI::App& app, Options& options) {
   add_cut_blends(app, options.cut_blends);
   add_view(app, options.view);
   add_occlusion(app, options.occlusion);
+  add_roughness(app, options.occlusion);
   add_format(app, options.graph_format);
   add_device(app, options);
 }
@@ -88,6 +93,7 @@ void add_window(CLI::App& app, Options& options) {
   add_view(app, options.view);
   add_course(app, options.view, "how many to draw; else until the window is closed");
   add_occlusion(app, options.occlusion);
+  add_roughness(app, options.occlusion);
   add_light(app, options);
   add_out(app, options,
           "folder for screenshots, else where alcove was started; with it, the last of --frames is "

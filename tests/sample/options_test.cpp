@@ -159,6 +159,26 @@ TEST(Options, AngleOfViewMayBeAsWideAndAsNarrowAsAFilesCamera) {
   EXPECT_FALSE(parse({"render", "--fov-y", "0"}));
 }
 
+TEST(Options, WhatHasNoEffectIsRefused) {
+  for (const char* command : {"render", "graph", "view"}) {
+    EXPECT_FALSE(parse({command, "--spp", "16"})) << command;
+  }
+  for (const char* command : {"motion", "ablate", "bench"}) {
+    EXPECT_TRUE(parse({command, "--spp", "16"})) << command;
+    EXPECT_FALSE(parse({command, "--roughness", "0.3"})) << command;
+  }
+  EXPECT_FALSE(parse({"recommend", "--tolerance", "0.1", "--roughness", "0.3"}));
+  EXPECT_TRUE(parse({"recommend", "--tolerance", "0.1", "--spp", "16"}));
+  EXPECT_TRUE(parse({"graph", "--roughness", "0.3"}));
+}
+
+TEST(Options, TwoOfRoughnessThatWouldBeOneFileAreRefused) {
+  const auto options = parse({"render", "--roughness", "0.3,0.1,0.3"});
+  ASSERT_FALSE(options);
+  EXPECT_THAT(options.error().text, HasSubstr("0.3,0.1,0.3: give"));
+  EXPECT_TRUE(parse({"render", "--roughness", "0.3,0.301"}));
+}
+
 TEST(Options, HelpTeachesAndAsksForNoRun) {
   const auto all = parse({"--help"});
   ASSERT_FALSE(all);
