@@ -10,6 +10,7 @@
 
 #include "alcove/passes/setting_names.h"
 #include "options/option_value.h"
+#include "options/settings.h"
 
 namespace alcove::sample {
 namespace {
@@ -25,7 +26,9 @@ class Group {
   void add(const std::string& option, const std::string& type, const std::string& help,
            const Read& read) const {
     const auto typed = [option, read](const std::string& text) { read({option, text}); };
-    app_.add_option_function<std::string>(option, typed, help)->type_name(type)->group(heading_);
+    app_.add_option_function<std::string>(option, typed, help)
+        ->type_name(type)
+        ->group(heading_);
   }
   // The same for an option that may be repeated.
   void add_repeatable(const std::string& option, const std::string& type, const std::string& help,
@@ -189,13 +192,16 @@ void add_occlusion(CLI::App& app, OcclusionOptions& occlusion) {
             "how far an occluder counts, scene units; a twentieth of the scene's diagonal",
             [&](const OptionValue& given) { occlusion.radius = given.length(); });
   group.add_repeatable(
-      "--set", "NAME=VALUE", "one parameter of the pass over the preset; may be repeated",
+      "--set", "NAME=VALUE", "one of the settings below over the preset; may be repeated",
       [&](const OptionValue& given) {
         const std::size_t equals = given.text.find('=');
         if (equals == std::string::npos || equals == 0 || equals + 1 == given.text.size()) {
           given.refuse("name=value, such as slices=2");
         }
-        occlusion.set.emplace_back(given.text.substr(0, equals), given.text.substr(equals + 1));
+        const std::string name = given.text.substr(0, equals);
+        const std::string value = given.text.substr(equals + 1);
+        if (const auto wanted = wanted_instead(name, value)) given.refuse(*wanted);
+        occlusion.set.emplace_back(name, value);
       });
   group.add("--normals", "NAME",
             "that the pass is given, and the truth with it: shading (of vertices and normal maps), "
@@ -203,6 +209,7 @@ void add_occlusion(CLI::App& app, OcclusionOptions& occlusion) {
             [&](const OptionValue& given) {
               occlusion.normals = static_cast<NormalSource>(given.one_of(kNormalSourceNames));
             });
+  app.footer(settings_help());
 }
 
 void add_roughness(CLI::App& app, OcclusionOptions& occlusion) {

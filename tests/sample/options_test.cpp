@@ -179,6 +179,25 @@ TEST(Options, TwoOfRoughnessThatWouldBeOneFileAreRefused) {
   EXPECT_TRUE(parse({"render", "--roughness", "0.3,0.301"}));
 }
 
+TEST(Options, ASettingIsCheckedBeforeAnythingIsLoaded) {
+  const struct {
+    const char* given;
+    const char* wanted;
+  } wrong[] = {{"slice=2", "slices"},
+               {"slices=99999999999", "a whole number from 1 to 64"},
+               {"slices=-1", "a whole number from 1 to 64"},
+               {"slices=65", "a whole number from 1 to 64"},
+               {"fill=much", "a number"},
+               {"estimator=guess", "one of horizons, heuristic, bitmask, connected"}};
+  for (const auto& [given, wanted] : wrong) {
+    const auto options = parse({"render", "--set", given});
+    ASSERT_FALSE(options) << given;
+    EXPECT_EQ(options.error().status, 2);
+    EXPECT_THAT(options.error().text, testing::StartsWith("--set " + std::string(given) + ": "));
+    EXPECT_THAT(options.error().text, HasSubstr(wanted));
+  }
+}
+
 TEST(Options, HelpTeachesAndAsksForNoRun) {
   const auto all = parse({"--help"});
   ASSERT_FALSE(all);
@@ -190,6 +209,17 @@ TEST(Options, HelpTeachesAndAsksForNoRun) {
   const auto after_a_mistake = parse({"render", "--eye", "there", "--help"});
   ASSERT_FALSE(after_a_mistake);
   EXPECT_EQ(after_a_mistake.error().text, one.error().text);
+}
+
+TEST(Options, HelpListsTheSettings) {
+  for (const char* command :
+       {"render", "compare", "motion", "ablate", "bench", "recommend", "graph", "view"}) {
+    const std::string help = parse({command, "--help"}).error().text;
+    EXPECT_THAT(help, HasSubstr("clamp_width")) << command;
+    EXPECT_THAT(help, HasSubstr("Searches that run together: neighbours")) << command;
+    EXPECT_THAT(help, HasSubstr("horizons, heuristic, bitmask or connected")) << command;
+  }
+  EXPECT_THAT(parse({"doctor", "--help"}).error().text, testing::Not(HasSubstr("clamp_width")));
 }
 
 TEST(Options, NoCommandAndUnknownOnesAreMistakes) {
