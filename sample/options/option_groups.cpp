@@ -22,12 +22,13 @@ class Group {
       : app_(app), heading_(std::move(heading)) {}
 
   using Read = std::function<void(const OptionValue& given)>;
-  // `type` is what --help calls the value; `read` gets it where there is one.
+  // `type` is what --help calls the value; `read` gets it where there is one, the last of several.
   void add(const std::string& option, const std::string& type, const std::string& help,
            const Read& read) const {
     const auto typed = [option, read](const std::string& text) { read({option, text}); };
     app_.add_option_function<std::string>(option, typed, help)
         ->type_name(type)
+        ->take_last()
         ->group(heading_);
   }
   // The same for an option that may be repeated.

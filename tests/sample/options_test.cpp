@@ -159,6 +159,12 @@ TEST(Options, AngleOfViewMayBeAsWideAndAsNarrowAsAFilesCamera) {
   EXPECT_FALSE(parse({"render", "--fov-y", "0"}));
 }
 
+TEST(Options, OfAnOptionThatIsGivenTwiceTheLastCounts) {
+  const auto options = parse({"render", "--size", "1x1", "--eye", "1,2,3", "--size", "640x360"});
+  ASSERT_TRUE(options) << options.error().text;
+  EXPECT_EQ(options->view.width, 640u);
+}
+
 TEST(Options, WhatHasNoEffectIsRefused) {
   for (const char* command : {"render", "graph", "view"}) {
     EXPECT_FALSE(parse({command, "--spp", "16"})) << command;
