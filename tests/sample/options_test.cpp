@@ -217,6 +217,10 @@ TEST(Options, HelpTeachesAndAsksForNoRun) {
   EXPECT_EQ(after_a_mistake.error().text, one.error().text);
 }
 
+TEST(Options, HelpSaysHowTheCommandIsTyped) {
+  EXPECT_THAT(parse({"render", "--help"}).error().text, HasSubstr("Usage: alcove render "));
+}
+
 TEST(Options, HelpListsTheSettings) {
   for (const char* command :
        {"render", "compare", "motion", "ablate", "bench", "recommend", "graph", "view"}) {
@@ -228,10 +232,26 @@ TEST(Options, HelpListsTheSettings) {
   EXPECT_THAT(parse({"doctor", "--help"}).error().text, testing::Not(HasSubstr("clamp_width")));
 }
 
+TEST(Options, TheVersionIsThatOfTheProject) {
+  const auto version = parse({"--version"});
+  ASSERT_FALSE(version);
+  EXPECT_EQ(version.error().status, 0);
+  EXPECT_THAT(version.error().text, testing::MatchesRegex("alcove [0-9]+\\.[0-9]+\\.[0-9]+"));
+}
+
 TEST(Options, NoCommandAndUnknownOnesAreMistakes) {
   EXPECT_EQ(parse({}).error().status, 2);
   EXPECT_EQ(parse({"paint"}).error().status, 2);
   EXPECT_EQ(parse({"render", "--colour", "red"}).error().status, 2);
+}
+
+TEST(Options, AMistakeIsNamedWithWhereHelpIs) {
+  EXPECT_EQ(parse({"paint", "--size", "2x2"}).error().text,
+            "there is no command paint; see alcove --help");
+  EXPECT_EQ(parse({}).error().text, "name a command; see alcove --help");
+  const std::string unknown = parse({"render", "--colour", "red"}).error().text;
+  EXPECT_THAT(unknown, HasSubstr("--colour"));
+  EXPECT_THAT(unknown, testing::EndsWith("; see alcove render --help"));
 }
 
 }  // namespace
