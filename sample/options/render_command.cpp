@@ -104,6 +104,9 @@ std::vector<std::string> render_arguments(const Options& options, const Shot& sh
   if (!options.scene.empty()) {
     arguments.push_back(options.scene);
   }
+  if (options.cut_blends) {
+    arguments.emplace_back("--cut-blends");
+  }
   if (!options.view.camera.empty()) {
     arguments.insert(arguments.end(), {"--camera", options.view.camera});
   }

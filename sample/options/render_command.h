@@ -21,8 +21,8 @@ struct Shot {
 };
 
 // What `alcove render` has to be called with to draw the shot: the program's name, then arguments
-// that parse_options reads back. Scene, environment, normals, device and the name of the camera are
-// those of `options`.
+// that parse_options reads back. Scene, whether blends are cut out, environment, normals, device
+// and the name of the camera are those of `options`.
 [[nodiscard]] std::vector<std::string> render_arguments(const Options& options, const Shot& shot);
 
 // The arguments as a line for a POSIX shell, quoted where need be.

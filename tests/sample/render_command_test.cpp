@@ -152,6 +152,13 @@ TEST(CommandLine, TheDeviceIsThatOfTheOptions) {
   EXPECT_EQ(parse(render_arguments(options, some_shot()))->device, 3);
 }
 
+TEST(CommandLine, WhatIsCutOutIsCutOutAgain) {
+  Options options;
+  EXPECT_FALSE(parse(render_arguments(options, some_shot()))->cut_blends);
+  options.cut_blends = true;
+  EXPECT_TRUE(parse(render_arguments(options, some_shot()))->cut_blends);
+}
+
 TEST(CommandLine, AnyAngleOfViewIsReadBack) {
   Shot shot = some_shot();
   // The narrowest and the widest that a file's camera has.
