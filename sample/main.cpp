@@ -1,5 +1,7 @@
 // `alcove`, the scene runner.
 
+#include <cerrno>
+#include <cstring>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -11,6 +13,7 @@ namespace {
 
 using alcove::sample::Command;
 using alcove::sample::Options;
+using alcove::sample::Stop;
 
 tl::expected<void, std::string> run(const Options& options) {
   switch (options.command) {
@@ -40,17 +43,34 @@ int fail(const std::string& sentence) {
   return 1;
 }
 
+// What was printed may have gone nowhere: a full disk shows only here.
+int flush_output() {
+  errno = 0;
+  if (std::cout.flush()) return 0;
+  const std::string reason = errno == 0 ? "" : std::string(": ") + std::strerror(errno);
+  return fail("The output cannot be written" + reason + ".");
+}
+
+// Help goes to stdout as other output does; a mistake is a failure of its own kind.
+int stop(const Stop& stop) {
+  if (stop.status != 0) {
+    fail(stop.text);
+    return stop.status;
+  }
+  std::cout << stop.text << "\n";
+  return flush_output();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   try {
     const auto options = alcove::sample::parse_options(argc, argv);
     if (!options) {
-      (options.error().status == 0 ? std::cout : std::cerr) << options.error().text << "\n";
-      return options.error().status;
+      return stop(options.error());
     }
     const auto done = run(*options);
-    return done ? 0 : fail(done.error());
+    return done ? flush_output() : fail(done.error());
   } catch (const std::bad_alloc&) {
     return fail("There is not enough memory for this; try a smaller image or scene.");
   } catch (const std::exception& error) {

@@ -4,6 +4,8 @@
 #include "commands/commands.h"
 #include "measure/measured_trade.h"
 #include "measure/trade_plot.h"
+#include "scene/camera_of.h"
+#include "scene/load_scene.h"
 #include "support/image_io.h"
 
 namespace alcove::sample {
@@ -16,6 +18,20 @@ using Json = nlohmann::ordered_json;
 std::string title_of(const Options& options, const std::string& scene) {
   return (scene.empty() ? "builtin" : scene) + ", " + std::to_string(options.view.width) + "x" +
          std::to_string(options.view.height) + ", frame " + std::to_string(options.view.frames);
+}
+
+// That every scene can be read and seen: the last is reached after minutes.
+Done check_scenes(const std::vector<std::string>& scenes, const ViewOptions& view) {
+  for (const std::string& name : scenes) {
+    const auto scene = load_scene(name);
+    if (!scene) {
+      return Failure(scene.error());
+    }
+    if (const auto camera = camera_of(view, *scene); !camera) {
+      return Failure(camera.error());
+    }
+  }
+  return {};
 }
 
 // Tells of a trade on stdout and in `report`.
@@ -32,6 +48,9 @@ Done run_bench(const Options& options) {
   }
   const std::vector<std::string> scenes =
       options.scenes.empty() ? std::vector<std::string>{""} : options.scenes;
+  if (auto fine = check_scenes(scenes, options.view); !fine) {
+    return fine;
+  }
   Json report;
   report["frames"] = options.view.frames;
   std::string device;

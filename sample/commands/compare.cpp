@@ -80,6 +80,10 @@ tl::expected<void, std::string> write_truths(const Rendering& rendering, const T
 }  // namespace
 
 tl::expected<void, std::string> run_compare(const Options& options) {
+  // Before minutes of work, not after.
+  if (auto made = create_folder(options.out); !made) {
+    return made;
+  }
   const auto rendering = render(options);
   if (!rendering) {
     return tl::unexpected(rendering.error());

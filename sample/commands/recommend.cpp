@@ -78,8 +78,9 @@ Done run_recommend(const Options& options) {
   std::cout << "RMSE of visibility against ray-traced truth, GPU time of the occlusion passes at "
             << options.view.width << "x" << options.view.height << " on "
             << stage->gpu->device().properties().deviceName << "\n"
-            << shell_line(render_arguments(options, {stage->camera, chosen->settings, std::nullopt,
-                                                     options.view.width, options.view.height}))
+            << shell_line(render_arguments(
+                   options, {stage->camera, chosen->settings, std::nullopt, options.view.width,
+                             options.view.height, options.view.frames}))
             << "\n";
   return {};
 }

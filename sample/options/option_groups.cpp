@@ -1,6 +1,7 @@
 #include "options/option_groups.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -9,6 +10,7 @@
 
 #include "alcove/passes/setting_names.h"
 #include "options/option_value.h"
+#include "options/settings.h"
 
 namespace alcove::sample {
 namespace {
@@ -20,11 +22,14 @@ class Group {
       : app_(app), heading_(std::move(heading)) {}
 
   using Read = std::function<void(const OptionValue& given)>;
-  // `type` is what --help calls the value; `read` gets it where there is one.
+  // `type` is what --help calls the value; `read` gets it where there is one, the last of several.
   void add(const std::string& option, const std::string& type, const std::string& help,
            const Read& read) const {
     const auto typed = [option, read](const std::string& text) { read({option, text}); };
-    app_.add_option_function<std::string>(option, typed, help)->type_name(type)->group(heading_);
+    app_.add_option_function<std::string>(option, typed, help)
+        ->type_name(type)
+        ->take_last()
+        ->group(heading_);
   }
   // The same for an option that may be repeated.
   void add_repeatable(const std::string& option, const std::string& type, const std::string& help,
@@ -60,7 +65,18 @@ void add_frames(const Group& group, ViewOptions& view, std::int64_t fewest,
   });
 }
 
+// A plane at the eye or behind it: only an orthographic view has that.
+void check_plane(const std::string& option, const std::optional<float>& plane,
+                 const ViewOptions& view) {
+  if (plane && !(*plane > 0.0f) && !view.ortho_height) {
+    throw Mistake{option + " " + shown(*plane) +
+                  ": give a length above 0, in the scene's units, or --ortho-height too"};
+  }
+}
+
 void check_view(const ViewOptions& view) {
+  check_plane("--near", view.near_plane, view);
+  check_plane("--far", view.far_plane, view);
   if (view.near_plane && view.far_plane && !(*view.near_plane < *view.far_plane)) {
     throw Mistake{"--near " + shown(*view.near_plane) + ": give a length below --far"};
   }
@@ -99,18 +115,27 @@ void add_view(CLI::App& app, ViewOptions& view) {
     view.up_ws = given.vector();
     if (*view.up_ws == glm::vec3(0.0f)) given.refuse("a direction, not zero");
   });
-  group.add("--fov-y", "DEGREES", "vertical angle of view; 60", [&](const OptionValue& given) {
-    view.fov_y = glm::radians(static_cast<float>(
-        given.number(1.0, 170.0, "the vertical angle of view in degrees, 1 to 170")));
-  });
+  group.add(
+      "--fov-y", "DEGREES", "vertical angle of view; the camera's", [&](const OptionValue& given) {
+        // As far as a file's camera may go.
+        view.fov_y = glm::radians(static_cast<float>(
+            given.number(0.001, 178.0, "the vertical angle of view in degrees, 0.001 to 178")));
+      });
   group.add("--ortho-height", "LENGTH", "orthographic, so many units high",
             [&](const OptionValue& given) { view.ortho_height = given.length(); });
-  group.add("--near", "LENGTH", "near plane; the camera's, as is the far one",
-            [&](const OptionValue& given) { view.near_plane = given.length(); });
+  constexpr double kLargest = std::numeric_limits<float>::max();
+  group.add("--near", "LENGTH",
+            "near plane; the camera's, as is the far one. An orthographic view's may lie behind it",
+            [&](const OptionValue& given) {
+              view.near_plane = static_cast<float>(
+                  given.number(-kLargest, kLargest, "a length above 0, in the scene's units"));
+            });
   group.add("--far", "LENGTH", "far plane, or inf", [&](const OptionValue& given) {
     const bool infinite = given.text == "inf" || given.text == "infinity";
-    view.far_plane = infinite ? std::numeric_limits<float>::infinity()
-                              : static_cast<float>(given.positive("a length above 0, or inf"));
+    view.far_plane =
+        infinite
+            ? std::numeric_limits<float>::infinity()
+            : static_cast<float>(given.number(-kLargest, kLargest, "a length above 0, or inf"));
   });
   group.add_flag("--reversed-z", "near at depth 1, far at 0: finer far away", view.reversed_z);
   group.add("--size", "WxH", "of the image in pixels; 960x540",
@@ -168,13 +193,16 @@ void add_occlusion(CLI::App& app, OcclusionOptions& occlusion) {
             "how far an occluder counts, scene units; a twentieth of the scene's diagonal",
             [&](const OptionValue& given) { occlusion.radius = given.length(); });
   group.add_repeatable(
-      "--set", "NAME=VALUE", "one parameter of the pass over the preset; may be repeated",
+      "--set", "NAME=VALUE", "one of the settings below over the preset; may be repeated",
       [&](const OptionValue& given) {
         const std::size_t equals = given.text.find('=');
         if (equals == std::string::npos || equals == 0 || equals + 1 == given.text.size()) {
           given.refuse("name=value, such as slices=2");
         }
-        occlusion.set.emplace_back(given.text.substr(0, equals), given.text.substr(equals + 1));
+        const std::string name = given.text.substr(0, equals);
+        const std::string value = given.text.substr(equals + 1);
+        if (const auto wanted = wanted_instead(name, value)) given.refuse(*wanted);
+        occlusion.set.emplace_back(name, value);
       });
   group.add("--normals", "NAME",
             "that the pass is given, and the truth with it: shading (of vertices and normal maps), "
@@ -182,17 +210,32 @@ void add_occlusion(CLI::App& app, OcclusionOptions& occlusion) {
             [&](const OptionValue& given) {
               occlusion.normals = static_cast<NormalSource>(given.one_of(kNormalSourceNames));
             });
-  group.add("--roughness", "R,...",
-            "perceptual roughness for specular occlusion over that of the materials; several give "
-            "several images",
-            [&](const OptionValue& given) {
-              occlusion.roughness = given.numbers(
-                  16, 0.0f, 1.0f, "up to 16 numbers from 0 to 1, such as 0.1,0.3,0.6");
-            });
-  group.add("--spp", "N", "rays per pixel of the truth; 256", [&](const OptionValue& given) {
-    occlusion.spp =
-        static_cast<std::uint32_t>(given.whole_number(1, 65536, "rays per pixel, 1 to 65536"));
-  });
+  app.footer(settings_help());
+}
+
+void add_roughness(CLI::App& app, OcclusionOptions& occlusion) {
+  Group(app, "Occlusion")
+      .add("--roughness", "R,...",
+           "perceptual roughness for specular occlusion over that of the materials; several give "
+           "several images",
+           [&](const OptionValue& given) {
+             const std::string wanted =
+                 "up to 16 numbers from 0 to 1, no two alike, such as 0.1,0.3,0.6";
+             occlusion.roughness = given.numbers(16, 0.0f, 1.0f, wanted);
+             // Images are named by their first six digits.
+             std::vector<float> sorted = occlusion.roughness;
+             std::ranges::sort(sorted);
+             const auto alike = [](float a, float b) { return b - a < 1e-5f; };
+             if (std::ranges::adjacent_find(sorted, alike) != sorted.end()) given.refuse(wanted);
+           });
+}
+
+void add_rays(CLI::App& app, OcclusionOptions& occlusion) {
+  Group(app, "Occlusion")
+      .add("--spp", "N", "rays per pixel of the truth; 256", [&](const OptionValue& given) {
+        occlusion.spp =
+            static_cast<std::uint32_t>(given.whole_number(1, 65536, "rays per pixel, 1 to 65536"));
+      });
 }
 
 void add_no_cache(CLI::App& app, bool& use_cache) {

@@ -23,7 +23,12 @@ void add_course(CLI::App& app, ViewOptions& view, const std::string& frames_help
 // How many frames a camera that stands is drawn.
 void add_standing(CLI::App& app, ViewOptions& view);
 void add_motion(CLI::App& app, Options& options);
+// With the settings that --set knows at the end of the help.
 void add_occlusion(CLI::App& app, OcclusionOptions& occlusion);
+// For commands that draw specular occlusion.
+void add_roughness(CLI::App& app, OcclusionOptions& occlusion);
+// For commands that trace a truth.
+void add_rays(CLI::App& app, OcclusionOptions& occlusion);
 void add_no_cache(CLI::App& app, bool& use_cache);
 // What `recommend` keeps to.
 void add_limits(CLI::App& app, Options& options);

@@ -1,6 +1,7 @@
 #include "options/option_value.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -110,11 +111,10 @@ std::size_t OptionValue::one_of(std::span<const std::string_view> names) const {
   return static_cast<std::size_t>(found - names.begin());
 }
 
-std::string shown(double value) {
-  std::string text = std::to_string(value);
-  text.erase(text.find_last_not_of('0') + 1);
-  if (text.back() == '.') text.pop_back();
-  return text;
+std::string shown(float value) {
+  std::array<char, 32> digits{};
+  const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), value);
+  return {digits.data(), end};
 }
 
 }  // namespace alcove::sample

@@ -43,7 +43,7 @@ struct OptionValue {
   std::size_t one_of(std::span<const std::string_view> names) const;
 };
 
-// A number for people: without zeros at its end.
-[[nodiscard]] std::string shown(double value);
+// A number for people: as few digits as tell it from every other.
+[[nodiscard]] std::string shown(float value);
 
 }  // namespace alcove::sample

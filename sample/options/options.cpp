@@ -21,12 +21,14 @@ void add_render(CLI::App& app, Options& options) {
   add_view(app, options.view);
   add_course(app, options.view, "how many to render; 1. The last is written");
   add_occlusion(app, options.occlusion);
+  add_roughness(app, options.occlusion);
   add_light(app, options);
   add_output(app, options);
 }
 
 void add_compare(CLI::App& app, Options& options) {
   add_render(app, options);
+  add_rays(app, options.occlusion);
   add_lit(app, options.lit);
   add_no_cache(app, options.use_cache);
 }
@@ -37,6 +39,7 @@ void add_motion_command(CLI::App& app, Options& options) {
   add_motion(app, options);
   add_view(app, options.view);
   add_occlusion(app, options.occlusion);
+  add_rays(app, options.occlusion);
   add_output(app, options);
   add_no_cache(app, options.use_cache);
 }
@@ -46,6 +49,7 @@ void add_comparison(CLI::App& app, Options& options) {
   add_view(app, options.view);
   add_standing(app, options.view);
   add_occlusion(app, options.occlusion);
+  add_rays(app, options.occlusion);
   add_no_cache(app, options.use_cache);
 }
 
@@ -76,6 +80,7 @@ void add_graph(CLI::App& app, Options& options) {
   add_cut_blends(app, options.cut_blends);
   add_view(app, options.view);
   add_occlusion(app, options.occlusion);
+  add_roughness(app, options.occlusion);
   add_format(app, options.graph_format);
   add_device(app, options);
 }
@@ -88,6 +93,7 @@ void add_window(CLI::App& app, Options& options) {
   add_view(app, options.view);
   add_course(app, options.view, "how many to draw; else until the window is closed");
   add_occlusion(app, options.occlusion);
+  add_roughness(app, options.occlusion);
   add_light(app, options);
   add_out(app, options,
           "folder for screenshots, else where alcove was started; with it, the last of --frames is "
@@ -133,9 +139,22 @@ std::string one_line(std::string text) {
 // The help of the command that was asked for it; empty: none was.
 std::string help_of_command(const CLI::App& app) {
   for (const CLI::App* sub : app.get_subcommands()) {
-    if (sub->count("--help") != 0) return sub->help();
+    if (sub->count("--help") != 0) return sub->help(app.get_name());
   }
   return "";
+}
+
+Stop no_command(const std::string& what) { return {2, what + "; see alcove --help"}; }
+
+// What CLI11 does not like, and where that would have been told.
+Stop mistake_of(const CLI::App& app, const CLI::ParseError& error) {
+  const auto commands = app.get_subcommands();
+  if (commands.empty()) return no_command("name a command first");
+  return {2, one_line(error.what()) + "; see alcove " + commands.front()->get_name() + " --help"};
+}
+
+bool is_command(const std::string& word) {
+  return std::ranges::find(kCommands, word, &Entry::name) != kCommands.end();
 }
 
 }  // namespace
@@ -156,7 +175,12 @@ tl::expected<Options, Stop> parse_options(int argc, const char* const* argv) {
     kCommands[i].add_options(*app.add_subcommand(kCommands[i].name, kCommands[i].help), options[i]);
   }
   app.require_subcommand(1);
+  app.set_version_flag("--version", "alcove " ALCOVE_VERSION);
   app.footer("`alcove COMMAND --help` has the options of each.");
+  if (argc < 2) return tl::unexpected(no_command("name a command"));
+  if (argv[1][0] != '-' && !is_command(argv[1])) {
+    return tl::unexpected(no_command("there is no command " + std::string(argv[1])));
+  }
   try {
     app.parse(argc, argv);
     for (std::size_t i = 0; i < kCommands.size(); ++i) {
@@ -167,14 +191,16 @@ tl::expected<Options, Stop> parse_options(int argc, const char* const* argv) {
   } catch (const CLI::CallForHelp&) {
     const std::string help = help_of_command(app);
     return tl::unexpected(Stop{0, help.empty() ? app.help() : help});
+  } catch (const CLI::CallForVersion& version) {
+    return tl::unexpected(Stop{0, version.what()});
   } catch (const CLI::ParseError& error) {
-    return tl::unexpected(Stop{2, one_line(error.what()) + "; see alcove --help"});
+    return tl::unexpected(mistake_of(app, error));
   } catch (const Mistake& mistake) {
     const std::string help = help_of_command(app);
     if (!help.empty()) return tl::unexpected(Stop{0, help});
     return tl::unexpected(Stop{2, mistake.text});
   }
-  return tl::unexpected(Stop{2, "name a command; see alcove --help"});
+  return tl::unexpected(no_command("name a command"));
 }
 
 }  // namespace alcove::sample

@@ -104,6 +104,9 @@ std::vector<std::string> render_arguments(const Options& options, const Shot& sh
   if (!options.scene.empty()) {
     arguments.push_back(options.scene);
   }
+  if (options.cut_blends) {
+    arguments.emplace_back("--cut-blends");
+  }
   if (!options.view.camera.empty()) {
     arguments.insert(arguments.end(), {"--camera", options.view.camera});
   }
@@ -120,8 +123,12 @@ std::vector<std::string> render_arguments(const Options& options, const Shot& sh
   if (!options.environment.empty()) {
     arguments.insert(arguments.end(), {"--environment", options.environment.string()});
   }
-  if (shot.settings.history_frames > 1) {
-    arguments.insert(arguments.end(), {"--frames", text_of(shot.settings.history_frames)});
+  const std::uint32_t frames = shot.frames > 0 ? shot.frames : shot.settings.history_frames;
+  if (frames > 1) {
+    arguments.insert(arguments.end(), {"--frames", text_of(frames)});
+  }
+  if (options.device >= 0) {
+    arguments.insert(arguments.end(), {"--device", std::to_string(options.device)});
   }
   return arguments;
 }

@@ -10,7 +10,8 @@ namespace alcove::sample {
 struct SettingInfo {
   const char* name;
   const char* help;
-  // Of the window's slider for a number; the radius in parts of the scene's usual one.
+  // Of the window's slider for a number, the radius in parts of the scene's usual one; a whole
+  // number lies within.
   float low = 0;
   float high = 0;
   // Whether it has an effect beside the others; null: always.

@@ -103,6 +103,8 @@ double view_depth(const glm::mat4& clip_from_view, double depth_ndc) {
 }
 
 Camera orbited(const Camera& camera, float angle) {
+  // An eye that is small beside its target is not what target and arm add up to.
+  if (angle == 0.0f) return camera;
   Camera out = camera;
   const glm::vec3 axis = glm::normalize(camera.up_ws);
   const glm::vec3 arm = camera.eye_ws - camera.target_ws;

@@ -21,13 +21,17 @@ tl::expected<Camera, std::string> camera_of(const ViewOptions& view, const Scene
   const Camera* named = find_camera(scene, view.camera);
   if (!named && !view.camera.empty()) {
     std::string names;
-    for (const Camera& camera : scene.cameras) names += " " + camera.name;
-    return tl::unexpected("the scene has no camera " + view.camera + "; it has" +
-                          (names.empty() ? " none: use --eye and --target" : ":" + names));
+    for (const Camera& camera : scene.cameras) {
+      names += (names.empty() ? "\"" : ", \"") + camera.name + "\"";
+    }
+    return tl::unexpected("the scene has no camera \"" + view.camera + "\"; it has " +
+                          (names.empty() ? "none: use --eye and --target" : names));
   }
   Camera camera = named ? *named : framing_camera(scene.bounds_ws);
   camera.eye_ws = view.eye_ws.value_or(camera.eye_ws);
   camera.target_ws = view.target_ws.value_or(camera.target_ws);
+  // A view that is typed stands upright: what is up for the scene's camera fits its own view.
+  if (view.eye_ws || view.target_ws) camera.up_ws = Camera().up_ws;
   camera.up_ws = view.up_ws.value_or(camera.up_ws);
   camera.near_plane = view.near_plane.value_or(camera.near_plane);
   camera.far_plane = view.far_plane.value_or(camera.far_plane);
@@ -48,6 +52,10 @@ tl::expected<Camera, std::string> camera_of(const ViewOptions& view, const Scene
     return tl::unexpected<std::string>(
         "--eye, --target and --up are too large or too near each other for a view to be made: give "
         "lengths from 1e-15 to 1e15");
+  }
+  if (!camera.orthographic && !(camera.near_plane > 0.0f)) {
+    return tl::unexpected("the near plane (" + shown(camera.near_plane) +
+                          ") of a perspective view must lie before the eye: give --near");
   }
   if (!(camera.near_plane < camera.far_plane)) {
     return tl::unexpected("the near plane (" + shown(camera.near_plane) +

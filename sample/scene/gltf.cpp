@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "scene/gltf_camera.h"
 #include "scene/gltf_material.h"
 #include "scene/gltf_mesh.h"
 
@@ -27,6 +28,7 @@ constexpr uint64_t kMostFileBytes = INT32_MAX;  // tinygltf counts in int
 struct FolderAccess {
   fs::path folder;  // canonical; empty: no files at all
   uint64_t bytes_left = kMostFileBytes;
+  std::vector<std::string> outside;  // as the scene names them: there, and not to be read
 };
 
 bool lies_within(const fs::path& file, const fs::path& folder) {
@@ -35,11 +37,16 @@ bool lies_within(const fs::path& file, const fs::path& folder) {
 }
 
 bool file_exists(const std::string& name, void* user) {
-  const auto& access = *static_cast<FolderAccess*>(user);
+  auto& access = *static_cast<FolderAccess*>(user);
   if (access.folder.empty() || name.find('\0') != std::string::npos) return false;
   std::error_code error;
   const fs::path file = fs::canonical(name, error);
-  return !error && lies_within(file, access.folder) && fs::is_regular_file(file, error) && !error;
+  if (error || !fs::is_regular_file(file, error)) return false;
+  if (lies_within(file, access.folder)) return true;
+  // tinygltf also looks where the program was started, which is not what the scene means.
+  const std::string within = (access.folder / "").string();
+  if (name.starts_with(within)) access.outside.push_back(name.substr(within.size()));
+  return false;
 }
 
 std::string same_path(const std::string& name, void*) { return name; }
@@ -111,12 +118,33 @@ bool is_read(const std::string& extension) {
   return extension == "KHR_mesh_quantization" || extension == "KHR_texture_transform";
 }
 
-// What tinygltf would answer with a crash or all memory.
+// tinygltf reads every version as if it were the second.
+tl::expected<void, std::string> check_version(const nlohmann::json& root) {
+  const auto asset = root.find("asset");
+  if (asset == root.end() || !asset->is_object()) return {};
+  const auto version = asset->find("version");
+  if (version == asset->end() || !version->is_string()) return {};
+  const auto text = version->get<std::string>();
+  if (text.substr(0, text.find('.')) == "2") return {};
+  return Failure("it is glTF " + text + ", and version 2 is what is read here");
+}
+
+tl::expected<void, std::string> check_binary_version(std::span<const uint8_t> bytes) {
+  uint32_t version = 0;
+  if (!is_binary(bytes) || bytes.size() < 8) return {};
+  std::memcpy(&version, bytes.data() + 4, sizeof(version));
+  if (version == 2) return {};
+  return Failure("it is binary glTF of version " + std::to_string(version) +
+                 ", and version 2 is what is read here");
+}
+
+// What tinygltf would answer with a crash, all memory or nonsense.
 tl::expected<void, std::string> check_json(std::span<const uint8_t> json) {
   constexpr size_t kDeepest = 64;
   if (nesting(json) > kDeepest) return Failure("its JSON is nested too deeply");
   const auto root = nlohmann::json::parse(json.begin(), json.end(), nullptr, false);
   if (!root.is_object()) return Failure("it is not glTF: its JSON cannot be read");
+  if (auto fine = check_version(root); !fine) return fine;
   const auto buffers = root.find("buffers");
   if (buffers != root.end() && buffers->is_array()) {
     const auto without_uri = [](const auto& b) { return !b.is_object() || !b.contains("uri"); };
@@ -143,9 +171,33 @@ std::string first_line(const std::string& text) {
   return line.empty() ? "it is not glTF" : line;
 }
 
+// One line that can be read, whatever the file has for names: they may be as long as the file, and
+// a URI may be the data itself.
+std::string readable(std::string text) {
+  constexpr size_t kMost = 200;
+  std::ranges::replace_if(
+      text, [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
+  if (text.size() <= kMost) return text;
+  const std::string data = "data:";
+  const size_t uri = text.find(data);
+  size_t end = uri < kMost ? uri + data.size() : kMost;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0u) == 0x80) --end;  // UTF-8
+  return text.substr(0, end) + "...";
+}
+
+// An image that cannot be read is left out with a note; of these it has to say why.
+void name_images_outside(const FolderAccess& access, tinygltf::Model& model) {
+  for (tinygltf::Image& image : model.images) {
+    if (std::ranges::find(access.outside, image.uri) != access.outside.end()) {
+      image.uri += ", outside the scene's folder";
+    }
+  }
+}
+
 tl::expected<tinygltf::Model, std::string> read_model(std::span<const uint8_t> bytes,
                                                       const fs::path& folder) {
   if (bytes.size() > kMostFileBytes) return Failure("the file is too large");
+  if (auto fine = check_binary_version(bytes); !fine) return Failure(fine.error());
   if (auto fine = check_json(json_of(bytes)); !fine) return Failure(fine.error());
   FolderAccess access;
   std::error_code ignored;
@@ -167,7 +219,12 @@ tl::expected<tinygltf::Model, std::string> read_model(std::span<const uint8_t> b
                                       reinterpret_cast<const char*>(bytes.data()),
                                       static_cast<unsigned>(bytes.size()), access.folder.string());
   }
+  // Buffers come first, and the first that is not there ends it.
+  if (!read && !access.outside.empty()) {
+    return Failure(access.outside.back() + " lies outside the scene's folder");
+  }
   if (!read) return Failure(first_line(error));
+  name_images_outside(access, model);
   return model;
 }
 
@@ -189,49 +246,6 @@ glm::dmat4 local_transform(const tinygltf::Node& node) {
     for (int c = 0; c < 3; ++c) m[3][c] = node.translation[static_cast<size_t>(c)];
   }
   return m;
-}
-
-bool positive(double value) { return std::isfinite(value) && value > 0.0; }
-
-// A node's camera. Nonsense in it leaves it out with a warning: the triangles are still good.
-void add_camera(const tinygltf::Model& model, const tinygltf::Node& node,
-                const glm::dmat4& world_from_node, Scene& scene) {
-  if (node.camera < 0) return;
-  const auto leave_out = [&] {
-    scene.warnings.push_back("Camera of node \"" + node.name + "\" is malformed and left out.");
-  };
-  if (static_cast<size_t>(node.camera) >= model.cameras.size()) return leave_out();
-  const tinygltf::Camera& in = model.cameras[static_cast<size_t>(node.camera)];
-  Camera out;
-  out.name = !in.name.empty() ? in.name : node.name;
-  if (out.name.empty()) out.name = "camera" + std::to_string(scene.cameras.size());
-  const glm::dvec3 eye(world_from_node[3]), back(world_from_node[2]), up(world_from_node[1]);
-  if (!positive(glm::length(back)) || !positive(glm::length(up)) ||
-      !std::isfinite(glm::length(eye))) {
-    return leave_out();
-  }
-  out.eye_ws = eye;
-  out.target_ws = eye - glm::normalize(back);
-  out.up_ws = glm::normalize(up);
-  if (out.eye_ws == out.target_ws) return leave_out();
-  double near_plane = 0.0, far_plane = 0.0;
-  if (in.type == "orthographic") {
-    out.orthographic = true;
-    out.ortho_height = static_cast<float>(2.0 * std::abs(in.orthographic.ymag));
-    near_plane = in.orthographic.znear;
-    far_plane = in.orthographic.zfar;
-    if (!positive(out.ortho_height)) return leave_out();
-  } else {
-    out.fov_y = static_cast<float>(in.perspective.yfov);
-    near_plane = in.perspective.znear;
-    far_plane = in.perspective.zfar > 0.0 ? in.perspective.zfar : INFINITY;
-    if (!positive(near_plane) || !positive(out.fov_y) || out.fov_y > 3.1f) return leave_out();
-  }
-  if (!std::isfinite(near_plane) || !(far_plane > near_plane)) return leave_out();
-  out.near_plane = static_cast<float>(near_plane);
-  out.far_plane = static_cast<float>(far_plane);
-  if (!(out.far_plane > out.near_plane)) return leave_out();
-  scene.cameras.push_back(std::move(out));
 }
 
 // The nodes to start from: those of the default scene, or every node that is nobody's child.
@@ -282,7 +296,7 @@ tl::expected<void, std::string> add_mesh(const tinygltf::Model& model, const tin
 
 // Every node once, from the roots; a second visit means a cycle or two parents.
 tl::expected<void, std::string> add_nodes(const tinygltf::Model& model, MeshBudget& budget,
-                                          Scene& scene) {
+                                          std::vector<PlacedCamera>& cameras, Scene& scene) {
   auto roots = root_nodes(model);
   if (!roots) return Failure(roots.error());
   std::vector<std::pair<int, glm::dmat4>> open;
@@ -303,7 +317,7 @@ tl::expected<void, std::string> add_nodes(const tinygltf::Model& model, MeshBudg
     const tinygltf::Node& node = model.nodes[static_cast<size_t>(index)];
     const glm::dmat4 world_from_node = world_from_parent * local_transform(node);
     if (auto added = add_mesh(model, node, world_from_node, budget, scene); !added) return added;
-    add_camera(model, node, world_from_node, scene);
+    add_camera(model, node, world_from_node, cameras, scene);
     for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) {
       open.emplace_back(*child, world_from_node);
     }
@@ -312,7 +326,8 @@ tl::expected<void, std::string> add_nodes(const tinygltf::Model& model, MeshBudg
 }
 
 // A warning once, however many parts it holds for.
-void drop_repeats(std::vector<std::string>& warnings) {
+void tidy(std::vector<std::string>& warnings) {
+  std::ranges::transform(warnings, warnings.begin(), readable);
   std::sort(warnings.begin(), warnings.end());
   warnings.erase(std::unique(warnings.begin(), warnings.end()), warnings.end());
 }
@@ -323,8 +338,9 @@ tl::expected<Scene, std::string> build_scene(const tinygltf::Model& model,
   if (auto added = add_materials(model, limits.pixels, scene); !added) {
     return Failure(added.error());
   }
-  MeshBudget budget{limits.vertices, limits.indices};
-  if (auto added = add_nodes(model, budget, scene); !added) return Failure(added.error());
+  MeshBudget budget{limits.primitives, limits.vertices, limits.indices};
+  std::vector<PlacedCamera> cameras;
+  if (auto added = add_nodes(model, budget, cameras, scene); !added) return Failure(added.error());
   if (scene.meshes.empty()) return Failure("it has no triangles");
   if (!model.animations.empty()) {
     scene.warnings.push_back("Animations are left out: nodes stand as the file places them.");
@@ -336,8 +352,11 @@ tl::expected<Scene, std::string> build_scene(const tinygltf::Model& model,
       }
     }
   }
-  drop_repeats(scene.warnings);
+  tidy(scene.warnings);
   scene.bounds_ws = bounds_of(scene.meshes);
+  for (const PlacedCamera& camera : cameras) {
+    scene.cameras.push_back(aimed(camera, scene.bounds_ws));
+  }
   return scene;
 }
 
@@ -346,7 +365,7 @@ tl::expected<Scene, std::string> build_scene(const tinygltf::Model& model,
 tl::expected<Scene, std::string> parse_gltf(std::span<const uint8_t> bytes, const std::string& name,
                                             const fs::path& folder, const GltfLimits& limits) {
   const auto refuse = [&](const std::string& why) {
-    return Failure("cannot read " + name + ": " + why);
+    return Failure("cannot read " + name + ": " + readable(why));
   };
   try {
     const auto model = read_model(bytes, folder);
@@ -365,8 +384,10 @@ tl::expected<Scene, std::string> load_gltf(const fs::path& file) {
     return Failure("cannot read " + file.string() + ": " + why);
   };
   std::error_code error;
-  if (!fs::exists(file, error)) return refuse("there is no such file");
-  if (fs::is_directory(file, error)) return refuse("it is a folder; name the .gltf or .glb in it");
+  const fs::file_status status = fs::status(file, error);
+  if (status.type() == fs::file_type::not_found) return refuse("there is no such file");
+  if (!fs::status_known(status)) return refuse(error.message());
+  if (fs::is_directory(status)) return refuse("it is a folder; name the .gltf or .glb in it");
   std::vector<unsigned char> bytes;
   std::string why;
   try {

@@ -11,7 +11,7 @@
 
 namespace alcove::sample {
 
-// Reads a .gltf or .glb file (by its content, not its name) into world-space triangles.
+// Reads a glTF 2 file, .gltf or .glb (by its content, not its name), into world-space triangles.
 //
 // Taken: node transforms (matrix or TRS, any hierarchy; mirrored ones turn the winding), triangle
 // lists, strips and fans with and without indices, every accessor type (normalised, interleaved,
@@ -26,7 +26,8 @@ namespace alcove::sample {
 // a file may grow to is bounded by GltfLimits, and external files must lie in the scene's folder.
 // Errors are one sentence with the file's name. Thread-safe.
 struct GltfLimits {
-  uint64_t vertices = uint64_t{1} << 25;  // of all meshes together, instances counted each
+  uint64_t primitives = uint64_t{1} << 20;  // as vertices
+  uint64_t vertices = uint64_t{1} << 25;    // of all meshes together, instances counted each
   uint64_t indices = uint64_t{3} << 25;
   uint64_t pixels = uint64_t{1} << 29;  // of all images together
 };

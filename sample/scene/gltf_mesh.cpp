@@ -233,6 +233,8 @@ tl::expected<void, std::string> add_normals(const tinygltf::Model& model,
   return {};
 }
 
+void charge(uint64_t& budget, uint64_t count) { budget -= std::min(budget, count); }
+
 tl::expected<std::vector<uint32_t>, std::string> vertex_order(const tinygltf::Model& model,
                                                               const tinygltf::Primitive& primitive,
                                                               size_t vertices, uint64_t most) {
@@ -250,6 +252,10 @@ tl::expected<void, std::string> add_primitive(const tinygltf::Model& model,
                                               const glm::dmat4& world_from_mesh, MeshBudget& budget,
                                               Scene& scene) {
   const auto refuse = [&](const std::string& why) { return Failure("mesh " + name + " " + why); };
+  if (budget.primitives == 0) {
+    return refuse("takes the scene past the number of parts that is read here");
+  }
+  --budget.primitives;
   // -1 is tinygltf's for a mode that the file does not give: triangles.
   const int mode = primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
   if (mode < TINYGLTF_MODE_TRIANGLES || mode > TINYGLTF_MODE_TRIANGLE_FAN) {
@@ -282,6 +288,9 @@ tl::expected<void, std::string> add_primitive(const tinygltf::Model& model,
   if (mesh.indices.size() > budget.indices || mesh.indices.size() > budget.vertices) {
     return refuse("takes the scene past the number of triangles that is read here");
   }
+  // Now: what has no area took its time too.
+  charge(budget.vertices, vertices);
+  charge(budget.indices, mesh.indices.size());
   if (glm::determinant(glm::dmat3(world_from_mesh)) < 0.0) {
     for (size_t i = 0; i < mesh.indices.size(); i += 3) {
       std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
@@ -293,8 +302,8 @@ tl::expected<void, std::string> add_primitive(const tinygltf::Model& model,
   if (auto added = add_normals(model, primitive, world_from_mesh, vertices, mesh); !added) {
     return refuse(added.error());
   }
-  budget.vertices -= std::min<uint64_t>(budget.vertices, mesh.positions_ws.size());
-  budget.indices -= mesh.indices.size();
+  // Those that flat normals have made.
+  charge(budget.vertices, mesh.positions_ws.size() - std::min(vertices, mesh.positions_ws.size()));
   scene.meshes.push_back(std::move(mesh));
   return {};
 }

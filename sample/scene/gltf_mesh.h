@@ -11,8 +11,9 @@
 namespace alcove::sample {
 
 // What may still be made of a file, so that a small one cannot ask for all memory by naming the
-// same data again and again.
+// same data again and again. What is read is taken from it, whether or not anything comes of it.
 struct MeshBudget {
+  uint64_t primitives;
   uint64_t vertices;
   uint64_t indices;
 };

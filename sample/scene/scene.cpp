@@ -27,9 +27,9 @@ glm::vec4 texel(const TextureImage& image, uint32_t x, uint32_t y) {
 Bounds bounds_of(const std::vector<Mesh>& meshes) {
   Bounds bounds{glm::vec3(INFINITY), glm::vec3(-INFINITY)};
   for (const Mesh& mesh : meshes) {
-    for (const glm::vec3& p : mesh.positions_ws) {
-      bounds.low = glm::min(bounds.low, p);
-      bounds.high = glm::max(bounds.high, p);
+    for (const uint32_t i : mesh.indices) {
+      bounds.low = glm::min(bounds.low, mesh.positions_ws[i]);
+      bounds.high = glm::max(bounds.high, mesh.positions_ws[i]);
     }
   }
   return bounds.low.x <= bounds.high.x ? bounds : Bounds{};

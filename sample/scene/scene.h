@@ -105,6 +105,7 @@ struct Scene {
   std::vector<std::string> warnings;  // one sentence each: what of the file was left out
 };
 
+// Of the triangles: vertices that none uses do not count.
 [[nodiscard]] Bounds bounds_of(const std::vector<Mesh>& meshes);
 [[nodiscard]] uint64_t triangle_count(const Scene& scene);
 

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -26,13 +27,36 @@ tl::unexpected<std::string> failure(const std::filesystem::path& file, const std
   return tl::unexpected<std::string>("cannot write " + file.string() + ": " + why);
 }
 
+constexpr const char* kPart = ".part";
+
 // Beside the target, so that the rename stays on one file system; random, so that two processes
 // that write the same file do not meet.
 std::filesystem::path temporary_beside(const std::filesystem::path& file) {
   std::random_device random;
   std::filesystem::path temporary = file;
-  temporary += ".part" + std::to_string(random());
+  temporary += kPart + std::to_string(random());
   return temporary;
+}
+
+// Temporary files of `file` whose writers were stopped: one is written within seconds.
+void remove_abandoned(const std::filesystem::path& file) {
+  namespace fs = std::filesystem;
+  constexpr auto kAge = std::chrono::hours(1);
+  const std::string start = file.filename().string() + kPart;
+  std::error_code error;
+  fs::directory_iterator entry(file.has_parent_path() ? file.parent_path() : fs::path("."), error);
+  for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (!name.starts_with(start) || name.size() == start.size() ||
+        name.find_first_not_of("0123456789", start.size()) != std::string::npos) {
+      continue;
+    }
+    std::error_code ignored;
+    const auto written = fs::last_write_time(entry->path(), ignored);
+    if (!ignored && fs::file_time_type::clock::now() - written > kAge) {
+      fs::remove(entry->path(), ignored);
+    }
+  }
 }
 
 // All of the bytes reach the disk's file or the caller hears of it: a full disk may show only when
@@ -176,11 +200,18 @@ tl::expected<void, std::string> create_folder(const std::filesystem::path& folde
     return tl::unexpected("The folder " + folder.string() +
                           " could not be created: " + error.message() + ".");
   }
+  const std::filesystem::path trial = temporary_beside(folder / "trial");
+  if (auto written = write_bytes(trial, "", 0); !written) {
+    return tl::unexpected("Nothing can be written to the folder " + folder.string() + ": " +
+                          written.error() + ".");
+  }
+  std::filesystem::remove(trial, error);
   return {};
 }
 
 Outcome write_whole(const std::filesystem::path& file,
                     const std::function<Outcome(const std::filesystem::path&)>& write) {
+  remove_abandoned(file);
   const std::filesystem::path temporary = temporary_beside(file);
   std::error_code reason;
   Outcome outcome = write(temporary);

@@ -11,10 +11,12 @@
 namespace alcove::sample {
 
 // Files appear whole or not at all: each is written under a temporary name in its folder and then
-// renamed. Errors are one sentence with the file's name and the system's reason (a full disk, a
+// renamed; what an interrupted write left of a file goes with the next one, from an hour later on.
+// Errors are one sentence with the file's name and the system's reason (a full disk, a
 // folder that cannot be written).
 
-// With those above it; nothing happens where it is there.
+// With those above it, or nothing where it is there. An error too where no file can be made in it:
+// before the work, not after.
 [[nodiscard]] tl::expected<void, std::string> create_folder(const std::filesystem::path& folder);
 
 // OpenEXR, scanlines, 32-bit float, top row first: one channel `Y`, or three `R` `G` `B`.

@@ -29,10 +29,47 @@ TEST(CameraOf, ACameraThatTheSceneLacksIsRefusedWithThoseItHas) {
   EXPECT_THAT(camera.error(), HasSubstr("court"));
 }
 
+TEST(CameraOf, NamesOfCamerasCannotBeTakenForOneAnother) {
+  Scene scene;
+  scene.cameras = {{.name = "great hall"}, {.name = "roof"}};
+  ViewOptions view;
+  view.camera = "hall";
+  EXPECT_EQ(camera_of(view, scene).error(),
+            "the scene has no camera \"hall\"; it has \"great hall\", \"roof\"");
+}
+
+TEST(CameraOf, AViewThatIsTypedStandsUprightWhateverTheScenesCameraCallsUp) {
+  Scene scene;
+  scene.cameras = {{.name = "tilted", .up_ws = {0.6f, 0.8f, 0.0f}}};
+  ViewOptions view;
+  EXPECT_EQ(camera_of(view, scene)->up_ws, glm::vec3(0.6f, 0.8f, 0.0f));
+  view.eye_ws = glm::vec3(6.0f, 3.0f, -4.0f);
+  EXPECT_EQ(camera_of(view, scene)->up_ws, glm::vec3(0, 1, 0));
+  view.target_ws = glm::vec3(1, 0, -3);
+  EXPECT_EQ(camera_of(view, scene)->up_ws, glm::vec3(0, 1, 0));
+  view.eye_ws.reset();
+  EXPECT_EQ(camera_of(view, scene)->up_ws, glm::vec3(0, 1, 0));
+  view.up_ws = glm::vec3(0, 0, 1);
+  EXPECT_EQ(camera_of(view, scene)->up_ws, glm::vec3(0, 0, 1));
+}
+
 TEST(CameraOf, EyeOnTheTargetIsRefused) {
   ViewOptions view;
   view.eye_ws = view.target_ws = glm::vec3(1.0f);
   EXPECT_FALSE(camera_of(view, builtin_scene()));
+}
+
+TEST(CameraOf, APerspectiveHasNoPlaneBehindItsEye) {
+  Scene scene;
+  scene.cameras = {{.name = "plan", .orthographic = true, .near_plane = -3.0f}};
+  ViewOptions view;
+  ASSERT_TRUE(camera_of(view, scene));
+  view.fov_y = 1.0f;
+  const auto camera = camera_of(view, scene);
+  ASSERT_FALSE(camera);
+  EXPECT_THAT(camera.error(), HasSubstr("--near"));
+  view.near_plane = 0.5f;
+  EXPECT_TRUE(camera_of(view, scene));
 }
 
 TEST(CameraOf, LengthsWhoseSquaresAreNoNumbersAreRefused) {

@@ -212,7 +212,72 @@ TEST(Gltf, CamerasOfEveryKindArrive) {
   EXPECT_TRUE(scene.cameras[2].orthographic);
   EXPECT_EQ(scene.cameras[2].ortho_height, 3.0f);
   EXPECT_EQ(scene.cameras[0].eye_ws, glm::vec3(0, 0, 5));
-  EXPECT_EQ(scene.cameras[0].target_ws, glm::vec3(0, 0, 4));
+  // As deep as the middle of the triangle.
+  EXPECT_EQ(scene.cameras[0].target_ws, glm::vec3(0, 0, 0));
+}
+
+// A camera turned by a quarter and some about y, and the triangle, both `scale` times as large and
+// moved by `offset`.
+Scene seen_at(double scale, double offset) {
+  GltfMaker maker = GltfMaker::triangle();
+  maker.json["cameras"] = {
+      {{"type", "perspective"}, {"perspective", {{"yfov", 0.8}, {"znear", 0.01 * scale}}}}};
+  maker.json["nodes"] = {
+      {{"mesh", 0}, {"scale", {scale, scale, scale}}},
+      {{"camera", 0}, {"translation", {4 * scale, 0, 3 * scale}}, {"rotation", {0, 0.44, 0, 0.9}}},
+      {{"children", {0, 1}}, {"translation", {offset, offset, offset}}}};
+  maker.json["scenes"][0]["nodes"] = {2};
+  return parsed(maker.gltf());
+}
+
+TEST(Gltf, ACameraLooksTheSameWayAtAnyScaleAndAnywhere) {
+  const Scene plain = seen_at(1, 0);
+  ASSERT_EQ(plain.cameras.size(), 1u);
+  const auto direction = [](const Camera& camera) {
+    return glm::normalize(glm::dvec3(camera.target_ws) - glm::dvec3(camera.eye_ws));
+  };
+  for (const auto& [scale, offset] :
+       {std::pair{1e10, 0.0}, {1e-9, 0.0}, {1.0, 1e4}, {1.0, 1e5}, {1.0, 1e6}}) {
+    SCOPED_TRACE(testing::Message() << "scale " << scale << ", offset " << offset);
+    const Scene scene = seen_at(scale, offset);
+    ASSERT_EQ(scene.cameras.size(), 1u);
+    // A tenth of a pixel in an image of 960x540.
+    EXPECT_LT(glm::distance(direction(scene.cameras[0]), direction(plain.cameras[0])), 1.6e-4);
+  }
+}
+
+TEST(Gltf, ACameraTurnsAboutWhatItLooksAt) {
+  for (const double scale : {1.0, 1e10, 1e-9}) {
+    const Scene scene = seen_at(scale, 0);
+    ASSERT_EQ(scene.cameras.size(), 1u);
+    const Camera& camera = scene.cameras[0];
+    const glm::vec3 centre = 0.5f * (scene.bounds_ws.low + scene.bounds_ws.high);
+    const glm::vec3 ahead = camera.target_ws - camera.eye_ws;
+    EXPECT_NEAR(glm::dot(centre - camera.target_ws, ahead) / glm::dot(ahead, ahead), 0.0f, 1e-5f)
+        << scale;
+  }
+}
+
+TEST(Gltf, ACameraWithItsBackToTheSceneStillLooksAhead) {
+  GltfMaker maker = GltfMaker::triangle();
+  maker.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}}};
+  maker.json["nodes"].push_back({{"camera", 0}, {"translation", {0, 0, -7}}});
+  maker.json["scenes"][0]["nodes"] = {0, 1};
+  const Scene scene = parsed(maker.gltf());
+  ASSERT_EQ(scene.cameras.size(), 1u);
+  EXPECT_LT(scene.cameras[0].target_ws.z, -7.0f);
+}
+
+TEST(Gltf, BoundsAreThoseOfTheTriangles) {
+  GltfMaker maker = GltfMaker::triangle();
+  const int positions = maker.view<float>({0, 0, 0, 1, 0, 0, 0, 1, 0, 1e6, 0, 0});
+  const int normals = maker.view<float>({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1});
+  maker.primitive()["attributes"] = {{"POSITION", maker.accessor(positions, 5126, "VEC3", 4)},
+                                     {"NORMAL", maker.accessor(normals, 5126, "VEC3", 4)}};
+  maker.primitive()["indices"] = maker.accessor(maker.view<uint16_t>({0, 1, 2}), 5123, "SCALAR", 3);
+  const Scene scene = parsed(maker.gltf());
+  EXPECT_EQ(scene.bounds_ws.low, glm::vec3(0));
+  EXPECT_EQ(scene.bounds_ws.high, glm::vec3(1, 1, 0));
 }
 
 TEST(Gltf, ExternalBufferIsReadFromTheFolderAndNowhereElse) {
@@ -238,6 +303,40 @@ TEST(Gltf, ExternalBufferIsReadFromTheFolderAndNowhereElse) {
       EXPECT_THAT(scene.error(), HasSubstr("scene.gltf"));
     }
   }
+}
+
+TEST(Gltf, AFileThatIsThereAndMayNotBeReadIsNotCalledMissing) {
+  const TemporaryFolder folder;
+  const std::filesystem::path inside = folder.path / "inside";
+  std::filesystem::create_directories(inside);
+  GltfMaker maker = painted({{"index", 0}}, {{"index", 0}});
+  std::ofstream(folder.path / "own.bin") << "elsewhere";
+  std::ofstream(folder.path / "t.png") << "elsewhere";
+  std::filesystem::create_symlink(folder.path / "own.bin", inside / "link.bin");
+  for (const std::string uri : {"../own.bin", "link.bin"}) {
+    nlohmann::json json = maker.json;
+    json["buffers"] = {{{"byteLength", maker.bytes.size()}, {"uri", uri}}};
+    std::ofstream(inside / "scene.gltf") << json.dump();
+    const auto scene = load_gltf(inside / "scene.gltf");
+    ASSERT_FALSE(scene);
+    EXPECT_THAT(scene.error(), HasSubstr(uri + " lies outside the scene's folder"));
+  }
+  maker.json["images"][0] = {{"uri", "../t.png"}};
+  const std::vector<uint8_t> bytes = maker.gltf();
+  const auto scene = parse_gltf(bytes, "test.gltf", inside);
+  ASSERT_TRUE(scene) << scene.error();
+  EXPECT_THAT(scene->warnings,
+              testing::Contains(HasSubstr("image 0 (../t.png, outside the scene's folder)")));
+}
+
+TEST(Gltf, WhatKeepsAFileFromBeingOpenedIsSaid) {
+  const TemporaryFolder folder;
+  std::filesystem::create_symlink("loop.gltf", folder.path / "loop.gltf");
+  const auto scene = load_gltf(folder.path / "loop.gltf");
+  ASSERT_FALSE(scene);
+  EXPECT_THAT(
+      scene.error(),
+      testing::EndsWith(std::make_error_code(std::errc::too_many_symbolic_link_levels).message()));
 }
 
 TEST(Gltf, MissingFileIsNamed) {
@@ -349,6 +448,42 @@ const Hostile kHostile[] = {
 INSTANTIATE_TEST_SUITE_P(All, HostileGltf, testing::ValuesIn(kHostile),
                          [](const auto& param) { return std::string(param.param.name); });
 
+TEST(Gltf, ASentenceStaysShortHoweverLongWhatItSpeaksOf) {
+  GltfMaker maker = GltfMaker::triangle();
+  nlohmann::json json = maker.json;
+  json["buffers"] = {
+      {{"byteLength", 36}, {"uri", "data:nonsense;base64," + std::string(2000000, 'A')}}};
+  const std::string text = json.dump();
+  const std::string data = refusal({text.begin(), text.end()});
+  EXPECT_LT(data.size(), 250u);
+  EXPECT_THAT(data, testing::Not(HasSubstr("AAAA")));
+  // A name, cut between two letters of it though each is two bytes.
+  std::string name = "x";
+  for (int i = 0; i < 1000; ++i) name += "\xc3\xa9";
+  maker.json["meshes"][0]["name"] = name;
+  maker.primitive()["attributes"]["COLOR_0"] = 0;
+  const Scene scene = parsed(maker.gltf());
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_LT(scene.warnings[0].size(), 250u);
+  EXPECT_THAT(scene.warnings[0], testing::EndsWith("\xc3\xa9..."));
+  maker.primitive()["attributes"]["POSITION"] = 9;
+  EXPECT_LT(refusal(maker.gltf()).size(), 250u);
+}
+
+TEST(Gltf, OnlyTheSecondVersionIsRead) {
+  GltfMaker maker = GltfMaker::triangle();
+  for (const char* version : {"1.0", "3.0", "20.0"}) {
+    maker.json["asset"]["version"] = version;
+    EXPECT_THAT(refusal(maker.gltf()), HasSubstr("glTF " + std::string(version)));
+    EXPECT_THAT(refusal(maker.glb()), HasSubstr("glTF " + std::string(version)));
+  }
+  maker.json["asset"]["version"] = "2.1";
+  parsed(maker.gltf());
+  std::vector<uint8_t> glb = maker.glb();
+  glb[4] = 1;
+  EXPECT_THAT(refusal(glb), HasSubstr("binary glTF of version 1"));
+}
+
 TEST(Gltf, EveryCutOfAFileIsReadOrRefused) {
   const auto glb = GltfMaker::triangle().glb();
   for (size_t size = 0; size < glb.size(); ++size) {
@@ -368,6 +503,40 @@ TEST(Gltf, InstancesBeyondTheLimitAreRefused) {
   limits.vertices = 200;
   const auto scene = parse_gltf(maker.gltf(), "many.gltf", "", limits);
   EXPECT_FALSE(scene);
+}
+
+// Reading them takes as long as if they had an area.
+TEST(Gltf, InstancesThatComeToNothingCountTowardsTheLimitToo) {
+  for (const bool indexed : {false, true}) {
+    GltfMaker maker = GltfMaker::triangle();
+    maker.json["accessors"][0].erase("bufferView");  // zeroes
+    if (indexed) {
+      maker.primitive()["indices"] =
+          maker.accessor(maker.view<uint16_t>({0, 1, 2, 2, 1, 0}), 5123, "SCALAR", 6);
+    }
+    maker.json["nodes"].clear();
+    for (int i = 0; i < 100; ++i) {
+      maker.json["nodes"].push_back({{"mesh", 0}});
+      maker.json["scenes"][0]["nodes"][static_cast<size_t>(i)] = i;
+    }
+    GltfLimits limits;
+    (indexed ? limits.indices : limits.vertices) = 200;
+    const auto scene = parse_gltf(maker.gltf(), "many.gltf", "", limits);
+    ASSERT_FALSE(scene);
+    EXPECT_THAT(scene.error(), testing::Not(HasSubstr("no triangles")));
+  }
+}
+
+TEST(Gltf, PartsThatAreLeftOutCountTowardsTheLimitToo) {
+  GltfMaker maker = GltfMaker::triangle();
+  maker.primitive()["mode"] = 1;
+  const nlohmann::json lines = maker.primitive();
+  for (int i = 0; i < 100; ++i) maker.json["meshes"][0]["primitives"].push_back(lines);
+  GltfLimits limits;
+  limits.primitives = 50;
+  const auto scene = parse_gltf(maker.gltf(), "lines.gltf", "", limits);
+  ASSERT_FALSE(scene);
+  EXPECT_THAT(scene.error(), HasSubstr("parts"));
 }
 
 }  // namespace

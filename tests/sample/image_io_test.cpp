@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <fstream>
 #include <limits>
 
@@ -60,6 +61,35 @@ TEST(ImageIo, FullDiskIsReportedAndNothingIsLeft) {
   });
   EXPECT_FALSE(written);
   EXPECT_EQ(files_in(folder.path), 0u);
+}
+
+TEST(ImageIo, WhatAnInterruptedWriteLeftGoesWithTheNextOfItsFile) {
+  const TemporaryFolder folder;
+  const auto left = [&](const char* name, bool long_ago) {
+    std::ofstream(folder.path / name) << "half";
+    if (long_ago) {
+      std::filesystem::last_write_time(
+          folder.path / name,
+          std::filesystem::file_time_type::clock::now() - std::chrono::hours(2));
+    }
+  };
+  left("a.png.part123", true);
+  left("a.png.part4", false);   // another process may be writing it
+  left("a.png.partner", true);  // somebody's own
+  left("b.a.png.part5", true);  // of another file
+  ASSERT_TRUE(write_png(folder.path / "a.png", Image<float>(2, 2)));
+  EXPECT_FALSE(std::filesystem::exists(folder.path / "a.png.part123"));
+  EXPECT_EQ(files_in(folder.path), 4u);
+}
+
+TEST(ImageIo, AFolderThatNothingCanBeWrittenToIsRefused) {
+  if (!std::filesystem::exists("/proc/self")) return;  // not Linux
+  const auto made = create_folder("/proc/self");
+  ASSERT_FALSE(made);
+  EXPECT_THAT(made.error(), testing::HasSubstr("/proc/self"));
+  const TemporaryFolder folder;
+  EXPECT_TRUE(create_folder(folder.path / "a" / "b"));
+  EXPECT_EQ(files_in(folder.path / "a" / "b"), 0u);
 }
 
 TEST(ImageIo, ImageWithoutPixelsIsRefused) {

@@ -135,6 +135,73 @@ TEST(Options, NearMustBeBeforeFar) {
   const auto options = parse({"render", "--near", "5", "--far", "2"});
   ASSERT_FALSE(options);
   EXPECT_THAT(options.error().text, HasSubstr("--near"));
+  EXPECT_THAT(parse({"render", "--near", "1e-7", "--far", "1e-7"}).error().text,
+              HasSubstr("--near 1e-07:"));
+}
+
+TEST(Options, AnOrthographicViewMayReachBehindItsEye) {
+  const auto options = parse({"render", "--ortho-height", "4", "--near", "-20", "--far", "-0.5"});
+  ASSERT_TRUE(options) << options.error().text;
+  EXPECT_EQ(*options->view.near_plane, -20.0f);
+  EXPECT_EQ(*options->view.far_plane, -0.5f);
+  for (const char* plane : {"--near", "--far"}) {
+    const auto perspective = parse({"render", plane, "-20"});
+    ASSERT_FALSE(perspective);
+    EXPECT_THAT(perspective.error().text, testing::StartsWith(std::string(plane) + " -20: give"));
+    EXPECT_THAT(perspective.error().text, HasSubstr("--ortho-height"));
+  }
+  EXPECT_FALSE(parse({"render", "--ortho-height", "4", "--near", "inf"}));
+}
+
+TEST(Options, AngleOfViewMayBeAsWideAndAsNarrowAsAFilesCamera) {
+  EXPECT_EQ(*parse({"render", "--fov-y", "174.75"})->view.fov_y, glm::radians(174.75f));
+  EXPECT_EQ(*parse({"render", "--fov-y", "0.573"})->view.fov_y, glm::radians(0.573f));
+  EXPECT_FALSE(parse({"render", "--fov-y", "0"}));
+}
+
+TEST(Options, OfAnOptionThatIsGivenTwiceTheLastCounts) {
+  const auto options = parse({"render", "--size", "1x1", "--eye", "1,2,3", "--size", "640x360"});
+  ASSERT_TRUE(options) << options.error().text;
+  EXPECT_EQ(options->view.width, 640u);
+}
+
+TEST(Options, WhatHasNoEffectIsRefused) {
+  for (const char* command : {"render", "graph", "view"}) {
+    EXPECT_FALSE(parse({command, "--spp", "16"})) << command;
+  }
+  for (const char* command : {"motion", "ablate", "bench"}) {
+    EXPECT_TRUE(parse({command, "--spp", "16"})) << command;
+    EXPECT_FALSE(parse({command, "--roughness", "0.3"})) << command;
+  }
+  EXPECT_FALSE(parse({"recommend", "--tolerance", "0.1", "--roughness", "0.3"}));
+  EXPECT_TRUE(parse({"recommend", "--tolerance", "0.1", "--spp", "16"}));
+  EXPECT_TRUE(parse({"graph", "--roughness", "0.3"}));
+}
+
+TEST(Options, TwoOfRoughnessThatWouldBeOneFileAreRefused) {
+  const auto options = parse({"render", "--roughness", "0.3,0.1,0.3"});
+  ASSERT_FALSE(options);
+  EXPECT_THAT(options.error().text, HasSubstr("0.3,0.1,0.3: give"));
+  EXPECT_TRUE(parse({"render", "--roughness", "0.3,0.301"}));
+}
+
+TEST(Options, ASettingIsCheckedBeforeAnythingIsLoaded) {
+  const struct {
+    const char* given;
+    const char* wanted;
+  } wrong[] = {{"slice=2", "slices"},
+               {"slices=99999999999", "a whole number from 1 to 64"},
+               {"slices=-1", "a whole number from 1 to 64"},
+               {"slices=65", "a whole number from 1 to 64"},
+               {"fill=much", "a number"},
+               {"estimator=guess", "one of horizons, heuristic, bitmask, connected"}};
+  for (const auto& [given, wanted] : wrong) {
+    const auto options = parse({"render", "--set", given});
+    ASSERT_FALSE(options) << given;
+    EXPECT_EQ(options.error().status, 2);
+    EXPECT_THAT(options.error().text, testing::StartsWith("--set " + std::string(given) + ": "));
+    EXPECT_THAT(options.error().text, HasSubstr(wanted));
+  }
 }
 
 TEST(Options, HelpTeachesAndAsksForNoRun) {
@@ -150,10 +217,41 @@ TEST(Options, HelpTeachesAndAsksForNoRun) {
   EXPECT_EQ(after_a_mistake.error().text, one.error().text);
 }
 
+TEST(Options, HelpSaysHowTheCommandIsTyped) {
+  EXPECT_THAT(parse({"render", "--help"}).error().text, HasSubstr("Usage: alcove render "));
+}
+
+TEST(Options, HelpListsTheSettings) {
+  for (const char* command :
+       {"render", "compare", "motion", "ablate", "bench", "recommend", "graph", "view"}) {
+    const std::string help = parse({command, "--help"}).error().text;
+    EXPECT_THAT(help, HasSubstr("clamp_width")) << command;
+    EXPECT_THAT(help, HasSubstr("Searches that run together: neighbours")) << command;
+    EXPECT_THAT(help, HasSubstr("horizons, heuristic, bitmask or connected")) << command;
+  }
+  EXPECT_THAT(parse({"doctor", "--help"}).error().text, testing::Not(HasSubstr("clamp_width")));
+}
+
+TEST(Options, TheVersionIsThatOfTheProject) {
+  const auto version = parse({"--version"});
+  ASSERT_FALSE(version);
+  EXPECT_EQ(version.error().status, 0);
+  EXPECT_THAT(version.error().text, testing::MatchesRegex("alcove [0-9]+\\.[0-9]+\\.[0-9]+"));
+}
+
 TEST(Options, NoCommandAndUnknownOnesAreMistakes) {
   EXPECT_EQ(parse({}).error().status, 2);
   EXPECT_EQ(parse({"paint"}).error().status, 2);
   EXPECT_EQ(parse({"render", "--colour", "red"}).error().status, 2);
+}
+
+TEST(Options, AMistakeIsNamedWithWhereHelpIs) {
+  EXPECT_EQ(parse({"paint", "--size", "2x2"}).error().text,
+            "there is no command paint; see alcove --help");
+  EXPECT_EQ(parse({}).error().text, "name a command; see alcove --help");
+  const std::string unknown = parse({"render", "--colour", "red"}).error().text;
+  EXPECT_THAT(unknown, HasSubstr("--colour"));
+  EXPECT_THAT(unknown, testing::EndsWith("; see alcove render --help"));
 }
 
 }  // namespace

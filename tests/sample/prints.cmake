@@ -1,9 +1,10 @@
-# `alcove ARGUMENTS` ends with status 0, nothing on stderr and output that has PATTERN.
-# ALCOVE: the program.
+# `alcove ARGUMENTS` ends with status 0, output that has PATTERN, and NOTE alone on stderr, else
+# nothing. ALCOVE: the program.
 separate_arguments(ARGUMENTS)
 execute_process(COMMAND ${ALCOVE} ${ARGUMENTS} RESULT_VARIABLE status OUTPUT_VARIABLE output
   ERROR_VARIABLE error)
-if(NOT status EQUAL 0 OR error)
+string(STRIP "${error}" error)
+if(NOT status EQUAL 0 OR NOT error STREQUAL "${NOTE}")
   message(FATAL_ERROR "The status is ${status}: ${error}")
 endif()
 if(NOT output MATCHES "${PATTERN}")

@@ -1,10 +1,13 @@
-# `alcove ARGUMENTS` ends with status 1 and one sentence on stderr, which begins with SENTENCE.
-# ALCOVE: the program.
+# `alcove ARGUMENTS` ends with status STATUS, else 1, and one sentence on stderr, which begins with
+# SENTENCE. ALCOVE: the program.
+if(NOT DEFINED STATUS)
+  set(STATUS 1)
+endif()
 separate_arguments(ARGUMENTS)
 execute_process(COMMAND ${ALCOVE} ${ARGUMENTS} RESULT_VARIABLE status OUTPUT_VARIABLE output
   ERROR_VARIABLE error)
-if(NOT status EQUAL 1)
-  message(FATAL_ERROR "The status is ${status}, not 1.")
+if(NOT status EQUAL ${STATUS})
+  message(FATAL_ERROR "The status is ${status}, not ${STATUS}.")
 endif()
 if(NOT error MATCHES "^alcove: ${SENTENCE}[^\n]*\n$" OR output)
   message(FATAL_ERROR "Not the sentence that was expected: ${output}${error}")

@@ -122,8 +122,52 @@ TEST(CommandLine, AnOrthographicViewHasAHeight) {
   expect_round_trip(kDefaults, shot);
 }
 
+TEST(CommandLine, AnOrthographicViewMayBeginAtItsEyeOrBehindIt) {
+  Shot shot = some_shot();
+  shot.camera.orthographic = true;
+  shot.camera.ortho_height = 3.3f;
+  shot.camera.far_plane = 50.0f;
+  for (const float near_plane : {0.0f, -20.0f}) {
+    shot.camera.near_plane = near_plane;
+    expect_round_trip(kDefaults, shot);
+  }
+  shot.camera.far_plane = -1.0f;
+  expect_round_trip(kDefaults, shot);
+}
+
+TEST(CommandLine, AsManyFramesAsWereDrawnElseAsTheHistoryAverages) {
+  Shot shot = some_shot();
+  shot.settings.history_frames = 17;
+  EXPECT_EQ(parse(render_arguments(kDefaults, shot))->view.frames, 17u);
+  shot.frames = 2;
+  EXPECT_EQ(parse(render_arguments(kDefaults, shot))->view.frames, 2u);
+  shot.frames = 1;
+  EXPECT_EQ(parse(render_arguments(kDefaults, shot))->view.frames, 1u);
+}
+
+TEST(CommandLine, TheDeviceIsThatOfTheOptions) {
+  Options options;
+  EXPECT_EQ(parse(render_arguments(options, some_shot()))->device, options.device);
+  options.device = 3;
+  EXPECT_EQ(parse(render_arguments(options, some_shot()))->device, 3);
+}
+
+TEST(CommandLine, WhatIsCutOutIsCutOutAgain) {
+  Options options;
+  EXPECT_FALSE(parse(render_arguments(options, some_shot()))->cut_blends);
+  options.cut_blends = true;
+  EXPECT_TRUE(parse(render_arguments(options, some_shot()))->cut_blends);
+}
+
 TEST(CommandLine, AnyAngleOfViewIsReadBack) {
   Shot shot = some_shot();
+  // The narrowest and the widest that a file's camera has.
+  for (const float fov_y : {2e-5f, 0.01f, 3.05f, 3.1f}) {
+    shot.camera.fov_y = fov_y;
+    const auto read = parse(render_arguments(kDefaults, shot));
+    ASSERT_TRUE(read) << read.error().text;
+    EXPECT_FLOAT_EQ(*read->view.fov_y, fov_y);
+  }
   for (float fov_y = 0.05f; fov_y < 2.9f; fov_y += 0.0717f) {
     shot.camera.fov_y = fov_y;
     const auto read = parse(render_arguments(kDefaults, shot));
