@@ -46,9 +46,10 @@ struct ExecutorOptions {
   // Barriers with work between what they wait for and what waits become events (see README). Frames
   // that have any are recorded by the caller's thread.
   bool split_barriers = false;
-  // Threads that record passes, the caller's among them, 1 to 64. With more than one the callbacks
-  // of different passes run at the same time, into secondary command buffers; a caller's query must
-  // not be active then in the command buffer that record() is given.
+  // Threads that record passes, the caller's among them, 1 to 64; fewer where the system gives no
+  // more. With more than one the callbacks of different passes run at the same time, into secondary
+  // command buffers; a caller's query must not be active then in the command buffer that record()
+  // is given. What a callback throws reaches the caller from whichever thread it ran in.
   std::uint32_t recording_threads = 1;
 #ifdef NDEBUG
   bool verify = false;      // every new plan goes through verify()
