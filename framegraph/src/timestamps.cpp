@@ -52,7 +52,7 @@ std::span<const PassTiming> Timestamps::read() {
     const double milliseconds = device_.properties.limits.timestampPeriod * 1e-6;
     timings_.clear();
     for (std::size_t i = 0; i < count_; ++i) {
-      const std::uint64_t ticks = ticks_[2 * i + 1] - ticks_[2 * i];
+      const std::uint64_t ticks = (ticks_[2 * i + 1] - ticks_[2 * i]) & mask_;
       timings_.push_back(
           {passes_[i].name, passes_[i].number, static_cast<double>(ticks) * milliseconds});
     }

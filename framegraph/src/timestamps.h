@@ -11,7 +11,9 @@ namespace alcove::framegraph {
 
 class Timestamps {
  public:
-  explicit Timestamps(const DeviceContext& device) : device_(device) {}
+  // Of a queue whose timestamps have so many bits that count, 1 to 64.
+  Timestamps(const DeviceContext& device, std::uint32_t valid_bits)
+      : device_(device), mask_(~std::uint64_t{0} >> (64 - valid_bits)) {}
   ~Timestamps();
   Timestamps(const Timestamps&) = delete;
   Timestamps& operator=(const Timestamps&) = delete;
@@ -39,6 +41,7 @@ class Timestamps {
     std::string name;
   };
   const DeviceContext& device_;
+  std::uint64_t mask_;
   VkQueryPool pool_ = VK_NULL_HANDLE;
   std::uint32_t capacity_ = 0;
   std::uint32_t count_ = 0;

@@ -163,6 +163,7 @@ class Gpu {
     return report;
   }
 
+  VkCommandBuffer commands() const { return commands_; }
   void begin() {
     VkCommandBufferBeginInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO, nullptr,
                                   VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT, nullptr};

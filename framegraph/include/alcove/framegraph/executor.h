@@ -40,7 +40,7 @@ struct DeviceHandles {
 
 struct ExecutorOptions {
   std::uint32_t frames_in_flight = 2;  // frame slots, 1 to 8
-  bool timestamps = true;              // GPU time of each pass
+  bool timestamps = true;              // GPU time of each pass, on queues that have timestamps
   Ordering ordering = Ordering::lower_peak;
   bool alias = true;
   // Barriers with work between what they wait for and what waits become events (see README). Frames
