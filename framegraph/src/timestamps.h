@@ -32,7 +32,8 @@ class Timestamps {
   void begin_pass(VkCommandBuffer commands, std::uint32_t number, std::uint32_t pass,
                   std::string_view name);
   void end_pass(VkCommandBuffer commands, std::uint32_t number);
-  // Empty when the device has not finished.
+  // Of the frame that began last, once the device has finished it. Until then empty, or of the
+  // frame before it with these queries; nothing is kept, so a later call is right.
   std::span<const PassTiming> read();
 
  private:
@@ -45,7 +46,6 @@ class Timestamps {
   VkQueryPool pool_ = VK_NULL_HANDLE;
   std::uint32_t capacity_ = 0;
   std::uint32_t count_ = 0;
-  bool read_ = false;
   std::vector<Pass> passes_;
   std::vector<std::uint64_t> ticks_;
   std::vector<PassTiming> timings_;

@@ -110,5 +110,17 @@ TEST_F(TimestampsTest, AQueueWithoutAnyGetsNone) {
   EXPECT_EQ(written, 0);
 }
 
+TEST_F(TimestampsTest, WhatIsAskedForTooEarlyIsRightLater) {
+  Executor executor = make(64);
+  gpu_.begin();
+  ASSERT_TRUE(executor.record(declare(), gpu_.commands()));
+  ticks = {1000, 1007};  // still those of the frame before
+  EXPECT_EQ(executor.timings().size(), 1u);
+  gpu_.end_and_wait();
+  ticks = {2000, 2003};
+  ASSERT_EQ(executor.timings().size(), 1u);
+  EXPECT_DOUBLE_EQ(executor.timings()[0].milliseconds, milliseconds(3));
+}
+
 }  // namespace
 }  // namespace alcove::framegraph

@@ -115,8 +115,8 @@ class Executor {
   [[nodiscard]] tl::expected<void, Errors> wait(std::uint32_t slot = 0);
 
   // GPU time of each pass of the frame last recorded with this slot, in order of execution on each
-  // queue. Only after the device has finished it; empty where there is nothing or timestamps are
-  // off. Valid until the next call.
+  // queue. Only after the device has finished it: until then they may be those of the frame before.
+  // Empty where there is nothing or timestamps are off. Valid until the next call.
   [[nodiscard]] std::span<const PassTiming> timings(std::uint32_t slot = 0);
 
   // To be called before the caller destroys an image that it imported, if passes asked for views of
