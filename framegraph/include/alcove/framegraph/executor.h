@@ -1,5 +1,6 @@
-// Runs graphs on a Vulkan 1.3 device (synchronization2, dynamic rendering and, for several queues,
-// timeline semaphores). Never creates a device.
+// Runs graphs on a Vulkan 1.3 device. Of its features synchronization2 has to be enabled, for
+// submit() timelineSemaphore too, on one queue as on several; dynamicRendering where passes draw
+// with it. Never creates a device.
 //
 //   frame:  wait for the fence of slot s;  graph.reset(); declare;  begin commands
 //           executor.record(graph, commands, {s});  end commands, submit with the fence of slot s
@@ -43,8 +44,8 @@ struct ExecutorOptions {
   bool timestamps = true;              // GPU time of each pass, on queues that have timestamps
   Ordering ordering = Ordering::lower_peak;
   bool alias = true;
-  // Barriers with work between what they wait for and what waits become events (see README). Frames
-  // that have any are recorded by the caller's thread.
+  // Barriers with work between what they wait for and what waits become events
+  // (framegraph/README.md). Frames that have any are recorded by the caller's thread.
   bool split_barriers = false;
   // Threads that record passes, the caller's among them, 1 to 64; fewer where the system gives no
   // more. With more than one the callbacks of different passes run at the same time, into secondary
