@@ -72,7 +72,7 @@ struct MemoryStatistics {
   VkDeviceSize unaliased = 0;    // were each given bytes of its own
   VkDeviceSize lower_bound = 0;  // most bytes live at once
   VkDeviceSize history = 0;      // of all history slots
-  VkDeviceSize allocated = 0;    // device memory that the executor holds
+  VkDeviceSize allocated = 0;    // that the executor holds, what is to be freed soon among it
 };
 
 struct FrameReport {
