@@ -32,10 +32,10 @@ TEST(Place, AnEstimateIsOfTheBytesOfAFormatsTexels) {
     record.format = format;
     record.width = 256;
     record.height = 3;
-    EXPECT_EQ(estimate_requirements(record).size, 256 * 3 * bytes) << format;
+    EXPECT_EQ(estimate_requirements(record).size, VkDeviceSize{256} * 3 * bytes) << format;
     record.layers = 2;
     record.samples = 4;
-    EXPECT_EQ(estimate_requirements(record).size, 256 * 3 * 8 * bytes) << format;
+    EXPECT_EQ(estimate_requirements(record).size, VkDeviceSize{256} * 3 * 8 * bytes) << format;
   }
 }
 
