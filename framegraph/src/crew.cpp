@@ -1,6 +1,9 @@
 #include "crew.h"
 
 #include <algorithm>
+#include <new>
+#include <system_error>
+#include <utility>
 
 namespace alcove::framegraph {
 
@@ -9,7 +12,18 @@ Crew::Crew(const DeviceContext& device, Pool& pool, std::uint32_t threads, std::
   for (std::uint32_t i = 0; i < threads; ++i)
     recorders_.push_back(std::make_unique<Recorder>(device, pool));
   if (threads > 1) buffers_.resize(threads * slots_ * kQueueClasses);
-  for (std::size_t i = 1; i < threads; ++i) threads_.emplace_back([this, i] { work(i); });
+  start(threads - 1);
+}
+
+// Where the system has no more threads, or no memory for them, those that there are do the work.
+void Crew::start(std::size_t threads) {
+  threads_.reserve(threads);
+  try {
+    while (threads_.size() < threads)
+      threads_.emplace_back([this, own = threads_.size() + 1] { work(own); });
+  } catch (const std::system_error&) {
+  } catch (const std::bad_alloc&) {
+  }
 }
 
 Crew::~Crew() {
@@ -50,7 +64,8 @@ VkResult Crew::submission(const Submission& submission, VkCommandBuffer commands
     cut(passes);
     record_together();
     recorded_.clear();
-    for (const Piece& piece : pieces_) {
+    for (Piece& piece : pieces_) {
+      if (piece.thrown) std::rethrow_exception(std::exchange(piece.thrown, nullptr));
       if (piece.result != VK_SUCCESS) return piece.result;
       recorded_.push_back(piece.commands);
     }
@@ -73,7 +88,7 @@ Errors Crew::take_errors() {
 // More pieces than threads, so that one that has slow passes is made up for by the others.
 void Crew::cut(const PassRun& passes) {
   const auto count =
-      static_cast<std::uint32_t>(std::min<std::size_t>(passes.count, 2 * recorders_.size()));
+      static_cast<std::uint32_t>(std::min<std::size_t>(passes.count, 2 * (threads_.size() + 1)));
   pieces_.assign(count, Piece{});
   std::uint32_t done = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -113,9 +128,16 @@ void Crew::work(std::size_t thread) {
   }
 }
 
+// Throws nothing: what a callback throws, or operator new, is the caller's to see once every thread
+// has finished.
 void Crew::record_pieces(std::size_t thread) {
-  for (std::size_t i = next_piece_++; i < pieces_.size(); i = next_piece_++)
-    pieces_[i].result = record(pieces_[i], thread);
+  for (std::size_t i = next_piece_++; i < pieces_.size(); i = next_piece_++) {
+    try {
+      pieces_[i].result = record(pieces_[i], thread);
+    } catch (...) {
+      pieces_[i].thrown = std::current_exception();
+    }
+  }
 }
 
 VkResult Crew::record(Piece& piece, std::size_t thread) {

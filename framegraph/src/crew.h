@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <condition_variable>
+#include <exception>
 #include <memory>
 #include <mutex>
 #include <thread>
@@ -15,7 +16,7 @@ namespace alcove::framegraph {
 
 class Crew {
  public:
-  // `threads` counts the caller's: 1 makes none.
+  // `threads` counts the caller's: 1 makes none. Fewer where the system does not give them.
   Crew(const DeviceContext& device, Pool& pool, std::uint32_t threads, std::uint32_t slots);
   ~Crew();
   Crew(const Crew&) = delete;
@@ -24,7 +25,8 @@ class Crew {
   // What the next calls record; the device has finished what was recorded with this slot.
   [[nodiscard]] VkResult begin(const RecordedFrame& frame);
   void full_barrier(VkCommandBuffer commands) { recorders_[0]->full_barrier(commands); }
-  // On an error nothing is recorded.
+  // On an error nothing is recorded. What any thread throws is thrown here, after all have
+  // finished.
   [[nodiscard]] VkResult submission(const Submission& submission, VkCommandBuffer commands,
                                     Timestamps* timestamps);
   // What callbacks did wrong since begin; empty afterwards.
@@ -42,8 +44,10 @@ class Crew {
     PassRun passes;
     VkCommandBuffer commands = VK_NULL_HANDLE;
     VkResult result = VK_SUCCESS;
+    std::exception_ptr thrown;
   };
 
+  void start(std::size_t threads);
   void work(std::size_t thread);
   void record_pieces(std::size_t thread);
   VkResult record(Piece& piece, std::size_t thread);

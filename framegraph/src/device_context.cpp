@@ -1,5 +1,7 @@
 #include "device_context.h"
 
+#include <vector>
+
 namespace alcove::framegraph {
 namespace {
 
@@ -63,6 +65,18 @@ void read_limits(DeviceContext& context) {
   }
 }
 
+void read_timestamp_bits(DeviceContext& context) {
+  const VkPhysicalDevice device = context.handles.physical_device;
+  std::uint32_t count = 0;
+  context.vk.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
+  std::vector<VkQueueFamilyProperties> families(count);
+  context.vk.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
+  for (std::size_t i = 0; i < kQueueClasses; ++i) {
+    const std::uint32_t family = context.limits.queue_families[i];
+    if (family < count) context.timestamp_bits[i] = families[family].timestampValidBits;
+  }
+}
+
 Errors missing(std::string what) {
   Errors errors(1);
   errors[0].message = std::move(what);
@@ -90,6 +104,7 @@ tl::expected<void, Errors> open(DeviceContext& context, const DeviceHandles& han
                                   "' is below Vulkan 1.3: choose another or update its driver"));
   context.vk.vkGetPhysicalDeviceMemoryProperties(handles.physical_device, &context.memory);
   read_limits(context);
+  read_timestamp_bits(context);
   return {};
 }
 

@@ -14,6 +14,8 @@ struct DeviceContext {
   VulkanFunctions vk;
   VkPhysicalDeviceProperties properties{};
   VkPhysicalDeviceMemoryProperties memory{};
+  // By queue class: the bits of a timestamp that count, 0 where the queue has no timestamps.
+  std::uint32_t timestamp_bits[kQueueClasses] = {};
   Limits limits;
 };
 

@@ -37,8 +37,11 @@ struct Executor::Implementation {
   void finish(Graph& graph, const CachedPlan& cached);
   void give_up(Graph& graph, std::uint32_t slot);
   void begin_frame(const FrameInfo& info);
-  Timestamps& timestamps_of(std::size_t slot, std::size_t queue) {
-    return *timestamps[slot * kQueueClasses + queue];
+  void create_timestamps();
+  void forget_timestamps(std::uint32_t slot);
+  // Null where there are none.
+  Timestamps* timestamps_of(std::size_t slot, std::size_t queue) {
+    return timestamps[slot * kQueueClasses + queue].get();
   }
 
   ExecutorOptions options;
@@ -48,7 +51,7 @@ struct Executor::Implementation {
   std::unique_ptr<Pool> pool;
   std::unique_ptr<Events> events;
   std::unique_ptr<Crew> crew;
-  std::vector<std::unique_ptr<Timestamps>> timestamps;  // by slot and queue class
+  std::vector<std::unique_ptr<Timestamps>> timestamps;  // by slot and queue class; may be null
   std::vector<PassTiming> timings;                      // what timings() returned last
   std::vector<std::uint64_t> slot_frames;               // last frame recorded with each slot
   std::uint64_t frame = 0;
@@ -93,9 +96,19 @@ tl::expected<Executor, Errors> Executor::create(const DeviceHandles& device,
                                       made->options.frames_in_flight);
   made->slot_frames.resize(made->options.frames_in_flight);
   made->submitter = std::make_unique<Submitter>(made->device, made->options.frames_in_flight);
-  for (std::uint32_t i = 0; i < made->options.frames_in_flight * kQueueClasses; ++i)
-    made->timestamps.push_back(std::make_unique<Timestamps>(made->device));
+  made->create_timestamps();
   return Executor(std::move(made));
+}
+
+void Executor::Implementation::create_timestamps() {
+  timestamps.resize(options.frames_in_flight * kQueueClasses);
+  for (std::size_t i = 0; i < timestamps.size() && options.timestamps; ++i) {
+    const std::size_t queue = i % kQueueClasses;
+    const std::uint32_t bits = device.timestamp_bits[queue];
+    // A queue for transfers alone may not reset queries.
+    if (queue != static_cast<std::size_t>(QueueClass::transfer) && bits != 0)
+      timestamps[i] = std::make_unique<Timestamps>(device, bits);
+  }
 }
 
 Executor::Executor(std::unique_ptr<Implementation> implementation)
@@ -246,12 +259,18 @@ void Executor::Implementation::finish(Graph& graph, const CachedPlan& cached) {
   graph.leave_histories(cached.plan.finals);
 }
 
+void Executor::Implementation::forget_timestamps(std::uint32_t slot) {
+  for (std::size_t q = 0; q < kQueueClasses; ++q) {
+    if (Timestamps* times = timestamps_of(slot, q)) times->forget();
+  }
+}
+
 // What was begun with this slot does not run. Frames before it may still do.
 void Executor::Implementation::give_up(Graph& graph, std::uint32_t slot) {
   graph.histories().undo();
   slot_frames[slot] = finished;
   before = nullptr;
-  for (std::size_t q = 0; q < kQueueClasses; ++q) timestamps_of(slot, q).forget();
+  forget_timestamps(slot);
 }
 
 tl::expected<FrameReport, Errors> Executor::Implementation::record(Graph& graph,
@@ -260,7 +279,7 @@ tl::expected<FrameReport, Errors> Executor::Implementation::record(Graph& graph,
   CachedPlan* cached = nullptr;
   auto report = prepare(graph, info, Queues::one, cached);
   if (!report) return report;
-  Timestamps* times = options.timestamps ? &timestamps_of(info.slot, 0) : nullptr;
+  Timestamps* times = timestamps_of(info.slot, 0);
   if (times) {
     const VkResult result =
         times->begin_frame(commands, static_cast<std::uint32_t>(cached->plan.passes.size()));
@@ -308,12 +327,8 @@ tl::expected<FrameReport, Errors> Executor::submit(Graph& graph, const FrameInfo
   auto report = self.prepare(graph, info, Queues::all, cached);
   if (!report) return report;
   Timestamps* timestamps[kQueueClasses] = {};
-  // Queues for transfers alone may have no timestamps.
-  for (std::size_t q = 0; q + 1 < kQueueClasses && self.options.timestamps; ++q)
-    timestamps[q] = &self.timestamps_of(info.slot, q);
-  for (Timestamps* times : timestamps) {
-    if (times) times->forget();
-  }
+  for (std::size_t q = 0; q < kQueueClasses; ++q) timestamps[q] = self.timestamps_of(info.slot, q);
+  self.forget_timestamps(info.slot);
   const VkResult result = self.submitter->submit(cached->plan, *self.crew, info.slot, timestamps,
                                                  self.starts_anew(*cached));
   if (result != VK_SUCCESS) {
@@ -340,10 +355,12 @@ tl::expected<void, Errors> Executor::wait(std::uint32_t slot) {
 std::span<const PassTiming> Executor::timings(std::uint32_t slot) {
   Implementation& self = *implementation_;
   self.timings.clear();
-  if (slot >= self.slot_frames.size() || !self.options.timestamps) return {};
+  if (slot >= self.slot_frames.size()) return {};
   for (std::size_t q = 0; q < kQueueClasses; ++q) {
-    const auto times = self.timestamps_of(slot, q).read();
-    self.timings.insert(self.timings.end(), times.begin(), times.end());
+    if (Timestamps* times = self.timestamps_of(slot, q)) {
+      const auto read = times->read();
+      self.timings.insert(self.timings.end(), read.begin(), read.end());
+    }
   }
   return self.timings;
 }

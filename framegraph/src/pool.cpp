@@ -38,7 +38,7 @@ Pool::~Pool() {
   for (auto& physical : imports_) destroy(*physical);
   for (auto& retired : retired_) {
     if (retired.physical) destroy(*retired.physical);
-    device_.vk.vkFreeMemory(device_.handles.device, retired.memory, nullptr);
+    device_.vk.vkFreeMemory(device_.handles.device, retired.heap, nullptr);
   }
   for (HeapMemory& heap : heaps_)
     device_.vk.vkFreeMemory(device_.handles.device, heap.memory, nullptr);
@@ -58,9 +58,9 @@ VkResult Pool::reserve(const Plan& plan, std::uint64_t frame) {
     VkDeviceMemory memory = VK_NULL_HANDLE;
     if (const VkResult result = allocate(wanted.memory_types, wanted.size, memory)) return result;
     // Everything in the old memory goes with it; other heaps' transients are cheap to make again.
-    for (auto& physical : transients_) retired_.push_back({frame, std::move(physical), {}});
+    for (auto& physical : transients_) retired_.push_back({frame, std::move(physical)});
     transients_.clear();
-    if (heap->memory) retired_.push_back({frame, nullptr, heap->memory});
+    if (heap->memory) retired_.push_back({frame, nullptr, heap->memory, heap->size});
     heap->memory = memory;
     heap->size = wanted.size;
     ++generation_;
@@ -122,7 +122,7 @@ VkResult Pool::history(const HistoryTable& table, std::uint32_t entry, std::uint
     histories_.push_back({table.life(), entry, generation, position, std::move(made)});
     there = histories_.end() - 1;
   } else {
-    retired_.push_back({frame, std::move(there->physical), {}});
+    retired_.push_back({frame, std::move(there->physical)});
     there->generation = generation;
     there->physical = std::move(made);
   }
@@ -138,7 +138,7 @@ void Pool::retire_histories(const HistoryTable& table, std::uint64_t frame) {
                            ? table.entries()[history.entry].generation == history.generation
                            : !history.table.expired();
     if (stays) return false;
-    retired_.push_back({frame, std::move(history.physical), {}});
+    retired_.push_back({frame, std::move(history.physical)});
     return true;
   };
   if (std::erase_if(histories_, gone) != 0) ++generation_;
@@ -164,7 +164,7 @@ void Pool::forget(VkImage image, std::uint64_t frame) {
   make_room(retired_, imports_.size());
   std::erase_if(imports_, [&](std::unique_ptr<Physical>& physical) {
     if (physical->image != image) return false;
-    retired_.push_back({frame, std::move(physical), {}});
+    retired_.push_back({frame, std::move(physical)});
     ++generation_;
     return true;
   });
@@ -196,7 +196,7 @@ void Pool::collect(std::uint64_t finished, std::uint64_t frame) {
   std::erase_if(retired_, [&](Retired& retired) {
     if (retired.frame > finished) return false;
     if (retired.physical) destroy(*retired.physical);
-    device_.vk.vkFreeMemory(device_.handles.device, retired.memory, nullptr);
+    device_.vk.vkFreeMemory(device_.handles.device, retired.heap, nullptr);
     return true;
   });
   const auto unused = [&](std::unique_ptr<Physical>& physical) {
@@ -211,6 +211,8 @@ void Pool::collect(std::uint64_t finished, std::uint64_t frame) {
 VkDeviceSize Pool::allocated() const {
   VkDeviceSize sum = history_size();
   for (const HeapMemory& heap : heaps_) sum += heap.size;
+  for (const Retired& retired : retired_)
+    sum += retired.heap_size + (retired.physical ? retired.physical->own_size : 0);
   return sum;
 }
 

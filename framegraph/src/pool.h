@@ -69,6 +69,7 @@ class Pool {
   void collect(std::uint64_t finished, std::uint64_t frame);
 
   std::uint64_t generation() const { return generation_; }
+  // Bytes of device memory, what is retired and not yet freed among them.
   VkDeviceSize allocated() const;
   VkDeviceSize history_size() const;
 
@@ -88,7 +89,8 @@ class Pool {
   struct Retired {
     std::uint64_t frame = 0;
     std::unique_ptr<Physical> physical;
-    VkDeviceMemory memory = VK_NULL_HANDLE;
+    VkDeviceMemory heap = VK_NULL_HANDLE;
+    VkDeviceSize heap_size = 0;
   };
 
   VkResult create(Physical& physical, std::string_view name);

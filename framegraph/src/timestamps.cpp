@@ -8,7 +8,6 @@ Timestamps::~Timestamps() { device_.vk.vkDestroyQueryPool(device_.handles.device
 
 VkResult Timestamps::begin_frame(VkCommandBuffer commands, std::uint32_t passes) {
   count_ = 0;
-  read_ = false;
   if (passes > capacity_) {
     passes_.resize(std::max<std::size_t>(passes_.size(), passes));
     ticks_.resize(2 * std::size_t{passes});
@@ -44,19 +43,16 @@ void Timestamps::end_pass(VkCommandBuffer commands, std::uint32_t number) {
 
 std::span<const PassTiming> Timestamps::read() {
   if (count_ == 0) return {};
-  if (!read_) {
-    const VkResult result = device_.vk.vkGetQueryPoolResults(
-        device_.handles.device, pool_, 0, 2 * count_, ticks_.size() * sizeof(std::uint64_t),
-        ticks_.data(), sizeof(std::uint64_t), VK_QUERY_RESULT_64_BIT);
-    if (result != VK_SUCCESS) return {};
-    const double milliseconds = device_.properties.limits.timestampPeriod * 1e-6;
-    timings_.clear();
-    for (std::size_t i = 0; i < count_; ++i) {
-      const std::uint64_t ticks = ticks_[2 * i + 1] - ticks_[2 * i];
-      timings_.push_back(
-          {passes_[i].name, passes_[i].number, static_cast<double>(ticks) * milliseconds});
-    }
-    read_ = true;
+  const VkResult result = device_.vk.vkGetQueryPoolResults(
+      device_.handles.device, pool_, 0, 2 * count_, ticks_.size() * sizeof(std::uint64_t),
+      ticks_.data(), sizeof(std::uint64_t), VK_QUERY_RESULT_64_BIT);
+  if (result != VK_SUCCESS) return {};
+  const double milliseconds = device_.properties.limits.timestampPeriod * 1e-6;
+  timings_.clear();
+  for (std::size_t i = 0; i < count_; ++i) {
+    const std::uint64_t ticks = (ticks_[2 * i + 1] - ticks_[2 * i]) & mask_;
+    timings_.push_back(
+        {passes_[i].name, passes_[i].number, static_cast<double>(ticks) * milliseconds});
   }
   return timings_;
 }

@@ -11,7 +11,9 @@ namespace alcove::framegraph {
 
 class Timestamps {
  public:
-  explicit Timestamps(const DeviceContext& device) : device_(device) {}
+  // Of a queue whose timestamps have so many bits that count, 1 to 64.
+  Timestamps(const DeviceContext& device, std::uint32_t valid_bits)
+      : device_(device), mask_(~std::uint64_t{0} >> (64 - valid_bits)) {}
   ~Timestamps();
   Timestamps(const Timestamps&) = delete;
   Timestamps& operator=(const Timestamps&) = delete;
@@ -30,7 +32,8 @@ class Timestamps {
   void begin_pass(VkCommandBuffer commands, std::uint32_t number, std::uint32_t pass,
                   std::string_view name);
   void end_pass(VkCommandBuffer commands, std::uint32_t number);
-  // Empty when the device has not finished.
+  // Of the frame that began last, once the device has finished it. Until then empty, or of the
+  // frame before it with these queries; nothing is kept, so a later call is right.
   std::span<const PassTiming> read();
 
  private:
@@ -39,10 +42,10 @@ class Timestamps {
     std::string name;
   };
   const DeviceContext& device_;
+  std::uint64_t mask_;
   VkQueryPool pool_ = VK_NULL_HANDLE;
   std::uint32_t capacity_ = 0;
   std::uint32_t count_ = 0;
-  bool read_ = false;
   std::vector<Pass> passes_;
   std::vector<std::uint64_t> ticks_;
   std::vector<PassTiming> timings_;

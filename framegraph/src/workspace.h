@@ -132,8 +132,8 @@ struct Workspace {
   } place;
   struct Synchronise {
     std::vector<UseState> states;       // by subresource
-    std::vector<UseState> last_uses;    // by subresource, at the end of a frame, of those that
-    std::vector<std::uint8_t> is_last;  // by resource: had memory last, or is a history
+    std::vector<UseState> last_uses;    // by subresource, at the end of a frame, where is_last
+    std::vector<std::uint8_t> is_last;  // by resource: had its memory last, or is a history
     std::vector<MemoryMap> memory;      // by heap
     std::vector<std::int32_t> latest;   // by batch: the last time that it waits for
     struct Release {

@@ -4,6 +4,8 @@
 #include <array>
 #include <cassert>
 #include <cstring>
+#include <mutex>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -55,6 +57,12 @@ std::uint32_t most_bound(VkDescriptorType type) {
   return static_cast<std::uint32_t>(most);
 }
 
+// A dispatch of a frame, counted from 0, and the set that is its own.
+struct Claim {
+  std::uint32_t number = 0;
+  VkDescriptorSet set = VK_NULL_HANDLE;
+};
+
 struct FrameSlot {
   VkDescriptorPool pool = VK_NULL_HANDLE;
   std::array<Set, Kernels::kMaxDispatches> sets;
@@ -74,6 +82,9 @@ struct Kernels::State {
   std::array<std::unique_ptr<HostBuffer>, kShaderCount> tables;  // null: none, or not yet
   std::unique_ptr<HostBuffer> parameters;
   std::size_t slot = 0;
+  // Guards `dispatches` and the slot's sets and pool: several threads record at the same time. What
+  // a dispatch has claimed is its own, and needs no lock.
+  std::mutex mutex;
   std::uint32_t dispatches = 0;
 
   State() = default;
@@ -88,8 +99,9 @@ struct Kernels::State {
                                           VkBufferUsageFlags usage, std::string_view what);
   tl::expected<void, Error> create_module(std::size_t shader);
   tl::expected<void, Error> create_table(std::size_t shader);
-  VkResult next_set(Shader shader, VkDescriptorSet& set);
-  VkDeviceSize write_parameters(std::span<const std::byte> bytes);
+  VkResult find_set(Shader shader, VkDescriptorSet& set);
+  std::optional<Claim> claim(framegraph::RecordContext& context, Shader shader);
+  VkDeviceSize write_parameters(std::uint32_t dispatch, std::span<const std::byte> bytes);
   void write_set(VkDescriptorSet set, Shader shader, std::span<const VkImageView> views,
                  VkDeviceSize offset, VkDeviceSize size);
 };
@@ -206,9 +218,9 @@ tl::expected<void, Error> Kernels::State::create_module(std::size_t shader) {
   return {};
 }
 
-// The set of this dispatch: the one it had last time where the shader is the same, else a new one.
-// The pools are sized for the worst frame, so an allocation can fail only for lack of memory.
-VkResult Kernels::State::next_set(Shader shader, VkDescriptorSet& set) {
+// The set of the next dispatch: the one it had last time where the shader is the same, else a new
+// one. The pools are sized for the worst frame, so an allocation can fail only for lack of memory.
+VkResult Kernels::State::find_set(Shader shader, VkDescriptorSet& set) {
   FrameSlot& frame = slots[slot];
   Set& found = frame.sets[dispatches];
   if (found.shader == shader) {
@@ -231,9 +243,26 @@ VkResult Kernels::State::next_set(Shader shader, VkDescriptorSet& set) {
   return result;
 }
 
-VkDeviceSize Kernels::State::write_parameters(std::span<const std::byte> bytes) {
+// None, and an error of the frame's, where there is no room left for another.
+std::optional<Claim> Kernels::State::claim(framegraph::RecordContext& context, Shader shader) {
+  const std::lock_guard lock(mutex);
+  if (dispatches == kMaxDispatches) {
+    context.fail("dispatch after Kernels::kMaxDispatches of them since Kernels::begin_frame",
+                 VK_ERROR_OUT_OF_POOL_MEMORY);
+    return std::nullopt;
+  }
+  VkDescriptorSet set = VK_NULL_HANDLE;
+  if (const VkResult result = find_set(shader, set); result != VK_SUCCESS) {
+    context.fail("descriptor set", result);
+    return std::nullopt;
+  }
+  return Claim{dispatches++, set};
+}
+
+VkDeviceSize Kernels::State::write_parameters(std::uint32_t dispatch,
+                                              std::span<const std::byte> bytes) {
   assert(bytes.size() <= kMaxParameterBytes);
-  const VkDeviceSize offset = (slot * kMaxDispatches + dispatches) * kMaxParameterBytes;
+  const VkDeviceSize offset = (slot * kMaxDispatches + dispatch) * kMaxParameterBytes;
   std::memcpy(parameters->bytes() + offset, bytes.data(), bytes.size());
   return offset;
 }
@@ -355,30 +384,23 @@ void Kernels::dispatch(framegraph::RecordContext& context, Kernel kernel,
                  VK_ERROR_OUT_OF_POOL_MEMORY);
     return;
   }
-  if (s.dispatches == kMaxDispatches) {
-    context.fail("dispatch after Kernels::kMaxDispatches of them since Kernels::begin_frame",
-                 VK_ERROR_OUT_OF_POOL_MEMORY);
-    return;
-  }
   // A view that could not be made is an error that the frame's record returns.
   if (std::ranges::find(views, VkImageView{VK_NULL_HANDLE}) != views.end()) {
     return;
   }
-  VkDescriptorSet set = VK_NULL_HANDLE;
-  if (const VkResult result = s.next_set(kernel.shader, set); result != VK_SUCCESS) {
-    context.fail("descriptor set", result);
+  const std::optional<Claim> own = s.claim(context, kernel.shader);
+  if (!own) {
     return;
   }
-  const VkDeviceSize offset = s.write_parameters(parameters);
-  s.write_set(set, kernel.shader, views, offset, parameters.size());
+  const VkDeviceSize offset = s.write_parameters(own->number, parameters);
+  s.write_set(own->set, kernel.shader, views, offset, parameters.size());
   const VkCommandBuffer commands = context.commands;
   const VkPipelineLayout layout = s.pipeline_layouts[static_cast<std::size_t>(kernel.shader)];
   s.vk.vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline);
-  s.vk.vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout, 0, 1, &set, 0,
+  s.vk.vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout, 0, 1, &own->set, 0,
                                nullptr);
   s.vk.vkCmdDispatch(commands, (size.width + kGroupSize - 1) / kGroupSize,
                      (size.height + kGroupSize - 1) / kGroupSize, size.depth);
-  ++s.dispatches;
 }
 
 std::size_t Kernels::pipeline_count() const { return state_->pipelines.size(); }

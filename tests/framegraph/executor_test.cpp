@@ -94,6 +94,36 @@ TEST_F(ExecutorTest, AnUndeclaredUseIsNamedWhereUsesAreChecked) {
   EXPECT_THAT(report.error()[0].message, testing::HasSubstr("'nosy' uses 'secret'"));
 }
 
+TEST_F(ExecutorTest, WhatIsReplacedCountsAsAllocatedUntilItIsFreed) {
+  struct Made {
+    Executor executor;
+    Graph graph;
+  };
+  const auto allocated = [&](Made& made, std::uint32_t side) {
+    auto& [executor, graph] = made;
+    graph.reset();
+    const TextureDesc desc{VK_FORMAT_R32_UINT, Extent::absolute(side, side)};
+    for (Texture texture : {graph.create_texture_history("history", desc).current,
+                            graph.create_texture("transient", desc)}) {
+      PassBuilder pass = graph.add_pass("clear");
+      texture = pass.write(texture, access::clear);
+      pass.record([=](RecordContext& c) { clear_image(c, c.image(texture), side, 1); });
+      graph.output(texture);
+    }
+    const auto report = gpu_.run(executor, graph);
+    EXPECT_TRUE(report) << to_string(report.error());
+    return report->memory.allocated;
+  };
+  Made resized{make(), {}};
+  Made large{make(), {}};
+  const VkDeviceSize before = allocated(resized, 64);
+  const VkDeviceSize after = allocated(large, 128);
+  EXPECT_GT(before, 0u);
+  // Recording the second frame, the executor does not know yet that the first has finished.
+  EXPECT_EQ(allocated(resized, 128), before + after);
+  EXPECT_EQ(allocated(resized, 128), allocated(large, 128));
+}
+
 class FailingDeviceTest : public ExecutorTest {
  protected:
   void SetUp() override {

@@ -152,22 +152,25 @@ class Gpu {
     if (report)
       end_and_wait();
     else
-      vkEndCommandBuffer(commands_);
+      throw_away();
     return report;
   }
   // Records one frame and throws its commands away.
   tl::expected<FrameReport, Errors> record(Executor& executor, Graph& graph) {
     begin();
     auto report = executor.record(graph, commands_);
-    vkEndCommandBuffer(commands_);
+    throw_away();
     return report;
   }
 
+  VkCommandBuffer commands() const { return commands_; }
   void begin() {
     VkCommandBufferBeginInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO, nullptr,
                                   VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT, nullptr};
     vkBeginCommandBuffer(commands_, &info);
   }
+  // So that nothing runs of what was recorded.
+  void throw_away() { vkEndCommandBuffer(commands_); }
   void end_and_wait() {
     vkEndCommandBuffer(commands_);
     VkSubmitInfo submit{};

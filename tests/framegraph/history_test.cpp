@@ -17,7 +17,7 @@ struct Frame {
   bool discarded = false;  // recorded, but never run
 };
 
-class History : public testing::Test {
+class GraphHistory : public testing::Test {
  protected:
   static constexpr std::uint32_t kSlots = 3;
 
@@ -138,7 +138,7 @@ class History : public testing::Test {
 
 constexpr std::uint32_t kNothing = 0xffff;
 
-TEST_F(History, SlotsHoldTheFramesBefore) {
+TEST_F(GraphHistory, SlotsHoldTheFramesBefore) {
   for (std::uint32_t frame = 1; frame <= 6; ++frame) {
     run({frame});
     EXPECT_EQ(validity_, frame == 1 ? HistoryValidity::first_frame : HistoryValidity::valid);
@@ -147,7 +147,7 @@ TEST_F(History, SlotsHoldTheFramesBefore) {
   }
 }
 
-TEST_F(History, AFrameThatDoesNotWriteLeavesTheSlotsWhereTheyAre) {
+TEST_F(GraphHistory, AFrameThatDoesNotWriteLeavesTheSlotsWhereTheyAre) {
   run({1});
   run({2});
   run({0, false});
@@ -158,7 +158,7 @@ TEST_F(History, AFrameThatDoesNotWriteLeavesTheSlotsWhereTheyAre) {
   EXPECT_EQ(slot(2), 1u);
 }
 
-TEST_F(History, AFrameThatCullsTheWriterLeavesTheSlotsWhereTheyAre) {
+TEST_F(GraphHistory, AFrameThatCullsTheWriterLeavesTheSlotsWhereTheyAre) {
   run({1});
   run({2});
   run({9, true, false});
@@ -167,7 +167,7 @@ TEST_F(History, AFrameThatCullsTheWriterLeavesTheSlotsWhereTheyAre) {
   EXPECT_EQ(slot(2), 1u);
 }
 
-TEST_F(History, AFrameWithoutTheHistoryLeavesItAlone) {
+TEST_F(GraphHistory, AFrameWithoutTheHistoryLeavesItAlone) {
   run({1});
   graph_->reset();
   ASSERT_TRUE(gpu_.run(*executor_, *graph_));
@@ -176,7 +176,7 @@ TEST_F(History, AFrameWithoutTheHistoryLeavesItAlone) {
   EXPECT_EQ(slot(1), 1u);
 }
 
-TEST_F(History, AResizeMakesItInvalidAndSaysWhy) {
+TEST_F(GraphHistory, AResizeMakesItInvalidAndSaysWhy) {
   run({1});
   run({2});
   run({3, true, true, false, 16});
@@ -188,7 +188,7 @@ TEST_F(History, AResizeMakesItInvalidAndSaysWhy) {
   EXPECT_EQ(slot(2), kNothing);
 }
 
-TEST_F(History, AResetMakesItInvalidAndSaysWhy) {
+TEST_F(GraphHistory, AResetMakesItInvalidAndSaysWhy) {
   run({1});
   run({2});
   graph_->reset_history("history");
@@ -200,7 +200,7 @@ TEST_F(History, AResetMakesItInvalidAndSaysWhy) {
   EXPECT_EQ(slot(2), kNothing);
 }
 
-TEST_F(History, AFrameThatIsDiscardedNeverWas) {
+TEST_F(GraphHistory, AFrameThatIsDiscardedNeverWas) {
   run({.value = 1});
   run({.value = 99, .discarded = true});
   run({.value = 2});
@@ -216,7 +216,7 @@ TEST_F(History, AFrameThatIsDiscardedNeverWas) {
   EXPECT_EQ(slot(1), 3u);
 }
 
-TEST_F(History, GraphsOfOneExecutorHaveTheirOwn) {
+TEST_F(GraphHistory, GraphsOfOneExecutorHaveTheirOwn) {
   run({.value = 1});
   const VkDeviceSize bytes = history_bytes_;
   // The same name and place, but another size.
@@ -241,7 +241,7 @@ TEST_F(History, GraphsOfOneExecutorHaveTheirOwn) {
   EXPECT_LE(history_bytes_, bytes);
 }
 
-TEST_F(History, ContentsSurviveAChangeOfAccess) {
+TEST_F(GraphHistory, ContentsSurviveAChangeOfAccess) {
   run({1});
   run({2});
   run({3, true, true, true});

@@ -120,7 +120,7 @@ TEST(Mutation, QueuesOfOneFamilyCannotBeSpoiled) {
   expect_agreement(counts);
 }
 
-TEST(Mutation, SplitBarriersCannotBeSpoiled) {
+TEST(Mutation, TheVerifierKillsMutantsOfSplitBarriers) {
   Limits limits;
   limits.split_barriers = true;
   const Counts counts = mutate_graphs(2500, {}, limits);

@@ -26,15 +26,16 @@ TEST(Place, AnEstimateIsOfTheBytesOfAFormatsTexels) {
         Case{VK_FORMAT_B10G11R11_UFLOAT_PACK32, 4}, Case{VK_FORMAT_D16_UNORM, 2},
         Case{VK_FORMAT_D32_SFLOAT, 4}, Case{VK_FORMAT_R16G16B16A16_SFLOAT, 8},
         Case{VK_FORMAT_R32G32_SFLOAT, 8}, Case{VK_FORMAT_R32G32B32A32_SFLOAT, 16},
-        Case{VK_FORMAT_R64G64_SFLOAT, 16}}) {
+        Case{VK_FORMAT_R64_SFLOAT, 8}, Case{VK_FORMAT_R64G64_SFLOAT, 16},
+        Case{VK_FORMAT_R64G64B64_UINT, 24}, Case{VK_FORMAT_R64G64B64A64_SFLOAT, 32}}) {
     ResourceRecord record;
     record.format = format;
     record.width = 256;
     record.height = 3;
-    EXPECT_EQ(estimate_requirements(record).size, 256 * 3 * bytes) << format;
+    EXPECT_EQ(estimate_requirements(record).size, VkDeviceSize{256} * 3 * bytes) << format;
     record.layers = 2;
     record.samples = 4;
-    EXPECT_EQ(estimate_requirements(record).size, 256 * 3 * 8 * bytes) << format;
+    EXPECT_EQ(estimate_requirements(record).size, VkDeviceSize{256} * 3 * 8 * bytes) << format;
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 
 #include "alcove/passes/multi_bounce.h"
 #include "c_settings.h"
@@ -69,6 +70,19 @@ GivenView given_view(const TestView& view, std::uint32_t width, std::uint32_t he
   given.settings.roughness_channel = 1;
   given.settings.precision = Precision::float32;
   return given;
+}
+
+HostImage in_corner_of(const HostImage& contents, VkExtent2D larger) {
+  HostImage around{larger.width, larger.height, {}, contents.channels};
+  around.texels.assign(std::size_t{larger.width} * larger.height * contents.channels,
+                       std::numeric_limits<float>::quiet_NaN());
+  const std::size_t row = std::size_t{contents.width} * contents.channels;
+  for (std::size_t y = 0; y < contents.height; ++y) {
+    std::copy_n(
+        contents.texels.begin() + static_cast<std::ptrdiff_t>(y * row), row,
+        around.texels.begin() + static_cast<std::ptrdiff_t>(y * larger.width * contents.channels));
+  }
+  return around;
 }
 
 void CInterface::SetUp() {

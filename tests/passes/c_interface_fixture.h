@@ -46,6 +46,10 @@ struct Results {
 GivenView given_view(const TestView& view, std::uint32_t width, std::uint32_t height,
                      const Scene& scene);
 
+// An image of `larger` pixels that holds `contents` from the first pixel on, and numbers that must
+// not be read around it.
+HostImage in_corner_of(const HostImage& contents, VkExtent2D larger);
+
 class CInterface : public PassTest {
  protected:
   void SetUp() override;

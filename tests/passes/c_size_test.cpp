@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "c_interface_fixture.h"
 #include "gtao_scenes.h"
@@ -15,19 +14,9 @@ using testing::HasSubstr;
 
 class CSize : public CInterface {
  protected:
-  // An image of `larger` pixels that holds `contents` from the first pixel on, and numbers that
-  // must not be read around it.
+  // An image of `larger` pixels of which `contents` are used.
   AlcoveImage part(const HostImage& contents, VkExtent2D larger) {
-    HostImage around{larger.width, larger.height, {}, contents.channels};
-    around.texels.assign(std::size_t{larger.width} * larger.height * contents.channels,
-                         std::numeric_limits<float>::quiet_NaN());
-    const std::size_t row = std::size_t{contents.width} * contents.channels;
-    for (std::size_t y = 0; y < contents.height; ++y) {
-      std::copy_n(contents.texels.begin() + static_cast<std::ptrdiff_t>(y * row), row,
-                  around.texels.begin() +
-                      static_cast<std::ptrdiff_t>(y * larger.width * contents.channels));
-    }
-    AlcoveImage image = input(around);
+    AlcoveImage image = input(in_corner_of(contents, larger));
     image.width = contents.width;
     image.height = contents.height;
     return image;

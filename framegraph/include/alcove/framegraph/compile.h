@@ -1,5 +1,5 @@
 // Turns a declared frame into a plan: a pure function, no device. The phases, each in a file of its
-// own: validate, cull, order, lifetimes, place, synchronise.
+// own: validate, cull, order, assign queues, lifetimes, place, synchronise.
 #pragma once
 
 #include <cstdint>

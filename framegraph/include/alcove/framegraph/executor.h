@@ -1,5 +1,6 @@
-// Runs graphs on a Vulkan 1.3 device (synchronization2, dynamic rendering and, for several queues,
-// timeline semaphores). Never creates a device.
+// Runs graphs on a Vulkan 1.3 device. Of its features synchronization2 has to be enabled, for
+// submit() timelineSemaphore too, on one queue as on several; dynamicRendering where passes draw
+// with it. Never creates a device.
 //
 //   frame:  wait for the fence of slot s;  graph.reset(); declare;  begin commands
 //           executor.record(graph, commands, {s});  end commands, submit with the fence of slot s
@@ -40,15 +41,16 @@ struct DeviceHandles {
 
 struct ExecutorOptions {
   std::uint32_t frames_in_flight = 2;  // frame slots, 1 to 8
-  bool timestamps = true;              // GPU time of each pass
+  bool timestamps = true;              // GPU time of each pass, on queues that have timestamps
   Ordering ordering = Ordering::lower_peak;
   bool alias = true;
-  // Barriers with work between what they wait for and what waits become events (see README). Frames
-  // that have any are recorded by the caller's thread.
+  // Barriers with work between what they wait for and what waits become events
+  // (framegraph/README.md). Frames that have any are recorded by the caller's thread.
   bool split_barriers = false;
-  // Threads that record passes, the caller's among them, 1 to 64. With more than one the callbacks
-  // of different passes run at the same time, into secondary command buffers; a caller's query must
-  // not be active then in the command buffer that record() is given.
+  // Threads that record passes, the caller's among them, 1 to 64; fewer where the system gives no
+  // more. With more than one the callbacks of different passes run at the same time, into secondary
+  // command buffers; a caller's query must not be active then in the command buffer that record()
+  // is given. What a callback throws reaches the caller from whichever thread it ran in.
   std::uint32_t recording_threads = 1;
 #ifdef NDEBUG
   bool verify = false;      // every new plan goes through verify()
@@ -70,7 +72,7 @@ struct MemoryStatistics {
   VkDeviceSize unaliased = 0;    // were each given bytes of its own
   VkDeviceSize lower_bound = 0;  // most bytes live at once
   VkDeviceSize history = 0;      // of all history slots
-  VkDeviceSize allocated = 0;    // device memory that the executor holds
+  VkDeviceSize allocated = 0;    // that the executor holds, what is to be freed soon among it
 };
 
 struct FrameReport {
@@ -114,8 +116,8 @@ class Executor {
   [[nodiscard]] tl::expected<void, Errors> wait(std::uint32_t slot = 0);
 
   // GPU time of each pass of the frame last recorded with this slot, in order of execution on each
-  // queue. Only after the device has finished it; empty where there is nothing or timestamps are
-  // off. Valid until the next call.
+  // queue. Only after the device has finished it: until then they may be those of the frame before.
+  // Empty where there is nothing or timestamps are off. Valid until the next call.
   [[nodiscard]] std::span<const PassTiming> timings(std::uint32_t slot = 0);
 
   // To be called before the caller destroys an image that it imported, if passes asked for views of

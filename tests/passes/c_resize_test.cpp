@@ -1,0 +1,382 @@
+// Frames whose sizes, settings, images and number of views change at random: for a few seconds, or
+// as long as ALCOVE_RESIZE_SECONDS says, an hour in the soak test.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <iostream>
+#include <vector>
+
+#include "c_interface_fixture.h"
+#include "c_settings.h"
+#include "framegraph/failing_device.h"
+#include "gtao_scenes.h"
+#include "maths/random_input.h"
+
+namespace alcove::passes {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::uint32_t kMostViews = 3;
+constexpr std::uint32_t kMostSide = 40;
+constexpr std::uint32_t kRound = 200;  // frames from rest to rest
+constexpr std::chrono::seconds kProgress(30);
+
+std::chrono::seconds wanted_time() {
+  const char* given = std::getenv("ALCOVE_RESIZE_SECONDS");
+  return std::chrono::seconds(given != nullptr ? std::strtol(given, nullptr, 10) : 4);
+}
+
+// What a view asks for. There are few of them, since each needs pipelines of its own, which take a
+// software device longer than the frames.
+struct Kind {
+  OcclusionSettings settings;
+  // Which images it goes without: bits, by inputs_of and outputs_of.
+  std::uint32_t without_inputs = 0;
+  std::uint32_t without_outputs = 0;
+};
+
+// A view of the frames, and its images.
+struct Shown {
+  std::uint32_t id = 0;
+  bool is_shown = false;
+  TestView seen;
+  Scene scene;
+  AlcoveView view{};  // with every image
+  AlcoveSettings settings{};
+  VkExtent2D largest{};  // of the images
+  Kind kind;
+};
+
+std::array<AlcoveImage*, 7> inputs_of(AlcoveView& view) {
+  return {&view.depth,      &view.normals,      &view.motion, &view.roughness,
+          &view.back_depth, &view.second_depth, &view.albedo};
+}
+constexpr std::uint32_t kOptionalInputs = 0b0001110;  // normals, motion, roughness
+
+std::array<AlcoveImage*, 4> outputs_of(AlcoveView& view) {
+  return {&view.visibility, &view.bent_normal, &view.specular, &view.multi_bounce};
+}
+
+// The view as it is recorded.
+AlcoveView recorded_view(Shown& shown) {
+  AlcoveView view = shown.view;
+  view.settings = &shown.settings;
+  const auto leave_out = [](const auto& images, std::uint32_t which) {
+    for (std::size_t i = 0; i < images.size(); ++i) {
+      if ((which >> i & 1) != 0) {
+        *images[i] = {};
+      }
+    }
+  };
+  leave_out(inputs_of(view), shown.kind.without_inputs);
+  leave_out(outputs_of(view), shown.kind.without_outputs);
+  return view;
+}
+
+class CResize : public CInterface {
+ protected:
+  void SetUp() override;
+  void TearDown() override;
+
+  void run_for(std::chrono::seconds time);
+
+ private:
+  std::uint32_t below(std::uint32_t count) { return random_.bits() % count; }
+  bool chance(std::uint32_t one_in) { return below(one_in) == 0; }
+
+  Kind any_kind();
+  void make_images(Shown& shown, VkExtent2D size);
+  void destroy_images(Shown& shown);
+  void use_part(Shown& shown, VkExtent2D size);
+  void change_kind(Shown& shown);
+  void change_numbers(Shown& shown);
+  void show(Shown& shown);
+  void drop(Shown& shown);
+  void change(Shown& shown);
+  void draw_frame(std::span<Shown> all, bool discards);
+  void run_round(Clock::time_point end);
+  AlcoveMemory rest();
+  void expect_right(Shown& shown);
+
+  maths_test::RandomInput random_;
+  Context context_;
+  std::array<Kind, 8> kinds_;
+  std::array<Shown, kMostViews> views_;
+  std::array<Shown, 1> resting_;
+  std::uint32_t frame_ = 0;
+  std::uint64_t most_transients_ = 0;
+};
+
+void CResize::SetUp() {
+  CInterface::SetUp();
+  framegraph::failing::fail_at(0);
+  framegraph::failing::lose(false);
+  AlcoveContextInfo info = engine().context_info();
+  info.get_instance_proc_addr = framegraph::failing::get_instance_proc_addr;
+  info.debug_utils = VK_TRUE;
+  AlcoveContext* made = nullptr;
+  ASSERT_EQ(alcoveCreateContext(&info, &made, nullptr), ALCOVE_SUCCESS);
+  context_ = Context(made);
+  std::ranges::generate(kinds_, [&] { return any_kind(); });
+  for (std::uint32_t i = 0; i < kMostViews; ++i) {
+    views_.at(i).id = i;
+  }
+  resting_[0].id = kMostViews;
+  make_images(resting_[0], {16, 12});
+}
+
+void CResize::TearDown() {
+  if (context_) {
+    engine().wait();
+    context_.reset();
+    EXPECT_EQ(framegraph::failing::alive(), 0);
+  }
+  CInterface::TearDown();
+}
+
+Kind CResize::any_kind() {
+  OcclusionSettings settings = quality_settings(static_cast<Quality>(below(3)), 0.5f);
+  settings.estimator = static_cast<Estimator>(below(4));
+  settings.weighting = static_cast<Weighting>(below(2));
+  settings.thickness_unit = static_cast<ThicknessUnit>(below(3));
+  settings.depth_layers = 1 + below(2);
+  const bool fades =
+      settings.estimator == Estimator::horizons || settings.estimator == Estimator::heuristic;
+  settings.falloff = fades ? random_.uniform(0.0f, 1.0f) : 0.0f;
+  settings.pattern = static_cast<Pattern>(below(3));
+  settings.filter_reach = below(4);
+  settings.clamp_width = chance(2) ? 0.0f : 1.5f;
+  settings.specular = static_cast<Specular>(1 + below(5));
+  settings.roughness_channel = below(2);
+  return {settings, below(128) & kOptionalInputs, below(15)};  // never without all outputs
+}
+
+// Images of `size`, all of it used; what is seen in them is new as well.
+void CResize::make_images(Shown& shown, VkExtent2D size) {
+  const std::vector<TestView> views = test_views();
+  shown.seen = views[below(static_cast<std::uint32_t>(views.size()))];
+  shown.scene = chance(2) ? ball_on_floor() : groove(0.8);
+  GivenView given = given_view(shown.seen, size.width, size.height, shown.scene);
+  given.id = shown.id;
+  given.settings.bent_normal = given.multi_bounce = true;
+  given.settings.specular = Specular::slices;
+  given.settings.precision = chance(3) ? Precision::unorm8 : Precision::float32;
+  shown.view = view_of(given, shown.settings);
+  shown.largest = size;
+  // Dynamic resolution; else history begins anew with each part.
+  if (chance(2)) {
+    shown.view.largest_width = size.width;
+    shown.view.largest_height = size.height;
+  }
+}
+
+void CResize::destroy_images(Shown& shown) {
+  engine().wait();
+  const auto destroy = [&](const AlcoveImage* image) {
+    if (image->image != VK_NULL_HANDLE) {
+      EXPECT_EQ(alcoveForgetImage(context_.get(), image->image), ALCOVE_SUCCESS);
+      engine().destroy_image(*image);
+    }
+  };
+  std::ranges::for_each(inputs_of(shown.view), destroy);
+  std::ranges::for_each(outputs_of(shown.view), destroy);
+}
+
+void CResize::use_part(Shown& shown, VkExtent2D size) {
+  const GivenView part = given_view(shown.seen, size.width, size.height, shown.scene);
+  const std::array<const HostImage*, 7> contents{
+      &part.depth_ndc,      &part.normals,          &part.motion, &part.roughness,
+      &part.back_depth_ndc, &part.second_depth_ndc, &part.albedo};
+  const auto inputs = inputs_of(shown.view);
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    AlcoveImage whole = *inputs[i];
+    whole.width = shown.largest.width;
+    whole.height = shown.largest.height;
+    fill_image(whole, in_corner_of(*contents[i], shown.largest), kResting);
+  }
+  const auto use = [size](AlcoveImage* image) {
+    image->width = size.width;
+    image->height = size.height;
+  };
+  std::ranges::for_each(inputs, use);
+  std::ranges::for_each(outputs_of(shown.view), use);
+}
+
+void CResize::change_kind(Shown& shown) {
+  shown.kind = kinds_.at(below(kinds_.size()));
+  change_numbers(shown);
+}
+
+void CResize::change_numbers(Shown& shown) {
+  OcclusionSettings settings = shown.kind.settings;
+  settings.radius = random_.log_uniform(0.05f, 5.0f);
+  settings.thickness = random_.uniform(0.0f, 1.0f);
+  settings.fill = random_.uniform(0.0f, 1.0f);
+  settings.history_frames = chance(4) ? 0 : 1 + below(255);
+  settings.roughness = random_.uniform(0.0f, 1.0f);
+  settings.precision = static_cast<Precision>(below(3));
+  shown.settings = from_settings(settings);
+}
+
+void CResize::show(Shown& shown) {
+  destroy_images(shown);
+  make_images(shown, {1 + below(kMostSide), 1 + below(kMostSide)});
+  change_kind(shown);
+  shown.is_shown = true;
+}
+
+void CResize::drop(Shown& shown) {
+  shown.is_shown = false;
+  EXPECT_EQ(alcoveDropView(context_.get(), shown.id), ALCOVE_SUCCESS);
+  shown.view.previous_width = shown.view.previous_height = shown.view.still_frames = 0;
+}
+
+// What changes is not still; most frames are like the one before.
+void CResize::change(Shown& shown) {
+  const std::uint32_t what = below(12);
+  if (what > 4) {
+    return;
+  }
+  shown.view.still_frames = 0;
+  if (what == 0 && shown.is_shown && chance(2)) {
+    drop(shown);
+  } else if (what == 0) {
+    show(shown);
+  } else if (what == 1 && shown.is_shown) {
+    use_part(shown, {1 + below(shown.largest.width), 1 + below(shown.largest.height)});
+  } else if (what == 2) {
+    change_kind(shown);
+  } else if (what == 3) {
+    change_numbers(shown);
+  } else {
+    shown.view.camera.view_from_world[12] += random_.uniform(-0.05f, 0.05f);
+  }
+}
+
+// What the next frame needs to know of this one.
+void remember(Shown& shown) {
+  shown.view.previous_camera = shown.view.camera;
+  if (shown.view.largest_width != 0) {
+    shown.view.previous_width = shown.view.depth.width;
+    shown.view.previous_height = shown.view.depth.height;
+  }
+  ++shown.view.still_frames;
+}
+
+void CResize::draw_frame(std::span<Shown> all, bool discards) {
+  std::vector<AlcoveView> views;
+  for (Shown& shown : all) {
+    if (shown.is_shown) {
+      views.push_back(recorded_view(shown));
+    }
+  }
+  if (views.empty()) {
+    return;
+  }
+  if (discards) {
+    const AlcoveFrame frame{.struct_size = sizeof(AlcoveFrame),
+                            .index = frame_,
+                            .slot = frame_ % Engine::kSlots,
+                            .view_count = static_cast<std::uint32_t>(views.size()),
+                            .views = views.data()};
+    engine().submit(frame.slot, [&](VkCommandBuffer commands) {
+      EXPECT_EQ(alcoveRecordFrame(context_.get(), commands, &frame), ALCOVE_SUCCESS)
+          << alcoveGetMessage(context_.get());
+      throw_away(commands);
+    });
+    EXPECT_EQ(alcoveDiscardFrame(context_.get()), ALCOVE_SUCCESS);
+    return;
+  }
+  run_frame(*context_, views, frame_++);
+  most_transients_ = std::max(most_transients_, memory_of(*context_).transients);
+  for (Shown& shown : all) {
+    if (shown.is_shown) {
+      remember(shown);
+    }
+  }
+}
+
+// Finite and within [low, 1].
+void expect_within(const HostImage& image, float low, const char* what) {
+  const auto wrong = std::ranges::find_if_not(
+      image.texels, [low](float value) { return value >= low && value <= 1.0f; });
+  if (wrong != image.texels.end()) {
+    ADD_FAILURE() << what << " is " << *wrong << " in texel "
+                  << (wrong - image.texels.begin()) / image.channels << " of " << image.width << "x"
+                  << image.height;
+  }
+}
+
+void CResize::expect_right(Shown& shown) {
+  if (!shown.is_shown) {
+    return;
+  }
+  const Results found = results_of(recorded_view(shown));
+  expect_within(found.visibility, 0.0f, "visibility");
+  expect_within(found.bent_normal, -1.0f, "a bent normal");
+  expect_within(found.specular, 0.0f, "specular occlusion");
+  expect_within(found.multi_bounce, 0.0f, "multi-bounce");
+}
+
+void CResize::run_round(Clock::time_point end) {
+  for (std::uint32_t i = 0; i < kRound && Clock::now() < end && !HasFailure(); ++i) {
+    SCOPED_TRACE("frame " + std::to_string(frame_));
+    std::ranges::for_each(views_, [&](Shown& shown) { change(shown); });
+    const bool discards = chance(20);
+    draw_frame(views_, discards);
+    // Now and then: the frames between are in flight together.
+    if (!discards && chance(4)) {
+      std::ranges::for_each(views_, [&](Shown& shown) { expect_right(shown); });
+    }
+    EXPECT_EQ(gpu().device().validation_messages(), std::vector<std::string>{});
+  }
+}
+
+// The memory while nothing but one view of always the same is left, and what has gone is freed.
+AlcoveMemory CResize::rest() {
+  for (Shown& shown : views_) {
+    drop(shown);
+  }
+  resting_[0].is_shown = true;
+  AlcoveMemory memory{};
+  // The tables of both that have one are there after the first rest.
+  for (const Specular specular : {Specular::table, Specular::slices}) {
+    OcclusionSettings settings = quality_settings(Quality::medium, 0.5f);
+    settings.specular = specular;
+    resting_[0].settings = from_settings(settings);
+    for (std::uint32_t i = 0; i < 2 * Engine::kSlots; ++i) {
+      draw_frame(resting_, false);
+    }
+    memory = memory_of(*context_);
+  }
+  drop(resting_[0]);
+  return memory;
+}
+
+void CResize::run_for(std::chrono::seconds time) {
+  const AlcoveMemory first = rest();
+  const Clock::time_point begin = Clock::now();
+  Clock::time_point told = begin;
+  while (Clock::now() - begin < time && !HasFailure()) {
+    run_round(begin + time);
+    const AlcoveMemory now = rest();
+    EXPECT_EQ(now.history, first.history);
+    // What transients share stays as large as the largest frame.
+    EXPECT_LE(now.allocated, first.allocated + most_transients_);
+    if (Clock::now() - told > kProgress) {
+      told = Clock::now();
+      std::cout << std::chrono::duration_cast<std::chrono::seconds>(told - begin).count() << " s, "
+                << frame_ << " frames, " << now.allocated << " bytes" << std::endl;
+    }
+  }
+}
+
+TEST_F(CResize, WhateverChangesResultsAreInRangeAndMemoryStaysBounded) { run_for(wanted_time()); }
+
+}  // namespace
+}  // namespace alcove::passes
