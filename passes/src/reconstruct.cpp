@@ -15,6 +15,7 @@
 #include "reconstruct_parameters.h"
 #include "search_phase.h"
 #include "view_parameters.h"
+#include "write_result.h"
 
 namespace alcove::passes {
 
@@ -96,7 +97,7 @@ Textures create_textures(const Frame& frame, const ReconstructInputs& inputs,
   return textures;
 }
 
-void declare_accesses(framegraph::PassBuilder& pass, Textures& textures) {
+void declare_accesses(const Graph& graph, framegraph::PassBuilder& pass, Textures& textures) {
   const auto read = [&](Texture texture, const framegraph::Access& access) {
     if (texture) {
       pass.read(texture, access);
@@ -104,8 +105,7 @@ void declare_accesses(framegraph::PassBuilder& pass, Textures& textures) {
   };
   const auto write = [&](Texture& texture) {
     if (texture) {
-      texture = pass.write(texture, framegraph::access::storage_write_compute, {},
-                           framegraph::Contents::discard);
+      texture = write_result(graph, pass, texture);
     }
   };
   const auto& sampled = framegraph::access::sampled_compute;
@@ -304,7 +304,7 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& frame, const Reconst
     return tl::unexpected(kernel.error());
   }
   auto pass = frame.graph.add_pass("reconstruct");
-  declare_accesses(pass, textures);
+  declare_accesses(frame.graph, pass, textures);
   const auto [phase_x, phase_y] = search_phase(inputs.signal.divisor, frame.index);
   maths::ReconstructParameters parameters =
       parameters_of(frame, *projection, *previous, inputs.normals_in_view_space, settings);

@@ -75,6 +75,39 @@ TEST_F(CPlan, AnOutputAloneHasNoPassAndNoMemoryOfTheOthers) {
   EXPECT_EQ(memory_of_frame(context, multi_bounce).transients_unshared, bytes);
 }
 
+// Of an image of which a part is in use the rest is its contents too, and a driver may throw away
+// what changes its layout from undefined.
+TEST_F(CPlan, AnOutputThatArrivesWithContentsKeepsWhatLiesOutsideThePart) {
+  const Context context = create_context();
+  for (const Specular specular : {Specular::slices, Specular::table}) {
+    GivenView given = least();
+    given.settings.visibility = given.settings.bent_normal = given.multi_bounce = true;
+    given.settings.specular = specular;
+    AlcoveSettings settings;
+    AlcoveView view = view_of(given, settings);
+    for (const bool has_contents : {false, true}) {
+      for (AlcoveImage* image :
+           {&view.visibility, &view.bent_normal, &view.specular, &view.multi_bounce}) {
+        image->arrival = kResting;
+        image->arrival.layout = has_contents ? kResting.layout : VK_IMAGE_LAYOUT_UNDEFINED;
+      }
+      run_frame(*context, {&view, 1}, 0);
+      engine().wait();
+      const std::string plan = plan_of(*context);
+      for (const std::string name :
+           {"visibility", "bent normals", "specular occlusion", "multi-bounce"}) {
+        const auto discarded = HasSubstr(name + " of view 0 undefined ->");
+        if (has_contents) {
+          EXPECT_THAT(plan, Not(discarded));
+          EXPECT_THAT(plan, HasSubstr(name + " of view 0 shader read -> general"));
+        } else {
+          EXPECT_THAT(plan, discarded);
+        }
+      }
+    }
+  }
+}
+
 TEST_F(CPlan, HistoryTakesMemoryOnlyWhereItIsOnAndUntilItIsDropped) {
   const Context context = create_context();
   GivenView given = least();
