@@ -56,6 +56,36 @@ struct Textures {
   Texture next_bent_history;
 };
 
+// Declares the histories; `valid` is whether last frame's can be read. One that is not wanted now
+// is old by the time that it is wanted again.
+void create_histories(Graph& graph, const ReconstructSettings& settings,
+                      std::string_view history_name, framegraph::Extent largest, Textures& textures,
+                      bool& valid) {
+  const BentHistoryName bent_name(history_name);
+  const bool wanted = settings.history_frames > 0;
+  const bool bent_wanted = wanted && textures.inputs.signal.bent;
+  if (!wanted) {
+    graph.reset_history(history_name);
+  }
+  if (!bent_wanted) {
+    graph.reset_history(bent_name);
+  }
+  if (wanted) {
+    const TextureHistory history = graph.create_texture_history(
+        history_name, {signal_format(textures.inputs.signal.lobe), largest});
+    valid = history.validity == framegraph::HistoryValidity::valid;
+    textures.history = history.previous();
+    textures.next_history = history.current;
+  }
+  if (bent_wanted) {
+    const TextureHistory bent =
+        graph.create_texture_history(bent_name, {VK_FORMAT_R16G16B16A16_SFLOAT, largest});
+    valid = valid && bent.validity == framegraph::HistoryValidity::valid;
+    textures.bent_history = bent.previous();
+    textures.next_bent_history = bent.current;
+  }
+}
+
 // Declares the textures that the pass writes. `valid` is whether last frame's history can be read.
 Textures create_textures(const Frame& frame, const ReconstructInputs& inputs,
                          const ReconstructSettings& settings, const ReconstructSizes& sizes,
@@ -79,21 +109,7 @@ Textures create_textures(const Frame& frame, const ReconstructInputs& inputs,
     textures.result.specular =
         given_or(inputs.into.specular, "specular occlusion", scalar_format(settings.precision));
   }
-  if (settings.history_frames == 0) {
-    return textures;
-  }
-  const TextureHistory history =
-      graph.create_texture_history(history_name, {signal_format(inputs.signal.lobe), largest});
-  valid = history.validity == framegraph::HistoryValidity::valid;
-  textures.history = history.previous();
-  textures.next_history = history.current;
-  if (inputs.signal.bent) {
-    const TextureHistory bent = graph.create_texture_history(
-        BentHistoryName(history_name), {VK_FORMAT_R16G16B16A16_SFLOAT, largest});
-    valid = valid && bent.validity == framegraph::HistoryValidity::valid;
-    textures.bent_history = bent.previous();
-    textures.next_bent_history = bent.current;
-  }
+  create_histories(graph, settings, history_name, largest, textures, valid);
   return textures;
 }
 
