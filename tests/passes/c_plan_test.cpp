@@ -138,6 +138,23 @@ TEST_F(CPlan, HistoryTakesMemoryOnlyWhereItIsOnAndUntilItIsDropped) {
   }
 }
 
+TEST_F(CPlan, AfterAFrameThatFailedThereIsNeitherMemoryNorAPlan) {
+  const Context context = create_context();
+  GivenView given = least();
+  given.settings.visibility = true;
+  for (const bool is_null : {true, false}) {
+    EXPECT_GT(memory_of_frame(context, given).allocated, 0u);
+    AlcoveFrame frame{.struct_size = sizeof frame, .view_count = 0};
+    engine().submit(0, [&](VkCommandBuffer commands) {
+      EXPECT_EQ(alcoveRecordFrame(context.get(), commands, is_null ? nullptr : &frame),
+                ALCOVE_ERROR_INVALID_INPUT);
+    });
+    EXPECT_EQ(memory_of(*context).allocated, 0u);
+    EXPECT_EQ(plan_of(*context), "");
+  }
+  engine().wait();
+}
+
 TEST_F(CPlan, AViewThatWasDroppedBeginsAnew) {
   const Context context = create_context();
   GivenView given = least();
