@@ -84,8 +84,6 @@ TEST_F(BadInput, EverySettingOutOfRangeIsNamed) {
       {"history", [](View&, OcclusionSettings& s) { s.history_frames = 256; }},
       {"clamp", [](View&, OcclusionSettings& s) { s.clamp_width = -1.0f; }},
       {"clamp", [](View&, OcclusionSettings& s) { s.clamp_width = kNaN; }},
-      {"mips", [](View&, OcclusionSettings& s) { s.depth_mips = 0; }},
-      {"mips", [](View&, OcclusionSettings& s) { s.depth_mips = 6; }},
       {"roughness", [](View&, OcclusionSettings& s) { s.roughness = 1.1f; }},
       {"roughness", [](View&, OcclusionSettings& s) { s.roughness = kNaN; }},
       {"channel", [](View&, OcclusionSettings& s) { s.roughness_channel = 4; }},

@@ -147,7 +147,6 @@ TEST_F(CBadInput, EverySettingOutOfRangeIsNamed) {
       {"falloff", [](AlcoveSettings& s) { s.falloff = 2.0f; }},
       {"divided by 3", [](AlcoveSettings& s) { s.divisor = 3; }},
       {"pattern is 3", [](AlcoveSettings& s) { set_number(s.pattern, 3); }},
-      {"mips", [](AlcoveSettings& s) { s.depth_mips = 0; }},
       {"reach", [](AlcoveSettings& s) { s.filter_reach = 4; }},
       {"tolerance", [](AlcoveSettings& s) { s.filter_tolerance_px = 0.0f; }},
       {"history", [](AlcoveSettings& s) { s.history_frames = 256; }},

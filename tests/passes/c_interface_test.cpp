@@ -101,11 +101,7 @@ TEST_F(CInterface, EverySettingReachesThePasses) {
        2},
       {"motion", [](GivenView& g) { g.motion = given_view(test_views()[2], 16, 12, {}).motion; },
        2},
-      {"normals from depth",
-       [](GivenView& g) {
-         g.normals = {};
-         g.settings.depth_mips = 3;
-       }},
+      {"normals from depth", [](GivenView& g) { g.normals = {}; }},
       {"normals in world space", [](GivenView& g) { g.normals_in_view_space = false; }},
       {"table",
        [](GivenView& g) {

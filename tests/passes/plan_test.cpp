@@ -78,7 +78,7 @@ TEST_F(OcclusionPlan, TheLeastFrameIsThreePassesAndThreeTextures) {
   EXPECT_THAT(frame.transients,
               testing::UnorderedElementsAre("line depth", "occlusion signal", "visibility"));
   EXPECT_THAT(frame.histories, testing::IsEmpty());
-  EXPECT_EQ(gpu().kernels().pipeline_count(), 4u);
+  EXPECT_EQ(gpu().kernels().pipeline_count(), 3u);
 }
 
 TEST_F(OcclusionPlan, NormalsAreMadeOnlyWhereNoneAreGiven) {
@@ -87,7 +87,7 @@ TEST_F(OcclusionPlan, NormalsAreMadeOnlyWhereNoneAreGiven) {
   const Kept made = kept(least(), {}, {.normals = false});
   EXPECT_THAT(made.passes, Contains("normals"));
   EXPECT_THAT(made.transients, Contains("normals from depth"));
-  EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines + 1);
+  EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines + 2) << "they and linear depth";
 }
 
 TEST_F(OcclusionPlan, BentNormalsAndHistoryCostOnlyWhereTheyAreOn) {
@@ -194,12 +194,17 @@ TEST_F(OcclusionPlan, SpecularOcclusionCostsOnlyWhereItIsOn) {
   EXPECT_THAT(kept(settings, {.specular = true}).transients, Not(Contains("bent normal")));
 }
 
-TEST_F(OcclusionPlan, MipsCostMemoryOnlyWhereTheyAreAskedFor) {
-  OcclusionSettings mips = least();
-  mips.depth_mips = 4;
-  const Reads all{.linear_depth = true};
-  EXPECT_GT(kept(mips, all).bytes, kept(least(), all).bytes);
-  EXPECT_EQ(kept(mips).bytes, kept(least()).bytes) << "where nobody reads them";
+TEST_F(OcclusionPlan, LinearDepthIsMadeOnlyWhereSomethingReadsIt) {
+  const Kept without = kept(least());
+  const std::size_t pipelines = gpu().kernels().pipeline_count();
+  OcclusionSettings asked = least();
+  asked.linear_depth = true;
+  EXPECT_EQ(kept(asked).passes, without.passes) << "where nobody reads it";
+  EXPECT_THAT(kept(asked, {.linear_depth = true}).passes, Contains("depth pyramid"));
+  EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines + 1);
+  OcclusionSettings by_model = least();
+  by_model.specular = Specular::cone;
+  EXPECT_THAT(kept(by_model, {.specular = true}).passes, Contains("depth pyramid"));
 }
 
 TEST_F(OcclusionPlan, ALowerResolutionOfTheSearchTakesLessMemory) {

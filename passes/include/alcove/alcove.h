@@ -129,7 +129,6 @@ typedef struct AlcoveSettings {
   float falloff;  // last part of the radius, over which occluders fade, [0,1] (horizons, heuristic)
   uint32_t divisor;  // one search a frame in so many pixels a side: 1, 2 or 4
   AlcovePattern pattern;
-  uint32_t depth_mips;        // of linear depth, 1 to 5
   uint32_t filter_reach;      // searched pixels on each side of one, 0 to 3; 0: no filter
   float filter_tolerance_px;  // distance from the tangent plane, in sizes of a pixel, over 0
   uint32_t history_frames;    // that are averaged, 0 to 255; 0: no history and no memory for it

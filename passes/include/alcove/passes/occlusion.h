@@ -27,9 +27,9 @@ enum class Quality : std::uint8_t { low, medium, high, ultra, reference };
 // Everything that can be chosen: what gtao.h and reconstruct.h say of searches and filter, and what
 // follows. quality_settings() gives a start.
 struct OcclusionSettings : SearchSettings, FilterSettings {
-  std::uint32_t depth_mips = 1;  // levels of the depth pyramid, 1 to 5
-  bool visibility = true;        // off where only the next two are wanted
+  bool visibility = true;  // off where only others are wanted
   bool bent_normal = false;
+  bool linear_depth = false;  // also hand on what lighting may want: OcclusionOutputs::linear_depth
   Specular specular = Specular::none;
   float roughness = 0.5f;               // perceptual, [0,1], of every pixel where no texture has it
   std::uint32_t roughness_channel = 0;  // of the roughness texture, 0 to 3
@@ -71,8 +71,10 @@ struct OcclusionOutputs {
   framegraph::Texture bent_normal;
   // One channel, multiplies specular probe light, [0,1], 1 open; null where none was asked for.
   framegraph::Texture specular;
-  framegraph::Texture linear_depth;  // as add_depth_pyramid makes it
-  framegraph::Texture normals;       // those given, or those made from depth, in view space
+  // As add_depth_pyramid makes it, of one mip; null where neither the settings nor their specular
+  // model nor the making of normals want it.
+  framegraph::Texture linear_depth;
+  framegraph::Texture normals;  // those given, or those made from depth, in view space
 };
 
 // What is not read afterwards is culled by the graph, with all that only leads there. Bent normals
