@@ -271,11 +271,22 @@ VkExtent3D cells_of(VkExtent3D size, std::uint32_t divisor) {
   return {(size.width + divisor - 1) / divisor + 1, (size.height + divisor - 1) / divisor + 1, 1};
 }
 
+// Without a history nothing of the frame before is read.
+Frame without_past(const Frame& frame) {
+  Frame alone = frame;
+  alone.previous_view = frame.view;
+  alone.previous_size = alone.largest_size = {};
+  return alone;
+}
+
 }  // namespace
 
-tl::expected<Occlusion, Error> add_reconstruct(const Frame& frame, const ReconstructInputs& given,
+tl::expected<Occlusion, Error> add_reconstruct(const Frame& given_frame,
+                                               const ReconstructInputs& given,
                                                const ReconstructSettings& settings,
                                                std::string_view history_name) {
+  const bool history = settings.history_frames > 0;
+  const Frame frame = history ? given_frame : without_past(given_frame);
   ReconstructInputs inputs = given;
   const bool same_view = frame.view == frame.previous_view;
   if (same_view && frame.still_frames > 0) {
@@ -286,6 +297,9 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& frame, const Reconst
   }
   if (auto good = check_reconstruct(frame, inputs, settings); !good) {
     return tl::unexpected(good.error());
+  }
+  if (!history) {
+    inputs.motion = {};
   }
   const auto sizes = reconstruct_sizes(frame, inputs.line_depth);
   if (!sizes) {
@@ -298,7 +312,6 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& frame, const Reconst
   }
   bool history_valid = false;
   Textures textures = create_textures(frame, inputs, settings, *sizes, history_name, history_valid);
-  const bool history = settings.history_frames > 0;
   const bool same_size =
       sizes->now.width == sizes->previous.width && sizes->now.height == sizes->previous.height;
   const bool still = history_valid && !inputs.motion && same_view && same_size;

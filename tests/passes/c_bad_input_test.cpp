@@ -196,6 +196,22 @@ TEST_F(CBadInput, ACameraThatIsNoneIsNamed) {
   expect_a_good_frame();
 }
 
+TEST_F(CBadInput, WithoutAHistoryNothingOfTheFrameBeforeIsRead) {
+  AlcoveSettings settings = *view().settings;
+  settings.history_frames = 0;
+  AlcoveView alone = view();
+  alone.settings = &settings;
+  run_frame(*context(), {&alone, 1}, 0);
+  engine().wait();
+  const Results expected = results_of(alone);
+  alone.previous_camera = {};
+  alone.previous_width = alone.previous_height = 1000;
+  alone.largest_width = 1;
+  run_frame(*context(), {&alone, 1}, 0);
+  engine().wait();
+  expect_equal(results_of(alone), expected);
+}
+
 TEST_F(CBadInput, AnImageThatDoesNotDoIsNamed) {
   struct Case {
     const char* names;

@@ -16,6 +16,7 @@ using testing::Not;
 // What a frame is given beside depth.
 struct Given {
   bool normals = true;
+  bool motion = false;
   bool hidden_depths = false;
 };
 
@@ -38,6 +39,9 @@ class OcclusionPlan : public PassTest {
                              .normals_in_view_space = true};
       if (given.normals) {
         inputs.normals = upload(graph, drawing.normal_vs);
+      }
+      if (given.motion) {
+        inputs.motion = upload(graph, {32, 24, std::vector<float>(2 * 32 * 24), 2});
       }
       if (given.hidden_depths) {
         inputs.back_depth_ndc = upload(graph, drawing.depth_ndc);
@@ -103,6 +107,18 @@ TEST_F(OcclusionPlan, BentNormalsAndHistoryCostOnlyWhereTheyAreOn) {
   EXPECT_THAT(kept(history).histories, testing::SizeIs(2));
   history.bent_normal = true;
   EXPECT_THAT(kept(history, {.bent_normal = true}).histories, testing::SizeIs(4));
+}
+
+// Motion leads back to a history.
+TEST_F(OcclusionPlan, WithoutAHistoryMotionIsNotRead) {
+  const Given moving{.motion = true};
+  OcclusionSettings history = least();
+  history.history_frames = 8;
+  (void)kept(least());
+  const std::size_t pipelines = gpu().kernels().pipeline_count();
+  EXPECT_EQ(kept(least(), {}, moving).uploads, 2u) << "depth and normals";
+  EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines);
+  EXPECT_EQ(kept(history, {}, moving).uploads, 3u);
 }
 
 TEST_F(OcclusionPlan, BackFacesCostOnlyWhereTheThicknessIsReadFromThem) {
