@@ -66,7 +66,7 @@ tl::expected<void, Failure> check_given(const AlcoveView& view) {
   return {};
 }
 
-// What few settings read.
+// Checks the images that only some settings need.
 tl::expected<void, Failure> check_hidden(const AlcoveView& view,
                                          const OcclusionSettings& settings) {
   if (needs_back_depth(settings.estimator, settings.thickness_unit) &&

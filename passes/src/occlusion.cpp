@@ -7,7 +7,7 @@
 namespace alcove::passes {
 namespace {
 
-// Of a Specular that is neither none nor slices.
+// The model of a Specular; not for none or slices.
 SpecularModel model_of(Specular specular) {
   switch (specular) {
     case Specular::cone:
