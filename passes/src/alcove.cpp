@@ -36,6 +36,7 @@ void write(Message& message, std::string_view text) {
 
 // The passes of a view need no more dispatches than their share of a frame.
 constexpr std::uint32_t kPassesOfAView = 9;
+static_assert(ALCOVE_MAX_FRAMES_IN_FLIGHT == passes::Kernels::kMaxFramesInFlight);
 static_assert(ALCOVE_MAX_VIEWS * kPassesOfAView <= passes::Kernels::kMaxDispatches);
 
 // The views of a frame, by the number of the first pass that comes after each.

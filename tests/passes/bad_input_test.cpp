@@ -41,6 +41,15 @@ class BadInput : public PassTest {
     return said;
   }
 
+  framegraph::DeviceHandles handles() {
+    framegraph::DeviceHandles handles;
+    handles.instance = gpu().device().instance();
+    handles.physical_device = gpu().device().physical_device();
+    handles.device = gpu().device().device();
+    handles.get_instance_proc_addr = vkGetInstanceProcAddr;
+    return handles;
+  }
+
   void expect_a_good_frame() {
     const Drawing drawing = draw(test_views()[2], 16, 12, {tilted_plane(10.0, 4.0)});
     const OcclusionImages images =
@@ -206,6 +215,15 @@ TEST_F(BadInput, ASlotThatTheKernelsDoNotHaveIsNamed) {
   ASSERT_FALSE(report);
   EXPECT_THAT(report.error(), HasSubstr("frames in flight"));
   expect_a_good_frame();
+}
+
+TEST_F(BadInput, AsManyFramesInFlightAsThereCannotBeAreNamed) {
+  for (const std::uint32_t frames : {0u, 9u, ~0u}) {
+    const auto kernels = Kernels::create(handles(), frames);
+    ASSERT_FALSE(kernels) << frames;
+    EXPECT_THAT(kernels.error().message, HasSubstr(std::to_string(frames) + " frames in flight"));
+    EXPECT_PRED1(is_a_sentence, kernels.error().message);
+  }
 }
 
 TEST_F(BadInput, AnImageWithoutPixelsIsNamed) {

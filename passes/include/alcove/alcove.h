@@ -191,9 +191,9 @@ typedef struct AlcoveContext AlcoveContext;
 // The engine's own; all of it outlives the context.
 typedef struct AlcoveContextInfo {
   uint32_t struct_size;
-  uint32_t queue_family;  // of the queue that frames are submitted to: one that computes
-  VkInstance instance;    // as the device, made for Vulkan 1.3
-  VkPhysicalDevice physical_device;
+  uint32_t queue_family;             // of the queue that frames are submitted to: one that computes
+  VkInstance instance;               // as the device, made for Vulkan 1.3
+  VkPhysicalDevice physical_device;  // that binds 9 storage images to a shader
   // With the features synchronization2 and shaderStorageImageWriteWithoutFormat enabled.
   VkDevice device;
   PFN_vkGetInstanceProcAddr get_instance_proc_addr;
