@@ -12,9 +12,10 @@ struct GtaoParameters {
   float radius;           // scene units
   uint frame;             // turns the noise
   float thickness;        // of an occluder, scene units or parts of its distance from the eye
-  float fill;             // share of what lies behind an occluder that counts as occluded, [0,1]
+  float fill;             // of fill_behind(): how much is taken to lie behind occluders, [0,1]
   float blend;            // of a horizon towards each lower sample, [0,1] (heuristic)
-  float falloff;          // last part of the radius, over which occluders fade, [0,1] (horizons)
+  float falloff;          // last part of the radius, over which occluders fade, [0,1] (horizons and
+                          // heuristic)
   float roughness;        // perceptual, of every surface where no texture has it
 };
 

@@ -31,11 +31,12 @@ struct Executor::Implementation {
   tl::expected<FrameReport, Errors> prepare(Graph& graph, const FrameInfo& info, Queues queues,
                                             CachedPlan*& cached);
   tl::expected<void, Errors> check_slot(std::uint32_t slot) const;
+  static tl::expected<void, Errors> check_histories(const Graph& graph);
   bool starts_anew(const CachedPlan& cached) const;
   tl::expected<FrameReport, Errors> record(Graph& graph, VkCommandBuffer commands,
                                            const FrameInfo& info);
   void finish(Graph& graph, const CachedPlan& cached);
-  void give_up(Graph& graph, std::uint32_t slot);
+  void give_up(std::uint32_t slot);
   void begin_frame(const FrameInfo& info);
   void create_timestamps();
   void forget_timestamps(std::uint32_t slot);
@@ -69,7 +70,7 @@ struct Executor::Attempt {
     self.begin_frame(info);
   }
   ~Attempt() {
-    if (!runs) self.give_up(graph, info.slot);
+    if (!runs) self.give_up(info.slot);
   }
   Attempt(const Attempt&) = delete;
   Attempt& operator=(const Attempt&) = delete;
@@ -168,7 +169,7 @@ VkResult Executor::Implementation::find_external(const Graph& graph, CachedPlan&
           : device.limits.formats.query(device.limits.formats.context, record.format) &
                 ~(VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSIENT_ATTACHMENT_BIT);
   return pool->history(graph.histories(), handles.history, entry.physical(record.slot), record,
-                       usage, description.resource_name(resource), frame, found);
+                       usage, description.resource_name(resource), found);
 }
 
 tl::expected<void, Errors> Executor::Implementation::find_physical(const Graph& graph,
@@ -216,6 +217,15 @@ tl::expected<void, Errors> Executor::Implementation::check_slot(std::uint32_t sl
   return tl::unexpected(std::move(errors));
 }
 
+tl::expected<void, Errors> Executor::Implementation::check_histories(const Graph& graph) {
+  if (!graph.histories().must_be_declared_anew()) return {};
+  Errors errors(1);
+  errors[0].code = ErrorCode::bad_description;
+  errors[0].message =
+      "the frame was discarded, and with it the sizes or formats of its histories: declare it anew";
+  return tl::unexpected(std::move(errors));
+}
+
 // A plan expects its own leavings in memory; those of another need a barrier of their own.
 bool Executor::Implementation::starts_anew(const CachedPlan& cached) const {
   return before != &cached || before_generation != pool->generation();
@@ -225,6 +235,7 @@ tl::expected<FrameReport, Errors> Executor::Implementation::prepare(Graph& graph
                                                                     const FrameInfo& info,
                                                                     Queues queues,
                                                                     CachedPlan*& cached) {
+  if (auto right = check_histories(graph); !right) return tl::unexpected(std::move(right.error()));
   pool->retire_histories(graph.histories(), frame);
   FrameReport report;
   auto found = plan_for(graph, queues, report.compiled);
@@ -266,8 +277,7 @@ void Executor::Implementation::forget_timestamps(std::uint32_t slot) {
 }
 
 // What was begun with this slot does not run. Frames before it may still do.
-void Executor::Implementation::give_up(Graph& graph, std::uint32_t slot) {
-  graph.histories().undo();
+void Executor::Implementation::give_up(std::uint32_t slot) {
   slot_frames[slot] = finished;
   before = nullptr;
   forget_timestamps(slot);
@@ -309,7 +319,8 @@ tl::expected<FrameReport, Errors> Executor::record(Graph& graph, VkCommandBuffer
 
 void Executor::discard(Graph& graph, const FrameInfo& info) {
   if (!implementation_->check_slot(info.slot)) return;
-  implementation_->give_up(graph, info.slot);
+  graph.histories().undo();
+  implementation_->give_up(info.slot);
 }
 
 tl::expected<FrameReport, Errors> Executor::submit(Graph& graph, const FrameInfo& info) {

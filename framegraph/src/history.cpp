@@ -2,30 +2,28 @@
 
 #include <algorithm>
 #include <cstring>
+#include <iterator>
 
 namespace alcove::framegraph {
 namespace {
 
-void invalidate_slots(HistoryEntry& entry, HistoryValidity reason) {
-  for (HistorySlot& slot : entry.slots) {
-    // What never held anything keeps the first reason.
-    if (slot.validity == HistoryValidity::valid) slot.validity = reason;
-  }
+bool same(const ResourceRecord& a, const ResourceRecord& b) {
+  return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
 }  // namespace
 
 std::uint32_t HistoryTable::declare(std::string_view name, const ResourceRecord& record) {
-  ended_.clear();
   for (std::uint32_t i = 0; i < entries_.size(); ++i) {
     HistoryEntry& entry = entries_[i];
     // Two histories of one name in one frame are two histories.
     if (entry.declared || entry.dropped || entry.name != name) continue;
+    remember(i);
     entry.declared = true;
-    if (std::memcmp(&entry.record, &record, sizeof record) == 0) return i;
+    if (same(entry.record, record)) return i;
     entry.record = record;
     entry.head = 0;
-    ++entry.generation;
+    entry.generation = ++entry.newest;
     bool held = false;
     for (const HistorySlot& slot : entry.slots)
       held = held || slot.validity != HistoryValidity::first_frame;
@@ -37,40 +35,62 @@ std::uint32_t HistoryTable::declare(std::string_view name, const ResourceRecord&
   }
   auto place = std::find_if(entries_.begin(), entries_.end(),
                             [](const HistoryEntry& entry) { return entry.dropped; });
-  if (place == entries_.end()) place = entries_.insert(place, HistoryEntry{});
-  // The generation goes on: what the place held before is of an earlier one.
-  const std::uint32_t generation = place->generation;
+  if (place == entries_.end()) {
+    before_.reserve(entries_.size() + 1);
+    place = entries_.insert(place, HistoryEntry{});
+  }
+  // The generations go on: what the place held before is of an earlier one.
+  const std::uint32_t newest = place->newest;
   *place = {};
   place->name = name;
   place->record = record;
-  place->generation = generation;
+  place->generation = place->newest = newest;
   place->declared = true;
-  return static_cast<std::uint32_t>(place - entries_.begin());
+  const auto index = static_cast<std::uint32_t>(place - entries_.begin());
+  remember(index);
+  return index;
 }
 
 void HistoryTable::drop(std::string_view name) {
-  for (HistoryEntry& entry : entries_) {
+  for (std::uint32_t i = 0; i < entries_.size(); ++i) {
+    HistoryEntry& entry = entries_[i];
     if (entry.declared || entry.dropped || entry.name != name) continue;
     entry.dropped = true;
-    ++entry.generation;
+    entry.generation = ++entry.newest;
+    std::erase_if(before_, [i](const Before& before) { return before.index == i; });
   }
 }
 
 void HistoryTable::invalidate(std::string_view name) {
-  for (HistoryEntry& entry : entries_) {
-    if (entry.name == name) invalidate_slots(entry, HistoryValidity::reset);
+  for (std::uint32_t i = 0; i < entries_.size(); ++i) {
+    if (entries_[i].name == name) invalidate(i);
   }
 }
 
 void HistoryTable::invalidate_all() {
-  for (HistoryEntry& entry : entries_) invalidate_slots(entry, HistoryValidity::reset);
+  for (std::uint32_t i = 0; i < entries_.size(); ++i) invalidate(i);
+}
+
+void HistoryTable::invalidate(std::uint32_t index) {
+  for (HistorySlot& slot : entries_[index].slots) {
+    // What never held anything keeps the first reason.
+    if (slot.validity != HistoryValidity::valid) continue;
+    remember(index);
+    slot.validity = HistoryValidity::reset;
+  }
+}
+
+// A second frame of one declaration takes back only itself.
+void HistoryTable::begin_end() {
+  if (ended_) before_.clear();
+  ended_ = false;
 }
 
 void HistoryTable::leave(std::uint32_t index, std::uint32_t slot, const HistorySlot& left) {
+  remember(index);
+  ended_ = true;
   HistoryEntry& entry = entries_[index];
-  const std::uint32_t position = entry.physical(slot);
-  ended_.push_back({index, entry.head, position, entry.slots[position]});
-  entry.slots[position] = left;
+  entry.slots[entry.physical(slot)] = left;
 }
 
 // The oldest slot is the next to be written.
@@ -79,15 +99,42 @@ void HistoryTable::rotate(std::uint32_t index) {
   entry.head = (entry.head + entry.record.slots - 1) % entry.record.slots;
 }
 
+void HistoryTable::remember(std::uint32_t index) {
+  const auto is_here = [index](const Before& before) { return before.index == index; };
+  if (std::any_of(before_.begin(), before_.end(), is_here)) return;
+  const HistoryEntry& entry = entries_[index];
+  Before before{index, entry.head, entry.generation, entry.record, {}};
+  std::copy(std::begin(entry.slots), std::end(entry.slots), before.slots);
+  before_.push_back(before);
+}
+
 void HistoryTable::undo() {
-  for (const Before& before : ended_) {
-    entries_[before.index].head = before.head;
-    entries_[before.index].slots[before.position] = before.slot;
+  for (const Before& before : before_) {
+    HistoryEntry& entry = entries_[before.index];
+    anew_ = anew_ || before.generation != entry.generation;
+    entry.head = before.head;
+    entry.generation = before.generation;
+    entry.record = before.record;
+    std::copy(std::begin(before.slots), std::end(before.slots), entry.slots);
   }
-  ended_.clear();
+  before_.clear();
+  ended_ = false;
+}
+
+bool HistoryTable::needs(std::uint32_t index, std::uint32_t generation) const {
+  return entries_[index].generation == generation ||
+         std::any_of(before_.begin(), before_.end(), [&](const Before& before) {
+           return before.index == index && before.generation == generation;
+         });
 }
 
 void HistoryTable::begin_frame() {
+  end_frame();
+  before_.clear();
+  ended_ = anew_ = false;
+}
+
+void HistoryTable::end_frame() {
   for (HistoryEntry& entry : entries_) entry.declared = false;
 }
 

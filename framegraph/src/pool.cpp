@@ -99,17 +99,16 @@ VkResult Pool::transient(const ResourceRecord& record, const Plan& plan, const P
 
 VkResult Pool::history(const HistoryTable& table, std::uint32_t entry, std::uint32_t position,
                        const ResourceRecord& record, VkFlags usage, std::string_view name,
-                       std::uint64_t frame, Physical*& found) {
-  make_room(histories_);
-  make_room(retired_);
+                       Physical*& found) {
   const std::uint32_t generation = table.entries()[entry].generation;
-  auto there = std::find_if(histories_.begin(), histories_.end(), [&](const HistoryImage& h) {
-    return h.entry == entry && h.position == position && is_of(h.table, table);
-  });
-  if (there != histories_.end() && there->generation == generation) {
-    found = there->physical.get();
-    return VK_SUCCESS;
+  for (const HistoryImage& there : histories_) {
+    if (there.entry == entry && there.position == position && there.generation == generation &&
+        is_of(there.table, table)) {
+      found = there.physical.get();
+      return VK_SUCCESS;
+    }
   }
+  make_room(histories_);
   auto made = std::make_unique<Physical>();
   made->record = record;
   made->usage = usage;
@@ -118,25 +117,17 @@ VkResult Pool::history(const HistoryTable& table, std::uint32_t entry, std::uint
     destroy(*made);
     return result;
   }
-  if (there == histories_.end()) {
-    histories_.push_back({table.life(), entry, generation, position, std::move(made)});
-    there = histories_.end() - 1;
-  } else {
-    retired_.push_back({frame, std::move(there->physical)});
-    there->generation = generation;
-    there->physical = std::move(made);
-  }
+  histories_.push_back({table.life(), entry, generation, position, std::move(made)});
   ++generation_;
-  found = there->physical.get();
+  found = histories_.back().physical.get();
   return VK_SUCCESS;
 }
 
 void Pool::retire_histories(const HistoryTable& table, std::uint64_t frame) {
   make_room(retired_, histories_.size());
   const auto gone = [&](HistoryImage& history) {
-    const bool stays = is_of(history.table, table)
-                           ? table.entries()[history.entry].generation == history.generation
-                           : !history.table.expired();
+    const bool stays = is_of(history.table, table) ? table.needs(history.entry, history.generation)
+                                                   : !history.table.expired();
     if (stays) return false;
     retired_.push_back({frame, std::move(history.physical)});
     return true;

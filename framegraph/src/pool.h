@@ -53,10 +53,9 @@ class Pool {
   // One slot of a history, with memory of its own.
   [[nodiscard]] VkResult history(const HistoryTable& table, std::uint32_t entry,
                                  std::uint32_t position, const ResourceRecord& record,
-                                 VkFlags usage, std::string_view name, std::uint64_t frame,
-                                 Physical*& found);
-  // Retires what belongs to no entry any more: dropped, made anew in another shape, or of a graph
-  // that is gone. Other graphs' histories stay.
+                                 VkFlags usage, std::string_view name, Physical*& found);
+  // Retires what belongs to no entry any more: dropped, made anew in another shape in an earlier
+  // frame, or of a graph that is gone. Other graphs' histories stay.
   void retire_histories(const HistoryTable& table, std::uint64_t frame);
   // A stand-in for an import: its views are cached by image and layer.
   Physical& import(const ResourceRecord& record, const ImportHandles& handles);

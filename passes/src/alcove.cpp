@@ -5,6 +5,7 @@
 #include <cstring>
 #include <memory>
 #include <new>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -35,6 +36,7 @@ void write(Message& message, std::string_view text) {
 
 // The passes of a view need no more dispatches than their share of a frame.
 constexpr std::uint32_t kPassesOfAView = 9;
+static_assert(ALCOVE_MAX_FRAMES_IN_FLIGHT == passes::Kernels::kMaxFramesInFlight);
 static_assert(ALCOVE_MAX_VIEWS * kPassesOfAView <= passes::Kernels::kMaxDispatches);
 
 // The views of a frame, by the number of the first pass that comes after each.
@@ -44,6 +46,7 @@ struct ViewPasses {
     std::uint32_t end = 0;
   };
   std::array<View, ALCOVE_MAX_VIEWS> views{};
+  std::uint32_t count = 0;
 
   std::uint32_t view_of(std::uint32_t pass) const {
     return std::ranges::find_if(views, [pass](const View& view) { return pass < view.end; })->id;
@@ -156,25 +159,59 @@ Result check(const AlcoveContext& context, VkCommandBuffer commands, const Alcov
   return {};
 }
 
-Result record(AlcoveContext& context, VkCommandBuffer commands, const AlcoveFrame* frame) {
-  context.may_discard = false;
-  if (auto right = check(context, commands, frame); !right) {
-    return right;
+// The frame recorded last runs: what its views do not remember any more, because their settings or
+// outputs changed, goes.
+void settle(AlcoveContext& context) {
+  if (!context.may_discard) {
+    return;
   }
-  // What was declared goes now, and with it what the last plan was made from.
-  context.report = {};
-  context.graph.reset();
-  context.images.reset();
-  context.kernels.begin_frame(frame->slot);
-  ViewPasses passes;
-  for (std::uint32_t i = 0; i < frame->view_count; ++i) {
-    if (auto added = passes::add_view(context.graph, context.kernels, context.images,
-                                      frame->views[i], frame->index);
+  context.may_discard = false;
+  const ViewPasses& passes = context.passes_of_views[context.slot];
+  for (std::uint32_t i = 0; i < passes.count; ++i) {
+    passes::drop_reconstruct_history(context.graph, passes::ViewName(passes.views[i].id));
+  }
+}
+
+// A declaration that leaves no trace in histories where it is not recorded.
+struct Declaration {
+  explicit Declaration(framegraph::Graph& of) : graph(of) { graph.reset(); }
+  ~Declaration() {
+    if (!recorded) {
+      graph.histories().undo();
+    }
+  }
+  Declaration(const Declaration&) = delete;
+  Declaration& operator=(const Declaration&) = delete;
+
+  framegraph::Graph& graph;
+  bool recorded = false;
+};
+
+Result add_views(AlcoveContext& context, const AlcoveFrame& frame, ViewPasses& passes) {
+  for (const AlcoveView& view : std::span(frame.views, frame.view_count)) {
+    if (auto added =
+            passes::add_view(context.graph, context.kernels, context.images, view, frame.index);
         !added) {
       return added;
     }
-    passes.views[i] = {frame->views[i].id,
-                       static_cast<std::uint32_t>(context.graph.description().passes.size())};
+    passes.views[passes.count++] = {
+        view.id, static_cast<std::uint32_t>(context.graph.description().passes.size())};
+  }
+  return {};
+}
+
+Result record(AlcoveContext& context, VkCommandBuffer commands, const AlcoveFrame* frame) {
+  settle(context);
+  context.report = {};
+  if (auto right = check(context, commands, frame); !right) {
+    return right;
+  }
+  Declaration declaration(context.graph);
+  context.images.reset();
+  context.kernels.begin_frame(frame->slot);
+  ViewPasses passes;
+  if (auto added = add_views(context, *frame, passes); !added) {
+    return added;
   }
   const auto report = context.executor.record(context.graph, commands, {frame->slot});
   if (!report) {
@@ -182,12 +219,8 @@ Result record(AlcoveContext& context, VkCommandBuffer commands, const AlcoveFram
   }
   context.report = *report;
   context.slot = frame->slot;
-  context.may_discard = true;
+  context.may_discard = declaration.recorded = true;
   context.passes_of_views[frame->slot] = passes;
-  // What a view does not remember any more, because its settings or outputs changed.
-  for (std::uint32_t i = 0; i < frame->view_count; ++i) {
-    passes::drop_reconstruct_history(context.graph, passes::ViewName(frame->views[i].id));
-  }
   return {};
 }
 
@@ -302,7 +335,8 @@ size_t alcovePrintPlan(AlcoveContext* context, char* text, size_t size) {
 AlcoveResult alcoveDropView(AlcoveContext* context, uint32_t id) {
   return guarded(context, [&]() -> Result {
     // The frame that declared it is over; its plan can still be printed.
-    context->graph.histories().begin_frame();
+    settle(*context);
+    context->graph.histories().end_frame();
     passes::drop_reconstruct_history(context->graph, passes::ViewName(id));
     return {};
   });

@@ -1,8 +1,9 @@
 #include "alcove/passes/apply.h"
 
 #include <array>
+#include <cstddef>
+#include <span>
 #include <utility>
-#include <vector>
 
 #include "apply_parameters.h"
 #include "check_inputs.h"
@@ -31,10 +32,12 @@ tl::expected<void, Error> check_settings(const ApplySettings& settings) {
     return refusal("The metallic of probe light is " + std::to_string(settings.metallic) +
                    "; it must be 0 to 1.");
   }
-  if (settings.roughness_channel > 3 || settings.metallic_channel > 3) {
-    return refusal("Roughness is asked from channel " + std::to_string(settings.roughness_channel) +
-                   " and metallic from channel " + std::to_string(settings.metallic_channel) +
-                   " of their textures; channels are 0 to 3.");
+  for (const auto& [name, channel] : {std::pair("Roughness", settings.roughness_channel),
+                                      std::pair("Metallic", settings.metallic_channel)}) {
+    if (channel > 3) {
+      return refusal(name + std::string(" is asked from channel ") + std::to_string(channel) +
+                     " of its texture; channels are 0 to 3.");
+    }
   }
   if (settings.precision == Precision::unorm8) {
     return refusal("Probe light was asked for in 8 bits, which end at 1; use float16 or float32.");
@@ -63,19 +66,30 @@ tl::expected<void, Error> check_probe(const Frame& frame, const ApplyInputs& inp
   return {};
 }
 
+// On the stack, so that a steady frame allocates nothing for it.
+class NamedInputs {
+ public:
+  void add(const NamedInput& input) { inputs_.at(count_++) = input; }
+  operator std::span<const NamedInput>() const { return std::span(inputs_).first(count_); }
+
+ private:
+  std::array<NamedInput, 9> inputs_;
+  std::size_t count_ = 0;
+};
+
 // The inputs that are as large as the depth, by name; those that are null and may be are left out.
-std::vector<NamedInput> named_inputs(const ApplyInputs& inputs) {
-  std::vector<NamedInput> named{
-      {"linear depth", inputs.depth}, {"normals", inputs.normals}, {"albedo", inputs.albedo}};
-  const std::array<NamedInput, 6> optional{{{"roughness", inputs.roughness},
-                                            {"metallic", inputs.metallic},
-                                            {"visibility", inputs.visibility},
-                                            {"bent normals", inputs.bent_normal},
-                                            {"specular occlusion", inputs.specular_occlusion},
-                                            {"light", inputs.light}}};
-  for (const NamedInput& input : optional) {
+NamedInputs named_inputs(const ApplyInputs& inputs) {
+  NamedInputs named;
+  named.add({"linear depth", inputs.depth});
+  named.add({"normals", inputs.normals});
+  named.add({"albedo", inputs.albedo});
+  for (const NamedInput& input :
+       {NamedInput{"roughness", inputs.roughness}, NamedInput{"metallic", inputs.metallic},
+        NamedInput{"visibility", inputs.visibility}, NamedInput{"bent normals", inputs.bent_normal},
+        NamedInput{"specular occlusion", inputs.specular_occlusion},
+        NamedInput{"light", inputs.light}}) {
     if (input.texture) {
-      named.push_back(input);
+      named.add(input);
     }
   }
   return named;
@@ -108,14 +122,14 @@ Texture write_light(const Frame& frame, framegraph::PassBuilder& pass, const cha
 }
 
 void declare_reads(framegraph::PassBuilder& pass, const ApplyInputs& inputs) {
-  std::vector<NamedInput> named = named_inputs(inputs);
-  named.push_back({"harmonics", inputs.harmonics});
-  if (inputs.map) {
-    named.push_back({"map", inputs.map});
+  const auto& sampled = framegraph::access::sampled_compute;
+  const NamedInputs named = named_inputs(inputs);
+  for (const NamedInput& input : std::span<const NamedInput>(named)) {
+    pass.read(input.texture, sampled, input.texture == inputs.depth ? Range::mip(0) : Range{});
   }
-  for (const NamedInput& input : named) {
-    pass.read(input.texture, framegraph::access::sampled_compute,
-              input.texture == inputs.depth ? Range::mip(0) : Range{});
+  pass.read(inputs.harmonics, sampled);
+  if (inputs.map) {
+    pass.read(inputs.map, sampled);
   }
 }
 

@@ -61,7 +61,7 @@ Failure failure_of(const framegraph::Errors& errors) {
 
 Failure failure_of(const Error& error, std::string_view where) {
   std::string message = std::string(where) + ": " + error.message;
-  if (error.result != VK_SUCCESS) {
+  if (error.result != VK_SUCCESS && error.result != VK_ERROR_FEATURE_NOT_PRESENT) {
     message += " Vulkan's result is " + std::to_string(error.result) + ".";
   }
   return {result_of(error.result), std::move(message)};

@@ -69,7 +69,6 @@ void for_each_setting(Theirs& theirs, Ours& ours, const Visit& visit) {
   visit("falloff", theirs.falloff, ours.falloff);
   visit("divisor", theirs.divisor, ours.divisor);
   visit("pattern", theirs.pattern, ours.pattern);
-  visit("depth_mips", theirs.depth_mips, ours.depth_mips);
   visit("filter_reach", theirs.filter_reach, ours.filter_reach);
   visit("filter_tolerance_px", theirs.filter_tolerance_px, ours.filter_tolerance_px);
   visit("history_frames", theirs.history_frames, ours.history_frames);

@@ -66,7 +66,7 @@ tl::expected<void, Failure> check_given(const AlcoveView& view) {
   return {};
 }
 
-// What few settings read.
+// Checks the images that only some settings need.
 tl::expected<void, Failure> check_hidden(const AlcoveView& view,
                                          const OcclusionSettings& settings) {
   if (needs_back_depth(settings.estimator, settings.thickness_unit) &&
@@ -149,8 +149,9 @@ tl::expected<void, Failure> add_view(framegraph::Graph& graph, Kernels& kernels,
   }
   OcclusionSettings& settings = given->settings;
   const bool reset = view.reset_history != VK_FALSE;
+  const bool alone = reset || settings.history_frames == 0;
   auto now = to_view(view, view.camera, "camera");
-  auto before = reset ? now : to_view(view, view.previous_camera, "previous_camera");
+  auto before = alone ? now : to_view(view, view.previous_camera, "previous_camera");
   if (!now || !before) {
     return tl::unexpected(std::move(now ? before.error() : now.error()));
   }

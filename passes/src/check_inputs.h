@@ -55,12 +55,15 @@ struct NamedInput {
 
 [[nodiscard]] inline tl::expected<void, Error> check_roughness(float roughness,
                                                                std::uint32_t channel) {
-  if (roughness >= 0.0f && roughness <= 1.0f && channel <= 3) {
-    return {};
+  if (!(roughness >= 0.0f && roughness <= 1.0f)) {
+    return tl::unexpected(
+        Error{"The roughness is " + std::to_string(roughness) + "; it must be 0 to 1."});
   }
-  return tl::unexpected(Error{"The roughness is " + std::to_string(roughness) +
-                              " and its texture's channel " + std::to_string(channel) +
-                              "; the first must be 0 to 1, the second 0 to 3."});
+  if (channel > 3) {
+    return tl::unexpected(Error{"The channel of the roughness is " + std::to_string(channel) +
+                                "; channels are 0 to 3."});
+  }
+  return {};
 }
 
 }  // namespace alcove::passes

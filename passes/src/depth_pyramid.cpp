@@ -35,8 +35,7 @@ tl::expected<void, Error> check(const Frame& frame, Texture depth_ndc, std::uint
   }
   if (mips > 1 && (!(reach > 0.0f) || !std::isfinite(reach))) {
     return tl::unexpected(Error{"The depth pyramid's reach is " + std::to_string(reach) +
-                                "; it must be a length over 0 in the scene's units "
-                                "(add_occlusion takes it from the radius)."});
+                                "; it must be a length over 0 in the scene's units."});
   }
   const std::array<NamedInput, 1> needed{{{"depth", depth_ndc}}};
   return check_inputs(frame.graph, "depth pyramid", needed);

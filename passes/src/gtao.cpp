@@ -3,6 +3,8 @@
 #include <array>
 #include <cmath>
 #include <span>
+#include <string>
+#include <utility>
 
 #include "check_inputs.h"
 #include "gtao_parameters.h"
@@ -18,24 +20,29 @@ using framegraph::Texture;
 
 namespace {
 
-bool is_share(float value) { return value >= 0.0f && value <= 1.0f; }
-
 bool has_thickness(Estimator estimator) {
   return estimator == Estimator::bitmask || estimator == Estimator::connected;
 }
 
+tl::expected<void, Error> check_share(const char* name, float value) {
+  if (value >= 0.0f && value <= 1.0f) {
+    return {};
+  }
+  return tl::unexpected(
+      Error{std::string("The ") + name + " is " + std::to_string(value) + "; it must be 0 to 1."});
+}
+
 tl::expected<void, Error> check_occluders(const GtaoSettings& settings) {
-  if (!(settings.thickness >= 0.0f) || !std::isfinite(settings.thickness) ||
-      !is_share(settings.fill)) {
+  if (!(settings.thickness >= 0.0f) || !std::isfinite(settings.thickness)) {
     return tl::unexpected(Error{"The thickness is " + std::to_string(settings.thickness) +
-                                " and the fill " + std::to_string(settings.fill) +
-                                "; the first must be at least 0 and finite, the second 0 to 1."});
+                                "; it must be at least 0 and finite."});
   }
-  if (!is_share(settings.blend) || !is_share(settings.falloff)) {
-    return tl::unexpected(Error{"The blend is " + std::to_string(settings.blend) +
-                                " and the falloff " + std::to_string(settings.falloff) +
-                                "; each must be 0 to 1."});
-  }
+  return check_share("fill", settings.fill)
+      .and_then([&] { return check_share("blend", settings.blend); })
+      .and_then([&] { return check_share("falloff", settings.falloff); });
+}
+
+tl::expected<void, Error> check_falloff(const GtaoSettings& settings) {
   if (settings.falloff > 0.0f && has_thickness(settings.estimator)) {
     return tl::unexpected(Error{
         "The falloff is " + std::to_string(settings.falloff) +
@@ -59,7 +66,8 @@ tl::expected<void, Error> check(const GtaoSettings& settings) {
   }
   return check_search(settings.divisor, settings.slices)
       .and_then([&] { return check_roughness(settings.roughness, settings.roughness_channel); })
-      .and_then([&] { return check_occluders(settings); });
+      .and_then([&] { return check_occluders(settings); })
+      .and_then([&] { return check_falloff(settings); });
 }
 
 // The textures that the pass writes, made for the graph but not yet written.
@@ -82,6 +90,113 @@ VkExtent3D searches(VkExtent3D blocks, bool by_pattern) {
           1};
 }
 
+// What of the inputs the settings read beside line depth and normals.
+struct Reads {
+  bool roughness = false;
+  bool back_faces = false;
+  bool second_layer = false;
+};
+
+Reads reads_of(const GtaoInputs& inputs, const GtaoSettings& settings) {
+  return {settings.lobe && inputs.roughness,
+          needs_back_depth(settings.estimator, settings.thickness_unit),
+          needs_second_depth(settings.estimator, settings.depth_layers)};
+}
+
+tl::expected<void, Error> check_textures(const Frame& frame, const GtaoInputs& inputs,
+                                         const Reads& reads) {
+  const std::array<NamedInput, 5> needed{
+      {{"line depth", inputs.line_depth},
+       {"normals", inputs.normals},
+       {"roughness", reads.roughness ? inputs.roughness : inputs.normals},
+       {"back-face depth", reads.back_faces ? inputs.back_line_depth : inputs.line_depth},
+       {"second depth", reads.second_layer ? inputs.second_line_depth : inputs.line_depth}}};
+  return check_inputs(frame.graph, "gtao", needed);
+}
+
+bool by_pattern(const GtaoSettings& settings) {
+  return settings.parts.grouping == Grouping::pattern;
+}
+
+// Of the shader, in its order.
+std::array<std::uint32_t, 18> constants_of(const GtaoSettings& settings, const Reads& reads,
+                                           bool perspective) {
+  const auto flag = [](bool on) { return static_cast<std::uint32_t>(on); };
+  return {settings.slices,
+          settings.steps,
+          flag(settings.bent_normal),
+          static_cast<std::uint32_t>(settings.estimator),
+          settings.divisor,
+          static_cast<std::uint32_t>(settings.pattern),
+          flag(perspective),
+          flag(reads.roughness),
+          settings.roughness_channel,
+          flag(settings.weighting == Weighting::uniform),
+          flag(settings.falloff > 0.0f),
+          flag(settings.thickness_unit == ThicknessUnit::distance),
+          flag(reads.back_faces),
+          flag(settings.parts.snapping),
+          flag(by_pattern(settings)),
+          flag(reads.second_layer),
+          flag(settings.parts.continuation),
+          flag(settings.parts.unseen)};
+}
+
+void declare_accesses(framegraph::PassBuilder& pass, const GtaoInputs& inputs, const Reads& reads,
+                      OcclusionSignal& result) {
+  const auto& loaded = framegraph::access::storage_read_compute;
+  const auto& sampled = framegraph::access::sampled_compute;
+  const auto& stored = framegraph::access::storage_write_compute;
+  pass.read(inputs.line_depth, loaded);
+  pass.read(inputs.normals, sampled);
+  result.signal = pass.write(result.signal, stored, {}, framegraph::Contents::discard);
+  if (result.bent) {
+    result.bent = pass.write(result.bent, stored, {}, framegraph::Contents::discard);
+  }
+  if (reads.roughness) {
+    pass.read(inputs.roughness, sampled);
+  }
+  if (reads.back_faces) {
+    pass.read(inputs.back_line_depth, loaded);
+  }
+  if (reads.second_layer) {
+    pass.read(inputs.second_line_depth, loaded);
+  }
+}
+
+maths::GtaoParameters parameters_of(const Frame& frame, const GtaoInputs& inputs,
+                                    const GtaoSettings& settings,
+                                    const maths::Projection& projection) {
+  const SearchPhase phase = search_phase(settings.divisor, frame.index);
+  const bool of_distance = settings.thickness_unit == ThicknessUnit::distance;
+  return {view_from_normal(frame, inputs.normals_in_view_space),
+          maths::vec4(maths::ray_per_px(projection), projection.uv_to_slope.z,
+                      projection.uv_to_slope.w),
+          maths::vec2(static_cast<float>(phase.x), static_cast<float>(phase.y)),
+          settings.radius,
+          frame.index,
+          settings.thickness * (of_distance ? 1.0f : settings.radius),
+          settings.fill,
+          settings.blend,
+          settings.falloff,
+          settings.roughness};
+}
+
+// In the order of the shader's bindings; what is not read is bound to something of its kind.
+std::array<VkImageView, 7> views_of(RecordContext& context, const GtaoInputs& inputs,
+                                    const Reads& reads, const OcclusionSignal& result) {
+  const VkImageView line = context.view(inputs.line_depth);
+  const VkImageView normals = context.view(inputs.normals);
+  const VkImageView signal = context.view(result.signal);
+  return {line,
+          normals,
+          signal,
+          result.bent ? context.view(result.bent) : signal,
+          reads.back_faces ? context.view(inputs.back_line_depth) : line,
+          reads.second_layer ? context.view(inputs.second_line_depth) : line,
+          reads.roughness ? context.view(inputs.roughness) : normals};
+}
+
 }  // namespace
 
 bool needs_back_depth(Estimator estimator, ThicknessUnit unit) {
@@ -94,98 +209,31 @@ bool needs_second_depth(Estimator estimator, std::uint32_t depth_layers) {
 
 tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame, const GtaoInputs& inputs,
                                               const GtaoSettings& settings) {
-  if (auto good = check(settings); !good) {
-    return tl::unexpected(good.error());
-  }
-  const bool rough = settings.lobe && inputs.roughness;
-  const bool by_back_faces = needs_back_depth(settings.estimator, settings.thickness_unit);
-  const bool two_layers = needs_second_depth(settings.estimator, settings.depth_layers);
-  const std::array<NamedInput, 5> needed{
-      {{"line depth", inputs.line_depth},
-       {"normals", inputs.normals},
-       {"roughness", rough ? inputs.roughness : inputs.normals},
-       {"back-face depth", by_back_faces ? inputs.back_line_depth : inputs.line_depth},
-       {"second depth", two_layers ? inputs.second_line_depth : inputs.line_depth}}};
-  if (auto good = check_inputs(frame.graph, "gtao", needed); !good) {
-    return tl::unexpected(good.error());
+  const Reads reads = reads_of(inputs, settings);
+  auto good = check(settings).and_then([&] { return check_textures(frame, inputs, reads); });
+  if (!good) {
+    return tl::unexpected(std::move(good.error()));
   }
   const auto projection = projection_of(frame, frame.view, inputs.line_depth);
   if (!projection) {
     return tl::unexpected(projection.error());
   }
-  const bool of_distance = settings.thickness_unit == ThicknessUnit::distance;
-  const bool by_pattern = settings.parts.grouping == Grouping::pattern;
-  const std::array constants{settings.slices,
-                             settings.steps,
-                             static_cast<std::uint32_t>(settings.bent_normal),
-                             static_cast<std::uint32_t>(settings.estimator),
-                             settings.divisor,
-                             static_cast<std::uint32_t>(settings.pattern),
-                             static_cast<std::uint32_t>(is_perspective(*projection)),
-                             static_cast<std::uint32_t>(rough),
-                             settings.roughness_channel,
-                             static_cast<std::uint32_t>(settings.weighting == Weighting::uniform),
-                             static_cast<std::uint32_t>(settings.falloff > 0.0f),
-                             static_cast<std::uint32_t>(of_distance),
-                             static_cast<std::uint32_t>(by_back_faces),
-                             static_cast<std::uint32_t>(settings.parts.snapping),
-                             static_cast<std::uint32_t>(by_pattern),
-                             static_cast<std::uint32_t>(two_layers),
-                             static_cast<std::uint32_t>(settings.parts.continuation),
-                             static_cast<std::uint32_t>(settings.parts.unseen)};
-  const auto kernel =
-      frame.kernels.get(settings.lobe ? Shader::gtao_lobe : Shader::gtao, constants);
+  const auto kernel = frame.kernels.get(settings.lobe ? Shader::gtao_lobe : Shader::gtao,
+                                        constants_of(settings, reads, is_perspective(*projection)));
   if (!kernel) {
     return tl::unexpected(kernel.error());
   }
-
   OcclusionSignal result = create_signal(frame, inputs.line_depth, settings);
   auto pass = frame.graph.add_pass("gtao");
-  pass.read(inputs.line_depth, framegraph::access::storage_read_compute);
-  pass.read(inputs.normals, framegraph::access::sampled_compute);
-  const auto& stored = framegraph::access::storage_write_compute;
-  result.signal = pass.write(result.signal, stored, {}, framegraph::Contents::discard);
-  if (settings.bent_normal) {
-    result.bent = pass.write(result.bent, stored, {}, framegraph::Contents::discard);
-  }
-  if (rough) {
-    pass.read(inputs.roughness, framegraph::access::sampled_compute);
-  }
-  if (by_back_faces) {
-    pass.read(inputs.back_line_depth, framegraph::access::storage_read_compute);
-  }
-  if (two_layers) {
-    pass.read(inputs.second_line_depth, framegraph::access::storage_read_compute);
-  }
-  const SearchPhase phase = search_phase(settings.divisor, frame.index);
-  const maths::vec2 per_px = maths::ray_per_px(*projection);
-  const maths::GtaoParameters parameters{
-      view_from_normal(frame, inputs.normals_in_view_space),
-      maths::vec4(per_px, projection->uv_to_slope.z, projection->uv_to_slope.w),
-      maths::vec2(static_cast<float>(phase.x), static_cast<float>(phase.y)),
-      settings.radius,
-      frame.index,
-      settings.thickness * (of_distance ? 1.0f : settings.radius),
-      settings.fill,
-      settings.blend,
-      settings.falloff,
-      settings.roughness};
-  pass.record([&kernels = frame.kernels, kernel = *kernel, inputs, result, parameters, rough,
-               by_back_faces, two_layers, by_pattern](RecordContext& context) {
-    const VkImageView line = context.view(inputs.line_depth);
-    const VkImageView normals = context.view(inputs.normals);
-    const VkImageView signal = context.view(result.signal);
-    const std::array views{line,
-                           normals,
-                           signal,
-                           result.bent ? context.view(result.bent) : signal,
-                           by_back_faces ? context.view(inputs.back_line_depth) : line,
-                           two_layers ? context.view(inputs.second_line_depth) : line,
-                           rough ? context.view(inputs.roughness) : normals};
+  declare_accesses(pass, inputs, reads, result);
+  pass.record([&kernels = frame.kernels, kernel = *kernel, inputs, result, reads,
+               parameters = parameters_of(frame, inputs, settings, *projection),
+               whole = by_pattern(settings)](RecordContext& context) {
+    const auto views = views_of(context, inputs, reads, result);
     // Without a lobe the last binding does not exist.
     const std::span<const VkImageView> bound(views.data(), views.size() - (result.lobe ? 0 : 1));
     kernels.dispatch(context, kernel, bound, bytes_of(parameters),
-                     searches(context.extent(result.signal), by_pattern));
+                     searches(context.extent(result.signal), whole));
   });
   return result;
 }

@@ -7,6 +7,7 @@
 #include "gtso_parameters.h"
 #include "output_format.h"
 #include "view_parameters.h"
+#include "write_result.h"
 
 namespace alcove::passes {
 
@@ -75,8 +76,7 @@ tl::expected<Texture, Error> add_gtso(const Frame& frame, const GtsoInputs& give
                                                      framegraph::Extent::relative(inputs.depth)});
   auto pass = frame.graph.add_pass("specular occlusion");
   declare_reads(pass, inputs);
-  result = pass.write(result, framegraph::access::storage_write_compute, {},
-                      framegraph::Contents::discard);
+  result = write_result(frame.graph, pass, result);
   const maths::GtsoParameters parameters{
       *projection, view_from_normal(frame, inputs.normals_in_view_space), settings.roughness};
   pass.record([&kernels = frame.kernels, kernel = *kernel, inputs, result,

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -62,6 +63,24 @@ struct Claim {
   std::uint32_t number = 0;
   VkDescriptorSet set = VK_NULL_HANDLE;
 };
+
+// Of all that a shader binds only storage images are more than every device can: 4 is Vulkan's
+// least.
+tl::expected<void, Error> check_limits(const framegraph::VulkanFunctions& vk,
+                                       VkPhysicalDevice device) {
+  VkPhysicalDeviceProperties properties{};
+  vk.vkGetPhysicalDeviceProperties(device, &properties);
+  const std::uint32_t limit = properties.limits.maxPerStageDescriptorStorageImages;
+  const std::uint32_t needed = most_bound(VK_DESCRIPTOR_TYPE_STORAGE_IMAGE);
+  if (limit >= needed) {
+    return {};
+  }
+  return tl::unexpected(Error{"The device '" + std::string(properties.deviceName) +
+                                  "' binds at most " + std::to_string(limit) +
+                                  " storage images to a shader; the occlusion passes need " +
+                                  std::to_string(needed) + ".",
+                              VK_ERROR_FEATURE_NOT_PRESENT});
+}
 
 struct FrameSlot {
   VkDescriptorPool pool = VK_NULL_HANDLE;
@@ -310,6 +329,11 @@ tl::expected<Kernels, Error> Kernels::create(const framegraph::DeviceHandles& de
         Error{"The occlusion passes need an instance, a physical device, a device and "
               "vkGetInstanceProcAddr; one of them is null."});
   }
+  if (frames_in_flight < 1 || frames_in_flight > kMaxFramesInFlight) {
+    return tl::unexpected(
+        Error{"The occlusion passes were asked for " + std::to_string(frames_in_flight) +
+              " frames in flight; there must be 1 to " + std::to_string(kMaxFramesInFlight) + "."});
+  }
   auto state = std::make_unique<State>();
   if (const char* missing = framegraph::load(state->vk, device.get_instance_proc_addr,
                                              device.instance, device.device)) {
@@ -318,10 +342,10 @@ tl::expected<Kernels, Error> Kernels::create(const framegraph::DeviceHandles& de
   }
   state->physical_device = device.physical_device;
   state->device = device.device;
-  const std::uint32_t slot_count = std::clamp(frames_in_flight, 1u, 8u);
-  auto done = state->create_layouts()
-                  .and_then([&] { return state->create_slots(slot_count); })
-                  .and_then([&] { return state->create_parameters(slot_count); });
+  auto done = check_limits(state->vk, device.physical_device)
+                  .and_then([&] { return state->create_layouts(); })
+                  .and_then([&] { return state->create_slots(frames_in_flight); })
+                  .and_then([&] { return state->create_parameters(frames_in_flight); });
   if (!done) {
     return tl::unexpected(std::move(done.error()));
   }

@@ -6,6 +6,7 @@
 #include "multi_bounce_parameters.h"
 #include "output_format.h"
 #include "view_parameters.h"
+#include "write_result.h"
 
 namespace alcove::passes {
 
@@ -33,8 +34,7 @@ tl::expected<Texture, Error> add_multi_bounce(const Frame& frame, const MultiBou
   auto pass = frame.graph.add_pass("multi-bounce");
   pass.read(inputs.visibility, framegraph::access::sampled_compute);
   pass.read(inputs.albedo, framegraph::access::sampled_compute);
-  result = pass.write(result, framegraph::access::storage_write_compute, {},
-                      framegraph::Contents::discard);
+  result = write_result(frame.graph, pass, result);
   const VkExtent3D size = frame.graph.extent(inputs.visibility);
   const maths::MultiBounceParameters parameters{
       maths::vec2(static_cast<float>(size.width), static_cast<float>(size.height))};

@@ -7,10 +7,7 @@
 namespace alcove::passes {
 namespace {
 
-// How deep one surface may run across two texels of the depth pyramid, in parts of the radius.
-constexpr float kPyramidReach = 0.1f;
-
-// Of a Specular that is neither none nor slices.
+// The model of a Specular; not for none or slices.
 SpecularModel model_of(Specular specular) {
   switch (specular) {
     case Specular::cone:
@@ -26,6 +23,15 @@ SpecularModel model_of(Specular specular) {
 
 bool by_model(Specular specular) {
   return specular != Specular::none && specular != Specular::slices;
+}
+
+// Linear depth, which neither searches nor filters read.
+tl::expected<framegraph::Texture, Error> add_linear(const Frame& frame,
+                                                    const OcclusionInputs& inputs,
+                                                    const OcclusionSettings& settings) {
+  const bool read = settings.linear_depth || by_model(settings.specular) || !inputs.normals;
+  return read ? add_depth_pyramid(frame, inputs.depth_ndc, 1, 0.0f)
+              : tl::expected<framegraph::Texture, Error>(framegraph::Texture{});
 }
 
 // Line depth of a depth that few settings read; null where they do not, or it was not given.
@@ -120,8 +126,7 @@ tl::expected<OcclusionOutputs, Error> add_occlusion(const Frame& frame,
                                                     const OcclusionInputs& inputs,
                                                     const OcclusionSettings& settings,
                                                     std::string_view history_name) {
-  const auto depth = add_depth_pyramid(frame, inputs.depth_ndc, settings.depth_mips,
-                                       kPyramidReach * settings.radius);
+  const auto depth = add_linear(frame, inputs, settings);
   if (!depth) {
     return tl::unexpected(depth.error());
   }

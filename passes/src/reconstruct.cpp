@@ -15,6 +15,7 @@
 #include "reconstruct_parameters.h"
 #include "search_phase.h"
 #include "view_parameters.h"
+#include "write_result.h"
 
 namespace alcove::passes {
 
@@ -55,6 +56,36 @@ struct Textures {
   Texture next_bent_history;
 };
 
+// Declares the histories; `valid` is whether last frame's can be read. One that is not wanted now
+// is old by the time that it is wanted again.
+void create_histories(Graph& graph, const ReconstructSettings& settings,
+                      std::string_view history_name, framegraph::Extent largest, Textures& textures,
+                      bool& valid) {
+  const BentHistoryName bent_name(history_name);
+  const bool wanted = settings.history_frames > 0;
+  const bool bent_wanted = wanted && textures.inputs.signal.bent;
+  if (!wanted) {
+    graph.reset_history(history_name);
+  }
+  if (!bent_wanted) {
+    graph.reset_history(bent_name);
+  }
+  if (wanted) {
+    const TextureHistory history = graph.create_texture_history(
+        history_name, {signal_format(textures.inputs.signal.lobe), largest});
+    valid = history.validity == framegraph::HistoryValidity::valid;
+    textures.history = history.previous();
+    textures.next_history = history.current;
+  }
+  if (bent_wanted) {
+    const TextureHistory bent =
+        graph.create_texture_history(bent_name, {VK_FORMAT_R16G16B16A16_SFLOAT, largest});
+    valid = valid && bent.validity == framegraph::HistoryValidity::valid;
+    textures.bent_history = bent.previous();
+    textures.next_bent_history = bent.current;
+  }
+}
+
 // Declares the textures that the pass writes. `valid` is whether last frame's history can be read.
 Textures create_textures(const Frame& frame, const ReconstructInputs& inputs,
                          const ReconstructSettings& settings, const ReconstructSizes& sizes,
@@ -78,25 +109,11 @@ Textures create_textures(const Frame& frame, const ReconstructInputs& inputs,
     textures.result.specular =
         given_or(inputs.into.specular, "specular occlusion", scalar_format(settings.precision));
   }
-  if (settings.history_frames == 0) {
-    return textures;
-  }
-  const TextureHistory history =
-      graph.create_texture_history(history_name, {signal_format(inputs.signal.lobe), largest});
-  valid = history.validity == framegraph::HistoryValidity::valid;
-  textures.history = history.previous();
-  textures.next_history = history.current;
-  if (inputs.signal.bent) {
-    const TextureHistory bent = graph.create_texture_history(
-        BentHistoryName(history_name), {VK_FORMAT_R16G16B16A16_SFLOAT, largest});
-    valid = valid && bent.validity == framegraph::HistoryValidity::valid;
-    textures.bent_history = bent.previous();
-    textures.next_bent_history = bent.current;
-  }
+  create_histories(graph, settings, history_name, largest, textures, valid);
   return textures;
 }
 
-void declare_accesses(framegraph::PassBuilder& pass, Textures& textures) {
+void declare_accesses(const Graph& graph, framegraph::PassBuilder& pass, Textures& textures) {
   const auto read = [&](Texture texture, const framegraph::Access& access) {
     if (texture) {
       pass.read(texture, access);
@@ -104,8 +121,7 @@ void declare_accesses(framegraph::PassBuilder& pass, Textures& textures) {
   };
   const auto write = [&](Texture& texture) {
     if (texture) {
-      texture = pass.write(texture, framegraph::access::storage_write_compute, {},
-                           framegraph::Contents::discard);
+      texture = write_result(graph, pass, texture);
     }
   };
   const auto& sampled = framegraph::access::sampled_compute;
@@ -255,11 +271,22 @@ VkExtent3D cells_of(VkExtent3D size, std::uint32_t divisor) {
   return {(size.width + divisor - 1) / divisor + 1, (size.height + divisor - 1) / divisor + 1, 1};
 }
 
+// Without a history nothing of the frame before is read.
+Frame without_past(const Frame& frame) {
+  Frame alone = frame;
+  alone.previous_view = frame.view;
+  alone.previous_size = alone.largest_size = {};
+  return alone;
+}
+
 }  // namespace
 
-tl::expected<Occlusion, Error> add_reconstruct(const Frame& frame, const ReconstructInputs& given,
+tl::expected<Occlusion, Error> add_reconstruct(const Frame& given_frame,
+                                               const ReconstructInputs& given,
                                                const ReconstructSettings& settings,
                                                std::string_view history_name) {
+  const bool history = settings.history_frames > 0;
+  const Frame frame = history ? given_frame : without_past(given_frame);
   ReconstructInputs inputs = given;
   const bool same_view = frame.view == frame.previous_view;
   if (same_view && frame.still_frames > 0) {
@@ -270,6 +297,9 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& frame, const Reconst
   }
   if (auto good = check_reconstruct(frame, inputs, settings); !good) {
     return tl::unexpected(good.error());
+  }
+  if (!history) {
+    inputs.motion = {};
   }
   const auto sizes = reconstruct_sizes(frame, inputs.line_depth);
   if (!sizes) {
@@ -282,7 +312,6 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& frame, const Reconst
   }
   bool history_valid = false;
   Textures textures = create_textures(frame, inputs, settings, *sizes, history_name, history_valid);
-  const bool history = settings.history_frames > 0;
   const bool same_size =
       sizes->now.width == sizes->previous.width && sizes->now.height == sizes->previous.height;
   const bool still = history_valid && !inputs.motion && same_view && same_size;
@@ -304,7 +333,7 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& frame, const Reconst
     return tl::unexpected(kernel.error());
   }
   auto pass = frame.graph.add_pass("reconstruct");
-  declare_accesses(pass, textures);
+  declare_accesses(frame.graph, pass, textures);
   const auto [phase_x, phase_y] = search_phase(inputs.signal.divisor, frame.index);
   maths::ReconstructParameters parameters =
       parameters_of(frame, *projection, *previous, inputs.normals_in_view_space, settings);

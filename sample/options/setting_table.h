@@ -71,9 +71,6 @@ void for_each_setting(Settings& settings, const Visit& visit) {
         settings.parts.unseen);
   visit(Info{"grouping", "Searches that run together: neighbours, or those of one direction."},
         settings.parts.grouping);
-  visit(Info{"depth_mips", "Levels of the linear depth that is handed on; no search reads them.", 1,
-             5},
-        settings.depth_mips);
   visit(Info{"filter_reach", "Searches on each side that a first frame looks at; 0: no filter.", 0,
              3},
         settings.filter_reach);

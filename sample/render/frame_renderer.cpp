@@ -194,6 +194,7 @@ tl::expected<DeclaredFrame, std::string> FrameRenderer::State::declare_occlusion
   surfaces.second_depth = hidden.second_layer ? import(kSecondDepth) : Texture{};
   passes::OcclusionInputs inputs = occlusion_inputs(surfaces);
   passes::OcclusionSettings settings = with_roughness(request.occlusion, surfaces);
+  settings.linear_depth = request.light != nullptr;
   if (request.motion_vectors) {
     inputs.motion = import(kMotion);
   }

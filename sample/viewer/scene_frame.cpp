@@ -193,8 +193,10 @@ tl::expected<Texture, std::string> SceneFrame::picture_of(Graph& graph, const Vi
                                                           const OcclusionSettings& settings,
                                                           std::string_view history_name,
                                                           Shown& shown) {
-  const auto outputs = passes::add_occlusion(frame_of(graph), occlusion_inputs(surfaces),
-                                             with_roughness(settings, surfaces), history_name);
+  OcclusionSettings wanted = with_roughness(settings, surfaces);
+  wanted.linear_depth = true;  // which lighting and a picture of it read
+  const auto outputs =
+      passes::add_occlusion(frame_of(graph), occlusion_inputs(surfaces), wanted, history_name);
   if (!outputs) {
     return Failure(outputs.error().message);
   }

@@ -12,10 +12,10 @@ ALCOVE_MATHS_BEGIN
 // The sky as the nearest depth of all, so that a maximum passes it over.
 ALCOVE_INLINE float sky_to_nearest(float depth) { return depth < kSkyDepth ? depth : -kSkyDepth; }
 
-// Weight of `depth` in a mean that keeps to within `range` of the farthest surface.
-ALCOVE_INLINE float pyramid_weight(float depth, float farthest, float range) {
+// Weight of `depth` in a mean that keeps to within `reach` of the farthest surface.
+ALCOVE_INLINE float pyramid_weight(float depth, float farthest, float reach) {
   if (!(depth < kSkyDepth)) return 0.0f;
-  return clamp(2.0f - 2.0f * (farthest - depth) / range, 0.0f, 1.0f);
+  return clamp(2.0f - 2.0f * (farthest - depth) / reach, 0.0f, 1.0f);
 }
 
 // Depth relative to the farthest, so that a large one loses no digits; 0 for the sky.
@@ -23,20 +23,20 @@ ALCOVE_INLINE float pyramid_step(float depth, float farthest) {
   return depth < kSkyDepth ? depth - farthest : 0.0f;
 }
 
-// The mean of those of four linear depths that lie within `range` (a length, positive: twice how
+// The mean of those of four linear depths that lie within `reach` (a length, positive: twice how
 // deep one surface may run across four texels) of the farthest that is not sky: a plain mean within
-// half of `range`, so that slopes keep their depth, fading to nothing at all of it. It leans to the
+// half of `reach`, so that slopes keep their depth, fading to nothing at all of it. It leans to the
 // far side because a near side that is lost costs a little occlusion, and a far side that is lost
 // darkens everything behind the edge. kSkyDepth where three of the four are sky.
-ALCOVE_INLINE float average_depth(vec4 depths, float range) {
+ALCOVE_INLINE float average_depth(vec4 depths, float reach) {
   float sky = (depths.x < kSkyDepth ? 0.0f : 1.0f) + (depths.y < kSkyDepth ? 0.0f : 1.0f) +
               (depths.z < kSkyDepth ? 0.0f : 1.0f) + (depths.w < kSkyDepth ? 0.0f : 1.0f);
   if (sky > 2.5f) return kSkyDepth;
   float farthest = max(max(sky_to_nearest(depths.x), sky_to_nearest(depths.y)),
                        max(sky_to_nearest(depths.z), sky_to_nearest(depths.w)));
   vec4 weights =
-      vec4(pyramid_weight(depths.x, farthest, range), pyramid_weight(depths.y, farthest, range),
-           pyramid_weight(depths.z, farthest, range), pyramid_weight(depths.w, farthest, range));
+      vec4(pyramid_weight(depths.x, farthest, reach), pyramid_weight(depths.y, farthest, reach),
+           pyramid_weight(depths.z, farthest, reach), pyramid_weight(depths.w, farthest, reach));
   vec4 steps = vec4(pyramid_step(depths.x, farthest), pyramid_step(depths.y, farthest),
                     pyramid_step(depths.z, farthest), pyramid_step(depths.w, farthest));
   float weight_sum = weights.x + weights.y + weights.z + weights.w;

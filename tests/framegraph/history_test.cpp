@@ -15,6 +15,7 @@ struct Frame {
   bool by_compute = false;  // read as a storage image of a kernel instead of a copy
   std::uint32_t size = 8;
   bool discarded = false;  // recorded, but never run
+  bool reset = false;      // forgets what was before
 };
 
 class GraphHistory : public testing::Test {
@@ -41,6 +42,7 @@ class GraphHistory : public testing::Test {
   void run(const Frame& frame) {
     graph_->reset();
     kernels_->reset();
+    if (frame.reset) graph_->reset_history("history");
     const TextureHistory history = graph_->create_texture_history(
         "history", {VK_FORMAT_R32_UINT, Extent::absolute(frame.size, frame.size)}, kSlots);
     validity_ = history.validity;
@@ -214,6 +216,42 @@ TEST_F(GraphHistory, AFrameThatIsDiscardedNeverWas) {
   executor_->discard(*graph_);
   run({.value = 4, .size = 16});
   EXPECT_EQ(slot(1), 3u);
+}
+
+TEST_F(GraphHistory, ADiscardedFrameOfAnotherSizeOrAfterAResetNeverWas) {
+  run({.value = 1});
+  run({.value = 2});
+  const VkDeviceSize bytes = history_bytes_;
+  for (const std::uint32_t size : {16u, 4u}) {
+    run({.value = 99, .size = size, .discarded = true});
+    EXPECT_EQ(validity_, HistoryValidity::resized);
+  }
+  run({.value = 98, .discarded = true, .reset = true});
+  EXPECT_EQ(validity_, HistoryValidity::reset);
+  run({.value = 97, .size = 32, .discarded = true, .reset = true});
+  run({.value = 3});
+  EXPECT_EQ(validity_, HistoryValidity::valid);
+  EXPECT_EQ(slot(1), 2u);
+  EXPECT_EQ(slot(2), 1u);
+  EXPECT_EQ(history_bytes_, bytes);
+  // One that runs is remembered as ever.
+  run({.value = 4, .size = 16});
+  run({.value = 5, .size = 16, .discarded = true, .reset = true});
+  run({.value = 6, .size = 16});
+  EXPECT_EQ(slot(1), 4u);
+  EXPECT_EQ(slot(2), kNothing);
+}
+
+TEST_F(GraphHistory, ADiscardedFrameOfAnotherSizeIsNotRecordedAgain) {
+  run({.value = 1});
+  run({.value = 2, .discarded = true});
+  EXPECT_TRUE(gpu_.run(*executor_, *graph_)) << "all is as it was declared";
+  run({.value = 3, .size = 16, .discarded = true});
+  const auto report = gpu_.record(*executor_, *graph_);
+  ASSERT_FALSE(report);
+  EXPECT_NE(report.error()[0].message.find("declare it anew"), std::string::npos);
+  run({.value = 4});
+  EXPECT_EQ(slot(1), 2u);
 }
 
 TEST_F(GraphHistory, GraphsOfOneExecutorHaveTheirOwn) {

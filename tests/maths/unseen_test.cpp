@@ -155,7 +155,7 @@ TEST(Unseen, NothingBeyondTheBorderHidesNothing) {
   EXPECT_EQ(maths::add_beyond_border(none, maths::kNowherePx, 10.0f, 1.0f).width_px, 0.0f);
 }
 
-TEST(Unseen, SomethingOfEverySideCounts) {
+TEST(Unseen, NeverAllOfASideIsLeftOut) {
   RandomInput random;
   for (int i = 0; i < 1000; ++i) {
     Case c(random);

@@ -157,11 +157,13 @@ TEST_F(ApplyPass, AFrameWithoutSpecularLightHasNothingOfIt) {
   Kept kept;
   run([&](Graph& graph) {
     const Frame frame{graph, gpu().kernels(), test_views()[2].view, 0};
+    OcclusionSettings settings = quality_settings(Quality::medium, 0.5f);
+    settings.linear_depth = true;
     const auto occlusion = add_occlusion(frame,
                                          {.depth_ndc = upload(graph, plane.depth_ndc),
                                           .normals = upload(graph, plane.normal_vs),
                                           .normals_in_view_space = true},
-                                         quality_settings(Quality::medium, 0.5f));
+                                         settings);
     ASSERT_TRUE(occlusion) << occlusion.error().message;
     const auto probe = add_environment(frame, upload(graph, inputs.map), {.size = 16, .levels = 2});
     ASSERT_TRUE(probe) << probe.error().message;

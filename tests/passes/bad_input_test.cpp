@@ -41,6 +41,15 @@ class BadInput : public PassTest {
     return said;
   }
 
+  framegraph::DeviceHandles handles() {
+    framegraph::DeviceHandles handles;
+    handles.instance = gpu().device().instance();
+    handles.physical_device = gpu().device().physical_device();
+    handles.device = gpu().device().device();
+    handles.get_instance_proc_addr = vkGetInstanceProcAddr;
+    return handles;
+  }
+
   void expect_a_good_frame() {
     const Drawing drawing = draw(test_views()[2], 16, 12, {tilted_plane(10.0, 4.0)});
     const OcclusionImages images =
@@ -69,14 +78,14 @@ TEST_F(BadInput, EverySettingOutOfRangeIsNamed) {
       {"slices", [](View&, OcclusionSettings& s) { s.slices = 4000000000u; }},
       {"resolution", [](View&, OcclusionSettings& s) { s.divisor = 3; }},
       {"resolution", [](View&, OcclusionSettings& s) { s.divisor = 0; }},
-      {"thickness", [](View&, OcclusionSettings& s) { s.thickness = -0.1f; }},
-      {"thickness", [](View&, OcclusionSettings& s) { s.thickness = kNaN; }},
-      {"thickness", [](View&, OcclusionSettings& s) { s.thickness = kInfinity; }},
-      {"fill", [](View&, OcclusionSettings& s) { s.fill = 1.5f; }},
-      {"blend", [](View&, OcclusionSettings& s) { s.blend = kNaN; }},
-      {"falloff", [](View&, OcclusionSettings& s) { s.falloff = -0.5f; }},
+      {"The thickness is", [](View&, OcclusionSettings& s) { s.thickness = -0.1f; }},
+      {"The thickness is", [](View&, OcclusionSettings& s) { s.thickness = kNaN; }},
+      {"The thickness is", [](View&, OcclusionSettings& s) { s.thickness = kInfinity; }},
+      {"The fill is", [](View&, OcclusionSettings& s) { s.fill = 1.5f; }},
+      {"The blend is", [](View&, OcclusionSettings& s) { s.blend = kNaN; }},
+      {"The falloff is", [](View&, OcclusionSettings& s) { s.falloff = -0.5f; }},
       {"only horizons and the heuristic", [](View&, OcclusionSettings& s) { s.falloff = 0.5f; }},
-      {"fill", [](View&, OcclusionSettings& s) { s.fill = kNaN; }},
+      {"The fill is", [](View&, OcclusionSettings& s) { s.fill = kNaN; }},
       {"tolerance", [](View&, OcclusionSettings& s) { s.filter_tolerance_px = 0.0f; }},
       {"tolerance", [](View&, OcclusionSettings& s) { s.filter_tolerance_px = kNaN; }},
       {"tolerance", [](View&, OcclusionSettings& s) { s.filter_tolerance_px = kInfinity; }},
@@ -84,11 +93,10 @@ TEST_F(BadInput, EverySettingOutOfRangeIsNamed) {
       {"history", [](View&, OcclusionSettings& s) { s.history_frames = 256; }},
       {"clamp", [](View&, OcclusionSettings& s) { s.clamp_width = -1.0f; }},
       {"clamp", [](View&, OcclusionSettings& s) { s.clamp_width = kNaN; }},
-      {"mips", [](View&, OcclusionSettings& s) { s.depth_mips = 0; }},
-      {"mips", [](View&, OcclusionSettings& s) { s.depth_mips = 6; }},
-      {"roughness", [](View&, OcclusionSettings& s) { s.roughness = 1.1f; }},
-      {"roughness", [](View&, OcclusionSettings& s) { s.roughness = kNaN; }},
-      {"channel", [](View&, OcclusionSettings& s) { s.roughness_channel = 4; }},
+      {"The roughness is", [](View&, OcclusionSettings& s) { s.roughness = 1.1f; }},
+      {"The roughness is", [](View&, OcclusionSettings& s) { s.roughness = kNaN; }},
+      {"The channel of the roughness is",
+       [](View&, OcclusionSettings& s) { s.roughness_channel = 4; }},
       {"layers", [](View&, OcclusionSettings& s) { s.depth_layers = 0; }},
       {"layers", [](View&, OcclusionSettings& s) { s.depth_layers = 3; }},
       {"needs a texture of second depth", [](View&, OcclusionSettings& s) { s.depth_layers = 2; }},
@@ -115,7 +123,7 @@ TEST_F(BadInput, AProjectionThatIsNoneIsNamed) {
   for (const auto& spoil : spoils) {
     const std::string said =
         error_of([&](View& view, OcclusionSettings&) { spoil(view.clip_from_view); });
-    EXPECT_THAT(said, HasSubstr("view"));
+    EXPECT_THAT(said, HasSubstr("projection matrix"));
     EXPECT_PRED1(is_a_sentence, said);
   }
   expect_a_good_frame();
@@ -165,8 +173,9 @@ TEST_F(BadInput, ASignalThatNoSearchLeavesIsNamed) {
       {"a signal of 8x6", [](OcclusionSignal& s, ReconstructSettings&) { s.lobe = true; }},
       {"a bent signal of 16x12",
        [](OcclusionSignal& s, ReconstructSettings&) { s.bent.index = 0; }},
-      {"roughness", [](OcclusionSignal&, ReconstructSettings& s) { s.roughness = kNaN; }},
-      {"channel", [](OcclusionSignal&, ReconstructSettings& s) { s.roughness_channel = 4; }},
+      {"The roughness is", [](OcclusionSignal&, ReconstructSettings& s) { s.roughness = kNaN; }},
+      {"The channel of the roughness is",
+       [](OcclusionSignal&, ReconstructSettings& s) { s.roughness_channel = 4; }},
   };
   const Drawing drawing = draw(test_views()[2], 16, 12, groove(0.8));
   for (const Case& bad : cases) {
@@ -208,6 +217,15 @@ TEST_F(BadInput, ASlotThatTheKernelsDoNotHaveIsNamed) {
   ASSERT_FALSE(report);
   EXPECT_THAT(report.error(), HasSubstr("frames in flight"));
   expect_a_good_frame();
+}
+
+TEST_F(BadInput, AsManyFramesInFlightAsThereCannotBeAreNamed) {
+  for (const std::uint32_t frames : {0u, 9u, ~0u}) {
+    const auto kernels = Kernels::create(handles(), frames);
+    ASSERT_FALSE(kernels) << frames;
+    EXPECT_THAT(kernels.error().message, HasSubstr(std::to_string(frames) + " frames in flight"));
+    EXPECT_PRED1(is_a_sentence, kernels.error().message);
+  }
 }
 
 TEST_F(BadInput, AnImageWithoutPixelsIsNamed) {

@@ -140,22 +140,21 @@ TEST_F(CBadInput, EverySettingOutOfRangeIsNamed) {
       {"estimator is 4,", [](AlcoveSettings& s) { set_number(s.estimator, 4); }},
       {"estimator is 4294967295", [](AlcoveSettings& s) { set_number(s.estimator, ~0u); }},
       {"weighting is 2", [](AlcoveSettings& s) { set_number(s.weighting, 2); }},
-      {"thickness", [](AlcoveSettings& s) { s.thickness = kNaN; }},
+      {"The thickness is", [](AlcoveSettings& s) { s.thickness = kNaN; }},
       {"thickness_unit is 3", [](AlcoveSettings& s) { set_number(s.thickness_unit, 3); }},
-      {"fill", [](AlcoveSettings& s) { s.fill = 1.5f; }},
-      {"blend", [](AlcoveSettings& s) { s.blend = -1.0f; }},
-      {"falloff", [](AlcoveSettings& s) { s.falloff = 2.0f; }},
+      {"The fill is", [](AlcoveSettings& s) { s.fill = 1.5f; }},
+      {"The blend is", [](AlcoveSettings& s) { s.blend = -1.0f; }},
+      {"The falloff is", [](AlcoveSettings& s) { s.falloff = 2.0f; }},
       {"divided by 3", [](AlcoveSettings& s) { s.divisor = 3; }},
       {"pattern is 3", [](AlcoveSettings& s) { set_number(s.pattern, 3); }},
-      {"mips", [](AlcoveSettings& s) { s.depth_mips = 0; }},
       {"reach", [](AlcoveSettings& s) { s.filter_reach = 4; }},
       {"tolerance", [](AlcoveSettings& s) { s.filter_tolerance_px = 0.0f; }},
       {"history", [](AlcoveSettings& s) { s.history_frames = 256; }},
       {"clamp", [](AlcoveSettings& s) { s.clamp_width = kNaN; }},
       {"specular is 0", [](AlcoveSettings& s) { set_number(s.specular, 0); }},
       {"specular is 6", [](AlcoveSettings& s) { set_number(s.specular, 6); }},
-      {"roughness", [](AlcoveSettings& s) { s.roughness = kNaN; }},
-      {"channel", [](AlcoveSettings& s) { s.roughness_channel = 7; }},
+      {"The roughness is", [](AlcoveSettings& s) { s.roughness = kNaN; }},
+      {"The channel of the roughness is", [](AlcoveSettings& s) { s.roughness_channel = 7; }},
       {"precision is 3", [](AlcoveSettings& s) { set_number(s.precision, 3); }},
   };
   for (const Case& bad : cases) {
@@ -195,6 +194,22 @@ TEST_F(CBadInput, ACameraThatIsNoneIsNamed) {
   view().reset_history = VK_TRUE;
   view().previous_camera = {};
   expect_a_good_frame();
+}
+
+TEST_F(CBadInput, WithoutAHistoryNothingOfTheFrameBeforeIsRead) {
+  AlcoveSettings settings = *view().settings;
+  settings.history_frames = 0;
+  AlcoveView alone = view();
+  alone.settings = &settings;
+  run_frame(*context(), {&alone, 1}, 0);
+  engine().wait();
+  const Results expected = results_of(alone);
+  alone.previous_camera = {};
+  alone.previous_width = alone.previous_height = 1000;
+  alone.largest_width = 1;
+  run_frame(*context(), {&alone, 1}, 0);
+  engine().wait();
+  expect_equal(results_of(alone), expected);
 }
 
 TEST_F(CBadInput, AnImageThatDoesNotDoIsNamed) {

@@ -18,6 +18,7 @@ using testing::HasSubstr;
 bool has_synchronization2 = true;
 bool has_write_without_format = true;
 std::uint32_t api_version = VK_API_VERSION_1_3;
+std::uint32_t storage_images = 9;  // that a shader can bind
 const char* missing_function = "";
 
 VKAPI_ATTR void VKAPI_CALL get_features(VkPhysicalDevice device, VkPhysicalDeviceFeatures2* all) {
@@ -32,6 +33,7 @@ VKAPI_ATTR void VKAPI_CALL get_properties(VkPhysicalDevice device,
                                           VkPhysicalDeviceProperties* properties) {
   vkGetPhysicalDeviceProperties(device, properties);
   properties->apiVersion = api_version;
+  properties->limits.maxPerStageDescriptorStorageImages = storage_images;
 }
 
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_device_proc_addr(VkDevice device, const char* name) {
@@ -59,6 +61,7 @@ class CFailure : public CInterface {
     CInterface::SetUp();
     has_synchronization2 = has_write_without_format = true;
     api_version = VK_API_VERSION_1_3;
+    storage_images = 9;
     missing_function = "";
     framegraph::failing::fail_at(0);
     framegraph::failing::lose(false);
@@ -88,6 +91,10 @@ TEST_F(CFailure, WhatADeviceLacksIsNamed) {
   api_version = VK_API_VERSION_1_2;
   EXPECT_THAT(error_of_context(info, ALCOVE_ERROR_UNSUPPORTED), HasSubstr("below Vulkan 1.3"));
   api_version = VK_API_VERSION_1_3;
+  storage_images = 8;
+  EXPECT_THAT(error_of_context(info, ALCOVE_ERROR_UNSUPPORTED),
+              HasSubstr("8 storage images to a shader; the occlusion passes need 9."));
+  storage_images = 9;
   missing_function = "vkCmdPipelineBarrier2";
   EXPECT_THAT(error_of_context(info, ALCOVE_ERROR_UNSUPPORTED), HasSubstr("vkCmdPipelineBarrier2"));
   missing_function = "vkGetPhysicalDeviceQueueFamilyProperties2";

@@ -101,11 +101,7 @@ TEST_F(CInterface, EverySettingReachesThePasses) {
        2},
       {"motion", [](GivenView& g) { g.motion = given_view(test_views()[2], 16, 12, {}).motion; },
        2},
-      {"normals from depth",
-       [](GivenView& g) {
-         g.normals = {};
-         g.settings.depth_mips = 3;
-       }},
+      {"normals from depth", [](GivenView& g) { g.normals = {}; }},
       {"normals in world space", [](GivenView& g) { g.normals_in_view_space = false; }},
       {"table",
        [](GivenView& g) {
@@ -283,6 +279,58 @@ TEST_F(CInterface, AFrameThatIsDiscardedNeverWas) {
               ALCOVE_ERROR_INVALID_INPUT);
     EXPECT_EQ(alcoveDiscardFrame(context.get()), ALCOVE_SUCCESS) << "of the frame that was refused";
     ++index;
+  }
+}
+
+// Such a frame differs from those before and after in what a history depends on. Whether it is
+// thrown away or refused, the next one is as by C++, which never hears of it.
+TEST_F(CInterface, AFrameThatNeverRunsChangesNoHistory) {
+  struct Case {
+    const char* name;
+    void (*change)(GivenView&);
+  };
+  const Case cases[] = {
+      {"size", [](GivenView& g) { g = frame_of(0, 21, 40); }},
+      {"largest size",
+       [](GivenView& g) {
+         g.largest_size = {64, 64};
+       }},
+      {"no bent normals", [](GivenView& g) { g.settings.bent_normal = false; }},
+      {"a lobe", [](GivenView& g) { g.settings.specular = Specular::slices; }},
+      {"no history", [](GivenView& g) { g.settings.history_frames = 0; }},
+      {"a cut", [](GivenView& g) { g.reset = true; }},
+  };
+  const Context context = create_context();
+  std::uint32_t index = 0;
+  const auto good_frame = [&](std::uint32_t id) {
+    GivenView given = frame_of(index, 33, 17);
+    given.id = id;
+    given.settings.bent_normal = true;
+    expect_same_both_ways(*context, {&given, 1}, index++);
+  };
+  for (std::uint32_t id = 0; id < std::size(cases); ++id) {
+    SCOPED_TRACE(cases[id].name);
+    good_frame(id);
+    good_frame(id);
+    GivenView given = frame_of(index, 33, 17);
+    given.settings.bent_normal = true;
+    cases[id].change(given);
+    given.id = id;
+    AlcoveSettings settings;
+    const AlcoveView view = view_of(given, settings);
+    record_and_throw_away(*context, view, index);
+    EXPECT_EQ(alcoveDiscardFrame(context.get()), ALCOVE_SUCCESS);
+    good_frame(id);
+    // The first view is good, the second is not.
+    std::array<AlcoveView, 2> views{view, view};
+    views[1].id = 99;
+    views[1].depth = {};
+    const AlcoveFrame frame{
+        .struct_size = sizeof frame, .index = index, .view_count = 2, .views = views.data()};
+    engine().submit(0, [&](VkCommandBuffer commands) {
+      EXPECT_EQ(alcoveRecordFrame(context.get(), commands, &frame), ALCOVE_ERROR_INVALID_INPUT);
+    });
+    good_frame(id);
   }
 }
 

@@ -13,7 +13,7 @@ namespace {
 
 using framegraph::Graph;
 
-using Gtao = PassTest;
+using GtaoPass = PassTest;
 
 struct Preset {
   const char* name;
@@ -31,7 +31,7 @@ OcclusionSettings precise(Quality quality) {
   return settings;
 }
 
-TEST_F(Gtao, OpenPlaneIsFullyVisibleAtAnyTilt) {
+TEST_F(GtaoPass, OpenPlaneIsFullyVisibleAtAnyTilt) {
   for (const TestView& view : test_views()) {
     for (const float degrees : {0.0f, 30.0f, 60.0f, 75.0f, 85.0f}) {
       const PlaneScene plane = plane_scene(view, 96, 64, degrees);
@@ -59,7 +59,7 @@ TEST_F(Gtao, OpenPlaneIsFullyVisibleAtAnyTilt) {
 }
 
 // What snapping buys: the same planes, tilted, without it.
-TEST_F(Gtao, WhereSnappingIsNotReckonedWithATiltedPlaneOccludesItself) {
+TEST_F(GtaoPass, WhereSnappingIsNotReckonedWithATiltedPlaneOccludesItself) {
   const TestView view = test_views()[2];
   for (const Estimator estimator : {Estimator::horizons, Estimator::connected}) {
     OcclusionSettings settings = precise(Quality::medium);

@@ -302,7 +302,7 @@ TEST_F(GtsoPass, RefusesWhatItCannotUseAndNamesIt) {
     refused(unequal, {}, "2x2");
     refused(good, {.roughness = std::numeric_limits<float>::quiet_NaN()}, "0 to 1");
     refused(good, {.roughness = 1.5f}, "0 to 1");
-    refused(good, {.roughness_channel = 4}, "channel 4");
+    refused(good, {.roughness_channel = 4}, "The channel of the roughness is 4");
     // Lagarde's model needs no bent normal.
     read_back(graph, add(frame, without_bent,
                          {.model = SpecularModel::lagarde, .precision = Precision::float32}));

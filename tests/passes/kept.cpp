@@ -16,7 +16,9 @@ Kept kept_of(const framegraph::Graph& graph) {
   const framegraph::GraphDescription& declared = graph.description();
   for (const framegraph::PlannedPass& pass : plan->passes) {
     const std::string name(declared.pass_name(pass.pass));
-    if (name != "upload" && name != "read back") {
+    if (name == "upload") {
+      ++kept.uploads;
+    } else if (name != "read back") {
       kept.passes.push_back(name);
     }
   }

@@ -14,6 +14,7 @@ struct Kept {
   std::vector<std::string> passes;
   std::vector<std::string> transients;
   std::vector<std::string> histories;
+  std::size_t uploads = 0;  // that something reads
   std::uint64_t bytes = 0;  // of the transients
 };
 

@@ -16,6 +16,7 @@ using testing::Not;
 // What a frame is given beside depth.
 struct Given {
   bool normals = true;
+  bool motion = false;
   bool hidden_depths = false;
 };
 
@@ -38,6 +39,9 @@ class OcclusionPlan : public PassTest {
                              .normals_in_view_space = true};
       if (given.normals) {
         inputs.normals = upload(graph, drawing.normal_vs);
+      }
+      if (given.motion) {
+        inputs.motion = upload(graph, {32, 24, std::vector<float>(2 * 32 * 24), 2});
       }
       if (given.hidden_depths) {
         inputs.back_depth_ndc = upload(graph, drawing.depth_ndc);
@@ -78,7 +82,7 @@ TEST_F(OcclusionPlan, TheLeastFrameIsThreePassesAndThreeTextures) {
   EXPECT_THAT(frame.transients,
               testing::UnorderedElementsAre("line depth", "occlusion signal", "visibility"));
   EXPECT_THAT(frame.histories, testing::IsEmpty());
-  EXPECT_EQ(gpu().kernels().pipeline_count(), 4u);
+  EXPECT_EQ(gpu().kernels().pipeline_count(), 3u);
 }
 
 TEST_F(OcclusionPlan, NormalsAreMadeOnlyWhereNoneAreGiven) {
@@ -87,7 +91,7 @@ TEST_F(OcclusionPlan, NormalsAreMadeOnlyWhereNoneAreGiven) {
   const Kept made = kept(least(), {}, {.normals = false});
   EXPECT_THAT(made.passes, Contains("normals"));
   EXPECT_THAT(made.transients, Contains("normals from depth"));
-  EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines + 1);
+  EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines + 2) << "they and linear depth";
 }
 
 TEST_F(OcclusionPlan, BentNormalsAndHistoryCostOnlyWhereTheyAreOn) {
@@ -103,6 +107,18 @@ TEST_F(OcclusionPlan, BentNormalsAndHistoryCostOnlyWhereTheyAreOn) {
   EXPECT_THAT(kept(history).histories, testing::SizeIs(2));
   history.bent_normal = true;
   EXPECT_THAT(kept(history, {.bent_normal = true}).histories, testing::SizeIs(4));
+}
+
+// Motion leads back to a history.
+TEST_F(OcclusionPlan, WithoutAHistoryMotionIsNotRead) {
+  const Given moving{.motion = true};
+  OcclusionSettings history = least();
+  history.history_frames = 8;
+  (void)kept(least());
+  const std::size_t pipelines = gpu().kernels().pipeline_count();
+  EXPECT_EQ(kept(least(), {}, moving).uploads, 2u) << "depth and normals";
+  EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines);
+  EXPECT_EQ(kept(history, {}, moving).uploads, 3u);
 }
 
 TEST_F(OcclusionPlan, BackFacesCostOnlyWhereTheThicknessIsReadFromThem) {
@@ -194,12 +210,17 @@ TEST_F(OcclusionPlan, SpecularOcclusionCostsOnlyWhereItIsOn) {
   EXPECT_THAT(kept(settings, {.specular = true}).transients, Not(Contains("bent normal")));
 }
 
-TEST_F(OcclusionPlan, MipsCostMemoryOnlyWhereTheyAreAskedFor) {
-  OcclusionSettings mips = least();
-  mips.depth_mips = 4;
-  const Reads all{.linear_depth = true};
-  EXPECT_GT(kept(mips, all).bytes, kept(least(), all).bytes);
-  EXPECT_EQ(kept(mips).bytes, kept(least()).bytes) << "where nobody reads them";
+TEST_F(OcclusionPlan, LinearDepthIsMadeOnlyWhereSomethingReadsIt) {
+  const Kept without = kept(least());
+  const std::size_t pipelines = gpu().kernels().pipeline_count();
+  OcclusionSettings asked = least();
+  asked.linear_depth = true;
+  EXPECT_EQ(kept(asked).passes, without.passes) << "where nobody reads it";
+  EXPECT_THAT(kept(asked, {.linear_depth = true}).passes, Contains("depth pyramid"));
+  EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines + 1);
+  OcclusionSettings by_model = least();
+  by_model.specular = Specular::cone;
+  EXPECT_THAT(kept(by_model, {.specular = true}).passes, Contains("depth pyramid"));
 }
 
 TEST_F(OcclusionPlan, ALowerResolutionOfTheSearchTakesLessMemory) {

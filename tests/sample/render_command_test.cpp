@@ -95,7 +95,6 @@ TEST(CommandLine, EverySettingIsReadBack) {
                     .continuation = false,
                     .unseen = false,
                     .grouping = passes::Grouping::pattern};
-  settings.depth_mips = 5;
   settings.filter_reach = 0;
   settings.filter_tolerance_px = 2.5f;
   settings.history_frames = 17;

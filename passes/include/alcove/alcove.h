@@ -12,10 +12,10 @@
 // Threads. A context is for one thread at a time, and takes no lock; contexts, also of one device,
 // share nothing.
 //
-// Errors. A call that fails records nothing, and alcoveGetMessage says in a sentence what was
-// wrong; at worst a history begins anew. Where memory or the device gives out in the middle of a
-// frame, what was recorded of it, and the command buffer with it, is to be thrown away; the next
-// one may be tried. No exception leaves the library, and nothing is printed.
+// Errors. A call on a context that fails records nothing and changes no history, and
+// alcoveGetMessage says in a sentence what was wrong. Where memory or the device gives out in the
+// middle of a frame, what was recorded of it, and the command buffer with it, is to be thrown away;
+// the next one may be tried. No exception leaves the library, and nothing is printed.
 //
 // Versions. A struct that may grow begins with struct_size, which the caller sets to sizeof the
 // struct: so the library knows which version of this header the caller was compiled with. Structs
@@ -35,8 +35,8 @@ extern "C" {
 #define ALCOVE_VERSION VK_MAKE_API_VERSION(0, 0, 1, 0)  // of this header
 #define ALCOVE_MAX_VIEWS 8                              // of a frame
 #define ALCOVE_MAX_FRAMES_IN_FLIGHT 8
-#define ALCOVE_MAX_NAME 32      // of a pass, its end included
-#define ALCOVE_MAX_MESSAGE 512  // the same; longer ones are cut
+#define ALCOVE_MAX_NAME 32      // of a pass: bytes, terminating zero included
+#define ALCOVE_MAX_MESSAGE 512  // the same of a message; longer ones are cut
 
 typedef enum AlcoveResult {
   ALCOVE_SUCCESS = 0,
@@ -44,41 +44,51 @@ typedef enum AlcoveResult {
   ALCOVE_ERROR_UNSUPPORTED = -2,    // what the device lacks
   ALCOVE_ERROR_OUT_OF_HOST_MEMORY = -3,
   ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY = -4,
-  ALCOVE_ERROR_DEVICE_LOST = -5,
-  ALCOVE_ERROR_VULKAN = -6,    // another of Vulkan's: the message has its number
-  ALCOVE_ERROR_INTERNAL = -7,  // the library's own fault
+  ALCOVE_ERROR_DEVICE_LOST = -5,  // destroy the context
+  ALCOVE_ERROR_VULKAN = -6,       // another of Vulkan's: the message has its number
+  ALCOVE_ERROR_INTERNAL = -7,     // the library's own fault
   ALCOVE_RESULT_MAX_ENUM = 0x7fffffff
 } AlcoveResult;
 
 // ALCOVE_VERSION of the library.
 uint32_t alcoveGetVersion(void);
 
+// What alcoveGetSettings gives each quality; all else is the default that AlcoveSettings states,
+// and REFERENCE has HORIZONS, no filter and FLOAT32 besides.
+//
+//              slices  steps  divisor  history_frames  depth fetches a pixel and frame
+//   LOW             1      8        4              32                                1
+//   MEDIUM          1     10        2              32                                5
+//   HIGH            3     16        2              32                               24
+//   ULTRA           4     24        2              32                               48
+//   REFERENCE      32     64        1               0                             4096
 typedef enum AlcoveQuality {
-  ALCOVE_QUALITY_LOW = 0,     // one search in 4x4 pixels a frame, and history
-  ALCOVE_QUALITY_MEDIUM = 1,  // one in 2x2
-  ALCOVE_QUALITY_HIGH = 2,    // the same of three slices
-  ALCOVE_QUALITY_ULTRA = 3,
-  ALCOVE_QUALITY_REFERENCE = 4,  // a still image to compare with
+  ALCOVE_QUALITY_LOW = 0,        // one search in 4x4 pixels a frame
+  ALCOVE_QUALITY_MEDIUM = 1,     // one in 2x2: the one to begin with
+  ALCOVE_QUALITY_HIGH = 2,       // the same of three slices
+  ALCOVE_QUALITY_ULTRA = 3,      // of four, and finer
+  ALCOVE_QUALITY_REFERENCE = 4,  // every pixel at once: a still image to compare with
   ALCOVE_QUALITY_MAX_ENUM = 0x7fffffff
 } AlcoveQuality;
 
-// What stands behind the front of an occluder.
+// What stands behind an occluder's front, which is all that a depth buffer shows.
 typedef enum AlcoveEstimator {
-  ALCOVE_ESTIMATOR_HORIZONS = 0,   // everything
+  ALCOVE_ESTIMATOR_HORIZONS = 0,   // everything: occluders are infinitely thick
   ALCOVE_ESTIMATOR_HEURISTIC = 1,  // the same, but lower samples further out pull horizons down
-  ALCOVE_ESTIMATOR_BITMASK = 2,    // each sample is as thick as `thickness` says
-  ALCOVE_ESTIMATOR_CONNECTED = 3,  // and samples of one surface are joined
+  ALCOVE_ESTIMATOR_BITMASK = 2,    // each sample is an occluder alone, as thick as `thickness` says
+  ALCOVE_ESTIMATOR_CONNECTED = 3,  // and samples of one surface are joined: thin things and walls
   ALCOVE_ESTIMATOR_MAX_ENUM = 0x7fffffff
 } AlcoveEstimator;
 
+// What a visible direction counts in visibility. Bent normals are weighted by the cosine always.
 typedef enum AlcoveWeighting {
-  ALCOVE_WEIGHTING_COSINE = 0,   // of the angle to the normal
-  ALCOVE_WEIGHTING_UNIFORM = 1,  // 1: solid angle
+  ALCOVE_WEIGHTING_COSINE = 0,   // the cosine of its angle to the normal: what diffuse light needs
+  ALCOVE_WEIGHTING_UNIFORM = 1,  // 1: the share of the hemisphere's solid angle
   ALCOVE_WEIGHTING_MAX_ENUM = 0x7fffffff
 } AlcoveWeighting;
 
 typedef enum AlcoveThicknessUnit {
-  ALCOVE_THICKNESS_UNIT_RADIUS = 0,      // parts of the radius
+  ALCOVE_THICKNESS_UNIT_RADIUS = 0,      // parts of the radius: one thickness in the scene
   ALCOVE_THICKNESS_UNIT_DISTANCE = 1,    // parts of the occluder's distance from the eye
   ALCOVE_THICKNESS_UNIT_BACK_FACES = 2,  // AlcoveView::back_depth; the radius where that has none
   ALCOVE_THICKNESS_UNIT_MAX_ENUM = 0x7fffffff
@@ -86,66 +96,93 @@ typedef enum AlcoveThicknessUnit {
 
 // How directions are spread over pixels and frames.
 typedef enum AlcovePattern {
-  ALCOVE_PATTERN_GOLDEN = 0,
-  ALCOVE_PATTERN_HILBERT = 1,
-  ALCOVE_PATTERN_MEMO = 2,
+  ALCOVE_PATTERN_GOLDEN = 0,   // 4x4 pixels, turned by the golden ratio each frame
+  ALCOVE_PATTERN_HILBERT = 1,  // along a Hilbert curve, by the R2 sequence
+  ALCOVE_PATTERN_MEMO = 2,     // the memo's: 4x4 pixels and six rotations in turn
   ALCOVE_PATTERN_MAX_ENUM = 0x7fffffff
 } AlcovePattern;
 
 // How specular occlusion is found, where AlcoveView::specular asks for it.
 typedef enum AlcoveSpecular {
   ALCOVE_SPECULAR_SLICES = 1,  // by the slices that find visibility: the most exact
-  // From visibility and bent normal.
-  ALCOVE_SPECULAR_TABLE = 2,
-  ALCOVE_SPECULAR_CONE = 3,
-  ALCOVE_SPECULAR_SMOOTH_CONE = 4,
+  // From visibility and bent normal, which are then made too.
+  ALCOVE_SPECULAR_TABLE = 2,        // the lobe itself within a cone, by a table of 54 KiB
+  ALCOVE_SPECULAR_CONE = 3,         // two cones, exactly
+  ALCOVE_SPECULAR_SMOOTH_CONE = 4,  // two cones, by a smooth step: cheaper, up to 0.16 off
   // From visibility alone.
-  ALCOVE_SPECULAR_LAGARDE = 5,
+  ALCOVE_SPECULAR_LAGARDE = 5,  // a fit by Lagarde and de Rousiers
   ALCOVE_SPECULAR_MAX_ENUM = 0x7fffffff
 } AlcoveSpecular;
 
 // Of results that others are made from and that no image was given for; an image has its own.
 typedef enum AlcovePrecision {
-  ALCOVE_PRECISION_UNORM8 = 0,
-  ALCOVE_PRECISION_FLOAT16 = 1,
-  ALCOVE_PRECISION_FLOAT32 = 2,
+  ALCOVE_PRECISION_UNORM8 = 0,   // 8 bits a channel
+  ALCOVE_PRECISION_FLOAT16 = 1,  // half floats
+  ALCOVE_PRECISION_FLOAT32 = 2,  // floats
   ALCOVE_PRECISION_MAX_ENUM = 0x7fffffff
 } AlcovePrecision;
 
-// alcove/passes/occlusion.h says more of each.
+// From alcoveGetSettings, to be changed at will. A default in brackets is that of every quality but
+// REFERENCE. What the estimator or history does not use is not read, but it has to be in range.
 typedef struct AlcoveSettings {
-  uint32_t struct_size;
-  float radius;     // scene units, over 0: occluders beyond it do not count
-  uint32_t slices;  // a pixel, 1 to 64
-  uint32_t steps;   // a side of a slice, 2 to 64
-  AlcoveEstimator estimator;
-  AlcoveWeighting weighting;
-  float thickness;  // of occluders, at least 0 (bitmask, connected)
-  AlcoveThicknessUnit thickness_unit;
-  float fill;             // part of what is hidden behind them that occludes too, [0,1]: 0 nothing,
-                          // 1 all, between the more the wider they are in the image
-  uint32_t depth_layers;  // that are searched: 1, or 2 with AlcoveView::second_depth
-  float blend;            // of a horizon towards each lower sample, [0,1] (heuristic)
-  float falloff;  // last part of the radius, over which occluders fade, [0,1] (horizons, heuristic)
-  uint32_t divisor;  // one search a frame in so many pixels a side: 1, 2 or 4
-  AlcovePattern pattern;
-  uint32_t depth_mips;        // of linear depth, 1 to 5
-  uint32_t filter_reach;      // searched pixels on each side of one, 0 to 3; 0: no filter
-  float filter_tolerance_px;  // distance from the tangent plane, in sizes of a pixel, over 0
-  uint32_t history_frames;    // that are averaged, 0 to 255; 0: no history and no memory for it
-  float clamp_width;  // of history, in deviations of this frame, at least 0; 0 leaves it free
-  AlcoveSpecular specular;
-  float roughness;             // perceptual, [0,1], of every pixel where no image has it
-  uint32_t roughness_channel;  // of AlcoveView::roughness, 0 to 3
-  AlcovePrecision precision;
+  uint32_t struct_size;  // sizeof(AlcoveSettings)
+
+  // The search: in a pixel `slices` planes through the view vector, in each of them `steps` depths
+  // on either side.
+
+  // Scene units, over 0: occluders beyond it do not count. A twentieth of a room's height to a
+  // fifth of it is usual.
+  float radius;
+  uint32_t slices;                     // 1 to 64
+  uint32_t steps;                      // on each side of a slice, 2 to 64
+  AlcoveEstimator estimator;           // [CONNECTED]
+  AlcoveWeighting weighting;           // [COSINE]
+  float thickness;                     // of an occluder, in thickness_unit, at least 0 [0.15];
+                                       // BITMASK and CONNECTED have it
+  AlcoveThicknessUnit thickness_unit;  // [RADIUS]; BITMASK and CONNECTED
+  // What lies behind an occluder of that thickness is hidden from the eye, and may be open or
+  // solid: so much of it counts as solid, 0 nothing to 1 all. In between it is the more, the wider
+  // in the image the occluder is: all behind a wall, little behind a twig. [0.33]; BITMASK and
+  // CONNECTED
+  float fill;
+  uint32_t depth_layers;  // that are searched: 1, or 2 with AlcoveView::second_depth [1]; BITMASK
+                          // and CONNECTED
+  // How far each lower sample further out pulls a horizon down to it, 0 not at all to 1 wholly
+  // [0.05]; HEURISTIC.
+  float blend;
+  // Last part of the radius, over which occluders fade, 0 none to 1 all of it [0]; HORIZONS and
+  // HEURISTIC. Must be 0 with BITMASK and CONNECTED, where a direction is occluded or it is not.
+  float falloff;
+  uint32_t divisor;       // one search a frame in a block of so many pixels a side: 1, 2 or 4. The
+                          // searched pixel of each block moves on from frame to frame
+  AlcovePattern pattern;  // [GOLDEN]
+
+  // The filter, in which each pixel gathers searches around it that lie on its surface.
+  uint32_t filter_reach;  // searched pixels on each side that it looks at while it has no history,
+                          // 0 to 3 [2]; one with a history. 0: no filter at all
+  // How far from the pixel's tangent plane a search counts a quarter, over 0, in sizes of a pixel
+  // there [1.5]. So in the first frame of one slice; the more slices and frames, the nearer.
+  float filter_tolerance_px;
+
+  // The history.
+  uint32_t history_frames;  // that are averaged, 0 to 255; 0: no history and no memory for it
+  float clamp_width;        // to which it is held, in standard deviations of this frame around the
+                            // pixel, at least 0; 0 leaves it free [0]
+
+  // Outputs.
+  AlcoveSpecular specular;     // [SLICES]; read where AlcoveView::specular is given
+  float roughness;             // perceptual, 0 to 1, of every pixel where no image has it [0.5]
+  uint32_t roughness_channel;  // of AlcoveView::roughness, 0 to 3 [0]
+  AlcovePrecision precision;   // [UNORM8]
 } AlcoveSettings;
 
 // Fills `settings`, whose struct_size is set, with those of a quality at a radius (scene units,
-// over 0). ALCOVE_ERROR_INVALID_INPUT where one of the three is none.
+// over 0). ALCOVE_ERROR_INVALID_INPUT if any argument is invalid; there is no context, so no
+// message.
 AlcoveResult alcoveGetSettings(AlcoveQuality quality, float radius, AlcoveSettings* settings);
 
 // Writes the settings as lines of `name = value`, at most `size` bytes with the closing zero.
-// Returns the bytes that all of it takes without that zero, 0 where the settings are none. `text`
+// Returns the bytes that all of it takes without that zero, 0 if the settings are invalid. `text`
 // may be null where `size` is 0.
 size_t alcovePrintSettings(const AlcoveSettings* settings, char* text, size_t size);
 
@@ -154,9 +191,9 @@ typedef struct AlcoveContext AlcoveContext;
 // The engine's own; all of it outlives the context.
 typedef struct AlcoveContextInfo {
   uint32_t struct_size;
-  uint32_t queue_family;  // of the queue that frames are submitted to: one that computes
-  VkInstance instance;    // as the device, made for Vulkan 1.3
-  VkPhysicalDevice physical_device;
+  uint32_t queue_family;             // of the queue that frames are submitted to: one that computes
+  VkInstance instance;               // as the device, made for Vulkan 1.3
+  VkPhysicalDevice physical_device;  // that binds 9 storage images to a shader
   // With the features synchronization2 and shaderStorageImageWriteWithoutFormat enabled.
   VkDevice device;
   PFN_vkGetInstanceProcAddr get_instance_proc_addr;
@@ -240,10 +277,11 @@ typedef struct AlcoveView {
   uint32_t still_frames;
   const AlcoveSettings* settings;
   AlcoveCamera camera;
-  AlcoveCamera previous_camera;  // when this id was last recorded; unread with reset_history
+  AlcoveCamera previous_camera;  // when this id was last recorded; unread with reset_history, and
+                                 // without history_frames
   // Dynamic resolution: history has room for `largest`, and goes on while the size changes within
   // it. Zeros: it is as large as depth, and a change of size begins it anew. A change of `largest`
-  // does in any case.
+  // does in any case. Unread without history_frames, as are the next.
   uint32_t largest_width;
   uint32_t largest_height;
   // Of depth, when this id was last recorded. Zeros: as now. Unread with reset_history.
@@ -251,8 +289,10 @@ typedef struct AlcoveView {
   uint32_t previous_height;
 
   // Inputs.
-  AlcoveImage depth;    // as clip_from_view has it: any depth format, or R32_SFLOAT. Needed
-  AlcoveImage normals;  // xyz unit, as they are: signed; none: made from depth, and in view space
+  AlcoveImage depth;  // as clip_from_view has it: any depth format, or R32_SFLOAT. Needed
+  // Unit vectors in xyz, signed (not packed into [0,1]). No image: normals are made from depth, and
+  // bent normals come in view space.
+  AlcoveImage normals;
   // xy: uv in this frame's image minus uv in the last's (y down, so with the jitter of both
   // cameras), signed; none: only the camera moves.
   AlcoveImage motion;
@@ -297,16 +337,16 @@ typedef struct AlcoveFrame {
 // a full barrier. One image may serve as several inputs, described alike; an output serves as
 // nothing else.
 //
-// Errors, with nothing recorded: a null pointer, a size that is none, an enum's unknown value, a
-// number out of range or that is not finite, a format or a usage that does not do, images that
-// differ in size, a frame without a view, a view without an output.
+// Errors, with nothing recorded: a null pointer, a size of zero or over the largest, an enum's
+// unknown value, a number out of range or that is not finite, a format or a usage that does not do,
+// images that differ in size, a frame without a view, a view without an output.
 AlcoveResult alcoveRecordFrame(AlcoveContext* context, VkCommandBuffer commands,
                                const AlcoveFrame* frame);
 
-// To be called where what was just recorded is not submitted after all, since the window is gone
-// say, and before anything else of this context. It is then as if that frame had not been recorded;
-// without this call the next ones would read histories that nobody wrote. After a frame that
-// failed, or none, there is nothing to do.
+// Call this instead of submitting what was just recorded, before any other call on the context (the
+// window closed, say). The context is then as if the frame had not been recorded, whatever its
+// size, settings and outputs; otherwise the next frames would read histories that were never
+// written. After a frame that failed, or none, there is nothing to do.
 AlcoveResult alcoveDiscardFrame(AlcoveContext* context);
 
 // Bytes of device memory of the frame recorded last; zeros before there is one, and after one that

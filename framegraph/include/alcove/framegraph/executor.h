@@ -100,11 +100,13 @@ class Executor {
   // recording state, outside a render pass. All passes run on its queue. Commands are submitted in
   // the order of their recording, once, to one queue. On an error nothing of the graph is recorded,
   // except that an undeclared use is found, and memory may give out, while recording: `commands` is
-  // to be thrown away then. Histories are as before the frame.
+  // to be thrown away then. Histories are as before the frame, but for those that it declared
+  // otherwise or reset: they begin anew.
   [[nodiscard]] tl::expected<FrameReport, Errors> record(Graph& graph, VkCommandBuffer commands,
                                                          const FrameInfo& frame = {});
   // Where commands are not submitted after all: to be called before anything else of this graph or
-  // executor. It is then as if that frame had not been recorded; without, histories are lost.
+  // executor. It is then as if that frame had not been recorded or declared; without, histories are
+  // lost. To be recorded again it has to be declared anew where it changed a history's description.
   void discard(Graph& graph, const FrameInfo& frame = {});
 
   // Records and submits on as many queues as there are. Waits itself for what was last submitted

@@ -32,6 +32,7 @@ struct HistoryEntry {
   HistorySlot slots[kMaxHistorySlots];  // by physical position
   std::uint32_t head = 0;               // physical position of slot 0
   std::uint32_t generation = 0;         // changes when new physical resources are needed
+  std::uint32_t newest = 0;             // of all generations: none comes twice
   bool declared = false;                // in the frame that is being declared
   bool dropped = false;                 // the place is free
 
@@ -51,13 +52,19 @@ class HistoryTable {
   // Frees the place of a history that is not declared in this frame.
   void drop(std::string_view name);
   void begin_frame();
+  // No history is declared any more: each can be dropped.
+  void end_frame();
 
   // At the end of a frame, after begin_end(): how it left a slot, and that slot 0 becomes slot 1.
-  // undo() takes that back, until a history is declared again: the frame does not run.
-  void begin_end() { ended_.clear(); }
+  void begin_end();
   void leave(std::uint32_t index, std::uint32_t slot, const HistorySlot& left);
   void rotate(std::uint32_t index);
+  // The frame does not run: takes back all that was done since begin_frame(), but for drop().
   void undo();
+  // Whether undo() took back a description that the declared frame still goes by.
+  bool must_be_declared_anew() const { return anew_; }
+  // Whether the resources of a generation are in use, or undo() could bring them back.
+  bool needs(std::uint32_t index, std::uint32_t generation) const;
 
   const std::vector<HistoryEntry>& entries() const { return entries_; }
   HistoryEntry& entry(std::uint32_t index) { return entries_[index]; }
@@ -65,15 +72,21 @@ class HistoryTable {
   std::weak_ptr<const char> life() const { return life_; }
 
  private:
-  // What a slot was before the frame left it otherwise.
+  // What an entry was before the frame changed it.
   struct Before {
     std::uint32_t index = 0;
     std::uint32_t head = 0;
-    std::uint32_t position = 0;
-    HistorySlot slot;
+    std::uint32_t generation = 0;
+    ResourceRecord record;
+    HistorySlot slots[kMaxHistorySlots];
   };
+  void remember(std::uint32_t index);
+  void invalidate(std::uint32_t index);
+
   std::vector<HistoryEntry> entries_;
-  std::vector<Before> ended_;
+  std::vector<Before> before_;  // room for all entries
+  bool ended_ = false;          // the frame has left some
+  bool anew_ = false;
   std::shared_ptr<const char> life_ = std::make_shared<const char>('\0');
 };
 

@@ -1,4 +1,6 @@
-// Linear depth, and a pyramid of it that keeps both sides of an edge apart.
+// Linear depth, and a pyramid of it that keeps both sides of an edge apart. Normals from depth,
+// specular models and lighting read it; searches and filters read line depth, which is another
+// thing (line_depth.h).
 #pragma once
 
 #include <cstdint>
@@ -9,10 +11,15 @@ namespace alcove::passes {
 
 // In: `depth_ndc`, a depth texture (any depth or R32 float format) as the view's projection wrote
 // it. Out: R32_SFLOAT, the distance along the view direction in scene units, 1e12 for the sky, for
-// what is not a number and for what is infinitely far. Mip k + 1 averages the four texels of mip k
-// that lie near the nearest of them: `reach` (scene units) is how near. `mips` is 1 to 5;
-// an image with fewer gets all it has. Depth stays 32-bit because half floats overflow beyond 65504
-// and band at grazing angles.
+// what is not a number and for what is infinitely far. Depth stays 32-bit because half floats
+// overflow beyond 65504 and band at grazing angles.
+//
+// `mips` is 1 to 5; an image that has fewer gets all it has, by a pipeline of so many. Mip k + 1
+// averages those of the four texels of mip k that lie within 2^k `reach` (scene units, over 0; not
+// read with one mip) of the farthest that is not sky: wholly up to half of it, fading to nothing at
+// all of it; sky where three of the four are sky. No pass of Alcove reads mips above 0.
+//
+// Errors: a texture that is missing, a view that cannot be used, mips or reach out of range.
 [[nodiscard]] tl::expected<framegraph::Texture, Error> add_depth_pyramid(
     const Frame& frame, framegraph::Texture depth_ndc, std::uint32_t mips, float reach);
 

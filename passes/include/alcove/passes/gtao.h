@@ -90,8 +90,10 @@ struct SearchSettings {
   float fill = 0.33f;
   std::uint32_t depth_layers = 1;  // that are searched: 1, or 2 with what lies behind the first
   // For horizons and heuristic.
-  float blend = 0.05f;   // of a horizon towards each lower sample, [0,1] (heuristic)
-  float falloff = 0.0f;  // last part of the radius, over which occluders fade, [0,1]; 0: none
+  float blend = 0.05f;  // of a horizon towards each lower sample, [0,1] (heuristic)
+  // Last part of the radius, over which occluders fade, [0,1]; 0: none. Must be 0 for bitmask and
+  // connected samples, whose sectors are occluded or not.
+  float falloff = 0.0f;
   // One search a frame in a block of so many pixels a side: 1, 2 or 4. Which of them moves on from
   // frame to frame.
   std::uint32_t divisor = 1;
@@ -134,6 +136,8 @@ struct OcclusionSignal {
   bool lobe = false;
 };
 
+// Errors: an input that is missing or of another size than the line depth, a view that cannot be
+// used, a setting out of range, a falloff that the estimator does not have.
 [[nodiscard]] tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame,
                                                             const GtaoInputs& inputs,
                                                             const GtaoSettings& settings);

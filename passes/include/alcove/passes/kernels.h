@@ -14,7 +14,8 @@
 
 namespace alcove::passes {
 
-// Why a pass could not be made: a sentence, and Vulkan's result where a call of its failed.
+// Why a pass could not be made: a sentence, and Vulkan's result where a call of its failed, or
+// VK_ERROR_FEATURE_NOT_PRESENT where the device lacks something.
 struct Error {
   std::string message;
   VkResult result = VK_SUCCESS;
@@ -59,10 +60,14 @@ class Kernels {
   static constexpr std::uint32_t kMaxDispatches = 72;
   static constexpr std::uint32_t kMaxParameterBytes = 1024;
   static constexpr std::size_t kMaxConstants = 24;  // of a pipeline
+  static constexpr std::uint32_t kMaxFramesInFlight = 8;
 
   // `device`, made with the feature shaderStorageImageWriteWithoutFormat, must outlive the kernels.
-  // `frames_in_flight`, 1 to 8, is how many frames may be recorded before the first of them has
-  // finished on the device: ExecutorOptions::frames_in_flight.
+  // `frames_in_flight`, 1 to kMaxFramesInFlight, is how many frames may be recorded before the
+  // first of them has finished on the device: ExecutorOptions::frames_in_flight.
+  //
+  // Errors: a handle that is null, frames in flight out of range, a function or a limit that the
+  // device lacks (maxPerStageDescriptorStorageImages must be 9), memory that gives out.
   [[nodiscard]] static tl::expected<Kernels, Error> create(const framegraph::DeviceHandles& device,
                                                            std::uint32_t frames_in_flight);
   Kernels(Kernels&&) noexcept;

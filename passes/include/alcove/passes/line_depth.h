@@ -1,4 +1,5 @@
-// Depth in the form that the searches and filters read.
+// Depth in the form that the searches and filters read: add_gtao and add_reconstruct. It is not the
+// linear depth of depth_pyramid.h, which normals, specular models and lighting read.
 #pragma once
 
 #include <string_view>
@@ -12,6 +13,8 @@ namespace alcove::passes {
 // distance itself in orthographic views: linear along the image of any plane. The sky, and what is
 // not a number, is 1e-12 and 1e12. 32 bits because half floats overflow and band at grazing angles.
 // `name` is that of pass and texture.
+//
+// Errors: a texture that is missing, a view that cannot be used.
 [[nodiscard]] tl::expected<framegraph::Texture, Error> add_line_depth(
     const Frame& frame, framegraph::Texture depth_ndc, std::string_view name = "line depth");
 

@@ -8,6 +8,8 @@ namespace alcove::passes {
 // In: `depth`, linear depth as add_depth_pyramid makes it. Out: RGBA16_SFLOAT, unit normals in view
 // space towards the eye. Each axis takes the side whose depth continues the pixel's own better, so
 // that normals do not bend across silhouettes. Sky gets the direction to the eye.
+//
+// Errors: a texture that is missing, a view that cannot be used.
 [[nodiscard]] tl::expected<framegraph::Texture, Error> add_normals(const Frame& frame,
                                                                    framegraph::Texture depth);
 

@@ -1,4 +1,5 @@
-// The passes in their usual order: from a depth buffer to visibility and bent normals.
+// The passes in their usual order: from a depth buffer to visibility, bent normals and specular
+// occlusion.
 #pragma once
 
 #include <cstdint>
@@ -22,14 +23,22 @@ enum class Specular : std::uint8_t {
   lagarde,
 };
 
-enum class Quality : std::uint8_t { low, medium, high, ultra, reference };
+// Slices and steps of a search, how many pixels share one in a frame, and depth fetches a pixel and
+// frame; but for the reference all have a history of 32 frames.
+enum class Quality : std::uint8_t {
+  low,        // 1 slice of 8 steps a side in 4x4 pixels: 1 fetch
+  medium,     // 1 of 10 in 2x2: 5
+  high,       // 3 of 16 in 2x2: 24
+  ultra,      // 4 of 24 in 2x2: 48
+  reference,  // 32 of 64 in each: 4096. By horizons, neither filtered nor averaged: the memo's own
+};
 
 // Everything that can be chosen: what gtao.h and reconstruct.h say of searches and filter, and what
 // follows. quality_settings() gives a start.
 struct OcclusionSettings : SearchSettings, FilterSettings {
-  std::uint32_t depth_mips = 1;  // levels of the depth pyramid, 1 to 5
-  bool visibility = true;        // off where only the next two are wanted
+  bool visibility = true;  // off where only others are wanted
   bool bent_normal = false;
+  bool linear_depth = false;  // also hand on what lighting may want: OcclusionOutputs::linear_depth
   Specular specular = Specular::none;
   float roughness = 0.5f;               // perceptual, [0,1], of every pixel where no texture has it
   std::uint32_t roughness_channel = 0;  // of the roughness texture, 0 to 3
@@ -71,14 +80,18 @@ struct OcclusionOutputs {
   framegraph::Texture bent_normal;
   // One channel, multiplies specular probe light, [0,1], 1 open; null where none was asked for.
   framegraph::Texture specular;
-  framegraph::Texture linear_depth;  // as add_depth_pyramid makes it
-  framegraph::Texture normals;       // those given, or those made from depth, in view space
+  // As add_depth_pyramid makes it, of one mip; null where neither the settings nor their specular
+  // model nor the making of normals want it.
+  framegraph::Texture linear_depth;
+  framegraph::Texture normals;  // those given, or those made from depth, in view space
 };
 
 // What is not read afterwards is culled by the graph, with all that only leads there. Bent normals
 // are in the space of the given normals, in view space where none are given. Several views of a
-// frame (both eyes, say) take a call each, with histories of their own; noise hangs on pixel and
+// frame (both eyes, say) take a call each, with histories of their own; noise depends on pixel and
 // frame alone, so it is the same in all.
+//
+// Errors: those of the passes that the settings need.
 [[nodiscard]] tl::expected<OcclusionOutputs, Error> add_occlusion(
     const Frame& frame, const OcclusionInputs& inputs, const OcclusionSettings& settings,
     std::string_view history_name = "occlusion");

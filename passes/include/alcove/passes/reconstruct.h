@@ -59,8 +59,12 @@ struct ReconstructInputs {
 };
 
 // `history_name` tells the histories of one graph apart: each view needs its own. A history begins
-// anew where the size or the kind of the signal changes, and after
-// Graph::reset_history(history_name).
+// anew where the size or the kind of the signal changes, where history or bent normals were off in
+// the frame before, and after Graph::reset_history(history_name).
+//
+// Errors: an input that is missing or of another size than the line depth, a signal that is not of
+// its blocks, a view that cannot be used, now or before, sizes that are not within the largest, a
+// setting out of range, nothing to write.
 [[nodiscard]] tl::expected<Occlusion, Error> add_reconstruct(
     const Frame& frame, const ReconstructInputs& inputs, const ReconstructSettings& settings,
     std::string_view history_name = "occlusion");

@@ -1,0 +1,25 @@
+// How passes write what they were asked for.
+#pragma once
+
+#include "alcove/framegraph/graph.h"
+
+namespace alcove::passes {
+
+// Has `pass` write every texel of `texture`, in a shader. What was there may be thrown away, but
+// for what an import arrives with: its image may be larger than the part that the graph knows, and
+// the rest of it is the caller's.
+[[nodiscard]] inline framegraph::Texture write_result(const framegraph::Graph& graph,
+                                                      framegraph::PassBuilder& pass,
+                                                      framegraph::Texture texture) {
+  const framegraph::GraphDescription& declared = graph.description();
+  bool keeps = false;
+  if (texture.index < declared.resources.size()) {
+    const framegraph::ResourceRecord& record = declared.resources[texture.index];
+    keeps = record.origin == framegraph::Origin::imported &&
+            declared.externals[record.external].has_contents != 0;
+  }
+  return pass.write(texture, framegraph::access::storage_write_compute, {},
+                    keeps ? framegraph::Contents::keep : framegraph::Contents::discard);
+}
+
+}  // namespace alcove::passes

@@ -1,0 +1,113 @@
+// The C++ example of README.md, as it stands there, run on the device.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <utility>
+
+// What the example includes comes first in it.
+#include <alcove/passes/occlusion.h>
+
+#include "c_interface_fixture.h"
+#include "gtao_scenes.h"
+
+using namespace alcove;
+
+namespace {
+
+// An engine of what the example uses.
+struct Engine {
+  framegraph::Graph graph;
+  passes::Kernels kernels;
+  framegraph::Executor executor;
+  passes::View view;
+  passes::View previous_view;
+  std::uint32_t frame = 0;
+  std::uint32_t slot = 0;
+  framegraph::ImportedTexture depth;
+  framegraph::ImportedTexture normals;
+  framegraph::ImportedTexture visibility;
+  float radius = 0.5f;
+};
+
+// Once, for two frames in flight: Executor::create(device, {.frames_in_flight = 2}) and
+// Kernels::create(device, 2), `device` being the engine's. Then in each frame, when the device is
+// done with what was last recorded with `slot`:
+tl::expected<void, std::string> record_occlusion(Engine& engine, VkCommandBuffer commands) {
+  framegraph::Graph& graph = engine.graph;
+  graph.reset();
+  engine.kernels.begin_frame(engine.slot);
+  const passes::Frame frame{graph, engine.kernels, engine.view, engine.frame, engine.previous_view};
+  const auto outputs = passes::add_occlusion(
+      frame,
+      {.depth_ndc = graph.import_texture("depth", engine.depth),
+       .normals = graph.import_texture("normals", engine.normals),
+       .into = {.visibility = graph.import_texture("visibility", engine.visibility)}},
+      passes::quality_settings(passes::Quality::medium, engine.radius));
+  if (!outputs) return tl::unexpected(outputs.error().message);
+  const auto report = engine.executor.record(graph, commands, {engine.slot});
+  if (!report) return tl::unexpected(framegraph::to_string(report.error()));
+  return {};
+}
+
+framegraph::ImportedTexture import_of(const AlcoveImage& image) {
+  const auto state = [](const AlcoveState& given) {
+    return framegraph::State{given.stages, given.access, given.layout};
+  };
+  return {.image = image.image,
+          .desc = {image.format, framegraph::Extent::absolute(image.width, image.height)},
+          .usage = image.usage,
+          .arrival = state(image.arrival),
+          .departure = state(image.departure)};
+}
+
+class Example : public passes::CInterface {
+ protected:
+  std::unique_ptr<Engine> start() {
+    framegraph::DeviceHandles device;
+    device.instance = gpu().device().instance();
+    device.physical_device = gpu().device().physical_device();
+    device.device = gpu().device().device();
+    device.get_instance_proc_addr = vkGetInstanceProcAddr;
+    device.queues[0] = {gpu().device().queue(), gpu().device().queue_family()};
+    auto executor = framegraph::Executor::create(device, {.frames_in_flight = 2});
+    auto kernels = passes::Kernels::create(device, 2);
+    if (!executor || !kernels) {
+      return nullptr;
+    }
+    return std::unique_ptr<Engine>(
+        new Engine{.graph = {}, .kernels = std::move(*kernels), .executor = std::move(*executor)});
+  }
+};
+
+TEST_F(Example, OfTheReadmeDrawsWhatTheCInterfaceDraws) {
+  passes::GivenView given =
+      passes::given_view(passes::test_views()[2], 40, 30, passes::ball_on_floor());
+  given.settings = passes::quality_settings(passes::Quality::medium, 0.5f);
+  given.normals_in_view_space = false;
+  given.motion = given.roughness = given.albedo = {};
+  const std::unique_ptr<Engine> started = start();
+  ASSERT_NE(started, nullptr);
+  AlcoveSettings settings;
+  const AlcoveView images = view_of(given, settings);
+  started->depth = import_of(images.depth);
+  started->normals = import_of(images.normals);
+  started->visibility = import_of(images.visibility);
+  const passes::Context context = create_context();
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    given.previous_view = given.view;
+    given.view.view_from_world[12] = 0.02f * static_cast<float>(i);
+    started->view = given.view;
+    started->previous_view = given.previous_view;
+    started->frame = i;
+    started->slot = i % 2;
+    engine().submit(started->slot, [&](VkCommandBuffer commands) {
+      const auto recorded = record_occlusion(*started, commands);
+      EXPECT_TRUE(recorded) << recorded.error();
+    });
+    const passes::HostImage found = read(images.visibility);
+    EXPECT_EQ(found.texels, run_by_c(*context, {&given, 1}, i)[0].visibility.texels) << i;
+  }
+  engine().wait();
+}
+
+}  // namespace

@@ -1,0 +1,66 @@
+// A history that was off for a while knows nothing of what happened meanwhile.
+#include <gtest/gtest.h>
+
+#include "gtao_scenes.h"
+#include "pass_fixture.h"
+
+namespace alcove::passes {
+namespace {
+
+class HistoryRestart : public PassTest {
+ protected:
+  // Four frames of a groove by `settings`, as many of a ball on a floor by `meanwhile`, and one
+  // more of that by `settings`, which `forgets` what was before.
+  OcclusionImages come_back(const OcclusionSettings& settings, const OcclusionSettings& meanwhile,
+                            bool forgets) {
+    const TestView view = test_views()[2];
+    const Drawing before = draw(view, 32, 24, groove(0.8));
+    const Drawing now = draw(view, 32, 24, ball_on_floor());
+    std::uint32_t index = 0;
+    const auto frame = [&](const Drawing& drawing, const OcclusionSettings& with, bool reset) {
+      return run_occlusion({.view = view.view,
+                            .depth_ndc = drawing.depth_ndc,
+                            .normal_vs = &drawing.normal_vs,
+                            .index = index++,
+                            .reset = reset},
+                           with);
+    };
+    for (int i = 0; i < 4; ++i) {
+      (void)frame(before, settings, i == 0);
+    }
+    for (int i = 0; i < 4; ++i) {
+      (void)frame(now, meanwhile, false);
+    }
+    return frame(now, settings, forgets);
+  }
+
+  void expect_a_new_beginning(const OcclusionSettings& settings,
+                              const OcclusionSettings& meanwhile) {
+    const OcclusionImages found = come_back(settings, meanwhile, false);
+    const OcclusionImages anew = come_back(settings, meanwhile, true);
+    EXPECT_EQ(found.visibility.texels, anew.visibility.texels);
+    EXPECT_EQ(found.bent_normal.texels, anew.bent_normal.texels);
+  }
+};
+
+OcclusionSettings with_history(bool bent_normal) {
+  OcclusionSettings settings = quality_settings(Quality::medium, 0.5f);
+  settings.bent_normal = bent_normal;
+  settings.precision = Precision::float32;
+  return settings;
+}
+
+TEST_F(HistoryRestart, BentNormalsThatComeBackBeginAnew) {
+  expect_a_new_beginning(with_history(true), with_history(false));
+}
+
+TEST_F(HistoryRestart, AHistoryThatComesBackBeginsAnew) {
+  for (const bool bent_normal : {false, true}) {
+    OcclusionSettings without = with_history(bent_normal);
+    without.history_frames = 0;
+    expect_a_new_beginning(with_history(bent_normal), without);
+  }
+}
+
+}  // namespace
+}  // namespace alcove::passes
