@@ -15,12 +15,14 @@ void add_output(CLI::App& app, Options& options) {
   add_device(app, options);
 }
 
+// Takes --spp too, which has no effect, so that a line for `compare` serves; so does `graph`.
 void add_render(CLI::App& app, Options& options) {
   add_scene(app, options.scene);
   add_cut_blends(app, options.cut_blends);
   add_view(app, options.view);
   add_course(app, options.view, "how many to render; 1. The last is written");
   add_occlusion(app, options.occlusion);
+  add_rays(app, options.occlusion);
   add_roughness(app, options.occlusion);
   add_light(app, options);
   add_output(app, options);
@@ -28,7 +30,6 @@ void add_render(CLI::App& app, Options& options) {
 
 void add_compare(CLI::App& app, Options& options) {
   add_render(app, options);
-  add_rays(app, options.occlusion);
   add_lit(app, options.lit);
   add_no_cache(app, options.use_cache);
 }
@@ -80,6 +81,7 @@ void add_graph(CLI::App& app, Options& options) {
   add_cut_blends(app, options.cut_blends);
   add_view(app, options.view);
   add_occlusion(app, options.occlusion);
+  add_rays(app, options.occlusion);
   add_roughness(app, options.occlusion);
   add_format(app, options.graph_format);
   add_device(app, options);
