@@ -121,6 +121,8 @@ TEST_F(ExecutorTest, WhatIsReplacedCountsAsAllocatedUntilItIsFreed) {
   EXPECT_GT(before, 0u);
   // Recording the second frame, the executor does not know yet that the first has finished.
   EXPECT_EQ(allocated(resized, 128), before + after);
+  // The old history stayed while the frame that replaced it could be discarded, and goes now.
+  EXPECT_GT(allocated(resized, 128), allocated(large, 128));
   EXPECT_EQ(allocated(resized, 128), allocated(large, 128));
 }
 
