@@ -52,13 +52,11 @@ Search make_search(Surface surface, SliceLine line, Slice slice, float side, flo
 // A sample's linear depth, times w.
 float distance_w(LineSample here) { return kPerspective ? 1.0 : here.line; }
 
-// The far end of an occluder of the settings' thickness, or of as many of `narrow_w` (parts of 1,
-// times w) if those are less.
-vec2 settings_back(LineSample here, float narrow_w) {
+// The far end of an occluder of the settings' thickness.
+vec2 settings_back(LineSample here) {
   // As slice_point() gives lengths, times w; w times the distance is 1 in perspective.
-  float unit = kThicknessOfDistance ? distance_w(here) * min(1.0, narrow_w / here.point.z)
-                                    : min(here.point.z, narrow_w);
-  return here.point.xy - vec2(0.0, parameters.thickness * unit);
+  float thickness = parameters.thickness * (kThicknessOfDistance ? distance_w(here) : here.point.z);
+  return here.point.xy - vec2(0.0, thickness);
 }
 
 // Layers of depth: 0, and 1 behind it.
@@ -83,7 +81,7 @@ LineSample fetch_sample(Search search, uint layer, uint k) {
     // Not before the front where that was moved.
     vec3 end = slice_point(search.line, along_px, farther_line(found.line, back, kPerspective),
                            search.depth, kPerspective);
-    found.back = ends_occluder(line, back, kPerspective) ? end.xy : vec2(kNowherePx);
+    found.back = ends_occluder(line, back, kPerspective) ? end.xy : settings_back(found);
   }
   return found;
 }

@@ -7,18 +7,12 @@
 // Bend of the line between two samples, in depths for each pixel's width, that parts two surfaces.
 const float kSharpBend = 4.0;
 
-// Parts of the radius from which on a column is not narrow: what thickness is by default, so that
-// by default nothing is thicker than the column that shows it is wide. By the error over foliage,
-// architecture and a helmet.
-const float kNarrow = 0.15;
-
 // A side of a slice as the bitmask sees it.
 struct Side {
-  vec2 height;          // above the tangent plane, of each unit of a point of the slice's plane
-  float sharp;          // bend that parts two surfaces
-  float per_bearing;    // sectors
-  float x_per_step;     // SliceLine's
-  float narrow_per_px;  // parts (times w) of a column that is not narrow
+  vec2 height;        // above the tangent plane, of each unit of a point of the slice's plane
+  float sharp;        // bend that parts two surfaces
+  float per_bearing;  // sectors
+  float x_per_step;   // SliceLine's
   float radius_px;
 };
 
@@ -28,7 +22,6 @@ Side make_side(Surface surface, SliceLine line, Slice slice, float side) {
   made.sharp = kSharpBend * line.x_per_step * (kPerspective ? surface.tangent.line : 1.0);
   made.per_bearing = sectors_per_bearing(slice, side);
   made.x_per_step = line.x_per_step;
-  made.narrow_per_px = line.x_per_step / (kNarrow * parameters.radius);
   made.radius_px = slice_radius_px(line, parameters.radius, surface.depth, kPerspective);
   return made;
 }
@@ -54,13 +47,8 @@ struct Sheet {
   Unseen unseen;   // so far
 };
 
-// Where the occluder ends that a sample is of, seen in a column so wide (kNowherePx: in no narrow
-// one). What stands alone is the thinner the narrower it has to be: a leaf or a blade, not a post
-// seen end-on. What is joined into a sheet hardly needs a thickness.
-float back_position(Side side, LineSample here, float column_px) {
-  float narrow_w = kConnected ? column_px * side.narrow_per_px : kNowherePx;
-  vec2 back = kBackFaces && here.back.x < kNowherePx ? here.back : settings_back(here, narrow_w);
-  return sector_position(side.per_bearing, back);
+float back_position(Side side, LineSample here) {
+  return sector_position(side.per_bearing, kBackFaces ? here.back : settings_back(here));
 }
 
 // Whether rays beside the surface pass behind a sample: it stands above the tangent plane by more
@@ -105,7 +93,7 @@ Sheet begin_sheet(Surface surface, Side side, uint layer, LineSample here, LineS
   float drawn = kConnected && above ? edge_share(kStepCount) : 0.0;
   sheet.position = sector_position(side.per_bearing, here.point.xy * vec2(1.0 - drawn, 1.0));
   sheet.excess = radius_excess(here.point, parameters.radius);
-  uint covered = sectors_between(sheet.position, back_position(side, here, kNowherePx));
+  uint covered = sectors_between(sheet.position, back_position(side, here));
   sheet.sectors = sheet.excess <= 0.0 ? covered : 0u;
   bool front = is_front(here, sheet.excess, sheet.position);
   sheet.fronts = add_column(Fronts(0.0, 0.0, 0.0, false), front, here.offset_px, here.offset_px);
@@ -128,7 +116,7 @@ void extend_sheet(inout Sheet sheet, Side side, uint layer, LineSample here, flo
   vec2 front = vec2(here.point.x - drawn, here.point.y);
   vec2 leaves = radius_crossing(here.point, excess, sheet.last.point, sheet.excess);
   float position = sector_position(side.per_bearing, inside ? front : leaves);
-  float end = inside ? back_position(side, here, sheet.step_px) : position;
+  float end = inside ? back_position(side, here) : position;
   bool continued = joined && sheet.excess <= 0.0;
   float joint = continued ? sheet.position : position;
   uint covered = sectors_between(min(min(position, end), joint), max(max(position, end), joint));

@@ -21,7 +21,7 @@ struct LineSample {
   float offset_px;  // from the shaded pixel along the line, growing from sample to sample
   float line;       // linear along the image of any plane (slice_line.h)
   vec3 point;       // slice_point() of it, x outwards
-  vec2 back;        // x w and y w of where the occluder ends, if back faces tell; else kNowherePx
+  vec2 back;        // x w and y w of where the occluder ends, if back faces tell
 };
 
 // How sharply `line` bends at a sample: its slope before less its slope after, times both steps; 0
