@@ -170,7 +170,7 @@ TEST_F(Arrivals, AHistoryThatWasWrittenInPartIsNotValid) {
     const TextureHistory history =
         graph_.create_texture_history("history", {VK_FORMAT_R8_UNORM, Extent::absolute(8, 8), 2});
     PassBuilder writer = graph_.add_pass("writer");
-    writer.write(history.current, access::storage_write_compute, range, Contents::discard);
+    (void)writer.write(history.current, access::storage_write_compute, range, Contents::discard);
     writer.side_effect();
     return history.validity;
   };

@@ -93,7 +93,7 @@ TEST_F(Queues, AHistoryOfAnotherQueueComesToAFrameThatOnlyHasGraphics) {
     const TextureHistory history = graph_.create_texture_history("history", kDesc);
     PassBuilder pass = graph_.add_pass("pass", queue);
     if (queue == QueueClass::compute)
-      pass.write(history.current, access::storage_write_compute, {}, Contents::discard);
+      (void)pass.write(history.current, access::storage_write_compute, {}, Contents::discard);
     else
       pass.read(history.previous(), access::sampled_fragment);
     pass.side_effect();

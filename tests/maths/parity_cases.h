@@ -200,8 +200,8 @@ ALCOVE_INLINE vec4 parity_of_sampling(uint which, vec4 a, vec4 b) {
     case 24u: {
       Slice s = parity_slice(a);
       LobeSlice lobe = make_lobe_slice(s, 0.05f + 0.95f * b.x);
-      Unseen unseen = add_beyond_border(mean_row(add_column(nothing_unseen(), true, b.y, b.z)), b.w, b.z,
-                                        border_share(b.x, b.y));
+      Unseen unseen = add_beyond_border(mean_row(add_column(nothing_unseen(), true, b.y, b.z)), b.w,
+                                        b.z, border_share(b.x, b.y));
       // Sectors are whole: only without occluders does a rounding not move an end.
       UnseenArc arc = make_unseen_arc(s, 1.0f, sectors_per_bearing(s, 1.0f), 0u, unseen, 1.0f);
       return vec4(unseen_part(arc, s, 1.0f, false), unseen_part(arc, s, 1.0f, true),
