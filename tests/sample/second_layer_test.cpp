@@ -52,7 +52,7 @@ class SecondLayerDrawing : public GpuTest {
     double sum = 0.0;
     for (std::uint32_t y = kSize / 4; y < 3 * kSize / 4; ++y)
       sum += images ? images->visibility.at(kSize / 2 + 2, y) : 0.0;
-    return sum / (kSize / 2);
+    return 2.0 * sum / kSize;
   }
 };
 
