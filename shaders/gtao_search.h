@@ -52,11 +52,10 @@ Search make_search(Surface surface, SliceLine line, Slice slice, float side, flo
 // A sample's linear depth, times w.
 float distance_w(LineSample here) { return kPerspective ? 1.0 : here.line; }
 
-// The far end of an occluder of the settings' thickness.
-vec2 settings_back(LineSample here) {
-  // As slice_point() gives lengths, times w; w times the distance is 1 in perspective.
-  float thickness = parameters.thickness * (kThicknessOfDistance ? distance_w(here) : here.point.z);
-  return here.point.xy - vec2(0.0, thickness);
+// The settings' thickness, of an occluder at a sample: as slice_point() gives lengths, times w.
+float settings_thickness(LineSample here) {
+  // w times the distance is 1 in perspective.
+  return parameters.thickness * (kThicknessOfDistance ? distance_w(here) : here.point.z);
 }
 
 // Layers of depth: 0, and 1 behind it.
@@ -81,7 +80,7 @@ LineSample fetch_sample(Search search, uint layer, uint k) {
     // Not before the front where that was moved.
     vec3 end = slice_point(search.line, along_px, farther_line(found.line, back, kPerspective),
                            search.depth, kPerspective);
-    found.back = ends_occluder(line, back, kPerspective) ? end.xy : settings_back(found);
+    found.back = ends_occluder(line, back, kPerspective) ? end.xy : vec2(0.0, kNoBack);
   }
   return found;
 }

@@ -47,8 +47,12 @@ struct Sheet {
   Unseen unseen;   // so far
 };
 
-float back_position(Side side, LineSample here) {
-  return sector_position(side.per_bearing, kBackFaces ? here.back : settings_back(here));
+// Where the occluder at a sample ends. One that begins there has so much drawn in before it.
+float back_position(Side side, LineSample here, bool begins, float drawn) {
+  float thickness = sample_thickness(settings_thickness(here), begins, drawn);
+  bool known = kBackFaces && here.back.y < kNoBack;
+  vec2 back = known ? here.back : here.point.xy - vec2(0.0, thickness);
+  return sector_position(side.per_bearing, back);
 }
 
 // Whether rays beside the surface pass behind a sample: it stands above the tangent plane by more
@@ -90,10 +94,12 @@ Sheet begin_sheet(Surface surface, Side side, uint layer, LineSample here, LineS
                           sheet.step_px, side.sharp);
   float height = dot(here.point.xy, side.height);
   bool above = height * abs(height) > 0.04 * squared_length(here.point.xy);
-  float drawn = kConnected && above ? edge_share(kStepCount) : 0.0;
-  sheet.position = sector_position(side.per_bearing, here.point.xy * vec2(1.0 - drawn, 1.0));
+  bool begins = kConnected && above;
+  float drawn = begins ? edge_share(kStepCount) * here.point.x : 0.0;
+  sheet.position = sector_position(side.per_bearing, here.point.xy - vec2(drawn, 0.0));
   sheet.excess = radius_excess(here.point, parameters.radius);
-  uint covered = sectors_between(sheet.position, back_position(side, here));
+  float end = back_position(side, here, begins, drawn);
+  uint covered = sectors_between(sheet.position, end);
   sheet.sectors = sheet.excess <= 0.0 ? covered : 0u;
   bool front = is_front(here, sheet.excess, sheet.position);
   sheet.fronts = add_column(Fronts(0.0, 0.0, 0.0, false), front, here.offset_px, here.offset_px);
@@ -111,15 +117,17 @@ void extend_sheet(inout Sheet sheet, Side side, uint layer, LineSample here, flo
                                            : hidden_samples_join(sheet.bend, bend));
   float excess = radius_excess(here.point, parameters.radius);
   bool inside = excess <= 0.0;
-  float apart = kConnected ? edge_share(kStepCount) * sheet.step_px * side.x_per_step : 0.0;
-  float drawn = joined ? 0.0 : apart;
+  bool begins = kConnected && !joined;
+  float drawn = begins ? edge_share(kStepCount) * sheet.step_px * side.x_per_step : 0.0;
   vec2 front = vec2(here.point.x - drawn, here.point.y);
   vec2 leaves = radius_crossing(here.point, excess, sheet.last.point, sheet.excess);
   float position = sector_position(side.per_bearing, inside ? front : leaves);
-  float end = inside ? back_position(side, here) : position;
+  // Not in the choice itself, which would be a branch.
+  float behind = back_position(side, here, begins, drawn);
+  float end = inside ? behind : position;
   bool continued = joined && sheet.excess <= 0.0;
   float joint = continued ? sheet.position : position;
-  uint covered = sectors_between(min(min(position, end), joint), max(max(position, end), joint));
+  uint covered = sectors_from_to(min(min(position, end), joint), max(max(position, end), joint));
   sheet.sectors |= inside || continued ? covered : 0u;
   sheet.fronts =
       add_column(sheet.fronts, is_front(here, excess, position), sheet.step_px, here.offset_px);

@@ -49,7 +49,9 @@ const bool kLobe = false;
 #define SIGNAL_FORMAT rg32ui
 #endif
 
-layout(set = 0, binding = 0) uniform Parameters { ReconstructParameters parameters; };
+layout(set = 0, binding = 0) uniform Parameters { ReconstructParameters given; };
+// Loaded once: a driver may load what is uniform again after each store.
+ReconstructParameters parameters;
 // What our own passes wrote is read as storage: a texel at a known place needs no sampler.
 layout(set = 0, binding = 1, SIGNAL_FORMAT) uniform readonly uimage2D signal_image;  // by blocks
 // Where there is none, the signal.
@@ -318,6 +320,7 @@ bool inside(ivec2 pixel) {
 // ones: those are fetched once. With kBetween a cell lies between four searched pixels, else it is
 // a block. Beyond the image the outermost stand for those that there are not.
 void main() {
+  parameters = given;
   ivec2 cell = ivec2(gl_GlobalInvocationID.xy) - (kBetween ? 1 : 0);
   ivec2 first = cell * kDivisor + (kBetween ? ivec2(parameters.phase) : ivec2(0));
   if (any(greaterThanEqual(first, size_px()))) {

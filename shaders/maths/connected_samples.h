@@ -3,18 +3,21 @@
 //
 // A depth buffer shows fronts only. Taken as infinitely thick, thin things darken whatever is
 // behind them; taken as thin, walls leak light between their samples. So two consecutive samples
-// are joined into a sheet when depth alone says that they continue one surface (samples_join),
-// every sample has a thickness (along the view vector, or as far as its back face), and the edge of
-// a surface that appears between two samples is placed between them (edge_share). A surface that
-// leaves the image goes on as it left (continued_point). What is hidden behind a front stays
-// unknown: something between thin and infinitely thick, the nearer to the latter the wider the
-// fronts stand in the image (fill_behind()), errs less than either (see the README's table).
+// are joined into a sheet when depth alone says that they continue one surface (samples_join), the
+// edge of a surface that appears between two samples is placed between them (edge_share), and every
+// sample has a thickness: along the view vector, or as far as its back face (sample_thickness). A
+// surface that leaves the image goes on as it left (continued_point). What is hidden behind a front
+// stays unknown: something between thin and infinitely thick, the nearer to the latter the wider
+// the fronts stand in the image (fill_behind()), errs less than either (see the README's table).
 #ifndef ALCOVE_MATHS_CONNECTED_SAMPLES_H
 #define ALCOVE_MATHS_CONNECTED_SAMPLES_H
 
 #include "language.h"
 
 ALCOVE_MATHS_BEGIN
+
+// LineSample::back, y of it, where no back face tells.
+const float kNoBack = 1e30f;
 
 // A sample of a side.
 struct LineSample {
@@ -49,6 +52,13 @@ ALCOVE_INLINE bool hidden_samples_join(float bend_here, float bend_there) {
 // Where between two samples the edge of the second one's surface is taken to be, if they are on
 // two: this part of the way back to the first. Coarser searches miss more of it.
 ALCOVE_INLINE float edge_share(uint steps) { return steps > 6u ? 0.5f : 0.75f; }
+
+// How thick the occluder at a sample is, along the view vector: as the settings say, but where a
+// surface begins no more than what is `drawn` of it, since what is thin across the image is mostly
+// a blade, a bar or a leaf. All times w.
+ALCOVE_INLINE float sample_thickness(float settings, bool begins, float drawn) {
+  return min(settings, begins ? drawn : 1e30f);
+}
 
 // By how much a point, as slice_point() gives it, lies beyond the radius, times its w; negative
 // within it.

@@ -47,11 +47,16 @@ ALCOVE_INLINE float sector_position(float per_bearing, vec2 point) {
   return min(bearing(point) * per_bearing, float(kSectorCount));
 }
 
-// The sectors between two positions in [0,32], in either order, to the nearest boundaries.
-ALCOVE_INLINE uint sectors_between(float from, float to) {
-  int low = int(min(from, to) + 0.5f);
-  int count = int(max(from, to) + 0.5f) - low;
+// The sectors from one position in [0,32] to another that is no less, to the nearest boundaries.
+ALCOVE_INLINE uint sectors_from_to(float from, float to) {
+  int low = int(from + 0.5f);
+  int count = int(to + 0.5f) - low;
   return count > 0 ? (0xffffffffu >> uint(32 - count)) << uint(low) : 0u;
+}
+
+// The same of positions in either order.
+ALCOVE_INLINE uint sectors_between(float a, float b) {
+  return sectors_from_to(min(a, b), max(a, b));
 }
 
 // What is asked of a side.

@@ -233,6 +233,12 @@ TEST(ConnectedSamples, OfWhatIsHiddenJoinAlongAPlaneAlone) {
   EXPECT_FALSE(maths::hidden_samples_join(2.0f, -1.0f)) << "one surface in front of another";
 }
 
+TEST(ConnectedSamples, ASurfaceThatBeginsIsNoThickerThanWhatIsDrawnOfIt) {
+  EXPECT_EQ(maths::sample_thickness(0.5f, true, 0.2f), 0.2f);
+  EXPECT_EQ(maths::sample_thickness(0.5f, true, 2.0f), 0.5f);
+  EXPECT_EQ(maths::sample_thickness(0.5f, false, 0.2f), 0.5f);
+}
+
 TEST(ConnectedSamples, OnlySharpBendsCountAndTheirSignIsTheTurns) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {

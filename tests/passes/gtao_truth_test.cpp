@@ -284,6 +284,33 @@ TEST_F(GtaoTruth, MoreIsFilledBehindAWideOccluderThanBehindNarrowOnes) {
   }
 }
 
+// A strip of one sample's width is no thicker than that, whatever the settings say of occluders; a
+// board, of many samples, is as thick as they say.
+TEST_F(GtaoTruth, WhatIsNarrowIsThin) {
+  for (const TestView& view : {test_views()[2], test_views().back()}) {
+    SCOPED_TRACE(view.name);
+    const auto darkened_by_thickness = [&](double width) {
+      Surface front = plane({0.0, 0.0, -3.0}, {0.0, 0.0, 1.0});
+      front.keep = [=](const glm::dvec3& p) { return p.x > 0.0 && p.x < width; };
+      const Drawing drawing = draw(view, 96, 40, {plane({0.0, 0.0, -4.0}, {0.0, 0.0, 1.0}), front});
+      const auto beside = [&](float thickness) {
+        OcclusionSettings settings = exact(Estimator::connected, 1.2f);
+        settings.steps = 8;
+        settings.fill = 0.0f;
+        settings.thickness = thickness;
+        const HostImage image =
+            run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, settings).visibility;
+        double sum = 0.0;
+        for (std::uint32_t x = 36; x < 44; ++x) sum += image.at(x, 20);
+        return sum / 8.0;
+      };
+      return beside(0.05f) - beside(3.0f);
+    };
+    EXPECT_LT(darkened_by_thickness(0.12), 0.1 * darkened_by_thickness(1.0));
+    EXPECT_GT(darkened_by_thickness(1.0), 0.03);
+  }
+}
+
 TEST_F(GtaoTruth, WhatLiesBeyondTheRadiusDoesNotOcclude) {
   const TestView view = orthographic_view("orthographic", 4.0, 4.0, 0.1, 20.0);
   const double height = 0.5;
