@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 
 #include <array>
+#include <climits>
 #include <string>
+#include <utility>
 
 #include "c_interface_fixture.h"
 #include "framegraph/allocation_counter.h"
@@ -162,6 +164,22 @@ TEST_F(CFailure, RunningOutOfDeviceMemoryAnywhereIsAnErrorAndLeaksNothing) {
         << outcome.message;
     EXPECT_EQ(outcome.message.empty(), !failed);
     ASSERT_LT(call, 500);
+  }
+}
+
+TEST(CResult, HasTheNameOfItsValue) {
+#define ALCOVE_NAMED(value) \
+  std::pair { value, #value }
+  for (const auto& [value, name] :
+       {ALCOVE_NAMED(ALCOVE_SUCCESS), ALCOVE_NAMED(ALCOVE_ERROR_INVALID_INPUT),
+        ALCOVE_NAMED(ALCOVE_ERROR_UNSUPPORTED), ALCOVE_NAMED(ALCOVE_ERROR_OUT_OF_HOST_MEMORY),
+        ALCOVE_NAMED(ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY), ALCOVE_NAMED(ALCOVE_ERROR_DEVICE_LOST),
+        ALCOVE_NAMED(ALCOVE_ERROR_VULKAN), ALCOVE_NAMED(ALCOVE_ERROR_INTERNAL)}) {
+    EXPECT_STREQ(alcoveResultName(value), name);
+  }
+#undef ALCOVE_NAMED
+  for (const int none : {1, -8, INT_MAX, INT_MIN}) {
+    EXPECT_STREQ(alcoveResultName(static_cast<AlcoveResult>(none)), "unknown AlcoveResult");
   }
 }
 

@@ -50,6 +50,9 @@ typedef enum AlcoveResult {
   ALCOVE_RESULT_MAX_ENUM = 0x7fffffff
 } AlcoveResult;
 
+// "ALCOVE_SUCCESS" and so on: static, and never null.
+const char* alcoveResultName(AlcoveResult result);
+
 // ALCOVE_VERSION of the library.
 uint32_t alcoveGetVersion(void);
 
