@@ -117,7 +117,7 @@ Result create(const AlcoveContextInfo& info, AlcoveContext*& context) {
   if (!executor) {
     return tl::unexpected(passes::failure_of(executor.error()));
   }
-  auto kernels = passes::Kernels::create(handles, info.frames_in_flight);
+  auto kernels = passes::Kernels::create(handles, info.frames_in_flight, info.pipeline_cache);
   if (!kernels) {
     return tl::unexpected(passes::failure_of(kernels.error(), "The context"));
   }

@@ -206,6 +206,11 @@ typedef struct AlcoveContextInfo {
   uint32_t frames_in_flight;  // 1 to ALCOVE_MAX_FRAMES_IN_FLIGHT
   VkBool32 debug_utils;       // VK_EXT_debug_utils is enabled: passes and images get names
   VkBool32 timestamps;        // the device times each pass: alcoveGetTimings
+  // Where pipelines are looked up and kept; null: nowhere. The engine loads, stores and destroys
+  // it. Vulkan synchronises it, so that other threads and contexts may use it at the same time,
+  // unless it was created with VK_PIPELINE_CACHE_CREATE_EXTERNALLY_SYNCHRONIZED_BIT: then none may
+  // while a frame of this context is recorded.
+  VkPipelineCache pipeline_cache;
 } AlcoveContextInfo;
 
 // `message` may be null; else it has room for ALCOVE_MAX_MESSAGE bytes and gets the sentence where

@@ -12,6 +12,7 @@ typedef struct Engine {
   uint32_t queue_family;
   PFN_vkGetInstanceProcAddr get_instance_proc_addr;
   VkPhysicalDeviceFeatures2 features; /* that the device was made with, chained */
+  VkPipelineCache pipeline_cache;     /* loaded when the engine starts, stored when it ends */
   AlcoveImage depth;                  /* attached while drawing, sampled afterwards */
   AlcoveImage occlusion;              /* R8_UNORM, sampled by the lighting */
   AlcoveCamera camera, previous_camera;
@@ -28,6 +29,7 @@ static AlcoveResult start(const Engine* engine, AlcoveContext** context, char* m
   info.enabled_features = &engine->features;
   info.frames_in_flight = 2;
   info.timestamps = VK_TRUE;
+  info.pipeline_cache = engine->pipeline_cache;
   return alcoveCreateContext(&info, context, message);
 }
 
