@@ -232,6 +232,24 @@ std::array<std::uint32_t, 12> constants_of(const ReconstructInputs& inputs,
           flag(past == Past::settled)};
 }
 
+tl::expected<Kernel, Error> get_kernel(const Frame& frame, const ReconstructInputs& inputs,
+                                       const ReconstructSettings& settings, bool perspective,
+                                       Past past) {
+  const bool history = settings.history_frames > 0;
+  const auto get = [&](Past of) {
+    return frame.kernels.get(shader_of(history, inputs.signal.lobe),
+                             constants_of(inputs, settings, perspective, of));
+  };
+  if (history && frame.prepare) {
+    for (const Past each : {Past::none, Past::moving, Past::still, Past::settled}) {
+      if (auto made = get(each); !made) {
+        return made;
+      }
+    }
+  }
+  return get(past);
+}
+
 // View-space positions from (x s, y s, depth, 1), as ReconstructParameters::previous_from_pixel has
 // them.
 maths::mat4 view_from_pixel(const maths::Projection& p) {
@@ -329,7 +347,7 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& given_frame,
   const bool history = settings.history_frames > 0;
   const Frame frame = history ? given_frame : without_past(given_frame);
   ReconstructInputs inputs = given;
-  if (frame.view == frame.previous_view && frame.still_frames > 0) {
+  if (frame.view == frame.previous_view && frame.still_frames > 0 && !frame.prepare) {
     inputs.motion = {};
   }
   if (!inputs.signal.lobe) {
@@ -353,9 +371,7 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& given_frame,
   bool history_valid = false;
   Textures textures = create_textures(frame, inputs, settings, *sizes, history_name, history_valid);
   const Past past = past_of(frame, *sizes, history_valid, bool(inputs.motion));
-  const auto kernel =
-      frame.kernels.get(shader_of(history, inputs.signal.lobe),
-                        constants_of(inputs, settings, is_perspective(*projection), past));
+  const auto kernel = get_kernel(frame, inputs, settings, is_perspective(*projection), past);
   if (!kernel) {
     return tl::unexpected(kernel.error());
   }

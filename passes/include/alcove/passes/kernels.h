@@ -51,9 +51,10 @@ struct Kernel {
 };
 
 // Owns every pipeline, descriptor and parameter buffer of the passes on one device. Pipelines are
-// made at the first use of a shader with a set of constants and kept; a frame that uses none anew
-// allocates nothing. One thread at a time, but for dispatch(), which the threads that record a
-// frame (ExecutorOptions::recording_threads) may call at the same time.
+// made at the first use of a shader with a set of constants, or before it (Frame::prepare), and
+// kept; a frame that uses none anew allocates nothing. One thread at a time, but for dispatch(),
+// which the threads that record a frame (ExecutorOptions::recording_threads) may call at the same
+// time.
 class Kernels {
  public:
   // Passes use at most this many dispatches, and this many bytes of parameters, in a frame.
