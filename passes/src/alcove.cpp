@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "alcove/framegraph/compile.h"
 #include "alcove/framegraph/executor.h"
 #include "alcove/framegraph/print.h"
 #include "alcove/passes/kernels.h"
@@ -117,7 +118,7 @@ Result create(const AlcoveContextInfo& info, AlcoveContext*& context) {
   if (!executor) {
     return tl::unexpected(passes::failure_of(executor.error()));
   }
-  auto kernels = passes::Kernels::create(handles, info.frames_in_flight);
+  auto kernels = passes::Kernels::create(handles, info.frames_in_flight, info.pipeline_cache);
   if (!kernels) {
     return tl::unexpected(passes::failure_of(kernels.error(), "The context"));
   }
@@ -126,10 +127,9 @@ Result create(const AlcoveContextInfo& info, AlcoveContext*& context) {
   return {};
 }
 
-Result check(const AlcoveContext& context, VkCommandBuffer commands, const AlcoveFrame* frame) {
-  if (commands == VK_NULL_HANDLE || frame == nullptr) {
-    return invalid(frame == nullptr ? "There is no AlcoveFrame."
-                                    : "There is no command buffer to record into.");
+Result check(const AlcoveContext& context, const AlcoveFrame* frame) {
+  if (frame == nullptr) {
+    return invalid("There is no AlcoveFrame.");
   }
   if (auto right = passes::check_size(frame->struct_size, sizeof *frame, "AlcoveFrame"); !right) {
     return right;
@@ -187,15 +187,34 @@ struct Declaration {
   bool recorded = false;
 };
 
-Result add_views(AlcoveContext& context, const AlcoveFrame& frame, ViewPasses& passes) {
+tl::expected<ViewPasses, Failure> add_views(framegraph::Graph& graph, AlcoveContext& context,
+                                            const AlcoveFrame& frame, bool prepare) {
+  ViewPasses passes;
+  context.images.reset();
   for (const AlcoveView& view : std::span(frame.views, frame.view_count)) {
     if (auto added =
-            passes::add_view(context.graph, context.kernels, context.images, view, frame.index);
+            passes::add_view(graph, context.kernels, context.images, view, frame.index, prepare);
         !added) {
-      return added;
+      return tl::unexpected(std::move(added.error()));
     }
-    passes.views[passes.count++] = {
-        view.id, static_cast<std::uint32_t>(context.graph.description().passes.size())};
+    passes.views[passes.count++] = {view.id,
+                                    static_cast<std::uint32_t>(graph.description().passes.size())};
+  }
+  return passes;
+}
+
+// In a graph of its own: the context's keeps its histories and what was recorded last.
+Result prepare(AlcoveContext& context, const AlcoveFrame* frame) {
+  if (auto right = check(context, frame); !right) {
+    return right;
+  }
+  framegraph::Graph graph;
+  if (auto passes = add_views(graph, context, *frame, true); !passes) {
+    return tl::unexpected(std::move(passes.error()));
+  }
+  // For its errors: of images that the device cannot use so.
+  if (const auto plan = framegraph::compile(graph, context.executor.limits()); !plan) {
+    return tl::unexpected(passes::failure_of(plan.error()));
   }
   return {};
 }
@@ -203,15 +222,17 @@ Result add_views(AlcoveContext& context, const AlcoveFrame& frame, ViewPasses& p
 Result record(AlcoveContext& context, VkCommandBuffer commands, const AlcoveFrame* frame) {
   settle(context);
   context.report = {};
-  if (auto right = check(context, commands, frame); !right) {
+  if (commands == VK_NULL_HANDLE) {
+    return invalid("There is no command buffer to record into.");
+  }
+  if (auto right = check(context, frame); !right) {
     return right;
   }
   Declaration declaration(context.graph);
-  context.images.reset();
   context.kernels.begin_frame(frame->slot);
-  ViewPasses passes;
-  if (auto added = add_views(context, *frame, passes); !added) {
-    return added;
+  const auto passes = add_views(context.graph, context, *frame, false);
+  if (!passes) {
+    return tl::unexpected(passes.error());
   }
   const auto report = context.executor.record(context.graph, commands, {frame->slot});
   if (!report) {
@@ -220,7 +241,7 @@ Result record(AlcoveContext& context, VkCommandBuffer commands, const AlcoveFram
   context.report = *report;
   context.slot = frame->slot;
   context.may_discard = declaration.recorded = true;
-  context.passes_of_views[frame->slot] = passes;
+  context.passes_of_views[frame->slot] = *passes;
   return {};
 }
 
@@ -258,6 +279,10 @@ void alcoveDestroyContext(AlcoveContext* context) { delete context; }
 
 const char* alcoveGetMessage(const AlcoveContext* context) {
   return context == nullptr ? "There is no context." : context->message.data();
+}
+
+AlcoveResult alcovePrepareFrame(AlcoveContext* context, const AlcoveFrame* frame) {
+  return guarded(context, [&] { return prepare(*context, frame); });
 }
 
 AlcoveResult alcoveRecordFrame(AlcoveContext* context, VkCommandBuffer commands,

@@ -68,3 +68,26 @@ Failure failure_of(const Error& error, std::string_view where) {
 }
 
 }  // namespace alcove::passes
+
+const char* alcoveResultName(AlcoveResult result) {
+  switch (result) {
+    case ALCOVE_SUCCESS:
+      return "ALCOVE_SUCCESS";
+    case ALCOVE_ERROR_INVALID_INPUT:
+      return "ALCOVE_ERROR_INVALID_INPUT";
+    case ALCOVE_ERROR_UNSUPPORTED:
+      return "ALCOVE_ERROR_UNSUPPORTED";
+    case ALCOVE_ERROR_OUT_OF_HOST_MEMORY:
+      return "ALCOVE_ERROR_OUT_OF_HOST_MEMORY";
+    case ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY:
+      return "ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY";
+    case ALCOVE_ERROR_DEVICE_LOST:
+      return "ALCOVE_ERROR_DEVICE_LOST";
+    case ALCOVE_ERROR_VULKAN:
+      return "ALCOVE_ERROR_VULKAN";
+    case ALCOVE_ERROR_INTERNAL:
+      return "ALCOVE_ERROR_INTERNAL";
+    default:
+      return "unknown AlcoveResult";
+  }
+}

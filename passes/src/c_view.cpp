@@ -142,7 +142,8 @@ ViewName::ViewName(std::uint32_t id) {
 }
 
 tl::expected<void, Failure> add_view(framegraph::Graph& graph, Kernels& kernels, ImageTable& images,
-                                     const AlcoveView& view, std::uint32_t frame_index) {
+                                     const AlcoveView& view, std::uint32_t frame_index,
+                                     bool prepare) {
   auto given = to_settings(view.settings);
   if (!given) {
     return tl::unexpected(std::move(given.error()));
@@ -171,6 +172,7 @@ tl::expected<void, Failure> add_view(framegraph::Graph& graph, Kernels& kernels,
     graph.reset_history(ViewName(view.id));
   }
   Frame frame{graph, kernels, *now, frame_index, *before, reset ? 0 : view.still_frames};
+  frame.prepare = prepare;
   frame.largest_size = {view.largest_width, view.largest_height};
   if (!reset) {
     frame.previous_size = {view.previous_width, view.previous_height};

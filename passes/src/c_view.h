@@ -18,9 +18,9 @@ class ViewName {
   std::array<char, 16> text_{};  // "view 4294967295"
 };
 
-// Adds the passes of `view` to the graph.
+// Adds the passes of `view` to the graph; `prepare` as Frame has it.
 [[nodiscard]] tl::expected<void, Failure> add_view(framegraph::Graph& graph, Kernels& kernels,
                                                    ImageTable& images, const AlcoveView& view,
-                                                   std::uint32_t frame_index);
+                                                   std::uint32_t frame_index, bool prepare);
 
 }  // namespace alcove::passes

@@ -93,6 +93,7 @@ struct Kernels::State {
   framegraph::VulkanFunctions vk;
   VkPhysicalDevice physical_device = VK_NULL_HANDLE;
   VkDevice device = VK_NULL_HANDLE;
+  VkPipelineCache cache = VK_NULL_HANDLE;  // the caller's
   std::array<VkShaderModule, kShaderCount> modules{};
   std::array<VkDescriptorSetLayout, kShaderCount> set_layouts{};
   std::array<VkPipelineLayout, kShaderCount> pipeline_layouts{};
@@ -322,7 +323,8 @@ Kernels& Kernels::operator=(Kernels&&) noexcept = default;
 Kernels::~Kernels() = default;
 
 tl::expected<Kernels, Error> Kernels::create(const framegraph::DeviceHandles& device,
-                                             std::uint32_t frames_in_flight) {
+                                             std::uint32_t frames_in_flight,
+                                             VkPipelineCache cache) {
   if (device.instance == VK_NULL_HANDLE || device.physical_device == VK_NULL_HANDLE ||
       device.device == VK_NULL_HANDLE || device.get_instance_proc_addr == nullptr) {
     return tl::unexpected(
@@ -342,6 +344,7 @@ tl::expected<Kernels, Error> Kernels::create(const framegraph::DeviceHandles& de
   }
   state->physical_device = device.physical_device;
   state->device = device.device;
+  state->cache = cache;
   auto done = check_limits(state->vk, device.physical_device)
                   .and_then([&] { return state->create_layouts(); })
                   .and_then([&] { return state->create_slots(frames_in_flight); })
@@ -390,8 +393,8 @@ tl::expected<Kernel, Error> Kernels::get_pipeline(Shader shader,
     s.pipelines.reserve(2 * s.pipelines.size() + 8);
   }
   Pipeline made{shader, {constants.begin(), constants.end()}, VK_NULL_HANDLE};
-  if (const VkResult result = s.vk.vkCreateComputePipelines(s.device, VK_NULL_HANDLE, 1, &info,
-                                                            nullptr, &made.pipeline);
+  if (const VkResult result =
+          s.vk.vkCreateComputePipelines(s.device, s.cache, 1, &info, nullptr, &made.pipeline);
       result != VK_SUCCESS) {
     return failure("a compute pipeline", result);
   }

@@ -29,6 +29,15 @@ namespace {
 // Still frames after which every pixel of a block of 4 has been searched once.
 constexpr std::uint32_t kSettledFrames = 16;
 
+// What lies before a frame: all that its pipeline depends on besides settings, inputs and the kind
+// of projection.
+enum class Past : std::uint8_t {
+  none,  // no history, or none that can be read
+  moving,
+  still,    // the frame before shows the very same
+  settled,  // as do kSettledFrames
+};
+
 // The history of bent normals that goes with one of this name. On the stack, so that a steady frame
 // allocates nothing for it.
 class BentHistoryName {
@@ -191,6 +200,56 @@ Shader shader_of(bool history, bool lobe) {
   return history ? Shader::reconstruct_history : Shader::reconstruct;
 }
 
+Past past_of(const Frame& frame, const ReconstructSizes& sizes, bool history_valid, bool motion) {
+  if (!history_valid) {
+    return Past::none;
+  }
+  const bool same_size =
+      sizes.now.width == sizes.previous.width && sizes.now.height == sizes.previous.height;
+  if (motion || !same_size || frame.view != frame.previous_view) {
+    return Past::moving;
+  }
+  return frame.still_frames >= kSettledFrames ? Past::settled : Past::still;
+}
+
+// Of the shader, in its order.
+std::array<std::uint32_t, 12> constants_of(const ReconstructInputs& inputs,
+                                           const ReconstructSettings& settings, bool perspective,
+                                           Past past) {
+  const auto flag = [](bool on) { return static_cast<std::uint32_t>(on); };
+  const bool still = past == Past::still || past == Past::settled;
+  return {inputs.signal.divisor,
+          settings.filter_reach,
+          flag(bool(inputs.signal.bent)),
+          flag(inputs.motion && past == Past::moving),
+          flag(perspective),
+          flag(settings.clamp_width > 0.0f),
+          flag(still),
+          flag(bool(inputs.roughness)),
+          settings.roughness_channel,
+          flag(past == Past::none),
+          flag(settings.visibility),
+          flag(past == Past::settled)};
+}
+
+tl::expected<Kernel, Error> get_kernel(const Frame& frame, const ReconstructInputs& inputs,
+                                       const ReconstructSettings& settings, bool perspective,
+                                       Past past) {
+  const bool history = settings.history_frames > 0;
+  const auto get = [&](Past of) {
+    return frame.kernels.get(shader_of(history, inputs.signal.lobe),
+                             constants_of(inputs, settings, perspective, of));
+  };
+  if (history && frame.prepare) {
+    for (const Past each : {Past::none, Past::moving, Past::still, Past::settled}) {
+      if (auto made = get(each); !made) {
+        return made;
+      }
+    }
+  }
+  return get(past);
+}
+
 // View-space positions from (x s, y s, depth, 1), as ReconstructParameters::previous_from_pixel has
 // them.
 maths::mat4 view_from_pixel(const maths::Projection& p) {
@@ -288,8 +347,7 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& given_frame,
   const bool history = settings.history_frames > 0;
   const Frame frame = history ? given_frame : without_past(given_frame);
   ReconstructInputs inputs = given;
-  const bool same_view = frame.view == frame.previous_view;
-  if (same_view && frame.still_frames > 0) {
+  if (frame.view == frame.previous_view && frame.still_frames > 0 && !frame.prepare) {
     inputs.motion = {};
   }
   if (!inputs.signal.lobe) {
@@ -312,23 +370,8 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& given_frame,
   }
   bool history_valid = false;
   Textures textures = create_textures(frame, inputs, settings, *sizes, history_name, history_valid);
-  const bool same_size =
-      sizes->now.width == sizes->previous.width && sizes->now.height == sizes->previous.height;
-  const bool still = history_valid && !inputs.motion && same_view && same_size;
-  const bool settled = still && frame.still_frames >= kSettledFrames;
-  const std::array constants{inputs.signal.divisor,
-                             settings.filter_reach,
-                             static_cast<std::uint32_t>(bool(inputs.signal.bent)),
-                             static_cast<std::uint32_t>(bool(inputs.motion)),
-                             static_cast<std::uint32_t>(is_perspective(*projection)),
-                             static_cast<std::uint32_t>(settings.clamp_width > 0.0f),
-                             static_cast<std::uint32_t>(still),
-                             static_cast<std::uint32_t>(bool(inputs.roughness)),
-                             settings.roughness_channel,
-                             static_cast<std::uint32_t>(!history_valid),
-                             static_cast<std::uint32_t>(settings.visibility),
-                             static_cast<std::uint32_t>(settled)};
-  const auto kernel = frame.kernels.get(shader_of(history, inputs.signal.lobe), constants);
+  const Past past = past_of(frame, *sizes, history_valid, bool(inputs.motion));
+  const auto kernel = get_kernel(frame, inputs, settings, is_perspective(*projection), past);
   if (!kernel) {
     return tl::unexpected(kernel.error());
   }
@@ -340,7 +383,7 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& given_frame,
   parameters.window_px = window_px(inputs.signal);
   // Distances from the plane count for more with the slices, as the window narrows with them.
   parameters.tolerance *= std::sqrt(static_cast<float>(inputs.signal.slices));
-  if (settled) {  // nothing to follow: all frames count alike
+  if (past == Past::settled) {  // nothing to follow: all frames count alike
     parameters.longest = static_cast<float>(kMaxHistoryFrames);
   }
   parameters.phase = maths::vec2(static_cast<float>(phase_x), static_cast<float>(phase_y));

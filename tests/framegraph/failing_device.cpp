@@ -48,6 +48,24 @@ using Module = Wrapped<&vkCreateShaderModule, &vkDestroyShaderModule>;
 using Event = Wrapped<&vkCreateEvent, &vkDestroyEvent>;
 using Semaphore = Wrapped<&vkCreateSemaphore, &vkDestroySemaphore>;
 
+VKAPI_ATTR VkResult VKAPI_CALL create_pipelines(VkDevice device, VkPipelineCache cache,
+                                                std::uint32_t count,
+                                                const VkComputePipelineCreateInfo* infos,
+                                                const VkAllocationCallbacks* callbacks,
+                                                VkPipeline* pipelines) {
+  if (++call_count == failing_call) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+  const VkResult result =
+      vkCreateComputePipelines(device, cache, count, infos, callbacks, pipelines);
+  if (result == VK_SUCCESS) alive_count += static_cast<int>(count);
+  return result;
+}
+
+VKAPI_ATTR void VKAPI_CALL destroy_pipeline(VkDevice device, VkPipeline pipeline,
+                                            const VkAllocationCallbacks* callbacks) {
+  if (pipeline != VK_NULL_HANDLE) --alive_count;
+  vkDestroyPipeline(device, pipeline, callbacks);
+}
+
 // Freed with their pool.
 VKAPI_ATTR VkResult VKAPI_CALL allocate_sets(VkDevice device,
                                              const VkDescriptorSetAllocateInfo* info,
@@ -92,6 +110,8 @@ PFN_vkVoidFunction VKAPI_CALL get_device_proc_addr(VkDevice device, const char* 
       ALCOVE_WRAP(Event, "vkCreateEvent", "vkDestroyEvent"),
       ALCOVE_WRAP(DescriptorPool, "vkCreateDescriptorPool", "vkDestroyDescriptorPool"),
       ALCOVE_WRAP(Module, "vkCreateShaderModule", "vkDestroyShaderModule"),
+      {"vkCreateComputePipelines", reinterpret_cast<PFN_vkVoidFunction>(&create_pipelines)},
+      {"vkDestroyPipeline", reinterpret_cast<PFN_vkVoidFunction>(&destroy_pipeline)},
       {"vkAllocateDescriptorSets", reinterpret_cast<PFN_vkVoidFunction>(&allocate_sets)},
       ALCOVE_WRAP(Semaphore, "vkCreateSemaphore", "vkDestroySemaphore"),
       {"vkQueueSubmit2", reinterpret_cast<PFN_vkVoidFunction>(&submit)},

@@ -58,7 +58,7 @@ class CBadInput : public CInterface {
     std::array<AlcoveView, 9> views;
     AlcoveSettings settings;
   };
-  // What alcoveRecordFrame says of a frame that `spoil` changed.
+  // What alcoveRecordFrame says of a frame that `spoil` changed, and alcovePrepareFrame too.
   std::string error_of(const std::function<void(Spoilt&)>& spoil) {
     Spoilt spoilt{};
     spoilt.settings = settings_;
@@ -72,11 +72,14 @@ class CBadInput : public CInterface {
                     .view_count = 1,
                     .views = spoilt.views.data()};
     spoil(spoilt);
+    EXPECT_EQ(alcovePrepareFrame(context_.get(), &spoilt.frame), ALCOVE_ERROR_INVALID_INPUT);
+    std::string said = alcoveGetMessage(context_.get());
     engine().submit(1, [&](VkCommandBuffer commands) {
       EXPECT_EQ(alcoveRecordFrame(context_.get(), commands, &spoilt.frame),
                 ALCOVE_ERROR_INVALID_INPUT);
     });
-    return alcoveGetMessage(context_.get());
+    EXPECT_EQ(said, alcoveGetMessage(context_.get()));
+    return said;
   }
 
   void expect_a_good_frame() {
@@ -298,6 +301,9 @@ TEST_F(CBadInput, NullPointersAreErrors) {
   engine().submit(0, [&](VkCommandBuffer commands) {
     EXPECT_EQ(alcoveRecordFrame(context(), commands, nullptr), ALCOVE_ERROR_INVALID_INPUT);
   });
+  EXPECT_EQ(alcovePrepareFrame(nullptr, &frame), ALCOVE_ERROR_INVALID_INPUT);
+  EXPECT_EQ(alcovePrepareFrame(context(), nullptr), ALCOVE_ERROR_INVALID_INPUT);
+  EXPECT_THAT(alcoveGetMessage(context()), HasSubstr("no AlcoveFrame"));
   EXPECT_EQ(alcoveGetMemory(context(), nullptr), ALCOVE_ERROR_INVALID_INPUT);
   EXPECT_EQ(alcoveGetMemory(nullptr, nullptr), ALCOVE_ERROR_INVALID_INPUT);
   AlcoveMemory memory{};

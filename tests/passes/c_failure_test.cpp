@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 
 #include <array>
+#include <climits>
 #include <string>
+#include <utility>
 
 #include "c_interface_fixture.h"
 #include "framegraph/allocation_counter.h"
@@ -117,12 +119,13 @@ TEST_F(CFailure, AFeatureThatTheEngineDidNotEnableIsNamed) {
               HasSubstr("shaderStorageImageWriteWithoutFormat"));
 }
 
-// Makes a context and records two frames; the first thing that fails, and what is said of it.
+// Makes a context, prepares a frame and records two; the first thing that fails, and what is said
+// of it.
 struct Outcome {
   AlcoveResult result = ALCOVE_SUCCESS;
   std::string message;
 };
-Outcome run_two_frames(const AlcoveContextInfo& info, const AlcoveView& view, Engine& engine) {
+Outcome run_frames(const AlcoveContextInfo& info, const AlcoveView& view, Engine& engine) {
   Outcome outcome;
   char message[ALCOVE_MAX_MESSAGE];
   AlcoveContext* made = nullptr;
@@ -130,6 +133,10 @@ Outcome run_two_frames(const AlcoveContextInfo& info, const AlcoveView& view, En
   const Context context(made);
   std::string said = message;
   const AlcoveFrame frame{.struct_size = sizeof frame, .view_count = 1, .views = &view};
+  if (outcome.result == ALCOVE_SUCCESS) {
+    outcome.result = alcovePrepareFrame(context.get(), &frame);
+    said = alcoveGetMessage(context.get());
+  }
   for (int i = 0; i < 2 && outcome.result == ALCOVE_SUCCESS; ++i) {
     engine.submit(0, [&](VkCommandBuffer commands) {
       outcome.result = alcoveRecordFrame(context.get(), commands, &frame);
@@ -155,13 +162,29 @@ TEST_F(CFailure, RunningOutOfDeviceMemoryAnywhereIsAnErrorAndLeaksNothing) {
   for (int call = 1; failed; ++call) {
     SCOPED_TRACE(call);
     framegraph::failing::fail_at(call);
-    const Outcome outcome = run_two_frames(info, view, engine());
+    const Outcome outcome = run_frames(info, view, engine());
     EXPECT_EQ(framegraph::failing::alive(), 0);
     failed = framegraph::failing::calls() >= call;
     EXPECT_EQ(outcome.result, failed ? ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY : ALCOVE_SUCCESS)
         << outcome.message;
     EXPECT_EQ(outcome.message.empty(), !failed);
     ASSERT_LT(call, 500);
+  }
+}
+
+TEST(CResult, HasTheNameOfItsValue) {
+#define ALCOVE_NAMED(value) \
+  std::pair { value, #value }
+  for (const auto& [value, name] :
+       {ALCOVE_NAMED(ALCOVE_SUCCESS), ALCOVE_NAMED(ALCOVE_ERROR_INVALID_INPUT),
+        ALCOVE_NAMED(ALCOVE_ERROR_UNSUPPORTED), ALCOVE_NAMED(ALCOVE_ERROR_OUT_OF_HOST_MEMORY),
+        ALCOVE_NAMED(ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY), ALCOVE_NAMED(ALCOVE_ERROR_DEVICE_LOST),
+        ALCOVE_NAMED(ALCOVE_ERROR_VULKAN), ALCOVE_NAMED(ALCOVE_ERROR_INTERNAL)}) {
+    EXPECT_STREQ(alcoveResultName(value), name);
+  }
+#undef ALCOVE_NAMED
+  for (const int none : {1, -8, INT_MAX, INT_MIN}) {
+    EXPECT_STREQ(alcoveResultName(static_cast<AlcoveResult>(none)), "unknown AlcoveResult");
   }
 }
 
@@ -191,6 +214,27 @@ TEST_F(CFailure, AContextWithoutHostMemoryIsAnErrorAndLeaksNothing) {
     EXPECT_EQ(made == nullptr, failed);
     alcoveDestroyContext(made);
     EXPECT_EQ(framegraph::failing::alive(), 0);
+    ASSERT_LT(which, 2000u);
+  }
+  EXPECT_GT(which, 20u) << "hardly any of them failed";
+}
+
+TEST_F(CFailure, APreparationWithoutHostMemoryIsAnErrorAndTheNextOneSucceeds) {
+  GivenView given = given_view(test_views()[2], 16, 12, groove(0.8));
+  AlcoveSettings settings;
+  const AlcoveView view = view_of(given, settings);
+  const Context context = create_context();
+  const AlcoveFrame frame{.struct_size = sizeof frame, .view_count = 1, .views = &view};
+  bool failed = true;
+  std::size_t which = 1;
+  for (; failed; ++which) {
+    SCOPED_TRACE(which);
+    AlcoveResult result = ALCOVE_SUCCESS;
+    failed =
+        call_without_memory(which, [&] { result = alcovePrepareFrame(context.get(), &frame); });
+    EXPECT_EQ(result, failed ? ALCOVE_ERROR_OUT_OF_HOST_MEMORY : ALCOVE_SUCCESS)
+        << alcoveGetMessage(context.get());
+    EXPECT_EQ(alcovePrepareFrame(context.get(), &frame), ALCOVE_SUCCESS);
     ASSERT_LT(which, 2000u);
   }
   EXPECT_GT(which, 20u) << "hardly any of them failed";

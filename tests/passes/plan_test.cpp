@@ -28,6 +28,8 @@ struct Reads {
   bool specular = false;
 };
 
+HostImage motion_of_nothing() { return {32, 24, std::vector<float>(std::size_t{2} * 32 * 24), 2}; }
+
 class OcclusionPlan : public PassTest {
  protected:
   Kept kept(const OcclusionSettings& settings, Reads reads = {}, Given given = {}) {
@@ -41,7 +43,7 @@ class OcclusionPlan : public PassTest {
         inputs.normals = upload(graph, drawing.normal_vs);
       }
       if (given.motion) {
-        inputs.motion = upload(graph, {32, 24, std::vector<float>(2 * 32 * 24), 2});
+        inputs.motion = upload(graph, motion_of_nothing());
       }
       if (given.hidden_depths) {
         inputs.back_depth_ndc = upload(graph, drawing.depth_ndc);
@@ -235,6 +237,48 @@ TEST_F(OcclusionPlan, WhatNobodyReadsIsCulledWithAllThatLeadsThere) {
   EXPECT_THAT(depth_only.passes, ElementsAre("depth pyramid"));
   EXPECT_THAT(depth_only.transients, ElementsAre("linear depth"));
   EXPECT_THAT(kept(least(), {.visibility = false}, {.normals = false}).passes, testing::IsEmpty());
+}
+
+// One that is prepared in a graph of its own, which is never recorded.
+TEST_F(OcclusionPlan, FramesLikeAPreparedOneMakeNoPipelineWhateverLiesBeforeThem) {
+  const Drawing drawing = draw(test_views()[2], 32, 24, groove(0.8));
+  OcclusionSettings settings = least();
+  settings.history_frames = 8;
+  const View view = test_views()[2].view;
+  View other = view;
+  other.view_from_world[12] = 0.1f;
+  const auto add = [&](const Frame& frame) {
+    const auto outputs = add_occlusion(frame,
+                                       {.depth_ndc = upload(frame.graph, drawing.depth_ndc),
+                                        .normals = upload(frame.graph, drawing.normal_vs),
+                                        .normals_in_view_space = true,
+                                        .motion = upload(frame.graph, motion_of_nothing())},
+                                       settings);
+    ASSERT_TRUE(outputs) << outputs.error().message;
+    frame.graph.output(outputs->visibility);
+  };
+  Graph unrecorded;
+  Frame prepared{unrecorded, gpu().kernels(), view};
+  prepared.prepare = true;
+  add(prepared);
+  const std::size_t pipelines = gpu().kernels().pipeline_count();
+  EXPECT_EQ(pipelines, 2u + 4u) << "a reconstruction at the start, in motion, still and settled";
+  struct Case {
+    const View& previous_view;
+    std::uint32_t still_frames;
+    bool cut = false;
+  };
+  const Case cases[] = {{view, 0}, {other, 0}, {view, 1}, {view, 16}, {view, 0, true}, {view, 0}};
+  for (std::uint32_t index = 0; index < std::size(cases); ++index) {
+    run([&](Graph& graph) {
+      if (cases[index].cut) {
+        graph.reset_histories();
+      }
+      add({graph, gpu().kernels(), view, index, cases[index].previous_view,
+           cases[index].still_frames});
+    });
+    EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines) << index;
+  }
 }
 
 TEST_F(OcclusionPlan, AFrameThatWasDeclaredBeforeMakesNoPipeline) {

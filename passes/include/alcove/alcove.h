@@ -50,6 +50,9 @@ typedef enum AlcoveResult {
   ALCOVE_RESULT_MAX_ENUM = 0x7fffffff
 } AlcoveResult;
 
+// "ALCOVE_SUCCESS" and so on: static, and never null.
+const char* alcoveResultName(AlcoveResult result);
+
 // ALCOVE_VERSION of the library.
 uint32_t alcoveGetVersion(void);
 
@@ -203,6 +206,11 @@ typedef struct AlcoveContextInfo {
   uint32_t frames_in_flight;  // 1 to ALCOVE_MAX_FRAMES_IN_FLIGHT
   VkBool32 debug_utils;       // VK_EXT_debug_utils is enabled: passes and images get names
   VkBool32 timestamps;        // the device times each pass: alcoveGetTimings
+  // Where pipelines are looked up and kept; null: nowhere. The engine loads, stores and destroys
+  // it. Vulkan synchronises it, so that other threads and contexts may use it at the same time,
+  // unless it was created with VK_PIPELINE_CACHE_CREATE_EXTERNALLY_SYNCHRONIZED_BIT: then none may
+  // while a frame of this context is prepared or recorded.
+  VkPipelineCache pipeline_cache;
 } AlcoveContextInfo;
 
 // `message` may be null; else it has room for ALCOVE_MAX_MESSAGE bytes and gets the sentence where
@@ -320,15 +328,27 @@ typedef struct AlcoveFrame {
   const AlcoveView* views;
 } AlcoveFrame;
 
+// Makes the pipelines of this frame and of all that have its settings, the same images given and
+// the same kind of projection (perspective or not, reversed or not), whatever lies before them: a
+// view's first frame, one after a cut, in motion, still. Sizes, ids, cameras and the radius make no
+// difference. Records nothing, changes no history and touches no image; memory is left for the
+// first frame to allocate.
+//
+// To be called while loading, and before a change of settings. It may take the driver seconds, and
+// is a call on the context like any other: one thread at a time. Where another thread records
+// meanwhile, a second context with the same pipeline_cache can prepare, and be destroyed: the first
+// then finds the pipelines in there.
+//
+// Errors: those of alcoveRecordFrame.
+AlcoveResult alcovePrepareFrame(AlcoveContext* context, const AlcoveFrame* frame);
+
 // Records the passes of all views into `commands`: a primary command buffer in recording, of the
 // context's queue family, outside a render pass. Frames are submitted in the order in which they
 // are recorded, each once and all to one queue; else alcoveDiscardFrame. A frame like the one
 // before allocates nothing.
 //
-// Pipelines are made when a frame first needs them, which may take the driver a second: by
-// settings, images given, and whether a view is in perspective, has history and is still, but not
-// by size. So two frames of a small image, recorded and submitted while loading, make those of a
-// view.
+// Pipelines that it needs and that were not made before are made now, which may take the driver a
+// second: see alcovePrepareFrame.
 //
 // It binds compute pipelines and descriptor set 0 and leaves them bound; other state is untouched.
 // Barriers: each image from its arrival to SHADER_READ_ONLY_OPTIMAL (inputs) or GENERAL (outputs),

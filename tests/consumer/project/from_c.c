@@ -12,6 +12,7 @@ typedef struct Engine {
   uint32_t queue_family;
   PFN_vkGetInstanceProcAddr get_instance_proc_addr;
   VkPhysicalDeviceFeatures2 features; /* that the device was made with, chained */
+  VkPipelineCache pipeline_cache;     /* loaded when the engine starts, stored when it ends */
   AlcoveImage depth;                  /* attached while drawing, sampled afterwards */
   AlcoveImage occlusion;              /* R8_UNORM, sampled by the lighting */
   AlcoveCamera camera, previous_camera;
@@ -28,14 +29,12 @@ static AlcoveResult start(const Engine* engine, AlcoveContext** context, char* m
   info.enabled_features = &engine->features;
   info.frames_in_flight = 2;
   info.timestamps = VK_TRUE;
+  info.pipeline_cache = engine->pipeline_cache;
   return alcoveCreateContext(&info, context, message);
 }
 
-/* Between drawing and lighting, outside a render pass; the fence of the slot has been waited for. */
-static AlcoveResult record_occlusion(AlcoveContext* context, const Engine* engine,
-                                     const AlcoveSettings* settings, VkCommandBuffer commands) {
+static AlcoveView view_of(const Engine* engine, const AlcoveSettings* settings) {
   AlcoveView view = {.struct_size = sizeof view};
-  AlcoveFrame frame = {.struct_size = sizeof frame};
   view.settings = settings;
   view.camera = engine->camera;
   view.previous_camera = engine->previous_camera;
@@ -53,10 +52,24 @@ static AlcoveResult record_occlusion(AlcoveContext* context, const Engine* engin
   view.visibility.departure.stages = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
   view.visibility.departure.access = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
   view.visibility.departure.layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+  return view;
+}
+
+/* While loading, and before the settings change: so that no frame waits for a pipeline. */
+static AlcoveResult prepare_occlusion(AlcoveContext* context, const Engine* engine,
+                                      const AlcoveSettings* settings) {
+  const AlcoveView view = view_of(engine, settings);
+  const AlcoveFrame frame = {.struct_size = sizeof frame, .view_count = 1, .views = &view};
+  return alcovePrepareFrame(context, &frame);
+}
+
+/* Between drawing and lighting, outside a render pass; the slot's fence has been waited for. */
+static AlcoveResult record_occlusion(AlcoveContext* context, const Engine* engine,
+                                     const AlcoveSettings* settings, VkCommandBuffer commands) {
+  const AlcoveView view = view_of(engine, settings);
+  AlcoveFrame frame = {.struct_size = sizeof frame, .view_count = 1, .views = &view};
   frame.index = engine->frame;
   frame.slot = engine->frame % 2;
-  frame.view_count = 1;
-  frame.views = &view;
   return alcoveRecordFrame(context, commands, &frame);
 }
 
@@ -76,8 +89,9 @@ int main(void) {
          VK_API_VERSION_MINOR(alcoveGetVersion()), VK_API_VERSION_PATCH(alcoveGetVersion()), text);
 
   result = start(&engine, &context, message);
-  printf("%s\n", message);
+  printf("%s: %s\n", alcoveResultName(result), message);
   if (result != ALCOVE_ERROR_INVALID_INPUT || message[0] == '\0') return 1;
+  if (prepare_occlusion(context, &engine, &settings) != ALCOVE_ERROR_INVALID_INPUT) return 1;
   result = record_occlusion(context, &engine, &settings, VK_NULL_HANDLE);
   alcoveDestroyContext(context);
   return result == ALCOVE_ERROR_INVALID_INPUT ? 0 : 1;

@@ -51,6 +51,10 @@ struct Frame {
   // the depth is now.
   VkExtent2D largest_size{};   // that histories have room for; another begins them anew
   VkExtent2D previous_size{};  // of the depth in the frame before, within it
+  // Also make the pipelines of every frame that differs from this one only in what lies before it:
+  // a first one, one after a cut, in motion, still. For a frame in a graph of its own that is never
+  // recorded, declared while loading or before settings change: none then waits for a pipeline.
+  bool prepare = false;
 };
 
 }  // namespace alcove::passes

@@ -51,9 +51,10 @@ struct Kernel {
 };
 
 // Owns every pipeline, descriptor and parameter buffer of the passes on one device. Pipelines are
-// made at the first use of a shader with a set of constants and kept; a frame that uses none anew
-// allocates nothing. One thread at a time, but for dispatch(), which the threads that record a
-// frame (ExecutorOptions::recording_threads) may call at the same time.
+// made at the first use of a shader with a set of constants, or before it (Frame::prepare), and
+// kept; a frame that uses none anew allocates nothing. One thread at a time, but for dispatch(),
+// which the threads that record a frame (ExecutorOptions::recording_threads) may call at the same
+// time.
 class Kernels {
  public:
   // Passes use at most this many dispatches, and this many bytes of parameters, in a frame.
@@ -66,10 +67,16 @@ class Kernels {
   // `frames_in_flight`, 1 to kMaxFramesInFlight, is how many frames may be recorded before the
   // first of them has finished on the device: ExecutorOptions::frames_in_flight.
   //
+  // `cache`, of the same device, is where every pipeline is looked up and kept. It is the caller's
+  // to load, store and destroy, and outlives the kernels. Vulkan synchronises it, so that others
+  // may use it at the same time, unless it was created with
+  // VK_PIPELINE_CACHE_CREATE_EXTERNALLY_SYNCHRONIZED_BIT: then none may while passes are added.
+  //
   // Errors: a handle that is null, frames in flight out of range, a function or a limit that the
   // device lacks (maxPerStageDescriptorStorageImages must be 9), memory that gives out.
   [[nodiscard]] static tl::expected<Kernels, Error> create(const framegraph::DeviceHandles& device,
-                                                           std::uint32_t frames_in_flight);
+                                                           std::uint32_t frames_in_flight,
+                                                           VkPipelineCache cache = VK_NULL_HANDLE);
   Kernels(Kernels&&) noexcept;
   Kernels& operator=(Kernels&&) noexcept;
   ~Kernels();
