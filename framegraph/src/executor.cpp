@@ -154,7 +154,7 @@ VkResult Executor::Implementation::find_external(const Graph& graph, CachedPlan&
                                                  std::uint32_t resource) {
   const GraphDescription& description = graph.description();
   const ResourceRecord& record = description.resources[resource];
-  const ImportHandles& handles = graph.imports()[record.external];
+  const ImportHandles& handles = graph.imports_[record.external];
   Physical*& found = cached.physical[resource];
   if (record.origin == Origin::imported) {
     found = &pool->import(record, handles);
