@@ -63,27 +63,6 @@ Json report_of(const Rendering& rendering, const Options& options) {
   return report;
 }
 
-Json to_json(const ErrorSummary& summary) {
-  return {{"pixels", summary.count},
-          {"rmse", summary.rmse},
-          {"bias", summary.bias},
-          {"mean_absolute", summary.mean_absolute},
-          {"percentile_95", summary.percentile_95},
-          {"max_absolute", summary.max_absolute}};
-}
-
-Json to_json(const AngleSummary& summary) {
-  return {{"pixels", summary.count},
-          {"mean_degrees", summary.mean_degrees},
-          {"percentile_95_degrees", summary.percentile_95_degrees}};
-}
-
-Json to_json(const OpenSurfaceSummary& summary) {
-  return {{"pixels", summary.count},
-          {"mean_visibility", summary.mean_visibility},
-          {"fraction_below_0.95", summary.fraction_below_95}};
-}
-
 std::string time_table(const Rendering& rendering) {
   std::ostringstream text;
   text << rendering.device << ", " << rendering.driver << "\n" << std::fixed;

@@ -187,7 +187,7 @@ tl::expected<Passed, std::string> pass_along(Walk& walk, bool history) {
   Passed passed;
   const MotionPath& path = walk.path();
   const Progress progress =
-      walk.progress(name_of(path.kind()) + (history ? "" : " without history"));
+      walk.progress(std::string(name_of(path.kind())) + (history ? "" : " without history"));
   // Nothing is kept without a history, so that the way to where it counts is not walked.
   const std::uint32_t first = history ? 0 : first_settled(path) - 1;
   SeenFrame before;
