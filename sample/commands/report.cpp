@@ -6,6 +6,7 @@
 
 #include "alcove/passes/setting_names.h"
 #include "options/settings.h"
+#include "support/mib.h"
 
 namespace alcove::sample {
 namespace {
@@ -77,9 +78,6 @@ std::string time_table(const Rendering& rendering) {
   row("occlusion, processor time", rendering.costs.cpu_ms);
   row("with specular, by GPU timestamps", rendering.costs_with_specular.occlusion_ms);
   row("with specular, processor time", rendering.costs_with_specular.cpu_ms);
-  const auto mib = [](VkDeviceSize bytes) {
-    return static_cast<double>(bytes) / (1024.0 * 1024.0);
-  };
   text << std::setprecision(2) << "  transients " << mib(rendering.memory.aliased)
        << " MiB aliased, " << mib(rendering.memory.unaliased) << " MiB each on its own\n";
   return text.str();
