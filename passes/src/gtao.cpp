@@ -20,10 +20,6 @@ using framegraph::Texture;
 
 namespace {
 
-bool has_thickness(Estimator estimator) {
-  return estimator == Estimator::bitmask || estimator == Estimator::connected;
-}
-
 tl::expected<void, Error> check_share(const char* name, float value) {
   if (value >= 0.0f && value <= 1.0f) {
     return {};
