@@ -20,7 +20,7 @@ class Submitter {
   // Waits until the device has finished what was submitted with this slot.
   [[nodiscard]] VkResult wait(std::uint32_t slot);
   // Records and submits a plan that `crew` was begun with. `timestamps` is by queue class, null
-  // where there are none. `full_barrier`: memory holds the leavings of another plan.
+  // where there are none. `full_barrier`: memory holds what another plan left.
   [[nodiscard]] VkResult submit(const Plan& plan, Crew& crew, std::uint32_t slot,
                                 Timestamps* const* timestamps, bool full_barrier);
   // Whether submit handed over some of a frame and then failed.

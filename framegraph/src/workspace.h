@@ -48,8 +48,8 @@ struct PlaceItem {
 };
 
 struct Workspace {
-  // Subresources are numbered through: those of resource r begin at first_sub[r]; mips run faster
-  // than layers. A resource whose description is wrong has none.
+  // Subresources of all resources are numbered, those of resource r from first_sub[r] on, mips
+  // within layers. A resource whose description is wrong has none.
   std::vector<std::uint32_t> first_sub;
 
   // order -> queues -> all: live passes in execution order.

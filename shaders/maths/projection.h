@@ -16,8 +16,8 @@
 ALCOVE_MATHS_BEGIN
 
 struct Projection {
-  vec4 uv_to_slope;      // xy scale, zw offset: view-space xy per unit of depth along a pixel's ray
-  vec4 uv_to_origin;     // xy scale, zw offset: view-space xy where a pixel's ray meets depth 0
+  vec4 uv_to_slope;   // xy scale, zw offset: view-space xy per unit of depth along a pixel's ray
+  vec4 uv_to_origin;  // xy scale, zw offset: view-space xy where a pixel's ray meets depth 0
   // uv of a view-space position: (position_to_uv.xy * xy + depth_to_uv.xy * depth +
   // position_to_uv.zw) / (depth_to_uv.z * depth + depth_to_uv.w), the divisor over 0.
   vec4 position_to_uv;

@@ -12,8 +12,8 @@
 // Declaring never fails: what is wrong is kept and comes back from compile as errors, all of them.
 // Order of declaration is program order: a pass reads what passes before it wrote. One thread
 // declares; a graph may be used by one executor only, which may run several graphs: their frames
-// are numbered together. Memory of a graph's histories goes some frames after the graph. A steady
-// frame allocates nothing once reset() has been through the first.
+// are numbered together. The memory of a graph's histories is freed some frames after the graph is
+// gone. A frame like the one before allocates nothing, from the second reset() on.
 #pragma once
 
 #include <cstddef>
