@@ -33,8 +33,7 @@ Crew::~Crew() {
   }
   begun_.notify_all();
   for (std::thread& thread : threads_) thread.join();
-  for (Buffers& buffers : buffers_)
-    device_.vk.vkDestroyCommandPool(device_.handles.device, buffers.pool, nullptr);
+  for (CommandBuffers& buffers : buffers_) buffers.destroy(device_);
 }
 
 VkResult Crew::begin(const RecordedFrame& frame) {
@@ -43,11 +42,8 @@ VkResult Crew::begin(const RecordedFrame& frame) {
   together_ = !threads_.empty() && frame.plan->sets.empty();
   slot_ = frame.slot;
   for (std::size_t i = 0; i < buffers_.size(); ++i) {
-    Buffers& buffers = buffers_[i];
-    if (i / kQueueClasses % slots_ != slot_ || buffers.used == 0) continue;
-    const VkResult result = device_.vk.vkResetCommandPool(device_.handles.device, buffers.pool, 0);
-    if (result != VK_SUCCESS) return result;
-    buffers.used = 0;
+    if (i / kQueueClasses % slots_ != slot_) continue;
+    if (const VkResult result = buffers_[i].take_back(device_)) return result;
   }
   return VK_SUCCESS;
 }
@@ -141,44 +137,23 @@ void Crew::record_pieces(std::size_t thread) {
 }
 
 VkResult Crew::record(Piece& piece, std::size_t thread) {
-  if (const VkResult result = next_buffer(buffers_of(thread), piece.commands)) return result;
+  VkResult result =
+      buffers_of(thread).next(device_, queue_, VK_COMMAND_BUFFER_LEVEL_SECONDARY, piece.commands);
+  if (result != VK_SUCCESS) return result;
   VkCommandBufferInheritanceInfo inherited{};
   inherited.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_INHERITANCE_INFO;
   VkCommandBufferBeginInfo info{};
   info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
   info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
   info.pInheritanceInfo = &inherited;
-  if (const VkResult result = device_.vk.vkBeginCommandBuffer(piece.commands, &info)) return result;
+  result = device_.vk.vkBeginCommandBuffer(piece.commands, &info);
+  if (result != VK_SUCCESS) return result;
   recorders_[thread]->passes(piece.passes, piece.commands);
   return device_.vk.vkEndCommandBuffer(piece.commands);
 }
 
-Crew::Buffers& Crew::buffers_of(std::size_t thread) {
+CommandBuffers& Crew::buffers_of(std::size_t thread) {
   return buffers_[(thread * slots_ + slot_) * kQueueClasses + static_cast<std::size_t>(queue_)];
-}
-
-VkResult Crew::next_buffer(Buffers& buffers, VkCommandBuffer& commands) {
-  const VkDevice device = device_.handles.device;
-  if (buffers.pool == VK_NULL_HANDLE) {
-    VkCommandPoolCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
-    info.queueFamilyIndex = device_.limits.queue_families[static_cast<std::size_t>(queue_)];
-    const VkResult result = device_.vk.vkCreateCommandPool(device, &info, nullptr, &buffers.pool);
-    if (result != VK_SUCCESS) return result;
-  }
-  if (buffers.used == buffers.made.size()) {
-    VkCommandBufferAllocateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
-    info.commandPool = buffers.pool;
-    info.level = VK_COMMAND_BUFFER_LEVEL_SECONDARY;
-    info.commandBufferCount = 1;
-    VkCommandBuffer made = VK_NULL_HANDLE;
-    const VkResult result = device_.vk.vkAllocateCommandBuffers(device, &info, &made);
-    if (result != VK_SUCCESS) return result;
-    buffers.made.push_back(made);
-  }
-  commands = buffers.made[buffers.used++];
-  return VK_SUCCESS;
 }
 
 }  // namespace alcove::framegraph

@@ -10,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include "command_buffers.h"
 #include "recorder.h"
 
 namespace alcove::framegraph {
@@ -33,12 +34,6 @@ class Crew {
   Errors take_errors();
 
  private:
-  // A thread's secondary command buffers of one slot and queue class.
-  struct Buffers {
-    VkCommandPool pool = VK_NULL_HANDLE;
-    std::vector<VkCommandBuffer> made;
-    std::size_t used = 0;
-  };
   // A run of passes that one thread records.
   struct Piece {
     PassRun passes;
@@ -51,14 +46,13 @@ class Crew {
   void work(std::size_t thread);
   void record_pieces(std::size_t thread);
   VkResult record(Piece& piece, std::size_t thread);
-  VkResult next_buffer(Buffers& buffers, VkCommandBuffer& commands);
-  Buffers& buffers_of(std::size_t thread);
+  CommandBuffers& buffers_of(std::size_t thread);
   void cut(const PassRun& passes);
   void record_together();
 
   const DeviceContext& device_;
   std::vector<std::unique_ptr<Recorder>> recorders_;  // by thread
-  std::vector<Buffers> buffers_;                      // by thread, slot and queue class
+  std::vector<CommandBuffers> buffers_;               // by thread, slot and queue class
   std::size_t slots_;
   std::size_t slot_ = 0;
   bool together_ = false;  // whether several threads record this frame

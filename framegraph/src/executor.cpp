@@ -154,7 +154,7 @@ VkResult Executor::Implementation::find_external(const Graph& graph, CachedPlan&
                                                  std::uint32_t resource) {
   const GraphDescription& description = graph.description();
   const ResourceRecord& record = description.resources[resource];
-  const ImportHandles& handles = graph.imports()[record.external];
+  const ImportHandles& handles = graph.imports_[record.external];
   Physical*& found = cached.physical[resource];
   if (record.origin == Origin::imported) {
     found = &pool->import(record, handles);
@@ -226,7 +226,7 @@ tl::expected<void, Errors> Executor::Implementation::check_histories(const Graph
   return tl::unexpected(std::move(errors));
 }
 
-// A plan expects its own leavings in memory; those of another need a barrier of their own.
+// A plan expects in memory what it left there; what another plan left needs a barrier of its own.
 bool Executor::Implementation::starts_anew(const CachedPlan& cached) const {
   return before != &cached || before_generation != pool->generation();
 }

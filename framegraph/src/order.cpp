@@ -116,8 +116,7 @@ class Orderer {
 
   void add_edge(std::uint32_t from, std::uint32_t to) {
     if (from == kNone || from == to) return;
-    s_.edges.push_back({from, s_.first_edge[from]});
-    s_.edges.back().to = to;
+    s_.edges.push_back({to, s_.first_edge[from]});
     s_.first_edge[from] = static_cast<std::uint32_t>(s_.edges.size() - 1);
     ++s_.waiting[to];
   }
@@ -141,12 +140,12 @@ class Orderer {
   void depend(std::uint32_t pass, std::uint32_t sub, bool writes) {
     add_edge(s_.writer[sub], pass);
     if (!writes) {
-      s_.readers.push_back({pass, s_.first_reader[sub], 0});
+      s_.readers.push_back({pass, s_.first_reader[sub]});
       s_.first_reader[sub] = static_cast<std::uint32_t>(s_.readers.size() - 1);
       return;
     }
     for (std::uint32_t i = s_.first_reader[sub]; i != kNone; i = s_.readers[i].next)
-      add_edge(s_.readers[i].from, pass);
+      add_edge(s_.readers[i].pass, pass);
     s_.first_reader[sub] = kNone;
     s_.writer[sub] = pass;
   }
@@ -171,7 +170,8 @@ class Orderer {
       take(pass);
       s_.order.push_back(pass);
       for (std::uint32_t e = s_.first_edge[pass]; e != kNone; e = s_.edges[e].next) {
-        if (--s_.waiting[s_.edges[e].to] == 0) s_.ready.push_back(s_.edges[e].to);
+        const std::uint32_t follower = s_.edges[e].pass;
+        if (--s_.waiting[follower] == 0) s_.ready.push_back(follower);
       }
     }
     return peak;
@@ -207,38 +207,10 @@ class Orderer {
   std::uint32_t stamp_ = 0;
 };
 
-// Whether a queue that the frame has beside graphics held something that a pass uses.
-bool comes_from_elsewhere(const GraphDescription& graph, const Limits& limits, const Plan& plan,
-                          std::uint32_t pass) {
-  bool elsewhere = false;
-  for_each_live(graph, plan, pass, [&](const AccessRecord& access) {
-    const std::uint32_t external = graph.resources[access.resource].external;
-    if (external == kNone) return;
-    const ExternalRecord& record = graph.externals[external];
-    elsewhere |= record.queue != QueueClass::graphics &&
-                 limits.queue_families[static_cast<std::size_t>(record.queue)] != kNone &&
-                 (record.has_contents || record.arrival.stages != 0);
-  });
-  return elsewhere;
-}
-
 }  // namespace
 
 void order(const GraphDescription& graph, const Limits& limits, Workspace& workspace, Plan& plan) {
   Orderer(graph, limits, workspace, plan).run();
-  plan.passes.resize(workspace.order.size());
-  workspace.several_queues = false;
-  PlannedPass* planned = plan.passes.data();
-  for (const std::uint32_t pass : workspace.order) {
-    const QueueClass queue = graph.passes[pass].queue;
-    const bool own = limits.queue_families[static_cast<std::size_t>(queue)] != kNone;
-    *planned = {};
-    planned->pass = pass;
-    planned->queue = own ? queue : QueueClass::graphics;
-    workspace.several_queues |=
-        planned->queue != QueueClass::graphics || comes_from_elsewhere(graph, limits, plan, pass);
-    ++planned;
-  }
 }
 
 }  // namespace alcove::framegraph

@@ -64,7 +64,7 @@ class Pool {
   // may ask at the same time.
   VkImageView view(Physical& physical, const Range& range);
 
-  // Destroys what is unused since long or retired, up to a frame that the device has finished.
+  // Destroys what is retired or was not used for long, up to a frame that the device has finished.
   void collect(std::uint64_t finished, std::uint64_t frame);
 
   std::uint64_t generation() const { return generation_; }

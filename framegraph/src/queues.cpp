@@ -1,5 +1,6 @@
-// Queues: cuts the order of execution into submissions where one queue must wait for another, and
-// finds what each queue knows of the others, which says until when a transient's memory is taken.
+// Queues: gives each pass its queue, cuts the order of execution into submissions where one queue
+// must wait for another, and finds what each queue knows of the others, which says until when a
+// transient's memory is taken.
 //
 // A submission begins with the pass that waits and ends with the pass that is waited for, so that
 // none waits longer than it must and none waits for what comes after it. With one queue there is
@@ -19,6 +20,7 @@ class QueueAssigner {
       : graph_(graph), limits_(limits), workspace_(workspace), plan_(plan), s_(workspace.queues) {}
 
   void run() {
+    choose_queues();
     const auto count = static_cast<std::uint32_t>(plan_.passes.size());
     if (!workspace_.several_queues) {
       plan_.submissions.push_back({QueueClass::graphics, 0, count, 0, 0, 0, 0});
@@ -35,6 +37,31 @@ class QueueAssigner {
 
   std::uint32_t family(QueueClass queue) const {
     return limits_.queue_families[static_cast<std::size_t>(queue)];
+  }
+
+  // The queue that a pass asks for, or graphics where the device has none of that class.
+  void choose_queues() {
+    plan_.passes.resize(workspace_.order.size());
+    workspace_.several_queues = false;
+    PlannedPass* planned = plan_.passes.data();
+    for (const std::uint32_t pass : workspace_.order) {
+      const QueueClass wanted = graph_.passes[pass].queue;
+      *planned = {};
+      planned->pass = pass;
+      planned->queue = family(wanted) != kNone ? wanted : QueueClass::graphics;
+      workspace_.several_queues |=
+          planned->queue != QueueClass::graphics || takes_from_others(pass);
+      ++planned;
+    }
+  }
+
+  // Whether a pass uses what a queue beside graphics had before the frame.
+  bool takes_from_others(std::uint32_t pass) const {
+    bool takes = false;
+    for_each_live(graph_, plan_, pass, [&](const AccessRecord& access) {
+      takes |= given_by(access.resource, QueueClass::graphics) != 0;
+    });
+    return takes;
   }
 
   // For each pass, the last pass of each other queue that it must wait for, and was not known done.

@@ -20,7 +20,7 @@ VkImageView RecordContext::view(Texture texture, Range range) const {
     range.layers = static_cast<std::uint16_t>(record.layers - range.base_layer);
   if (record.origin == Origin::imported && range.mips == record.mips &&
       range.layers == record.layers) {
-    const VkImageView given = recorder_.graph_->imports()[record.external].view;
+    const VkImageView given = recorder_.graph_->imports_[record.external].view;
     if (given != VK_NULL_HANDLE) return given;
   }
   const VkImageView view = recorder_.pool_.view(*physical, range);

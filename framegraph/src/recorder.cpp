@@ -62,7 +62,8 @@ void Recorder::pass(const PlannedPass& planned, VkCommandBuffer commands, Timest
   RecordContext context(commands, device_.vk, *this, planned.pass);
   context.resources_id = pool_.generation();
   context.frame_slot = slot_;
-  graph_->call(planned.pass, context);
+  const Graph::Callback& callback = graph_->callbacks_[planned.pass];
+  callback.call(callback.object, context);
   if (timestamps) timestamps->end_pass(commands, time);
   if (label) device_.vk.vkCmdEndDebugUtilsLabelEXT(commands);
   set_events(planned, commands);

@@ -12,8 +12,7 @@ Submitter::~Submitter() {
     if (values_[q] != 0) device_.vk.vkQueueWaitIdle(device_.handles.queues[q].queue);
   }
   for (Slot& slot : slots_) {
-    for (SlotQueue& queue : slot.queues)
-      device_.vk.vkDestroyCommandPool(device, queue.pool, nullptr);
+    for (SlotQueue& queue : slot.queues) queue.buffers.destroy(device_);
   }
   for (const VkSemaphore semaphore : semaphores_)
     device_.vk.vkDestroySemaphore(device, semaphore, nullptr);
@@ -50,37 +49,8 @@ VkResult Submitter::prepare(std::uint32_t slot) {
           device_.vk.vkCreateSemaphore(device_.handles.device, &info, nullptr, &semaphores_[q]);
       if (result != VK_SUCCESS) return result;
     }
-    SlotQueue& own = slots_[slot].queues[q];
-    own.used = 0;
-    VkResult result = VK_SUCCESS;
-    if (own.pool == VK_NULL_HANDLE) {
-      VkCommandPoolCreateInfo info{};
-      info.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
-      info.queueFamilyIndex = device_.limits.queue_families[q];
-      result = device_.vk.vkCreateCommandPool(device_.handles.device, &info, nullptr, &own.pool);
-    } else {
-      result = device_.vk.vkResetCommandPool(device_.handles.device, own.pool, 0);
-    }
-    if (result != VK_SUCCESS) return result;
+    if (const VkResult result = slots_[slot].queues[q].buffers.take_back(device_)) return result;
   }
-  return VK_SUCCESS;
-}
-
-VkResult Submitter::next_buffer(std::uint32_t slot, std::size_t queue, VkCommandBuffer& buffer) {
-  SlotQueue& own = slots_[slot].queues[queue];
-  if (own.used == own.buffers.size()) {
-    VkCommandBufferAllocateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
-    info.commandPool = own.pool;
-    info.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
-    info.commandBufferCount = 1;
-    VkCommandBuffer made = VK_NULL_HANDLE;
-    const VkResult result =
-        device_.vk.vkAllocateCommandBuffers(device_.handles.device, &info, &made);
-    if (result != VK_SUCCESS) return result;
-    own.buffers.push_back(made);
-  }
-  buffer = own.buffers[own.used++];
   return VK_SUCCESS;
 }
 
@@ -116,7 +86,10 @@ VkResult Submitter::record(const Plan& plan, Crew& crew, std::uint32_t slot,
     const Submission& submission = plan.submissions[i];
     const auto q = static_cast<std::size_t>(submission.queue);
     VkCommandBuffer& buffer = recorded_[i];
-    if (const VkResult result = next_buffer(slot, q, buffer)) return result;
+    CommandBuffers& buffers = slots_[slot].queues[q].buffers;
+    if (const VkResult result =
+            buffers.next(device_, submission.queue, VK_COMMAND_BUFFER_LEVEL_PRIMARY, buffer))
+      return result;
     VkCommandBufferBeginInfo begin{};
     begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
     begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;

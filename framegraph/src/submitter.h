@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "command_buffers.h"
 #include "crew.h"
 #include "device_context.h"
 
@@ -19,7 +20,7 @@ class Submitter {
   // Waits until the device has finished what was submitted with this slot.
   [[nodiscard]] VkResult wait(std::uint32_t slot);
   // Records and submits a plan that `crew` was begun with. `timestamps` is by queue class, null
-  // where there are none. `full_barrier`: memory holds the leavings of another plan.
+  // where there are none. `full_barrier`: memory holds what another plan left.
   [[nodiscard]] VkResult submit(const Plan& plan, Crew& crew, std::uint32_t slot,
                                 Timestamps* const* timestamps, bool full_barrier);
   // Whether submit handed over some of a frame and then failed.
@@ -27,9 +28,7 @@ class Submitter {
 
  private:
   struct SlotQueue {
-    VkCommandPool pool = VK_NULL_HANDLE;
-    std::vector<VkCommandBuffer> buffers;
-    std::uint32_t used = 0;
+    CommandBuffers buffers;
     std::uint64_t value = 0;  // of the queue's semaphore once the slot's last frame is done
   };
   struct Slot {
@@ -37,7 +36,6 @@ class Submitter {
   };
 
   VkResult prepare(std::uint32_t slot);
-  VkResult next_buffer(std::uint32_t slot, std::size_t queue, VkCommandBuffer& buffer);
   VkResult record(const Plan& plan, Crew& crew, std::uint32_t slot, Timestamps* const* timestamps,
                   bool full_barrier);
   VkResult submit_one(const Plan& plan, std::uint32_t index, bool join);

@@ -48,12 +48,14 @@ struct PlaceItem {
 };
 
 struct Workspace {
-  // Subresources are numbered through: those of resource r begin at first_sub[r]; mips run faster
-  // than layers. A resource whose description is wrong has none.
+  // Subresources of all resources are numbered, those of resource r from first_sub[r] on, mips
+  // within layers. A resource whose description is wrong has none.
   std::vector<std::uint32_t> first_sub;
 
-  // order -> all: live passes in execution order, and each pass's queue.
+  // order -> queues -> all: live passes in execution order.
   std::vector<std::uint32_t> order;
+
+  // queues -> all: the frame runs on other queues than graphics, or takes over from them.
   bool several_queues = false;
 
   // lifetimes -> place: live transients in order of first use.
@@ -77,11 +79,10 @@ struct Workspace {
     std::vector<std::uint32_t> history_reader;
   } cull;
   struct Reorder {
-    // A link of a list: of the passes that follow `from`, or of the readers of a subresource.
+    // A link of a list: of the passes that follow a pass, or of the readers of a subresource.
     struct Link {
-      std::uint32_t from = kNone;
-      std::uint32_t next = kNone;
-      std::uint32_t to = kNone;
+      std::uint32_t pass = kNone;
+      std::uint32_t next = kNone;  // link
     };
     std::vector<std::int64_t> bytes;          // by resource
     std::vector<std::uint32_t> uses;          // by resource: passes, and one more for an output

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "apply_parameters.h"
+#include "bindings.h"
 #include "check_inputs.h"
 #include "maths/spherical_harmonics.h"
 #include "output_format.h"
@@ -97,7 +98,6 @@ NamedInputs named_inputs(const ApplyInputs& inputs) {
 
 tl::expected<Kernel, Error> kernel_of(const Frame& frame, const ApplyInputs& inputs,
                                       const ApplySettings& settings) {
-  const auto flag = [](bool on) { return static_cast<std::uint32_t>(on); };
   const std::array diffuse{
       flag(bool(inputs.bent_normal)), flag(bool(inputs.visibility)),
       flag(settings.multi_bounce && (inputs.visibility || inputs.specular_occlusion)),
@@ -189,24 +189,20 @@ tl::expected<AppliedLight, Error> add_apply(const Frame& frame, const ApplyInput
   pass.record(
       [&kernels = frame.kernels, kernel = *kernel, inputs, result,
        parameters = parameters_of(frame, inputs, settings, *projection)](RecordContext& context) {
-        // What is not read, or not written, is bound to something of its kind.
-        const auto view_or = [&](Texture texture, Texture instead) {
-          return context.view(texture ? texture : instead);
-        };
         const std::array views{context.view(inputs.depth),
                                context.view(inputs.normals),
                                context.view(inputs.albedo),
-                               view_or(inputs.bent_normal, inputs.normals),
-                               view_or(inputs.visibility, inputs.albedo),
-                               view_or(inputs.light, inputs.albedo),
+                               view_or(context, inputs.bent_normal, inputs.normals),
+                               view_or(context, inputs.visibility, inputs.albedo),
+                               view_or(context, inputs.light, inputs.albedo),
                                context.view(inputs.harmonics),
                                context.view(result.lit),
-                               view_or(result.diffuse, result.lit),
-                               view_or(result.specular, result.lit),
-                               view_or(inputs.roughness, inputs.albedo),
-                               view_or(inputs.metallic, inputs.albedo),
-                               view_or(inputs.specular_occlusion, inputs.albedo),
-                               view_or(inputs.map, inputs.albedo)};
+                               view_or(context, result.diffuse, result.lit),
+                               view_or(context, result.specular, result.lit),
+                               view_or(context, inputs.roughness, inputs.albedo),
+                               view_or(context, inputs.metallic, inputs.albedo),
+                               view_or(context, inputs.specular_occlusion, inputs.albedo),
+                               view_or(context, inputs.map, inputs.albedo)};
         constexpr std::size_t kDiffuseViews = 9;
         kernels.dispatch(context, kernel,
                          std::span(views).first(inputs.map ? views.size() : kDiffuseViews),

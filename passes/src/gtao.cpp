@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "bindings.h"
 #include "check_inputs.h"
 #include "gtao_parameters.h"
 #include "maths/slice_line.h"
@@ -19,10 +20,6 @@ using framegraph::RecordContext;
 using framegraph::Texture;
 
 namespace {
-
-bool has_thickness(Estimator estimator) {
-  return estimator == Estimator::bitmask || estimator == Estimator::connected;
-}
 
 tl::expected<void, Error> check_share(const char* name, float value) {
   if (value >= 0.0f && value <= 1.0f) {
@@ -121,7 +118,6 @@ bool by_pattern(const GtaoSettings& settings) {
 // Of the shader, in its order.
 std::array<std::uint32_t, 18> constants_of(const GtaoSettings& settings, const Reads& reads,
                                            bool perspective) {
-  const auto flag = [](bool on) { return static_cast<std::uint32_t>(on); };
   return {settings.slices,
           settings.steps,
           flag(settings.bent_normal),

@@ -3,6 +3,7 @@
 #include <array>
 #include <utility>
 
+#include "bindings.h"
 #include "check_inputs.h"
 #include "gtso_parameters.h"
 #include "output_format.h"
@@ -62,18 +63,15 @@ tl::expected<Texture, Error> add_gtso(const Frame& frame, const GtsoInputs& give
     return tl::unexpected(projection.error());
   }
   const std::array constants{static_cast<std::uint32_t>(settings.model),
-                             static_cast<std::uint32_t>(bool(inputs.roughness)),
-                             settings.roughness_channel};
+                             flag(bool(inputs.roughness)), settings.roughness_channel};
   const auto kernel = frame.kernels.get(
       settings.model == SpecularModel::table ? Shader::gtso_by_table : Shader::gtso, constants);
   if (!kernel) {
     return tl::unexpected(kernel.error());
   }
-  Texture result = inputs.into
-                       ? inputs.into
-                       : frame.graph.create_texture("specular occlusion",
-                                                    {scalar_format(settings.precision),
-                                                     framegraph::Extent::relative(inputs.depth)});
+  Texture result = given_or_created(
+      frame.graph, inputs.into, "specular occlusion",
+      {scalar_format(settings.precision), framegraph::Extent::relative(inputs.depth)});
   auto pass = frame.graph.add_pass("specular occlusion");
   declare_reads(pass, inputs);
   result = write_result(frame.graph, pass, result);
@@ -81,15 +79,11 @@ tl::expected<Texture, Error> add_gtso(const Frame& frame, const GtsoInputs& give
       *projection, view_from_normal(frame, inputs.normals_in_view_space), settings.roughness};
   pass.record([&kernels = frame.kernels, kernel = *kernel, inputs, result,
                parameters](RecordContext& context) {
-    // What is not read is bound to something of its kind.
-    const auto view_or = [&](Texture texture, Texture instead) {
-      return context.view(texture ? texture : instead);
-    };
     const std::array views{context.view(inputs.visibility),
-                           view_or(inputs.bent_normal, inputs.normals),
+                           view_or(context, inputs.bent_normal, inputs.normals),
                            context.view(inputs.normals),
                            context.view(inputs.depth),
-                           view_or(inputs.roughness, inputs.visibility),
+                           view_or(context, inputs.roughness, inputs.visibility),
                            context.view(result)};
     kernels.dispatch(context, kernel, views, bytes_of(parameters), context.extent(result));
   });

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "bindings.h"
 #include "check_inputs.h"
 #include "line_depth_parameters.h"
 #include "view_parameters.h"
@@ -21,8 +22,7 @@ tl::expected<Texture, Error> add_line_depth(const Frame& frame, Texture depth_nd
   if (!projection) {
     return tl::unexpected(projection.error());
   }
-  const std::array constants{static_cast<std::uint32_t>(is_perspective(*projection)),
-                             static_cast<std::uint32_t>(is_reversed(*projection))};
+  const std::array constants{flag(is_perspective(*projection)), flag(is_reversed(*projection))};
   const auto kernel = frame.kernels.get(Shader::line_depth, constants);
   if (!kernel) {
     return tl::unexpected(kernel.error());

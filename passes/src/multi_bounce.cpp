@@ -26,11 +26,9 @@ tl::expected<Texture, Error> add_multi_bounce(const Frame& frame, const MultiBou
   if (!kernel) {
     return tl::unexpected(kernel.error());
   }
-  Texture result = inputs.into
-                       ? inputs.into
-                       : frame.graph.create_texture(
-                             "multi-bounce", {colour_format(precision),
-                                              framegraph::Extent::relative(inputs.visibility)});
+  Texture result =
+      given_or_created(frame.graph, inputs.into, "multi-bounce",
+                       {colour_format(precision), framegraph::Extent::relative(inputs.visibility)});
   auto pass = frame.graph.add_pass("multi-bounce");
   pass.read(inputs.visibility, framegraph::access::sampled_compute);
   pass.read(inputs.albedo, framegraph::access::sampled_compute);

@@ -34,10 +34,11 @@ tl::expected<framegraph::Texture, Error> add_linear(const Frame& frame,
               : tl::expected<framegraph::Texture, Error>(framegraph::Texture{});
 }
 
-// Line depth of a depth that few settings read; null where they do not, or it was not given.
-tl::expected<framegraph::Texture, Error> add_hidden_line(const Frame& frame,
-                                                         framegraph::Texture depth_ndc, bool read,
-                                                         std::string_view name) {
+// Line depth of what the first surface hides (back faces, a second layer); null where `read` says
+// that the settings do not read it, or it was not given.
+tl::expected<framegraph::Texture, Error> add_hidden_line_depth(const Frame& frame,
+                                                               framegraph::Texture depth_ndc,
+                                                               bool read, std::string_view name) {
   return read && depth_ndc ? add_line_depth(frame, depth_ndc, name)
                            : tl::expected<framegraph::Texture, Error>(framegraph::Texture{});
 }
@@ -143,10 +144,10 @@ tl::expected<OcclusionOutputs, Error> add_occlusion(const Frame& frame,
   if (!line) {
     return tl::unexpected(line.error());
   }
-  const auto back_line = add_hidden_line(
+  const auto back_line = add_hidden_line_depth(
       frame, inputs.back_depth_ndc, needs_back_depth(settings.estimator, settings.thickness_unit),
       "back line depth");
-  const auto second_line = add_hidden_line(
+  const auto second_line = add_hidden_line_depth(
       frame, inputs.second_depth_ndc, needs_second_depth(settings.estimator, settings.depth_layers),
       "second line depth");
   if (!back_line || !second_line) {

@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 
+#include "bindings.h"
 #include "check_reconstruct.h"
 #include "maths/slice_line.h"
 #include "output_format.h"
@@ -103,20 +104,17 @@ Textures create_textures(const Frame& frame, const ReconstructInputs& inputs,
   const auto size = framegraph::Extent::absolute(sizes.now.width, sizes.now.height);
   const auto largest = framegraph::Extent::absolute(sizes.largest.width, sizes.largest.height);
   Textures textures{.inputs = inputs};
-  const auto given_or = [&](Texture into, std::string_view name, VkFormat format) {
-    return into ? into : graph.create_texture(name, {format, size});
-  };
   if (settings.visibility) {
-    textures.result.visibility =
-        given_or(inputs.into.visibility, "visibility", scalar_format(settings.precision));
+    textures.result.visibility = given_or_created(graph, inputs.into.visibility, "visibility",
+                                                  {scalar_format(settings.precision), size});
   }
   if (inputs.signal.bent) {
-    textures.result.bent_normal =
-        given_or(inputs.into.bent_normal, "bent normal", direction_format(settings.precision));
+    textures.result.bent_normal = given_or_created(graph, inputs.into.bent_normal, "bent normal",
+                                                   {direction_format(settings.precision), size});
   }
   if (inputs.signal.lobe) {
-    textures.result.specular =
-        given_or(inputs.into.specular, "specular occlusion", scalar_format(settings.precision));
+    textures.result.specular = given_or_created(graph, inputs.into.specular, "specular occlusion",
+                                                {scalar_format(settings.precision), size});
   }
   create_histories(graph, settings, history_name, largest, textures, valid);
   return textures;
@@ -170,25 +168,24 @@ Texture any_of(const Occlusion& results) {
   return results.bent_normal ? results.bent_normal : results.specular;
 }
 
-// In the order of the shader's bindings; what is not wanted is bound to something of its kind.
+// In the order of the shader's bindings.
 Bindings bindings_of(RecordContext& context, const Textures& textures) {
-  const auto view_or = [&](Texture texture, Texture instead) {
-    return context.view(texture ? texture : instead);
-  };
   const ReconstructInputs& in = textures.inputs;
   const Occlusion& out = textures.result;
   const Texture written = any_of(out);
   Bindings bindings;
-  bindings.add({context.view(in.signal.signal), view_or(in.signal.bent, in.signal.signal),
+  bindings.add({context.view(in.signal.signal), view_or(context, in.signal.bent, in.signal.signal),
                 context.view(in.line_depth), context.view(in.normals),
-                view_or(out.visibility, written), view_or(out.bent_normal, written)});
+                view_or(context, out.visibility, written),
+                view_or(context, out.bent_normal, written)});
   if (textures.history) {
-    bindings.add({view_or(in.motion, in.normals), context.view(textures.history),
-                  view_or(textures.bent_history, in.normals), context.view(textures.next_history),
-                  view_or(textures.next_bent_history, written)});
+    bindings.add({view_or(context, in.motion, in.normals), context.view(textures.history),
+                  view_or(context, textures.bent_history, in.normals),
+                  context.view(textures.next_history),
+                  view_or(context, textures.next_bent_history, written)});
   }
   if (in.signal.lobe) {
-    bindings.add({view_or(in.roughness, in.normals), context.view(out.specular)});
+    bindings.add({view_or(context, in.roughness, in.normals), context.view(out.specular)});
   }
   return bindings;
 }

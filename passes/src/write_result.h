@@ -1,9 +1,19 @@
-// How passes write what they were asked for.
+// Where passes write what they were asked for, and how.
 #pragma once
+
+#include <string_view>
 
 #include "alcove/framegraph/graph.h"
 
 namespace alcove::passes {
+
+// The texture that a caller gave for a result, or else a transient.
+[[nodiscard]] inline framegraph::Texture given_or_created(framegraph::Graph& graph,
+                                                          framegraph::Texture given,
+                                                          std::string_view name,
+                                                          const framegraph::TextureDesc& desc) {
+  return given ? given : graph.create_texture(name, desc);
+}
 
 // Has `pass` write every texel of `texture`, in a shader. What was there may be thrown away, but
 // for what an import arrives with: its image may be larger than the part that the graph knows, and

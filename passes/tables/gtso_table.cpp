@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "maths/ggx.h"
+#include "lobe_samples.h"
 #include "maths/gtso_table.h"
 #include "maths/packing.h"
 #include "tables.h"
@@ -16,19 +16,13 @@ GtsoLobe::GtsoLobe(float mirror_from_normal, float roughness, int samples)
   const float z = std::max(std::cos(mirror_from_normal), 1e-3f);
   const vec3 view(-std::sqrt(1.0f - z * z), 0.0f, z);
   double sum = 0.0;
-  for (int i = 0; i < samples; ++i) {
-    const double turn = 0.5 + i * 0.6180339887498949;
-    const vec3 half = maths::sample_ggx_normal(view, alpha, float(turn - std::floor(turn)),
-                                               (float(i) + 0.5f) / float(samples));
-    const vec3 light = 2.0f * glm::dot(view, half) * half - view;
-    if (light.z > 0.0f) {
-      x_.push_back(light.x);
-      y_.push_back(light.y);
-      z_.push_back(light.z);
-      weights_.push_back(maths::ggx_shadowing(z, light.z, alpha) / maths::ggx_masking(z, alpha));
-      sum += weights_.back();
-    }
-  }
+  for_each_lobe_sample(view, alpha, samples, [&](const vec3& light, const vec3&, float share) {
+    x_.push_back(light.x);
+    y_.push_back(light.y);
+    z_.push_back(light.z);
+    weights_.push_back(share);
+    sum += share;
+  });
   for (float& weight : weights_) {
     weight = static_cast<float>(weight / sum);
   }
@@ -49,10 +43,10 @@ float GtsoLobe::share(float cone, float bent_from_mirror, int sides) const {
   const vec3 mirror(sine, 0.0f, cosine);
   const vec3 towards_normal(-cosine, 0.0f, sine);
   const vec3 across(0.0f, 1.0f, 0.0f);
-  const float reach = maths::gtso_sides(cone, bent_from_mirror, mirror_from_normal_);
+  const float most = maths::gtso_sides(cone, bent_from_mirror, mirror_from_normal_);
   double sum = 0.0;
   for (int i = 0; i < sides; ++i) {
-    const float side = reach * (float(i) + 0.5f) / float(sides);
+    const float side = most * (float(i) + 0.5f) / float(sides);
     sum += within(cone, std::cos(bent_from_mirror) * mirror +
                             std::sin(bent_from_mirror) *
                                 (std::cos(side) * towards_normal + std::sin(side) * across));

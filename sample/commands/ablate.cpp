@@ -13,6 +13,7 @@
 #include "options/settings.h"
 #include "render/stage.h"
 #include "support/image_io.h"
+#include "support/mib.h"
 #include "support/progress.h"
 #include "truth/surface_points.h"
 
@@ -92,8 +93,7 @@ std::string table_of(const std::vector<TrialErrors>& rows) {
         << row.scene.rmse << std::setw(15) << row.height_field.rmse << std::showpos << std::setw(10)
         << std::setprecision(3) << row.scene.bias << std::noshowpos << std::setprecision(2)
         << std::setw(6) << row.cost.gpu << std::setw(10) << row.cost.processor
-        << std::setprecision(1) << std::setw(9) << static_cast<double>(row.cost.bytes) / 1048576.0
-        << "\n";
+        << std::setprecision(1) << std::setw(9) << mib(row.cost.bytes) << "\n";
   }
   return out.str();
 }

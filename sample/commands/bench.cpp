@@ -4,7 +4,7 @@
 #include "commands/commands.h"
 #include "measure/measured_trade.h"
 #include "measure/trade_plot.h"
-#include "scene/camera_of.h"
+#include "options/camera_of.h"
 #include "scene/load_scene.h"
 #include "support/image_io.h"
 

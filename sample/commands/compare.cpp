@@ -5,10 +5,10 @@
 #include "commands/commands.h"
 #include "commands/report.h"
 #include "measure/indirect_errors.h"
+#include "measure/indirect_truths.h"
 #include "measure/lit_errors.h"
+#include "measure/truths.h"
 #include "support/image_io.h"
-#include "truth/indirect_truths.h"
-#include "truth/truths.h"
 
 namespace alcove::sample {
 namespace {

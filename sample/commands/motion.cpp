@@ -62,7 +62,7 @@ tl::expected<Course, std::string> course_of(const Options& options) {
 Done write_pictures(const std::filesystem::path& folder, MotionKind kind,
                     const std::vector<MotionPicture>& pictures) {
   for (const MotionPicture& picture : pictures) {
-    const std::string name = name_of(kind) + "_" + std::to_string(picture.frame);
+    const std::string name = std::string(name_of(kind)) + "_" + std::to_string(picture.frame);
     auto written =
         write_png(folder / (name + ".png"), picture.visibility)
             .and_then([&] { return write_png(folder / (name + "_still.png"), picture.still); })
@@ -163,7 +163,7 @@ Done run_path(Course& course, MotionKind kind, const Options& options, Json& rep
     if (!made) {
       return Failure(std::move(made.error()));
     }
-    report[name_of(kind)] = to_json(*made);
+    report[std::string(name_of(kind))] = to_json(*made);
     table = table_of(*made);
     pictures = std::move(made->pictures);
   } else {
@@ -171,7 +171,7 @@ Done run_path(Course& course, MotionKind kind, const Options& options, Json& rep
     if (!made) {
       return Failure(std::move(made.error()));
     }
-    report[name_of(kind)] = to_json(*made);
+    report[std::string(name_of(kind))] = to_json(*made);
     table = table_of(kind, *made);
     pictures = std::move(made->pictures);
   }

@@ -6,6 +6,7 @@
 #include "commands/commands.h"
 #include "measure/measured_trade.h"
 #include "options/render_command.h"
+#include "support/mib.h"
 
 namespace alcove::sample {
 namespace {
@@ -16,8 +17,8 @@ using Done = tl::expected<void, std::string>;
 std::string shown(const TradePoint& point) {
   std::ostringstream out;
   out << point.name << std::fixed << ": RMSE " << std::setprecision(4) << point.rmse << " in "
-      << std::setprecision(2) << point.gpu_ms << " ms, " << std::setprecision(1)
-      << static_cast<double>(point.bytes) / 1048576.0 << " MiB";
+      << std::setprecision(2) << point.gpu_ms << " ms, " << std::setprecision(1) << mib(point.bytes)
+      << " MiB";
   return out.str();
 }
 

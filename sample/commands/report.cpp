@@ -6,6 +6,7 @@
 
 #include "alcove/passes/setting_names.h"
 #include "options/settings.h"
+#include "support/mib.h"
 
 namespace alcove::sample {
 namespace {
@@ -63,27 +64,6 @@ Json report_of(const Rendering& rendering, const Options& options) {
   return report;
 }
 
-Json to_json(const ErrorSummary& summary) {
-  return {{"pixels", summary.count},
-          {"rmse", summary.rmse},
-          {"bias", summary.bias},
-          {"mean_absolute", summary.mean_absolute},
-          {"percentile_95", summary.percentile_95},
-          {"max_absolute", summary.max_absolute}};
-}
-
-Json to_json(const AngleSummary& summary) {
-  return {{"pixels", summary.count},
-          {"mean_degrees", summary.mean_degrees},
-          {"percentile_95_degrees", summary.percentile_95_degrees}};
-}
-
-Json to_json(const OpenSurfaceSummary& summary) {
-  return {{"pixels", summary.count},
-          {"mean_visibility", summary.mean_visibility},
-          {"fraction_below_0.95", summary.fraction_below_95}};
-}
-
 std::string time_table(const Rendering& rendering) {
   std::ostringstream text;
   text << rendering.device << ", " << rendering.driver << "\n" << std::fixed;
@@ -98,9 +78,6 @@ std::string time_table(const Rendering& rendering) {
   row("occlusion, processor time", rendering.costs.cpu_ms);
   row("with specular, by GPU timestamps", rendering.costs_with_specular.occlusion_ms);
   row("with specular, processor time", rendering.costs_with_specular.cpu_ms);
-  const auto mib = [](VkDeviceSize bytes) {
-    return static_cast<double>(bytes) / (1024.0 * 1024.0);
-  };
   text << std::setprecision(2) << "  transients " << mib(rendering.memory.aliased)
        << " MiB aliased, " << mib(rendering.memory.unaliased) << " MiB each on its own\n";
   return text.str();

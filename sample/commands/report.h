@@ -2,7 +2,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "measure/errors.h"
 #include "options/options.h"
 #include "render/rendering.h"
 
@@ -11,10 +10,6 @@ namespace alcove::sample {
 // What `report.json` says of a rendering: device, settings, view, timings, memory. `errors` is
 // added by those that know a truth.
 [[nodiscard]] nlohmann::ordered_json report_of(const Rendering& rendering, const Options& options);
-
-[[nodiscard]] nlohmann::ordered_json to_json(const ErrorSummary& summary);
-[[nodiscard]] nlohmann::ordered_json to_json(const AngleSummary& summary);
-[[nodiscard]] nlohmann::ordered_json to_json(const OpenSurfaceSummary& summary);
 
 // The times of a rendering as a table for people.
 [[nodiscard]] std::string time_table(const Rendering& rendering);

@@ -34,7 +34,7 @@ class TrialList {
 // Only horizons and the heuristic have a falloff.
 void use(OcclusionSettings& settings, Estimator estimator) {
   settings.estimator = estimator;
-  if (estimator == Estimator::bitmask || estimator == Estimator::connected) {
+  if (passes::has_thickness(estimator)) {
     settings.falloff = 0.0f;
   }
 }
@@ -54,7 +54,7 @@ void add_estimators(TrialList& list) {
 }
 
 void add_occluders(TrialList& list, const OcclusionSettings& base) {
-  if (base.estimator != Estimator::bitmask && base.estimator != Estimator::connected) {
+  if (!passes::has_thickness(base.estimator)) {
     return;
   }
   const char* part = "occluders";

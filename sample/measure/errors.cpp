@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <nlohmann/json.hpp>
 #include <vector>
 
 namespace alcove::sample {
@@ -105,6 +106,27 @@ Image<glm::vec3> error_colours(const Image<float>& result, const Image<float>& t
                                      : glm::vec3(1.0f - less, 1.0f - less, 1.0f);
   }
   return colours;
+}
+
+nlohmann::ordered_json to_json(const ErrorSummary& summary) {
+  return {{"pixels", summary.count},
+          {"rmse", summary.rmse},
+          {"bias", summary.bias},
+          {"mean_absolute", summary.mean_absolute},
+          {"percentile_95", summary.percentile_95},
+          {"max_absolute", summary.max_absolute}};
+}
+
+nlohmann::ordered_json to_json(const AngleSummary& summary) {
+  return {{"pixels", summary.count},
+          {"mean_degrees", summary.mean_degrees},
+          {"percentile_95_degrees", summary.percentile_95_degrees}};
+}
+
+nlohmann::ordered_json to_json(const OpenSurfaceSummary& summary) {
+  return {{"pixels", summary.count},
+          {"mean_visibility", summary.mean_visibility},
+          {"fraction_below_0.95", summary.fraction_below_95}};
 }
 
 }  // namespace alcove::sample

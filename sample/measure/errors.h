@@ -1,15 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <nlohmann/json_fwd.hpp>
 
 #include "support/glm.h"
 #include "support/image.h"
 
 namespace alcove::sample {
 
-// Where to compare: non-zero pixels count. All images of a call have one size.
-using Mask = Image<uint8_t>;
-
+// All images of a call have one size.
 struct ErrorSummary {
   uint64_t count = 0;  // pixels compared; everything is zero when there are none
   double rmse = 0;
@@ -47,5 +46,10 @@ struct OpenSurfaceSummary {
 // Signed error as colours: white where right, red where too dark, blue where too bright, full
 // colour at an error of a quarter.
 [[nodiscard]] Image<glm::vec3> error_colours(const Image<float>& result, const Image<float>& truth);
+
+// As report.json has them.
+[[nodiscard]] nlohmann::ordered_json to_json(const ErrorSummary& summary);
+[[nodiscard]] nlohmann::ordered_json to_json(const AngleSummary& summary);
+[[nodiscard]] nlohmann::ordered_json to_json(const OpenSurfaceSummary& summary);
 
 }  // namespace alcove::sample

@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "commands/report.h"
 #include "maths/gtso.h"
 #include "maths/multi_bounce.h"
 #include "tables.h"

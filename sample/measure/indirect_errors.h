@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "measure/errors.h"
-#include "truth/indirect_truths.h"
-#include "truth/truths.h"
+#include "measure/indirect_truths.h"
+#include "measure/truths.h"
 
 namespace alcove::sample {
 

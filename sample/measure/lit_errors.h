@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "measure/errors.h"
+#include "measure/indirect_truths.h"
 #include "render/rendering.h"
-#include "truth/indirect_truths.h"
 
 namespace alcove::sample {
 

@@ -7,6 +7,7 @@
 
 #include "measure/trial_errors.h"
 #include "options/settings.h"
+#include "support/mib.h"
 
 namespace alcove::sample {
 namespace {
@@ -62,7 +63,7 @@ std::string table_of(const Trade& trade) {
         << std::right << std::setprecision(4) << std::setw(9) << point.rmse << std::setw(15)
         << point.height_field_rmse << std::setprecision(2) << std::setw(10) << point.gpu_ms
         << std::setw(15) << point.processor_ms << std::setprecision(1) << std::setw(8)
-        << static_cast<double>(point.bytes) / 1048576.0 << "\n";
+        << mib(point.bytes) << "\n";
   }
   return out.str() + "* nothing here is both faster and nearer to the scene's truth\n";
 }

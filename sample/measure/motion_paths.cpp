@@ -112,12 +112,6 @@ float median_depth(const GBuffer& view) {
 
 }  // namespace
 
-std::string name_of(MotionKind kind) {
-  constexpr std::array<const char*, kMotionKinds.size()> kNames{"orbit", "dolly", "strafe",
-                                                                "object", "cut"};
-  return kNames.at(static_cast<std::size_t>(kind));
-}
-
 tl::expected<MotionStart, std::string> motion_start(const RayScene& rays, const Camera& camera,
                                                     float aspect, float radius) {
   constexpr std::uint32_t kHeight = 45;

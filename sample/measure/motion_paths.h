@@ -1,31 +1,17 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <tl/expected.hpp>
 
+#include "options/options.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
 #include "support/glm.h"
 #include "truth/truth.h"
 
 namespace alcove::sample {
-
-enum class MotionKind : std::uint8_t {
-  kOrbit,   // about a point in the middle of the view, as deep as the median surface
-  kDolly,   // towards it
-  kStrafe,  // to the right, past a column that is put near the eye
-  kObject,  // the camera stands still, a thing slides over the ground
-  kCut,     // it stands still, and in the middle of the path stands elsewhere
-};
-inline constexpr std::array kMotionKinds{MotionKind::kOrbit, MotionKind::kDolly,
-                                         MotionKind::kStrafe, MotionKind::kObject,
-                                         MotionKind::kCut};
-
-// As --path has it.
-[[nodiscard]] std::string name_of(MotionKind kind);
 
 // What the length of a path's steps is taken from.
 struct MotionStart {

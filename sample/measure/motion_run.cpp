@@ -1,14 +1,8 @@
 #include "measure/motion_run.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <functional>
-#include <memory>
 #include <utility>
-
-#include "truth/surface_points.h"
-#include "truth/truth_cache.h"
 
 namespace alcove::sample {
 namespace {
@@ -17,130 +11,6 @@ using Failure = tl::unexpected<std::string>;
 using Done = tl::expected<void, std::string>;
 
 constexpr std::uint32_t kCompared = 3;  // frames of a path
-
-// Raised when a truth is computed otherwise, so that old entries of the cache are not taken.
-constexpr std::uint32_t kMotionTruthVersion = 1;
-
-// What one path is drawn with.
-class Walk {
- public:
-  static tl::expected<Walk, std::string> create(Gpu& gpu, const Scene& scene,
-                                                const MotionPath& path, const MotionSetup& setup) {
-    Walk walk(path, setup);
-    walk.scene_ = std::make_unique<Scene>(scene);
-    path.add_to(*walk.scene_);
-    auto renderer =
-        FrameRenderer::create(gpu, *walk.scene_, {setup.width, setup.height}, setup.normals);
-    if (!renderer) {
-      return Failure(std::move(renderer.error()));
-    }
-    walk.renderer_ = std::move(*renderer);
-    return walk;
-  }
-
-  // How a frame is drawn.
-  struct Step {
-    std::uint32_t frame = 0;   // of the path
-    std::uint32_t before = 0;  // where everything was one frame ago
-    std::uint32_t index = 0;   // of the noise
-    bool restart = false;
-    bool history = true;
-    bool moving = true;  // motion vectors are given
-  };
-  tl::expected<SeenFrame, std::string> draw_and_read(const Step& step) {
-    auto images = renderer_->draw_and_read(request(step));
-    if (!images) {
-      return Failure(std::move(images.error()));
-    }
-    const Camera camera = path_.camera(step.frame);
-    return SeenFrame{camera, linear_depth(camera, images->depth_ndc), std::move(images->normal_ws),
-                     std::move(images->visibility)};
-  }
-  Done draw(const Step& step) {
-    return renderer_->draw(request(step)).map([](const FrameCost&) {});
-  }
-
-  // The truth of a frame, or of the surfaces that it saw.
-  tl::expected<TruthHalves, std::string> truth(std::uint32_t frame, const SeenFrame& seen);
-
-  const MotionPath& path() const { return path_; }
-  const MotionSetup& setup() const { return setup_; }
-  Progress progress(const std::string& name) const {
-    return setup_.progress ? setup_.progress(name) : Progress([](double) {});
-  }
-
- private:
-  Walk(const MotionPath& path, const MotionSetup& setup) : path_(path), setup_(setup) {}
-
-  FrameRequest request(const Step& step) const {
-    const CameraMatrices now =
-        camera_matrices(path_.camera(step.frame), setup_.width, setup_.height);
-    const CameraMatrices before =
-        camera_matrices(path_.camera(step.before), setup_.width, setup_.height);
-    FrameRequest request;
-    request.view = {now.view_from_world,
-                    now.clip_from_view,
-                    before.view_from_world,
-                    before.clip_from_view,
-                    path_.camera(step.frame).reversed_z,
-                    path_.world_from_moving(step.frame),
-                    path_.world_from_moving(step.before)};
-    request.index = step.index;
-    request.restart = step.restart;
-    request.motion_vectors = step.moving;
-    request.occlusion = setup_.occlusion;
-    request.occlusion.specular = passes::Specular::none;
-    request.occlusion.bent_normal = false;
-    if (!step.history) {
-      request.occlusion.history_frames = 0;
-    }
-    return request;
-  }
-
-  MotionPath path_;
-  MotionSetup setup_;
-  std::unique_ptr<Scene> scene_;  // where the renderer looks for it
-  std::unique_ptr<FrameRenderer> renderer_;
-};
-
-tl::expected<TruthHalves, std::string> Walk::truth(std::uint32_t frame, const SeenFrame& seen) {
-  path_.pose(*scene_, frame);
-  const TruthCache cache(setup_.cache);
-  const std::uint32_t half = std::max(setup_.spp / 2, 1u);
-  std::array<CacheKey, 2> keys;
-  TruthHalves truth{{setup_.width, setup_.height}, {setup_.width, setup_.height}};
-  const std::array images{&truth.first, &truth.second};
-  bool known = true;
-  for (std::uint32_t i = 0; i < keys.size(); ++i) {
-    keys[i].add(std::string("motion truth"));
-    keys[i].add(kMotionTruthVersion);
-    keys[i].add(*scene_);
-    keys[i].add(seen.camera);
-    keys[i].add(setup_.occlusion.radius);
-    keys[i].add(half);
-    keys[i].add(i);
-    keys[i].add(seen.depth);
-    keys[i].add(seen.normal_ws);
-    known = known && cache.read(keys[i], *images[i]);
-  }
-  if (known) {
-    return truth;
-  }
-  const auto rays = RayScene::create(*scene_);
-  if (!rays) {
-    return Failure(rays.error());
-  }
-  const SurfacePoints points = surface_points(*rays, seen.camera, seen.normal_ws, seen.depth);
-  const Progress whole = progress("truth of frame " + std::to_string(frame));
-  for (std::uint32_t i = 0; i < keys.size(); ++i) {
-    const TruthSettings settings{.radius = setup_.occlusion.radius, .spp = half, .seed = 1 + i};
-    *images[i] = occlusion_truth(*rays, points, settings, [&](double done) {
-                   whole(0.5 * (i + done));
-                 }).visibility;
-    cache.write(keys[i], *images[i]);
-  }
-  return truth;
-}
 
 Mask surfaces_of(const SeenFrame& seen) {
   return surfaces_where(seen, [](const glm::vec3&) { return true; });
@@ -183,11 +53,11 @@ bool is_compared(const MotionPath& path, std::uint32_t frame) {
   return false;
 }
 
-tl::expected<Passed, std::string> pass_along(Walk& walk, bool history) {
+tl::expected<Passed, std::string> pass_along(MotionWalk& walk, bool history) {
   Passed passed;
   const MotionPath& path = walk.path();
   const Progress progress =
-      walk.progress(name_of(path.kind()) + (history ? "" : " without history"));
+      walk.progress(std::string(name_of(path.kind())) + (history ? "" : " without history"));
   // Nothing is kept without a history, so that the way to where it counts is not walked.
   const std::uint32_t first = history ? 0 : first_settled(path) - 1;
   SeenFrame before;
@@ -229,7 +99,7 @@ struct Standing {
   RunningMean change;
 };
 
-tl::expected<Standing, std::string> stand_at(Walk& walk, std::uint32_t frame) {
+tl::expected<Standing, std::string> stand_at(MotionWalk& walk, std::uint32_t frame) {
   for (std::uint32_t index = 0; index + 1 < frame; ++index) {
     if (auto drawn = walk.draw({.frame = frame, .before = frame, .index = index, .moving = false});
         !drawn) {
@@ -270,78 +140,56 @@ struct SquaresPair {
   ErrorPair errors() const { return {moving.count, root(moving), root(still)}; }
 };
 
-}  // namespace
-
-tl::expected<MotionReport, std::string> run_motion(Gpu& gpu, const Scene& scene,
-                                                   const MotionPath& path,
-                                                   const MotionSetup& setup) {
-  auto walk = Walk::create(gpu, scene, path, setup);
-  if (!walk) {
-    return Failure(std::move(walk.error()));
-  }
-  const auto passed = pass_along(*walk, true);
-  if (!passed) {
-    return Failure(passed.error());
-  }
-  const auto unkept = pass_along(*walk, false);
-  if (!unkept) {
-    return Failure(unkept.error());
-  }
-  MotionReport report;
+// What the compared frames come to.
+struct Comparison {
   SquaresPair all;
   SquaresPair uncovered;
   SquaresPair entered;
   SquaresPair passed_by;
   RunningMean still_change;
   RunningMean truth_change;
-  for (const Compared& compared : passed->compared) {
-    auto standing = stand_at(*walk, compared.frame);
-    if (!standing) {
-      return Failure(std::move(standing.error()));
-    }
-    const auto truth = walk->truth(compared.frame, compared.seen);
-    if (!truth) {
-      return Failure(truth.error());
-    }
-    const auto truth_before = walk->truth(compared.frame - 1, compared.before);
-    if (!truth_before) {
-      return Failure(truth_before.error());
-    }
-    truth_change += least_change(*truth, *truth_before, compared.retraced);
-    all.add(compared, *standing, *truth, surfaces_of(compared.seen));
-    uncovered.add(compared, *standing, *truth, aged(compared.ages, true));
-    entered.add(compared, *standing, *truth, aged(compared.ages, false));
-    passed_by.add(compared, *standing, *truth,
-                  surfaces_where(compared.seen, [&](const glm::vec3& position) {
-                    return path.passes_by(position, compared.frame, kTrailFrames);
-                  }));
-    still_change += standing->change;
-    report.pictures.push_back({compared.frame, compared.seen.visibility,
-                               std::move(standing->visibility), mean_of(*truth)});
+  std::vector<MotionPicture> pictures;
+};
+
+Done compare(MotionWalk& walk, const Compared& compared, Comparison& sums) {
+  auto standing = stand_at(walk, compared.frame);
+  if (!standing) {
+    return Failure(std::move(standing.error()));
   }
-  report.speed = {passed->speed.mean(), passed->fast.mean()};
-  report.all = all.errors();
-  report.uncovered = uncovered.errors();
-  report.entered = entered.errors();
-  report.passed_by = passed_by.errors();
-  report.flicker = {passed->change.mean(), unkept->change.mean(), still_change.mean(),
-                    truth_change.mean()};
-  return report;
+  const auto truth = walk.truth(compared.frame, compared.seen);
+  if (!truth) {
+    return Failure(truth.error());
+  }
+  const auto truth_before = walk.truth(compared.frame - 1, compared.before);
+  if (!truth_before) {
+    return Failure(truth_before.error());
+  }
+  const auto passes_by = [&](const glm::vec3& position) {
+    return walk.path().passes_by(position, compared.frame, kTrailFrames);
+  };
+  sums.all.add(compared, *standing, *truth, surfaces_of(compared.seen));
+  sums.uncovered.add(compared, *standing, *truth, aged(compared.ages, true));
+  sums.entered.add(compared, *standing, *truth, aged(compared.ages, false));
+  sums.passed_by.add(compared, *standing, *truth, surfaces_where(compared.seen, passes_by));
+  sums.still_change += standing->change;
+  sums.truth_change += least_change(*truth, *truth_before, compared.retraced);
+  sums.pictures.push_back(
+      {compared.frame, compared.seen.visibility, std::move(standing->visibility), mean_of(*truth)});
+  return {};
 }
 
-namespace {
-
 // The frames from `first` on as they are seen after 1, 2, 4 ... of them, the camera standing.
-tl::expected<std::vector<SeenFrame>, std::string> after_cut(Walk& walk, bool restart) {
+tl::expected<std::vector<SeenFrame>, std::string> after_cut(MotionWalk& walk, bool restart) {
   const MotionPath& path = walk.path();
   const std::uint32_t cut = path.cut().value_or(0);
   std::vector<SeenFrame> seen;
   for (std::uint32_t frame = restart ? cut : 0; frame < path.frames(); ++frame) {
     const std::uint32_t since = frame + 1 - std::min(cut, frame + 1);
-    const Walk::Step step{.frame = frame,
-                          .before = frame == 0 || (restart && frame == cut) ? frame : frame - 1,
-                          .index = frame,
-                          .restart = restart && frame == cut};
+    const MotionWalk::Step step{
+        .frame = frame,
+        .before = frame == 0 || (restart && frame == cut) ? frame : frame - 1,
+        .index = frame,
+        .restart = restart && frame == cut};
     // 1, 2, 4, ...
     if (since > 0 && (since & (since - 1)) == 0) {
       auto images = walk.draw_and_read(step);
@@ -358,9 +206,40 @@ tl::expected<std::vector<SeenFrame>, std::string> after_cut(Walk& walk, bool res
 
 }  // namespace
 
+tl::expected<MotionReport, std::string> run_motion(Gpu& gpu, const Scene& scene,
+                                                   const MotionPath& path,
+                                                   const MotionSetup& setup) {
+  auto walk = MotionWalk::create(gpu, scene, path, setup);
+  if (!walk) {
+    return Failure(std::move(walk.error()));
+  }
+  const auto passed = pass_along(*walk, true);
+  if (!passed) {
+    return Failure(passed.error());
+  }
+  const auto unkept = pass_along(*walk, false);
+  if (!unkept) {
+    return Failure(unkept.error());
+  }
+  Comparison sums;
+  for (const Compared& compared : passed->compared) {
+    if (auto done = compare(*walk, compared, sums); !done) {
+      return Failure(std::move(done.error()));
+    }
+  }
+  return MotionReport{.speed = {passed->speed.mean(), passed->fast.mean()},
+                      .all = sums.all.errors(),
+                      .uncovered = sums.uncovered.errors(),
+                      .entered = sums.entered.errors(),
+                      .passed_by = sums.passed_by.errors(),
+                      .flicker = {passed->change.mean(), unkept->change.mean(),
+                                  sums.still_change.mean(), sums.truth_change.mean()},
+                      .pictures = std::move(sums.pictures)};
+}
+
 tl::expected<CutReport, std::string> run_cut(Gpu& gpu, const Scene& scene, const MotionPath& path,
                                              const MotionSetup& setup) {
-  auto walk = Walk::create(gpu, scene, path, setup);
+  auto walk = MotionWalk::create(gpu, scene, path, setup);
   if (!walk) {
     return Failure(std::move(walk.error()));
   }

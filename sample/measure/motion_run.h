@@ -1,33 +1,18 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
-#include <functional>
 #include <string>
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "alcove/passes/occlusion.h"
 #include "device/gpu.h"
 #include "measure/motion_errors.h"
 #include "measure/motion_paths.h"
-#include "options/options.h"
-#include "render/frame_renderer.h"
+#include "measure/motion_walk.h"
 #include "scene/scene.h"
 #include "support/image.h"
 
 namespace alcove::sample {
-
-// What a run needs besides its path.
-struct MotionSetup {
-  passes::OcclusionSettings occlusion;  // with a history
-  NormalSource normals = NormalSource::kShading;
-  std::uint32_t width = 960;
-  std::uint32_t height = 540;
-  std::uint32_t spp = 256;                        // rays per pixel of the truth, at least 2
-  std::filesystem::path cache;                    // of truths; empty: none is kept
-  std::function<Progress(std::string)> progress;  // by the name of what is under way; may be null
-};
 
 // After so many frames an uncovered surface must be near as good as any.
 inline constexpr std::uint32_t kUncoveredFrames = 4;

@@ -2,8 +2,8 @@
 
 #include <utility>
 
+#include "measure/truths.h"
 #include "support/progress.h"
-#include "truth/truths.h"
 
 namespace alcove::sample {
 namespace {

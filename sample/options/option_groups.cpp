@@ -166,12 +166,9 @@ void add_motion(CLI::App& app, Options& options) {
             "is put near the eye), object (the camera stands, a block slides over the ground), "
             "cut (to elsewhere) or all of them; all",
             [&](const OptionValue& given) {
-              std::vector<std::string> names;
-              names.reserve(kMotionKinds.size() + 1);
-              for (const MotionKind kind : kMotionKinds) names.push_back(name_of(kind));
+              std::vector<std::string_view> names(kMotionKindNames.begin(), kMotionKindNames.end());
               names.emplace_back("all");
-              const std::size_t which =
-                  given.one_of(std::vector<std::string_view>(names.begin(), names.end()));
+              const std::size_t which = given.one_of(names);
               options.path =
                   which < kMotionKinds.size() ? std::optional(kMotionKinds[which]) : std::nullopt;
             });

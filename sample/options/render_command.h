@@ -7,6 +7,7 @@
 
 #include "alcove/passes/occlusion.h"
 #include "options/options.h"
+#include "scene/camera.h"
 
 namespace alcove::sample {
 

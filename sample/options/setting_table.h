@@ -19,8 +19,7 @@ struct SettingInfo {
 };
 
 inline bool has_thickness(const passes::OcclusionSettings& settings) {
-  return settings.estimator == passes::Estimator::bitmask ||
-         settings.estimator == passes::Estimator::connected;
+  return passes::has_thickness(settings.estimator);
 }
 
 // Calls `visit(info, field)` for every setting but roughness, which is the surfaces', and

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "device/gpu_textures.h"
 #include "render/gbuffer_pipelines.h"
+#include "render/gpu_textures.h"
 #include "render/triangles.h"
 #include "shaders/gbuffer.h"
 

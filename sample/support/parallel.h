@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <functional>
 
-#include "truth/truth.h"
+#include "support/progress.h"
 
 namespace alcove::sample {
 

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
-#include "truth/truth.h"
-
 namespace alcove::sample {
+
+// Called from time to time with a fraction of the work done, 0..1, by one thread at a time.
+using Progress = std::function<void(double)>;
 
 // A Progress that prints `name 42 %, 12 s left` to stderr: nothing in the first second, then at
 // most four times a second on a terminal (one line, rewritten) and every five seconds elsewhere.

@@ -11,6 +11,7 @@
 #include "scene/scene.h"
 #include "support/glm.h"
 #include "support/image.h"
+#include "support/progress.h"
 
 namespace alcove::sample {
 
@@ -38,9 +39,6 @@ struct SurfacePoints {
   Image<glm::vec3> normal_ws;            // the normal that the occlusion pass was given; unit
   Image<glm::vec3> geometric_normal_ws;  // faces the viewer; rays start off the surface along it
 };
-
-// Called from time to time with a fraction of the work done, 0..1, by one thread at a time.
-using Progress = std::function<void(double)>;
 
 struct TruthSettings {
   float radius = 0.5f;  // scene units, > 0; a hit beyond it does not block. Infinity is allowed

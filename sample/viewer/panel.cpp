@@ -7,6 +7,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "alcove/passes/setting_names.h"
+#include "support/mib.h"
 #include "viewer/orbit_camera.h"
 #include "viewer/setting_widgets.h"
 
@@ -144,7 +145,6 @@ void lay_out_cost(const PanelFacts& facts) {
     ImGui::Text("%ux%u, %.1f frames a second", facts.width, facts.height,
                 static_cast<double>(ImGui::GetIO().Framerate));
     lay_out_times(facts.times);
-    const auto mib = [](VkDeviceSize bytes) { return static_cast<double>(bytes) / 1048576.0; };
     ImGui::Text("transients %.1f MiB (unshared %.1f)", mib(facts.memory.aliased),
                 mib(facts.memory.unaliased));
     ImGui::Text("histories  %.1f MiB", mib(facts.memory.history));

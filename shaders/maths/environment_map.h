@@ -20,12 +20,6 @@ ALCOVE_INLINE vec2 equirectangular_uv(vec3 direction) {
   return vec2(turn < 0.0f ? turn + 1.0f : turn, atan(across, direction.y) / kPi);
 }
 
-ALCOVE_INLINE vec3 equirectangular_direction(vec2 uv) {
-  float turn = uv.x * 2.0f * kPi;
-  float across = sin(uv.y * kPi);
-  return vec3(across * sin(turn), cos(uv.y * kPi), -across * cos(turn));
-}
-
 // From a unit direction to [0,1]^2 of the octahedral map, and back.
 ALCOVE_INLINE vec2 map_uv(vec3 direction) {
   vec2 square = octahedral_encode(vec3(direction.x, direction.z, direction.y));

@@ -41,17 +41,6 @@ ALCOVE_INLINE float ggx_shadowing(float n_dot_v, float n_dot_l, float alpha) {
   return 1.0f / (1.0f + ggx_lambda(n_dot_v, alpha) + ggx_lambda(n_dot_l, alpha));
 }
 
-// The lobe without Fresnel: BRDF times the cosine of the light, per steradian. Its integral over
-// the hemisphere is at most 1. 0 for a light or a view under the surface.
-ALCOVE_INLINE float ggx_lobe(vec3 normal, vec3 view, vec3 light, float alpha) {
-  float n_dot_v = dot(normal, view);
-  float n_dot_l = dot(normal, light);
-  if (n_dot_v <= 0.0f || n_dot_l <= 0.0f) return 0.0f;
-  float n_dot_h = clamp(dot(normal, normalize(view + light)), 0.0f, 1.0f);
-  return ggx_distribution(n_dot_h, alpha) * ggx_shadowing(n_dot_v, n_dot_l, alpha) /
-         (4.0f * n_dot_v);
-}
-
 // A microfacet normal in proportion to how much of it the view sees, from two uniform numbers in
 // [0,1) (Dupuy and Benyoub 2023: a spherical cap, stretched). `view` in tangent space, z >= 0.
 ALCOVE_INLINE vec3 sample_ggx_normal(vec3 view, float alpha, float u1, float u2) {
@@ -65,7 +54,8 @@ ALCOVE_INLINE vec3 sample_ggx_normal(vec3 view, float alpha, float u1, float u2)
 }
 
 // The density of the light direction that reflecting `view` in such a normal gives, per steradian.
-// ggx_lobe() over it is G2 / G1, in [0,1].
+// The lobe (BRDF times the cosine of the light, without Fresnel) over it is ggx_shadowing() over
+// ggx_masking(), in [0,1].
 ALCOVE_INLINE float ggx_reflection_density(vec3 normal, vec3 view, vec3 light, float alpha) {
   float n_dot_v = max(dot(normal, view), 1e-6f);
   float n_dot_h = clamp(dot(normal, normalize(view + light)), 0.0f, 1.0f);

@@ -64,8 +64,8 @@ ALCOVE_INLINE float count_after_clamp(float count, float before, float after, fl
 // Variance of the visibility that one frame finds, about.
 const float kFrameVariance = 0.05f;
 
-// Variance of the visibility, about, between a surface and what is read in its place where none of
-// its texels are.
+// About the variance of the visibility between a surface and what is read in its place where it has
+// no texel.
 const float kUnseenVariance = 0.005f;
 
 // The count to go on with after history was read between texels whose visibilities have this

@@ -106,16 +106,6 @@ ALCOVE_INLINE SliceNoise hilbert_noise(uvec2 pixel, uint frame) {
   return r2_sequence(hilbert_index(pixel) + 288u * (frame & 63u));
 }
 
-// A hash of 32 bits, each output bit depending on each input bit (PCG-RXS-M-XS, O'Neill 2014).
-ALCOVE_INLINE uint hash(uint seed) {
-  uint state = seed * 747796405u + 2891336453u;
-  uint word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
-  return (word >> 22u) ^ word;
-}
-
-// The top 24 bits of a hash as a number in [0,1).
-ALCOVE_INLINE float unit_float(uint bits) { return float(bits >> 8u) * (1.0f / 16777216.0f); }
-
 // The nearest distance in pixels at which a step can find another texel in every direction.
 const float kNearestStep = 1.3f;
 

@@ -28,18 +28,19 @@ ChecksumKernels::~ChecksumKernels() {
 void ChecksumKernels::reset() { vkResetDescriptorPool(device_, pool_, 0); }
 
 ChecksumKernels::Kernel ChecksumKernels::make(const std::uint32_t* code, std::size_t size,
-                                              VkDescriptorType second) {
+                                              VkDescriptorType written) {
   Kernel kernel;
-  VkDescriptorSetLayoutBinding bindings[3] = {};
-  for (std::uint32_t i = 0; i < 3; ++i) {
+  kernel.written = written;
+  VkDescriptorSetLayoutBinding bindings[kBindings] = {};
+  for (std::uint32_t i = 0; i < kBindings; ++i) {
     bindings[i].binding = i;
-    bindings[i].descriptorType = i == 0 ? VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE : second;
+    bindings[i].descriptorType = i == 0 ? VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE : written;
     bindings[i].descriptorCount = 1;
     bindings[i].stageFlags = VK_SHADER_STAGE_COMPUTE_BIT;
   }
   VkDescriptorSetLayoutCreateInfo set_info{};
   set_info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
-  set_info.bindingCount = 3;
+  set_info.bindingCount = kBindings;
   set_info.pBindings = bindings;
   vkCreateDescriptorSetLayout(device_, &set_info, nullptr, &kernel.set_layout);
   const VkPushConstantRange push{VK_SHADER_STAGE_COMPUTE_BIT, 0, 8};
@@ -74,8 +75,8 @@ void ChecksumKernels::destroy(Kernel& kernel) {
   vkDestroyDescriptorSetLayout(device_, kernel.set_layout, nullptr);
 }
 
-VkDescriptorSet ChecksumKernels::bind(RecordContext& context, const Kernel& kernel,
-                                      std::uint32_t seed, bool keep) {
+void ChecksumKernels::run(RecordContext& context, const Kernel& kernel, const Resource* resources,
+                          VkExtent2D groups, std::uint32_t seed, bool keep) {
   VkDescriptorSetAllocateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
   info.descriptorPool = pool_;
@@ -86,60 +87,43 @@ VkDescriptorSet ChecksumKernels::bind(RecordContext& context, const Kernel& kern
     const std::lock_guard lock(mutex_);
     vkAllocateDescriptorSets(device_, &info, &set);
   }
+  VkWriteDescriptorSet writes[kBindings] = {};
+  for (std::uint32_t i = 0; i < kBindings; ++i) {
+    writes[i].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+    writes[i].dstSet = set;
+    writes[i].dstBinding = i;
+    writes[i].descriptorCount = 1;
+    writes[i].descriptorType = i == 0 ? VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE : kernel.written;
+    writes[i].pImageInfo = &resources[i].image;
+    writes[i].pBufferInfo = &resources[i].buffer;
+  }
+  context.vk.vkUpdateDescriptorSets(device_, kBindings, writes, 0, nullptr);
   const std::uint32_t parameters[2] = {seed, keep ? 1u : 0u};
   context.vk.vkCmdBindPipeline(context.commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline);
   context.vk.vkCmdPushConstants(context.commands, kernel.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, 8,
                                 parameters);
-  return set;
+  context.vk.vkCmdBindDescriptorSets(context.commands, VK_PIPELINE_BIND_POINT_COMPUTE,
+                                     kernel.layout, 0, 1, &set, 0, nullptr);
+  context.vk.vkCmdDispatch(context.commands, groups.width, groups.height, 1);
 }
 
 void ChecksumKernels::mix_texture(RecordContext& context, VkImageView sampled, VkImageView storage,
                                   VkImageView result, VkExtent3D size, std::uint32_t seed,
                                   bool keep) {
-  const VkDescriptorSet set = bind(context, texture_, seed, keep);
-  const VkDescriptorImageInfo images[3] = {
-      {VK_NULL_HANDLE, sampled, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL},
-      {VK_NULL_HANDLE, storage, VK_IMAGE_LAYOUT_GENERAL},
-      {VK_NULL_HANDLE, result, VK_IMAGE_LAYOUT_GENERAL}};
-  VkWriteDescriptorSet writes[3] = {};
-  for (std::uint32_t i = 0; i < 3; ++i) {
-    writes[i].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
-    writes[i].dstSet = set;
-    writes[i].dstBinding = i;
-    writes[i].descriptorCount = 1;
-    writes[i].descriptorType =
-        i == 0 ? VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE : VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
-    writes[i].pImageInfo = &images[i];
-  }
-  context.vk.vkUpdateDescriptorSets(device_, 3, writes, 0, nullptr);
-  context.vk.vkCmdBindDescriptorSets(context.commands, VK_PIPELINE_BIND_POINT_COMPUTE,
-                                     texture_.layout, 0, 1, &set, 0, nullptr);
-  context.vk.vkCmdDispatch(context.commands, (size.width + 7) / 8, (size.height + 7) / 8, 1);
+  const Resource resources[kBindings] = {
+      {.image = {VK_NULL_HANDLE, sampled, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL}},
+      {.image = {VK_NULL_HANDLE, storage, VK_IMAGE_LAYOUT_GENERAL}},
+      {.image = {VK_NULL_HANDLE, result, VK_IMAGE_LAYOUT_GENERAL}}};
+  run(context, texture_, resources, {(size.width + 7) / 8, (size.height + 7) / 8}, seed, keep);
 }
 
 void ChecksumKernels::mix_buffer(RecordContext& context, VkImageView sampled, VkBuffer from,
                                  VkBuffer to, std::uint32_t words, std::uint32_t seed, bool keep) {
-  const VkDescriptorSet set = bind(context, buffer_, seed, keep);
-  const VkDescriptorImageInfo image{VK_NULL_HANDLE, sampled,
-                                    VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
-  const VkDescriptorBufferInfo buffers[2] = {{from, 0, VK_WHOLE_SIZE}, {to, 0, VK_WHOLE_SIZE}};
-  VkWriteDescriptorSet writes[3] = {};
-  for (std::uint32_t i = 0; i < 3; ++i) {
-    writes[i].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
-    writes[i].dstSet = set;
-    writes[i].dstBinding = i;
-    writes[i].descriptorCount = 1;
-    writes[i].descriptorType =
-        i == 0 ? VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-    if (i == 0)
-      writes[i].pImageInfo = &image;
-    else
-      writes[i].pBufferInfo = &buffers[i - 1];
-  }
-  context.vk.vkUpdateDescriptorSets(device_, 3, writes, 0, nullptr);
-  context.vk.vkCmdBindDescriptorSets(context.commands, VK_PIPELINE_BIND_POINT_COMPUTE,
-                                     buffer_.layout, 0, 1, &set, 0, nullptr);
-  context.vk.vkCmdDispatch(context.commands, (words + 63) / 64, 1, 1);
+  const Resource resources[kBindings] = {
+      {.image = {VK_NULL_HANDLE, sampled, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL}},
+      {.buffer = {from, 0, VK_WHOLE_SIZE}},
+      {.buffer = {to, 0, VK_WHOLE_SIZE}}};
+  run(context, buffer_, resources, {(words + 63) / 64, 1}, seed, keep);
 }
 
 }  // namespace alcove::framegraph

@@ -29,14 +29,23 @@ class ChecksumKernels {
                   std::uint32_t words, std::uint32_t seed, bool keep);
 
  private:
+  // A sampled image, then two images or buffers that are stored to.
+  static constexpr std::uint32_t kBindings = 3;
   struct Kernel {
+    VkDescriptorType written = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
     VkDescriptorSetLayout set_layout = VK_NULL_HANDLE;
     VkPipelineLayout layout = VK_NULL_HANDLE;
     VkPipeline pipeline = VK_NULL_HANDLE;
   };
-  Kernel make(const std::uint32_t* code, std::size_t size, VkDescriptorType second);
+  // What a binding is, an image or a buffer.
+  struct Resource {
+    VkDescriptorImageInfo image{};
+    VkDescriptorBufferInfo buffer{};
+  };
+  Kernel make(const std::uint32_t* code, std::size_t size, VkDescriptorType written);
   void destroy(Kernel& kernel);
-  VkDescriptorSet bind(RecordContext& context, const Kernel& kernel, std::uint32_t seed, bool keep);
+  void run(RecordContext& context, const Kernel& kernel, const Resource* resources,
+           VkExtent2D groups, std::uint32_t seed, bool keep);
 
   VkDevice device_;
   std::mutex mutex_;  // of the pool: passes may be recorded by several threads

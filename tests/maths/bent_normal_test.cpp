@@ -15,19 +15,12 @@ using maths::Slice;
 
 TEST(BentNormal, ArcAgreesWithQuadratureForEveryNormalAndHorizon) {
   double worst = 0.0;
-  for (double gamma = -kPi / 2; gamma <= kPi / 2 + 1e-9; gamma += kPi / 60) {
-    for (double scale : {1.0, 0.4, 1e-3}) {
-      const Slice s = slice_of(scale, gamma);
-      const SliceTruth truth(s);
-      for (double h = 0.0; h <= kPi; h += kPi / 90) {
-        const float c = float(std::cos(h));
-        const glm::dvec2 ahead = truth.bent(0.0, std::acos(double(c)));
-        const glm::dvec2 behind = truth.bent(-std::acos(double(c)), 0.0);
-        worst = std::max(worst, distance(glm::dvec2(maths::bent_arc(s, 1.0f, c)), ahead));
-        worst = std::max(worst, distance(glm::dvec2(maths::bent_arc(s, -1.0f, c)), behind));
-      }
-    }
-  }
+  for_each_slice_and_horizon([&](const Slice& s, const SliceTruth& truth, float c) {
+    const glm::dvec2 ahead = truth.bent(0.0, std::acos(double(c)));
+    const glm::dvec2 behind = truth.bent(-std::acos(double(c)), 0.0);
+    worst = std::max(worst, distance(glm::dvec2(maths::bent_arc(s, 1.0f, c)), ahead));
+    worst = std::max(worst, distance(glm::dvec2(maths::bent_arc(s, -1.0f, c)), behind));
+  });
   EXPECT_LT(worst, 1e-6);
 }
 

@@ -1,10 +1,11 @@
-// Every function of shaders/maths, called in one way from both languages, so that the device's
-// results can be laid beside the CPU's. Written in the shared subset of GLSL and C++.
+// Functions of shaders/maths, called in one way from both languages, so that the device's results
+// can be laid beside the CPU's. Written in the shared subset of GLSL and C++.
 #ifndef ALCOVE_TESTS_PARITY_CASES_H
 #define ALCOVE_TESTS_PARITY_CASES_H
 
 #include "maths/bent_normal.h"
 #include "maths/connected_samples.h"
+#include "maths/environment_map.h"
 #include "maths/ggx.h"
 #include "maths/gtao.h"
 #include "maths/gtso.h"
@@ -17,6 +18,8 @@
 #include "maths/pyramid.h"
 #include "maths/sampling.h"
 #include "maths/signal.h"
+#include "maths/spherical_harmonics.h"
+#include "maths/split_sum.h"
 #include "maths/unseen.h"
 #include "maths/visibility_bitmask.h"
 
@@ -36,6 +39,13 @@ ALCOVE_INLINE Slice parity_slice(vec4 a) {
   vec3 view = parity_view(a.x, a.y);
   vec3 normal = facing_normal(parity_direction(a.z, a.w), view);
   return make_slice(normal, slice_direction(make_view_basis(view), a.z * kPi), view);
+}
+
+// A word of any bits (PCG-RXS-M-XS, O'Neill 2014).
+ALCOVE_INLINE uint parity_word(uint seed) {
+  uint state = seed * 747796405u + 2891336453u;
+  uint word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
+  return (word >> 22u) ^ word;
 }
 
 ALCOVE_INLINE uvec2 parity_pixel(vec4 a) { return uvec2(uint(a.x * 960.0f), uint(a.y * 540.0f)); }
@@ -81,16 +91,9 @@ ALCOVE_INLINE vec4 parity_of_cameras(uint which, vec4 a, vec4 b, Projection p) {
     case 5u:
       return vec4(position.x, position.y, position.z, linear_depth(p, b.x));
     case 6u:
-      return vec4(uv_of_position(p, position).x, uv_of_position(p, position).y,
-                  pixels_per_unit(p, depth).x, pixels_per_unit(p, depth).y);
-    case 7u: {
-      vec2 along = pixels_along(p, slice_direction(make_view_basis(view), b.y * kPi), view, depth);
-      return vec4(view.x, view.y, along.x, along.y);
-    }
-    case 8u:
       return vec4(
           history_weight(depth, held_apart(depth, depth * (1.0f + b.w * 0.01f)), 0.02f, view.z),
-          visibility_changed(b.x, b.y), clip_w(p, depth), view.z);
+          visibility_changed(b.x, b.y), view.x, view.z);
   }
   return vec4(0.0f);
 }
@@ -101,14 +104,24 @@ ALCOVE_INLINE vec4 parity_of_light(uint which, vec4 a, vec4 b) {
   vec3 light = parity_view(a.z, a.w);
   float alpha = 0.05f + 0.95f * b.x;
   switch (which) {
+    case 7u: {
+      vec3 direction = map_direction(vec2(b.x, b.y));
+      return vec4(map_uv(view).x, equirectangular_uv(view).y, direction.y,
+                  map_texel_angle(vec2(b.z, b.w), 8.0f));
+    }
+    case 8u: {
+      uint index = uint(b.x * float(kHarmonics));
+      return vec4(harmonic(index, view) * harmonic_irradiance(index),
+                  reflectance_coordinates(b.y, b.z).x, dominant_direction(normal, light, b.z).x,
+                  specular_reflectance(normal_reflectance(light, b.w), vec2(b.y, b.z)).z);
+    }
     case 9u: {
       vec3 h = sample_ggx_normal(view, alpha, b.y, b.z);
       return vec4(h.x, h.y, h.z, ggx_shadowing(view.z, light.z, alpha));
     }
     case 10u:
-      return vec4(ggx_lobe(normal, view, light, alpha),
-                  ggx_reflection_density(normal, view, light, alpha), ggx_masking(view.z, alpha),
-                  ggx_distribution(light.z, alpha));
+      return vec4(ggx_reflection_density(normal, view, light, alpha), ggx_masking(view.z, alpha),
+                  ggx_distribution(light.z, alpha), 0.0f);
     case 11u:
       return vec4(cap_intersection(b.x * kHalfPi, b.y * kHalfPi, b.z * kPi),
                   cap_intersection_smooth(b.x * kHalfPi, b.y * kHalfPi, b.z * kPi),
@@ -169,13 +182,11 @@ ALCOVE_INLINE vec4 parity_of_sampling(uint which, vec4 a, vec4 b) {
                   hilbert_noise(pixel, frame).direction, hilbert_noise(pixel, frame).offset);
     case 22u:
       return vec4(golden_pattern(pixel, frame, true).direction,
-                  golden_pattern(pixel, frame, false).offset, unit_float(hash(frame)),
-                  float(hilbert_index(pixel)));
+                  golden_pattern(pixel, frame, false).offset, float(hilbert_index(pixel)), 0.0f);
     case 18u:
       return vec4(
-          unit_float(hash(pixel.x + pixel.y * 960u)), float(hilbert_index(pixel)),
           float(bitCount(sectors_between(floor(b.x * 32.0f) + 0.2f, floor(b.y * 32.0f) + 0.2f))),
-          0.0f);
+          0.0f, 0.0f, 0.0f);
     case 19u:
       return vec4(slice_angle(1u, 3u, b.w), r2_sequence(frame).direction, r2_sequence(frame).offset,
                   0.0f);
@@ -184,7 +195,7 @@ ALCOVE_INLINE vec4 parity_of_sampling(uint which, vec4 a, vec4 b) {
       PartRequest request;
       request.uniform_weight = a.w < 0.5f;
       request.bent = true;
-      VisiblePart part = visible_part(s, -1.0f, sectors_per_bearing(s, -1.0f), hash(pixel.x),
+      VisiblePart part = visible_part(s, -1.0f, sectors_per_bearing(s, -1.0f), parity_word(pixel.x),
                                       fill_behind(b.y, b.x), request);
       return vec4(part.arc, part.bent.x, part.bent.y, radius_weight(b.y, 0.8f, b.z));
     }
@@ -193,9 +204,10 @@ ALCOVE_INLINE vec4 parity_of_sampling(uint which, vec4 a, vec4 b) {
       LobeSlice lobe = make_lobe_slice(s, 0.05f + 0.95f * b.x);
       float ahead = b.y * 2.0f - 1.0f;
       float behind = b.z * 2.0f - 1.0f;
-      return vec4(lobe.open, horizon_lobe(s, lobe, ahead, behind),
-                  visible_lobe(lobe, 1.0f, sectors_per_bearing(s, 1.0f), hash(pixel.x), 0.4f),
-                  visible_lobe(lobe, -1.0f, sectors_per_bearing(s, -1.0f), hash(pixel.y), 0.0f));
+      return vec4(
+          lobe.open, horizon_lobe(s, lobe, ahead, behind),
+          visible_lobe(lobe, 1.0f, sectors_per_bearing(s, 1.0f), parity_word(pixel.x), 0.4f),
+          visible_lobe(lobe, -1.0f, sectors_per_bearing(s, -1.0f), parity_word(pixel.y), 0.0f));
     }
     case 24u: {
       Slice s = parity_slice(a);
@@ -216,7 +228,7 @@ const uint kParityCases = 25u;
 // Four results of case `which` for eight numbers in [0,1).
 ALCOVE_INLINE vec4 parity_case(uint which, vec4 a, vec4 b, Projection p) {
   if (which < 5u) return parity_of_slices(which, a, b);
-  if (which < 9u) return parity_of_cameras(which, a, b, p);
+  if (which < 7u) return parity_of_cameras(which, a, b, p);
   if (which < 13u) return parity_of_light(which, a, b);
   if (which < 17u || which == 23u) return parity_of_storage(which, a, b);
   return parity_of_sampling(which, a, b);

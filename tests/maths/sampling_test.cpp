@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <set>
 #include <vector>
@@ -164,17 +163,6 @@ TEST(HilbertNoise, IsSpreadEvenlyOverABlockAndOverFrames) {
     frames.push_back(maths::hilbert_noise(uvec2(3, 5), frame).direction);
   EXPECT_LT(largest_gap(block), 4.0f / 16);
   EXPECT_LT(largest_gap(frames), 4.0f / 64);
-}
-
-TEST(Hash, FlipsHalfOfItsBitsForEachInputBit) {
-  for (unsigned bit = 0; bit < 32; ++bit) {
-    double flipped = 0.0;
-    for (unsigned seed = 0; seed < 1000; ++seed)
-      flipped += std::popcount(maths::hash(seed * 977u) ^ maths::hash((seed * 977u) ^ (1u << bit)));
-    EXPECT_NEAR(flipped / 1000.0, 16.0, 1.5) << "bit " << bit;
-  }
-  EXPECT_LT(maths::unit_float(0xffffffffu), 1.0f);
-  EXPECT_EQ(maths::unit_float(0u), 0.0f);
 }
 
 TEST(Slices, OfAllPixelsTileHalfATurn) {

@@ -56,4 +56,17 @@ inline maths::Slice slice_of(double scale, double gamma) {
   return maths::make_slice(normal, direction, view);
 }
 
+// Calls f(slice, truth, horizon) for slices of many normals and a horizon's cosine from the view
+// vector to straight behind it.
+template <typename Function>
+void for_each_slice_and_horizon(Function f) {
+  for (double gamma = -kPi / 2; gamma <= kPi / 2 + 1e-9; gamma += kPi / 60) {
+    for (const double scale : {1.0, 0.4, 1e-3}) {
+      const maths::Slice s = slice_of(scale, gamma);
+      const SliceTruth truth(s);
+      for (double h = 0.0; h <= kPi; h += kPi / 90) f(s, truth, float(std::cos(h)));
+    }
+  }
+}
+
 }  // namespace alcove::maths_test

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "environment_lookup.h"
+#include "equirectangular.h"
 #include "maths/ggx.h"
 #include "maths/spherical_harmonics.h"
 #include "random_input.h"
@@ -40,7 +41,7 @@ HostImage equirectangular(std::uint32_t width, const Light& light) {
   for (std::uint32_t y = 0; y < image.height; ++y) {
     for (std::uint32_t x = 0; x < image.width; ++x) {
       const vec2 uv = (vec2(x, y) + 0.5f) / vec2(image.width, image.height);
-      const vec3 c = light(maths::equirectangular_direction(uv));
+      const vec3 c = light(maths_test::equirectangular_direction(uv));
       image.texels.insert(image.texels.end(), {c.x, c.y, c.z, 1.0f});
     }
   }
@@ -56,7 +57,7 @@ void over_sphere(const Function& f) {
       const vec2 uv = (vec2(x, y) + 0.5f) / vec2(2 * kRows, kRows);
       const float top = std::cos(float(y) / kRows * maths::kPi);
       const float bottom = std::cos(float(y + 1) / kRows * maths::kPi);
-      f(maths::equirectangular_direction(uv), (top - bottom) * maths::kPi / kRows);
+      f(maths_test::equirectangular_direction(uv), (top - bottom) * maths::kPi / kRows);
     }
   }
 }

@@ -1,4 +1,4 @@
-#include "scene/camera_of.h"
+#include "options/camera_of.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

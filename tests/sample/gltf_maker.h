@@ -1,5 +1,6 @@
 #pragma once
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -149,6 +150,25 @@ inline Scene parsed(const std::vector<uint8_t>& bytes) {
   auto scene = parse_gltf(bytes, "test.gltf", "");
   EXPECT_TRUE(scene) << (scene ? "" : scene.error());
   return scene ? std::move(*scene) : Scene{};
+}
+
+// The sentence by which a file is refused.
+inline std::string refusal(const std::vector<uint8_t>& bytes) {
+  const auto scene = parse_gltf(bytes, "test.gltf", "");
+  EXPECT_FALSE(scene);
+  if (scene) return "";
+  EXPECT_THAT(scene.error(), testing::HasSubstr("test.gltf"));
+  EXPECT_EQ(scene.error().find('\n'), std::string::npos);
+  return scene.error();
+}
+
+// Corners in the order of the indices.
+inline std::vector<glm::vec3> corners(const Scene& scene) {
+  std::vector<glm::vec3> out;
+  for (const Mesh& mesh : scene.meshes) {
+    for (const uint32_t i : mesh.indices) out.push_back(mesh.positions_ws[i]);
+  }
+  return out;
 }
 
 }  // namespace alcove::sample

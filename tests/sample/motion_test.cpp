@@ -40,10 +40,9 @@ TEST_F(Motion, FramesOfAMovingCameraAreNearlyAsGoodAsStillOnes) {
     EXPECT_GT(report.speed.mean, 0.2);
     EXPECT_GT(report.all.still, 0.01);
     EXPECT_LT(report.all.ratio(), 1.15);
-    EXPECT_TRUE(kind != MotionKind::kStrafe || report.uncovered.pixels > 200u);
-    if (report.uncovered.pixels > 200u) {
-      EXPECT_LT(report.uncovered.ratio(), 1.5);
-    }
+    // Past a column much comes into view, else a line along some silhouettes.
+    EXPECT_GT(report.uncovered.pixels, kind == MotionKind::kStrafe ? 500u : 50u);
+    EXPECT_LT(report.uncovered.ratio(), 1.5);
     EXPECT_LT(report.flicker.ratio(), 0.5);
   }
 }

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "options/camera_of.h"
 #include "options/settings.h"
 #include "scene/builtin_scene.h"
-#include "scene/camera_of.h"
 
 namespace alcove::sample {
 namespace {

@@ -98,10 +98,10 @@ class Executor {
 
   // Records the frame into `commands`, a primary command buffer of the graphics family in the
   // recording state, outside a render pass. All passes run on its queue. Commands are submitted in
-  // the order of their recording, once, to one queue. On an error nothing of the graph is recorded,
-  // except that an undeclared use is found, and memory may give out, while recording: `commands` is
-  // to be thrown away then. Histories are as before the frame, but for those that it declared
-  // otherwise or reset: they begin anew.
+  // the order of their recording, once, to one queue. On an error nothing is recorded, unless it is
+  // found while recording (an undeclared use, memory that gives out): `commands` is to be thrown
+  // away then. Histories are as before the frame, but those that it declared otherwise or reset
+  // begin anew.
   [[nodiscard]] tl::expected<FrameReport, Errors> record(Graph& graph, VkCommandBuffer commands,
                                                          const FrameInfo& frame = {});
   // Where commands are not submitted after all: to be called before anything else of this graph or

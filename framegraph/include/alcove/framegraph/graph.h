@@ -12,8 +12,8 @@
 // Declaring never fails: what is wrong is kept and comes back from compile as errors, all of them.
 // Order of declaration is program order: a pass reads what passes before it wrote. One thread
 // declares; a graph may be used by one executor only, which may run several graphs: their frames
-// are numbered together. Memory of a graph's histories goes some frames after the graph. A steady
-// frame allocates nothing once reset() has been through the first.
+// are numbered together. The memory of a graph's histories is freed some frames after the graph is
+// gone. A frame like the one before allocates nothing, from the second reset() on.
 #pragma once
 
 #include <cstddef>
@@ -139,20 +139,19 @@ class Graph {
 
   const GraphDescription& description() const { return description_; }
 
-  // For executors.
-  std::span<const ImportHandles> imports() const { return imports_; }
+  // What a caller needs that compiles without an executor, or declares a frame and does not record
+  // it: what is remembered of the histories, and moving them on as a frame leaves them that runs by
+  // a plan with these finals.
   HistoryTable& histories() { return histories_; }
   const HistoryTable& histories() const { return histories_; }
-  // Moves the histories on, as a frame that runs by a plan leaves them.
   void leave_histories(std::span<const FinalState> finals);
-
-  // Calls the callback of a pass.
-  void call(std::uint32_t pass, RecordContext& context) const {
-    callbacks_[pass].call(callbacks_[pass].object, context);
-  }
 
  private:
   friend class PassBuilder;
+  // Execution reads imports_ and callbacks_.
+  friend class Executor;
+  friend class RecordContext;
+  friend class Recorder;
   static constexpr std::size_t kAlignment = alignof(std::max_align_t);
   struct Callback {
     void (*call)(void*, RecordContext&) = nullptr;

@@ -135,7 +135,7 @@ constexpr bool Graph::access_fits(const Access& access, ResourceKind kind, bool 
          (kind == ResourceKind::buffer || layout_is_usable(access.layout));
 }
 
-// Whether the resource is.
+// Whether the resource is as kPlain has it.
 inline bool Graph::is_plain(const ResourceRecord& resource, ResourceKind kind) {
   return resource.mips == 1 && resource.layers == 1 && resource.kind == kind &&
          resource.origin == Origin::transient;

@@ -68,7 +68,7 @@ class HistoryTable {
 
   const std::vector<HistoryEntry>& entries() const { return entries_; }
   HistoryEntry& entry(std::uint32_t index) { return entries_[index]; }
-  // By which executors tell the histories of one graph from another's; expires with the table.
+  // Tells executors the histories of one graph from another's; expires with the table.
   std::weak_ptr<const char> life() const { return life_; }
 
  private:

@@ -88,8 +88,8 @@ struct Range {
 
 // Where an imported resource comes from, or is to be left: the last (or next) stages and accesses
 // outside the graph and, for a texture, the layout. An arrival in VK_IMAGE_LAYOUT_UNDEFINED (for a
-// buffer: with no access) has no contents. What was written before an arrival by reads is visible
-// to them; to other stages, and to these in other ways, the graph makes it visible.
+// buffer: with no access) has no contents. Reads that a resource arrives with have seen what was
+// written before; the graph makes it visible to other stages, and to theirs for other accesses.
 struct State {
   VkPipelineStageFlags2 stages = 0;
   VkAccessFlags2 access = 0;

@@ -14,7 +14,7 @@ namespace alcove::passes {
 // what is not a number and for what is infinitely far. Depth stays 32-bit because half floats
 // overflow beyond 65504 and band at grazing angles.
 //
-// `mips` is 1 to 5; an image that has fewer gets all it has, by a pipeline of so many. Mip k + 1
+// `mips` is 1 to 5; an image too small for so many gets all that it can have. Mip k + 1
 // averages those of the four texels of mip k that lie within 2^k `reach` (scene units, over 0; not
 // read with one mip) of the farthest that is not sky: wholly up to half of it, fading to nothing at
 // all of it; sky where three of the four are sky. No pass of Alcove reads mips above 0.

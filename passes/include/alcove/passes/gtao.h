@@ -22,6 +22,11 @@ enum class Estimator : std::uint8_t {
   connected,
 };
 
+// Whether its occluders have a thickness, and hide something; else they may have a falloff.
+[[nodiscard]] constexpr bool has_thickness(Estimator estimator) {
+  return estimator == Estimator::bitmask || estimator == Estimator::connected;
+}
+
 // What an occluder's thickness is measured in, for the estimators that have one.
 enum class ThicknessUnit : std::uint8_t {
   radius,    // parts of the occlusion radius: one thickness in the scene

@@ -14,9 +14,9 @@ struct FilterSettings {
   // side, 0 to 3; then one. 0 filters nothing. They weigh in a window that is the narrower the more
   // slices were searched.
   std::uint32_t filter_reach = 2;
-  // How far a neighbour lies from the pixel's tangent plane when it counts a quarter, in sizes of a
-  // pixel there, over 0. So in the first frame of one slice: the more slices and frames there are,
-  // the nearer it has to be.
+  // At this distance from the pixel's tangent plane a neighbour counts a quarter; in sizes of a
+  // pixel there, over 0. That is in the first frame of one slice: the more slices and frames there
+  // are, the nearer it has to be.
   float filter_tolerance_px = 1.5f;
   // Frames that are averaged, 0 to 255; once Frame::still_frames is 16, up to 255 in any case. 0
   // keeps no history and allocates none: for engines whose own temporal filter comes after.

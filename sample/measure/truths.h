@@ -3,9 +3,9 @@
 #include <string>
 #include <tl/expected.hpp>
 
-#include "measure/errors.h"
 #include "options/options.h"
 #include "scene/scene.h"
+#include "support/image.h"
 #include "truth/height_field_truth.h"
 #include "truth/truth.h"
 

@@ -1,4 +1,4 @@
-#include "device/gpu_textures.h"
+#include "render/gpu_textures.h"
 
 #include <algorithm>
 #include <array>

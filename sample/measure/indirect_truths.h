@@ -5,8 +5,8 @@
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "measure/errors.h"
 #include "render/rendering.h"
+#include "support/image.h"
 #include "truth/lit_truth.h"
 #include "truth/specular_limits.h"
 #include "truth/truth.h"

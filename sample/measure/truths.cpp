@@ -1,4 +1,4 @@
-#include "truth/truths.h"
+#include "measure/truths.h"
 
 #include <algorithm>
 #include <cmath>

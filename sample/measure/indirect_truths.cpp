@@ -1,4 +1,4 @@
-#include "truth/indirect_truths.h"
+#include "measure/indirect_truths.h"
 
 #include <algorithm>
 #include <array>
@@ -6,10 +6,10 @@
 #include <random>
 #include <utility>
 
+#include "measure/truths.h"
 #include "support/progress.h"
 #include "truth/surface_points.h"
 #include "truth/truth_cache.h"
-#include "truth/truths.h"
 
 namespace alcove::sample {
 namespace {

@@ -1,0 +1,41 @@
+#include "command_buffers.h"
+
+namespace alcove::framegraph {
+
+void CommandBuffers::destroy(const DeviceContext& device) {
+  device.vk.vkDestroyCommandPool(device.handles.device, pool_, nullptr);
+}
+
+VkResult CommandBuffers::next(const DeviceContext& device, QueueClass queue,
+                              VkCommandBufferLevel level, VkCommandBuffer& commands) {
+  if (pool_ == VK_NULL_HANDLE) {
+    VkCommandPoolCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
+    info.queueFamilyIndex = device.limits.queue_families[static_cast<std::size_t>(queue)];
+    const VkResult result =
+        device.vk.vkCreateCommandPool(device.handles.device, &info, nullptr, &pool_);
+    if (result != VK_SUCCESS) return result;
+  }
+  if (used_ == made_.size()) {
+    VkCommandBufferAllocateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
+    info.commandPool = pool_;
+    info.level = level;
+    info.commandBufferCount = 1;
+    VkCommandBuffer made = VK_NULL_HANDLE;
+    const VkResult result = device.vk.vkAllocateCommandBuffers(device.handles.device, &info, &made);
+    if (result != VK_SUCCESS) return result;
+    made_.push_back(made);
+  }
+  commands = made_[used_++];
+  return VK_SUCCESS;
+}
+
+VkResult CommandBuffers::take_back(const DeviceContext& device) {
+  if (used_ == 0) return VK_SUCCESS;
+  const VkResult result = device.vk.vkResetCommandPool(device.handles.device, pool_, 0);
+  if (result == VK_SUCCESS) used_ = 0;
+  return result;
+}
+
+}  // namespace alcove::framegraph

@@ -1,0 +1,117 @@
+#include "measure/motion_walk.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "truth/surface_points.h"
+#include "truth/truth_cache.h"
+
+namespace alcove::sample {
+namespace {
+
+using Failure = tl::unexpected<std::string>;
+
+// Raised when a truth is computed otherwise, so that old entries of the cache are not taken.
+constexpr std::uint32_t kMotionTruthVersion = 1;
+
+}  // namespace
+
+tl::expected<MotionWalk, std::string> MotionWalk::create(Gpu& gpu, const Scene& scene,
+                                                         const MotionPath& path,
+                                                         const MotionSetup& setup) {
+  MotionWalk walk(path, setup);
+  walk.scene_ = std::make_unique<Scene>(scene);
+  path.add_to(*walk.scene_);
+  auto renderer =
+      FrameRenderer::create(gpu, *walk.scene_, {setup.width, setup.height}, setup.normals);
+  if (!renderer) {
+    return Failure(std::move(renderer.error()));
+  }
+  walk.renderer_ = std::move(*renderer);
+  return walk;
+}
+
+FrameRequest MotionWalk::request(const Step& step) const {
+  const CameraMatrices now = camera_matrices(path_.camera(step.frame), setup_.width, setup_.height);
+  const CameraMatrices before =
+      camera_matrices(path_.camera(step.before), setup_.width, setup_.height);
+  FrameRequest request;
+  request.view = {now.view_from_world,
+                  now.clip_from_view,
+                  before.view_from_world,
+                  before.clip_from_view,
+                  path_.camera(step.frame).reversed_z,
+                  path_.world_from_moving(step.frame),
+                  path_.world_from_moving(step.before)};
+  request.index = step.index;
+  request.restart = step.restart;
+  request.motion_vectors = step.moving;
+  request.occlusion = setup_.occlusion;
+  request.occlusion.specular = passes::Specular::none;
+  request.occlusion.bent_normal = false;
+  if (!step.history) {
+    request.occlusion.history_frames = 0;
+  }
+  return request;
+}
+
+tl::expected<SeenFrame, std::string> MotionWalk::draw_and_read(const Step& step) {
+  auto images = renderer_->draw_and_read(request(step));
+  if (!images) {
+    return Failure(std::move(images.error()));
+  }
+  const Camera camera = path_.camera(step.frame);
+  return SeenFrame{camera, linear_depth(camera, images->depth_ndc), std::move(images->normal_ws),
+                   std::move(images->visibility)};
+}
+
+tl::expected<void, std::string> MotionWalk::draw(const Step& step) {
+  return renderer_->draw(request(step)).map([](const FrameCost&) {});
+}
+
+Progress MotionWalk::progress(const std::string& name) const {
+  return setup_.progress ? setup_.progress(name) : Progress([](double) {});
+}
+
+tl::expected<TruthHalves, std::string> MotionWalk::truth(std::uint32_t frame,
+                                                         const SeenFrame& seen) {
+  path_.pose(*scene_, frame);
+  const TruthCache cache(setup_.cache);
+  const std::uint32_t half = std::max(setup_.spp / 2, 1u);
+  std::array<CacheKey, 2> keys;
+  TruthHalves truth{{setup_.width, setup_.height}, {setup_.width, setup_.height}};
+  const std::array images{&truth.first, &truth.second};
+  bool known = true;
+  for (std::uint32_t i = 0; i < keys.size(); ++i) {
+    keys[i].add(std::string("motion truth"));
+    keys[i].add(kMotionTruthVersion);
+    keys[i].add(*scene_);
+    keys[i].add(seen.camera);
+    keys[i].add(setup_.occlusion.radius);
+    keys[i].add(half);
+    keys[i].add(i);
+    keys[i].add(seen.depth);
+    keys[i].add(seen.normal_ws);
+    known = known && cache.read(keys[i], *images[i]);
+  }
+  if (known) {
+    return truth;
+  }
+  const auto rays = RayScene::create(*scene_);
+  if (!rays) {
+    return Failure(rays.error());
+  }
+  const SurfacePoints points = surface_points(*rays, seen.camera, seen.normal_ws, seen.depth);
+  const Progress whole = progress("truth of frame " + std::to_string(frame));
+  for (std::uint32_t i = 0; i < keys.size(); ++i) {
+    const TruthSettings settings{.radius = setup_.occlusion.radius, .spp = half, .seed = 1 + i};
+    *images[i] = occlusion_truth(*rays, points, settings, [&](double done) {
+                   whole(0.5 * (i + done));
+                 }).visibility;
+    cache.write(keys[i], *images[i]);
+  }
+  return truth;
+}
+
+}  // namespace alcove::sample

@@ -1,0 +1,17 @@
+// The direction of a point of an equirectangular image, as environment_map.h lays it out.
+#pragma once
+
+#include <cmath>
+#include <glm/glm.hpp>
+
+#include "maths/constants.h"
+
+namespace alcove::maths_test {
+
+inline glm::vec3 equirectangular_direction(glm::vec2 uv) {
+  const float turn = uv.x * 2.0f * maths::kPi;
+  const float across = std::sin(uv.y * maths::kPi);
+  return {across * std::sin(turn), std::cos(uv.y * maths::kPi), -across * std::cos(turn)};
+}
+
+}  // namespace alcove::maths_test

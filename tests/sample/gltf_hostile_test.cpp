@@ -1,0 +1,174 @@
+// Files that are wrong, cut short or ask for too much.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <limits>
+
+#include "gltf_maker.h"
+
+namespace alcove::sample {
+namespace {
+
+using testing::HasSubstr;
+
+// A hostile file: what is changed, and a word of the sentence that refuses it.
+struct Hostile {
+  const char* name;
+  void (*spoil)(GltfMaker&);
+  const char* word;
+};
+
+class HostileGltf : public testing::TestWithParam<Hostile> {};
+
+TEST_P(HostileGltf, IsRefusedInOneSentence) {
+  GltfMaker maker = GltfMaker::triangle();
+  GetParam().spoil(maker);
+  EXPECT_THAT(refusal(maker.gltf()), HasSubstr(GetParam().word));
+  refusal(maker.glb());
+}
+
+const Hostile kHostile[] = {
+    {"HugeCount", [](GltfMaker& m) { m.json["accessors"][0]["count"] = 4000000000u; },
+     "accessor 0"},
+    {"CountPastTheView", [](GltfMaker& m) { m.json["accessors"][0]["count"] = 4; }, "past the end"},
+    {"OffsetPastTheView", [](GltfMaker& m) { m.json["accessors"][0]["byteOffset"] = 4294967000u; },
+     "past the end"},
+    {"ViewPastTheBuffer", [](GltfMaker& m) { m.json["bufferViews"][0]["byteLength"] = 1000; },
+     "buffer view 0"},
+    {"NoSuchView", [](GltfMaker& m) { m.json["accessors"][0]["bufferView"] = 7; }, "buffer view"},
+    {"NoSuchBuffer", [](GltfMaker& m) { m.json["bufferViews"][0]["buffer"] = 9; }, "buffer"},
+    {"NoSuchAccessor", [](GltfMaker& m) { m.primitive()["attributes"]["POSITION"] = 12; },
+     "accessor 12"},
+    {"NoSuchMesh", [](GltfMaker& m) { m.json["nodes"][0]["mesh"] = 3; }, "mesh 3"},
+    {"NoSuchMaterial", [](GltfMaker& m) { m.primitive()["material"] = 2; }, "material 2"},
+    {"NoSuchNode", [](GltfMaker& m) { m.json["scenes"][0]["nodes"] = {5}; }, "node 5"},
+    {"NodeCycle", [](GltfMaker& m) { m.json["nodes"][0]["children"] = {0}; }, "twice"},
+    {"IndexPastTheVertices",
+     [](GltfMaker& m) {
+       const int view = m.view<uint16_t>({0, 1, 3});
+       m.primitive()["indices"] = m.accessor(view, 5123, "SCALAR", 3);
+     },
+     "index 3"},
+    {"FloatIndices",
+     [](GltfMaker& m) {
+       const int view = m.view<float>({0, 1, 2});
+       m.primitive()["indices"] = m.accessor(view, 5126, "SCALAR", 3);
+     },
+     "unsigned"},
+    {"NotANumberPosition",
+     [](GltfMaker& m) {
+       const float nan = std::numeric_limits<float>::quiet_NaN();
+       std::memcpy(m.bytes.data(), &nan, sizeof(nan));
+     },
+     "finite"},
+    {"ScalarPositions", [](GltfMaker& m) { m.json["accessors"][0]["type"] = "SCALAR"; },
+     "components"},
+    {"DeepNesting",
+     [](GltfMaker& m) {
+       nlohmann::json deep = 1;
+       for (int i = 0; i < 500; ++i) deep = nlohmann::json::array({deep});
+       m.json["extras"] = deep;
+     },
+     "nested"},
+    {"UnknownRequiredExtension",
+     [](GltfMaker& m) { m.json["extensionsRequired"] = {"KHR_draco_mesh_compression"}; },
+     "KHR_draco_mesh_compression"},
+    {"NormalScalePastAFloat",
+     [](GltfMaker& m) {
+       m = textured({{"index", 0}}, {{"index", 0}, {"scale", 1e300}});
+     },
+     "material \"tiles\" has a normal map whose scale is not finite"},
+    {"TransformPastAFloat",
+     [](GltfMaker& m) {
+       m = textured(transformed({{"offset", {0, -1e39}}}), {{"index", 0}});
+     },
+     "material \"tiles\" has a texture transform"},
+    {"NoSuchNormalMap",
+     [](GltfMaker& m) {
+       m = textured({{"index", 0}}, {{"index", 4}});
+     },
+     "material \"tiles\" has no texture 4"},
+    {"ShortTangents",
+     [](GltfMaker& m) {
+       const int normals = m.accessor(0, 5126, "VEC3", 3);
+       const int tangents = m.accessor(m.view<float>({1, 0, 0, 1}), 5126, "VEC4", 1);
+       m.primitive()["attributes"]["NORMAL"] = normals;
+       m.primitive()["attributes"]["TANGENT"] = tangents;
+     },
+     "tangents for some"},
+    {"ShortSecondTextureCoordinates",
+     [](GltfMaker& m) {
+       m = painted({{"index", 0}}, {{"index", 0}, {"texCoord", 1}});
+       const int uvs = m.accessor(m.view<float>({0, 0}), 5126, "VEC2", 1);
+       m.primitive()["attributes"]["TEXCOORD_1"] = uvs;
+     },
+     "texture coordinates for some"},
+    {"NoSuchSampler",
+     [](GltfMaker& m) {
+       m = painted({{"index", 0}}, {{"index", 0}});
+       m.json["textures"][0]["sampler"] = 3;
+     },
+     "material \"tiles\" has a texture without its sampler 3"},
+    {"NoTriangles", [](GltfMaker& m) { m.primitive()["mode"] = 0; }, "no triangles"},
+};
+INSTANTIATE_TEST_SUITE_P(All, HostileGltf, testing::ValuesIn(kHostile),
+                         [](const auto& param) { return std::string(param.param.name); });
+
+TEST(GltfLimits, EveryCutOfAFileIsReadOrRefused) {
+  const auto glb = GltfMaker::triangle().glb();
+  for (size_t size = 0; size < glb.size(); ++size) {
+    const std::vector<uint8_t> cut(glb.begin(), glb.begin() + static_cast<std::ptrdiff_t>(size));
+    EXPECT_FALSE(parse_gltf(cut, "cut.glb", "")) << size;
+  }
+}
+
+TEST(GltfLimits, InstancesBeyondTheLimitAreRefused) {
+  GltfMaker maker = GltfMaker::triangle();
+  maker.json["nodes"].clear();
+  for (int i = 0; i < 100; ++i) {
+    maker.json["nodes"].push_back({{"mesh", 0}});
+    maker.json["scenes"][0]["nodes"][static_cast<size_t>(i)] = i;
+  }
+  GltfLimits limits;
+  limits.vertices = 200;
+  const auto scene = parse_gltf(maker.gltf(), "many.gltf", "", limits);
+  EXPECT_FALSE(scene);
+}
+
+// Reading them takes as long as if they had an area.
+TEST(GltfLimits, InstancesThatComeToNothingCountTowardsTheLimitToo) {
+  for (const bool indexed : {false, true}) {
+    GltfMaker maker = GltfMaker::triangle();
+    maker.json["accessors"][0].erase("bufferView");  // zeroes
+    if (indexed) {
+      maker.primitive()["indices"] =
+          maker.accessor(maker.view<uint16_t>({0, 1, 2, 2, 1, 0}), 5123, "SCALAR", 6);
+    }
+    maker.json["nodes"].clear();
+    for (int i = 0; i < 100; ++i) {
+      maker.json["nodes"].push_back({{"mesh", 0}});
+      maker.json["scenes"][0]["nodes"][static_cast<size_t>(i)] = i;
+    }
+    GltfLimits limits;
+    (indexed ? limits.indices : limits.vertices) = 200;
+    const auto scene = parse_gltf(maker.gltf(), "many.gltf", "", limits);
+    ASSERT_FALSE(scene);
+    EXPECT_THAT(scene.error(), testing::Not(HasSubstr("no triangles")));
+  }
+}
+
+TEST(GltfLimits, PartsThatAreLeftOutCountTowardsTheLimitToo) {
+  GltfMaker maker = GltfMaker::triangle();
+  maker.primitive()["mode"] = 1;
+  const nlohmann::json lines = maker.primitive();
+  for (int i = 0; i < 100; ++i) maker.json["meshes"][0]["primitives"].push_back(lines);
+  GltfLimits limits;
+  limits.primitives = 50;
+  const auto scene = parse_gltf(maker.gltf(), "lines.gltf", "", limits);
+  ASSERT_FALSE(scene);
+  EXPECT_THAT(scene.error(), HasSubstr("parts"));
+}
+
+}  // namespace
+}  // namespace alcove::sample

@@ -1,0 +1,85 @@
+// Triangles of a glTF file, and where its nodes put them.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "gltf_maker.h"
+
+namespace alcove::sample {
+namespace {
+
+TEST(GltfMesh, TriangleWithoutNormalsGetsItsFaceNormal) {
+  const Scene scene = parsed(GltfMaker::triangle().gltf());
+  ASSERT_EQ(triangle_count(scene), 1u);
+  EXPECT_EQ(scene.meshes[0].normals_ws[0], glm::vec3(0, 0, 1));
+  EXPECT_EQ(scene.bounds_ws.high, glm::vec3(1, 1, 0));
+}
+
+TEST(GltfMesh, StripsAndFansKeepOneSideWithAndWithoutIndices) {
+  const std::vector<float> strip = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 2, 0};
+  const std::vector<float> fan = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, -1, 1, 0};
+  for (const int mode : {5, 6}) {
+    for (const bool indexed : {false, true}) {
+      GltfMaker maker = GltfMaker::triangle();
+      const int view = maker.view<float>(mode == 5 ? strip : fan);
+      maker.primitive()["attributes"]["POSITION"] = maker.accessor(view, 5126, "VEC3", 5);
+      maker.primitive()["mode"] = mode;
+      if (indexed) {
+        const int indices = maker.view<uint16_t>({0, 1, 2, 3, 4});
+        maker.primitive()["indices"] = maker.accessor(indices, 5123, "SCALAR", 5);
+      }
+      const Scene scene = parsed(maker.gltf());
+      ASSERT_EQ(triangle_count(scene), 3u) << mode;
+      for (const glm::vec3& n : scene.meshes[0].normals_ws) EXPECT_EQ(n, glm::vec3(0, 0, 1));
+    }
+  }
+}
+
+TEST(GltfMesh, NodesComposeDownTheHierarchy) {
+  GltfMaker maker = GltfMaker::triangle();
+  const float h = std::sqrt(0.5f);
+  maker.json["nodes"] = {{{"children", {1}}, {"translation", {10, 0, 0}}, {"scale", {2, 2, 2}}},
+                         {{"mesh", 0}, {"rotation", {0, 0, h, h}}, {"translation", {0, 1, 0}}}};
+  const auto read = corners(parsed(maker.gltf()));
+  ASSERT_EQ(read.size(), 3u);
+  EXPECT_NEAR(glm::distance(read[1], glm::vec3(10, 4, 0)), 0.0f, 1e-5f);
+  EXPECT_NEAR(glm::distance(read[2], glm::vec3(8, 2, 0)), 0.0f, 1e-5f);
+}
+
+TEST(GltfMesh, MirroringTurnsTheWindingSoThatFacesKeepTheirSide) {
+  GltfMaker maker = GltfMaker::triangle();
+  maker.json["nodes"][0]["scale"] = {-1, 1, 1};
+  const Scene scene = parsed(maker.gltf());
+  ASSERT_EQ(triangle_count(scene), 1u);
+  EXPECT_EQ(scene.meshes[0].normals_ws[0], glm::vec3(0, 0, 1));
+}
+
+TEST(GltfMesh, TangentsTurnWithTheNodeAndMirrorWithIt) {
+  GltfMaker maker = GltfMaker::triangle();
+  const int normals = maker.view<float>({0, 0, 1, 0, 0, 1, 0, 0, 1});
+  const int tangents = maker.view<float>({1, 0, 0, 1, 0, 0, 0, 1, NAN, 0, 0, -1});
+  auto& attributes = maker.primitive()["attributes"];
+  attributes["NORMAL"] = maker.accessor(normals, 5126, "VEC3", 3);
+  attributes["TANGENT"] = maker.accessor(tangents, 5126, "VEC4", 3);
+  maker.json["nodes"][0]["scale"] = {-2, 1, 1};
+  const Scene scene = parsed(maker.gltf());
+  ASSERT_EQ(scene.meshes[0].tangents_ws.size(), 3u);
+  EXPECT_EQ(scene.meshes[0].tangents_ws[0], glm::vec4(-1, 0, 0, -1));
+  EXPECT_EQ(scene.meshes[0].tangents_ws[1], glm::vec4(0, 0, 0, -1));
+  EXPECT_EQ(scene.meshes[0].tangents_ws[2], glm::vec4(0, 0, 0, 1));
+}
+
+TEST(GltfMesh, BoundsAreThoseOfTheTriangles) {
+  GltfMaker maker = GltfMaker::triangle();
+  const int positions = maker.view<float>({0, 0, 0, 1, 0, 0, 0, 1, 0, 1e6, 0, 0});
+  const int normals = maker.view<float>({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1});
+  maker.primitive()["attributes"] = {{"POSITION", maker.accessor(positions, 5126, "VEC3", 4)},
+                                     {"NORMAL", maker.accessor(normals, 5126, "VEC3", 4)}};
+  maker.primitive()["indices"] = maker.accessor(maker.view<uint16_t>({0, 1, 2}), 5123, "SCALAR", 3);
+  const Scene scene = parsed(maker.gltf());
+  EXPECT_EQ(scene.bounds_ws.low, glm::vec3(0));
+  EXPECT_EQ(scene.bounds_ws.high, glm::vec3(1, 1, 0));
+}
+
+}  // namespace
+}  // namespace alcove::sample

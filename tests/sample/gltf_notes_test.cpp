@@ -1,0 +1,73 @@
+// What is said of a glTF file beside its scene.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <string>
+
+#include "gltf_maker.h"
+#include "scene/load_scene.h"
+#include "temporary_folder.h"
+
+namespace alcove::sample {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(GltfNotes, WhatIsLeftOutIsSaid) {
+  GltfMaker maker = textured({{"index", 0}}, {{"index", 0}, {"texCoord", 2}});
+  maker.json["extensionsUsed"] = {"KHR_texture_transform", "KHR_materials_unlit"};
+  maker.primitive()["attributes"]["COLOR_0"] = maker.primitive()["attributes"]["POSITION"];
+  const Scene scene = parsed(maker.gltf());
+  EXPECT_THAT(
+      scene.warnings,
+      testing::UnorderedElementsAre(
+          "The extension KHR_materials_unlit is left out.",
+          "Material \"tiles\" has its normal map by texture coordinates 2, neither 0 nor 1: "
+          "it is left out.",
+          "Mesh 0 has colours of its vertices, which are left out.",
+          "texture 0 has no image that is read here and is left out."));
+}
+
+TEST(GltfNotes, WhatBlendsIsOpaqueUnlessItIsCutOutAndBothAreSaid) {
+  GltfMaker maker = GltfMaker::triangle();
+  maker.json["materials"] = {{{"name", "leaf"}, {"alphaMode", "BLEND"}}};
+  maker.primitive()["material"] = 0;
+  const TemporaryFolder folder;
+  const std::string file = (folder.path / "leaf.gltf").string();
+  const std::vector<uint8_t> bytes = maker.gltf();
+  std::ofstream(file, std::ios::binary) << std::string(bytes.begin(), bytes.end());
+  for (const bool cut : {false, true}) {
+    const auto scene = load_scene(file, cut);
+    ASSERT_TRUE(scene) << scene.error();
+    EXPECT_EQ(scene->materials[0].alpha_mode, cut ? AlphaMode::kMask : AlphaMode::kBlend);
+    EXPECT_THAT(
+        scene->warnings,
+        testing::ElementsAre(HasSubstr(cut ? "\"leaf\" blends: it is cut out" : "--cut-blends")));
+  }
+}
+
+TEST(GltfNotes, ASentenceStaysShortHoweverLongWhatItSpeaksOf) {
+  GltfMaker maker = GltfMaker::triangle();
+  nlohmann::json json = maker.json;
+  json["buffers"] = {
+      {{"byteLength", 36}, {"uri", "data:nonsense;base64," + std::string(2000000, 'A')}}};
+  const std::string text = json.dump();
+  const std::string data = refusal({text.begin(), text.end()});
+  EXPECT_LT(data.size(), 250u);
+  EXPECT_THAT(data, testing::Not(HasSubstr("AAAA")));
+  // A name, cut between two letters of it though each is two bytes.
+  std::string name = "x";
+  for (int i = 0; i < 1000; ++i) name += "\xc3\xa9";
+  maker.json["meshes"][0]["name"] = name;
+  maker.primitive()["attributes"]["COLOR_0"] = 0;
+  const Scene scene = parsed(maker.gltf());
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_LT(scene.warnings[0].size(), 250u);
+  EXPECT_THAT(scene.warnings[0], testing::EndsWith("\xc3\xa9..."));
+  maker.primitive()["attributes"]["POSITION"] = 9;
+  EXPECT_LT(refusal(maker.gltf()).size(), 250u);
+}
+
+}  // namespace
+}  // namespace alcove::sample
