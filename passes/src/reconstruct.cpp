@@ -213,7 +213,6 @@ Past past_of(const Frame& frame, const ReconstructSizes& sizes, bool history_val
 std::array<std::uint32_t, 12> constants_of(const ReconstructInputs& inputs,
                                            const ReconstructSettings& settings, bool perspective,
                                            Past past) {
-  const auto flag = [](bool on) { return static_cast<std::uint32_t>(on); };
   const bool still = past == Past::still || past == Past::settled;
   return {inputs.signal.divisor,
           settings.filter_reach,
