@@ -69,7 +69,7 @@ Failure failure_of(const Error& error, std::string_view where) {
 
 }  // namespace alcove::passes
 
-const char* alcoveResultName(AlcoveResult result) {
+const char* alcoveGetResultName(AlcoveResult result) {
   switch (result) {
     case ALCOVE_SUCCESS:
       return "ALCOVE_SUCCESS";

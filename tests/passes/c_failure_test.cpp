@@ -180,11 +180,11 @@ TEST(CResult, HasTheNameOfItsValue) {
         ALCOVE_NAMED(ALCOVE_ERROR_UNSUPPORTED), ALCOVE_NAMED(ALCOVE_ERROR_OUT_OF_HOST_MEMORY),
         ALCOVE_NAMED(ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY), ALCOVE_NAMED(ALCOVE_ERROR_DEVICE_LOST),
         ALCOVE_NAMED(ALCOVE_ERROR_VULKAN), ALCOVE_NAMED(ALCOVE_ERROR_INTERNAL)}) {
-    EXPECT_STREQ(alcoveResultName(value), name);
+    EXPECT_STREQ(alcoveGetResultName(value), name);
   }
 #undef ALCOVE_NAMED
   for (const int none : {1, -8, INT_MAX, INT_MIN}) {
-    EXPECT_STREQ(alcoveResultName(static_cast<AlcoveResult>(none)), "unknown AlcoveResult");
+    EXPECT_STREQ(alcoveGetResultName(static_cast<AlcoveResult>(none)), "unknown AlcoveResult");
   }
 }
 

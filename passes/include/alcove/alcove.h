@@ -51,7 +51,7 @@ typedef enum AlcoveResult {
 } AlcoveResult;
 
 // "ALCOVE_SUCCESS" and so on: static, and never null.
-const char* alcoveResultName(AlcoveResult result);
+const char* alcoveGetResultName(AlcoveResult result);
 
 // ALCOVE_VERSION of the library.
 uint32_t alcoveGetVersion(void);
@@ -140,8 +140,9 @@ typedef struct AlcoveSettings {
   uint32_t steps;                      // on each side of a slice, 2 to 64
   AlcoveEstimator estimator;           // [CONNECTED]
   AlcoveWeighting weighting;           // [COSINE]
-  float thickness;                     // of an occluder, in thickness_unit, at least 0 [0.15];
-                                       // BITMASK and CONNECTED have it
+  // Of an occluder, in thickness_unit, at least 0; BITMASK and CONNECTED have it. With CONNECTED a
+  // surface is where it begins no thicker than it is sure to be wide. [0.15]
+  float thickness;
   AlcoveThicknessUnit thickness_unit;  // [RADIUS]; BITMASK and CONNECTED
   // What lies behind an occluder of that thickness is hidden from the eye, and may be open or
   // solid: so much of it counts as solid, 0 nothing to 1 all. In between it is the more, the wider

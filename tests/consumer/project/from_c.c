@@ -89,7 +89,7 @@ int main(void) {
          VK_API_VERSION_MINOR(alcoveGetVersion()), VK_API_VERSION_PATCH(alcoveGetVersion()), text);
 
   result = start(&engine, &context, message);
-  printf("%s: %s\n", alcoveResultName(result), message);
+  printf("%s: %s\n", alcoveGetResultName(result), message);
   if (result != ALCOVE_ERROR_INVALID_INPUT || message[0] == '\0') return 1;
   if (prepare_occlusion(context, &engine, &settings) != ALCOVE_ERROR_INVALID_INPUT) return 1;
   result = record_occlusion(context, &engine, &settings, VK_NULL_HANDLE);

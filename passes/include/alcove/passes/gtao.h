@@ -87,8 +87,9 @@ struct SearchSettings {
   std::uint32_t steps = 12;  // a side of a slice, 2 to 64: 2 * slices * steps depth fetches a pixel
   Estimator estimator = Estimator::connected;
   Weighting weighting = Weighting::cosine;  // of visibility; bent normals have the cosine always
-  // Of occluders, for bitmask and connected samples.
-  float thickness = 0.15f;  // at least 0
+  // Of occluders, for bitmask and connected samples, at least 0. With these a surface is where it
+  // begins no thicker than it is sure to be wide: blades, bars and leaves are thin.
+  float thickness = 0.15f;
   ThicknessUnit thickness_unit = ThicknessUnit::radius;
   // Part of what is hidden behind them that occludes too, [0,1]: 0 nothing, 1 all, between the more
   // the wider they are in the image (fill_behind(), shaders/maths/visibility_bitmask.h).
