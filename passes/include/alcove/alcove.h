@@ -136,10 +136,10 @@ typedef struct AlcoveSettings {
   // Scene units, over 0: occluders beyond it do not count. A twentieth of a room's height to a
   // fifth of it is usual.
   float radius;
-  uint32_t slices;                     // 1 to 64
-  uint32_t steps;                      // on each side of a slice, 2 to 64
-  AlcoveEstimator estimator;           // [CONNECTED]
-  AlcoveWeighting weighting;           // [COSINE]
+  uint32_t slices;            // 1 to 64
+  uint32_t steps;             // on each side of a slice, 2 to 64
+  AlcoveEstimator estimator;  // [CONNECTED]
+  AlcoveWeighting weighting;  // [COSINE]
   // Of an occluder, in thickness_unit, at least 0; BITMASK and CONNECTED have it. With CONNECTED a
   // surface is where it begins no thicker than it is sure to be wide. [0.15]
   float thickness;
