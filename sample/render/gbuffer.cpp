@@ -79,8 +79,7 @@ struct GbufferRenderer::State {
   Gpu& gpu;
   VkDevice device;
   std::vector<TriangleDraw> draws;
-  std::vector<maths::GbufferDraw> constants;  // by material, as are the next
-  std::vector<bool> double_sided;
+  std::vector<maths::GbufferDraw> constants;  // by material
   std::unique_ptr<HostBuffer> vertices;
   std::unique_ptr<HostBuffer> parameters;  // one for each frame in flight
   std::optional<GbufferView> written;      // the latest of them
@@ -119,7 +118,6 @@ tl::expected<void, std::string> GbufferRenderer::State::upload(const Scene& scen
   textures = std::move(*made);
   for (const Material& material : scene.materials) {
     constants.push_back(draw_constants(material, *textures));
-    double_sided.push_back(material.double_sided);
   }
   return {};
 }
@@ -234,13 +232,10 @@ void GbufferRenderer::State::record(RecordContext& context, const Gbuffer& gbuff
   const VkBuffer buffer = vertices->buffer();
   const VkDeviceSize offset = 0;
   vk.vkCmdBindVertexBuffers(context.commands, 0, 1, &buffer, &offset);
+  vk.vkCmdSetCullMode(context.commands, drawing.culled);
   for (const TriangleDraw& draw : draws) {
     maths::GbufferDraw pushed = constants[draw.material];
     pushed.moves = draw.moves ? 1 : 0;
-    // A sheet of two sides has no back that would only tell how thick it is.
-    const bool whole = drawing.first && double_sided[draw.material];
-    vk.vkCmdSetCullMode(context.commands,
-                        whole ? VkCullModeFlags{VK_CULL_MODE_NONE} : drawing.culled);
     vk.vkCmdPushConstants(context.commands, layout, kDrawStages, 0, sizeof(pushed), &pushed);
     vk.vkCmdDraw(context.commands, draw.vertex_count, 1, draw.first_vertex, 0);
   }

@@ -303,7 +303,6 @@ Scene builtin_scene() {
   add_vase(b, p, {2.2f, -0.51f, 2.0f});
   add_furniture(b, p);
   Scene scene = b.finish("builtin");
-  for (Material& material : scene.materials) material.double_sided = material.name == "leaf";
   scene.suggested_radius = 0.5f;
   scene.cameras = {camera("arcade", {-7.4f, 1.55f, -1.9f}, {0.0f, 1.35f, -1.2f}, 60.0f),
                    camera("court", {-5.2f, 1.5f, 6.2f}, {0.4f, 1.3f, -1.0f}, 50.0f),

@@ -86,7 +86,6 @@ tl::expected<void, std::string> MaterialReader::add(const tinygltf::Material& in
                    : in.alphaMode == "BLEND" ? AlphaMode::kBlend
                                              : AlphaMode::kOpaque;
   out.alpha_cutoff = clamped(in.alphaCutoff, 0.0, 1e6, 0.5);
-  out.double_sided = in.doubleSided;
   if (auto added = add_textures(in, out); !added) {
     return Failure("material \"" + in.name + "\" " + added.error());
   }

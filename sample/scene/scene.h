@@ -65,7 +65,6 @@ struct Material {
   float normal_scale = 1.0f;  // of x and y; -1e6..1e6
   AlphaMode alpha_mode = AlphaMode::kOpaque;
   float alpha_cutoff = 0.5f;  // of kMask: kept where alpha >= cutoff
-  bool double_sided = false;
 };
 
 // Triangles of one material in world space, counter-clockwise from the front. The vertex arrays
