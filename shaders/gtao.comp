@@ -113,14 +113,14 @@ Surface fetch_surface(ivec2 pixel, float line) {
 // `horizon` (a cosine) after a sample of its side.
 float next_horizon(float horizon, Search search, vec3 point) {
   float squared = squared_length(point.xy);
-  float reach = parameters.radius * point.z;
+  float radius = parameters.radius * point.z;
   float inverse = inversesqrt(max(squared, 1e-30));
   float found = point.y * inverse;
   if (kFalloff) {
-    found = mix(search.lowest, found, radius_weight(squared * inverse, reach, parameters.falloff));
+    found = mix(search.lowest, found, radius_weight(squared * inverse, radius, parameters.falloff));
   }
   float next = kHeuristic ? raise_horizon(horizon, found, parameters.blend) : max(horizon, found);
-  return squared <= reach * reach ? next : horizon;
+  return squared <= radius * radius ? next : horizon;
 }
 
 // Cosine of the horizon within the radius on one side; -1 where there is none.
@@ -148,30 +148,33 @@ LobeSlice lobe_of(Surface surface, Slice slice) {
   return make_lobe_slice(slice, surface.lobe.roughness * surface.lobe.roughness);
 }
 
-UnseenArc unseen_arc(Slice slice, float sign, Side side, Occluders found, Search search,
-                     Search other) {
+UnseenArc unseen_arc(Slice slice, Search search, Search other, Occluders found) {
   float nearness = kPerspective ? parameters.radius / search.depth : 0.0;
+  float radius_px = slice_radius_px(search.line, parameters.radius, search.depth, kPerspective);
   Unseen unseen =
-      add_beyond_border(mean_row(found.unseen), found.border_px, search.beyond * side.radius_px,
-                        border_share(other.beyond, nearness));
-  return make_unseen_arc(slice, sign, side.per_bearing, found.sectors, unseen, side.radius_px);
+      add_beyond_border(mean_row(found.unseen), found.border_px, search.outside * radius_px,
+                        border_share(other.outside, nearness));
+  return make_unseen_arc(slice, search.side, search.per_bearing, found.occluded, unseen, radius_px);
+}
+
+VisiblePart find_visible_part(Slice slice, Search search, Occluders found) {
+  const PartRequest request = PartRequest(kUniformWeight, kBentNormal);
+  return visible_part(slice, search.side, search.per_bearing, found.occluded, found.fill, request);
+}
+
+float find_visible_lobe(LobeSlice lobe, Search search, Occluders found) {
+  return visible_lobe(lobe, search.side, search.per_bearing, found.occluded, found.fill);
 }
 
 Signal leave_out(Signal sum, float part) {
   return Signal(max(sum.visible - part, 0.0), sum.open - part);
 }
 
-SliceSum bitmask_slice(Surface surface, SliceLine line, Slice slice, vec3 direction, Search ahead,
-                       Search behind) {
-  Side ahead_side = make_side(surface, line, slice, 1.0);
-  Side behind_side = make_side(surface, line, slice, -1.0);
-  Occluders ahead_found = find_occluders(surface, ahead, ahead_side);
-  Occluders behind_found = find_occluders(surface, behind, behind_side);
-  const PartRequest request = PartRequest(kUniformWeight, kBentNormal);
-  VisiblePart front = visible_part(slice, 1.0, ahead_side.per_bearing, ahead_found.sectors,
-                                   ahead_found.fill, request);
-  VisiblePart back = visible_part(slice, -1.0, behind_side.per_bearing, behind_found.sectors,
-                                  behind_found.fill, request);
+SliceSum bitmask_slice(Surface surface, Slice slice, vec3 direction, Search ahead, Search behind) {
+  Occluders ahead_found = find_occluders(ahead);
+  Occluders behind_found = find_occluders(behind);
+  VisiblePart front = find_visible_part(slice, ahead, ahead_found);
+  VisiblePart back = find_visible_part(slice, behind, behind_found);
   SliceSum sum;
   sum.visible = front.arc + back.arc;
   sum.open = kUniformWeight ? 1.0
@@ -179,8 +182,8 @@ SliceSum bitmask_slice(Surface surface, SliceLine line, Slice slice, vec3 direct
                                   light_arc(slice, -1.0, tangent_light(slice, -1.0));
   UnseenArc ahead_unseen, behind_unseen;
   if (kLeaveOutUnseen) {
-    ahead_unseen = unseen_arc(slice, 1.0, ahead_side, ahead_found, ahead, behind);
-    behind_unseen = unseen_arc(slice, -1.0, behind_side, behind_found, behind, ahead);
+    ahead_unseen = unseen_arc(slice, ahead, behind, ahead_found);
+    behind_unseen = unseen_arc(slice, behind, ahead, behind_found);
     Signal seen = leave_out(Signal(sum.visible, sum.open),
                             unseen_part(ahead_unseen, slice, 1.0, kUniformWeight) +
                                 unseen_part(behind_unseen, slice, -1.0, kUniformWeight));
@@ -193,8 +196,7 @@ SliceSum bitmask_slice(Surface surface, SliceLine line, Slice slice, vec3 direct
   if (kLobe) {
     LobeSlice lobe = lobe_of(surface, slice);
     sum.lobe.visible =
-        visible_lobe(lobe, 1.0, ahead_side.per_bearing, ahead_found.sectors, ahead_found.fill) +
-        visible_lobe(lobe, -1.0, behind_side.per_bearing, behind_found.sectors, behind_found.fill);
+        find_visible_lobe(lobe, ahead, ahead_found) + find_visible_lobe(lobe, behind, behind_found);
     sum.lobe.open = lobe.open;
     if (kLeaveOutUnseen) {
       sum.lobe = leave_out(
@@ -224,9 +226,9 @@ SliceSum horizon_slice(Surface surface, Slice slice, vec3 direction, Search ahea
 SliceNoise noise_at(uvec2 block) {
   switch (kPattern) {
     case 1:
-      return hilbert_noise(block, parameters.frame);
+      return hilbert_pattern(block, parameters.frame);
     case 2:
-      return spatial_pattern(block, parameters.frame);
+      return memo_pattern(block, parameters.frame);
     default:
       return golden_pattern(block, parameters.frame, kDivisor > 1);
   }
@@ -240,18 +242,18 @@ uvec2 pack_scaled_lobe(LobeSurface surface, Signal lobe) {
 }
 
 // What a search leaves at its block.
-struct Found {
+struct SearchResult {
   uvec4 signal;
   uvec2 bent;
 };
 
-Found found_in_sky() {
-  return Found(
+SearchResult sky_result() {
+  return SearchResult(
       uvec4(pack_signal(Signal(1.0, 1.0)), floatBitsToUint(sky_line(kPerspective)), 0u, 0u),
       uvec2(0u));
 }
 
-Found search_pixel(ivec2 pixel, float line, SliceNoise noise) {
+SearchResult search_pixel(ivec2 pixel, float line, SliceNoise noise) {
   Surface surface = fetch_surface(pixel, line);
   ViewBasis basis = make_view_basis(surface.view);
   SliceSum sum = SliceSum(0.0, 0.0, vec3(0.0), no_lobe());
@@ -266,7 +268,7 @@ Found search_pixel(ivec2 pixel, float line, SliceNoise noise) {
     SliceLine slice_line = make_slice_line(parameters.slope.xy, direction, surface.view);
     Search ahead = make_search(surface, slice_line, slice, 1.0, noise.offset);
     Search behind = make_search(surface, slice_line, slice, -1.0, noise.offset);
-    SliceSum more = kBitmask ? bitmask_slice(surface, slice_line, slice, direction, ahead, behind)
+    SliceSum more = kBitmask ? bitmask_slice(surface, slice, direction, ahead, behind)
                              : horizon_slice(surface, slice, direction, ahead, behind);
     sum.visible += angle.weight * more.visible;
     sum.open += angle.weight * more.open;
@@ -280,8 +282,8 @@ Found search_pixel(ivec2 pixel, float line, SliceNoise noise) {
       kLobe ? pack_scaled_lobe(surface.lobe, Signal(sum.lobe.visible * mean, sum.lobe.open * mean))
             : uvec2(0u);
   Signal signal = Signal(sum.visible * mean, sum.open * mean);
-  return Found(uvec4(pack_signal(signal), floatBitsToUint(line), lobe),
-               kBentNormal ? pack_direction(sum.bent * mean) : uvec2(0u));
+  return SearchResult(uvec4(pack_signal(signal), floatBitsToUint(line), lobe),
+                      kBentNormal ? pack_direction(sum.bent * mean) : uvec2(0u));
 }
 
 uvec2 searched_block() {
@@ -296,12 +298,12 @@ void main() {
   }
   ivec2 pixel = min(block * kDivisor + ivec2(parameters.phase), size_px() - 1);
   float line = imageLoad(line_image, pixel).r;
-  Found found = found_in_sky();
+  SearchResult result = sky_result();
   if (line != sky_line(kPerspective)) {
-    found = search_pixel(pixel, line, noise_at(uvec2(block)));
+    result = search_pixel(pixel, line, noise_at(uvec2(block)));
   }
-  imageStore(signal_image, block, found.signal);
+  imageStore(signal_image, block, result.signal);
   if (kBentNormal) {
-    imageStore(bent_image, block, uvec4(found.bent, 0u, 0u));
+    imageStore(bent_image, block, uvec4(result.bent, 0u, 0u));
   }
 }

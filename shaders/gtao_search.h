@@ -13,39 +13,51 @@ float border_distance(vec2 centre, vec2 direction) {
 // One side of a slice, as it is searched.
 struct Search {
   ivec2 pixel;
-  SliceLine line;   // outwards
-  float reach_px;   // from the first step to the last; 0 where there is nothing to search
-  float beyond_px;  // of the radius beyond the image's border, as far as surfaces go on there
-  float beyond;     // part of the radius that lies there, [0,1]
-  float offset;     // of the steps, [0,1)
-  float depth;      // linear, of the shaded point
+  float side;          // 1, or -1 against the slice's direction
+  SliceLine line;      // outwards
+  float reach_px;      // from the first step to the last; 0 where there is nothing to search
+  float continued_px;  // of the radius beyond the image's border, as far as surfaces go on there
+  float outside;       // part of the radius beyond the image's border, [0,1]
+  float offset;        // of the steps, [0,1)
+  float depth;         // linear, of the shaded point
   TangentLine tangent;
   float gradient;  // of the tangent line, outwards
   float lowest;    // cosine of the tangent plane's horizon
+  // For sectors.
+  vec2 height;        // above the tangent plane, of each unit of a point of the slice's plane
+  float sharp;        // bend that parts two surfaces
+  float per_bearing;  // sectors
 };
+
+// Bend of the line between two samples, in depths for each pixel's width, that parts two surfaces.
+const float kSharpBend = 4.0;
 
 Search make_search(Surface surface, SliceLine line, Slice slice, float side, float offset) {
   Search search;
   search.pixel = surface.pixel;
+  search.side = side;
   search.line = line;
   search.line.direction_px *= side;
   search.line.y_per_step *= side;
   // Where the surface faces away from a side, what stands above its tangent plane within the radius
   // lies nearer by the cosine of gamma.
   search.lowest = tangent_horizon(slice, side);
-  float share = search.lowest > 0.0 ? slice.cosine : 1.0;
-  float distance_px = slice_radius_px(line, parameters.radius * share, surface.depth, kPerspective);
+  float radius = parameters.radius * (search.lowest > 0.0 ? slice.cosine : 1.0);
+  float distance_px = slice_radius_px(line, radius, surface.depth, kPerspective);
   float border = border_distance(surface.centre, search.line.direction_px);
   // Steps stay apart where the radius spans few pixels, and inside the image always.
   float apart = max(distance_px - kNearestStep, 0.25 * float(kStepCount));
   bool empty = min(distance_px, border) < kNearestStep;
   search.reach_px = empty ? 0.0 : max(min(apart, border - kNearestStep), 1e-3);
-  search.beyond_px = clamp(distance_px - border, 0.0, kContinuedReaches * search.reach_px);
-  search.beyond = distance_px < kNearestStep ? 0.0 : max(1.0 - border / distance_px, 0.0);
+  search.continued_px = clamp(distance_px - border, 0.0, kContinuedReaches * search.reach_px);
+  search.outside = distance_px < kNearestStep ? 0.0 : max(1.0 - border / distance_px, 0.0);
   search.offset = offset;
   search.depth = surface.depth;
   search.tangent = surface.tangent;
   search.gradient = dot(search.line.direction_px, surface.tangent.gradient);
+  search.height = vec2(side * slice.along, slice.toward);
+  search.sharp = kSharpBend * line.x_per_step * (kPerspective ? surface.tangent.line : 1.0);
+  search.per_bearing = sectors_per_bearing(slice, side);
   return search;
 }
 

@@ -4,28 +4,6 @@
 #ifndef ALCOVE_GTAO_SECTORS_H
 #define ALCOVE_GTAO_SECTORS_H
 
-// Bend of the line between two samples, in depths for each pixel's width, that parts two surfaces.
-const float kSharpBend = 4.0;
-
-// A side of a slice as the bitmask sees it.
-struct Side {
-  vec2 height;        // above the tangent plane, of each unit of a point of the slice's plane
-  float sharp;        // bend that parts two surfaces
-  float per_bearing;  // sectors
-  float x_per_step;   // SliceLine's
-  float radius_px;
-};
-
-Side make_side(Surface surface, SliceLine line, Slice slice, float side) {
-  Side made;
-  made.height = vec2(side * slice.along, slice.toward);
-  made.sharp = kSharpBend * line.x_per_step * (kPerspective ? surface.tangent.line : 1.0);
-  made.per_bearing = sectors_per_bearing(slice, side);
-  made.x_per_step = line.x_per_step;
-  made.radius_px = slice_radius_px(line, parameters.radius, surface.depth, kPerspective);
-  return made;
-}
-
 // What a side shows that rays pass behind: a front is a row of columns whose samples is_front().
 struct Fronts {
   float count;
@@ -42,17 +20,17 @@ struct Sheet {
   float bend;      // sharp, at the last sample
   float position;  // of the last sample's front, in sectors
   float excess;    // radius_excess() of it
-  uint sectors;    // occluded so far
+  uint occluded;   // sectors, so far
   Fronts fronts;   // so far
   Unseen unseen;   // so far
 };
 
 // Where the occluder at a sample ends. One that begins there has so much drawn in before it.
-float back_position(Side side, LineSample here, bool begins, float drawn) {
+float back_position(Search search, LineSample here, bool begins, float drawn) {
   float thickness = sample_thickness(settings_thickness(here), begins, drawn);
   bool known = kBackFaces && here.back.y < kNoBack;
   vec2 back = known ? here.back : here.point.xy - vec2(0.0, thickness);
-  return sector_position(side.per_bearing, back);
+  return sector_position(search.per_bearing, back);
 }
 
 // Whether rays beside the surface pass behind a sample: it stands above the tangent plane by more
@@ -85,22 +63,22 @@ Unseen pass_column(Unseen unseen, LineSample here, float excess, float width_px)
 }
 
 // The first sample stands alone. Its edge is drawn in unless it lies on the surface's own plane.
-Sheet begin_sheet(Surface surface, Side side, uint layer, LineSample here, LineSample next) {
+Sheet begin_sheet(Search search, uint layer, LineSample here, LineSample next) {
   Sheet sheet;
   sheet.last = here;
   sheet.rise = next.line - here.line;
   sheet.step_px = next.offset_px - here.offset_px;
-  sheet.bend = sharp_bend(here.line - surface.tangent.line, here.offset_px, sheet.rise,
-                          sheet.step_px, side.sharp);
-  float height = dot(here.point.xy, side.height);
+  sheet.bend = sharp_bend(here.line - search.tangent.line, here.offset_px, sheet.rise,
+                          sheet.step_px, search.sharp);
+  float height = dot(here.point.xy, search.height);
   bool above = height * abs(height) > 0.04 * squared_length(here.point.xy);
   bool begins = kConnected && above;
   float drawn = begins ? edge_share(kStepCount) * here.point.x : 0.0;
-  sheet.position = sector_position(side.per_bearing, here.point.xy - vec2(drawn, 0.0));
+  sheet.position = sector_position(search.per_bearing, here.point.xy - vec2(drawn, 0.0));
   sheet.excess = radius_excess(here.point, parameters.radius);
-  float end = back_position(side, here, begins, drawn);
+  float end = back_position(search, here, begins, drawn);
   uint covered = sectors_between(sheet.position, end);
-  sheet.sectors = sheet.excess <= 0.0 ? covered : 0u;
+  sheet.occluded = sheet.excess <= 0.0 ? covered : 0u;
   bool front = is_front(here, sheet.excess, sheet.position);
   sheet.fronts = add_column(Fronts(0.0, 0.0, 0.0, false), front, here.offset_px, here.offset_px);
   sheet.unseen = nothing_unseen();
@@ -112,23 +90,23 @@ Sheet begin_sheet(Surface surface, Side side, uint layer, LineSample here, LineS
 
 // Adds a sample, `bend` of the line at it: its thickness, and the sheet between it and the last one
 // if they are joined, as far as it runs within the radius.
-void extend_sheet(inout Sheet sheet, Side side, uint layer, LineSample here, float bend) {
+void extend_sheet(inout Sheet sheet, Search search, uint layer, LineSample here, float bend) {
   bool joined = kConnected && (layer == 0u ? samples_join(sheet.bend, bend)
                                            : hidden_samples_join(sheet.bend, bend));
   float excess = radius_excess(here.point, parameters.radius);
   bool inside = excess <= 0.0;
   bool begins = kConnected && !joined;
-  float drawn = begins ? edge_share(kStepCount) * sheet.step_px * side.x_per_step : 0.0;
+  float drawn = begins ? edge_share(kStepCount) * sheet.step_px * search.line.x_per_step : 0.0;
   vec2 front = vec2(here.point.x - drawn, here.point.y);
   vec2 leaves = radius_crossing(here.point, excess, sheet.last.point, sheet.excess);
-  float position = sector_position(side.per_bearing, inside ? front : leaves);
+  float position = sector_position(search.per_bearing, inside ? front : leaves);
   // Not in the choice itself, which would be a branch.
-  float behind = back_position(side, here, begins, drawn);
+  float behind = back_position(search, here, begins, drawn);
   float end = inside ? behind : position;
-  bool continued = joined && sheet.excess <= 0.0;
-  float joint = continued ? sheet.position : position;
+  bool attached = joined && sheet.excess <= 0.0;
+  float joint = attached ? sheet.position : position;
   uint covered = sectors_from_to(min(min(position, end), joint), max(max(position, end), joint));
-  sheet.sectors |= inside || continued ? covered : 0u;
+  sheet.occluded |= inside || attached ? covered : 0u;
   sheet.fronts =
       add_column(sheet.fronts, is_front(here, excess, position), sheet.step_px, here.offset_px);
   if (tells_unseen(layer)) {
@@ -141,24 +119,26 @@ void extend_sheet(inout Sheet sheet, Side side, uint layer, LineSample here, flo
 }
 
 // Adds `here`, now that the sample `next` after it tells how the line bends at it.
-void pass_sample(inout Sheet sheet, inout LineSample here, Side side, uint layer, LineSample next) {
+void pass_sample(inout Sheet sheet, inout LineSample here, Search search, uint layer,
+                 LineSample next) {
   float rise = next.line - here.line;
   float step_px = next.offset_px - here.offset_px;
-  float bend = sharp_bend(sheet.rise, sheet.step_px, rise, step_px, side.sharp);
-  extend_sheet(sheet, side, layer, here, bend);
+  float bend = sharp_bend(sheet.rise, sheet.step_px, rise, step_px, search.sharp);
+  extend_sheet(sheet, search, layer, here, bend);
   sheet.rise = rise;
   sheet.step_px = step_px;
   here = next;
 }
 
 // Those of a surface that leaves the image and did not bend before: it is taken to go on as it
-// left, until it leaves the radius. `way` is the last step's, `x_beyond` how far it goes on (x w).
-uint sectors_beyond(Sheet sheet, Side side, vec3 way, float x_beyond) {
-  vec3 end = continued_point(sheet.last.point, way, x_beyond);
+// left, until it leaves the radius. `way` is the last step's.
+uint continued_sectors(Sheet sheet, Search search, vec3 way) {
+  float x = search.continued_px * search.line.x_per_step;
+  vec3 end = continued_point(sheet.last.point, way, x);
   float excess = radius_excess(end, parameters.radius);
   vec2 leaves = radius_crossing(end, excess, sheet.last.point, sheet.excess);
-  float position = sector_position(side.per_bearing, excess > 0.0 ? leaves : end.xy);
-  bool goes_on = x_beyond > 0.0 && sheet.bend == 0.0 && sheet.excess <= 0.0;
+  float position = sector_position(search.per_bearing, excess > 0.0 ? leaves : end.xy);
+  bool goes_on = x > 0.0 && sheet.bend == 0.0 && sheet.excess <= 0.0;
   return goes_on ? sectors_between(sheet.position, position) : 0u;
 }
 
@@ -168,51 +148,48 @@ const uint kTurn = 4;
 
 // What was found on a side.
 struct Occluders {
-  uint sectors;
-  float fill;  // of what is behind them
+  uint occluded;  // sectors
+  float fill;     // of what is behind them
   Unseen unseen;
   float border_px;  // of the last sample, if nothing is known to go on beyond the image; else
                     // kNowherePx
 };
 
-Occluders find_in_layer(Surface surface, Search search, Side side, uint layer) {
+Occluders find_in_layer(Search search, uint layer) {
   LineSample here = fetch_sample(search, layer, 1);
-  Sheet sheet = begin_sheet(surface, side, layer, fetch_sample(search, layer, 0), here);
+  Sheet sheet = begin_sheet(search, layer, fetch_sample(search, layer, 0), here);
   const uint rest = (kStepCount - 2) % kTurn;
   uint k = 2;
   [[unroll]] for (uint i = 0; i < rest; ++i) {
-    pass_sample(sheet, here, side, layer, fetch_sample(search, layer, k + i));
+    pass_sample(sheet, here, search, layer, fetch_sample(search, layer, k + i));
   }
   k += rest;
   if (k < kStepCount) {
     do {
       [[unroll]] for (uint i = 0; i < kTurn; ++i) {
-        pass_sample(sheet, here, side, layer, fetch_sample(search, layer, k + i));
+        pass_sample(sheet, here, search, layer, fetch_sample(search, layer, k + i));
       }
       k += kTurn;
     } while (k < kStepCount);
   }
   // Nothing tells how it ends: joined only if the way to it did not bend.
   vec3 way = here.point - sheet.last.point;
-  extend_sheet(sheet, side, layer, here, -sheet.bend);
-  uint beyond = 0u;
-  if (kContinuation && kConnected) {
-    beyond = sectors_beyond(sheet, side, way, search.beyond_px * side.x_per_step);
-  }
+  extend_sheet(sheet, search, layer, here, -sheet.bend);
+  uint continued = kContinuation && kConnected ? continued_sectors(sheet, search, way) : 0u;
   float width = front_width(sheet.fronts, kNearestStep + search.reach_px);
   float fill = fill_behind(width, parameters.fill);
-  Occluders found = Occluders(sheet.sectors | beyond, fill, sheet.unseen, 0.0);
+  Occluders found = Occluders(sheet.occluded | continued, fill, sheet.unseen, 0.0);
   if (search.reach_px <= 0.0) found = Occluders(0u, 0.0, nothing_unseen(), 0.0);
-  bool known = beyond != 0u || here.line == sky_line(kPerspective);
+  bool known = continued != 0u || here.line == sky_line(kPerspective);
   found.border_px = known ? kNowherePx : here.offset_px;
   return found;
 }
 
-Occluders find_occluders(Surface surface, Search search, Side side) {
-  Occluders found = find_in_layer(surface, search, side, 0u);
+Occluders find_occluders(Search search) {
+  Occluders found = find_in_layer(search, 0u);
   if (kSecondLayer) {
-    Occluders behind = find_in_layer(surface, search, side, 1u);
-    found.sectors |= behind.sectors;
+    Occluders behind = find_in_layer(search, 1u);
+    found.occluded |= behind.occluded;
     found.unseen = behind.unseen;
   }
   return found;

@@ -8,7 +8,8 @@
 // sample has a thickness: along the view vector, or as far as its back face (sample_thickness). A
 // surface that leaves the image goes on as it left (continued_point). What is hidden behind a front
 // stays unknown: something between thin and infinitely thick, the nearer to the latter the wider
-// the fronts stand in the image (fill_behind()), errs less than either (see the README's table).
+// the fronts stand in the image (fill_behind()), errs less than either (see the table in
+// sample/README.md).
 #ifndef ALCOVE_MATHS_CONNECTED_SAMPLES_H
 #define ALCOVE_MATHS_CONNECTED_SAMPLES_H
 

@@ -23,7 +23,7 @@ ALCOVE_INLINE float slice_angle(uint slice, uint slice_count, float direction) {
 // frames turn every one of them, 96 directions in all, each once. A pixel's own six lie a sixth of
 // half a turn apart, neighbours in time far apart; every second one is shifted by 1/96 so that no
 // two of the 96 coincide.
-ALCOVE_INLINE SliceNoise spatial_pattern(uvec2 pixel, uint frame) {
+ALCOVE_INLINE SliceNoise memo_pattern(uvec2 pixel, uint frame) {
   uint x = pixel.x & 3u;
   uint y = pixel.y & 3u;
   uint cell = (((x + y) & 3u) << 2u) + x;
@@ -102,7 +102,7 @@ ALCOVE_INLINE SliceNoise r2_sequence(uint index) {
 
 // Hilbert index through the R2 sequence, 64 frames before it repeats: low discrepancy over any
 // neighbourhood of pixels and over frames, for a spatial filter with a temporal one behind it.
-ALCOVE_INLINE SliceNoise hilbert_noise(uvec2 pixel, uint frame) {
+ALCOVE_INLINE SliceNoise hilbert_pattern(uvec2 pixel, uint frame) {
   return r2_sequence(hilbert_index(pixel) + 288u * (frame & 63u));
 }
 

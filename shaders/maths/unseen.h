@@ -57,12 +57,12 @@ ALCOVE_INLINE Unseen mean_row(Unseen sum) {
 
 // Share of the directions that go far beyond the image's border on a side which is left out, [0,1].
 // Half: some scenes end where the image does, and others go on as they are. None where the other
-// side shows nothing of the radius either (`other_beyond`: the part of it that lies beyond the
+// side shows nothing of the radius either (`other_outside`: the part of it that lies beyond the
 // border there), or where the sphere holds the eye (`nearness`: radius by distance, 0 in
 // orthographic views): the little that occludes in the middle of the image would be multiplied.
-ALCOVE_INLINE float border_share(float other_beyond, float nearness) {
+ALCOVE_INLINE float border_share(float other_outside, float nearness) {
   float squared = nearness * nearness;
-  return 0.5f * (1.0f - other_beyond) * saturate(1.0f - squared * squared);
+  return 0.5f * (1.0f - other_outside) * saturate(1.0f - squared * squared);
 }
 
 // Adds `beyond_px` of the radius beyond the image's border, the last sample before it at

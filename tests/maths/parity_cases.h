@@ -178,8 +178,8 @@ ALCOVE_INLINE vec4 parity_of_sampling(uint which, vec4 a, vec4 b) {
   uint frame = uint(a.z * 1000.0f);
   switch (which) {
     case 17u:
-      return vec4(spatial_pattern(pixel, frame).direction, spatial_pattern(pixel, frame).offset,
-                  hilbert_noise(pixel, frame).direction, hilbert_noise(pixel, frame).offset);
+      return vec4(memo_pattern(pixel, frame).direction, memo_pattern(pixel, frame).offset,
+                  hilbert_pattern(pixel, frame).direction, hilbert_pattern(pixel, frame).offset);
     case 22u:
       return vec4(golden_pattern(pixel, frame, true).direction,
                   golden_pattern(pixel, frame, false).offset, float(hilbert_index(pixel)), 0.0f);
