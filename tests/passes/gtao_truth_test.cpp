@@ -13,8 +13,6 @@
 namespace alcove::passes {
 namespace {
 
-using GtaoTruth = PassTest;
-
 // What compares with horizons of infinite thickness, whatever the estimator.
 OcclusionSettings exact(Estimator estimator, float radius) {
   OcclusionSettings settings = quality_settings(Quality::reference, radius);
@@ -23,6 +21,21 @@ OcclusionSettings exact(Estimator estimator, float radius) {
   settings.parts.unseen = false;
   return settings;
 }
+
+class GtaoTruth : public PassTest {
+ protected:
+  // Mean visibility of a wall 4 units away beside what stands before it from x = 0 on: of the eight
+  // pixels left of the middle.
+  double visibility_beside(const TestView& view, const Surface& front,
+                           const OcclusionSettings& settings) {
+    const Drawing drawing = draw(view, 96, 40, {plane({0.0, 0.0, -4.0}, {0.0, 0.0, 1.0}), front});
+    const HostImage visibility =
+        run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, settings).visibility;
+    double sum = 0.0;
+    for (std::uint32_t x = 36; x < 44; ++x) sum += visibility.at(x, 20);
+    return sum / 8.0;
+  }
+};
 
 const char* name_of(Estimator estimator) {
   return estimator == Estimator::connected ? "connected" : "horizons";
@@ -257,15 +270,10 @@ TEST_F(GtaoTruth, MoreIsFilledBehindAWideOccluderThanBehindNarrowOnes) {
       front.keep = [=](const glm::dvec3& p) {
         return p.x > 0.0 && p.x < slats * apart && std::fmod(p.x, apart) < width;
       };
-      const Drawing drawing = draw(view, 96, 40, {plane({0.0, 0.0, -4.0}, {0.0, 0.0, 1.0}), front});
       const auto beside = [&](float fill) {
         OcclusionSettings settings = exact(Estimator::connected, 1.2f);
         settings.fill = fill;
-        const HostImage image =
-            run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, settings).visibility;
-        double sum = 0.0;
-        for (std::uint32_t x = 36; x < 44; ++x) sum += image.at(x, 20);
-        return sum / 8.0;
+        return visibility_beside(view, front, settings);
       };
       const double none = beside(0.0f);
       const double all = beside(1.0f);
@@ -292,17 +300,12 @@ TEST_F(GtaoTruth, WhatIsNarrowIsThin) {
     const auto darkened_by_thickness = [&](double width) {
       Surface front = plane({0.0, 0.0, -3.0}, {0.0, 0.0, 1.0});
       front.keep = [=](const glm::dvec3& p) { return p.x > 0.0 && p.x < width; };
-      const Drawing drawing = draw(view, 96, 40, {plane({0.0, 0.0, -4.0}, {0.0, 0.0, 1.0}), front});
       const auto beside = [&](float thickness) {
         OcclusionSettings settings = exact(Estimator::connected, 1.2f);
         settings.steps = 8;
         settings.fill = 0.0f;
         settings.thickness = thickness;
-        const HostImage image =
-            run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, settings).visibility;
-        double sum = 0.0;
-        for (std::uint32_t x = 36; x < 44; ++x) sum += image.at(x, 20);
-        return sum / 8.0;
+        return visibility_beside(view, front, settings);
       };
       return beside(0.05f) - beside(3.0f);
     };
