@@ -65,7 +65,9 @@ layout(set = 0, binding = 6) uniform writeonly image2D bent_normal_image;
 #ifdef HISTORY
 layout(set = 0, binding = 7) uniform texture2D motion_image;  // where there is none, the normals
 layout(set = 0, binding = 8, SIGNAL_FORMAT) uniform readonly uimage2D history_image;
-layout(set = 0, binding = 9) uniform texture2D bent_history_image;
+// Where there is none, the line depth.
+layout(set = 0, binding = 9, rgba16f) uniform readonly image2D bent_history_image;
+// With kStill these are the two before, updated in place.
 layout(set = 0, binding = 10) uniform writeonly uimage2D next_history_image;
 layout(set = 0, binding = 11) uniform writeonly image2D next_bent_history_image;
 const int kFirstLobeBinding = 12;
@@ -289,13 +291,10 @@ void reconstruct_pixel(ivec2 pixel, Found around[kAround]) {
 void keep_pixel(ivec2 pixel) {
 #ifdef HISTORY
   uvec4 stored = imageLoad(history_image, pixel);
-  imageStore(next_history_image, pixel, stored);
   Sum sum = no_sum();
   sum.signal = unpack_signal(stored.x);
   if (kBentNormal) {
-    vec4 bent = texelFetch(bent_history_image, pixel, 0);
-    imageStore(next_bent_history_image, pixel, bent);
-    sum.bent = bent.xyz;
+    sum.bent = imageLoad(bent_history_image, pixel).xyz;
   }
   sum.lobe = Signal(uintBitsToFloat(stored.z), uintBitsToFloat(stored.w));
   store(pixel, sum);

@@ -65,7 +65,7 @@ void add_history(inout Read read, Surface surface, ivec2 texel, float depth, flo
   Sum here = no_sum();
   here.signal = unpack_signal(stored.x);
   if (kBentNormal) {
-    here.bent = texelFetch(bent_history_image, texel, 0).xyz;
+    here.bent = imageLoad(bent_history_image, texel).xyz;
   }
   here.lobe = Signal(uintBitsToFloat(stored.z), uintBitsToFloat(stored.w));
   add(read.history.sum, weight, here);

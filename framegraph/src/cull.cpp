@@ -42,8 +42,8 @@ class Culler {
       if (resource.external == kNone) continue;
       if (resource.origin == Origin::imported && graph_.externals[resource.external].has_departure)
         need_all(r, kByOutput);
-      if (workspace_.cull.history_reader[r] != kNone)
-        need_all(r, workspace_.cull.history_reader[r] | kHistoryBit);
+      const std::uint32_t reader = workspace_.cull.history_reader[r - resource.slot];
+      if (reader != kNone) need_all(r, reader | kHistoryBit);
     }
   }
 
@@ -84,6 +84,7 @@ class Culler {
         begin_need(access, pass);
       else if (needed && (access.flags & kDiscard))
         end_need(access);
+      if (needed && !(access.flags & kDiscard)) find_history(access, pass);
     }
     return fate;
   }
@@ -105,6 +106,10 @@ class Culler {
   void begin_need(const AccessRecord& access, std::uint32_t pass) {
     for_each_sub(graph_, workspace_, access,
                  [&](std::uint32_t sub) { workspace_.cull.needed_by[sub] = pass; });
+  }
+
+  // Whether the access reads a history, be it to update it in place: its writers are wanted.
+  void find_history(const AccessRecord& access, std::uint32_t pass) {
     const ResourceRecord& resource = graph_.resources[access.resource];
     if (resource.origin != Origin::history || resource.slot == 0) return;
     std::uint32_t& reader = workspace_.cull.history_reader[access.resource - resource.slot];

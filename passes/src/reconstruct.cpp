@@ -61,7 +61,7 @@ struct Textures {
   ReconstructInputs inputs;
   Occlusion result;
   Texture history;
-  Texture next_history;
+  Texture next_history;  // the history where that is updated in place, as with the bent one
   Texture bent_history;
   Texture next_bent_history;
 };
@@ -138,14 +138,20 @@ void declare_accesses(const Graph& graph, framegraph::PassBuilder& pass, Texture
   read(textures.inputs.line_depth, stored);
   read(textures.inputs.normals, sampled);
   read(textures.inputs.motion, sampled);
-  read(textures.history, stored);
-  read(textures.bent_history, sampled);
   read(textures.inputs.roughness, sampled);
   write(textures.result.visibility);
   write(textures.result.bent_normal);
-  write(textures.next_history);
-  write(textures.next_bent_history);
   write(textures.result.specular);
+  const auto declare_history = [&](Texture& history, Texture& next) {
+    if (history && next == history) {
+      history = next = pass.write(history, framegraph::access::storage_read_write_compute);
+    } else {
+      read(history, stored);
+      write(next);
+    }
+  };
+  declare_history(textures.history, textures.next_history);
+  declare_history(textures.bent_history, textures.next_bent_history);
 }
 
 // As many as the shader can have.
@@ -180,7 +186,7 @@ Bindings bindings_of(RecordContext& context, const Textures& textures) {
                 view_or(context, out.bent_normal, written)});
   if (textures.history) {
     bindings.add({view_or(context, in.motion, in.normals), context.view(textures.history),
-                  view_or(context, textures.bent_history, in.normals),
+                  view_or(context, textures.bent_history, in.line_depth),
                   context.view(textures.next_history),
                   view_or(context, textures.next_bent_history, written)});
   }
@@ -209,18 +215,20 @@ Past past_of(const Frame& frame, const ReconstructSizes& sizes, bool history_val
   return frame.still_frames >= kSettledFrames ? Past::settled : Past::still;
 }
 
+// Whether a pixel reads no history but its own.
+bool is_still(Past past) { return past == Past::still || past == Past::settled; }
+
 // Of the shader, in its order.
 std::array<std::uint32_t, 12> constants_of(const ReconstructInputs& inputs,
                                            const ReconstructSettings& settings, bool perspective,
                                            Past past) {
-  const bool still = past == Past::still || past == Past::settled;
   return {inputs.signal.divisor,
           settings.filter_reach,
           flag(bool(inputs.signal.bent)),
           flag(inputs.motion && past == Past::moving),
           flag(perspective),
           flag(settings.clamp_width > 0.0f),
-          flag(still),
+          flag(is_still(past)),
           flag(bool(inputs.roughness)),
           settings.roughness_channel,
           flag(past == Past::none),
@@ -370,6 +378,10 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& given_frame,
   const auto kernel = get_kernel(frame, inputs, settings, is_perspective(*projection), past);
   if (!kernel) {
     return tl::unexpected(kernel.error());
+  }
+  if (is_still(past)) {
+    textures.next_history = textures.history;
+    textures.next_bent_history = textures.bent_history;
   }
   auto pass = frame.graph.add_pass("reconstruct");
   declare_accesses(frame.graph, pass, textures);

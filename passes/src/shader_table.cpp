@@ -37,13 +37,13 @@ const ShaderSource& shader_source(Shader shader) {
       {kReconstruct, "tttstt"},
       {kReconstructHistory,
        "tttstt"
-       "ststt"},
+       "stttt"},
       {kReconstructLobe,
        "tttstt"
        "st"},
       {kReconstructLobeHistory,
        "tttstt"
-       "ststt"
+       "stttt"
        "st"},
       {kMultiBounce, "sst"},
       {kGtso, "ssssst"},

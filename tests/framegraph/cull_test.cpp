@@ -109,5 +109,22 @@ TEST_F(Cull, AHistoryKeepsItsWriterOnlyWhereItIsRead) {
   EXPECT_EQ(kept.fates[1].witness, 0u);
 }
 
+TEST_F(Cull, AnUpdateInPlaceIsKeptWhereTheHistoryIsRead) {
+  const TextureHistory history = graph_.create_texture_history("h", kDesc);
+  (void)write("remember", history.current);
+  Texture result = graph_.create_texture("result", kDesc);
+  PassBuilder look = graph_.add_pass("look");
+  look.read(history.previous(), access::sampled_compute);
+  result = look.write(result, access::storage_write_compute);
+  PassBuilder update = graph_.add_pass("update");
+  (void)update.write(history.previous(), access::storage_read_write_compute);
+  EXPECT_EQ(plan().passes.size(), 0u);
+  graph_.output(result);
+  const Plan kept = plan();
+  EXPECT_EQ(kept.passes.size(), 3u);
+  EXPECT_EQ(kept.fates[2].fate, Fate::feeds_history);
+  EXPECT_EQ(kept.fates[2].witness, 1u);
+}
+
 }  // namespace
 }  // namespace alcove::framegraph

@@ -15,6 +15,7 @@ struct Frame {
   bool by_compute = false;  // read as a storage image of a kernel instead of a copy
   std::uint32_t size = 8;
   bool discarded = false;  // recorded, but never run
+  bool in_place = false;   // writes the newest of the older slots instead
   bool reset = false;      // forgets what was before
 };
 
@@ -52,13 +53,13 @@ class GraphHistory : public testing::Test {
     mark.record([out](RecordContext& c) {
       c.vk.vkCmdFillBuffer(c.commands, c.buffer(out), 0, VK_WHOLE_SIZE, 0xffff);
     });
-    Texture current = history.current;
-    if (frame.writes) current = write(current, frame.value);
-    if (frame.writes && frame.wanted) graph_->output(current);
+    Texture newest = frame.in_place ? history.previous() : history.current;
+    if (frame.writes) newest = write(newest, frame.value);
+    if (frame.writes && frame.wanted) graph_->output(newest);
     for (std::uint32_t age = 1; age < kSlots && frame.wanted; ++age) {
       if (!frame.writes && validity_ != HistoryValidity::valid) continue;
-      out = frame.by_compute ? read_by_kernel(history.previous(age), out, age)
-                             : read_by_copy(history.previous(age), out, age);
+      const Texture older = frame.in_place && age == 1 ? newest : history.previous(age);
+      out = frame.by_compute ? read_by_kernel(older, out, age) : read_by_copy(older, out, age);
     }
     const auto report =
         frame.discarded ? gpu_.record(*executor_, *graph_) : gpu_.run(*executor_, *graph_);
@@ -167,6 +168,22 @@ TEST_F(GraphHistory, AFrameThatCullsTheWriterLeavesTheSlotsWhereTheyAre) {
   run({3});
   EXPECT_EQ(slot(1), 2u);
   EXPECT_EQ(slot(2), 1u);
+}
+
+TEST_F(GraphHistory, AnUpdateInPlaceLeavesTheSlotsWhereTheyAre) {
+  run({1});
+  run({2});
+  run({.value = 5, .in_place = true});
+  run({.value = 6, .in_place = true});
+  run({.writes = false});
+  EXPECT_EQ(slot(1), 6u);
+  EXPECT_EQ(slot(2), 1u);
+  run({3});
+  EXPECT_EQ(slot(1), 6u);
+  EXPECT_EQ(slot(2), 1u);
+  run({4});
+  EXPECT_EQ(slot(1), 3u);
+  EXPECT_EQ(slot(2), 6u);
 }
 
 TEST_F(GraphHistory, AFrameWithoutTheHistoryLeavesItAlone) {

@@ -44,7 +44,7 @@ struct Known {
   std::uint32_t mips = 1;
   std::uint32_t layers = 1;
   std::vector<bool> written;  // mips within layers
-  bool read_only = false;     // an older history slot
+  bool old = false;           // an older history slot
   std::uint32_t last_pass = kNone;
 };
 
@@ -62,7 +62,7 @@ class Declarer {
     for (Known& known : known_) {
       const bool all =
           std::find(known.written.begin(), known.written.end(), false) == known.written.end();
-      if (known.read_only || !all || !dice_.chance(90)) continue;
+      if (known.old || !all || !dice_.chance(90)) continue;
       if (known.texture)
         graph_.output(known.handle);
       else
@@ -164,7 +164,7 @@ class Declarer {
     Known previous;
     previous.handle = history.previous(1);
     previous.mips = desc.mips;
-    previous.read_only = true;
+    previous.old = true;
     history_ = known_.size();
     keep(previous, history.validity == HistoryValidity::valid);
   }
@@ -192,7 +192,7 @@ class Declarer {
     const std::size_t chosen = choose();
     Known& known = known_[chosen];
     if (known.last_pass == index) return;
-    const bool old = known.read_only;
+    const bool old = known.old;
     // A history without contents is read only in frames that write it, its writer first here.
     if (old && !known.written[0] && !known_[history_ - 1].written[0]) return;
     Range range;
@@ -221,9 +221,10 @@ class Declarer {
     if (known_.empty() || dice_.chance(150)) add_transient();
     const std::size_t chosen = choose();
     Known& known = known_[chosen];
-    if (known.read_only || known.last_pass == index) return;
+    // Of an older slot what is there is updated in place.
+    if ((known.old && !known.written[0]) || known.last_pass == index) return;
     known.last_pass = index;
-    const Contents contents = dice_.chance(80) ? Contents::discard : Contents::keep;
+    const Contents contents = !known.old && dice_.chance(80) ? Contents::discard : Contents::keep;
     const Need need = dice_.chance(40) ? Need::optional : Need::required;
     if (!known.texture) {
       known.buffer = pass.write(known.buffer,

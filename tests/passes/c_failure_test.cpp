@@ -20,7 +20,7 @@ using testing::HasSubstr;
 bool has_synchronization2 = true;
 bool has_write_without_format = true;
 std::uint32_t api_version = VK_API_VERSION_1_3;
-std::uint32_t storage_images = 9;  // that a shader can bind
+std::uint32_t storage_images = 10;  // that a shader can bind
 const char* missing_function = "";
 
 VKAPI_ATTR void VKAPI_CALL get_features(VkPhysicalDevice device, VkPhysicalDeviceFeatures2* all) {
@@ -63,7 +63,7 @@ class CFailure : public CInterface {
     CInterface::SetUp();
     has_synchronization2 = has_write_without_format = true;
     api_version = VK_API_VERSION_1_3;
-    storage_images = 9;
+    storage_images = 10;
     missing_function = "";
     framegraph::failing::fail_at(0);
     framegraph::failing::lose(false);
@@ -95,8 +95,8 @@ TEST_F(CFailure, WhatADeviceLacksIsNamed) {
   api_version = VK_API_VERSION_1_3;
   storage_images = 8;
   EXPECT_THAT(error_of_context(info, ALCOVE_ERROR_UNSUPPORTED),
-              HasSubstr("8 storage images to a shader; the occlusion passes need 9."));
-  storage_images = 9;
+              HasSubstr("8 storage images to a shader; the occlusion passes need 10."));
+  storage_images = 10;
   missing_function = "vkCmdPipelineBarrier2";
   EXPECT_THAT(error_of_context(info, ALCOVE_ERROR_UNSUPPORTED), HasSubstr("vkCmdPipelineBarrier2"));
   missing_function = "vkGetPhysicalDeviceQueueFamilyProperties2";

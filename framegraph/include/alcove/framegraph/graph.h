@@ -73,7 +73,8 @@ class PassBuilder {
 };
 
 // A resource with memory from frame to frame. `current` is written this frame; previous(k) is what
-// was `current` k frames ago: frames count only when `current` was written by a live pass.
+// was `current` k frames ago: frames count only when `current` was written by a live pass. Where
+// nothing moves, previous() can be updated in place instead, by a write that keeps contents.
 struct TextureHistory {
   Texture current;
   std::uint32_t slots = 0;
