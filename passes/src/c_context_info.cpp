@@ -73,7 +73,12 @@ tl::expected<void, Failure> check_device(const AlcoveContextInfo& info) {
   VkPhysicalDeviceFeatures2 has{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
                                 .pNext = &vulkan13};
   get_features(info.physical_device, &has);
-  if (auto right = check_features(features_in(has), name, "choose another"); !right) {
+  // Every device of Vulkan 1.3 has the first feature, but an older instance does not pass it on.
+  const Features features = features_in(has);
+  if (auto right = check_features(
+          features, name,
+          features.synchronization2 ? "choose another" : "create the instance for Vulkan 1.3");
+      !right) {
     return right;
   }
   if (info.enabled_features != nullptr) {

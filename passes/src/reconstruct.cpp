@@ -368,9 +368,12 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& given_frame,
     return tl::unexpected(sizes.error());
   }
   const auto projection = projection_of(frame.view, sizes->now);
-  const auto previous = projection_of(frame.previous_view, sizes->previous);
-  if (!projection || !previous) {
-    return tl::unexpected(projection ? previous.error() : projection.error());
+  if (!projection) {
+    return tl::unexpected(projection.error());
+  }
+  const auto previous = projection_of(frame.previous_view, sizes->previous, "The previous view");
+  if (!previous) {
+    return tl::unexpected(previous.error());
   }
   bool history_valid = false;
   Textures textures = create_textures(frame, inputs, settings, *sizes, history_name, history_valid);

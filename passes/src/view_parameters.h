@@ -44,22 +44,23 @@ namespace alcove::passes {
   return std::abs(clip_from_view[14]) == 1.0f && w_from_z != 1.0f && w_from_z != 0.0f;
 }
 
-// The projection of a view over an image of `size` pixels, or what is wrong with the view.
-[[nodiscard]] inline tl::expected<maths::Projection, Error> projection_of(const View& view,
-                                                                          VkExtent2D size) {
+// The projection of a view over an image of `size` pixels, or what is wrong with the view, which
+// the sentence calls `name`.
+[[nodiscard]] inline tl::expected<maths::Projection, Error> projection_of(
+    const View& view, VkExtent2D size, const char* name = "The view") {
+  const auto unusable = [name](const std::string& why) {
+    return Error{std::string(name) + " cannot be used: " + why + "."};
+  };
   if (!is_rotation_and_translation(view.view_from_world)) {
     return tl::unexpected(
-        Error{"The view cannot be used: view_from_world is no rotation and translation; it must "
-              "be column-major, without scale and finite."});
+        unusable("view_from_world is no rotation and translation; it must be column-major, without "
+                 "scale and finite"));
   }
   if (is_transposed(view.clip_from_view)) {
-    return tl::unexpected(
-        Error{"The view cannot be used: clip_from_view is transposed; it must be column-major."});
+    return tl::unexpected(unusable("clip_from_view is transposed; it must be column-major"));
   }
   return maths::make_projection(to_mat4(view.clip_from_view), size.width, size.height)
-      .map_error([](const char* why) {
-        return Error{"The view cannot be used: " + std::string(why) + "."};
-      });
+      .map_error(unusable);
 }
 
 // The same over the whole of `texture`.

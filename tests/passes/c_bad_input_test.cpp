@@ -185,7 +185,7 @@ TEST_F(CBadInput, ACameraThatIsNoneIsNamed) {
       {"previous_camera.view_from_world", [](AlcoveView& v) { v.previous_camera = {}; }},
       {"The view cannot be used", [](AlcoveView& v) { v.camera.clip_from_view[0] = kNaN; }},
       {"The view cannot be used", [](AlcoveView& v) { v.camera.clip_from_view[11] = 1.0f; }},
-      {"The view cannot be used",
+      {"The previous view cannot be used",
        [](AlcoveView& v) { v.previous_camera.clip_from_view[5] = 0.0f; }},
   };
   for (const Case& bad : cases) {

@@ -15,6 +15,7 @@
 namespace alcove::passes {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 
 bool has_synchronization2 = true;
@@ -84,7 +85,8 @@ TEST_F(CFailure, WhatADeviceLacksIsNamed) {
   EXPECT_EQ(error_of_context(info, ALCOVE_SUCCESS), "");
   has_synchronization2 = false;
   EXPECT_THAT(error_of_context(info, ALCOVE_ERROR_UNSUPPORTED),
-              HasSubstr("has no feature synchronization2"));
+              AllOf(HasSubstr("has no feature synchronization2"),
+                    HasSubstr("create the instance for Vulkan 1.3")));
   has_synchronization2 = true;
   has_write_without_format = false;
   EXPECT_THAT(error_of_context(info, ALCOVE_ERROR_UNSUPPORTED),
