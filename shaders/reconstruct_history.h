@@ -13,6 +13,8 @@ struct History {
 
 const float kDepthTolerance = 0.004;      // of the depth, for a surface seen head-on
 const float kPlaneTolerance = 1.0 / 3.0;  // of the filter's
+// How far what moves by itself may have come nearer or gone since the last frame, of its depth.
+const float kDepthMotion = 0.04;
 
 uvec4 pack_history(History history, float depth) {
   // A normal that is not a number must not stay in the history.
@@ -26,19 +28,32 @@ uvec4 pack_history(History history, float depth) {
                floatBitsToUint(lobe.visible), floatBitsToUint(lobe.open));
 }
 
-// Where the surface was on the last frame's image: xy in pixels, z its depth there, w 0 if it was
-// not on it (and z then no more than a number that can be divided by).
-vec4 reproject(Surface surface) {
+// Where the surface was on the last frame's image.
+struct Before {
+  vec2 position;  // in pixels
+  float depth;    // there, had only the camera moved; a number that can be divided by
+  bool seen;      // it was on the image
+  bool moves;     // not only the camera did
+};
+
+Before reproject(Surface surface) {
   float scale = kPerspective ? surface.depth : 1.0;
-  vec4 before = parameters.previous_from_pixel * vec4(surface.centre * scale, surface.depth, 1.0);
-  vec2 position = before.xy / before.w;
+  vec4 standing = parameters.previous_from_pixel * vec4(surface.centre * scale, surface.depth, 1.0);
+  Before before = Before(standing.xy / standing.w, standing.z, standing.w > 0.0, false);
   if (kMotion) {
-    vec2 motion = texelFetch(motion_image, surface.pixel, 0).rg;
-    position = surface.centre * parameters.previous_size.zw - motion * parameters.previous_size.xy;
+    vec2 here = surface.centre * parameters.previous_size.zw;
+    vec2 motion = texelFetch(motion_image, surface.pixel, 0).rg * parameters.previous_size.xy;
+    // More than the motion vector's rounding, which in a half is 2^-11 of it.
+    float apart = distance(here - motion, before.position);
+    before.moves = apart > 0.1 + length(motion) * (1.0 / 512.0);
+    before.position = here - motion;
   }
-  bool seen = before.w > 0.0 && all(greaterThanEqual(position, vec2(0.0))) &&
-              all(lessThanEqual(position, parameters.previous_size.xy));
-  return seen ? vec4(position, before.z, 1.0) : vec4(0.0, 0.0, 1.0, 0.0);
+  before.seen = before.seen && all(greaterThanEqual(before.position, vec2(0.0))) &&
+                all(lessThanEqual(before.position, parameters.previous_size.xy));
+  if (!before.seen) {
+    before = Before(vec2(0.0), 1.0, false, false);
+  }
+  return before;
 }
 
 // What was read of the last frame's texels, as sums over them.
@@ -50,11 +65,11 @@ struct Read {
 };
 
 // A texel of history, all of it or none as its depth tells whether it is of the same surface; of
-// those the ones on the tangent plane count for most, so that nothing leaks across a crease.
-void add_history(inout Read read, Surface surface, ivec2 texel, float depth, float share) {
+// those the ones on the tangent plane, at the depth `expected` as it is held, count for most, so
+// that nothing leaks across a crease.
+void add_history(inout Read read, Surface surface, ivec2 texel, float expected, float share) {
   uvec4 stored = imageLoad(history_image, texel);
   HistoryState state = unpack_history_state(stored.y);
-  float expected = held_depth(parameters.history_depth.zw, depth);
   float apart = held_apart(expected, state.depth);
   float same = history_weight(expected, apart, kDepthTolerance, surface.slant);
   float off_plane = apart / (kPerspective ? max(expected, 1e-6) : parameters.history_depth.z);
@@ -79,22 +94,47 @@ void add_history(inout Read read, Surface surface, ivec2 texel, float depth, flo
 
 History no_history() { return History(no_sum(), 0.0, 0.0, 0.0); }
 
+// Motion vectors do not say how far a surface that moves has come nearer or gone. The one of these
+// texels that lies nearest to where it would have been does, if it lies near enough. As depths are
+// held.
+float moved_in_depth(ivec2 texels[4], vec4 expected) {
+  float moved = 0.0;
+  float least = kDepthMotion;
+  for (int i = 0; i < 4; ++i) {
+    float found = unpack_history_state(imageLoad(history_image, texels[i]).y).depth;
+    float part = abs(found - expected[i]) / max(expected[i], 1e-6);
+    if (part < least) {
+      least = part;
+      moved = found - expected[i];
+    }
+  }
+  return moved;
+}
+
 // Between texels, where the surface was.
 void read_moved(inout Read read, Surface surface) {
-  vec4 before = reproject(surface);
+  Before before = reproject(surface);
   ivec2 last = ivec2(parameters.previous_size.xy) - 1;
-  vec2 first = floor(before.xy - 0.5);
-  vec2 part = before.xy - 0.5 - first;
+  vec2 first = floor(before.position - 0.5);
+  vec2 part = before.position - 0.5 - first;
   read.history.between = dot(part, 1.0 - part);
+  ivec2 texels[4];
+  vec4 expected;
   for (int i = 0; i < 4; ++i) {
     ivec2 corner = ivec2(i & 1, i >> 1);
-    ivec2 texel = clamp(ivec2(first) + corner, ivec2(0), last);
-    vec2 near = abs(1.0 - vec2(corner) - part);
+    texels[i] = clamp(ivec2(first) + corner, ivec2(0), last);
     // Where the surface's tangent plane passes that texel; it hardly turns from frame to frame.
     vec2 offset = vec2(corner) - part;
-    float line = (kPerspective ? 1.0 / before.z : before.z) + dot(offset, surface.gradient);
-    float depth = kPerspective ? 1.0 / max(line, 0.5 / before.z) : line;
-    add_history(read, surface, texel, depth, near.x * near.y * before.w);
+    float line = (kPerspective ? 1.0 / before.depth : before.depth) + dot(offset, surface.gradient);
+    float depth = kPerspective ? 1.0 / max(line, 0.5 / before.depth) : line;
+    expected[i] = held_depth(parameters.history_depth.zw, depth);
+  }
+  if (before.moves) {
+    expected += moved_in_depth(texels, expected);
+  }
+  for (int i = 0; i < 4; ++i) {
+    vec2 near = abs(1.0 - vec2(i & 1, i >> 1) - part);
+    add_history(read, surface, texels[i], expected[i], before.seen ? near.x * near.y : 0.0);
   }
 }
 
@@ -104,7 +144,8 @@ History read_history(Surface surface) {
   }
   Read read = Read(no_history(), vec3(0.0), 0.0, 0.0);
   if (kStill) {
-    add_history(read, surface, surface.pixel, surface.depth, 1.0);
+    add_history(read, surface, surface.pixel,
+                held_depth(parameters.history_depth.zw, surface.depth), 1.0);
   } else {
     read_moved(read, surface);
   }

@@ -332,6 +332,59 @@ TEST_F(Reconstruct, MotionVectorsFollowAMovingPlane) {
   }
 }
 
+// A plane slides by a pixel a frame and comes nearer by a hundredth of its distance, which motion
+// vectors do not say: its history goes on. What stands still and lies as far behind the last
+// frame's surface was uncovered: it starts anew.
+TEST_F(Reconstruct, HistoryFollowsWhatComesNearer) {
+  const TestView view = test_views()[2];
+  const double nearer = 0.99;
+  const std::uint32_t frames = 24;
+  HostImage motion{kWidth, kHeight, {}, 2};
+  for (std::uint32_t y = 0; y < kHeight; ++y) {
+    for (std::uint32_t x = 0; x < kWidth; ++x) {
+      const double right = x + 0.5 - 0.5 * kWidth;
+      const double down = y + 0.5 - 0.5 * kHeight;
+      motion.texels.push_back(static_cast<float>((right * (1.0 - nearer) + 1.0) / kWidth));
+      motion.texels.push_back(static_cast<float>(down * (1.0 - nearer) / kHeight));
+    }
+  }
+  std::mt19937 random(23);
+  // Of those pixels that show what was on the image for many frames.
+  const auto spread = [](const HostImage& image) {
+    HostImage right{kWidth / 2, kHeight, {}, 1};
+    for (std::uint32_t y = 0; y < kHeight; ++y) {
+      for (std::uint32_t x = kWidth / 2; x < kWidth; ++x) {
+        right.texels.push_back(image.at(x, y));
+      }
+    }
+    return variance(right);
+  };
+  double first = 0.0;
+  double distance = 5.0;
+  HostImage found;
+  for (std::uint32_t frame = 0; frame < frames; ++frame, distance *= nearer) {
+    const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(0.0, distance)});
+    const HostImage signal = noise_signal(random);
+    found = reconstruct({.view = view.view,
+                         .drawing = drawing,
+                         .signal = signal,
+                         .motion = &motion,
+                         .index = frame,
+                         .reset = frame == 0},
+                        precise(1, 32));
+    first = frame == 0 ? spread(found) : first;
+  }
+  EXPECT_LT(spread(found), 0.3 * first);
+
+  const HostImage still{kWidth, kHeight, std::vector<float>(std::size_t{kWidth} * kHeight * 2), 2};
+  const Drawing behind = draw(view, kWidth, kHeight, {tilted_plane(0.0, distance / nearer * 1.02)});
+  const HostImage bright = constant_signal(kWidth, kHeight, 0.9f);
+  const HostImage anew = reconstruct(
+      {.view = view.view, .drawing = behind, .signal = bright, .motion = &still, .index = frames},
+      precise(1, 32));
+  EXPECT_THAT(anew.texels, testing::Each(testing::FloatNear(0.9f, 2e-3f)));
+}
+
 // What shaded a plane moves away, and then shades it again: the plane itself stands still.
 TEST_F(Reconstruct, WhereThingsMoveAShadeLeavesNoTrail) {
   const TestView view = test_views()[2];
