@@ -162,8 +162,9 @@ typedef struct AlcoveSettings {
   AlcovePattern pattern;  // [GOLDEN]
 
   // The filter, in which each pixel gathers searches around it that lie on its surface.
-  uint32_t filter_reach;  // searched pixels on each side that it looks at while it has no history,
-                          // 0 to 3 [2]; one with a history. 0: no filter at all
+  uint32_t filter_reach;  // searched pixels on each side that it looks at while the view has no
+                          // history, 0 to 3 [2]; one with a history, also where a pixel has none.
+                          // 0: no filter at all
   // How far from the pixel's tangent plane a search counts a quarter, over 0, in sizes of a pixel
   // there [1.5]. So in the first frame of one slice; the more slices and frames, the nearer.
   float filter_tolerance_px;
@@ -303,7 +304,8 @@ typedef struct AlcoveView {
   // bent normals come in view space.
   AlcoveImage normals;
   // xy: uv in this frame's image minus uv in the last's (y down, so with the jitter of both
-  // cameras), signed; none: only the camera moves.
+  // cameras), signed; none: only the camera moves. Where it is given history is held to what the
+  // last few frames say, for shades that move: leave it out where nothing but the camera does.
   AlcoveImage motion;
   AlcoveImage roughness;     // perceptual, [0,1]; none: AlcoveSettings::roughness
   AlcoveImage back_depth;    // of the nearest back faces, as depth; needed with
