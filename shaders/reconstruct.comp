@@ -88,6 +88,7 @@ const int kAround = kAcross * kAcross;
 
 struct Surface {
   ivec2 pixel;
+  ivec2 cell;       // that the pixel is in
   vec2 centre;      // of the pixel, pixels
   float line;       // linear along the image of any plane: 1/depth in perspective, depth otherwise
   float depth;      // linear
@@ -122,9 +123,10 @@ LobeSurface fetch_lobe_surface(ivec2 pixel, vec3 normal) {
   return surface;
 }
 
-Surface fetch_surface(ivec2 pixel, float line) {
+Surface fetch_surface(ivec2 pixel, ivec2 cell, float line) {
   Surface surface;
   surface.pixel = pixel;
+  surface.cell = cell;
   surface.centre = vec2(pixel) + 0.5;
   surface.line = line;
   surface.depth = kPerspective ? 1.0 / surface.line : surface.line;
@@ -191,6 +193,14 @@ Found fetch_block(ivec2 block) {
 }
 
 ivec2 last_block() { return (size_px() + (kDivisor - 1)) / kDivisor - 1; }
+
+// Block i by rows of those around a cell, `side` on each side. Beyond the image the outermost stand
+// for those that there are not.
+ivec2 block_around(ivec2 cell, int side, int i) {
+  int across = kBetween ? 2 * side : 2 * side + 1;
+  ivec2 block = cell + ivec2(i % across, i / across) - (kBetween ? side - 1 : side);
+  return clamp(block, ivec2(0), last_block());
+}
 
 // A neighbour at distance d weighs 1 / (1 + narrowness d^2)^4.
 float narrowness_of(float width_px) { return 0.125 / (width_px * width_px); }
@@ -282,9 +292,9 @@ void reconstruct(Surface surface, bool sky, Found around[kAround]) {
 
 #endif
 
-void reconstruct_pixel(ivec2 pixel, Found around[kAround]) {
+void reconstruct_pixel(ivec2 pixel, ivec2 cell, Found around[kAround]) {
   float line = imageLoad(line_image, pixel).r;
-  reconstruct(fetch_surface(pixel, line), line == sky_line(kPerspective), around);
+  reconstruct(fetch_surface(pixel, cell, line), line == sky_line(kPerspective), around);
 }
 
 // As reconstruct_pixel, for a pixel of which this frame tells nothing new.
@@ -317,7 +327,7 @@ bool inside(ivec2 pixel) {
 
 // Each invocation has the kDivisor x kDivisor pixels of a cell, which look at the same searched
 // ones: those are fetched once. With kBetween a cell lies between four searched pixels, else it is
-// a block. Beyond the image the outermost stand for those that there are not.
+// a block.
 void main() {
   parameters = given;
   ivec2 cell = ivec2(gl_GlobalInvocationID.xy) - (kBetween ? 1 : 0);
@@ -327,14 +337,13 @@ void main() {
   }
   Found around[kAround];
   [[unroll]] for (int i = 0; i < kAround; ++i) {
-    ivec2 block = cell + ivec2(i % kAcross, i / kAcross) - (kBetween ? kSide - 1 : kSide);
-    around[i] = fetch_block(clamp(block, ivec2(0), last_block()));
+    around[i] = fetch_block(block_around(cell, kSide, i));
   }
   uint reached = kReached;
   do {
     ivec2 pixel = pixel_of_bit(first, reached);
     if (inside(pixel)) {
-      reconstruct_pixel(pixel, around);
+      reconstruct_pixel(pixel, cell, around);
     }
     reached &= reached - 1;
   } while (reached != 0);

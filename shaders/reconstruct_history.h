@@ -203,10 +203,30 @@ void follow_change(inout History history, Signal now) {
   history.count = mix(history.count, min(history.count, kRecentFrames), changed);
 }
 
+// Whether some pixels may look further than others: a pixel that has no history as far as all of a
+// first frame.
+const bool kLooksFurther = !kFresh && kReach > kSide;
+
+// Adds the searches further away than those around the cell.
+void add_further(inout Neighbourhood sum, Surface surface, float narrowness) {
+  const int across = kBetween ? 2 * kReach : 2 * kReach + 1;
+  const int margin = kReach - kSide;
+  for (int i = 0; i < across * across; ++i) {
+    ivec2 place = ivec2(i % across, i / across) - margin;
+    if (any(lessThan(place, ivec2(0))) || any(greaterThanEqual(place, ivec2(kAcross)))) {
+      add_block(sum, surface, narrowness, fetch_block(block_around(surface.cell, kReach, i)));
+    }
+  }
+}
+
 // The pixel's sums with this frame's neighbourhood added.
 History advance(Surface surface, Found around[kAround], History history) {
   surface.stiffness *= stiffening(history.count);
-  Neighbourhood now = add_up(surface, narrowness_of(window_width(history)), around);
+  float narrowness = narrowness_of(window_width(history));
+  Neighbourhood now = add_up(surface, narrowness, around);
+  if (kLooksFurther && history.count < 2.0) {
+    add_further(now, surface, narrowness);
+  }
   if (kClamp) {
     vec3 moments = now.moments / now.moments.x;
     clamp_history(history, spread_of_sums(moments.y, moments.z, 1.0));
