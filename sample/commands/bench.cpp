@@ -7,6 +7,7 @@
 #include "options/camera_of.h"
 #include "scene/load_scene.h"
 #include "support/image_io.h"
+#include "support/printable.h"
 
 namespace alcove::sample {
 namespace {
@@ -16,8 +17,9 @@ using Done = tl::expected<void, std::string>;
 using Json = nlohmann::ordered_json;
 
 std::string title_of(const Options& options, const std::string& scene) {
-  return (scene.empty() ? "builtin" : scene) + ", " + std::to_string(options.view.width) + "x" +
-         std::to_string(options.view.height) + ", frame " + std::to_string(options.view.frames);
+  return (scene.empty() ? "builtin" : printable(scene)) + ", " +
+         std::to_string(options.view.width) + "x" + std::to_string(options.view.height) +
+         ", frame " + std::to_string(options.view.frames);
 }
 
 // That every scene can be read and seen: the last is reached after minutes.

@@ -14,6 +14,7 @@
 #include "scene/gltf_camera.h"
 #include "scene/gltf_material.h"
 #include "scene/gltf_mesh.h"
+#include "support/printable.h"
 
 namespace alcove::sample {
 namespace {
@@ -175,8 +176,7 @@ std::string first_line(const std::string& text) {
 // a URI may be the data itself.
 std::string readable(std::string text) {
   constexpr size_t kMost = 200;
-  std::ranges::replace_if(
-      text, [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
+  text = printable(text);
   if (text.size() <= kMost) return text;
   const std::string data = "data:";
   const size_t uri = text.find(data);
@@ -372,7 +372,7 @@ tl::expected<Scene, std::string> parse_gltf(std::span<const uint8_t> bytes, cons
     if (!model) return refuse(model.error());
     auto scene = build_scene(*model, limits);
     if (!scene) return refuse(scene.error());
-    scene->name = fs::path(name).stem().string();
+    scene->name = printable(fs::path(name).stem().string());
     return scene;
   } catch (const std::exception& error) {
     return refuse(error.what());

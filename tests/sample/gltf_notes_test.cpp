@@ -69,5 +69,12 @@ TEST(GltfNotes, ASentenceStaysShortHoweverLongWhatItSpeaksOf) {
   EXPECT_LT(refusal(maker.gltf()).size(), 250u);
 }
 
+// report.json and trade.svg have it, and are of UTF-8.
+TEST(GltfNotes, ASceneIsNamedInUtf8WhateverItsFileIsCalled) {
+  const auto scene = parse_gltf(GltfMaker::triangle().gltf(), "caf\xe9.gltf", "");
+  ASSERT_TRUE(scene) << scene.error();
+  EXPECT_EQ(scene->name, "caf\xef\xbf\xbd");
+}
+
 }  // namespace
 }  // namespace alcove::sample

@@ -1,0 +1,46 @@
+#include "support/printable.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <random>
+
+namespace alcove::sample {
+namespace {
+
+TEST(Printable, WhatCanBeReadStays) {
+  for (const std::string text :
+       {"", "hall.glb", "caf\xc3\xa9", "\xe2\x82\xac", "\xf0\x9f\x98\x80", "\xed\x9f\xbf"}) {
+    EXPECT_EQ(printable(text), text);
+  }
+}
+
+TEST(Printable, ControlCharactersAreSpaces) {
+  EXPECT_EQ(printable(std::string("a\nb\x1b[31m\x7f\0c", 11)), "a b [31m  c");
+}
+
+TEST(Printable, EachByteThatIsNoPartOfACharacterIsReplaced) {
+  const std::string stand_in = "\xef\xbf\xbd";
+  EXPECT_EQ(printable("caf\xe9.gltf"), "caf" + stand_in + ".gltf");
+  EXPECT_EQ(printable("\xe2\x82"), stand_in + stand_in);                 // cut short
+  EXPECT_EQ(printable("\xc0\xaf"), stand_in + stand_in);                 // longer than need be
+  EXPECT_EQ(printable("\xed\xa0\x80"), stand_in + stand_in + stand_in);  // half of a pair
+  EXPECT_EQ(printable("\xf4\x90\x80\x80").size(), 4 * stand_in.size());  // past the last
+}
+
+TEST(Printable, AnyBytesCanBeWrittenAsJson) {
+  const unsigned seed = std::random_device{}();
+  SCOPED_TRACE(seed);
+  std::mt19937 random(seed);
+  for (int i = 0; i < 20000; ++i) {
+    std::string bytes(random() % 6, '\0');
+    // Mostly of the upper half, where characters of several bytes are.
+    for (char& byte : bytes)
+      byte = static_cast<char>(random() % 8 == 0 ? random() : random() | 128);
+    const std::string text = printable(bytes);
+    EXPECT_EQ(nlohmann::json::parse(nlohmann::json(text).dump()).get<std::string>(), text);
+  }
+}
+
+}  // namespace
+}  // namespace alcove::sample
