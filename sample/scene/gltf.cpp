@@ -7,6 +7,7 @@
 #include <cstring>
 #include <fstream>
 #include <glm/gtc/quaternion.hpp>
+#include <new>
 #include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
@@ -23,6 +24,8 @@ using Failure = tl::unexpected<std::string>;
 namespace fs = std::filesystem;
 
 constexpr uint64_t kMostFileBytes = INT32_MAX;  // tinygltf counts in int
+constexpr size_t kMostOfASentence = 200;        // bytes
+constexpr const char* kTooLittleMemory = "there is not enough memory for it";
 
 // The only way in which tinygltf reaches the file system: files of the scene's own folder, up to a
 // number of bytes in all.
@@ -174,15 +177,27 @@ std::string first_line(const std::string& text) {
 
 // One line that can be read, whatever the file has for names: they may be as long as the file, and
 // a URI may be the data itself.
-std::string readable(std::string text) {
-  constexpr size_t kMost = 200;
+std::string readable(std::string text, size_t most) {
   text = printable(text);
-  if (text.size() <= kMost) return text;
+  if (text.size() <= most) return text;
   const std::string data = "data:";
   const size_t uri = text.find(data);
-  size_t end = uri < kMost ? uri + data.size() : kMost;
+  size_t end = uri < most ? uri + data.size() : most;
   while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0u) == 0x80) --end;  // UTF-8
   return text.substr(0, end) + "...";
+}
+
+// Short enough that a sentence has its reason beside the name. And every part and node that bears a
+// name has it again: a long one many times over is more than the memory.
+void make_names_readable(tinygltf::Model& model) {
+  constexpr size_t kMost = 100;
+  const auto each = [](auto& things) {
+    for (auto& thing : things) thing.name = readable(std::move(thing.name), kMost);
+  };
+  each(model.nodes);
+  each(model.meshes);
+  each(model.materials);
+  each(model.cameras);
 }
 
 // An image that cannot be read is left out with a note; of these it has to say why.
@@ -225,6 +240,7 @@ tl::expected<tinygltf::Model, std::string> read_model(std::span<const uint8_t> b
   }
   if (!read) return Failure(first_line(error));
   name_images_outside(access, model);
+  make_names_readable(model);
   return model;
 }
 
@@ -327,7 +343,7 @@ tl::expected<void, std::string> add_nodes(const tinygltf::Model& model, MeshBudg
 
 // A warning once, however many parts it holds for.
 void tidy(std::vector<std::string>& warnings) {
-  std::ranges::transform(warnings, warnings.begin(), readable);
+  for (std::string& warning : warnings) warning = readable(std::move(warning), kMostOfASentence);
   std::sort(warnings.begin(), warnings.end());
   warnings.erase(std::unique(warnings.begin(), warnings.end()), warnings.end());
 }
@@ -365,7 +381,7 @@ tl::expected<Scene, std::string> build_scene(const tinygltf::Model& model,
 tl::expected<Scene, std::string> parse_gltf(std::span<const uint8_t> bytes, const std::string& name,
                                             const fs::path& folder, const GltfLimits& limits) {
   const auto refuse = [&](const std::string& why) {
-    return Failure("cannot read " + name + ": " + readable(why));
+    return Failure("cannot read " + name + ": " + readable(why, kMostOfASentence));
   };
   try {
     const auto model = read_model(bytes, folder);
@@ -374,6 +390,8 @@ tl::expected<Scene, std::string> parse_gltf(std::span<const uint8_t> bytes, cons
     if (!scene) return refuse(scene.error());
     scene->name = printable(fs::path(name).stem().string());
     return scene;
+  } catch (const std::bad_alloc&) {
+    return refuse(kTooLittleMemory);
   } catch (const std::exception& error) {
     return refuse(error.what());
   }
@@ -394,6 +412,8 @@ tl::expected<Scene, std::string> load_gltf(const fs::path& file) {
     if (!read_file(file, kMostFileBytes, bytes, why)) return refuse(why);
     const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
     return parse_gltf(bytes, file.string(), folder);
+  } catch (const std::bad_alloc&) {
+    return refuse(kTooLittleMemory);
   } catch (const std::exception& exception) {
     return refuse(exception.what());
   }

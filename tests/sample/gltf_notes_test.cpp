@@ -64,9 +64,11 @@ TEST(GltfNotes, ASentenceStaysShortHoweverLongWhatItSpeaksOf) {
   const Scene scene = parsed(maker.gltf());
   ASSERT_EQ(scene.warnings.size(), 1u);
   EXPECT_LT(scene.warnings[0].size(), 250u);
-  EXPECT_THAT(scene.warnings[0], testing::EndsWith("\xc3\xa9..."));
+  EXPECT_THAT(scene.warnings[0], HasSubstr("\xc3\xa9...\" has colours"));
   maker.primitive()["attributes"]["POSITION"] = 9;
-  EXPECT_LT(refusal(maker.gltf()).size(), 250u);
+  const std::string why = refusal(maker.gltf());
+  EXPECT_LT(why.size(), 250u);
+  EXPECT_THAT(why, testing::EndsWith("accessor 9 does not exist"));
 }
 
 // report.json and trade.svg have it, and are of UTF-8.
@@ -74,6 +76,28 @@ TEST(GltfNotes, ASceneIsNamedInUtf8WhateverItsFileIsCalled) {
   const auto scene = parse_gltf(GltfMaker::triangle().gltf(), "caf\xe9.gltf", "");
   ASSERT_TRUE(scene) << scene.error();
   EXPECT_EQ(scene->name, "caf\xef\xbf\xbd");
+}
+
+// Mesh, node, material and camera, each of whose sentences is made elsewhere.
+TEST(GltfNotes, NamesAreOneShortLine) {
+  const std::string name = "a\nb\x1b[31m" + std::string(1000, 'x');
+  GltfMaker maker = GltfMaker::triangle();
+  maker.json["materials"] = {{{"name", name}, {"alphaMode", "BLEND"}}};
+  maker.primitive()["material"] = 0;
+  maker.json["meshes"][0]["name"] = name;
+  maker.json["cameras"] = {
+      {{"name", name}, {"type", "perspective"}, {"perspective", {{"yfov", 1.0}, {"znear", 0.5}}}}};
+  maker.json["nodes"][0]["camera"] = 0;
+  maker.json["nodes"][0]["name"] = name;
+  const Scene scene = parsed(maker.gltf());
+  ASSERT_EQ(scene.cameras.size(), 1u);
+  for (const std::string& told :
+       {scene.materials[0].name, scene.meshes[0].name, scene.cameras[0].name}) {
+    EXPECT_LT(told.size(), 110u);
+    EXPECT_THAT(told, HasSubstr("a b [31mxx"));
+  }
+  maker.json["nodes"][0]["mesh"] = 9;
+  EXPECT_THAT(refusal(maker.gltf()), testing::EndsWith("has no mesh 9"));
 }
 
 }  // namespace
