@@ -8,6 +8,7 @@
 
 #include "commands/commands.h"
 #include "options/options.h"
+#include "support/standard_streams.h"
 
 namespace {
 
@@ -64,6 +65,7 @@ int stop(const Stop& stop) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  alcove::sample::take_closed_streams();
   try {
     const auto options = alcove::sample::parse_options(argc, argv);
     if (!options) {

@@ -1,0 +1,12 @@
+# `alcove view` whose output was closed draws its frame, then fails in a sentence: what it prints
+# does not end up in the display's connection. ALCOVE: the program; FOLDER: where to.
+file(REMOVE_RECURSE ${FOLDER})
+execute_process(
+  COMMAND sh -c "exec \"$@\" >&-" sh ${ALCOVE} view --frames 1 --size 320x180 --out ${FOLDER}
+  TIMEOUT 300 RESULT_VARIABLE status ERROR_VARIABLE error)
+if(NOT status EQUAL 1 OR NOT error MATCHES "^alcove: The output cannot be written[^\n]*\n$")
+  message(FATAL_ERROR "The status is ${status}: ${error}")
+endif()
+if(NOT EXISTS ${FOLDER}/view.png)
+  message(FATAL_ERROR "There is no picture.")
+endif()
