@@ -1,6 +1,7 @@
 // `alcove`, the scene runner.
 
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <exception>
 #include <iostream>
@@ -66,6 +67,10 @@ int stop(const Stop& stop) {
 
 int main(int argc, char** argv) {
   alcove::sample::take_closed_streams();
+#ifdef SIGXFSZ
+  // Writing past a limit on the size of files fails, as on a full disk, and does not kill.
+  std::signal(SIGXFSZ, SIG_IGN);
+#endif
   try {
     const auto options = alcove::sample::parse_options(argc, argv);
     if (!options) {

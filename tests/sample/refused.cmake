@@ -1,11 +1,11 @@
 # `alcove ARGUMENTS` ends with status STATUS, else 1, and one sentence on stderr, which begins with
-# SENTENCE. ALCOVE: the program.
+# SENTENCE. ALCOVE: the program; LAUNCHER: what starts it, if anything.
 if(NOT DEFINED STATUS)
   set(STATUS 1)
 endif()
 separate_arguments(ARGUMENTS)
-execute_process(COMMAND ${ALCOVE} ${ARGUMENTS} RESULT_VARIABLE status OUTPUT_VARIABLE output
-  ERROR_VARIABLE error)
+execute_process(COMMAND ${LAUNCHER} ${ALCOVE} ${ARGUMENTS} RESULT_VARIABLE status
+  OUTPUT_VARIABLE output ERROR_VARIABLE error)
 if(NOT status EQUAL ${STATUS})
   message(FATAL_ERROR "The status is ${status}, not ${STATUS}.")
 endif()
