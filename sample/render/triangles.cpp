@@ -1,18 +1,10 @@
 #include "render/triangles.h"
 
+#include "scene/area.h"
 #include "scene/tangents.h"
 
 namespace alcove::sample {
 namespace {
-
-glm::dvec3 area_of(const Mesh& mesh, std::size_t first_index) {
-  const uint32_t* corner = &mesh.indices[first_index];
-  const glm::vec3 a = mesh.positions_ws[corner[0]];
-  const glm::vec3 b = mesh.positions_ws[corner[1]];
-  const glm::vec3 c = mesh.positions_ws[corner[2]];
-  // In double: the cross product of a sliver's sides cancels.
-  return glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a));
-}
 
 void append_mesh(const Mesh& mesh, const Material& material, std::vector<Vertex>& vertices) {
   std::vector<glm::vec4> tangents(mesh.indices.size(), glm::vec4(0.0f));

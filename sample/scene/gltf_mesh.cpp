@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "scene/area.h"
 #include "scene/gltf_accessor.h"
 
 namespace alcove::sample {
@@ -104,19 +105,11 @@ tl::expected<std::vector<glm::vec4>, std::string> world_tangents(const tinygltf:
   return out;
 }
 
-// The face's normal times twice its area.
-glm::dvec3 face_normal(const Mesh& mesh, size_t first) {
-  const glm::dvec3 a(mesh.positions_ws[mesh.indices[first]]);
-  const glm::dvec3 b(mesh.positions_ws[mesh.indices[first + 1]]);
-  const glm::dvec3 c(mesh.positions_ws[mesh.indices[first + 2]]);
-  return glm::cross(b - a, c - a);
-}
-
 // Faces without area have no normal, cover no pixel and stop no ray.
 void drop_flat_faces(Mesh& mesh) {
   size_t kept = 0;
   for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-    const double length = glm::length(face_normal(mesh, i));
+    const double length = glm::length(area_of(mesh, i));
     if (!(length > 0.0)) continue;
     for (size_t c = 0; c < 3; ++c) mesh.indices[kept + c] = mesh.indices[i + c];
     kept += 3;
@@ -128,7 +121,7 @@ void drop_flat_faces(Mesh& mesh) {
 void make_flat_normals(Mesh& mesh) {
   Mesh flat;
   for (size_t i = 0; i < mesh.indices.size(); i += 3) {
-    const glm::vec3 normal(glm::normalize(face_normal(mesh, i)));
+    const glm::vec3 normal(glm::normalize(area_of(mesh, i)));
     for (size_t c = 0; c < 3; ++c) {
       const uint32_t v = mesh.indices[i + c];
       flat.positions_ws.push_back(mesh.positions_ws[v]);
@@ -150,8 +143,8 @@ void make_flat_normals(Mesh& mesh) {
 void mend_normals(Mesh& mesh) {
   std::vector<glm::dvec3> sums(mesh.positions_ws.size(), glm::dvec3(0.0));
   for (size_t i = 0; i < mesh.indices.size(); i += 3) {
-    const glm::dvec3 normal = face_normal(mesh, i);
-    for (size_t c = 0; c < 3; ++c) sums[mesh.indices[i + c]] += normal;
+    const glm::dvec3 area = area_of(mesh, i);
+    for (size_t c = 0; c < 3; ++c) sums[mesh.indices[i + c]] += area;
   }
   for (size_t v = 0; v < sums.size(); ++v) {
     if (mesh.normals_ws[v] != glm::vec3(0.0f)) continue;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "scene/area.h"
+
 namespace alcove::sample {
 namespace {
 
@@ -54,6 +56,21 @@ bool attach(RTCDevice device, RTCScene tree, const Scene& scene, unsigned id) {
   return room;
 }
 
+// Beyond this, products of three lengths overflow in Embree, which then finds nothing.
+constexpr float kFarthest = 1e12f;
+
+bool is_too_large(const Bounds& bounds_ws) {
+  const glm::vec3 reach = glm::max(glm::abs(bounds_ws.low), glm::abs(bounds_ws.high));
+  return std::max({reach.x, reach.y, reach.z}) > kFarthest;
+}
+
+// Embree asserts that rays start within 2e18 and have a direction.
+bool is_traceable(const glm::vec3& origin, const glm::vec3& direction) {
+  constexpr float kFarthestStart = 1e18f;
+  return std::abs(origin.x) < kFarthestStart && std::abs(origin.y) < kFarthestStart &&
+         std::abs(origin.z) < kFarthestStart && std::isfinite(glm::dot(direction, direction));
+}
+
 glm::vec3 facing(const glm::vec3& n, const glm::vec3& direction) {
   return glm::dot(n, direction) > 0.0f ? -n : n;
 }
@@ -71,6 +88,11 @@ RayScene::Impl::~Impl() {
 }
 
 tl::expected<RayScene, std::string> RayScene::create(const Scene& scene) {
+  if (is_too_large(scene.bounds_ws)) {
+    return tl::unexpected("the scene " + scene.name +
+                          " reaches further than 1e12 from its origin, too far for rays to be "
+                          "traced: scale it down");
+  }
   RayScene out;
   Impl& impl = *out.impl_;
   impl.scene = &scene;
@@ -93,6 +115,7 @@ tl::expected<RayScene, std::string> RayScene::create(const Scene& scene) {
 
 std::optional<Hit> RayScene::Impl::nearest(const glm::vec3& origin, const glm::vec3& direction,
                                            float far) const {
+  if (!is_traceable(origin, direction)) return std::nullopt;
   RTCRayHit query{};
   query.ray = {origin.x,    origin.y, origin.z, 0.0f,        direction.x, direction.y,
                direction.z, 0.0f,     far,      0xffffffffu, 0,           0};
@@ -107,9 +130,10 @@ std::optional<Hit> RayScene::Impl::nearest(const glm::vec3& origin, const glm::v
   Hit hit;
   hit.distance = query.ray.tfar;
   hit.material = mesh.material;
-  const glm::vec3 normal =
-      glm::normalize(glm::cross(mesh.positions_ws[i[1]] - mesh.positions_ws[i[0]],
-                                mesh.positions_ws[i[2]] - mesh.positions_ws[i[0]]));
+  const glm::dvec3 area = area_of(mesh, size_t{3} * query.hit.primID);
+  const double twice_the_area = glm::length(area);
+  if (!(twice_the_area > 0.0) || !std::isfinite(hit.distance)) return std::nullopt;
+  const glm::vec3 normal(area / twice_the_area);
   hit.geometric_normal_ws = facing(normal, direction);
   const glm::vec3 smooth =
       w * mesh.normals_ws[i[0]] + u * mesh.normals_ws[i[1]] + v * mesh.normals_ws[i[2]];
@@ -127,7 +151,7 @@ uint32_t RayScene::Impl::blocked(const glm::vec3& origin, std::span<const glm::v
   alignas(64) int valid[kPacket];
   for (uint32_t i = 0; i < kPacket; ++i) {
     const glm::vec3& d = directions[std::min<size_t>(i, directions.size() - 1)];
-    valid[i] = i < directions.size() ? -1 : 0;
+    valid[i] = i < directions.size() && is_traceable(origin, d) ? -1 : 0;
     rays.org_x[i] = origin.x;
     rays.org_y[i] = origin.y;
     rays.org_z[i] = origin.z;

@@ -184,7 +184,10 @@ Viewer viewer_of(const Camera& camera) {
 }
 
 glm::vec3 view_from(const Viewer& viewer, const glm::vec3& position_ws) {
-  return viewer.orthographic ? viewer.view_ws : glm::normalize(viewer.eye_ws - position_ws);
+  // In double, as what is very near has no squares of floats.
+  const glm::dvec3 to_eye = glm::dvec3(viewer.eye_ws) - glm::dvec3(position_ws);
+  const double length = glm::length(to_eye);
+  return viewer.orthographic || !(length > 0.0) ? viewer.view_ws : glm::vec3(to_eye / length);
 }
 
 Image<float> specular_truth(const RayScene& scene, const SurfacePoints& points,

@@ -59,7 +59,7 @@ struct OcclusionTruth {
 // any thread may trace. Borrows the scene, which must outlive it.
 class RayScene {
  public:
-  // Errors: Embree has no device or no memory.
+  // Errors: Embree has no device or no memory; the scene reaches further than 1e12 from its origin.
   [[nodiscard]] static tl::expected<RayScene, std::string> create(const Scene& scene);
   RayScene(RayScene&&) noexcept;
   RayScene& operator=(RayScene&&) noexcept;

@@ -1,5 +1,6 @@
 #include "truth/truth.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -57,6 +58,56 @@ TEST(Truth, OpenPlaneIsExactlyOpenAtAnyTilt) {
     const View view = view_of(*rays, analytic->scene.cameras[0], 64, 36);
     const auto truth = occlusion_truth(*rays, view.points, {1.0f, 64, 1});
     for (const float v : truth.visibility.pixels) ASSERT_EQ(v, 1.0f) << name;
+  }
+}
+
+// A scene, and the view of it, as many times as large.
+Scene scaled(Scene scene, float scale) {
+  for (Mesh& mesh : scene.meshes) {
+    for (glm::vec3& position : mesh.positions_ws) position *= scale;
+  }
+  for (Camera& camera : scene.cameras) {
+    camera.eye_ws *= scale;
+    camera.target_ws *= scale;
+    camera.near_plane *= scale;
+    camera.far_plane *= scale;
+  }
+  scene.bounds_ws = {scene.bounds_ws.low * scale, scene.bounds_ws.high * scale};
+  return scene;
+}
+
+TEST(Truth, ASceneMayBeVerySmallAndVeryLarge) {
+  const Scene scene = analytic_scene("corner")->scene;
+  const auto visibility = [&](float scale) {
+    const Scene other = scaled(scene, scale);
+    const auto rays = RayScene::create(other);
+    const View view = view_of(*rays, other.cameras[0], 32, 18);
+    const TruthSettings settings{scale, 16, 1};
+    for (const glm::vec3& light : interreflection_truth(*rays, view.points, settings).pixels) {
+      EXPECT_TRUE(light.x >= 0.0f && light.x <= 1.0f) << light.x;
+    }
+    return occlusion_truth(*rays, view.points, settings).visibility.pixels;
+  };
+  // Powers of two, which round nothing.
+  const auto expected = visibility(1.0f);
+  EXPECT_NE(expected, Image<float>(32, 18, 1.0f).pixels);
+  for (const float scale : {0x1p-45f, 0x1p-30f, 0x1p30f, 0x1p34f}) {
+    EXPECT_EQ(visibility(scale), expected) << scale;
+  }
+  const auto too_large = RayScene::create(scaled(scene, 0x1p41f));
+  ASSERT_FALSE(too_large);
+  EXPECT_THAT(too_large.error(), testing::HasSubstr("further than 1e12"));
+}
+
+TEST(Truth, NothingIsSeenFromBeyondWhatCanBeTraced) {
+  const Scene scene = analytic_scene("corner")->scene;
+  const auto rays = RayScene::create(scene);
+  for (const float near_plane : {1e19f, 3e38f}) {
+    Camera camera = scene.cameras[0];
+    camera.near_plane = near_plane;
+    camera.far_plane = INFINITY;
+    const GBuffer g = cast_gbuffer(*rays, camera, 16, 9);
+    for (const uint32_t material : g.material.pixels) EXPECT_EQ(material, kNoMaterial);
   }
 }
 
