@@ -73,8 +73,9 @@ void SceneBuilder::smooth_quad(const glm::vec3 (&positions)[4], const glm::vec3 
   for (int i = 0; i < 4; ++i) vertex(positions[i], normals[i]);
   // At the pole of a lathe one of the halves has no area.
   const auto emit = [&](uint32_t a, uint32_t b, uint32_t c) {
-    const glm::vec3 area = glm::cross(positions[b] - positions[a], positions[c] - positions[a]);
-    if (glm::dot(area, area) < 1e-18f) return;
+    const glm::dvec3 along(positions[b] - positions[a]), across(positions[c] - positions[a]);
+    const double longest = std::max(glm::dot(along, along), glm::dot(across, across));
+    if (!(glm::length(glm::cross(along, across)) > 1e-7 * longest)) return;
     for (const uint32_t i : {a, b, c}) mesh().indices.push_back(first + i);
   };
   emit(0, 1, 2);

@@ -35,6 +35,7 @@ void pass_cut_out(const RTCFilterFunctionNArguments* args) {
 // Embree reads 16 bytes at the last vertex of a buffer, so vertices are copied rather than shared.
 bool attach(RTCDevice device, RTCScene tree, const Scene& scene, unsigned id) {
   const Mesh& mesh = scene.meshes[id];
+  if (mesh.indices.empty()) return true;
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                            sizeof(glm::vec3), mesh.positions_ws.size());

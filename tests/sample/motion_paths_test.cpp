@@ -37,6 +37,28 @@ TEST(MotionPaths, EveryPathBeginsWithTheGivenView) {
   }
 }
 
+TEST(MotionPaths, WhatIsPutIntoASmallSceneIsWhole) {
+  const auto triangles_at = [](float scale) {
+    MotionStart start = builtin_start();
+    for (glm::vec3* position : {&start.camera.eye_ws, &start.camera.target_ws, &start.ground_ws}) {
+      *position *= scale;
+    }
+    start.depth *= scale;
+    start.radius *= scale;
+    std::vector<uint64_t> counts;
+    for (const MotionKind kind : {MotionKind::kStrafe, MotionKind::kObject}) {
+      Scene scene;
+      MotionPath(kind, start, kFrames).add_to(scene);
+      counts.push_back(triangle_count(scene));
+    }
+    return counts;
+  };
+  const auto expected = triangles_at(1.0f);
+  EXPECT_THAT(expected, testing::Each(testing::Gt(0u)));
+  // As a model of a grain of sand in metres.
+  EXPECT_EQ(triangles_at(1e-5f), expected);
+}
+
 TEST(MotionPaths, StepsAreEqualAndSmallSaveForTheCut) {
   const MotionStart start = builtin_start();
   for (const MotionKind kind : kMotionKinds) {

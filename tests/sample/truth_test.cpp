@@ -99,6 +99,13 @@ TEST(Truth, ASceneMayBeVerySmallAndVeryLarge) {
   EXPECT_THAT(too_large.error(), testing::HasSubstr("further than 1e12"));
 }
 
+TEST(Truth, AMeshWithoutTrianglesIsNoObstacle) {
+  Scene scene = analytic_scene("corner")->scene;
+  scene.meshes.emplace_back();
+  const auto rays = RayScene::create(scene);
+  EXPECT_TRUE(rays) << rays.error();
+}
+
 TEST(Truth, NothingIsSeenFromBeyondWhatCanBeTraced) {
   const Scene scene = analytic_scene("corner")->scene;
   const auto rays = RayScene::create(scene);
