@@ -122,6 +122,12 @@ tl::expected<EnvironmentImage, std::string> load_environment(const std::filesyst
   if (ending != ".hdr" && ending != ".exr") {
     return refuse(file, "give an equirectangular .hdr or .exr file");
   }
+  // Opening a pipe that nobody fills waits for ever.
+  std::error_code ignored;
+  const auto status = std::filesystem::status(file, ignored);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    return refuse(file, "it is no regular file");
+  }
   Loaded image = ending == ".hdr" ? load_hdr(file) : read_exr_rgb(file);
   if (!image) return image;
   make_light(*image);

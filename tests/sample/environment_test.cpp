@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cmath>
 #include <fstream>
@@ -99,6 +100,13 @@ TEST(Environment, HostileFilesAreOneSentence) {
     ASSERT_FALSE(loaded) << name;
     EXPECT_THAT(loaded.error(), HasSubstr(name));
     EXPECT_EQ(loaded.error().find('\n'), std::string::npos) << loaded.error();
+  }
+  std::filesystem::create_directory(folder.path / "folder.exr");
+  ASSERT_EQ(mkfifo((folder.path / "pipe.hdr").c_str(), 0600), 0);
+  for (const char* name : {"folder.exr", "pipe.hdr"}) {
+    const auto loaded = load_environment(folder.path / name);
+    ASSERT_FALSE(loaded) << name;
+    EXPECT_THAT(loaded.error(), HasSubstr("no regular file"));
   }
   const auto missing = load_environment(folder.path / "missing.hdr");
   ASSERT_FALSE(missing);
