@@ -31,7 +31,7 @@ Failure failure(const char* what, VkResult result) {
                  std::string(result_name(result)) + ").");
 }
 
-maths::GbufferDraw draw_constants(const Material& material, const GpuTextures& textures) {
+maths::GbufferDraw draw_constants(const Material& material) {
   maths::GbufferDraw draw{};
   draw.base_colour = material.base_color;
   draw.emissive = glm::vec4(material.emissive, 0.0f);
@@ -39,14 +39,8 @@ maths::GbufferDraw draw_constants(const Material& material, const GpuTextures& t
   draw.roughness = material.roughness;
   if (material.alpha_mode == AlphaMode::kMask) {
     draw.alpha_cutoff = material.alpha_cutoff;
-    draw.mask_texture = textures.index_of(mask_of(material), true);
   }
-  draw.base_colour_texture = textures.index_of(material.base_color_texture, true);
-  draw.metallic_roughness_texture = textures.index_of(material.metal_roughness_texture, false);
-  draw.emissive_texture = textures.index_of(material.emissive_texture, true);
-  if (material.normal_texture.image >= 0) {
-    draw.normal_texture = textures.index_of(material.normal_texture, false);
-  }
+  draw.has_normal_map = material.normal_texture.image >= 0 ? 1 : 0;
   draw.normal_scale = material.normal_scale;
   return draw;
 }
@@ -67,14 +61,13 @@ struct GbufferRenderer::State {
   ~State();
 
   tl::expected<void, std::string> upload(const Scene& scene);
-  tl::expected<void, std::string> create_sets();
+  tl::expected<void, std::string> create_sets(const Scene& scene);
+  void write_sets(const Scene& scene) const;
   // Returns where in the parameters those of the view are.
   std::uint32_t write_parameters(const GbufferView& view);
   void record(RecordContext& context, const Gbuffer& gbuffer, const Drawing& drawing) const;
   void bind_first_layer(RecordContext& context, Texture depth) const;
   void begin_rendering(RecordContext& context, const Gbuffer& gbuffer, bool reversed_z) const;
-
-  uint32_t texture_count() const { return static_cast<uint32_t>(textures->descriptors().size()); }
 
   Gpu& gpu;
   VkDevice device;
@@ -87,8 +80,9 @@ struct GbufferRenderer::State {
   std::unique_ptr<GpuTextures> textures;
   std::unique_ptr<GbufferPipelines> pipelines;
   VkDescriptorPool pool = VK_NULL_HANDLE;
-  VkDescriptorSet set = VK_NULL_HANDLE;
+  VkDescriptorSet frame_set = VK_NULL_HANDLE;
   std::vector<VkDescriptorSet> layer_sets;  // one for each frame in flight
+  std::vector<VkDescriptorSet> material_sets;
 };
 
 GbufferRenderer::State::~State() { vkDestroyDescriptorPool(device, pool, nullptr); }
@@ -117,55 +111,66 @@ tl::expected<void, std::string> GbufferRenderer::State::upload(const Scene& scen
   }
   textures = std::move(*made);
   for (const Material& material : scene.materials) {
-    constants.push_back(draw_constants(material, *textures));
+    constants.push_back(draw_constants(material));
   }
   return {};
 }
 
-tl::expected<void, std::string> GbufferRenderer::State::create_sets() {
+tl::expected<void, std::string> GbufferRenderer::State::create_sets(const Scene& scene) {
   const uint32_t frames = gpu.frames_in_flight();
+  const auto materials = static_cast<uint32_t>(scene.materials.size());
   const std::array<VkDescriptorPoolSize, 3> sizes{
       {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, 1},
-       {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, texture_count()},
+       {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+        maths::kMaterialTextures * std::max(materials, 1u)},
        {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, frames}}};
   const VkDescriptorPoolCreateInfo pool_info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-                                             .maxSets = 1 + frames,
+                                             .maxSets = 1 + frames + materials,
                                              .poolSizeCount = static_cast<uint32_t>(sizes.size()),
                                              .pPoolSizes = sizes.data()};
   VkResult result = vkCreateDescriptorPool(device, &pool_info, nullptr, &pool);
-  std::vector<VkDescriptorSetLayout> layouts(1 + frames, pipelines->layer_set());
-  layouts.back() = pipelines->scene_set();
-  const VkDescriptorSetAllocateInfo info{
-      .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
-      .descriptorPool = pool,
-      .descriptorSetCount = static_cast<uint32_t>(layouts.size()),
-      .pSetLayouts = layouts.data()};
-  layer_sets.resize(layouts.size());
-  if (result == VK_SUCCESS) {
-    result = vkAllocateDescriptorSets(device, &info, layer_sets.data());
+  const auto allocate = [&](VkDescriptorSetLayout layout, VkDescriptorSet& made) {
+    const VkDescriptorSetAllocateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
+                                           .descriptorPool = pool,
+                                           .descriptorSetCount = 1,
+                                           .pSetLayouts = &layout};
+    if (result == VK_SUCCESS) {
+      result = vkAllocateDescriptorSets(device, &info, &made);
+    }
+  };
+  allocate(pipelines->frame_set(), frame_set);
+  layer_sets.resize(frames);
+  for (VkDescriptorSet& layer : layer_sets) {
+    allocate(pipelines->layer_set(), layer);
+  }
+  material_sets.resize(materials);
+  for (VkDescriptorSet& material : material_sets) {
+    allocate(pipelines->material_set(), material);
   }
   if (result != VK_SUCCESS) {
     return failure("the descriptor sets", result);
   }
-  set = layer_sets.back();
-  layer_sets.pop_back();
-  const VkDescriptorBufferInfo buffer{parameters->buffer(), 0, sizeof(maths::GbufferParameters)};
-  const std::vector<VkDescriptorImageInfo>& images = textures->descriptors();
-  const std::array<VkWriteDescriptorSet, 2> writes{
-      {{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-        .dstSet = set,
-        .dstBinding = 0,
-        .descriptorCount = 1,
-        .descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC,
-        .pBufferInfo = &buffer},
-       {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-        .dstSet = set,
-        .dstBinding = 1,
-        .descriptorCount = static_cast<uint32_t>(images.size()),
-        .descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-        .pImageInfo = images.data()}}};
-  vkUpdateDescriptorSets(device, static_cast<uint32_t>(writes.size()), writes.data(), 0, nullptr);
+  write_sets(scene);
   return {};
+}
+
+void GbufferRenderer::State::write_sets(const Scene& scene) const {
+  const VkDescriptorBufferInfo buffer{parameters->buffer(), 0, sizeof(maths::GbufferParameters)};
+  const VkWriteDescriptorSet frame{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                   .dstSet = frame_set,
+                                   .descriptorCount = 1,
+                                   .descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC,
+                                   .pBufferInfo = &buffer};
+  vkUpdateDescriptorSets(device, 1, &frame, 0, nullptr);
+  for (std::size_t i = 0; i < material_sets.size(); ++i) {
+    const auto images = textures->descriptors_of(scene.materials[i]);
+    const VkWriteDescriptorSet material{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                        .dstSet = material_sets[i],
+                                        .descriptorCount = static_cast<uint32_t>(images.size()),
+                                        .descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                                        .pImageInfo = images.data()};
+    vkUpdateDescriptorSets(device, 1, &material, 0, nullptr);
+  }
 }
 
 void GbufferRenderer::State::begin_rendering(RecordContext& context, const Gbuffer& gbuffer,
@@ -224,8 +229,8 @@ void GbufferRenderer::State::record(RecordContext& context, const Gbuffer& gbuff
   vk.vkCmdBindPipeline(context.commands, VK_PIPELINE_BIND_POINT_GRAPHICS,
                        pipelines->pipeline(kind, drawing.reversed_z));
   const VkPipelineLayout layout = pipelines->layout();
-  vk.vkCmdBindDescriptorSets(context.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, 1, &set,
-                             1, &drawing.parameters_at);
+  vk.vkCmdBindDescriptorSets(context.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, 1,
+                             &frame_set, 1, &drawing.parameters_at);
   if (drawing.first) {
     bind_first_layer(context, drawing.first);
   }
@@ -234,6 +239,8 @@ void GbufferRenderer::State::record(RecordContext& context, const Gbuffer& gbuff
   vk.vkCmdBindVertexBuffers(context.commands, 0, 1, &buffer, &offset);
   vk.vkCmdSetCullMode(context.commands, drawing.culled);
   for (const TriangleDraw& draw : draws) {
+    vk.vkCmdBindDescriptorSets(context.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 2, 1,
+                               &material_sets[draw.material], 0, nullptr);
     maths::GbufferDraw pushed = constants[draw.material];
     pushed.moves = draw.moves ? 1 : 0;
     vk.vkCmdPushConstants(context.commands, layout, kDrawStages, 0, sizeof(pushed), &pushed);
@@ -251,13 +258,12 @@ tl::expected<std::unique_ptr<GbufferRenderer>, std::string> GbufferRenderer::cre
   if (auto done = state->upload(scene); !done) {
     return Failure(std::move(done.error()));
   }
-  auto pipelines =
-      GbufferPipelines::create(state->device, state->texture_count(), geometric_normals);
+  auto pipelines = GbufferPipelines::create(state->device, geometric_normals);
   if (!pipelines) {
     return Failure(std::move(pipelines.error()));
   }
   state->pipelines = std::move(*pipelines);
-  if (auto done = state->create_sets(); !done) {
+  if (auto done = state->create_sets(scene); !done) {
     return Failure(std::move(done.error()));
   }
   return std::unique_ptr<GbufferRenderer>(new GbufferRenderer(std::move(state)));

@@ -91,12 +91,12 @@ VkResult create_set_layout(VkDevice device, std::span<const VkDescriptorSetLayou
 }  // namespace
 
 tl::expected<std::unique_ptr<GbufferPipelines>, std::string> GbufferPipelines::create(
-    VkDevice device, std::uint32_t texture_count, bool geometric_normals) {
+    VkDevice device, bool geometric_normals) {
   std::unique_ptr<GbufferPipelines> made(new GbufferPipelines(device));
-  VkResult result = made->create_layout(texture_count);
+  VkResult result = made->create_layout();
   for (const Kind kind : {Kind::all, Kind::second_layer}) {
     if (result == VK_SUCCESS) {
-      result = made->create_pipelines(kind, texture_count, geometric_normals);
+      result = made->create_pipelines(kind, geometric_normals);
     }
   }
   if (result != VK_SUCCESS) {
@@ -111,25 +111,30 @@ GbufferPipelines::~GbufferPipelines() {
     vkDestroyPipeline(device_, pipeline, nullptr);
   }
   vkDestroyPipelineLayout(device_, layout_, nullptr);
+  vkDestroyDescriptorSetLayout(device_, material_set_, nullptr);
   vkDestroyDescriptorSetLayout(device_, layer_set_, nullptr);
-  vkDestroyDescriptorSetLayout(device_, scene_set_, nullptr);
+  vkDestroyDescriptorSetLayout(device_, frame_set_, nullptr);
 }
 
-VkResult GbufferPipelines::create_layout(std::uint32_t texture_count) {
-  const std::array<VkDescriptorSetLayoutBinding, 2> scene{
-      {{0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, 1, kDrawStages, nullptr},
-       {1, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, texture_count, VK_SHADER_STAGE_FRAGMENT_BIT,
-        nullptr}}};
+VkResult GbufferPipelines::create_layout() {
+  const std::array<VkDescriptorSetLayoutBinding, 1> frame{
+      {{0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, 1, kDrawStages, nullptr}}};
   const std::array<VkDescriptorSetLayoutBinding, 1> layer{
       {{0, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 1, VK_SHADER_STAGE_FRAGMENT_BIT, nullptr}}};
-  VkResult result = create_set_layout(device_, scene, scene_set_);
+  const std::array<VkDescriptorSetLayoutBinding, 1> material{
+      {{0, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, maths::kMaterialTextures,
+        VK_SHADER_STAGE_FRAGMENT_BIT, nullptr}}};
+  VkResult result = create_set_layout(device_, frame, frame_set_);
   if (result == VK_SUCCESS) {
     result = create_set_layout(device_, layer, layer_set_);
+  }
+  if (result == VK_SUCCESS) {
+    result = create_set_layout(device_, material, material_set_);
   }
   if (result != VK_SUCCESS) {
     return result;
   }
-  const std::array sets{scene_set_, layer_set_};
+  const std::array sets{frame_set_, layer_set_, material_set_};
   const VkPushConstantRange range{kDrawStages, 0, sizeof(maths::GbufferDraw)};
   const VkPipelineLayoutCreateInfo info{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
                                         .setLayoutCount = static_cast<uint32_t>(sets.size()),
@@ -139,11 +144,10 @@ VkResult GbufferPipelines::create_layout(std::uint32_t texture_count) {
   return vkCreatePipelineLayout(device_, &info, nullptr, &layout_);
 }
 
-VkResult GbufferPipelines::create_pipelines(Kind kind, std::uint32_t texture_count,
-                                            bool geometric_normals) {
-  const std::array<uint32_t, 2> values{texture_count, geometric_normals ? 1u : 0u};
-  const std::array<VkSpecializationMapEntry, 2> entries{{{0, 0, 4}, {1, 4, 4}}};
-  const VkSpecializationInfo specialisation{2, entries.data(), sizeof(values), values.data()};
+VkResult GbufferPipelines::create_pipelines(Kind kind, bool geometric_normals) {
+  const uint32_t geometric = geometric_normals ? 1 : 0;
+  const VkSpecializationMapEntry entry{0, 0, sizeof geometric};
+  const VkSpecializationInfo specialisation{1, &entry, sizeof geometric, &geometric};
   const bool second = kind == Kind::second_layer;
   using Code = std::span<const uint32_t>;
   const ShaderStages stages(device_, second ? Code(kSecondLayerVertex) : Code(kGbufferVertex),

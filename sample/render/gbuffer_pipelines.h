@@ -17,9 +17,9 @@ class GbufferPipelines {
   // What a pipeline draws: everything, or the depth of the second layer.
   enum class Kind : std::uint8_t { all, second_layer };
 
-  // For as many textures, at least 1. `device` must outlive the pipelines.
+  // `device` must outlive the pipelines.
   [[nodiscard]] static tl::expected<std::unique_ptr<GbufferPipelines>, std::string> create(
-      VkDevice device, std::uint32_t texture_count, bool geometric_normals);
+      VkDevice device, bool geometric_normals);
   ~GbufferPipelines();
   GbufferPipelines(const GbufferPipelines&) = delete;
   GbufferPipelines& operator=(const GbufferPipelines&) = delete;
@@ -29,22 +29,26 @@ class GbufferPipelines {
     return pipelines_[index_of(kind, reversed)];
   }
   [[nodiscard]] VkPipelineLayout layout() const { return layout_; }
-  // Set 0: the frame's parameters (dynamic) and the scene's textures.
-  [[nodiscard]] VkDescriptorSetLayout scene_set() const { return scene_set_; }
+  // Set 0: the frame's parameters (dynamic).
+  [[nodiscard]] VkDescriptorSetLayout frame_set() const { return frame_set_; }
   // Set 1, for the second layer alone: the depth of the first.
   [[nodiscard]] VkDescriptorSetLayout layer_set() const { return layer_set_; }
+  // Set 2: a material's textures. So a scene may have as many as there is memory for: few devices
+  // take hundreds in one set.
+  [[nodiscard]] VkDescriptorSetLayout material_set() const { return material_set_; }
 
  private:
   explicit GbufferPipelines(VkDevice device) : device_(device) {}
   static std::size_t index_of(Kind kind, bool reversed) {
     return (kind == Kind::second_layer ? 2 : 0) + (reversed ? 1 : 0);
   }
-  VkResult create_layout(std::uint32_t texture_count);
-  VkResult create_pipelines(Kind kind, std::uint32_t texture_count, bool geometric_normals);
+  VkResult create_layout();
+  VkResult create_pipelines(Kind kind, bool geometric_normals);
 
   VkDevice device_;
-  VkDescriptorSetLayout scene_set_ = VK_NULL_HANDLE;
+  VkDescriptorSetLayout frame_set_ = VK_NULL_HANDLE;
   VkDescriptorSetLayout layer_set_ = VK_NULL_HANDLE;
+  VkDescriptorSetLayout material_set_ = VK_NULL_HANDLE;
   VkPipelineLayout layout_ = VK_NULL_HANDLE;
   std::array<VkPipeline, 4> pipelines_{};
 };

@@ -181,10 +181,25 @@ GpuTextures::~GpuTextures() {
   }
 }
 
-std::uint32_t GpuTextures::index_of(const TextureUse& use, bool srgb) const {
+std::array<VkDescriptorImageInfo, maths::kMaterialTextures> GpuTextures::descriptors_of(
+    const Material& material) const {
+  std::array<VkDescriptorImageInfo, maths::kMaterialTextures> found;
+  found.fill(descriptors_.front());
+  found[maths::kBaseColourTexture] = descriptor_of(material.base_color_texture, true);
+  if (material.alpha_mode == AlphaMode::kMask) {
+    found[maths::kMaskTexture] = descriptor_of(mask_of(material), true);
+  }
+  found[maths::kMetallicRoughnessTexture] = descriptor_of(material.metal_roughness_texture, false);
+  found[maths::kEmissiveTexture] = descriptor_of(material.emissive_texture, true);
+  found[maths::kNormalTexture] = descriptor_of(material.normal_texture, false);
+  return found;
+}
+
+const VkDescriptorImageInfo& GpuTextures::descriptor_of(const TextureUse& use, bool srgb) const {
   const Use wanted{use.image, srgb, use.sampler};
   const auto found = std::ranges::find(uses_, wanted);
-  return found == uses_.end() ? 0 : static_cast<std::uint32_t>(found - uses_.begin());
+  return found == uses_.end() ? descriptors_.front()
+                              : descriptors_[static_cast<std::size_t>(found - uses_.begin())];
 }
 
 }  // namespace alcove::sample

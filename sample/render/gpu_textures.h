@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -10,6 +11,7 @@
 #include "device/gpu.h"
 #include "device/gpu_image.h"
 #include "scene/scene.h"
+#include "shaders/gbuffer.h"
 
 namespace alcove::sample {
 
@@ -19,7 +21,7 @@ namespace alcove::sample {
 [[nodiscard]] TextureUse mask_of(const Material& material);
 
 // The images of a scene on the device as its materials use them: one descriptor for each image,
-// sampler and encoding that occurs, after a white one at index 0. Mips go down to one texel.
+// sampler and encoding that occurs, after a white one. Mips go down to one texel.
 class GpuTextures {
  public:
   // Uploads through frames of its own.
@@ -29,10 +31,9 @@ class GpuTextures {
   GpuTextures(const GpuTextures&) = delete;
   GpuTextures& operator=(const GpuTextures&) = delete;
 
-  // The descriptor of a use, one of those that the scene's materials have. `srgb` is decoded by the
-  // device as it is read.
-  std::uint32_t index_of(const TextureUse& use, bool srgb) const;
-  const std::vector<VkDescriptorImageInfo>& descriptors() const { return descriptors_; }
+  // The descriptors of one of the scene's materials, in the order of the g-buffer's shaders.
+  std::array<VkDescriptorImageInfo, maths::kMaterialTextures> descriptors_of(
+      const Material& material) const;
 
  private:
   struct Use {
@@ -53,6 +54,8 @@ class GpuTextures {
                                                      bool srgb);
   tl::expected<VkSampler, std::string> add_sampler(const Sampler& sampler);
   tl::expected<void, std::string> upload(Gpu& gpu, const Scene& scene);
+  // Of a use that was added. `srgb` is decoded by the device as it is read.
+  const VkDescriptorImageInfo& descriptor_of(const TextureUse& use, bool srgb) const;
 
   const VulkanDevice& device_;
   std::vector<Texture> textures_;

@@ -3,7 +3,7 @@
 
 #include "cut_out.h"
 
-layout(constant_id = 1) const bool kGeometricNormals = false;
+layout(constant_id = 0) const bool kGeometricNormals = false;
 
 layout(set = 0, binding = 0) uniform Parameters { GbufferParameters parameters; };
 
@@ -26,7 +26,7 @@ layout(location = 3) out vec4 out_emissive;   // linear RGB; alpha: metallic
 vec3 mapped_normal(vec3 normal, vec3 texel) {
   vec3 across = tangent_ws.xyz - normal * dot(normal, tangent_ws.xyz);
   float squared = dot(across, across);
-  if (draw.normal_texture == 0u || !(squared > 1e-12)) {
+  if (draw.has_normal_map == 0u || !(squared > 1e-12)) {
     return normal;
   }
   vec3 tangent = across * inversesqrt(squared);
@@ -54,11 +54,11 @@ vec3 facing_normal(vec3 texel) {
 
 void main() {
   // All before any fragment is dropped or branches: mips go by the differences between neighbours.
-  vec3 base = texture(textures[draw.base_colour_texture], surface_uv.xy).rgb;
+  vec3 base = texture(textures[kBaseColourTexture], surface_uv.xy).rgb;
   // glTF: roughness in green, metal in blue.
-  vec2 surface = texture(textures[draw.metallic_roughness_texture], surface_uv.zw).gb;
-  vec3 emissive = texture(textures[draw.emissive_texture], detail_uv.xy).rgb;
-  vec3 bend = texture(textures[draw.normal_texture], detail_uv.zw).xyz * 2.0 - 1.0;
+  vec2 surface = texture(textures[kMetallicRoughnessTexture], surface_uv.zw).gb;
+  vec3 emissive = texture(textures[kEmissiveTexture], detail_uv.xy).rgb;
+  vec3 bend = texture(textures[kNormalTexture], detail_uv.zw).xyz * 2.0 - 1.0;
   if (is_cut_out(surface_uv.xy)) {
     discard;
   }

@@ -17,19 +17,23 @@ struct GbufferParameters {
   vec4 eye_ws;  // w = 1: a position; w = 0: the direction towards the eye
 };
 
-// Once a draw, as push constants; texture indices count from 0, texture 0 is white.
+// The textures of a material, in the order of their set; white where it has none.
+const uint kBaseColourTexture = 0u;
+const uint kMaskTexture = 1u;  // base colour as masks read it
+const uint kMetallicRoughnessTexture = 2u;
+const uint kEmissiveTexture = 3u;
+const uint kNormalTexture = 4u;
+const uint kMaterialTextures = 5u;
+
+// Once a draw, as push constants.
 struct GbufferDraw {
   vec4 base_colour;  // linear RGB, alpha
   vec4 emissive;     // linear RGB; w unused
   float metallic;
   float roughness;     // perceptual
   float alpha_cutoff;  // below it a fragment is dropped; 0 for opaque materials
-  uint base_colour_texture;
-  uint mask_texture;  // base colour as masks read it
-  uint metallic_roughness_texture;
-  uint emissive_texture;
-  uint normal_texture;  // 0: none
-  float normal_scale;   // of its x and y
+  float normal_scale;  // of the normal map's x and y
+  uint has_normal_map;
   uint moves;  // 1: positions and normals are those of GbufferParameters::world_from_moving
 };
 

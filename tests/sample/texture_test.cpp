@@ -196,6 +196,38 @@ TEST_F(TextureTest, ASetThatTheMeshHasNotReadsAsZero) {
   }
 }
 
+// More than any device binds at once that has no more than Vulkan's least.
+TEST_F(TextureTest, EachMaterialHasTexturesOfItsOwnHoweverManyThereAre) {
+  constexpr std::uint32_t kCells = 12;  // a side, of 2x2 pixels
+  Scene scene = plain_quad();
+  const Mesh whole = scene.meshes[0];
+  scene.meshes.clear();
+  scene.materials.clear();
+  const auto colour_of = [](std::uint32_t cell) {
+    const std::uint32_t i = cell * 5 / 3;
+    return glm::u8vec4(255 * (i & 1u), 255 * (i / 2 & 1u), 255 * (i / 4 & 1u), 255);
+  };
+  for (std::uint32_t i = 0; i < kCells * kCells; ++i) {
+    Mesh cell = whole;
+    cell.material = i;
+    const glm::vec2 centre(static_cast<float>(i % kCells), static_cast<float>(i / kCells));
+    for (glm::vec3& position : cell.positions_ws) {
+      position.x = (2.0f * centre.x + 1.0f + position.x) / kCells - 1.0f;
+      position.y = 1.0f - (2.0f * centre.y + 1.0f - position.y) / kCells;
+    }
+    scene.meshes.push_back(cell);
+    const glm::u8vec4 texel = colour_of(i);
+    scene.images.push_back({"made", 1, 1, {texel.r, texel.g, texel.b, texel.a}});
+    scene.materials.emplace_back();
+    scene.materials.back().base_color_texture.image = static_cast<std::int32_t>(i);
+  }
+  const FrameImages raster = drawn(scene);
+  for (std::uint32_t i = 0; i < kCells * kCells; ++i) {
+    const glm::vec3 colour = glm::vec3(glm::u8vec3(colour_of(i))) / 255.0f;
+    ASSERT_EQ(raster.albedo.at(i % kCells * 2, i / kCells * 2), colour) << "material " << i;
+  }
+}
+
 TEST_F(TextureTest, CutOutsOfTheSecondSetAreThoseOfTheRayTracerAndFinerThanPixelsKeepTheirShare) {
   // One texel of four is solid, so that the mean of any mip is a hole; a pixel is 1.618 periods.
   Scene scene = quad_of(
