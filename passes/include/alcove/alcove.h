@@ -193,7 +193,9 @@ size_t alcovePrintSettings(const AlcoveSettings* settings, char* text, size_t si
 
 typedef struct AlcoveContext AlcoveContext;
 
-// The engine's own; all of it outlives the context.
+// The engine's own; all of it outlives the context. Memory is the context's own, by
+// vkAllocateMemory and the C++ heap: no allocator can be given, and alcoveGetMemory says how much
+// it is.
 typedef struct AlcoveContextInfo {
   uint32_t struct_size;
   uint32_t queue_family;             // of the queue that frames are submitted to: one that computes
@@ -275,7 +277,8 @@ typedef struct AlcoveCamera {
 // that have no image are not made, and cost neither a pass nor memory.
 typedef struct AlcoveView {
   uint32_t struct_size;
-  uint32_t id;             // any number, other in each view of a frame: each id has its own history
+  uint32_t id;             // any number, other in each view of a frame: each id has its own
+                           // history, kept until alcoveDropView
   VkBool32 reset_history;  // forget it, at a cut say. A change of size does so by itself, but for
                            // largest_width
   VkBool32 normals_in_view_space;  // else in world space
@@ -307,13 +310,14 @@ typedef struct AlcoveView {
   // cameras), signed; none: only the camera moves. Where it is given history is held to what the
   // last few frames say, for shades that move: leave it out where nothing but the camera does.
   AlcoveImage motion;
-  AlcoveImage roughness;     // perceptual, [0,1]; none: AlcoveSettings::roughness
-  AlcoveImage back_depth;    // of the nearest back faces, as depth; needed with
-                             // ALCOVE_THICKNESS_UNIT_BACK_FACES (bitmask, connected), else unread
-  AlcoveImage second_depth;  // of the nearest front faces behind `depth` (see
-                             // alcove/passes/occlusion.h), as depth; needed with two depth_layers
-                             // (bitmask, connected), else unread
-  AlcoveImage albedo;        // linear RGB, [0,1], for multi_bounce
+  AlcoveImage roughness;   // perceptual, [0,1]; none: AlcoveSettings::roughness
+  AlcoveImage back_depth;  // of the nearest back faces, as depth; needed with
+                           // ALCOVE_THICKNESS_UNIT_BACK_FACES (bitmask, connected), else unread
+  // The scene drawn once more into another depth, back faces culled and fragments discarded that do
+  // not lie behind `depth` by a thousandth of their distance; as depth. Needed with two
+  // depth_layers (bitmask, connected), else unread.
+  AlcoveImage second_depth;
+  AlcoveImage albedo;  // linear RGB, [0,1], for multi_bounce
 
   // Outputs. Formats are any that the device can store to, of at least so many channels. The sky
   // (depth at the far plane, or not a number) is open, its bent normal the normal.
@@ -325,8 +329,10 @@ typedef struct AlcoveView {
 
 typedef struct AlcoveFrame {
   uint32_t struct_size;
-  uint32_t index;       // counts frames: it turns the noise and moves the searched pixels
-  uint32_t slot;        // in flight, below frames_in_flight: what was recorded with it has finished
+  uint32_t index;  // counts frames: it turns the noise and moves the searched pixels
+  // In flight, below frames_in_flight: what was recorded with it has finished. One that is recorded
+  // apart, a reflection's say, is a frame with a slot of its own.
+  uint32_t slot;
   uint32_t view_count;  // 1 to ALCOVE_MAX_VIEWS
   const AlcoveView* views;
 } AlcoveFrame;
