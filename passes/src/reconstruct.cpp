@@ -143,12 +143,15 @@ void declare_accesses(const Graph& graph, framegraph::PassBuilder& pass, Texture
   write(textures.result.bent_normal);
   write(textures.result.specular);
   const auto declare_history = [&](Texture& history, Texture& next) {
-    if (history && next == history) {
-      history = next = pass.write(history, framegraph::access::storage_read_write_compute);
-    } else {
-      read(history, stored);
-      write(next);
+    if (!history) {
+      return;
     }
+    if (next == history) {
+      history = next = pass.write(history, framegraph::access::storage_read_write_compute);
+      return;
+    }
+    pass.read(history, stored);
+    write(next);
   };
   declare_history(textures.history, textures.next_history);
   declare_history(textures.bent_history, textures.next_bent_history);
