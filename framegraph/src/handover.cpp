@@ -21,11 +21,8 @@ bool Synchroniser::change_queue(std::uint32_t position, const AccessRecord& acce
     return false;
   }
   const Transition release = release_of(access, state, range);
-  const std::int32_t time = std::max(state.read_time, state.write_time);
-  const std::uint32_t from = time < 0
-                                 ? workspace_.queues.opening[static_cast<std::size_t>(state.queue)]
-                                 : plan_.passes[static_cast<std::size_t>(time / 2)].submission;
-  s_.releases.push_back({from, static_cast<std::uint32_t>(s_.releases.size()), release});
+  s_.releases.push_back(
+      {giving_submission(state), static_cast<std::uint32_t>(s_.releases.size()), release});
   Transition& acquire = next_image(kBeforeFrame, position);
   acquire = release;
   acquire.src_stages = waited_stages(access);
@@ -35,6 +32,20 @@ bool Synchroniser::change_queue(std::uint32_t position, const AccessRecord& acce
   join_neighbours();
   note_change(position, access, state);
   return true;
+}
+
+// That after which the queue of a state has no more to do with it.
+std::uint32_t Synchroniser::giving_submission(const UseState& state) const {
+  const std::int32_t time = std::max(state.read_time, state.write_time);
+  if (time >= 0) return plan_.passes[static_cast<std::size_t>(time / 2)].submission;
+  const std::uint32_t opening = workspace_.queues.opening[static_cast<std::size_t>(state.queue)];
+  if (opening != kNone) return opening;
+  // Part of a history that no pass used, beside a part that this queue did: any of its submissions
+  // comes before the end of the frame, which takes it.
+  const auto own = std::find_if(
+      plan_.submissions.begin(), plan_.submissions.end(),
+      [&state](const Submission& submission) { return submission.queue == state.queue; });
+  return static_cast<std::uint32_t>(own - plan_.submissions.begin());
 }
 
 // Without its contents an image needs no giver, if it comes from the undefined layout.

@@ -68,6 +68,7 @@ class Synchroniser {
   bool change_queue(std::uint32_t position, const AccessRecord& access, UseState& state,
                     const Range& range);
   void take_without_giver(UseState& state, bool same_family) const;
+  std::uint32_t giving_submission(const UseState& state) const;
   Transition release_of(const AccessRecord& access, const UseState& state,
                         const Range& range) const;
   void add_releases();
