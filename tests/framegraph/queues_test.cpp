@@ -107,5 +107,23 @@ TEST_F(Queues, AHistoryOfAnotherQueueComesToAFrameThatOnlyHasGraphics) {
   EXPECT_EQ(plan.submissions[0].batch_count, 1u) << "the release";
 }
 
+// The part that no pass uses is given by the queue that has it, in a submission of its other
+// passes.
+TEST_F(Queues, APartOfAHistoryIsUpdatedOnTheQueueThatHasItAll) {
+  const auto declare = [&] {
+    graph_.reset();
+    return graph_.create_texture_history("h", {VK_FORMAT_R8_UNORM, Extent::absolute(8, 8), 2});
+  };
+  TextureHistory history = declare();
+  PassBuilder fill = graph_.add_pass("fill", QueueClass::compute);
+  graph_.output(fill.write(history.current, access::storage_write_compute));
+  graph_.leave_histories(compiled().finals);
+  history = declare();
+  ASSERT_EQ(history.validity, HistoryValidity::valid);
+  PassBuilder update = graph_.add_pass("update", QueueClass::compute);
+  graph_.output(update.write(history.previous(), access::clear, Range{1, 1, 0, 1}));
+  (void)compiled();
+}
+
 }  // namespace
 }  // namespace alcove::framegraph
