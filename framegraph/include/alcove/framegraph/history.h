@@ -3,8 +3,9 @@
 // A history has N slots. Each frame slot 0 ("current") may be written and slots 1..N-1 hold what
 // was current 1..N-1 frames ago. Slots rotate at the end of a frame in which a live pass wrote slot
 // 0, and only then: a frame that culls the writer leaves all contents where they are, and one that
-// writes an older slot instead, keeping contents, updates it in place. A change of description or a reset makes every slot invalid, with the reason; a slot becomes valid again when
-// it was written. A frame that does not declare the history leaves it untouched.
+// writes an older slot instead, keeping contents, updates it in place. A change of description or a
+// reset makes every slot invalid, with the reason; a slot becomes valid again when it was written.
+// A frame that does not declare the history leaves it untouched.
 #pragma once
 
 #include <cstdint>
