@@ -203,8 +203,8 @@ void follow_change(inout History history, Signal now) {
   history.count = mix(history.count, min(history.count, kRecentFrames), changed);
 }
 
-// Whether some pixels may look further than others: a pixel that has no history as far as all of a
-// first frame.
+// Whether some pixels may look further than others: a pixel that has hardly any history as far as
+// all of a first frame.
 const bool kLooksFurther = !kFresh && kReach > kSide;
 
 // Adds the searches further away than those around the cell.

@@ -10,9 +10,9 @@
 namespace alcove::passes {
 
 struct FilterSettings {
-  // Searched pixels that a pixel looks at before the view has a history, or without any: so many on
-  // each side, 0 to 3; then one, also where a pixel has none. 0 filters nothing. They weigh in a
-  // window that is the narrower the more slices were searched.
+  // Searched pixels that a pixel looks at while it has less than two frames of history, or without
+  // any: so many on each side, 0 to 3; then one. 0 filters nothing. They weigh in a window that is
+  // the narrower the more slices were searched.
   std::uint32_t filter_reach = 2;
   // At this distance from the pixel's tangent plane a neighbour counts a quarter; in sizes of a
   // pixel there, over 0. That is in the first frame of one slice: the more slices and frames there
