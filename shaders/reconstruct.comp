@@ -9,12 +9,13 @@
 //
 // A block of kDivisor x kDivisor pixels has one search a frame, of a pixel that moves through the
 // block from frame to frame: every pixel is searched at its own depth in time, and edges come back
-// sharp. With a history a pixel looks at the four searched ones around it; without one, or while it has
-// next to nothing of its own there, at the 4x4 around it (`kReach` is 2). They weigh by their distance on the image, in a window that narrows as
-// a pixel gathers frames, and by their distance from the pixel's tangent plane, so that a plane at
-// any tilt is filtered whole and nothing leaks across an edge. Sums are added up, visible and open
-// parts each, and divided last. Those of the GGX lobe weigh by normal and roughness too: the
-// narrower the lobe, the more of it hangs on where it points.
+// sharp. With a history a pixel looks at the four searched ones around it; without one, or while it
+// has next to nothing of its own there, at the 4x4 around it (`kReach` is 2). They weigh by their
+// distance on the image, in a window that narrows as a pixel gathers frames, and by their distance
+// from the pixel's tangent plane, so that a plane at any tilt is filtered whole and nothing leaks
+// across an edge. Sums are added up, visible and open parts each, and divided last. Those of the
+// GGX lobe weigh by normal and roughness too: the narrower the lobe, the more of it hangs on where
+// it points.
 
 #include "maths/bent_normal.h"
 #include "maths/gtao.h"

@@ -162,8 +162,8 @@ typedef struct AlcoveSettings {
   AlcovePattern pattern;  // [GOLDEN]
 
   // The filter, in which each pixel gathers searches around it that lie on its surface.
-  uint32_t filter_reach;  // searched pixels on each side that it looks at while it has less than two
-                          // frames of history, 0 to 3 [2]; then one. 0: no filter at all
+  uint32_t filter_reach;  // searched pixels on each side that it looks at while it has less than
+                          // two frames of history, 0 to 3 [2]; then one. 0: no filter at all
   // How far from the pixel's tangent plane a search counts a quarter, over 0, in sizes of a pixel
   // there [1.5]. So in the first frame of one slice; the more slices and frames, the nearer.
   float filter_tolerance_px;
