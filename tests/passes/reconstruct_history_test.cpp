@@ -418,5 +418,27 @@ TEST_F(Reconstruct, WhereThingsMoveAShadeLeavesNoTrail) {
   }
 }
 
+// Another surface is where one was, which no motion told.
+TEST_F(Reconstruct, WhatHasNoHistoryLooksAsFarAsAFirstFrame) {
+  const TestView view = test_views()[2];
+  const Drawing before = draw(view, kWidth, kHeight, {tilted_plane(30.0, 4.0)});
+  const Drawing now = draw(view, kWidth, kHeight, {tilted_plane(30.0, 9.0)});
+  std::mt19937 random(3);
+  const HostImage first_signal = noise_signal(random);
+  const HostImage signal = noise_signal(random);
+  const auto second_frame = [&](bool reset) {
+    (void)reconstruct({.view = view.view, .drawing = before, .signal = first_signal, .reset = true},
+                      precise(2, 32));
+    return reconstruct(
+        {.view = view.view, .drawing = now, .signal = signal, .index = 1, .reset = reset},
+        precise(2, 32));
+  };
+  const HostImage found = second_frame(false);
+  const HostImage anew = second_frame(true);
+  for (std::size_t i = 0; i < found.texels.size(); ++i) {
+    ASSERT_NEAR(found.texels[i], anew.texels[i], 1e-3) << "texel " << i;
+  }
+}
+
 }  // namespace
 }  // namespace alcove::passes
