@@ -15,6 +15,7 @@
 
 #include "gtao_parameters.h"
 #include "maths/bent_normal.h"
+#include "maths/coarse_normal.h"
 #include "maths/connected_samples.h"
 #include "maths/gtao.h"
 #include "maths/lobe_slice.h"
@@ -249,7 +250,7 @@ struct SearchResult {
 
 SearchResult sky_result() {
   return SearchResult(
-      uvec4(pack_signal(Signal(1.0, 1.0)), floatBitsToUint(sky_line(kPerspective)), 0u, 0u),
+      uvec4(pack_signal(Signal(1.0, 1.0), 0u), floatBitsToUint(sky_line(kPerspective)), 0u, 0u),
       uvec2(0u));
 }
 
@@ -282,7 +283,8 @@ SearchResult search_pixel(ivec2 pixel, float line, SliceNoise noise) {
       kLobe ? pack_scaled_lobe(surface.lobe, Signal(sum.lobe.visible * mean, sum.lobe.open * mean))
             : uvec2(0u);
   Signal signal = Signal(sum.visible * mean, sum.open * mean);
-  return SearchResult(uvec4(pack_signal(signal), floatBitsToUint(line), lobe),
+  uint normal = pack_coarse_normal(surface.lobe.normal);
+  return SearchResult(uvec4(pack_signal(signal, normal), floatBitsToUint(line), lobe),
                       kBentNormal ? pack_direction(sum.bent * mean) : uvec2(0u));
 }
 

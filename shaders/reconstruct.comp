@@ -13,11 +13,12 @@
 // has next to nothing of its own there, at the 4x4 around it (`kReach` is 2). They weigh by their
 // distance on the image, in a window that narrows as a pixel gathers frames, and by their distance
 // from the pixel's tangent plane, so that a plane at any tilt is filtered whole and nothing leaks
-// across an edge. Sums are added up, visible and open parts each, and divided last. Those of the
-// GGX lobe weigh by normal and roughness too: the narrower the lobe, the more of it hangs on where
-// it points.
+// across an edge, and by their normals, so that little leaks across a crease. Sums are added up,
+// visible and open parts each, and divided last. Those of the GGX lobe weigh by normal and
+// roughness too: the narrower the lobe, the more of it hangs on where it points.
 
 #include "maths/bent_normal.h"
+#include "maths/coarse_normal.h"
 #include "maths/gtao.h"
 #include "maths/history.h"
 #include "maths/lobe_slice.h"
@@ -96,7 +97,9 @@ struct Surface {
   vec2 gradient;    // of `line` on the tangent plane, for each pixel
   float stiffness;  // tolerances that a unit of `line` off the tangent plane stands for
   float slant;      // cosine between normal and view vector, on the axis
-  LobeSurface lobe;
+  vec3 normal;      // unit, in the space of the normals
+  vec3 normal_before;  // in that of the last frame's
+  float roughness;     // perceptual
 };
 
 // What is added up: over neighbours, then over frames.
@@ -114,14 +117,13 @@ vec3 fetch_normal(ivec2 pixel) {
   return has_direction(normal) ? normal : parameters.normal_from_view[2].xyz;
 }
 
-LobeSurface fetch_lobe_surface(ivec2 pixel, vec3 normal) {
-  LobeSurface surface = LobeSurface(normal, parameters.roughness);
+float fetch_roughness(ivec2 pixel) {
 #ifdef LOBE
   if (kRoughnessTexture) {
-    surface.roughness = saturate(texelFetch(roughness_image, pixel, 0)[kRoughnessChannel]);
+    return saturate(texelFetch(roughness_image, pixel, 0)[kRoughnessChannel]);
   }
 #endif
-  return surface;
+  return parameters.roughness;
 }
 
 Surface fetch_surface(ivec2 pixel, ivec2 cell, float line) {
@@ -140,7 +142,11 @@ Surface fetch_surface(ivec2 pixel, ivec2 cell, float line) {
   float per_line = (along < 0.0 ? -1.0 : 1.0) / surface.slant;
   surface.gradient = plane.xy * (kPerspective ? surface.line * per_line : -per_line);
   surface.stiffness = surface.slant * parameters.tolerance * (kPerspective ? surface.depth : 1.0);
-  surface.lobe = fetch_lobe_surface(pixel, normal);
+  surface.normal = normalize(normal);
+  // Rounded as those that it is compared with.
+  surface.normal_before = unpack_coarse_normal(
+      pack_coarse_normal(mat3(parameters.before_from_normal) * surface.normal));
+  surface.roughness = fetch_roughness(pixel);
   return surface;
 }
 
@@ -174,6 +180,7 @@ struct Found {
   uint lobe_surface;
   vec2 searched;  // pixel
   float line;
+  vec3 normal;
 };
 
 Found fetch_block(ivec2 block) {
@@ -182,6 +189,7 @@ Found fetch_block(ivec2 block) {
   found.sum = no_sum();
   found.sum.signal = unpack_signal(stored.x);
   found.line = uintBitsToFloat(stored.y);
+  found.normal = unpack_coarse_normal(signal_normal(stored.x));
   found.searched = vec2(min(block * kDivisor + ivec2(parameters.phase), size_px() - 1));
   if (kBentNormal) {
     found.sum.bent = unpack_direction(imageLoad(bent_image, block).xy);
@@ -203,18 +211,25 @@ ivec2 block_around(ivec2 cell, int side, int i) {
   return clamp(block, ivec2(0), last_block());
 }
 
+// A neighbour across a crease weighs this to the fourth, a fifth, at the least: where there are few
+// others its search is better than none. By the error of first frames (`alcove compare --frames
+// 1`).
+const float kLeastAgreement = 0.67;
+
 // A neighbour at distance d weighs 1 / (1 + narrowness d^2)^4.
 float narrowness_of(float width_px) { return 0.125 / (width_px * width_px); }
 
-// What a neighbour's search weighs: it falls with the distance on the image and with that from the
-// tangent plane, and never to nothing: where no neighbour lies on it, the nearest to it count.
-float neighbour_weight(Surface surface, float narrowness, vec2 offset, float line) {
-  float off_plane = (line - surface.line - dot(offset, surface.gradient)) * surface.stiffness;
+// What a neighbour's search weighs: it falls with the distance on the image, with that from the
+// tangent plane and with the angle between normals, and never to nothing: where no neighbour lies
+// on the plane, the nearest to it count.
+float neighbour_weight(Surface surface, float narrowness, vec2 offset, Found found) {
+  float off_plane = (found.line - surface.line - dot(offset, surface.gradient)) * surface.stiffness;
   off_plane = min(abs(off_plane), 1e8);  // whose fourth power still is a float
   float near = 1.0 + narrowness * dot(offset, offset);
   float level = 1.0 + off_plane * off_plane;
-  float both = near * near * level;
-  return 1.0 / (both * both);
+  float agreement = max(dot(surface.normal, found.normal), kLeastAgreement);
+  float root = agreement * agreement / (near * near * level);
+  return root * root;
 }
 
 struct Neighbourhood {
@@ -224,14 +239,15 @@ struct Neighbourhood {
 
 void add_block(inout Neighbourhood sum, Surface surface, float narrowness, Found found) {
   vec2 offset = found.searched - vec2(surface.pixel);
-  float weight = neighbour_weight(surface, narrowness, offset, found.line);
+  float weight = neighbour_weight(surface, narrowness, offset, found);
   add(sum.sum.signal, weight, found.sum.signal);
   if (kBentNormal) {
     sum.sum.bent += weight * found.sum.bent;
   }
   if (kLobe) {
+    LobeSurface own = LobeSurface(surface.normal, surface.roughness);
     // As far as it is like the surface's own.
-    add(sum.sum.lobe, weight * lobe_weight(surface.lobe, found.lobe_surface), found.sum.lobe);
+    add(sum.sum.lobe, weight * lobe_weight(own, found.lobe_surface), found.sum.lobe);
   }
   if (kClamp) {
     float visibility = found.sum.signal.visible / max(found.sum.signal.open, 1e-9);
@@ -241,9 +257,7 @@ void add_block(inout Neighbourhood sum, Surface surface, float narrowness, Found
 
 Neighbourhood add_up(Surface surface, float narrowness, Found around[kAround]) {
   Neighbourhood sum = Neighbourhood(no_sum(), vec3(0.0));
-  [[unroll]] for (int i = 0; i < kAround; ++i) {
-    add_block(sum, surface, narrowness, around[i]);
-  }
+  [[unroll]] for (int i = 0; i < kAround; ++i) { add_block(sum, surface, narrowness, around[i]); }
   return sum;
 }
 
@@ -269,7 +283,7 @@ void store(ivec2 pixel, Sum sum) {
 // Stores are many to a pixel and take turns on a processor: the sky has none of its own.
 void reconstruct(Surface surface, bool sky, Found around[kAround]) {
   History next = advance(surface, around, read_history(surface));
-  uvec4 packed = pack_history(next, surface.depth);
+  uvec4 packed = pack_history(next, surface);
   if (sky) {
     next.sum = no_sum();
     packed = uvec4(0u);
@@ -303,7 +317,7 @@ void keep_pixel(ivec2 pixel) {
 #ifdef HISTORY
   uvec4 stored = imageLoad(history_image, pixel);
   Sum sum = no_sum();
-  sum.signal = unpack_signal(stored.x);
+  sum.signal = unpack_history_texel(stored.xy).signal;
   if (kBentNormal) {
     sum.bent = imageLoad(bent_history_image, pixel).xyz;
   }

@@ -11,21 +11,22 @@ struct History {
   float between;  // how far from texels' centres it was read: 0 at one, to 0.5 amid four
 };
 
-const float kDepthTolerance = 0.004;      // of the depth, for a surface seen head-on
+const float kDepthTolerance = 0.003;      // of the depth, for a surface seen head-on
 const float kPlaneTolerance = 1.0 / 3.0;  // of the filter's
 // How far what moves by itself may have come nearer or gone since the last frame, of its depth.
 const float kDepthMotion = 0.04;
 
-uvec4 pack_history(History history, float depth) {
+uvec4 pack_history(History history, Surface surface) {
   // A normal that is not a number must not stay in the history.
   Signal lobe = history.sum.lobe;
   if (!(lobe.visible >= 0.0 && lobe.visible <= lobe.open && lobe.open < 1e30)) {
     lobe = Signal(0.0, 0.0);
   }
-  return uvec4(pack_signal(history.sum.signal),
-               pack_history_state(held_depth(parameters.history_depth.xy, depth), history.count,
-                                  history.recent),
-               floatBitsToUint(lobe.visible), floatBitsToUint(lobe.open));
+  HistoryTexel texel =
+      HistoryTexel(history.sum.signal, held_depth(parameters.history_depth.xy, surface.depth),
+                   history.count, history.recent, pack_coarse_normal(surface.normal));
+  return uvec4(pack_history_texel(texel), floatBitsToUint(lobe.visible),
+               floatBitsToUint(lobe.open));
 }
 
 // Where the surface was on the last frame's image.
@@ -64,28 +65,32 @@ struct Read {
   float most;    // that a texel counts for
 };
 
-// A texel of history, all of it or none as its depth tells whether it is of the same surface; of
-// those the ones on the tangent plane, at the depth `expected` as it is held, count for most, so
-// that nothing leaks across a crease.
-void add_history(inout Read read, Surface surface, ivec2 texel, float expected, float share) {
-  uvec4 stored = imageLoad(history_image, texel);
-  HistoryState state = unpack_history_state(stored.y);
-  float apart = held_apart(expected, state.depth);
-  float same = history_weight(expected, apart, kDepthTolerance, surface.slant);
+// A texel of history, all of it or none as its depth and normal tell whether it is of the same
+// surface; of those the ones on the tangent plane, at the depth `expected` as it is held, and with
+// the same normal count for most, so that nothing leaks across a crease.
+void add_history(inout Read read, Surface surface, ivec2 pixel, float expected, float share) {
+  uvec4 stored = imageLoad(history_image, pixel);
+  HistoryTexel texel = unpack_history_texel(stored.xy);
+  float apart = held_apart(expected, texel.depth);
+  float agreement =
+      kStill ? 1.0
+             : max(dot(surface.normal_before, unpack_coarse_normal(texel.coarse_normal)), 0.0);
+  float same = history_weight(expected, apart, kDepthTolerance, surface.slant) *
+               history_weight_by_normal(agreement);
   float off_plane = apart / (kPerspective ? max(expected, 1e-6) : parameters.history_depth.z);
   off_plane *= surface.slant * parameters.tolerance * (1.0 / kPlaneTolerance);
   float level = 1.0 + min(off_plane * off_plane, 1e6);
-  float counts = same / (level * level);
+  float counts = same * sixteenth_power(agreement) / (level * level);
   float weight = share * counts;
   Sum here = no_sum();
-  here.signal = unpack_signal(stored.x);
+  here.signal = texel.signal;
   if (kBentNormal) {
-    here.bent = imageLoad(bent_history_image, texel).xyz;
+    here.bent = imageLoad(bent_history_image, pixel).xyz;
   }
   here.lobe = Signal(uintBitsToFloat(stored.z), uintBitsToFloat(stored.w));
   add(read.history.sum, weight, here);
-  read.history.count += weight * state.count;
-  read.history.recent += weight * state.recent;
+  read.history.count += weight * texel.count;
+  read.history.recent += weight * texel.recent;
   float visibility = mean_visibility(here.signal.visible, here.signal.open);
   read.moments += weight * vec3(1.0, visibility, visibility * visibility);
   read.same += share * same;
@@ -101,7 +106,7 @@ float moved_in_depth(ivec2 texels[4], vec4 expected) {
   float moved = 0.0;
   float least = kDepthMotion;
   for (int i = 0; i < 4; ++i) {
-    float found = unpack_history_state(imageLoad(history_image, texels[i]).y).depth;
+    float found = unpack_history_texel(imageLoad(history_image, texels[i]).xy).depth;
     float part = abs(found - expected[i]) / max(expected[i], 1e-6);
     if (part < least) {
       least = part;
@@ -196,8 +201,8 @@ void clamp_history(inout History history, Spread spread) {
 // say then replaces what all of them do.
 void follow_change(inout History history, Signal now) {
   float before = mean_visibility(history.sum.signal.visible, history.sum.signal.open);
-  history.recent =
-      recent_visibility(history.recent, history.count, mean_visibility(now.visible, now.open));
+  history.recent = recent_visibility(history.recent, history.count,
+                                     mean_visibility(now.visible, now.open), now.open);
   float changed = history.count > 0.0 ? visibility_changed(before, history.recent) : 0.0;
   history.sum.signal.visible = mix(before, history.recent, changed) * history.sum.signal.open;
   history.count = mix(history.count, min(history.count, kRecentFrames), changed);

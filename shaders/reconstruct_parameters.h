@@ -12,7 +12,8 @@ struct ReconstructParameters {
   // From a normal, as it is stored, to its plane on the image: dot((x s, y s, depth), result) is
   // constant on the plane, x and y in pixels.
   mat4 plane_from_normal;
-  mat4 normal_from_view;  // rotation from view space to the space of the normals
+  mat4 normal_from_view;    // rotation from view space to the space of the normals
+  mat4 before_from_normal;  // rotation from that to the space of the last frame's normals
   // Of the frame before: xy its size in pixels, zw that in parts of this frame's.
   vec4 previous_size;
   vec4 history_depth;  // for held_depth(): xy of this frame, zw of the frame before

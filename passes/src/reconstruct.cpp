@@ -317,6 +317,9 @@ maths::ReconstructParameters parameters_of(const Frame& frame, const maths::Proj
   parameters.plane_from_normal =
       maths::mat4(maths::transpose(maths::mat3(from_pixel)) * maths::mat3(to_view));
   parameters.normal_from_view = maths::transpose(to_view);
+  parameters.before_from_normal = normals_in_view_space
+                                      ? maths::mat4(maths::mat3(maths::mat4(to_previous)))
+                                      : maths::mat4(1.0f);
   parameters.tolerance =
       1.0f / (settings.filter_tolerance_px * std::abs(maths::ray_per_px(projection).y));
   parameters.longest = static_cast<float>(settings.history_frames);

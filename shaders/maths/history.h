@@ -3,7 +3,7 @@
 #ifndef ALCOVE_MATHS_HISTORY_H
 #define ALCOVE_MATHS_HISTORY_H
 
-#include "language.h"
+#include "signal.h"
 
 ALCOVE_MATHS_BEGIN
 
@@ -18,6 +18,12 @@ ALCOVE_INLINE float held_apart(float expected, float found) {
 ALCOVE_INLINE float history_weight(float expected, float apart, float tolerance, float slant) {
   float reach = tolerance * max(abs(expected), 1e-6f) / max(slant, 0.1f);
   return clamp(1.0f - apart / reach, 0.0f, 1.0f);
+}
+
+// How far normals tell that a texel of history is of the same surface, [0,1], by the cosine between
+// them: 0 from 37 degrees on.
+ALCOVE_INLINE float history_weight_by_normal(float agreement) {
+  return clamp(5.0f * agreement - 4.0f, 0.0f, 1.0f);
 }
 
 // What this frame weighs when `count` frames are held already (0: none) and at most `longest`
@@ -62,11 +68,11 @@ ALCOVE_INLINE float count_after_clamp(float count, float before, float after, fl
 }
 
 // Variance of the visibility that one frame finds, about.
-const float kFrameVariance = 0.05f;
+const float kFrameVariance = 0.08f;
 
 // About the variance of the visibility between a surface and what is read in its place where it has
 // no texel.
-const float kUnseenVariance = 0.005f;
+const float kUnseenVariance = 0.003f;
 
 // The count to go on with after history was read between texels whose visibilities have this
 // variance, `missing` of them, [0,1], being of other surfaces. What that blurs no later frame
@@ -83,33 +89,47 @@ ALCOVE_INLINE float held_depth(vec2 scale_and_offset, float depth) {
   return min(depth * scale_and_offset.x + scale_and_offset.y, 6e4f);
 }
 
-// What a texel of history knows besides its sums, in 32 bits.
-struct HistoryState {
-  float depth;   // linear, as held_depth() has it, to 2^-11 of itself
-  float count;   // frames, [0,255], whole
-  float recent;  // visibility of the last few frames, [0,1], to 2^-9
+// What a texel of history knows besides its sums over lobes and directions, in 8 bytes.
+struct HistoryTexel {
+  Signal signal;       // the ratio to 2^-17, the open part as pack_open() has it
+  float depth;         // linear, as held_depth() has it, to 2^-11 of itself
+  float count;         // frames, [0,kMostFrames], whole
+  float recent;        // visibility of the last few frames, [0,1], to 2^-8
+  uint coarse_normal;  // by pack_coarse_normal()
 };
 
-ALCOVE_INLINE uint pack_history_state(float depth, float count, float recent) {
-  uint whole = uint(clamp(count, 0.0f, 255.0f) + 0.5f);
-  uint bright = uint(clamp(recent, 0.0f, 1.0f) * 255.0f + 0.5f);
-  return packHalf2x16(vec2(depth, 0.0f)) | (whole << 16u) | (bright << 24u);
+const float kMostFrames = 127.0f;
+
+ALCOVE_INLINE uvec2 pack_history_texel(HistoryTexel texel) {
+  uint signal =
+      pack_unorm(visible_ratio(texel.signal), 16u) | (pack_open(texel.signal.open) << 16u);
+  uint whole = uint(clamp(texel.count, 0.0f, kMostFrames) + 0.5f);
+  uint state = packHalf2x16(vec2(max(texel.depth, 0.0f), 0.0f)) | (whole << 15u) |
+               (pack_unorm(texel.recent, 7u) << 22u);
+  // The normal has what either leaves: five bits, and three.
+  return uvec2(signal | (texel.coarse_normal << 27u), state | ((texel.coarse_normal >> 5u) << 29u));
 }
 
-ALCOVE_INLINE HistoryState unpack_history_state(uint bits) {
-  HistoryState state;
-  state.depth = unpackHalf2x16(bits & 0xffffu).x;
-  state.count = float((bits >> 16u) & 255u);
-  state.recent = float(bits >> 24u) * (1.0f / 255.0f);
-  return state;
+ALCOVE_INLINE HistoryTexel unpack_history_texel(uvec2 bits) {
+  HistoryTexel texel;
+  texel.signal.open = unpack_open(bits.x >> 16u);
+  texel.signal.visible = unpack_unorm(bits.x, 16u) * texel.signal.open;
+  texel.depth = unpackHalf2x16(bits.y & 0x7fffu).x;
+  texel.count = float((bits.y >> 15u) & 127u);
+  texel.recent = unpack_unorm(bits.y >> 22u, 7u);
+  texel.coarse_normal = (bits.x >> 27u) | ((bits.y >> 29u) << 5u);
+  return texel;
 }
 
 // Frames that `recent` is about the mean of.
 const float kRecentFrames = 4.0f;
 
-// The mean of the last few frames with one more, [0,1] as they are.
-ALCOVE_INLINE float recent_visibility(float recent, float count, float now) {
-  return mix(recent, now, accumulation_weight(count, kRecentFrames));
+// The mean of the last few frames with one more, [0,1] as they are. `open` is what this frame's
+// searches come to for the pixel, weighed as neighbours are: where they are few, across a crease or
+// on a sliver, they tell of their own surfaces rather than of a change, and count for less.
+ALCOVE_INLINE float recent_visibility(float recent, float count, float now, float open) {
+  float known = clamp(1.6f * open, 1e-3f, 1.0f);
+  return mix(recent, now, accumulation_weight(count, kRecentFrames / known));
 }
 
 // How surely the last few frames, `recent`, see another visibility than all that were gathered,

@@ -1,11 +1,12 @@
-// The two numbers that a search leaves at a pixel, and its depth, in 8 bytes.
+// The two numbers that a search leaves at a pixel, and its normal, in 4 bytes; its depth takes 4
+// more.
 //
 // Filters and history add up visible parts and open parts and divide last. What is stored is their
 // ratio, so that an open surface stays open to the last bit, and the open part.
 #ifndef ALCOVE_MATHS_SIGNAL_H
 #define ALCOVE_MATHS_SIGNAL_H
 
-#include "language.h"
+#include "packing.h"
 
 ALCOVE_MATHS_BEGIN
 
@@ -17,18 +18,32 @@ struct Signal {
 // Of a mean over slices, and of one weighted by a filter's window.
 const float kLargestOpen = 4.0f;
 
-// To 2^-17 of the ratio and 2^-15 of the open part; out of range comes out as the nearest in range.
-ALCOVE_INLINE uint pack_signal(Signal signal) {
-  float ratio = signal.open > 0.0f ? signal.visible / signal.open : 1.0f;
-  return packUnorm2x16(vec2(ratio, signal.open * (1.0f / kLargestOpen)));
+ALCOVE_INLINE float visible_ratio(Signal signal) {
+  return signal.open > 0.0f ? signal.visible / signal.open : 1.0f;
+}
+
+// The open part in 11 bits, within a 120th of itself, as it only weighs: a half without its sign
+// and its last four digits. Out of range comes out as the nearest in range.
+ALCOVE_INLINE uint pack_open(float open) {
+  return (packHalf2x16(vec2(clamp(open, 0.0f, kLargestOpen), 0.0f)) + 8u) >> 4u;
+}
+
+ALCOVE_INLINE float unpack_open(uint bits) { return unpackHalf2x16((bits & 0x7ffu) << 4u).x; }
+
+// The ratio to 2^-14, and the searched surface's normal by pack_coarse_normal().
+ALCOVE_INLINE uint pack_signal(Signal signal, uint coarse_normal) {
+  return pack_unorm(visible_ratio(signal), 13u) | (pack_open(signal.open) << 13u) |
+         (coarse_normal << 24u);
 }
 
 ALCOVE_INLINE Signal unpack_signal(uint bits) {
   Signal signal;
-  signal.open = float(bits >> 16u) * (kLargestOpen / 65535.0f);
-  signal.visible = float(bits & 0xffffu) * (1.0f / 65535.0f) * signal.open;
+  signal.open = unpack_open(bits >> 13u);
+  signal.visible = unpack_unorm(bits, 13u) * signal.open;
   return signal;
 }
+
+ALCOVE_INLINE uint signal_normal(uint bits) { return bits >> 24u; }
 
 // A sum of visible directions, each component within 2^-11 of itself.
 ALCOVE_INLINE uvec2 pack_direction(vec3 direction) {
@@ -66,6 +81,13 @@ ALCOVE_INLINE uint pack_lobe_surface(LobeSurface surface) {
                            surface.normal.z * 0.5f + 0.5f, surface.roughness));
 }
 
+ALCOVE_INLINE float sixteenth_power(float x) {
+  float squared = x * x;
+  float fourth = squared * squared;
+  float eighth = fourth * fourth;
+  return eighth * eighth;
+}
+
 // What the lobe of a neighbour, packed, weighs beside a surface's own, [0,1]: a half where normals
 // part by some 12 degrees or roughness by a tenth.
 ALCOVE_INLINE float lobe_weight(LobeSurface own, uint neighbour) {
@@ -76,11 +98,7 @@ ALCOVE_INLINE float lobe_weight(LobeSurface own, uint neighbour) {
                     scaled.y * float((neighbour >> 8u) & 255u) +
                     scaled.z * float((neighbour >> 16u) & 255u) - offset;
   // Bytes round unit vectors to no more than 1.007; longer ones must not outweigh all others.
-  float first = clamp(agreement, 0.0f, 1.01f);
-  float squared = first * first;
-  float fourth = squared * squared;
-  float eighth = fourth * fourth;
-  float sixteenth = eighth * eighth;
+  float sixteenth = sixteenth_power(clamp(agreement, 0.0f, 1.01f));
   float apart = own.roughness * 5.0f - float(neighbour >> 24u) * (5.0f / 255.0f);
   return sixteenth * sixteenth * max(1.0f - abs(apart), 0.0f);
 }

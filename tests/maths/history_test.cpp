@@ -11,6 +11,32 @@
 namespace alcove::maths_test {
 namespace {
 
+maths::HistoryTexel texel_of(const maths::Signal& signal, float depth, float count, float recent,
+                             unsigned coarse_normal) {
+  maths::HistoryTexel texel;
+  texel.signal = signal;
+  texel.depth = depth;
+  texel.count = count;
+  texel.recent = recent;
+  texel.coarse_normal = coarse_normal;
+  return texel;
+}
+
+maths::Signal signal_of(float visible, float open) {
+  maths::Signal signal;
+  signal.visible = visible;
+  signal.open = open;
+  return signal;
+}
+
+maths::HistoryTexel stored(const maths::HistoryTexel& texel) {
+  return maths::unpack_history_texel(maths::pack_history_texel(texel));
+}
+
+maths::HistoryTexel held_as(float depth) {
+  return stored(texel_of(signal_of(0.0f, 0.0f), depth, 0.0f, 0.0f, 0u));
+}
+
 TEST(History, DepthThatDiffersIsRejectedAndSlantedDepthGivenRoom) {
   EXPECT_EQ(maths::history_weight(10.0f, 0.0f, 0.02f, 1.0f), 1.0f);
   EXPECT_EQ(maths::history_weight(10.0f, 0.3f, 0.02f, 1.0f), 0.0f);
@@ -19,12 +45,18 @@ TEST(History, DepthThatDiffersIsRejectedAndSlantedDepthGivenRoom) {
   EXPECT_TRUE(std::isfinite(maths::history_weight(0.0f, 0.0f, 0.02f, 0.0f)));
 }
 
+TEST(History, NormalsThatDifferAreRejected) {
+  EXPECT_EQ(maths::history_weight_by_normal(1.0f), 1.0f);
+  EXPECT_EQ(maths::history_weight_by_normal(std::cos(0.65f)), 0.0f);
+  EXPECT_EQ(maths::history_weight_by_normal(-1.0f), 0.0f);
+  EXPECT_GT(maths::history_weight_by_normal(std::cos(0.2f)), 0.9f);
+}
+
 TEST(History, WhatAHalfRoundsAwayIsNoDistance) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
     const float depth = std::exp(random.uniform(-7.0f, 11.0f));
-    const float held =
-        maths::unpack_history_state(maths::pack_history_state(depth, 0.0f, 0.0f)).depth;
+    const float held = held_as(depth).depth;
     EXPECT_EQ(maths::held_apart(depth, held), 0.0f);
     EXPECT_NEAR(maths::held_apart(depth, 1.01f * depth), 0.01f * depth, 6e-4f * depth);
   }
@@ -92,25 +124,41 @@ TEST(History, WhatIsBlurredCountsAsNoiseOfItsVariance) {
   EXPECT_EQ(maths::count_after_blur(0.0f, 0.2f, 1.0f), 0.0f);
 }
 
-TEST(History, StateKeepsWhatItHolds) {
+TEST(History, ATexelKeepsWhatItHolds) {
   RandomInput random;
-  for (int i = 0; i < 2000; ++i) {
+  for (int i = 0; i < 20000; ++i) {
+    const float open = random.uniform(1e-3f, maths::kLargestOpen);
+    const float ratio = i % 5 == 0 ? 1.0f : random.uniform(0.0f, 1.0f);
     const float depth = std::exp(random.uniform(-7.0f, 11.0f));
-    const float count = std::floor(random.uniform(0.0f, 255.99f));
+    const float count = std::floor(random.uniform(0.0f, maths::kMostFrames + 0.99f));
     const float recent = random.uniform(0.0f, 1.0f);
-    const maths::HistoryState state =
-        maths::unpack_history_state(maths::pack_history_state(depth, count, recent));
-    EXPECT_NEAR(state.depth, depth, depth * std::ldexp(1.0f, -11));
-    EXPECT_EQ(state.count, count);
-    EXPECT_NEAR(state.recent, recent, 0.5f / 255.0f + 1e-6f);
+    const auto normal = static_cast<unsigned>(i % 256);
+    const maths::HistoryTexel texel =
+        stored(texel_of(signal_of(ratio * open, open), depth, count, recent, normal));
+    EXPECT_NEAR(texel.signal.open, open, open / 120);
+    EXPECT_NEAR(texel.signal.visible, ratio * texel.signal.open, 1e-5f * texel.signal.open);
+    if (ratio == 1.0f) {
+      EXPECT_EQ(texel.signal.visible, texel.signal.open);
+    }
+    EXPECT_NEAR(texel.depth, depth, depth * std::ldexp(1.0f, -11));
+    EXPECT_EQ(texel.count, count);
+    EXPECT_NEAR(texel.recent, recent, 0.5f / 127.0f + 1e-6f);
+    EXPECT_EQ(texel.coarse_normal, normal);
   }
-  const maths::HistoryState least =
-      maths::unpack_history_state(maths::pack_history_state(0.0f, -1.0f, -1.0f));
-  EXPECT_EQ(least.count + least.recent + least.depth, 0.0f);
-  const maths::HistoryState most =
-      maths::unpack_history_state(maths::pack_history_state(1.0f, 300.0f, 2.0f));
-  EXPECT_EQ(most.count, 255.0f);
+}
+
+TEST(History, ATexelHoldsTheNearestOfWhatItCannot) {
+  const maths::HistoryTexel least =
+      stored(texel_of(signal_of(0.0f, 0.0f), -1.0f, -1.0f, -1.0f, 0u));
+  EXPECT_EQ(least.count + least.recent + least.depth + least.signal.open, 0.0f);
+  EXPECT_EQ(least.coarse_normal, 0u);
+  const maths::HistoryTexel most =
+      stored(texel_of(signal_of(9.0f, 8.0f), 6e4f, 300.0f, 2.0f, 255u));
+  EXPECT_EQ(most.count, maths::kMostFrames);
   EXPECT_EQ(most.recent, 1.0f);
+  EXPECT_EQ(most.signal.open, maths::kLargestOpen);
+  EXPECT_EQ(most.signal.visible, maths::kLargestOpen);
+  EXPECT_EQ(most.coarse_normal, 255u);
 }
 
 TEST(History, DepthOfAnyUnitIsHeldAlike) {
@@ -120,8 +168,7 @@ TEST(History, DepthOfAnyUnitIsHeldAlike) {
     for (const float depth : {0.125f, 1.0f, 4.7f, 1e6f}) {
       const float held = maths::held_depth(scale, std::ldexp(depth, exponent));
       EXPECT_EQ(held, std::ldexp(depth, -11));
-      EXPECT_NEAR(maths::unpack_history_state(maths::pack_history_state(held, 0.0f, 0.0f)).depth,
-                  held, held * std::ldexp(1.0f, -11));
+      EXPECT_NEAR(held_as(held).depth, held, held * std::ldexp(1.0f, -11));
     }
     EXPECT_EQ(maths::held_depth(scale, 1e30f), 6e4f);
   }
@@ -146,11 +193,19 @@ TEST(History, ChangeIsToldFromTheNoiseOfAFewSearches) {
 }
 
 TEST(History, RecentIsAMeanThatForgetsInAFewFrames) {
-  EXPECT_EQ(maths::recent_visibility(0.3f, 0.0f, 0.9f), 0.9f);
-  EXPECT_FLOAT_EQ(maths::recent_visibility(0.2f, 1.0f, 0.4f), 0.3f);
-  float recent = 0.0f;
-  for (int frame = 0; frame < 12; ++frame) recent = maths::recent_visibility(recent, 32.0f, 1.0f);
-  EXPECT_GT(recent, 0.95f);
+  EXPECT_EQ(maths::recent_visibility(0.3f, 0.0f, 0.9f, 1.0f), 0.9f);
+  EXPECT_FLOAT_EQ(maths::recent_visibility(0.2f, 1.0f, 0.4f, 1.0f), 0.3f);
+  const auto after_a_dozen = [](float open) {
+    float recent = 0.0f;
+    for (int frame = 0; frame < 12; ++frame) {
+      recent = maths::recent_visibility(recent, 32.0f, 1.0f, open);
+    }
+    return recent;
+  };
+  EXPECT_GT(after_a_dozen(1.0f), 0.95f);
+  // What hardly any search of the pixel's own surface says changes little; a first frame is taken.
+  EXPECT_LT(after_a_dozen(0.02f), 0.35f);
+  EXPECT_EQ(maths::recent_visibility(0.3f, 0.0f, 0.9f, 0.0f), 0.9f);
 }
 
 }  // namespace

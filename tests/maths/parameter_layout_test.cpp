@@ -61,6 +61,7 @@ const std::map<std::string, Offsets> kExpected = {
      {ALCOVE_OFFSET(ReconstructParameters, previous_from_pixel),
       ALCOVE_OFFSET(ReconstructParameters, plane_from_normal),
       ALCOVE_OFFSET(ReconstructParameters, normal_from_view),
+      ALCOVE_OFFSET(ReconstructParameters, before_from_normal),
       ALCOVE_OFFSET(ReconstructParameters, previous_size),
       ALCOVE_OFFSET(ReconstructParameters, history_depth),
       ALCOVE_OFFSET(ReconstructParameters, phase), ALCOVE_OFFSET(ReconstructParameters, window_px),

@@ -4,6 +4,7 @@
 #define ALCOVE_TESTS_PARITY_CASES_H
 
 #include "maths/bent_normal.h"
+#include "maths/coarse_normal.h"
 #include "maths/connected_samples.h"
 #include "maths/environment_map.h"
 #include "maths/ggx.h"
@@ -77,7 +78,7 @@ ALCOVE_INLINE vec4 parity_of_slices(uint which, vec4 a, vec4 b) {
     }
     case 4u:
       return vec4(arc_cosine(ahead), arc_cosine(behind), raise_horizon(ahead, behind, b.z),
-                  recent_visibility(b.x, floor(b.y * 40.0f), b.z));
+                  recent_visibility(b.x, floor(b.y * 40.0f), b.z, b.w));
   }
   return vec4(0.0f);
 }
@@ -143,7 +144,8 @@ ALCOVE_INLINE vec4 parity_of_storage(uint which, vec4 a, vec4 b) {
     }
     case 14u: {
       uint word = pack_unorm(a.x, 12u);
-      return vec4(unpack_unorm(word, 12u), unpack_unorm(pack_unorm(a.y, 8u), 8u), 0.0f, 0.0f);
+      return vec4(unpack_unorm(word, 12u), unpack_unorm(pack_unorm(a.y, 8u), 8u),
+                  unpack_coarse_normal(uint(a.z * 255.0f)).x, unpack_open(uint(a.w * 1000.0f)));
     }
     case 15u:
       return vec4(average_depth(vec4(1.0f + a.x, 1.0f + a.y, 1.0f + a.z, 1.0f + a.w), 0.1f + b.x),

@@ -1,9 +1,11 @@
 // What is stored between passes: octahedral vectors, packed visibility, the depth pyramid.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "maths/coarse_normal.h"
 #include "maths/octahedral.h"
 #include "maths/packing.h"
 #include "maths/pyramid.h"
@@ -30,9 +32,9 @@ TEST(Signal, RatiosComeBackAndOpenStaysOpen) {
     const float open = random.uniform(1e-3f, maths::kLargestOpen);
     const float ratio = i % 5 == 0 ? 1.0f : random.uniform(0.0f, 1.0f);
     const maths::Signal back =
-        maths::unpack_signal(maths::pack_signal(signal_of(ratio * open, open)));
-    EXPECT_NEAR(back.open, open, 4.0f / 65536);
-    EXPECT_NEAR(back.visible, ratio * back.open, 2e-5f * back.open);
+        maths::unpack_signal(maths::pack_signal(signal_of(ratio * open, open), 0xffu));
+    EXPECT_NEAR(back.open, open, open / 120);
+    EXPECT_NEAR(back.visible, ratio * back.open, 6.2e-5f * back.open);
     if (ratio == 1.0f) {
       EXPECT_EQ(back.visible, back.open);
     }
@@ -108,6 +110,26 @@ TEST(Octahedral, DecodesAnyPointToAUnitVector) {
   for (int i = 0; i < 10000; ++i) {
     const vec2 point(random.uniform(-2, 2), random.uniform(-2, 2));
     EXPECT_NEAR(length(maths::octahedral_decode(point)), 1.0f, 1e-5f);
+  }
+}
+
+TEST(CoarseNormal, ComesBackNearAndAxesExactly) {
+  RandomInput random;
+  float least = 1.0f;
+  for (int i = 0; i < 100000; ++i) {
+    const vec3 normal = random.unit_vector();
+    const unsigned bits = maths::pack_coarse_normal(normal);
+    EXPECT_LT(bits, 256u);
+    EXPECT_EQ(bits, maths::pack_coarse_normal(normal * 0.3f));
+    EXPECT_EQ(maths::signal_normal(maths::pack_signal(signal_of(0.3f, 0.7f), bits)), bits);
+    const vec3 back = maths::unpack_coarse_normal(bits);
+    EXPECT_NEAR(length(back), 1.0f, 1e-5f);
+    least = std::min(least, dot(normal, back));
+  }
+  EXPECT_GT(least, std::cos(glm::radians(17.0f)));
+  for (const vec3 axis : {vec3(1, 0, 0), vec3(-1, 0, 0), vec3(0, 1, 0), vec3(0, -1, 0),
+                          vec3(0, 0, 1), vec3(0, 0, -1)}) {
+    EXPECT_LT(distance(maths::unpack_coarse_normal(maths::pack_coarse_normal(axis)), axis), 1e-6f);
   }
 }
 

@@ -217,7 +217,7 @@ void CResize::change_numbers(Shown& shown) {
   settings.radius = random_.log_uniform(0.05f, 5.0f);
   settings.thickness = random_.uniform(0.0f, 1.0f);
   settings.fill = random_.uniform(0.0f, 1.0f);
-  settings.history_frames = chance(4) ? 0 : 1 + below(255);
+  settings.history_frames = chance(4) ? 0 : 1 + below(127);
   settings.roughness = random_.uniform(0.0f, 1.0f);
   settings.precision = static_cast<Precision>(below(3));
   shown.settings = from_settings(settings);

@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "alcove/passes/line_depth.h"
+#include "maths/coarse_normal.h"
 #include "maths/signal.h"
 #include "search_phase.h"
 #include "view_parameters.h"
@@ -11,9 +12,10 @@
 namespace alcove::passes {
 namespace {
 
-// The signal as a search would store it, with the depth of the pixel that it searched.
-HostImage packed_signal(const View& view, const HostImage& depth, const HostImage& signal,
+// The signal as a search would store it, with depth and normal of the pixel that it searched.
+HostImage packed_signal(const View& view, const Drawing& drawing, const HostImage& signal,
                         std::uint32_t divisor, std::uint32_t index) {
+  const HostImage& depth = drawing.depth_ndc;
   const auto projection =
       maths::make_projection(to_mat4(view.clip_from_view), depth.width, depth.height);
   const maths::vec2 from_ndc = line_from_ndc(projection.value());
@@ -21,13 +23,16 @@ HostImage packed_signal(const View& view, const HostImage& depth, const HostImag
   HostImage packed = signal;
   for (std::uint32_t y = 0; y < packed.height; ++y) {
     for (std::uint32_t x = 0; x < packed.width; ++x) {
-      const float ndc = depth.at(std::min(x * divisor + phase.x, depth.width - 1),
-                                 std::min(y * divisor + phase.y, depth.height - 1));
+      const std::uint32_t px = std::min(x * divisor + phase.x, depth.width - 1);
+      const std::uint32_t py = std::min(y * divisor + phase.y, depth.height - 1);
+      const float ndc = depth.at(px, py);
+      const maths::vec3 normal(drawing.normal_vs.at(px, py, 0), drawing.normal_vs.at(px, py, 1),
+                               drawing.normal_vs.at(px, py, 2));
       float* texel = &packed.texels[(std::size_t{y} * packed.width + x) * 2];
       maths::Signal sums;
       sums.visible = texel[0];
       sums.open = texel[1];
-      texel[0] = std::bit_cast<float>(maths::pack_signal(sums));
+      texel[0] = std::bit_cast<float>(maths::pack_signal(sums, maths::pack_coarse_normal(normal)));
       texel[1] = from_ndc.x * ndc + from_ndc.y;
     }
   }
@@ -47,7 +52,7 @@ HostImage Reconstruct::reconstruct(const Input& input, const ReconstructSettings
     ASSERT_TRUE(line) << line.error().message;
     ReconstructInputs inputs{
         .signal = {.signal = upload(graph,
-                                    packed_signal(input.view, input.drawing.depth_ndc, input.signal,
+                                    packed_signal(input.view, input.drawing, input.signal,
                                                   input.divisor, input.index),
                                     VK_FORMAT_R32G32_UINT),
                    .divisor = input.divisor,

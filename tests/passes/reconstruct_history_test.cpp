@@ -145,7 +145,7 @@ TEST_F(Reconstruct, HundredsOfEqualFramesDoNotDrift) {
                            .signal = signal,
                            .index = frame,
                            .reset = frame == 0},
-                          precise(1, 255));
+                          precise(1, 127));
     }
     EXPECT_THAT(found.texels, testing::Each(testing::FloatNear(visibility, 2e-3f)));
     // From a wrong start the history comes back to within what it can store.

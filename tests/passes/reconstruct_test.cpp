@@ -85,7 +85,7 @@ TEST_F(Reconstruct, WithoutAHistoryAPixelLooksAtTheSearchedOnesAroundIt) {
               ASSERT_NEAR(found.at(x, y),
                           mean_around(signal, x, y, kOddWidth, kOddHeight, divisor, phase,
                                       static_cast<int>(reach)),
-                          2e-4)
+                          6e-4)  // searches weigh by their open parts, stored within a 120th
                   << "at " << x << ", " << y;
             }
           }

@@ -169,7 +169,7 @@ typedef struct AlcoveSettings {
   float filter_tolerance_px;
 
   // The history.
-  uint32_t history_frames;  // that are averaged, 0 to 255; 0: no history and no memory for it
+  uint32_t history_frames;  // that are averaged, 0 to 127; 0: no history and no memory for it
   float clamp_width;        // to which it is held, in standard deviations of this frame around the
                             // pixel, at least 0; 0 leaves it free [0]
 

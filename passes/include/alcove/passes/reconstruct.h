@@ -18,7 +18,7 @@ struct FilterSettings {
   // pixel there, over 0. That is in the first frame of one slice: the more slices and frames there
   // are, the nearer it has to be.
   float filter_tolerance_px = 1.5f;
-  // Frames that are averaged, 0 to 255; once Frame::still_frames is 16, up to 255 in any case. 0
+  // Frames that are averaged, 0 to 127; once Frame::still_frames is 16, up to 127 in any case. 0
   // keeps no history and allocates none: for engines whose own temporal filter comes after.
   std::uint32_t history_frames = 0;
   // History is held to so many standard deviations of this frame's neighbourhood; 0 leaves it free.
