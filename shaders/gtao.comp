@@ -283,7 +283,7 @@ SearchResult search_pixel(ivec2 pixel, float line, SliceNoise noise) {
       kLobe ? pack_scaled_lobe(surface.lobe, Signal(sum.lobe.visible * mean, sum.lobe.open * mean))
             : uvec2(0u);
   Signal signal = Signal(sum.visible * mean, sum.open * mean);
-  uint normal = pack_coarse_normal(surface.lobe.normal);
+  uint normal = make_coarse_normal(surface.normal).bits;
   return SearchResult(uvec4(pack_signal(signal, normal), floatBitsToUint(line), lobe),
                       kBentNormal ? pack_direction(sum.bent * mean) : uvec2(0u));
 }

@@ -97,9 +97,9 @@ struct Surface {
   vec2 gradient;    // of `line` on the tangent plane, for each pixel
   float stiffness;  // tolerances that a unit of `line` off the tangent plane stands for
   float slant;      // cosine between normal and view vector, on the axis
-  vec3 normal;      // unit, in the space of the normals
-  vec3 normal_before;  // in that of the last frame's
-  float roughness;     // perceptual
+  vec3 normal;      // unit, towards the eye, view space
+  CoarseNormal coarse;
+  LobeSurface lobe;  // normal as it was given
 };
 
 // What is added up: over neighbours, then over frames.
@@ -117,13 +117,14 @@ vec3 fetch_normal(ivec2 pixel) {
   return has_direction(normal) ? normal : parameters.normal_from_view[2].xyz;
 }
 
-float fetch_roughness(ivec2 pixel) {
+LobeSurface fetch_lobe_surface(ivec2 pixel, vec3 normal) {
+  LobeSurface surface = LobeSurface(normal, parameters.roughness);
 #ifdef LOBE
   if (kRoughnessTexture) {
-    return saturate(texelFetch(roughness_image, pixel, 0)[kRoughnessChannel]);
+    surface.roughness = saturate(texelFetch(roughness_image, pixel, 0)[kRoughnessChannel]);
   }
 #endif
-  return parameters.roughness;
+  return surface;
 }
 
 Surface fetch_surface(ivec2 pixel, ivec2 cell, float line) {
@@ -133,8 +134,12 @@ Surface fetch_surface(ivec2 pixel, ivec2 cell, float line) {
   surface.centre = vec2(pixel) + 0.5;
   surface.line = line;
   surface.depth = kPerspective ? 1.0 / surface.line : surface.line;
-  vec3 normal = fetch_normal(pixel);
-  vec3 plane = mat3(parameters.plane_from_normal) * normal;
+  vec3 given = fetch_normal(pixel);
+  vec3 normal = normalize(given * mat3(parameters.normal_from_view));
+  // dot((x s, y s, depth), plane) is constant on the tangent plane, x and y in pixels and s the
+  // depth in perspective and 1 otherwise.
+  vec3 plane =
+      vec3(normal.xy * parameters.slope.xy, dot(normal.xy, parameters.slope.zw) - normal.z);
   // How the distance from the plane grows with depth along the pixel's ray. Seen edge-on, a plane
   // would run to any depth.
   float along = plane.z + (kPerspective ? dot(surface.centre, plane.xy) : 0.0);
@@ -142,11 +147,9 @@ Surface fetch_surface(ivec2 pixel, ivec2 cell, float line) {
   float per_line = (along < 0.0 ? -1.0 : 1.0) / surface.slant;
   surface.gradient = plane.xy * (kPerspective ? surface.line * per_line : -per_line);
   surface.stiffness = surface.slant * parameters.tolerance * (kPerspective ? surface.depth : 1.0);
-  surface.normal = normalize(normal);
-  // Rounded as those that it is compared with.
-  surface.normal_before = unpack_coarse_normal(
-      pack_coarse_normal(mat3(parameters.before_from_normal) * surface.normal));
-  surface.roughness = fetch_roughness(pixel);
+  surface.normal = along > 0.0 ? -normal : normal;
+  surface.coarse = make_coarse_normal(surface.normal);
+  surface.lobe = fetch_lobe_surface(pixel, given);
   return surface;
 }
 
@@ -180,7 +183,7 @@ struct Found {
   uint lobe_surface;
   vec2 searched;  // pixel
   float line;
-  vec3 normal;
+  vec2 lean;  // CoarseNormal::lean
 };
 
 Found fetch_block(ivec2 block) {
@@ -189,7 +192,7 @@ Found fetch_block(ivec2 block) {
   found.sum = no_sum();
   found.sum.signal = unpack_signal(stored.x);
   found.line = uintBitsToFloat(stored.y);
-  found.normal = unpack_coarse_normal(signal_normal(stored.x));
+  found.lean = lean_of_bits(signal_normal(stored.x));
   found.searched = vec2(min(block * kDivisor + ivec2(parameters.phase), size_px() - 1));
   if (kBentNormal) {
     found.sum.bent = unpack_direction(imageLoad(bent_image, block).xy);
@@ -211,25 +214,24 @@ ivec2 block_around(ivec2 cell, int side, int i) {
   return clamp(block, ivec2(0), last_block());
 }
 
-// A neighbour across a crease weighs this to the fourth, a fifth, at the least: where there are few
-// others its search is better than none. By the error of first frames (`alcove compare --frames
-// 1`).
-const float kLeastAgreement = 0.67;
-
 // A neighbour at distance d weighs 1 / (1 + narrowness d^2)^4.
 float narrowness_of(float width_px) { return 0.125 / (width_px * width_px); }
+
+// A neighbour across a crease weighs no less than 1 / (1 + this)^2, a fifth: where there are few
+// others its search is better than none. By the error of first frames (`alcove compare --frames
+// 1`).
+const float kWidestTurn = 1.23;
 
 // What a neighbour's search weighs: it falls with the distance on the image, with that from the
 // tangent plane and with the angle between normals, and never to nothing: where no neighbour lies
 // on the plane, the nearest to it count.
 float neighbour_weight(Surface surface, float narrowness, vec2 offset, Found found) {
   float off_plane = (found.line - surface.line - dot(offset, surface.gradient)) * surface.stiffness;
-  off_plane = min(abs(off_plane), 1e8);  // whose fourth power still is a float
   float near = 1.0 + narrowness * dot(offset, offset);
-  float level = 1.0 + off_plane * off_plane;
-  float agreement = max(dot(surface.normal, found.normal), kLeastAgreement);
-  float root = agreement * agreement / (near * near * level);
-  return root * root;
+  float level = 1.0 + min(off_plane * off_plane, 1e16);  // whose square still is a float
+  level += min(squared_turn(surface.coarse, found.lean), kWidestTurn);
+  float both = near * near * level;
+  return 1.0 / (both * both);
 }
 
 struct Neighbourhood {
@@ -245,9 +247,8 @@ void add_block(inout Neighbourhood sum, Surface surface, float narrowness, Found
     sum.sum.bent += weight * found.sum.bent;
   }
   if (kLobe) {
-    LobeSurface own = LobeSurface(surface.normal, surface.roughness);
     // As far as it is like the surface's own.
-    add(sum.sum.lobe, weight * lobe_weight(own, found.lobe_surface), found.sum.lobe);
+    add(sum.sum.lobe, weight * lobe_weight(surface.lobe, found.lobe_surface), found.sum.lobe);
   }
   if (kClamp) {
     float visibility = found.sum.signal.visible / max(found.sum.signal.open, 1e-9);

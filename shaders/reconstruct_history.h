@@ -24,7 +24,7 @@ uvec4 pack_history(History history, Surface surface) {
   }
   HistoryTexel texel =
       HistoryTexel(history.sum.signal, held_depth(parameters.history_depth.xy, surface.depth),
-                   history.count, history.recent, pack_coarse_normal(surface.normal));
+                   history.count, history.recent, surface.coarse.bits);
   return uvec4(pack_history_texel(texel), floatBitsToUint(lobe.visible),
                floatBitsToUint(lobe.open));
 }
@@ -67,20 +67,21 @@ struct Read {
 
 // A texel of history, all of it or none as its depth and normal tell whether it is of the same
 // surface; of those the ones on the tangent plane, at the depth `expected` as it is held, and with
-// the same normal count for most, so that nothing leaks across a crease.
-void add_history(inout Read read, Surface surface, ivec2 pixel, float expected, float share) {
+// the same `normal`, as the last frame saw it, count for most, so that nothing leaks across a
+// crease.
+void add_history(inout Read read, Surface surface, CoarseNormal normal, ivec2 pixel, float expected,
+                 float share) {
   uvec4 stored = imageLoad(history_image, pixel);
   HistoryTexel texel = unpack_history_texel(stored.xy);
   float apart = held_apart(expected, texel.depth);
   float agreement =
-      kStill ? 1.0
-             : max(dot(surface.normal_before, unpack_coarse_normal(texel.coarse_normal)), 0.0);
+      kStill ? 1.0 : max(1.0 - 0.5 * squared_turn(normal, lean_of_bits(texel.coarse_normal)), 0.0);
   float same = history_weight(expected, apart, kDepthTolerance, surface.slant) *
                history_weight_by_normal(agreement);
   float off_plane = apart / (kPerspective ? max(expected, 1e-6) : parameters.history_depth.z);
   off_plane *= surface.slant * parameters.tolerance * (1.0 / kPlaneTolerance);
   float level = 1.0 + min(off_plane * off_plane, 1e6);
-  float counts = same * sixteenth_power(agreement) / (level * level);
+  float counts = same * sixteenth_power(agreement * agreement) / (level * level);
   float weight = share * counts;
   Sum here = no_sum();
   here.signal = texel.signal;
@@ -137,9 +138,10 @@ void read_moved(inout Read read, Surface surface) {
   if (before.moves) {
     expected += moved_in_depth(texels, expected);
   }
+  CoarseNormal normal = make_coarse_normal(mat3(parameters.before_from_view) * surface.normal);
   for (int i = 0; i < 4; ++i) {
     vec2 near = abs(1.0 - vec2(i & 1, i >> 1) - part);
-    add_history(read, surface, texels[i], expected[i], before.seen ? near.x * near.y : 0.0);
+    add_history(read, surface, normal, texels[i], expected[i], before.seen ? near.x * near.y : 0.0);
   }
 }
 
@@ -149,7 +151,7 @@ History read_history(Surface surface) {
   }
   Read read = Read(no_history(), vec3(0.0), 0.0, 0.0);
   if (kStill) {
-    add_history(read, surface, surface.pixel,
+    add_history(read, surface, surface.coarse, surface.pixel,
                 held_depth(parameters.history_depth.zw, surface.depth), 1.0);
   } else {
     read_moved(read, surface);

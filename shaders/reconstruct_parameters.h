@@ -9,11 +9,9 @@ struct ReconstructParameters {
   // To the image of the frame before, from (x s, y s, depth, 1), x and y in pixels and s the depth
   // in perspective and 1 in orthographic views: x w and y w in pixels, the depth there, and w.
   mat4 previous_from_pixel;
-  // From a normal, as it is stored, to its plane on the image: dot((x s, y s, depth), result) is
-  // constant on the plane, x and y in pixels.
-  mat4 plane_from_normal;
-  mat4 normal_from_view;    // rotation from view space to the space of the normals
-  mat4 before_from_normal;  // rotation from that to the space of the last frame's normals
+  mat4 normal_from_view;  // rotation from view space to the space of the normals
+  mat4 before_from_view;  // rotation from view space to that of the last frame
+  vec4 slope;             // xy: ray_per_px(); zw: of the ray at the image's corner; view space
   // Of the frame before: xy its size in pixels, zw that in parts of this frame's.
   vec4 previous_size;
   vec4 history_depth;  // for held_depth(): xy of this frame, zw of the frame before

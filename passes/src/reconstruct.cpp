@@ -314,12 +314,10 @@ maths::ReconstructParameters parameters_of(const Frame& frame, const maths::Proj
   maths::ReconstructParameters parameters{};
   parameters.previous_from_pixel =
       maths::mat4(maths::dmat4(pixel_from_view(previous)) * to_previous * maths::dmat4(from_pixel));
-  parameters.plane_from_normal =
-      maths::mat4(maths::transpose(maths::mat3(from_pixel)) * maths::mat3(to_view));
   parameters.normal_from_view = maths::transpose(to_view);
-  parameters.before_from_normal = normals_in_view_space
-                                      ? maths::mat4(maths::mat3(maths::mat4(to_previous)))
-                                      : maths::mat4(1.0f);
+  parameters.before_from_view = maths::mat4(maths::mat3(maths::mat4(to_previous)));
+  parameters.slope = maths::vec4(maths::ray_per_px(projection), projection.uv_to_slope.z,
+                                 projection.uv_to_slope.w);
   parameters.tolerance =
       1.0f / (settings.filter_tolerance_px * std::abs(maths::ray_per_px(projection).y));
   parameters.longest = static_cast<float>(settings.history_frames);

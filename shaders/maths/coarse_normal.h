@@ -1,22 +1,45 @@
-// A normal in a byte: enough to tell the faces at a crease apart.
+// A normal that faces the eye in a byte: enough to tell the faces at a crease apart.
+//
+// It is held by its stereographic coordinates in view space, tan(angle / 2) along the direction in
+// which it leans away from the eye's axis. They are conformal, so that distances between them are
+// angles without any decoding.
 #ifndef ALCOVE_MATHS_COARSE_NORMAL_H
 #define ALCOVE_MATHS_COARSE_NORMAL_H
 
-#include "octahedral.h"
+#include "language.h"
 
 ALCOVE_MATHS_BEGIN
 
-// Of any length but 0, in any space. Each octahedral coordinate is one of 15, as many on each side of
-// 0: axes are exact, and a mirrored normal is the mirrored one's byte.
-ALCOVE_INLINE uint pack_coarse_normal(vec3 normal) {
-  vec2 encoded = octahedral_encode(normal);
-  return uint(encoded.x * 7.0f + 7.5f) | (uint(encoded.y * 7.0f + 7.5f) << 4u);
+struct CoarseNormal {
+  uint bits;            // 8; the same normal has the same ones
+  vec2 lean;            // its coordinates, each in [-1,1]
+  float squared_scale;  // from squared distances of coordinates to squared angles about it
+};
+
+// By its lowest eight bits.
+ALCOVE_INLINE vec2 lean_of_bits(uint bits) {
+  return vec2((float(bits & 15u) - 7.0f) * (1.0f / 7.0f),
+              (float((bits >> 4u) & 15u) - 7.0f) * (1.0f / 7.0f));
 }
 
-// Unit, within 17 degrees of what was packed. Bits above the lowest eight do not matter.
-ALCOVE_INLINE vec3 unpack_coarse_normal(uint bits) {
-  return octahedral_decode(vec2((float(bits & 15u) - 7.0f) * (1.0f / 7.0f),
-                                (float((bits >> 4u) & 15u) - 7.0f) * (1.0f / 7.0f)));
+// Of a unit normal in view space; what leans further than a right angle along either axis is taken
+// to lean so far. Each coordinate is one of 15: off by 12 degrees at most.
+ALCOVE_INLINE CoarseNormal make_coarse_normal(vec3 normal) {
+  vec2 lean = vec2(normal.x, normal.y) * (1.0f / max(1.0f + normal.z, 0.1f));
+  CoarseNormal coarse;
+  coarse.bits = uint(clamp(lean.x, -1.0f, 1.0f) * 7.0f + 7.5f) |
+                (uint(clamp(lean.y, -1.0f, 1.0f) * 7.0f + 7.5f) << 4u);
+  coarse.lean = lean_of_bits(coarse.bits);
+  float scale = 2.0f / (1.0f + dot(coarse.lean, coarse.lean));
+  coarse.squared_scale = scale * scale;
+  return coarse;
+}
+
+// The square of the angle, in radians, to another normal that leans so: 0 where it is the same, off
+// by the more the further they part, and above 0.5 from 60 degrees on.
+ALCOVE_INLINE float squared_turn(CoarseNormal own, vec2 other) {
+  vec2 apart = other - own.lean;
+  return dot(apart, apart) * own.squared_scale;
 }
 
 ALCOVE_MATHS_END

@@ -95,7 +95,7 @@ struct HistoryTexel {
   float depth;         // linear, as held_depth() has it, to 2^-11 of itself
   float count;         // frames, [0,kMostFrames], whole
   float recent;        // visibility of the last few frames, [0,1], to 2^-8
-  uint coarse_normal;  // by pack_coarse_normal()
+  uint coarse_normal;  // CoarseNormal::bits
 };
 
 const float kMostFrames = 127.0f;

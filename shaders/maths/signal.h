@@ -30,7 +30,7 @@ ALCOVE_INLINE uint pack_open(float open) {
 
 ALCOVE_INLINE float unpack_open(uint bits) { return unpackHalf2x16((bits & 0x7ffu) << 4u).x; }
 
-// The ratio to 2^-14, and the searched surface's normal by pack_coarse_normal().
+// The ratio to 2^-14, and the searched surface's normal of CoarseNormal.
 ALCOVE_INLINE uint pack_signal(Signal signal, uint coarse_normal) {
   return pack_unorm(visible_ratio(signal), 13u) | (pack_open(signal.open) << 13u) |
          (coarse_normal << 24u);

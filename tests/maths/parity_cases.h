@@ -145,7 +145,9 @@ ALCOVE_INLINE vec4 parity_of_storage(uint which, vec4 a, vec4 b) {
     case 14u: {
       uint word = pack_unorm(a.x, 12u);
       return vec4(unpack_unorm(word, 12u), unpack_unorm(pack_unorm(a.y, 8u), 8u),
-                  unpack_coarse_normal(uint(a.z * 255.0f)).x, unpack_open(uint(a.w * 1000.0f)));
+                  squared_turn(make_coarse_normal(vec3(0.0f, 0.6f, 0.8f)),
+                               lean_of_bits(uint(a.z * 255.0f))),
+                  unpack_open(uint(a.w * 1000.0f)));
     }
     case 15u:
       return vec4(average_depth(vec4(1.0f + a.x, 1.0f + a.y, 1.0f + a.z, 1.0f + a.w), 0.1f + b.x),

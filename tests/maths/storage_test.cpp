@@ -113,23 +113,45 @@ TEST(Octahedral, DecodesAnyPointToAUnitVector) {
   }
 }
 
-TEST(CoarseNormal, ComesBackNearAndAxesExactly) {
+// The unit normal of these stereographic coordinates.
+vec3 normal_of(vec2 lean) {
+  const float squared = dot(lean, lean);
+  return vec3(2.0f * lean, 1.0f - squared) / (1.0f + squared);
+}
+
+TEST(CoarseNormal, ComesBackNear) {
   RandomInput random;
-  float least = 1.0f;
   for (int i = 0; i < 100000; ++i) {
-    const vec3 normal = random.unit_vector();
-    const unsigned bits = maths::pack_coarse_normal(normal);
-    EXPECT_LT(bits, 256u);
-    EXPECT_EQ(bits, maths::pack_coarse_normal(normal * 0.3f));
-    EXPECT_EQ(maths::signal_normal(maths::pack_signal(signal_of(0.3f, 0.7f), bits)), bits);
-    const vec3 back = maths::unpack_coarse_normal(bits);
-    EXPECT_NEAR(length(back), 1.0f, 1e-5f);
-    least = std::min(least, dot(normal, back));
+    vec3 normal = random.unit_vector();
+    normal.z = std::abs(normal.z);
+    const maths::CoarseNormal coarse = maths::make_coarse_normal(normal);
+    EXPECT_LT(coarse.bits, 256u);
+    EXPECT_EQ(coarse.lean, maths::lean_of_bits(coarse.bits));
+    EXPECT_EQ(maths::signal_normal(maths::pack_signal(signal_of(0.3f, 0.7f), coarse.bits)),
+              coarse.bits);
+    EXPECT_GT(dot(normal_of(coarse.lean), normal), std::cos(glm::radians(12.0f)));
   }
-  EXPECT_GT(least, std::cos(glm::radians(17.0f)));
-  for (const vec3 axis : {vec3(1, 0, 0), vec3(-1, 0, 0), vec3(0, 1, 0), vec3(0, -1, 0),
-                          vec3(0, 0, 1), vec3(0, 0, -1)}) {
-    EXPECT_LT(distance(maths::unpack_coarse_normal(maths::pack_coarse_normal(axis)), axis), 1e-6f);
+  EXPECT_EQ(maths::make_coarse_normal(vec3(0, 0, 1)).lean, vec2(0));
+  EXPECT_EQ(maths::make_coarse_normal(vec3(0, -1, 0)).lean, vec2(0, -1));
+}
+
+TEST(CoarseNormal, ATurnIsTheSquareOfSmallAngles) {
+  RandomInput random;
+  for (int i = 0; i < 100000; ++i) {
+    vec3 normal = random.unit_vector();
+    normal.z = std::abs(normal.z);
+    const maths::CoarseNormal own = maths::make_coarse_normal(normal);
+    EXPECT_EQ(maths::squared_turn(own, own.lean), 0.0f);
+    vec3 other = random.unit_vector();
+    other.z = std::abs(other.z);
+    const float cosine = dot(normal_of(own.lean), other);
+    const float found = maths::squared_turn(own, vec2(other.x, other.y) / (1.0f + other.z));
+    if (cosine > 0.97f) {
+      EXPECT_NEAR(found, 2.0f - 2.0f * cosine, 0.3f * (2.0f - 2.0f * cosine) + 2e-5f);
+    }
+    if (cosine < 0.5f) {
+      EXPECT_GT(found, 0.5f);
+    }
   }
 }
 

@@ -32,7 +32,8 @@ HostImage packed_signal(const View& view, const Drawing& drawing, const HostImag
       maths::Signal sums;
       sums.visible = texel[0];
       sums.open = texel[1];
-      texel[0] = std::bit_cast<float>(maths::pack_signal(sums, maths::pack_coarse_normal(normal)));
+      texel[0] =
+          std::bit_cast<float>(maths::pack_signal(sums, maths::make_coarse_normal(normal).bits));
       texel[1] = from_ndc.x * ndc + from_ndc.y;
     }
   }
