@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "alcove/passes/line_depth.h"
 #include "maths/coarse_normal.h"
@@ -86,6 +87,22 @@ ReconstructSettings precise(std::uint32_t reach, std::uint32_t history_frames) {
 
 HostImage constant_signal(std::uint32_t width, std::uint32_t height, float visibility) {
   return signal_of(width, height, [=](std::uint32_t, std::uint32_t) { return visibility; });
+}
+
+Drawing with_turned_normals(const Drawing& drawing, double degrees, std::uint32_t first) {
+  Drawing turned = drawing;
+  HostImage& normals = turned.normal_vs;
+  const float cosine = std::cos(glm::radians(static_cast<float>(degrees)));
+  const float sine = std::sin(glm::radians(static_cast<float>(degrees)));
+  for (std::size_t i = 0; i < normals.texels.size(); i += 4) {
+    if (i / 4 % normals.width >= first) {
+      const float x = normals.texels[i];
+      const float z = normals.texels[i + 2];
+      normals.texels[i] = cosine * x + sine * z;
+      normals.texels[i + 2] = cosine * z - sine * x;
+    }
+  }
+  return turned;
 }
 
 double variance(const HostImage& image) {

@@ -57,6 +57,10 @@ HostImage signal_of(std::uint32_t width, std::uint32_t height, const Visibility&
 [[nodiscard]] HostImage constant_signal(std::uint32_t width, std::uint32_t height,
                                         float visibility);
 
+// The same depth, but from column `first` on the normals are turned about the vertical.
+[[nodiscard]] Drawing with_turned_normals(const Drawing& drawing, double degrees,
+                                          std::uint32_t first);
+
 [[nodiscard]] double variance(const HostImage& image);
 
 }  // namespace alcove::passes

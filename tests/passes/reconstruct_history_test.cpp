@@ -285,6 +285,34 @@ TEST_F(Reconstruct, HistoryDoesNotLeakAcrossACrease) {
   EXPECT_LT(worst, 0.05);
 }
 
+// A surface of another normal took the place of one at the very same depth.
+TEST_F(Reconstruct, HistoryOfAnotherNormalIsForgotten) {
+  const TestView view = test_views()[2];
+  const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(0.0, 5.0)});
+  const HostImage still{kWidth, kHeight, std::vector<float>(std::size_t{kWidth} * kHeight * 2), 2};
+  const HostImage dark = constant_signal(kWidth, kHeight, 0.1f);
+  const HostImage bright = constant_signal(kWidth, kHeight, 0.9f);
+  const auto after_a_turn_of = [&](double degrees) {
+    for (std::uint32_t frame = 0; frame < 8; ++frame) {
+      (void)reconstruct({.view = view.view,
+                         .drawing = drawing,
+                         .signal = dark,
+                         .motion = &still,
+                         .index = frame,
+                         .reset = frame == 0},
+                        precise(0, 32));
+    }
+    return reconstruct({.view = view.view,
+                        .drawing = with_turned_normals(drawing, degrees, 0),
+                        .signal = bright,
+                        .motion = &still,
+                        .index = 8},
+                       precise(0, 32));
+  };
+  EXPECT_THAT(after_a_turn_of(60.0).texels, testing::Each(testing::FloatNear(0.9f, 2e-3f)));
+  EXPECT_THAT(after_a_turn_of(5.0).texels, testing::Each(testing::Lt(0.5f)));
+}
+
 // A plane slides by three pixels a frame and carries a pattern: with motion vectors the pattern
 // stays sharp, without them it is smeared.
 TEST_F(Reconstruct, MotionVectorsFollowAMovingPlane) {

@@ -197,6 +197,27 @@ TEST_F(Reconstruct, TheMoreSearchesTheLessCrossesACrease) {
   EXPECT_LT(after(1, 48), 0.1 * first);
 }
 
+// Neighbours at the very depth of the tangent plane, but of another normal.
+TEST_F(Reconstruct, AnotherNormalCountsForLess) {
+  const TestView view = test_views()[2];
+  const Drawing flat = draw(view, kWidth, kHeight, {tilted_plane(0.0, 5.0)});
+  const std::uint32_t half = kWidth / 2;
+  const HostImage signal = signal_of(
+      kWidth, kHeight, [&](std::uint32_t x, std::uint32_t) { return x < half ? 0.9f : 0.2f; });
+  const auto leak = [&](double degrees) {
+    const HostImage found = reconstruct({.view = view.view,
+                                         .drawing = with_turned_normals(flat, degrees, half),
+                                         .signal = signal,
+                                         .slices = 4,
+                                         .reset = true},
+                                        precise(2, 0));
+    return 0.9 - found.at(half - 1, kHeight / 2);
+  };
+  EXPECT_GT(leak(0.0), 0.1);
+  EXPECT_LT(leak(60.0), 0.5 * leak(0.0));
+  EXPECT_GT(leak(60.0), 0.05 * leak(0.0)) << "what else is there to know";
+}
+
 TEST_F(Reconstruct, NothingLeaksAcrossADepthEdge) {
   for (const TestView& view : test_views()) {
     const Drawing drawing = draw(view, kWidth, kHeight, step(0.3, 1.0));
