@@ -5,6 +5,7 @@
 #include <string>
 
 #include "check_inputs.h"
+#include "maths/history.h"
 #include "output_format.h"
 
 namespace alcove::passes {
@@ -24,10 +25,10 @@ tl::expected<void, Error> check_settings(const ReconstructSettings& settings) {
     return tl::unexpected(Error{"The filter's reach is " + std::to_string(settings.filter_reach) +
                                 "; it must be 0 to 3 blocks."});
   }
-  if (settings.history_frames > kMaxHistoryFrames) {
+  if (settings.history_frames > maths::kMaxHistoryFrames) {
     return tl::unexpected(Error{"The history is " + std::to_string(settings.history_frames) +
                                 " frames long; it must be 0 to " +
-                                std::to_string(kMaxHistoryFrames) + "."});
+                                std::to_string(maths::kMaxHistoryFrames) + "."});
   }
   if (!(settings.clamp_width >= 0.0f) || !std::isfinite(settings.clamp_width)) {
     return tl::unexpected(Error{"The history's clamp is " + std::to_string(settings.clamp_width) +

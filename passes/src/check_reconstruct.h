@@ -7,9 +7,6 @@
 
 namespace alcove::passes {
 
-// The most that a pixel's history counts.
-inline constexpr std::uint32_t kMaxHistoryFrames = 127;
-
 // What is wrong with settings or textures.
 [[nodiscard]] tl::expected<void, Error> check_reconstruct(const Frame& frame,
                                                           const ReconstructInputs& inputs,

@@ -11,6 +11,7 @@
 
 #include "bindings.h"
 #include "check_reconstruct.h"
+#include "maths/history.h"
 #include "maths/slice_line.h"
 #include "output_format.h"
 #include "reconstruct_parameters.h"
@@ -399,7 +400,7 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& given_frame,
   // Distances from the plane count for more with the slices, as the window narrows with them.
   parameters.tolerance *= std::sqrt(static_cast<float>(inputs.signal.slices));
   if (past == Past::settled) {  // nothing to follow: all frames count alike
-    parameters.longest = static_cast<float>(kMaxHistoryFrames);
+    parameters.longest = static_cast<float>(maths::kMaxHistoryFrames);
   }
   parameters.phase = maths::vec2(static_cast<float>(phase_x), static_cast<float>(phase_y));
   pass.record([&kernels = frame.kernels, kernel = *kernel, textures, parameters,

@@ -93,17 +93,18 @@ ALCOVE_INLINE float held_depth(vec2 scale_and_offset, float depth) {
 struct HistoryTexel {
   Signal signal;       // the ratio to 2^-17, the open part as pack_open() has it
   float depth;         // linear, as held_depth() has it, to 2^-11 of itself
-  float count;         // frames, [0,kMostFrames], whole
+  float count;         // frames, [0,kMaxHistoryFrames], whole
   float recent;        // visibility of the last few frames, [0,1], to 2^-8
   uint coarse_normal;  // CoarseNormal::bits
 };
 
-const float kMostFrames = 127.0f;
+// The most that a pixel's history counts.
+const uint kMaxHistoryFrames = 127u;
 
 ALCOVE_INLINE uvec2 pack_history_texel(HistoryTexel texel) {
   uint signal =
       pack_unorm(visible_ratio(texel.signal), 16u) | (pack_open(texel.signal.open) << 16u);
-  uint whole = uint(clamp(texel.count, 0.0f, kMostFrames) + 0.5f);
+  uint whole = uint(clamp(texel.count, 0.0f, float(kMaxHistoryFrames)) + 0.5f);
   uint state = packHalf2x16(vec2(max(texel.depth, 0.0f), 0.0f)) | (whole << 15u) |
                (pack_unorm(texel.recent, 7u) << 22u);
   // The normal has what either leaves: five bits, and three.

@@ -130,7 +130,7 @@ TEST(History, ATexelKeepsWhatItHolds) {
     const float open = random.uniform(1e-3f, maths::kLargestOpen);
     const float ratio = i % 5 == 0 ? 1.0f : random.uniform(0.0f, 1.0f);
     const float depth = std::exp(random.uniform(-7.0f, 11.0f));
-    const float count = std::floor(random.uniform(0.0f, maths::kMostFrames + 0.99f));
+    const float count = std::floor(random.uniform(0.0f, maths::kMaxHistoryFrames + 0.99f));
     const float recent = random.uniform(0.0f, 1.0f);
     const auto normal = static_cast<unsigned>(i % 256);
     const maths::HistoryTexel texel =
@@ -154,7 +154,7 @@ TEST(History, ATexelHoldsTheNearestOfWhatItCannot) {
   EXPECT_EQ(least.coarse_normal, 0u);
   const maths::HistoryTexel most =
       stored(texel_of(signal_of(9.0f, 8.0f), 6e4f, 300.0f, 2.0f, 255u));
-  EXPECT_EQ(most.count, maths::kMostFrames);
+  EXPECT_EQ(most.count, float(maths::kMaxHistoryFrames));
   EXPECT_EQ(most.recent, 1.0f);
   EXPECT_EQ(most.signal.open, maths::kLargestOpen);
   EXPECT_EQ(most.signal.visible, maths::kLargestOpen);

@@ -119,11 +119,17 @@ vec3 normal_of(vec2 lean) {
   return vec3(2.0f * lean, 1.0f - squared) / (1.0f + squared);
 }
 
+// Towards the eye, in view space.
+vec3 facing_normal(RandomInput& random) {
+  vec3 normal = random.unit_vector();
+  normal.z = std::abs(normal.z);
+  return normal;
+}
+
 TEST(CoarseNormal, ComesBackNear) {
   RandomInput random;
   for (int i = 0; i < 100000; ++i) {
-    vec3 normal = random.unit_vector();
-    normal.z = std::abs(normal.z);
+    const vec3 normal = facing_normal(random);
     const maths::CoarseNormal coarse = maths::make_coarse_normal(normal);
     EXPECT_LT(coarse.bits, 256u);
     EXPECT_EQ(coarse.lean, maths::lean_of_bits(coarse.bits));
@@ -138,12 +144,9 @@ TEST(CoarseNormal, ComesBackNear) {
 TEST(CoarseNormal, ATurnIsTheSquareOfSmallAngles) {
   RandomInput random;
   for (int i = 0; i < 100000; ++i) {
-    vec3 normal = random.unit_vector();
-    normal.z = std::abs(normal.z);
-    const maths::CoarseNormal own = maths::make_coarse_normal(normal);
+    const maths::CoarseNormal own = maths::make_coarse_normal(facing_normal(random));
     EXPECT_EQ(maths::squared_turn(own, own.lean), 0.0f);
-    vec3 other = random.unit_vector();
-    other.z = std::abs(other.z);
+    const vec3 other = facing_normal(random);
     const float cosine = dot(normal_of(own.lean), other);
     const float found = maths::squared_turn(own, vec2(other.x, other.y) / (1.0f + other.z));
     if (cosine > 0.97f) {

@@ -77,6 +77,10 @@ HostImage Reconstruct::noise_signal(std::mt19937& random) {
   return signal_of(kWidth, kHeight, [&](std::uint32_t, std::uint32_t) { return noise(random); });
 }
 
+HostImage Reconstruct::no_motion() {
+  return {kWidth, kHeight, std::vector<float>(std::size_t{kWidth} * kHeight * 2), 2};
+}
+
 ReconstructSettings precise(std::uint32_t reach, std::uint32_t history_frames) {
   ReconstructSettings settings;
   settings.filter_reach = reach;

@@ -31,6 +31,7 @@ class Reconstruct : public PassTest {
   // Visibility.
   HostImage reconstruct(const Input& input, const ReconstructSettings& settings);
   static HostImage noise_signal(std::mt19937& random);
+  static HostImage no_motion();
 };
 
 // Texels on a side of the signal of one search in divisor x divisor pixels.

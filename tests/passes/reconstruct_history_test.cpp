@@ -289,7 +289,7 @@ TEST_F(Reconstruct, HistoryDoesNotLeakAcrossACrease) {
 TEST_F(Reconstruct, HistoryOfAnotherNormalIsForgotten) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(0.0, 5.0)});
-  const HostImage still{kWidth, kHeight, std::vector<float>(std::size_t{kWidth} * kHeight * 2), 2};
+  const HostImage still = no_motion();
   const HostImage dark = constant_signal(kWidth, kHeight, 0.1f);
   const HostImage bright = constant_signal(kWidth, kHeight, 0.9f);
   const auto after_a_turn_of = [&](double degrees) {
@@ -404,7 +404,7 @@ TEST_F(Reconstruct, HistoryFollowsWhatComesNearer) {
   }
   EXPECT_LT(spread(found), 0.3 * first);
 
-  const HostImage still{kWidth, kHeight, std::vector<float>(std::size_t{kWidth} * kHeight * 2), 2};
+  const HostImage still = no_motion();
   const Drawing behind = draw(view, kWidth, kHeight, {tilted_plane(0.0, distance / nearer * 1.02)});
   const HostImage bright = constant_signal(kWidth, kHeight, 0.9f);
   const HostImage anew = reconstruct(
@@ -417,7 +417,7 @@ TEST_F(Reconstruct, HistoryFollowsWhatComesNearer) {
 TEST_F(Reconstruct, WhereThingsMoveAShadeLeavesNoTrail) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(30.0, 4.0)});
-  const HostImage motion{kWidth, kHeight, std::vector<float>(std::size_t{kWidth} * kHeight * 2), 2};
+  const HostImage motion = no_motion();
   const HostImage shaded = constant_signal(kWidth, kHeight, 0.6f);
   const HostImage open = constant_signal(kWidth, kHeight, 1.0f);
   const std::uint32_t long_ago = 30;
