@@ -214,6 +214,15 @@ ivec2 block_around(ivec2 cell, int side, int i) {
   return clamp(block, ivec2(0), last_block());
 }
 
+// The outermost corners of what a pixel looks at are left out: beyond it there is little that would
+// weigh so little.
+bool is_corner(int i, int side) {
+  int last = (kBetween ? 2 * side : 2 * side + 1) - 1;
+  int x = i % (last + 1);
+  int y = i / (last + 1);
+  return side > 1 && (x == 0 || x == last) && (y == 0 || y == last);
+}
+
 // A neighbour at distance d weighs 1 / (1 + narrowness d^2)^4.
 float narrowness_of(float width_px) { return 0.125 / (width_px * width_px); }
 
@@ -258,7 +267,11 @@ void add_block(inout Neighbourhood sum, Surface surface, float narrowness, Found
 
 Neighbourhood add_up(Surface surface, float narrowness, Found around[kAround]) {
   Neighbourhood sum = Neighbourhood(no_sum(), vec3(0.0));
-  [[unroll]] for (int i = 0; i < kAround; ++i) { add_block(sum, surface, narrowness, around[i]); }
+  [[unroll]] for (int i = 0; i < kAround; ++i) {
+    if (!is_corner(i, kSide)) {
+      add_block(sum, surface, narrowness, around[i]);
+    }
+  }
   return sum;
 }
 
@@ -353,7 +366,9 @@ void main() {
   }
   Found around[kAround];
   [[unroll]] for (int i = 0; i < kAround; ++i) {
-    around[i] = fetch_block(block_around(cell, kSide, i));
+    if (!is_corner(i, kSide)) {
+      around[i] = fetch_block(block_around(cell, kSide, i));
+    }
   }
   uint reached = kReached;
   do {

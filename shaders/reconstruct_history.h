@@ -220,7 +220,8 @@ void add_further(inout Neighbourhood sum, Surface surface, float narrowness) {
   const int margin = kReach - kSide;
   for (int i = 0; i < across * across; ++i) {
     ivec2 place = ivec2(i % across, i / across) - margin;
-    if (any(lessThan(place, ivec2(0))) || any(greaterThanEqual(place, ivec2(kAcross)))) {
+    bool further = any(lessThan(place, ivec2(0))) || any(greaterThanEqual(place, ivec2(kAcross)));
+    if (further && !is_corner(i, kReach)) {
       add_block(sum, surface, narrowness, fetch_block(block_around(surface.cell, kReach, i)));
     }
   }
