@@ -10,12 +10,13 @@
 // A block of kDivisor x kDivisor pixels has one search a frame, of a pixel that moves through the
 // block from frame to frame: every pixel is searched at its own depth in time, and edges come back
 // sharp. With a history a pixel looks at the four searched ones around it; without one, or while it
-// has next to nothing of its own there, at the 4x4 around it (`kReach` is 2). They weigh by their
-// distance on the image, in a window that narrows as a pixel gathers frames, and by their distance
-// from the pixel's tangent plane, so that a plane at any tilt is filtered whole and nothing leaks
-// across an edge, and by their normals, so that little leaks across a crease. Sums are added up,
-// visible and open parts each, and divided last. Those of the GGX lobe weigh by normal and
-// roughness too: the narrower the lobe, the more of it hangs on where it points.
+// has next to nothing of its own there, at the 4x4 around it (`kReach` is 2) but for the corners,
+// which would cost a fourth and have a tenth of the weight. They weigh by their distance on the
+// image, in a window that narrows as a pixel gathers frames, by their distance from the pixel's
+// tangent plane, so that a plane at any tilt is filtered whole and nothing leaks across an edge,
+// and by their normals, so that little leaks across a crease. Sums are added up, visible and open
+// parts each, and divided last. Those of the GGX lobe weigh by normal and roughness too: the
+// narrower the lobe, the more of it hangs on where it points.
 
 #include "maths/bent_normal.h"
 #include "maths/coarse_normal.h"
@@ -206,25 +207,25 @@ Found fetch_block(ivec2 block) {
 
 ivec2 last_block() { return (size_px() + (kDivisor - 1)) / kDivisor - 1; }
 
+int across_of(int side) { return kBetween ? 2 * side : 2 * side + 1; }
+
 // Block i by rows of those around a cell, `side` on each side. Beyond the image the outermost stand
 // for those that there are not.
 ivec2 block_around(ivec2 cell, int side, int i) {
-  int across = kBetween ? 2 * side : 2 * side + 1;
+  int across = across_of(side);
   ivec2 block = cell + ivec2(i % across, i / across) - (kBetween ? side - 1 : side);
   return clamp(block, ivec2(0), last_block());
 }
 
-// The outermost corners of what a pixel looks at are left out: beyond it there is little that would
-// weigh so little.
-bool is_corner(int i, int side) {
-  int last = (kBetween ? 2 * side : 2 * side + 1) - 1;
-  int x = i % (last + 1);
-  int y = i / (last + 1);
-  return side > 1 && (x == 0 || x == last) && (y == 0 || y == last);
+// Of those, one that nothing looks at.
+bool is_corner(int side, int i) {
+  int last = across_of(side) - 1;
+  ivec2 place = ivec2(i % (last + 1), i / (last + 1));
+  return side > 1 && (place.x == 0 || place.x == last) && (place.y == 0 || place.y == last);
 }
 
 // A neighbour at distance d weighs 1 / (1 + narrowness d^2)^4.
-float narrowness_of(float width_px) { return 0.125 / (width_px * width_px); }
+float narrowness_of(float squared_width_px) { return 0.125 / squared_width_px; }
 
 // A neighbour across a crease weighs no less than 1 / (1 + this)^2, a fifth: where there are few
 // others its search is better than none. By the error of first frames (`alcove compare --frames
@@ -268,16 +269,17 @@ void add_block(inout Neighbourhood sum, Surface surface, float narrowness, Found
 Neighbourhood add_up(Surface surface, float narrowness, Found around[kAround]) {
   Neighbourhood sum = Neighbourhood(no_sum(), vec3(0.0));
   [[unroll]] for (int i = 0; i < kAround; ++i) {
-    if (!is_corner(i, kSide)) {
+    if (!is_corner(kSide, i)) {
       add_block(sum, surface, narrowness, around[i]);
     }
   }
   return sum;
 }
 
-void store(ivec2 pixel, Sum sum) {
+float visibility_of(Sum sum) { return mean_visibility(sum.signal.visible, sum.signal.open); }
+
+void store(ivec2 pixel, Sum sum, float visibility) {
   if (kVisibility) {
-    float visibility = mean_visibility(sum.signal.visible, sum.signal.open);
     imageStore(visibility_image, pixel, vec4(visibility));
   }
   if (kBentNormal) {
@@ -297,26 +299,29 @@ void store(ivec2 pixel, Sum sum) {
 // Stores are many to a pixel and take turns on a processor: the sky has none of its own.
 void reconstruct(Surface surface, bool sky, Found around[kAround]) {
   History next = advance(surface, around, read_history(surface));
-  uvec4 packed = pack_history(next, surface);
+  float visibility = visibility_of(next.sum);
+  uvec4 packed = pack_history(next, visibility, surface);
   if (sky) {
     next.sum = no_sum();
-    packed = uvec4(0u);
+    visibility = 1.0;
+    packed = kNothingHeld;
   }
   imageStore(next_history_image, surface.pixel, packed);
   if (kBentNormal) {
     imageStore(next_bent_history_image, surface.pixel, vec4(next.sum.bent, 0.0));
   }
-  store(surface.pixel, next.sum);
+  store(surface.pixel, next.sum, visibility);
 }
 
 #else
 
 void reconstruct(Surface surface, bool sky, Found around[kAround]) {
-  Sum sum = add_up(surface, narrowness_of(parameters.window_px), around).sum;
+  float narrowness = narrowness_of(parameters.window_px * parameters.window_px);
+  Sum sum = add_up(surface, narrowness, around).sum;
   if (sky) {
     sum = no_sum();
   }
-  store(surface.pixel, sum);
+  store(surface.pixel, sum, visibility_of(sum));
 }
 
 #endif
@@ -331,12 +336,11 @@ void keep_pixel(ivec2 pixel) {
 #ifdef HISTORY
   uvec4 stored = imageLoad(history_image, pixel);
   Sum sum = no_sum();
-  sum.signal = unpack_history_texel(stored.xy).signal;
   if (kBentNormal) {
     sum.bent = imageLoad(bent_history_image, pixel).xyz;
   }
   sum.lobe = Signal(uintBitsToFloat(stored.z), uintBitsToFloat(stored.w));
-  store(pixel, sum);
+  store(pixel, sum, unpack_history_texel(stored.xy).visibility);
 #endif
 }
 
@@ -366,7 +370,7 @@ void main() {
   }
   Found around[kAround];
   [[unroll]] for (int i = 0; i < kAround; ++i) {
-    if (!is_corner(i, kSide)) {
+    if (!is_corner(kSide, i)) {
       around[i] = fetch_block(block_around(cell, kSide, i));
     }
   }

@@ -16,15 +16,18 @@ const float kPlaneTolerance = 1.0 / 3.0;  // of the filter's
 // How far what moves by itself may have come nearer or gone since the last frame, of its depth.
 const float kDepthMotion = 0.04;
 
-uvec4 pack_history(History history, Surface surface) {
+// A texel that is of no surface: open, with nothing to weigh it by.
+const uvec4 kNothingHeld = uvec4(0xffffu, 0u, 0u, 0u);
+
+uvec4 pack_history(History history, float visibility, Surface surface) {
   // A normal that is not a number must not stay in the history.
   Signal lobe = history.sum.lobe;
   if (!(lobe.visible >= 0.0 && lobe.visible <= lobe.open && lobe.open < 1e30)) {
     lobe = Signal(0.0, 0.0);
   }
-  HistoryTexel texel =
-      HistoryTexel(history.sum.signal, held_depth(parameters.history_depth.xy, surface.depth),
-                   history.count, history.recent, surface.coarse.bits);
+  HistoryTexel texel = HistoryTexel(visibility, history.sum.signal.open,
+                                    held_depth(parameters.history_depth.xy, surface.depth),
+                                    history.count, history.recent, surface.coarse.bits);
   return uvec4(pack_history_texel(texel), floatBitsToUint(lobe.visible),
                floatBitsToUint(lobe.open));
 }
@@ -74,17 +77,17 @@ void add_history(inout Read read, Surface surface, CoarseNormal normal, ivec2 pi
   uvec4 stored = imageLoad(history_image, pixel);
   HistoryTexel texel = unpack_history_texel(stored.xy);
   float apart = held_apart(expected, texel.depth);
-  float agreement =
-      kStill ? 1.0 : max(1.0 - 0.5 * squared_turn(normal, lean_of_bits(texel.coarse_normal)), 0.0);
-  float same = history_weight(expected, apart, kDepthTolerance, surface.slant) *
-               history_weight_by_normal(agreement);
-  float off_plane = apart / (kPerspective ? max(expected, 1e-6) : parameters.history_depth.z);
+  float turn = kStill ? 0.0 : squared_turn(normal, lean_of_bits(texel.coarse_normal));
+  float same =
+      history_weight(apart, kDepthTolerance, surface.slant) * history_weight_by_normal(turn);
+  float off_plane = kPerspective ? apart : apart * abs(expected) / parameters.history_depth.z;
   off_plane *= surface.slant * parameters.tolerance * (1.0 / kPlaneTolerance);
   float level = 1.0 + min(off_plane * off_plane, 1e6);
+  float agreement = max(1.0 - 0.5 * turn, 0.0);  // the cosine, about
   float counts = same * sixteenth_power(agreement * agreement) / (level * level);
   float weight = share * counts;
   Sum here = no_sum();
-  here.signal = texel.signal;
+  here.signal = Signal(texel.visibility * texel.open, texel.open);
   if (kBentNormal) {
     here.bent = imageLoad(bent_history_image, pixel).xyz;
   }
@@ -92,8 +95,7 @@ void add_history(inout Read read, Surface surface, CoarseNormal normal, ivec2 pi
   add(read.history.sum, weight, here);
   read.history.count += weight * texel.count;
   read.history.recent += weight * texel.recent;
-  float visibility = mean_visibility(here.signal.visible, here.signal.open);
-  read.moments += weight * vec3(1.0, visibility, visibility * visibility);
+  read.moments += weight * vec3(1.0, texel.visibility, texel.visibility * texel.visibility);
   read.same += share * same;
   read.most = max(read.most, counts);
 }
@@ -106,7 +108,7 @@ History no_history() { return History(no_sum(), 0.0, 0.0, 0.0); }
 float moved_in_depth(ivec2 texels[4], vec4 expected) {
   float moved = 0.0;
   float least = kDepthMotion;
-  for (int i = 0; i < 4; ++i) {
+  [[unroll]] for (int i = 0; i < 4; ++i) {
     float found = unpack_history_texel(imageLoad(history_image, texels[i]).xy).depth;
     float part = abs(found - expected[i]) / max(expected[i], 1e-6);
     if (part < least) {
@@ -126,7 +128,7 @@ void read_moved(inout Read read, Surface surface) {
   read.history.between = dot(part, 1.0 - part);
   ivec2 texels[4];
   vec4 expected;
-  for (int i = 0; i < 4; ++i) {
+  [[unroll]] for (int i = 0; i < 4; ++i) {
     ivec2 corner = ivec2(i & 1, i >> 1);
     texels[i] = clamp(ivec2(first) + corner, ivec2(0), last);
     // Where the surface's tangent plane passes that texel; it hardly turns from frame to frame.
@@ -139,7 +141,7 @@ void read_moved(inout Read read, Surface surface) {
     expected += moved_in_depth(texels, expected);
   }
   CoarseNormal normal = make_coarse_normal(mat3(parameters.before_from_view) * surface.normal);
-  for (int i = 0; i < 4; ++i) {
+  [[unroll]] for (int i = 0; i < 4; ++i) {
     vec2 near = abs(1.0 - vec2(i & 1, i >> 1) - part);
     add_history(read, surface, normal, texels[i], expected[i], before.seen ? near.x * near.y : 0.0);
   }
@@ -174,12 +176,12 @@ History read_history(Surface surface) {
 // A block of 4 gives a pixel few searches of its own even in time.
 const float kWidth = kDivisor > 2 ? 2.5 : 1.0;
 
-// Wide while a pixel has little of its own, then hardly more than the pixel itself, or as wide as
-// reading between texels blurs anyway.
-float window_width(History history) {
-  float own = 0.58 * kWidth;
-  return max(sqrt(own * own + 2.6 * history.between),
-             parameters.window_px * inversesqrt(history.count + 1.0));
+// Squared, in pixels: wide while a pixel has little of its own, then hardly more than the pixel
+// itself, or as wide as reading between texels blurs anyway.
+float squared_window(History history) {
+  const float own = 0.58 * kWidth;
+  return max(own * own + 2.6 * history.between,
+             parameters.window_px * parameters.window_px / (history.count + 1.0));
 }
 
 // How much nearer to the tangent plane a neighbour has to be than in a first frame: the more
@@ -191,7 +193,7 @@ float stiffening(float count) {
 }
 
 void clamp_history(inout History history, Spread spread) {
-  float before = mean_visibility(history.sum.signal.visible, history.sum.signal.open);
+  float before = visibility_of(history.sum);
   float after = clamp_to_spread(before, spread, parameters.clamp_width);
   if (history.count > 0.0) {
     history.sum.signal.visible = after * history.sum.signal.open;
@@ -202,7 +204,7 @@ void clamp_history(inout History history, Spread spread) {
 // Where something moves, visibility changes on surfaces that stand still: what the last few frames
 // say then replaces what all of them do.
 void follow_change(inout History history, Signal now) {
-  float before = mean_visibility(history.sum.signal.visible, history.sum.signal.open);
+  float before = visibility_of(history.sum);
   history.recent = recent_visibility(history.recent, history.count,
                                      mean_visibility(now.visible, now.open), now.open);
   float changed = history.count > 0.0 ? visibility_changed(before, history.recent) : 0.0;
@@ -216,21 +218,21 @@ const bool kLooksFurther = !kFresh && kReach > kSide;
 
 // Adds the searches further away than those around the cell.
 void add_further(inout Neighbourhood sum, Surface surface, float narrowness) {
-  const int across = kBetween ? 2 * kReach : 2 * kReach + 1;
+  int across = across_of(kReach);
   const int margin = kReach - kSide;
-  for (int i = 0; i < across * across; ++i) {
-    ivec2 place = ivec2(i % across, i / across) - margin;
-    bool further = any(lessThan(place, ivec2(0))) || any(greaterThanEqual(place, ivec2(kAcross)));
-    if (further && !is_corner(i, kReach)) {
-      add_block(sum, surface, narrowness, fetch_block(block_around(surface.cell, kReach, i)));
-    }
+  // By rows, without the corners: the first and the last are left out here, two within.
+  for (int i = 1; i < across * across - 1; ++i) {
+    add_block(sum, surface, narrowness, fetch_block(block_around(surface.cell, kReach, i)));
+    ivec2 place = ivec2((i + 1) % across, (i + 1) / across);
+    bool within = place.x == margin && place.y >= margin && place.y < margin + kAcross;
+    i += is_corner(kReach, i + 1) ? 1 : within ? kAcross : 0;
   }
 }
 
 // The pixel's sums with this frame's neighbourhood added.
 History advance(Surface surface, Found around[kAround], History history) {
   surface.stiffness *= stiffening(history.count);
-  float narrowness = narrowness_of(window_width(history));
+  float narrowness = narrowness_of(squared_window(history));
   Neighbourhood now = add_up(surface, narrowness, around);
   if (kLooksFurther && history.count < 2.0) {
     add_further(now, surface, narrowness);
@@ -244,16 +246,14 @@ History advance(Surface surface, Found around[kAround], History history) {
   }
   // Not divided by the weight found: a frame that searched the pixel itself counts for more than
   // one that searched its neighbours. Divided by the window's size, so that wide ones do not.
-  float width = window_width(history);
   float fresh = accumulation_weight(history.count, parameters.longest);
-  float scale = 0.42 * kWidth * kWidth / (width * width) * fresh;
+  float scale = 0.42 * kWidth * kWidth / squared_window(history) * fresh;
   History next;
   next.sum = no_sum();
   add(next.sum, 1.0 - fresh, history.sum);
   add(next.sum, scale, now.sum);
   next.count = next_count(history.count, parameters.longest);
-  next.recent =
-      kMotion ? history.recent : mean_visibility(next.sum.signal.visible, next.sum.signal.open);
+  next.recent = kMotion ? history.recent : visibility_of(next.sum);
   return next;
 }
 

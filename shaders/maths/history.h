@@ -7,23 +7,23 @@
 
 ALCOVE_MATHS_BEGIN
 
-// How far a held depth lies from the expected one, beyond what holding it in a half explains.
+// How far a held depth lies from the expected one, as a part of that, beyond what holding it in a
+// half explains.
 ALCOVE_INLINE float held_apart(float expected, float found) {
-  return max(abs(found - expected) - abs(expected) * (1.0f / 2048.0f), 0.0f);
+  return max(abs(found - expected) / max(abs(expected), 1e-6f) - 1.0f / 2048.0f, 0.0f);
 }
 
-// How far from the expected depth a texel of history may lie and still be the same surface, [0,1]:
-// 1 where it lies `apart` 0 from it, 0 from `tolerance` times it on. `slant` is the cosine between
-// normal and view vector: a surface seen edge-on runs deep within one texel.
-ALCOVE_INLINE float history_weight(float expected, float apart, float tolerance, float slant) {
-  float reach = tolerance * max(abs(expected), 1e-6f) / max(slant, 0.1f);
-  return clamp(1.0f - apart / reach, 0.0f, 1.0f);
+// How far a texel of history that lies `apart`, of held_apart(), from the expected depth is still
+// of the same surface, [0,1]: 1 where it lies 0 from it, 0 from `tolerance` on. `slant` is the
+// cosine between normal and view vector: a surface seen edge-on runs deep within one texel.
+ALCOVE_INLINE float history_weight(float apart, float tolerance, float slant) {
+  return clamp(1.0f - apart * max(slant, 0.1f) * (1.0f / tolerance), 0.0f, 1.0f);
 }
 
-// How far normals tell that a texel of history is of the same surface, [0,1], by the cosine between
-// them: 0 from 37 degrees on.
-ALCOVE_INLINE float history_weight_by_normal(float agreement) {
-  return clamp(5.0f * agreement - 4.0f, 0.0f, 1.0f);
+// How far normals tell that a texel of history is of the same surface, [0,1], by the square of the
+// angle between them, of squared_turn(): 0 from 37 degrees on.
+ALCOVE_INLINE float history_weight_by_normal(float squared_angle) {
+  return clamp(1.0f - 2.5f * squared_angle, 0.0f, 1.0f);
 }
 
 // What this frame weighs when `count` frames are held already (0: none) and at most `longest`
@@ -91,7 +91,8 @@ ALCOVE_INLINE float held_depth(vec2 scale_and_offset, float depth) {
 
 // What a texel of history knows besides its sums over lobes and directions, in 8 bytes.
 struct HistoryTexel {
-  Signal signal;       // the ratio to 2^-17, the open part as pack_open() has it
+  float visibility;    // [0,1], to 2^-17
+  float open;          // of Signal, as pack_open() has it
   float depth;         // linear, as held_depth() has it, to 2^-11 of itself
   float count;         // frames, [0,kMaxHistoryFrames], whole
   float recent;        // visibility of the last few frames, [0,1], to 2^-8
@@ -102,8 +103,7 @@ struct HistoryTexel {
 const uint kMaxHistoryFrames = 127u;
 
 ALCOVE_INLINE uvec2 pack_history_texel(HistoryTexel texel) {
-  uint signal =
-      pack_unorm(visible_ratio(texel.signal), 16u) | (pack_open(texel.signal.open) << 16u);
+  uint signal = pack_unorm(texel.visibility, 16u) | (pack_open(texel.open) << 16u);
   uint whole = uint(clamp(texel.count, 0.0f, float(kMaxHistoryFrames)) + 0.5f);
   uint state = packHalf2x16(vec2(max(texel.depth, 0.0f), 0.0f)) | (whole << 15u) |
                (pack_unorm(texel.recent, 7u) << 22u);
@@ -113,8 +113,8 @@ ALCOVE_INLINE uvec2 pack_history_texel(HistoryTexel texel) {
 
 ALCOVE_INLINE HistoryTexel unpack_history_texel(uvec2 bits) {
   HistoryTexel texel;
-  texel.signal.open = unpack_open(bits.x >> 16u);
-  texel.signal.visible = unpack_unorm(bits.x, 16u) * texel.signal.open;
+  texel.visibility = unpack_unorm(bits.x, 16u);
+  texel.open = unpack_open(bits.x >> 16u);
   texel.depth = unpackHalf2x16(bits.y & 0x7fffu).x;
   texel.count = float((bits.y >> 15u) & 127u);
   texel.recent = unpack_unorm(bits.y >> 22u, 7u);

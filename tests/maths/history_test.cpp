@@ -11,10 +11,11 @@
 namespace alcove::maths_test {
 namespace {
 
-maths::HistoryTexel texel_of(const maths::Signal& signal, float depth, float count, float recent,
+maths::HistoryTexel texel_of(float visibility, float open, float depth, float count, float recent,
                              unsigned coarse_normal) {
   maths::HistoryTexel texel;
-  texel.signal = signal;
+  texel.visibility = visibility;
+  texel.open = open;
   texel.depth = depth;
   texel.count = count;
   texel.recent = recent;
@@ -22,34 +23,29 @@ maths::HistoryTexel texel_of(const maths::Signal& signal, float depth, float cou
   return texel;
 }
 
-maths::Signal signal_of(float visible, float open) {
-  maths::Signal signal;
-  signal.visible = visible;
-  signal.open = open;
-  return signal;
-}
-
 maths::HistoryTexel stored(const maths::HistoryTexel& texel) {
   return maths::unpack_history_texel(maths::pack_history_texel(texel));
 }
 
 maths::HistoryTexel held_as(float depth) {
-  return stored(texel_of(signal_of(0.0f, 0.0f), depth, 0.0f, 0.0f, 0u));
+  return stored(texel_of(1.0f, 0.0f, depth, 0.0f, 0.0f, 0u));
 }
 
 TEST(History, DepthThatDiffersIsRejectedAndSlantedDepthGivenRoom) {
-  EXPECT_EQ(maths::history_weight(10.0f, 0.0f, 0.02f, 1.0f), 1.0f);
-  EXPECT_EQ(maths::history_weight(10.0f, 0.3f, 0.02f, 1.0f), 0.0f);
-  EXPECT_GT(maths::history_weight(10.0f, 0.3f, 0.02f, 0.2f), 0.5f);
-  EXPECT_EQ(maths::history_weight(10.0f, maths::kSkyDepth, 0.02f, 0.0f), 0.0f);
-  EXPECT_TRUE(std::isfinite(maths::history_weight(0.0f, 0.0f, 0.02f, 0.0f)));
+  EXPECT_EQ(maths::history_weight(0.0f, 0.02f, 1.0f), 1.0f);
+  EXPECT_EQ(maths::history_weight(0.03f, 0.02f, 1.0f), 0.0f);
+  EXPECT_GT(maths::history_weight(0.03f, 0.02f, 0.2f), 0.5f);
+  const float sky = maths::held_apart(10.0f, maths::kSkyDepth);
+  EXPECT_EQ(maths::history_weight(sky, 0.02f, 0.0f), 0.0f);
+  EXPECT_EQ(maths::history_weight(maths::held_apart(0.0f, 0.0f), 0.02f, 0.0f), 1.0f);
 }
 
 TEST(History, NormalsThatDifferAreRejected) {
-  EXPECT_EQ(maths::history_weight_by_normal(1.0f), 1.0f);
-  EXPECT_EQ(maths::history_weight_by_normal(std::cos(0.65f)), 0.0f);
-  EXPECT_EQ(maths::history_weight_by_normal(-1.0f), 0.0f);
-  EXPECT_GT(maths::history_weight_by_normal(std::cos(0.2f)), 0.9f);
+  const auto weight = [](float angle) { return maths::history_weight_by_normal(angle * angle); };
+  EXPECT_EQ(weight(0.0f), 1.0f);
+  EXPECT_GE(weight(0.2f), 0.9f);
+  EXPECT_EQ(weight(0.65f), 0.0f);
+  EXPECT_EQ(weight(3.0f), 0.0f);
 }
 
 TEST(History, WhatAHalfRoundsAwayIsNoDistance) {
@@ -58,7 +54,7 @@ TEST(History, WhatAHalfRoundsAwayIsNoDistance) {
     const float depth = std::exp(random.uniform(-7.0f, 11.0f));
     const float held = held_as(depth).depth;
     EXPECT_EQ(maths::held_apart(depth, held), 0.0f);
-    EXPECT_NEAR(maths::held_apart(depth, 1.01f * depth), 0.01f * depth, 6e-4f * depth);
+    EXPECT_NEAR(maths::held_apart(depth, 1.01f * depth), 0.01f, 6e-4f);
   }
 }
 
@@ -128,17 +124,17 @@ TEST(History, ATexelKeepsWhatItHolds) {
   RandomInput random;
   for (int i = 0; i < 20000; ++i) {
     const float open = random.uniform(1e-3f, maths::kLargestOpen);
-    const float ratio = i % 5 == 0 ? 1.0f : random.uniform(0.0f, 1.0f);
+    const float visibility = i % 5 == 0 ? 1.0f : random.uniform(0.0f, 1.0f);
     const float depth = std::exp(random.uniform(-7.0f, 11.0f));
     const float count = std::floor(random.uniform(0.0f, maths::kMaxHistoryFrames + 0.99f));
     const float recent = random.uniform(0.0f, 1.0f);
     const auto normal = static_cast<unsigned>(i % 256);
     const maths::HistoryTexel texel =
-        stored(texel_of(signal_of(ratio * open, open), depth, count, recent, normal));
-    EXPECT_NEAR(texel.signal.open, open, open / 120);
-    EXPECT_NEAR(texel.signal.visible, ratio * texel.signal.open, 1e-5f * texel.signal.open);
-    if (ratio == 1.0f) {
-      EXPECT_EQ(texel.signal.visible, texel.signal.open);
+        stored(texel_of(visibility, open, depth, count, recent, normal));
+    EXPECT_NEAR(texel.open, open, open / 120);
+    EXPECT_NEAR(texel.visibility, visibility, 1e-5f);
+    if (visibility == 1.0f) {
+      EXPECT_EQ(texel.visibility, 1.0f);
     }
     EXPECT_NEAR(texel.depth, depth, depth * std::ldexp(1.0f, -11));
     EXPECT_EQ(texel.count, count);
@@ -149,15 +145,15 @@ TEST(History, ATexelKeepsWhatItHolds) {
 
 TEST(History, ATexelHoldsTheNearestOfWhatItCannot) {
   const maths::HistoryTexel least =
-      stored(texel_of(signal_of(0.0f, 0.0f), -1.0f, -1.0f, -1.0f, 0u));
-  EXPECT_EQ(least.count + least.recent + least.depth + least.signal.open, 0.0f);
+      stored(texel_of(-1.0f, -1.0f, -1.0f, -1.0f, -1.0f, 0u));
+  EXPECT_EQ(least.count + least.recent + least.depth + least.visibility + least.open, 0.0f);
   EXPECT_EQ(least.coarse_normal, 0u);
   const maths::HistoryTexel most =
-      stored(texel_of(signal_of(9.0f, 8.0f), 6e4f, 300.0f, 2.0f, 255u));
+      stored(texel_of(9.0f, 8.0f, 6e4f, 300.0f, 2.0f, 255u));
   EXPECT_EQ(most.count, float(maths::kMaxHistoryFrames));
   EXPECT_EQ(most.recent, 1.0f);
-  EXPECT_EQ(most.signal.open, maths::kLargestOpen);
-  EXPECT_EQ(most.signal.visible, maths::kLargestOpen);
+  EXPECT_EQ(most.open, maths::kLargestOpen);
+  EXPECT_EQ(most.visibility, 1.0f);
   EXPECT_EQ(most.coarse_normal, 255u);
 }
 

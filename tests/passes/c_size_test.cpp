@@ -111,7 +111,7 @@ TEST_F(CSize, HistoryGoesOnWhileTheSizeChanges) {
       history = i == 0 ? memory_of(*context).history : history;
       EXPECT_EQ(memory_of(*context).history, history);
     }
-    EXPECT_LT(rms(found.visibility, expected.visibility), 0.55 * fresh) << motion;
+    EXPECT_LT(rms(found.visibility, expected.visibility), 0.6 * fresh) << motion;
     EXPECT_EQ(alcoveDropView(context.get(), 2), ALCOVE_SUCCESS);
   }
 }

@@ -34,7 +34,8 @@ double squared_distance(std::uint32_t a, std::uint32_t b) {
   return apart * apart;
 }
 
-// The mean that a pixel of a wall seen head-on has of the searches around it, on its first frame.
+// The mean that a pixel of a wall seen head-on has of the searches around it, on its first frame:
+// all but the corners', where it looks further than at those next to it.
 double mean_around(const HostImage& signal, std::uint32_t x, std::uint32_t y, std::uint32_t width,
                    std::uint32_t height, std::uint32_t divisor, SearchPhase phase, int reach) {
   const double window_px = 1.1 * divisor;  // of one slice
@@ -43,6 +44,10 @@ double mean_around(const HostImage& signal, std::uint32_t x, std::uint32_t y, st
   for (int j = 0; j < 2 * reach; ++j) {
     const Searched row = searched_around(y, height, divisor, phase.y, reach, j);
     for (int i = 0; i < 2 * reach; ++i) {
+      const auto outermost = [&](int place) { return place == 0 || place == 2 * reach - 1; };
+      if (reach > 1 && outermost(i) && outermost(j)) {
+        continue;
+      }
       const Searched column = searched_around(x, width, divisor, phase.x, reach, i);
       const double squared = squared_distance(column.pixel, x) + squared_distance(row.pixel, y);
       const double weight = std::pow(1.0 + 0.125 * squared / (window_px * window_px), -4.0);
