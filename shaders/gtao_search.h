@@ -61,13 +61,11 @@ Search make_search(Surface surface, SliceLine line, Slice slice, float side, flo
   return search;
 }
 
-// A sample's linear depth, times w.
-float distance_w(LineSample here) { return kPerspective ? 1.0 : here.line; }
-
 // The settings' thickness, of an occluder at a sample: as slice_point() gives lengths, times w.
 float settings_thickness(LineSample here) {
-  // w times the distance is 1 in perspective.
-  return parameters.thickness * (kThicknessOfDistance ? distance_w(here) : here.point.z);
+  // In perspective w times the distance is 1; an orthographic depth may lie behind the eye.
+  float distance = kPerspective ? 1.0 : abs(here.line);
+  return parameters.thickness * (kThicknessOfDistance ? distance : here.point.z);
 }
 
 // Layers of depth: 0, and 1 behind it.
