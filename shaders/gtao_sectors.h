@@ -96,7 +96,8 @@ void extend_sheet(inout Sheet sheet, Search search, uint layer, LineSample here,
   float excess = radius_excess(here.point, parameters.radius);
   bool inside = excess <= 0.0;
   bool begins = kConnected && !joined;
-  float drawn = begins ? edge_share(kStepCount) * sheet.step_px * search.line.x_per_step : 0.0;
+  float drawn =
+      begins ? edge_share(kStepCount) * sheet.step_px * search.slice_line.x_per_step : 0.0;
   vec2 front = vec2(here.point.x - drawn, here.point.y);
   vec2 leaves = radius_crossing(here.point, excess, sheet.last, sheet.excess);
   float position = sector_position(search.per_bearing, inside ? front : leaves);
@@ -133,7 +134,7 @@ void pass_sample(inout Sheet sheet, inout LineSample here, Search search, uint l
 // Those of a surface that leaves the image and did not bend before: it is taken to go on as it
 // left, until it leaves the radius. `way` is the last step's.
 uint continued_sectors(Sheet sheet, Search search, vec3 way) {
-  float x = search.continued_px * search.line.x_per_step;
+  float x = search.continued_px * search.slice_line.x_per_step;
   vec3 end = continued_point(sheet.last, way, x);
   float excess = radius_excess(end, parameters.radius);
   vec2 leaves = radius_crossing(end, excess, sheet.last, sheet.excess);
