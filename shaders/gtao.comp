@@ -151,7 +151,8 @@ LobeSlice lobe_of(Surface surface, Slice slice) {
 
 UnseenArc unseen_arc(Slice slice, Search search, Search other, Occluders found) {
   float nearness = kPerspective ? parameters.radius / search.depth : 0.0;
-  float radius_px = slice_radius_px(search.line, parameters.radius, search.depth, kPerspective);
+  float radius_px =
+      slice_radius_px(search.slice_line, parameters.radius, search.depth, kPerspective);
   Unseen unseen =
       add_beyond_border(mean_row(found.unseen), found.border_px, search.outside * radius_px,
                         border_share(other.outside, nearness));

@@ -13,13 +13,13 @@ float border_distance(vec2 centre, vec2 direction) {
 // One side of a slice, as it is searched.
 struct Search {
   ivec2 pixel;
-  float side;          // 1, or -1 against the slice's direction
-  SliceLine line;      // outwards
-  float reach_px;      // from the first step to the last; 0 where there is nothing to search
-  float continued_px;  // of the radius beyond the image's border, as far as surfaces go on there
-  float outside;       // part of the radius beyond the image's border, [0,1]
-  float offset;        // of the steps, [0,1)
-  float depth;         // linear, of the shaded point
+  float side;            // 1, or -1 against the slice's direction
+  SliceLine slice_line;  // outwards
+  float reach_px;        // from the first step to the last; 0 where there is nothing to search
+  float continued_px;    // of the radius beyond the image's border, as far as surfaces go on there
+  float outside;         // part of the radius beyond the image's border, [0,1]
+  float offset;          // of the steps, [0,1)
+  float depth;           // linear, of the shaded point
   TangentLine tangent;
   float gradient;  // of the tangent line, outwards
   float lowest;    // cosine of the tangent plane's horizon
@@ -32,19 +32,19 @@ struct Search {
 // Bend of the line between two samples, in depths for each pixel's width, that parts two surfaces.
 const float kSharpBend = 4.0;
 
-Search make_search(Surface surface, SliceLine line, Slice slice, float side, float offset) {
+Search make_search(Surface surface, SliceLine slice_line, Slice slice, float side, float offset) {
   Search search;
   search.pixel = surface.pixel;
   search.side = side;
-  search.line = line;
-  search.line.direction_px *= side;
-  search.line.y_per_step *= side;
+  search.slice_line = slice_line;
+  search.slice_line.direction_px *= side;
+  search.slice_line.y_per_step *= side;
   // Where the surface faces away from a side, what stands above its tangent plane within the radius
   // lies nearer by the cosine of gamma.
   search.lowest = tangent_horizon(slice, side);
   float radius = parameters.radius * (search.lowest > 0.0 ? slice.cosine : 1.0);
-  float distance_px = slice_radius_px(line, radius, surface.depth, kPerspective);
-  float border = border_distance(surface.centre, search.line.direction_px);
+  float distance_px = slice_radius_px(slice_line, radius, surface.depth, kPerspective);
+  float border = border_distance(surface.centre, search.slice_line.direction_px);
   // Steps stay apart where the radius spans few pixels, and inside the image always.
   float apart = max(distance_px - kNearestStep, 0.25 * float(kStepCount));
   bool empty = min(distance_px, border) < kNearestStep;
@@ -54,20 +54,18 @@ Search make_search(Surface surface, SliceLine line, Slice slice, float side, flo
   search.offset = offset;
   search.depth = surface.depth;
   search.tangent = surface.tangent;
-  search.gradient = dot(search.line.direction_px, surface.tangent.gradient);
+  search.gradient = dot(search.slice_line.direction_px, surface.tangent.gradient);
   search.height = vec2(side * slice.along, slice.toward);
-  search.sharp = kSharpBend * line.x_per_step * (kPerspective ? surface.tangent.line : 1.0);
+  search.sharp = kSharpBend * slice_line.x_per_step * (kPerspective ? surface.tangent.line : 1.0);
   search.per_bearing = sectors_per_bearing(slice, side);
   return search;
 }
 
-// A sample's linear depth, times w.
-float distance_w(LineSample here) { return kPerspective ? 1.0 : here.line; }
-
 // The settings' thickness, of an occluder at a sample: as slice_point() gives lengths, times w.
 float settings_thickness(LineSample here) {
-  // w times the distance is 1 in perspective.
-  return parameters.thickness * (kThicknessOfDistance ? distance_w(here) : here.point.z);
+  // In perspective w times the distance is 1; an orthographic depth may lie behind the eye.
+  float distance = kPerspective ? 1.0 : abs(here.line);
+  return parameters.thickness * (kThicknessOfDistance ? distance : here.point.z);
 }
 
 // Layers of depth: 0, and 1 behind it.
@@ -75,23 +73,24 @@ LineSample fetch_sample(Search search, uint layer, uint k) {
   float t = (float(k) + search.offset) * (1.0 / float(kStepCount));
   LineSample found;
   found.offset_px = kNearestStep + search.reach_px * (t * t);
-  vec2 snapped = roundEven(search.line.direction_px * found.offset_px);
+  vec2 snapped = roundEven(search.slice_line.direction_px * found.offset_px);
   // A side with nothing to search may lie outside the image.
   ivec2 texel = search.pixel + (search.reach_px > 0.0 ? ivec2(snapped) : ivec2(0));
   float line = layer == 0u ? imageLoad(line_image, texel).r : imageLoad(second_image, texel).r;
   // Only across the line: along it a sample stays where it was found.
-  float along_px = kSnapping ? dot(snapped, search.line.direction_px) : found.offset_px;
+  float along_px = kSnapping ? dot(snapped, search.slice_line.direction_px) : found.offset_px;
   float on_plane = dot(snapped, search.tangent.gradient);
   float share =
       tangent_share(search.tangent, line - search.tangent.line - on_plane, found.offset_px);
   float moved = moved_line(line, share * (along_px * search.gradient - on_plane), kPerspective);
   found.line = kSnapping ? moved : line;
-  found.point = slice_point(search.line, along_px, found.line, search.depth, kPerspective);
+  found.point = slice_point(search.slice_line, along_px, found.line, search.depth, kPerspective);
   if (kBackFaces) {
     float back = imageLoad(back_image, texel).r;
     // Not before the front where that was moved.
-    vec3 end = slice_point(search.line, along_px, farther_line(found.line, back, kPerspective),
-                           search.depth, kPerspective);
+    vec3 end =
+        slice_point(search.slice_line, along_px, farther_line(found.line, back, kPerspective),
+                    search.depth, kPerspective);
     found.back = ends_occluder(line, back, kPerspective) ? end.xy : vec2(0.0, kNoBack);
   }
   return found;

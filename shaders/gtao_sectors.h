@@ -14,7 +14,7 @@ struct Fronts {
 
 // What the search holds on to from sample to sample.
 struct Sheet {
-  LineSample last;
+  vec3 last;       // the last sample's point
   float rise;      // of `line` over the last step
   float step_px;   // the last step
   float bend;      // sharp, at the last sample
@@ -65,7 +65,7 @@ Unseen pass_column(Unseen unseen, LineSample here, float excess, float width_px)
 // The first sample stands alone. Its edge is drawn in unless it lies on the surface's own plane.
 Sheet begin_sheet(Search search, uint layer, LineSample here, LineSample next) {
   Sheet sheet;
-  sheet.last = here;
+  sheet.last = here.point;
   sheet.rise = next.line - here.line;
   sheet.step_px = next.offset_px - here.offset_px;
   sheet.bend = sharp_bend(here.line - search.tangent.line, here.offset_px, sheet.rise,
@@ -96,9 +96,10 @@ void extend_sheet(inout Sheet sheet, Search search, uint layer, LineSample here,
   float excess = radius_excess(here.point, parameters.radius);
   bool inside = excess <= 0.0;
   bool begins = kConnected && !joined;
-  float drawn = begins ? edge_share(kStepCount) * sheet.step_px * search.line.x_per_step : 0.0;
+  float drawn =
+      begins ? edge_share(kStepCount) * sheet.step_px * search.slice_line.x_per_step : 0.0;
   vec2 front = vec2(here.point.x - drawn, here.point.y);
-  vec2 leaves = radius_crossing(here.point, excess, sheet.last.point, sheet.excess);
+  vec2 leaves = radius_crossing(here.point, excess, sheet.last, sheet.excess);
   float position = sector_position(search.per_bearing, inside ? front : leaves);
   // Not in the choice itself, which would be a branch.
   float behind = back_position(search, here, begins, drawn);
@@ -112,7 +113,7 @@ void extend_sheet(inout Sheet sheet, Search search, uint layer, LineSample here,
   if (tells_unseen(layer)) {
     sheet.unseen = pass_column(sheet.unseen, here, excess, sheet.step_px);
   }
-  sheet.last = here;
+  sheet.last = here.point;
   sheet.bend = bend;
   sheet.position = position;
   sheet.excess = excess;
@@ -133,10 +134,10 @@ void pass_sample(inout Sheet sheet, inout LineSample here, Search search, uint l
 // Those of a surface that leaves the image and did not bend before: it is taken to go on as it
 // left, until it leaves the radius. `way` is the last step's.
 uint continued_sectors(Sheet sheet, Search search, vec3 way) {
-  float x = search.continued_px * search.line.x_per_step;
-  vec3 end = continued_point(sheet.last.point, way, x);
+  float x = search.continued_px * search.slice_line.x_per_step;
+  vec3 end = continued_point(sheet.last, way, x);
   float excess = radius_excess(end, parameters.radius);
-  vec2 leaves = radius_crossing(end, excess, sheet.last.point, sheet.excess);
+  vec2 leaves = radius_crossing(end, excess, sheet.last, sheet.excess);
   float position = sector_position(search.per_bearing, excess > 0.0 ? leaves : end.xy);
   bool goes_on = x > 0.0 && sheet.bend == 0.0 && sheet.excess <= 0.0;
   return goes_on ? sectors_between(sheet.position, position) : 0u;
@@ -173,7 +174,7 @@ Occluders find_in_layer(Search search, uint layer) {
     } while (k < kStepCount);
   }
   // Nothing tells how it ends: joined only if the way to it did not bend.
-  vec3 way = here.point - sheet.last.point;
+  vec3 way = here.point - sheet.last;
   extend_sheet(sheet, search, layer, here, -sheet.bend);
   uint continued = kContinuation && kConnected ? continued_sectors(sheet, search, way) : 0u;
   float width = front_width(sheet.fronts, kNearestStep + search.reach_px);

@@ -8,7 +8,7 @@
 
 namespace alcove::passes {
 
-// The name of a view's history: of the stack, since a steady frame allocates nothing.
+// The name of a view's history: on the stack, since a steady frame allocates nothing.
 class ViewName {
  public:
   explicit ViewName(std::uint32_t id);

@@ -17,7 +17,7 @@ namespace alcove::passes {
 namespace {
 
 constexpr std::size_t kShaderCount = static_cast<std::size_t>(Shader::count);
-constexpr std::size_t kMaxBindings = 17;  // the parameters among them
+constexpr std::size_t kMaxBindings = 16;  // the parameters among them
 constexpr std::uint32_t kGroupSize = 8;
 
 tl::unexpected<Error> failure(std::string_view what, VkResult result) {

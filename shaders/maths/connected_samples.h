@@ -80,8 +80,8 @@ ALCOVE_INLINE vec2 radius_crossing(vec3 here, float here_excess, vec3 there, flo
 const float kContinuedReaches = 4.0f;
 
 // Where a plane gets to that went `way` over the last step, all as slice_point() gives points, `x`
-// (x w) further on; before that, where it reaches a tenth of the depth of `here` in w, and at
-// `here` if it went nowhere.
+// (x w) further on; before that where its w falls to a tenth of that of `here`, and at `here` if it
+// went nowhere.
 ALCOVE_INLINE vec3 continued_point(vec3 here, vec3 way, float x) {
   float steps = way.x > 0.0f ? x / way.x : 0.0f;
   float away = max(-way.z, 0.0f);

@@ -69,8 +69,9 @@ ALCOVE_INLINE float lobe_cone(float alpha) {
   return angle_of(rise * (2.0f - rise), 1.0f - rise);
 }
 
-// S of a visibility cone around `bent_normal` for the lobe cone around `reflection`. A lobe that
-// lies under the surface as a whole sees as much as the surface does: 1 where it is open.
+// S of a visibility cone around `bent_normal` for the lobe cone around `reflection`, which is above
+// the surface, as mirror_direction() gives it. A lobe too narrow to have an area is a mirror: what
+// it shows is visible or it is not.
 ALCOVE_INLINE float cone_specular_occlusion(float visibility_angle, float lobe_angle,
                                             vec3 bent_normal, vec3 normal, vec3 reflection) {
   float above = cap_intersection(kHalfPi, lobe_angle, angle_between(normal, reflection));

@@ -8,8 +8,9 @@
 // side towards the normal. Lobes are cut by the surface: shares are of what is above it.
 //
 // The share falls from 1 to 0 within the width of the lobe where the mirror direction leaves the
-// cone. So the second coordinate is the angle by which it is inside, in widths of the lobe,
-// squeezed so that all of the range fits and most entries lie about 0.
+// cone. So in place of the second number an entry's first coordinate is the angle by which that
+// direction is inside, in widths of the lobe, squeezed so that all of the range fits and most
+// entries lie about 0.
 #ifndef ALCOVE_MATHS_GTSO_TABLE_H
 #define ALCOVE_MATHS_GTSO_TABLE_H
 
@@ -28,7 +29,7 @@ const uint kGtsoMirror = 16u;
 const uint kGtsoRoughness = 12u;
 const uint kGtsoEntries = kGtsoInside * kGtsoCone * kGtsoMirror * kGtsoRoughness;
 
-// The width of the lobe as the second coordinate takes it, radians.
+// The width of the lobe as the coordinates take it, radians.
 ALCOVE_INLINE float gtso_width(float roughness) {
   return 2.5f * max(roughness * roughness, kSmallestAlpha);
 }

@@ -33,6 +33,8 @@ inline const char* projection_fault(const mat4& m) {
     return "the projection matrix has an oblique near plane: its depth must depend on z alone";
   if (m[2][3] > 0.0f || (m[2][3] == 0.0f && m[3][3] <= 0.0f))
     return "the projection matrix looks along +Z: view space must have the camera along -Z";
+  if (m[2][3] != 0.0f && std::abs(m[3][3]) > -1e-6f * m[2][3])
+    return "the projection matrix moves the eye along z: in perspective its w must be 0 where z is";
   if (double(m[2][2]) * double(m[3][3]) == double(m[3][2]) * double(m[2][3]))
     return "the projection matrix gives every point the same depth";
   return nullptr;
@@ -79,8 +81,7 @@ inline const char* projection_fault(const mat4& m) {
   p.near_far = vec2(depth_at(reversed ? 1.0 : 0.0), depth_at(reversed ? 0.0 : 1.0));
 
   if (w_per_depth > 0.0) {
-    const double eye_depth = -w_constant / w_per_depth;
-    p.eye = vec4((per_z * eye_depth - constant) / scale, -eye_depth, 1.0);
+    p.eye = vec4(-constant / scale, 0.0, 1.0);
   } else {
     p.eye = vec4(-slope_offset, 1.0, 0.0);
   }

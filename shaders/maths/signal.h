@@ -55,7 +55,7 @@ ALCOVE_INLINE vec3 unpack_direction(uvec2 bits) {
 }
 
 // The same of a GGX lobe, whose open part differs by orders of magnitude from slice to slice: the
-// ratio to 2^-17, the open part, at least 0 and finite, to 2^-9 of itself.
+// ratio to 2^-17, the open part, at least 0 and finite, to 2^-8 of itself.
 ALCOVE_INLINE uint pack_lobe(Signal lobe) {
   float ratio = lobe.open > 0.0f ? clamp(lobe.visible / lobe.open, 0.0f, 1.0f) : 1.0f;
   uint open = (floatBitsToUint(lobe.open) + 0x8000u) & 0xffff0000u;

@@ -66,20 +66,21 @@ ALCOVE_INLINE SliceLine make_slice_line(vec2 per_px, vec3 direction, vec3 view) 
   float x_per_step = along.x * per_px.x * direction.x + along.y * per_px.y * direction.y;
   float y_per_step = along.x * per_px.x * view.x + along.y * per_px.y * view.y;
   bool turned = x_per_step < 0.0f;
-  SliceLine line;
-  line.direction_px = turned ? -along : along;
-  line.x_per_step = abs(x_per_step);
-  line.y_per_step = turned ? -y_per_step : y_per_step;
-  line.y_per_depth = 1.0f / max(view.z, 1e-6f);
-  return line;
+  SliceLine slice_line;
+  slice_line.direction_px = turned ? -along : along;
+  slice_line.x_per_step = abs(x_per_step);
+  slice_line.y_per_step = turned ? -y_per_step : y_per_step;
+  slice_line.y_per_depth = 1.0f / max(view.z, 1e-6f);
+  return slice_line;
 }
 
 // (x w, y w, w) of the point `offset_px` pixels along the line (negative: against it), where
 // `line` is LineSample::line.
-ALCOVE_INLINE vec3 slice_point(SliceLine slice, float offset_px, float line, float centre_depth,
-                               bool perspective) {
+ALCOVE_INLINE vec3 slice_point(SliceLine slice_line, float offset_px, float line,
+                               float centre_depth, bool perspective) {
   float rise = perspective ? centre_depth * line - 1.0f : centre_depth - line;
-  return vec3(offset_px * slice.x_per_step, offset_px * slice.y_per_step + rise * slice.y_per_depth,
+  return vec3(offset_px * slice_line.x_per_step,
+              offset_px * slice_line.y_per_step + rise * slice_line.y_per_depth,
               perspective ? line : 1.0f);
 }
 
@@ -120,10 +121,10 @@ ALCOVE_INLINE float moved_line(float line, float by, bool perspective) {
 // Pixels along the line that a sphere of radius `radius` (scene units) around the point spans on
 // one side. In perspective the sphere bulges towards the eye, and one around the eye spans
 // everything: at most 1e30.
-ALCOVE_INLINE float slice_radius_px(SliceLine line, float radius, float centre_depth,
+ALCOVE_INLINE float slice_radius_px(SliceLine slice_line, float radius, float centre_depth,
                                     bool perspective) {
-  float across = radius / max((perspective ? centre_depth : 1.0f) * line.x_per_step, 1e-30f);
-  float nearness = perspective ? radius / max(centre_depth * line.y_per_depth, 1e-30f) : 0.0f;
+  float across = radius / max((perspective ? centre_depth : 1.0f) * slice_line.x_per_step, 1e-30f);
+  float nearness = perspective ? radius / max(centre_depth * slice_line.y_per_depth, 1e-30f) : 0.0f;
   return min(across * inversesqrt(max(1.0f - nearness * nearness, 1e-6f)), 1e30f);
 }
 

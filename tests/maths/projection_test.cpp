@@ -278,7 +278,7 @@ TEST(MakeProjection, RefusesWhatIsNoProjectionAndSaysWhy) {
   for (const Case& wrong :
        {Case{1, 2, kNan, "not finite"}, Case{0, 0, 0.0f, "flattens"},
         Case{0, 1, 0.5f, "mixes x and y"}, Case{0, 3, 0.5f, "tilts"}, Case{1, 2, 0.5f, "oblique"},
-        Case{2, 3, 1.0f, "+Z"}, Case{3, 2, 0.0f, "same depth"}}) {
+        Case{2, 3, 1.0f, "+Z"}, Case{3, 2, 0.0f, "same depth"}, Case{3, 3, 0.5f, "eye"}}) {
     mat4 m = good;
     m[wrong.column][wrong.row] = wrong.value;
     EXPECT_NE(fault(m).find(wrong.why), std::string::npos) << wrong.why;

@@ -122,6 +122,26 @@ TEST_F(Extremes, OrthographicDepthMayBeginAnywhere) {
   }
 }
 
+TEST_F(Extremes, WhatLiesBehindAnOrthographicEyeHasAThicknessToo) {
+  for (const Estimator estimator : {Estimator::bitmask, Estimator::connected}) {
+    OcclusionSettings settings = everything(Quality::medium, 1.0f);
+    settings.estimator = estimator;
+    settings.thickness_unit = ThicknessUnit::distance;
+    for (const double distance : {4.0, -4.0}) {
+      SCOPED_TRACE(testing::Message() << (estimator == Estimator::bitmask ? "bitmask" : "connected")
+                                      << ", a plane at " << distance);
+      const TestView view = orthographic_view("", 3.0, 2.0, -16.0, 16.0);
+      const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(30.0, distance)});
+      const Images images = run_occlusion({.view = view.view,
+                                           .depth_ndc = drawing.depth_ndc,
+                                           .normal_vs = &drawing.normal_vs,
+                                           .reset = true},
+                                          settings);
+      EXPECT_THAT(images.visibility.texels, testing::Each(testing::Ge(1.0f - 1.0f / 255.0f)));
+    }
+  }
+}
+
 // A camera that stands where its floats cannot tell a twentieth, among things that might move.
 TEST_F(Extremes, FarFromTheWorldsOriginHistoryIsKept) {
   const TestView view = test_views()[2];

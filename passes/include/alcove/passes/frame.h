@@ -28,7 +28,7 @@ struct View {
   bool operator==(const View&) const = default;
 };
 
-// How many bits the results have. Between passes there are never fewer than 16.
+// How many bits the results have, also where another pass reads them.
 enum class Precision : std::uint8_t {
   unorm8,   // visibility R8_UNORM, bent normals RGBA8_SNORM
   float16,  // R16_SFLOAT, RGBA16_SFLOAT: visibility within 2^-12

@@ -21,7 +21,7 @@ struct Error {
   VkResult result = VK_SUCCESS;
 };
 
-// The shaders of the library, each one file in shaders/.
+// The shaders of the library: each a file in shaders/, or a variant of one.
 enum class Shader : std::uint8_t {
   depth_pyramid,
   normals,
@@ -57,10 +57,9 @@ struct Kernel {
 // time.
 class Kernels {
  public:
-  // Passes use at most this many dispatches, and this many bytes of parameters, in a frame.
-  static constexpr std::uint32_t kMaxDispatches = 72;
-  static constexpr std::uint32_t kMaxParameterBytes = 1024;
-  static constexpr std::size_t kMaxConstants = 24;  // of a pipeline
+  static constexpr std::uint32_t kMaxDispatches = 72;        // of a frame
+  static constexpr std::uint32_t kMaxParameterBytes = 1024;  // of a dispatch
+  static constexpr std::size_t kMaxConstants = 24;           // of a pipeline
   static constexpr std::uint32_t kMaxFramesInFlight = 8;
 
   // `device`, made with the feature shaderStorageImageWriteWithoutFormat, must outlive the kernels.
@@ -73,7 +72,7 @@ class Kernels {
   // VK_PIPELINE_CACHE_CREATE_EXTERNALLY_SYNCHRONIZED_BIT: then none may while passes are added.
   //
   // Errors: a handle that is null, frames in flight out of range, a function or a limit that the
-  // device lacks (maxPerStageDescriptorStorageImages must be 9), memory that gives out.
+  // device lacks (maxPerStageDescriptorStorageImages must be 10), memory that gives out.
   [[nodiscard]] static tl::expected<Kernels, Error> create(const framegraph::DeviceHandles& device,
                                                            std::uint32_t frames_in_flight,
                                                            VkPipelineCache cache = VK_NULL_HANDLE);
