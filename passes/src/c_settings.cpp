@@ -141,17 +141,6 @@ struct Print {
   }
 };
 
-AlcoveSettings from_settings(const OcclusionSettings& settings) {
-  AlcoveSettings result{.struct_size = sizeof(AlcoveSettings)};
-  for_each_setting(result, settings, [](const char* /*name*/, auto& theirs, const auto& ours) {
-    theirs = static_cast<std::remove_reference_t<decltype(theirs)>>(ours);
-  });
-  if (settings.specular == Specular::none) {
-    result.specular = ALCOVE_SPECULAR_SLICES;
-  }
-  return result;
-}
-
 }  // namespace
 
 tl::expected<GivenSettings, Failure> to_settings(const AlcoveSettings* given) {
@@ -169,6 +158,17 @@ tl::expected<GivenSettings, Failure> to_settings(const AlcoveSettings* given) {
   }
   const Specular specular = std::exchange(settings->specular, Specular::none);
   return GivenSettings{*settings, specular};
+}
+
+AlcoveSettings from_settings(const OcclusionSettings& settings) {
+  AlcoveSettings result{.struct_size = sizeof(AlcoveSettings)};
+  for_each_setting(result, settings, [](const char* /*name*/, auto& theirs, const auto& ours) {
+    theirs = static_cast<std::remove_reference_t<decltype(theirs)>>(ours);
+  });
+  if (settings.specular == Specular::none) {
+    result.specular = ALCOVE_SPECULAR_SLICES;
+  }
+  return result;
 }
 
 }  // namespace alcove::passes

@@ -15,4 +15,6 @@ struct GivenSettings {
 };
 [[nodiscard]] tl::expected<GivenSettings, Failure> to_settings(const AlcoveSettings* given);
 
+[[nodiscard]] AlcoveSettings from_settings(const OcclusionSettings& settings);
+
 }  // namespace alcove::passes
