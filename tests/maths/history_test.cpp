@@ -144,12 +144,10 @@ TEST(History, ATexelKeepsWhatItHolds) {
 }
 
 TEST(History, ATexelHoldsTheNearestOfWhatItCannot) {
-  const maths::HistoryTexel least =
-      stored(texel_of(-1.0f, -1.0f, -1.0f, -1.0f, -1.0f, 0u));
+  const maths::HistoryTexel least = stored(texel_of(-1.0f, -1.0f, -1.0f, -1.0f, -1.0f, 0u));
   EXPECT_EQ(least.count + least.recent + least.depth + least.visibility + least.open, 0.0f);
   EXPECT_EQ(least.coarse_normal, 0u);
-  const maths::HistoryTexel most =
-      stored(texel_of(9.0f, 8.0f, 6e4f, 300.0f, 2.0f, 255u));
+  const maths::HistoryTexel most = stored(texel_of(9.0f, 8.0f, 6e4f, 300.0f, 2.0f, 255u));
   EXPECT_EQ(most.count, float(maths::kMaxHistoryFrames));
   EXPECT_EQ(most.recent, 1.0f);
   EXPECT_EQ(most.open, maths::kLargestOpen);
