@@ -26,11 +26,9 @@ ALCOVE_INLINE vec2 bent_light_arc(Slice s, float side, vec2 light) {
   return vec2(side * x * (1.0f / 3.0f), y * (1.0f / 3.0f));
 }
 
-// The same up to a horizon, given by its cosine; one below the tangent plane, or out of [-1,1], is
-// raised or cut to it.
+// The same up to a horizon, as horizon_light() takes it.
 ALCOVE_INLINE vec2 bent_arc(Slice s, float side, float horizon) {
-  float c = clamp(horizon, tangent_horizon(s, side), 1.0f);
-  return bent_light_arc(s, side, vec2(sqrt((1.0f - c) * (1.0f + c)), c));
+  return bent_light_arc(s, side, horizon_light(s, side, horizon));
 }
 
 // A slice's part of the bent normal, in the space of `direction` and `view`; sum over slices.

@@ -26,11 +26,9 @@ ALCOVE_INLINE float light_arc(Slice s, float side, vec2 light) {
   return 0.5f * (light.x * light.x * s.toward + swell * (side * s.along));
 }
 
-// The same up to a horizon, given by its cosine; one below the tangent plane, or out of [-1,1], is
-// raised or cut to it.
+// The same up to a horizon, as horizon_light() takes it.
 ALCOVE_INLINE float slice_arc(Slice s, float side, float horizon) {
-  float c = clamp(horizon, tangent_horizon(s, side), 1.0f);
-  return light_arc(s, side, vec2(sqrt((1.0f - c) * (1.0f + c)), c));
+  return light_arc(s, side, horizon_light(s, side, horizon));
 }
 
 // Both sides together: the slice's part of the visibility. `ahead` is the horizon's cosine on the

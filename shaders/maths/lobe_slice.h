@@ -105,15 +105,10 @@ ALCOVE_INLINE vec2 halfway_to_view(vec2 light, float side) {
               sqrt(max(0.5f + 0.5f * light.y, 0.0f)));
 }
 
-// The light at a horizon: its side and cosine, raised or cut to what the side can hold.
-ALCOVE_INLINE vec2 horizon_light(Slice s, float side, float cosine) {
-  float c = clamp(cosine, tangent_horizon(s, side), 1.0f);
-  return vec2(side * sqrt((1.0f - c) * (1.0f + c)), c);
-}
-
 ALCOVE_INLINE LobeSide make_lobe_side(Slice s, LobeDensity density, float at_view, float side,
                                       float alpha) {
   vec2 tangent = horizon_light(s, side, -1.0f);
+  tangent.x *= side;
   vec2 knee = normalize(halfway_to_view(tangent, side) + tangent);
   float integral = abs(lobe_antiderivative(density, tangent) - at_view);
   LobeSide result;
@@ -149,10 +144,9 @@ ALCOVE_INLINE float lobe_light_arc(LobeSlice lobe, float side, vec2 light) {
   return min(inner * min(integral, knee) + outer * max(integral - knee, 0.0f), whole);
 }
 
-// The same up to a horizon, given by its cosine.
-ALCOVE_INLINE float lobe_arc(Slice s, LobeSlice lobe, float side, float cosine) {
-  vec2 light = horizon_light(s, side, cosine);
-  return lobe_light_arc(lobe, side, vec2(abs(light.x), light.y));
+// The same up to a horizon, as horizon_light() takes it.
+ALCOVE_INLINE float lobe_arc(Slice s, LobeSlice lobe, float side, float horizon) {
+  return lobe_light_arc(lobe, side, horizon_light(s, side, horizon));
 }
 
 // The lobe between two horizons. In [0, lobe.open].

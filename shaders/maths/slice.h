@@ -82,6 +82,13 @@ ALCOVE_INLINE vec3 facing_normal(vec3 normal, vec3 view) {
 // Cosine of the horizon that the surface's own tangent plane makes on a side: no horizon is lower.
 ALCOVE_INLINE float tangent_horizon(Slice s, float side) { return -side * s.sine; }
 
+// Sine (at least 0) and cosine of the angle of a horizon, given by its cosine; one below the
+// tangent plane, or out of [-1,1], is raised or cut to it.
+ALCOVE_INLINE vec2 horizon_light(Slice s, float side, float horizon) {
+  float c = clamp(horizon, tangent_horizon(s, side), 1.0f);
+  return vec2(sqrt((1.0f - c) * (1.0f + c)), c);
+}
+
 ALCOVE_MATHS_END
 
 #endif

@@ -113,7 +113,8 @@ TEST(LobeSlice, DistributionHasThisAntiderivative) {
       const auto d = [&](double t) { return truth.distribution(t) * std::abs(std::sin(t)); };
       const double expected = truth.between(d, std::min(angle, 0.0), std::max(angle, 0.0));
       const double whole = truth.between(d, truth.lowest(), truth.highest());
-      const glm::vec2 light = maths::horizon_light(s, side, float(std::cos(angle)));
+      glm::vec2 light = maths::horizon_light(s, side, float(std::cos(angle)));
+      light.x *= side;
       const float found = std::abs(maths::lobe_antiderivative(lobe.density, light) - lobe.at_view);
       worst = std::max(worst, std::abs(found - expected) / std::max(whole, 1e-3));
     }
