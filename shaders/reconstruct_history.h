@@ -165,6 +165,8 @@ History read_history(Surface surface) {
   history.recent = read.history.recent * scale;
   history.between = read.history.between;
   if (!kStill) {
+    // From the view space of the frame before.
+    history.sum.bent = history.sum.bent * mat3(parameters.before_from_view);
     vec2 means = read.moments.yz * scale;
     float variance = max(means.y - means.x * means.x, 0.0);
     float missing = max(1.0 - read.moments.x / max(read.most, 1e-20), 0.0);

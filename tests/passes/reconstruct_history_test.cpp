@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
 #include <random>
 
 #include "gtao_scenes.h"
@@ -283,6 +284,42 @@ TEST_F(Reconstruct, HistoryDoesNotLeakAcrossACrease) {
     }
   }
   EXPECT_LT(worst, 0.05);
+}
+
+// The camera turns before an open wall: what was gathered of its bent normals turns with it.
+TEST_F(Reconstruct, BentNormalsTurnWithTheCamera) {
+  const glm::dvec3 wall_ws(0.0, 0.0, -4.0);
+  const glm::dvec3 normal_ws(0.0, 0.0, 1.0);
+  OcclusionSettings settings = quality_settings(Quality::high, 0.5f);
+  settings.bent_normal = true;
+  settings.precision = Precision::float32;
+  View before;
+  for (std::uint32_t frame = 0; frame < 8; ++frame) {
+    TestView now = test_views()[2];
+    const glm::dmat4 turned =
+        glm::rotate(glm::dmat4(1.0), 0.05 * frame - 0.2, glm::dvec3(0.0, 1.0, 0.0));
+    for (int i = 0; i < 16; ++i) {
+      now.view.view_from_world.at(static_cast<std::size_t>(i)) =
+          static_cast<float>(turned[i / 4][i % 4]);
+    }
+    const glm::dmat3 view_from_world(turned);
+    const glm::dvec3 normal = view_from_world * normal_ws;
+    const Drawing drawing = draw(now, kWidth, kHeight, {plane(view_from_world * wall_ws, normal)});
+    const HostImage bent = run_occlusion({.view = now.view,
+                                          .depth_ndc = drawing.depth_ndc,
+                                          .normal_vs = &drawing.normal_vs,
+                                          .previous_view = frame == 0 ? now.view : before,
+                                          .index = frame,
+                                          .reset = frame == 0},
+                                         settings)
+                               .bent_normal;
+    glm::dvec3 sum(0.0);
+    for (std::size_t i = 0; i < bent.texels.size(); i += 4) {
+      sum += glm::dvec3(bent.texels[i], bent.texels[i + 1], bent.texels[i + 2]);
+    }
+    EXPECT_GT(glm::dot(glm::normalize(sum), normal), std::cos(0.02)) << "in frame " << frame;
+    before = now.view;
+  }
 }
 
 // A surface of another normal took the place of one at the very same depth.
