@@ -20,7 +20,6 @@
 
 #include "maths/bent_normal.h"
 #include "maths/coarse_normal.h"
-#include "maths/gtao.h"
 #include "maths/history.h"
 #include "maths/lobe_slice.h"
 #include "maths/projection.h"
@@ -276,8 +275,6 @@ Neighbourhood add_up(Surface surface, float narrowness, Found around[kAround]) {
   return sum;
 }
 
-float visibility_of(Sum sum) { return mean_visibility(sum.signal.visible, sum.signal.open); }
-
 void store(ivec2 pixel, Sum sum, float visibility) {
   if (kVisibility) {
     imageStore(visibility_image, pixel, vec4(visibility));
@@ -288,7 +285,7 @@ void store(ivec2 pixel, Sum sum, float visibility) {
     imageStore(bent_normal_image, pixel, vec4(bent, 0.0));
   }
 #ifdef LOBE
-  imageStore(specular_image, pixel, vec4(lobe_visibility(sum.lobe.visible, sum.lobe.open)));
+  imageStore(specular_image, pixel, vec4(mean_visibility(sum.lobe)));
 #endif
 }
 
@@ -299,7 +296,7 @@ void store(ivec2 pixel, Sum sum, float visibility) {
 // Stores are many to a pixel and take turns on a processor: the sky has none of its own.
 void reconstruct(Surface surface, bool sky, Found around[kAround]) {
   History next = advance(surface, around, read_history(surface));
-  float visibility = visibility_of(next.sum);
+  float visibility = mean_visibility(next.sum.signal);
   uvec4 packed = pack_history(next, visibility, surface);
   if (sky) {
     next.sum = no_sum();
@@ -321,7 +318,7 @@ void reconstruct(Surface surface, bool sky, Found around[kAround]) {
   if (sky) {
     sum = no_sum();
   }
-  store(surface.pixel, sum, visibility_of(sum));
+  store(surface.pixel, sum, mean_visibility(sum.signal));
 }
 
 #endif

@@ -195,7 +195,7 @@ float stiffening(float count) {
 }
 
 void clamp_history(inout History history, Spread spread) {
-  float before = visibility_of(history.sum);
+  float before = mean_visibility(history.sum.signal);
   float after = clamp_to_spread(before, spread, parameters.clamp_width);
   if (history.count > 0.0) {
     history.sum.signal.visible = after * history.sum.signal.open;
@@ -206,9 +206,8 @@ void clamp_history(inout History history, Spread spread) {
 // Where something moves, visibility changes on surfaces that stand still: what the last few frames
 // say then replaces what all of them do.
 void follow_change(inout History history, Signal now) {
-  float before = visibility_of(history.sum);
-  history.recent = recent_visibility(history.recent, history.count,
-                                     mean_visibility(now.visible, now.open), now.open);
+  float before = mean_visibility(history.sum.signal);
+  history.recent = recent_visibility(history.recent, history.count, mean_visibility(now), now.open);
   float changed = history.count > 0.0 ? visibility_changed(before, history.recent) : 0.0;
   history.sum.signal.visible = mix(before, history.recent, changed) * history.sum.signal.open;
   history.count = mix(history.count, min(history.count, kRecentFrames), changed);
@@ -218,16 +217,20 @@ void follow_change(inout History history, Signal now) {
 // all of a first frame.
 const bool kLooksFurther = !kFresh && kReach > kSide;
 
-// Adds the searches further away than those around the cell.
-void add_further(inout Neighbourhood sum, Surface surface, float narrowness) {
-  int across = across_of(kReach);
+// The next of block_around(cell, kReach) that lies further away than those around the cell and is
+// no corner.
+int next_further(int i) {
   const int margin = kReach - kSide;
-  // By rows, without the corners: the first and the last are left out here, two within.
-  for (int i = 1; i < across * across - 1; ++i) {
+  int across = across_of(kReach);
+  i += 1;
+  bool within = i % across == margin && i / across >= margin && i / across < margin + kAcross;
+  return i + (within ? kAcross : is_corner(kReach, i) ? 1 : 0);
+}
+
+void add_further(inout Neighbourhood sum, Surface surface, float narrowness) {
+  int last = across_of(kReach) * across_of(kReach) - 1;
+  for (int i = next_further(-1); i < last; i = next_further(i)) {
     add_block(sum, surface, narrowness, fetch_block(block_around(surface.cell, kReach, i)));
-    ivec2 place = ivec2((i + 1) % across, (i + 1) / across);
-    bool within = place.x == margin && place.y >= margin && place.y < margin + kAcross;
-    i += is_corner(kReach, i + 1) ? 1 : within ? kAcross : 0;
   }
 }
 
@@ -255,7 +258,7 @@ History advance(Surface surface, Found around[kAround], History history) {
   add(next.sum, 1.0 - fresh, history.sum);
   add(next.sum, scale, now.sum);
   next.count = next_count(history.count, parameters.longest);
-  next.recent = kMotion ? history.recent : visibility_of(next.sum);
+  next.recent = kMotion ? history.recent : mean_visibility(next.sum.signal);
   return next;
 }
 

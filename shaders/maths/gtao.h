@@ -41,11 +41,6 @@ ALCOVE_INLINE float slice_visibility(Slice s, float ahead, float behind) {
 // uniformly spaced slices is exactly 1, so it is both what a slice weighs and what normalises them.
 ALCOVE_INLINE float open_slice(Slice s) { return s.toward + slice_gamma(s) * s.along; }
 
-// Sum of visibilities over sum of weights, in [0,1]. Nothing weighed means nothing known: open.
-ALCOVE_INLINE float mean_visibility(float visibility_sum, float weight_sum) {
-  return weight_sum > 0.0f ? saturate(visibility_sum / weight_sum) : 1.0f;
-}
-
 // Visibility of one side without the cosine of the normal (the memo's appendix A), from the view
 // vector to a light above the tangent plane; both sides of an open slice come to 1, at any tilt.
 ALCOVE_INLINE float uniform_arc(vec2 light) { return 0.5f * (1.0f - light.y); }

@@ -198,11 +198,6 @@ ALCOVE_INLINE WeightedAngle lobe_angle(float phi, float plane, float roughness) 
   return turned;
 }
 
-// Visible over open, in [0,1]; 1 where the slices hold nothing of the lobe.
-ALCOVE_INLINE float lobe_visibility(float visible_sum, float open_sum) {
-  return open_sum > 0.0f ? clamp(visible_sum / open_sum, 0.0f, 1.0f) : 1.0f;
-}
-
 ALCOVE_MATHS_END
 
 #endif

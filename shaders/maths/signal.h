@@ -18,8 +18,9 @@ struct Signal {
 // Of a mean over slices, and of one weighted by a filter's window.
 const float kLargestOpen = 4.0f;
 
-ALCOVE_INLINE float visible_ratio(Signal signal) {
-  return signal.open > 0.0f ? signal.visible / signal.open : 1.0f;
+// Sum of visible parts over sum of open ones, in [0,1]. Nothing weighed means nothing known: open.
+ALCOVE_INLINE float mean_visibility(Signal sum) {
+  return sum.open > 0.0f ? saturate(sum.visible / sum.open) : 1.0f;
 }
 
 // The open part in 11 bits, within a 120th of itself, as it only weighs: a half without its sign
@@ -32,7 +33,7 @@ ALCOVE_INLINE float unpack_open(uint bits) { return unpackHalf2x16((bits & 0x7ff
 
 // The ratio to 2^-14, and the searched surface's normal of CoarseNormal.
 ALCOVE_INLINE uint pack_signal(Signal signal, uint coarse_normal) {
-  return pack_unorm(visible_ratio(signal), 13u) | (pack_open(signal.open) << 13u) |
+  return pack_unorm(mean_visibility(signal), 13u) | (pack_open(signal.open) << 13u) |
          (coarse_normal << 24u);
 }
 

@@ -92,9 +92,8 @@ ALCOVE_INLINE vec4 parity_of_cameras(uint which, vec4 a, vec4 b, Projection p) {
     case 5u:
       return vec4(position.x, position.y, position.z, linear_depth(p, b.x));
     case 6u:
-      return vec4(
-          history_weight(held_apart(depth, depth * (1.0f + b.w * 0.01f)), 0.02f, view.z),
-          visibility_changed(b.x, b.y), view.x, view.z);
+      return vec4(history_weight(held_apart(depth, depth * (1.0f + b.w * 0.01f)), 0.02f, view.z),
+                  visibility_changed(b.x, b.y), view.x, view.z);
   }
   return vec4(0.0f);
 }

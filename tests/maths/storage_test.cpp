@@ -26,6 +26,12 @@ maths::Signal signal_of(float visible, float open) {
   return signal;
 }
 
+TEST(Signal, NothingWeighedIsOpen) {
+  EXPECT_EQ(maths::mean_visibility(signal_of(0.0f, 0.0f)), 1.0f);
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(maths::mean_visibility(signal_of(0.0f, nan)), 1.0f);
+}
+
 TEST(Signal, RatiosComeBackAndOpenStaysOpen) {
   RandomInput random;
   for (int i = 0; i < 20000; ++i) {

@@ -1,0 +1,329 @@
+// The history while the camera or things move, fed with signals that the tests write.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <random>
+
+#include "gtao_scenes.h"
+#include "reconstruct_fixture.h"
+
+namespace alcove::passes {
+namespace {
+
+// The eye leaps sideways: what it could not see before starts anew, what it could goes on.
+TEST_F(Reconstruct, WhatACameraJumpUncoversStartsAnew) {
+  const TestView view = test_views()[2];
+  const double leap = 0.8;
+  Scene before = step(0.3, 1.5, 5.0);
+  const Drawing first = draw(view, kWidth, kHeight, before);
+  // The world stands still; in the view space of the eye that moved it lies `leap` to the left.
+  const Drawing second = draw(view, kWidth, kHeight, step(0.3 - leap, 1.5, 5.0));
+  View moved = view.view;
+  moved.view_from_world[12] = static_cast<float>(-leap);
+
+  const HostImage dark = constant_signal(kWidth, kHeight, 0.1f);
+  const HostImage bright = constant_signal(kWidth, kHeight, 0.9f);
+  for (std::uint32_t frame = 0; frame < 8; ++frame) {
+    (void)reconstruct({.view = view.view, .drawing = first, .signal = dark, .index = frame},
+                      precise(1, 32));
+  }
+  const HostImage found = reconstruct(
+      {.view = moved, .drawing = second, .signal = bright, .previous_view = view.view, .index = 8},
+      precise(1, 32));
+  int anew = 0;
+  int gone_on = 0;
+  for (std::uint32_t y = 0; y < kHeight; ++y) {
+    for (std::uint32_t x = 0; x < kWidth; ++x) {
+      const auto hit = cast(second.scene, second.camera.ray(x + 0.5, y + 0.5));
+      const glm::dvec3 was = hit->position + glm::dvec3(leap, 0.0, 0.0);
+      const glm::dvec3 pixel = first.camera.project(was);
+      // Margins of a pixel or two: there some of the four texels are of another surface.
+      const bool outside = pixel.x < -0.5 || pixel.x > kWidth + 0.5;
+      const bool well_inside =
+          pixel.x > 2.0 && pixel.x < kWidth - 2.0 && pixel.y > 2.0 && pixel.y < kHeight - 2.0;
+      bool hidden = true;
+      bool seen = true;
+      for (const double aside : {-1.5, 0.0, 1.5}) {
+        const auto there = cast(first.scene, first.camera.ray(pixel.x + aside, pixel.y));
+        const bool same = there && std::abs(there->position.z - was.z) < 0.02 * std::abs(was.z);
+        hidden = hidden && !same;
+        seen = seen && same;
+      }
+      if (std::abs(hit->normal.z) < 0.5) {
+        continue;
+      }
+      if (outside || hidden) {
+        ASSERT_NEAR(found.at(x, y), 0.9f, 0.01) << "at " << x << ", " << y;
+        ++anew;
+      } else if (seen && well_inside) {
+        ASSERT_LT(found.at(x, y), 0.6f) << "at " << x << ", " << y;
+        ++gone_on;
+      }
+    }
+  }
+  EXPECT_GT(anew, 30);
+  EXPECT_GT(gone_on, 200);
+}
+
+// Two walls meet, one dark, one bright, and the eye creeps along: each keeps to its own. In a
+// narrow view pixels are so small that the walls' depths hardly tell them apart.
+TEST_F(Reconstruct, HistoryDoesNotLeakAcrossACrease) {
+  TestView view = test_views()[2];
+  const float zoom = 16.0f;
+  view.view.clip_from_view[0] *= zoom;
+  view.view.clip_from_view[5] *= zoom;
+  const double creep = 0.05 / zoom;  // a third of a pixel
+  View before = view.view;
+  HostImage found;
+  HostImage signal;
+  for (std::uint32_t frame = 0; frame < 12; ++frame) {
+    View now = view.view;
+    now.view_from_world[12] = static_cast<float>(-creep * frame);
+    const Drawing drawing = draw(view, kWidth, kHeight, groove(0.8, 4.5, -creep * frame));
+    signal = signal_of(kWidth, kHeight, [&](std::uint32_t x, std::uint32_t y) {
+      return cast(drawing.scene, drawing.camera.ray(x + 0.5, y + 0.5))->normal.x > 0.0 ? 0.2f
+                                                                                       : 0.9f;
+    });
+    found = reconstruct({.view = now,
+                         .drawing = drawing,
+                         .signal = signal,
+                         .previous_view = before,
+                         .index = frame,
+                         .reset = frame == 0},
+                        precise(0, 32));
+    before = now;
+  }
+  double worst = 0.0;
+  for (std::uint32_t y = 0; y < kHeight; ++y) {
+    for (std::uint32_t x = 0; x < kWidth; ++x) {
+      const std::size_t i = std::size_t{y} * kWidth + x;
+      worst = std::max<double>(
+          worst, std::abs(found.texels[i] - signal.texels[i * 2] / signal.texels[i * 2 + 1]));
+    }
+  }
+  EXPECT_LT(worst, 0.05);
+}
+
+// The camera turns before an open wall: what was gathered of its bent normals turns with it.
+TEST_F(Reconstruct, BentNormalsTurnWithTheCamera) {
+  const glm::dvec3 wall_ws(0.0, 0.0, -4.0);
+  const glm::dvec3 normal_ws(0.0, 0.0, 1.0);
+  OcclusionSettings settings = quality_settings(Quality::high, 0.5f);
+  settings.bent_normal = true;
+  settings.precision = Precision::float32;
+  View before;
+  for (std::uint32_t frame = 0; frame < 8; ++frame) {
+    TestView now = test_views()[2];
+    const glm::dmat4 turned =
+        glm::rotate(glm::dmat4(1.0), 0.05 * frame - 0.2, glm::dvec3(0.0, 1.0, 0.0));
+    for (int i = 0; i < 16; ++i) {
+      now.view.view_from_world.at(static_cast<std::size_t>(i)) =
+          static_cast<float>(turned[i / 4][i % 4]);
+    }
+    const glm::dmat3 view_from_world(turned);
+    const glm::dvec3 normal = view_from_world * normal_ws;
+    const Drawing drawing = draw(now, kWidth, kHeight, {plane(view_from_world * wall_ws, normal)});
+    const HostImage bent = run_occlusion({.view = now.view,
+                                          .depth_ndc = drawing.depth_ndc,
+                                          .normal_vs = &drawing.normal_vs,
+                                          .previous_view = frame == 0 ? now.view : before,
+                                          .index = frame,
+                                          .reset = frame == 0},
+                                         settings)
+                               .bent_normal;
+    glm::dvec3 sum(0.0);
+    for (std::size_t i = 0; i < bent.texels.size(); i += 4) {
+      sum += glm::dvec3(bent.texels[i], bent.texels[i + 1], bent.texels[i + 2]);
+    }
+    EXPECT_GT(glm::dot(glm::normalize(sum), normal), std::cos(0.02)) << "in frame " << frame;
+    before = now.view;
+  }
+}
+
+// A surface of another normal took the place of one at the very same depth.
+TEST_F(Reconstruct, HistoryOfAnotherNormalIsForgotten) {
+  const TestView view = test_views()[2];
+  const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(0.0, 5.0)});
+  const HostImage still = no_motion();
+  const HostImage dark = constant_signal(kWidth, kHeight, 0.1f);
+  const HostImage bright = constant_signal(kWidth, kHeight, 0.9f);
+  const auto after_a_turn_of = [&](double degrees) {
+    for (std::uint32_t frame = 0; frame < 8; ++frame) {
+      (void)reconstruct({.view = view.view,
+                         .drawing = drawing,
+                         .signal = dark,
+                         .motion = &still,
+                         .index = frame,
+                         .reset = frame == 0},
+                        precise(0, 32));
+    }
+    return reconstruct({.view = view.view,
+                        .drawing = with_turned_normals(drawing, degrees, 0),
+                        .signal = bright,
+                        .motion = &still,
+                        .index = 8},
+                       precise(0, 32));
+  };
+  EXPECT_THAT(after_a_turn_of(60.0).texels, testing::Each(testing::FloatNear(0.9f, 2e-3f)));
+  EXPECT_THAT(after_a_turn_of(5.0).texels, testing::Each(testing::Lt(0.5f)));
+}
+
+// A plane slides by three pixels a frame and carries a pattern: with motion vectors the pattern
+// stays sharp, without them it is smeared.
+TEST_F(Reconstruct, MotionVectorsFollowAMovingPlane) {
+  const TestView view = test_views()[2];
+  const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(0.0, 4.0)});
+  const std::uint32_t speed = 3;
+  const auto pattern_at = [&](std::uint32_t frame) {
+    return signal_of(kWidth, kHeight, [&](std::uint32_t x, std::uint32_t) {
+      return (x + 300 - speed * frame) % 16 < 8 ? 0.9f : 0.1f;
+    });
+  };
+  HostImage motion{kWidth, kHeight, {}, 2};
+  for (std::uint32_t i = 0; i < kWidth * kHeight; ++i) {
+    motion.texels.push_back(static_cast<float>(speed) / static_cast<float>(kWidth));
+    motion.texels.push_back(0.0f);
+  }
+  for (const bool given : {true, false}) {
+    HostImage found;
+    HostImage signal;
+    for (std::uint32_t frame = 0; frame < 10; ++frame) {
+      signal = pattern_at(frame);
+      found = reconstruct({.view = view.view,
+                           .drawing = drawing,
+                           .signal = signal,
+                           .motion = given ? &motion : nullptr,
+                           .index = frame,
+                           .reset = frame == 0},
+                          precise(0, 32));
+    }
+    // Where the plane was on the image ever since the first frame.
+    double error = 0.0;
+    int count = 0;
+    for (std::uint32_t y = 0; y < kHeight; ++y) {
+      for (std::uint32_t x = 28; x < kWidth; ++x) {
+        const std::size_t i = std::size_t{y} * kWidth + x;
+        error += std::abs(found.texels[i] - signal.texels[i * 2] / signal.texels[i * 2 + 1]);
+        ++count;
+      }
+    }
+    if (given) {
+      EXPECT_LT(error / count, 0.12);
+    } else {
+      EXPECT_GT(error / count, 0.2);
+    }
+  }
+}
+
+// A plane slides by a pixel a frame and comes nearer by a hundredth of its distance, which motion
+// vectors do not say: its history goes on. What stands still and lies as far behind the last
+// frame's surface was uncovered: it starts anew.
+TEST_F(Reconstruct, HistoryFollowsWhatComesNearer) {
+  const TestView view = test_views()[2];
+  const double nearer = 0.99;
+  const std::uint32_t frames = 24;
+  HostImage motion{kWidth, kHeight, {}, 2};
+  for (std::uint32_t y = 0; y < kHeight; ++y) {
+    for (std::uint32_t x = 0; x < kWidth; ++x) {
+      const double right = x + 0.5 - 0.5 * kWidth;
+      const double down = y + 0.5 - 0.5 * kHeight;
+      motion.texels.push_back(static_cast<float>((right * (1.0 - nearer) + 1.0) / kWidth));
+      motion.texels.push_back(static_cast<float>(down * (1.0 - nearer) / kHeight));
+    }
+  }
+  std::mt19937 random(23);
+  // Of those pixels that show what was on the image for many frames.
+  const auto spread = [](const HostImage& image) {
+    HostImage right{kWidth / 2, kHeight, {}, 1};
+    for (std::uint32_t y = 0; y < kHeight; ++y) {
+      for (std::uint32_t x = kWidth / 2; x < kWidth; ++x) {
+        right.texels.push_back(image.at(x, y));
+      }
+    }
+    return variance(right);
+  };
+  double first = 0.0;
+  double distance = 5.0;
+  HostImage found;
+  for (std::uint32_t frame = 0; frame < frames; ++frame, distance *= nearer) {
+    const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(0.0, distance)});
+    const HostImage signal = noise_signal(random);
+    found = reconstruct({.view = view.view,
+                         .drawing = drawing,
+                         .signal = signal,
+                         .motion = &motion,
+                         .index = frame,
+                         .reset = frame == 0},
+                        precise(1, 32));
+    first = frame == 0 ? spread(found) : first;
+  }
+  EXPECT_LT(spread(found), 0.3 * first);
+
+  const HostImage still = no_motion();
+  const Drawing behind = draw(view, kWidth, kHeight, {tilted_plane(0.0, distance / nearer * 1.02)});
+  const HostImage bright = constant_signal(kWidth, kHeight, 0.9f);
+  const HostImage anew = reconstruct(
+      {.view = view.view, .drawing = behind, .signal = bright, .motion = &still, .index = frames},
+      precise(1, 32));
+  EXPECT_THAT(anew.texels, testing::Each(testing::FloatNear(0.9f, 2e-3f)));
+}
+
+// What shaded a plane moves away, and then shades it again: the plane itself stands still.
+TEST_F(Reconstruct, WhereThingsMoveAShadeLeavesNoTrail) {
+  const TestView view = test_views()[2];
+  const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(30.0, 4.0)});
+  const HostImage motion = no_motion();
+  const HostImage shaded = constant_signal(kWidth, kHeight, 0.6f);
+  const HostImage open = constant_signal(kWidth, kHeight, 1.0f);
+  const std::uint32_t long_ago = 30;
+  const std::uint32_t soon = 12;
+  for (const bool given : {true, false}) {
+    std::vector<HostImage> found;
+    for (std::uint32_t frame = 0; frame < long_ago + 2 * soon; ++frame) {
+      const bool is_open = frame >= long_ago && frame < long_ago + soon;
+      found.push_back(reconstruct({.view = view.view,
+                                   .drawing = drawing,
+                                   .signal = is_open ? open : shaded,
+                                   .motion = given ? &motion : nullptr,
+                                   .index = frame,
+                                   .reset = frame == 0},
+                                  precise(1, 32)));
+    }
+    const auto left = testing::Each(testing::Gt(0.95f));
+    const auto back = testing::Each(testing::Lt(0.72f));
+    EXPECT_THAT(found[long_ago - 1].texels, testing::Each(testing::FloatNear(0.6f, 5e-3f)));
+    if (given) {
+      EXPECT_THAT(found[long_ago + soon - 1].texels, left);
+      EXPECT_THAT(found[long_ago + 2 * soon - 1].texels, back);
+    } else {
+      EXPECT_THAT(found[long_ago + soon - 1].texels, testing::Each(testing::Lt(0.8f)));
+    }
+  }
+}
+
+// Another surface is where one was, which no motion told.
+TEST_F(Reconstruct, WhatHasNoHistoryLooksAsFarAsAFirstFrame) {
+  const TestView view = test_views()[2];
+  const Drawing before = draw(view, kWidth, kHeight, {tilted_plane(30.0, 4.0)});
+  const Drawing now = draw(view, kWidth, kHeight, {tilted_plane(30.0, 9.0)});
+  std::mt19937 random(3);
+  const HostImage first_signal = noise_signal(random);
+  const HostImage signal = noise_signal(random);
+  const auto second_frame = [&](bool reset) {
+    (void)reconstruct({.view = view.view, .drawing = before, .signal = first_signal, .reset = true},
+                      precise(2, 32));
+    return reconstruct(
+        {.view = view.view, .drawing = now, .signal = signal, .index = 1, .reset = reset},
+        precise(2, 32));
+  };
+  const HostImage found = second_frame(false);
+  const HostImage anew = second_frame(true);
+  for (std::size_t i = 0; i < found.texels.size(); ++i) {
+    ASSERT_NEAR(found.texels[i], anew.texels[i], 1e-3) << "texel " << i;
+  }
+}
+
+}  // namespace
+}  // namespace alcove::passes
