@@ -66,23 +66,28 @@ struct Case {
 };
 
 TEST(Unseen, ThePartLeftOutIsTheShareOfTheIntegral) {
+  constexpr int kCases = 20000;
   RandomInput random;
-  double worst = 0.0, worst_uniform = 0.0, largest = 0.0;
-  for (int i = 0; i < 20000; ++i) {
+  double worst = 0.0, sum = 0.0, sum_uniform = 0.0, largest = 0.0;
+  for (int i = 0; i < kCases; ++i) {
     const Case c(random);
     const SliceTruth slice(c.slice);
     const double found = maths::unseen_part(c.arc(), c.slice, c.side, false);
     const double truth = c.truth([&](double t) { return slice.density(double(c.side) * t); });
-    const double uniform = maths::unseen_part(c.arc(), c.slice, c.side, true);
-    worst = std::max(worst, std::abs(found - truth));
-    worst_uniform = std::max(
-        worst_uniform, std::abs(uniform - c.truth([](double t) { return 0.5 * std::sin(t); })));
+    const double uniform = maths::unseen_part(c.arc(), c.slice, c.side, true) -
+                           c.truth([](double t) { return 0.5 * std::sin(t); });
+    worst = std::max({worst, std::abs(found - truth), std::abs(uniform)});
+    sum += std::abs(found - truth);
+    sum_uniform += std::abs(uniform);
     largest = std::max(largest, truth);
   }
   EXPECT_GT(largest, 0.5);
-  // light_arc() is within 2.4e-5, and is taken twice.
-  EXPECT_LT(worst, 6e-5);
-  EXPECT_LT(worst_uniform, 2e-6);
+  // A cosine near 1, or one from a sine near 1, turns its direction by up to 3.5e-4 as it rounds,
+  // and directions count at most a half.
+  EXPECT_LT(worst, 2e-4);
+  // But that is rare, and light_arc() is within 2.4e-5 at the worst.
+  EXPECT_LT(sum / kCases, 3e-6);
+  EXPECT_LT(sum_uniform / kCases, 2e-8);
 }
 
 TEST(Unseen, ALobeLosesTheShareOfWhatItHasThere) {

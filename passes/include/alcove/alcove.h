@@ -268,7 +268,7 @@ typedef struct AlcoveImage {
 // clip_from_view and the third row of view_from_world do, and z of normals in view space.
 typedef struct AlcoveCamera {
   float clip_from_view[16];   // any projection: finite, infinite, reversed, off-centre, jittered,
-                              // flipped in Y, orthographic
+                              // flipped in Y, orthographic; a perspective from depth 0
   float view_from_world[16];  // rotation and translation only; a reflection for left-handed worlds
 } AlcoveCamera;
 

@@ -20,7 +20,8 @@ inline constexpr Matrix kIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1
 
 // View space is right-handed with the camera along -Z. `clip_from_view` leads to Vulkan clip space:
 // any perspective or orthographic projection, finite or infinite, reversed, off-centre, jittered or
-// flipped in Y. AlcoveCamera (alcove.h) says what engines of other conventions change.
+// flipped in Y, a perspective from depth 0. AlcoveCamera (alcove.h) says what engines of other
+// conventions change.
 struct View {
   Matrix clip_from_view = kIdentity;
   Matrix view_from_world = kIdentity;  // rotation and translation only
