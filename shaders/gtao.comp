@@ -139,7 +139,8 @@ float find_horizon(Search search) {
 struct SliceSum {
   float visible;
   float open;
-  vec3 bent;
+  vec3 bend;
+  vec3 open_bend;
   Signal lobe;
 };
 
@@ -172,6 +173,14 @@ Signal leave_out(Signal sum, float part) {
   return Signal(max(sum.visible - part, 0.0), sum.open - part);
 }
 
+// Once the slice's visible part is known; `part` is its part of the bent normal, `open` all of it.
+void add_bends(inout SliceSum sum, Surface surface, Slice slice, vec3 direction, vec3 part,
+               float open) {
+  sum.bend = kBentNormal ? bend_of(part, sum.visible, surface.normal) : vec3(0.0);
+  sum.open_bend = kBentNormal ? open_bend(slice, direction, surface.view, surface.normal, open)
+                              : vec3(0.0);
+}
+
 SliceSum bitmask_slice(Surface surface, Slice slice, vec3 direction, Search ahead, Search behind) {
   Occluders ahead_found = find_occluders(ahead);
   Occluders behind_found = find_occluders(behind);
@@ -182,6 +191,7 @@ SliceSum bitmask_slice(Surface surface, Slice slice, vec3 direction, Search ahea
   sum.open = kUniformWeight ? 1.0
                             : light_arc(slice, 1.0, tangent_light(slice, 1.0)) +
                                   light_arc(slice, -1.0, tangent_light(slice, -1.0));
+  float open = sum.open;
   UnseenArc ahead_unseen, behind_unseen;
   if (kLeaveOutUnseen) {
     ahead_unseen = unseen_arc(slice, ahead, behind, ahead_found);
@@ -193,7 +203,7 @@ SliceSum bitmask_slice(Surface surface, Slice slice, vec3 direction, Search ahea
     sum.open = seen.open;
   }
   vec2 bent = front.bent + back.bent;
-  sum.bent = direction * bent.x + surface.view * bent.y;
+  add_bends(sum, surface, slice, direction, direction * bent.x + surface.view * bent.y, open);
   sum.lobe = no_lobe();
   if (kLobe) {
     LobeSlice lobe = lobe_of(surface, slice);
@@ -215,8 +225,8 @@ SliceSum horizon_slice(Surface surface, Slice slice, vec3 direction, Search ahea
   sum.visible = kUniformWeight ? uniform_slice_visibility(slice, front, back)
                                : slice_visibility(slice, front, back);
   sum.open = kUniformWeight ? 1.0 : open_slice(slice);
-  sum.bent =
-      kBentNormal ? slice_bent_normal(slice, direction, surface.view, front, back) : vec3(0.0);
+  add_bends(sum, surface, slice, direction,
+            slice_bent_normal(slice, direction, surface.view, front, back), sum.open);
   sum.lobe = no_lobe();
   if (kLobe) {
     LobeSlice lobe = lobe_of(surface, slice);
@@ -258,7 +268,7 @@ SearchResult sky_result() {
 SearchResult search_pixel(ivec2 pixel, float line, SliceNoise noise) {
   Surface surface = fetch_surface(pixel, line);
   ViewBasis basis = make_view_basis(surface.view);
-  SliceSum sum = SliceSum(0.0, 0.0, vec3(0.0), no_lobe());
+  SliceSum sum = SliceSum(0.0, 0.0, vec3(0.0), vec3(0.0), no_lobe());
   uint i = 0;
   do {
     WeightedAngle angle = WeightedAngle(slice_angle(i, kSliceCount, noise.direction), 1.0);
@@ -274,7 +284,8 @@ SearchResult search_pixel(ivec2 pixel, float line, SliceNoise noise) {
                              : horizon_slice(surface, slice, direction, ahead, behind);
     sum.visible += angle.weight * more.visible;
     sum.open += angle.weight * more.open;
-    sum.bent += angle.weight * more.bent;
+    sum.bend += angle.weight * more.bend;
+    sum.open_bend += angle.weight * more.open_bend;
     sum.lobe.visible += angle.weight * more.lobe.visible;
     sum.lobe.open += angle.weight * more.lobe.open;
     ++i;
@@ -286,7 +297,8 @@ SearchResult search_pixel(ivec2 pixel, float line, SliceNoise noise) {
   Signal signal = Signal(sum.visible * mean, sum.open * mean);
   uint normal = make_coarse_normal(surface.normal).bits;
   return SearchResult(uvec4(pack_signal(signal, normal), floatBitsToUint(line), lobe),
-                      kBentNormal ? pack_direction(sum.bent * mean) : uvec2(0u));
+                      kBentNormal ? uvec2(pack_bend(sum.bend * mean), pack_bend(sum.open_bend * mean))
+                                  : uvec2(0u));
 }
 
 uvec2 searched_block() {

@@ -105,7 +105,7 @@ struct Surface {
 // What is added up: over neighbours, then over frames.
 struct Sum {
   Signal signal;
-  vec3 bent;
+  vec3 bend;
   Signal lobe;
 };
 
@@ -157,7 +157,7 @@ Sum no_sum() {
   Sum sum;
   sum.signal.visible = 0.0;
   sum.signal.open = 0.0;
-  sum.bent = vec3(0.0);
+  sum.bend = vec3(0.0);
   sum.lobe = sum.signal;
   return sum;
 }
@@ -170,7 +170,7 @@ void add(inout Signal sum, float weight, Signal more) {
 void add(inout Sum sum, float weight, Sum more) {
   add(sum.signal, weight, more.signal);
   if (kBentNormal) {
-    sum.bent += weight * more.bent;
+    sum.bend += weight * more.bend;
   }
   if (kLobe) {
     add(sum.lobe, weight, more.lobe);
@@ -180,6 +180,7 @@ void add(inout Sum sum, float weight, Sum more) {
 // What a block's search found, and where.
 struct Found {
   Sum sum;  // the lobe as it is for the searched surface
+  vec3 open_bend;
   uint lobe_surface;
   vec2 searched;  // pixel
   float line;
@@ -195,7 +196,9 @@ Found fetch_block(ivec2 block) {
   found.lean = lean_of_bits(signal_normal(stored.x));
   found.searched = vec2(min(block * kDivisor + ivec2(parameters.phase), size_px() - 1));
   if (kBentNormal) {
-    found.sum.bent = unpack_direction(imageLoad(bent_image, block).xy);
+    uvec2 bent = imageLoad(bent_image, block).xy;
+    found.sum.bend = unpack_bend(bent.x);
+    found.open_bend = unpack_bend(bent.y);
   }
   if (kLobe) {
     found.sum.lobe = unpack_lobe(stored.z);
@@ -245,6 +248,7 @@ float neighbour_weight(Surface surface, float narrowness, vec2 offset, Found fou
 
 struct Neighbourhood {
   Sum sum;
+  vec3 open_bend;
   vec3 moments;  // of the visibility
 };
 
@@ -253,7 +257,8 @@ void add_block(inout Neighbourhood sum, Surface surface, float narrowness, Found
   float weight = neighbour_weight(surface, narrowness, offset, found);
   add(sum.sum.signal, weight, found.sum.signal);
   if (kBentNormal) {
-    sum.sum.bent += weight * found.sum.bent;
+    sum.sum.bend += weight * found.sum.bend;
+    sum.open_bend += weight * found.open_bend;
   }
   if (kLobe) {
     // As far as it is like the surface's own.
@@ -266,7 +271,7 @@ void add_block(inout Neighbourhood sum, Surface surface, float narrowness, Found
 }
 
 Neighbourhood add_up(Surface surface, float narrowness, Found around[kAround]) {
-  Neighbourhood sum = Neighbourhood(no_sum(), vec3(0.0));
+  Neighbourhood sum = Neighbourhood(no_sum(), vec3(0.0), vec3(0.0));
   [[unroll]] for (int i = 0; i < kAround; ++i) {
     if (!is_corner(kSide, i)) {
       add_block(sum, surface, narrowness, around[i]);
@@ -275,14 +280,21 @@ Neighbourhood add_up(Surface surface, float narrowness, Found around[kAround]) {
   return sum;
 }
 
+// In view space, as a search of the pixel takes it.
+vec3 searched_normal(ivec2 pixel) {
+  vec2 slope =
+      parameters.slope.zw + (kPerspective ? (vec2(pixel) + 0.5) * parameters.slope.xy : vec2(0.0));
+  vec3 normal = normalize(fetch_normal(pixel) * mat3(parameters.normal_from_view));
+  return facing_normal(normal, normalize(vec3(-slope, 1.0)));
+}
+
 void store(ivec2 pixel, Sum sum, float visibility) {
   if (kVisibility) {
     imageStore(visibility_image, pixel, vec4(visibility));
   }
   if (kBentNormal) {
-    vec3 bent =
-        finish_bent_normal(mat3(parameters.normal_from_view) * sum.bent, fetch_normal(pixel));
-    imageStore(bent_normal_image, pixel, vec4(bent, 0.0));
+    vec3 bent = finish_bent_normal(sum.bend, sum.signal.visible, searched_normal(pixel));
+    imageStore(bent_normal_image, pixel, vec4(mat3(parameters.normal_from_view) * bent, 0.0));
   }
 #ifdef LOBE
   imageStore(specular_image, pixel, vec4(mean_visibility(sum.lobe)));
@@ -305,7 +317,7 @@ void reconstruct(Surface surface, bool sky, Found around[kAround]) {
   }
   imageStore(next_history_image, surface.pixel, packed);
   if (kBentNormal) {
-    imageStore(next_bent_history_image, surface.pixel, vec4(next.sum.bent, 0.0));
+    imageStore(next_bent_history_image, surface.pixel, vec4(next.sum.bend, 0.0));
   }
   store(surface.pixel, next.sum, visibility);
 }
@@ -314,7 +326,9 @@ void reconstruct(Surface surface, bool sky, Found around[kAround]) {
 
 void reconstruct(Surface surface, bool sky, Found around[kAround]) {
   float narrowness = narrowness_of(parameters.window_px * parameters.window_px);
-  Sum sum = add_up(surface, narrowness, around).sum;
+  Neighbourhood now = add_up(surface, narrowness, around);
+  Sum sum = now.sum;
+  sum.bend = settled_bend(sum.bend, now.open_bend, mean_visibility(sum.signal));
   if (sky) {
     sum = no_sum();
   }
@@ -334,10 +348,12 @@ void keep_pixel(ivec2 pixel) {
   uvec4 stored = imageLoad(history_image, pixel);
   Sum sum = no_sum();
   if (kBentNormal) {
-    sum.bent = imageLoad(bent_history_image, pixel).xyz;
+    sum.bend = imageLoad(bent_history_image, pixel).xyz;
   }
   sum.lobe = Signal(uintBitsToFloat(stored.z), uintBitsToFloat(stored.w));
-  store(pixel, sum, unpack_history_texel(stored.xy).visibility);
+  HistoryTexel texel = unpack_history_texel(stored.xy);
+  sum.signal = Signal(texel.visibility * texel.open, texel.open);
+  store(pixel, sum, texel.visibility);
 #endif
 }
 

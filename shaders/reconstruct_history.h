@@ -89,7 +89,7 @@ void add_history(inout Read read, Surface surface, CoarseNormal normal, ivec2 pi
   Sum here = no_sum();
   here.signal = Signal(texel.visibility * texel.open, texel.open);
   if (kBentNormal) {
-    here.bent = imageLoad(bent_history_image, pixel).xyz;
+    here.bend = imageLoad(bent_history_image, pixel).xyz;
   }
   here.lobe = Signal(uintBitsToFloat(stored.z), uintBitsToFloat(stored.w));
   add(read.history.sum, weight, here);
@@ -166,7 +166,7 @@ History read_history(Surface surface) {
   history.between = read.history.between;
   if (!kStill) {
     // From the view space of the frame before.
-    history.sum.bent = history.sum.bent * mat3(parameters.before_from_view);
+    history.sum.bend = history.sum.bend * mat3(parameters.before_from_view);
     vec2 means = read.moments.yz * scale;
     float variance = max(means.y - means.x * means.x, 0.0);
     float missing = max(1.0 - read.moments.x / max(read.most, 1e-20), 0.0);
@@ -257,6 +257,10 @@ History advance(Surface surface, Found around[kAround], History history) {
   next.sum = no_sum();
   add(next.sum, 1.0 - fresh, history.sum);
   add(next.sum, scale, now.sum);
+  if (kBentNormal) {
+    float visibility = mean_visibility(next.sum.signal);
+    next.sum.bend = settled_bend(next.sum.bend, scale * now.open_bend, visibility);
+  }
   next.count = next_count(history.count, parameters.longest);
   next.recent = kMotion ? history.recent : mean_visibility(next.sum.signal);
   return next;

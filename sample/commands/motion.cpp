@@ -88,6 +88,10 @@ Json to_json(const ErrorPair& errors) {
           {"ratio", errors.ratio()}};
 }
 
+ErrorPair degrees(const ErrorPair& radians) {
+  return {radians.pixels, glm::degrees(radians.moving), glm::degrees(radians.still)};
+}
+
 Json to_json(const MotionReport& report) {
   return {{"px_per_frame",
            {{"mean", report.speed.mean}, {"percentile_95", report.speed.percentile_95}}},
@@ -95,12 +99,15 @@ Json to_json(const MotionReport& report) {
           {"uncovered", to_json(report.uncovered)},
           {"entered", to_json(report.entered)},
           {"passed_by", to_json(report.passed_by)},
+          {"bent_normals_degrees", to_json(degrees(report.bent_normals))},
           {"flicker",
            {{"with_history", report.flicker.with_history},
             {"without", report.flicker.without},
+            {"searches", report.flicker.searches},
             {"still", report.flicker.still},
             {"truth", report.flicker.truth},
-            {"ratio", report.flicker.ratio()}}}};
+            {"ratio", report.flicker.ratio()},
+            {"ratio_to_searches", report.flicker.ratio_to_searches()}}}};
 }
 
 Json to_json(const CutReport& report) {
@@ -112,14 +119,15 @@ Json to_json(const CutReport& report) {
   return {{"after", after}};
 }
 
-void print_row(std::ostream& out, const char* name, const ErrorPair& errors) {
-  out << "  " << std::left << std::setw(34) << name << std::right << std::setprecision(4);
+void print_row(std::ostream& out, const char* name, const ErrorPair& errors, int digits = 4) {
+  out << "  " << std::left << std::setw(34) << name << std::right << std::setprecision(digits);
   if (errors.pixels == 0) {
     out << "none\n";
     return;
   }
-  out << errors.moving << "   " << errors.still << std::setprecision(2) << std::setw(8)
-      << errors.ratio() << std::setw(10) << errors.pixels << "\n";
+  out << std::setw(6) << errors.moving << "   " << std::setw(6) << errors.still
+      << std::setprecision(2) << std::setw(8) << errors.ratio() << std::setw(10) << errors.pixels
+      << "\n";
 }
 
 std::string table_of(MotionKind kind, const MotionReport& report) {
@@ -134,11 +142,15 @@ std::string table_of(MotionKind kind, const MotionReport& report) {
   if (report.passed_by.pixels > 0) {
     print_row(out, "near what moves", report.passed_by);
   }
+  print_row(out, "bent normals, degrees", degrees(report.bent_normals), 2);
   const Flicker& flicker = report.flicker;
   out << std::setprecision(4) << "  change of visibility a frame      " << flicker.with_history
-      << " with history, " << flicker.without << " without: ratio " << std::setprecision(3)
-      << flicker.ratio() << "; standing still " << std::setprecision(4) << flicker.still
-      << "; the truth's own at least " << flicker.truth << "\n";
+      << " with history; standing still " << flicker.still << "; the truth's own at least "
+      << flicker.truth << "\n"
+      << "    of the searches alone           " << flicker.searches << ": ratio "
+      << std::setprecision(3) << flicker.ratio_to_searches() << "\n"
+      << "    filtered, without history       " << std::setprecision(4) << flicker.without
+      << ": ratio " << std::setprecision(3) << flicker.ratio() << "\n";
   return out.str();
 }
 

@@ -190,7 +190,7 @@ RunningMean visibility_change(const Image<float>& now, const Image<float>& befor
   return change;
 }
 
-RunningMean least_change(const TruthHalves& now, const TruthHalves& before,
+RunningMean least_change(const Halves<float>& now, const Halves<float>& before,
                          const Retraced& retraced) {
   const auto in_direction = [](double change, double other) {
     return other == 0.0 ? 0.0 : std::copysign(change, change * other);
@@ -244,7 +244,7 @@ Speed speed_of(const Retraced& retraced) {
   return {mean.mean(), speeds[static_cast<std::size_t>(rank)]};
 }
 
-Image<float> mean_of(const TruthHalves& truth) {
+Image<float> mean_of(const Halves<float>& truth) {
   Image<float> mean = truth.first;
   for (std::size_t i = 0; i < mean.pixels.size(); ++i) {
     mean.pixels[i] = 0.5f * (truth.first.pixels[i] + truth.second.pixels[i]);
@@ -252,7 +252,8 @@ Image<float> mean_of(const TruthHalves& truth) {
   return mean;
 }
 
-RunningMean squared_error(const Image<float>& result, const TruthHalves& truth, const Mask& mask) {
+RunningMean squared_error(const Image<float>& result, const Halves<float>& truth,
+                          const Mask& mask) {
   RunningMean squares;
   for (std::size_t i = 0; i < mask.pixels.size(); ++i) {
     if (mask.pixels[i] == 0) {
@@ -264,6 +265,26 @@ RunningMean squared_error(const Image<float>& result, const TruthHalves& truth, 
     const double error = std::isfinite(given) ? given - 0.5 * (first + second) : 1.0;
     const double noise = 0.5 * (first - second);
     squares.sum += error * error - noise * noise;
+    ++squares.count;
+  }
+  return squares;
+}
+
+RunningMean squared_error(const Image<glm::vec3>& result, const Halves<glm::vec3>& truth,
+                          const Mask& mask) {
+  RunningMean squares;
+  for (std::size_t i = 0; i < mask.pixels.size(); ++i) {
+    if (mask.pixels[i] == 0) {
+      continue;
+    }
+    const glm::dvec3 given(result.pixels[i]);
+    const double length = glm::length(given);
+    const glm::dvec3 first(truth.first.pixels[i]);
+    const glm::dvec3 second(truth.second.pixels[i]);
+    // The noise of the halves is not each other's, so of its product nothing is left in the mean.
+    squares.sum += length > 0.0 && std::isfinite(length)
+                       ? glm::dot(given / length - first, given / length - second)
+                       : 2.0;
     ++squares.count;
   }
   return squares;

@@ -16,6 +16,7 @@ struct SeenFrame {
   Image<float> depth;  // linear; infinity: sky
   Image<glm::vec3> normal_ws;
   Image<float> visibility;
+  Image<glm::vec3> bent_normal_ws;
 };
 
 // Where the surfaces of a frame were on the image of the frame before.
@@ -68,21 +69,26 @@ struct Speed {
 [[nodiscard]] Speed speed_of(const Retraced& retraced);
 
 // A ray-traced image in two halves of other rays, whose difference tells its noise.
-struct TruthHalves {
-  Image<float> first;
-  Image<float> second;
+template <class T>
+struct Halves {
+  Image<T> first;
+  Image<T> second;
 };
-[[nodiscard]] Image<float> mean_of(const TruthHalves& truth);
+[[nodiscard]] Image<float> mean_of(const Halves<float>& truth);
 
 // The same change of a truth, at least: each half is counted in the direction that the other tells,
 // so that noise adds nothing in the mean.
-[[nodiscard]] RunningMean least_change(const TruthHalves& now, const TruthHalves& before,
+[[nodiscard]] RunningMean least_change(const Halves<float>& now, const Halves<float>& before,
                                        const Retraced& retraced);
 
 // Squared error against the mean of the halves, less what its noise adds. The mean may come out
 // below 0 by chance where there is no error.
-[[nodiscard]] RunningMean squared_error(const Image<float>& result, const TruthHalves& truth,
+[[nodiscard]] RunningMean squared_error(const Image<float>& result, const Halves<float>& truth,
                                         const Mask& mask);
+// The same of unit directions: the squared chord between them, which of small angles is the angle's
+// square. No direction counts as one across.
+[[nodiscard]] RunningMean squared_error(const Image<glm::vec3>& result,
+                                        const Halves<glm::vec3>& truth, const Mask& mask);
 // The root of a mean of squared errors; 0 of one below 0.
 [[nodiscard]] double root(const RunningMean& squares);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 namespace alcove::sample {
@@ -53,11 +54,25 @@ bool is_compared(const MotionPath& path, std::uint32_t frame) {
   return false;
 }
 
-tl::expected<Passed, std::string> pass_along(MotionWalk& walk, bool history) {
+// Of what is drawn along a path, after the path's own.
+std::string_view name_of(MotionWalk::Gathered gathered) {
+  switch (gathered) {
+    case MotionWalk::Gathered::nothing:
+      return " without history and filter";
+    case MotionWalk::Gathered::neighbours:
+      return " without history";
+    case MotionWalk::Gathered::neighbours_and_history:
+      break;
+  }
+  return "";
+}
+
+tl::expected<Passed, std::string> pass_along(MotionWalk& walk, MotionWalk::Gathered gathered) {
+  const bool history = gathered == MotionWalk::Gathered::neighbours_and_history;
   Passed passed;
   const MotionPath& path = walk.path();
   const Progress progress =
-      walk.progress(std::string(name_of(path.kind())) + (history ? "" : " without history"));
+      walk.progress(std::string(name_of(path.kind())) + std::string(name_of(gathered)));
   // Nothing is kept without a history, so that the way to where it counts is not walked.
   const std::uint32_t first = history ? 0 : first_settled(path) - 1;
   SeenFrame before;
@@ -66,7 +81,7 @@ tl::expected<Passed, std::string> pass_along(MotionWalk& walk, bool history) {
     auto seen = walk.draw_and_read({.frame = frame,
                                     .before = frame - (frame > first ? 1 : 0),
                                     .index = frame,
-                                    .history = history});
+                                    .gathered = gathered});
     if (!seen) {
       return Failure(std::move(seen.error()));
     }
@@ -96,6 +111,7 @@ tl::expected<Passed, std::string> pass_along(MotionWalk& walk, bool history) {
 // The last of as many frames under a camera that stands, and its change since the one before.
 struct Standing {
   Image<float> visibility;
+  Image<glm::vec3> bent_normal_ws;
   RunningMean change;
 };
 
@@ -124,6 +140,7 @@ tl::expected<Standing, std::string> stand_at(MotionWalk& walk, std::uint32_t fra
     }
   }
   standing.visibility = std::move(last->visibility);
+  standing.bent_normal_ws = std::move(last->bent_normal_ws);
   return standing;
 }
 
@@ -132,10 +149,10 @@ struct SquaresPair {
   RunningMean moving;
   RunningMean still;
 
-  void add(const Compared& compared, const Standing& standing, const TruthHalves& truth,
-           const Mask& mask) {
-    moving += squared_error(compared.seen.visibility, truth, mask);
-    still += squared_error(standing.visibility, truth, mask);
+  template <class T>
+  void add(const Image<T>& moved, const Image<T>& stood, const Halves<T>& truth, const Mask& mask) {
+    moving += squared_error(moved, truth, mask);
+    still += squared_error(stood, truth, mask);
   }
   ErrorPair errors() const { return {moving.count, root(moving), root(still)}; }
 };
@@ -146,6 +163,7 @@ struct Comparison {
   SquaresPair uncovered;
   SquaresPair entered;
   SquaresPair passed_by;
+  SquaresPair bent_normals;
   RunningMean still_change;
   RunningMean truth_change;
   std::vector<MotionPicture> pictures;
@@ -167,14 +185,21 @@ Done compare(MotionWalk& walk, const Compared& compared, Comparison& sums) {
   const auto passes_by = [&](const glm::vec3& position) {
     return walk.path().passes_by(position, compared.frame, kTrailFrames);
   };
-  sums.all.add(compared, *standing, *truth, surfaces_of(compared.seen));
-  sums.uncovered.add(compared, *standing, *truth, aged(compared.ages, true));
-  sums.entered.add(compared, *standing, *truth, aged(compared.ages, false));
-  sums.passed_by.add(compared, *standing, *truth, surfaces_where(compared.seen, passes_by));
+  const SeenFrame& seen = compared.seen;
+  const Mask surfaces = surfaces_of(seen);
+  const auto add = [&](SquaresPair& squares, const Mask& mask) {
+    squares.add(seen.visibility, standing->visibility, truth->visibility, mask);
+  };
+  add(sums.all, surfaces);
+  add(sums.uncovered, aged(compared.ages, true));
+  add(sums.entered, aged(compared.ages, false));
+  add(sums.passed_by, surfaces_where(seen, passes_by));
+  sums.bent_normals.add(seen.bent_normal_ws, standing->bent_normal_ws, truth->bent_normal_ws,
+                        surfaces);
   sums.still_change += standing->change;
-  sums.truth_change += least_change(*truth, *truth_before, compared.retraced);
-  sums.pictures.push_back(
-      {compared.frame, compared.seen.visibility, std::move(standing->visibility), mean_of(*truth)});
+  sums.truth_change += least_change(truth->visibility, truth_before->visibility, compared.retraced);
+  sums.pictures.push_back({compared.frame, seen.visibility, std::move(standing->visibility),
+                           mean_of(truth->visibility)});
   return {};
 }
 
@@ -213,13 +238,18 @@ tl::expected<MotionReport, std::string> run_motion(Gpu& gpu, const Scene& scene,
   if (!walk) {
     return Failure(std::move(walk.error()));
   }
-  const auto passed = pass_along(*walk, true);
+  using Gathered = MotionWalk::Gathered;
+  const auto passed = pass_along(*walk, Gathered::neighbours_and_history);
   if (!passed) {
     return Failure(passed.error());
   }
-  const auto unkept = pass_along(*walk, false);
+  const auto unkept = pass_along(*walk, Gathered::neighbours);
   if (!unkept) {
     return Failure(unkept.error());
+  }
+  const auto unfiltered = pass_along(*walk, Gathered::nothing);
+  if (!unfiltered) {
+    return Failure(unfiltered.error());
   }
   Comparison sums;
   for (const Compared& compared : passed->compared) {
@@ -227,14 +257,16 @@ tl::expected<MotionReport, std::string> run_motion(Gpu& gpu, const Scene& scene,
       return Failure(std::move(done.error()));
     }
   }
-  return MotionReport{.speed = {passed->speed.mean(), passed->fast.mean()},
-                      .all = sums.all.errors(),
-                      .uncovered = sums.uncovered.errors(),
-                      .entered = sums.entered.errors(),
-                      .passed_by = sums.passed_by.errors(),
-                      .flicker = {passed->change.mean(), unkept->change.mean(),
-                                  sums.still_change.mean(), sums.truth_change.mean()},
-                      .pictures = std::move(sums.pictures)};
+  return MotionReport{
+      .speed = {passed->speed.mean(), passed->fast.mean()},
+      .all = sums.all.errors(),
+      .uncovered = sums.uncovered.errors(),
+      .entered = sums.entered.errors(),
+      .passed_by = sums.passed_by.errors(),
+      .bent_normals = sums.bent_normals.errors(),
+      .flicker = {passed->change.mean(), unkept->change.mean(), unfiltered->change.mean(),
+                  sums.still_change.mean(), sums.truth_change.mean()},
+      .pictures = std::move(sums.pictures)};
 }
 
 tl::expected<CutReport, std::string> run_cut(Gpu& gpu, const Scene& scene, const MotionPath& path,
@@ -262,10 +294,11 @@ tl::expected<CutReport, std::string> run_cut(Gpu& gpu, const Scene& scene, const
     SeenFrame& kept = (*untold)[i];
     SeenFrame& begun = (*restart)[i];
     const std::uint32_t frames = 1u << i;
-    report.after.push_back({frames, root(squared_error(kept.visibility, *truth, surfaces)),
-                            root(squared_error(begun.visibility, *truth, surfaces))});
+    const Halves<float>& visibility = truth->visibility;
+    report.after.push_back({frames, root(squared_error(kept.visibility, visibility, surfaces)),
+                            root(squared_error(begun.visibility, visibility, surfaces))});
     report.pictures.push_back({cut + frames - 1, std::move(kept.visibility),
-                               std::move(begun.visibility), mean_of(*truth)});
+                               std::move(begun.visibility), mean_of(visibility)});
   }
   return report;
 }

@@ -20,7 +20,7 @@ inline constexpr std::uint32_t kUncoveredFrames = 4;
 // A trail would be seen for about so long.
 inline constexpr std::uint32_t kTrailFrames = 32;
 
-// RMSE of visibility against the ray-traced truth, without its noise.
+// RMSE against the ray-traced truth, without its noise.
 struct ErrorPair {
   std::uint64_t pixels = 0;
   double moving = 0;
@@ -32,11 +32,13 @@ struct ErrorPair {
 // Mean absolute change of visibility from frame to frame on a surface.
 struct Flicker {
   double with_history = 0;
-  double without = 0;  // of the same searches, filtered in space only
-  double still = 0;    // with history, when nothing moves
-  double truth = 0;    // of the compared frames' truth, at least
+  double without = 0;   // of the same searches, filtered in space only
+  double searches = 0;  // of the same searches, nor filtered either
+  double still = 0;     // with history, when nothing moves
+  double truth = 0;     // of the compared frames' truth, at least
 
   double ratio() const { return without > 0.0 ? with_history / without : 0.0; }
+  double ratio_to_searches() const { return searches > 0.0 ? with_history / searches : 0.0; }
 };
 
 // A frame that was compared.
@@ -50,9 +52,10 @@ struct MotionPicture {
 struct MotionReport {
   Speed speed;  // of surfaces, mean over frames
   ErrorPair all;
-  ErrorPair uncovered;  // pixels whose surface came from behind another kUncoveredFrames ago
-  ErrorPair entered;    // and from beyond the border of the image
-  ErrorPair passed_by;  // surfaces by which something moves, or did in the last kTrailFrames
+  ErrorPair uncovered;     // pixels whose surface came from behind another kUncoveredFrames ago
+  ErrorPair entered;       // and from beyond the border of the image
+  ErrorPair passed_by;     // surfaces by which something moves, or did in the last kTrailFrames
+  ErrorPair bent_normals;  // radians, on all surfaces
   Flicker flicker;
   std::vector<MotionPicture> pictures;
 };

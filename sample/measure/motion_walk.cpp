@@ -13,7 +13,7 @@ namespace {
 using Failure = tl::unexpected<std::string>;
 
 // Raised when a truth is computed otherwise, so that old entries of the cache are not taken.
-constexpr std::uint32_t kMotionTruthVersion = 1;
+constexpr std::uint32_t kMotionTruthVersion = 2;
 
 }  // namespace
 
@@ -49,9 +49,12 @@ FrameRequest MotionWalk::request(const Step& step) const {
   request.motion_vectors = step.moving;
   request.occlusion = setup_.occlusion;
   request.occlusion.specular = passes::Specular::none;
-  request.occlusion.bent_normal = false;
-  if (!step.history) {
+  request.occlusion.bent_normal = true;
+  if (step.gathered != Gathered::neighbours_and_history) {
     request.occlusion.history_frames = 0;
+  }
+  if (step.gathered == Gathered::nothing) {
+    request.occlusion.filter_reach = 0;
   }
   return request;
 }
@@ -63,7 +66,7 @@ tl::expected<SeenFrame, std::string> MotionWalk::draw_and_read(const Step& step)
   }
   const Camera camera = path_.camera(step.frame);
   return SeenFrame{camera, linear_depth(camera, images->depth_ndc), std::move(images->normal_ws),
-                   std::move(images->visibility)};
+                   std::move(images->visibility), std::move(images->bent_normal_ws)};
 }
 
 tl::expected<void, std::string> MotionWalk::draw(const Step& step) {
@@ -74,27 +77,42 @@ Progress MotionWalk::progress(const std::string& name) const {
   return setup_.progress ? setup_.progress(name) : Progress([](double) {});
 }
 
-tl::expected<TruthHalves, std::string> MotionWalk::truth(std::uint32_t frame,
-                                                         const SeenFrame& seen) {
+tl::expected<MotionWalk::Truth, std::string> MotionWalk::truth(std::uint32_t frame,
+                                                               const SeenFrame& seen) {
   path_.pose(*scene_, frame);
   const TruthCache cache(setup_.cache);
   const std::uint32_t half = std::max(setup_.spp / 2, 1u);
-  std::array<CacheKey, 2> keys;
-  TruthHalves truth{{setup_.width, setup_.height}, {setup_.width, setup_.height}};
-  const std::array images{&truth.first, &truth.second};
-  bool known = true;
-  for (std::uint32_t i = 0; i < keys.size(); ++i) {
-    keys[i].add(std::string("motion truth"));
-    keys[i].add(kMotionTruthVersion);
-    keys[i].add(*scene_);
-    keys[i].add(seen.camera);
-    keys[i].add(setup_.occlusion.radius);
-    keys[i].add(half);
-    keys[i].add(i);
-    keys[i].add(seen.depth);
-    keys[i].add(seen.normal_ws);
-    known = known && cache.read(keys[i], *images[i]);
-  }
+  const auto key_of = [&](std::uint32_t index, const char* image) {
+    CacheKey key;
+    key.add(std::string("motion truth"));
+    key.add(kMotionTruthVersion);
+    key.add(*scene_);
+    key.add(seen.camera);
+    key.add(setup_.occlusion.radius);
+    key.add(half);
+    key.add(index);
+    key.add(seen.depth);
+    key.add(seen.normal_ws);
+    key.add(std::string(image));
+    return key;
+  };
+  struct Half {
+    CacheKey visibility_key;
+    CacheKey bent_normal_key;
+    Image<float>& visibility;
+    Image<glm::vec3>& bent_normal_ws;
+  };
+  const Image<float> no_visibility(setup_.width, setup_.height);
+  const Image<glm::vec3> no_directions(setup_.width, setup_.height);
+  Truth truth{{no_visibility, no_visibility}, {no_directions, no_directions}};
+  const std::array halves{Half{key_of(0, "visibility"), key_of(0, "bent normal"),
+                               truth.visibility.first, truth.bent_normal_ws.first},
+                          Half{key_of(1, "visibility"), key_of(1, "bent normal"),
+                               truth.visibility.second, truth.bent_normal_ws.second}};
+  const bool known = std::ranges::all_of(halves, [&](const Half& known_half) {
+    return cache.read(known_half.visibility_key, known_half.visibility) &&
+           cache.read(known_half.bent_normal_key, known_half.bent_normal_ws);
+  });
   if (known) {
     return truth;
   }
@@ -104,12 +122,14 @@ tl::expected<TruthHalves, std::string> MotionWalk::truth(std::uint32_t frame,
   }
   const SurfacePoints points = surface_points(*rays, seen.camera, seen.normal_ws, seen.depth);
   const Progress whole = progress("truth of frame " + std::to_string(frame));
-  for (std::uint32_t i = 0; i < keys.size(); ++i) {
+  for (std::uint32_t i = 0; i < halves.size(); ++i) {
     const TruthSettings settings{.radius = setup_.occlusion.radius, .spp = half, .seed = 1 + i};
-    *images[i] = occlusion_truth(*rays, points, settings, [&](double done) {
-                   whole(0.5 * (i + done));
-                 }).visibility;
-    cache.write(keys[i], *images[i]);
+    OcclusionTruth traced =
+        occlusion_truth(*rays, points, settings, [&](double done) { whole(0.5 * (i + done)); });
+    halves[i].visibility = std::move(traced.visibility);
+    halves[i].bent_normal_ws = std::move(traced.bent_normal_ws);
+    cache.write(halves[i].visibility_key, halves[i].visibility);
+    cache.write(halves[i].bent_normal_key, halves[i].bent_normal_ws);
   }
   return truth;
 }

@@ -35,21 +35,27 @@ class MotionWalk {
                                                                     const MotionPath& path,
                                                                     const MotionSetup& setup);
 
+  // What a pixel's visibility is gathered from, besides its own searches.
+  enum class Gathered : std::uint8_t { nothing, neighbours, neighbours_and_history };
+
   // How a frame is drawn.
   struct Step {
     std::uint32_t frame = 0;   // of the path
     std::uint32_t before = 0;  // where everything was one frame ago
     std::uint32_t index = 0;   // of the noise
     bool restart = false;
-    bool history = true;
+    Gathered gathered = Gathered::neighbours_and_history;
     bool moving = true;  // motion vectors are given
   };
   [[nodiscard]] tl::expected<SeenFrame, std::string> draw_and_read(const Step& step);
   [[nodiscard]] tl::expected<void, std::string> draw(const Step& step);
 
   // The truth of a frame, of the surfaces that it saw.
-  [[nodiscard]] tl::expected<TruthHalves, std::string> truth(std::uint32_t frame,
-                                                             const SeenFrame& seen);
+  struct Truth {
+    Halves<float> visibility;
+    Halves<glm::vec3> bent_normal_ws;
+  };
+  [[nodiscard]] tl::expected<Truth, std::string> truth(std::uint32_t frame, const SeenFrame& seen);
 
   const MotionPath& path() const { return path_; }
   Progress progress(const std::string& name) const;

@@ -46,13 +46,20 @@ ALCOVE_INLINE Signal unpack_signal(uint bits) {
 
 ALCOVE_INLINE uint signal_normal(uint bits) { return bits >> 24u; }
 
-// A sum of visible directions, each component within 2^-11 of itself.
-ALCOVE_INLINE uvec2 pack_direction(vec3 direction) {
-  return uvec2(packHalf2x16(vec2(direction.x, direction.y)), packHalf2x16(vec2(direction.z, 0.0f)));
+// Components of a bend (bent_normal.h) are no larger.
+const float kLargestBend = 4.0f / 3.0f;
+
+// A bend in 10 bits a component, each clamped to kLargestBend in size and within 0.0014 after
+// unpack_bend(); 0 comes back as it is.
+ALCOVE_INLINE uint pack_bend(vec3 bend) {
+  vec3 scaled = clamp(bend * (1.0f / kLargestBend), -1.0f, 1.0f) * 511.0f + 512.5f;
+  return uint(scaled.x) | (uint(scaled.y) << 10u) | (uint(scaled.z) << 20u);
 }
 
-ALCOVE_INLINE vec3 unpack_direction(uvec2 bits) {
-  return vec3(unpackHalf2x16(bits.x), unpackHalf2x16(bits.y).x);
+ALCOVE_INLINE vec3 unpack_bend(uint bits) {
+  vec3 scaled =
+      vec3(float(bits & 1023u), float((bits >> 10u) & 1023u), float((bits >> 20u) & 1023u));
+  return (scaled - 512.0f) * (kLargestBend / 511.0f);
 }
 
 // The same of a GGX lobe, whose open part differs by orders of magnitude from slice to slice: the

@@ -66,7 +66,8 @@ ALCOVE_INLINE vec4 parity_of_slices(uint which, vec4 a, vec4 b) {
       vec3 view = parity_view(a.x, a.y);
       vec3 direction = slice_direction(make_view_basis(view), a.z * kPi);
       vec3 bent = slice_bent_normal(s, direction, view, ahead, behind);
-      return vec4(bent.x, bent.y, bent.z, uniform_slice_visibility(s, ahead, behind));
+      vec3 bend = bend_of(bent, slice_visibility(s, ahead, behind), view);
+      return vec4(bend.x, bend.y, bend.z, uniform_slice_visibility(s, ahead, behind));
     }
     case 3u: {
       vec2 point = vec2(b.z, ahead);

@@ -88,6 +88,24 @@ TEST(Signal, LobesWeighByNormalAndRoughness) {
   }
 }
 
+TEST(Signal, BendsComeBackToAStepOfTenBits) {
+  RandomInput random;
+  const auto round_trip = [](const vec3& bend) {
+    return maths::unpack_bend(maths::pack_bend(bend));
+  };
+  for (int i = 0; i < 100000; ++i) {
+    const float largest = maths::kLargestBend;
+    const vec3 bend(random.uniform(-largest, largest), random.uniform(-largest, largest),
+                    random.uniform(-largest, largest));
+    const vec3 apart = glm::abs(round_trip(bend) - bend);
+    EXPECT_LT(std::max({apart.x, apart.y, apart.z}), 0.0014f);
+  }
+  EXPECT_EQ(round_trip(vec3(0)), vec3(0)) << "open surfaces stay exactly so";
+  const float largest = round_trip(vec3(9)).x;
+  EXPECT_FLOAT_EQ(largest, maths::kLargestBend) << "clamped";
+  EXPECT_EQ(round_trip(vec3(-9)), -vec3(largest));
+}
+
 TEST(Octahedral, RoundTripsEveryDirection) {
   RandomInput random;
   for (int i = 0; i < 100000; ++i) {

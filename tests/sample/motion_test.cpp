@@ -45,7 +45,10 @@ TEST_F(Motion, FramesOfAMovingCameraAreNearlyAsGoodAsStillOnes) {
     // Past a column much comes into view, else a line along some silhouettes.
     EXPECT_GT(report.uncovered.pixels, kind == MotionKind::kStrafe ? 500u : 50u);
     EXPECT_LT(report.uncovered.ratio(), 1.5);
+    EXPECT_GT(report.bent_normals.still, glm::radians(1.0));
+    EXPECT_LT(report.bent_normals.ratio(), 1.15);
     EXPECT_LT(report.flicker.ratio(), 0.5);
+    EXPECT_LT(report.flicker.ratio_to_searches(), 0.1);
   }
 }
 
