@@ -10,6 +10,7 @@
 #include "check_inputs.h"
 #include "gtao_parameters.h"
 #include "maths/slice_line.h"
+#include "number_text.h"
 #include "output_format.h"
 #include "search_phase.h"
 #include "view_parameters.h"
@@ -26,12 +27,12 @@ tl::expected<void, Error> check_share(const char* name, float value) {
     return {};
   }
   return tl::unexpected(
-      Error{std::string("The ") + name + " is " + std::to_string(value) + "; it must be 0 to 1."});
+      Error{std::string("The ") + name + " is " + number_text(value) + "; it must be 0 to 1."});
 }
 
 tl::expected<void, Error> check_occluders(const GtaoSettings& settings) {
   if (!(settings.thickness >= 0.0f) || !std::isfinite(settings.thickness)) {
-    return tl::unexpected(Error{"The thickness is " + std::to_string(settings.thickness) +
+    return tl::unexpected(Error{"The thickness is " + number_text(settings.thickness) +
                                 "; it must be at least 0 and finite."});
   }
   return check_share("fill", settings.fill)
@@ -42,7 +43,7 @@ tl::expected<void, Error> check_occluders(const GtaoSettings& settings) {
 tl::expected<void, Error> check_falloff(const GtaoSettings& settings) {
   if (settings.falloff > 0.0f && has_thickness(settings.estimator)) {
     return tl::unexpected(Error{
-        "The falloff is " + std::to_string(settings.falloff) +
+        "The falloff is " + number_text(settings.falloff) +
         ", but only horizons and the heuristic have one: a sector is occluded or it is not."});
   }
   return {};
@@ -50,7 +51,7 @@ tl::expected<void, Error> check_falloff(const GtaoSettings& settings) {
 
 tl::expected<void, Error> check(const GtaoSettings& settings) {
   if (!(settings.radius > 0.0f) || !std::isfinite(settings.radius)) {
-    return tl::unexpected(Error{"The occlusion radius is " + std::to_string(settings.radius) +
+    return tl::unexpected(Error{"The occlusion radius is " + number_text(settings.radius) +
                                 "; it must be a length over 0 in the scene's units."});
   }
   if (settings.steps < 2 || settings.steps > 64) {
