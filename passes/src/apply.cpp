@@ -110,7 +110,9 @@ tl::expected<Kernel, Error> kernel_of(const Frame& frame, const ApplyInputs& inp
   return frame.kernels.get(
       Shader::apply_specular,
       std::array{bent, visible, bounces, light, parts, flag(bool(inputs.roughness)),
-                 settings.roughness_channel, flag(bool(inputs.metallic)), settings.metallic_channel,
+                 channel_if(bool(inputs.roughness), settings.roughness_channel),
+                 flag(bool(inputs.metallic)),
+                 channel_if(bool(inputs.metallic), settings.metallic_channel),
                  flag(bool(inputs.specular_occlusion))});
 }
 

@@ -116,6 +116,11 @@ bool by_pattern(const GtaoSettings& settings) {
   return settings.parts.grouping == Grouping::pattern;
 }
 
+// Whether thickness is a part of distance; else of the radius, or there is none.
+bool of_distance(const GtaoSettings& settings) {
+  return has_thickness(settings.estimator) && settings.thickness_unit == ThicknessUnit::distance;
+}
+
 // Of the shader, in its order.
 std::array<std::uint32_t, 18> constants_of(const GtaoSettings& settings, const Reads& reads,
                                            bool perspective) {
@@ -127,10 +132,10 @@ std::array<std::uint32_t, 18> constants_of(const GtaoSettings& settings, const R
           static_cast<std::uint32_t>(settings.pattern),
           flag(perspective),
           flag(reads.roughness),
-          settings.roughness_channel,
+          channel_if(reads.roughness, settings.roughness_channel),
           flag(settings.weighting == Weighting::uniform),
           flag(settings.falloff > 0.0f),
-          flag(settings.thickness_unit == ThicknessUnit::distance),
+          flag(of_distance(settings)),
           flag(reads.back_faces),
           flag(settings.parts.snapping),
           flag(by_pattern(settings)),
@@ -165,14 +170,13 @@ maths::GtaoParameters parameters_of(const Frame& frame, const GtaoInputs& inputs
                                     const GtaoSettings& settings,
                                     const maths::Projection& projection) {
   const SearchPhase phase = search_phase(settings.divisor, frame.index);
-  const bool of_distance = settings.thickness_unit == ThicknessUnit::distance;
   return {view_from_normal(frame, inputs.normals_in_view_space),
           maths::vec4(maths::ray_per_px(projection), projection.uv_to_slope.z,
                       projection.uv_to_slope.w),
           maths::vec2(static_cast<float>(phase.x), static_cast<float>(phase.y)),
           settings.radius,
           frame.index,
-          settings.thickness * (of_distance ? 1.0f : settings.radius),
+          settings.thickness * (of_distance(settings) ? 1.0f : settings.radius),
           settings.fill,
           settings.blend,
           settings.falloff,
