@@ -9,6 +9,7 @@
 #include "bindings.h"
 #include "check_inputs.h"
 #include "maths/spherical_harmonics.h"
+#include "number_text.h"
 #include "output_format.h"
 #include "view_parameters.h"
 
@@ -26,11 +27,11 @@ tl::unexpected<Error> refusal(std::string message) {
 
 tl::expected<void, Error> check_settings(const ApplySettings& settings) {
   if (!(settings.roughness >= 0.0f && settings.roughness <= 1.0f)) {
-    return refusal("The roughness of probe light is " + std::to_string(settings.roughness) +
+    return refusal("The roughness of probe light is " + number_text(settings.roughness) +
                    "; it must be 0 to 1.");
   }
   if (!(settings.metallic >= 0.0f && settings.metallic <= 1.0f)) {
-    return refusal("The metallic of probe light is " + std::to_string(settings.metallic) +
+    return refusal("The metallic of probe light is " + number_text(settings.metallic) +
                    "; it must be 0 to 1.");
   }
   for (const auto& [name, channel] : {std::pair("Roughness", settings.roughness_channel),
@@ -109,7 +110,9 @@ tl::expected<Kernel, Error> kernel_of(const Frame& frame, const ApplyInputs& inp
   return frame.kernels.get(
       Shader::apply_specular,
       std::array{bent, visible, bounces, light, parts, flag(bool(inputs.roughness)),
-                 settings.roughness_channel, flag(bool(inputs.metallic)), settings.metallic_channel,
+                 channel_if(bool(inputs.roughness), settings.roughness_channel),
+                 flag(bool(inputs.metallic)),
+                 channel_if(bool(inputs.metallic), settings.metallic_channel),
                  flag(bool(inputs.specular_occlusion))});
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "alcove/passes/setting_names.h"
+#include "number_text.h"
 
 namespace alcove::passes {
 namespace {
@@ -122,21 +123,20 @@ struct Print {
   std::size_t size;
   std::size_t& length;
 
-  template <typename... Values>
-  void line(const char* format, Values... values) const {
+  void line(const char* name, const char* value) const {
     const bool room = length < size;
-    const int more =
-        std::snprintf(room ? text + length : nullptr, room ? size - length : 0, format, values...);
+    const int more = std::snprintf(room ? text + length : nullptr, room ? size - length : 0,
+                                   "%s = %s\n", name, value);
     length += static_cast<std::size_t>(std::max(more, 0));
   }
   template <typename Theirs, typename Ours>
   void operator()(const char* name, const Theirs& /*theirs*/, const Ours& ours) const {
     if constexpr (std::is_enum_v<Ours>) {
-      line("%s = %s\n", name, name_of(ours).data());
+      line(name, name_of(ours).data());
     } else if constexpr (std::is_same_v<Ours, float>) {
-      line("%s = %g\n", name, static_cast<double>(ours));
+      line(name, number_text(ours).c_str());
     } else {
-      line("%s = %u\n", name, static_cast<unsigned>(ours));
+      line(name, std::to_string(ours).c_str());
     }
   }
 };

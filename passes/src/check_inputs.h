@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "alcove/passes/frame.h"
+#include "number_text.h"
 
 namespace alcove::passes {
 
@@ -57,7 +58,7 @@ struct NamedInput {
                                                                std::uint32_t channel) {
   if (!(roughness >= 0.0f && roughness <= 1.0f)) {
     return tl::unexpected(
-        Error{"The roughness is " + std::to_string(roughness) + "; it must be 0 to 1."});
+        Error{"The roughness is " + number_text(roughness) + "; it must be 0 to 1."});
   }
   if (channel > 3) {
     return tl::unexpected(Error{"The channel of the roughness is " + std::to_string(channel) +

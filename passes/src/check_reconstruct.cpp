@@ -6,6 +6,7 @@
 
 #include "check_inputs.h"
 #include "maths/history.h"
+#include "number_text.h"
 #include "output_format.h"
 
 namespace alcove::passes {
@@ -18,7 +19,7 @@ constexpr std::uint32_t kMaxReach = 3;
 tl::expected<void, Error> check_settings(const ReconstructSettings& settings) {
   if (!(settings.filter_tolerance_px > 0.0f) || !std::isfinite(settings.filter_tolerance_px)) {
     return tl::unexpected(Error{"The filter's tolerance is " +
-                                std::to_string(settings.filter_tolerance_px) +
+                                number_text(settings.filter_tolerance_px) +
                                 " pixels; it must be over 0 and finite."});
   }
   if (settings.filter_reach > kMaxReach) {
@@ -31,7 +32,7 @@ tl::expected<void, Error> check_settings(const ReconstructSettings& settings) {
                                 std::to_string(maths::kMaxHistoryFrames) + "."});
   }
   if (!(settings.clamp_width >= 0.0f) || !std::isfinite(settings.clamp_width)) {
-    return tl::unexpected(Error{"The history's clamp is " + std::to_string(settings.clamp_width) +
+    return tl::unexpected(Error{"The history's clamp is " + number_text(settings.clamp_width) +
                                 " deviations wide; it must be at least 0 and finite."});
   }
   return check_roughness(settings.roughness, settings.roughness_channel);

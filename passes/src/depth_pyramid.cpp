@@ -7,6 +7,7 @@
 
 #include "check_inputs.h"
 #include "depth_pyramid_parameters.h"
+#include "number_text.h"
 #include "view_parameters.h"
 
 namespace alcove::passes {
@@ -34,7 +35,7 @@ tl::expected<void, Error> check(const Frame& frame, Texture depth_ndc, std::uint
                                 " mips; it must be 1 to " + std::to_string(kMaxMips) + "."});
   }
   if (mips > 1 && (!(reach > 0.0f) || !std::isfinite(reach))) {
-    return tl::unexpected(Error{"The depth pyramid's reach is " + std::to_string(reach) +
+    return tl::unexpected(Error{"The depth pyramid's reach is " + number_text(reach) +
                                 "; it must be a length over 0 in the scene's units."});
   }
   const std::array<NamedInput, 1> needed{{{"depth", depth_ndc}}};

@@ -10,6 +10,7 @@
 #include "check_inputs.h"
 #include "gtao_parameters.h"
 #include "maths/slice_line.h"
+#include "number_text.h"
 #include "output_format.h"
 #include "search_phase.h"
 #include "view_parameters.h"
@@ -26,12 +27,12 @@ tl::expected<void, Error> check_share(const char* name, float value) {
     return {};
   }
   return tl::unexpected(
-      Error{std::string("The ") + name + " is " + std::to_string(value) + "; it must be 0 to 1."});
+      Error{std::string("The ") + name + " is " + number_text(value) + "; it must be 0 to 1."});
 }
 
 tl::expected<void, Error> check_occluders(const GtaoSettings& settings) {
   if (!(settings.thickness >= 0.0f) || !std::isfinite(settings.thickness)) {
-    return tl::unexpected(Error{"The thickness is " + std::to_string(settings.thickness) +
+    return tl::unexpected(Error{"The thickness is " + number_text(settings.thickness) +
                                 "; it must be at least 0 and finite."});
   }
   return check_share("fill", settings.fill)
@@ -42,7 +43,7 @@ tl::expected<void, Error> check_occluders(const GtaoSettings& settings) {
 tl::expected<void, Error> check_falloff(const GtaoSettings& settings) {
   if (settings.falloff > 0.0f && has_thickness(settings.estimator)) {
     return tl::unexpected(Error{
-        "The falloff is " + std::to_string(settings.falloff) +
+        "The falloff is " + number_text(settings.falloff) +
         ", but only horizons and the heuristic have one: a sector is occluded or it is not."});
   }
   return {};
@@ -50,7 +51,7 @@ tl::expected<void, Error> check_falloff(const GtaoSettings& settings) {
 
 tl::expected<void, Error> check(const GtaoSettings& settings) {
   if (!(settings.radius > 0.0f) || !std::isfinite(settings.radius)) {
-    return tl::unexpected(Error{"The occlusion radius is " + std::to_string(settings.radius) +
+    return tl::unexpected(Error{"The occlusion radius is " + number_text(settings.radius) +
                                 "; it must be a length over 0 in the scene's units."});
   }
   if (settings.steps < 2 || settings.steps > 64) {
@@ -115,6 +116,11 @@ bool by_pattern(const GtaoSettings& settings) {
   return settings.parts.grouping == Grouping::pattern;
 }
 
+// Whether thickness is a part of distance; else of the radius, or there is none.
+bool of_distance(const GtaoSettings& settings) {
+  return has_thickness(settings.estimator) && settings.thickness_unit == ThicknessUnit::distance;
+}
+
 // Of the shader, in its order.
 std::array<std::uint32_t, 18> constants_of(const GtaoSettings& settings, const Reads& reads,
                                            bool perspective) {
@@ -126,10 +132,10 @@ std::array<std::uint32_t, 18> constants_of(const GtaoSettings& settings, const R
           static_cast<std::uint32_t>(settings.pattern),
           flag(perspective),
           flag(reads.roughness),
-          settings.roughness_channel,
+          channel_if(reads.roughness, settings.roughness_channel),
           flag(settings.weighting == Weighting::uniform),
           flag(settings.falloff > 0.0f),
-          flag(settings.thickness_unit == ThicknessUnit::distance),
+          flag(of_distance(settings)),
           flag(reads.back_faces),
           flag(settings.parts.snapping),
           flag(by_pattern(settings)),
@@ -164,14 +170,13 @@ maths::GtaoParameters parameters_of(const Frame& frame, const GtaoInputs& inputs
                                     const GtaoSettings& settings,
                                     const maths::Projection& projection) {
   const SearchPhase phase = search_phase(settings.divisor, frame.index);
-  const bool of_distance = settings.thickness_unit == ThicknessUnit::distance;
   return {view_from_normal(frame, inputs.normals_in_view_space),
           maths::vec4(maths::ray_per_px(projection), projection.uv_to_slope.z,
                       projection.uv_to_slope.w),
           maths::vec2(static_cast<float>(phase.x), static_cast<float>(phase.y)),
           settings.radius,
           frame.index,
-          settings.thickness * (of_distance ? 1.0f : settings.radius),
+          settings.thickness * (of_distance(settings) ? 1.0f : settings.radius),
           settings.fill,
           settings.blend,
           settings.falloff,

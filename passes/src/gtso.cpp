@@ -63,7 +63,8 @@ tl::expected<Texture, Error> add_gtso(const Frame& frame, const GtsoInputs& give
     return tl::unexpected(projection.error());
   }
   const std::array constants{static_cast<std::uint32_t>(settings.model),
-                             flag(bool(inputs.roughness)), settings.roughness_channel};
+                             flag(bool(inputs.roughness)),
+                             channel_if(bool(inputs.roughness), settings.roughness_channel)};
   const auto kernel = frame.kernels.get(
       settings.model == SpecularModel::table ? Shader::gtso_by_table : Shader::gtso, constants);
   if (!kernel) {

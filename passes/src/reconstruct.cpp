@@ -234,7 +234,7 @@ std::array<std::uint32_t, 12> constants_of(const ReconstructInputs& inputs,
           flag(settings.clamp_width > 0.0f),
           flag(is_still(past)),
           flag(bool(inputs.roughness)),
-          settings.roughness_channel,
+          channel_if(bool(inputs.roughness), settings.roughness_channel),
           flag(past == Past::none),
           flag(settings.visibility),
           flag(past == Past::settled)};

@@ -13,11 +13,6 @@ using framegraph::RecordContext;
 using framegraph::Texture;
 using Failure = tl::unexpected<std::string>;
 
-Failure failure(const char* what, VkResult result) {
-  return Failure(std::string("The device could not ") + what + " (" +
-                 std::string(result_name(result)) + ").");
-}
-
 framegraph::DeviceHandles handles_of(const VulkanDevice& device) {
   framegraph::DeviceHandles handles;
   handles.instance = device.instance();
@@ -58,8 +53,7 @@ tl::expected<std::unique_ptr<HostBuffer>, std::string> HostBuffer::create(
     result = vkMapMemory(device.device(), made->memory_, 0, VK_WHOLE_SIZE, 0, &mapped);
   }
   if (result != VK_SUCCESS) {
-    return Failure("The device could not give a buffer of " + std::to_string(bytes) + " bytes (" +
-                   std::string(result_name(result)) + ").");
+    return device_failure("give a buffer of " + std::to_string(bytes) + " bytes", result);
   }
   made->mapped_ = static_cast<std::byte*>(mapped);
   return made;
@@ -90,7 +84,7 @@ tl::expected<std::unique_ptr<Gpu>, std::string> Gpu::create(
   made->device_ = std::move(*device);
   made->frames_in_flight_ = executor_options.frames_in_flight;
   if (const VkResult result = made->create_commands(); result != VK_SUCCESS) {
-    return failure("create a command buffer", result);
+    return device_failure("create a command buffer", result);
   }
   framegraph::DeviceHandles handles = handles_of(*made->device_);
   handles.debug_utils = options.validation;
@@ -135,7 +129,7 @@ tl::expected<framegraph::FrameReport, std::string> Gpu::run(const Declare& decla
                                        .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
   VkResult result = vkBeginCommandBuffer(commands_, &begin);
   if (result != VK_SUCCESS) {
-    return failure("begin a frame's commands", result);
+    return device_failure("begin a frame's commands", result);
   }
   auto report = record(declare, commands_, 0);
   result = vkEndCommandBuffer(commands_);
@@ -146,7 +140,7 @@ tl::expected<framegraph::FrameReport, std::string> Gpu::run(const Declare& decla
     result = submit_and_wait();
   }
   if (result != VK_SUCCESS) {
-    return failure("run a frame", result);
+    return device_failure("run a frame", result);
   }
   return report;
 }

@@ -48,9 +48,9 @@ tl::expected<std::unique_ptr<GpuImage>, std::string> GpuImage::create(const Vulk
     result = vkCreateImageView(device, &view, nullptr, &made->view_);
   }
   if (result != VK_SUCCESS) {
-    return tl::unexpected("The device could not give an image of " + std::to_string(size.width) +
-                          "x" + std::to_string(size.height) + " pixels (" +
-                          std::string(result_name(result)) + ").");
+    return device_failure("give an image of " + std::to_string(size.width) + "x" +
+                              std::to_string(size.height) + " pixels",
+                          result);
   }
   return made;
 }

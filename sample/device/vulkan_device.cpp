@@ -159,6 +159,10 @@ std::string_view result_name(VkResult result) {
   }
 }
 
+tl::unexpected<std::string> device_failure(const std::string& what, VkResult result) {
+  return failure("The device could not " + what, result);
+}
+
 VKAPI_ATTR VkBool32 VKAPI_CALL VulkanDevice::receive_message(
     VkDebugUtilsMessageSeverityFlagBitsEXT /*severity*/, VkDebugUtilsMessageTypeFlagsEXT /*types*/,
     const VkDebugUtilsMessengerCallbackDataEXT* data, void* self) {

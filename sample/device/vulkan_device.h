@@ -86,5 +86,7 @@ class VulkanDevice {
 
 // `VK_ERROR_DEVICE_LOST` and the like, for sentences.
 [[nodiscard]] std::string_view result_name(VkResult result);
+// "The device could not WHAT (VK_ERROR_DEVICE_LOST)."
+[[nodiscard]] tl::unexpected<std::string> device_failure(const std::string& what, VkResult result);
 
 }  // namespace alcove::sample

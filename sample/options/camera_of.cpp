@@ -1,5 +1,6 @@
 #include "options/camera_of.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "options/option_value.h"
@@ -15,17 +16,28 @@ bool has_axes(const Camera& camera) {
          std::isfinite(glm::dot(camera.eye_ws, camera.eye_ws));
 }
 
+// The first names, and how many there are besides: a file may have thousands.
+std::string names_of(const std::vector<Camera>& cameras) {
+  constexpr std::size_t kMost = 10;
+  const std::size_t listed = std::min(cameras.size(), kMost);
+  std::string names;
+  for (std::size_t i = 0; i < listed; ++i) {
+    names += (i == 0 ? "\"" : ", \"") + cameras[i].name + "\"";
+  }
+  if (listed < cameras.size()) {
+    names += " and " + std::to_string(cameras.size() - listed) + " more";
+  }
+  return names;
+}
+
 }  // namespace
 
 tl::expected<Camera, std::string> camera_of(const ViewOptions& view, const Scene& scene) {
   const Camera* named = find_camera(scene, view.camera);
   if (!named && !view.camera.empty()) {
-    std::string names;
-    for (const Camera& camera : scene.cameras) {
-      names += (names.empty() ? "\"" : ", \"") + camera.name + "\"";
-    }
-    return tl::unexpected("the scene has no camera \"" + view.camera + "\"; it has " +
-                          (names.empty() ? "none: use --eye and --target" : names));
+    return tl::unexpected(
+        "the scene has no camera \"" + view.camera + "\"; it has " +
+        (scene.cameras.empty() ? "none: use --eye and --target" : names_of(scene.cameras)));
   }
   Camera camera = named ? *named : framing_camera(scene.bounds_ws);
   camera.eye_ws = view.eye_ws.value_or(camera.eye_ws);

@@ -147,9 +147,8 @@ void add_course(CLI::App& app, ViewOptions& view, const std::string& frames_help
   add_frames(group, view, 1, frames_help);
   group.add("--orbit", "DEGREES", "turn about the target by so much per frame",
             [&](const OptionValue& given) {
-              constexpr double kLargest = std::numeric_limits<float>::max();
-              view.orbit = glm::radians(
-                  static_cast<float>(given.number(-kLargest, kLargest, "an angle in degrees")));
+              view.orbit = glm::radians(static_cast<float>(
+                  given.number(-360.0, 360.0, "an angle in degrees, -360 to 360")));
             });
 }
 

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <utility>
 
+#include "options/option_value.h"
 #include "options/setting_table.h"
 #include "options/settings.h"
 
@@ -18,15 +17,8 @@ using passes::OcclusionSettings;
 using passes::Quality;
 
 // Each overload gives the text of a value that reads back as the same.
-template <typename Number>
-std::string number_text(Number value) {
-  std::array<char, 64> text{};
-  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
-  return {text.data(), end};
-}
-
-std::string text_of(float value) { return std::isinf(value) ? "inf" : number_text(value); }
-std::string text_of(std::uint32_t value) { return number_text(value); }
+std::string text_of(float value) { return shown(value); }
+std::string text_of(std::uint32_t value) { return std::to_string(value); }
 std::string text_of(const glm::vec3& v) {
   return text_of(v.x) + "," + text_of(v.y) + "," + text_of(v.z);
 }

@@ -26,11 +26,6 @@ using Failure = tl::unexpected<std::string>;
 constexpr std::uint32_t kParameterStride = 512;
 static_assert(sizeof(maths::GbufferParameters) <= kParameterStride && kParameterStride % 256 == 0);
 
-Failure failure(const char* what, VkResult result) {
-  return Failure(std::string("The device could not create ") + what + " of the g-buffer (" +
-                 std::string(result_name(result)) + ").");
-}
-
 maths::GbufferDraw draw_constants(const Material& material) {
   maths::GbufferDraw draw{};
   draw.base_colour = material.base_color;
@@ -148,7 +143,7 @@ tl::expected<void, std::string> GbufferRenderer::State::create_sets(const Scene&
     allocate(pipelines->material_set(), material);
   }
   if (result != VK_SUCCESS) {
-    return failure("the descriptor sets", result);
+    return device_failure("create the descriptor sets of the g-buffer", result);
   }
   write_sets(scene);
   return {};

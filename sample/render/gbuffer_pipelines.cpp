@@ -100,8 +100,7 @@ tl::expected<std::unique_ptr<GbufferPipelines>, std::string> GbufferPipelines::c
     }
   }
   if (result != VK_SUCCESS) {
-    return tl::unexpected("The device could not create the pipelines of the g-buffer (" +
-                          std::string(result_name(result)) + ").");
+    return device_failure("create the pipelines of the g-buffer", result);
   }
   return made;
 }

@@ -97,8 +97,7 @@ tl::expected<VkSampler, std::string> GpuTextures::add_sampler(const Sampler& sam
   VkSampler made = VK_NULL_HANDLE;
   if (const VkResult result = vkCreateSampler(device_.device(), &info, nullptr, &made);
       result != VK_SUCCESS) {
-    return Failure("The device could not create a sampler of the scene's textures (" +
-                   std::string(result_name(result)) + ").");
+    return device_failure("create a sampler of the scene's textures", result);
   }
   samplers_.push_back(made);
   return made;

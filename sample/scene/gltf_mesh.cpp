@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scene/area.h"
+#include "scene/direction.h"
 #include "scene/gltf_accessor.h"
 
 namespace alcove::sample {
@@ -76,10 +77,8 @@ tl::expected<std::vector<glm::vec3>, std::string> world_normals(const tinygltf::
                             side * glm::cross(m[0], m[1]));
   std::vector<glm::vec3> out(values->size() / 3);
   for (size_t i = 0; i < out.size(); ++i) {
-    const glm::dvec3 n =
-        cofactor * glm::dvec3((*values)[3 * i], (*values)[3 * i + 1], (*values)[3 * i + 2]);
-    const double length = glm::length(n);
-    out[i] = std::isfinite(length) && length > 0.0 ? glm::vec3(n / length) : glm::vec3(0.0f);
+    const float* in = &(*values)[3 * i];
+    out[i] = glm::vec3(direction_of(cofactor * glm::dvec3(in[0], in[1], in[2])));
   }
   return out;
 }
@@ -96,11 +95,8 @@ tl::expected<std::vector<glm::vec4>, std::string> world_tangents(const tinygltf:
   std::vector<glm::vec4> out(values->size() / 4);
   for (size_t i = 0; i < out.size(); ++i) {
     const float* in = &(*values)[4 * i];
-    const glm::dvec3 t = m * glm::dvec3(in[0], in[1], in[2]);
-    const double length = glm::length(t);
-    const bool useful = std::isfinite(length) && length > 0.0;
-    out[i] =
-        glm::vec4(useful ? glm::vec3(t / length) : glm::vec3(0.0f), in[3] < 0.0f ? -side : side);
+    out[i] = glm::vec4(glm::vec3(direction_of(m * glm::dvec3(in[0], in[1], in[2]))),
+                       in[3] < 0.0f ? -side : side);
   }
   return out;
 }

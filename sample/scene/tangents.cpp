@@ -4,14 +4,10 @@
 #include <array>
 #include <cmath>
 
+#include "scene/direction.h"
+
 namespace alcove::sample {
 namespace {
-
-// Zero where there is no direction.
-glm::dvec3 direction_of(const glm::dvec3& v) {
-  const double length = glm::length(v);
-  return std::isfinite(length) && length > 0.0 ? v / length : glm::dvec3(0.0);
-}
 
 // How a triangle lies in a map.
 struct Layout {

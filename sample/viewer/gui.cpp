@@ -28,11 +28,6 @@ void choose_style(float scale) {
   ImGui::GetIO().Fonts->AddFontDefault(&font);
 }
 
-Failure failure(VkResult result) {
-  return Failure("The device could not create what the panel is drawn with (" +
-                 std::string(result_name(result)) + ").");
-}
-
 }  // namespace
 
 tl::expected<std::unique_ptr<Gui>, std::string> Gui::create(Gpu& gpu, Window& window,
@@ -62,7 +57,7 @@ tl::expected<std::unique_ptr<Gui>, std::string> Gui::create(Gpu& gpu, Window& wi
     made->on_device_ = ImGui_ImplVulkan_Init(&info, made->render_pass_);
   }
   if (!made->on_window_ || !made->on_device_) {
-    return failure(result);
+    return device_failure("create what the panel is drawn with", result);
   }
   auto uploaded = gpu.run([](Graph& graph) -> tl::expected<void, std::string> {
     auto pass = graph.add_pass("upload");

@@ -16,7 +16,6 @@ namespace {
 using framegraph::Graph;
 using framegraph::RecordContext;
 using framegraph::Texture;
-using Failure = tl::unexpected<std::string>;
 
 // As picture.frag binds them.
 using Textures = std::array<Texture, 4>;
@@ -52,8 +51,7 @@ tl::expected<std::unique_ptr<PicturePass>, std::string> PicturePass::create(Gpu&
     result = made->create_sets(gpu.frames_in_flight());
   }
   if (result != VK_SUCCESS) {
-    return Failure("The device could not create the pipeline of the window's picture (" +
-                   std::string(result_name(result)) + ").");
+    return device_failure("create the pipeline of the window's picture", result);
   }
   return made;
 }

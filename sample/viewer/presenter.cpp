@@ -8,11 +8,6 @@ namespace {
 using framegraph::Graph;
 using Failure = tl::unexpected<std::string>;
 
-Failure failure(const char* what, VkResult result) {
-  return Failure(std::string("The device could not ") + what + " (" +
-                 std::string(result_name(result)) + ").");
-}
-
 }  // namespace
 
 tl::expected<std::unique_ptr<Presenter>, std::string> Presenter::create(Gpu& gpu,
@@ -52,7 +47,7 @@ tl::expected<void, std::string> Presenter::create_slots() {
     }
   }
   if (result != VK_SUCCESS) {
-    return failure("create the commands of a frame", result);
+    return device_failure("create the commands of a frame", result);
   }
   return {};
 }
@@ -124,7 +119,7 @@ tl::expected<bool, std::string> Presenter::prepare() {
       outdated_ = true;
       return false;
     default:
-      return failure("get an image of the window", result);
+      return device_failure("get an image of the window", result);
   }
 }
 
@@ -134,7 +129,7 @@ tl::expected<framegraph::FrameReport, std::string> Presenter::draw(const Declare
                                        .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
   VkResult result = vkBeginCommandBuffer(slot.commands, &begin);
   if (result != VK_SUCCESS) {
-    return failure("begin a frame's commands", result);
+    return device_failure("begin a frame's commands", result);
   }
   auto report = gpu_.record(
       [&](Graph& graph) {
@@ -149,7 +144,7 @@ tl::expected<framegraph::FrameReport, std::string> Presenter::draw(const Declare
     result = submit(slot);
   }
   if (result != VK_SUCCESS) {
-    return failure("run a frame", result);
+    return device_failure("run a frame", result);
   }
   slot_ = (slot_ + 1) % gpu_.frames_in_flight();
   acquired_ = false;
@@ -157,7 +152,7 @@ tl::expected<framegraph::FrameReport, std::string> Presenter::draw(const Declare
   if (result == VK_SUBOPTIMAL_KHR || result == VK_ERROR_OUT_OF_DATE_KHR) {
     outdated_ = true;
   } else if (result != VK_SUCCESS) {
-    return failure("present a frame", result);
+    return device_failure("present a frame", result);
   }
   return report;
 }

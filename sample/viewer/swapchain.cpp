@@ -44,10 +44,7 @@ std::uint32_t choose_count(const VkSurfaceCapabilitiesKHR& can) {
   return std::min(can.minImageCount + 1, most);
 }
 
-Failure failure(VkResult result) {
-  return Failure("The device could not give the window images (" +
-                 std::string(result_name(result)) + ").");
-}
+Failure failure(VkResult result) { return device_failure("give the window images", result); }
 
 }  // namespace
 

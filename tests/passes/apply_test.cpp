@@ -147,6 +147,8 @@ TEST_F(ApplyPass, WithoutAMapThereIsNoTableAndWithoutPartsNoTextureOfThem) {
   const std::size_t pipelines = kernels.pipeline_count();
   (void)transients(true, {.roughness = 0.2f});
   EXPECT_EQ(kernels.pipeline_count(), pipelines) << "numbers make no new pipeline";
+  (void)transients(true, {.roughness_channel = 1, .metallic_channel = 2});
+  EXPECT_EQ(kernels.pipeline_count(), pipelines) << "nor do channels of no texture";
 }
 
 // A whole frame from depth to light without specular light: no bent normal, no pass of specular

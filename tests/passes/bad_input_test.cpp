@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "alcove/passes/line_depth.h"
+#include "comma_locale.h"
 #include "gtao_scenes.h"
 #include "pass_fixture.h"
 
@@ -109,6 +110,28 @@ TEST_F(BadInput, EverySettingOutOfRangeIsNamed) {
     EXPECT_PRED1(is_a_sentence, said);
   }
   expect_a_good_frame();
+}
+
+TEST_F(BadInput, NumbersOfSentencesAreShortAndExactInEveryLocale) {
+  const CommaLocale comma;
+  struct Case {
+    const char* says;
+    Spoil spoil;
+  };
+  const std::vector<Case> cases{
+      {"radius is -1e-07;", [](View&, OcclusionSettings& s) { s.radius = -1e-7f; }},
+      {"thickness is -1.5;", [](View&, OcclusionSettings& s) { s.thickness = -1.5f; }},
+      {"fill is 1.0000001;", [](View&, OcclusionSettings& s) { s.fill = 1.0000001f; }},
+      {"falloff is 1e-09,", [](View&, OcclusionSettings& s) { s.falloff = 1e-9f; }},
+      {"tolerance is -0.25 ", [](View&, OcclusionSettings& s) { s.filter_tolerance_px = -0.25f; }},
+      {"clamp is -1e+30 ", [](View&, OcclusionSettings& s) { s.clamp_width = -1e30f; }},
+      {"roughness is 1.1;", [](View&, OcclusionSettings& s) { s.roughness = 1.1f; }},
+      {"256 frames", [](View&, OcclusionSettings& s) { s.history_frames = 256; }},
+      {"1234567 slices", [](View&, OcclusionSettings& s) { s.slices = 1234567; }},
+  };
+  for (const Case& bad : cases) {
+    EXPECT_THAT(error_of(bad.spoil), HasSubstr(bad.says));
+  }
 }
 
 TEST_F(BadInput, AProjectionThatIsNoneIsNamed) {

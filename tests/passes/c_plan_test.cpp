@@ -10,6 +10,7 @@
 #include <string>
 
 #include "c_interface_fixture.h"
+#include "comma_locale.h"
 #include "framegraph/allocation_counter.h"
 #include "gtao_scenes.h"
 
@@ -237,6 +238,23 @@ TEST(CSettings, AreFilledPrintedAndPassedBack) {
     EXPECT_EQ(std::string(little), text.substr(0, 7));
   }
   EXPECT_EQ(alcoveGetVersion(), static_cast<std::uint32_t>(ALCOVE_VERSION));
+}
+
+// A line of them that is written down can be set again.
+TEST(CSettings, ArePrintedShortAndExactInEveryLocale) {
+  const CommaLocale comma;
+  AlcoveSettings settings{.struct_size = sizeof settings};
+  ASSERT_EQ(alcoveGetSettings(ALCOVE_QUALITY_MEDIUM, 0.15f, &settings), ALCOVE_SUCCESS);
+  settings.thickness = 0.12345678f;
+  settings.fill = 1e-7f;
+  settings.filter_tolerance_px = 1234567.0f;
+  settings.slices = 4096;
+  std::string text(alcovePrintSettings(&settings, nullptr, 0), '\0');
+  alcovePrintSettings(&settings, text.data(), text.size() + 1);
+  EXPECT_THAT(text, testing::StartsWith("radius = 0.15\nslices = 4096\n"));
+  EXPECT_THAT(text, HasSubstr("\nthickness = 0.12345678\n"));
+  EXPECT_THAT(text, HasSubstr("\nfill = 1e-07\n"));
+  EXPECT_THAT(text, HasSubstr("\nfilter_tolerance_px = 1234567\n"));
 }
 
 // On a device without validation, which allocates.

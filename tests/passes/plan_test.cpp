@@ -18,6 +18,7 @@ struct Given {
   bool normals = true;
   bool motion = false;
   bool hidden_depths = false;
+  bool roughness = false;
 };
 
 // Which outputs of add_occlusion the frame reads.
@@ -29,6 +30,10 @@ struct Reads {
 };
 
 HostImage motion_of_nothing() { return {32, 24, std::vector<float>(std::size_t{2} * 32 * 24), 2}; }
+
+HostImage roughness_of_all() {
+  return {32, 24, std::vector<float>(std::size_t{4} * 32 * 24, 0.5f), 4};
+}
 
 class OcclusionPlan : public PassTest {
  protected:
@@ -48,6 +53,9 @@ class OcclusionPlan : public PassTest {
       if (given.hidden_depths) {
         inputs.back_depth_ndc = upload(graph, drawing.depth_ndc);
         inputs.second_depth_ndc = upload(graph, drawing.depth_ndc);
+      }
+      if (given.roughness) {
+        inputs.roughness = upload(graph, roughness_of_all());
       }
       const auto outputs = add_occlusion(frame, inputs, settings);
       ASSERT_TRUE(outputs) << outputs.error().message;
@@ -130,6 +138,9 @@ TEST_F(OcclusionPlan, BackFacesCostOnlyWhereTheThicknessIsReadFromThem) {
   const Kept unread = kept(settings);
   EXPECT_EQ(unread.passes, horizons.passes) << "horizons have no thickness";
   EXPECT_EQ(unread.bytes, horizons.bytes);
+  settings.thickness_unit = ThicknessUnit::distance;
+  (void)kept(settings);
+  EXPECT_EQ(gpu().kernels().pipeline_count(), 3u) << "those of the first";
 
   settings.estimator = Estimator::connected;
   settings.thickness_unit = ThicknessUnit::radius;
@@ -210,6 +221,24 @@ TEST_F(OcclusionPlan, SpecularOcclusionCostsOnlyWhereItIsOn) {
   EXPECT_THAT(unread.passes, Not(Contains("specular occlusion")));
   settings.specular = Specular::lagarde;
   EXPECT_THAT(kept(settings, {.specular = true}).transients, Not(Contains("bent normal")));
+}
+
+TEST_F(OcclusionPlan, AChannelOfNoTextureMakesNoPipeline) {
+  for (const Specular specular : {Specular::none, Specular::slices, Specular::cone}) {
+    OcclusionSettings settings = least();
+    settings.specular = specular;
+    const bool read = specular != Specular::none;
+    (void)kept(settings, {.specular = read});
+    (void)kept(settings, {.specular = read}, {.roughness = true});
+    const std::size_t pipelines = gpu().kernels().pipeline_count();
+    settings.roughness_channel = 2;
+    (void)kept(settings, {.specular = read});
+    EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines);
+    (void)kept(settings, {.specular = read}, {.roughness = true});
+    // The slices' roughness is read by the search and by its reconstruction.
+    const std::size_t readers = !read ? 0 : specular == Specular::slices ? 2 : 1;
+    EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines + readers);
+  }
 }
 
 TEST_F(OcclusionPlan, LinearDepthIsMadeOnlyWhereSomethingReadsIt) {

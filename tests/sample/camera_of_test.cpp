@@ -38,6 +38,18 @@ TEST(CameraOf, NamesOfCamerasCannotBeTakenForOneAnother) {
             "the scene has no camera \"hall\"; it has \"great hall\", \"roof\"");
 }
 
+TEST(CameraOf, OfThousandsOfCamerasOnlySomeAreListed) {
+  Scene scene;
+  for (int i = 0; i < 10; ++i) scene.cameras.push_back({.name = "c" + std::to_string(i)});
+  ViewOptions view;
+  view.camera = "hall";
+  EXPECT_THAT(camera_of(view, scene).error(), testing::EndsWith("\"c8\", \"c9\""));
+  for (int i = 10; i < 2000; ++i) scene.cameras.push_back({.name = "c" + std::to_string(i)});
+  EXPECT_EQ(camera_of(view, scene).error(),
+            "the scene has no camera \"hall\"; it has \"c0\", \"c1\", \"c2\", \"c3\", \"c4\", "
+            "\"c5\", \"c6\", \"c7\", \"c8\", \"c9\" and 1990 more");
+}
+
 TEST(CameraOf, AViewThatIsTypedStandsUprightWhateverTheScenesCameraCallsUp) {
   Scene scene;
   scene.cameras = {{.name = "tilted", .up_ws = {0.6f, 0.8f, 0.0f}}};

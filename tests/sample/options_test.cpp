@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 
 namespace alcove::sample {
 namespace {
@@ -157,6 +158,21 @@ TEST(Options, AngleOfViewMayBeAsWideAndAsNarrowAsAFilesCamera) {
   EXPECT_EQ(*parse({"render", "--fov-y", "174.75"})->view.fov_y, glm::radians(174.75f));
   EXPECT_EQ(*parse({"render", "--fov-y", "0.573"})->view.fov_y, glm::radians(0.573f));
   EXPECT_FALSE(parse({"render", "--fov-y", "0"}));
+}
+
+TEST(Options, AnOrbitTurnsAtMostOnceRoundPerFrame) {
+  for (const char* angle : {"360", "-360", "1e-3", "0"}) {
+    const auto options = parse({"render", "--orbit", angle});
+    ASSERT_TRUE(options) << options.error().text;
+    EXPECT_EQ(options->view.orbit, glm::radians(std::strtof(angle, nullptr)));
+  }
+  for (const char* angle : {"360.1", "-361", "1e30", "-1e39", "inf", "-inf", "nan", "far"}) {
+    const auto options = parse({"view", "--orbit", angle});
+    ASSERT_FALSE(options) << angle;
+    EXPECT_EQ(options.error().status, 2);
+    EXPECT_EQ(options.error().text,
+              "--orbit " + std::string(angle) + ": give an angle in degrees, -360 to 360");
+  }
 }
 
 TEST(Options, OfAnOptionThatIsGivenTwiceTheLastCounts) {

@@ -185,9 +185,10 @@ typedef struct AlcoveSettings {
 // message.
 AlcoveResult alcoveGetSettings(AlcoveQuality quality, float radius, AlcoveSettings* settings);
 
-// Writes the settings as lines of `name = value`, at most `size` bytes with the closing zero.
-// Returns the bytes that all of it takes without that zero, 0 if the settings are invalid. `text`
-// may be null where `size` is 0.
+// Writes the settings as lines of `name = value`, at most `size` bytes with the closing zero. A
+// float is the shortest text that reads back as the same, in every locale. Returns the bytes that
+// all of it takes without that zero, 0 if the settings are invalid. `text` may be null where `size`
+// is 0.
 size_t alcovePrintSettings(const AlcoveSettings* settings, char* text, size_t size);
 
 typedef struct AlcoveContext AlcoveContext;

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <cmath>
+
+#include "support/glm.h"
+
+namespace alcove::sample {
+
+// The unit vector along `v`; zero where there is none, as of what is no number.
+[[nodiscard]] inline glm::dvec3 direction_of(const glm::dvec3& v) {
+  const double length = glm::length(v);
+  return std::isfinite(length) && length > 0.0 ? v / length : glm::dvec3(0.0);
+}
+
+}  // namespace alcove::sample

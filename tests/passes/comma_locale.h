@@ -1,0 +1,41 @@
+// A host program whose numbers have a comma.
+#pragma once
+
+#include <clocale>
+#include <locale>
+#include <string>
+
+namespace alcove::passes {
+
+// While it lives, the locale of C++ writes decimals with a comma, and groups digits by threes with
+// a point. So does that of C, where the system has a locale of the kind; many a container has none,
+// so that a test of numbers should look at digits too.
+class CommaLocale {
+ public:
+  CommaLocale() : c_before_(std::setlocale(LC_ALL, nullptr)) {
+    for (const char* name : {"de_DE.UTF-8", "fr_FR.UTF-8", "es_ES.UTF-8", "nl_NL.UTF-8"}) {
+      if (std::setlocale(LC_ALL, name) != nullptr) {
+        break;
+      }
+    }
+    before_ = std::locale::global(std::locale(std::locale(), new Numbers));
+  }
+  ~CommaLocale() {
+    std::locale::global(before_);
+    std::setlocale(LC_ALL, c_before_.c_str());
+  }
+  CommaLocale(const CommaLocale&) = delete;
+  CommaLocale& operator=(const CommaLocale&) = delete;
+
+ private:
+  struct Numbers : std::numpunct<char> {
+    char do_decimal_point() const override { return ','; }
+    char do_thousands_sep() const override { return '.'; }
+    std::string do_grouping() const override { return "\3"; }
+  };
+
+  std::string c_before_;
+  std::locale before_;
+};
+
+}  // namespace alcove::passes
