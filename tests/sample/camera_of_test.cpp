@@ -40,11 +40,13 @@ TEST(CameraOf, NamesOfCamerasCannotBeTakenForOneAnother) {
 
 TEST(CameraOf, OfThousandsOfCamerasOnlySomeAreListed) {
   Scene scene;
-  for (int i = 0; i < 10; ++i) scene.cameras.push_back({.name = "c" + std::to_string(i)});
+  for (const char digit : {'0', '1', '2', '3', '4', '5', '6', '7', '8', '9'}) {
+    scene.cameras.push_back({.name = {'c', digit}});
+  }
   ViewOptions view;
   view.camera = "hall";
   EXPECT_THAT(camera_of(view, scene).error(), testing::EndsWith("\"c8\", \"c9\""));
-  for (int i = 10; i < 2000; ++i) scene.cameras.push_back({.name = "c" + std::to_string(i)});
+  scene.cameras.resize(2000);
   EXPECT_EQ(camera_of(view, scene).error(),
             "the scene has no camera \"hall\"; it has \"c0\", \"c1\", \"c2\", \"c3\", \"c4\", "
             "\"c5\", \"c6\", \"c7\", \"c8\", \"c9\" and 1990 more");

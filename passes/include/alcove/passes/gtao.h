@@ -134,8 +134,9 @@ struct OcclusionSignal {
   // bits of a float that is linear along the image of any plane. With a lobe R32G32B32A32_UINT: the
   // same two of it, and the surface it belongs to.
   framegraph::Texture signal;
-  // R32G32_UINT: the mean visible direction weighted by the cosine, view space, not normalised, as
-  // halves; null where none is wanted.
+  // R32G32_UINT: how far the mean visible direction, weighted by the cosine, bends from the normal,
+  // and would if all were open, view space, 10 bits a component (shaders/maths/bent_normal.h); null
+  // where none is wanted.
   framegraph::Texture bent;
   std::uint32_t divisor = 1;  // pixels on a side of a block
   std::uint32_t slices = 1;   // that were searched in each
