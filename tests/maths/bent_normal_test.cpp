@@ -61,9 +61,9 @@ Turned turned(float phi, const vec3& normal, const vec3& view) {
 }
 
 std::vector<float> even_angles(int count) {
-  std::vector<float> angles;
+  std::vector<float> angles(static_cast<std::size_t>(count));
   for (int k = 0; k < count; ++k) {
-    angles.push_back(float(kPi * (k + 0.5) / count));
+    angles[static_cast<std::size_t>(k)] = float(kPi * (k + 0.5) / count);
   }
   return angles;
 }
