@@ -11,7 +11,7 @@
 #include "render/gbuffer_pipelines.h"
 #include "render/gpu_meshes.h"
 #include "render/gpu_textures.h"
-#include "shaders/gbuffer.h"
+#include "render/shaders/gbuffer.h"
 
 namespace alcove::sample {
 namespace {
@@ -104,7 +104,8 @@ tl::expected<void, std::string> GbufferRenderer::State::upload(const Scene& scen
   }
   meshes = std::move(*uploaded);
   auto constants = HostBuffer::create(
-      gpu.device(), VkDeviceSize{kMaterialStride} * std::max<std::size_t>(scene.materials.size(), 1),
+      gpu.device(),
+      VkDeviceSize{kMaterialStride} * std::max<std::size_t>(scene.materials.size(), 1),
       VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
   if (!constants) {
     return Failure(std::move(constants.error()));
@@ -267,8 +268,8 @@ void GbufferRenderer::State::record(RecordContext& context, const Gbuffer& gbuff
     vk.vkCmdSetCullMode(context.commands,
                         double_sided[draw.material] ? drawing.double_culled : drawing.culled);
     // Not in the graph's table of functions: nothing but the sample's meshes needs these two.
-    vkCmdSetFrontFace(context.commands, draw.mirrored ? VK_FRONT_FACE_CLOCKWISE
-                                                      : VK_FRONT_FACE_COUNTER_CLOCKWISE);
+    vkCmdSetFrontFace(context.commands,
+                      draw.mirrored ? VK_FRONT_FACE_CLOCKWISE : VK_FRONT_FACE_COUNTER_CLOCKWISE);
     vkCmdBindVertexBuffers2(context.commands, 0, kVertexStreams, draw.buffers.data(),
                             draw.offsets.data(), nullptr, draw.strides.data());
     vkCmdBindIndexBuffer(context.commands, draw.index_buffer, draw.index_offset,
@@ -345,7 +346,8 @@ Texture GbufferRenderer::add_back_faces(Graph& graph, const GbufferView& view, T
       pass.write(depth, framegraph::access::depth_attachment, {}, framegraph::Contents::discard);
   pass.record(
       [state = state_.get(), depth, reversed = view.reversed_z, at](RecordContext& context) {
-        state->record(context, {.depth = depth}, {reversed, at, VK_CULL_MODE_FRONT_BIT, VK_CULL_MODE_FRONT_BIT});
+        state->record(context, {.depth = depth},
+                      {reversed, at, VK_CULL_MODE_FRONT_BIT, VK_CULL_MODE_FRONT_BIT});
       });
   return depth;
 }
@@ -359,7 +361,8 @@ Texture GbufferRenderer::add_second_layer(Graph& graph, const GbufferView& view,
       pass.write(depth, framegraph::access::depth_attachment, {}, framegraph::Contents::discard);
   pass.record(
       [state = state_.get(), first, depth, reversed = view.reversed_z, at](RecordContext& context) {
-        state->record(context, {.depth = depth}, {reversed, at, VK_CULL_MODE_BACK_BIT, VK_CULL_MODE_BACK_BIT, first});
+        state->record(context, {.depth = depth},
+                      {reversed, at, VK_CULL_MODE_BACK_BIT, VK_CULL_MODE_BACK_BIT, first});
       });
   return depth;
 }

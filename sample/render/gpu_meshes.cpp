@@ -34,7 +34,7 @@ struct Place {
 // Part of a mesh with vertices of its own, each the first vertex of at most one triangle: that one
 // has its geometric normal there.
 struct Part {
-  std::vector<std::uint32_t> sources;  // the mesh's vertex that each vertex is a copy of
+  std::vector<std::uint32_t> sources;   // the mesh's vertex that each vertex is a copy of
   std::vector<PackedTangent> tangents;  // parallel to it; empty without a normal map
   std::vector<PackedDirection> faces;   // parallel to it
   std::vector<std::uint32_t> indices;
@@ -55,8 +55,8 @@ class PartBuilder {
     }
   }
 
-  // The next part, of at most `most_triangles`; without indices where no triangle is left. Triangles
-  // without area are left out.
+  // The next part, of at most `most_triangles`; without indices where no triangle is left.
+  // Triangles without area are left out.
   Part next(std::size_t most_triangles);
 
  private:
@@ -76,11 +76,11 @@ class PartBuilder {
 
   static constexpr std::uint32_t kNone = UINT32_MAX;
   const Mesh& mesh_;
-  std::vector<glm::vec4> tangents_;        // by index; empty without a normal map
-  std::vector<std::uint32_t> of_vertex_;   // the part's vertex of each of the mesh's
+  std::vector<glm::vec4> tangents_;       // by index; empty without a normal map
+  std::vector<std::uint32_t> of_vertex_;  // the part's vertex of each of the mesh's
   std::unordered_map<Corner, std::uint32_t, CornerHash> of_corner_;  // where tangents tell apart
-  std::vector<bool> is_first_;             // of the part's vertices: a triangle begins with it
-  std::size_t at_ = 0;                     // of the next triangle's indices
+  std::vector<bool> is_first_;  // of the part's vertices: a triangle begins with it
+  std::size_t at_ = 0;          // of the next triangle's indices
 };
 
 std::uint32_t PartBuilder::vertex_of(std::size_t index, Part& part) {
@@ -180,12 +180,11 @@ class GpuMeshes::Builder {
   GpuMeshes& meshes_;
   VkDeviceSize used_ = 0;  // of the last page
   VkDeviceSize next_page_ = kFirstPage;
-  MeshDraw constants_;       // with every stream bound to its constant
-  std::string failure_;      // the first of a draw's streams
+  MeshDraw constants_;   // with every stream bound to its constant
+  std::string failure_;  // the first of a draw's streams
 };
 
-tl::expected<Place, std::string> GpuMeshes::Builder::reserve(VkDeviceSize bytes,
-                                                             std::byte*& data) {
+tl::expected<Place, std::string> GpuMeshes::Builder::reserve(VkDeviceSize bytes, std::byte*& data) {
   auto& pages = meshes_.pages_;
   const VkDeviceSize at = (used_ + kAlignment - 1) / kAlignment * kAlignment;
   if (pages.empty() || at > pages.back()->bytes().size() ||
@@ -243,9 +242,9 @@ tl::expected<void, std::string> GpuMeshes::Builder::add_constants() {
   constants.white.fill(255);
   const auto place = store(1, [&](std::size_t) { return constants; });
   if (!place) return Failure(place.error());
-  for (const VertexStream which : {VertexStream::kPosition, VertexStream::kNormals,
-                                   VertexStream::kUv, VertexStream::kSecondUv,
-                                   VertexStream::kTangent}) {
+  for (const VertexStream which :
+       {VertexStream::kPosition, VertexStream::kNormals, VertexStream::kUv, VertexStream::kSecondUv,
+        VertexStream::kTangent}) {
     bind_constant(constants_, which, *place);
   }
   bind_constant(constants_, VertexStream::kColor,
@@ -287,8 +286,7 @@ tl::expected<void, std::string> GpuMeshes::Builder::add_part(const Mesh& mesh, c
            [&](std::size_t i) { return mesh.colors[part.sources[i]]; });
   }
   if (!failure_.empty()) return Failure(failure_);
-  const auto indices =
-      store(part.indices.size(), [&](std::size_t i) { return part.indices[i]; });
+  const auto indices = store(part.indices.size(), [&](std::size_t i) { return part.indices[i]; });
   if (!indices) return Failure(indices.error());
   draw.index_buffer = indices->buffer;
   draw.index_offset = indices->offset;
@@ -340,8 +338,7 @@ tl::expected<void, std::string> GpuMeshes::Builder::add(const Mesh& mesh,
                                                         const Material& material) {
   // A page may hold the largest stream of a part whose triangles share no vertex, and pages stay
   // well below the limit.
-  const std::size_t most_triangles =
-      std::min(most_bytes_, kLargestPage) / (3 * sizeof(glm::vec3));
+  const std::size_t most_triangles = std::min(most_bytes_, kLargestPage) / (3 * sizeof(glm::vec3));
   PartBuilder builder(mesh, material);
   std::vector<MeshDraw> parts;
   for (Part part = builder.next(most_triangles); !part.indices.empty();

@@ -9,7 +9,7 @@
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "device/gpu.h"
+#include "render/gpu.h"
 #include "scene/scene.h"
 
 namespace alcove::sample {

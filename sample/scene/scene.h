@@ -69,9 +69,9 @@ struct Material {
   bool double_sided = true;
 };
 
-// Triangles of one material, counter-clockwise seen from the front. They stand once, in world space,
-// or several times, in a space of their own, as `instances` says. Every array of vertices has the
-// length of `positions_ws` or is empty; every index is below that length.
+// Triangles of one material, counter-clockwise seen from the front. They stand once, in world
+// space, or several times, in a space of their own, as `instances` says. Every array of vertices
+// has the length of `positions_ws` or is empty; every index is below that length.
 struct Mesh {
   std::string name;
   uint32_t material = 0;  // indexes Scene::materials
@@ -88,8 +88,8 @@ struct Mesh {
   // World from mesh space, one for each instance, affine. Empty: the mesh stands once and its
   // arrays are in world space.
   std::vector<glm::mat4x3> instances;
-  // The rasteriser places the mesh by GbufferView::world_from_moving, the ray tracer leaves it where
-  // it is.
+  // The rasteriser places the mesh by GbufferView::world_from_moving, the ray tracer leaves it
+  // where it is.
   bool moves = false;
 };
 

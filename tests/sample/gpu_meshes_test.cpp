@@ -5,8 +5,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "quad_test.h"
+#include "reference/truth.h"
 #include "scene/analytic_scenes.h"
-#include "truth/truth.h"
 
 namespace alcove::sample {
 namespace {
@@ -147,8 +147,9 @@ TEST_F(GpuMeshesTest, InstancesAreDrawnAndTracedAsSeparateMeshesAre) {
   for (std::size_t i = 0; i < one.depth_ndc.pixels.size(); ++i) {
     EXPECT_NEAR(one.depth_ndc.pixels[i], other.depth_ndc.pixels[i], 1e-5f);
     EXPECT_LT(glm::distance(one.normal_ws.pixels[i], other.normal_ws.pixels[i]), 2e-3f);
-    EXPECT_LT(glm::distance(cast.shading_normal_ws.pixels[i], cast_apart.shading_normal_ws.pixels[i]),
-              1e-4f);
+    EXPECT_LT(
+        glm::distance(cast.shading_normal_ws.pixels[i], cast_apart.shading_normal_ws.pixels[i]),
+        1e-4f);
     if (one.depth_ndc.pixels[i] != 1.0f) ++surfaces;
   }
   EXPECT_GT(surfaces, 100);
