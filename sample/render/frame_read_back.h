@@ -6,7 +6,7 @@
 #include "alcove/framegraph/graph.h"
 #include "alcove/passes/apply.h"
 #include "alcove/passes/occlusion.h"
-#include "device/gpu.h"
+#include "render/gpu.h"
 #include "render/frame_renderer.h"
 
 // What a frame of the occlusion makes, and how it comes back as images.

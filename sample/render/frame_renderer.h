@@ -8,8 +8,8 @@
 
 #include "alcove/framegraph/executor.h"
 #include "alcove/passes/occlusion.h"
-#include "device/gpu.h"
-#include "options/options.h"
+#include "render/gpu.h"
+#include "cli/options.h"
 #include "render/gbuffer.h"
 #include "scene/environment.h"
 #include "support/image.h"

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <span>
 
-#include "device/shader_module.h"
+#include "render/shader_module.h"
 #include "render/gbuffer.h"
 #include "render/triangles.h"
 #include "shaders/gbuffer.h"

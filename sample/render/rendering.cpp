@@ -12,7 +12,7 @@
 #include "support/image_io.h"
 #include "support/median.h"
 #include "support/progress.h"
-#include "truth/surface_points.h"
+#include "reference/surface_points.h"
 
 namespace alcove::sample {
 namespace {

@@ -5,8 +5,8 @@
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "device/gpu.h"
-#include "options/options.h"
+#include "render/gpu.h"
+#include "cli/options.h"
 #include "render/frame_renderer.h"
 #include "scene/scene.h"
 

@@ -3,8 +3,8 @@
 #include <iostream>
 #include <utility>
 
-#include "options/camera_of.h"
-#include "options/settings.h"
+#include "cli/camera_of.h"
+#include "cli/settings.h"
 #include "scene/load_scene.h"
 
 namespace alcove::sample {

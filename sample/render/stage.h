@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "alcove/passes/occlusion.h"
-#include "device/gpu.h"
-#include "options/options.h"
+#include "render/gpu.h"
+#include "cli/options.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <tl/expected.hpp>
 
-#include "device/gpu.h"
-#include "options/options.h"
+#include "render/gpu.h"
+#include "cli/options.h"
 #include "render/gbuffer.h"
 #include "render/probe.h"
 #include "render/surfaces.h"

@@ -6,7 +6,7 @@
 #include <iostream>
 #include <utility>
 
-#include "options/render_command.h"
+#include "cli/render_command.h"
 #include "viewer/screenshot.h"
 
 namespace alcove::sample {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "alcove/framegraph/framegraph.h"
-#include "device/vulkan_device.h"
+#include "render/vulkan_device.h"
 
 namespace alcove::framegraph {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "compute_run.h"
-#include "device/vulkan_device.h"
+#include "render/vulkan_device.h"
 #include "maths/make_projection.h"
 #include "parity_cases.h"
 #include "parity_spirv.h"

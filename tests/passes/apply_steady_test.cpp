@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "alcove/passes/apply.h"
-#include "device/gpu.h"
+#include "render/gpu.h"
 #include "framegraph/allocation_counter.h"
 #include "maths/spherical_harmonics.h"
 

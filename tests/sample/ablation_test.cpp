@@ -1,17 +1,17 @@
 // The built-in scene with parts of the occlusion exchanged, small: what `alcove ablate` prints,
 // held to bounds.
-#include "measure/ablation.h"
+#include "evaluate/ablation.h"
 
 #include <gtest/gtest.h>
 
 #include <set>
 
 #include "gpu_test.h"
-#include "measure/errors.h"
+#include "evaluate/errors.h"
 #include "scene/builtin_scene.h"
-#include "truth/ray_scene.h"
-#include "truth/surface_points.h"
-#include "truth/truth.h"
+#include "reference/ray_scene.h"
+#include "reference/surface_points.h"
+#include "reference/truth.h"
 
 namespace alcove::sample {
 namespace {

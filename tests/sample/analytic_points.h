@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "scene/analytic_scenes.h"
-#include "truth/surface_points.h"
+#include "reference/surface_points.h"
 
 // The points of an analytic scene as a truth takes them: a row of pixels.
 namespace alcove::sample {

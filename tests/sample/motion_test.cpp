@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "gpu_test.h"
-#include "measure/motion_run.h"
+#include "evaluate/motion_run.h"
 #include "scene/builtin_scene.h"
 
 namespace alcove::sample {

@@ -6,8 +6,8 @@
 
 #include "quad_test.h"
 #include "scene/tangents.h"
-#include "truth/surface_points.h"
-#include "truth/truth.h"
+#include "reference/surface_points.h"
+#include "reference/truth.h"
 
 namespace alcove::sample {
 namespace {

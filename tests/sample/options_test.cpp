@@ -1,4 +1,4 @@
-#include "options/options.h"
+#include "cli/options.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

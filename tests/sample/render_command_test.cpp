@@ -1,12 +1,12 @@
-#include "options/render_command.h"
+#include "cli/render_command.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "options/camera_of.h"
-#include "options/settings.h"
+#include "cli/camera_of.h"
+#include "cli/settings.h"
 #include "scene/builtin_scene.h"
 
 namespace alcove::sample {

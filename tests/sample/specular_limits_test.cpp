@@ -1,4 +1,4 @@
-#include "truth/specular_limits.h"
+#include "reference/specular_limits.h"
 
 #include <gtest/gtest.h>
 
@@ -6,10 +6,10 @@
 #include <functional>
 #include <glm/gtc/constants.hpp>
 
-#include "measure/errors.h"
+#include "evaluate/errors.h"
 #include "scene/analytic_scenes.h"
-#include "truth/sampling.h"
-#include "truth/visibility_polynomials.h"
+#include "reference/sampling.h"
+#include "reference/visibility_polynomials.h"
 
 namespace alcove::sample {
 namespace {

@@ -1,4 +1,4 @@
-#include "measure/trade.h"
+#include "evaluate/trade.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "measure/trade_plot.h"
+#include "evaluate/trade_plot.h"
 
 namespace alcove::sample {
 namespace {

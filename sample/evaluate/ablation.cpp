@@ -1,0 +1,178 @@
+#include "evaluate/ablation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace alcove::sample {
+namespace {
+
+using passes::Estimator;
+using passes::Grouping;
+using passes::OcclusionSettings;
+using passes::Pattern;
+
+class TrialList {
+ public:
+  explicit TrialList(const OcclusionSettings& base) : base_(base) {}
+
+  template <typename Change>
+  void add(const char* part, const std::string& name, const Change& change) {
+    OcclusionSettings settings = base_;
+    change(settings);
+    if (settings != base_) {
+      trials_.push_back({part, name, settings});
+    }
+  }
+  std::vector<Trial> take() { return std::move(trials_); }
+
+ private:
+  OcclusionSettings base_;
+  std::vector<Trial> trials_;
+};
+
+// Only horizons and the heuristic have a falloff.
+void use(OcclusionSettings& settings, Estimator estimator) {
+  settings.estimator = estimator;
+  if (passes::has_thickness(estimator)) {
+    settings.falloff = 0.0f;
+  }
+}
+
+void add_estimators(TrialList& list) {
+  const char* part = "estimator";
+  list.add(part, "horizons, infinitely thick",
+           [](OcclusionSettings& s) { use(s, Estimator::horizons); });
+  list.add(part, "the memo's thickness heuristic",
+           [](OcclusionSettings& s) { use(s, Estimator::heuristic); });
+  list.add(part, "plain bitmask", [](OcclusionSettings& s) {
+    use(s, Estimator::bitmask);
+    s.fill = 0.0f;
+  });
+  list.add(part, "plain bitmask, filled", [](OcclusionSettings& s) { use(s, Estimator::bitmask); });
+  list.add(part, "connected samples", [](OcclusionSettings& s) { use(s, Estimator::connected); });
+}
+
+void add_occluders(TrialList& list, const OcclusionSettings& base) {
+  if (!passes::has_thickness(base.estimator)) {
+    return;
+  }
+  const char* part = "occluders";
+  list.add(part, "nothing behind a front", [](OcclusionSettings& s) { s.fill = 0.0f; });
+  list.add(part, "everything behind it", [](OcclusionSettings& s) { s.fill = 1.0f; });
+  list.add(part, "a third as thick", [](OcclusionSettings& s) { s.thickness /= 3.0f; });
+  list.add(part, "three times as thick", [](OcclusionSettings& s) { s.thickness *= 3.0f; });
+  list.add(part, "as thick as back faces show",
+           [](OcclusionSettings& s) { s.thickness_unit = passes::ThicknessUnit::back_faces; });
+  list.add(part, "and what the first layer hides",
+           [](OcclusionSettings& s) { s.depth_layers = 2; });
+}
+
+void add_searches(TrialList& list) {
+  const char* part = "resolution";
+  list.add(part, "every pixel searched", [](OcclusionSettings& s) { s.divisor = 1; });
+  list.add(part, "one in 2x2", [](OcclusionSettings& s) { s.divisor = 2; });
+  list.add(part, "one in 4x4", [](OcclusionSettings& s) { s.divisor = 4; });
+  // As many searches as every pixel has above.
+  list.add(part, "one in 2x2, 4 times the slices", [](OcclusionSettings& s) {
+    s.divisor = 2;
+    s.slices = std::min(s.slices * 4, 64u);
+  });
+  part = "work";
+  list.add(part, "half the steps",
+           [](OcclusionSettings& s) { s.steps = std::max(s.steps / 2, 2u); });
+  list.add(part, "twice the steps",
+           [](OcclusionSettings& s) { s.steps = std::min(s.steps * 2, 64u); });
+  list.add(part, "twice the slices",
+           [](OcclusionSettings& s) { s.slices = std::min(s.slices * 2, 64u); });
+  part = "pattern";
+  list.add(part, "golden", [](OcclusionSettings& s) { s.pattern = Pattern::golden; });
+  list.add(part, "Hilbert and R2", [](OcclusionSettings& s) { s.pattern = Pattern::hilbert; });
+  list.add(part, "the memo's, six rotations",
+           [](OcclusionSettings& s) { s.pattern = Pattern::memo; });
+  part = "snapping";
+  list.add(part, "to texels", [](OcclusionSettings& s) { s.parts.snapping = true; });
+  list.add(part, "none", [](OcclusionSettings& s) { s.parts.snapping = false; });
+  part = "border";
+  list.add(part, "surfaces go on", [](OcclusionSettings& s) { s.parts.continuation = true; });
+  list.add(part, "surfaces end", [](OcclusionSettings& s) { s.parts.continuation = false; });
+  part = "unseen";
+  list.add(part, "left out", [](OcclusionSettings& s) { s.parts.unseen = true; });
+  list.add(part, "open", [](OcclusionSettings& s) { s.parts.unseen = false; });
+  part = "grouping";
+  list.add(part, "neighbours",
+           [](OcclusionSettings& s) { s.parts.grouping = Grouping::neighbours; });
+  list.add(part, "one direction (deinterleaved)",
+           [](OcclusionSettings& s) { s.parts.grouping = Grouping::pattern; });
+}
+
+void add_reconstruction(TrialList& list, const OcclusionSettings& base) {
+  const char* part = "filter";
+  list.add(part, "none", [](OcclusionSettings& s) { s.filter_reach = 0; });
+  // With a history only its first frame looks further than one searched pixel.
+  if (base.history_frames == 0) {
+    list.add(part, "1 search on each side", [](OcclusionSettings& s) { s.filter_reach = 1; });
+    list.add(part, "3 searches on each side", [](OcclusionSettings& s) { s.filter_reach = 3; });
+  }
+  part = "history";
+  list.add(part, "none, noise advances", [](OcclusionSettings& s) { s.history_frames = 0; });
+  list.add(part, "8 frames", [](OcclusionSettings& s) { s.history_frames = 8; });
+  list.add(part, "none, no filter", [](OcclusionSettings& s) {
+    s.history_frames = 0;
+    s.filter_reach = 0;
+  });
+}
+
+// How often as far away a narrow perspective stands for an orthographic view.
+constexpr float kFarAway = 300.0f;
+
+Twins orthographic_twins(const Camera& camera, std::uint32_t height) {
+  const glm::vec3 back = camera.eye_ws - camera.target_ws;
+  const float distance = glm::length(back);
+  Twins twins{"orthographic, and from far away", camera, camera};
+  Camera& flat = twins.first;
+  if (!flat.orthographic) {
+    flat.orthographic = true;
+    flat.ortho_height = 2.0f * distance * std::tan(0.5f * camera.fov_y);
+  }
+  if (std::isinf(flat.far_plane)) {
+    flat.far_plane = 1000.0f * flat.ortho_height;
+  }
+  Camera& away = twins.second;
+  away.orthographic = false;
+  away.eye_ws = camera.target_ws + back * kFarAway;
+  away.fov_y = 2.0f * std::atan(0.5f * flat.ortho_height / (kFarAway * distance));
+  twins.further = (kFarAway - 1.0f) * distance;
+  away.near_plane = flat.near_plane + twins.further;
+  away.far_plane = flat.far_plane + twins.further;
+  // The images part by some pixels before and behind the target, and towards their borders.
+  twins.tolerance = flat.ortho_height / static_cast<float>(height);
+  return twins;
+}
+
+}  // namespace
+
+std::vector<Trial> trials_of(const OcclusionSettings& base) {
+  TrialList list(base);
+  add_estimators(list);
+  add_occluders(list, base);
+  add_searches(list);
+  add_reconstruction(list, base);
+  return list.take();
+}
+
+std::vector<Twins> twins_of(const Camera& camera, std::uint32_t height) {
+  std::vector<Twins> all;
+  all.push_back({"depth from 1 to 0, and from 0 to 1", camera, camera});
+  all.back().first.reversed_z = true;
+  all.back().second.reversed_z = false;
+  if (!camera.orthographic && !std::isinf(camera.far_plane)) {
+    all.push_back({"far plane at a distance, and at infinity", camera, camera});
+    all.back().second.far_plane = INFINITY;
+  }
+  all.push_back({"this size, and twice as large", camera, camera, 2});
+  all.push_back(orthographic_twins(camera, height));
+  return all;
+}
+
+}  // namespace alcove::sample
