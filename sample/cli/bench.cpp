@@ -1,10 +1,10 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "cli/camera_of.h"
 #include "cli/commands.h"
 #include "evaluate/measured_trade.h"
 #include "evaluate/trade_plot.h"
-#include "cli/camera_of.h"
 #include "scene/load_scene.h"
 #include "support/image_io.h"
 #include "support/printable.h"
@@ -60,15 +60,15 @@ Done run_bench(const Options& options) {
   for (const std::string& scene : scenes) {
     Options one = options;
     one.scene = scene;
-    const auto stage = stage_of(one);
-    if (!stage) {
-      return Failure(stage.error());
+    const auto session = session_of(one);
+    if (!session) {
+      return Failure(session.error());
     }
-    auto points = measure_trade(*stage, one);
+    auto points = measure_trade(*session, one);
     if (!points) {
       return Failure(std::move(points.error()));
     }
-    device = stage->gpu->device().properties().deviceName;
+    device = session->gpu->device().properties().deviceName;
     report["device"] = device;
     tell(trade_of(*points), title_of(options, scene), device, report);
     measured.push_back(std::move(*points));

@@ -3,14 +3,14 @@
 #include "alcove/framegraph/compile.h"
 #include "alcove/framegraph/print.h"
 #include "cli/commands.h"
-#include "render/stage.h"
+#include "render/session.h"
 #include "render/surfaces.h"
 
 namespace alcove::sample {
 namespace {
 
 // The occlusion's frame as the sample declares it, with images that stand for the g-buffer's.
-tl::expected<void, std::string> declare(framegraph::Graph& graph, Stage& stage,
+tl::expected<void, std::string> declare(framegraph::Graph& graph, Session& session,
                                         const Options& options) {
   const auto extent = framegraph::Extent::absolute(options.view.width, options.view.height);
   const auto texture = [&](const char* name, VkFormat format) {
@@ -22,11 +22,11 @@ tl::expected<void, std::string> declare(framegraph::Graph& graph, Stage& stage,
     return filled;
   };
   const CameraMatrices matrices =
-      camera_matrices(stage.camera, options.view.width, options.view.height);
+      camera_matrices(session.camera, options.view.width, options.view.height);
   passes::View view;
   view.clip_from_view = to_matrix(matrices.clip_from_view);
   view.view_from_world = to_matrix(matrices.view_from_world);
-  const HiddenDepths hidden = hidden_depths_of(stage.settings);
+  const HiddenDepths hidden = hidden_depths_of(session.settings);
   Surfaces surfaces;
   surfaces.normals = options.occlusion.normals;
   if (!options.occlusion.roughness.empty()) {
@@ -42,8 +42,8 @@ tl::expected<void, std::string> declare(framegraph::Graph& graph, Stage& stage,
     surfaces.second_depth = texture("second depth", VK_FORMAT_R32_SFLOAT);
   }
   const auto outputs =
-      passes::add_occlusion({graph, stage.gpu->kernels(), view}, occlusion_inputs(surfaces),
-                            with_roughness(stage.settings, surfaces));
+      passes::add_occlusion({graph, session.gpu->kernels(), view}, occlusion_inputs(surfaces),
+                            with_roughness(session.settings, surfaces));
   if (!outputs) {
     return tl::unexpected(outputs.error().message);
   }
@@ -59,16 +59,16 @@ tl::expected<void, std::string> declare(framegraph::Graph& graph, Stage& stage,
 }  // namespace
 
 tl::expected<void, std::string> run_graph(const Options& options) {
-  auto stage = stage_of(options);
-  if (!stage) {
-    return tl::unexpected(stage.error());
+  auto session = session_of(options);
+  if (!session) {
+    return tl::unexpected(session.error());
   }
   framegraph::Graph graph;
-  if (auto declared = declare(graph, *stage, options); !declared) {
+  if (auto declared = declare(graph, *session, options); !declared) {
     return tl::unexpected(declared.error());
   }
   const framegraph::GraphDescription& description = graph.description();
-  const auto plan = framegraph::compile(description, stage->gpu->executor().limits());
+  const auto plan = framegraph::compile(description, session->gpu->executor().limits());
   if (!plan) {
     return tl::unexpected(framegraph::to_string(plan.error()));
   }

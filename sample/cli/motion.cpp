@@ -4,13 +4,13 @@
 #include <sstream>
 
 #include "cli/commands.h"
+#include "cli/settings.h"
 #include "evaluate/errors.h"
 #include "evaluate/motion_run.h"
-#include "cli/settings.h"
-#include "render/stage.h"
+#include "reference/truth_cache.h"
+#include "render/session.h"
 #include "support/image_io.h"
 #include "support/progress.h"
-#include "reference/truth_cache.h"
 
 namespace alcove::sample {
 namespace {
@@ -21,30 +21,30 @@ using Json = nlohmann::ordered_json;
 
 // What all paths of a run share.
 struct Course {
-  Stage stage;
+  Session session;
   MotionStart start;
   MotionSetup setup;
 };
 
 tl::expected<Course, std::string> course_of(const Options& options) {
-  auto stage = stage_of(options);
-  if (!stage) {
-    return Failure(std::move(stage.error()));
+  auto session = session_of(options);
+  if (!session) {
+    return Failure(std::move(session.error()));
   }
-  Course course{std::move(*stage), {}, {}};
-  const passes::OcclusionSettings& settings = course.stage.settings;
+  Course course{std::move(*session), {}, {}};
+  const passes::OcclusionSettings& settings = course.session.settings;
   if (settings.history_frames == 0) {
     return Failure(
         "The occlusion keeps no history, so there is nothing to follow in motion: give another "
         "--quality, or --set history_frames=32.");
   }
-  const auto rays = RayScene::create(course.stage.scene);
+  const auto rays = RayScene::create(course.session.scene);
   if (!rays) {
     return Failure(rays.error());
   }
   const float aspect =
       static_cast<float>(options.view.width) / static_cast<float>(options.view.height);
-  auto start = motion_start(*rays, course.stage.camera, aspect, settings.radius);
+  auto start = motion_start(*rays, course.session.camera, aspect, settings.radius);
   if (!start) {
     return Failure(std::move(start.error()));
   }
@@ -171,7 +171,7 @@ Done run_path(Course& course, MotionKind kind, const Options& options, Json& rep
   std::vector<MotionPicture> pictures;
   std::string table;
   if (kind == MotionKind::kCut) {
-    auto made = run_cut(*course.stage.gpu, course.stage.scene, path, course.setup);
+    auto made = run_cut(*course.session.gpu, course.session.scene, path, course.setup);
     if (!made) {
       return Failure(std::move(made.error()));
     }
@@ -179,7 +179,7 @@ Done run_path(Course& course, MotionKind kind, const Options& options, Json& rep
     table = table_of(*made);
     pictures = std::move(made->pictures);
   } else {
-    auto made = run_motion(*course.stage.gpu, course.stage.scene, path, course.setup);
+    auto made = run_motion(*course.session.gpu, course.session.scene, path, course.setup);
     if (!made) {
       return Failure(std::move(made.error()));
     }
@@ -187,7 +187,7 @@ Done run_path(Course& course, MotionKind kind, const Options& options, Json& rep
     table = table_of(kind, *made);
     pictures = std::move(made->pictures);
   }
-  if (auto valid = check_validation(*course.stage.gpu); !valid) {
+  if (auto valid = check_validation(*course.session.gpu); !valid) {
     return valid;
   }
   std::cout << table << std::flush;
@@ -205,7 +205,7 @@ Done run_motion(const Options& options) {
     return made;
   }
   Json report;
-  report["device"] = course->stage.gpu->device().properties().deviceName;
+  report["device"] = course->session.gpu->device().properties().deviceName;
   report["settings"] = to_json(course->setup.occlusion);
   report["frames"] = options.view.frames;
   for (const MotionKind kind : kMotionKinds) {

@@ -4,8 +4,8 @@
 #include <sstream>
 
 #include "cli/commands.h"
-#include "evaluate/measured_trade.h"
 #include "cli/render_command.h"
+#include "evaluate/measured_trade.h"
 #include "support/mib.h"
 
 namespace alcove::sample {
@@ -45,13 +45,13 @@ std::string nothing_holds(const Trade& trade, const Options& options) {
 void print_neighbours(const Trade& trade, const TradePoint& chosen) {
   const auto own = static_cast<std::size_t>(&chosen - trade.points.data());
   for (std::size_t i = own; i-- > 0;) {
-    if (trade.on_front[i]) {
+    if (trade.on_pareto_front[i]) {
       std::cout << "  faster:  " << shown(trade.points[i]) << "\n";
       break;
     }
   }
   for (std::size_t i = own + 1; i < trade.points.size(); ++i) {
-    if (trade.on_front[i]) {
+    if (trade.on_pareto_front[i]) {
       std::cout << "  nearer:  " << shown(trade.points[i]) << "\n";
       break;
     }
@@ -61,11 +61,11 @@ void print_neighbours(const Trade& trade, const TradePoint& chosen) {
 }  // namespace
 
 Done run_recommend(const Options& options) {
-  const auto stage = stage_of(options);
-  if (!stage) {
-    return Failure(stage.error());
+  const auto session = session_of(options);
+  if (!session) {
+    return Failure(session.error());
   }
-  auto points = measure_trade(*stage, options);
+  auto points = measure_trade(*session, options);
   if (!points) {
     return Failure(std::move(points.error()));
   }
@@ -78,9 +78,9 @@ Done run_recommend(const Options& options) {
   print_neighbours(trade, *chosen);
   std::cout << "RMSE of visibility against ray-traced truth, GPU time of the occlusion passes at "
             << options.view.width << "x" << options.view.height << " on "
-            << stage->gpu->device().properties().deviceName << "\n"
+            << session->gpu->device().properties().deviceName << "\n"
             << shell_line(render_arguments(
-                   options, {stage->camera, chosen->settings, std::nullopt, options.view.width,
+                   options, {session->camera, chosen->settings, std::nullopt, options.view.width,
                              options.view.height, options.view.frames}))
             << "\n";
   return {};

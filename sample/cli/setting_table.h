@@ -46,9 +46,9 @@ void for_each_setting(Settings& settings, const Visit& visit) {
              "are.",
              0, 0, has_thickness},
         settings.thickness_unit);
-  visit(Info{"fill", "How much of what is hidden behind occluders occludes too.", 0.0f, 1.0f,
-             has_thickness},
-        settings.fill);
+  visit(Info{"hidden_occlusion", "How much of what is hidden behind occluders occludes too.", 0.0f,
+             1.0f, has_thickness},
+        settings.hidden_occlusion);
   visit(Info{"depth_layers", "Layers of depth that occlude: the first, and what it hides: 1 or 2.",
              1, 2, has_thickness},
         settings.depth_layers);
@@ -58,24 +58,26 @@ void for_each_setting(Settings& settings, const Visit& visit) {
   visit(Info{"falloff", "Last part of the radius, over which occluders fade.", 0.0f, 1.0f,
              [](Of s) { return !has_thickness(s); }},
         settings.falloff);
-  visit(Info{"divisor", "One search a frame in a block of so many pixels a side: 1, 2 or 4.", 1, 4},
-        settings.divisor);
+  visit(
+      Info{"tile_size", "One search a frame in a block of so many pixels a side: 1, 2 or 4.", 1, 4},
+      settings.tile_size);
   visit(Info{"pattern", "How directions are spread over pixels and frames."}, settings.pattern);
-  visit(Info{"snapping", "Samples lie where their texels do, else where they were asked for."},
-        settings.parts.snapping);
-  visit(Info{"continuation", "Surfaces that leave the image go on beyond its border."},
-        settings.parts.continuation);
-  visit(Info{"unseen",
+  visit(
+      Info{"snap_to_texels", "Samples lie where their texels do, else where they were asked for."},
+      settings.parts.snap_to_texels);
+  visit(Info{"extrapolation", "Surfaces that leave the image go on beyond its border."},
+        settings.parts.extrapolation);
+  visit(Info{"unobserved",
              "What foregrounds and the border hide is left out of visibility, else it is open."},
-        settings.parts.unseen);
+        settings.parts.unobserved);
   visit(Info{"grouping", "Searches that run together: neighbours, or those of one direction."},
         settings.parts.grouping);
-  visit(Info{"filter_reach", "Searches on each side that a first frame looks at; 0: no filter.", 0,
+  visit(Info{"filter_radius", "Searches on each side that a first frame looks at; 0: no filter.", 0,
              3},
-        settings.filter_reach);
+        settings.filter_radius);
   visit(Info{"filter_tolerance_px",
              "How far from the tangent plane a neighbour counts in a first frame, in pixels.", 0.1f,
-             8.0f, [](Of s) { return s.filter_reach > 0; }},
+             8.0f, [](Of s) { return s.filter_radius > 0; }},
         settings.filter_tolerance_px);
   visit(Info{"history_frames", "Frames that are averaged; 0: no history.", 0, 255},
         settings.history_frames);

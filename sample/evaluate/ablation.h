@@ -7,16 +7,16 @@
 #include <vector>
 
 #include "alcove/passes/occlusion.h"
-#include "evaluate/trial.h"
+#include "evaluate/variant.h"
 #include "scene/camera.h"
 
 namespace alcove::sample {
 
 // Every part of `base` exchanged or left out, none of them equal to it.
-[[nodiscard]] std::vector<Trial> trials_of(const passes::OcclusionSettings& base);
+[[nodiscard]] std::vector<Variant> variants_of(const passes::OcclusionSettings& base);
 
 // Two ways to draw one view, which should look the same.
-struct Twins {
+struct InvariancePair {
   std::string name;
   Camera first;
   Camera second;
@@ -28,6 +28,7 @@ struct Twins {
 };
 
 // `height` of the image in pixels.
-[[nodiscard]] std::vector<Twins> twins_of(const Camera& camera, std::uint32_t height);
+[[nodiscard]] std::vector<InvariancePair> invariance_pairs_of(const Camera& camera,
+                                                              std::uint32_t height);
 
 }  // namespace alcove::sample

@@ -115,7 +115,7 @@ IndirectErrors indirect_errors_of(const Rendering& rendering, const Truths& trut
   const Image<float> open(visibility.width, visibility.height, 1.0f);
   for (std::size_t i = 0; i < roughness.size(); ++i) {
     const Image<float>& truth = light.specular[i];
-    const SpecularLimits& limits = light.specular_limits[i];
+    const SpecularBaselines& limits = light.specular_baselines[i];
     errors.specular.push_back(
         {roughness_name(rendering.light, i),
          compare_images(images.specular_occlusion[i], truth, light.sampled),

@@ -16,7 +16,7 @@ struct SpecularErrors {
   ErrorSummary pipeline;     // as it was rendered
   ErrorSummary true_inputs;  // the same model given the true visibility and bent normal
   ErrorSummary none;         // with everything open
-  // What the numbers of SpecularLimits err by.
+  // What the numbers of SpecularBaselines err by.
   ErrorSummary polynomials;
   ErrorSummary depth;
   ErrorSummary depth_polynomials;

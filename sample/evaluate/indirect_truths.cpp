@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "evaluate/truths.h"
-#include "support/progress.h"
 #include "reference/surface_points.h"
 #include "reference/truth_cache.h"
+#include "support/progress.h"
 
 namespace alcove::sample {
 namespace {
@@ -83,8 +83,8 @@ class Tracer {
     return truth;
   }
 
-  std::vector<SpecularLimits> specular_limits(const std::vector<Image<float>>& roughness,
-                                              const Image<float>& depth) const {
+  std::vector<SpecularBaselines> specular_baselines(const std::vector<Image<float>>& roughness,
+                                                    const Image<float>& depth) const {
     const auto key_of = [&](const Image<float>& one, const char* part) {
       CacheKey key = key_;
       key.add(std::string(part));
@@ -93,7 +93,7 @@ class Tracer {
       return key;
     };
     // Calls `part(key, image)` for every image until one says no.
-    const auto all_parts = [&](std::vector<SpecularLimits>& limits, const auto& part) {
+    const auto all_parts = [&](std::vector<SpecularBaselines>& limits, const auto& part) {
       for (std::size_t i = 0; i < limits.size(); ++i) {
         if (!part(key_of(roughness[i], "polynomials"), limits[i].polynomials) ||
             !part(key_of(roughness[i], "depth"), limits[i].depth) ||
@@ -104,12 +104,13 @@ class Tracer {
       return true;
     };
     const Image<float> empty(depth.width, depth.height);
-    std::vector<SpecularLimits> limits(roughness.size(), {empty, empty, empty});
+    std::vector<SpecularBaselines> limits(roughness.size(), {empty, empty, empty});
     if (!all_parts(limits, [&](const CacheKey& key, Image<float>& image) {
           return cache_.read(key, image);
         })) {
-      limits = sample::specular_limits(rays_, points_, depth, rendering_.camera, roughness,
-                                       settings_, print_progress("limits of specular occlusion"));
+      limits =
+          sample::specular_baselines(rays_, points_, depth, rendering_.camera, roughness, settings_,
+                                     print_progress("limits of specular occlusion"));
       all_parts(limits, [&](const CacheKey& key, const Image<float>& image) {
         cache_.write(key, image);
         return true;
@@ -196,7 +197,7 @@ tl::expected<IndirectTruths, std::string> indirect_truths_of(const Rendering& re
   for (const Image<float>& roughness : roughness_images(rendering)) {
     truths.specular.push_back(tracer.specular(roughness));
   }
-  truths.specular_limits = tracer.specular_limits(roughness_images(rendering), depth);
+  truths.specular_baselines = tracer.specular_baselines(roughness_images(rendering), depth);
   if (options.lit) {
     truths.lit = tracer.lit(roughness_images(rendering).front());
   }

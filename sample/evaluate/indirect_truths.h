@@ -5,11 +5,11 @@
 #include <tl/expected.hpp>
 #include <vector>
 
+#include "reference/lit_truth.h"
+#include "reference/specular_baselines.h"
+#include "reference/truth.h"
 #include "render/rendering.h"
 #include "support/image.h"
-#include "reference/lit_truth.h"
-#include "reference/specular_limits.h"
-#include "reference/truth.h"
 
 namespace alcove::sample {
 
@@ -21,9 +21,9 @@ struct IndirectTruths {
   Mask sampled;             // not sky
   SurfacePoints points;
   Image<glm::vec3> interreflection;
-  std::vector<Image<float>> specular;           // for each of roughness_images()
-  std::vector<SpecularLimits> specular_limits;  // likewise
-  std::optional<LitTruth> lit;                  // with --lit, for the first of them
+  std::vector<Image<float>> specular;                 // for each of roughness_images()
+  std::vector<SpecularBaselines> specular_baselines;  // likewise
+  std::optional<LitTruth> lit;                        // with --lit, for the first of them
 };
 
 // The perceptual roughness that each specular occlusion of a rendering was made for.

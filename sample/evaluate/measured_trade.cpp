@@ -5,8 +5,8 @@
 #include <sstream>
 #include <utility>
 
-#include "evaluate/trial_errors.h"
 #include "cli/settings.h"
+#include "evaluate/variant_errors.h"
 #include "support/mib.h"
 
 namespace alcove::sample {
@@ -14,9 +14,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-TradePoint point_of(const TrialErrors& errors, const BaseTimes& base) {
-  return {errors.trial.name,
-          errors.trial.settings,
+TradePoint point_of(const VariantErrors& errors, const BaseTimes& base) {
+  return {errors.variant.name,
+          errors.variant.settings,
           errors.scene.rmse,
           errors.height_field.rmse,
           errors.cost.gpu * base.gpu_ms,
@@ -26,27 +26,28 @@ TradePoint point_of(const TrialErrors& errors, const BaseTimes& base) {
 
 }  // namespace
 
-tl::expected<std::vector<TradePoint>, std::string> measure_trade(const Stage& stage,
+tl::expected<std::vector<TradePoint>, std::string> measure_trade(const Session& session,
                                                                  const Options& options) {
-  std::vector<Trial> ways = ways_to_spend(stage.settings);
-  // The stage's own settings are drawn as what the others are timed beside.
+  std::vector<Variant> ways = preset_sweep(session.settings);
+  // The session's own settings are drawn as what the others are timed beside.
   std::string own_name = "as given";
-  if (const auto own = std::ranges::find(ways, stage.settings, &Trial::settings);
+  if (const auto own = std::ranges::find(ways, session.settings, &Variant::settings);
       own != ways.end()) {
     own_name = own->name;
     ways.erase(own);
   }
-  const auto report = run_trials(stage, options, ways, "trade");
+  const auto report = run_variants(session, options, ways, "trade");
   if (!report) {
     return tl::unexpected(report.error());
   }
   std::vector<TradePoint> points;
-  for (const TrialErrors& errors : report->rows) {
+  for (const VariantErrors& errors : report->rows) {
     points.push_back(point_of(errors, report->base_times));
   }
   points.front().name = own_name;
   if (!std::ranges::all_of(points, [](const TradePoint& point) { return point.gpu_ms > 0; })) {
-    return tl::unexpected("The device " + std::string(stage.gpu->device().properties().deviceName) +
+    return tl::unexpected("The device " +
+                          std::string(session.gpu->device().properties().deviceName) +
                           " does not time its passes; choose another with --device.");
   }
   return points;
@@ -59,7 +60,7 @@ std::string table_of(const Trade& trade) {
       << std::fixed;
   for (std::size_t i = 0; i < trade.points.size(); ++i) {
     const TradePoint& point = trade.points[i];
-    out << (trade.on_front[i] ? "* " : "  ") << std::left << std::setw(34) << point.name
+    out << (trade.on_pareto_front[i] ? "* " : "  ") << std::left << std::setw(34) << point.name
         << std::right << std::setprecision(4) << std::setw(9) << point.rmse << std::setw(15)
         << point.height_field_rmse << std::setprecision(2) << std::setw(10) << point.gpu_ms
         << std::setw(15) << point.processor_ms << std::setprecision(1) << std::setw(8)
@@ -73,7 +74,7 @@ Json to_json(const Trade& trade) {
   for (std::size_t i = 0; i < trade.points.size(); ++i) {
     const TradePoint& point = trade.points[i];
     list.push_back({{"name", point.name},
-                    {"on_front", bool(trade.on_front[i])},
+                    {"on_pareto_front", bool(trade.on_pareto_front[i])},
                     {"rmse_scene_truth", point.rmse},
                     {"rmse_height_field_truth", point.height_field_rmse},
                     {"gpu_ms", point.gpu_ms},

@@ -5,15 +5,15 @@
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "evaluate/trade.h"
 #include "cli/options.h"
-#include "render/stage.h"
+#include "evaluate/trade.h"
+#include "render/session.h"
 
 namespace alcove::sample {
 
-// Draws the stage's view in every way to spend time on it and compares each with the truths.
+// Draws the session's view in every way to spend time on it and compares each with the truths.
 [[nodiscard]] tl::expected<std::vector<TradePoint>, std::string> measure_trade(
-    const Stage& stage, const Options& options);
+    const Session& session, const Options& options);
 
 // A line for each point, those on the front marked.
 [[nodiscard]] std::string table_of(const Trade& trade);

@@ -6,10 +6,10 @@
 #include <tl/expected.hpp>
 
 #include "cli/options.h"
+#include "reference/truth.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
 #include "support/glm.h"
-#include "reference/truth.h"
 
 namespace alcove::sample {
 

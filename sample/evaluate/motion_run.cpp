@@ -164,7 +164,7 @@ struct Comparison {
   SquaresPair entered;
   SquaresPair passed_by;
   SquaresPair bent_normals;
-  RunningMean still_change;
+  RunningMean static_change;
   RunningMean truth_change;
   std::vector<MotionPicture> pictures;
 };
@@ -196,7 +196,7 @@ Done compare(MotionWalk& walk, const Compared& compared, Comparison& sums) {
   add(sums.passed_by, surfaces_where(seen, passes_by));
   sums.bent_normals.add(seen.bent_normal_ws, standing->bent_normal_ws, truth->bent_normal_ws,
                         surfaces);
-  sums.still_change += standing->change;
+  sums.static_change += standing->change;
   sums.truth_change += least_change(truth->visibility, truth_before->visibility, compared.retraced);
   sums.pictures.push_back({compared.frame, seen.visibility, std::move(standing->visibility),
                            mean_of(truth->visibility)});
@@ -265,7 +265,7 @@ tl::expected<MotionReport, std::string> run_motion(Gpu& gpu, const Scene& scene,
       .passed_by = sums.passed_by.errors(),
       .bent_normals = sums.bent_normals.errors(),
       .flicker = {passed->change.mean(), unkept->change.mean(), unfiltered->change.mean(),
-                  sums.still_change.mean(), sums.truth_change.mean()},
+                  sums.static_change.mean(), sums.truth_change.mean()},
       .pictures = std::move(sums.pictures)};
 }
 

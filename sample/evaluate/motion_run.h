@@ -5,10 +5,10 @@
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "render/gpu.h"
 #include "evaluate/motion_errors.h"
 #include "evaluate/motion_paths.h"
 #include "evaluate/motion_walk.h"
+#include "render/gpu.h"
 #include "scene/scene.h"
 #include "support/image.h"
 

@@ -15,29 +15,29 @@ using passes::OcclusionSettings;
 using passes::Quality;
 
 // What a way to spend differs by.
-struct Spending {
-  std::uint32_t divisor;
+struct SweepPoint {
+  std::uint32_t tile_size;
   std::uint32_t slices;
   std::uint32_t steps;
 };
 
-constexpr std::array<Spending, 13> kSpendings{{{4, 1, 4},
-                                               {4, 1, 12},
-                                               {4, 1, 24},
-                                               {2, 1, 4},
-                                               {2, 1, 6},
-                                               {2, 1, 16},
-                                               {2, 1, 24},
-                                               {2, 2, 16},
-                                               {2, 2, 10},
-                                               {1, 1, 12},
-                                               {1, 1, 24},
-                                               {1, 2, 24},
-                                               {1, 4, 32}}};
+constexpr std::array<SweepPoint, 13> kSweepPoints{{{4, 1, 4},
+                                                   {4, 1, 12},
+                                                   {4, 1, 24},
+                                                   {2, 1, 4},
+                                                   {2, 1, 6},
+                                                   {2, 1, 16},
+                                                   {2, 1, 24},
+                                                   {2, 2, 16},
+                                                   {2, 2, 10},
+                                                   {1, 1, 12},
+                                                   {1, 1, 24},
+                                                   {1, 2, 24},
+                                                   {1, 4, 32}}};
 
-std::string name_of(const Spending& s) {
-  const std::string block = std::to_string(s.divisor) + "x" + std::to_string(s.divisor);
-  return (s.divisor == 1 ? "every pixel" : "one in " + block) + ", " + std::to_string(s.slices) +
+std::string name_of(const SweepPoint& s) {
+  const std::string block = std::to_string(s.tile_size) + "x" + std::to_string(s.tile_size);
+  return (s.tile_size == 1 ? "every pixel" : "one in " + block) + ", " + std::to_string(s.slices) +
          (s.slices == 1 ? " slice of " : " slices of ") + std::to_string(s.steps);
 }
 
@@ -45,34 +45,35 @@ class WayList {
  public:
   explicit WayList(const OcclusionSettings& base) : base_(base) {}
 
-  void add(const std::string& name, const Spending& spending) {
+  void add(const std::string& name, const SweepPoint& point) {
     OcclusionSettings settings = base_;
-    settings.divisor = spending.divisor;
-    settings.slices = spending.slices;
-    settings.steps = spending.steps;
+    settings.tile_size = point.tile_size;
+    settings.slices = point.slices;
+    settings.steps = point.steps;
     const bool known =
-        std::ranges::any_of(ways_, [&](const Trial& way) { return way.settings == settings; });
+        std::ranges::any_of(ways_, [&](const Variant& way) { return way.settings == settings; });
     if (!known) {
       ways_.push_back({"", name, settings});
     }
   }
-  std::vector<Trial> take() { return std::move(ways_); }
+  std::vector<Variant> take() { return std::move(ways_); }
 
  private:
   OcclusionSettings base_;
-  std::vector<Trial> ways_;
+  std::vector<Variant> ways_;
 };
 
 }  // namespace
 
-std::vector<Trial> ways_to_spend(const OcclusionSettings& base) {
+std::vector<Variant> preset_sweep(const OcclusionSettings& base) {
   WayList list(base);
   for (const Quality quality : {Quality::low, Quality::medium, Quality::high, Quality::ultra}) {
     const OcclusionSettings preset = passes::quality_settings(quality, base.radius);
-    list.add(std::string(passes::name_of(quality)), {preset.divisor, preset.slices, preset.steps});
+    list.add(std::string(passes::name_of(quality)),
+             {preset.tile_size, preset.slices, preset.steps});
   }
-  for (const Spending& spending : kSpendings) {
-    list.add(name_of(spending), spending);
+  for (const SweepPoint& point : kSweepPoints) {
+    list.add(name_of(point), point);
   }
   return list.take();
 }
@@ -82,7 +83,7 @@ Trade trade_of(std::vector<TradePoint> points) {
   Trade trade{std::move(points), {}};
   double least = std::numeric_limits<double>::infinity();
   for (const TradePoint& point : trade.points) {
-    trade.on_front.push_back(point.rmse < least);
+    trade.on_pareto_front.push_back(point.rmse < least);
     least = std::min(least, point.rmse);
   }
   return trade;

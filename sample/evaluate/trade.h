@@ -7,13 +7,13 @@
 #include <vector>
 
 #include "alcove/passes/occlusion.h"
-#include "evaluate/trial.h"
+#include "evaluate/variant.h"
 
 namespace alcove::sample {
 
 // The qualities, and what lies between and beyond them: resolution, slices and steps vary, all else
 // is as in `base`. Each is there once, `base` among them if it is one of them.
-[[nodiscard]] std::vector<Trial> ways_to_spend(const passes::OcclusionSettings& base);
+[[nodiscard]] std::vector<Variant> preset_sweep(const passes::OcclusionSettings& base);
 
 // Settings with what they cost on a device and how far their visibility is from the truth.
 struct TradePoint {
@@ -26,11 +26,11 @@ struct TradePoint {
   std::uint64_t bytes = 0;       // of transients at their peak, and histories
 };
 
-// In order of GPU time; `on_front[i]` says that no other point is both faster and nearer to the
-// truth than point i.
+// In order of GPU time; `on_pareto_front[i]` says that no other point is both faster and nearer to
+// the truth than point i.
 struct Trade {
   std::vector<TradePoint> points;
-  std::vector<bool> on_front;
+  std::vector<bool> on_pareto_front;
 };
 [[nodiscard]] Trade trade_of(std::vector<TradePoint> points);
 

@@ -103,7 +103,7 @@ void draw_axes(std::ostream& out, const Axes& axes) {
 void draw_front(std::ostream& out, const Trade& trade, const Axes& axes) {
   out << "<polyline fill=\"none\" stroke=\"#1f6f8b\" stroke-width=\"2\" points=\"";
   for (std::size_t i = 0; i < trade.points.size(); ++i) {
-    if (trade.on_front[i]) {
+    if (trade.on_pareto_front[i]) {
       out << axes.x(trade.points[i].gpu_ms) << "," << axes.y(trade.points[i].rmse) << " ";
     }
   }
@@ -119,8 +119,8 @@ void draw_points(std::ostream& out, const Trade& trade, const Axes& axes) {
     const double y = axes.y(point.rmse);
     out << "<g><title>" << escaped(point.name) << ", " << number(point.rmse) << ", "
         << number(point.gpu_ms) << " ms</title><circle cx=\"" << x << "\" cy=\"" << y
-        << "\" r=\"4\" fill=\"" << (trade.on_front[i] ? "#1f6f8b" : "#bbb") << "\"/></g>\n";
-    if (!trade.on_front[i]) {
+        << "\" r=\"4\" fill=\"" << (trade.on_pareto_front[i] ? "#1f6f8b" : "#bbb") << "\"/></g>\n";
+    if (!trade.on_pareto_front[i]) {
       continue;
     }
     const double wide = 0.2 * kPlotWidth;

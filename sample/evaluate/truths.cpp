@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <utility>
 
-#include "support/progress.h"
 #include "reference/surface_points.h"
 #include "reference/truth_cache.h"
+#include "support/progress.h"
 
 namespace alcove::sample {
 namespace {

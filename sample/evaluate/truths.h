@@ -4,10 +4,10 @@
 #include <tl/expected.hpp>
 
 #include "cli/options.h"
-#include "scene/scene.h"
-#include "support/image.h"
 #include "reference/height_field_truth.h"
 #include "reference/truth.h"
+#include "scene/scene.h"
+#include "support/image.h"
 
 namespace alcove::sample {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
-#include "support/parallel.h"
 #include "reference/height_field.h"
+#include "support/parallel.h"
 
 namespace alcove::sample {
 namespace {

@@ -1,9 +1,9 @@
 #pragma once
 
+#include "reference/truth.h"
 #include "scene/camera.h"
 #include "support/glm.h"
 #include "support/image.h"
-#include "reference/truth.h"
 
 namespace alcove::sample {
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <optional>
 
-#include "support/parallel.h"
 #include "reference/ray_scene.h"
 #include "reference/sampling.h"
+#include "support/parallel.h"
 
 namespace alcove::sample {
 namespace {

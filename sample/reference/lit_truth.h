@@ -1,7 +1,7 @@
 #pragma once
 
-#include "scene/environment.h"
 #include "reference/truth.h"
+#include "scene/environment.h"
 
 namespace alcove::sample {
 

@@ -7,9 +7,9 @@
 #include <optional>
 #include <span>
 
-#include "support/parallel.h"
 #include "reference/ray_scene.h"
 #include "reference/sampling.h"
+#include "support/parallel.h"
 
 namespace alcove::sample {
 namespace {

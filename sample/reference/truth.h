@@ -46,7 +46,7 @@ struct TruthSettings {
   uint32_t seed = 1;
 };
 
-// Cosine-weighted visibility, memo eq. 2: the share of spp rays that meet nothing within the
+// Cosine-weighted visibility, paper eq. 2: the share of spp rays that meet nothing within the
 // radius.
 struct OcclusionTruth {
   Image<float> visibility;  // 0..1, 1 is open

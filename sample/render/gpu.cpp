@@ -70,7 +70,7 @@ framegraph::ImportedBuffer HostBuffer::import() const {
   import.desc.size = size_;
   import.usage = usage_;
   import.has_contents = true;
-  import.departure = framegraph::buffer_access::host_read;
+  import.final_state = framegraph::buffer_access::host_read;
   return import;
 }
 

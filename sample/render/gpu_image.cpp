@@ -70,16 +70,16 @@ framegraph::ImportedTexture GpuImage::import() const {
   return import;
 }
 
-framegraph::ImportedTexture GpuImage::import_to_fill(framegraph::State departure) const {
+framegraph::ImportedTexture GpuImage::import_to_fill(framegraph::State final_state) const {
   framegraph::ImportedTexture result = import();
-  result.departure = departure;
+  result.final_state = final_state;
   return result;
 }
 
-framegraph::ImportedTexture GpuImage::import_to_read(framegraph::State arrival) const {
+framegraph::ImportedTexture GpuImage::import_to_read(framegraph::State initial_state) const {
   framegraph::ImportedTexture result = import();
-  result.arrival = arrival;
-  result.departure = arrival;
+  result.initial_state = initial_state;
+  result.final_state = initial_state;
   return result;
 }
 

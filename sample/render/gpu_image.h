@@ -23,10 +23,10 @@ class GpuImage {
   VkImageView view() const { return view_; }
   std::uint32_t mips() const { return mips_; }
 
-  // For a frame that fills the image, whatever it holds, and leaves it in `departure`.
-  framegraph::ImportedTexture import_to_fill(framegraph::State departure) const;
-  // For a frame that finds it in `arrival`, reads it, and leaves it there.
-  framegraph::ImportedTexture import_to_read(framegraph::State arrival) const;
+  // For a frame that fills the image, whatever it holds, and leaves it in `final_state`.
+  framegraph::ImportedTexture import_to_fill(framegraph::State final_state) const;
+  // For a frame that finds it in `initial_state`, reads it, and leaves it there.
+  framegraph::ImportedTexture import_to_read(framegraph::State initial_state) const;
 
  private:
   explicit GpuImage(const VulkanDevice& device) : device_(device) {}

@@ -7,7 +7,7 @@
 
 #include "alcove/framegraph/graph.h"
 #include "render/gpu.h"
-#include "shaders/picture.h"
+#include "render/shaders/picture.h"
 #include "support/glm.h"
 
 namespace alcove::sample {

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "gpu_test.h"
 #include "evaluate/motion_run.h"
+#include "gpu_test.h"
 #include "scene/builtin_scene.h"
 
 namespace alcove::sample {

@@ -9,9 +9,9 @@
 #include <span>
 #include <vector>
 
-#include "render/gpu_image.h"
 #include "quad_test.h"
 #include "reference/truth.h"
+#include "render/gpu_image.h"
 
 namespace alcove::sample {
 namespace {

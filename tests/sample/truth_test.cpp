@@ -7,9 +7,9 @@
 
 #include "analytic_points.h"
 #include "evaluate/errors.h"
+#include "reference/height_field_truth.h"
 #include "scene/analytic_scenes.h"
 #include "scene/builtin_scene.h"
-#include "reference/height_field_truth.h"
 
 namespace alcove::sample {
 namespace {

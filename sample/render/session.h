@@ -6,15 +6,15 @@
 #include <vector>
 
 #include "alcove/passes/occlusion.h"
-#include "render/gpu.h"
 #include "cli/options.h"
+#include "render/gpu.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
 
 namespace alcove::sample {
 
 // What the options of a command ask for, before anything is drawn.
-struct Stage {
+struct Session {
   Scene scene;
   Camera camera;
   passes::OcclusionSettings settings;
@@ -24,7 +24,7 @@ struct Stage {
 // Loads the scene, finds camera and settings and opens the device, in this order: the cheapest
 // mistake is told first. What the scene left out goes to stderr as notes. `surface_extensions` are
 // those of a window to present to.
-[[nodiscard]] tl::expected<Stage, std::string> stage_of(
+[[nodiscard]] tl::expected<Session, std::string> session_of(
     const Options& options, const std::vector<const char*>& surface_extensions = {});
 
 // The device that the options name, opened anew: what is drawn on it has histories of its own.

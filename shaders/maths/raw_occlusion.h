@@ -3,14 +3,14 @@
 //
 // Filters and history add up visible parts and open parts and divide last. What is stored is their
 // ratio, so that an open surface stays open to the last bit, and the open part.
-#ifndef ALCOVE_MATHS_SIGNAL_H
-#define ALCOVE_MATHS_SIGNAL_H
+#ifndef ALCOVE_MATHS_RAW_OCCLUSION_H
+#define ALCOVE_MATHS_RAW_OCCLUSION_H
 
 #include "packing.h"
 
 ALCOVE_MATHS_BEGIN
 
-struct Signal {
+struct RawOcclusion {
   float visible;  // visible part of the slices, [0,open]
   float open;     // all of them, [0,kLargestOpen]
 };
@@ -19,7 +19,7 @@ struct Signal {
 const float kLargestOpen = 4.0f;
 
 // Sum of visible parts over sum of open ones, in [0,1]. Nothing weighed means nothing known: open.
-ALCOVE_INLINE float mean_visibility(Signal sum) {
+ALCOVE_INLINE float mean_visibility(RawOcclusion sum) {
   return sum.open > 0.0f ? saturate(sum.visible / sum.open) : 1.0f;
 }
 
@@ -31,47 +31,47 @@ ALCOVE_INLINE uint pack_open(float open) {
 
 ALCOVE_INLINE float unpack_open(uint bits) { return unpackHalf2x16((bits & 0x7ffu) << 4u).x; }
 
-// The ratio to 2^-14, and the searched surface's normal of CoarseNormal.
-ALCOVE_INLINE uint pack_signal(Signal signal, uint coarse_normal) {
-  return pack_unorm(mean_visibility(signal), 13u) | (pack_open(signal.open) << 13u) |
-         (coarse_normal << 24u);
+// The ratio to 2^-14, and the searched surface's normal of QuantisedNormal.
+ALCOVE_INLINE uint pack_raw_occlusion(RawOcclusion raw_occlusion, uint quantised_normal) {
+  return pack_unorm(mean_visibility(raw_occlusion), 13u) | (pack_open(raw_occlusion.open) << 13u) |
+         (quantised_normal << 24u);
 }
 
-ALCOVE_INLINE Signal unpack_signal(uint bits) {
-  Signal signal;
-  signal.open = unpack_open(bits >> 13u);
-  signal.visible = unpack_unorm(bits, 13u) * signal.open;
-  return signal;
+ALCOVE_INLINE RawOcclusion unpack_raw_occlusion(uint bits) {
+  RawOcclusion raw_occlusion;
+  raw_occlusion.open = unpack_open(bits >> 13u);
+  raw_occlusion.visible = unpack_unorm(bits, 13u) * raw_occlusion.open;
+  return raw_occlusion;
 }
 
-ALCOVE_INLINE uint signal_normal(uint bits) { return bits >> 24u; }
+ALCOVE_INLINE uint raw_occlusion_normal(uint bits) { return bits >> 24u; }
 
-// Components of a bend (bent_normal.h) are no larger.
-const float kLargestBend = 4.0f / 3.0f;
+// Components of a residual (bent_normal.h) are no larger.
+const float kLargestResidual = 4.0f / 3.0f;
 
-// A bend in 10 bits a component, each clamped to kLargestBend in size and within 0.0014 after
-// unpack_bend(); 0 comes back as it is.
-ALCOVE_INLINE uint pack_bend(vec3 bend) {
-  vec3 scaled = clamp(bend * (1.0f / kLargestBend), -1.0f, 1.0f) * 511.0f + 512.5f;
+// A residual in 10 bits a component, each clamped to kLargestResidual in size and within 0.0014
+// after unpack_residual(); 0 comes back as it is.
+ALCOVE_INLINE uint pack_residual(vec3 residual) {
+  vec3 scaled = clamp(residual * (1.0f / kLargestResidual), -1.0f, 1.0f) * 511.0f + 512.5f;
   return uint(scaled.x) | (uint(scaled.y) << 10u) | (uint(scaled.z) << 20u);
 }
 
-ALCOVE_INLINE vec3 unpack_bend(uint bits) {
+ALCOVE_INLINE vec3 unpack_residual(uint bits) {
   vec3 scaled =
       vec3(float(bits & 1023u), float((bits >> 10u) & 1023u), float((bits >> 20u) & 1023u));
-  return (scaled - 512.0f) * (kLargestBend / 511.0f);
+  return (scaled - 512.0f) * (kLargestResidual / 511.0f);
 }
 
 // The same of a GGX lobe, whose open part differs by orders of magnitude from slice to slice: the
 // ratio to 2^-17, the open part, at least 0 and finite, to 2^-8 of itself.
-ALCOVE_INLINE uint pack_lobe(Signal lobe) {
+ALCOVE_INLINE uint pack_lobe(RawOcclusion lobe) {
   float ratio = lobe.open > 0.0f ? clamp(lobe.visible / lobe.open, 0.0f, 1.0f) : 1.0f;
   uint open = (floatBitsToUint(lobe.open) + 0x8000u) & 0xffff0000u;
   return uint(ratio * 65535.0f + 0.5f) | open;
 }
 
-ALCOVE_INLINE Signal unpack_lobe(uint bits) {
-  Signal lobe;
+ALCOVE_INLINE RawOcclusion unpack_lobe(uint bits) {
+  RawOcclusion lobe;
   lobe.open = uintBitsToFloat(bits & 0xffff0000u);
   lobe.visible = float(bits & 0xffffu) * (1.0f / 65535.0f) * lobe.open;
   return lobe;

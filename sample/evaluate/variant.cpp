@@ -1,4 +1,4 @@
-#include "evaluate/trial.h"
+#include "evaluate/variant.h"
 
 #include <utility>
 
@@ -13,21 +13,22 @@ using passes::OcclusionSettings;
 // Pairs of frames whose times make the median; one more, the first, also compiles shaders.
 constexpr std::uint32_t kTimedPairs = 11;
 
-FrameRequest request_of(const StillSetup& setup, const OcclusionSettings& settings,
+FrameRequest request_of(const StaticSetup& setup, const OcclusionSettings& settings,
                         std::uint32_t frame) {
   const CameraMatrices m = camera_matrices(setup.camera, setup.width, setup.height);
   FrameRequest request;
   request.view = {m.view_from_world, m.clip_from_view, m.view_from_world, m.clip_from_view,
                   setup.camera.reversed_z};
   request.index = frame;
-  request.still_frames = frame;
+  request.static_frames = frame;
   request.occlusion = settings;
   request.occlusion.specular = passes::Specular::none;
   request.occlusion.bent_normal = false;
   return request;
 }
 
-tl::expected<FrameImages, std::string> draw_frames(FrameRenderer& renderer, const StillSetup& setup,
+tl::expected<FrameImages, std::string> draw_frames(FrameRenderer& renderer,
+                                                   const StaticSetup& setup,
                                                    const OcclusionSettings& settings) {
   for (std::uint32_t i = 0; i + 1 < setup.frames; ++i) {
     if (auto cost = renderer.draw(request_of(setup, settings, i)); !cost) {
@@ -44,9 +45,9 @@ std::uint64_t bytes_of(const FrameRenderer& renderer) {
 
 }  // namespace
 
-tl::expected<FrameImages, std::string> draw_still(Gpu& gpu, const Scene& scene,
-                                                  const StillSetup& setup,
-                                                  const OcclusionSettings& settings) {
+tl::expected<FrameImages, std::string> draw_static(Gpu& gpu, const Scene& scene,
+                                                   const StaticSetup& setup,
+                                                   const OcclusionSettings& settings) {
   const auto renderer =
       FrameRenderer::create(gpu, scene, {setup.width, setup.height}, setup.normals);
   if (!renderer) {
@@ -55,10 +56,10 @@ tl::expected<FrameImages, std::string> draw_still(Gpu& gpu, const Scene& scene,
   return draw_frames(**renderer, setup, settings);
 }
 
-tl::expected<TrialRunner, std::string> TrialRunner::create(Gpu& gpu, const Scene& scene,
-                                                           const StillSetup& setup,
-                                                           const OcclusionSettings& base) {
-  TrialRunner made(scene, setup, base);
+tl::expected<VariantRunner, std::string> VariantRunner::create(Gpu& gpu, const Scene& scene,
+                                                               const StaticSetup& setup,
+                                                               const OcclusionSettings& base) {
+  VariantRunner made(scene, setup, base);
   auto renderer = FrameRenderer::create(gpu, scene, {setup.width, setup.height}, setup.normals);
   if (!renderer) {
     return Failure(std::move(renderer.error()));
@@ -73,23 +74,23 @@ tl::expected<TrialRunner, std::string> TrialRunner::create(Gpu& gpu, const Scene
   return made;
 }
 
-std::uint64_t TrialRunner::base_bytes() const { return bytes_of(*renderer_); }
+std::uint64_t VariantRunner::base_bytes() const { return bytes_of(*renderer_); }
 
-BaseTimes TrialRunner::base_times() const {
+BaseTimes VariantRunner::base_times() const {
   return {median(base_gpu_ms_), median(base_processor_ms_)};
 }
 
-tl::expected<TrialResult, std::string> TrialRunner::run(Gpu& gpu, const Trial& trial) {
+tl::expected<VariantResult, std::string> VariantRunner::run(Gpu& gpu, const Variant& variant) {
   const auto renderer =
       FrameRenderer::create(gpu, scene_, {setup_.width, setup_.height}, setup_.normals);
   if (!renderer) {
     return Failure(renderer.error());
   }
-  auto images = draw_frames(**renderer, setup_, trial.settings);
+  auto images = draw_frames(**renderer, setup_, variant.settings);
   if (!images) {
     return Failure(std::move(images.error()));
   }
-  TrialResult result{std::move(images->visibility), {}};
+  VariantResult result{std::move(images->visibility), {}};
   std::vector<double> gpu_ratios;
   std::vector<double> processor_ratios;
   for (std::uint32_t i = 0; i <= kTimedPairs; ++i) {
@@ -97,7 +98,7 @@ tl::expected<TrialResult, std::string> TrialRunner::run(Gpu& gpu, const Trial& t
     if (!base) {
       return Failure(base.error());
     }
-    const auto other = (*renderer)->draw(request_of(setup_, trial.settings, setup_.frames + i));
+    const auto other = (*renderer)->draw(request_of(setup_, variant.settings, setup_.frames + i));
     if (!other) {
       return Failure(other.error());
     }

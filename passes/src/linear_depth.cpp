@@ -1,4 +1,4 @@
-#include "alcove/passes/depth_pyramid.h"
+#include "alcove/passes/linear_depth.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <string>
 
 #include "check_inputs.h"
-#include "depth_pyramid_parameters.h"
+#include "linear_depth_parameters.h"
 #include "number_text.h"
 #include "view_parameters.h"
 
@@ -44,8 +44,8 @@ tl::expected<void, Error> check(const Frame& frame, Texture depth_ndc, std::uint
 
 }  // namespace
 
-tl::expected<Texture, Error> add_depth_pyramid(const Frame& frame, Texture depth_ndc,
-                                               std::uint32_t mips, float reach) {
+tl::expected<Texture, Error> add_linear_depth(const Frame& frame, Texture depth_ndc,
+                                              std::uint32_t mips, float reach) {
   if (auto good = check(frame, depth_ndc, mips, reach); !good) {
     return tl::unexpected(good.error());
   }
@@ -56,7 +56,7 @@ tl::expected<Texture, Error> add_depth_pyramid(const Frame& frame, Texture depth
   }
   mips = mips_that_fit(extent, mips);
   const std::array constants{mips};
-  const auto kernel = frame.kernels.get(Shader::depth_pyramid, constants);
+  const auto kernel = frame.kernels.get(Shader::linear_depth, constants);
   if (!kernel) {
     return tl::unexpected(kernel.error());
   }
@@ -68,7 +68,7 @@ tl::expected<Texture, Error> add_depth_pyramid(const Frame& frame, Texture depth
   pass.read(depth_ndc, framegraph::access::sampled_compute);
   depth = pass.write(depth, framegraph::access::storage_write_compute, {},
                      framegraph::Contents::discard);
-  const maths::DepthPyramidParameters parameters{*projection, reach};
+  const maths::LinearDepthParameters parameters{*projection, reach};
   pass.record([&kernels = frame.kernels, kernel = *kernel, depth_ndc, depth, mips, extent,
                parameters](RecordContext& context) {
     std::array<VkImageView, kMaxMips + 1> views;

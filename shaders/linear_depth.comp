@@ -6,14 +6,14 @@
 // 16x16 pixels, and each mip is reduced from the one above in shared memory. The pyramid covers the
 // image rounded down, as Vulkan's mips do: the last odd row and column are in mip 0 only.
 
-#include "depth_pyramid_parameters.h"
+#include "linear_depth_parameters.h"
 #include "maths/pyramid.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = 0) const uint kMipCount = 1;
 
-layout(set = 0, binding = 0) uniform Parameters { DepthPyramidParameters parameters; };
+layout(set = 0, binding = 0) uniform Parameters { LinearDepthParameters parameters; };
 layout(set = 0, binding = 1) uniform texture2D depth_ndc_image;
 // With fewer mips the rest is bound to the last and never written.
 layout(set = 0, binding = 2) uniform writeonly image2D mip_0;

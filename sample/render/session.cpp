@@ -1,4 +1,4 @@
-#include "render/stage.h"
+#include "render/session.h"
 
 #include <iostream>
 #include <utility>
@@ -22,33 +22,33 @@ tl::expected<std::unique_ptr<Gpu>, std::string> open_gpu(
                      executor);
 }
 
-tl::expected<Stage, std::string> stage_of(const Options& options,
-                                          const std::vector<const char*>& surface_extensions) {
-  Stage stage;
+tl::expected<Session, std::string> session_of(const Options& options,
+                                              const std::vector<const char*>& surface_extensions) {
+  Session session;
   auto scene = load_scene(options.scene, options.cut_blends);
   if (!scene) {
     return Failure(std::move(scene.error()));
   }
-  stage.scene = std::move(*scene);
-  for (const std::string& warning : stage.scene.warnings) {
+  session.scene = std::move(*scene);
+  for (const std::string& warning : session.scene.warnings) {
     std::cerr << "note: " << warning << "\n";
   }
-  const auto camera = camera_of(options.view, stage.scene);
+  const auto camera = camera_of(options.view, session.scene);
   if (!camera) {
     return Failure(camera.error());
   }
-  stage.camera = *camera;
-  const auto settings = occlusion_settings(options.occlusion, stage.scene);
+  session.camera = *camera;
+  const auto settings = occlusion_settings(options.occlusion, session.scene);
   if (!settings) {
     return Failure(settings.error());
   }
-  stage.settings = *settings;
+  session.settings = *settings;
   auto gpu = open_gpu(options, surface_extensions);
   if (!gpu) {
     return Failure(std::move(gpu.error()));
   }
-  stage.gpu = std::move(*gpu);
-  return stage;
+  session.gpu = std::move(*gpu);
+  return session;
 }
 
 tl::expected<void, std::string> check_validation(const Gpu& gpu) {

@@ -1,6 +1,6 @@
 // Linear depth, and a pyramid of it that keeps both sides of an edge apart. Normals from depth,
-// specular models and lighting read it; searches and filters read line depth, which is another
-// thing (line_depth.h).
+// specular models and lighting read it; searches and filters read inverse depth, which is another
+// thing (inverse_depth.h).
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ namespace alcove::passes {
 // all of it; sky where three of the four are sky. No pass of Alcove reads mips above 0.
 //
 // Errors: a texture that is missing, a view that cannot be used, mips or reach out of range.
-[[nodiscard]] tl::expected<framegraph::Texture, Error> add_depth_pyramid(
+[[nodiscard]] tl::expected<framegraph::Texture, Error> add_linear_depth(
     const Frame& frame, framegraph::Texture depth_ndc, std::uint32_t mips, float reach);
 
 }  // namespace alcove::passes

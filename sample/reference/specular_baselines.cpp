@@ -1,4 +1,4 @@
-#include "reference/specular_limits.h"
+#include "reference/specular_baselines.h"
 
 #include <algorithm>
 #include <array>
@@ -6,11 +6,11 @@
 #include <glm/gtc/constants.hpp>
 #include <span>
 
-#include "support/parallel.h"
 #include "reference/height_field.h"
 #include "reference/ray_scene.h"
 #include "reference/sampling.h"
 #include "reference/visibility_polynomials.h"
+#include "support/parallel.h"
 
 namespace alcove::sample {
 namespace {
@@ -136,17 +136,18 @@ LobeView look_along(const LobeSampler& lobe, const Surroundings& around, uint32_
 
 }  // namespace
 
-std::vector<SpecularLimits> specular_limits(const RayScene& rays, const SurfacePoints& points,
-                                            const Image<float>& depth_vs, const Camera& camera,
-                                            const std::vector<Image<float>>& roughness,
-                                            const TruthSettings& settings,
-                                            const Progress& progress) {
+std::vector<SpecularBaselines> specular_baselines(const RayScene& rays, const SurfacePoints& points,
+                                                  const Image<float>& depth_vs,
+                                                  const Camera& camera,
+                                                  const std::vector<Image<float>>& roughness,
+                                                  const TruthSettings& settings,
+                                                  const Progress& progress) {
   const uint32_t width = depth_vs.width, height = depth_vs.height;
   const HeightField field = make_height_field(depth_vs, camera);
   const glm::mat3 view_from_world(camera_matrices(camera, width, height).view_from_world);
   const Viewer viewer = viewer_of(camera);
   const Image<float> open(width, height, 1.0f);
-  std::vector<SpecularLimits> limits(roughness.size(), {open, open, open});
+  std::vector<SpecularBaselines> limits(roughness.size(), {open, open, open});
   const auto at_pixel = [&](uint32_t x, uint32_t y) {
     const std::size_t pixel = std::size_t{y} * width + x;
     const glm::vec3& normal = points.normal_ws.pixels[pixel];

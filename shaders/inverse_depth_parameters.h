@@ -5,8 +5,8 @@
 
 ALCOVE_MATHS_BEGIN
 
-struct LineDepthParameters {
-  vec2 line_from_ndc;  // line = x * depth_ndc + y
+struct InverseDepthParameters {
+  vec2 inverse_depth_from_ndc;  // line = x * depth_ndc + y
 };
 
 ALCOVE_MATHS_END

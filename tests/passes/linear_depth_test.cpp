@@ -33,14 +33,14 @@ double linear_depth(const glm::dmat4& projection, float depth_ndc) {
 
 bool is_reversed(const glm::dmat4& m) { return m[2][2] * m[3][3] > m[3][2] * m[2][3]; }
 
-class DepthPyramid : public PassTest {
+class LinearDepth : public PassTest {
  protected:
   // Mips 0, 1... of a depth image.
   std::vector<HostImage> pyramid(const View& view, const HostImage& depth, std::uint32_t mips,
                                  float reach) {
     run([&](Graph& graph) {
       const Frame frame{graph, gpu().kernels(), view, 0};
-      const auto linear = add_depth_pyramid(frame, upload(graph, depth), mips, reach);
+      const auto linear = add_linear_depth(frame, upload(graph, depth), mips, reach);
       ASSERT_TRUE(linear) << linear.error().message;
       for (std::uint32_t mip = 0; mip < mips; ++mip) {
         read_back(graph, *linear, mip);
@@ -54,7 +54,7 @@ class DepthPyramid : public PassTest {
   }
 };
 
-TEST_F(DepthPyramid, LinearDepthIsTheInverseProjectionsForEveryKindOfProjection) {
+TEST_F(LinearDepth, LinearDepthIsTheInverseProjectionsForEveryKindOfProjection) {
   for (const TestView& view : test_views()) {
     SCOPED_TRACE(view.name);
     const glm::dmat4 projection = clip_from_view(view);
@@ -79,7 +79,7 @@ TEST_F(DepthPyramid, LinearDepthIsTheInverseProjectionsForEveryKindOfProjection)
   }
 }
 
-TEST_F(DepthPyramid, WhatIsNoDepthBecomesSkyOrTheNearPlane) {
+TEST_F(LinearDepth, WhatIsNoDepthBecomesSkyOrTheNearPlane) {
   for (const TestView& view : test_views()) {
     SCOPED_TRACE(view.name);
     const glm::dmat4 projection = clip_from_view(view);
@@ -130,7 +130,7 @@ std::vector<HostImage> reference_pyramid(const HostImage& depth, float reach) {
   return mips;
 }
 
-TEST_F(DepthPyramid, MipsAverageTheMipAboveAtEverySize) {
+TEST_F(LinearDepth, MipsAverageTheMipAboveAtEverySize) {
   struct Size {
     std::uint32_t width;
     std::uint32_t height;
@@ -166,13 +166,13 @@ TEST_F(DepthPyramid, MipsAverageTheMipAboveAtEverySize) {
   }
 }
 
-TEST_F(DepthPyramid, MoreMipsThanTheImageHasAreNotMade) {
+TEST_F(LinearDepth, MoreMipsThanTheImageHasAreNotMade) {
   const TestView view = test_views()[0];
   for (const std::uint32_t wanted : {1u, 3u, 5u}) {
     run([&](Graph& graph) {
       const Frame frame{graph, gpu().kernels(), view.view, 0};
       const auto depth = upload(graph, {3, 5, std::vector<float>(15, 0.5f), 1});
-      const auto linear = add_depth_pyramid(frame, depth, wanted, 1.0f);
+      const auto linear = add_linear_depth(frame, depth, wanted, 1.0f);
       ASSERT_TRUE(linear) << linear.error().message;
       EXPECT_EQ(graph.description().resources[linear->index].mips, std::min(wanted, 3u));
       read_back(graph, *linear);

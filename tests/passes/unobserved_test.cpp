@@ -9,17 +9,17 @@
 namespace alcove::passes {
 namespace {
 
-class UnseenPass : public PassTest {
+class UnobservedPass : public PassTest {
  protected:
   static constexpr float kRadius = 1.2f;
   static constexpr std::uint32_t kWidth = 96, kHeight = 40;
 
-  HostImage visibility(const TestView& view, const Drawing& drawing, bool unseen,
+  HostImage visibility(const TestView& view, const Drawing& drawing, bool unobserved,
                        Estimator estimator = Estimator::connected, float radius = kRadius) {
     OcclusionSettings settings = quality_settings(Quality::reference, radius);
     settings.estimator = estimator;
-    settings.fill = 1.0f;
-    settings.parts.unseen = unseen;
+    settings.hidden_occlusion = 1.0f;
+    settings.parts.unobserved = unobserved;
     return run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, settings).visibility;
   }
 };
@@ -62,30 +62,31 @@ double mean_difference(const HostImage& a, const HostImage& b, std::uint32_t fro
 }
 
 // Half a trench is as open as the whole.
-TEST_F(UnseenPass, HalfATrenchUnderAPlateIsTakenToBeAsTheOther) {
+TEST_F(UnobservedPass, HalfATrenchUnderAPlateIsTakenToBeAsTheOther) {
   for (const TestView& view : two_views()) {
     SCOPED_TRACE(view.name);
     const HostImage truth = visibility(view, draw(view, kWidth, kHeight, trench()), true);
     Scene covered = trench();
     covered.push_back(plate(0.05));
     const Drawing drawing = draw(view, kWidth, kHeight, covered);
-    const auto error = [&](bool unseen) {
-      return mean_difference(visibility(view, drawing, unseen), truth, kWidth / 2 - 2, kWidth / 2);
+    const auto error = [&](bool unobserved) {
+      return mean_difference(visibility(view, drawing, unobserved), truth, kWidth / 2 - 2,
+                             kWidth / 2);
     };
     EXPECT_GT(error(false), 0.1);
     EXPECT_LT(3.0 * error(true), error(false));
   }
 }
 
-TEST_F(UnseenPass, BeyondTheBorderHalfATrenchIsTakenToGoOn) {
+TEST_F(UnobservedPass, BeyondTheBorderHalfATrenchIsTakenToGoOn) {
   for (const TestView& view : two_views()) {
     SCOPED_TRACE(view.name);
     const HostImage truth = visibility(view, draw(view, kWidth, kHeight, trench()), true);
     constexpr std::uint32_t kSeen = kWidth / 2 + 2;
     const TestView part_view = columns_of(view, kWidth, 0, kSeen);
     const Drawing drawing = draw(part_view, kSeen, kHeight, trench());
-    const auto error = [&](bool unseen) {
-      return mean_difference(visibility(part_view, drawing, unseen), truth, kWidth / 2 - 2,
+    const auto error = [&](bool unobserved) {
+      return mean_difference(visibility(part_view, drawing, unobserved), truth, kWidth / 2 - 2,
                              kWidth / 2);
     };
     EXPECT_GT(error(false), 0.1);
@@ -94,12 +95,12 @@ TEST_F(UnseenPass, BeyondTheBorderHalfATrenchIsTakenToGoOn) {
 }
 
 // A ball on a floor, in a radius wider than the image: what is seen occluded is not multiplied.
-TEST_F(UnseenPass, AWideRadiusLeavesLittleOut) {
+TEST_F(UnobservedPass, AWideRadiusLeavesLittleOut) {
   for (const TestView& view : two_views()) {
     SCOPED_TRACE(view.name);
     const Drawing drawing = draw(view, kWidth, kHeight, ball_on_floor());
-    const auto seen = [&](bool unseen, float radius) {
-      return visibility(view, drawing, unseen, Estimator::connected, radius);
+    const auto seen = [&](bool unobserved, float radius) {
+      return visibility(view, drawing, unobserved, Estimator::connected, radius);
     };
     const auto left_out = [&](float radius) {
       return mean_difference(seen(true, radius), seen(false, radius), 0, kWidth);
@@ -110,7 +111,7 @@ TEST_F(UnseenPass, AWideRadiusLeavesLittleOut) {
   }
 }
 
-TEST_F(UnseenPass, TheBackgroundGoesOnBeyondTheBorder) {
+TEST_F(UnobservedPass, TheBackgroundGoesOnBeyondTheBorder) {
   for (const TestView& view : two_views()) {
     SCOPED_TRACE(view.name);
     // Half a trench, and beside its floor nothing.
@@ -129,7 +130,7 @@ TEST_F(UnseenPass, TheBackgroundGoesOnBeyondTheBorder) {
   }
 }
 
-TEST_F(UnseenPass, AnOpenPlaneStaysOpenBesideAPlateBeforeIt) {
+TEST_F(UnobservedPass, AnOpenPlaneStaysOpenBesideAPlateBeforeIt) {
   for (const TestView& view : test_views()) {
     for (const double tilt : {0.0, 30.0, 60.0}) {
       SCOPED_TRACE(testing::Message() << view.name << ", " << tilt);
@@ -148,17 +149,17 @@ TEST_F(UnseenPass, AnOpenPlaneStaysOpenBesideAPlateBeforeIt) {
   }
 }
 
-TEST_F(UnseenPass, WhatASecondLayerShowsIsSeen) {
+TEST_F(UnobservedPass, WhatASecondLayerShowsIsSeen) {
   const TestView view = two_views()[1];
   Scene covered = trench();
   covered.push_back(plate(0.05));
   const Drawing drawing = draw(view, kWidth, kHeight, covered);
   const HostImage second = draw_second_layer(view, kWidth, kHeight, covered);
-  const auto seen = [&](bool unseen, std::uint32_t layers) {
+  const auto seen = [&](bool unobserved, std::uint32_t layers) {
     OcclusionSettings settings = quality_settings(Quality::reference, kRadius);
     settings.estimator = Estimator::connected;
     settings.depth_layers = layers;
-    settings.parts.unseen = unseen;
+    settings.parts.unobserved = unobserved;
     return run_occlusion({.view = view.view,
                           .depth_ndc = drawing.depth_ndc,
                           .normal_vs = &drawing.normal_vs,
@@ -173,7 +174,7 @@ TEST_F(UnseenPass, WhatASecondLayerShowsIsSeen) {
   EXPECT_LT(left_out(2), 0.2 * left_out(1));
 }
 
-TEST_F(UnseenPass, OnlyConnectedSamplesLeaveItOut) {
+TEST_F(UnobservedPass, OnlyConnectedSamplesLeaveItOut) {
   const TestView view = two_views()[0];
   Scene covered = trench();
   covered.push_back(plate(0.05));

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "alcove/passes/occlusion.h"
-#include "render/gpu.h"
 #include "cli/options.h"
 #include "render/frame_renderer.h"
+#include "render/gpu.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
 #include "support/image.h"
@@ -18,14 +18,14 @@
 namespace alcove::sample {
 
 // Settings to draw with beside others.
-struct Trial {
+struct Variant {
   std::string part;  // of the occlusion, that the change is to
   std::string name;
   passes::OcclusionSettings settings;
 };
 
 // A standing view and how it is drawn.
-struct StillSetup {
+struct StaticSetup {
   Camera camera;
   std::uint32_t width = 960;
   std::uint32_t height = 540;
@@ -34,20 +34,20 @@ struct StillSetup {
 };
 
 // Draws the frames of a standing view and reads the last one back.
-[[nodiscard]] tl::expected<FrameImages, std::string> draw_still(
-    Gpu& gpu, const Scene& scene, const StillSetup& setup,
+[[nodiscard]] tl::expected<FrameImages, std::string> draw_static(
+    Gpu& gpu, const Scene& scene, const StaticSetup& setup,
     const passes::OcclusionSettings& settings);
 
-// What a trial costs beside the base: medians over pairs of frames, drawn one after the other.
-struct TrialCost {
+// What a variant costs beside the base: medians over pairs of frames, drawn one after the other.
+struct VariantCost {
   double gpu = 1;           // GPU time of the occlusion over that of the base
   double processor = 1;     // processor time of all threads for it, alike
   std::uint64_t bytes = 0;  // of transients at their peak, and histories
 };
 
-struct TrialResult {
+struct VariantResult {
   Image<float> visibility;
-  TrialCost cost;
+  VariantCost cost;
 };
 
 // Milliseconds of the occlusion, medians over the frames that were timed.
@@ -56,25 +56,26 @@ struct BaseTimes {
   double processor_ms = 0;
 };
 
-// Draws trials of one view beside its base. Borrows the scene and the base's device.
-class TrialRunner {
+// Draws variants of one view beside its base. Borrows the scene and the base's device.
+class VariantRunner {
  public:
-  [[nodiscard]] static tl::expected<TrialRunner, std::string> create(
-      Gpu& gpu, const Scene& scene, const StillSetup& setup, const passes::OcclusionSettings& base);
+  [[nodiscard]] static tl::expected<VariantRunner, std::string> create(
+      Gpu& gpu, const Scene& scene, const StaticSetup& setup,
+      const passes::OcclusionSettings& base);
 
   const FrameImages& base() const { return base_; }
   std::uint64_t base_bytes() const;
-  // Over all trials so far; nothing before the first.
+  // Over all variants so far; nothing before the first.
   BaseTimes base_times() const;
-  // `gpu` is another device on which nothing was drawn: its histories are the trial's own.
-  [[nodiscard]] tl::expected<TrialResult, std::string> run(Gpu& gpu, const Trial& trial);
+  // `gpu` is another device on which nothing was drawn: its histories are the variant's own.
+  [[nodiscard]] tl::expected<VariantResult, std::string> run(Gpu& gpu, const Variant& variant);
 
  private:
-  TrialRunner(const Scene& scene, const StillSetup& setup, const passes::OcclusionSettings& base)
+  VariantRunner(const Scene& scene, const StaticSetup& setup, const passes::OcclusionSettings& base)
       : scene_(scene), setup_(setup), settings_(base) {}
 
   const Scene& scene_;
-  StillSetup setup_;
+  StaticSetup setup_;
   passes::OcclusionSettings settings_;
   FrameImages base_;
   std::unique_ptr<FrameRenderer> renderer_;

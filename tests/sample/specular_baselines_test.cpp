@@ -1,4 +1,4 @@
-#include "reference/specular_limits.h"
+#include "reference/specular_baselines.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <glm/gtc/constants.hpp>
 
 #include "evaluate/errors.h"
-#include "scene/analytic_scenes.h"
 #include "reference/sampling.h"
 #include "reference/visibility_polynomials.h"
+#include "scene/analytic_scenes.h"
 
 namespace alcove::sample {
 namespace {
@@ -92,7 +92,7 @@ TEST(VisibilityPolynomials, GiveBackWhatIsAPolynomialItself) {
 
 // The middle of a view of a scene: its limits and the truth.
 struct Limits {
-  SpecularLimits limits;
+  SpecularBaselines limits;
   Image<float> truth;
   Mask mask;
 };
@@ -111,11 +111,11 @@ Limits limits_of(const char* name, float roughness, const TruthSettings& setting
     }
   }
   const Image<float> image(kWidth, kHeight, roughness);
-  return {specular_limits(*rays, points, g.depth_vs, camera, {image}, settings).front(),
+  return {specular_baselines(*rays, points, g.depth_vs, camera, {image}, settings).front(),
           specular_truth(*rays, points, image, viewer_of(camera), settings), mask};
 }
 
-TEST(SpecularLimits, AnOpenPlaneIsOpenAtAnyTiltAndRoughness) {
+TEST(SpecularBaselines, AnOpenPlaneIsOpenAtAnyTiltAndRoughness) {
   for (const char* name : {"plane:0", "plane:45", "plane:75"}) {
     for (const float roughness : {0.05f, 0.3f, 1.0f}) {
       const Limits all = limits_of(name, roughness, {0.5f, 64, 1});
@@ -130,7 +130,7 @@ TEST(SpecularLimits, AnOpenPlaneIsOpenAtAnyTiltAndRoughness) {
   }
 }
 
-TEST(SpecularLimits, AreNearTheTruthWhereTheImageHoldsAllOfItAndLobesAreWide) {
+TEST(SpecularBaselines, AreNearTheTruthWhereTheImageHoldsAllOfItAndLobesAreWide) {
   for (const char* name : {"groove:90", "groove:120", "step"}) {
     const Limits all = limits_of(name, 0.8f, {0.4f, 256, 1});
     const Image<float> open(all.mask.width, all.mask.height, 1.0f);

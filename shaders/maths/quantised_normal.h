@@ -10,35 +10,35 @@
 
 ALCOVE_MATHS_BEGIN
 
-struct CoarseNormal {
+struct QuantisedNormal {
   uint bits;            // 8; the same normal has the same ones
-  vec2 lean;            // its coordinates, each in [-1,1]
+  vec2 stereographic;   // its coordinates, each in [-1,1]
   float squared_scale;  // from squared distances of coordinates to squared angles about it
 };
 
 // By its lowest eight bits.
-ALCOVE_INLINE vec2 lean_of_bits(uint bits) {
+ALCOVE_INLINE vec2 stereographic_of_bits(uint bits) {
   return vec2((float(bits & 15u) - 7.0f) * (1.0f / 7.0f),
               (float((bits >> 4u) & 15u) - 7.0f) * (1.0f / 7.0f));
 }
 
 // Of a unit normal in view space; what leans further than a right angle along either axis is taken
-// to lean so far. Each coordinate is one of 15: off by 12 degrees at most.
-ALCOVE_INLINE CoarseNormal make_coarse_normal(vec3 normal) {
-  vec2 lean = vec2(normal.x, normal.y) * (1.0f / max(1.0f + normal.z, 0.1f));
-  CoarseNormal coarse;
-  coarse.bits = uint(clamp(lean.x, -1.0f, 1.0f) * 7.0f + 7.5f) |
-                (uint(clamp(lean.y, -1.0f, 1.0f) * 7.0f + 7.5f) << 4u);
-  coarse.lean = lean_of_bits(coarse.bits);
-  float scale = 2.0f / (1.0f + dot(coarse.lean, coarse.lean));
+// to stereographic so far. Each coordinate is one of 15: off by 12 degrees at most.
+ALCOVE_INLINE QuantisedNormal make_quantised_normal(vec3 normal) {
+  vec2 stereographic = vec2(normal.x, normal.y) * (1.0f / max(1.0f + normal.z, 0.1f));
+  QuantisedNormal coarse;
+  coarse.bits = uint(clamp(stereographic.x, -1.0f, 1.0f) * 7.0f + 7.5f) |
+                (uint(clamp(stereographic.y, -1.0f, 1.0f) * 7.0f + 7.5f) << 4u);
+  coarse.stereographic = stereographic_of_bits(coarse.bits);
+  float scale = 2.0f / (1.0f + dot(coarse.stereographic, coarse.stereographic));
   coarse.squared_scale = scale * scale;
   return coarse;
 }
 
 // The square of the angle, in radians, to another normal that leans so: 0 where it is the same, off
 // by the more the further they part, and above 0.5 from 60 degrees on.
-ALCOVE_INLINE float squared_turn(CoarseNormal own, vec2 other) {
-  vec2 apart = other - own.lean;
+ALCOVE_INLINE float squared_turn(QuantisedNormal own, vec2 other) {
+  vec2 apart = other - own.stereographic;
   return dot(apart, apart) * own.squared_scale;
 }
 

@@ -1,10 +1,10 @@
-#include "alcove/passes/line_depth.h"
+#include "alcove/passes/inverse_depth.h"
 
 #include <array>
 
 #include "bindings.h"
 #include "check_inputs.h"
-#include "line_depth_parameters.h"
+#include "inverse_depth_parameters.h"
 #include "view_parameters.h"
 
 namespace alcove::passes {
@@ -12,8 +12,8 @@ namespace alcove::passes {
 using framegraph::RecordContext;
 using framegraph::Texture;
 
-tl::expected<Texture, Error> add_line_depth(const Frame& frame, Texture depth_ndc,
-                                            std::string_view name) {
+tl::expected<Texture, Error> add_inverse_depth(const Frame& frame, Texture depth_ndc,
+                                               std::string_view name) {
   const std::array<NamedInput, 1> needed{{{"depth", depth_ndc}}};
   if (auto good = check_inputs(frame.graph, name, needed); !good) {
     return tl::unexpected(good.error());
@@ -23,7 +23,7 @@ tl::expected<Texture, Error> add_line_depth(const Frame& frame, Texture depth_nd
     return tl::unexpected(projection.error());
   }
   const std::array constants{flag(is_perspective(*projection)), flag(is_reversed(*projection))};
-  const auto kernel = frame.kernels.get(Shader::line_depth, constants);
+  const auto kernel = frame.kernels.get(Shader::inverse_depth, constants);
   if (!kernel) {
     return tl::unexpected(kernel.error());
   }
@@ -34,7 +34,7 @@ tl::expected<Texture, Error> add_line_depth(const Frame& frame, Texture depth_nd
   pass.read(depth_ndc, framegraph::access::sampled_compute);
   line = pass.write(line, framegraph::access::storage_write_compute, {},
                     framegraph::Contents::discard);
-  const maths::LineDepthParameters parameters{line_from_ndc(*projection)};
+  const maths::InverseDepthParameters parameters{inverse_depth_from_ndc(*projection)};
   pass.record([&kernels = frame.kernels, kernel = *kernel, depth_ndc, line, extent,
                parameters](RecordContext& context) {
     const std::array views{context.view(depth_ndc), context.view(line)};

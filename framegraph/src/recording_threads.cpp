@@ -1,4 +1,4 @@
-#include "crew.h"
+#include "recording_threads.h"
 
 #include <algorithm>
 #include <new>
@@ -7,7 +7,8 @@
 
 namespace alcove::framegraph {
 
-Crew::Crew(const DeviceContext& device, Pool& pool, std::uint32_t threads, std::uint32_t slots)
+RecordingThreads::RecordingThreads(const DeviceContext& device, Pool& pool, std::uint32_t threads,
+                                   std::uint32_t slots)
     : device_(device), slots_(slots) {
   for (std::uint32_t i = 0; i < threads; ++i)
     recorders_.push_back(std::make_unique<Recorder>(device, pool));
@@ -16,7 +17,7 @@ Crew::Crew(const DeviceContext& device, Pool& pool, std::uint32_t threads, std::
 }
 
 // Where the system has no more threads, or no memory for them, those that there are do the work.
-void Crew::start(std::size_t threads) {
+void RecordingThreads::start(std::size_t threads) {
   threads_.reserve(threads);
   try {
     while (threads_.size() < threads)
@@ -26,7 +27,7 @@ void Crew::start(std::size_t threads) {
   }
 }
 
-Crew::~Crew() {
+RecordingThreads::~RecordingThreads() {
   {
     const std::lock_guard lock(mutex_);
     ends_ = true;
@@ -36,7 +37,7 @@ Crew::~Crew() {
   for (CommandBuffers& buffers : buffers_) buffers.destroy(device_);
 }
 
-VkResult Crew::begin(const RecordedFrame& frame) {
+VkResult RecordingThreads::begin(const RecordedFrame& frame) {
   for (const auto& recorder : recorders_) recorder->begin(frame);
   // The validation layers do not follow events through secondary command buffers.
   together_ = !threads_.empty() && frame.plan->sets.empty();
@@ -48,8 +49,8 @@ VkResult Crew::begin(const RecordedFrame& frame) {
   return VK_SUCCESS;
 }
 
-VkResult Crew::submission(const Submission& submission, VkCommandBuffer commands,
-                          Timestamps* timestamps) {
+VkResult RecordingThreads::submission(const Submission& submission, VkCommandBuffer commands,
+                                      Timestamps* timestamps) {
   const PassRun passes{submission.first_pass, submission.pass_count, timestamps,
                        timestamps ? timestamps->add(submission.pass_count) : 0};
   Recorder& own = *recorders_[0];
@@ -72,7 +73,7 @@ VkResult Crew::submission(const Submission& submission, VkCommandBuffer commands
   return VK_SUCCESS;
 }
 
-Errors Crew::take_errors() {
+Errors RecordingThreads::take_errors() {
   Errors all;
   for (const auto& recorder : recorders_) {
     for (Error& error : recorder->errors()) all.push_back(std::move(error));
@@ -82,7 +83,7 @@ Errors Crew::take_errors() {
 }
 
 // More pieces than threads, so that one that has slow passes is made up for by the others.
-void Crew::cut(const PassRun& passes) {
+void RecordingThreads::cut(const PassRun& passes) {
   const auto count =
       static_cast<std::uint32_t>(std::min<std::size_t>(passes.count, 2 * (threads_.size() + 1)));
   pieces_.assign(count, Piece{});
@@ -97,7 +98,7 @@ void Crew::cut(const PassRun& passes) {
   }
 }
 
-void Crew::record_together() {
+void RecordingThreads::record_together() {
   next_piece_ = 0;
   {
     const std::lock_guard lock(mutex_);
@@ -110,7 +111,7 @@ void Crew::record_together() {
   done_.wait(lock, [this] { return busy_ == 0; });
 }
 
-void Crew::work(std::size_t thread) {
+void RecordingThreads::work(std::size_t thread) {
   std::uint64_t round = 0;
   std::unique_lock lock(mutex_);
   for (;;) {
@@ -126,7 +127,7 @@ void Crew::work(std::size_t thread) {
 
 // Throws nothing: what a callback throws, or operator new, is the caller's to see once every thread
 // has finished.
-void Crew::record_pieces(std::size_t thread) {
+void RecordingThreads::record_pieces(std::size_t thread) {
   for (std::size_t i = next_piece_++; i < pieces_.size(); i = next_piece_++) {
     try {
       pieces_[i].result = record(pieces_[i], thread);
@@ -136,7 +137,7 @@ void Crew::record_pieces(std::size_t thread) {
   }
 }
 
-VkResult Crew::record(Piece& piece, std::size_t thread) {
+VkResult RecordingThreads::record(Piece& piece, std::size_t thread) {
   VkResult result =
       buffers_of(thread).next(device_, queue_, VK_COMMAND_BUFFER_LEVEL_SECONDARY, piece.commands);
   if (result != VK_SUCCESS) return result;
@@ -152,7 +153,7 @@ VkResult Crew::record(Piece& piece, std::size_t thread) {
   return device_.vk.vkEndCommandBuffer(piece.commands);
 }
 
-CommandBuffers& Crew::buffers_of(std::size_t thread) {
+CommandBuffers& RecordingThreads::buffers_of(std::size_t thread) {
   return buffers_[(thread * slots_ + slot_) * kQueueClasses + static_cast<std::size_t>(queue_)];
 }
 

@@ -15,13 +15,14 @@
 
 namespace alcove::framegraph {
 
-class Crew {
+class RecordingThreads {
  public:
   // `threads` counts the caller's: 1 makes none. Fewer where the system does not give them.
-  Crew(const DeviceContext& device, Pool& pool, std::uint32_t threads, std::uint32_t slots);
-  ~Crew();
-  Crew(const Crew&) = delete;
-  Crew& operator=(const Crew&) = delete;
+  RecordingThreads(const DeviceContext& device, Pool& pool, std::uint32_t threads,
+                   std::uint32_t slots);
+  ~RecordingThreads();
+  RecordingThreads(const RecordingThreads&) = delete;
+  RecordingThreads& operator=(const RecordingThreads&) = delete;
 
   // What the next calls record; the device has finished what was recorded with this slot.
   [[nodiscard]] VkResult begin(const RecordedFrame& frame);

@@ -1,5 +1,5 @@
 // Depth in the form that the searches and filters read: add_gtao and add_reconstruct. It is not the
-// linear depth of depth_pyramid.h, which normals, specular models and lighting read.
+// linear depth of linear_depth.h, which normals, specular models and lighting read.
 #pragma once
 
 #include <string_view>
@@ -15,7 +15,7 @@ namespace alcove::passes {
 // `name` is that of pass and texture.
 //
 // Errors: a texture that is missing, a view that cannot be used.
-[[nodiscard]] tl::expected<framegraph::Texture, Error> add_line_depth(
-    const Frame& frame, framegraph::Texture depth_ndc, std::string_view name = "line depth");
+[[nodiscard]] tl::expected<framegraph::Texture, Error> add_inverse_depth(
+    const Frame& frame, framegraph::Texture depth_ndc, std::string_view name = "inverse depth");
 
 }  // namespace alcove::passes

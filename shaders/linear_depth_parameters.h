@@ -5,7 +5,7 @@
 
 ALCOVE_MATHS_BEGIN
 
-struct DepthPyramidParameters {
+struct LinearDepthParameters {
   Projection projection;
   float reach;  // scene units, see maths/pyramid.h
 };
