@@ -12,7 +12,7 @@
 #include "measure/trial_errors.h"
 #include "options/settings.h"
 #include "render/stage.h"
-#include "support/image_io.h"
+#include "support/whole_file.h"
 #include "support/mib.h"
 #include "support/progress.h"
 #include "truth/surface_points.h"
@@ -128,8 +128,9 @@ Done run_ablate(const Options& options) {
     return Failure(std::move(stage.error()));
   }
   // Before minutes of work, not after.
-  if (auto made = create_folder(options.out); !made) {
-    return made;
+  const auto folder = OutputFolder::create(options.out);
+  if (!folder) {
+    return tl::unexpected(folder.error());
   }
   const auto trials = run_trials(*stage, options, trials_of(stage->settings), "changes");
   if (!trials) {

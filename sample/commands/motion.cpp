@@ -9,6 +9,7 @@
 #include "options/settings.h"
 #include "render/stage.h"
 #include "support/image_io.h"
+#include "support/whole_file.h"
 #include "support/progress.h"
 #include "truth/truth_cache.h"
 
@@ -201,8 +202,9 @@ Done run_motion(const Options& options) {
   if (!course) {
     return Failure(std::move(course.error()));
   }
-  if (auto made = create_folder(options.out); !made) {
-    return made;
+  const auto folder = OutputFolder::create(options.out);
+  if (!folder) {
+    return tl::unexpected(folder.error());
   }
   Json report;
   report["device"] = course->stage.gpu->device().properties().deviceName;
