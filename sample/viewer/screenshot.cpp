@@ -3,7 +3,7 @@
 #include <optional>
 #include <utility>
 
-#include "device/read_back.h"
+#include "render/read_back.h"
 #include "support/image_io.h"
 #include "support/whole_file.h"
 
