@@ -133,12 +133,12 @@ tl::expected<OutputFolder, std::string> OutputFolder::create(const fs::path& fol
     return Failure("The folder " + folder.string() + " could not be created: " + reason +
                    "; choose another by --out.");
   }
-  const fs::path variant = temporary_beside(folder / "variant");
-  if (auto written = fill(variant, "", 0); !written) {
+  const fs::path probe = temporary_beside(folder / "probe");
+  if (auto written = fill(probe, "", 0); !written) {
     return Failure("Nothing can be written to the folder " + folder.string() + ": " +
                    written.error() + "; choose another by --out.");
   }
-  fs::remove(variant, error);
+  fs::remove(probe, error);
   return out;
 }
 
