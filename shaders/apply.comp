@@ -62,7 +62,7 @@ vec3 fetch_direction(texture2D image, ivec2 pixel, vec3 instead) {
 // surface is open.
 vec3 fetch_bent_normal(ivec2 pixel, vec3 normal, float visibility) {
   vec3 bent = fetch_direction(bent_normal_image, pixel, normal);
-  return kVisibility ? raised_bent_normal(bent, normal, settled_visibility(visibility)) : bent;
+  return kVisibility ? raised_bent_normal(bent, normal, converged_visibility(visibility)) : bent;
 }
 
 // Irradiance over pi; ringing must not turn into darkness below black.

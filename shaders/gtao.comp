@@ -10,19 +10,19 @@
 // Writes two numbers a pixel, the visible part of its slices and the whole of them when open:
 // filters and history add up each, and only the last divides. The mean of the pixels' own ratios
 // would be biased. The bent normal is written as a sum over slices too, in view space, and never
-// normalised; and so (compiled with LOBE) are the visible part and the whole of the surface's GGX
-// lobe, by the same horizons or sectors.
+// normalised; and so (compiled with SPECULAR) are the visible part and the whole of the surface's
+// GGX lobe, by the same horizons or sectors.
 
 #include "gtao_parameters.h"
 #include "maths/bent_normal.h"
-#include "maths/coarse_normal.h"
 #include "maths/connected_samples.h"
 #include "maths/gtao.h"
 #include "maths/lobe_slice.h"
+#include "maths/quantised_normal.h"
+#include "maths/raw_occlusion.h"
 #include "maths/sampling.h"
-#include "maths/signal.h"
 #include "maths/slice_line.h"
-#include "maths/unseen.h"
+#include "maths/unobserved.h"
 #include "maths/visibility_bitmask.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -31,8 +31,8 @@ layout(constant_id = 0) const uint kSliceCount = 1;
 layout(constant_id = 1) const uint kStepCount = 12;
 layout(constant_id = 2) const bool kBentNormal = false;
 layout(constant_id = 3) const uint kEstimator = 0;  // as Estimator has them
-layout(constant_id = 4) const int kDivisor = 1;     // one search a block of so many pixels a side
-layout(constant_id = 5) const uint kPattern = 0;    // 0 golden, 1 Hilbert and R2, 2 the memo's
+layout(constant_id = 4) const int kTileSize = 1;    // one search a block of so many pixels a side
+layout(constant_id = 5) const uint kPattern = 0;    // 0 golden, 1 Hilbert and R2, 2 the paper's
 layout(constant_id = 6) const bool kPerspective = true;
 layout(constant_id = 7) const bool kRoughnessTexture = false;
 layout(constant_id = 8) const int kRoughnessChannel = 0;
@@ -40,29 +40,31 @@ layout(constant_id = 9) const bool kUniformWeight = false;
 layout(constant_id = 10) const bool kFalloff = false;
 layout(constant_id = 11) const bool kThicknessOfDistance = false;  // else of the radius
 layout(constant_id = 12) const bool kBackFaces = false;  // tell the thickness, where there are any
-layout(constant_id = 13) const bool kSnapping = true;    // samples lie where their texels do
-layout(constant_id = 14) const bool kByPattern = false;  // block_by_pattern() groups the searches
-layout(constant_id = 15) const bool kSecondLayer = false;  // second_image occludes too
-layout(constant_id = 16) const bool kContinuation = true;  // surfaces go on beyond the image
-layout(constant_id = 17) const bool kUnseen = true;        // is left out, with connected samples
+layout(constant_id = 13) const bool kSnapToTexels = true;   // samples lie where their texels do
+layout(constant_id = 14) const bool kByPattern = false;     // tile_by_pattern() groups the searches
+layout(constant_id = 15) const bool kSecondLayer = false;   // second_image occludes too
+layout(constant_id = 16) const bool kExtrapolation = true;  // surfaces go on beyond the image
+layout(constant_id = 17) const bool kUnobserved = true;     // is left out, with connected samples
 
 const bool kHeuristic = kEstimator == 1;
 const bool kBitmask = kEstimator >= 2;
 const bool kConnected = kEstimator == 3;
-const bool kLeaveOutUnseen = kConnected && kUnseen;
+const bool kLeaveOutUnobserved = kConnected && kUnobserved;
 
 layout(set = 0, binding = 0) uniform Parameters { GtaoParameters parameters; };
-layout(set = 0, binding = 1, r32f) uniform readonly image2D line_image;  // LineSample::line
+layout(set = 0, binding = 1,
+       r32f) uniform readonly image2D inverse_depth_image;    // SliceSample::inverse_depth
 layout(set = 0, binding = 2) uniform texture2D normal_image;  // xyz, turned by view_from_normal
-// Signal and line; with LOBE also its signal and the surface that it belongs to.
-layout(set = 0, binding = 3) uniform writeonly uimage2D signal_image;
-// Bound to the signal and never written where no bent normal is wanted.
+// RawOcclusion and line; with SPECULAR also its raw_occlusion and the surface that it belongs to.
+layout(set = 0, binding = 3) uniform writeonly uimage2D raw_image;
+// Bound to the raw_occlusion and never written where no bent normal is wanted.
 layout(set = 0, binding = 4) uniform writeonly uimage2D bent_image;
-// LineSample::line of the back faces; bound to the front's and never read without kBackFaces.
+// SliceSample::inverse_depth of the back faces; bound to the front's and never read without
+// kBackFaces.
 layout(set = 0, binding = 5, r32f) uniform readonly image2D back_image;
 // The same of what lies behind the first surface; so is it without kSecondLayer.
 layout(set = 0, binding = 6, r32f) uniform readonly image2D second_image;
-#ifdef LOBE
+#ifdef SPECULAR
 layout(set = 0, binding = 7) uniform texture2D roughness_image;  // perceptual
 const bool kLobe = true;
 #else
@@ -75,14 +77,14 @@ struct Surface {
   float depth;
   vec3 normal;  // unit, view space
   vec3 view;    // unit, view space, towards the eye
-  TangentLine tangent;
+  TangentPlane tangent;
   LobeSurface lobe;  // normal as it was given
 };
 
-ivec2 size_px() { return imageSize(line_image); }
+ivec2 size_px() { return imageSize(inverse_depth_image); }
 
 float fetch_roughness(ivec2 pixel) {
-#ifdef LOBE
+#ifdef SPECULAR
   if (kRoughnessTexture) {
     return saturate(texelFetch(roughness_image, pixel, 0)[kRoughnessChannel]);
   }
@@ -90,11 +92,11 @@ float fetch_roughness(ivec2 pixel) {
   return parameters.roughness;
 }
 
-Surface fetch_surface(ivec2 pixel, float line) {
+Surface fetch_surface(ivec2 pixel, float inverse_depth) {
   Surface surface;
   surface.pixel = pixel;
   surface.centre = vec2(pixel) + 0.5;
-  surface.depth = kPerspective ? 1.0 / line : line;
+  surface.depth = kPerspective ? 1.0 / inverse_depth : inverse_depth;
   vec2 slope =
       parameters.slope.zw + (kPerspective ? surface.centre * parameters.slope.xy : vec2(0.0));
   surface.view = normalize(vec3(-slope, 1.0));
@@ -103,8 +105,8 @@ Surface fetch_surface(ivec2 pixel, float line) {
   surface.normal = facing_normal(normalize(normal), surface.view);
   vec3 own = has_direction(given) ? given : surface.view * mat3(parameters.view_from_normal);
   surface.lobe = LobeSurface(own, fetch_roughness(pixel));
-  surface.tangent = make_tangent_line(parameters.slope.xy, surface.normal, surface.view,
-                                      surface.depth, kPerspective);
+  surface.tangent = make_tangent_plane(parameters.slope.xy, surface.normal, surface.view,
+                                       surface.depth, kPerspective);
   return surface;
 }
 
@@ -139,46 +141,50 @@ float find_horizon(Search search) {
 struct SliceSum {
   float visible;
   float open;
-  vec3 bend;
-  vec3 open_bend;
-  Signal lobe;
+  vec3 residual;
+  vec3 expected_residual;
+  RawOcclusion lobe;
 };
 
-Signal no_lobe() { return Signal(0.0, 0.0); }
+RawOcclusion no_lobe() { return RawOcclusion(0.0, 0.0); }
 
 LobeSlice lobe_of(Surface surface, Slice slice) {
   return make_lobe_slice(slice, surface.lobe.roughness * surface.lobe.roughness);
 }
 
-UnseenArc unseen_arc(Slice slice, Search search, Search other, Occluders found) {
+UnobservedArc unobserved_arc(Slice slice, Search search, Search other, Occluders found) {
   float nearness = kPerspective ? parameters.radius / search.depth : 0.0;
   float radius_px =
       slice_radius_px(search.slice_line, parameters.radius, search.depth, kPerspective);
-  Unseen unseen =
-      add_beyond_border(mean_row(found.unseen), found.border_px, search.outside * radius_px,
+  Unobserved unobserved =
+      add_beyond_border(mean_row(found.unobserved), found.border_px, search.outside * radius_px,
                         border_share(other.outside, nearness));
-  return make_unseen_arc(slice, search.side, search.per_bearing, found.occluded, unseen, radius_px);
+  return make_unobserved_arc(slice, search.side, search.per_diamond_angle, found.occluded,
+                             unobserved, radius_px);
 }
 
 VisiblePart find_visible_part(Slice slice, Search search, Occluders found) {
   const PartRequest request = PartRequest(kUniformWeight, kBentNormal);
-  return visible_part(slice, search.side, search.per_bearing, found.occluded, found.fill, request);
+  return visible_part(slice, search.side, search.per_diamond_angle, found.occluded,
+                      found.hidden_occlusion, request);
 }
 
 float find_visible_lobe(LobeSlice lobe, Search search, Occluders found) {
-  return visible_lobe(lobe, search.side, search.per_bearing, found.occluded, found.fill);
+  return visible_lobe(lobe, search.side, search.per_diamond_angle, found.occluded,
+                      found.hidden_occlusion);
 }
 
-Signal leave_out(Signal sum, float part) {
-  return Signal(max(sum.visible - part, 0.0), sum.open - part);
+RawOcclusion leave_out(RawOcclusion sum, float part) {
+  return RawOcclusion(max(sum.visible - part, 0.0), sum.open - part);
 }
 
 // Once the slice's visible part is known; `part` is its part of the bent normal, `open` all of it.
-void add_bends(inout SliceSum sum, Surface surface, Slice slice, vec3 direction, vec3 part,
-               float open) {
-  sum.bend = kBentNormal ? bend_of(part, sum.visible, surface.normal) : vec3(0.0);
-  sum.open_bend = kBentNormal ? open_bend(slice, direction, surface.view, surface.normal, open)
-                              : vec3(0.0);
+void add_residuals(inout SliceSum sum, Surface surface, Slice slice, vec3 direction, vec3 part,
+                   float open) {
+  sum.residual = kBentNormal ? residual_of(part, sum.visible, surface.normal) : vec3(0.0);
+  sum.expected_residual =
+      kBentNormal ? expected_residual(slice, direction, surface.view, surface.normal, open)
+                  : vec3(0.0);
 }
 
 SliceSum bitmask_slice(Surface surface, Slice slice, vec3 direction, Search ahead, Search behind) {
@@ -192,27 +198,28 @@ SliceSum bitmask_slice(Surface surface, Slice slice, vec3 direction, Search ahea
                             : light_arc(slice, 1.0, tangent_light(slice, 1.0)) +
                                   light_arc(slice, -1.0, tangent_light(slice, -1.0));
   float open = sum.open;
-  UnseenArc ahead_unseen, behind_unseen;
-  if (kLeaveOutUnseen) {
-    ahead_unseen = unseen_arc(slice, ahead, behind, ahead_found);
-    behind_unseen = unseen_arc(slice, behind, ahead, behind_found);
-    Signal seen = leave_out(Signal(sum.visible, sum.open),
-                            unseen_part(ahead_unseen, slice, 1.0, kUniformWeight) +
-                                unseen_part(behind_unseen, slice, -1.0, kUniformWeight));
+  UnobservedArc ahead_unobserved, behind_unobserved;
+  if (kLeaveOutUnobserved) {
+    ahead_unobserved = unobserved_arc(slice, ahead, behind, ahead_found);
+    behind_unobserved = unobserved_arc(slice, behind, ahead, behind_found);
+    RawOcclusion seen =
+        leave_out(RawOcclusion(sum.visible, sum.open),
+                  unobserved_part(ahead_unobserved, slice, 1.0, kUniformWeight) +
+                      unobserved_part(behind_unobserved, slice, -1.0, kUniformWeight));
     sum.visible = seen.visible;
     sum.open = seen.open;
   }
   vec2 bent = front.bent + back.bent;
-  add_bends(sum, surface, slice, direction, direction * bent.x + surface.view * bent.y, open);
+  add_residuals(sum, surface, slice, direction, direction * bent.x + surface.view * bent.y, open);
   sum.lobe = no_lobe();
   if (kLobe) {
     LobeSlice lobe = lobe_of(surface, slice);
     sum.lobe.visible =
         find_visible_lobe(lobe, ahead, ahead_found) + find_visible_lobe(lobe, behind, behind_found);
     sum.lobe.open = lobe.open;
-    if (kLeaveOutUnseen) {
-      sum.lobe = leave_out(
-          sum.lobe, unseen_lobe(ahead_unseen, lobe, 1.0) + unseen_lobe(behind_unseen, lobe, -1.0));
+    if (kLeaveOutUnobserved) {
+      sum.lobe = leave_out(sum.lobe, unobserved_lobe(ahead_unobserved, lobe, 1.0) +
+                                         unobserved_lobe(behind_unobserved, lobe, -1.0));
     }
   }
   return sum;
@@ -225,12 +232,12 @@ SliceSum horizon_slice(Surface surface, Slice slice, vec3 direction, Search ahea
   sum.visible = kUniformWeight ? uniform_slice_visibility(slice, front, back)
                                : slice_visibility(slice, front, back);
   sum.open = kUniformWeight ? 1.0 : open_slice(slice);
-  add_bends(sum, surface, slice, direction,
-            slice_bent_normal(slice, direction, surface.view, front, back), sum.open);
+  add_residuals(sum, surface, slice, direction,
+                slice_bent_normal(slice, direction, surface.view, front, back), sum.open);
   sum.lobe = no_lobe();
   if (kLobe) {
     LobeSlice lobe = lobe_of(surface, slice);
-    sum.lobe = Signal(horizon_lobe(slice, lobe, front, back), lobe.open);
+    sum.lobe = RawOcclusion(horizon_lobe(slice, lobe, front, back), lobe.open);
   }
   return sum;
 }
@@ -240,33 +247,33 @@ SliceNoise noise_at(uvec2 block) {
     case 1:
       return hilbert_pattern(block, parameters.frame);
     case 2:
-      return memo_pattern(block, parameters.frame);
+      return paper_pattern(block, parameters.frame);
     default:
-      return golden_pattern(block, parameters.frame, kDivisor > 1);
+      return golden_pattern(block, parameters.frame, kTileSize > 1);
   }
 }
 
 // Lobes of any width come to about as much: what neighbours of other roughness add is in scale.
-uvec2 pack_scaled_lobe(LobeSurface surface, Signal lobe) {
+uvec2 pack_scaled_lobe(LobeSurface surface, RawOcclusion lobe) {
   float scale = max(surface.roughness * surface.roughness, kSmallestLobe);
-  lobe = Signal(lobe.visible * scale, lobe.open * scale);
+  lobe = RawOcclusion(lobe.visible * scale, lobe.open * scale);
   return uvec2(pack_lobe(lobe), pack_lobe_surface(surface));
 }
 
 // What a search leaves at its block.
 struct SearchResult {
-  uvec4 signal;
+  uvec4 raw_occlusion;
   uvec2 bent;
 };
 
 SearchResult sky_result() {
-  return SearchResult(
-      uvec4(pack_signal(Signal(1.0, 1.0), 0u), floatBitsToUint(sky_line(kPerspective)), 0u, 0u),
-      uvec2(0u));
+  return SearchResult(uvec4(pack_raw_occlusion(RawOcclusion(1.0, 1.0), 0u),
+                            floatBitsToUint(sky_inverse_depth(kPerspective)), 0u, 0u),
+                      uvec2(0u));
 }
 
-SearchResult search_pixel(ivec2 pixel, float line, SliceNoise noise) {
-  Surface surface = fetch_surface(pixel, line);
+SearchResult search_pixel(ivec2 pixel, float inverse_depth, SliceNoise noise) {
+  Surface surface = fetch_surface(pixel, inverse_depth);
   ViewBasis basis = make_view_basis(surface.view);
   SliceSum sum = SliceSum(0.0, 0.0, vec3(0.0), vec3(0.0), no_lobe());
   uint i = 0;
@@ -284,40 +291,42 @@ SearchResult search_pixel(ivec2 pixel, float line, SliceNoise noise) {
                              : horizon_slice(surface, slice, direction, ahead, behind);
     sum.visible += angle.weight * more.visible;
     sum.open += angle.weight * more.open;
-    sum.bend += angle.weight * more.bend;
-    sum.open_bend += angle.weight * more.open_bend;
+    sum.residual += angle.weight * more.residual;
+    sum.expected_residual += angle.weight * more.expected_residual;
     sum.lobe.visible += angle.weight * more.lobe.visible;
     sum.lobe.open += angle.weight * more.lobe.open;
     ++i;
   } while (i < kSliceCount);
   float mean = 1.0 / float(kSliceCount);
-  uvec2 lobe =
-      kLobe ? pack_scaled_lobe(surface.lobe, Signal(sum.lobe.visible * mean, sum.lobe.open * mean))
-            : uvec2(0u);
-  Signal signal = Signal(sum.visible * mean, sum.open * mean);
-  uint normal = make_coarse_normal(surface.normal).bits;
-  return SearchResult(uvec4(pack_signal(signal, normal), floatBitsToUint(line), lobe),
-                      kBentNormal ? uvec2(pack_bend(sum.bend * mean), pack_bend(sum.open_bend * mean))
-                                  : uvec2(0u));
+  uvec2 lobe = kLobe ? pack_scaled_lobe(surface.lobe,
+                                        RawOcclusion(sum.lobe.visible * mean, sum.lobe.open * mean))
+                     : uvec2(0u);
+  RawOcclusion raw_occlusion = RawOcclusion(sum.visible * mean, sum.open * mean);
+  uint normal = make_quantised_normal(surface.normal).bits;
+  return SearchResult(
+      uvec4(pack_raw_occlusion(raw_occlusion, normal), floatBitsToUint(inverse_depth), lobe),
+      kBentNormal
+          ? uvec2(pack_residual(sum.residual * mean), pack_residual(sum.expected_residual * mean))
+          : uvec2(0u));
 }
 
-uvec2 searched_block() {
-  return kByPattern ? block_by_pattern(gl_WorkGroupID.xy, gl_LocalInvocationID.xy)
+uvec2 traced_tile() {
+  return kByPattern ? tile_by_pattern(gl_WorkGroupID.xy, gl_LocalInvocationID.xy)
                     : gl_GlobalInvocationID.xy;
 }
 
 void main() {
-  ivec2 block = ivec2(searched_block());
-  if (any(greaterThanEqual(block * kDivisor, size_px()))) {
+  ivec2 block = ivec2(traced_tile());
+  if (any(greaterThanEqual(block * kTileSize, size_px()))) {
     return;
   }
-  ivec2 pixel = min(block * kDivisor + ivec2(parameters.phase), size_px() - 1);
-  float line = imageLoad(line_image, pixel).r;
+  ivec2 pixel = min(block * kTileSize + ivec2(parameters.interleave_offset), size_px() - 1);
+  float inverse_depth = imageLoad(inverse_depth_image, pixel).r;
   SearchResult result = sky_result();
-  if (line != sky_line(kPerspective)) {
-    result = search_pixel(pixel, line, noise_at(uvec2(block)));
+  if (inverse_depth != sky_inverse_depth(kPerspective)) {
+    result = search_pixel(pixel, inverse_depth, noise_at(uvec2(block)));
   }
-  imageStore(signal_image, block, result.signal);
+  imageStore(raw_image, block, result.raw_occlusion);
   if (kBentNormal) {
     imageStore(bent_image, block, uvec4(result.bent, 0u, 0u));
   }

@@ -13,24 +13,24 @@ float border_distance(vec2 centre, vec2 direction) {
 // One side of a slice, as it is searched.
 struct Search {
   ivec2 pixel;
-  float side;            // 1, or -1 against the slice's direction
-  SliceLine slice_line;  // outwards
-  float reach_px;        // from the first step to the last; 0 where there is nothing to search
-  float continued_px;    // of the radius beyond the image's border, as far as surfaces go on there
-  float outside;         // part of the radius beyond the image's border, [0,1]
-  float offset;          // of the steps, [0,1)
-  float depth;           // linear, of the shaded point
-  TangentLine tangent;
+  float side;             // 1, or -1 against the slice's direction
+  SliceLine slice_line;   // outwards
+  float reach_px;         // from the first step to the last; 0 where there is nothing to search
+  float extrapolated_px;  // of the radius beyond the image's border, as far as surfaces go on there
+  float outside;          // part of the radius beyond the image's border, [0,1]
+  float offset;           // of the steps, [0,1)
+  float depth;            // linear, of the shaded point
+  TangentPlane tangent;
   float gradient;  // of the tangent line, outwards
   float lowest;    // cosine of the tangent plane's horizon
   // For sectors.
-  vec2 height;        // above the tangent plane, of each unit of a point of the slice's plane
-  float sharp;        // bend that parts two surfaces
-  float per_bearing;  // sectors
+  vec2 height;              // above the tangent plane, of each unit of a point of the slice's plane
+  float sharp;              // residual that parts two surfaces
+  float per_diamond_angle;  // sectors
 };
 
 // Bend of the line between two samples, in depths for each pixel's width, that parts two surfaces.
-const float kSharpBend = 4.0;
+const float kDepthDiscontinuity = 4.0;
 
 Search make_search(Surface surface, SliceLine slice_line, Slice slice, float side, float offset) {
   Search search;
@@ -49,49 +49,53 @@ Search make_search(Surface surface, SliceLine slice_line, Slice slice, float sid
   float apart = max(distance_px - kNearestStep, 0.25 * float(kStepCount));
   bool empty = min(distance_px, border) < kNearestStep;
   search.reach_px = empty ? 0.0 : max(min(apart, border - kNearestStep), 1e-3);
-  search.continued_px = clamp(distance_px - border, 0.0, kContinuedReaches * search.reach_px);
+  search.extrapolated_px = clamp(distance_px - border, 0.0, kExtrapolationRatio * search.reach_px);
   search.outside = distance_px < kNearestStep ? 0.0 : max(1.0 - border / distance_px, 0.0);
   search.offset = offset;
   search.depth = surface.depth;
   search.tangent = surface.tangent;
   search.gradient = dot(search.slice_line.direction_px, surface.tangent.gradient);
   search.height = vec2(side * slice.along, slice.toward);
-  search.sharp = kSharpBend * slice_line.x_per_step * (kPerspective ? surface.tangent.line : 1.0);
-  search.per_bearing = sectors_per_bearing(slice, side);
+  search.sharp = kDepthDiscontinuity * slice_line.x_per_step *
+                 (kPerspective ? surface.tangent.inverse_depth : 1.0);
+  search.per_diamond_angle = sectors_per_diamond_angle(slice, side);
   return search;
 }
 
 // The settings' thickness, of an occluder at a sample: as slice_point() gives lengths, times w.
-float settings_thickness(LineSample here) {
+float settings_thickness(SliceSample here) {
   // In perspective w times the distance is 1; an orthographic depth may lie behind the eye.
-  float distance = kPerspective ? 1.0 : abs(here.line);
+  float distance = kPerspective ? 1.0 : abs(here.inverse_depth);
   return parameters.thickness * (kThicknessOfDistance ? distance : here.point.z);
 }
 
 // Layers of depth: 0, and 1 behind it.
-LineSample fetch_sample(Search search, uint layer, uint k) {
+SliceSample fetch_sample(Search search, uint layer, uint k) {
   float t = (float(k) + search.offset) * (1.0 / float(kStepCount));
-  LineSample found;
+  SliceSample found;
   found.offset_px = kNearestStep + search.reach_px * (t * t);
   vec2 snapped = roundEven(search.slice_line.direction_px * found.offset_px);
   // A side with nothing to search may lie outside the image.
   ivec2 texel = search.pixel + (search.reach_px > 0.0 ? ivec2(snapped) : ivec2(0));
-  float line = layer == 0u ? imageLoad(line_image, texel).r : imageLoad(second_image, texel).r;
+  float inverse_depth =
+      layer == 0u ? imageLoad(inverse_depth_image, texel).r : imageLoad(second_image, texel).r;
   // Only across the line: along it a sample stays where it was found.
-  float along_px = kSnapping ? dot(snapped, search.slice_line.direction_px) : found.offset_px;
+  float along_px = kSnapToTexels ? dot(snapped, search.slice_line.direction_px) : found.offset_px;
   float on_plane = dot(snapped, search.tangent.gradient);
-  float share =
-      tangent_share(search.tangent, line - search.tangent.line - on_plane, found.offset_px);
-  float moved = moved_line(line, share * (along_px * search.gradient - on_plane), kPerspective);
-  found.line = kSnapping ? moved : line;
-  found.point = slice_point(search.slice_line, along_px, found.line, search.depth, kPerspective);
+  float share = tangent_share(
+      search.tangent, inverse_depth - search.tangent.inverse_depth - on_plane, found.offset_px);
+  float moved = moved_inverse_depth(inverse_depth, share * (along_px * search.gradient - on_plane),
+                                    kPerspective);
+  found.inverse_depth = kSnapToTexels ? moved : inverse_depth;
+  found.point =
+      slice_point(search.slice_line, along_px, found.inverse_depth, search.depth, kPerspective);
   if (kBackFaces) {
     float back = imageLoad(back_image, texel).r;
     // Not before the front where that was moved.
-    vec3 end =
-        slice_point(search.slice_line, along_px, farther_line(found.line, back, kPerspective),
-                    search.depth, kPerspective);
-    found.back = ends_occluder(line, back, kPerspective) ? end.xy : vec2(0.0, kNoBack);
+    vec3 end = slice_point(search.slice_line, along_px,
+                           farther_inverse_depth(found.inverse_depth, back, kPerspective),
+                           search.depth, kPerspective);
+    found.back = ends_occluder(inverse_depth, back, kPerspective) ? end.xy : vec2(0.0, kNoBack);
   }
   return found;
 }

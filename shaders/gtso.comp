@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 // The visible share of each pixel's GGX lobe from its visibility and bent normal (Jimenez et al.
-// 2016, section 6), by one of the models of maths/gtso.h or, with TABLE, by the memo's table.
+// 2016, section 6), by one of the models of maths/gtso.h or, with TABLE, by the paper's table.
 
 #include "gtso_parameters.h"
 #include "maths/gtso.h"
@@ -67,7 +67,7 @@ float occlusion_by_table(float visibility, vec3 bent, vec3 normal, vec3 reflecti
 #endif
 
 float occlusion_of(ivec2 pixel, vec3 normal, vec3 view) {
-  float visibility = settled_visibility(texelFetch(visibility_image, pixel, 0).r);
+  float visibility = converged_visibility(texelFetch(visibility_image, pixel, 0).r);
   float roughness = fetch_roughness(pixel);
   float alpha = roughness * roughness;
   if (kModel == kLagarde) {

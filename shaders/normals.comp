@@ -31,11 +31,12 @@ vec3 fetch_position(ivec2 pixel, float depth) {
 // the strip's whole depth, and at a crease between planes a quarter of the step never outweighs
 // that.
 float miss(float depth, float one, float two) {
-  vec3 line = vec3(depth, one, two);
+  vec3 inverse_depth = vec3(depth, one, two);
   if (parameters.projection.eye.w > 0.0) {
-    line = 1.0 / line;
+    inverse_depth = 1.0 / inverse_depth;
   }
-  return abs(2.0 * line.y - line.z - line.x) + 0.25 * abs(line.y - line.x);
+  return abs(2.0 * inverse_depth.y - inverse_depth.z - inverse_depth.x) +
+         0.25 * abs(inverse_depth.y - inverse_depth.x);
 }
 
 // From the pixel to its better neighbour along an axis, pointing along +axis of the image.

@@ -21,11 +21,11 @@ const uvec4 kNothingHeld = uvec4(0xffffu, 0u, 0u, 0u);
 
 uvec4 pack_history(History history, float visibility, Surface surface) {
   // A normal that is not a number must not stay in the history.
-  Signal lobe = history.sum.lobe;
+  RawOcclusion lobe = history.sum.lobe;
   if (!(lobe.visible >= 0.0 && lobe.visible <= lobe.open && lobe.open < 1e30)) {
-    lobe = Signal(0.0, 0.0);
+    lobe = RawOcclusion(0.0, 0.0);
   }
-  HistoryTexel texel = HistoryTexel(visibility, history.sum.signal.open,
+  HistoryTexel texel = HistoryTexel(visibility, history.sum.raw_occlusion.open,
                                     held_depth(parameters.history_depth.xy, surface.depth),
                                     history.count, history.recent, surface.coarse.bits);
   return uvec4(pack_history_texel(texel), floatBitsToUint(lobe.visible),
@@ -72,26 +72,26 @@ struct Read {
 // surface; of those the ones on the tangent plane, at the depth `expected` as it is held, and with
 // the same `normal`, as the last frame saw it, count for most, so that nothing leaks across a
 // crease.
-void add_history(inout Read read, Surface surface, CoarseNormal normal, ivec2 pixel, float expected,
-                 float share) {
+void add_history(inout Read read, Surface surface, QuantisedNormal normal, ivec2 pixel,
+                 float expected, float share) {
   uvec4 stored = imageLoad(history_image, pixel);
   HistoryTexel texel = unpack_history_texel(stored.xy);
   float apart = held_apart(expected, texel.depth);
-  float turn = kStill ? 0.0 : squared_turn(normal, lean_of_bits(texel.coarse_normal));
+  float turn = kStatic ? 0.0 : squared_turn(normal, stereographic_of_bits(texel.quantised_normal));
   float same =
-      history_weight(apart, kDepthTolerance, surface.slant) * history_weight_by_normal(turn);
+      history_weight(apart, kDepthTolerance, surface.n_dot_v) * history_weight_by_normal(turn);
   float off_plane = kPerspective ? apart : apart * abs(expected) / parameters.history_depth.z;
-  off_plane *= surface.slant * parameters.tolerance * (1.0 / kPlaneTolerance);
+  off_plane *= surface.n_dot_v * parameters.tolerance * (1.0 / kPlaneTolerance);
   float level = 1.0 + min(off_plane * off_plane, 1e6);
   float agreement = max(1.0 - 0.5 * turn, 0.0);  // the cosine, about
   float counts = same * sixteenth_power(agreement * agreement) / (level * level);
   float weight = share * counts;
   Sum here = no_sum();
-  here.signal = Signal(texel.visibility * texel.open, texel.open);
+  here.raw_occlusion = RawOcclusion(texel.visibility * texel.open, texel.open);
   if (kBentNormal) {
-    here.bend = imageLoad(bent_history_image, pixel).xyz;
+    here.residual = imageLoad(bent_history_image, pixel).xyz;
   }
-  here.lobe = Signal(uintBitsToFloat(stored.z), uintBitsToFloat(stored.w));
+  here.lobe = RawOcclusion(uintBitsToFloat(stored.z), uintBitsToFloat(stored.w));
   add(read.history.sum, weight, here);
   read.history.count += weight * texel.count;
   read.history.recent += weight * texel.recent;
@@ -133,14 +133,16 @@ void read_moved(inout Read read, Surface surface) {
     texels[i] = clamp(ivec2(first) + corner, ivec2(0), last);
     // Where the surface's tangent plane passes that texel; it hardly turns from frame to frame.
     vec2 offset = vec2(corner) - part;
-    float line = (kPerspective ? 1.0 / before.depth : before.depth) + dot(offset, surface.gradient);
-    float depth = kPerspective ? 1.0 / max(line, 0.5 / before.depth) : line;
+    float inverse_depth =
+        (kPerspective ? 1.0 / before.depth : before.depth) + dot(offset, surface.gradient);
+    float depth = kPerspective ? 1.0 / max(inverse_depth, 0.5 / before.depth) : inverse_depth;
     expected[i] = held_depth(parameters.history_depth.zw, depth);
   }
   if (before.moves) {
     expected += moved_in_depth(texels, expected);
   }
-  CoarseNormal normal = make_coarse_normal(mat3(parameters.before_from_view) * surface.normal);
+  QuantisedNormal normal =
+      make_quantised_normal(mat3(parameters.before_from_view) * surface.normal);
   [[unroll]] for (int i = 0; i < 4; ++i) {
     vec2 near = abs(1.0 - vec2(i & 1, i >> 1) - part);
     add_history(read, surface, normal, texels[i], expected[i], before.seen ? near.x * near.y : 0.0);
@@ -152,7 +154,7 @@ History read_history(Surface surface) {
     return no_history();
   }
   Read read = Read(no_history(), vec3(0.0), 0.0, 0.0);
-  if (kStill) {
+  if (kStatic) {
     add_history(read, surface, surface.coarse, surface.pixel,
                 held_depth(parameters.history_depth.zw, surface.depth), 1.0);
   } else {
@@ -164,9 +166,9 @@ History read_history(Surface surface) {
   history.count = read.history.count * scale;
   history.recent = read.history.recent * scale;
   history.between = read.history.between;
-  if (!kStill) {
+  if (!kStatic) {
     // From the view space of the frame before.
-    history.sum.bend = history.sum.bend * mat3(parameters.before_from_view);
+    history.sum.residual = history.sum.residual * mat3(parameters.before_from_view);
     vec2 means = read.moments.yz * scale;
     float variance = max(means.y - means.x * means.x, 0.0);
     float missing = max(1.0 - read.moments.x / max(read.most, 1e-20), 0.0);
@@ -176,7 +178,7 @@ History read_history(Surface surface) {
 }
 
 // A block of 4 gives a pixel few searches of its own even in time.
-const float kWidth = kDivisor > 2 ? 2.5 : 1.0;
+const float kWidth = kTileSize > 2 ? 2.5 : 1.0;
 
 // Squared, in pixels: wide while a pixel has little of its own, then hardly more than the pixel
 // itself, or as wide as reading between texels blurs anyway.
@@ -188,66 +190,68 @@ float squared_window(History history) {
 
 // How much nearer to the tangent plane a neighbour has to be than in a first frame: the more
 // searches a pixel has had of its own, the less it needs those off its plane, which see other
-// things. By the error after 4 and 32 frames at each divisor (`alcove compare --frames`).
-float stiffening(float count) {
-  const float own = 1.0 / float(kDivisor * kDivisor);  // in a frame
+// things. By the error after 4 and 32 frames at each tile_size (`alcove compare --frames`).
+float plane_weight_growth(float count) {
+  const float own = 1.0 / float(kTileSize * kTileSize);  // in a frame
   return min(1.0 + 4.0 * own * count, 5.0);
 }
 
 void clamp_history(inout History history, Spread spread) {
-  float before = mean_visibility(history.sum.signal);
+  float before = mean_visibility(history.sum.raw_occlusion);
   float after = clamp_to_spread(before, spread, parameters.clamp_width);
   if (history.count > 0.0) {
-    history.sum.signal.visible = after * history.sum.signal.open;
+    history.sum.raw_occlusion.visible = after * history.sum.raw_occlusion.open;
     history.count = count_after_clamp(history.count, before, after, 0.25);
   }
 }
 
 // Where something moves, visibility changes on surfaces that stand still: what the last few frames
 // say then replaces what all of them do.
-void follow_change(inout History history, Signal now) {
-  float before = mean_visibility(history.sum.signal);
+void follow_change(inout History history, RawOcclusion now) {
+  float before = mean_visibility(history.sum.raw_occlusion);
   history.recent = recent_visibility(history.recent, history.count, mean_visibility(now), now.open);
   float changed = history.count > 0.0 ? visibility_changed(before, history.recent) : 0.0;
-  history.sum.signal.visible = mix(before, history.recent, changed) * history.sum.signal.open;
+  history.sum.raw_occlusion.visible =
+      mix(before, history.recent, changed) * history.sum.raw_occlusion.open;
   history.count = mix(history.count, min(history.count, kRecentFrames), changed);
 }
 
 // Whether some pixels may look further than others: a pixel that has hardly any history as far as
 // all of a first frame.
-const bool kLooksFurther = !kFresh && kReach > kSide;
+const bool kLooksFurther = !kFresh && kFilterRadius > kSide;
 
-// The next of block_around(cell, kReach) that lies further away than those around the cell and is
-// no corner.
+// The next of tile_around(cell, kFilterRadius) that lies further away than those around the cell
+// and is no corner.
 int next_further(int i) {
-  const int margin = kReach - kSide;
-  int across = across_of(kReach);
+  const int margin = kFilterRadius - kSide;
+  int across = across_of(kFilterRadius);
   i += 1;
   bool within = i % across == margin && i / across >= margin && i / across < margin + kAcross;
-  return i + (within ? kAcross : is_corner(kReach, i) ? 1 : 0);
+  return i + (within ? kAcross : is_corner(kFilterRadius, i) ? 1 : 0);
 }
 
-void add_further(inout Neighbourhood sum, Surface surface, float narrowness) {
-  int last = across_of(kReach) * across_of(kReach) - 1;
+void add_further(inout Neighbourhood sum, Surface surface, float inverse_squared_width) {
+  int last = across_of(kFilterRadius) * across_of(kFilterRadius) - 1;
   for (int i = next_further(-1); i < last; i = next_further(i)) {
-    add_block(sum, surface, narrowness, fetch_block(block_around(surface.cell, kReach, i)));
+    add_tile(sum, surface, inverse_squared_width,
+             fetch_tile(tile_around(surface.cell, kFilterRadius, i)));
   }
 }
 
 // The pixel's sums with this frame's neighbourhood added.
 History advance(Surface surface, Found around[kAround], History history) {
-  surface.stiffness *= stiffening(history.count);
-  float narrowness = narrowness_of(squared_window(history));
-  Neighbourhood now = add_up(surface, narrowness, around);
+  surface.plane_weight *= plane_weight_growth(history.count);
+  float inverse_squared_width = inverse_squared_width_of(squared_window(history));
+  Neighbourhood now = add_up(surface, inverse_squared_width, around);
   if (kLooksFurther && history.count < 2.0) {
-    add_further(now, surface, narrowness);
+    add_further(now, surface, inverse_squared_width);
   }
   if (kClamp) {
     vec3 moments = now.moments / now.moments.x;
     clamp_history(history, spread_of_sums(moments.y, moments.z, 1.0));
   }
   if (kMotion) {
-    follow_change(history, now.sum.signal);
+    follow_change(history, now.sum.raw_occlusion);
   }
   // Not divided by the weight found: a frame that searched the pixel itself counts for more than
   // one that searched its neighbours. Divided by the window's size, so that wide ones do not.
@@ -258,11 +262,12 @@ History advance(Surface surface, Found around[kAround], History history) {
   add(next.sum, 1.0 - fresh, history.sum);
   add(next.sum, scale, now.sum);
   if (kBentNormal) {
-    float visibility = mean_visibility(next.sum.signal);
-    next.sum.bend = settled_bend(next.sum.bend, scale * now.open_bend, visibility);
+    float visibility = mean_visibility(next.sum.raw_occlusion);
+    next.sum.residual =
+        converged_residual(next.sum.residual, scale * now.expected_residual, visibility);
   }
   next.count = next_count(history.count, parameters.longest);
-  next.recent = kMotion ? history.recent : mean_visibility(next.sum.signal);
+  next.recent = kMotion ? history.recent : mean_visibility(next.sum.raw_occlusion);
   return next;
 }
 

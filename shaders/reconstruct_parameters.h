@@ -14,13 +14,13 @@ struct ReconstructParameters {
   vec4 slope;             // xy: ray_per_px(); zw: of the ray at the image's corner; view space
   // Of the frame before: xy its size in pixels, zw that in parts of this frame's.
   vec4 previous_size;
-  vec4 history_depth;  // for held_depth(): xy of this frame, zw of the frame before
-  vec2 phase;          // which pixel of each block was searched this frame
-  float window_px;     // width of the window over one frame's searches
-  float tolerance;     // scale of distances from the tangent plane, in depths
-  float longest;       // frames that history counts at most
-  float clamp_width;   // history is held to so many deviations of this frame's neighbourhood
-  float roughness;     // perceptual, of every surface where no texture has it
+  vec4 history_depth;      // for held_depth(): xy of this frame, zw of the frame before
+  vec2 interleave_offset;  // which pixel of each block was searched this frame
+  float window_px;         // width of the window over one frame's searches
+  float tolerance;         // scale of distances from the tangent plane, in depths
+  float longest;           // frames that history counts at most
+  float clamp_width;       // history is held to so many deviations of this frame's neighbourhood
+  float roughness;         // perceptual, of every surface where no texture has it
 };
 
 ALCOVE_MATHS_END

@@ -26,12 +26,12 @@ class Culler {
 
  private:
   void walk() {
-    plan_.fates.resize(graph_.passes.size());
+    plan_.cull_reasons.resize(graph_.passes.size());
     plan_.live_accesses.assign(graph_.accesses.size(), 0);
     workspace_.cull.needed_by.assign(workspace_.first_sub.back(), kUnneeded);
     seed();
     for (std::uint32_t pass = static_cast<std::uint32_t>(graph_.passes.size()); pass-- > 0;)
-      plan_.fates[pass] = visit(pass);
+      plan_.cull_reasons[pass] = visit(pass);
   }
 
   void seed() {
@@ -40,7 +40,8 @@ class Culler {
     for (std::uint32_t r = 0; r < graph_.resources.size(); ++r) {
       const ResourceRecord& resource = graph_.resources[r];
       if (resource.external == kNone) continue;
-      if (resource.origin == Origin::imported && graph_.externals[resource.external].has_departure)
+      if (resource.origin == Origin::imported &&
+          graph_.externals[resource.external].has_final_state)
         need_all(r, kByOutput);
       const std::uint32_t reader = workspace_.cull.history_reader[r - resource.slot];
       if (reader != kNone) need_all(r, reader | kHistoryBit);
@@ -53,13 +54,14 @@ class Culler {
       workspace_.cull.needed_by[sub] = why;
   }
 
-  PassFate visit(std::uint32_t pass) {
+  PassCullReason visit(std::uint32_t pass) {
     const PassRecord& record = graph_.passes[pass];
     const auto accesses = graph_.pass_accesses(pass);
     std::uint8_t* const first_live = plan_.live_accesses.data() + record.first_access;
     bool pass_is_live = (record.flags & kSideEffect) != 0;
     bool writes = false;
-    PassFate fate{pass_is_live ? Fate::side_effect : Fate::unread, kNone, kNone};
+    PassCullReason cull_reason{pass_is_live ? CullReason::side_effect : CullReason::unread, kNone,
+                               kNone};
     std::uint8_t* live = first_live;
     for (const AccessRecord& access : accesses) {
       std::uint8_t& needed = *live++;
@@ -68,12 +70,12 @@ class Culler {
       const std::uint32_t why = first_need(access);
       if (why == kUnneeded) continue;
       needed = 1;
-      if (!pass_is_live) fate = explain(why, access.resource);
+      if (!pass_is_live) cull_reason = explain(why, access.resource);
       pass_is_live = true;
     }
     if (!pass_is_live) {
-      if (!writes) fate.fate = Fate::writes_nothing;
-      return fate;
+      if (!writes) cull_reason.cull_reason = CullReason::writes_nothing;
+      return cull_reason;
     }
     // A pass does not read what it writes in another access: these can be in any order.
     live = first_live;
@@ -86,7 +88,7 @@ class Culler {
         end_need(access);
       if (needed && !(access.flags & kDiscard)) find_history(access, pass);
     }
-    return fate;
+    return cull_reason;
   }
 
   std::uint32_t first_need(const AccessRecord& access) const {
@@ -118,10 +120,10 @@ class Culler {
     found_history_ = true;
   }
 
-  static PassFate explain(std::uint32_t why, std::uint32_t resource) {
-    if (why == kByOutput) return {Fate::output, kNone, resource};
-    if (why & kHistoryBit) return {Fate::feeds_history, why & ~kHistoryBit, resource};
-    return {Fate::feeds_pass, why, resource};
+  static PassCullReason explain(std::uint32_t why, std::uint32_t resource) {
+    if (why == kByOutput) return {CullReason::output, kNone, resource};
+    if (why & kHistoryBit) return {CullReason::feeds_history, why & ~kHistoryBit, resource};
+    return {CullReason::feeds_pass, why, resource};
   }
 
   const GraphDescription& graph_;

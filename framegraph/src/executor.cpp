@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "alcove/framegraph/verify.h"
-#include "crew.h"
 #include "events.h"
 #include "plan_cache.h"
+#include "recording_threads.h"
 #include "submitter.h"
 
 namespace alcove::framegraph {
@@ -51,7 +51,7 @@ struct Executor::Implementation {
   PlanCache plans[2];  // by Queues
   std::unique_ptr<Pool> pool;
   std::unique_ptr<Events> events;
-  std::unique_ptr<Crew> crew;
+  std::unique_ptr<RecordingThreads> recording_threads;
   std::vector<std::unique_ptr<Timestamps>> timestamps;  // by slot and queue class; may be null
   std::vector<PassTiming> timings;                      // what timings() returned last
   std::vector<std::uint64_t> slot_frames;               // last frame recorded with each slot
@@ -92,9 +92,9 @@ tl::expected<Executor, Errors> Executor::create(const DeviceHandles& device,
   made->device.limits.split_barriers = options.split_barriers;
   made->pool = std::make_unique<Pool>(made->device);
   made->events = std::make_unique<Events>(made->device, made->options.frames_in_flight);
-  made->crew = std::make_unique<Crew>(made->device, *made->pool,
-                                      std::clamp(options.recording_threads, 1u, 64u),
-                                      made->options.frames_in_flight);
+  made->recording_threads = std::make_unique<RecordingThreads>(
+      made->device, *made->pool, std::clamp(options.recording_threads, 1u, 64u),
+      made->options.frames_in_flight);
   made->slot_frames.resize(made->options.frames_in_flight);
   made->submitter = std::make_unique<Submitter>(made->device, made->options.frames_in_flight);
   made->create_timestamps();
@@ -250,7 +250,7 @@ tl::expected<FrameReport, Errors> Executor::Implementation::prepare(Graph& graph
   const RecordedFrame recorded{&graph,           &cached->plan,      &cached->physical,
                                *events_of_frame, options.check_uses, starts_anew(*cached),
                                info.slot};
-  if (const VkResult result = crew->begin(recorded))
+  if (const VkResult result = recording_threads->begin(recorded))
     return tl::unexpected(vulkan_error(result, "command buffers cannot be used again"));
   report.plan = &cached->plan;
   for (const Heap& heap : cached->plan.heaps) {
@@ -296,11 +296,12 @@ tl::expected<FrameReport, Errors> Executor::Implementation::record(Graph& graph,
     if (result != VK_SUCCESS)
       return tl::unexpected(vulkan_error(result, "timestamps cannot be created"));
   }
-  if (starts_anew(*cached)) crew->full_barrier(commands);
-  const VkResult result = crew->submission(cached->plan.submissions[0], commands, times);
+  if (starts_anew(*cached)) recording_threads->full_barrier(commands);
+  const VkResult result =
+      recording_threads->submission(cached->plan.submissions[0], commands, times);
   if (result != VK_SUCCESS)
     return tl::unexpected(vulkan_error(result, "the frame cannot be recorded"));
-  if (Errors errors = crew->take_errors(); !errors.empty())
+  if (Errors errors = recording_threads->take_errors(); !errors.empty())
     return tl::unexpected(std::move(errors));
   finish(graph, *cached);
   return report;
@@ -340,8 +341,8 @@ tl::expected<FrameReport, Errors> Executor::submit(Graph& graph, const FrameInfo
   Timestamps* timestamps[kQueueClasses] = {};
   for (std::size_t q = 0; q < kQueueClasses; ++q) timestamps[q] = self.timestamps_of(info.slot, q);
   self.forget_timestamps(info.slot);
-  const VkResult result = self.submitter->submit(cached->plan, *self.crew, info.slot, timestamps,
-                                                 self.starts_anew(*cached));
+  const VkResult result = self.submitter->submit(cached->plan, *self.recording_threads, info.slot,
+                                                 timestamps, self.starts_anew(*cached));
   if (result != VK_SUCCESS) {
     // Half a frame may have written to any of them.
     attempt.runs = self.submitter->stopped_midway();
@@ -351,7 +352,7 @@ tl::expected<FrameReport, Errors> Executor::submit(Graph& graph, const FrameInfo
   }
   attempt.runs = true;
   self.finish(graph, *cached);
-  if (Errors errors = self.crew->take_errors(); !errors.empty())
+  if (Errors errors = self.recording_threads->take_errors(); !errors.empty())
     return tl::unexpected(std::move(errors));
   return report;
 }

@@ -6,31 +6,31 @@ namespace alcove::framegraph {
 namespace {
 
 // Whoever read it since saw what was written before. Others have yet to.
-void note_seen(UseState& state, const State& arrival) {
-  const bool every_access = (arrival.access & VK_ACCESS_2_MEMORY_READ_BIT) != 0;
-  const bool every_stage = (arrival.stages & VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT) != 0;
-  state.write_stages = arrival.stages;
+void note_seen(UseState& state, const State& initial_state) {
+  const bool every_access = (initial_state.access & VK_ACCESS_2_MEMORY_READ_BIT) != 0;
+  const bool every_stage = (initial_state.stages & VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT) != 0;
+  state.write_stages = initial_state.stages;
   state.write_time = kBeforeFrame;
-  state.seen_access = every_access ? kEveryAccess : arrival.access;
+  state.seen_access = every_access ? kEveryAccess : initial_state.access;
   if (every_access && every_stage)
     state.seen_stages = ~VkPipelineStageFlags2{VK_PIPELINE_STAGE_2_HOST_BIT};
-  else if (arrival.access != 0)
-    state.seen_stages = arrival.stages;
+  else if (initial_state.access != 0)
+    state.seen_stages = initial_state.stages;
 }
 
 void note_external(UseState& state, const ExternalRecord& external) {
-  const State& arrival = external.arrival;
-  if (arrival.access & kWriteBits) {
-    state.write_stages = arrival.stages;
-    state.write_access = arrival.access & kWriteBits;
+  const State& initial_state = external.initial_state;
+  if (initial_state.access & kWriteBits) {
+    state.write_stages = initial_state.stages;
+    state.write_access = initial_state.access & kWriteBits;
     state.write_time = kBeforeFrame;
   } else {
-    state.read_stages = arrival.stages;
+    state.read_stages = initial_state.stages;
     state.read_time = kBeforeFrame;
-    if (arrival.stages != 0) note_seen(state, arrival);
+    if (initial_state.stages != 0) note_seen(state, initial_state);
   }
   if (!external.has_contents) return;
-  state.layout = arrival.layout;
+  state.layout = initial_state.layout;
   state.used = 1;
 }
 
@@ -60,8 +60,8 @@ void Synchroniser::depart() {
     if (resource.external == kNone) continue;
     const ExternalRecord& external = graph_.externals[resource.external];
     const bool used = plan_.placements[r].first != kNone;
-    if (external.has_departure && used) end_reads(r, external.departure);
-    if (external.has_departure) use(end, outside_use(r, external.departure));
+    if (external.has_final_state && used) end_reads(r, external.final_state);
+    if (external.has_final_state) use(end, outside_use(r, external.final_state));
     if (used && resource.origin == Origin::history) leave(r);
   }
   if (batch_time_ == batch_time(end) && !plan_.batches.empty()) {
@@ -74,18 +74,18 @@ void Synchroniser::depart() {
 
 // Whoever has it next waits for its own uses alone, so these come after reads that they do not
 // cover. A change or a write does by itself.
-void Synchroniser::end_reads(std::uint32_t resource, const State& departure) {
+void Synchroniser::end_reads(std::uint32_t resource, const State& final_state) {
   const bool texture = graph_.resources[resource].kind == ResourceKind::texture;
-  if ((departure.access & kWriteBits) != 0 || departure.stages == 0 ||
-      (departure.stages & VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT) != 0)
+  if ((final_state.access & kWriteBits) != 0 || final_state.stages == 0 ||
+      (final_state.stages & VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT) != 0)
     return;
   const std::uint32_t last = workspace_.first_sub[resource + 1];
   for (std::uint32_t sub = workspace_.first_sub[resource]; sub < last; ++sub) {
     const UseState& state = s_.states[sub];
-    if (state.queue != queue_ || (texture && state.layout != departure.layout)) continue;
+    if (state.queue != queue_ || (texture && state.layout != final_state.layout)) continue;
     Transition wanted;
-    wanted.src_stages = state.read_stages & ~departure.stages;
-    wanted.dst_stages = departure.stages;
+    wanted.src_stages = state.read_stages & ~final_state.stages;
+    wanted.dst_stages = final_state.stages;
     if (wanted.src_stages != 0)
       add_memory(state.read_time, static_cast<std::uint32_t>(plan_.passes.size()), wanted);
   }

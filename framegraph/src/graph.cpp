@@ -23,7 +23,7 @@ std::uint32_t divided(std::uint32_t size, std::uint32_t divisor) {
   return std::max<std::uint32_t>(1, size / divisor + (size % divisor != 0));
 }
 
-bool has_departure(const State& state) {
+bool has_final_state(const State& state) {
   return state.stages != 0 || state.layout != VK_IMAGE_LAYOUT_UNDEFINED;
 }
 
@@ -178,11 +178,11 @@ Texture Graph::import_texture(std::string_view name, const ImportedTexture& impo
   record.origin = Origin::imported;
   record.external = static_cast<std::uint32_t>(description_.externals.size());
   ExternalRecord external;
-  external.arrival = import.arrival;
-  external.departure = import.departure;
+  external.initial_state = import.initial_state;
+  external.final_state = import.final_state;
   external.usage = import.usage;
-  external.has_contents = import.arrival.layout != VK_IMAGE_LAYOUT_UNDEFINED;
-  external.has_departure = has_departure(import.departure);
+  external.has_contents = import.initial_state.layout != VK_IMAGE_LAYOUT_UNDEFINED;
+  external.has_final_state = has_final_state(import.final_state);
   external.has_handle = import.image != VK_NULL_HANDLE;
   add(description_.externals, external);
   imports_.push_back({import.image, import.view, VK_NULL_HANDLE, kNone, import.first_layer});
@@ -196,11 +196,11 @@ Buffer Graph::import_buffer(std::string_view name, const ImportedBuffer& import)
   record.size = import.desc.size;
   record.external = static_cast<std::uint32_t>(description_.externals.size());
   ExternalRecord external;
-  external.arrival = import.arrival;
-  external.departure = import.departure;
+  external.initial_state = import.initial_state;
+  external.final_state = import.final_state;
   external.usage = import.usage;
   external.has_contents = import.has_contents;
-  external.has_departure = has_departure(import.departure);
+  external.has_final_state = has_final_state(import.final_state);
   external.has_handle = import.buffer != VK_NULL_HANDLE;
   add(description_.externals, external);
   imports_.push_back({VK_NULL_HANDLE, VK_NULL_HANDLE, import.buffer, kNone});
@@ -217,7 +217,7 @@ std::uint32_t Graph::add_history(std::string_view name, ResourceRecord record, s
   for (std::uint32_t slot = 0; slot < record.slots; ++slot) {
     const HistorySlot& state = entry.slots[entry.physical(slot)];
     ExternalRecord external;
-    external.arrival = state.state;
+    external.initial_state = state.state;
     external.validity = state.validity;
     external.has_contents = slot != 0 && state.validity == HistoryValidity::valid;
     external.queue = state.queue;

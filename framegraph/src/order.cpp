@@ -21,7 +21,7 @@ class Orderer {
     std::size_t live = 0;
     for (std::uint32_t pass = 0; pass < count; ++pass) {
       workspace_.order[live] = pass;
-      live += plan_.fates[pass].is_live();
+      live += plan_.cull_reasons[pass].is_live();
     }
     workspace_.order.resize(live);
     const bool worthwhile = limits_.ordering == Ordering::lower_peak && limits_.alias &&

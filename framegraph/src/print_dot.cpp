@@ -60,7 +60,7 @@ class DotPrinter {
                   .append(kColors[static_cast<std::size_t>(planned.queue)]);
     }
     out_.append("  ").append(id(pass)).append(" [label=").append(quoted(label));
-    out_.append(" tooltip=").append(quoted(reason(graph_, plan_.fates[pass])));
+    out_.append(" tooltip=").append(quoted(reason(graph_, plan_.cull_reasons[pass])));
     out_.append(" ").append(style).append("];\n");
   }
 

@@ -112,7 +112,7 @@ class JsonPrinter {
     json_.begin('{');
     json_.field("name", graph_.pass_name(planned.pass));
     json_.field("declared", planned.pass);
-    json_.field("reason", reason(graph_, plan_.fates[planned.pass]));
+    json_.field("reason", reason(graph_, plan_.cull_reasons[planned.pass]));
     json_.key("accesses");
     json_.begin('[');
     const std::uint32_t first = graph_.passes[planned.pass].first_access;
@@ -182,12 +182,12 @@ class JsonPrinter {
   void print_culled() {
     json_.key("culled");
     json_.begin('[');
-    for (std::uint32_t pass = 0; pass < plan_.fates.size(); ++pass) {
-      const Fate fate = plan_.fates[pass].fate;
-      if (fate != Fate::unread && fate != Fate::writes_nothing) continue;
+    for (std::uint32_t pass = 0; pass < plan_.cull_reasons.size(); ++pass) {
+      const CullReason cull_reason = plan_.cull_reasons[pass].cull_reason;
+      if (cull_reason != CullReason::unread && cull_reason != CullReason::writes_nothing) continue;
       json_.begin('{');
       json_.field("name", graph_.pass_name(pass));
-      json_.field("reason", reason(graph_, plan_.fates[pass]));
+      json_.field("reason", reason(graph_, plan_.cull_reasons[pass]));
       json_.end('}');
     }
     json_.end(']');

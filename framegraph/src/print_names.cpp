@@ -182,21 +182,22 @@ std::vector<std::string> resource_names(const GraphDescription& graph) {
   return names;
 }
 
-std::string reason(const GraphDescription& graph, const PassFate& fate) {
-  std::string witness = "for '";
-  if (fate.witness != kNone) witness.append(graph.pass_name(fate.witness)).append("'");
-  switch (fate.fate) {
-    case Fate::side_effect:
+std::string reason(const GraphDescription& graph, const PassCullReason& cull_reason) {
+  std::string consumer = "for '";
+  if (cull_reason.consumer != kNone)
+    consumer.append(graph.pass_name(cull_reason.consumer)).append("'");
+  switch (cull_reason.cull_reason) {
+    case CullReason::side_effect:
       return "for its side effect";
-    case Fate::output:
+    case CullReason::output:
       return "for what is wanted after the frame";
-    case Fate::feeds_pass:
-      return witness;
-    case Fate::feeds_history:
-      return witness.append(" in later frames");
-    case Fate::unread:
+    case CullReason::feeds_pass:
+      return consumer;
+    case CullReason::feeds_history:
+      return consumer.append(" in later frames");
+    case CullReason::unread:
       return "nobody reads what it writes";
-    case Fate::writes_nothing:
+    case CullReason::writes_nothing:
       return "it writes nothing and has no side effect";
   }
   return "";

@@ -22,7 +22,7 @@ std::string range_name(const Range& range, std::uint32_t mips, std::uint32_t lay
 // Names of all resources, with their index where several have the same one.
 std::vector<std::string> resource_names(const GraphDescription& graph);
 // Why a pass runs, "for 'lighting'", or why it does not.
-std::string reason(const GraphDescription& graph, const PassFate& fate);
+std::string reason(const GraphDescription& graph, const PassCullReason& cull_reason);
 // The position of the pass after which a split barrier's event is set; kNone for other barriers.
 std::uint32_t set_after(const Plan& plan, const Batch& batch);
 

@@ -86,7 +86,8 @@ class TextPrinter {
     std::vector<std::string> items;
     for (std::size_t i = 0; i < accesses.size(); ++i)
       items.push_back(access(accesses[i], plan_.live_accesses[first + i] != 0));
-    items.push_back(std::string("(").append(reason(graph_, plan_.fates[planned.pass])).append(")"));
+    items.push_back(
+        std::string("(").append(reason(graph_, plan_.cull_reasons[planned.pass])).append(")"));
     line(wrapped(head, items, " "));
   }
 
@@ -148,13 +149,14 @@ class TextPrinter {
 
   void culled() {
     bool any = false;
-    for (const Fate fate : {Fate::unread, Fate::writes_nothing}) {
+    for (const CullReason cull_reason : {CullReason::unread, CullReason::writes_nothing}) {
       std::vector<std::string> items;
-      for (std::uint32_t pass = 0; pass < plan_.fates.size(); ++pass) {
-        if (plan_.fates[pass].fate == fate) items.emplace_back(graph_.pass_name(pass));
+      for (std::uint32_t pass = 0; pass < plan_.cull_reasons.size(); ++pass) {
+        if (plan_.cull_reasons[pass].cull_reason == cull_reason)
+          items.emplace_back(graph_.pass_name(pass));
       }
       if (items.empty()) continue;
-      const std::string why = reason(graph_, {fate, kNone, kNone});
+      const std::string why = reason(graph_, {cull_reason, kNone, kNone});
       line(wrapped(std::string("culled, ").append(why).append(": "), items, ", "));
       any = true;
     }

@@ -139,8 +139,8 @@ class QueueAssigner {
     const std::uint32_t external = graph_.resources[resource].external;
     if (external == kNone) return 0;
     const ExternalRecord& record = graph_.externals[external];
-    const QueueClass owner = arrival_queue(record);
-    if (owner == user || (!record.has_contents && record.arrival.stages == 0)) return 0;
+    const QueueClass owner = initial_queue(record);
+    if (owner == user || (!record.has_contents && record.initial_state.stages == 0)) return 0;
     return static_cast<std::uint8_t>(1u << static_cast<unsigned>(owner));
   }
 
@@ -202,7 +202,7 @@ class QueueAssigner {
   }
 
   // A queue that this frame does not have leaves its resources to graphics.
-  QueueClass arrival_queue(const ExternalRecord& external) const {
+  QueueClass initial_queue(const ExternalRecord& external) const {
     return family(external.queue) == kNone ? QueueClass::graphics : external.queue;
   }
 
@@ -246,7 +246,7 @@ class QueueAssigner {
       const std::uint32_t external = graph_.resources[r].external;
       if (external == kNone) continue;
       const std::uint32_t subs = workspace_.first_sub[r + 1] - workspace_.first_sub[r];
-      if (!graph_.externals[external].has_departure &&
+      if (!graph_.externals[external].has_final_state &&
           (graph_.resources[r].origin != Origin::history || subs == 1))
         continue;
       for (std::uint32_t sub = workspace_.first_sub[r]; sub < workspace_.first_sub[r + 1]; ++sub) {

@@ -54,12 +54,13 @@ VkResult Submitter::prepare(std::uint32_t slot) {
   return VK_SUCCESS;
 }
 
-VkResult Submitter::submit(const Plan& plan, Crew& crew, std::uint32_t slot,
-                           Timestamps* const* timestamps, bool full_barrier) {
+VkResult Submitter::submit(const Plan& plan, RecordingThreads& recording_threads,
+                           std::uint32_t slot, Timestamps* const* timestamps, bool full_barrier) {
   submitted_ = 0;
   if (const VkResult result = prepare(slot)) return result;
   // All is recorded before anything runs: what fails while recording leaves the device untouched.
-  if (const VkResult result = record(plan, crew, slot, timestamps, full_barrier)) return result;
+  if (const VkResult result = record(plan, recording_threads, slot, timestamps, full_barrier))
+    return result;
   const bool several =
       std::any_of(plan.submissions.begin(), plan.submissions.end(),
                   [](const Submission& s) { return s.queue != QueueClass::graphics; });
@@ -78,8 +79,8 @@ VkResult Submitter::submit(const Plan& plan, Crew& crew, std::uint32_t slot,
   return result;
 }
 
-VkResult Submitter::record(const Plan& plan, Crew& crew, std::uint32_t slot,
-                           Timestamps* const* timestamps, bool full_barrier) {
+VkResult Submitter::record(const Plan& plan, RecordingThreads& recording_threads,
+                           std::uint32_t slot, Timestamps* const* timestamps, bool full_barrier) {
   recorded_.assign(plan.submissions.size(), VK_NULL_HANDLE);
   bool begun[kQueueClasses] = {};
   for (std::uint32_t i = 0; i < plan.submissions.size(); ++i) {
@@ -98,8 +99,9 @@ VkResult Submitter::record(const Plan& plan, Crew& crew, std::uint32_t slot,
       const auto passes = static_cast<std::uint32_t>(plan.passes.size());
       if (const VkResult result = timestamps[q]->begin_frame(buffer, passes)) return result;
     }
-    if (!begun[q] && full_barrier) crew.full_barrier(buffer);
-    if (const VkResult result = crew.submission(submission, buffer, timestamps[q])) return result;
+    if (!begun[q] && full_barrier) recording_threads.full_barrier(buffer);
+    if (const VkResult result = recording_threads.submission(submission, buffer, timestamps[q]))
+      return result;
     if (const VkResult result = device_.vk.vkEndCommandBuffer(buffer)) return result;
     begun[q] = true;
   }

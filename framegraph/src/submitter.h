@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "command_buffers.h"
-#include "crew.h"
 #include "device_context.h"
+#include "recording_threads.h"
 
 namespace alcove::framegraph {
 
@@ -19,10 +19,11 @@ class Submitter {
 
   // Waits until the device has finished what was submitted with this slot.
   [[nodiscard]] VkResult wait(std::uint32_t slot);
-  // Records and submits a plan that `crew` was begun with. `timestamps` is by queue class, null
-  // where there are none. `full_barrier`: memory holds what another plan left.
-  [[nodiscard]] VkResult submit(const Plan& plan, Crew& crew, std::uint32_t slot,
-                                Timestamps* const* timestamps, bool full_barrier);
+  // Records and submits a plan that `recording_threads` was begun with. `timestamps` is by queue
+  // class, null where there are none. `full_barrier`: memory holds what another plan left.
+  [[nodiscard]] VkResult submit(const Plan& plan, RecordingThreads& recording_threads,
+                                std::uint32_t slot, Timestamps* const* timestamps,
+                                bool full_barrier);
   // Whether submit handed over some of a frame and then failed.
   bool stopped_midway() const { return submitted_ != 0; }
 
@@ -36,8 +37,8 @@ class Submitter {
   };
 
   VkResult prepare(std::uint32_t slot);
-  VkResult record(const Plan& plan, Crew& crew, std::uint32_t slot, Timestamps* const* timestamps,
-                  bool full_barrier);
+  VkResult record(const Plan& plan, RecordingThreads& recording_threads, std::uint32_t slot,
+                  Timestamps* const* timestamps, bool full_barrier);
   VkResult submit_one(const Plan& plan, std::uint32_t index, bool join);
 
   const DeviceContext& device_;

@@ -33,7 +33,8 @@ void note(UseState& state, const AccessRecord& access, std::int32_t time) {
 }  // namespace
 
 void Synchroniser::run() {
-  // Those from outside get their states on arrival, transients when they take over their memory.
+  // Those from outside get their states on initial_state, transients when they take over their
+  // memory.
   s_.states.resize(workspace_.first_sub.back());
   s_.latest.clear();
   arrive();

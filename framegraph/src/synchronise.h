@@ -1,5 +1,5 @@
 // The synchroniser: see synchronise.cpp, externals.cpp for how imports and histories arrive and are
-// left, handover.cpp for what goes from queue to queue, split_barriers.cpp for events.
+// left, queue_transfer.cpp for what goes from queue to queue, split_barriers.cpp for events.
 #pragma once
 
 #include <algorithm>
@@ -60,11 +60,11 @@ class Synchroniser {
   // externals.cpp
   void arrive();
   void depart();
-  void end_reads(std::uint32_t resource, const State& departure);
+  void end_reads(std::uint32_t resource, const State& final_state);
   AccessRecord outside_use(std::uint32_t resource, const State& state) const;
   void leave(std::uint32_t resource);
 
-  // handover.cpp
+  // queue_transfer.cpp
   bool change_queue(std::uint32_t position, const AccessRecord& access, UseState& state,
                     const Range& range);
   void take_without_giver(UseState& state, bool same_family) const;

@@ -134,8 +134,8 @@ void Replay::end_frame() {
   where_ = "at the end of the frame";
   for (std::uint32_t r = 0; r < resources_.size(); ++r) {
     const ResourceRecord& record = graph_.resources[r];
-    if (record.external != kNone && graph_.externals[record.external].has_departure)
-      check_departure(r);
+    if (record.external != kNone && graph_.externals[record.external].has_final_state)
+      check_final_state(r);
   }
   for (const OutputRecord& output : graph_.outputs) {
     const auto& subs = resources_[output.resource].subs;
@@ -149,30 +149,30 @@ void Replay::end_frame() {
   for (const FinalState& final : plan_.finals) check_final(final);
 }
 
-void Replay::check_departure(std::uint32_t resource) {
+void Replay::check_final_state(std::uint32_t resource) {
   const ResourceRecord& record = graph_.resources[resource];
-  const State& departure = graph_.externals[record.external].departure;
+  const State& final_state = graph_.externals[record.external].final_state;
   const auto queue = static_cast<std::uint8_t>(QueueClass::graphics);
   for (std::size_t i = 0; i < resources_[resource].subs.size(); ++i) {
     const Sub& sub = resources_[resource].subs[i];
     const std::uint32_t expected = last_[resource][i];
-    if (record.kind == ResourceKind::texture && sub.layout != departure.layout)
+    if (record.kind == ResourceKind::texture && sub.layout != final_state.layout)
       fail(name(resource) + " is left in layout " + std::to_string(sub.layout) +
-           ", its departure is " + std::to_string(departure.layout));
+           ", its final_state is " + std::to_string(final_state.layout));
     if (expected != kGarbage && (sub.content != expected || sub.spoiled))
       fail(name(resource) + " does not leave with what was written for it");
     if (sub.released || (sub.family != kNone && sub.family != family(queue)))
       fail(name(resource) + " is left with another queue family than it came with");
     for (const Piece& piece : sub.reads) {
       // Whoever has it next waits for its own stages alone, or for what they come after.
-      const bool waited_for = !is_write(departure.access) && piece.queue == queue &&
-                              (piece.stage & ~expand_stages(departure.stages)) == 0;
-      if (!waited_for && !ordered(piece, queue, departure.stages))
+      const bool waited_for = !is_write(final_state.access) && piece.queue == queue &&
+                              (piece.stage & ~expand_stages(final_state.stages)) == 0;
+      if (!waited_for && !ordered(piece, queue, final_state.stages))
         fail(name(resource) + " leaves before its last read is done");
     }
     for (const Piece& piece : sub.writes) {
-      if (!ordered(piece, queue, departure.stages) ||
-          !visible(piece, queue, departure.stages, departure.access))
+      if (!ordered(piece, queue, final_state.stages) ||
+          !visible(piece, queue, final_state.stages, final_state.access))
         fail(name(resource) + " leaves before its last write can be seen");
     }
   }

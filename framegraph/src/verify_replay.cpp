@@ -81,8 +81,8 @@ void Replay::begin_frame(bool first) {
       const auto queue = static_cast<std::uint8_t>(external.queue);
       sub.writes.clear();
       sub.reads.clear();
-      arrive(sub, queue, external.arrival);
-      sub.layout = external.arrival.layout;
+      arrive(sub, queue, external.initial_state);
+      sub.layout = external.initial_state.layout;
       if (!external.has_contents) continue;
       sub.content = kInitial;
       sub.family = family(queue);
@@ -92,17 +92,17 @@ void Replay::begin_frame(bool first) {
 
 // What was written before is seen by those who read it since, and by nobody else yet. Where no
 // access is told, none sees it, and it came before some of the stages only: all must be waited for.
-void Replay::arrive(Sub& sub, std::uint8_t queue, const State& arrival) {
-  if (is_write(arrival.access)) {
-    append_pieces(sub.writes, queue, arrival.stages, arrival.access);
+void Replay::arrive(Sub& sub, std::uint8_t queue, const State& initial_state) {
+  if (is_write(initial_state.access)) {
+    append_pieces(sub.writes, queue, initial_state.stages, initial_state.access);
     return;
   }
-  const Stages stages = expand_stages(arrival.stages);
-  const Accesses seen = expand_accesses(arrival.access);
+  const Stages stages = expand_stages(initial_state.stages);
+  const Accesses seen = expand_accesses(initial_state.access);
   for (Stages left = seen == 0 ? stages : 0; left != 0; left &= left - 1)
     sub.writes.push_back(change_piece(queue, left & (~left + 1), 0));
   if (seen != 0) sub.writes.push_back(change_piece(queue, stages, seen));
-  append_pieces(sub.reads, queue, arrival.stages, 0);
+  append_pieces(sub.reads, queue, initial_state.stages, 0);
 }
 
 void Replay::submission(std::uint32_t index) {

@@ -41,7 +41,7 @@ class Replay {
   void find_overlaps();
   void find_expected();
   void begin_frame(bool first);
-  static void arrive(Sub& sub, std::uint8_t queue, const State& arrival);
+  static void arrive(Sub& sub, std::uint8_t queue, const State& initial_state);
   void submission(std::uint32_t index);
   void batches(std::uint32_t first, std::uint32_t count, std::uint32_t submission);
   void batch(const Batch& batch, QueueClass queue);
@@ -64,7 +64,7 @@ class Replay {
   void check_shared_memory(const AccessRecord& access, std::uint8_t queue);
   void apply_access(std::uint32_t position, std::uint32_t access_index);
   void end_frame();
-  void check_departure(std::uint32_t resource);
+  void check_final_state(std::uint32_t resource);
   void check_final(const FinalState& final);
   void check_final_writes(const FinalState& final, const Sub& sub);
 

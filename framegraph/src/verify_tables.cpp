@@ -13,7 +13,7 @@ class Tables {
   bool run() {
     if (plan_.placements.size() != graph_.resources.size() ||
         plan_.live_accesses.size() != graph_.accesses.size() ||
-        plan_.fates.size() != graph_.passes.size()) {
+        plan_.cull_reasons.size() != graph_.passes.size()) {
       fail("the plan is of another graph: its tables have other sizes");
       return false;
     }

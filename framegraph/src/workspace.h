@@ -179,7 +179,7 @@ inline void for_each_live(const GraphDescription& graph, const Plan& plan, std::
 // Numbers the subresources and finds every error of the declaration. False when there are any.
 bool validate(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
               Errors& errors);
-// Which passes and accesses are needed; fills fates and live_accesses.
+// Which passes and accesses are needed; fills cull_reasons and live_accesses.
 void cull(const GraphDescription& graph, Workspace& workspace, Plan& plan);
 // The order of execution.
 void order(const GraphDescription& graph, const Limits& limits, Workspace& workspace, Plan& plan);

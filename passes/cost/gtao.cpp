@@ -27,7 +27,7 @@ std::optional<double> gtao_iterations(const PassWork& work, const CompiledLoop& 
 
 double gtao_traffic(const PassWork& work, std::string_view image, Direction direction) {
   // One pixel in 4x4 reads its normal of 8 bytes: half of the cache lines of 64 bytes.
-  const bool sparse = work.settings.divisor == 4;
+  const bool sparse = work.settings.tile_size == 4;
   return sparse && image == "normals" && direction == Direction::read ? 0.5 : 1.0;
 }
 

@@ -85,8 +85,8 @@ bool same_state(const AlcoveState& a, const AlcoveState& b) {
 
 bool same_description(const AlcoveImage& a, const AlcoveImage& b) {
   return a.view == b.view && a.format == b.format && a.width == b.width && a.height == b.height &&
-         a.usage == b.usage && same_state(a.arrival, b.arrival) &&
-         same_state(a.departure, b.departure);
+         a.usage == b.usage && same_state(a.initial_state, b.initial_state) &&
+         same_state(a.final_state, b.final_state);
 }
 
 framegraph::State to_state(const AlcoveState& state) {
@@ -112,13 +112,14 @@ tl::expected<void, Failure> check(const ImageRole& role, const AlcoveImage& imag
     return fail("has VkFormat " + std::to_string(image.format) + "; it must be " +
                 wanted_format(role) + ".");
   }
-  if (image.departure.layout == VK_IMAGE_LAYOUT_UNDEFINED ||
-      image.departure.layout == VK_IMAGE_LAYOUT_PREINITIALIZED) {
-    return fail("has no layout to be left in; set AlcoveImage::departure.");
+  if (image.final_state.layout == VK_IMAGE_LAYOUT_UNDEFINED ||
+      image.final_state.layout == VK_IMAGE_LAYOUT_PREINITIALIZED) {
+    return fail("has no layout to be left in; set AlcoveImage::final_state.");
   }
-  if (!role.output && image.arrival.layout == VK_IMAGE_LAYOUT_UNDEFINED) {
+  if (!role.output && image.initial_state.layout == VK_IMAGE_LAYOUT_UNDEFINED) {
     return fail(
-        "arrives in VK_IMAGE_LAYOUT_UNDEFINED, without contents; set AlcoveImage::arrival to how "
+        "arrives in VK_IMAGE_LAYOUT_UNDEFINED, without contents; set AlcoveImage::initial_state to "
+        "how "
         "it was left.");
   }
   const VkImageUsageFlags needed =
@@ -162,8 +163,8 @@ tl::expected<Texture, Failure> ImageTable::import(framegraph::Graph& graph, cons
                     .desc = {image.format, framegraph::Extent::absolute(image.width, image.height)},
                     .usage = image.usage,
                     .first_layer = image.layer,
-                    .arrival = to_state(image.arrival),
-                    .departure = to_state(image.departure)});
+                    .initial_state = to_state(image.initial_state),
+                    .final_state = to_state(image.final_state)});
   assert(count_ < entries_.size());
   entries_[count_++] = {image, texture, role.output};
   return texture;

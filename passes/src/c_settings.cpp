@@ -35,7 +35,7 @@ static_assert(same(ThicknessUnit::radius, ALCOVE_THICKNESS_UNIT_RADIUS) &&
               same(ThicknessUnit::back_faces, ALCOVE_THICKNESS_UNIT_BACK_FACES));
 static_assert(same(Pattern::golden, ALCOVE_PATTERN_GOLDEN) &&
               same(Pattern::hilbert, ALCOVE_PATTERN_HILBERT) &&
-              same(Pattern::memo, ALCOVE_PATTERN_MEMO));
+              same(Pattern::paper, ALCOVE_PATTERN_MEMO));
 static_assert(same(Specular::slices, ALCOVE_SPECULAR_SLICES) &&
               same(Specular::table, ALCOVE_SPECULAR_TABLE) &&
               same(Specular::cone, ALCOVE_SPECULAR_CONE) &&
@@ -64,13 +64,13 @@ void for_each_setting(Theirs& theirs, Ours& ours, const Visit& visit) {
   visit("weighting", theirs.weighting, ours.weighting);
   visit("thickness", theirs.thickness, ours.thickness);
   visit("thickness_unit", theirs.thickness_unit, ours.thickness_unit);
-  visit("fill", theirs.fill, ours.fill);
+  visit("hidden_occlusion", theirs.hidden_occlusion, ours.hidden_occlusion);
   visit("depth_layers", theirs.depth_layers, ours.depth_layers);
   visit("blend", theirs.blend, ours.blend);
   visit("falloff", theirs.falloff, ours.falloff);
-  visit("divisor", theirs.divisor, ours.divisor);
+  visit("tile_size", theirs.tile_size, ours.tile_size);
   visit("pattern", theirs.pattern, ours.pattern);
-  visit("filter_reach", theirs.filter_reach, ours.filter_reach);
+  visit("filter_radius", theirs.filter_radius, ours.filter_radius);
   visit("filter_tolerance_px", theirs.filter_tolerance_px, ours.filter_tolerance_px);
   visit("history_frames", theirs.history_frames, ours.history_frames);
   visit("clamp_width", theirs.clamp_width, ours.clamp_width);

@@ -171,7 +171,7 @@ tl::expected<void, Failure> add_view(framegraph::Graph& graph, Kernels& kernels,
   if (reset) {
     graph.reset_history(ViewName(view.id));
   }
-  Frame frame{graph, kernels, *now, frame_index, *before, reset ? 0 : view.still_frames};
+  Frame frame{graph, kernels, *now, frame_index, *before, reset ? 0 : view.static_frames};
   frame.prepare = prepare;
   frame.largest_size = {view.largest_width, view.largest_height};
   if (!reset) {

@@ -40,11 +40,11 @@ struct NamedInput {
   return {};
 }
 
-// What a search may be of, and so the signal that it leaves.
-[[nodiscard]] inline tl::expected<void, Error> check_search(std::uint32_t divisor,
+// What a search may be of, and so the raw_occlusion that it leaves.
+[[nodiscard]] inline tl::expected<void, Error> check_search(std::uint32_t tile_size,
                                                             std::uint32_t slices) {
-  if (divisor != 1 && divisor != 2 && divisor != 4) {
-    return tl::unexpected(Error{"The resolution is divided by " + std::to_string(divisor) +
+  if (tile_size != 1 && tile_size != 2 && tile_size != 4) {
+    return tl::unexpected(Error{"The resolution is divided by " + std::to_string(tile_size) +
                                 "; it must be 1, 2 or 4."});
   }
   if (slices < 1 || slices > 64) {

@@ -22,8 +22,8 @@ tl::expected<void, Error> check_settings(const ReconstructSettings& settings) {
                                 number_text(settings.filter_tolerance_px) +
                                 " pixels; it must be over 0 and finite."});
   }
-  if (settings.filter_reach > kMaxReach) {
-    return tl::unexpected(Error{"The filter's reach is " + std::to_string(settings.filter_reach) +
+  if (settings.filter_radius > kMaxReach) {
+    return tl::unexpected(Error{"The filter's reach is " + std::to_string(settings.filter_radius) +
                                 "; it must be 0 to 3 blocks."});
   }
   if (settings.history_frames > maths::kMaxHistoryFrames) {
@@ -39,9 +39,9 @@ tl::expected<void, Error> check_settings(const ReconstructSettings& settings) {
 }
 
 tl::expected<void, Error> check_textures(const Frame& frame, const ReconstructInputs& inputs) {
-  const auto or_line = [&](Texture texture) { return texture ? texture : inputs.line_depth; };
+  const auto or_line = [&](Texture texture) { return texture ? texture : inputs.inverse_depth; };
   const std::array<NamedInput, 7> needed{
-      {{"line depth", inputs.line_depth},
+      {{"inverse depth", inputs.inverse_depth},
        {"normals", inputs.normals},
        {"motion vectors", or_line(inputs.motion)},
        {"roughness", or_line(inputs.roughness)},
@@ -51,15 +51,15 @@ tl::expected<void, Error> check_textures(const Frame& frame, const ReconstructIn
   return check_inputs(frame.graph, "reconstruct", needed);
 }
 
-// What the shader takes for granted of a texture of the signal, which may be of the caller's
+// What the shader takes for granted of a texture of the raw_occlusion, which may be of the caller's
 // making.
-tl::expected<void, Error> check_blocks(const Frame& frame, Texture depth, std::uint32_t divisor,
+tl::expected<void, Error> check_blocks(const Frame& frame, Texture depth, std::uint32_t tile_size,
                                        Texture texture, VkFormat format, const char* name) {
   const VkExtent3D pixels = frame.graph.extent(depth);
   const VkExtent3D found = frame.graph.extent(texture);
   const VkFormat found_format = frame.graph.format(texture);
-  const VkExtent2D blocks{(pixels.width + divisor - 1) / divisor,
-                          (pixels.height + divisor - 1) / divisor};
+  const VkExtent2D blocks{(pixels.width + tile_size - 1) / tile_size,
+                          (pixels.height + tile_size - 1) / tile_size};
   if (found.width == blocks.width && found.height == blocks.height && found_format == format) {
     return {};
   }
@@ -70,16 +70,21 @@ tl::expected<void, Error> check_blocks(const Frame& frame, Texture depth, std::u
       ", one a block, and VkFormat " + std::to_string(format) + "."});
 }
 
-tl::expected<void, Error> check_signal(const Frame& frame, const ReconstructInputs& inputs) {
-  const OcclusionSignal& signal = inputs.signal;
+tl::expected<void, Error> check_raw_occlusion(const Frame& frame, const ReconstructInputs& inputs) {
+  const RawOcclusionTextures& raw_occlusion = inputs.raw_occlusion;
   const auto check = [&](Texture texture, VkFormat format, const char* name) {
-    return check_blocks(frame, inputs.line_depth, signal.divisor, texture, format, name);
+    return check_blocks(frame, inputs.inverse_depth, raw_occlusion.tile_size, texture, format,
+                        name);
   };
-  return check_search(signal.divisor, signal.slices)
-      .and_then([&] { return check(signal.signal, signal_format(signal.lobe), "a signal"); })
+  return check_search(raw_occlusion.tile_size, raw_occlusion.slices)
       .and_then([&] {
-        return signal.bent ? check(signal.bent, kBentSignalFormat, "a bent signal")
-                           : tl::expected<void, Error>();
+        return check(raw_occlusion.raw_occlusion, raw_format(raw_occlusion.lobe),
+                     "a raw_occlusion");
+      })
+      .and_then([&] {
+        return raw_occlusion.bent
+                   ? check(raw_occlusion.bent, kBentRawFormat, "a bent raw_occlusion")
+                   : tl::expected<void, Error>();
       });
 }
 
@@ -87,14 +92,15 @@ tl::expected<void, Error> check_signal(const Frame& frame, const ReconstructInpu
 
 tl::expected<void, Error> check_reconstruct(const Frame& frame, const ReconstructInputs& inputs,
                                             const ReconstructSettings& settings) {
-  if (!settings.visibility && !inputs.signal.bent && !inputs.signal.lobe) {
-    return tl::unexpected(Error{
-        "The filter is asked for no visibility, and its signal has neither bent normals nor a "
-        "lobe; ask for one of the three."});
+  if (!settings.visibility && !inputs.raw_occlusion.bent && !inputs.raw_occlusion.lobe) {
+    return tl::unexpected(
+        Error{"The filter is asked for no visibility, and its raw_occlusion has neither bent "
+              "normals nor a "
+              "lobe; ask for one of the three."});
   }
   return check_settings(settings)
       .and_then([&] { return check_textures(frame, inputs); })
-      .and_then([&] { return check_signal(frame, inputs); });
+      .and_then([&] { return check_raw_occlusion(frame, inputs); });
 }
 
 tl::expected<ReconstructSizes, Error> reconstruct_sizes(const Frame& frame, Texture depth) {

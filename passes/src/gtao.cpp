@@ -9,10 +9,10 @@
 #include "bindings.h"
 #include "check_inputs.h"
 #include "gtao_parameters.h"
+#include "interleave_offset.h"
 #include "maths/slice_line.h"
 #include "number_text.h"
 #include "output_format.h"
-#include "search_phase.h"
 #include "view_parameters.h"
 
 namespace alcove::passes {
@@ -35,7 +35,7 @@ tl::expected<void, Error> check_occluders(const GtaoSettings& settings) {
     return tl::unexpected(Error{"The thickness is " + number_text(settings.thickness) +
                                 "; it must be at least 0 and finite."});
   }
-  return check_share("fill", settings.fill)
+  return check_share("hidden_occlusion", settings.hidden_occlusion)
       .and_then([&] { return check_share("blend", settings.blend); })
       .and_then([&] { return check_share("falloff", settings.falloff); });
 }
@@ -62,33 +62,34 @@ tl::expected<void, Error> check(const GtaoSettings& settings) {
     return tl::unexpected(Error{"There are " + std::to_string(settings.depth_layers) +
                                 " layers of depth; there must be 1 or 2."});
   }
-  return check_search(settings.divisor, settings.slices)
+  return check_search(settings.tile_size, settings.slices)
       .and_then([&] { return check_roughness(settings.roughness, settings.roughness_channel); })
       .and_then([&] { return check_occluders(settings); })
       .and_then([&] { return check_falloff(settings); });
 }
 
 // The textures that the pass writes, made for the graph but not yet written.
-OcclusionSignal create_signal(const Frame& frame, Texture depth, const GtaoSettings& settings) {
-  const auto size = framegraph::Extent::relative(depth, settings.divisor);
-  OcclusionSignal result{
-      .divisor = settings.divisor, .slices = settings.slices, .lobe = settings.lobe};
-  result.signal =
-      frame.graph.create_texture("occlusion signal", {signal_format(settings.lobe), size});
+RawOcclusionTextures create_raw_occlusion(const Frame& frame, Texture depth,
+                                          const GtaoSettings& settings) {
+  const auto size = framegraph::Extent::relative(depth, settings.tile_size);
+  RawOcclusionTextures result{
+      .tile_size = settings.tile_size, .slices = settings.slices, .lobe = settings.lobe};
+  result.raw_occlusion =
+      frame.graph.create_texture("raw occlusion", {raw_format(settings.lobe), size});
   if (settings.bent_normal) {
-    result.bent = frame.graph.create_texture("bent signal", {kBentSignalFormat, size});
+    result.bent = frame.graph.create_texture("bent raw_occlusion", {kBentRawFormat, size});
   }
   return result;
 }
 
-// Threads for `blocks`: with groups by pattern a whole number of block_by_pattern()'s.
+// Threads for `blocks`: with groups by pattern a whole number of tile_by_pattern()'s.
 VkExtent3D searches(VkExtent3D blocks, bool by_pattern) {
   const std::uint32_t whole = by_pattern ? 32 : 1;
   return {(blocks.width + whole - 1) / whole * whole, (blocks.height + whole - 1) / whole * whole,
           1};
 }
 
-// What of the inputs the settings read beside line depth and normals.
+// What of the inputs the settings read beside inverse depth and normals.
 struct Reads {
   bool roughness = false;
   bool back_faces = false;
@@ -104,11 +105,11 @@ Reads reads_of(const GtaoInputs& inputs, const GtaoSettings& settings) {
 tl::expected<void, Error> check_textures(const Frame& frame, const GtaoInputs& inputs,
                                          const Reads& reads) {
   const std::array<NamedInput, 5> needed{
-      {{"line depth", inputs.line_depth},
+      {{"inverse depth", inputs.inverse_depth},
        {"normals", inputs.normals},
        {"roughness", reads.roughness ? inputs.roughness : inputs.normals},
-       {"back-face depth", reads.back_faces ? inputs.back_line_depth : inputs.line_depth},
-       {"second depth", reads.second_layer ? inputs.second_line_depth : inputs.line_depth}}};
+       {"back-face depth", reads.back_faces ? inputs.back_inverse_depth : inputs.inverse_depth},
+       {"second depth", reads.second_layer ? inputs.second_inverse_depth : inputs.inverse_depth}}};
   return check_inputs(frame.graph, "gtao", needed);
 }
 
@@ -128,7 +129,7 @@ std::array<std::uint32_t, 18> constants_of(const GtaoSettings& settings, const R
           settings.steps,
           flag(settings.bent_normal),
           static_cast<std::uint32_t>(settings.estimator),
-          settings.divisor,
+          settings.tile_size,
           static_cast<std::uint32_t>(settings.pattern),
           flag(perspective),
           flag(reads.roughness),
@@ -137,21 +138,22 @@ std::array<std::uint32_t, 18> constants_of(const GtaoSettings& settings, const R
           flag(settings.falloff > 0.0f),
           flag(of_distance(settings)),
           flag(reads.back_faces),
-          flag(settings.parts.snapping),
+          flag(settings.parts.snap_to_texels),
           flag(by_pattern(settings)),
           flag(reads.second_layer),
-          flag(settings.parts.continuation),
-          flag(settings.parts.unseen)};
+          flag(settings.parts.extrapolation),
+          flag(settings.parts.unobserved)};
 }
 
 void declare_accesses(framegraph::PassBuilder& pass, const GtaoInputs& inputs, const Reads& reads,
-                      OcclusionSignal& result) {
+                      RawOcclusionTextures& result) {
   const auto& loaded = framegraph::access::storage_read_compute;
   const auto& sampled = framegraph::access::sampled_compute;
   const auto& stored = framegraph::access::storage_write_compute;
-  pass.read(inputs.line_depth, loaded);
+  pass.read(inputs.inverse_depth, loaded);
   pass.read(inputs.normals, sampled);
-  result.signal = pass.write(result.signal, stored, {}, framegraph::Contents::discard);
+  result.raw_occlusion =
+      pass.write(result.raw_occlusion, stored, {}, framegraph::Contents::discard);
   if (result.bent) {
     result.bent = pass.write(result.bent, stored, {}, framegraph::Contents::discard);
   }
@@ -159,42 +161,43 @@ void declare_accesses(framegraph::PassBuilder& pass, const GtaoInputs& inputs, c
     pass.read(inputs.roughness, sampled);
   }
   if (reads.back_faces) {
-    pass.read(inputs.back_line_depth, loaded);
+    pass.read(inputs.back_inverse_depth, loaded);
   }
   if (reads.second_layer) {
-    pass.read(inputs.second_line_depth, loaded);
+    pass.read(inputs.second_inverse_depth, loaded);
   }
 }
 
 maths::GtaoParameters parameters_of(const Frame& frame, const GtaoInputs& inputs,
                                     const GtaoSettings& settings,
                                     const maths::Projection& projection) {
-  const SearchPhase phase = search_phase(settings.divisor, frame.index);
-  return {view_from_normal(frame, inputs.normals_in_view_space),
-          maths::vec4(maths::ray_per_px(projection), projection.uv_to_slope.z,
-                      projection.uv_to_slope.w),
-          maths::vec2(static_cast<float>(phase.x), static_cast<float>(phase.y)),
-          settings.radius,
-          frame.index,
-          settings.thickness * (of_distance(settings) ? 1.0f : settings.radius),
-          settings.fill,
-          settings.blend,
-          settings.falloff,
-          settings.roughness};
+  const InterleaveOffset interleave_offset = interleave_offset_of(settings.tile_size, frame.index);
+  return {
+      view_from_normal(frame, inputs.normals_in_view_space),
+      maths::vec4(maths::ray_per_px(projection), projection.uv_to_slope.z,
+                  projection.uv_to_slope.w),
+      maths::vec2(static_cast<float>(interleave_offset.x), static_cast<float>(interleave_offset.y)),
+      settings.radius,
+      frame.index,
+      settings.thickness * (of_distance(settings) ? 1.0f : settings.radius),
+      settings.hidden_occlusion,
+      settings.blend,
+      settings.falloff,
+      settings.roughness};
 }
 
 // In the order of the shader's bindings; what is not read is bound to something of its kind.
 std::array<VkImageView, 7> views_of(RecordContext& context, const GtaoInputs& inputs,
-                                    const Reads& reads, const OcclusionSignal& result) {
-  const VkImageView line = context.view(inputs.line_depth);
+                                    const Reads& reads, const RawOcclusionTextures& result) {
+  const VkImageView line = context.view(inputs.inverse_depth);
   const VkImageView normals = context.view(inputs.normals);
-  const VkImageView signal = context.view(result.signal);
+  const VkImageView raw_occlusion = context.view(result.raw_occlusion);
   return {line,
           normals,
-          signal,
-          result.bent ? context.view(result.bent) : signal,
-          reads.back_faces ? context.view(inputs.back_line_depth) : line,
-          reads.second_layer ? context.view(inputs.second_line_depth) : line,
+          raw_occlusion,
+          result.bent ? context.view(result.bent) : raw_occlusion,
+          reads.back_faces ? context.view(inputs.back_inverse_depth) : line,
+          reads.second_layer ? context.view(inputs.second_inverse_depth) : line,
           reads.roughness ? context.view(inputs.roughness) : normals};
 }
 
@@ -208,23 +211,23 @@ bool needs_second_depth(Estimator estimator, std::uint32_t depth_layers) {
   return has_thickness(estimator) && depth_layers > 1;
 }
 
-tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame, const GtaoInputs& inputs,
-                                              const GtaoSettings& settings) {
+tl::expected<RawOcclusionTextures, Error> add_gtao(const Frame& frame, const GtaoInputs& inputs,
+                                                   const GtaoSettings& settings) {
   const Reads reads = reads_of(inputs, settings);
   auto good = check(settings).and_then([&] { return check_textures(frame, inputs, reads); });
   if (!good) {
     return tl::unexpected(std::move(good.error()));
   }
-  const auto projection = projection_of(frame, frame.view, inputs.line_depth);
+  const auto projection = projection_of(frame, frame.view, inputs.inverse_depth);
   if (!projection) {
     return tl::unexpected(projection.error());
   }
-  const auto kernel = frame.kernels.get(settings.lobe ? Shader::gtao_lobe : Shader::gtao,
+  const auto kernel = frame.kernels.get(settings.lobe ? Shader::gtao_specular : Shader::gtao,
                                         constants_of(settings, reads, is_perspective(*projection)));
   if (!kernel) {
     return tl::unexpected(kernel.error());
   }
-  OcclusionSignal result = create_signal(frame, inputs.line_depth, settings);
+  RawOcclusionTextures result = create_raw_occlusion(frame, inputs.inverse_depth, settings);
   auto pass = frame.graph.add_pass("gtao");
   declare_accesses(pass, inputs, reads, result);
   pass.record([&kernels = frame.kernels, kernel = *kernel, inputs, result, reads,
@@ -234,7 +237,7 @@ tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame, const GtaoInpu
     // Without a lobe the last binding does not exist.
     const std::span<const VkImageView> bound(views.data(), views.size() - (result.lobe ? 0 : 1));
     kernels.dispatch(context, kernel, bound, bytes_of(parameters),
-                     searches(context.extent(result.signal), whole));
+                     searches(context.extent(result.raw_occlusion), whole));
   });
   return result;
 }

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "alcove/passes/line_depth.h"
+#include "alcove/passes/inverse_depth.h"
 
 namespace alcove::passes {
 namespace {
@@ -30,16 +30,17 @@ tl::expected<framegraph::Texture, Error> add_linear(const Frame& frame,
                                                     const OcclusionInputs& inputs,
                                                     const OcclusionSettings& settings) {
   const bool read = settings.linear_depth || by_model(settings.specular) || !inputs.normals;
-  return read ? add_depth_pyramid(frame, inputs.depth_ndc, 1, 0.0f)
+  return read ? add_linear_depth(frame, inputs.depth_ndc, 1, 0.0f)
               : tl::expected<framegraph::Texture, Error>(framegraph::Texture{});
 }
 
 // Line depth of what the first surface hides (back faces, a second layer); null where `read` says
 // that the settings do not read it, or it was not given.
-tl::expected<framegraph::Texture, Error> add_hidden_line_depth(const Frame& frame,
-                                                               framegraph::Texture depth_ndc,
-                                                               bool read, std::string_view name) {
-  return read && depth_ndc ? add_line_depth(frame, depth_ndc, name)
+tl::expected<framegraph::Texture, Error> add_hidden_inverse_depth(const Frame& frame,
+                                                                  framegraph::Texture depth_ndc,
+                                                                  bool read,
+                                                                  std::string_view name) {
+  return read && depth_ndc ? add_inverse_depth(frame, depth_ndc, name)
                            : tl::expected<framegraph::Texture, Error>(framegraph::Texture{});
 }
 
@@ -91,23 +92,23 @@ OcclusionSettings quality_settings(Quality quality, float radius) {
   settings.radius = radius;
   switch (quality) {
     case Quality::low:
-      settings.divisor = 4;
+      settings.tile_size = 4;
       settings.steps = 8;
       settings.history_frames = 32;
       break;
     case Quality::medium:
-      settings.divisor = 2;
+      settings.tile_size = 2;
       settings.steps = 10;
       settings.history_frames = 32;
       break;
     case Quality::high:
-      settings.divisor = 2;
+      settings.tile_size = 2;
       settings.slices = 3;
       settings.steps = 16;
       settings.history_frames = 32;
       break;
     case Quality::ultra:
-      settings.divisor = 2;
+      settings.tile_size = 2;
       settings.slices = 4;
       settings.steps = 24;
       settings.history_frames = 32;
@@ -116,7 +117,7 @@ OcclusionSettings quality_settings(Quality quality, float radius) {
       settings.estimator = Estimator::horizons;
       settings.slices = 32;
       settings.steps = 64;
-      settings.filter_reach = 0;
+      settings.filter_radius = 0;
       settings.precision = Precision::float32;
       break;
   }
@@ -140,27 +141,28 @@ tl::expected<OcclusionOutputs, Error> add_occlusion(const Frame& frame,
     }
     normals = *made;
   }
-  const auto line = add_line_depth(frame, inputs.depth_ndc);
+  const auto line = add_inverse_depth(frame, inputs.depth_ndc);
   if (!line) {
     return tl::unexpected(line.error());
   }
-  const auto back_line = add_hidden_line_depth(
+  const auto back_line = add_hidden_inverse_depth(
       frame, inputs.back_depth_ndc, needs_back_depth(settings.estimator, settings.thickness_unit),
-      "back line depth");
-  const auto second_line = add_hidden_line_depth(
+      "back inverse depth");
+  const auto second_line = add_hidden_inverse_depth(
       frame, inputs.second_depth_ndc, needs_second_depth(settings.estimator, settings.depth_layers),
-      "second line depth");
+      "second inverse depth");
   if (!back_line || !second_line) {
     return tl::unexpected(back_line ? second_line.error() : back_line.error());
   }
-  const auto signal =
+  const auto raw_occlusion =
       add_gtao(frame, {*line, normals, in_view_space, inputs.roughness, *back_line, *second_line},
                gtao_settings(settings));
-  if (!signal) {
-    return tl::unexpected(signal.error());
+  if (!raw_occlusion) {
+    return tl::unexpected(raw_occlusion.error());
   }
   const auto filtered = add_reconstruct(
-      frame, {*signal, *line, normals, in_view_space, inputs.motion, inputs.roughness, inputs.into},
+      frame,
+      {*raw_occlusion, *line, normals, in_view_space, inputs.motion, inputs.roughness, inputs.into},
       reconstruct_settings(settings), history_name);
   if (!filtered) {
     return tl::unexpected(filtered.error());

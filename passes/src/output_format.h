@@ -34,9 +34,9 @@ namespace alcove::passes {
 }
 
 // What a search leaves, and its history: two words, and two more for a lobe.
-[[nodiscard]] inline VkFormat signal_format(bool lobe) {
+[[nodiscard]] inline VkFormat raw_format(bool lobe) {
   return lobe ? VK_FORMAT_R32G32B32A32_UINT : VK_FORMAT_R32G32_UINT;
 }
-inline constexpr VkFormat kBentSignalFormat = VK_FORMAT_R32G32_UINT;
+inline constexpr VkFormat kBentRawFormat = VK_FORMAT_R32G32_UINT;
 
 }  // namespace alcove::passes

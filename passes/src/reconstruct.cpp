@@ -11,11 +11,11 @@
 
 #include "bindings.h"
 #include "check_reconstruct.h"
+#include "interleave_offset.h"
 #include "maths/history.h"
 #include "maths/slice_line.h"
 #include "output_format.h"
 #include "reconstruct_parameters.h"
-#include "search_phase.h"
 #include "view_parameters.h"
 #include "write_result.h"
 
@@ -29,7 +29,7 @@ using framegraph::TextureHistory;
 namespace {
 
 // Still frames after which every pixel of a block of 4 has been searched once.
-constexpr std::uint32_t kSettledFrames = 16;
+constexpr std::uint32_t kConvergedFrames = 16;
 
 // What lies before a frame: all that its pipeline depends on besides settings, inputs and the kind
 // of projection.
@@ -37,7 +37,7 @@ enum class Past : std::uint8_t {
   none,  // no history, or none that can be read
   moving,
   still,    // the frame before shows the very same
-  settled,  // as do kSettledFrames
+  settled,  // as do kConvergedFrames
 };
 
 // The history of bent normals that goes with one of this name. On the stack, so that a steady frame
@@ -74,7 +74,7 @@ void create_histories(Graph& graph, const ReconstructSettings& settings,
                       bool& valid) {
   const BentHistoryName bent_name(history_name);
   const bool wanted = settings.history_frames > 0;
-  const bool bent_wanted = wanted && textures.inputs.signal.bent;
+  const bool bent_wanted = wanted && textures.inputs.raw_occlusion.bent;
   if (!wanted) {
     graph.reset_history(history_name);
   }
@@ -83,7 +83,7 @@ void create_histories(Graph& graph, const ReconstructSettings& settings,
   }
   if (wanted) {
     const TextureHistory history = graph.create_texture_history(
-        history_name, {signal_format(textures.inputs.signal.lobe), largest});
+        history_name, {raw_format(textures.inputs.raw_occlusion.lobe), largest});
     valid = history.validity == framegraph::HistoryValidity::valid;
     textures.history = history.previous();
     textures.next_history = history.current;
@@ -109,11 +109,11 @@ Textures create_textures(const Frame& frame, const ReconstructInputs& inputs,
     textures.result.visibility = given_or_created(graph, inputs.into.visibility, "visibility",
                                                   {scalar_format(settings.precision), size});
   }
-  if (inputs.signal.bent) {
+  if (inputs.raw_occlusion.bent) {
     textures.result.bent_normal = given_or_created(graph, inputs.into.bent_normal, "bent normal",
                                                    {direction_format(settings.precision), size});
   }
-  if (inputs.signal.lobe) {
+  if (inputs.raw_occlusion.lobe) {
     textures.result.specular = given_or_created(graph, inputs.into.specular, "specular occlusion",
                                                 {scalar_format(settings.precision), size});
   }
@@ -134,9 +134,9 @@ void declare_accesses(const Graph& graph, framegraph::PassBuilder& pass, Texture
   };
   const auto& sampled = framegraph::access::sampled_compute;
   const auto& stored = framegraph::access::storage_read_compute;
-  read(textures.inputs.signal.signal, stored);
-  read(textures.inputs.signal.bent, stored);
-  read(textures.inputs.line_depth, stored);
+  read(textures.inputs.raw_occlusion.raw_occlusion, stored);
+  read(textures.inputs.raw_occlusion.bent, stored);
+  read(textures.inputs.inverse_depth, stored);
   read(textures.inputs.normals, sampled);
   read(textures.inputs.motion, sampled);
   read(textures.inputs.roughness, sampled);
@@ -184,17 +184,18 @@ Bindings bindings_of(RecordContext& context, const Textures& textures) {
   const Occlusion& out = textures.result;
   const Texture written = any_of(out);
   Bindings bindings;
-  bindings.add({context.view(in.signal.signal), view_or(context, in.signal.bent, in.signal.signal),
-                context.view(in.line_depth), context.view(in.normals),
+  bindings.add({context.view(in.raw_occlusion.raw_occlusion),
+                view_or(context, in.raw_occlusion.bent, in.raw_occlusion.raw_occlusion),
+                context.view(in.inverse_depth), context.view(in.normals),
                 view_or(context, out.visibility, written),
                 view_or(context, out.bent_normal, written)});
   if (textures.history) {
     bindings.add({view_or(context, in.motion, in.normals), context.view(textures.history),
-                  view_or(context, textures.bent_history, in.line_depth),
+                  view_or(context, textures.bent_history, in.inverse_depth),
                   context.view(textures.next_history),
                   view_or(context, textures.next_bent_history, written)});
   }
-  if (in.signal.lobe) {
+  if (in.raw_occlusion.lobe) {
     bindings.add({view_or(context, in.roughness, in.normals), context.view(out.specular)});
   }
   return bindings;
@@ -202,7 +203,7 @@ Bindings bindings_of(RecordContext& context, const Textures& textures) {
 
 Shader shader_of(bool history, bool lobe) {
   if (lobe) {
-    return history ? Shader::reconstruct_lobe_history : Shader::reconstruct_lobe;
+    return history ? Shader::reconstruct_specular_history : Shader::reconstruct_specular;
   }
   return history ? Shader::reconstruct_history : Shader::reconstruct;
 }
@@ -216,23 +217,23 @@ Past past_of(const Frame& frame, const ReconstructSizes& sizes, bool history_val
   if (motion || !same_size || frame.view != frame.previous_view) {
     return Past::moving;
   }
-  return frame.still_frames >= kSettledFrames ? Past::settled : Past::still;
+  return frame.static_frames >= kConvergedFrames ? Past::settled : Past::still;
 }
 
 // Whether a pixel reads no history but its own.
-bool is_still(Past past) { return past == Past::still || past == Past::settled; }
+bool is_static(Past past) { return past == Past::still || past == Past::settled; }
 
 // Of the shader, in its order.
 std::array<std::uint32_t, 12> constants_of(const ReconstructInputs& inputs,
                                            const ReconstructSettings& settings, bool perspective,
                                            Past past) {
-  return {inputs.signal.divisor,
-          settings.filter_reach,
-          flag(bool(inputs.signal.bent)),
+  return {inputs.raw_occlusion.tile_size,
+          settings.filter_radius,
+          flag(bool(inputs.raw_occlusion.bent)),
           flag(inputs.motion && past == Past::moving),
           flag(perspective),
           flag(settings.clamp_width > 0.0f),
-          flag(is_still(past)),
+          flag(is_static(past)),
           flag(bool(inputs.roughness)),
           channel_if(bool(inputs.roughness), settings.roughness_channel),
           flag(past == Past::none),
@@ -245,7 +246,7 @@ tl::expected<Kernel, Error> get_kernel(const Frame& frame, const ReconstructInpu
                                        Past past) {
   const bool history = settings.history_frames > 0;
   const auto get = [&](Past of) {
-    return frame.kernels.get(shader_of(history, inputs.signal.lobe),
+    return frame.kernels.get(shader_of(history, inputs.raw_occlusion.lobe),
                              constants_of(inputs, settings, perspective, of));
   };
   if (history && frame.prepare) {
@@ -297,9 +298,9 @@ maths::vec2 history_depth(const maths::Projection& p) {
 
 // The width of the window over one frame's searches: few slices are filtered far, many hardly
 // further than the blocks lie apart. By the error of first frames (`alcove compare --frames 1`).
-float window_px(const OcclusionSignal& signal) {
-  const float few = 1.1f / std::sqrt(static_cast<float>(signal.slices));
-  return static_cast<float>(signal.divisor) * std::max(few, 0.55f);
+float window_px(const RawOcclusionTextures& raw_occlusion) {
+  const float few = 1.1f / std::sqrt(static_cast<float>(raw_occlusion.slices));
+  return static_cast<float>(raw_occlusion.tile_size) * std::max(few, 0.55f);
 }
 
 maths::ReconstructParameters parameters_of(const Frame& frame, const maths::Projection& projection,
@@ -332,11 +333,12 @@ maths::ReconstructParameters parameters_of(const Frame& frame, const maths::Proj
 // An invocation has a cell of pixels between the searched ones, of which there is one more than of
 // blocks, since the outermost stick out of the image. A search of every pixel leaves nothing
 // between.
-VkExtent3D cells_of(VkExtent3D size, std::uint32_t divisor) {
-  if (divisor == 1) {
+VkExtent3D cells_of(VkExtent3D size, std::uint32_t tile_size) {
+  if (tile_size == 1) {
     return size;
   }
-  return {(size.width + divisor - 1) / divisor + 1, (size.height + divisor - 1) / divisor + 1, 1};
+  return {(size.width + tile_size - 1) / tile_size + 1,
+          (size.height + tile_size - 1) / tile_size + 1, 1};
 }
 
 // Without a history nothing of the frame before is read.
@@ -356,10 +358,10 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& given_frame,
   const bool history = settings.history_frames > 0;
   const Frame frame = history ? given_frame : without_past(given_frame);
   ReconstructInputs inputs = given;
-  if (frame.view == frame.previous_view && frame.still_frames > 0 && !frame.prepare) {
+  if (frame.view == frame.previous_view && frame.static_frames > 0 && !frame.prepare) {
     inputs.motion = {};
   }
-  if (!inputs.signal.lobe) {
+  if (!inputs.raw_occlusion.lobe) {
     inputs.roughness = {};
   }
   if (auto good = check_reconstruct(frame, inputs, settings); !good) {
@@ -368,7 +370,7 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& given_frame,
   if (!history) {
     inputs.motion = {};
   }
-  const auto sizes = reconstruct_sizes(frame, inputs.line_depth);
+  const auto sizes = reconstruct_sizes(frame, inputs.inverse_depth);
   if (!sizes) {
     return tl::unexpected(sizes.error());
   }
@@ -387,28 +389,29 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& given_frame,
   if (!kernel) {
     return tl::unexpected(kernel.error());
   }
-  if (is_still(past)) {
+  if (is_static(past)) {
     textures.next_history = textures.history;
     textures.next_bent_history = textures.bent_history;
   }
   auto pass = frame.graph.add_pass("reconstruct");
   declare_accesses(frame.graph, pass, textures);
-  const auto [phase_x, phase_y] = search_phase(inputs.signal.divisor, frame.index);
+  const auto [phase_x, phase_y] = interleave_offset_of(inputs.raw_occlusion.tile_size, frame.index);
   maths::ReconstructParameters parameters =
       parameters_of(frame, *projection, *previous, inputs.normals_in_view_space, settings);
-  parameters.window_px = window_px(inputs.signal);
+  parameters.window_px = window_px(inputs.raw_occlusion);
   // Distances from the plane count for more with the slices, as the window narrows with them.
-  parameters.tolerance *= std::sqrt(static_cast<float>(inputs.signal.slices));
+  parameters.tolerance *= std::sqrt(static_cast<float>(inputs.raw_occlusion.slices));
   if (past == Past::settled) {  // nothing to follow: all frames count alike
     parameters.longest = static_cast<float>(maths::kMaxHistoryFrames);
   }
-  parameters.phase = maths::vec2(static_cast<float>(phase_x), static_cast<float>(phase_y));
+  parameters.interleave_offset =
+      maths::vec2(static_cast<float>(phase_x), static_cast<float>(phase_y));
   pass.record([&kernels = frame.kernels, kernel = *kernel, textures, parameters,
-               divisor = inputs.signal.divisor](RecordContext& context) {
+               tile_size = inputs.raw_occlusion.tile_size](RecordContext& context) {
     const Bindings bindings = bindings_of(context, textures);
     const std::span<const VkImageView> bound(bindings.views.data(), bindings.count);
     kernels.dispatch(context, kernel, bound, bytes_of(parameters),
-                     cells_of(context.extent(textures.inputs.line_depth), divisor));
+                     cells_of(context.extent(textures.inputs.inverse_depth), tile_size));
   });
   return textures.result;
 }

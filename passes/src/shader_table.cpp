@@ -4,22 +4,22 @@
 
 #include "spirv/apply.h"
 #include "spirv/apply_specular.h"
-#include "spirv/depth_pyramid.h"
 #include "spirv/environment_half.h"
 #include "spirv/environment_harmonics.h"
 #include "spirv/environment_map.h"
 #include "spirv/environment_prefilter.h"
 #include "spirv/gtao.h"
-#include "spirv/gtao_lobe.h"
+#include "spirv/gtao_specular.h"
 #include "spirv/gtso.h"
 #include "spirv/gtso_by_table.h"
-#include "spirv/line_depth.h"
+#include "spirv/inverse_depth.h"
+#include "spirv/linear_depth.h"
 #include "spirv/multi_bounce.h"
 #include "spirv/normals.h"
 #include "spirv/reconstruct.h"
 #include "spirv/reconstruct_history.h"
-#include "spirv/reconstruct_lobe.h"
-#include "spirv/reconstruct_lobe_history.h"
+#include "spirv/reconstruct_specular.h"
+#include "spirv/reconstruct_specular_history.h"
 #include "tables/gtso.h"
 #include "tables/reflectance.h"
 
@@ -27,21 +27,21 @@ namespace alcove::passes {
 
 const ShaderSource& shader_source(Shader shader) {
   static const std::array<ShaderSource, static_cast<std::size_t>(Shader::count)> sources{{
-      {kDepthPyramid, "sttttt"},
+      {kLinearDepth, "sttttt"},
       {kNormals, "st"},
-      {kLineDepth, "st"},
+      {kInverseDepth, "st"},
       {kGtao, "tstttt"},
-      {kGtaoLobe,
+      {kGtaoSpecular,
        "tstttt"
        "s"},
       {kReconstruct, "tttstt"},
       {kReconstructHistory,
        "tttstt"
        "stttt"},
-      {kReconstructLobe,
+      {kReconstructSpecular,
        "tttstt"
        "st"},
-      {kReconstructLobeHistory,
+      {kReconstructSpecularHistory,
        "tttstt"
        "stttt"
        "st"},

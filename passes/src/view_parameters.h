@@ -85,7 +85,7 @@ namespace alcove::passes {
 
 // From raw depth to a number that is linear along the image of any plane, 1/depth in perspective
 // and depth in orthographic views: x * depth_ndc + y.
-[[nodiscard]] inline maths::vec2 line_from_ndc(const maths::Projection& projection) {
+[[nodiscard]] inline maths::vec2 inverse_depth_from_ndc(const maths::Projection& projection) {
   const maths::vec4& unproject = projection.depth_unproject;
   return is_perspective(projection) ? maths::vec2(unproject.z, unproject.w) / unproject.y
                                     : maths::vec2(unproject.x, unproject.y) / unproject.w;

@@ -125,8 +125,9 @@ Texture FrameRecorder::import(const char* name, VkFormat format) {
   image.image = device_.next_image();
   image.desc = {format, framegraph::Extent::absolute(inputs_.width, inputs_.height)};
   image.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
-  image.arrival = {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
-                   VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+  image.initial_state = {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+                         VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
+                         VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
   return graph_.import_texture(name, image);
 }
 
@@ -144,9 +145,9 @@ tl::expected<void, std::string> FrameRecorder::declare(FrameState state) {
   if (state == FrameState::moving) {
     frame.previous_view.view_from_world[12] = 0.01f;
   } else if (state == FrameState::unchanged) {
-    frame.still_frames = 1;
+    frame.static_frames = 1;
   } else if (state == FrameState::converged) {
-    frame.still_frames = 16;
+    frame.static_frames = 16;
   }
   const passes::OcclusionSettings& settings = inputs_.settings;
   passes::OcclusionInputs inputs;

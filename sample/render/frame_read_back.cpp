@@ -1,6 +1,6 @@
 #include "render/frame_read_back.h"
 
-#include "device/read_back.h"
+#include "render/read_back.h"
 
 namespace alcove::sample {
 

@@ -11,10 +11,10 @@
 #include "alcove/framegraph/access.h"
 #include "alcove/passes/apply.h"
 #include "alcove/passes/multi_bounce.h"
-#include "device/gpu_image.h"
-#include "device/read_back.h"
 #include "render/frame_read_back.h"
+#include "render/gpu_image.h"
 #include "render/probe.h"
+#include "render/read_back.h"
 #include "render/surfaces.h"
 
 namespace alcove::sample {
@@ -162,7 +162,7 @@ passes::Frame FrameRenderer::State::frame_of(Graph& graph, const FrameRequest& r
           request.index,
           {to_matrix(request.view.previous_clip_from_view),
            to_matrix(request.view.previous_view_from_world)},
-          request.still_frames};
+          request.static_frames};
 }
 
 Surfaces FrameRenderer::State::surfaces_of(const DeclaredFrame& declared,

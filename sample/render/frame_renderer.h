@@ -8,9 +8,9 @@
 
 #include "alcove/framegraph/executor.h"
 #include "alcove/passes/occlusion.h"
-#include "device/gpu.h"
-#include "options/options.h"
+#include "cli/options.h"
 #include "render/gbuffer.h"
+#include "render/gpu.h"
 #include "scene/environment.h"
 #include "support/image.h"
 
@@ -26,10 +26,10 @@ struct IndirectRequest {
 // What one frame is drawn with.
 struct FrameRequest {
   GbufferView view;
-  std::uint32_t index = 0;         // counts frames; 0 begins anew
-  bool restart = false;            // begins anew too: nothing of the frames before is kept
-  std::uint32_t still_frames = 0;  // as passes::Frame has them
-  bool motion_vectors = false;     // the occlusion is given them; else only the camera moves
+  std::uint32_t index = 0;          // counts frames; 0 begins anew
+  bool restart = false;             // begins anew too: nothing of the frames before is kept
+  std::uint32_t static_frames = 0;  // as passes::Frame has them
+  bool motion_vectors = false;      // the occlusion is given them; else only the camera moves
   passes::OcclusionSettings occlusion;
   const IndirectRequest* light = nullptr;  // null: none
 };

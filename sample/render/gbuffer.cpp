@@ -11,7 +11,7 @@
 #include "render/gbuffer_pipelines.h"
 #include "render/gpu_textures.h"
 #include "render/triangles.h"
-#include "shaders/gbuffer.h"
+#include "render/shaders/gbuffer.h"
 
 namespace alcove::sample {
 namespace {

@@ -3,10 +3,10 @@
 #include <cstddef>
 #include <span>
 
-#include "device/shader_module.h"
 #include "render/gbuffer.h"
+#include "render/shader_module.h"
 #include "render/triangles.h"
-#include "shaders/gbuffer.h"
+#include "render/shaders/gbuffer.h"
 #include "spirv/gbuffer_fragment.h"
 #include "spirv/gbuffer_vertex.h"
 #include "spirv/second_layer_fragment.h"

@@ -8,10 +8,10 @@
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "device/gpu.h"
-#include "device/gpu_image.h"
+#include "render/gpu.h"
+#include "render/gpu_image.h"
 #include "scene/scene.h"
-#include "shaders/gbuffer.h"
+#include "render/shaders/gbuffer.h"
 
 namespace alcove::sample {
 

@@ -6,13 +6,13 @@
 #include <cstdio>
 #include <utility>
 
+#include "reference/surface_points.h"
 #include "render/display.h"
-#include "render/stage.h"
+#include "render/session.h"
 #include "scene/camera.h"
 #include "support/image_io.h"
 #include "support/median.h"
 #include "support/progress.h"
-#include "truth/surface_points.h"
 
 namespace alcove::sample {
 namespace {
@@ -76,7 +76,7 @@ class Run {
     request.view = {now.view_from_world, now.clip_from_view, before.view_from_world,
                     before.clip_from_view, camera_.reversed_z};
     request.index = frame;
-    request.still_frames = options_.view.orbit == 0.0f ? frame : 0;
+    request.static_frames = options_.view.orbit == 0.0f ? frame : 0;
     request.occlusion = settings_;
     if (outputs == Outputs::kSpecular || outputs == Outputs::kAll) {
       request.occlusion.specular = specular_model(settings_);
@@ -167,23 +167,23 @@ passes::Specular specular_model(const passes::OcclusionSettings& settings) {
 }
 
 tl::expected<Rendering, std::string> render(const Options& options) {
-  auto stage = stage_of(options);
-  if (!stage) {
-    return Failure(std::move(stage.error()));
+  auto session = session_of(options);
+  if (!session) {
+    return Failure(std::move(session.error()));
   }
   Rendering result;
-  result.scene = std::move(stage->scene);
-  result.settings = stage->settings;
+  result.scene = std::move(session->scene);
+  result.settings = session->settings;
   auto environment = load_environment(options.environment);
   if (!environment) {
     return Failure(std::move(environment.error()));
   }
   result.light = {options.occlusion.roughness, std::move(*environment), options.lit};
-  Gpu& gpu = *stage->gpu;
+  Gpu& gpu = *session->gpu;
   result.device = gpu.device().properties().deviceName;
   result.driver = gpu.device().driver();
 
-  const Run run(options, stage->camera, result.settings, result.light);
+  const Run run(options, session->camera, result.settings, result.light);
   result.camera = run.camera(run.frames() - 1);
   auto renderer = FrameRenderer::create(
       gpu, result.scene, {options.view.width, options.view.height}, options.occlusion.normals);

@@ -5,9 +5,9 @@
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "device/gpu.h"
-#include "options/options.h"
+#include "cli/options.h"
 #include "render/frame_renderer.h"
+#include "render/gpu.h"
 #include "scene/scene.h"
 
 namespace alcove::sample {

@@ -200,12 +200,12 @@ tl::expected<void, std::string> create_folder(const std::filesystem::path& folde
     return tl::unexpected("The folder " + folder.string() +
                           " could not be created: " + error.message() + ".");
   }
-  const std::filesystem::path trial = temporary_beside(folder / "trial");
-  if (auto written = write_bytes(trial, "", 0); !written) {
+  const std::filesystem::path variant = temporary_beside(folder / "variant");
+  if (auto written = write_bytes(variant, "", 0); !written) {
     return tl::unexpected("Nothing can be written to the folder " + folder.string() + ": " +
                           written.error() + ".");
   }
-  std::filesystem::remove(trial, error);
+  std::filesystem::remove(variant, error);
   return {};
 }
 

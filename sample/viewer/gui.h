@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "alcove/framegraph/graph.h"
-#include "device/gpu.h"
+#include "render/gpu.h"
 #include "viewer/window.h"
 
 namespace alcove::sample {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "alcove/framegraph/access.h"
-#include "device/shader_module.h"
+#include "render/shader_module.h"
 #include "spirv/picture_fragment.h"
 #include "spirv/picture_vertex.h"
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "alcove/framegraph/graph.h"
-#include "device/gpu.h"
-#include "shaders/picture.h"
+#include "render/gpu.h"
+#include "render/shaders/picture.h"
 #include "support/glm.h"
 
 namespace alcove::sample {

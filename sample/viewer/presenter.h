@@ -6,7 +6,7 @@
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "device/gpu.h"
+#include "render/gpu.h"
 #include "viewer/swapchain.h"
 #include "viewer/window.h"
 

@@ -78,14 +78,14 @@ void SceneFrame::begin(Graph& graph, const ViewState& state, VkExtent3D size) {
   const bool same_kind = std::exchange(kept_, kept) == kept;
   if (drawn_ != drawing_) {
     index_ = 0;
-    still_frames_ = 0;
+    static_frames_ = 0;
     graph.reset_histories();
   } else {
     view_.previous_view_from_world = drawn_view_->view_from_world;
     view_.previous_clip_from_view = drawn_view_->clip_from_view;
     const bool same = same_kind && view_.view_from_world == view_.previous_view_from_world &&
                       view_.clip_from_view == view_.previous_clip_from_view;
-    still_frames_ = same ? still_frames_ + 1 : 0;
+    static_frames_ = same ? static_frames_ + 1 : 0;
   }
 }
 
@@ -101,7 +101,7 @@ passes::Frame SceneFrame::frame_of(Graph& graph) const {
           {to_matrix(view_.clip_from_view), to_matrix(view_.view_from_world)},
           index_,
           {to_matrix(view_.previous_clip_from_view), to_matrix(view_.previous_view_from_world)},
-          still_frames_};
+          static_frames_};
 }
 
 tl::expected<Texture, std::string> SceneFrame::declare(Graph& graph, Texture target,

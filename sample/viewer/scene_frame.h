@@ -5,9 +5,9 @@
 #include <string>
 #include <tl/expected.hpp>
 
-#include "device/gpu.h"
-#include "options/options.h"
+#include "cli/options.h"
 #include "render/gbuffer.h"
+#include "render/gpu.h"
 #include "render/probe.h"
 #include "render/surfaces.h"
 #include "scene/environment.h"
@@ -68,9 +68,9 @@ class SceneFrame {
   std::unique_ptr<PicturePass> picture_;
   float exposure_ = 1.0f;
   std::uint32_t index_ = 0;
-  std::uint32_t still_frames_ = 0;  // as passes::Frame has them
-  GbufferView view_;                // of the frame that is declared
-  glm::mat3 ray_from_ndc_{1.0f};    // the same: from (ndc x, ndc y, 1)
+  std::uint32_t static_frames_ = 0;  // as passes::Frame has them
+  GbufferView view_;                 // of the frame that is declared
+  glm::mat3 ray_from_ndc_{1.0f};     // the same: from (ndc x, ndc y, 1)
   Drawn drawing_;
   std::optional<GbufferView> drawn_view_;
   std::optional<Drawn> drawn_;

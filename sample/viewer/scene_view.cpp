@@ -6,7 +6,7 @@
 #include <iostream>
 #include <utility>
 
-#include "options/render_command.h"
+#include "cli/render_command.h"
 #include "viewer/screenshot.h"
 
 namespace alcove::sample {
@@ -16,10 +16,10 @@ using framegraph::Graph;
 using framegraph::Texture;
 using Failure = tl::unexpected<std::string>;
 
-ViewState first_state(const Stage& stage, const Options& options) {
+ViewState first_state(const Session& session, const Options& options) {
   ViewState state;
-  state.camera = stage.camera;
-  state.settings = stage.settings;
+  state.camera = session.camera;
+  state.settings = session.settings;
   if (!options.occlusion.roughness.empty()) {
     state.roughness = options.occlusion.roughness.front();
   }
@@ -36,24 +36,24 @@ tl::expected<std::unique_ptr<SceneView>, std::string> SceneView::create(const Op
     return Failure(std::move(window.error()));
   }
   made->window_ = std::move(*window);
-  auto stage = stage_of(options, Window::instance_extensions());
-  if (!stage) {
-    return Failure(std::move(stage.error()));
+  auto session = session_of(options, Window::instance_extensions());
+  if (!session) {
+    return Failure(std::move(session.error()));
   }
-  made->stage_ = std::move(*stage);
+  made->session_ = std::move(*session);
   const auto environment = load_environment(options.environment);
   if (!environment) {
     return Failure(environment.error());
   }
-  Gpu& gpu = *made->stage_.gpu;
+  Gpu& gpu = *made->session_.gpu;
   auto presenter = Presenter::create(gpu, *made->window_);
   if (!presenter) {
     return Failure(std::move(presenter.error()));
   }
   made->presenter_ = std::move(*presenter);
   const VkFormat format = made->presenter_->format();
-  auto frame =
-      SceneFrame::create(gpu, made->stage_.scene, *environment, options.occlusion.normals, format);
+  auto frame = SceneFrame::create(gpu, made->session_.scene, *environment,
+                                  options.occlusion.normals, format);
   if (!frame) {
     return Failure(std::move(frame.error()));
   }
@@ -63,7 +63,7 @@ tl::expected<std::unique_ptr<SceneView>, std::string> SceneView::create(const Op
     return Failure(std::move(gui.error()));
   }
   made->gui_ = std::move(*gui);
-  made->state_ = first_state(made->stage_, options);
+  made->state_ = first_state(made->session_, options);
   made->good_ = {made->state_.settings, made->state_.roughness};
   made->facts_.first_settings = made->state_.settings;
   made->facts_.device = gpu.device().properties().deviceName;
@@ -87,7 +87,7 @@ void SceneView::take_keys() {
     }
     switch (key) {
       case GLFW_KEY_HOME:
-        state_.camera = stage_.camera;
+        state_.camera = session_.camera;
         break;
       case GLFW_KEY_R:
         state_.settings = facts_.first_settings;
@@ -162,7 +162,7 @@ tl::expected<void, std::string> SceneView::draw_chosen(const HostBuffer* read_ba
 tl::expected<void, std::string> SceneView::draw_and_read() {
   const VkExtent2D size = presenter_->size();
   constexpr VkDeviceSize kTexelBytes = 4;
-  auto buffer = HostBuffer::create(stage_.gpu->device(), kTexelBytes * size.width * size.height,
+  auto buffer = HostBuffer::create(session_.gpu->device(), kTexelBytes * size.width * size.height,
                                    VK_BUFFER_USAGE_TRANSFER_DST_BIT);
   if (!buffer) {
     return Failure(std::move(buffer.error()));

@@ -4,7 +4,7 @@
 #include <string>
 #include <tl/expected.hpp>
 
-#include "render/stage.h"
+#include "render/session.h"
 #include "viewer/gui.h"
 #include "viewer/panel.h"
 #include "viewer/presenter.h"
@@ -37,8 +37,8 @@ class SceneView {
   ViewState& state() { return state_; }
   const PanelFacts& facts() const { return facts_; }
   Window& window() { return *window_; }
-  const Gpu& gpu() const { return *stage_.gpu; }
-  const Scene& scene() const { return stage_.scene; }
+  const Gpu& gpu() const { return *session_.gpu; }
+  const Scene& scene() const { return session_.scene; }
 
  private:
   // What the passes may refuse.
@@ -60,7 +60,7 @@ class SceneView {
 
   Options options_;
   std::unique_ptr<Window> window_;  // outlives what is on it
-  Stage stage_;
+  Session session_;
   std::unique_ptr<Presenter> presenter_;
   std::unique_ptr<SceneFrame> frame_;
   std::unique_ptr<Gui> gui_;

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "device/read_back.h"
+#include "render/read_back.h"
 #include "support/image_io.h"
 
 namespace alcove::sample {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "device/gpu.h"
+#include "render/gpu.h"
 
 namespace alcove::sample {
 

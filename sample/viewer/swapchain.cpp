@@ -154,9 +154,10 @@ framegraph::ImportedTexture Swapchain::import() const {
   import.view = views_[current_];
   import.desc = {format_, framegraph::Extent::absolute(size_.width, size_.height)};
   import.usage = kUsage;
-  // The stage that waits for arrived(): the first barrier goes on from there.
-  import.arrival = {VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, 0, VK_IMAGE_LAYOUT_UNDEFINED};
-  import.departure = framegraph::access::present;
+  // The session that waits for arrived(): the first barrier goes on from there.
+  import.initial_state = {VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, 0,
+                          VK_IMAGE_LAYOUT_UNDEFINED};
+  import.final_state = framegraph::access::present;
   return import;
 }
 

@@ -7,7 +7,7 @@
 
 #include <cstdint>
 
-#include "device/vulkan_device.h"
+#include "render/vulkan_device.h"
 
 namespace alcove::sample {
 namespace {

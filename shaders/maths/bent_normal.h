@@ -4,7 +4,7 @@
 //     integral of (sin t, cos t) <n, w(t)> sin t dt
 //       = ( <n,v> s^3 / 3           + <n,d> (2 - 3c + c^3) / 3,
 //           <n,v> (1 - c^3) / 3     + <n,d> s^3 / 3 )
-// where t is the angle from the view vector: no trigonometry at all. Not in the memo; it agrees
+// where t is the angle from the view vector: no trigonometry at all. Not in the paper; it agrees
 // with the closed forms published since.
 #ifndef ALCOVE_MATHS_BENT_NORMAL_H
 #define ALCOVE_MATHS_BENT_NORMAL_H
@@ -39,31 +39,31 @@ ALCOVE_INLINE vec3 slice_bent_normal(Slice s, vec3 direction, vec3 view, float a
   return direction * (front.x + back.x) + view * (front.y + back.y);
 }
 
-// The bend of a slice: what its part of the bent normal, `part`, is beyond what so much visibility,
-// `visible`, adds along the `normal` in the mean over open slices, whose sum is 2/3 of it. What
-// filters and histories add up is the bend, so that a surface's own normal stays as sharp as it is.
-// All in one space; the normal is unit. Each component at most 4/3 in size.
-ALCOVE_INLINE vec3 bend_of(vec3 part, float visible, vec3 normal) {
+// The residual of a slice: what its part of the bent normal, `part`, is beyond what so much
+// visibility, `visible`, adds along the `normal` in the mean over open slices, whose sum is 2/3 of
+// it. What filters and histories add up is the residual, so that a surface's own normal stays as
+// sharp as it is. All in one space; the normal is unit. Each component at most 4/3 in size.
+ALCOVE_INLINE vec3 residual_of(vec3 part, float visible, vec3 normal) {
   return part - normal * (visible * (2.0f / 3.0f));
 }
 
-// The bend of a slice if it is open, `open` of open_slice(). Its mean over all slices is zero; of
-// few slices it is most of what they err by.
-ALCOVE_INLINE vec3 open_bend(Slice s, vec3 direction, vec3 view, vec3 normal, float open) {
-  return bend_of(slice_bent_normal(s, direction, view, -1.0f, -1.0f), open, normal);
+// The residual of a slice if it is open, `open` of open_slice(). Its mean over all slices is zero;
+// of few slices it is most of what they err by.
+ALCOVE_INLINE vec3 expected_residual(Slice s, vec3 direction, vec3 view, vec3 normal, float open) {
+  return residual_of(slice_bent_normal(s, direction, view, -1.0f, -1.0f), open, normal);
 }
 
 // A sum of bends, less as much of the slices' open bends, summed alike, as there is taken to be in
 // it: the part of them that is visible, [0,1]. (A control variate: it changes no mean over all
 // slices, and where all is open nothing is left.)
-ALCOVE_INLINE vec3 settled_bend(vec3 bend, vec3 open_bend, float visibility) {
-  return bend - open_bend * visibility;
+ALCOVE_INLINE vec3 converged_residual(vec3 residual, vec3 expected_residual, float visibility) {
+  return residual - expected_residual * visibility;
 }
 
 // The unit bent normal of sums over slices, of their bends and of what is visible; `normal` where
 // nothing is.
-ALCOVE_INLINE vec3 finish_bent_normal(vec3 bend, float visible, vec3 normal) {
-  vec3 sum = bend_of(bend, -visible, normal);
+ALCOVE_INLINE vec3 finish_bent_normal(vec3 residual, float visible, vec3 normal) {
+  vec3 sum = residual_of(residual, -visible, normal);
   float squared = dot(sum, sum);
   return squared > 1e-12f ? sum * inversesqrt(squared) : normal;
 }

@@ -3,13 +3,13 @@
 //
 // A depth buffer shows fronts only. Taken as infinitely thick, thin things darken whatever is
 // behind them; taken as thin, walls leak light between their samples. So two consecutive samples
-// are joined into a sheet when depth alone says that they continue one surface (samples_join), the
-// edge of a surface that appears between two samples is placed between them (edge_share), and every
-// sample has a thickness: along the view vector, or as far as its back face (sample_thickness). A
-// surface that leaves the image goes on as it left (continued_point). What is hidden behind a front
-// stays unknown: something between thin and infinitely thick, the nearer to the latter the wider
-// the fronts stand in the image (fill_behind()), errs less than either (see the table in
-// sample/README.md).
+// are joined into a segment when depth alone says that they continue one surface (samples_join),
+// the edge of a surface that appears between two samples is placed between them (edge_share), and
+// every sample has a thickness: along the view vector, or as far as its back face
+// (sample_thickness). A surface that leaves the image goes on as it left (extrapolated_point). What
+// is hidden behind a front stays unknown: something between thin and infinitely thick, the nearer
+// to the latter the wider the fronts stand in the image (hidden_occlusion_behind()), errs less than
+// either (see the table in sample/README.md).
 #ifndef ALCOVE_MATHS_CONNECTED_SAMPLES_H
 #define ALCOVE_MATHS_CONNECTED_SAMPLES_H
 
@@ -17,37 +17,37 @@
 
 ALCOVE_MATHS_BEGIN
 
-// LineSample::back, y of it, where no back face tells.
+// SliceSample::back, y of it, where no back face tells.
 const float kNoBack = 1e30f;
 
 // A sample of a side.
-struct LineSample {
-  float offset_px;  // from the shaded pixel along the line, growing from sample to sample
-  float line;       // linear along the image of any plane (slice_line.h)
-  vec3 point;       // slice_point() of it, x outwards
-  vec2 back;        // x w and y w of where the occluder ends, if back faces tell
+struct SliceSample {
+  float offset_px;      // from the shaded pixel along the line, growing from sample to sample
+  float inverse_depth;  // linear along the image of any plane (slice_line.h)
+  vec3 point;           // slice_point() of it, x outwards
+  vec2 back;            // x w and y w of where the occluder ends, if back faces tell
 };
 
 // How sharply `line` bends at a sample: its slope before less its slope after, times both steps; 0
-// where the bend is less than `sharp`. `rise` is the change of the line over a step, `step` the
-// pixels of it, over 0.
-ALCOVE_INLINE float sharp_bend(float rise_before, float step_before, float rise_after,
-                               float step_after, float sharp) {
-  float bend = rise_before * step_after - rise_after * step_before;
-  return abs(bend) < sharp * step_before * step_after ? 0.0f : bend;
+// where the discontinuity is less than `sharp`. `rise` is the change of the line over a step,
+// `step` the pixels of it, over 0.
+ALCOVE_INLINE float depth_discontinuity(float rise_before, float step_before, float rise_after,
+                                        float step_after, float sharp) {
+  float discontinuity = rise_before * step_after - rise_after * step_before;
+  return abs(discontinuity) < sharp * step_before * step_after ? 0.0f : discontinuity;
 }
 
-// Whether two samples, next to each other, continue one surface, from the sharp bend at each. A
-// surface hardly bends at one of its ends, or bends the same way at both where it meets another in
-// a crease; a gap between two surfaces bends sharply one way and then the other.
-ALCOVE_INLINE bool samples_join(float bend_here, float bend_there) {
-  return bend_here * bend_there >= 0.0f;
+// Whether two samples, next to each other, continue one surface, from the sharp discontinuity at
+// each. A surface hardly bends at one of its ends, or bends the same way at both where it meets
+// another in a crease; a gap between two surfaces bends sharply one way and then the other.
+ALCOVE_INLINE bool samples_join(float discontinuity_here, float discontinuity_there) {
+  return discontinuity_here * discontinuity_there >= 0.0f;
 }
 
 // The same of samples of what the first layer hides. That is seen in shreds of many surfaces, where
 // two sharp bends in a row are hardly ever a crease.
-ALCOVE_INLINE bool hidden_samples_join(float bend_here, float bend_there) {
-  return bend_here * bend_there == 0.0f;
+ALCOVE_INLINE bool hidden_samples_join(float discontinuity_here, float discontinuity_there) {
+  return discontinuity_here * discontinuity_there == 0.0f;
 }
 
 // Where between two samples the edge of the second one's surface is taken to be, if they are on
@@ -77,12 +77,12 @@ ALCOVE_INLINE vec2 radius_crossing(vec3 here, float here_excess, vec3 there, flo
 
 // How far a surface goes on beyond the image's border, as a multiple of the way it was searched to
 // there.
-const float kContinuedReaches = 4.0f;
+const float kExtrapolationRatio = 4.0f;
 
 // Where a plane gets to that went `way` over the last step, all as slice_point() gives points, `x`
 // (x w) further on; before that where its w falls to a tenth of that of `here`, and at `here` if it
 // went nowhere.
-ALCOVE_INLINE vec3 continued_point(vec3 here, vec3 way, float x) {
+ALCOVE_INLINE vec3 extrapolated_point(vec3 here, vec3 way, float x) {
   float steps = way.x > 0.0f ? x / way.x : 0.0f;
   float away = max(-way.z, 0.0f);
   steps = min(steps, 0.9f * here.z / max(away, 1e-30f));

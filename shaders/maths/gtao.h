@@ -1,6 +1,6 @@
 // Ground-truth ambient occlusion within a slice (Jimenez et al. 2016, ATVI-TR-16-01, section 4).
 //
-// The memo's arc J(h) = (-cos(2h - g) + cos g + 2 h sin g) / 4, times the length of the projected
+// The paper's arc J(h) = (-cos(2h - g) + cos g + 2 h sin g) / 4, times the length of the projected
 // normal, is written here in the cosine of the horizon and the components of the normal: with c and
 // s the cosine and sine of the horizon and h its angle, each positive,
 //     length J = (s (s <n,v> - c <n,d>) + h <n,d>) / 2
@@ -41,7 +41,7 @@ ALCOVE_INLINE float slice_visibility(Slice s, float ahead, float behind) {
 // uniformly spaced slices is exactly 1, so it is both what a slice weighs and what normalises them.
 ALCOVE_INLINE float open_slice(Slice s) { return s.toward + slice_gamma(s) * s.along; }
 
-// Visibility of one side without the cosine of the normal (the memo's appendix A), from the view
+// Visibility of one side without the cosine of the normal (the paper's appendix A), from the view
 // vector to a light above the tangent plane; both sides of an open slice come to 1, at any tilt.
 ALCOVE_INLINE float uniform_arc(vec2 light) { return 0.5f * (1.0f - light.y); }
 
@@ -53,7 +53,7 @@ ALCOVE_INLINE float uniform_slice_visibility(Slice s, float ahead, float behind)
   return 1.0f - 0.5f * (ahead_cut + behind_cut);
 }
 
-// The memo's heuristic for occluders of unknown thickness: a sample above the horizon replaces it,
+// The paper's heuristic for occluders of unknown thickness: a sample above the horizon replaces it,
 // one below pulls it down by `blend` (0: infinitely thick; 0.05 is already much). Cosines.
 ALCOVE_INLINE float raise_horizon(float horizon, float found, float blend) {
   return found > horizon ? found : mix(horizon, found, blend);

@@ -2,7 +2,7 @@
 //
 // What the surface sees is taken as a cone around the bent normal, what it reflects as a cone
 // around the mirror direction; the part of the second that the first holds is the specular
-// visibility S, 1 for open. The memo divides by the whole lobe's cone, which darkens an open
+// visibility S, 1 for open. The paper divides by the whole lobe's cone, which darkens an open
 // surface at grazing angles; here it is divided by the part of the lobe's cone above the surface.
 // Names: `alpha` is the GGX width (perceptual roughness squared); every vector is unit.
 #ifndef ALCOVE_MATHS_GTSO_H
@@ -18,7 +18,7 @@ ALCOVE_MATHS_BEGIN
 // filtered visibility is no surer than that, and a cone's angle, whose cosine is sqrt(1 -
 // visibility), turns so little into 5 degrees, which would cost an open surface the whole of a
 // sharp lobe at grazing angles.
-ALCOVE_INLINE float settled_visibility(float visibility) {
+ALCOVE_INLINE float converged_visibility(float visibility) {
   return saturate(visibility * (128.0f / 127.0f));
 }
 

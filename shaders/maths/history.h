@@ -3,7 +3,7 @@
 #ifndef ALCOVE_MATHS_HISTORY_H
 #define ALCOVE_MATHS_HISTORY_H
 
-#include "signal.h"
+#include "raw_occlusion.h"
 
 ALCOVE_MATHS_BEGIN
 
@@ -14,10 +14,10 @@ ALCOVE_INLINE float held_apart(float expected, float found) {
 }
 
 // How far a texel of history that lies `apart`, of held_apart(), from the expected depth is still
-// of the same surface, [0,1]: 1 where it lies 0 from it, 0 from `tolerance` on. `slant` is the
+// of the same surface, [0,1]: 1 where it lies 0 from it, 0 from `tolerance` on. `n_dot_v` is the
 // cosine between normal and view vector: a surface seen edge-on runs deep within one texel.
-ALCOVE_INLINE float history_weight(float apart, float tolerance, float slant) {
-  return clamp(1.0f - apart * max(slant, 0.1f) * (1.0f / tolerance), 0.0f, 1.0f);
+ALCOVE_INLINE float history_weight(float apart, float tolerance, float n_dot_v) {
+  return clamp(1.0f - apart * max(n_dot_v, 0.1f) * (1.0f / tolerance), 0.0f, 1.0f);
 }
 
 // How far normals tell that a texel of history is of the same surface, [0,1], by the square of the
@@ -72,14 +72,14 @@ const float kFrameVariance = 0.08f;
 
 // About the variance of the visibility between a surface and what is read in its place where it has
 // no texel.
-const float kUnseenVariance = 0.003f;
+const float kUnobservedVariance = 0.003f;
 
 // The count to go on with after history was read between texels whose visibilities have this
 // variance, `missing` of them, [0,1], being of other surfaces. What that blurs no later frame
 // brings back, so it counts as so much more noise: `count` frames have kFrameVariance / count of
 // it.
 ALCOVE_INLINE float count_after_blur(float count, float variance, float missing) {
-  variance += kUnseenVariance * missing;
+  variance += kUnobservedVariance * missing;
   return count / (1.0f + count * variance * (1.0f / kFrameVariance));
 }
 
@@ -91,24 +91,25 @@ ALCOVE_INLINE float held_depth(vec2 scale_and_offset, float depth) {
 
 // What a texel of history knows besides its sums over lobes and directions, in 8 bytes.
 struct HistoryTexel {
-  float visibility;    // [0,1], to 2^-17
-  float open;          // of Signal, as pack_open() has it
-  float depth;         // linear, as held_depth() has it, to 2^-11 of itself
-  float count;         // frames, [0,kMaxHistoryFrames], whole
-  float recent;        // visibility of the last few frames, [0,1], to 2^-8
-  uint coarse_normal;  // CoarseNormal::bits
+  float visibility;       // [0,1], to 2^-17
+  float open;             // of RawOcclusion, as pack_open() has it
+  float depth;            // linear, as held_depth() has it, to 2^-11 of itself
+  float count;            // frames, [0,kMaxHistoryFrames], whole
+  float recent;           // visibility of the last few frames, [0,1], to 2^-8
+  uint quantised_normal;  // QuantisedNormal::bits
 };
 
 // The most that a pixel's history counts.
 const uint kMaxHistoryFrames = 127u;
 
 ALCOVE_INLINE uvec2 pack_history_texel(HistoryTexel texel) {
-  uint signal = pack_unorm(texel.visibility, 16u) | (pack_open(texel.open) << 16u);
+  uint raw_occlusion = pack_unorm(texel.visibility, 16u) | (pack_open(texel.open) << 16u);
   uint whole = uint(clamp(texel.count, 0.0f, float(kMaxHistoryFrames)) + 0.5f);
   uint state = packHalf2x16(vec2(max(texel.depth, 0.0f), 0.0f)) | (whole << 15u) |
                (pack_unorm(texel.recent, 7u) << 22u);
   // The normal has what either leaves: five bits, and three.
-  return uvec2(signal | (texel.coarse_normal << 27u), state | ((texel.coarse_normal >> 5u) << 29u));
+  return uvec2(raw_occlusion | (texel.quantised_normal << 27u),
+               state | ((texel.quantised_normal >> 5u) << 29u));
 }
 
 ALCOVE_INLINE HistoryTexel unpack_history_texel(uvec2 bits) {
@@ -118,7 +119,7 @@ ALCOVE_INLINE HistoryTexel unpack_history_texel(uvec2 bits) {
   texel.depth = unpackHalf2x16(bits.y & 0x7fffu).x;
   texel.count = float((bits.y >> 15u) & 127u);
   texel.recent = unpack_unorm(bits.y >> 22u, 7u);
-  texel.coarse_normal = (bits.x >> 27u) | ((bits.y >> 29u) << 5u);
+  texel.quantised_normal = (bits.x >> 27u) | ((bits.y >> 29u) << 5u);
   return texel;
 }
 

@@ -155,16 +155,16 @@ ALCOVE_INLINE float horizon_lobe(Slice s, LobeSlice lobe, float ahead, float beh
 }
 
 // What the sectors of a side leave visible of the lobe, as visible_part() has it of the cosine.
-ALCOVE_INLINE float visible_lobe(LobeSlice lobe, float side, float per_bearing, uint occluded,
-                                 float fill) {
-  float keep = 1.0f - fill;
+ALCOVE_INLINE float visible_lobe(LobeSlice lobe, float side, float per_diamond_angle, uint occluded,
+                                 float hidden_occlusion) {
+  float keep = 1.0f - hidden_occlusion;
   float whole = side > 0.0f ? lobe.ahead.whole : lobe.behind.whole;
   float sum = whole * (occluded == 0u ? 1.0f : ((occluded >> 31u) != 0u ? 0.0f : keep));
   uint ends = occluded ^ (occluded << 1u);
   float weight = 1.0f;
   if (ends != 0u) {
     do {
-      vec2 light = bearing_light(float(findLSB(ends)) / per_bearing);
+      vec2 light = diamond_angle_light(float(findLSB(ends)) / per_diamond_angle);
       sum += weight * lobe_light_arc(lobe, side, light);
       weight = weight > 0.0f ? -keep : keep;
       ends &= ends - 1u;

@@ -1,7 +1,7 @@
 // The light that returns from the occluders (Jimenez et al. 2016, section 5).
 //
 // An occluder of the same albedo as the surface, lit as the surface is, sends back part of what it
-// takes. The memo fits the result, per channel, as a cubic of the visibility.
+// takes. The paper fits the result, per channel, as a cubic of the visibility.
 #ifndef ALCOVE_MATHS_MULTI_BOUNCE_H
 #define ALCOVE_MATHS_MULTI_BOUNCE_H
 

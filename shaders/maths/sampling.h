@@ -19,11 +19,11 @@ ALCOVE_INLINE float slice_angle(uint slice, uint slice_count, float direction) {
   return kPi * (float(slice) + direction) / float(slice_count);
 }
 
-// The memo's layout (section 4.4): a 4x4 block of pixels holds 16 directions and 4 offsets, and six
-// frames turn every one of them, 96 directions in all, each once. A pixel's own six lie a sixth of
-// half a turn apart, neighbours in time far apart; every second one is shifted by 1/96 so that no
-// two of the 96 coincide.
-ALCOVE_INLINE SliceNoise memo_pattern(uvec2 pixel, uint frame) {
+// The paper's layout (section 4.4): a 4x4 block of pixels holds 16 directions and 4 offsets, and
+// six frames turn every one of them, 96 directions in all, each once. A pixel's own six lie a sixth
+// of half a turn apart, neighbours in time far apart; every second one is shifted by 1/96 so that
+// no two of the 96 coincide.
+ALCOVE_INLINE SliceNoise paper_pattern(uvec2 pixel, uint frame) {
   uint x = pixel.x & 3u;
   uint y = pixel.y & 3u;
   uint cell = (((x + y) & 3u) << 2u) + x;
@@ -43,8 +43,8 @@ ALCOVE_INLINE SliceNoise memo_pattern(uvec2 pixel, uint frame) {
 // frame by the golden ratio (directions) and an R2 number (offsets): no frame repeats, and any run
 // of frames covers both evenly. Where searches move through a block of pixels (`moves`), each is
 // back in its place or beside it after four frames: then it is a quarter of such numbers, so that
-// what a pixel itself is searched for is as even. (The memo's six rotations would meet the period
-// of four.) The order keeps what moves over the image even too: the memo's, a lattice, steps in
+// what a pixel itself is searched for is as even. (The paper's six rotations would meet the period
+// of four.) The order keeps what moves over the image even too: the paper's, a lattice, steps in
 // pace with some velocities, and what moves so is searched for few directions.
 ALCOVE_INLINE SliceNoise golden_pattern(uvec2 pixel, uint frame, bool moves) {
   uint x = pixel.x & 3u;
@@ -68,7 +68,7 @@ ALCOVE_INLINE SliceNoise golden_pattern(uvec2 pixel, uint frame, bool moves) {
 // of them search one direction (the order of deinterleaved rendering, Bavoil 2014, in place). The
 // block of thread `local` of group `group`; the groups of a whole number of 32x32 blocks meet each
 // block once.
-ALCOVE_INLINE uvec2 block_by_pattern(uvec2 group, uvec2 local) {
+ALCOVE_INLINE uvec2 tile_by_pattern(uvec2 group, uvec2 local) {
   return uvec2(((group.x >> 2u) * 8u + local.x) * 4u + (group.x & 3u),
                ((group.y >> 2u) * 8u + local.y) * 4u + (group.y & 3u));
 }

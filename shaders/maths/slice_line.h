@@ -2,8 +2,8 @@
 //
 // A sample snapped to a texel's centre lies beside the line. If it is of the surface's own tangent
 // plane its depth is moved onto the line along that plane (tangent_share), so an open plane stays
-// exactly open at any tilt and any snapping; the further it stands off the plane, the less of that.
-// (The memo projects nothing; others use the sample as it is, and see a tilted plane occlude
+// exactly open at any tilt and any snap_to_texels; the further it stands off the plane, the less of
+// that. (The paper projects nothing; others use the sample as it is, and see a tilted plane occlude
 // itself.)
 //
 // In the plane a point is (x, y): x along the slice's direction, y along the view vector, in scene
@@ -19,27 +19,30 @@
 
 ALCOVE_MATHS_BEGIN
 
-// LineSample::line of the sky.
-ALCOVE_INLINE float sky_line(bool perspective) {
+// SliceSample::inverse_depth of the sky.
+ALCOVE_INLINE float sky_inverse_depth(bool perspective) {
   return perspective ? 1.0f / kSkyDepth : kSkyDepth;
 }
 
-// LineSample::line of a raw depth that is not the sky's, by line_from_ndc's scale and offset:
-// before the near plane it is the near plane's, beyond the sky the sky's.
-ALCOVE_INLINE float line_of_ndc(vec2 line_from_ndc, float depth_ndc, bool perspective) {
-  float line = line_from_ndc.x * clamp(depth_ndc, 0.0f, 1.0f) + line_from_ndc.y;
-  return perspective ? max(line, sky_line(true)) : min(line, sky_line(false));
+// SliceSample::inverse_depth of a raw depth that is not the sky's, by inverse_depth_from_ndc's
+// scale and offset: before the near plane it is the near plane's, beyond the sky the sky's.
+ALCOVE_INLINE float inverse_depth_of_ndc(vec2 inverse_depth_from_ndc, float depth_ndc,
+                                         bool perspective) {
+  float inverse_depth =
+      inverse_depth_from_ndc.x * clamp(depth_ndc, 0.0f, 1.0f) + inverse_depth_from_ndc.y;
+  return perspective ? max(inverse_depth, sky_inverse_depth(true))
+                     : min(inverse_depth, sky_inverse_depth(false));
 }
 
 // Whether a pixel's back face is where the occluder ends that begins at its front: it lies behind
-// by more than depth buffers round, and is not the sky. Both as LineSample::line.
+// by more than depth buffers round, and is not the sky. Both as SliceSample::inverse_depth.
 ALCOVE_INLINE bool ends_occluder(float front, float back, bool perspective) {
   float behind = perspective ? front - back : back - front;
-  return behind > 1e-4f * abs(front) && back != sky_line(perspective);
+  return behind > 1e-4f * abs(front) && back != sky_inverse_depth(perspective);
 }
 
-// That of two LineSample::line which is further from the eye.
-ALCOVE_INLINE float farther_line(float a, float b, bool perspective) {
+// That of two SliceSample::inverse_depth which is further from the eye.
+ALCOVE_INLINE float farther_inverse_depth(float a, float b, bool perspective) {
   return perspective ? min(a, b) : max(a, b);
 }
 
@@ -75,47 +78,47 @@ ALCOVE_INLINE SliceLine make_slice_line(vec2 per_px, vec3 direction, vec3 view) 
 }
 
 // (x w, y w, w) of the point `offset_px` pixels along the line (negative: against it), where
-// `line` is LineSample::line.
-ALCOVE_INLINE vec3 slice_point(SliceLine slice_line, float offset_px, float line,
+// `line` is SliceSample::inverse_depth.
+ALCOVE_INLINE vec3 slice_point(SliceLine slice_line, float offset_px, float inverse_depth,
                                float centre_depth, bool perspective) {
-  float rise = perspective ? centre_depth * line - 1.0f : centre_depth - line;
+  float rise = perspective ? centre_depth * inverse_depth - 1.0f : centre_depth - inverse_depth;
   return vec3(offset_px * slice_line.x_per_step,
               offset_px * slice_line.y_per_step + rise * slice_line.y_per_depth,
-              perspective ? line : 1.0f);
+              perspective ? inverse_depth : 1.0f);
 }
 
-// The surface's tangent plane on the image. LineSample::line, 1/depth in perspective and depth in
-// orthographic views, is linear there.
-struct TangentLine {
-  float line;     // at the surface's own pixel
-  vec2 gradient;  // for each pixel
-  float fading;   // of a sample's correction with its distance from the plane
+// The surface's tangent plane on the image. SliceSample::inverse_depth, 1/depth in perspective and
+// depth in orthographic views, is linear there.
+struct TangentPlane {
+  float inverse_depth;  // at the surface's own pixel
+  vec2 gradient;        // for each pixel
+  float fading;         // of a sample's correction with its distance from the plane
 };
 
 // `normal` and `view` are unit, in view space.
-ALCOVE_INLINE TangentLine make_tangent_line(vec2 per_px, vec3 normal, vec3 view, float depth,
-                                            bool perspective) {
+ALCOVE_INLINE TangentPlane make_tangent_plane(vec2 per_px, vec3 normal, vec3 view, float depth,
+                                              bool perspective) {
   // Seen edge-on, the plane would run to any depth within a pixel.
-  float slant = max(dot(normal, view), 0.01f);
-  TangentLine t;
-  t.line = perspective ? 1.0f / depth : depth;
-  float rise = view.z / slant * (perspective ? -t.line : 1.0f);
+  float n_dot_v = max(dot(normal, view), 0.01f);
+  TangentPlane t;
+  t.inverse_depth = perspective ? 1.0f / depth : depth;
+  float rise = view.z / n_dot_v * (perspective ? -t.inverse_depth : 1.0f);
   t.gradient = vec2(per_px.x * normal.x * rise, per_px.y * normal.y * rise);
-  t.fading = 60.0f * slant * slant / (abs(per_px.y) * (perspective ? t.line : 1.0f));
+  t.fading = 60.0f * n_dot_v * n_dot_v / (abs(per_px.y) * (perspective ? t.inverse_depth : 1.0f));
   return t;
 }
 
 // How far a sample, `off_plane` off the tangent plane in `line` and so many pixels away, is moved
 // towards the exact place it stands for along that plane: 1 on the plane, which stays exactly flat,
 // 0 off it, where an occluder stays where it was found.
-ALCOVE_INLINE float tangent_share(TangentLine t, float off_plane, float offset_px) {
+ALCOVE_INLINE float tangent_share(TangentPlane t, float off_plane, float offset_px) {
   return max(1.0f - t.fading * abs(off_plane) / offset_px, 0.0f);
 }
 
 // A sample's `line` after a correction. In perspective it stays before the eye, and the sky afar.
-ALCOVE_INLINE float moved_line(float line, float by, bool perspective) {
-  float moved = line + by;
-  return perspective ? clamp(moved, 0.1f * line, 10.0f * line) : moved;
+ALCOVE_INLINE float moved_inverse_depth(float inverse_depth, float by, bool perspective) {
+  float moved = inverse_depth + by;
+  return perspective ? clamp(moved, 0.1f * inverse_depth, 10.0f * inverse_depth) : moved;
 }
 
 // Pixels along the line that a sphere of radius `radius` (scene units) around the point spans on

@@ -1,8 +1,8 @@
 // Irradiance from nine coefficients of the light around a point (Ramamoorthi and Hanrahan 2001).
 //
 // The basis is the real, orthonormal one of order 2, in the sequence (0,0); (1,-1), (1,0), (1,1);
-// (2,-2), (2,-1), (2,0), (2,1), (2,2), without the Condon-Shortley phase: element 1 is along +y,
-// 2 along +z, 3 along +x. Coefficients are of radiance, not yet of irradiance.
+// (2,-2), (2,-1), (2,0), (2,1), (2,2), without the Condon-Shortley interleave_offset: element 1 is
+// along +y, 2 along +z, 3 along +x. Coefficients are of radiance, not yet of irradiance.
 #ifndef ALCOVE_MATHS_SPHERICAL_HARMONICS_H
 #define ALCOVE_MATHS_SPHERICAL_HARMONICS_H
 

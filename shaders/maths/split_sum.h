@@ -37,9 +37,9 @@ ALCOVE_INLINE vec3 specular_reflectance(vec3 f0, vec2 table_value) {
               min(f0.z * table_value.x + table_value.y, 1.0f));
 }
 
-// Where a lobe's light is looked up: rough lobes lean from the mirror direction to the normal, as
-// the surface cuts off what is under it (Lagarde and de Rousiers 2014). It halves the split sum's
-// error from roughness 0.5 on.
+// Where a lobe's light is looked up: rough lobes stereographic from the mirror direction to the
+// normal, as the surface cuts off what is under it (Lagarde and de Rousiers 2014). It halves the
+// split sum's error from roughness 0.5 on.
 ALCOVE_INLINE vec3 dominant_direction(vec3 normal, vec3 mirror, float roughness) {
   float alpha = clamp(roughness * roughness, 0.0f, 1.0f);
   float smooth_part = 1.0f - alpha;

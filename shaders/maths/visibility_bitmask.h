@@ -1,12 +1,12 @@
 // Visibility of one side of a slice as 32 sectors, for occluders of finite thickness (after
 // Therrien, Levesque and Gilet 2023).
 //
-// Angles are measured on a square instead of a circle, as bearings: 0 along the view vector, 1
-// across it, 2 against it, for one division and no root or arc cosine. A side's sectors are equal
-// steps of bearing from the view vector (sector 0) to the tangent plane. What weighs them comes
-// last: any weight with an antiderivative is integrated exactly at the ends of the runs of occluded
-// sectors, of which a side has one or two. So one search serves visibility, bent normal and any
-// lobe.
+// Angles are measured on a square instead of a circle, as diamond_angles: 0 along the view vector,
+// 1 across it, 2 against it, for one division and no root or arc cosine. A side's sectors are equal
+// steps of diamond_angle from the view vector (sector 0) to the tangent plane. What weighs them
+// comes last: any weight with an antiderivative is integrated exactly at the ends of the runs of
+// occluded sectors, of which a side has one or two. So one search serves visibility, bent normal
+// and any lobe.
 #ifndef ALCOVE_MATHS_VISIBILITY_BITMASK_H
 #define ALCOVE_MATHS_VISIBILITY_BITMASK_H
 
@@ -21,12 +21,12 @@ const uint kSectorCount = 32u;
 
 // Of a point in the slice's plane, x outwards from the view vector (at least 0), y along it; any
 // length. In [0,2].
-ALCOVE_INLINE float bearing(vec2 point) {
+ALCOVE_INLINE float diamond_angle(vec2 point) {
   return 1.0f - point.y / max(point.x + abs(point.y), 1e-30f);
 }
 
-// Sine and cosine of the angle to the view vector at a bearing in [0,2].
-ALCOVE_INLINE vec2 bearing_light(float at) {
+// Sine and cosine of the angle to the view vector at a diamond_angle in [0,2].
+ALCOVE_INLINE vec2 diamond_angle_light(float at) {
   float y = 1.0f - at;
   float x = 1.0f - abs(y);
   float inverse = inversesqrt(x * x + y * y);
@@ -36,15 +36,15 @@ ALCOVE_INLINE vec2 bearing_light(float at) {
 // Sine and cosine of the angle at which a side meets the tangent plane.
 ALCOVE_INLINE vec2 tangent_light(Slice s, float side) { return vec2(s.cosine, -side * s.sine); }
 
-// Sectors of a side for each unit of bearing, at least 16.
-ALCOVE_INLINE float sectors_per_bearing(Slice s, float side) {
-  return float(kSectorCount) / max(bearing(tangent_light(s, side)), 1e-4f);
+// Sectors of a side for each unit of diamond_angle, at least 16.
+ALCOVE_INLINE float sectors_per_diamond_angle(Slice s, float side) {
+  return float(kSectorCount) / max(diamond_angle(tangent_light(s, side)), 1e-4f);
 }
 
 // Position of a point among the sectors of its side, in [0,32]; what lies under the tangent plane
 // counts as on it.
-ALCOVE_INLINE float sector_position(float per_bearing, vec2 point) {
-  return min(bearing(point) * per_bearing, float(kSectorCount));
+ALCOVE_INLINE float sector_position(float per_diamond_angle, vec2 point) {
+  return min(diamond_angle(point) * per_diamond_angle, float(kSectorCount));
 }
 
 // The sectors from one position in [0,32] to another that is no less, to the nearest boundaries.
@@ -86,20 +86,21 @@ ALCOVE_INLINE VisiblePart add_part(VisiblePart sum, float weight, Slice s, float
 // What part of what lies behind the occluders of a side counts as occluded, [0,1]. `front` is the
 // mean width of the fronts that the side's columns show, [0,1], in parts of its way along the image
 // from the first of them on: a ray is hidden all the way behind a wall, seen but for an inch behind
-// a blade of grass, and seen between the slats of a blind however much of the way they fill. `fill`
-// is the mean over all `front`; 0 is nothing behind any front, 1 everything.
-ALCOVE_INLINE float fill_behind(float front, float fill) {
-  float exponent = 1.0f / max(fill, 1e-3f) - 1.0f;
+// a blade of grass, and seen between the slats of a blind however much of the way they
+// hidden_occlusion. `hidden_occlusion` is the mean over all `front`; 0 is nothing behind any front,
+// 1 everything.
+ALCOVE_INLINE float hidden_occlusion_behind(float front, float hidden_occlusion) {
+  float exponent = 1.0f / max(hidden_occlusion, 1e-3f) - 1.0f;
   float part = pow(clamp(front, 1e-6f, 1.0f), max(exponent, 0.0f));
-  return fill > 0.0f ? part : 0.0f;
+  return hidden_occlusion > 0.0f ? part : 0.0f;
 }
 
 // Exact over the visible sectors. What lies behind an occluder, up to the tangent plane, is
-// unknown: the part `fill` of it, [0,1], counts as occluded too. An open side is exactly its open
-// arc and a full one exactly 0.
-ALCOVE_INLINE VisiblePart visible_part(Slice s, float side, float per_bearing, uint occluded,
-                                       float fill, PartRequest request) {
-  float keep = 1.0f - fill;
+// unknown: the part `hidden_occlusion` of it, [0,1], counts as occluded too. An open side is
+// exactly its open arc and a full one exactly 0.
+ALCOVE_INLINE VisiblePart visible_part(Slice s, float side, float per_diamond_angle, uint occluded,
+                                       float hidden_occlusion, PartRequest request) {
+  float keep = 1.0f - hidden_occlusion;
   VisiblePart sum;
   sum.arc = 0.0f;
   sum.bent = vec2(0.0f, 0.0f);
@@ -111,7 +112,7 @@ ALCOVE_INLINE VisiblePart visible_part(Slice s, float side, float per_bearing, u
   weight = 1.0f;
   if (ends != 0u) {
     do {
-      vec2 light = bearing_light(float(findLSB(ends)) / per_bearing);
+      vec2 light = diamond_angle_light(float(findLSB(ends)) / per_diamond_angle);
       sum = add_part(sum, weight, s, side, light, request);
       weight = weight > 0.0f ? -keep : keep;
       ends &= ends - 1u;

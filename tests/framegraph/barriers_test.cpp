@@ -92,14 +92,14 @@ TEST(Barriers, WhatOneStageSeesInOneWayItDoesNotSeeInAnother) {
 
 State state_of(const Access& access) { return {access.stages, access.access, access.layout}; }
 
-class Arrivals : public testing::Test {
+class InitialStates : public testing::Test {
  protected:
-  Texture import(const State& arrival, const State& departure = {}) {
+  Texture import(const State& initial_state, const State& final_state = {}) {
     return graph_.import_texture("import", {.image = fake_handle<VkImage>(),
                                             .desc = {VK_FORMAT_R8_UNORM, Extent::absolute(8, 8)},
                                             .usage = VK_IMAGE_USAGE_SAMPLED_BIT,
-                                            .arrival = arrival,
-                                            .departure = departure});
+                                            .initial_state = initial_state,
+                                            .final_state = final_state});
   }
   Plan compiled() {
     const auto plan = compile(graph_);
@@ -111,23 +111,23 @@ class Arrivals : public testing::Test {
   Graph graph_;
 };
 
-TEST_F(Arrivals, WhatOneStageReadIsYetToBeSeenByAnother) {
-  for (const Access& arrival : {access::sampled_compute, access::sampled_fragment}) {
+TEST_F(InitialStates, WhatOneStageReadIsYetToBeSeenByAnother) {
+  for (const Access& initial_state : {access::sampled_compute, access::sampled_fragment}) {
     graph_.reset();
-    const Texture texture = import(state_of(arrival));
+    const Texture texture = import(state_of(initial_state));
     PassBuilder reader = graph_.add_pass("reader");
     reader.read(texture, access::sampled_fragment);
     reader.side_effect();
     const Plan plan = compiled();
-    const bool same = arrival.stages == access::sampled_fragment.stages;
+    const bool same = initial_state.stages == access::sampled_fragment.stages;
     ASSERT_EQ(plan.transitions.size(), same ? 0u : 1u);
     if (same) continue;
-    EXPECT_EQ(plan.transitions[0].src_stages, arrival.stages);
+    EXPECT_EQ(plan.transitions[0].src_stages, initial_state.stages);
     EXPECT_EQ(plan.transitions[0].dst_access, access::sampled_fragment.access);
   }
 }
 
-TEST_F(Arrivals, WhatNoPassReadsIsSeenByThoseItDepartsTo) {
+TEST_F(InitialStates, WhatNoPassReadsIsSeenByThoseItDepartsTo) {
   const State written{VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
                       VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
                       VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
@@ -138,7 +138,7 @@ TEST_F(Arrivals, WhatNoPassReadsIsSeenByThoseItDepartsTo) {
   EXPECT_EQ(plan.transitions[0].dst_stages, access::sampled_fragment.stages);
 }
 
-TEST_F(Arrivals, AHistoryIsSeenByWhateverReadsItNext) {
+TEST_F(InitialStates, AHistoryIsSeenByWhateverReadsItNext) {
   const auto declare = [&](const Access& own, const Access& old) {
     graph_.reset();
     const TextureHistory history =
@@ -164,7 +164,7 @@ TEST_F(Arrivals, AHistoryIsSeenByWhateverReadsItNext) {
   EXPECT_EQ(seen.dst_stages, VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT);
 }
 
-TEST_F(Arrivals, AHistoryThatWasWrittenInPartIsNotValid) {
+TEST_F(InitialStates, AHistoryThatWasWrittenInPartIsNotValid) {
   const auto declare = [&](Range range) {
     graph_.reset();
     const TextureHistory history =

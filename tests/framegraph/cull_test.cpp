@@ -29,8 +29,8 @@ TEST_F(Cull, WhatNobodyReadsCostsNothing) {
   graph_.output(wanted);
   const Plan result = plan();
   ASSERT_EQ(result.passes.size(), 1u);
-  EXPECT_EQ(result.fates[0].fate, Fate::output);
-  EXPECT_EQ(result.fates[1].fate, Fate::unread);
+  EXPECT_EQ(result.cull_reasons[0].cull_reason, CullReason::output);
+  EXPECT_EQ(result.cull_reasons[1].cull_reason, CullReason::unread);
   EXPECT_EQ(result.placements[1].heap, kNone);
 }
 
@@ -42,17 +42,17 @@ TEST_F(Cull, AChainIsKeptByItsEndAndSaysSo) {
   second = pass.write(second, access::storage_write_compute);
   graph_.output(second);
   const Plan result = plan();
-  EXPECT_EQ(result.fates[0].fate, Fate::feeds_pass);
-  EXPECT_EQ(result.fates[0].witness, 1u);
-  EXPECT_EQ(result.fates[0].resource, 0u);
+  EXPECT_EQ(result.cull_reasons[0].cull_reason, CullReason::feeds_pass);
+  EXPECT_EQ(result.cull_reasons[0].consumer, 1u);
+  EXPECT_EQ(result.cull_reasons[0].resource, 0u);
 }
 
 TEST_F(Cull, ASideEffectKeepsAPassThatWritesNothing) {
   graph_.add_pass("kept").side_effect();
   (void)graph_.add_pass("gone");
   const Plan result = plan();
-  EXPECT_EQ(result.fates[0].fate, Fate::side_effect);
-  EXPECT_EQ(result.fates[1].fate, Fate::writes_nothing);
+  EXPECT_EQ(result.cull_reasons[0].cull_reason, CullReason::side_effect);
+  EXPECT_EQ(result.cull_reasons[1].cull_reason, CullReason::writes_nothing);
 }
 
 TEST_F(Cull, AWriteThatDiscardsMakesEarlierWritesUnread) {
@@ -60,8 +60,8 @@ TEST_F(Cull, AWriteThatDiscardsMakesEarlierWritesUnread) {
   texture = write("second", texture, Contents::discard);
   graph_.output(texture);
   const Plan result = plan();
-  EXPECT_EQ(result.fates[0].fate, Fate::unread);
-  EXPECT_EQ(result.fates[1].fate, Fate::output);
+  EXPECT_EQ(result.cull_reasons[0].cull_reason, CullReason::unread);
+  EXPECT_EQ(result.cull_reasons[1].cull_reason, CullReason::output);
 }
 
 TEST_F(Cull, AnOptionalOutputThatNobodyReadsHasNoMemory) {
@@ -88,9 +88,9 @@ TEST_F(Cull, OneMipKeepsOnlyItsWriter) {
   reader.read(texture, access::sampled_compute, Range::mip(1));
   reader.side_effect();
   const Plan result = plan();
-  EXPECT_EQ(result.fates[0].fate, Fate::unread);
-  EXPECT_EQ(result.fates[1].fate, Fate::feeds_pass);
-  EXPECT_EQ(result.fates[2].fate, Fate::unread);
+  EXPECT_EQ(result.cull_reasons[0].cull_reason, CullReason::unread);
+  EXPECT_EQ(result.cull_reasons[1].cull_reason, CullReason::feeds_pass);
+  EXPECT_EQ(result.cull_reasons[2].cull_reason, CullReason::unread);
 }
 
 TEST_F(Cull, AHistoryKeepsItsWriterOnlyWhereItIsRead) {
@@ -105,8 +105,8 @@ TEST_F(Cull, AHistoryKeepsItsWriterOnlyWhereItIsRead) {
   graph_.output(result);
   const Plan kept = plan();
   EXPECT_EQ(kept.passes.size(), 2u);
-  EXPECT_EQ(kept.fates[1].fate, Fate::feeds_history);
-  EXPECT_EQ(kept.fates[1].witness, 0u);
+  EXPECT_EQ(kept.cull_reasons[1].cull_reason, CullReason::feeds_history);
+  EXPECT_EQ(kept.cull_reasons[1].consumer, 0u);
 }
 
 TEST_F(Cull, AnUpdateInPlaceIsKeptWhereTheHistoryIsRead) {
@@ -122,8 +122,8 @@ TEST_F(Cull, AnUpdateInPlaceIsKeptWhereTheHistoryIsRead) {
   graph_.output(result);
   const Plan kept = plan();
   EXPECT_EQ(kept.passes.size(), 3u);
-  EXPECT_EQ(kept.fates[2].fate, Fate::feeds_history);
-  EXPECT_EQ(kept.fates[2].witness, 1u);
+  EXPECT_EQ(kept.cull_reasons[2].cull_reason, CullReason::feeds_history);
+  EXPECT_EQ(kept.cull_reasons[2].consumer, 1u);
 }
 
 }  // namespace

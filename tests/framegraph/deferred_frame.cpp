@@ -101,7 +101,7 @@ class DeferredFrame {
     import.image = fake_handle<VkImage>();
     import.desc = {VK_FORMAT_R8G8B8A8_UNORM, Extent::absolute(width_, height_)};
     import.usage = VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-    import.departure = access::present;
+    import.final_state = access::present;
     Texture back_buffer = graph_.import_texture("back buffer", import);
     PassBuilder pass = graph_.add_pass("present");
     pass.read(from, access::transfer_source);

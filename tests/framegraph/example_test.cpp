@@ -69,8 +69,8 @@ TEST(Example, OfTheReadmeRuns) {
   depth.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
   depth.image = gpu.make_image(depth.desc, depth.usage);
   // The engine left it so; here nothing did, and its contents do not matter.
-  depth.arrival = {VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT, 0,
-                   VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+  depth.initial_state = {VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT, 0,
+                         VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
   gpu.change_layout(depth.image, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
   const HostBuffer host = gpu.make_host_buffer(VkDeviceSize{4} * 16 * 9);
   {

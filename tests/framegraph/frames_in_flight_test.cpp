@@ -79,8 +79,8 @@ void add_clear(Graph& graph, Texture& texture, const char* name = "clear") {
 // The frame before copied into it.
 ImportedBuffer arriving(const HostBuffer& host) {
   ImportedBuffer import = Gpu::imported(host);
-  import.arrival = {VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                    VK_IMAGE_LAYOUT_UNDEFINED};
+  import.initial_state = {VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                          VK_IMAGE_LAYOUT_UNDEFINED};
   return import;
 }
 
@@ -146,9 +146,9 @@ TEST_F(FramesInFlight, WhatComesAfterADepartureComesAfterTheFramesReads) {
         "image", {.image = image,
                   .desc = desc,
                   .usage = kUsage,
-                  .arrival = {VK_PIPELINE_STAGE_2_BLIT_BIT, 0, VK_IMAGE_LAYOUT_UNDEFINED},
-                  .departure = {VK_PIPELINE_STAGE_2_BLIT_BIT, VK_ACCESS_2_TRANSFER_READ_BIT,
-                                VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL}});
+                  .initial_state = {VK_PIPELINE_STAGE_2_BLIT_BIT, 0, VK_IMAGE_LAYOUT_UNDEFINED},
+                  .final_state = {VK_PIPELINE_STAGE_2_BLIT_BIT, VK_ACCESS_2_TRANSFER_READ_BIT,
+                                  VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL}});
     add_clear(graph, texture);
     add_read(graph, texture, out);
     run(executor, graph, frame);

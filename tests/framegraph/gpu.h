@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "alcove/framegraph/framegraph.h"
-#include "device/vulkan_device.h"
+#include "render/vulkan_device.h"
 
 namespace alcove::framegraph {
 
@@ -141,7 +141,7 @@ class Gpu {
     import.desc.size = host.size;
     import.usage = VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
     import.has_contents = false;
-    import.departure = buffer_access::host_read;
+    import.final_state = buffer_access::host_read;
     return import;
   }
 

@@ -14,9 +14,9 @@ void declare(Graph& graph, passes::Kernels& kernels, VkImage image, passes::Qual
   engine_depth.image = image;
   engine_depth.desc = {VK_FORMAT_R32_SFLOAT, Extent::absolute(960, 540)};
   engine_depth.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
-  engine_depth.arrival = {VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
-                          VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
-                          VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
+  engine_depth.initial_state = {VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                                VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
+                                VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
   const passes::Frame frame{graph, kernels, {}};
   passes::OcclusionSettings settings = passes::quality_settings(quality, 0.5f);
   settings.bent_normal = true;

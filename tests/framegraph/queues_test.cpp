@@ -25,8 +25,8 @@ class Queues : public testing::Test {
         name, {.image = fake_handle<VkImage>(),
                .desc = kDesc,
                .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
-               .arrival = state,
-               .departure = state});
+               .initial_state = state,
+               .final_state = state});
   }
   Plan compiled() {
     const auto plan = compile(graph_, limits_);

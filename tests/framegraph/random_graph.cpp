@@ -123,7 +123,7 @@ class Declarer {
                      VK_SAMPLE_COUNT_1_BIT};
       import.usage = ~VkImageUsageFlags{0};
       if (full)
-        import.arrival =
+        import.initial_state =
             dice_.chance(128)
                 ? State{VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
                         VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
@@ -132,9 +132,9 @@ class Declarer {
                         dice_.chance(128) ? VK_ACCESS_2_SHADER_SAMPLED_READ_BIT : VkAccessFlags2{0},
                         VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
       if (departs)
-        import.departure = {VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
-                            VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
-                            VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+        import.final_state = {VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
+                              VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
+                              VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
       known.handle = graph_.import_texture(numbered('i', known_.size()), import);
     } else {
       ImportedBuffer import;
@@ -143,11 +143,11 @@ class Declarer {
       import.usage = ~VkBufferUsageFlags{0};
       import.has_contents = full;
       if (full)
-        import.arrival = {
+        import.initial_state = {
             VK_PIPELINE_STAGE_2_COPY_BIT,
             dice_.chance(128) ? VK_ACCESS_2_TRANSFER_WRITE_BIT : VK_ACCESS_2_TRANSFER_READ_BIT,
             VK_IMAGE_LAYOUT_UNDEFINED};
-      if (departs) import.departure = buffer_access::host_read;
+      if (departs) import.final_state = buffer_access::host_read;
       known.buffer = graph_.import_buffer(numbered('i', known_.size()), import);
     }
     keep(std::move(known), full);

@@ -43,14 +43,14 @@ class Tracer {
       const std::uint32_t external = graph_.resources[r].external;
       if (external == kNone) continue;
       const ExternalRecord& record = graph_.externals[external];
-      outside(r, record.arrival, frame, static_cast<std::size_t>(record.queue));
+      outside(r, record.initial_state, frame, static_cast<std::size_t>(record.queue));
     }
     for (std::uint32_t s = 0; s < plan_.submissions.size(); ++s) unroll_submission(s, frame);
     for (std::uint32_t r = 0; r < graph_.resources.size(); ++r) {
       const std::uint32_t external = graph_.resources[r].external;
-      if (external != kNone && graph_.externals[external].has_departure &&
+      if (external != kNone && graph_.externals[external].has_final_state &&
           plan_.placements[r].first != kNone)
-        depart(r, graph_.externals[external].departure, frame);
+        depart(r, graph_.externals[external].final_state, frame);
     }
   }
 
@@ -97,9 +97,9 @@ class Tracer {
     add_access(access, queue, frame);
   }
 
-  void depart(std::uint32_t resource, const State& departure, std::uint32_t frame) {
+  void depart(std::uint32_t resource, const State& final_state, std::uint32_t frame) {
     const std::size_t first = trace_.operations.size();
-    outside(resource, departure, frame, static_cast<std::size_t>(QueueClass::graphics));
+    outside(resource, final_state, frame, static_cast<std::size_t>(QueueClass::graphics));
     for (std::size_t i = first; i < trace_.operations.size(); ++i)
       trace_.operations[i].departs = true;
   }

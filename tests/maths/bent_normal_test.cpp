@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "maths/gtao.h"
-#include "maths/signal.h"
+#include "maths/raw_occlusion.h"
 #include "random_input.h"
 #include "slice_truth.h"
 
@@ -75,10 +75,11 @@ TEST(BentNormal, OfAnOpenSurfaceIsItsNormalFromAnyOneSlice) {
     const auto [s, direction] = turned(random.uniform(0.0f, float(kPi)), normal, view);
     const float open = maths::open_slice(s);
     const vec3 part = maths::slice_bent_normal(s, direction, view, -1.0f, -1.0f);
-    const vec3 bend = maths::settled_bend(maths::bend_of(part, open, normal),
-                                          maths::open_bend(s, direction, view, normal, open), 1.0f);
+    const vec3 residual =
+        maths::converged_residual(maths::residual_of(part, open, normal),
+                                  maths::expected_residual(s, direction, view, normal, open), 1.0f);
     if (open > 1e-2f) {
-      EXPECT_LT(distance(maths::finish_bent_normal(bend, open, normal), normal), 1e-4f);
+      EXPECT_LT(distance(maths::finish_bent_normal(residual, open, normal), normal), 1e-4f);
     }
   }
 }
@@ -91,12 +92,14 @@ TEST(BentNormal, OpenBendsCancelOverAllSlices) {
     float largest = 0.0f;
     for (const float phi : even_angles(512)) {
       const auto [s, direction] = turned(phi, normal, view);
-      const vec3 bend = maths::open_bend(s, direction, view, normal, maths::open_slice(s));
-      largest = std::max({largest, std::abs(bend.x), std::abs(bend.y), std::abs(bend.z)});
-      sum += bend;
+      const vec3 residual =
+          maths::expected_residual(s, direction, view, normal, maths::open_slice(s));
+      largest =
+          std::max({largest, std::abs(residual.x), std::abs(residual.y), std::abs(residual.z)});
+      sum += residual;
     }
     EXPECT_LT(length(sum) / 512.0f, 1e-4f);
-    EXPECT_LT(largest, maths::kLargestBend);
+    EXPECT_LT(largest, maths::kLargestResidual);
   }
 }
 
@@ -112,7 +115,7 @@ TEST(BentNormal, OfFewSlicesErrsLessOnceSettled) {
         maths::slice_direction(maths::make_view_basis(view), random.uniform(0.0f, 6.28f));
     const float height = random.uniform(0.0f, 3.0f);
     const auto found = [&](const std::vector<float>& angles, bool settle) {
-      vec3 bend(0), open_bend(0);
+      vec3 residual(0), expected_residual(0);
       float visible = 0.0f, open = 0.0f;
       for (const float phi : angles) {
         const auto [s, direction] = turned(phi, normal, view);
@@ -127,10 +130,12 @@ TEST(BentNormal, OfFewSlicesErrsLessOnceSettled) {
         const float all = maths::open_slice(s);
         visible += seen;
         open += all;
-        bend += maths::bend_of(part, seen, normal);
-        open_bend += maths::open_bend(s, direction, view, normal, all);
+        residual += maths::residual_of(part, seen, normal);
+        expected_residual += maths::expected_residual(s, direction, view, normal, all);
       }
-      const vec3 sum = settle ? maths::settled_bend(bend, open_bend, visible / open) : bend;
+      const vec3 sum = settle
+                           ? maths::converged_residual(residual, expected_residual, visible / open)
+                           : residual;
       return maths::finish_bent_normal(sum, visible, normal);
     };
     const vec3 truth = found(even_angles(256), false);

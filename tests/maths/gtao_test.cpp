@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "maths/signal.h"
+#include "maths/raw_occlusion.h"
 #include "random_input.h"
 #include "slice_truth.h"
 

@@ -133,10 +133,10 @@ TEST(Gtso, GrowsWithVisibilityAndStaysInRange) {
 }
 
 TEST(Gtso, VisibilityIsSettledOnlyNearItsEnds) {
-  EXPECT_EQ(maths::settled_visibility(0.0f), 0.0f);
-  EXPECT_EQ(maths::settled_visibility(127.5f / 128.0f), 1.0f);
+  EXPECT_EQ(maths::converged_visibility(0.0f), 0.0f);
+  EXPECT_EQ(maths::converged_visibility(127.5f / 128.0f), 1.0f);
   for (float v = 0.0f; v <= 1.0f; v += 0.01f) {
-    EXPECT_NEAR(maths::settled_visibility(v), v, 1.0f / 127.0f);
+    EXPECT_NEAR(maths::converged_visibility(v), v, 1.0f / 127.0f);
   }
 }
 

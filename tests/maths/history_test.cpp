@@ -12,14 +12,14 @@ namespace alcove::maths_test {
 namespace {
 
 maths::HistoryTexel texel_of(float visibility, float open, float depth, float count, float recent,
-                             unsigned coarse_normal) {
+                             unsigned quantised_normal) {
   maths::HistoryTexel texel;
   texel.visibility = visibility;
   texel.open = open;
   texel.depth = depth;
   texel.count = count;
   texel.recent = recent;
-  texel.coarse_normal = coarse_normal;
+  texel.quantised_normal = quantised_normal;
   return texel;
 }
 
@@ -114,7 +114,7 @@ TEST(History, WhatIsBlurredCountsAsNoiseOfItsVariance) {
     // The variance of a mean of so many frames, before and after.
     const float before = maths::kFrameVariance / count;
     const float after = maths::kFrameVariance / maths::count_after_blur(count, variance, missing);
-    EXPECT_NEAR(after, before + variance + maths::kUnseenVariance * missing, 1e-5f * after);
+    EXPECT_NEAR(after, before + variance + maths::kUnobservedVariance * missing, 1e-5f * after);
   }
   EXPECT_EQ(maths::count_after_blur(32.0f, 0.0f, 0.0f), 32.0f);
   EXPECT_EQ(maths::count_after_blur(0.0f, 0.2f, 1.0f), 0.0f);
@@ -139,20 +139,20 @@ TEST(History, ATexelKeepsWhatItHolds) {
     EXPECT_NEAR(texel.depth, depth, depth * std::ldexp(1.0f, -11));
     EXPECT_EQ(texel.count, count);
     EXPECT_NEAR(texel.recent, recent, 0.5f / 127.0f + 1e-6f);
-    EXPECT_EQ(texel.coarse_normal, normal);
+    EXPECT_EQ(texel.quantised_normal, normal);
   }
 }
 
 TEST(History, ATexelHoldsTheNearestOfWhatItCannot) {
   const maths::HistoryTexel least = stored(texel_of(-1.0f, -1.0f, -1.0f, -1.0f, -1.0f, 0u));
   EXPECT_EQ(least.count + least.recent + least.depth + least.visibility + least.open, 0.0f);
-  EXPECT_EQ(least.coarse_normal, 0u);
+  EXPECT_EQ(least.quantised_normal, 0u);
   const maths::HistoryTexel most = stored(texel_of(9.0f, 8.0f, 6e4f, 300.0f, 2.0f, 255u));
   EXPECT_EQ(most.count, float(maths::kMaxHistoryFrames));
   EXPECT_EQ(most.recent, 1.0f);
   EXPECT_EQ(most.open, maths::kLargestOpen);
   EXPECT_EQ(most.visibility, 1.0f);
-  EXPECT_EQ(most.coarse_normal, 255u);
+  EXPECT_EQ(most.quantised_normal, 255u);
 }
 
 TEST(History, DepthOfAnyUnitIsHeldAlike) {

@@ -7,7 +7,7 @@
 #include <iostream>
 #include <vector>
 
-#include "maths/signal.h"
+#include "maths/raw_occlusion.h"
 #include "maths/visibility_bitmask.h"
 #include "random_input.h"
 #include "slice_truth.h"
@@ -251,18 +251,18 @@ TEST(LobeSlice, SectorsHoldTheLobeOfTheHorizonAtTheirBoundary) {
       const Slice s = Surface(random.uniform(0.0f, 1.5f)).slice(random.uniform(0.0f, 3.14f));
       const LobeSlice lobe = maths::make_lobe_slice(s, roughness * roughness);
       const float side = random.bits() % 2 == 0 ? 1.0f : -1.0f;
-      const float per_bearing = maths::sectors_per_bearing(s, side);
+      const float per_diamond_angle = maths::sectors_per_diamond_angle(s, side);
       const unsigned first = random.bits() % 32;
       const unsigned hidden = 0xffffffffu << first;
-      const float cosine = maths::bearing_light(float(first) / per_bearing).y;
-      for (const float fill : {0.0f, 0.4f, 1.0f}) {
-        error.add((maths::visible_lobe(lobe, side, per_bearing, hidden, fill) -
+      const float cosine = maths::diamond_angle_light(float(first) / per_diamond_angle).y;
+      for (const float hidden_occlusion : {0.0f, 0.4f, 1.0f}) {
+        error.add((maths::visible_lobe(lobe, side, per_diamond_angle, hidden, hidden_occlusion) -
                    maths::lobe_arc(s, lobe, side, cosine)) /
                   lobe.open);
       }
-      EXPECT_FLOAT_EQ(maths::visible_lobe(lobe, side, per_bearing, 0u, 0.4f),
+      EXPECT_FLOAT_EQ(maths::visible_lobe(lobe, side, per_diamond_angle, 0u, 0.4f),
                       side > 0.0f ? lobe.ahead.whole : lobe.behind.whole);
-      EXPECT_LT(maths::visible_lobe(lobe, side, per_bearing, ~0u, 0.4f), 2e-3f * lobe.open);
+      EXPECT_LT(maths::visible_lobe(lobe, side, per_diamond_angle, ~0u, 0.4f), 2e-3f * lobe.open);
     }
     EXPECT_LT(error.worst, 2e-3) << "roughness " << roughness;
   }

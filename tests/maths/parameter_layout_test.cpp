@@ -6,11 +6,11 @@
 #include <string>
 
 #include "apply_parameters.h"
-#include "depth_pyramid_parameters.h"
 #include "environment_parameters.h"
 #include "gtao_parameters.h"
 #include "gtso_parameters.h"
-#include "line_depth_parameters.h"
+#include "inverse_depth_parameters.h"
+#include "linear_depth_parameters.h"
 #include "maths/projection.h"
 #include "multi_bounce_parameters.h"
 #include "normals_parameters.h"
@@ -33,14 +33,14 @@ const std::map<std::string, Offsets> kExpected = {
       ALCOVE_OFFSET(Projection, depth_unproject), ALCOVE_OFFSET(Projection, eye),
       ALCOVE_OFFSET(Projection, size_px), ALCOVE_OFFSET(Projection, texel_uv),
       ALCOVE_OFFSET(Projection, sky), ALCOVE_OFFSET(Projection, near_far)}},
-    {"DepthPyramidParameters",
-     {ALCOVE_OFFSET(DepthPyramidParameters, projection),
-      ALCOVE_OFFSET(DepthPyramidParameters, reach)}},
+    {"LinearDepthParameters",
+     {ALCOVE_OFFSET(LinearDepthParameters, projection),
+      ALCOVE_OFFSET(LinearDepthParameters, reach)}},
     {"GtaoParameters",
      {ALCOVE_OFFSET(GtaoParameters, view_from_normal), ALCOVE_OFFSET(GtaoParameters, slope),
-      ALCOVE_OFFSET(GtaoParameters, phase), ALCOVE_OFFSET(GtaoParameters, radius),
+      ALCOVE_OFFSET(GtaoParameters, interleave_offset), ALCOVE_OFFSET(GtaoParameters, radius),
       ALCOVE_OFFSET(GtaoParameters, frame), ALCOVE_OFFSET(GtaoParameters, thickness),
-      ALCOVE_OFFSET(GtaoParameters, fill), ALCOVE_OFFSET(GtaoParameters, blend),
+      ALCOVE_OFFSET(GtaoParameters, hidden_occlusion), ALCOVE_OFFSET(GtaoParameters, blend),
       ALCOVE_OFFSET(GtaoParameters, falloff), ALCOVE_OFFSET(GtaoParameters, roughness)}},
     {"GtsoParameters",
      {ALCOVE_OFFSET(GtsoParameters, projection), ALCOVE_OFFSET(GtsoParameters, view_from_normal),
@@ -54,7 +54,7 @@ const std::map<std::string, Offsets> kExpected = {
       ALCOVE_OFFSET(EnvironmentParameters, samples),
       ALCOVE_OFFSET(EnvironmentParameters, roughness),
       ALCOVE_OFFSET(EnvironmentParameters, levels)}},
-    {"LineDepthParameters", {ALCOVE_OFFSET(LineDepthParameters, line_from_ndc)}},
+    {"InverseDepthParameters", {ALCOVE_OFFSET(InverseDepthParameters, inverse_depth_from_ndc)}},
     {"MultiBounceParameters", {ALCOVE_OFFSET(MultiBounceParameters, size_px)}},
     {"NormalsParameters", {ALCOVE_OFFSET(NormalsParameters, projection)}},
     {"ReconstructParameters",
@@ -64,7 +64,8 @@ const std::map<std::string, Offsets> kExpected = {
       ALCOVE_OFFSET(ReconstructParameters, slope),
       ALCOVE_OFFSET(ReconstructParameters, previous_size),
       ALCOVE_OFFSET(ReconstructParameters, history_depth),
-      ALCOVE_OFFSET(ReconstructParameters, phase), ALCOVE_OFFSET(ReconstructParameters, window_px),
+      ALCOVE_OFFSET(ReconstructParameters, interleave_offset),
+      ALCOVE_OFFSET(ReconstructParameters, window_px),
       ALCOVE_OFFSET(ReconstructParameters, tolerance),
       ALCOVE_OFFSET(ReconstructParameters, longest),
       ALCOVE_OFFSET(ReconstructParameters, clamp_width),

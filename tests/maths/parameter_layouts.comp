@@ -4,18 +4,18 @@
 // Declares every parameter struct in the uniform block that its shader declares it in.
 
 #include "apply_parameters.h"
-#include "depth_pyramid_parameters.h"
 #include "environment_parameters.h"
 #include "gtao_parameters.h"
 #include "gtso_parameters.h"
-#include "line_depth_parameters.h"
+#include "inverse_depth_parameters.h"
+#include "linear_depth_parameters.h"
 #include "maths/projection.h"
 #include "multi_bounce_parameters.h"
 #include "normals_parameters.h"
 #include "reconstruct_parameters.h"
 
 layout(set = 0, binding = 0) uniform A { Projection projection; };
-layout(set = 0, binding = 1) uniform B { DepthPyramidParameters depth_pyramid; };
+layout(set = 0, binding = 1) uniform B { LinearDepthParameters linear_depth; };
 layout(set = 0, binding = 2) uniform C { GtaoParameters gtao; };
 layout(set = 0, binding = 3) uniform D { NormalsParameters normals; };
 layout(set = 0, binding = 4) uniform E { ReconstructParameters reconstruct; };
@@ -23,11 +23,11 @@ layout(set = 0, binding = 5) uniform F { GtsoParameters gtso; };
 layout(set = 0, binding = 6) uniform G { MultiBounceParameters multi_bounce; };
 layout(set = 0, binding = 7) uniform H { ApplyParameters apply; };
 layout(set = 0, binding = 8) uniform I { EnvironmentParameters environment; };
-layout(set = 0, binding = 9) uniform J { LineDepthParameters line_depth; };
+layout(set = 0, binding = 9) uniform J { InverseDepthParameters inverse_depth; };
 layout(std430, set = 0, binding = 10) buffer Sum { float sum; };
 
 void main() {
-  sum = projection.size_px.x + depth_pyramid.reach + gtao.radius + normals.projection.size_px.x +
+  sum = projection.size_px.x + linear_depth.reach + gtao.radius + normals.projection.size_px.x +
         reconstruct.longest + gtso.roughness + multi_bounce.size_px.x + apply.roughness +
-        environment.size + line_depth.line_from_ndc.x;
+        environment.size + inverse_depth.inverse_depth_from_ndc.x;
 }

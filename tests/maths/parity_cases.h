@@ -4,7 +4,6 @@
 #define ALCOVE_TESTS_PARITY_CASES_H
 
 #include "maths/bent_normal.h"
-#include "maths/coarse_normal.h"
 #include "maths/connected_samples.h"
 #include "maths/environment_map.h"
 #include "maths/ggx.h"
@@ -17,11 +16,12 @@
 #include "maths/packing.h"
 #include "maths/projection.h"
 #include "maths/pyramid.h"
+#include "maths/quantised_normal.h"
+#include "maths/raw_occlusion.h"
 #include "maths/sampling.h"
-#include "maths/signal.h"
 #include "maths/spherical_harmonics.h"
 #include "maths/split_sum.h"
-#include "maths/unseen.h"
+#include "maths/unobserved.h"
 #include "maths/visibility_bitmask.h"
 
 ALCOVE_MATHS_BEGIN
@@ -66,16 +66,16 @@ ALCOVE_INLINE vec4 parity_of_slices(uint which, vec4 a, vec4 b) {
       vec3 view = parity_view(a.x, a.y);
       vec3 direction = slice_direction(make_view_basis(view), a.z * kPi);
       vec3 bent = slice_bent_normal(s, direction, view, ahead, behind);
-      vec3 bend = bend_of(bent, slice_visibility(s, ahead, behind), view);
-      return vec4(bend.x, bend.y, bend.z, uniform_slice_visibility(s, ahead, behind));
+      vec3 residual = residual_of(bent, slice_visibility(s, ahead, behind), view);
+      return vec4(residual.x, residual.y, residual.z, uniform_slice_visibility(s, ahead, behind));
     }
     case 3u: {
       vec2 point = vec2(b.z, ahead);
-      float per_bearing = sectors_per_bearing(s, 1.0f);
+      float per_diamond_angle = sectors_per_diamond_angle(s, 1.0f);
       // A narrow side has sectors narrower than the digits of its angle.
-      return vec4(bearing(point), bearing_light(2.0f * b.w).x,
-                  sector_position(per_bearing, point) / per_bearing,
-                  sharp_bend(ahead, 0.5f + b.z, behind, 0.5f + b.w, 0.1f));
+      return vec4(diamond_angle(point), diamond_angle_light(2.0f * b.w).x,
+                  sector_position(per_diamond_angle, point) / per_diamond_angle,
+                  depth_discontinuity(ahead, 0.5f + b.z, behind, 0.5f + b.w, 0.1f));
     }
     case 4u:
       return vec4(arc_cosine(ahead), arc_cosine(behind), raise_horizon(ahead, behind, b.z),
@@ -145,8 +145,8 @@ ALCOVE_INLINE vec4 parity_of_storage(uint which, vec4 a, vec4 b) {
     case 14u: {
       uint word = pack_unorm(a.x, 12u);
       return vec4(unpack_unorm(word, 12u), unpack_unorm(pack_unorm(a.y, 8u), 8u),
-                  squared_turn(make_coarse_normal(vec3(0.0f, 0.6f, 0.8f)),
-                               lean_of_bits(uint(a.z * 255.0f))),
+                  squared_turn(make_quantised_normal(vec3(0.0f, 0.6f, 0.8f)),
+                               stereographic_of_bits(uint(a.z * 255.0f))),
                   unpack_open(uint(a.w * 1000.0f)));
     }
     case 15u:
@@ -159,7 +159,7 @@ ALCOVE_INLINE vec4 parity_of_storage(uint which, vec4 a, vec4 b) {
                   accumulation_weight(floor(b.z * 40.0f), 32.0f));
     }
     case 23u: {
-      Signal lobe;
+      RawOcclusion lobe;
       lobe.visible = a.x * a.y;
       lobe.open = a.x;
       lobe = unpack_lobe(pack_lobe(lobe));
@@ -182,7 +182,7 @@ ALCOVE_INLINE vec4 parity_of_sampling(uint which, vec4 a, vec4 b) {
   uint frame = uint(a.z * 1000.0f);
   switch (which) {
     case 17u:
-      return vec4(memo_pattern(pixel, frame).direction, memo_pattern(pixel, frame).offset,
+      return vec4(paper_pattern(pixel, frame).direction, paper_pattern(pixel, frame).offset,
                   hilbert_pattern(pixel, frame).direction, hilbert_pattern(pixel, frame).offset);
     case 22u:
       return vec4(golden_pattern(pixel, frame, true).direction,
@@ -199,8 +199,9 @@ ALCOVE_INLINE vec4 parity_of_sampling(uint which, vec4 a, vec4 b) {
       PartRequest request;
       request.uniform_weight = a.w < 0.5f;
       request.bent = true;
-      VisiblePart part = visible_part(s, -1.0f, sectors_per_bearing(s, -1.0f), parity_word(pixel.x),
-                                      fill_behind(b.y, b.x), request);
+      VisiblePart part =
+          visible_part(s, -1.0f, sectors_per_diamond_angle(s, -1.0f), parity_word(pixel.x),
+                       hidden_occlusion_behind(b.y, b.x), request);
       return vec4(part.arc, part.bent.x, part.bent.y, radius_weight(b.y, 0.8f, b.z));
     }
     case 21u: {
@@ -210,18 +211,21 @@ ALCOVE_INLINE vec4 parity_of_sampling(uint which, vec4 a, vec4 b) {
       float behind = b.z * 2.0f - 1.0f;
       return vec4(
           lobe.open, horizon_lobe(s, lobe, ahead, behind),
-          visible_lobe(lobe, 1.0f, sectors_per_bearing(s, 1.0f), parity_word(pixel.x), 0.4f),
-          visible_lobe(lobe, -1.0f, sectors_per_bearing(s, -1.0f), parity_word(pixel.y), 0.0f));
+          visible_lobe(lobe, 1.0f, sectors_per_diamond_angle(s, 1.0f), parity_word(pixel.x), 0.4f),
+          visible_lobe(lobe, -1.0f, sectors_per_diamond_angle(s, -1.0f), parity_word(pixel.y),
+                       0.0f));
     }
     case 24u: {
       Slice s = parity_slice(a);
       LobeSlice lobe = make_lobe_slice(s, 0.05f + 0.95f * b.x);
-      Unseen unseen = add_beyond_border(mean_row(add_column(nothing_unseen(), true, b.y, b.z)), b.w,
-                                        b.z, border_share(b.x, b.y));
+      Unobserved unobserved =
+          add_beyond_border(mean_row(add_column(nothing_unobserved(), true, b.y, b.z)), b.w, b.z,
+                            border_share(b.x, b.y));
       // Sectors are whole: only without occluders does a rounding not move an end.
-      UnseenArc arc = make_unseen_arc(s, 1.0f, sectors_per_bearing(s, 1.0f), 0u, unseen, 1.0f);
-      return vec4(unseen_part(arc, s, 1.0f, false), unseen_part(arc, s, 1.0f, true),
-                  unseen_lobe(arc, lobe, 1.0f), arc.share);
+      UnobservedArc arc =
+          make_unobserved_arc(s, 1.0f, sectors_per_diamond_angle(s, 1.0f), 0u, unobserved, 1.0f);
+      return vec4(unobserved_part(arc, s, 1.0f, false), unobserved_part(arc, s, 1.0f, true),
+                  unobserved_lobe(arc, lobe, 1.0f), arc.share);
     }
   }
   return vec4(0.0f);

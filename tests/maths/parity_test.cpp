@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "compute_run.h"
-#include "device/vulkan_device.h"
 #include "maths/make_projection.h"
 #include "parity_cases.h"
 #include "parity_spirv.h"
 #include "random_input.h"
+#include "render/vulkan_device.h"
 
 namespace alcove::maths_test {
 namespace {
@@ -51,8 +51,8 @@ constexpr Bound kBounds[] = {
     {"bent normal of sectors", 2e-4, 1e-5},
     {"lobe of slices", 1e-3, 1e-3},
     {"golden pattern", 0.0, 0.0},
-    {"lobe signal", 1e-4, 4e-3},
-    {"unseen parts", 1e-3, 1e-3},
+    {"lobe raw_occlusion", 1e-4, 4e-3},
+    {"unobserved parts", 1e-3, 1e-3},
 };
 static_assert(std::size(kBounds) == maths::kParityCases);
 

@@ -26,7 +26,7 @@ TEST(SpatialPattern, BlockHoldsSixteenDirectionsAndFourOffsets) {
     std::set<float> directions, offsets;
     for (unsigned y = 0; y < 4; ++y) {
       for (unsigned x = 0; x < 4; ++x) {
-        const SliceNoise noise = maths::memo_pattern(uvec2(x, y), frame);
+        const SliceNoise noise = maths::paper_pattern(uvec2(x, y), frame);
         directions.insert(noise.direction);
         offsets.insert(noise.offset);
         EXPECT_GE(noise.direction, 0.0f);
@@ -46,7 +46,7 @@ TEST(SpatialPattern, SixFramesTurnTheBlockThroughNinetySixDirections) {
     for (unsigned y = 0; y < 4; ++y)
       for (unsigned x = 0; x < 4; ++x)
         directions.insert(
-            int(std::lround(maths::memo_pattern(uvec2(x, y), frame).direction * 96.0f)));
+            int(std::lround(maths::paper_pattern(uvec2(x, y), frame).direction * 96.0f)));
   EXPECT_EQ(directions.size(), 96u);
 }
 
@@ -54,7 +54,7 @@ TEST(SpatialPattern, APixelsOwnSixDirectionsSpreadOverHalfATurn) {
   for (unsigned pixel = 0; pixel < 16; ++pixel) {
     std::vector<float> directions;
     for (unsigned frame = 0; frame < 6; ++frame)
-      directions.push_back(maths::memo_pattern(uvec2(pixel & 3u, pixel >> 2u), frame).direction);
+      directions.push_back(maths::paper_pattern(uvec2(pixel & 3u, pixel >> 2u), frame).direction);
     std::sort(directions.begin(), directions.end());
     for (std::size_t k = 0; k < 6; ++k) {
       const float next = k == 5 ? directions[0] + 1.0f : directions[k + 1];
@@ -64,8 +64,8 @@ TEST(SpatialPattern, APixelsOwnSixDirectionsSpreadOverHalfATurn) {
 }
 
 TEST(SpatialPattern, RepeatsEveryFourPixelsAndTwentyFourFrames) {
-  const SliceNoise a = maths::memo_pattern(uvec2(5, 6), 7);
-  const SliceNoise b = maths::memo_pattern(uvec2(1, 2), 31);
+  const SliceNoise a = maths::paper_pattern(uvec2(5, 6), 7);
+  const SliceNoise b = maths::paper_pattern(uvec2(1, 2), 31);
   EXPECT_EQ(a.direction, b.direction);
   EXPECT_EQ(a.offset, b.offset);
 }
@@ -91,11 +91,11 @@ TEST(BlockByPattern, MeetsEachBlockOnceAndOneDirectionInEachGroup) {
     std::set<float> directions, six_rotations;
     for (unsigned local = 0; local < 64; ++local) {
       const uvec2 block =
-          maths::block_by_pattern(uvec2(group % 12, group / 12), uvec2(local % 8, local / 8));
+          maths::tile_by_pattern(uvec2(group % 12, group / 12), uvec2(local % 8, local / 8));
       EXPECT_TRUE(block.x < 12 * 8 && block.y < 8 * 8) << block.x << ", " << block.y;
       EXPECT_TRUE(blocks.insert(block.y * 12 * 8 + block.x).second) << block.x << ", " << block.y;
       directions.insert(maths::golden_pattern(block, 5, false).direction);
-      six_rotations.insert(maths::memo_pattern(block, 5).direction);
+      six_rotations.insert(maths::paper_pattern(block, 5).direction);
     }
     EXPECT_EQ(directions.size(), 1u) << "group " << group;
     EXPECT_EQ(six_rotations.size(), 1u) << "group " << group;

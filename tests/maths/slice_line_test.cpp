@@ -84,25 +84,25 @@ TEST(SliceLine, ASampleOnTheLineKeepsItsCoordinates) {
   }
 }
 
-float line_of(float depth, bool perspective) { return perspective ? 1.0f / depth : depth; }
+float inverse_depth_of(float depth, bool perspective) { return perspective ? 1.0f / depth : depth; }
 
 TEST(SliceLine, ABackFaceEndsAnOccluderOnlyBehindItsFront) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
     const bool perspective = random.bits() % 2 == 0;
     const float depth = random.uniform(0.1f, 1000.0f);
-    const float front = line_of(depth, perspective);
-    const float behind = line_of(depth * random.uniform(1.001f, 1e4f), perspective);
-    const float before = line_of(depth * random.uniform(0.001f, 0.999f), perspective);
+    const float front = inverse_depth_of(depth, perspective);
+    const float behind = inverse_depth_of(depth * random.uniform(1.001f, 1e4f), perspective);
+    const float before = inverse_depth_of(depth * random.uniform(0.001f, 0.999f), perspective);
     EXPECT_TRUE(maths::ends_occluder(front, behind, perspective));
     EXPECT_FALSE(maths::ends_occluder(front, before, perspective));
     EXPECT_FALSE(maths::ends_occluder(front, front, perspective)) << "a face seen from behind";
-    const float rounded = line_of(depth * random.uniform(1.0f, 1.00005f), perspective);
+    const float rounded = inverse_depth_of(depth * random.uniform(1.0f, 1.00005f), perspective);
     EXPECT_FALSE(maths::ends_occluder(front, rounded, perspective));
-    EXPECT_FALSE(maths::ends_occluder(front, maths::sky_line(perspective), perspective));
+    EXPECT_FALSE(maths::ends_occluder(front, maths::sky_inverse_depth(perspective), perspective));
     EXPECT_FALSE(maths::ends_occluder(front, NAN, perspective));
-    EXPECT_EQ(maths::farther_line(front, behind, perspective), behind);
-    EXPECT_EQ(maths::farther_line(front, before, perspective), front);
+    EXPECT_EQ(maths::farther_inverse_depth(front, behind, perspective), behind);
+    EXPECT_EQ(maths::farther_inverse_depth(front, before, perspective), front);
   }
 }
 
@@ -128,14 +128,14 @@ TEST(SliceLine, ASampleOfTheTangentPlaneIsMovedAlongIt) {
   for (int i = 0; i < 5000; ++i) {
     const Setting s(random);
     if (dot(s.normal, s.view) < 0.1f) continue;
-    const maths::TangentLine tangent = maths::make_tangent_line(
+    const maths::TangentPlane tangent = maths::make_tangent_plane(
         maths::ray_per_px(s.projection), s.normal, s.view, s.depth, s.perspective());
     const vec2 exact = s.line.direction_px * random.uniform(2.0f, 40.0f);
     const vec2 snapped = round(exact);
-    const float line = tangent.line + dot(snapped, tangent.gradient);
+    const float line = tangent.inverse_depth + dot(snapped, tangent.gradient);
     const float on_plane = dot(snapped, tangent.gradient);
     const float share =
-        maths::tangent_share(tangent, line - tangent.line - on_plane, length(exact));
+        maths::tangent_share(tangent, line - tangent.inverse_depth - on_plane, length(exact));
     const float moved = line + share * dot(exact - snapped, tangent.gradient);
     const float depth = s.perspective() ? 1.0f / moved : moved;
     // A plane that passes behind the eye has no image there.
@@ -149,11 +149,11 @@ TEST(SliceLine, AMovedSampleStaysBeforeTheEyeAndTheSkyAfar) {
   for (int i = 0; i < 1000; ++i) {
     const float line = random.log_uniform(1e-12f, 1e4f);
     const float by = random.log_uniform(1e-6f, 1e6f) * (i % 2 == 0 ? 1.0f : -1.0f);
-    const float moved = maths::moved_line(line, by, true);
+    const float moved = maths::moved_inverse_depth(line, by, true);
     EXPECT_GT(moved, 0.0f);
     EXPECT_LE(moved, 10.0f * line);
     // Orthographic depth may be negative, and is moved all the way.
-    EXPECT_EQ(maths::moved_line(-line, by, false), -line + by);
+    EXPECT_EQ(maths::moved_inverse_depth(-line, by, false), -line + by);
   }
 }
 
@@ -163,13 +163,13 @@ TEST(SliceLine, RawDepthOfAnyKindIsBetweenTheNearPlaneAndTheSky) {
   // behind infinity; orthographic.
   for (const float ndc : {-kInfinity, -1e30f, -1.0f, 0.0f, 1e-45f, 1e-38f, 0.5f, 0.99999994f, 1.0f,
                           2.0f, 1e30f, kInfinity}) {
-    const float reversed = maths::line_of_ndc({10.0f, 0.0f}, ndc, true);
-    EXPECT_GE(reversed, maths::sky_line(true)) << ndc;
+    const float reversed = maths::inverse_depth_of_ndc({10.0f, 0.0f}, ndc, true);
+    EXPECT_GE(reversed, maths::sky_inverse_depth(true)) << ndc;
     EXPECT_LE(reversed, 10.0f) << ndc;
-    const float rounded = maths::line_of_ndc({-10.0f, 9.9999994f}, ndc, true);
-    EXPECT_GE(rounded, maths::sky_line(true)) << ndc;
+    const float rounded = maths::inverse_depth_of_ndc({-10.0f, 9.9999994f}, ndc, true);
+    EXPECT_GE(rounded, maths::sky_inverse_depth(true)) << ndc;
     EXPECT_LE(rounded, 10.0f) << ndc;
-    const float orthographic = maths::line_of_ndc({20.0f, -10.0f}, ndc, false);
+    const float orthographic = maths::inverse_depth_of_ndc({20.0f, -10.0f}, ndc, false);
     EXPECT_GE(orthographic, -10.0f) << ndc;
     EXPECT_LE(orthographic, 10.0f) << ndc;
   }
@@ -179,7 +179,7 @@ TEST(SliceLine, ASampleFarOffTheTangentPlaneIsLeftAsItIs) {
   RandomInput random;
   for (int i = 0; i < 1000; ++i) {
     const Setting s(random);
-    const maths::TangentLine tangent = maths::make_tangent_line(
+    const maths::TangentPlane tangent = maths::make_tangent_plane(
         maths::ray_per_px(s.projection), s.normal, s.view, s.depth, s.perspective());
     const float offset_px = random.uniform(1.3f, 60.0f);
     EXPECT_EQ(maths::tangent_share(tangent, 1.01f * offset_px / tangent.fading, offset_px), 0.0f);
@@ -248,12 +248,13 @@ TEST(ConnectedSamples, OnlySharpBendsCountAndTheirSignIsTheTurns) {
   for (int i = 0; i < 2000; ++i) {
     const float before = random.uniform(-1.0f, 1.0f), after = random.uniform(-1.0f, 1.0f);
     const float step = random.uniform(0.5f, 5.0f), next = random.uniform(0.5f, 5.0f);
-    const float bend = maths::sharp_bend(before * step, step, after * next, next, 0.1f);
+    const float residual =
+        maths::depth_discontinuity(before * step, step, after * next, next, 0.1f);
     const float turn = before - after;
     if (std::abs(turn) < 0.0999f) {
-      EXPECT_EQ(bend, 0.0f);
+      EXPECT_EQ(residual, 0.0f);
     } else if (std::abs(turn) > 0.1001f) {
-      EXPECT_NEAR(bend / (step * next), turn, 1e-5f);
+      EXPECT_NEAR(residual / (step * next), turn, 1e-5f);
     }
   }
 }
@@ -281,7 +282,7 @@ TEST(ConnectedSamples, APlaneGoesOnWhereItWent) {
   for (int i = 0; i < 2000; ++i) {
     const Setting s(random);
     // A plane in the image: `line` is linear along it.
-    const float line = line_of(s.depth, s.perspective());
+    const float line = inverse_depth_of(s.depth, s.perspective());
     const float slope = line * random.uniform(-0.004f, 0.004f);
     const auto at = [&](float offset) {
       return maths::slice_point(s.line, offset, line + slope * offset, s.depth, s.perspective());
@@ -290,15 +291,15 @@ TEST(ConnectedSamples, APlaneGoesOnWhereItWent) {
     const float further = random.uniform(0.0f, 100.0f);
     const vec3 expected = at(here + further);
     const vec3 found =
-        maths::continued_point(at(here), at(here) - at(last), further * s.line.x_per_step);
+        maths::extrapolated_point(at(here), at(here) - at(last), further * s.line.x_per_step);
     EXPECT_LT(distance(found, expected), 1e-3f * length(expected));
   }
 }
 
 TEST(ConnectedSamples, APlaneThatGoesOnStaysInFrontOfTheEye) {
   const vec3 here(1.0f, 2.0f, 0.5f);
-  EXPECT_EQ(maths::continued_point(here, vec3(0.0f, 1.0f, 0.1f), 3.0f), here) << "went nowhere";
-  const vec3 end = maths::continued_point(here, vec3(1.0f, 1.0f, -0.1f), 1e6f);
+  EXPECT_EQ(maths::extrapolated_point(here, vec3(0.0f, 1.0f, 0.1f), 3.0f), here) << "went nowhere";
+  const vec3 end = maths::extrapolated_point(here, vec3(1.0f, 1.0f, -0.1f), 1e6f);
   EXPECT_NEAR(end.z, 0.05f, 1e-6f);
   EXPECT_NEAR(end.x, 5.5f, 1e-5f);
 }

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <limits>
 
-#include "maths/coarse_normal.h"
 #include "maths/octahedral.h"
 #include "maths/packing.h"
 #include "maths/pyramid.h"
-#include "maths/signal.h"
+#include "maths/quantised_normal.h"
+#include "maths/raw_occlusion.h"
 #include "random_input.h"
 
 namespace alcove::maths_test {
@@ -19,26 +19,26 @@ using glm::vec2;
 using glm::vec3;
 using glm::vec4;
 
-maths::Signal signal_of(float visible, float open) {
-  maths::Signal signal;
-  signal.visible = visible;
-  signal.open = open;
-  return signal;
+maths::RawOcclusion raw_occlusion_of(float visible, float open) {
+  maths::RawOcclusion raw_occlusion;
+  raw_occlusion.visible = visible;
+  raw_occlusion.open = open;
+  return raw_occlusion;
 }
 
-TEST(Signal, NothingWeighedIsOpen) {
-  EXPECT_EQ(maths::mean_visibility(signal_of(0.0f, 0.0f)), 1.0f);
+TEST(RawOcclusion, NothingWeighedIsOpen) {
+  EXPECT_EQ(maths::mean_visibility(raw_occlusion_of(0.0f, 0.0f)), 1.0f);
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_EQ(maths::mean_visibility(signal_of(0.0f, nan)), 1.0f);
+  EXPECT_EQ(maths::mean_visibility(raw_occlusion_of(0.0f, nan)), 1.0f);
 }
 
-TEST(Signal, RatiosComeBackAndOpenStaysOpen) {
+TEST(RawOcclusion, RatiosComeBackAndOpenStaysOpen) {
   RandomInput random;
   for (int i = 0; i < 20000; ++i) {
     const float open = random.uniform(1e-3f, maths::kLargestOpen);
     const float ratio = i % 5 == 0 ? 1.0f : random.uniform(0.0f, 1.0f);
-    const maths::Signal back =
-        maths::unpack_signal(maths::pack_signal(signal_of(ratio * open, open), 0xffu));
+    const maths::RawOcclusion back = maths::unpack_raw_occlusion(
+        maths::pack_raw_occlusion(raw_occlusion_of(ratio * open, open), 0xffu));
     EXPECT_NEAR(back.open, open, open / 120);
     EXPECT_NEAR(back.visible, ratio * back.open, 6.2e-5f * back.open);
     if (ratio == 1.0f) {
@@ -47,22 +47,23 @@ TEST(Signal, RatiosComeBackAndOpenStaysOpen) {
   }
 }
 
-TEST(Signal, LobesOfAnySizeComeBack) {
+TEST(RawOcclusion, LobesOfAnySizeComeBack) {
   RandomInput random;
   for (int i = 0; i < 20000; ++i) {
     const float open = random.log_uniform(1e-20f, 1e20f);
     const float ratio = i % 5 == 0 ? 1.0f : random.uniform(0.0f, 1.0f);
-    const maths::Signal back = maths::unpack_lobe(maths::pack_lobe(signal_of(ratio * open, open)));
+    const maths::RawOcclusion back =
+        maths::unpack_lobe(maths::pack_lobe(raw_occlusion_of(ratio * open, open)));
     EXPECT_NEAR(back.open / open, 1.0f, 1.0f / 256);
     EXPECT_NEAR(back.visible / back.open, ratio, 2e-5f);
     if (ratio == 1.0f) {
       EXPECT_EQ(back.visible, back.open);
     }
   }
-  EXPECT_EQ(maths::unpack_lobe(maths::pack_lobe(signal_of(0, 0))).open, 0.0f);
+  EXPECT_EQ(maths::unpack_lobe(maths::pack_lobe(raw_occlusion_of(0, 0))).open, 0.0f);
 }
 
-TEST(Signal, LobesWeighByNormalAndRoughness) {
+TEST(RawOcclusion, LobesWeighByNormalAndRoughness) {
   RandomInput random;
   const auto surface = [](vec3 normal, float roughness) {
     maths::LobeSurface made;
@@ -88,21 +89,21 @@ TEST(Signal, LobesWeighByNormalAndRoughness) {
   }
 }
 
-TEST(Signal, BendsComeBackToAStepOfTenBits) {
+TEST(RawOcclusion, BendsComeBackToAStepOfTenBits) {
   RandomInput random;
-  const auto round_trip = [](const vec3& bend) {
-    return maths::unpack_bend(maths::pack_bend(bend));
+  const auto round_trip = [](const vec3& residual) {
+    return maths::unpack_residual(maths::pack_residual(residual));
   };
   for (int i = 0; i < 100000; ++i) {
-    const float largest = maths::kLargestBend;
-    const vec3 bend(random.uniform(-largest, largest), random.uniform(-largest, largest),
-                    random.uniform(-largest, largest));
-    const vec3 apart = glm::abs(round_trip(bend) - bend);
+    const float largest = maths::kLargestResidual;
+    const vec3 residual(random.uniform(-largest, largest), random.uniform(-largest, largest),
+                        random.uniform(-largest, largest));
+    const vec3 apart = glm::abs(round_trip(residual) - residual);
     EXPECT_LT(std::max({apart.x, apart.y, apart.z}), 0.0014f);
   }
   EXPECT_EQ(round_trip(vec3(0)), vec3(0)) << "open surfaces stay exactly so";
   const float largest = round_trip(vec3(9)).x;
-  EXPECT_FLOAT_EQ(largest, maths::kLargestBend) << "clamped";
+  EXPECT_FLOAT_EQ(largest, maths::kLargestResidual) << "clamped";
   EXPECT_EQ(round_trip(vec3(-9)), -vec3(largest));
 }
 
@@ -138,9 +139,9 @@ TEST(Octahedral, DecodesAnyPointToAUnitVector) {
 }
 
 // The unit normal of these stereographic coordinates.
-vec3 normal_of(vec2 lean) {
-  const float squared = dot(lean, lean);
-  return vec3(2.0f * lean, 1.0f - squared) / (1.0f + squared);
+vec3 normal_of(vec2 stereographic) {
+  const float squared = dot(stereographic, stereographic);
+  return vec3(2.0f * stereographic, 1.0f - squared) / (1.0f + squared);
 }
 
 // Towards the eye, in view space.
@@ -150,28 +151,29 @@ vec3 facing_normal(RandomInput& random) {
   return normal;
 }
 
-TEST(CoarseNormal, ComesBackNear) {
+TEST(QuantisedNormal, ComesBackNear) {
   RandomInput random;
   for (int i = 0; i < 100000; ++i) {
     const vec3 normal = facing_normal(random);
-    const maths::CoarseNormal coarse = maths::make_coarse_normal(normal);
+    const maths::QuantisedNormal coarse = maths::make_quantised_normal(normal);
     EXPECT_LT(coarse.bits, 256u);
-    EXPECT_EQ(coarse.lean, maths::lean_of_bits(coarse.bits));
-    EXPECT_EQ(maths::signal_normal(maths::pack_signal(signal_of(0.3f, 0.7f), coarse.bits)),
+    EXPECT_EQ(coarse.stereographic, maths::stereographic_of_bits(coarse.bits));
+    EXPECT_EQ(maths::raw_occlusion_normal(
+                  maths::pack_raw_occlusion(raw_occlusion_of(0.3f, 0.7f), coarse.bits)),
               coarse.bits);
-    EXPECT_GT(dot(normal_of(coarse.lean), normal), std::cos(glm::radians(12.0f)));
+    EXPECT_GT(dot(normal_of(coarse.stereographic), normal), std::cos(glm::radians(12.0f)));
   }
-  EXPECT_EQ(maths::make_coarse_normal(vec3(0, 0, 1)).lean, vec2(0));
-  EXPECT_EQ(maths::make_coarse_normal(vec3(0, -1, 0)).lean, vec2(0, -1));
+  EXPECT_EQ(maths::make_quantised_normal(vec3(0, 0, 1)).stereographic, vec2(0));
+  EXPECT_EQ(maths::make_quantised_normal(vec3(0, -1, 0)).stereographic, vec2(0, -1));
 }
 
-TEST(CoarseNormal, ATurnIsTheSquareOfSmallAngles) {
+TEST(QuantisedNormal, ATurnIsTheSquareOfSmallAngles) {
   RandomInput random;
   for (int i = 0; i < 100000; ++i) {
-    const maths::CoarseNormal own = maths::make_coarse_normal(facing_normal(random));
-    EXPECT_EQ(maths::squared_turn(own, own.lean), 0.0f);
+    const maths::QuantisedNormal own = maths::make_quantised_normal(facing_normal(random));
+    EXPECT_EQ(maths::squared_turn(own, own.stereographic), 0.0f);
     const vec3 other = facing_normal(random);
-    const float cosine = dot(normal_of(own.lean), other);
+    const float cosine = dot(normal_of(own.stereographic), other);
     const float found = maths::squared_turn(own, vec2(other.x, other.y) / (1.0f + other.z));
     if (cosine > 0.97f) {
       EXPECT_NEAR(found, 2.0f - 2.0f * cosine, 0.3f * (2.0f - 2.0f * cosine) + 2e-5f);

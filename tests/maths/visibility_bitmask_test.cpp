@@ -37,30 +37,30 @@ std::uint32_t random_runs(RandomInput& random) {
 }
 
 // Angle of a sector's boundary to the view vector, in double.
-double boundary_angle(float per_bearing, int boundary) {
-  const double y = 1.0 - boundary / double(per_bearing);
+double boundary_angle(float per_diamond_angle, int boundary) {
+  const double y = 1.0 - boundary / double(per_diamond_angle);
   return std::atan2(1.0 - std::abs(y), y);
 }
 
-VisiblePart part_of(const Slice& s, float side, std::uint32_t occluded, float fill,
+VisiblePart part_of(const Slice& s, float side, std::uint32_t occluded, float hidden_occlusion,
                     bool uniform_weight = false) {
-  return maths::visible_part(s, side, maths::sectors_per_bearing(s, side), occluded, fill,
-                             {.uniform_weight = uniform_weight, .bent = true});
+  return maths::visible_part(s, side, maths::sectors_per_diamond_angle(s, side), occluded,
+                             hidden_occlusion, {.uniform_weight = uniform_weight, .bent = true});
 }
 
 TEST(VisibilityBitmask, BearingsGrowWithTheAngleAndTurnBackIntoIt) {
   float before = -1.0f;
   for (double angle = 0.0; angle <= kPi; angle += 0.001) {
     const vec2 light = light_at(angle);
-    const float at = maths::bearing(light * 3.0f);
+    const float at = maths::diamond_angle(light * 3.0f);
     EXPECT_GT(at, before);
-    EXPECT_LT(distance(maths::bearing_light(at), light), 1e-6f);
+    EXPECT_LT(distance(maths::diamond_angle_light(at), light), 1e-6f);
     before = at;
   }
-  EXPECT_EQ(maths::bearing(vec2(0, 1)), 0.0f);
-  EXPECT_EQ(maths::bearing(vec2(1, 0)), 1.0f);
-  EXPECT_EQ(maths::bearing(vec2(0, -1)), 2.0f);
-  EXPECT_TRUE(std::isfinite(maths::bearing(vec2(0, 0))));
+  EXPECT_EQ(maths::diamond_angle(vec2(0, 1)), 0.0f);
+  EXPECT_EQ(maths::diamond_angle(vec2(1, 0)), 1.0f);
+  EXPECT_EQ(maths::diamond_angle(vec2(0, -1)), 2.0f);
+  EXPECT_TRUE(std::isfinite(maths::diamond_angle(vec2(0, 0))));
 }
 
 TEST(VisibilityBitmask, PositionsRunFromTheViewVectorToTheTangentPlane) {
@@ -68,13 +68,14 @@ TEST(VisibilityBitmask, PositionsRunFromTheViewVectorToTheTangentPlane) {
   for (int i = 0; i < 5000; ++i) {
     const Slice s = random_slice(random);
     const float side = random_side(random);
-    const float per_bearing = maths::sectors_per_bearing(s, side);
+    const float per_diamond_angle = maths::sectors_per_diamond_angle(s, side);
     const double tangent = std::acos(double(maths::tangent_horizon(s, side)));
-    EXPECT_EQ(maths::sector_position(per_bearing, vec2(0, 1)), 0.0f);
+    EXPECT_EQ(maths::sector_position(per_diamond_angle, vec2(0, 1)), 0.0f);
     // A narrow side has sectors narrower than the digits of its cosine.
-    const float tolerance = 2e-3f + 2e-7f * per_bearing * per_bearing;
-    EXPECT_NEAR(maths::sector_position(per_bearing, light_at(tangent)), 32.0f, tolerance);
-    EXPECT_EQ(maths::sector_position(per_bearing, light_at(std::min(tangent + 0.01, kPi))), 32.0f);
+    const float tolerance = 2e-3f + 2e-7f * per_diamond_angle * per_diamond_angle;
+    EXPECT_NEAR(maths::sector_position(per_diamond_angle, light_at(tangent)), 32.0f, tolerance);
+    EXPECT_EQ(maths::sector_position(per_diamond_angle, light_at(std::min(tangent + 0.01, kPi))),
+              32.0f);
   }
 }
 
@@ -91,14 +92,15 @@ TEST(VisibilityBitmask, SectorsBetweenPositionsAreThoseWithinThem) {
 }
 
 // What `occluded` leaves visible, sector by sector in double; behind the first occluder only the
-// part 1 - fill of it.
+// part 1 - hidden_occlusion of it.
 struct Expected {
   double arc = 0.0;
   glm::dvec2 bent{0.0};
 };
-Expected expected_part(const Slice& s, float side, std::uint32_t occluded, double fill) {
+Expected expected_part(const Slice& s, float side, std::uint32_t occluded,
+                       double hidden_occlusion) {
   const SliceTruth truth(s);
-  const float per_bearing = maths::sectors_per_bearing(s, side);
+  const float per_diamond_angle = maths::sectors_per_diamond_angle(s, side);
   Expected sum;
   bool behind = false;
   for (int k = 0; k < 32; ++k) {
@@ -106,9 +108,10 @@ Expected expected_part(const Slice& s, float side, std::uint32_t occluded, doubl
       behind = true;
       continue;
     }
-    double from = boundary_angle(per_bearing, k), to = boundary_angle(per_bearing, k + 1);
+    double from = boundary_angle(per_diamond_angle, k),
+           to = boundary_angle(per_diamond_angle, k + 1);
     if (side < 0.0f) std::tie(from, to) = std::pair(-to, -from);
-    const double weight = behind ? 1.0 - fill : 1.0;
+    const double weight = behind ? 1.0 - hidden_occlusion : 1.0;
     sum.arc += weight * truth.visibility(from, to);
     sum.bent += weight * truth.bent(from, to);
   }
@@ -122,9 +125,9 @@ TEST(VisibilityBitmask, PartsAgreeWithTheIntegralOverTheVisibleSectors) {
     const Slice s = random_slice(random);
     const float side = random_side(random);
     const std::uint32_t occluded = random_runs(random);
-    const float fill = random.uniform(0, 1);
-    const VisiblePart part = part_of(s, side, occluded, fill);
-    const Expected expected = expected_part(s, side, occluded, fill);
+    const float hidden_occlusion = random.uniform(0, 1);
+    const VisiblePart part = part_of(s, side, occluded, hidden_occlusion);
+    const Expected expected = expected_part(s, side, occluded, hidden_occlusion);
     worst_arc = std::max(worst_arc, std::abs(double(part.arc) - expected.arc));
     worst_bent = std::max(worst_bent, distance(glm::dvec2(part.bent), expected.bent));
   }
@@ -139,13 +142,13 @@ TEST(VisibilityBitmask, UniformPartsAreTheVisibleSectorsSolidAngle) {
   for (int i = 0; i < 1500; ++i) {
     const Slice s = random_slice(random);
     const float side = random_side(random);
-    const float per_bearing = maths::sectors_per_bearing(s, side);
+    const float per_diamond_angle = maths::sectors_per_diamond_angle(s, side);
     const std::uint32_t occluded = random_runs(random);
     double expected = 0.0;
     for (int k = 0; k < 32; ++k) {
       if ((occluded >> k & 1u) == 0) {
-        expected += 0.5 * (std::cos(boundary_angle(per_bearing, k)) -
-                           std::cos(boundary_angle(per_bearing, k + 1)));
+        expected += 0.5 * (std::cos(boundary_angle(per_diamond_angle, k)) -
+                           std::cos(boundary_angle(per_diamond_angle, k + 1)));
       }
     }
     EXPECT_NEAR(part_of(s, side, occluded, 0.0f, true).arc, expected, 2e-6);
@@ -157,9 +160,9 @@ TEST(VisibilityBitmask, OpenAndFullAreExact) {
     const Slice s = slice_of(0.7, gamma);
     for (const float side : {-1.0f, 1.0f}) {
       const float open = maths::light_arc(s, side, maths::tangent_light(s, side));
-      for (const float fill : {0.0f, 0.4f, 1.0f}) {
-        EXPECT_EQ(part_of(s, side, 0u, fill).arc, open);
-        EXPECT_EQ(part_of(s, side, 0xffffffffu, fill).arc, 0.0f);
+      for (const float hidden_occlusion : {0.0f, 0.4f, 1.0f}) {
+        EXPECT_EQ(part_of(s, side, 0u, hidden_occlusion).arc, open);
+        EXPECT_EQ(part_of(s, side, 0xffffffffu, hidden_occlusion).arc, 0.0f);
       }
     }
   }
@@ -170,35 +173,36 @@ TEST(VisibilityBitmask, FilledOccludersGiveTheHorizon) {
   for (int i = 0; i < 2000; ++i) {
     const Slice s = random_slice(random);
     const float side = random_side(random);
-    const float per_bearing = maths::sectors_per_bearing(s, side);
+    const float per_diamond_angle = maths::sectors_per_diamond_angle(s, side);
     const int first = int(random.bits() % 32);
-    const auto horizon = float(std::cos(boundary_angle(per_bearing, first)));
+    const auto horizon = float(std::cos(boundary_angle(per_diamond_angle, first)));
     // Near the view vector a horizon's cosine holds its angle to sqrt(2^-23) only.
     EXPECT_NEAR(part_of(s, side, 1u << first, 1.0f).arc, maths::slice_arc(s, side, horizon), 5e-4f);
   }
 }
 
 TEST(VisibilityBitmask, WhatIsFilledBehindGrowsWithTheFrontAndIsTheSettingInTheMean) {
-  for (const float fill : {0.1f, 0.35f, 0.5f, 0.9f}) {
+  for (const float hidden_occlusion : {0.1f, 0.35f, 0.5f, 0.9f}) {
     constexpr int kSteps = 4000;
     double sum = 0.0;
     float last = 0.0f;
     for (int i = 0; i < kSteps; ++i) {
-      const float part = maths::fill_behind((float(i) + 0.5f) / kSteps, fill);
+      const float part =
+          maths::hidden_occlusion_behind((float(i) + 0.5f) / kSteps, hidden_occlusion);
       EXPECT_GE(part, last);
       sum += part;
       last = part;
     }
     // What the mid-point rule errs by where the part rises steeply from 0.
-    EXPECT_NEAR(sum / kSteps, fill, 2e-3) << fill;
-    EXPECT_EQ(maths::fill_behind(1.0f, fill), 1.0f);
+    EXPECT_NEAR(sum / kSteps, hidden_occlusion, 2e-3) << hidden_occlusion;
+    EXPECT_EQ(maths::hidden_occlusion_behind(1.0f, hidden_occlusion), 1.0f);
   }
 }
 
 TEST(VisibilityBitmask, NothingOrAllIsFilledAtTheEndsOfTheSetting) {
   for (const float front : {0.0f, 1e-4f, 0.5f, 1.0f, 1.0001f}) {
-    EXPECT_EQ(maths::fill_behind(front, 0.0f), 0.0f);
-    EXPECT_EQ(maths::fill_behind(front, 1.0f), 1.0f);
+    EXPECT_EQ(maths::hidden_occlusion_behind(front, 0.0f), 0.0f);
+    EXPECT_EQ(maths::hidden_occlusion_behind(front, 1.0f), 1.0f);
   }
 }
 

@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "alcove/passes/apply.h"
-#include "device/gpu.h"
 #include "framegraph/allocation_counter.h"
 #include "maths/spherical_harmonics.h"
+#include "render/gpu.h"
 
 namespace alcove::passes {
 namespace {

@@ -5,7 +5,7 @@
 #include <functional>
 #include <limits>
 
-#include "alcove/passes/line_depth.h"
+#include "alcove/passes/inverse_depth.h"
 #include "comma_locale.h"
 #include "gtao_scenes.h"
 #include "pass_fixture.h"
@@ -77,20 +77,20 @@ TEST_F(BadInput, EverySettingOutOfRangeIsNamed) {
       {"steps", [](View&, OcclusionSettings& s) { s.steps = 65; }},
       {"slices", [](View&, OcclusionSettings& s) { s.slices = 0; }},
       {"slices", [](View&, OcclusionSettings& s) { s.slices = 4000000000u; }},
-      {"resolution", [](View&, OcclusionSettings& s) { s.divisor = 3; }},
-      {"resolution", [](View&, OcclusionSettings& s) { s.divisor = 0; }},
+      {"resolution", [](View&, OcclusionSettings& s) { s.tile_size = 3; }},
+      {"resolution", [](View&, OcclusionSettings& s) { s.tile_size = 0; }},
       {"The thickness is", [](View&, OcclusionSettings& s) { s.thickness = -0.1f; }},
       {"The thickness is", [](View&, OcclusionSettings& s) { s.thickness = kNaN; }},
       {"The thickness is", [](View&, OcclusionSettings& s) { s.thickness = kInfinity; }},
-      {"The fill is", [](View&, OcclusionSettings& s) { s.fill = 1.5f; }},
+      {"The hidden_occlusion is", [](View&, OcclusionSettings& s) { s.hidden_occlusion = 1.5f; }},
       {"The blend is", [](View&, OcclusionSettings& s) { s.blend = kNaN; }},
       {"The falloff is", [](View&, OcclusionSettings& s) { s.falloff = -0.5f; }},
       {"only horizons and the heuristic", [](View&, OcclusionSettings& s) { s.falloff = 0.5f; }},
-      {"The fill is", [](View&, OcclusionSettings& s) { s.fill = kNaN; }},
+      {"The hidden_occlusion is", [](View&, OcclusionSettings& s) { s.hidden_occlusion = kNaN; }},
       {"tolerance", [](View&, OcclusionSettings& s) { s.filter_tolerance_px = 0.0f; }},
       {"tolerance", [](View&, OcclusionSettings& s) { s.filter_tolerance_px = kNaN; }},
       {"tolerance", [](View&, OcclusionSettings& s) { s.filter_tolerance_px = kInfinity; }},
-      {"reach", [](View&, OcclusionSettings& s) { s.filter_reach = 4; }},
+      {"reach", [](View&, OcclusionSettings& s) { s.filter_radius = 4; }},
       {"history", [](View&, OcclusionSettings& s) { s.history_frames = 256; }},
       {"clamp", [](View&, OcclusionSettings& s) { s.clamp_width = -1.0f; }},
       {"clamp", [](View&, OcclusionSettings& s) { s.clamp_width = kNaN; }},
@@ -121,7 +121,8 @@ TEST_F(BadInput, NumbersOfSentencesAreShortAndExactInEveryLocale) {
   const std::vector<Case> cases{
       {"radius is -1e-07;", [](View&, OcclusionSettings& s) { s.radius = -1e-7f; }},
       {"thickness is -1.5;", [](View&, OcclusionSettings& s) { s.thickness = -1.5f; }},
-      {"fill is 1.0000001;", [](View&, OcclusionSettings& s) { s.fill = 1.0000001f; }},
+      {"hidden_occlusion is 1.0000001;",
+       [](View&, OcclusionSettings& s) { s.hidden_occlusion = 1.0000001f; }},
       {"falloff is 1e-09,", [](View&, OcclusionSettings& s) { s.falloff = 1e-9f; }},
       {"tolerance is -0.25 ", [](View&, OcclusionSettings& s) { s.filter_tolerance_px = -0.25f; }},
       {"clamp is -1e+30 ", [](View&, OcclusionSettings& s) { s.clamp_width = -1e30f; }},
@@ -183,22 +184,27 @@ TEST_F(BadInput, ATransposedProjectionIsNamed) {
 TEST_F(BadInput, ASignalThatNoSearchLeavesIsNamed) {
   struct Case {
     const char* names;
-    std::function<void(OcclusionSignal&, ReconstructSettings&)> spoil;
+    std::function<void(RawOcclusionTextures&, ReconstructSettings&)> spoil;
   };
   const std::vector<Case> cases{
-      {"divided by 0", [](OcclusionSignal& s, ReconstructSettings&) { s.divisor = 0; }},
-      {"divided by 3", [](OcclusionSignal& s, ReconstructSettings&) { s.divisor = 3; }},
-      {"divided by 4294967295", [](OcclusionSignal& s, ReconstructSettings&) { s.divisor = ~0u; }},
-      {"0 slices", [](OcclusionSignal& s, ReconstructSettings&) { s.slices = 0; }},
-      {"65 slices", [](OcclusionSignal& s, ReconstructSettings&) { s.slices = 65; }},
-      {"a signal of 8x6", [](OcclusionSignal& s, ReconstructSettings&) { s.divisor = 1; }},
-      {"a signal of 0x0", [](OcclusionSignal& s, ReconstructSettings&) { s.signal = {}; }},
-      {"a signal of 8x6", [](OcclusionSignal& s, ReconstructSettings&) { s.lobe = true; }},
-      {"a bent signal of 16x12",
-       [](OcclusionSignal& s, ReconstructSettings&) { s.bent.index = 0; }},
-      {"The roughness is", [](OcclusionSignal&, ReconstructSettings& s) { s.roughness = kNaN; }},
+      {"divided by 0", [](RawOcclusionTextures& s, ReconstructSettings&) { s.tile_size = 0; }},
+      {"divided by 3", [](RawOcclusionTextures& s, ReconstructSettings&) { s.tile_size = 3; }},
+      {"divided by 4294967295",
+       [](RawOcclusionTextures& s, ReconstructSettings&) { s.tile_size = ~0u; }},
+      {"0 slices", [](RawOcclusionTextures& s, ReconstructSettings&) { s.slices = 0; }},
+      {"65 slices", [](RawOcclusionTextures& s, ReconstructSettings&) { s.slices = 65; }},
+      {"a raw_occlusion of 8x6",
+       [](RawOcclusionTextures& s, ReconstructSettings&) { s.tile_size = 1; }},
+      {"a raw_occlusion of 0x0",
+       [](RawOcclusionTextures& s, ReconstructSettings&) { s.raw_occlusion = {}; }},
+      {"a raw_occlusion of 8x6",
+       [](RawOcclusionTextures& s, ReconstructSettings&) { s.lobe = true; }},
+      {"a bent raw_occlusion of 16x12",
+       [](RawOcclusionTextures& s, ReconstructSettings&) { s.bent.index = 0; }},
+      {"The roughness is",
+       [](RawOcclusionTextures&, ReconstructSettings& s) { s.roughness = kNaN; }},
       {"The channel of the roughness is",
-       [](OcclusionSignal&, ReconstructSettings& s) { s.roughness_channel = 4; }},
+       [](RawOcclusionTextures&, ReconstructSettings& s) { s.roughness_channel = 4; }},
   };
   const Drawing drawing = draw(test_views()[2], 16, 12, groove(0.8));
   for (const Case& bad : cases) {
@@ -206,18 +212,18 @@ TEST_F(BadInput, ASignalThatNoSearchLeavesIsNamed) {
       const Frame frame{graph, gpu().kernels(), test_views()[2].view, 0};
       const framegraph::Texture depth = upload(graph, drawing.depth_ndc);  // the first: number 0
       const framegraph::Texture normals = upload(graph, drawing.normal_vs);
-      const auto line = add_line_depth(frame, depth);
+      const auto line = add_inverse_depth(frame, depth);
       ASSERT_TRUE(line);
       GtaoSettings search;
-      search.divisor = 2;
+      search.tile_size = 2;
       search.bent_normal = true;
-      const auto signal = add_gtao(frame, {*line, normals, true}, search);
-      ASSERT_TRUE(signal);
-      OcclusionSignal spoilt = *signal;
+      const auto raw_occlusion = add_gtao(frame, {*line, normals, true}, search);
+      ASSERT_TRUE(raw_occlusion);
+      RawOcclusionTextures spoilt = *raw_occlusion;
       ReconstructSettings settings;
       bad.spoil(spoilt, settings);
       const auto result = add_reconstruct(
-          frame, {.signal = spoilt, .line_depth = *line, .normals = normals}, settings);
+          frame, {.raw_occlusion = spoilt, .inverse_depth = *line, .normals = normals}, settings);
       ASSERT_FALSE(result);
       EXPECT_THAT(result.error().message, HasSubstr(bad.names));
       EXPECT_PRED1(is_a_sentence, result.error().message);

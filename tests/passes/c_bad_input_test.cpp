@@ -145,12 +145,12 @@ TEST_F(CBadInput, EverySettingOutOfRangeIsNamed) {
       {"weighting is 2", [](AlcoveSettings& s) { set_number(s.weighting, 2); }},
       {"The thickness is", [](AlcoveSettings& s) { s.thickness = kNaN; }},
       {"thickness_unit is 3", [](AlcoveSettings& s) { set_number(s.thickness_unit, 3); }},
-      {"The fill is", [](AlcoveSettings& s) { s.fill = 1.5f; }},
+      {"The hidden_occlusion is", [](AlcoveSettings& s) { s.hidden_occlusion = 1.5f; }},
       {"The blend is", [](AlcoveSettings& s) { s.blend = -1.0f; }},
       {"The falloff is", [](AlcoveSettings& s) { s.falloff = 2.0f; }},
-      {"divided by 3", [](AlcoveSettings& s) { s.divisor = 3; }},
+      {"divided by 3", [](AlcoveSettings& s) { s.tile_size = 3; }},
       {"pattern is 3", [](AlcoveSettings& s) { set_number(s.pattern, 3); }},
-      {"reach", [](AlcoveSettings& s) { s.filter_reach = 4; }},
+      {"reach", [](AlcoveSettings& s) { s.filter_radius = 4; }},
       {"tolerance", [](AlcoveSettings& s) { s.filter_tolerance_px = 0.0f; }},
       {"history", [](AlcoveSettings& s) { s.history_frames = 256; }},
       {"clamp", [](AlcoveSettings& s) { s.clamp_width = kNaN; }},
@@ -253,14 +253,14 @@ TEST_F(CBadInput, AnImageThatDoesNotDoIsNamed) {
       {"visibility of view 0",
        [](AlcoveView& v) { v.visibility.usage = VK_IMAGE_USAGE_STORAGE_BIT; }},
       {"no layout to be left in",
-       [](AlcoveView& v) { v.specular.departure.layout = VK_IMAGE_LAYOUT_UNDEFINED; }},
+       [](AlcoveView& v) { v.specular.final_state.layout = VK_IMAGE_LAYOUT_UNDEFINED; }},
       {"without contents",
-       [](AlcoveView& v) { v.depth.arrival.layout = VK_IMAGE_LAYOUT_UNDEFINED; }},
+       [](AlcoveView& v) { v.depth.initial_state.layout = VK_IMAGE_LAYOUT_UNDEFINED; }},
       {"given twice", [](AlcoveView& v) { v.specular = v.visibility; }},
       {"given twice",
        [](AlcoveView& v) {
          v.motion = v.roughness;
-         v.motion.departure.stages = VK_PIPELINE_STAGE_2_COPY_BIT;
+         v.motion.final_state.stages = VK_PIPELINE_STAGE_2_COPY_BIT;
        }},
       {"no image to write to",
        [](AlcoveView& v) {

@@ -79,11 +79,11 @@ TEST_F(CImages, DepthMayComeInADepthFormatAndAnyLayout) {
                              VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
                              VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL};
   fill_image(view.depth, given.depth_ndc, attached);
-  view.depth.arrival = attached;
-  view.depth.departure = {VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT,
-                          VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT,
-                          VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL};
-  view.visibility.departure.layout = VK_IMAGE_LAYOUT_GENERAL;
+  view.depth.initial_state = attached;
+  view.depth.final_state = {VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT,
+                            VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT,
+                            VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL};
+  view.visibility.final_state.layout = VK_IMAGE_LAYOUT_GENERAL;
   run_frame(*context, {&view, 1}, 0);
   expect_equal(results_of(view), run_by_cpp(given, 0));
 }

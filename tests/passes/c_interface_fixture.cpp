@@ -33,8 +33,8 @@ framegraph::ImportedTexture import_of(const AlcoveImage& image) {
           .desc = {image.format, framegraph::Extent::absolute(image.width, image.height)},
           .usage = image.usage,
           .first_layer = image.layer,
-          .arrival = to_state(image.departure),
-          .departure = to_state(image.departure)};
+          .initial_state = to_state(image.final_state),
+          .final_state = to_state(image.final_state)};
 }
 
 HostImage uniform(std::uint32_t width, std::uint32_t height, std::vector<float> texel) {
@@ -113,22 +113,22 @@ AlcoveImage CInterface::input(const HostImage& contents) {
   }
   const AlcoveImage image = engine_->make_image(format_of(contents.channels), contents.width,
                                                 contents.height, kInputUsage);
-  fill_image(image, contents, image.departure);
+  fill_image(image, contents, image.final_state);
   return image;
 }
 
 void CInterface::fill_image(const AlcoveImage& image, const HostImage& contents,
-                            AlcoveState departure) {
+                            AlcoveState final_state) {
   run([&](Graph& graph) {
     framegraph::ImportedTexture import = import_of(image);
-    import.departure = to_state(departure);
+    import.final_state = to_state(final_state);
     fill(graph, graph.import_texture("image", import), contents);
   });
 }
 
 AlcoveImage CInterface::output(VkFormat format, std::uint32_t width, std::uint32_t height) {
   AlcoveImage image = engine_->make_image(format, width, height, kOutputUsage);
-  image.arrival.layout = VK_IMAGE_LAYOUT_UNDEFINED;
+  image.initial_state.layout = VK_IMAGE_LAYOUT_UNDEFINED;
   return image;
 }
 
@@ -146,7 +146,7 @@ AlcoveView CInterface::view_of(const GivenView& given, AlcoveSettings& settings)
                   .id = given.id,
                   .reset_history = given.reset ? VK_TRUE : VK_FALSE,
                   .normals_in_view_space = given.normals_in_view_space ? VK_TRUE : VK_FALSE,
-                  .still_frames = given.still_frames,
+                  .static_frames = given.static_frames,
                   .settings = &settings,
                   .camera = to_camera(given.view),
                   .previous_camera = to_camera(given.previous_view),
@@ -236,7 +236,7 @@ Results CInterface::run_by_cpp(const GivenView& given, std::uint32_t index) {
                       .view = given.view,
                       .index = index,
                       .previous_view = given.previous_view,
-                      .still_frames = given.reset ? 0 : given.still_frames,
+                      .static_frames = given.reset ? 0 : given.static_frames,
                       .largest_size = given.largest_size,
                       .previous_size = given.reset ? VkExtent2D{} : given.previous_size};
     OcclusionSettings settings = given.settings;

@@ -20,7 +20,7 @@ struct GivenView {
   View view;
   View previous_view = view;
   bool reset = false;
-  std::uint32_t still_frames = 0;
+  std::uint32_t static_frames = 0;
   VkExtent2D largest_size{};
   VkExtent2D previous_size{};
   HostImage depth_ndc;
@@ -59,8 +59,8 @@ class CInterface : public PassTest {
 
   // An image that holds `contents`.
   AlcoveImage input(const HostImage& contents);
-  // Fills an image that rests, and leaves it in `departure`.
-  void fill_image(const AlcoveImage& image, const HostImage& contents, AlcoveState departure);
+  // Fills an image that rests, and leaves it in `final_state`.
+  void fill_image(const AlcoveImage& image, const HostImage& contents, AlcoveState final_state);
   AlcoveImage output(VkFormat format, std::uint32_t width, std::uint32_t height);
   HostImage read(const AlcoveImage& image);
 

@@ -42,7 +42,7 @@ TEST_F(CInterface, AStillViewIsTheSameAsByCpp) {
   for (std::uint32_t i = 0; i < 20; ++i) {
     GivenView given = frame_of(0, 33, 17);
     given.settings = quality_settings(Quality::low, 0.4f);
-    given.still_frames = i;
+    given.static_frames = i;
     given.reset = i == 18;
     expect_same_both_ways(*context, {&given, 1}, i);
   }
@@ -72,7 +72,7 @@ TEST_F(CInterface, EverySettingReachesThePasses) {
        [](GivenView& g) {
          g.settings.estimator = Estimator::bitmask;
          g.settings.thickness = 0.05f;
-         g.settings.fill = 0.9f;
+         g.settings.hidden_occlusion = 0.9f;
        }},
       {"thickness by distance",
        [](GivenView& g) { g.settings.thickness_unit = ThicknessUnit::distance; }},
@@ -81,7 +81,7 @@ TEST_F(CInterface, EverySettingReachesThePasses) {
       {"two layers", [](GivenView& g) { g.settings.depth_layers = 2; }},
       {"solid angle", [](GivenView& g) { g.settings.weighting = Weighting::uniform; }},
       {"hilbert", [](GivenView& g) { g.settings.pattern = Pattern::hilbert; }},
-      {"memo", [](GivenView& g) { g.settings.pattern = Pattern::memo; }},
+      {"paper", [](GivenView& g) { g.settings.pattern = Pattern::paper; }},
       {"slices and steps",
        [](GivenView& g) {
          g.settings.slices = 3;
@@ -89,7 +89,7 @@ TEST_F(CInterface, EverySettingReachesThePasses) {
        }},
       {"filter",
        [](GivenView& g) {
-         g.settings.filter_reach = 1;
+         g.settings.filter_radius = 1;
          g.settings.filter_tolerance_px = 0.5f;
          g.settings.history_frames = 0;
        }},

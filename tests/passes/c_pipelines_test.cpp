@@ -73,10 +73,10 @@ class CPipelines : public CInterface {
     };
     run_at(0.0f);
     run_at(0.1f);
-    for (view.still_frames = 1; view.still_frames <= 20; ++view.still_frames) {
+    for (view.static_frames = 1; view.static_frames <= 20; ++view.static_frames) {
       run_at(0.1f);
     }
-    view.still_frames = 0;
+    view.static_frames = 0;
     view.reset_history = VK_TRUE;
     run_at(0.5f);
     run_at(0.6f);
@@ -153,9 +153,9 @@ TEST_F(CPipelines, OfAPreparedViewAreAllMadeBeforeItsFirstFrame) {
     run_life(*create_counted(), view);
     const std::uint32_t needed = pipelines;
     // Whichever of its frames it is prepared by.
-    for (const std::uint32_t still_frames : {0u, 20u}) {
+    for (const std::uint32_t static_frames : {0u, 20u}) {
       const Context context = create_counted();
-      view.still_frames = still_frames;
+      view.static_frames = static_frames;
       pipelines = 0;
       prepare(*context, view);
       EXPECT_EQ(pipelines, needed);
@@ -170,7 +170,7 @@ TEST_F(CPipelines, OfOtherFramesAreMadeWithoutATraceInThoseRecorded) {
   for (std::uint32_t i = 0; i < 4; ++i) {
     GivenView given = given_view(test_views()[2], 33, 17, ball_on_floor());
     given.settings.bent_normal = true;
-    given.still_frames = i;
+    given.static_frames = i;
     GivenView other = given_view(test_views()[2], 16, 12, ball_on_floor());
     other.reset = i % 2 == 0;
     AlcoveSettings settings;

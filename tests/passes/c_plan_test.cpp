@@ -89,8 +89,8 @@ TEST_F(CPlan, AnOutputThatArrivesWithContentsKeepsWhatLiesOutsideThePart) {
     for (const bool has_contents : {false, true}) {
       for (AlcoveImage* image :
            {&view.visibility, &view.bent_normal, &view.specular, &view.multi_bounce}) {
-        image->arrival = kResting;
-        image->arrival.layout = has_contents ? kResting.layout : VK_IMAGE_LAYOUT_UNDEFINED;
+        image->initial_state = kResting;
+        image->initial_state.layout = has_contents ? kResting.layout : VK_IMAGE_LAYOUT_UNDEFINED;
       }
       run_frame(*context, {&view, 1}, 0);
       engine().wait();
@@ -184,7 +184,7 @@ TEST_F(CPlan, TimingsNameThePassesOfAFinishedFrame) {
   count = timings.size();
   EXPECT_EQ(alcoveGetTimings(context.get(), 0, &count, timings.data()), ALCOVE_SUCCESS);
   ASSERT_EQ(count, 3u);
-  EXPECT_STREQ(timings[0].pass, "line depth");
+  EXPECT_STREQ(timings[0].pass, "inverse depth");
   EXPECT_STREQ(timings[1].pass, "gtao");
   EXPECT_STREQ(timings[2].pass, "reconstruct");
   for (const AlcoveTiming& timing : timings) {
@@ -214,7 +214,7 @@ TEST_F(CPlan, TimingsNameTheViewOfEachPass) {
   for (std::uint32_t i = 0; i < count; ++i) {
     passes[timings.at(i).view].insert(timings.at(i).pass);
   }
-  const std::multiset<std::string> plain{"gtao", "line depth", "reconstruct"};
+  const std::multiset<std::string> plain{"gtao", "inverse depth", "reconstruct"};
   std::multiset<std::string> with_normals = plain;
   with_normals.insert({"depth pyramid", "normals"});
   EXPECT_EQ(passes.size(), given.size());
@@ -246,14 +246,14 @@ TEST(CSettings, ArePrintedShortAndExactInEveryLocale) {
   AlcoveSettings settings{.struct_size = sizeof settings};
   ASSERT_EQ(alcoveGetSettings(ALCOVE_QUALITY_MEDIUM, 0.15f, &settings), ALCOVE_SUCCESS);
   settings.thickness = 0.12345678f;
-  settings.fill = 1e-7f;
+  settings.hidden_occlusion = 1e-7f;
   settings.filter_tolerance_px = 1234567.0f;
   settings.slices = 4096;
   std::string text(alcovePrintSettings(&settings, nullptr, 0), '\0');
   alcovePrintSettings(&settings, text.data(), text.size() + 1);
   EXPECT_THAT(text, testing::StartsWith("radius = 0.15\nslices = 4096\n"));
   EXPECT_THAT(text, HasSubstr("\nthickness = 0.12345678\n"));
-  EXPECT_THAT(text, HasSubstr("\nfill = 1e-07\n"));
+  EXPECT_THAT(text, HasSubstr("\nhidden_occlusion = 1e-07\n"));
   EXPECT_THAT(text, HasSubstr("\nfilter_tolerance_px = 1234567\n"));
 }
 

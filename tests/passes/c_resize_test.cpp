@@ -149,7 +149,7 @@ Kind CResize::any_kind() {
       settings.estimator == Estimator::horizons || settings.estimator == Estimator::heuristic;
   settings.falloff = fades ? random_.uniform(0.0f, 1.0f) : 0.0f;
   settings.pattern = static_cast<Pattern>(below(3));
-  settings.filter_reach = below(4);
+  settings.filter_radius = below(4);
   settings.clamp_width = chance(2) ? 0.0f : 1.5f;
   settings.specular = static_cast<Specular>(1 + below(5));
   settings.roughness_channel = below(2);
@@ -216,7 +216,7 @@ void CResize::change_numbers(Shown& shown) {
   OcclusionSettings settings = shown.kind.settings;
   settings.radius = random_.log_uniform(0.05f, 5.0f);
   settings.thickness = random_.uniform(0.0f, 1.0f);
-  settings.fill = random_.uniform(0.0f, 1.0f);
+  settings.hidden_occlusion = random_.uniform(0.0f, 1.0f);
   settings.history_frames = chance(4) ? 0 : 1 + below(127);
   settings.roughness = random_.uniform(0.0f, 1.0f);
   settings.precision = static_cast<Precision>(below(3));
@@ -233,7 +233,7 @@ void CResize::show(Shown& shown) {
 void CResize::drop(Shown& shown) {
   shown.is_shown = false;
   EXPECT_EQ(alcoveDropView(context_.get(), shown.id), ALCOVE_SUCCESS);
-  shown.view.previous_width = shown.view.previous_height = shown.view.still_frames = 0;
+  shown.view.previous_width = shown.view.previous_height = shown.view.static_frames = 0;
 }
 
 // What changes is not still; most frames are like the one before.
@@ -242,7 +242,7 @@ void CResize::change(Shown& shown) {
   if (what > 4) {
     return;
   }
-  shown.view.still_frames = 0;
+  shown.view.static_frames = 0;
   if (what == 0 && shown.is_shown && chance(2)) {
     drop(shown);
   } else if (what == 0) {
@@ -265,7 +265,7 @@ void remember(Shown& shown) {
     shown.view.previous_width = shown.view.depth.width;
     shown.view.previous_height = shown.view.depth.height;
   }
-  ++shown.view.still_frames;
+  ++shown.view.static_frames;
 }
 
 void CResize::draw_frame(std::span<Shown> all, bool discards) {

@@ -89,8 +89,8 @@ AlcoveImage Engine::make_image(VkFormat format, std::uint32_t width, std::uint32
           .width = width,
           .height = height,
           .usage = usage,
-          .arrival = kResting,
-          .departure = kResting};
+          .initial_state = kResting,
+          .final_state = kResting};
 }
 
 void Engine::destroy_image(const AlcoveImage& image) {

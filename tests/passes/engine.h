@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "alcove/alcove.h"
-#include "device/vulkan_device.h"
+#include "render/vulkan_device.h"
 
 namespace alcove::passes {
 

@@ -56,8 +56,8 @@ framegraph::ImportedTexture import_of(const AlcoveImage& image) {
   return {.image = image.image,
           .desc = {image.format, framegraph::Extent::absolute(image.width, image.height)},
           .usage = image.usage,
-          .arrival = state(image.arrival),
-          .departure = state(image.departure)};
+          .initial_state = state(image.initial_state),
+          .final_state = state(image.final_state)};
 }
 
 class Example : public passes::CInterface {

@@ -32,7 +32,7 @@ OcclusionSettings unfiltered(Estimator estimator, float radius) {
   settings.slices = 4;
   settings.steps = 8;
   settings.estimator = estimator;
-  settings.filter_reach = 0;
+  settings.filter_radius = 0;
   settings.precision = Precision::float32;
   return settings;
 }
@@ -119,22 +119,22 @@ TEST_F(GtaoInvariance, EverySizeDivisorAndPatternCoversEveryPixel) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> sizes{{1, 1}, {3, 5}, {17, 9}, {33, 1}};
   for (const auto& [width, height] : sizes) {
     const Drawing drawing = draw(view, width, height, {tilted_plane(40.0, 4.0)});
-    for (const std::uint32_t divisor : {1u, 2u, 4u}) {
-      for (const Pattern pattern : {Pattern::golden, Pattern::hilbert, Pattern::memo}) {
+    for (const std::uint32_t tile_size : {1u, 2u, 4u}) {
+      for (const Pattern pattern : {Pattern::golden, Pattern::hilbert, Pattern::paper}) {
         for (const std::uint32_t history : {0u, 8u}) {
           SCOPED_TRACE(testing::Message()
-                       << width << " x " << height << " by " << divisor << ", pattern "
+                       << width << " x " << height << " by " << tile_size << ", pattern "
                        << static_cast<int>(pattern) << ", history of " << history);
           OcclusionSettings settings = unfiltered(Estimator::connected, 0.5f);
           settings.slices = 1;
           settings.steps = 6;
-          settings.divisor = divisor;
+          settings.tile_size = tile_size;
           settings.pattern = pattern;
           settings.history_frames = history;
-          settings.filter_reach = history == 0 ? 0 : 2;
+          settings.filter_radius = history == 0 ? 0 : 2;
           settings.bent_normal = true;
           poison_memory(width, height);
-          // The last searched pixel of a block falls outside of the image.
+          // The last traced pixel of a block falls outside of the image.
           const OcclusionImages images = run_occlusion({.view = view.view,
                                                         .depth_ndc = drawing.depth_ndc,
                                                         .normal_vs = &drawing.normal_vs,
@@ -168,14 +168,14 @@ TEST_F(GtaoInvariance, GroupsOfOneDirectionDrawWhatNeighboursDo) {
                                .normal_vs = &drawing.normal_vs,
                                .index = 3,
                                .reset = true};
-    for (const auto& [divisor, pattern] :
-         {std::pair{1u, Pattern::golden}, {2u, Pattern::hilbert}, {4u, Pattern::memo}}) {
-      SCOPED_TRACE(testing::Message() << width << " x " << height << " by " << divisor
+    for (const auto& [tile_size, pattern] :
+         {std::pair{1u, Pattern::golden}, {2u, Pattern::hilbert}, {4u, Pattern::paper}}) {
+      SCOPED_TRACE(testing::Message() << width << " x " << height << " by " << tile_size
                                       << ", pattern " << static_cast<int>(pattern));
       OcclusionSettings settings = unfiltered(Estimator::connected, 0.5f);
       settings.slices = 1;
       settings.steps = 4;
-      settings.divisor = divisor;
+      settings.tile_size = tile_size;
       settings.pattern = pattern;
       settings.bent_normal = true;
       settings.specular = Specular::slices;
@@ -196,12 +196,12 @@ TEST_F(GtaoInvariance, EveryPatternMeetsTheSameMeanInAGroove) {
   const Drawing drawing = draw(view, 64, 48, groove(0.8));
   for (const Estimator estimator : kEstimators) {
     std::vector<double> means;
-    for (const std::uint32_t divisor : {1u, 2u, 4u}) {
-      for (const Pattern pattern : {Pattern::golden, Pattern::hilbert, Pattern::memo}) {
+    for (const std::uint32_t tile_size : {1u, 2u, 4u}) {
+      for (const Pattern pattern : {Pattern::golden, Pattern::hilbert, Pattern::paper}) {
         OcclusionSettings settings = unfiltered(estimator, 1.0f);
-        settings.divisor = divisor;
+        settings.tile_size = tile_size;
         settings.pattern = pattern;
-        settings.filter_reach = 2;
+        settings.filter_radius = 2;
         const HostImage image = visibility(view, drawing, settings);
         double mean = 0.0;
         for (const float texel : image.texels) {
@@ -220,7 +220,7 @@ TEST_F(GtaoInvariance, WhatIsNoNumberStaysLocalAndFinite) {
   for (const Estimator estimator : kEstimators) {
     OcclusionSettings settings = unfiltered(estimator, 0.5f);
     settings.bent_normal = true;
-    settings.filter_reach = 2;
+    settings.filter_radius = 2;
     Drawing drawing = draw(view, kWidth, kHeight, groove(0.8));
     const OcclusionFrame frame{view.view, drawing.depth_ndc, &drawing.normal_vs};
     const HostImage clean = run_occlusion(frame, settings).visibility;
@@ -264,7 +264,7 @@ TEST_F(GtaoInvariance, DepthBuffersOfNothingButNonsenseGiveFiniteImages) {
       for (const bool given : {false, true}) {
         OcclusionSettings settings = unfiltered(estimator, 0.5f);
         settings.bent_normal = true;
-        settings.filter_reach = 2;
+        settings.filter_radius = 2;
         settings.history_frames = 8;
         settings.thickness_unit = given ? ThicknessUnit::back_faces : ThicknessUnit::radius;
         settings.depth_layers = given ? 2 : 1;
@@ -291,7 +291,7 @@ TEST_F(GtaoInvariance, DepthBuffersOfNothingButNonsenseGiveFiniteImages) {
 TEST_F(GtaoInvariance, BothEyesOfAFrameHaveTheSameNoise) {
   const TestView view = test_views().front();
   const Drawing drawing = draw(view, kWidth, kHeight, gtao_scenes().front().scene);
-  for (const Pattern pattern : {Pattern::golden, Pattern::hilbert, Pattern::memo}) {
+  for (const Pattern pattern : {Pattern::golden, Pattern::hilbert, Pattern::paper}) {
     OcclusionSettings settings = quality_settings(Quality::medium, 0.5f);
     settings.pattern = pattern;
     for (std::uint32_t index = 0; index < 4; ++index) {

@@ -58,7 +58,7 @@ TEST_F(GtaoPass, OpenPlaneIsFullyVisibleAtAnyTilt) {
   }
 }
 
-// What snapping buys: the same planes, tilted, without it.
+// What snap_to_texels buys: the same planes, tilted, without it.
 TEST_F(GtaoPass, WhereSnappingIsNotReckonedWithATiltedPlaneOccludesItself) {
   const TestView view = test_views()[2];
   for (const Estimator estimator : {Estimator::horizons, Estimator::connected}) {
@@ -68,15 +68,15 @@ TEST_F(GtaoPass, WhereSnappingIsNotReckonedWithATiltedPlaneOccludesItself) {
       SCOPED_TRACE(testing::Message() << "tilted " << degrees << " degrees");
       const PlaneScene plane = plane_scene(view, 96, 64, degrees);
       double lowest[2];
-      for (const bool snapping : {false, true}) {
-        settings.parts.snapping = snapping;
+      for (const bool snap_to_texels : {false, true}) {
+        settings.parts.snap_to_texels = snap_to_texels;
         const HostImage visibility = run_occlusion({.view = view.view,
                                                     .depth_ndc = plane.depth_ndc,
                                                     .normal_vs = &plane.normal_vs,
                                                     .reset = true},
                                                    settings)
                                          .visibility;
-        lowest[snapping ? 1 : 0] = *std::ranges::min_element(visibility.texels);
+        lowest[snap_to_texels ? 1 : 0] = *std::ranges::min_element(visibility.texels);
       }
       EXPECT_LT(lowest[0], 0.98);
       EXPECT_GE(lowest[1], 1.0 - 1.0 / 255.0);

@@ -17,8 +17,8 @@ namespace {
 OcclusionSettings exact(Estimator estimator, float radius) {
   OcclusionSettings settings = quality_settings(Quality::reference, radius);
   settings.estimator = estimator;
-  settings.fill = 1.0f;
-  settings.parts.unseen = false;
+  settings.hidden_occlusion = 1.0f;
+  settings.parts.unobserved = false;
   return settings;
 }
 
@@ -244,7 +244,7 @@ TEST_F(GtaoTruth, ThicknessOfDistanceIsThatOfTheRadiusAtOneDistance) {
   const float radius = 1.2f, distance = 3.5f;
   for (const Estimator estimator : {Estimator::bitmask, Estimator::connected}) {
     OcclusionSettings settings = exact(estimator, radius);
-    settings.fill = 0.0f;
+    settings.hidden_occlusion = 0.0f;
     settings.thickness = 0.2f;
     const auto of_radius =
         run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, settings).visibility;
@@ -270,9 +270,9 @@ TEST_F(GtaoTruth, MoreIsFilledBehindAWideOccluderThanBehindNarrowOnes) {
       front.keep = [=](const glm::dvec3& p) {
         return p.x > 0.0 && p.x < slats * apart && std::fmod(p.x, apart) < width;
       };
-      const auto beside = [&](float fill) {
+      const auto beside = [&](float hidden_occlusion) {
         OcclusionSettings settings = exact(Estimator::connected, 1.2f);
-        settings.fill = fill;
+        settings.hidden_occlusion = hidden_occlusion;
         return visibility_beside(view, front, settings);
       };
       const double none = beside(0.0f);
@@ -303,7 +303,7 @@ TEST_F(GtaoTruth, WhatIsNarrowIsThin) {
       const auto beside = [&](float thickness) {
         OcclusionSettings settings = exact(Estimator::connected, 1.2f);
         settings.steps = 8;
-        settings.fill = 0.0f;
+        settings.hidden_occlusion = 0.0f;
         settings.thickness = thickness;
         return visibility_beside(view, front, settings);
       };
@@ -347,23 +347,23 @@ TEST_F(GtaoTruth, AWallThatLeavesTheImageOccludesAsIfItWereSeen) {
     const Drawing whole = draw(view, kWhole, kHeight, groove(0.8));
     const TestView part_view = columns_of(view, kWhole, 0, kPart);
     const Drawing part = draw(part_view, kPart, kHeight, groove(0.8));
-    const auto seen = [&](const TestView& of, const Drawing& drawing, bool continuation) {
+    const auto seen = [&](const TestView& of, const Drawing& drawing, bool extrapolation) {
       OcclusionSettings settings = exact(Estimator::connected, kRadius);
       settings.steps = 12;
-      settings.parts.continuation = continuation;
+      settings.parts.extrapolation = extrapolation;
       return run_occlusion({of.view, drawing.depth_ndc, &drawing.normal_vs}, settings).visibility;
     };
     const HostImage truth = seen(view, whole, true);
     double off[2] = {0.0, 0.0};
-    for (const bool continuation : {false, true}) {
-      const HostImage found = seen(part_view, part, continuation);
+    for (const bool extrapolation : {false, true}) {
+      const HostImage found = seen(part_view, part, extrapolation);
       int count = 0;
       for (std::uint32_t y = 10; y < kHeight - 10; ++y) {
         for (std::uint32_t x = 82; x < 96; ++x, ++count) {
-          off[continuation ? 1 : 0] += std::abs(found.at(x, y) - truth.at(x, y));
+          off[extrapolation ? 1 : 0] += std::abs(found.at(x, y) - truth.at(x, y));
         }
       }
-      off[continuation ? 1 : 0] /= count;
+      off[extrapolation ? 1 : 0] /= count;
     }
     EXPECT_GT(off[0], 0.05);
     EXPECT_LT(off[1], 0.01);

@@ -101,7 +101,7 @@ float expected(const Inputs& inputs, const maths::Projection& projection, Specul
   const maths::vec2 uv = maths::pixel_centre_uv(projection, {x, y});
   const vec3 view = maths::view_vector(projection, maths::position_vs(projection, uv, depth));
   const vec3 normal = direction(inputs.normals, x, y);
-  const float visibility = maths::settled_visibility(inputs.visibility.at(x, y));
+  const float visibility = maths::converged_visibility(inputs.visibility.at(x, y));
   const vec3 bent = maths::raised_bent_normal(direction(inputs.bent, x, y), normal, visibility);
   const float alpha = inputs.surface.at(x, y, 3) * inputs.surface.at(x, y, 3);
   const vec3 mirror = maths::mirror_direction(normal, view);
@@ -195,7 +195,7 @@ TEST_F(GtsoPass, OpenSurfaceStaysOpenAtAnyRoughness) {
       const Inputs open = open_inputs(plane);
       run([&](Graph& graph) {
         const Frame frame{graph, gpu().kernels(), view.view, 0};
-        const auto depth = add_depth_pyramid(frame, upload(graph, plane.depth_ndc), 1, 0.05f);
+        const auto depth = add_linear_depth(frame, upload(graph, plane.depth_ndc), 1, 0.05f);
         ASSERT_TRUE(depth) << depth.error().message;
         const GtsoInputs inputs{.visibility = upload(graph, open.visibility),
                                 .bent_normal = upload(graph, open.bent),

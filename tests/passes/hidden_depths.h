@@ -16,8 +16,8 @@ inline OcclusionSettings without_fill(Estimator estimator, float radius) {
   OcclusionSettings settings = quality_settings(Quality::reference, radius);
   settings.estimator = estimator;
   settings.slices = 16;
-  settings.fill = 0.0f;
-  settings.parts.unseen = false;
+  settings.hidden_occlusion = 0.0f;
+  settings.parts.unobserved = false;
   return settings;
 }
 

@@ -22,7 +22,7 @@ class Normals : public PassTest {
   HostImage normals(const View& view, const HostImage& depth_ndc) {
     run([&](Graph& graph) {
       const Frame frame{graph, gpu().kernels(), view, 0};
-      const auto depth = add_depth_pyramid(frame, upload(graph, depth_ndc), 1, 1.0f);
+      const auto depth = add_linear_depth(frame, upload(graph, depth_ndc), 1, 1.0f);
       ASSERT_TRUE(depth) << depth.error().message;
       const auto made = add_normals(frame, *depth);
       ASSERT_TRUE(made) << made.error().message;
@@ -120,9 +120,9 @@ TEST_F(Normals, SkyLooksAtTheEyeAndLeavesItsNeighboursAlone) {
 
 TEST_F(Normals, AStripTwoPixelsWideKeepsItsOwnNormal) {
   for (const TestView& view : test_views()) {
-    for (const double slant : {-0.5, 0.5}) {
-      SCOPED_TRACE(testing::Message() << view.name << " slanted " << slant);
-      const Drawing wide = draw(view, 40, 30, {plane({0.0, 0.0, -3.0}, {slant, 0.1, 1.0})});
+    for (const double n_dot_v : {-0.5, 0.5}) {
+      SCOPED_TRACE(testing::Message() << view.name << " slanted " << n_dot_v);
+      const Drawing wide = draw(view, 40, 30, {plane({0.0, 0.0, -3.0}, {n_dot_v, 0.1, 1.0})});
       Surface strip = wide.scene[0];
       strip.keep = [&](const glm::dvec3& position) {
         const double column = wide.camera.project(position).x;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "alcove/passes/occlusion.h"
-#include "device/gpu.h"
+#include "render/gpu.h"
 
 namespace alcove::passes {
 

@@ -88,9 +88,9 @@ OcclusionSettings least() {
 
 TEST_F(OcclusionPlan, TheLeastFrameIsThreePassesAndThreeTextures) {
   const Kept frame = kept(least());
-  EXPECT_THAT(frame.passes, ElementsAre("line depth", "gtao", "reconstruct"));
+  EXPECT_THAT(frame.passes, ElementsAre("inverse depth", "gtao", "reconstruct"));
   EXPECT_THAT(frame.transients,
-              testing::UnorderedElementsAre("line depth", "occlusion signal", "visibility"));
+              testing::UnorderedElementsAre("inverse depth", "raw occlusion", "visibility"));
   EXPECT_THAT(frame.histories, testing::IsEmpty());
   EXPECT_EQ(gpu().kernels().pipeline_count(), 3u);
 }
@@ -154,8 +154,9 @@ TEST_F(OcclusionPlan, BackFacesCostOnlyWhereTheThicknessIsReadFromThem) {
 
   settings.thickness_unit = ThicknessUnit::back_faces;
   const Kept read = kept(settings, {}, {.hidden_depths = true});
-  EXPECT_THAT(read.passes, ElementsAre("line depth", "back line depth", "gtao", "reconstruct"));
-  EXPECT_THAT(read.transients, Contains("back line depth"));
+  EXPECT_THAT(read.passes,
+              ElementsAre("inverse depth", "back inverse depth", "gtao", "reconstruct"));
+  EXPECT_THAT(read.transients, Contains("back inverse depth"));
   // Another search; back faces go through the kernel that the front's depth does.
   EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines + 1);
 }
@@ -166,8 +167,8 @@ TEST_F(OcclusionPlan, PartsOfASearchCostNoPassAndNoByteAndAPipelineOnlyWhereThey
   (void)kept(least());
   EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines);
   for (const SearchParts& parts :
-       {SearchParts{.snapping = false}, SearchParts{.continuation = false},
-        SearchParts{.unseen = false}, SearchParts{.grouping = Grouping::pattern}}) {
+       {SearchParts{.snap_to_texels = false}, SearchParts{.extrapolation = false},
+        SearchParts{.unobserved = false}, SearchParts{.grouping = Grouping::pattern}}) {
     OcclusionSettings changed = least();
     changed.parts = parts;
     const Kept found = kept(changed);
@@ -198,8 +199,9 @@ TEST_F(OcclusionPlan, ASecondLayerCostsOnlyWhereItIsSearched) {
 
   settings.depth_layers = 2;
   const Kept two = kept(settings, {}, {.hidden_depths = true});
-  EXPECT_THAT(two.passes, ElementsAre("line depth", "second line depth", "gtao", "reconstruct"));
-  EXPECT_THAT(two.transients, Contains("second line depth"));
+  EXPECT_THAT(two.passes,
+              ElementsAre("inverse depth", "second inverse depth", "gtao", "reconstruct"));
+  EXPECT_THAT(two.transients, Contains("second inverse depth"));
   EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines + 1);
 }
 
@@ -256,7 +258,7 @@ TEST_F(OcclusionPlan, LinearDepthIsMadeOnlyWhereSomethingReadsIt) {
 
 TEST_F(OcclusionPlan, ALowerResolutionOfTheSearchTakesLessMemory) {
   OcclusionSettings half = least();
-  half.divisor = 2;
+  half.tile_size = 2;
   EXPECT_LT(kept(half).bytes, kept(least()).bytes);
 }
 
@@ -294,7 +296,7 @@ TEST_F(OcclusionPlan, FramesLikeAPreparedOneMakeNoPipelineWhateverLiesBeforeThem
   EXPECT_EQ(pipelines, 2u + 4u) << "a reconstruction at the start, in motion, still and settled";
   struct Case {
     const View& previous_view;
-    std::uint32_t still_frames;
+    std::uint32_t static_frames;
     bool cut = false;
   };
   const Case cases[] = {{view, 0}, {other, 0}, {view, 1}, {view, 16}, {view, 0, true}, {view, 0}};
@@ -304,7 +306,7 @@ TEST_F(OcclusionPlan, FramesLikeAPreparedOneMakeNoPipelineWhateverLiesBeforeThem
         graph.reset_histories();
       }
       add({graph, gpu().kernels(), view, index, cases[index].previous_view,
-           cases[index].still_frames});
+           cases[index].static_frames});
     });
     EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines) << index;
   }

@@ -4,37 +4,39 @@
 #include <bit>
 #include <cmath>
 
-#include "alcove/passes/line_depth.h"
-#include "maths/coarse_normal.h"
-#include "maths/signal.h"
-#include "search_phase.h"
+#include "alcove/passes/inverse_depth.h"
+#include "interleave_offset.h"
+#include "maths/quantised_normal.h"
+#include "maths/raw_occlusion.h"
 #include "view_parameters.h"
 
 namespace alcove::passes {
 namespace {
 
-// The signal as a search would store it, with depth and normal of the pixel that it searched.
-HostImage packed_signal(const View& view, const Drawing& drawing, const HostImage& signal,
-                        std::uint32_t divisor, std::uint32_t index) {
+// The raw_occlusion as a search would store it, with depth and normal of the pixel that it
+// searched.
+HostImage packed_raw_occlusion(const View& view, const Drawing& drawing,
+                               const HostImage& raw_occlusion, std::uint32_t tile_size,
+                               std::uint32_t index) {
   const HostImage& depth = drawing.depth_ndc;
   const auto projection =
       maths::make_projection(to_mat4(view.clip_from_view), depth.width, depth.height);
-  const maths::vec2 from_ndc = line_from_ndc(projection.value());
-  const SearchPhase phase = search_phase(divisor, index);
-  HostImage packed = signal;
+  const maths::vec2 from_ndc = inverse_depth_from_ndc(projection.value());
+  const InterleaveOffset interleave_offset = interleave_offset_of(tile_size, index);
+  HostImage packed = raw_occlusion;
   for (std::uint32_t y = 0; y < packed.height; ++y) {
     for (std::uint32_t x = 0; x < packed.width; ++x) {
-      const std::uint32_t px = std::min(x * divisor + phase.x, depth.width - 1);
-      const std::uint32_t py = std::min(y * divisor + phase.y, depth.height - 1);
+      const std::uint32_t px = std::min(x * tile_size + interleave_offset.x, depth.width - 1);
+      const std::uint32_t py = std::min(y * tile_size + interleave_offset.y, depth.height - 1);
       const float ndc = depth.at(px, py);
       const maths::vec3 normal(drawing.normal_vs.at(px, py, 0), drawing.normal_vs.at(px, py, 1),
                                drawing.normal_vs.at(px, py, 2));
       float* texel = &packed.texels[(std::size_t{y} * packed.width + x) * 2];
-      maths::Signal sums;
+      maths::RawOcclusion sums;
       sums.visible = texel[0];
       sums.open = texel[1];
-      texel[0] =
-          std::bit_cast<float>(maths::pack_signal(sums, maths::make_coarse_normal(normal).bits));
+      texel[0] = std::bit_cast<float>(
+          maths::pack_raw_occlusion(sums, maths::make_quantised_normal(normal).bits));
       texel[1] = from_ndc.x * ndc + from_ndc.y;
     }
   }
@@ -49,17 +51,18 @@ HostImage Reconstruct::reconstruct(const Input& input, const ReconstructSettings
       graph.reset_history("occlusion");
     }
     const Frame frame{graph,       gpu().kernels(),     input.view,
-                      input.index, input.previous_view, input.still_frames};
-    const auto line = add_line_depth(frame, upload(graph, input.drawing.depth_ndc));
+                      input.index, input.previous_view, input.static_frames};
+    const auto line = add_inverse_depth(frame, upload(graph, input.drawing.depth_ndc));
     ASSERT_TRUE(line) << line.error().message;
     ReconstructInputs inputs{
-        .signal = {.signal = upload(graph,
-                                    packed_signal(input.view, input.drawing, input.signal,
-                                                  input.divisor, input.index),
-                                    VK_FORMAT_R32G32_UINT),
-                   .divisor = input.divisor,
-                   .slices = input.slices},
-        .line_depth = *line,
+        .raw_occlusion = {.raw_occlusion = upload(
+                              graph,
+                              packed_raw_occlusion(input.view, input.drawing, input.raw_occlusion,
+                                                   input.tile_size, input.index),
+                              VK_FORMAT_R32G32_UINT),
+                          .tile_size = input.tile_size,
+                          .slices = input.slices},
+        .inverse_depth = *line,
         .normals = upload(graph, input.drawing.normal_vs),
         .normals_in_view_space = true};
     if (input.motion != nullptr) {
@@ -72,9 +75,10 @@ HostImage Reconstruct::reconstruct(const Input& input, const ReconstructSettings
   return result();
 }
 
-HostImage Reconstruct::noise_signal(std::mt19937& random) {
+HostImage Reconstruct::noise_raw_occlusion(std::mt19937& random) {
   std::uniform_real_distribution<float> noise(0.2f, 0.8f);
-  return signal_of(kWidth, kHeight, [&](std::uint32_t, std::uint32_t) { return noise(random); });
+  return raw_occlusion_of(kWidth, kHeight,
+                          [&](std::uint32_t, std::uint32_t) { return noise(random); });
 }
 
 HostImage Reconstruct::no_motion() {
@@ -83,14 +87,14 @@ HostImage Reconstruct::no_motion() {
 
 ReconstructSettings precise(std::uint32_t reach, std::uint32_t history_frames) {
   ReconstructSettings settings;
-  settings.filter_reach = reach;
+  settings.filter_radius = reach;
   settings.history_frames = history_frames;
   settings.precision = Precision::float32;
   return settings;
 }
 
-HostImage constant_signal(std::uint32_t width, std::uint32_t height, float visibility) {
-  return signal_of(width, height, [=](std::uint32_t, std::uint32_t) { return visibility; });
+HostImage constant_raw_occlusion(std::uint32_t width, std::uint32_t height, float visibility) {
+  return raw_occlusion_of(width, height, [=](std::uint32_t, std::uint32_t) { return visibility; });
 }
 
 Drawing with_turned_normals(const Drawing& drawing, double degrees, std::uint32_t first) {

@@ -18,45 +18,46 @@ class Reconstruct : public PassTest {
   struct Input {
     View view;
     const Drawing& drawing;
-    const HostImage& signal;  // two channels, one texel a block
-    std::uint32_t divisor = 1;
+    const HostImage& raw_occlusion;  // two channels, one texel a block
+    std::uint32_t tile_size = 1;
     std::uint32_t slices = 1;
     const HostImage* motion = nullptr;
     View previous_view = view;
     std::uint32_t index = 0;
     bool reset = false;
-    std::uint32_t still_frames = 0;
+    std::uint32_t static_frames = 0;
   };
 
   // Visibility.
   HostImage reconstruct(const Input& input, const ReconstructSettings& settings);
-  static HostImage noise_signal(std::mt19937& random);
+  static HostImage noise_raw_occlusion(std::mt19937& random);
   static HostImage no_motion();
 };
 
-// Texels on a side of the signal of one search in divisor x divisor pixels.
-[[nodiscard]] constexpr std::uint32_t blocks(std::uint32_t pixels, std::uint32_t divisor) {
-  return (pixels + divisor - 1) / divisor;
+// Texels on a side of the raw_occlusion of one search in tile_size x tile_size pixels.
+[[nodiscard]] constexpr std::uint32_t blocks(std::uint32_t pixels, std::uint32_t tile_size) {
+  return (pixels + tile_size - 1) / tile_size;
 }
 
 [[nodiscard]] ReconstructSettings precise(std::uint32_t reach, std::uint32_t history_frames);
 
-// The signal of slices that are all open by `weight` and visible by `visibility` of it.
+// The raw_occlusion of slices that are all open by `weight` and visible by `visibility` of it.
 template <typename Visibility>
-HostImage signal_of(std::uint32_t width, std::uint32_t height, const Visibility& visibility) {
-  HostImage signal{width, height, {}, 2};
+HostImage raw_occlusion_of(std::uint32_t width, std::uint32_t height,
+                           const Visibility& visibility) {
+  HostImage raw_occlusion{width, height, {}, 2};
   for (std::uint32_t y = 0; y < height; ++y) {
     for (std::uint32_t x = 0; x < width; ++x) {
       const float weight = 0.8f + 0.1f * static_cast<float>((x + y) % 3);
-      signal.texels.push_back(visibility(x, y) * weight);
-      signal.texels.push_back(weight);
+      raw_occlusion.texels.push_back(visibility(x, y) * weight);
+      raw_occlusion.texels.push_back(weight);
     }
   }
-  return signal;
+  return raw_occlusion;
 }
 
-[[nodiscard]] HostImage constant_signal(std::uint32_t width, std::uint32_t height,
-                                        float visibility);
+[[nodiscard]] HostImage constant_raw_occlusion(std::uint32_t width, std::uint32_t height,
+                                               float visibility);
 
 // The same depth, but from column `first` on the normals are turned about the vertical.
 [[nodiscard]] Drawing with_turned_normals(const Drawing& drawing, double degrees,

@@ -23,15 +23,18 @@ TEST_F(Reconstruct, WhatACameraJumpUncoversStartsAnew) {
   View moved = view.view;
   moved.view_from_world[12] = static_cast<float>(-leap);
 
-  const HostImage dark = constant_signal(kWidth, kHeight, 0.1f);
-  const HostImage bright = constant_signal(kWidth, kHeight, 0.9f);
+  const HostImage dark = constant_raw_occlusion(kWidth, kHeight, 0.1f);
+  const HostImage bright = constant_raw_occlusion(kWidth, kHeight, 0.9f);
   for (std::uint32_t frame = 0; frame < 8; ++frame) {
-    (void)reconstruct({.view = view.view, .drawing = first, .signal = dark, .index = frame},
+    (void)reconstruct({.view = view.view, .drawing = first, .raw_occlusion = dark, .index = frame},
                       precise(1, 32));
   }
-  const HostImage found = reconstruct(
-      {.view = moved, .drawing = second, .signal = bright, .previous_view = view.view, .index = 8},
-      precise(1, 32));
+  const HostImage found = reconstruct({.view = moved,
+                                       .drawing = second,
+                                       .raw_occlusion = bright,
+                                       .previous_view = view.view,
+                                       .index = 8},
+                                      precise(1, 32));
   int anew = 0;
   int gone_on = 0;
   for (std::uint32_t y = 0; y < kHeight; ++y) {
@@ -77,18 +80,18 @@ TEST_F(Reconstruct, HistoryDoesNotLeakAcrossACrease) {
   const double creep = 0.05 / zoom;  // a third of a pixel
   View before = view.view;
   HostImage found;
-  HostImage signal;
+  HostImage raw_occlusion;
   for (std::uint32_t frame = 0; frame < 12; ++frame) {
     View now = view.view;
     now.view_from_world[12] = static_cast<float>(-creep * frame);
     const Drawing drawing = draw(view, kWidth, kHeight, groove(0.8, 4.5, -creep * frame));
-    signal = signal_of(kWidth, kHeight, [&](std::uint32_t x, std::uint32_t y) {
+    raw_occlusion = raw_occlusion_of(kWidth, kHeight, [&](std::uint32_t x, std::uint32_t y) {
       return cast(drawing.scene, drawing.camera.ray(x + 0.5, y + 0.5))->normal.x > 0.0 ? 0.2f
                                                                                        : 0.9f;
     });
     found = reconstruct({.view = now,
                          .drawing = drawing,
-                         .signal = signal,
+                         .raw_occlusion = raw_occlusion,
                          .previous_view = before,
                          .index = frame,
                          .reset = frame == 0},
@@ -99,8 +102,9 @@ TEST_F(Reconstruct, HistoryDoesNotLeakAcrossACrease) {
   for (std::uint32_t y = 0; y < kHeight; ++y) {
     for (std::uint32_t x = 0; x < kWidth; ++x) {
       const std::size_t i = std::size_t{y} * kWidth + x;
-      worst = std::max<double>(
-          worst, std::abs(found.texels[i] - signal.texels[i * 2] / signal.texels[i * 2 + 1]));
+      worst =
+          std::max<double>(worst, std::abs(found.texels[i] - raw_occlusion.texels[i * 2] /
+                                                                 raw_occlusion.texels[i * 2 + 1]));
     }
   }
   EXPECT_LT(worst, 0.05);
@@ -162,13 +166,13 @@ TEST_F(Reconstruct, HistoryOfAnotherNormalIsForgotten) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(0.0, 5.0)});
   const HostImage still = no_motion();
-  const HostImage dark = constant_signal(kWidth, kHeight, 0.1f);
-  const HostImage bright = constant_signal(kWidth, kHeight, 0.9f);
+  const HostImage dark = constant_raw_occlusion(kWidth, kHeight, 0.1f);
+  const HostImage bright = constant_raw_occlusion(kWidth, kHeight, 0.9f);
   const auto after_a_turn_of = [&](double degrees) {
     for (std::uint32_t frame = 0; frame < 8; ++frame) {
       (void)reconstruct({.view = view.view,
                          .drawing = drawing,
-                         .signal = dark,
+                         .raw_occlusion = dark,
                          .motion = &still,
                          .index = frame,
                          .reset = frame == 0},
@@ -176,7 +180,7 @@ TEST_F(Reconstruct, HistoryOfAnotherNormalIsForgotten) {
     }
     return reconstruct({.view = view.view,
                         .drawing = with_turned_normals(drawing, degrees, 0),
-                        .signal = bright,
+                        .raw_occlusion = bright,
                         .motion = &still,
                         .index = 8},
                        precise(0, 32));
@@ -192,7 +196,7 @@ TEST_F(Reconstruct, MotionVectorsFollowAMovingPlane) {
   const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(0.0, 4.0)});
   const std::uint32_t speed = 3;
   const auto pattern_at = [&](std::uint32_t frame) {
-    return signal_of(kWidth, kHeight, [&](std::uint32_t x, std::uint32_t) {
+    return raw_occlusion_of(kWidth, kHeight, [&](std::uint32_t x, std::uint32_t) {
       return (x + 300 - speed * frame) % 16 < 8 ? 0.9f : 0.1f;
     });
   };
@@ -203,12 +207,12 @@ TEST_F(Reconstruct, MotionVectorsFollowAMovingPlane) {
   }
   for (const bool given : {true, false}) {
     HostImage found;
-    HostImage signal;
+    HostImage raw_occlusion;
     for (std::uint32_t frame = 0; frame < 10; ++frame) {
-      signal = pattern_at(frame);
+      raw_occlusion = pattern_at(frame);
       found = reconstruct({.view = view.view,
                            .drawing = drawing,
-                           .signal = signal,
+                           .raw_occlusion = raw_occlusion,
                            .motion = given ? &motion : nullptr,
                            .index = frame,
                            .reset = frame == 0},
@@ -220,7 +224,8 @@ TEST_F(Reconstruct, MotionVectorsFollowAMovingPlane) {
     for (std::uint32_t y = 0; y < kHeight; ++y) {
       for (std::uint32_t x = 28; x < kWidth; ++x) {
         const std::size_t i = std::size_t{y} * kWidth + x;
-        error += std::abs(found.texels[i] - signal.texels[i * 2] / signal.texels[i * 2 + 1]);
+        error += std::abs(found.texels[i] -
+                          raw_occlusion.texels[i * 2] / raw_occlusion.texels[i * 2 + 1]);
         ++count;
       }
     }
@@ -264,10 +269,10 @@ TEST_F(Reconstruct, HistoryFollowsWhatComesNearer) {
   HostImage found;
   for (std::uint32_t frame = 0; frame < frames; ++frame, distance *= nearer) {
     const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(0.0, distance)});
-    const HostImage signal = noise_signal(random);
+    const HostImage raw_occlusion = noise_raw_occlusion(random);
     found = reconstruct({.view = view.view,
                          .drawing = drawing,
-                         .signal = signal,
+                         .raw_occlusion = raw_occlusion,
                          .motion = &motion,
                          .index = frame,
                          .reset = frame == 0},
@@ -278,10 +283,13 @@ TEST_F(Reconstruct, HistoryFollowsWhatComesNearer) {
 
   const HostImage still = no_motion();
   const Drawing behind = draw(view, kWidth, kHeight, {tilted_plane(0.0, distance / nearer * 1.02)});
-  const HostImage bright = constant_signal(kWidth, kHeight, 0.9f);
-  const HostImage anew = reconstruct(
-      {.view = view.view, .drawing = behind, .signal = bright, .motion = &still, .index = frames},
-      precise(1, 32));
+  const HostImage bright = constant_raw_occlusion(kWidth, kHeight, 0.9f);
+  const HostImage anew = reconstruct({.view = view.view,
+                                      .drawing = behind,
+                                      .raw_occlusion = bright,
+                                      .motion = &still,
+                                      .index = frames},
+                                     precise(1, 32));
   EXPECT_THAT(anew.texels, testing::Each(testing::FloatNear(0.9f, 2e-3f)));
 }
 
@@ -290,8 +298,8 @@ TEST_F(Reconstruct, WhereThingsMoveAShadeLeavesNoTrail) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(30.0, 4.0)});
   const HostImage motion = no_motion();
-  const HostImage shaded = constant_signal(kWidth, kHeight, 0.6f);
-  const HostImage open = constant_signal(kWidth, kHeight, 1.0f);
+  const HostImage shaded = constant_raw_occlusion(kWidth, kHeight, 0.6f);
+  const HostImage open = constant_raw_occlusion(kWidth, kHeight, 1.0f);
   const std::uint32_t long_ago = 30;
   const std::uint32_t soon = 12;
   for (const bool given : {true, false}) {
@@ -300,7 +308,7 @@ TEST_F(Reconstruct, WhereThingsMoveAShadeLeavesNoTrail) {
       const bool is_open = frame >= long_ago && frame < long_ago + soon;
       found.push_back(reconstruct({.view = view.view,
                                    .drawing = drawing,
-                                   .signal = is_open ? open : shaded,
+                                   .raw_occlusion = is_open ? open : shaded,
                                    .motion = given ? &motion : nullptr,
                                    .index = frame,
                                    .reset = frame == 0},
@@ -324,14 +332,18 @@ TEST_F(Reconstruct, WhatHasNoHistoryLooksAsFarAsAFirstFrame) {
   const Drawing before = draw(view, kWidth, kHeight, {tilted_plane(30.0, 4.0)});
   const Drawing now = draw(view, kWidth, kHeight, {tilted_plane(30.0, 9.0)});
   std::mt19937 random(3);
-  const HostImage first_signal = noise_signal(random);
-  const HostImage signal = noise_signal(random);
+  const HostImage first_raw_occlusion = noise_raw_occlusion(random);
+  const HostImage raw_occlusion = noise_raw_occlusion(random);
   const auto second_frame = [&](bool reset) {
-    (void)reconstruct({.view = view.view, .drawing = before, .signal = first_signal, .reset = true},
-                      precise(2, 32));
-    return reconstruct(
-        {.view = view.view, .drawing = now, .signal = signal, .index = 1, .reset = reset},
+    (void)reconstruct(
+        {.view = view.view, .drawing = before, .raw_occlusion = first_raw_occlusion, .reset = true},
         precise(2, 32));
+    return reconstruct({.view = view.view,
+                        .drawing = now,
+                        .raw_occlusion = raw_occlusion,
+                        .index = 1,
+                        .reset = reset},
+                       precise(2, 32));
   };
   const HostImage found = second_frame(false);
   const HostImage anew = second_frame(true);

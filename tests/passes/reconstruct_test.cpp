@@ -7,26 +7,26 @@
 #include <random>
 
 #include "gtao_scenes.h"
+#include "interleave_offset.h"
 #include "reconstruct_fixture.h"
-#include "search_phase.h"
 
 namespace alcove::passes {
 namespace {
 
-// One coordinate of what a pixel looks at: the `i`th of the 2 x `reach` searched pixels around it.
+// One coordinate of what a pixel looks at: the `i`th of the 2 x `reach` traced pixels around it.
 struct Searched {
   std::uint32_t block;
   std::uint32_t pixel;
 };
 
-Searched searched_around(std::uint32_t pixel, std::uint32_t size, std::uint32_t divisor,
-                         std::uint32_t phase, int reach, int i) {
-  const int step = static_cast<int>(divisor);
-  const int before = static_cast<int>(pixel) - static_cast<int>(phase);
+Searched searched_around(std::uint32_t pixel, std::uint32_t size, std::uint32_t tile_size,
+                         std::uint32_t interleave_offset, int reach, int i) {
+  const int step = static_cast<int>(tile_size);
+  const int before = static_cast<int>(pixel) - static_cast<int>(interleave_offset);
   const int cell = before >= 0 ? before / step : -1;
-  const int last = static_cast<int>(blocks(size, divisor)) - 1;
+  const int last = static_cast<int>(blocks(size, tile_size)) - 1;
   const auto block = static_cast<std::uint32_t>(std::clamp(cell - (reach - 1) + i, 0, last));
-  return {block, std::min(block * divisor + phase, size - 1)};
+  return {block, std::min(block * tile_size + interleave_offset, size - 1)};
 }
 
 double squared_distance(std::uint32_t a, std::uint32_t b) {
@@ -36,24 +36,25 @@ double squared_distance(std::uint32_t a, std::uint32_t b) {
 
 // The mean that a pixel of a wall seen head-on has of the searches around it, on its first frame:
 // all but the corners', where it looks further than at those next to it.
-double mean_around(const HostImage& signal, std::uint32_t x, std::uint32_t y, std::uint32_t width,
-                   std::uint32_t height, std::uint32_t divisor, SearchPhase phase, int reach) {
-  const double window_px = 1.1 * divisor;  // of one slice
+double mean_around(const HostImage& raw_occlusion, std::uint32_t x, std::uint32_t y,
+                   std::uint32_t width, std::uint32_t height, std::uint32_t tile_size,
+                   InterleaveOffset interleave_offset, int reach) {
+  const double window_px = 1.1 * tile_size;  // of one slice
   double visible = 0.0;
   double open = 0.0;
   for (int j = 0; j < 2 * reach; ++j) {
-    const Searched row = searched_around(y, height, divisor, phase.y, reach, j);
+    const Searched row = searched_around(y, height, tile_size, interleave_offset.y, reach, j);
     for (int i = 0; i < 2 * reach; ++i) {
       const auto outermost = [&](int place) { return place == 0 || place == 2 * reach - 1; };
       if (reach > 1 && outermost(i) && outermost(j)) {
         continue;
       }
-      const Searched column = searched_around(x, width, divisor, phase.x, reach, i);
+      const Searched column = searched_around(x, width, tile_size, interleave_offset.x, reach, i);
       const double squared = squared_distance(column.pixel, x) + squared_distance(row.pixel, y);
       const double weight = std::pow(1.0 + 0.125 * squared / (window_px * window_px), -4.0);
-      const std::size_t texel = (std::size_t{row.block} * signal.width + column.block) * 2;
-      visible += weight * signal.texels[texel];
-      open += weight * signal.texels[texel + 1];
+      const std::size_t texel = (std::size_t{row.block} * raw_occlusion.width + column.block) * 2;
+      visible += weight * raw_occlusion.texels[texel];
+      open += weight * raw_occlusion.texels[texel + 1];
     }
   }
   return visible / open;
@@ -69,27 +70,28 @@ TEST_F(Reconstruct, WithoutAHistoryAPixelLooksAtTheSearchedOnesAroundIt) {
   SCOPED_TRACE(testing::Message() << "seed " << seed);
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> noise(0.2f, 0.8f);
-  for (const std::uint32_t divisor : {2u, 4u}) {
-    const HostImage signal = signal_of(blocks(kOddWidth, divisor), blocks(kOddHeight, divisor),
-                                       [&](std::uint32_t, std::uint32_t) { return noise(random); });
+  for (const std::uint32_t tile_size : {2u, 4u}) {
+    const HostImage raw_occlusion =
+        raw_occlusion_of(blocks(kOddWidth, tile_size), blocks(kOddHeight, tile_size),
+                         [&](std::uint32_t, std::uint32_t) { return noise(random); });
     for (const std::uint32_t reach : {1u, 2u, 3u}) {
       for (const std::uint32_t index : {0u, 1u, 2u, 7u}) {
         for (const std::uint32_t history : {0u, 16u}) {
-          SCOPED_TRACE(testing::Message() << "by " << divisor << ", reach " << reach << ", frame "
+          SCOPED_TRACE(testing::Message() << "by " << tile_size << ", reach " << reach << ", frame "
                                           << index << ", history " << history);
           const HostImage found = reconstruct({.view = view.view,
                                                .drawing = drawing,
-                                               .signal = signal,
-                                               .divisor = divisor,
+                                               .raw_occlusion = raw_occlusion,
+                                               .tile_size = tile_size,
                                                .index = index,
                                                .reset = true},
                                               precise(reach, history));
-          const SearchPhase phase = search_phase(divisor, index);
+          const InterleaveOffset interleave_offset = interleave_offset_of(tile_size, index);
           for (std::uint32_t y = 0; y < kOddHeight; ++y) {
             for (std::uint32_t x = 0; x < kOddWidth; ++x) {
               ASSERT_NEAR(found.at(x, y),
-                          mean_around(signal, x, y, kOddWidth, kOddHeight, divisor, phase,
-                                      static_cast<int>(reach)),
+                          mean_around(raw_occlusion, x, y, kOddWidth, kOddHeight, tile_size,
+                                      interleave_offset, static_cast<int>(reach)),
                           6e-4)  // searches weigh by their open parts, stored within a 120th
                   << "at " << x << ", " << y;
             }
@@ -109,17 +111,18 @@ TEST_F(Reconstruct, AConstantSignalStaysConstantInAnySceneAtAnyResolution) {
   scenes.push_back({"wires", {wires, tilted_plane(10.0, 8.0)}});
   for (const NamedScene& scene : scenes) {
     const Drawing drawing = draw(view, 33, 23, scene.scene);
-    for (const std::uint32_t divisor : {1u, 2u, 4u}) {
-      const HostImage signal = constant_signal(blocks(33, divisor), blocks(23, divisor), 0.37f);
+    for (const std::uint32_t tile_size : {1u, 2u, 4u}) {
+      const HostImage raw_occlusion =
+          constant_raw_occlusion(blocks(33, tile_size), blocks(23, tile_size), 0.37f);
       for (const std::uint32_t reach : {0u, 1u, 2u, 3u}) {
         for (const std::uint32_t history : {0u, 16u}) {
-          SCOPED_TRACE(testing::Message() << scene.name << " by " << divisor << ", reach " << reach
-                                          << ", history " << history);
+          SCOPED_TRACE(testing::Message() << scene.name << " by " << tile_size << ", reach "
+                                          << reach << ", history " << history);
           for (std::uint32_t frame = 0; frame < (history == 0 ? 1u : 4u); ++frame) {
             const HostImage found = reconstruct({.view = view.view,
                                                  .drawing = drawing,
-                                                 .signal = signal,
-                                                 .divisor = divisor,
+                                                 .raw_occlusion = raw_occlusion,
+                                                 .tile_size = tile_size,
                                                  .index = frame,
                                                  .reset = frame == 0},
                                                 precise(reach, history));
@@ -143,10 +146,10 @@ TEST_F(Reconstruct, TheFilterLowersNoiseOnATiltedPlane) {
   const std::uint32_t seed = 5;
   SCOPED_TRACE(testing::Message() << "seed " << seed);
   std::mt19937 random(seed);
-  const HostImage signal = noise_signal(random);
+  const HostImage raw_occlusion = noise_raw_occlusion(random);
   for (const double tilt : {0.0, 30.0, 50.0}) {
     const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(tilt, 4.0)});
-    const Input input{view.view, drawing, signal};
+    const Input input{view.view, drawing, raw_occlusion};
     const double before = variance(reconstruct(input, precise(0, 0)));
     EXPECT_LT(variance(reconstruct(input, precise(2, 0))), 0.2 * before) << tilt << " degrees";
   }
@@ -156,12 +159,13 @@ TEST_F(Reconstruct, TheFilterLowersNoiseOnATiltedPlane) {
 TEST_F(Reconstruct, TheMoreSlicesTheLessIsFiltered) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(0.0, 4.0)});
-  const HostImage signal = signal_of(
+  const HostImage raw_occlusion = raw_occlusion_of(
       kWidth, kHeight, [](std::uint32_t x, std::uint32_t) { return x % 8 < 4 ? 0.3f : 0.7f; });
   double kept = 0.0;
   for (const std::uint32_t slices : {1u, 2u, 4u}) {
     const HostImage found = reconstruct(
-        {.view = view.view, .drawing = drawing, .signal = signal, .slices = slices}, precise(2, 0));
+        {.view = view.view, .drawing = drawing, .raw_occlusion = raw_occlusion, .slices = slices},
+        precise(2, 0));
     EXPECT_GT(variance(found), 1.1 * kept) << slices << " slices";
     kept = variance(found);
   }
@@ -173,13 +177,16 @@ TEST_F(Reconstruct, TheMoreSlicesTheLessIsFiltered) {
 TEST_F(Reconstruct, TheMoreSearchesTheLessCrossesACrease) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, kWidth, kHeight, groove(0.8, 4.5));
-  const HostImage signal = signal_of(kWidth, kHeight, [&](std::uint32_t x, std::uint32_t y) {
-    return cast(drawing.scene, drawing.camera.ray(x + 0.5, y + 0.5))->normal.x > 0.0 ? 0.2f : 0.9f;
-  });
+  const HostImage raw_occlusion =
+      raw_occlusion_of(kWidth, kHeight, [&](std::uint32_t x, std::uint32_t y) {
+        return cast(drawing.scene, drawing.camera.ray(x + 0.5, y + 0.5))->normal.x > 0.0 ? 0.2f
+                                                                                         : 0.9f;
+      });
   const auto leak = [&](const HostImage& found) {
     double sum = 0.0;
     for (std::size_t i = 0; i < found.texels.size(); ++i) {
-      sum += std::abs(found.texels[i] - signal.texels[i * 2] / signal.texels[i * 2 + 1]);
+      sum +=
+          std::abs(found.texels[i] - raw_occlusion.texels[i * 2] / raw_occlusion.texels[i * 2 + 1]);
     }
     return sum;
   };
@@ -188,7 +195,7 @@ TEST_F(Reconstruct, TheMoreSearchesTheLessCrossesACrease) {
     for (std::uint32_t frame = 0; frame < frames; ++frame) {
       found = reconstruct({.view = view.view,
                            .drawing = drawing,
-                           .signal = signal,
+                           .raw_occlusion = raw_occlusion,
                            .slices = slices,
                            .index = frame,
                            .reset = frame == 0},
@@ -207,12 +214,12 @@ TEST_F(Reconstruct, AnotherNormalCountsForLess) {
   const TestView view = test_views()[2];
   const Drawing flat = draw(view, kWidth, kHeight, {tilted_plane(0.0, 5.0)});
   const std::uint32_t half = kWidth / 2;
-  const HostImage signal = signal_of(
+  const HostImage raw_occlusion = raw_occlusion_of(
       kWidth, kHeight, [&](std::uint32_t x, std::uint32_t) { return x < half ? 0.9f : 0.2f; });
   const auto leak = [&](double degrees) {
     const HostImage found = reconstruct({.view = view.view,
                                          .drawing = with_turned_normals(flat, degrees, half),
-                                         .signal = signal,
+                                         .raw_occlusion = raw_occlusion,
                                          .slices = 4,
                                          .reset = true},
                                         precise(2, 0));
@@ -229,15 +236,15 @@ TEST_F(Reconstruct, NothingLeaksAcrossADepthEdge) {
     const auto on_platform = [&](std::uint32_t x, std::uint32_t y) {
       return cast(drawing.scene, drawing.camera.ray(x + 0.5, y + 0.5))->position.z > -3.1;
     };
-    const HostImage signal = signal_of(kWidth, kHeight, [&](std::uint32_t x, std::uint32_t y) {
-      return on_platform(x, y) ? 0.9f : 0.2f;
-    });
+    const HostImage raw_occlusion = raw_occlusion_of(
+        kWidth, kHeight,
+        [&](std::uint32_t x, std::uint32_t y) { return on_platform(x, y) ? 0.9f : 0.2f; });
     for (const std::uint32_t history : {0u, 16u}) {
       SCOPED_TRACE(testing::Message() << view.name << ", history " << history);
       for (std::uint32_t frame = 0; frame < 4; ++frame) {
         const HostImage found = reconstruct({.view = view.view,
                                              .drawing = drawing,
-                                             .signal = signal,
+                                             .raw_occlusion = raw_occlusion,
                                              .index = frame,
                                              .reset = frame == 0},
                                             precise(2, history));

@@ -99,7 +99,7 @@ Light reference_light(const LitSurfaces& surfaces, const View& view, std::uint32
   const vec3 normal = normalize(world_from_view * rgb(surfaces.normals, x, y));
   const vec3 bent =
       maths::raised_bent_normal(normalize(world_from_view * rgb(surfaces.bent, x, y)), normal,
-                                maths::settled_visibility(surfaces.visibility.at(x, y)));
+                                maths::converged_visibility(surfaces.visibility.at(x, y)));
   const vec3 base = rgb(surfaces.albedo, x, y);
   const float roughness = surfaces.albedo.at(x, y, 3);
   const float metallic = surfaces.light.at(x, y, 3);

@@ -70,7 +70,7 @@ TEST_F(SecondLayer, WhereNothingIsHiddenOneLayerIsAll) {
     for (const Estimator estimator : kThickEstimators) {
       OcclusionSettings settings = exact(estimator, 1.2f);
       settings.thickness = 0.2f;
-      settings.fill = 0.4f;
+      settings.hidden_occlusion = 0.4f;
       HostImage second = drawing.depth_ndc;
       const HostImage expected = visibility(view, drawing, second, settings);
       settings.depth_layers = 2;

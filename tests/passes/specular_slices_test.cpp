@@ -79,7 +79,7 @@ TEST_F(SpecularSlices, MeetTheLobeCastOverTheExactSurfaces) {
                        << (estimator == Estimator::connected ? ", connected" : ", horizons"));
           OcclusionSettings settings = settings_of(Quality::reference, radius, roughness);
           settings.estimator = estimator;
-          settings.fill = 1.0f;
+          settings.hidden_occlusion = 1.0f;
           const auto images =
               run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, settings);
           EXPECT_LT(mean_error(images.specular, drawing, radius, roughness), 0.02);

@@ -1,17 +1,17 @@
 // The built-in scene with parts of the occlusion exchanged, small: what `alcove ablate` prints,
 // held to bounds.
-#include "measure/ablation.h"
+#include "evaluate/ablation.h"
 
 #include <gtest/gtest.h>
 
 #include <set>
 
+#include "evaluate/errors.h"
 #include "gpu_test.h"
-#include "measure/errors.h"
+#include "reference/ray_scene.h"
+#include "reference/surface_points.h"
+#include "reference/truth.h"
 #include "scene/builtin_scene.h"
-#include "truth/ray_scene.h"
-#include "truth/surface_points.h"
-#include "truth/truth.h"
 
 namespace alcove::sample {
 namespace {
@@ -19,32 +19,32 @@ namespace {
 using passes::OcclusionSettings;
 using passes::Quality;
 
-TEST(Trials, ChangeOneThingEachAndNeverNothing) {
+TEST(Variants, ChangeOneThingEachAndNeverNothing) {
   for (const Quality quality : {Quality::low, Quality::medium, Quality::high, Quality::ultra}) {
     const OcclusionSettings base = passes::quality_settings(quality, 0.5f);
     std::set<std::string> names, parts;
-    for (const Trial& trial : trials_of(base)) {
-      EXPECT_FALSE(trial.settings == base) << trial.name;
-      EXPECT_TRUE(names.insert(trial.part + trial.name).second) << trial.name;
-      EXPECT_EQ(trial.settings.radius, base.radius) << trial.name;
-      parts.insert(trial.part);
+    for (const Variant& variant : variants_of(base)) {
+      EXPECT_FALSE(variant.settings == base) << variant.name;
+      EXPECT_TRUE(names.insert(variant.part + variant.name).second) << variant.name;
+      EXPECT_EQ(variant.settings.radius, base.radius) << variant.name;
+      parts.insert(variant.part);
     }
-    for (const char* part : {"estimator", "occluders", "resolution", "work", "pattern", "snapping",
-                             "border", "grouping", "filter", "history"}) {
+    for (const char* part : {"estimator", "occluders", "resolution", "work", "pattern",
+                             "snap_to_texels", "border", "grouping", "filter", "history"}) {
       EXPECT_TRUE(parts.contains(part)) << part;
     }
     EXPECT_GT(names.size(), 15u);
   }
 }
 
-TEST(Trials, OnlyHorizonsKeepAFalloff) {
+TEST(Variants, OnlyHorizonsKeepAFalloff) {
   OcclusionSettings base = passes::quality_settings(Quality::medium, 0.5f);
   base.estimator = passes::Estimator::horizons;
   base.falloff = 0.5f;
-  for (const Trial& trial : trials_of(base)) {
-    const bool has_falloff = trial.settings.estimator == passes::Estimator::horizons ||
-                             trial.settings.estimator == passes::Estimator::heuristic;
-    EXPECT_EQ(trial.settings.falloff, has_falloff ? 0.5f : 0.0f) << trial.name;
+  for (const Variant& variant : variants_of(base)) {
+    const bool has_falloff = variant.settings.estimator == passes::Estimator::horizons ||
+                             variant.settings.estimator == passes::Estimator::heuristic;
+    EXPECT_EQ(variant.settings.falloff, has_falloff ? 0.5f : 0.0f) << variant.name;
   }
 }
 
@@ -71,26 +71,26 @@ class AblationTest : public testing::Test {
   }
 
   const Scene scene_ = builtin_scene();
-  const StillSetup setup_{scene_.cameras.front(), 240, 135, 12, NormalSource::kGeometric};
+  const StaticSetup setup_{scene_.cameras.front(), 240, 135, 12, NormalSource::kGeometric};
   const OcclusionSettings base_ = passes::quality_settings(Quality::medium, default_radius(scene_));
 };
 
 TEST_F(AblationTest, ConnectedSamplesAreNearestToTheTruth) {
   const auto gpu = open_validated();
   ASSERT_TRUE(gpu);
-  auto ablation = TrialRunner::create(*gpu, scene_, setup_, base_);
+  auto ablation = VariantRunner::create(*gpu, scene_, setup_, base_);
   ASSERT_TRUE(ablation) << ablation.error();
   const auto [truth, surfaces] = truth_of(ablation->base());
   const double connected = compare_images(ablation->base().visibility, truth, surfaces).rmse;
   EXPECT_GT(connected, 0.01);
-  for (const Trial& trial : trials_of(base_)) {
-    if (trial.part != "estimator") {
+  for (const Variant& variant : variants_of(base_)) {
+    if (variant.part != "estimator") {
       continue;
     }
-    SCOPED_TRACE(trial.name);
+    SCOPED_TRACE(variant.name);
     const auto other = open_validated();
     ASSERT_TRUE(other);
-    const auto result = ablation->run(*other, trial);
+    const auto result = ablation->run(*other, variant);
     ASSERT_TRUE(result) << result.error();
     EXPECT_GT(compare_images(result->visibility, truth, surfaces).rmse, 1.02 * connected);
     EXPECT_GT(result->cost.processor, 0.0);
@@ -101,23 +101,23 @@ TEST_F(AblationTest, ConnectedSamplesAreNearestToTheTruth) {
 TEST_F(AblationTest, HiddenDepthsAreAsNearToTheTruthOrNearer) {
   const auto gpu = open_validated();
   ASSERT_TRUE(gpu);
-  auto ablation = TrialRunner::create(*gpu, scene_, setup_, base_);
+  auto ablation = VariantRunner::create(*gpu, scene_, setup_, base_);
   ASSERT_TRUE(ablation) << ablation.error();
   const Truth truth = truth_of(ablation->base());
   const auto error_of = [&](const Image<float>& visibility) {
     return compare_images(visibility, truth.visibility, truth.surfaces).rmse;
   };
   const double base = error_of(ablation->base().visibility);
-  Trial back_faces{"occluders", "back faces", base_};
+  Variant back_faces{"occluders", "back faces", base_};
   back_faces.settings.thickness_unit = passes::ThicknessUnit::back_faces;
-  Trial second_layer{"occluders", "second layer", base_};
+  Variant second_layer{"occluders", "second layer", base_};
   second_layer.settings.depth_layers = 2;
   // What back faces tell of this scene's occluders is as near as what is guessed of them.
-  for (const auto& [trial, gain] : {std::pair(back_faces, 0.98), {second_layer, 1.1}}) {
-    SCOPED_TRACE(trial.name);
+  for (const auto& [variant, gain] : {std::pair(back_faces, 0.98), {second_layer, 1.1}}) {
+    SCOPED_TRACE(variant.name);
     const auto other = open_validated();
     ASSERT_TRUE(other);
-    const auto result = ablation->run(*other, trial);
+    const auto result = ablation->run(*other, variant);
     ASSERT_TRUE(result) << result.error();
     EXPECT_LT(gain * error_of(result->visibility), base);
   }
@@ -127,15 +127,15 @@ TEST_F(AblationTest, SnappingKeepsOpenSurfacesOpen) {
   const auto gpu = open_validated();
   const auto other = open_validated();
   ASSERT_TRUE(gpu && other);
-  auto ablation = TrialRunner::create(*gpu, scene_, setup_, base_);
+  auto ablation = VariantRunner::create(*gpu, scene_, setup_, base_);
   ASSERT_TRUE(ablation) << ablation.error();
   auto [truth, open_surfaces] = truth_of(ablation->base());
   for (std::size_t i = 0; i < truth.pixels.size(); ++i) {
     open_surfaces.pixels[i] = open_surfaces.pixels[i] != 0 && truth.pixels[i] >= 1.0f ? 1 : 0;
   }
-  Trial trial{"snapping", "none", base_};
-  trial.settings.parts.snapping = false;
-  const auto result = ablation->run(*other, trial);
+  Variant variant{"snap_to_texels", "none", base_};
+  variant.settings.parts.snap_to_texels = false;
+  const auto result = ablation->run(*other, variant);
   ASSERT_TRUE(result) << result.error();
   const double with = compare_images(ablation->base().visibility, truth, open_surfaces).bias;
   const double without = compare_images(result->visibility, truth, open_surfaces).bias;
@@ -148,11 +148,11 @@ TEST_F(AblationTest, SearchesOfOneDirectionTogetherDrawTheSameInTheSameMemory) {
   const auto gpu = open_validated();
   const auto other = open_validated();
   ASSERT_TRUE(gpu && other);
-  auto ablation = TrialRunner::create(*gpu, scene_, setup_, base_);
+  auto ablation = VariantRunner::create(*gpu, scene_, setup_, base_);
   ASSERT_TRUE(ablation) << ablation.error();
-  Trial trial{"grouping", "one direction", base_};
-  trial.settings.parts.grouping = passes::Grouping::pattern;
-  const auto result = ablation->run(*other, trial);
+  Variant variant{"grouping", "one direction", base_};
+  variant.settings.parts.grouping = passes::Grouping::pattern;
+  const auto result = ablation->run(*other, variant);
   ASSERT_TRUE(result) << result.error();
   const Mask all(setup_.width, setup_.height, 1);
   EXPECT_LT(compare_images(result->visibility, ablation->base().visibility, all).rmse, 1e-4);
@@ -193,11 +193,11 @@ TEST_F(AblationTest, AFrameWithoutHistoryHoldsFewerBytes) {
   const auto gpu = open_validated();
   const auto other = open_validated();
   ASSERT_TRUE(gpu && other);
-  auto ablation = TrialRunner::create(*gpu, scene_, setup_, base_);
+  auto ablation = VariantRunner::create(*gpu, scene_, setup_, base_);
   ASSERT_TRUE(ablation) << ablation.error();
-  Trial trial{"history", "none", base_};
-  trial.settings.history_frames = 0;
-  const auto result = ablation->run(*other, trial);
+  Variant variant{"history", "none", base_};
+  variant.settings.history_frames = 0;
+  const auto result = ablation->run(*other, variant);
   ASSERT_TRUE(result) << result.error();
   EXPECT_LT(result->cost.bytes, ablation->base_bytes() / 2);
 }
@@ -205,17 +205,17 @@ TEST_F(AblationTest, AFrameWithoutHistoryHoldsFewerBytes) {
 TEST_F(AblationTest, WhatShouldChangeNothingChangesLittle) {
   const auto gpu = open_validated();
   ASSERT_TRUE(gpu);
-  for (const Twins& twins : twins_of(setup_.camera, setup_.height)) {
-    if (twins.scale != 1 || twins.further > 0.0f) {
+  for (const InvariancePair& pairs : invariance_pairs_of(setup_.camera, setup_.height)) {
+    if (pairs.scale != 1 || pairs.further > 0.0f) {
       continue;
     }
-    SCOPED_TRACE(twins.name);
-    StillSetup first = setup_;
-    first.camera = twins.first;
-    StillSetup second = setup_;
-    second.camera = twins.second;
-    const auto images = draw_still(*gpu, scene_, first, base_);
-    const auto others = draw_still(*gpu, scene_, second, base_);
+    SCOPED_TRACE(pairs.name);
+    StaticSetup first = setup_;
+    first.camera = pairs.first;
+    StaticSetup second = setup_;
+    second.camera = pairs.second;
+    const auto images = draw_static(*gpu, scene_, first, base_);
+    const auto others = draw_static(*gpu, scene_, second, base_);
     ASSERT_TRUE(images && others);
     const Mask all(setup_.width, setup_.height, 1);
     EXPECT_LT(compare_images(images->visibility, others->visibility, all).rmse, 0.004);

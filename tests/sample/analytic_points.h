@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
+#include "reference/surface_points.h"
 #include "scene/analytic_scenes.h"
-#include "truth/surface_points.h"
 
 // The points of an analytic scene as a truth takes them: a row of pixels.
 namespace alcove::sample {

@@ -1,4 +1,4 @@
-#include "options/camera_of.h"
+#include "cli/camera_of.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

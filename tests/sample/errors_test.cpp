@@ -1,4 +1,4 @@
-#include "measure/errors.h"
+#include "evaluate/errors.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "device/gpu.h"
+#include "render/gpu.h"
 
 // A device under validation for tests, which fail by what the layers say of it.
 namespace alcove::sample {

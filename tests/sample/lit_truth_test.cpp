@@ -1,4 +1,4 @@
-#include "truth/lit_truth.h"
+#include "reference/lit_truth.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "measure/motion_errors.h"
+#include "evaluate/motion_errors.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "measure/motion_paths.h"
+#include "evaluate/motion_paths.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

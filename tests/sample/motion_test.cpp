@@ -3,8 +3,8 @@
 
 #include <cmath>
 
+#include "evaluate/motion_run.h"
 #include "gpu_test.h"
-#include "measure/motion_run.h"
 #include "scene/builtin_scene.h"
 
 namespace alcove::sample {

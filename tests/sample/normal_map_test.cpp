@@ -5,9 +5,9 @@
 #include <numbers>
 
 #include "quad_test.h"
+#include "reference/surface_points.h"
+#include "reference/truth.h"
 #include "scene/tangents.h"
-#include "truth/surface_points.h"
-#include "truth/truth.h"
 
 namespace alcove::sample {
 namespace {

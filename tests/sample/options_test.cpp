@@ -1,4 +1,4 @@
-#include "options/options.h"
+#include "cli/options.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -210,7 +210,7 @@ TEST(Options, ASettingIsCheckedBeforeAnythingIsLoaded) {
                {"slices=99999999999", "a whole number from 1 to 64"},
                {"slices=-1", "a whole number from 1 to 64"},
                {"slices=65", "a whole number from 1 to 64"},
-               {"fill=much", "a number"},
+               {"hidden_occlusion=much", "a number"},
                {"estimator=guess", "one of horizons, heuristic, bitmask, connected"}};
   for (const auto& [given, wanted] : wrong) {
     const auto options = parse({"render", "--set", given});

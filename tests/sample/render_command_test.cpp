@@ -1,12 +1,12 @@
-#include "options/render_command.h"
+#include "cli/render_command.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "options/camera_of.h"
-#include "options/settings.h"
+#include "cli/camera_of.h"
+#include "cli/settings.h"
 #include "scene/builtin_scene.h"
 
 namespace alcove::sample {
@@ -86,16 +86,16 @@ TEST(CommandLine, EverySettingIsReadBack) {
   settings.weighting = passes::Weighting::uniform;
   settings.thickness = 1.0f / 7.0f;
   settings.thickness_unit = passes::ThicknessUnit::back_faces;
-  settings.fill = 0.123456789f;
+  settings.hidden_occlusion = 0.123456789f;
   settings.blend = 1e-6f;
   settings.falloff = 0.25f;
-  settings.divisor = 4;
-  settings.pattern = passes::Pattern::memo;
-  settings.parts = {.snapping = false,
-                    .continuation = false,
-                    .unseen = false,
+  settings.tile_size = 4;
+  settings.pattern = passes::Pattern::paper;
+  settings.parts = {.snap_to_texels = false,
+                    .extrapolation = false,
+                    .unobserved = false,
                     .grouping = passes::Grouping::pattern};
-  settings.filter_reach = 0;
+  settings.filter_radius = 0;
   settings.filter_tolerance_px = 2.5f;
   settings.history_frames = 17;
   settings.clamp_width = 1.5f;

@@ -9,9 +9,9 @@
 #include <span>
 #include <vector>
 
-#include "device/gpu_image.h"
 #include "quad_test.h"
-#include "truth/truth.h"
+#include "reference/truth.h"
+#include "render/gpu_image.h"
 
 namespace alcove::sample {
 namespace {

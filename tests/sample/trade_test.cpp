@@ -1,4 +1,4 @@
-#include "measure/trade.h"
+#include "evaluate/trade.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "measure/trade_plot.h"
+#include "evaluate/trade_plot.h"
 
 namespace alcove::sample {
 namespace {
@@ -18,14 +18,14 @@ TradePoint point(const std::string& name, double gpu_ms, double rmse) {
   return {name, {}, rmse, 0.5 * rmse, gpu_ms, 2.0 * gpu_ms, 1000};
 }
 
-TEST(WaysToSpend, AreEachThereOnceWithTheQualitiesAmongThem) {
+TEST(PresetSweep, AreEachThereOnceWithTheQualitiesAmongThem) {
   for (const passes::Quality quality : {passes::Quality::low, passes::Quality::medium,
                                         passes::Quality::high, passes::Quality::ultra}) {
     const OcclusionSettings base = passes::quality_settings(quality, 0.5f);
-    const std::vector<Trial> ways = ways_to_spend(base);
+    const std::vector<Variant> ways = preset_sweep(base);
     EXPECT_GE(ways.size(), 16u);
     std::vector<OcclusionSettings> seen;
-    for (const Trial& way : ways) {
+    for (const Variant& way : ways) {
       EXPECT_EQ(std::ranges::count(seen, way.settings), 0) << way.name;
       seen.push_back(way.settings);
     }
@@ -35,14 +35,14 @@ TEST(WaysToSpend, AreEachThereOnceWithTheQualitiesAmongThem) {
   }
 }
 
-TEST(WaysToSpend, KeepWhatWasChosen) {
+TEST(PresetSweep, KeepWhatWasChosen) {
   OcclusionSettings base = passes::quality_settings(passes::Quality::medium, 2.0f);
   base.history_frames = 0;
   base.estimator = passes::Estimator::horizons;
-  base.fill = 0.1f;
-  for (const Trial& way : ways_to_spend(base)) {
+  base.hidden_occlusion = 0.1f;
+  for (const Variant& way : preset_sweep(base)) {
     OcclusionSettings settings = way.settings;
-    settings.divisor = base.divisor;
+    settings.tile_size = base.tile_size;
     settings.slices = base.slices;
     settings.steps = base.steps;
     EXPECT_EQ(settings, base) << way.name;
@@ -58,7 +58,7 @@ TEST(Trade, TheFrontIsWhatNothingIsBothFasterAndNearerThan) {
     names.push_back(each.name);
   }
   EXPECT_EQ(names, (std::vector<std::string>{"fast", "fair", "worse", "equal", "slow"}));
-  EXPECT_EQ(trade.on_front, (std::vector<bool>{true, true, false, false, true}));
+  EXPECT_EQ(trade.on_pareto_front, (std::vector<bool>{true, true, false, false, true}));
 }
 
 TEST(Trade, ChoosesTheLeastThatHolds) {

@@ -1,4 +1,4 @@
-#include "truth/truth_cache.h"
+#include "reference/truth_cache.h"
 
 #include <gtest/gtest.h>
 

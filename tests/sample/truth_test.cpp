@@ -1,4 +1,4 @@
-#include "truth/truth.h"
+#include "reference/truth.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,10 +6,10 @@
 #include <cmath>
 
 #include "analytic_points.h"
-#include "measure/errors.h"
+#include "evaluate/errors.h"
+#include "reference/height_field_truth.h"
 #include "scene/analytic_scenes.h"
 #include "scene/builtin_scene.h"
-#include "truth/height_field_truth.h"
 
 namespace alcove::sample {
 namespace {

@@ -59,7 +59,7 @@ uint32_t alcoveGetVersion(void);
 // What alcoveGetSettings gives each quality; all else is the default that AlcoveSettings states,
 // and REFERENCE has HORIZONS, no filter and FLOAT32 besides.
 //
-//              slices  steps  divisor  history_frames  depth fetches a pixel and frame
+//              slices  steps  tile_size  history_frames  depth fetches a pixel and frame
 //   LOW             1      8        4              32                                1
 //   MEDIUM          1     10        2              32                                5
 //   HIGH            3     16        2              32                               24
@@ -101,7 +101,7 @@ typedef enum AlcoveThicknessUnit {
 typedef enum AlcovePattern {
   ALCOVE_PATTERN_GOLDEN = 0,   // 4x4 pixels, turned by the golden ratio each frame
   ALCOVE_PATTERN_HILBERT = 1,  // along a Hilbert curve, by the R2 sequence
-  ALCOVE_PATTERN_MEMO = 2,     // the memo's: 4x4 pixels and six rotations in turn
+  ALCOVE_PATTERN_MEMO = 2,     // the paper's: 4x4 pixels and six rotations in turn
   ALCOVE_PATTERN_MAX_ENUM = 0x7fffffff
 } AlcovePattern;
 
@@ -148,7 +148,7 @@ typedef struct AlcoveSettings {
   // solid: so much of it counts as solid, 0 nothing to 1 all. In between it is the more, the wider
   // in the image the occluder is: all behind a wall, little behind a twig. [0.33]; BITMASK and
   // CONNECTED
-  float fill;
+  float hidden_occlusion;
   uint32_t depth_layers;  // that are searched: 1, or 2 with AlcoveView::second_depth [1]; BITMASK
                           // and CONNECTED
   // How far each lower sample further out pulls a horizon down to it, 0 not at all to 1 wholly
@@ -157,13 +157,13 @@ typedef struct AlcoveSettings {
   // Last part of the radius, over which occluders fade, 0 none to 1 all of it [0]; HORIZONS and
   // HEURISTIC. Must be 0 with BITMASK and CONNECTED, where a direction is occluded or it is not.
   float falloff;
-  uint32_t divisor;       // one search a frame in a block of so many pixels a side: 1, 2 or 4. The
-                          // searched pixel of each block moves on from frame to frame
+  uint32_t tile_size;     // one search a frame in a block of so many pixels a side: 1, 2 or 4. The
+                          // traced pixel of each block moves on from frame to frame
   AlcovePattern pattern;  // [GOLDEN]
 
   // The filter, in which each pixel gathers searches around it that lie on its surface.
-  uint32_t filter_reach;  // searched pixels on each side that it looks at while it has less than
-                          // two frames of history, 0 to 3 [2]; then one. 0: no filter at all
+  uint32_t filter_radius;  // traced pixels on each side that it looks at while it has less than
+                           // two frames of history, 0 to 3 [2]; then one. 0: no filter at all
   // How far from the pixel's tangent plane a search counts a quarter, over 0, in sizes of a pixel
   // there [1.5]. So in the first frame of one slice; the more slices and frames, the nearer.
   float filter_tolerance_px;
@@ -258,10 +258,10 @@ typedef struct AlcoveImage {
   // Who wrote it last (of an output: who read or wrote it last), and in which layout it is then.
   // The first barrier waits for these stages. An output may come in VK_IMAGE_LAYOUT_UNDEFINED: all
   // its pixels are overwritten.
-  AlcoveState arrival;
+  AlcoveState initial_state;
   // Who uses it next, and in which layout: the last barrier puts it there and makes it visible to
   // these stages, also where no pass reads it. Needed.
-  AlcoveState departure;
+  AlcoveState final_state;
 } AlcoveImage;
 
 // As depth was drawn, jitter included. Where the viewport has a negative height, the second row of
@@ -287,7 +287,7 @@ typedef struct AlcoveView {
   // read) and where size, settings or outputs change. From 1 on `motion` is not read; from 16 on a
   // search at lower resolution brings forward only the pixels that it reached, and all frames
   // count.
-  uint32_t still_frames;
+  uint32_t static_frames;
   const AlcoveSettings* settings;
   AlcoveCamera camera;
   AlcoveCamera previous_camera;  // when this id was last recorded; unread with reset_history, and
@@ -329,7 +329,7 @@ typedef struct AlcoveView {
 
 typedef struct AlcoveFrame {
   uint32_t struct_size;
-  uint32_t index;  // counts frames: it turns the noise and moves the searched pixels
+  uint32_t index;  // counts frames: it turns the noise and moves the traced pixels
   // In flight, below frames_in_flight: what was recorded with it has finished. One that is recorded
   // apart, a reflection's say, is a frame with a slot of its own.
   uint32_t slot;
@@ -360,11 +360,11 @@ AlcoveResult alcovePrepareFrame(AlcoveContext* context, const AlcoveFrame* frame
 // second: see alcovePrepareFrame.
 //
 // It binds compute pipelines and descriptor set 0 and leaves them bound; other state is untouched.
-// Barriers: each image from its arrival to SHADER_READ_ONLY_OPTIMAL (inputs) or GENERAL (outputs),
-// for compute shaders, before its first use; to its departure after the last. In between only the
-// library's own memory is concerned, but that a frame which differs from the one before begins with
-// a full barrier. One image may serve as several inputs, described alike; an output serves as
-// nothing else.
+// Barriers: each image from its initial_state to SHADER_READ_ONLY_OPTIMAL (inputs) or GENERAL
+// (outputs), for compute shaders, before its first use; to its final_state after the last. In
+// between only the library's own memory is concerned, but that a frame which differs from the one
+// before begins with a full barrier. One image may serve as several inputs, described alike; an
+// output serves as nothing else.
 //
 // Errors, with nothing recorded: a null pointer, a size of zero or over the largest, an enum's
 // unknown value, a number out of range or that is not finite, a format or a usage that does not do,

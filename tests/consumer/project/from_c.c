@@ -39,19 +39,19 @@ static AlcoveView view_of(const Engine* engine, const AlcoveSettings* settings) 
   view.camera = engine->camera;
   view.previous_camera = engine->previous_camera;
   view.depth = engine->depth;
-  view.depth.arrival.stages = VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT;
-  view.depth.arrival.access = VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
-  view.depth.arrival.layout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
-  view.depth.departure.stages = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
-  view.depth.departure.access = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
-  view.depth.departure.layout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL;
+  view.depth.initial_state.stages = VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT;
+  view.depth.initial_state.access = VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
+  view.depth.initial_state.layout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
+  view.depth.final_state.stages = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
+  view.depth.final_state.access = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
+  view.depth.final_state.layout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL;
   view.visibility = engine->occlusion;
   /* The lighting of the frame before read it; what it holds is not needed any more. */
-  view.visibility.arrival.stages = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
-  view.visibility.arrival.layout = VK_IMAGE_LAYOUT_UNDEFINED;
-  view.visibility.departure.stages = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
-  view.visibility.departure.access = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
-  view.visibility.departure.layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+  view.visibility.initial_state.stages = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
+  view.visibility.initial_state.layout = VK_IMAGE_LAYOUT_UNDEFINED;
+  view.visibility.final_state.stages = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
+  view.visibility.final_state.access = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
+  view.visibility.final_state.layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
   return view;
 }
 

@@ -62,7 +62,7 @@ inline constexpr Access blit_destination{
 inline constexpr Access clear{VK_PIPELINE_STAGE_2_CLEAR_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                               VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                               VK_IMAGE_USAGE_TRANSFER_DST_BIT};
-// For a departure: a swapchain image that is to be presented.
+// For a final_state: a swapchain image that is to be presented.
 inline constexpr State present{VK_PIPELINE_STAGE_2_BOTTOM_OF_PIPE_BIT, 0,
                                VK_IMAGE_LAYOUT_PRESENT_SRC_KHR};
 
@@ -106,7 +106,7 @@ inline constexpr Access transfer_destination{
 inline constexpr Access fill{VK_PIPELINE_STAGE_2_CLEAR_BIT | VK_PIPELINE_STAGE_2_COPY_BIT,
                              VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
                              VK_BUFFER_USAGE_TRANSFER_DST_BIT};
-// For a departure: a buffer that the host reads once the frame's fence has signalled.
+// For a final_state: a buffer that the host reads once the frame's fence has signalled.
 inline constexpr State host_read{VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT,
                                  VK_IMAGE_LAYOUT_UNDEFINED};
 

@@ -41,11 +41,11 @@ enum ResourceFlags : std::uint32_t {
 
 // What is known of a resource that lives outside the frame.
 struct ExternalRecord {
-  State arrival;
-  State departure;
+  State initial_state;
+  State final_state;
   VkFlags usage = 0;
   std::uint32_t has_contents = 0;                     // 0 or 1
-  std::uint32_t has_departure = 0;                    // 0 or 1
+  std::uint32_t has_final_state = 0;                  // 0 or 1
   HistoryValidity validity = HistoryValidity::valid;  // of a history slot
   QueueClass queue = QueueClass::graphics;            // that used it last
   std::uint16_t has_handle = 0;                       // 0 or 1: its Vulkan handle was given

@@ -11,20 +11,20 @@
 namespace alcove::framegraph {
 
 // Why a pass is in the plan, or is not.
-enum class Fate : std::uint8_t {
+enum class CullReason : std::uint8_t {
   side_effect,    // live: it says that it has effects outside the graph
   output,         // live: it writes what is wanted after the frame
-  feeds_pass,     // live: `witness` reads what it writes
-  feeds_history,  // live: its history slot is read by `witness` in later frames
+  feeds_pass,     // live: `consumer` reads what it writes
+  feeds_history,  // live: its history slot is read by `consumer` in later frames
   unread,         // culled: nothing live reads any of what it writes
   writes_nothing  // culled: it writes nothing and has no side effect
 };
 
-struct PassFate {
-  Fate fate = Fate::unread;
-  std::uint32_t witness = kNone;   // the pass that keeps it
+struct PassCullReason {
+  CullReason cull_reason = CullReason::unread;
+  std::uint32_t consumer = kNone;  // the pass that keeps it
   std::uint32_t resource = kNone;  // by which resource
-  bool is_live() const { return fate < Fate::unread; }
+  bool is_live() const { return cull_reason < CullReason::unread; }
 };
 
 // One dependency within a batch. With a resource it is an image barrier over `range`; without one
@@ -122,8 +122,8 @@ struct Plan {
   std::vector<Wait> waits;
   std::vector<Placement> placements;  // by resource
   std::vector<Heap> heaps;
-  std::vector<PassFate> fates;              // by declared pass
-  std::vector<std::uint8_t> live_accesses;  // by declared access: 0 or 1
+  std::vector<PassCullReason> cull_reasons;  // by declared pass
+  std::vector<std::uint8_t> live_accesses;   // by declared access: 0 or 1
   std::vector<FinalState> finals;
   bool reordered = false;  // whether the order differs from the declaration's
 };

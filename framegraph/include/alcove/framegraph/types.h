@@ -87,9 +87,9 @@ struct Range {
 };
 
 // Where an imported resource comes from, or is to be left: the last (or next) stages and accesses
-// outside the graph and, for a texture, the layout. An arrival in VK_IMAGE_LAYOUT_UNDEFINED (for a
-// buffer: with no access) has no contents. Reads that a resource arrives with have seen what was
-// written before; the graph makes it visible to other stages, and to theirs for other accesses.
+// outside the graph and, for a texture, the layout. An initial_state in VK_IMAGE_LAYOUT_UNDEFINED
+// (for a buffer: with no access) has no contents. Reads that a resource arrives with have seen what
+// was written before; the graph makes it visible to other stages, and to theirs for other accesses.
 struct State {
   VkPipelineStageFlags2 stages = 0;
   VkAccessFlags2 access = 0;
@@ -108,11 +108,11 @@ struct ImportedTexture {
   // Of an array, of which desc.layers are imported, and in `view`. Barriers and views count from
   // it; a callback that takes the image itself has to.
   std::uint32_t first_layer = 0;
-  State arrival;
-  // With a departure the graph leaves the image so, and a write to it is an output of the frame.
+  State initial_state;
+  // With a final_state the graph leaves the image so, and a write to it is an output of the frame.
   // All that the frame does with it comes before what is done at these stages later. Without one
   // (layout undefined and no stages) a write that nobody reads is culled.
-  State departure;
+  State final_state;
 };
 
 struct ImportedBuffer {
@@ -121,8 +121,8 @@ struct ImportedBuffer {
   VkBufferUsageFlags usage = 0;
   // A buffer that arrives with contents that need no barrier has has_contents and no stages.
   bool has_contents = true;
-  State arrival;
-  State departure;
+  State initial_state;
+  State final_state;
 };
 
 // What a write does to what was there in its range.

@@ -4,7 +4,7 @@
 // Two frames of the plan are replayed, so that what the second does to the memory of the first is
 // seen. For every pair of conflicting accesses (to one subresource, or to the same bytes) it asks
 // for a happens-before with availability and visibility, over queues; it follows the layout and
-// owner of every subresource, what each byte last held, and the departures of imports.
+// owner of every subresource, what each byte last held, and the final_states of imports.
 #pragma once
 
 #include <tl/expected.hpp>

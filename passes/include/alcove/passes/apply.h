@@ -22,7 +22,7 @@ struct ApplySettings {
 
 // All of the size of the depth but the probe's own. What is null is left out of the shader.
 struct ApplyInputs {
-  framegraph::Texture depth;        // linear, as add_depth_pyramid makes it
+  framegraph::Texture depth;        // linear, as add_linear_depth makes it
   framegraph::Texture normals;      // xyz unit, in world space unless told otherwise
   framegraph::Texture albedo;       // base colour, linear RGB, [0,1]
   framegraph::Texture roughness;    // perceptual, [0,1]; null: ApplySettings::roughness

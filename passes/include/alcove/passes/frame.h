@@ -41,13 +41,13 @@ struct Frame {
   framegraph::Graph& graph;
   Kernels& kernels;
   View view;
-  std::uint32_t index = 0;    // counts frames: it turns the noise and moves the searched pixels
+  std::uint32_t index = 0;    // counts frames: it turns the noise and moves the traced pixels
   View previous_view = view;  // of the frame before: what history is reprojected with
   // Frames in a row, up to this one, that show the very same as the one before each; 0: this one
   // differs, or nobody knows. It starts again wherever histories do: after a cut, and where size,
   // settings or wanted results change. From 1 on motion vectors are not read; from 16 on a search
   // at lower resolution brings forward only the pixels that it reached, and all frames count.
-  std::uint32_t still_frames = 0;
+  std::uint32_t static_frames = 0;
   // Where the size of the depth changes and history is to go on (dynamic resolution). Zero is as
   // the depth is now.
   VkExtent2D largest_size{};   // that histories have room for; another begins them anew

@@ -9,15 +9,16 @@ namespace alcove::passes {
 
 // What stands behind an occluder's front, which is all that a depth buffer shows.
 enum class Estimator : std::uint8_t {
-  // Everything: occluders are infinitely thick (the memo's horizons).
+  // Everything: occluders are infinitely thick (the paper's horizons).
   horizons,
-  // The same, but that each lower sample further out pulls the horizon down (the memo's thickness
+  // The same, but that each lower sample further out pulls the horizon down (the paper's thickness
   // heuristic).
   heuristic,
   // Every sample is an occluder of its own, of one thickness (the visibility bitmask of Therrien et
   // al. 2023, exactly weighted).
   bitmask,
-  // The same where samples do not lie on one surface; those that do are joined into a sheet without
+  // The same where samples do not lie on one surface; those that do are joined into a segment
+  // without
   // gaps (shaders/maths/connected_samples.h). Suits thin things and walls alike.
   connected,
 };
@@ -34,29 +35,29 @@ enum class ThicknessUnit : std::uint8_t {
   // By a second depth buffer, of back faces: each occluder ends where its view ray meets the
   // nearest of them, however far behind. Of a closed solid that is where the ray leaves it, unless
   // others stand in it. Where there is none behind the front (cards, planes, sky) as `radius` has
-  // it; a card before a solid is taken to fill all the way to that one's back, which two depths
-  // cannot tell.
+  // it; a card before a solid is taken to hidden_occlusion all the way to that one's back, which
+  // two depths cannot tell.
   back_faces,
 };
 
-// Whether GtaoInputs::back_line_depth and OcclusionInputs::back_depth_ndc are read, and so whether
-// an engine has to draw back faces at all.
+// Whether GtaoInputs::back_inverse_depth and OcclusionInputs::back_depth_ndc are read, and so
+// whether an engine has to draw back faces at all.
 [[nodiscard]] bool needs_back_depth(Estimator estimator, ThicknessUnit unit);
 
-// The same of GtaoInputs::second_line_depth and OcclusionInputs::second_depth_ndc.
+// The same of GtaoInputs::second_inverse_depth and OcclusionInputs::second_depth_ndc.
 [[nodiscard]] bool needs_second_depth(Estimator estimator, std::uint32_t depth_layers);
 
 // What a visible direction weighs.
 enum class Weighting : std::uint8_t {
   cosine,   // of its angle to the normal: what diffuse surfaces reflect
-  uniform,  // 1: the visible part of the hemisphere's solid angle (the memo's appendix A)
+  uniform,  // 1: the visible part of the hemisphere's solid angle (the paper's appendix A)
 };
 
 // How directions are spread over pixels and frames (shaders/maths/sampling.h).
 enum class Pattern : std::uint8_t {
   golden,   // a 4x4 block in the order of ordered dithering, turned by the golden ratio each frame
   hilbert,  // Hilbert curve and R2 sequence
-  memo,     // the memo's 4x4 block and six rotations
+  paper,    // the paper's 4x4 block and six rotations
 };
 
 // Which searches a group of the device's threads makes together. The image is the same.
@@ -69,12 +70,12 @@ enum class Grouping : std::uint8_t {
 struct SearchParts {
   // Whether a sample lies where its texel does; else where it was asked for, so that tilted planes
   // occlude themselves.
-  bool snapping = true;
+  bool snap_to_texels = true;
   // Whether surfaces that leave the image go on beyond its border as they left (connected samples).
-  bool continuation = true;
+  bool extrapolation = true;
   // Whether what foregrounds and the image's border hide is left out of visibility, neither open
-  // nor occluded (connected samples, shaders/maths/unseen.h); else it counts as open.
-  bool unseen = true;
+  // nor occluded (connected samples, shaders/maths/unobserved.h); else it counts as open.
+  bool unobserved = true;
   Grouping grouping = Grouping::neighbours;
 
   friend bool operator==(const SearchParts&, const SearchParts&) = default;
@@ -92,8 +93,9 @@ struct SearchSettings {
   float thickness = 0.15f;
   ThicknessUnit thickness_unit = ThicknessUnit::radius;
   // Part of what is hidden behind them that occludes too, [0,1]: 0 nothing, 1 all, between the more
-  // the wider they are in the image (fill_behind(), shaders/maths/visibility_bitmask.h).
-  float fill = 0.33f;
+  // the wider they are in the image (hidden_occlusion_behind(),
+  // shaders/maths/visibility_bitmask.h).
+  float hidden_occlusion = 0.33f;
   std::uint32_t depth_layers = 1;  // that are searched: 1, or 2 with what lies behind the first
   // For horizons and heuristic.
   float blend = 0.05f;  // of a horizon towards each lower sample, [0,1] (heuristic)
@@ -102,7 +104,7 @@ struct SearchSettings {
   float falloff = 0.0f;
   // One search a frame in a block of so many pixels a side: 1, 2 or 4. Which of them moves on from
   // frame to frame.
-  std::uint32_t divisor = 1;
+  std::uint32_t tile_size = 1;
   Pattern pattern = Pattern::golden;
   SearchParts parts;
 
@@ -118,35 +120,36 @@ struct GtaoSettings : SearchSettings {
 };
 
 struct GtaoInputs {
-  framegraph::Texture line_depth;  // as add_line_depth makes it
-  framegraph::Texture normals;     // xyz unit, in world space unless `normals_in_view_space`
+  framegraph::Texture inverse_depth;  // as add_inverse_depth makes it
+  framegraph::Texture normals;        // xyz unit, in world space unless `normals_in_view_space`
   bool normals_in_view_space = false;
   framegraph::Texture roughness;  // perceptual, [0,1]; null: GtaoSettings::roughness
-  // Of OcclusionInputs::back_depth_ndc, as add_line_depth makes it; only where needs_back_depth().
-  framegraph::Texture back_line_depth;
+  // Of OcclusionInputs::back_depth_ndc, as add_inverse_depth makes it; only where
+  // needs_back_depth().
+  framegraph::Texture back_inverse_depth;
   // The same of OcclusionInputs::second_depth_ndc; only where needs_second_depth().
-  framegraph::Texture second_line_depth;
+  framegraph::Texture second_inverse_depth;
 };
 
 // What filters and history work on: sums over slices, one texel a block.
-struct OcclusionSignal {
-  // R32G32_UINT: the visible part of the slices and all of it (shaders/maths/signal.h), and the
-  // bits of a float that is linear along the image of any plane. With a lobe R32G32B32A32_UINT: the
-  // same two of it, and the surface it belongs to.
-  framegraph::Texture signal;
+struct RawOcclusionTextures {
+  // R32G32_UINT: the visible part of the slices and all of it (shaders/maths/raw_occlusion.h), and
+  // the bits of a float that is linear along the image of any plane. With a lobe R32G32B32A32_UINT:
+  // the same two of it, and the surface it belongs to.
+  framegraph::Texture raw_occlusion;
   // R32G32_UINT: how far the mean visible direction, weighted by the cosine, bends from the normal,
   // and would if all were open, view space, 10 bits a component (shaders/maths/bent_normal.h); null
   // where none is wanted.
   framegraph::Texture bent;
-  std::uint32_t divisor = 1;  // pixels on a side of a block
-  std::uint32_t slices = 1;   // that were searched in each
+  std::uint32_t tile_size = 1;  // pixels on a side of a block
+  std::uint32_t slices = 1;     // that were searched in each
   bool lobe = false;
 };
 
-// Errors: an input that is missing or of another size than the line depth, a view that cannot be
+// Errors: an input that is missing or of another size than the inverse depth, a view that cannot be
 // used, a setting out of range, a falloff that the estimator does not have.
-[[nodiscard]] tl::expected<OcclusionSignal, Error> add_gtao(const Frame& frame,
-                                                            const GtaoInputs& inputs,
-                                                            const GtaoSettings& settings);
+[[nodiscard]] tl::expected<RawOcclusionTextures, Error> add_gtao(const Frame& frame,
+                                                                 const GtaoInputs& inputs,
+                                                                 const GtaoSettings& settings);
 
 }  // namespace alcove::passes

@@ -17,7 +17,7 @@ enum class SpecularModel : std::uint8_t {
   smooth_cone,
   // Lagarde and de Rousiers 2014: from visibility and angle of view, without a bent normal.
   lagarde,
-  // The memo's table: the lobe itself within the cone of visibility, for the angles between bent
+  // The paper's table: the lobe itself within the cone of visibility, for the angles between bent
   // normal, mirror direction and normal (shaders/maths/gtso_table.h). 54 KiB that no other model
   // has.
   table,
@@ -35,7 +35,7 @@ struct GtsoInputs {
   framegraph::Texture visibility;   // one channel, [0,1], 1 open
   framegraph::Texture bent_normal;  // xyz unit, in the space of the normals; not read by lagarde
   framegraph::Texture normals;      // xyz unit, in world space unless `normals_in_view_space`
-  framegraph::Texture depth;        // linear, as add_depth_pyramid makes it
+  framegraph::Texture depth;        // linear, as add_linear_depth makes it
   framegraph::Texture roughness;    // perceptual, [0,1]; null: GtsoSettings::roughness
   bool normals_in_view_space = false;
   framegraph::Texture into;  // to be written, whole; null: a transient of GtsoSettings::precision
@@ -46,7 +46,7 @@ struct GtsoInputs {
 // R32_SFLOAT.
 //
 // An open surface stays open at any roughness and angle: a visibility within 1/128 of 1 counts as
-// open, because a filtered one is no surer than that and a cone turns it into degrees. The memo
+// open, because a filtered one is no surer than that and a cone turns it into degrees. The paper
 // divides by the whole lobe, also by what lies under the surface; here that is left out.
 //
 // Errors: an input that is missing or of another size than the rest, a roughness or a channel out

@@ -23,15 +23,15 @@ struct Error {
 
 // The shaders of the library: each a file in shaders/, or a variant of one.
 enum class Shader : std::uint8_t {
-  depth_pyramid,
+  linear_depth,
   normals,
-  line_depth,
+  inverse_depth,
   gtao,
-  gtao_lobe,
+  gtao_specular,
   reconstruct,
   reconstruct_history,
-  reconstruct_lobe,
-  reconstruct_lobe_history,
+  reconstruct_specular,
+  reconstruct_specular_history,
   multi_bounce,
   gtso,
   gtso_by_table,

@@ -5,9 +5,9 @@
 
 namespace alcove::passes {
 
-// In: `depth`, linear depth as add_depth_pyramid makes it. Out: RGBA16_SFLOAT, unit normals in view
+// In: `depth`, linear depth as add_linear_depth makes it. Out: RGBA16_SFLOAT, unit normals in view
 // space towards the eye. Each axis takes the side whose depth continues the pixel's own better, so
-// that normals do not bend across silhouettes. Sky gets the direction to the eye.
+// that normals do not residual across silhouettes. Sky gets the direction to the eye.
 //
 // Errors: a texture that is missing, a view that cannot be used.
 [[nodiscard]] tl::expected<framegraph::Texture, Error> add_normals(const Frame& frame,

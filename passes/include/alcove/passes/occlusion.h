@@ -4,9 +4,9 @@
 
 #include <cstdint>
 
-#include "alcove/passes/depth_pyramid.h"
 #include "alcove/passes/gtao.h"
 #include "alcove/passes/gtso.h"
+#include "alcove/passes/linear_depth.h"
 #include "alcove/passes/normals.h"
 #include "alcove/passes/reconstruct.h"
 
@@ -30,7 +30,7 @@ enum class Quality : std::uint8_t {
   medium,     // 1 of 10 in 2x2: 5
   high,       // 3 of 16 in 2x2: 24
   ultra,      // 4 of 24 in 2x2: 48
-  reference,  // 32 of 64 in each: 4096. By horizons, neither filtered nor averaged: the memo's own
+  reference,  // 32 of 64 in each: 4096. By horizons, neither filtered nor averaged: the paper's own
 };
 
 // Everything that can be chosen: what gtao.h and reconstruct.h say of searches and filter, and what
@@ -80,7 +80,7 @@ struct OcclusionOutputs {
   framegraph::Texture bent_normal;
   // One channel, multiplies specular probe light, [0,1], 1 open; null where none was asked for.
   framegraph::Texture specular;
-  // As add_depth_pyramid makes it, of one mip; null where neither the settings nor their specular
+  // As add_linear_depth makes it, of one mip; null where neither the settings nor their specular
   // model nor the making of normals want it.
   framegraph::Texture linear_depth;
   framegraph::Texture normals;  // those given, or those made from depth, in view space

@@ -1,4 +1,4 @@
-// From searched pixels to every pixel: spatial filter, upsampling and history in one pass.
+// From traced pixels to every pixel: spatial filter, upsampling and history in one pass.
 #pragma once
 
 #include <cstdint>
@@ -13,12 +13,12 @@ struct FilterSettings {
   // Searched pixels that a pixel looks at while it has less than two frames of history, or without
   // any: so many on each side, 0 to 3; then one. 0 filters nothing. They weigh in a window that is
   // the narrower the more slices were searched.
-  std::uint32_t filter_reach = 2;
+  std::uint32_t filter_radius = 2;
   // At this distance from the pixel's tangent plane a neighbour counts a quarter; in sizes of a
   // pixel there, over 0. That is in the first frame of one slice: the more slices and frames there
   // are, the nearer it has to be.
   float filter_tolerance_px = 1.5f;
-  // Frames that are averaged, 0 to 127; once Frame::still_frames is 16, up to 127 in any case. 0
+  // Frames that are averaged, 0 to 127; once Frame::static_frames is 16, up to 127 in any case. 0
   // keeps no history and allocates none: for engines whose own temporal filter comes after.
   std::uint32_t history_frames = 0;
   // History is held to so many standard deviations of this frame's neighbourhood; 0 leaves it free.
@@ -28,8 +28,9 @@ struct FilterSettings {
 };
 
 struct ReconstructSettings : FilterSettings {
-  bool visibility = true;  // also write it: off where only what else the signal has is wanted
-  float roughness = 0.5f;  // as GtaoSettings has them; read where the signal has a lobe
+  bool visibility =
+      true;  // also write it: off where only what else the raw_occlusion has is wanted
+  float roughness = 0.5f;  // as GtaoSettings has them; read where the raw_occlusion has a lobe
   std::uint32_t roughness_channel = 0;
   Precision precision = Precision::unorm8;
 };
@@ -37,16 +38,16 @@ struct ReconstructSettings : FilterSettings {
 struct Occlusion {
   // One channel, [0,1], 1 open, as large as the depth; null where none is wanted.
   framegraph::Texture visibility;
-  framegraph::Texture bent_normal;  // xyz unit, in the space of the normals; null where the signal
-                                    // has none
+  framegraph::Texture bent_normal;  // xyz unit, in the space of the normals; null where the
+                                    // raw_occlusion has none
   framegraph::Texture specular;  // one channel, the visible share of the GGX lobe, [0,1], 1 open;
-                                 // null where the signal has no lobe
+                                 // null where the raw_occlusion has no lobe
 };
 
 struct ReconstructInputs {
-  OcclusionSignal signal;          // as add_gtao writes it, of this frame's index
-  framegraph::Texture line_depth;  // as add_line_depth makes it
-  framegraph::Texture normals;     // as GtaoInputs::normals
+  RawOcclusionTextures raw_occlusion;  // as add_gtao writes it, of this frame's index
+  framegraph::Texture inverse_depth;   // as add_inverse_depth makes it
+  framegraph::Texture normals;         // as GtaoInputs::normals
   bool normals_in_view_space = false;
   // xy: uv in this frame's image minus uv in the last's, y down, so with the jitter of both views;
   // null: only the camera moves. Where it is given, things may, and with them the visibility of
@@ -59,12 +60,12 @@ struct ReconstructInputs {
 };
 
 // `history_name` tells the histories of one graph apart: each view needs its own. A history begins
-// anew where the size or the kind of the signal changes, where history or bent normals were off in
-// the frame before, and after Graph::reset_history(history_name).
+// anew where the size or the kind of the raw_occlusion changes, where history or bent normals were
+// off in the frame before, and after Graph::reset_history(history_name).
 //
-// Errors: an input that is missing or of another size than the line depth, a signal that is not of
-// its blocks, a view that cannot be used, now or before, sizes that are not within the largest, a
-// setting out of range, nothing to write.
+// Errors: an input that is missing or of another size than the inverse depth, a raw_occlusion that
+// is not of its blocks, a view that cannot be used, now or before, sizes that are not within the
+// largest, a setting out of range, nothing to write.
 [[nodiscard]] tl::expected<Occlusion, Error> add_reconstruct(
     const Frame& frame, const ReconstructInputs& inputs, const ReconstructSettings& settings,
     std::string_view history_name = "occlusion");

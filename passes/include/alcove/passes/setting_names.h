@@ -27,7 +27,7 @@ inline constexpr auto kNames<ThicknessUnit> = std::to_array<std::string_view>({"
                                                                                "back_faces"});
 template <>
 inline constexpr auto kNames<Pattern> = std::to_array<std::string_view>({"golden", "hilbert",
-                                                                         "memo"});
+                                                                         "paper"});
 template <>
 inline constexpr auto kNames<Grouping> = std::to_array<std::string_view>({"neighbours", "pattern"});
 template <>

@@ -1,0 +1,31 @@
+// Which pixel of a block is searched in a frame.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace alcove::passes {
+
+struct InterleaveOffset {
+  std::uint32_t x = 0;
+  std::uint32_t y = 0;
+};
+
+// Every pixel of a block of tile_size x tile_size (1, 2 or 4) once in tile_size^2 frames, those
+// that follow each other far apart: (0,0), (1,1), (1,0), (0,1), and the same within each quarter of
+// 4x4.
+[[nodiscard]] constexpr InterleaveOffset interleave_offset_of(std::uint32_t tile_size,
+                                                      std::uint32_t frame) {
+  constexpr std::array<InterleaveOffset, 4> kOrder{{{0, 0}, {1, 1}, {1, 0}, {0, 1}}};
+  if (tile_size == 1) {
+    return {};
+  }
+  const InterleaveOffset coarse = kOrder[frame % 4];
+  if (tile_size == 2) {
+    return coarse;
+  }
+  const InterleaveOffset fine = kOrder[frame / 4 % 4];
+  return {coarse.x * 2 + fine.x, coarse.y * 2 + fine.y};
+}
+
+}  // namespace alcove::passes

@@ -1,0 +1,174 @@
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "cli/commands.h"
+#include "cli/report.h"
+#include "cli/settings.h"
+#include "evaluate/ablation.h"
+#include "evaluate/errors.h"
+#include "evaluate/variant_errors.h"
+#include "reference/surface_points.h"
+#include "render/session.h"
+#include "support/image_io.h"
+#include "support/mib.h"
+#include "support/progress.h"
+
+namespace alcove::sample {
+namespace {
+
+using Failure = tl::unexpected<std::string>;
+using Done = tl::expected<void, std::string>;
+using Json = nlohmann::ordered_json;
+
+// How far two images are apart that should look the same.
+struct InvariancePairRow {
+  std::string name;
+  ErrorSummary difference;
+};
+
+// The mean of each block of `scale` pixels a side.
+Image<float> shrunk(const Image<float>& image, std::uint32_t scale) {
+  Image<float> small(image.width / scale, image.height / scale);
+  for (std::uint32_t y = 0; y < small.height * scale; ++y) {
+    for (std::uint32_t x = 0; x < small.width * scale; ++x) {
+      small.pixels[(y / scale) * small.width + x / scale] +=
+          image.pixels[y * image.width + x] / static_cast<float>(scale * scale);
+    }
+  }
+  return small;
+}
+
+// Where both images show a surface; a block of pixels does where all of them do.
+Mask common_surfaces(const InvariancePair& pairs, const FrameImages& images,
+                     const FrameImages& others) {
+  const std::uint32_t scale = pairs.scale;
+  const Image<float> depth = linear_depth(pairs.first, images.depth_ndc);
+  const Image<float> other = linear_depth(pairs.second, others.depth_ndc);
+  Mask mask(depth.width, depth.height);
+  for (std::uint32_t y = 0; y < depth.height * scale; ++y) {
+    for (std::uint32_t x = 0; x < depth.width * scale; ++x) {
+      const std::size_t i = (y / scale) * depth.width + x / scale;
+      const float apart = other.at(x, y) - pairs.further - depth.pixels[i];
+      const bool here = std::isfinite(apart) && std::abs(apart) <= pairs.tolerance;
+      mask.pixels[i] = here && (mask.pixels[i] != 0 || (x % scale == 0 && y % scale == 0)) ? 1 : 0;
+    }
+  }
+  return mask;
+}
+
+tl::expected<InvariancePairRow, std::string> run_invariance_pair(Gpu& gpu, const Session& session,
+                                                                 const Options& options,
+                                                                 const InvariancePair& pairs) {
+  const StaticSetup first = static_setup(options, pairs.first);
+  StaticSetup second = static_setup(options, pairs.second);
+  second.width *= pairs.scale;
+  second.height *= pairs.scale;
+  const auto images = draw_static(gpu, session.scene, first, session.settings);
+  if (!images) {
+    return Failure(images.error());
+  }
+  const auto others = draw_static(gpu, session.scene, second, session.settings);
+  if (!others) {
+    return Failure(others.error());
+  }
+  return InvariancePairRow{
+      pairs.name, compare_images(shrunk(others->visibility, pairs.scale), images->visibility,
+                                 common_surfaces(pairs, *images, *others))};
+}
+
+std::string table_of(const std::vector<VariantErrors>& rows) {
+  std::ostringstream out;
+  out << "RMSE of visibility over " << rows.front().scene.count
+      << " pixels, and cost beside the first row's\n"
+      << "  " << std::left << std::setw(43) << "" << std::right
+      << "scene truth   height field    bias   GPU   processor   MiB\n";
+  std::string part;
+  for (const VariantErrors& row : rows) {
+    const bool begins = row.variant.part != part;
+    part = row.variant.part;
+    out << "  " << std::left << std::setw(11) << (begins ? part : "") << std::setw(32)
+        << row.variant.name << std::right << std::fixed << std::setprecision(4) << std::setw(10)
+        << row.scene.rmse << std::setw(15) << row.height_field.rmse << std::showpos << std::setw(10)
+        << std::setprecision(3) << row.scene.bias << std::noshowpos << std::setprecision(2)
+        << std::setw(6) << row.cost.gpu << std::setw(10) << row.cost.processor
+        << std::setprecision(1) << std::setw(9) << mib(row.cost.bytes) << "\n";
+  }
+  return out.str();
+}
+
+std::string table_of(const std::vector<InvariancePairRow>& rows) {
+  std::ostringstream out;
+  out << "Difference of visibility where there should be none       RMS   95 % within    pixels\n"
+      << std::fixed << std::setprecision(4);
+  for (const InvariancePairRow& row : rows) {
+    out << "  " << std::left << std::setw(50) << row.name << std::right << std::setw(10)
+        << row.difference.rmse << std::setw(14) << row.difference.percentile_95 << std::setw(10)
+        << row.difference.count << "\n";
+  }
+  return out.str();
+}
+
+Json to_json(const VariantErrors& row) {
+  return {{"part", row.variant.part},
+          {"change", row.variant.name},
+          {"scene_truth", to_json(row.scene)},
+          {"height_field_truth", to_json(row.height_field)},
+          {"gpu_time_ratio", row.cost.gpu},
+          {"processor_time_ratio", row.cost.processor},
+          {"bytes", row.cost.bytes}};
+}
+
+}  // namespace
+
+Done run_ablate(const Options& options) {
+  auto session = session_of(options);
+  if (!session) {
+    return Failure(std::move(session.error()));
+  }
+  // Before minutes of work, not after.
+  if (auto made = create_folder(options.out); !made) {
+    return made;
+  }
+  const auto variants = run_variants(*session, options, variants_of(session->settings), "changes");
+  if (!variants) {
+    return Failure(variants.error());
+  }
+  std::cout << table_of(variants->rows) << std::flush;
+  std::vector<InvariancePairRow> invariance_pair_rows;
+  const std::uint32_t largest = session->gpu->device().properties().limits.maxImageDimension2D;
+  for (const InvariancePair& pairs : invariance_pairs_of(session->camera, options.view.height)) {
+    if (pairs.scale * std::max(options.view.width, options.view.height) > largest) {
+      std::cout << "Left out: " << pairs.name << ", which the device has no image for\n";
+      continue;
+    }
+    auto row = run_invariance_pair(*session->gpu, *session, options, pairs);
+    if (!row) {
+      return Failure(std::move(row.error()));
+    }
+    invariance_pair_rows.push_back(std::move(*row));
+  }
+  if (auto valid = check_validation(*session->gpu); !valid) {
+    return valid;
+  }
+  std::cout << table_of(invariance_pair_rows);
+  Json report;
+  report["device"] = session->gpu->device().properties().deviceName;
+  report["settings"] = to_json(session->settings);
+  report["frames"] = options.view.frames;
+  for (const VariantErrors& row : variants->rows) {
+    report["changes"].push_back(to_json(row));
+  }
+  for (const InvariancePairRow& row : invariance_pair_rows) {
+    report["differences"].push_back(
+        {{"between", row.name}, {"visibility", to_json(row.difference)}});
+  }
+  return write_text(options.out / "report.json", report.dump(2) + "\n").map([&] {
+    std::cout << "report.json is in " << options.out.string() << "\n";
+  });
+}
+
+}  // namespace alcove::sample

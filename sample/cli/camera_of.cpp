@@ -1,0 +1,80 @@
+#include "cli/camera_of.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cli/option_value.h"
+
+namespace alcove::sample {
+namespace {
+
+// Whether the squares of the lengths that make a view are numbers above 0.
+bool has_axes(const Camera& camera) {
+  const glm::vec3 back = camera.eye_ws - camera.target_ws;
+  return std::isnormal(glm::dot(back, back)) &&
+         std::isnormal(glm::dot(camera.up_ws, camera.up_ws)) &&
+         std::isfinite(glm::dot(camera.eye_ws, camera.eye_ws));
+}
+
+// The first names, and how many there are besides: a file may have thousands.
+std::string names_of(const std::vector<Camera>& cameras) {
+  constexpr std::size_t kMost = 10;
+  const std::size_t listed = std::min(cameras.size(), kMost);
+  std::string names;
+  for (std::size_t i = 0; i < listed; ++i) {
+    names += (i == 0 ? "\"" : ", \"") + cameras[i].name + "\"";
+  }
+  if (listed < cameras.size()) {
+    names += " and " + std::to_string(cameras.size() - listed) + " more";
+  }
+  return names;
+}
+
+}  // namespace
+
+tl::expected<Camera, std::string> camera_of(const ViewOptions& view, const Scene& scene) {
+  const Camera* named = find_camera(scene, view.camera);
+  if (!named && !view.camera.empty()) {
+    return tl::unexpected(
+        "the scene has no camera \"" + view.camera + "\"; it has " +
+        (scene.cameras.empty() ? "none: use --eye and --target" : names_of(scene.cameras)));
+  }
+  Camera camera = named ? *named : framing_camera(scene.bounds_ws);
+  camera.eye_ws = view.eye_ws.value_or(camera.eye_ws);
+  camera.target_ws = view.target_ws.value_or(camera.target_ws);
+  // A view that is typed stands upright: what is up for the scene's camera fits its own view.
+  if (view.eye_ws || view.target_ws) camera.up_ws = Camera().up_ws;
+  camera.up_ws = view.up_ws.value_or(camera.up_ws);
+  camera.near_plane = view.near_plane.value_or(camera.near_plane);
+  camera.far_plane = view.far_plane.value_or(camera.far_plane);
+  camera.reversed_z = camera.reversed_z || view.reversed_z;
+  if (view.fov_y) {
+    camera.orthographic = false;
+    camera.fov_y = *view.fov_y;
+  }
+  if (view.ortho_height) {
+    camera.orthographic = true;
+    camera.ortho_height = *view.ortho_height;
+    if (std::isinf(camera.far_plane)) camera.far_plane = 1000.0f * camera.ortho_height;
+  }
+  if (camera.eye_ws == camera.target_ws) {
+    return tl::unexpected<std::string>("--eye and --target are one point: move one of them");
+  }
+  if (!has_axes(camera)) {
+    return tl::unexpected<std::string>(
+        "--eye, --target and --up are too large or too near each other for a view to be made: give "
+        "lengths from 1e-15 to 1e15");
+  }
+  if (!camera.orthographic && !(camera.near_plane > 0.0f)) {
+    return tl::unexpected("the near plane (" + shown(camera.near_plane) +
+                          ") of a perspective view must lie before the eye: give --near");
+  }
+  if (!(camera.near_plane < camera.far_plane)) {
+    return tl::unexpected("the near plane (" + shown(camera.near_plane) +
+                          ") is not before the far plane (" + shown(camera.far_plane) +
+                          "): give --near and --far");
+  }
+  return camera;
+}
+
+}  // namespace alcove::sample

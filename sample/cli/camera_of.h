@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+#include <tl/expected.hpp>
+
+#include "cli/options.h"
+#include "scene/camera.h"
+#include "scene/scene.h"
+
+namespace alcove::sample {
+
+// The camera that the options ask of this scene. Errors: a camera the scene does not have (its
+// names are listed), an eye at the target, near not before far or in perspective not above 0.
+[[nodiscard]] tl::expected<Camera, std::string> camera_of(const ViewOptions& view,
+                                                          const Scene& scene);
+
+}  // namespace alcove::sample

@@ -1,0 +1,129 @@
+#include <iomanip>
+#include <iostream>
+#include <sstream>
+
+#include "cli/commands.h"
+#include "cli/report.h"
+#include "evaluate/indirect_errors.h"
+#include "evaluate/indirect_truths.h"
+#include "evaluate/lit_errors.h"
+#include "evaluate/truths.h"
+#include "support/image_io.h"
+
+namespace alcove::sample {
+namespace {
+
+struct Errors {
+  ErrorSummary scene;
+  ErrorSummary height_field;
+  ErrorSummary limit;  // height-field truth against scene truth: what one depth layer cannot know
+  AngleSummary bent_normal;
+  AngleSummary surface_normal;  // the plain normal in its place
+  OpenSurfaceSummary open;
+};
+
+Errors errors_of(const Rendering& rendering, const Truths& truths) {
+  const FrameImages& images = rendering.images;
+  const Image<float>& scene = truths.scene.visibility;
+  return {compare_images(images.visibility, scene, truths.surfaces),
+          compare_images(images.visibility, truths.height_field.visibility, truths.surfaces),
+          compare_images(truths.height_field.visibility, scene, truths.surfaces),
+          compare_directions(images.bent_normal_ws, truths.scene.bent_normal_ws, truths.surfaces),
+          compare_directions(images.normal_ws, truths.scene.bent_normal_ws, truths.surfaces),
+          open_surfaces(images.visibility, scene, truths.surfaces)};
+}
+
+nlohmann::ordered_json errors_json(const Errors& errors) {
+  return {{"scene_truth", to_json(errors.scene)},
+          {"height_field_truth", to_json(errors.height_field)},
+          {"height_field_limit", to_json(errors.limit)},
+          {"bent_normal", to_json(errors.bent_normal)},
+          {"surface_normal", to_json(errors.surface_normal)},
+          {"open_surfaces", to_json(errors.open)}};
+}
+
+std::string error_table(const Errors& errors) {
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(4);
+  const auto row = [&](const char* name, const ErrorSummary& error) {
+    text << "  " << std::left << std::setw(44) << name << std::right << error.rmse << "   bias "
+         << std::showpos << error.bias << std::noshowpos << "\n";
+  };
+  text << "RMSE of visibility over " << errors.scene.count << " pixels\n";
+  row("against ray-traced scene truth", errors.scene);
+  row("against height-field truth", errors.height_field);
+  row("height-field truth against scene truth", errors.limit);
+  text << std::setprecision(2) << "Bent normal off the truth by " << errors.bent_normal.mean_degrees
+       << " degrees in the mean, 95 % within " << errors.bent_normal.percentile_95_degrees
+       << " (the surface normal: " << errors.surface_normal.mean_degrees << " and "
+       << errors.surface_normal.percentile_95_degrees << ")\n"
+       << std::setprecision(4) << "Open surfaces: mean visibility " << errors.open.mean_visibility
+       << ", " << std::setprecision(2) << 100.0 * errors.open.fraction_below_95
+       << " % of pixels below 0.95\n";
+  return text.str();
+}
+
+tl::expected<void, std::string> write_truths(const Rendering& rendering, const Truths& truths,
+                                             const std::filesystem::path& folder) {
+  const Image<float>& scene = truths.scene.visibility;
+  const Image<float>& result = rendering.images.visibility;
+  return write_exr(folder / "truth_scene.exr", scene)
+      .and_then([&] { return write_png(folder / "truth_scene.png", scene); })
+      .and_then([&] {
+        return write_exr(folder / "truth_height_field.exr", truths.height_field.visibility);
+      })
+      .and_then(
+          [&] { return write_exr(folder / "truth_bent_normal.exr", truths.scene.bent_normal_ws); })
+      .and_then([&] { return write_png(folder / "error.png", error_colours(result, scene)); });
+}
+
+}  // namespace
+
+tl::expected<void, std::string> run_compare(const Options& options) {
+  // Before minutes of work, not after.
+  if (auto made = create_folder(options.out); !made) {
+    return made;
+  }
+  const auto rendering = render(options);
+  if (!rendering) {
+    return tl::unexpected(rendering.error());
+  }
+  const FrameImages& images = rendering->images;
+  const auto truths = truths_of({rendering->scene, rendering->camera, rendering->settings.radius,
+                                 images.depth_ndc, images.normal_ws},
+                                options);
+  if (!truths) {
+    return tl::unexpected(truths.error());
+  }
+  const auto light = indirect_truths_of(*rendering, options);
+  if (!light) {
+    return tl::unexpected(light.error());
+  }
+  const Errors errors = errors_of(*rendering, *truths);
+  const IndirectErrors indirect_errors = indirect_errors_of(*rendering, *truths, *light);
+  nlohmann::ordered_json report = report_of(*rendering, options);
+  report["spp"] = options.occlusion.spp;
+  report["errors"] = errors_json(errors);
+  report["errors"].update(to_json(indirect_errors));
+  std::string lit_table;
+  if (light->lit) {
+    const LitErrors lit_errors = lit_errors_of(*rendering, *light);
+    report["errors"].update(to_json(lit_errors));
+    lit_table = lit_error_table(lit_errors);
+  }
+  return write_images(*rendering, options.out)
+      .and_then([&] { return write_truths(*rendering, *truths, options.out); })
+      .and_then([&] {
+        return light->lit ? write_lit_steps(*rendering, *light, options.out)
+                          : tl::expected<void, std::string>();
+      })
+      .and_then([&] { return write_text(options.out / "report.json", report.dump(2) + "\n"); })
+      .map([&] {
+        std::cout << time_table(*rendering) << error_table(errors)
+                  << indirect_error_table(indirect_errors) << lit_table
+                  << "Images and report.json are in " << options.out.string()
+                  << "; error.png is red where too dark, blue where too bright\n";
+      });
+}
+
+}  // namespace alcove::sample

@@ -1,0 +1,88 @@
+#include <iostream>
+
+#include "alcove/framegraph/compile.h"
+#include "alcove/framegraph/print.h"
+#include "cli/commands.h"
+#include "render/session.h"
+#include "render/surfaces.h"
+
+namespace alcove::sample {
+namespace {
+
+// The occlusion's frame as the sample declares it, with images that stand for the g-buffer's.
+tl::expected<void, std::string> declare(framegraph::Graph& graph, Session& session,
+                                        const Options& options) {
+  const auto extent = framegraph::Extent::absolute(options.view.width, options.view.height);
+  const auto texture = [&](const char* name, VkFormat format) {
+    auto pass = graph.add_pass(name);
+    const framegraph::Texture filled =
+        pass.write(graph.create_texture(name, {format, extent}),
+                   framegraph::access::color_attachment, {}, framegraph::Contents::discard);
+    pass.record([](framegraph::RecordContext&) {});
+    return filled;
+  };
+  const CameraMatrices matrices =
+      camera_matrices(session.camera, options.view.width, options.view.height);
+  passes::View view;
+  view.clip_from_view = to_matrix(matrices.clip_from_view);
+  view.view_from_world = to_matrix(matrices.view_from_world);
+  const HiddenDepths hidden = hidden_depths_of(session.settings);
+  Surfaces surfaces;
+  surfaces.normals = options.occlusion.normals;
+  if (!options.occlusion.roughness.empty()) {
+    surfaces.roughness = options.occlusion.roughness.front();
+  }
+  surfaces.gbuffer.depth = texture("depth", VK_FORMAT_R32_SFLOAT);
+  surfaces.gbuffer.normal = texture("normals", kNormalFormat);
+  surfaces.gbuffer.albedo = texture("albedo and roughness", kAlbedoFormat);
+  if (hidden.back_faces) {
+    surfaces.back_depth = texture("back-face depth", VK_FORMAT_R32_SFLOAT);
+  }
+  if (hidden.second_layer) {
+    surfaces.second_depth = texture("second depth", VK_FORMAT_R32_SFLOAT);
+  }
+  const auto outputs =
+      passes::add_occlusion({graph, session.gpu->kernels(), view}, occlusion_inputs(surfaces),
+                            with_roughness(session.settings, surfaces));
+  if (!outputs) {
+    return tl::unexpected(outputs.error().message);
+  }
+  for (const framegraph::Texture output :
+       {outputs->visibility, outputs->bent_normal, outputs->specular}) {
+    if (output) {
+      graph.output(output);
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+tl::expected<void, std::string> run_graph(const Options& options) {
+  auto session = session_of(options);
+  if (!session) {
+    return tl::unexpected(session.error());
+  }
+  framegraph::Graph graph;
+  if (auto declared = declare(graph, *session, options); !declared) {
+    return tl::unexpected(declared.error());
+  }
+  const framegraph::GraphDescription& description = graph.description();
+  const auto plan = framegraph::compile(description, session->gpu->executor().limits());
+  if (!plan) {
+    return tl::unexpected(framegraph::to_string(plan.error()));
+  }
+  switch (options.graph_format) {
+    case GraphFormat::kJson:
+      std::cout << framegraph::print_json(description, *plan);
+      break;
+    case GraphFormat::kDot:
+      std::cout << framegraph::print_dot(description, *plan);
+      break;
+    default:
+      std::cout << framegraph::print_text(description, *plan);
+  }
+  return {};
+}
+
+}  // namespace alcove::sample

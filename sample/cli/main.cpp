@@ -1,0 +1,88 @@
+// `alcove`, the scene runner.
+
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <exception>
+#include <iostream>
+#include <new>
+
+#include "cli/commands.h"
+#include "cli/options.h"
+#include "support/standard_streams.h"
+
+namespace {
+
+using alcove::sample::Command;
+using alcove::sample::Options;
+using alcove::sample::Stop;
+
+tl::expected<void, std::string> run(const Options& options) {
+  switch (options.command) {
+    case Command::kRender:
+      return alcove::sample::run_render(options);
+    case Command::kCompare:
+      return alcove::sample::run_compare(options);
+    case Command::kMotion:
+      return alcove::sample::run_motion(options);
+    case Command::kAblate:
+      return alcove::sample::run_ablate(options);
+    case Command::kBench:
+      return alcove::sample::run_bench(options);
+    case Command::kRecommend:
+      return alcove::sample::run_recommend(options);
+    case Command::kCost:
+      return alcove::sample::run_cost(options);
+    case Command::kGraph:
+      return alcove::sample::run_graph(options);
+    case Command::kView:
+      return alcove::sample::run_view(options);
+    default:
+      return alcove::sample::run_doctor(options);
+  }
+}
+
+int fail(const std::string& sentence) {
+  std::cerr << "alcove: " << sentence << "\n";
+  return 1;
+}
+
+// What was printed may have gone nowhere: a full disk shows only here.
+int flush_output() {
+  errno = 0;
+  if (std::cout.flush()) return 0;
+  const std::string reason = errno == 0 ? "" : std::string(": ") + std::strerror(errno);
+  return fail("The output cannot be written" + reason + ".");
+}
+
+// Help goes to stdout as other output does; a mistake is a failure of its own kind.
+int stop(const Stop& stop) {
+  if (stop.status != 0) {
+    fail(stop.text);
+    return stop.status;
+  }
+  std::cout << stop.text << "\n";
+  return flush_output();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  alcove::sample::take_closed_streams();
+#ifdef SIGXFSZ
+  // Writing past a limit on the size of files fails, as on a full disk, and does not kill.
+  std::signal(SIGXFSZ, SIG_IGN);
+#endif
+  try {
+    const auto options = alcove::sample::parse_options(argc, argv);
+    if (!options) {
+      return stop(options.error());
+    }
+    const auto done = run(*options);
+    return done ? flush_output() : fail(done.error());
+  } catch (const std::bad_alloc&) {
+    return fail("There is not enough memory for this; try a smaller image or scene.");
+  } catch (const std::exception& error) {
+    return fail(error.what());
+  }
+}

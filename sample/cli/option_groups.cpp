@@ -1,0 +1,332 @@
+#include "cli/option_groups.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+#include "alcove/passes/setting_names.h"
+#include "cli/option_value.h"
+#include "cli/settings.h"
+
+namespace alcove::sample {
+namespace {
+
+// Adds options under one heading of the help.
+class Group {
+ public:
+  explicit Group(CLI::App& app, std::string heading = "Options")
+      : app_(app), heading_(std::move(heading)) {}
+
+  using Read = std::function<void(const OptionValue& given)>;
+  // `type` is what --help calls the value; `read` gets it where there is one, the last of several.
+  void add(const std::string& option, const std::string& type, const std::string& help,
+           const Read& read) const {
+    const auto typed = [option, read](const std::string& text) { read({option, text}); };
+    app_.add_option_function<std::string>(option, typed, help)
+        ->type_name(type)
+        ->take_last()
+        ->group(heading_);
+  }
+  // The same for an option that may be repeated.
+  void add_repeatable(const std::string& option, const std::string& type, const std::string& help,
+                      const Read& read) const {
+    const auto typed = [option, read](const std::vector<std::string>& texts) {
+      for (const std::string& text : texts) read({option, text});
+    };
+    app_.add_option_function<std::vector<std::string>>(option, typed, help)
+        ->type_name(type)
+        ->take_all()
+        ->expected(1)
+        ->group(heading_);
+  }
+  void add_flag(const std::string& option, const std::string& help, bool& flag,
+                bool meaning = true) const {
+    app_.add_flag_callback(
+            option, [&flag, meaning] { flag = meaning; }, help)
+        ->group(heading_);
+  }
+
+ private:
+  CLI::App& app_;
+  std::string heading_;
+};
+
+void add_frames(const Group& group, ViewOptions& view, std::int64_t fewest,
+                const std::string& help) {
+  constexpr std::int64_t kMost = 100000;
+  group.add("--frames", "N", help, [&view, fewest](const OptionValue& given) {
+    const std::string wanted =
+        "a number from " + std::to_string(fewest) + " to " + std::to_string(kMost);
+    view.frames = static_cast<std::uint32_t>(given.whole_number(fewest, kMost, wanted));
+  });
+}
+
+// A plane at the eye or behind it: only an orthographic view has that.
+void check_plane(const std::string& option, const std::optional<float>& plane,
+                 const ViewOptions& view) {
+  if (plane && !(*plane > 0.0f) && !view.ortho_height) {
+    throw Mistake{option + " " + shown(*plane) +
+                  ": give a length above 0, in the scene's units, or --ortho-height too"};
+  }
+}
+
+void check_view(const ViewOptions& view) {
+  check_plane("--near", view.near_plane, view);
+  check_plane("--far", view.far_plane, view);
+  if (view.near_plane && view.far_plane && !(*view.near_plane < *view.far_plane)) {
+    throw Mistake{"--near " + shown(*view.near_plane) + ": give a length below --far"};
+  }
+  if (view.ortho_height && view.fov_y) {
+    throw Mistake{"--ortho-height and --fov-y: give one, an orthographic view has no angle"};
+  }
+  if (view.ortho_height && view.far_plane && std::isinf(*view.far_plane)) {
+    throw Mistake{"--far inf: an orthographic view needs a finite --far"};
+  }
+}
+
+}  // namespace
+
+void add_scene(CLI::App& app, std::string& scene) {
+  app.add_option("SCENE", scene,
+                 "a .gltf or .glb file, or one that is made: builtin (the default), plane:60, "
+                 "groove:90, corner, sphere, pit, step")
+      ->type_name("");
+}
+
+void add_scenes(CLI::App& app, std::vector<std::string>& scenes) {
+  app.add_option("SCENE", scenes, "any number of scenes, each seen by its own camera")
+      ->type_name("");
+}
+
+void add_view(CLI::App& app, ViewOptions& view) {
+  const Group group(app, "View");
+  group.add("--camera", "NAME",
+            "a camera of the scene, by name; else its first, else a view of all of it",
+            [&](const OptionValue& given) { view.camera = given.text; });
+  group.add("--eye", "X,Y,Z", "where the camera stands, scene units",
+            [&](const OptionValue& given) { view.eye_ws = given.vector(); });
+  group.add("--target", "X,Y,Z", "what it looks at",
+            [&](const OptionValue& given) { view.target_ws = given.vector(); });
+  group.add("--up", "X,Y,Z", "what is up; 0,1,0", [&](const OptionValue& given) {
+    view.up_ws = given.vector();
+    if (*view.up_ws == glm::vec3(0.0f)) given.refuse("a direction, not zero");
+  });
+  group.add(
+      "--fov-y", "DEGREES", "vertical angle of view; the camera's", [&](const OptionValue& given) {
+        // As far as a file's camera may go.
+        view.fov_y = glm::radians(static_cast<float>(
+            given.number(0.001, 178.0, "the vertical angle of view in degrees, 0.001 to 178")));
+      });
+  group.add("--ortho-height", "LENGTH", "orthographic, so many units high",
+            [&](const OptionValue& given) { view.ortho_height = given.length(); });
+  constexpr double kLargest = std::numeric_limits<float>::max();
+  group.add("--near", "LENGTH",
+            "near plane; the camera's, as is the far one. An orthographic view's may lie behind it",
+            [&](const OptionValue& given) {
+              view.near_plane = static_cast<float>(
+                  given.number(-kLargest, kLargest, "a length above 0, in the scene's units"));
+            });
+  group.add("--far", "LENGTH", "far plane, or inf", [&](const OptionValue& given) {
+    const bool infinite = given.text == "inf" || given.text == "infinity";
+    view.far_plane =
+        infinite
+            ? std::numeric_limits<float>::infinity()
+            : static_cast<float>(given.number(-kLargest, kLargest, "a length above 0, or inf"));
+  });
+  group.add_flag("--reversed-z", "near at depth 1, far at 0: finer far away", view.reversed_z);
+  group.add("--size", "WxH", "of the image in pixels; 960x540",
+            [&](const OptionValue& given) { std::tie(view.width, view.height) = given.size(); });
+}
+
+void add_course(CLI::App& app, ViewOptions& view, const std::string& frames_help) {
+  const Group group(app, "View");
+  add_frames(group, view, 1, frames_help);
+  group.add("--orbit", "DEGREES", "turn about the target by so much per frame",
+            [&](const OptionValue& given) {
+              view.orbit = glm::radians(static_cast<float>(
+                  given.number(-360.0, 360.0, "an angle in degrees, -360 to 360")));
+            });
+}
+
+void add_standing(CLI::App& app, ViewOptions& view) {
+  view.frames = 32;  // as many as the history averages
+  add_frames(Group(app, "View"), view, 1,
+             "how many are drawn with each setting, the camera standing; the last is compared; 32");
+}
+
+void add_motion(CLI::App& app, Options& options) {
+  const Group group(app, "Motion");
+  group.add("--path", "NAME",
+            "orbit (about the middle of the view), dolly (towards it), strafe (past a column that "
+            "is put near the eye), object (the camera stands, a block slides over the ground), "
+            "cut (to elsewhere) or all of them; all",
+            [&](const OptionValue& given) {
+              std::vector<std::string_view> names(kMotionKindNames.begin(), kMotionKindNames.end());
+              names.emplace_back("all");
+              const std::size_t which = given.one_of(names);
+              options.path =
+                  which < kMotionKinds.size() ? std::optional(kMotionKinds[which]) : std::nullopt;
+            });
+  constexpr std::int64_t kFewest = 12;  // fewer leave nothing to compare
+  options.view.frames = 48;
+  add_frames(group, options.view, kFewest,
+             "how long each path is, from the view given on; three of its frames are compared with "
+             "the ray-traced truth; 48");
+}
+
+void add_occlusion(CLI::App& app, OcclusionOptions& occlusion) {
+  const Group group(app, "Occlusion");
+  group.add("--quality", "NAME", "low, medium, high, ultra or reference; medium",
+            [&](const OptionValue& given) {
+              occlusion.quality_given = true;
+              occlusion.quality =
+                  static_cast<passes::Quality>(given.one_of(passes::kNames<passes::Quality>));
+            });
+  group.add("--radius", "LENGTH",
+            "how far an occluder counts, scene units; a twentieth of the scene's diagonal",
+            [&](const OptionValue& given) { occlusion.radius = given.length(); });
+  group.add_repeatable(
+      "--set", "NAME=VALUE", "one of the settings below over the preset; may be repeated",
+      [&](const OptionValue& given) {
+        const std::size_t equals = given.text.find('=');
+        if (equals == std::string::npos || equals == 0 || equals + 1 == given.text.size()) {
+          given.refuse("name=value, such as slices=2");
+        }
+        const std::string name = given.text.substr(0, equals);
+        const std::string value = given.text.substr(equals + 1);
+        if (const auto wanted = wanted_instead(name, value)) given.refuse(*wanted);
+        occlusion.set.emplace_back(name, value);
+      });
+  group.add("--normals", "NAME",
+            "that the pass is given, and the truth with it: shading (of vertices and normal maps), "
+            "geometric (of the triangles) or depth (made from the depth buffer); shading",
+            [&](const OptionValue& given) {
+              occlusion.normals = static_cast<NormalSource>(given.one_of(kNormalSourceNames));
+            });
+  app.footer(settings_help());
+}
+
+void add_roughness(CLI::App& app, OcclusionOptions& occlusion) {
+  Group(app, "Occlusion")
+      .add("--roughness", "R,...",
+           "perceptual roughness for specular occlusion over that of the materials; several give "
+           "several images",
+           [&](const OptionValue& given) {
+             const std::string wanted =
+                 "up to 16 numbers from 0 to 1, no two alike, such as 0.1,0.3,0.6";
+             occlusion.roughness = given.numbers(16, 0.0f, 1.0f, wanted);
+             // Images are named by their first six digits.
+             std::vector<float> sorted = occlusion.roughness;
+             std::ranges::sort(sorted);
+             const auto alike = [](float a, float b) { return b - a < 1e-5f; };
+             if (std::ranges::adjacent_find(sorted, alike) != sorted.end()) given.refuse(wanted);
+           });
+}
+
+void add_rays(CLI::App& app, OcclusionOptions& occlusion) {
+  Group(app, "Occlusion")
+      .add("--spp", "N", "rays per pixel of the truth; 256", [&](const OptionValue& given) {
+        occlusion.spp =
+            static_cast<std::uint32_t>(given.whole_number(1, 65536, "rays per pixel, 1 to 65536"));
+      });
+}
+
+void add_no_cache(CLI::App& app, bool& use_cache) {
+  Group(app).add_flag("--no-cache", "compute the truths anew", use_cache, false);
+}
+
+void add_limits(CLI::App& app, Options& options) {
+  const Group group(app);
+  group.add("--budget-ms", "MS",
+            "the most GPU time that the occlusion passes may take: the least error in it",
+            [&](const OptionValue& given) {
+              options.budget_ms = given.positive("a time above 0 in milliseconds");
+            });
+  group.add(
+      "--tolerance", "E", "the most error, RMSE of visibility: the least time for it",
+      [&](const OptionValue& given) { options.tolerance = given.positive("an error above 0"); });
+}
+
+void add_cost(CLI::App& app, Options& options) {
+  const Group group(app, "Cost");
+  group.add("--family", "NAME", "the modelled GPU: bonaire (PS4-like) or navi21 (RDNA2); both",
+            [&](const OptionValue& given) {
+              constexpr std::array<std::string_view, 2> kFamilies{"bonaire", "navi21"};
+              options.cost.family = kFamilies[given.one_of(kFamilies)];
+            });
+  group.add("--size", "WxH", "size of the image in pixels; 1920x1080",
+            [&](const OptionValue& given) {
+              std::tie(options.view.width, options.view.height) = given.size();
+            });
+  group.add_flag("--motion-vectors", "give the passes motion vectors, as a scene in motion does",
+                 options.cost.motion_vectors);
+  group.add_flag("--loops",
+                 "also print the instructions of a wave by kind, and the loops that the compiler "
+                 "left with their iterations",
+                 options.cost.loops);
+  group.add("--json", "FILE", "also write all figures as JSON",
+            [&](const OptionValue& given) { options.cost.json = given.text; });
+  group.add("--chart", "FILE", "also draw an SVG chart of where the time goes",
+            [&](const OptionValue& given) { options.cost.chart = given.text; });
+}
+
+void add_light(CLI::App& app, Options& options) {
+  Group(app, "Light")
+      .add("--environment", "FILE",
+           "light all around, an equirectangular .hdr or .exr; a sky that is made",
+           [&](const OptionValue& given) { options.environment = given.text; });
+}
+
+void add_cut_blends(CLI::App& app, bool& cut_blends) {
+  Group(app).add_flag("--cut-blends",
+                      "cut materials that blend out at half their alpha, as leaves want it; else "
+                      "they are opaque",
+                      cut_blends);
+}
+
+void add_lit(CLI::App& app, bool& lit) {
+  Group(app).add_flag(
+      "--lit",
+      "path trace the picture lit by the environment too, and say how far it is off without "
+      "occlusion and with each part of it; takes minutes",
+      lit);
+}
+
+void add_format(CLI::App& app, GraphFormat& format) {
+  Group(app).add("--format", "NAME", "text, json or dot (Graphviz); text",
+                 [&](const OptionValue& given) {
+                   format = static_cast<GraphFormat>(given.one_of(kGraphFormatNames));
+                 });
+}
+
+void add_device(CLI::App& app, Options& options) {
+  const Group group(app);
+  group.add("--device", "N", "which Vulkan device, as `alcove doctor` numbers them",
+            [&](const OptionValue& given) {
+              options.device =
+                  static_cast<int>(given.whole_number(0, 255, "a number from 0 to 255"));
+            });
+  group.add_flag("--validation",
+                 "run under the Khronos validation layers and the graph's own checks, and fail on "
+                 "any message",
+                 options.validation);
+}
+
+void add_out(CLI::App& app, Options& options, const std::string& help) {
+  Group(app).add("--out", "DIR", help, [&](const OptionValue& given) { options.out = given.text; });
+}
+
+void check_together(const Options& options) {
+  check_view(options.view);
+  if (options.command == Command::kRecommend &&
+      options.budget_ms.has_value() == options.tolerance.has_value()) {
+    throw Mistake{"recommend: give either --budget-ms or --tolerance"};
+  }
+}
+
+}  // namespace alcove::sample

@@ -1,0 +1,219 @@
+#include "cli/options.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "cli/option_groups.h"
+#include "cli/option_value.h"
+
+namespace alcove::sample {
+namespace {
+
+// Each function gives a command its options.
+void add_output(CLI::App& app, Options& options) {
+  add_out(app, options, "folder for images and report.json; out");
+  add_device(app, options);
+}
+
+// Takes --spp too, which has no effect, so that a line for `compare` serves; so does `graph`.
+void add_render(CLI::App& app, Options& options) {
+  add_scene(app, options.scene);
+  add_cut_blends(app, options.cut_blends);
+  add_view(app, options.view);
+  add_course(app, options.view, "how many to render; 1. The last is written");
+  add_occlusion(app, options.occlusion);
+  add_rays(app, options.occlusion);
+  add_roughness(app, options.occlusion);
+  add_light(app, options);
+  add_output(app, options);
+}
+
+void add_compare(CLI::App& app, Options& options) {
+  add_render(app, options);
+  add_lit(app, options.lit);
+  add_no_cache(app, options.use_cache);
+}
+
+void add_motion_command(CLI::App& app, Options& options) {
+  add_scene(app, options.scene);
+  add_cut_blends(app, options.cut_blends);
+  add_motion(app, options);
+  add_view(app, options.view);
+  add_occlusion(app, options.occlusion);
+  add_rays(app, options.occlusion);
+  add_output(app, options);
+  add_no_cache(app, options.use_cache);
+}
+
+// The truth of a standing camera and what is compared with it.
+void add_comparison(CLI::App& app, Options& options) {
+  add_view(app, options.view);
+  add_standing(app, options.view);
+  add_occlusion(app, options.occlusion);
+  add_rays(app, options.occlusion);
+  add_no_cache(app, options.use_cache);
+}
+
+void add_ablate(CLI::App& app, Options& options) {
+  add_scene(app, options.scene);
+  add_cut_blends(app, options.cut_blends);
+  add_comparison(app, options);
+  add_output(app, options);
+}
+
+void add_bench(CLI::App& app, Options& options) {
+  add_scenes(app, options.scenes);
+  add_cut_blends(app, options.cut_blends);
+  add_comparison(app, options);
+  add_output(app, options);
+}
+
+void add_recommend(CLI::App& app, Options& options) {
+  add_scene(app, options.scene);
+  add_cut_blends(app, options.cut_blends);
+  add_limits(app, options);
+  add_comparison(app, options);
+  add_device(app, options);
+}
+
+void add_cost_command(CLI::App& app, Options& options) {
+  options.view.width = 1920;
+  options.view.height = 1080;
+  add_cost(app, options);
+  add_occlusion(app, options.occlusion);
+}
+
+void add_graph(CLI::App& app, Options& options) {
+  add_scene(app, options.scene);
+  add_cut_blends(app, options.cut_blends);
+  add_view(app, options.view);
+  add_occlusion(app, options.occlusion);
+  add_rays(app, options.occlusion);
+  add_roughness(app, options.occlusion);
+  add_format(app, options.graph_format);
+  add_device(app, options);
+}
+
+void add_window(CLI::App& app, Options& options) {
+  options.view.frames = 0;
+  options.out.clear();
+  add_scene(app, options.scene);
+  add_cut_blends(app, options.cut_blends);
+  add_view(app, options.view);
+  add_course(app, options.view, "how many to draw; else until the window is closed");
+  add_occlusion(app, options.occlusion);
+  add_roughness(app, options.occlusion);
+  add_light(app, options);
+  add_out(app, options,
+          "folder for screenshots, else where alcove was started; with it, the last of --frames is "
+          "written too");
+  add_device(app, options);
+}
+
+void add_nothing(CLI::App& /*app*/, Options& /*options*/) {}
+
+struct Entry {
+  Command command;
+  const char* name;
+  const char* help;
+  void (*add_options)(CLI::App& app, Options& options);
+};
+constexpr std::array<Entry, 10> kCommands{{
+    {Command::kRender, "render", "a scene to occlusion images and timings", add_render},
+    {Command::kCompare, "compare",
+     "the same, and how far it is from the ray-traced and the height-field truth", add_compare},
+    {Command::kMotion, "motion",
+     "how far it is from the truth while camera or things move, beside standing still",
+     add_motion_command},
+    {Command::kAblate, "ablate",
+     "what each part of the occlusion costs and what it buys, one row for each", add_ablate},
+    {Command::kBench, "bench",
+     "the trade of speed for accuracy: time and error of many settings, as a table, a plot and "
+     "JSON",
+     add_bench},
+    {Command::kRecommend, "recommend",
+     "the least settings that hold: within a time, or within an error", add_recommend},
+    {Command::kCost, "cost",
+     "what the GPU passes cost by the compiler's account: registers, instructions, modelled time, "
+     "without a GPU",
+     add_cost_command},
+    {Command::kGraph, "graph", "the compiled plan of a frame: passes, barriers, memory", add_graph},
+    {Command::kView, "view",
+     "a window to orbit a scene in and see what each setting does and costs", add_window},
+    {Command::kDoctor, "doctor", "the Vulkan devices here and what they lack", add_nothing},
+}};
+
+// CLI11's own words, as one line.
+std::string one_line(std::string text) {
+  std::ranges::replace(text, '\n', ' ');
+  return text;
+}
+
+// The help of the command that was asked for it; empty: none was.
+std::string help_of_command(const CLI::App& app) {
+  for (const CLI::App* sub : app.get_subcommands()) {
+    if (sub->count("--help") != 0) return sub->help(app.get_name());
+  }
+  return "";
+}
+
+Stop no_command(const std::string& what) { return {2, what + "; see alcove --help"}; }
+
+// What CLI11 does not like, and where that would have been told.
+Stop mistake_of(const CLI::App& app, const CLI::ParseError& error) {
+  const auto commands = app.get_subcommands();
+  if (commands.empty()) return no_command("name a command first");
+  return {2, one_line(error.what()) + "; see alcove " + commands.front()->get_name() + " --help"};
+}
+
+bool is_command(const std::string& word) {
+  return std::ranges::find(kCommands, word, &Entry::name) != kCommands.end();
+}
+
+}  // namespace
+
+tl::expected<Options, Stop> parse_options(int argc, const char* const* argv) {
+  CLI::App app(
+      "Ambient occlusion of a scene, and how far it is from the truth.\n"
+      "  alcove render scene.gltf --camera hall --out out\n"
+      "  alcove compare groove:60 --radius 1\n"
+      "  alcove motion scene.gltf --path strafe\n"
+      "  alcove ablate scene.gltf --quality high\n"
+      "  alcove recommend scene.gltf --tolerance 0.05\n"
+      "  alcove render --eye -6,0.55,-4.6 --target 0,0.75,-2.9 --quality ultra",
+      "alcove");
+  std::array<Options, kCommands.size()> options;
+  for (std::size_t i = 0; i < kCommands.size(); ++i) {
+    options[i].command = kCommands[i].command;
+    kCommands[i].add_options(*app.add_subcommand(kCommands[i].name, kCommands[i].help), options[i]);
+  }
+  app.require_subcommand(1);
+  app.set_version_flag("--version", "alcove " ALCOVE_VERSION);
+  app.footer("`alcove COMMAND --help` has the options of each.");
+  if (argc < 2) return tl::unexpected(no_command("name a command"));
+  if (argv[1][0] != '-' && !is_command(argv[1])) {
+    return tl::unexpected(no_command("there is no command " + std::string(argv[1])));
+  }
+  try {
+    app.parse(argc, argv);
+    for (std::size_t i = 0; i < kCommands.size(); ++i) {
+      if (!app.got_subcommand(kCommands[i].name)) continue;
+      check_together(options[i]);
+      return options[i];
+    }
+  } catch (const CLI::CallForHelp&) {
+    const std::string help = help_of_command(app);
+    return tl::unexpected(Stop{0, help.empty() ? app.help() : help});
+  } catch (const CLI::CallForVersion& version) {
+    return tl::unexpected(Stop{0, version.what()});
+  } catch (const CLI::ParseError& error) {
+    return tl::unexpected(mistake_of(app, error));
+  } catch (const Mistake& mistake) {
+    const std::string help = help_of_command(app);
+    if (!help.empty()) return tl::unexpected(Stop{0, help});
+    return tl::unexpected(Stop{2, mistake.text});
+  }
+  return tl::unexpected(no_command("name a command"));
+}
+
+}  // namespace alcove::sample

@@ -1,0 +1,41 @@
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+
+#include "cli/commands.h"
+#include "cli/report.h"
+#include "support/image_io.h"
+
+namespace alcove::sample {
+namespace {
+
+bool shows_surfaces(const Rendering& rendering) {
+  const Image<float> depth = linear_depth(rendering);
+  return std::ranges::any_of(depth.pixels, [](float z) { return std::isfinite(z); });
+}
+
+}  // namespace
+
+tl::expected<void, std::string> run_render(const Options& options) {
+  if (auto made = create_folder(options.out); !made) {
+    return made;
+  }
+  const auto rendering = render(options);
+  if (!rendering) {
+    return tl::unexpected(rendering.error());
+  }
+  return write_images(*rendering, options.out)
+      .and_then([&] {
+        return write_text(options.out / "report.json",
+                          report_of(*rendering, options).dump(2) + "\n");
+      })
+      .map([&] {
+        if (!shows_surfaces(*rendering)) {
+          std::cerr << "note: The view shows nothing but sky.\n";
+        }
+        std::cout << time_table(*rendering) << "Images and report.json are in "
+                  << options.out.string() << "\n";
+      });
+}
+
+}  // namespace alcove::sample

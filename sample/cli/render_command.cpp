@@ -1,0 +1,147 @@
+#include "cli/render_command.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <utility>
+
+#include "cli/option_value.h"
+#include "cli/setting_table.h"
+#include "cli/settings.h"
+
+namespace alcove::sample {
+namespace {
+
+using passes::OcclusionSettings;
+using passes::Quality;
+
+// Each overload gives the text of a value that reads back as the same.
+std::string text_of(float value) { return shown(value); }
+std::string text_of(std::uint32_t value) { return std::to_string(value); }
+std::string text_of(const glm::vec3& v) {
+  return text_of(v.x) + "," + text_of(v.y) + "," + text_of(v.z);
+}
+template <typename Choice>
+std::string text_of(Choice value) {
+  return std::string(passes::name_of(value));
+}
+
+// The shortest that is read as the same angle.
+std::string degrees_text(float radians) {
+  std::array<char, 32> text{};
+  for (int digits = 3; digits <= 9; ++digits) {
+    std::snprintf(text.data(), text.size(), "%.*g", digits,
+                  static_cast<double>(glm::degrees(radians)));
+    if (glm::radians(std::strtof(text.data(), nullptr)) == radians) {
+      break;
+    }
+  }
+  return text.data();
+}
+
+// The settings that are other than those of a quality, as --set takes them.
+std::vector<std::string> changes(Quality quality, const OcclusionSettings& settings) {
+  const OcclusionSettings preset = passes::quality_settings(quality, settings.radius);
+  std::vector<std::string> before, result;
+  for_each_setting(preset, [&](const SettingInfo& info, const auto& value) {
+    before.push_back(std::string(info.name) + "=" + text_of(value));
+  });
+  std::size_t i = 0;
+  for_each_setting(settings, [&](const SettingInfo& info, const auto& value) {
+    std::string now = std::string(info.name) + "=" + text_of(value);
+    if (now != before[i++]) {
+      result.push_back(std::move(now));
+    }
+  });
+  return result;
+}
+
+void append_camera(const Camera& camera, std::vector<std::string>& to) {
+  to.insert(to.end(), {"--eye", text_of(camera.eye_ws), "--target", text_of(camera.target_ws),
+                       "--up", text_of(camera.up_ws)});
+  if (camera.orthographic) {
+    to.insert(to.end(), {"--ortho-height", text_of(camera.ortho_height)});
+  } else {
+    to.insert(to.end(), {"--fov-y", degrees_text(camera.fov_y)});
+  }
+  to.insert(to.end(), {"--near", text_of(camera.near_plane), "--far", text_of(camera.far_plane)});
+  if (camera.reversed_z) {
+    to.emplace_back("--reversed-z");
+  }
+}
+
+// By the quality that is nearest.
+void append_settings(const OcclusionSettings& settings, std::vector<std::string>& to) {
+  Quality nearest = Quality::low;
+  std::vector<std::string> fewest = changes(nearest, settings);
+  for (std::size_t i = 1; i < passes::kNames<Quality>.size(); ++i) {
+    std::vector<std::string> more = changes(static_cast<Quality>(i), settings);
+    if (more.size() < fewest.size()) {
+      nearest = static_cast<Quality>(i);
+      fewest = std::move(more);
+    }
+  }
+  to.insert(to.end(), {"--quality", std::string(passes::name_of(nearest)), "--radius",
+                       text_of(settings.radius)});
+  for (const std::string& change : fewest) {
+    to.insert(to.end(), {"--set", change});
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> render_arguments(const Options& options, const Shot& shot) {
+  std::vector<std::string> arguments{"alcove", "render"};
+  if (!options.scene.empty()) {
+    arguments.push_back(options.scene);
+  }
+  if (options.cut_blends) {
+    arguments.emplace_back("--cut-blends");
+  }
+  if (!options.view.camera.empty()) {
+    arguments.insert(arguments.end(), {"--camera", options.view.camera});
+  }
+  append_camera(shot.camera, arguments);
+  arguments.insert(arguments.end(), {"--size", text_of(shot.width) + "x" + text_of(shot.height)});
+  append_settings(shot.settings, arguments);
+  if (options.occlusion.normals != NormalSource::kShading) {
+    arguments.insert(arguments.end(),
+                     {"--normals", std::string(name_of(options.occlusion.normals))});
+  }
+  if (shot.roughness) {
+    arguments.insert(arguments.end(), {"--roughness", text_of(*shot.roughness)});
+  }
+  if (!options.environment.empty()) {
+    arguments.insert(arguments.end(), {"--environment", options.environment.string()});
+  }
+  const std::uint32_t frames = shot.frames > 0 ? shot.frames : shot.settings.history_frames;
+  if (frames > 1) {
+    arguments.insert(arguments.end(), {"--frames", text_of(frames)});
+  }
+  if (options.device >= 0) {
+    arguments.insert(arguments.end(), {"--device", std::to_string(options.device)});
+  }
+  return arguments;
+}
+
+std::string shell_line(const std::vector<std::string>& arguments) {
+  constexpr const char* kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=,:+";
+  std::string line;
+  for (const std::string& argument : arguments) {
+    line += line.empty() ? "" : " ";
+    if (!argument.empty() && argument.find_first_not_of(kPlain) == std::string::npos) {
+      line += argument;
+      continue;
+    }
+    line += '\'';
+    for (const char c : argument) {
+      line += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    }
+    line += '\'';
+  }
+  return line;
+}
+
+}  // namespace alcove::sample

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <tl/expected.hpp>
+
+#include "alcove/passes/occlusion.h"
+#include "cli/options.h"
+#include "scene/scene.h"
+
+namespace alcove::sample {
+
+// The occlusion settings that the options ask for: a quality, a radius (the scene's own where none
+// is given), and whatever --set changes. Errors name the setting and what it takes.
+[[nodiscard]] tl::expected<passes::OcclusionSettings, std::string> occlusion_settings(
+    const OcclusionOptions& options, const Scene& scene);
+
+// What to give in place of a --set NAME=VALUE that cannot be read; nothing: it can be. Whether the
+// value goes with the others is the pass's to say.
+[[nodiscard]] std::optional<std::string> wanted_instead(const std::string& name,
+                                                        const std::string& value);
+
+// All settings with what they mean, a line each.
+[[nodiscard]] std::string settings_help();
+
+// Every setting by the name that --set knows it by.
+[[nodiscard]] nlohmann::ordered_json to_json(const passes::OcclusionSettings& settings);
+
+}  // namespace alcove::sample

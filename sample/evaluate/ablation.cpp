@@ -1,0 +1,178 @@
+#include "evaluate/ablation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace alcove::sample {
+namespace {
+
+using passes::Estimator;
+using passes::Grouping;
+using passes::OcclusionSettings;
+using passes::Pattern;
+
+class VariantList {
+ public:
+  explicit VariantList(const OcclusionSettings& base) : base_(base) {}
+
+  template <typename Change>
+  void add(const char* part, const std::string& name, const Change& change) {
+    OcclusionSettings settings = base_;
+    change(settings);
+    if (settings != base_) {
+      variants_.push_back({part, name, settings});
+    }
+  }
+  std::vector<Variant> take() { return std::move(variants_); }
+
+ private:
+  OcclusionSettings base_;
+  std::vector<Variant> variants_;
+};
+
+// Only horizons and the heuristic have a falloff.
+void use(OcclusionSettings& settings, Estimator estimator) {
+  settings.estimator = estimator;
+  if (passes::has_thickness(estimator)) {
+    settings.falloff = 0.0f;
+  }
+}
+
+void add_estimators(VariantList& list) {
+  const char* part = "estimator";
+  list.add(part, "horizons, infinitely thick",
+           [](OcclusionSettings& s) { use(s, Estimator::horizons); });
+  list.add(part, "the paper's thickness heuristic",
+           [](OcclusionSettings& s) { use(s, Estimator::heuristic); });
+  list.add(part, "plain bitmask", [](OcclusionSettings& s) {
+    use(s, Estimator::bitmask);
+    s.hidden_occlusion = 0.0f;
+  });
+  list.add(part, "plain bitmask, filled", [](OcclusionSettings& s) { use(s, Estimator::bitmask); });
+  list.add(part, "connected samples", [](OcclusionSettings& s) { use(s, Estimator::connected); });
+}
+
+void add_occluders(VariantList& list, const OcclusionSettings& base) {
+  if (!passes::has_thickness(base.estimator)) {
+    return;
+  }
+  const char* part = "occluders";
+  list.add(part, "nothing behind a front", [](OcclusionSettings& s) { s.hidden_occlusion = 0.0f; });
+  list.add(part, "everything behind it", [](OcclusionSettings& s) { s.hidden_occlusion = 1.0f; });
+  list.add(part, "a third as thick", [](OcclusionSettings& s) { s.thickness /= 3.0f; });
+  list.add(part, "three times as thick", [](OcclusionSettings& s) { s.thickness *= 3.0f; });
+  list.add(part, "as thick as back faces show",
+           [](OcclusionSettings& s) { s.thickness_unit = passes::ThicknessUnit::back_faces; });
+  list.add(part, "and what the first layer hides",
+           [](OcclusionSettings& s) { s.depth_layers = 2; });
+}
+
+void add_searches(VariantList& list) {
+  const char* part = "resolution";
+  list.add(part, "every pixel searched", [](OcclusionSettings& s) { s.tile_size = 1; });
+  list.add(part, "one in 2x2", [](OcclusionSettings& s) { s.tile_size = 2; });
+  list.add(part, "one in 4x4", [](OcclusionSettings& s) { s.tile_size = 4; });
+  // As many searches as every pixel has above.
+  list.add(part, "one in 2x2, 4 times the slices", [](OcclusionSettings& s) {
+    s.tile_size = 2;
+    s.slices = std::min(s.slices * 4, 64u);
+  });
+  part = "work";
+  list.add(part, "half the steps",
+           [](OcclusionSettings& s) { s.steps = std::max(s.steps / 2, 2u); });
+  list.add(part, "twice the steps",
+           [](OcclusionSettings& s) { s.steps = std::min(s.steps * 2, 64u); });
+  list.add(part, "twice the slices",
+           [](OcclusionSettings& s) { s.slices = std::min(s.slices * 2, 64u); });
+  part = "pattern";
+  list.add(part, "golden", [](OcclusionSettings& s) { s.pattern = Pattern::golden; });
+  list.add(part, "Hilbert and R2", [](OcclusionSettings& s) { s.pattern = Pattern::hilbert; });
+  list.add(part, "the paper's, six rotations",
+           [](OcclusionSettings& s) { s.pattern = Pattern::paper; });
+  part = "snap_to_texels";
+  list.add(part, "to texels", [](OcclusionSettings& s) { s.parts.snap_to_texels = true; });
+  list.add(part, "none", [](OcclusionSettings& s) { s.parts.snap_to_texels = false; });
+  part = "border";
+  list.add(part, "surfaces go on", [](OcclusionSettings& s) { s.parts.extrapolation = true; });
+  list.add(part, "surfaces end", [](OcclusionSettings& s) { s.parts.extrapolation = false; });
+  part = "unobserved";
+  list.add(part, "left out", [](OcclusionSettings& s) { s.parts.unobserved = true; });
+  list.add(part, "open", [](OcclusionSettings& s) { s.parts.unobserved = false; });
+  part = "grouping";
+  list.add(part, "neighbours",
+           [](OcclusionSettings& s) { s.parts.grouping = Grouping::neighbours; });
+  list.add(part, "one direction (deinterleaved)",
+           [](OcclusionSettings& s) { s.parts.grouping = Grouping::pattern; });
+}
+
+void add_reconstruction(VariantList& list, const OcclusionSettings& base) {
+  const char* part = "filter";
+  list.add(part, "none", [](OcclusionSettings& s) { s.filter_radius = 0; });
+  // With a history only its first frame looks further than one traced pixel.
+  if (base.history_frames == 0) {
+    list.add(part, "1 search on each side", [](OcclusionSettings& s) { s.filter_radius = 1; });
+    list.add(part, "3 searches on each side", [](OcclusionSettings& s) { s.filter_radius = 3; });
+  }
+  part = "history";
+  list.add(part, "none, noise advances", [](OcclusionSettings& s) { s.history_frames = 0; });
+  list.add(part, "8 frames", [](OcclusionSettings& s) { s.history_frames = 8; });
+  list.add(part, "none, no filter", [](OcclusionSettings& s) {
+    s.history_frames = 0;
+    s.filter_radius = 0;
+  });
+}
+
+// How often as far away a narrow perspective stands for an orthographic view.
+constexpr float kFarAway = 300.0f;
+
+InvariancePair orthographic_pairs(const Camera& camera, std::uint32_t height) {
+  const glm::vec3 back = camera.eye_ws - camera.target_ws;
+  const float distance = glm::length(back);
+  InvariancePair pairs{"orthographic, and from far away", camera, camera};
+  Camera& flat = pairs.first;
+  if (!flat.orthographic) {
+    flat.orthographic = true;
+    flat.ortho_height = 2.0f * distance * std::tan(0.5f * camera.fov_y);
+  }
+  if (std::isinf(flat.far_plane)) {
+    flat.far_plane = 1000.0f * flat.ortho_height;
+  }
+  Camera& away = pairs.second;
+  away.orthographic = false;
+  away.eye_ws = camera.target_ws + back * kFarAway;
+  away.fov_y = 2.0f * std::atan(0.5f * flat.ortho_height / (kFarAway * distance));
+  pairs.further = (kFarAway - 1.0f) * distance;
+  away.near_plane = flat.near_plane + pairs.further;
+  away.far_plane = flat.far_plane + pairs.further;
+  // The images part by some pixels before and behind the target, and towards their borders.
+  pairs.tolerance = flat.ortho_height / static_cast<float>(height);
+  return pairs;
+}
+
+}  // namespace
+
+std::vector<Variant> variants_of(const OcclusionSettings& base) {
+  VariantList list(base);
+  add_estimators(list);
+  add_occluders(list, base);
+  add_searches(list);
+  add_reconstruction(list, base);
+  return list.take();
+}
+
+std::vector<InvariancePair> invariance_pairs_of(const Camera& camera, std::uint32_t height) {
+  std::vector<InvariancePair> all;
+  all.push_back({"depth from 1 to 0, and from 0 to 1", camera, camera});
+  all.back().first.reversed_z = true;
+  all.back().second.reversed_z = false;
+  if (!camera.orthographic && !std::isinf(camera.far_plane)) {
+    all.push_back({"far plane at a distance, and at infinity", camera, camera});
+    all.back().second.far_plane = INFINITY;
+  }
+  all.push_back({"this size, and twice as large", camera, camera, 2});
+  all.push_back(orthographic_pairs(camera, height));
+  return all;
+}
+
+}  // namespace alcove::sample

@@ -1,0 +1,132 @@
+#include "evaluate/errors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+namespace alcove::sample {
+namespace {
+
+// The value that a share of the values does not exceed.
+double percentile(std::vector<float>& values, double share) {
+  if (values.empty()) return 0.0;
+  const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + rank, values.end());
+  return values[static_cast<size_t>(rank)];
+}
+
+// `get(image, pixel, channel)` for all pixels of the mask.
+template <class T, class Get>
+ErrorSummary compare(const Image<T>& result, const Image<T>& truth, const Mask& mask, int channels,
+                     const Get& get) {
+  ErrorSummary out;
+  double squares = 0.0;
+  std::vector<float> sizes;
+  for (size_t i = 0; i < mask.pixels.size(); ++i) {
+    if (!mask.pixels[i]) continue;
+    ++out.count;
+    for (int c = 0; c < channels; ++c) {
+      const double a = get(result, i, c), b = get(truth, i, c);
+      const double error = std::isfinite(a) && std::isfinite(b) ? a - b : 1.0;
+      squares += error * error;
+      out.mean_absolute += std::abs(error);
+      out.bias += error;
+      out.max_absolute = std::max(out.max_absolute, std::abs(error));
+      sizes.push_back(static_cast<float>(std::abs(error)));
+    }
+  }
+  if (sizes.empty()) return out;
+  const auto values = static_cast<double>(sizes.size());
+  out.rmse = std::sqrt(squares / values);
+  out.mean_absolute /= values;
+  out.bias /= values;
+  out.percentile_95 = percentile(sizes, 0.95);
+  return out;
+}
+
+}  // namespace
+
+ErrorSummary compare_images(const Image<float>& result, const Image<float>& truth,
+                            const Mask& mask) {
+  return compare(result, truth, mask, 1,
+                 [](const Image<float>& image, size_t i, int) { return image.pixels[i]; });
+}
+
+ErrorSummary compare_images(const Image<glm::vec3>& result, const Image<glm::vec3>& truth,
+                            const Mask& mask) {
+  return compare(result, truth, mask, 3,
+                 [](const Image<glm::vec3>& image, size_t i, int c) { return image.pixels[i][c]; });
+}
+
+AngleSummary compare_directions(const Image<glm::vec3>& result, const Image<glm::vec3>& truth,
+                                const Mask& mask) {
+  AngleSummary out;
+  std::vector<float> angles;
+  double sum = 0.0;
+  for (size_t i = 0; i < mask.pixels.size(); ++i) {
+    const glm::dvec3 a(result.pixels[i]), b(truth.pixels[i]);
+    if (!mask.pixels[i] || b == glm::dvec3(0.0)) continue;
+    // Of sine and cosine, which keeps its digits at small angles.
+    double angle = std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
+    if (a == glm::dvec3(0.0) || !std::isfinite(angle)) angle = glm::half_pi<double>();
+    sum += angle;
+    angles.push_back(static_cast<float>(angle));
+  }
+  out.count = angles.size();
+  if (angles.empty()) return out;
+  out.mean_degrees = glm::degrees(sum / static_cast<double>(angles.size()));
+  out.percentile_95_degrees = glm::degrees(percentile(angles, 0.95));
+  return out;
+}
+
+OpenSurfaceSummary open_surfaces(const Image<float>& result, const Image<float>& truth,
+                                 const Mask& mask) {
+  OpenSurfaceSummary out;
+  double sum = 0.0, below = 0.0;
+  for (size_t i = 0; i < mask.pixels.size(); ++i) {
+    if (!mask.pixels[i] || !(truth.pixels[i] >= 0.999f)) continue;
+    ++out.count;
+    sum += result.pixels[i];
+    if (!(result.pixels[i] >= 0.95f)) below += 1.0;
+  }
+  if (out.count == 0) return out;
+  out.mean_visibility = sum / static_cast<double>(out.count);
+  out.fraction_below_95 = below / static_cast<double>(out.count);
+  return out;
+}
+
+Image<glm::vec3> error_colours(const Image<float>& result, const Image<float>& truth) {
+  Image<glm::vec3> colours(result.width, result.height);
+  for (std::size_t i = 0; i < colours.pixels.size(); ++i) {
+    const float error = 4.0f * (result.pixels[i] - truth.pixels[i]);
+    const float less = std::fmin(std::fabs(error), 1.0f);
+    colours.pixels[i] = error < 0.0f ? glm::vec3(1.0f, 1.0f - less, 1.0f - less)
+                                     : glm::vec3(1.0f - less, 1.0f - less, 1.0f);
+  }
+  return colours;
+}
+
+nlohmann::ordered_json to_json(const ErrorSummary& summary) {
+  return {{"pixels", summary.count},
+          {"rmse", summary.rmse},
+          {"bias", summary.bias},
+          {"mean_absolute", summary.mean_absolute},
+          {"percentile_95", summary.percentile_95},
+          {"max_absolute", summary.max_absolute}};
+}
+
+nlohmann::ordered_json to_json(const AngleSummary& summary) {
+  return {{"pixels", summary.count},
+          {"mean_degrees", summary.mean_degrees},
+          {"percentile_95_degrees", summary.percentile_95_degrees}};
+}
+
+nlohmann::ordered_json to_json(const OpenSurfaceSummary& summary) {
+  return {{"pixels", summary.count},
+          {"mean_visibility", summary.mean_visibility},
+          {"fraction_below_0.95", summary.fraction_below_95}};
+}
+
+}  // namespace alcove::sample

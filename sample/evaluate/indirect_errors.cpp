@@ -1,0 +1,168 @@
+#include "evaluate/indirect_errors.h"
+
+#include <cmath>
+#include <iomanip>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "maths/gtso.h"
+#include "maths/multi_bounce.h"
+#include "tables.h"
+#include "tables/gtso.h"
+
+namespace alcove::sample {
+namespace {
+
+Image<glm::vec3> bounced(const Image<float>& visibility, const Image<glm::vec3>& albedo) {
+  Image<glm::vec3> result(visibility.width, visibility.height);
+  for (std::size_t i = 0; i < result.pixels.size(); ++i) {
+    result.pixels[i] = maths::multi_bounce(visibility.pixels[i], albedo.pixels[i]);
+  }
+  return result;
+}
+
+Image<glm::vec3> grey(const Image<float>& values) {
+  Image<glm::vec3> result(values.width, values.height);
+  for (std::size_t i = 0; i < result.pixels.size(); ++i) {
+    result.pixels[i] = glm::vec3(values.pixels[i]);
+  }
+  return result;
+}
+
+// What a model makes of visibility and bent normal; slices know more, and are told by the table.
+float specular_of(passes::Specular model, float visibility, const glm::vec3& bent,
+                  const glm::vec3& normal, const glm::vec3& view, float roughness) {
+  const float alpha = roughness * roughness;
+  const glm::vec3 mirror = maths::mirror_direction(normal, view);
+  const glm::vec3 raised = maths::raised_bent_normal(bent, normal, visibility);
+  switch (model) {
+    case passes::Specular::lagarde:
+      return maths::lagarde_specular_occlusion(glm::dot(normal, view), visibility, alpha);
+    case passes::Specular::smooth_cone:
+      return maths::smooth_specular_occlusion(visibility, raised, normal, mirror, alpha);
+    case passes::Specular::cone:
+      return maths::specular_occlusion(visibility, raised, normal, mirror, alpha);
+    default:
+      return passes::look_up_gtso(kGtsoTable, visibility, maths::visibility_cone(visibility),
+                                  maths::angle_between(raised, mirror),
+                                  maths::angle_between(normal, mirror), roughness);
+  }
+}
+
+// The rendering's model where it is given the truth.
+Image<float> specular_of_truth(const Rendering& rendering, const OcclusionTruth& truth,
+                               const IndirectTruths& light, const Image<float>& roughness) {
+  const Viewer viewer = viewer_of(rendering.camera);
+  Image<float> result(roughness.width, roughness.height, 1.0f);
+  for (std::size_t i = 0; i < result.pixels.size(); ++i) {
+    if (light.sampled.pixels[i] != 0) {
+      const glm::vec3 view = view_from(viewer, light.points.position_ws.pixels[i]);
+      result.pixels[i] = specular_of(rendering.settings.specular, truth.visibility.pixels[i],
+                                     truth.bent_normal_ws.pixels[i],
+                                     light.points.normal_ws.pixels[i], view, roughness.pixels[i]);
+    }
+  }
+  return result;
+}
+
+// What no function of visibility and albedo can better: the spread of the truth among pixels and
+// channels that have the same of both, to within a cell.
+double spread_of(const Image<float>& visibility, const Image<glm::vec3>& albedo,
+                 const Image<glm::vec3>& truth, const Mask& mask) {
+  constexpr int kVisibilities = 64;
+  constexpr int kAlbedos = 16;
+  struct Cell {
+    double count = 0, sum = 0, squares = 0;
+  };
+  std::vector<Cell> cells(std::size_t{kVisibilities} * kAlbedos);
+  for (std::size_t i = 0; i < mask.pixels.size(); ++i) {
+    for (int c = 0; mask.pixels[i] != 0 && c < 3; ++c) {
+      const auto x = std::lround(visibility.pixels[i] * (kVisibilities - 1));
+      const auto y = std::lround(albedo.pixels[i][c] * (kAlbedos - 1));
+      Cell& cell = cells[static_cast<std::size_t>(y * kVisibilities + x)];
+      const double value = truth.pixels[i][c];
+      cell.count += 1;
+      cell.sum += value;
+      cell.squares += value * value;
+    }
+  }
+  double squares = 0, count = 0;
+  for (const Cell& cell : cells) {
+    // A cell of one value has no spread to tell; the mean of few is nearer to them than to the
+    // rest.
+    if (cell.count > 1) {
+      const double own = cell.squares - cell.sum * cell.sum / cell.count;
+      squares += own * cell.count / (cell.count - 1);
+      count += cell.count;
+    }
+  }
+  return count > 0 ? std::sqrt(squares / count) : 0;
+}
+
+}  // namespace
+
+IndirectErrors indirect_errors_of(const Rendering& rendering, const Truths& truths,
+                                  const IndirectTruths& light) {
+  const FrameImages& images = rendering.images;
+  const Image<float>& visibility = truths.scene.visibility;
+  IndirectErrors errors;
+  errors.bounced = compare_images(images.multi_bounce, light.interreflection, light.sampled);
+  errors.bounced_truth =
+      compare_images(bounced(visibility, images.albedo), light.interreflection, light.sampled);
+  errors.unbounced_truth = compare_images(grey(visibility), light.interreflection, light.sampled);
+  errors.bounced_best = spread_of(visibility, images.albedo, light.interreflection, light.sampled);
+  const std::vector<Image<float>> roughness = roughness_images(rendering);
+  const Image<float> open(visibility.width, visibility.height, 1.0f);
+  for (std::size_t i = 0; i < roughness.size(); ++i) {
+    const Image<float>& truth = light.specular[i];
+    const SpecularBaselines& limits = light.specular_baselines[i];
+    errors.specular.push_back(
+        {roughness_name(rendering.light, i),
+         compare_images(images.specular_occlusion[i], truth, light.sampled),
+         compare_images(specular_of_truth(rendering, truths.scene, light, roughness[i]), truth,
+                        light.sampled),
+         compare_images(open, truth, light.sampled),
+         compare_images(limits.polynomials, truth, light.sampled),
+         compare_images(limits.depth, truth, light.sampled),
+         compare_images(limits.depth_polynomials, truth, light.sampled)});
+  }
+  return errors;
+}
+
+nlohmann::ordered_json to_json(const IndirectErrors& errors) {
+  nlohmann::ordered_json json;
+  json["multi_bounce"] = {{"pipeline", to_json(errors.bounced)},
+                          {"true_visibility", to_json(errors.bounced_truth)},
+                          {"true_visibility_unbounced", to_json(errors.unbounced_truth)},
+                          {"true_visibility_best_rmse", errors.bounced_best}};
+  for (const SpecularErrors& one : errors.specular) {
+    json["specular_occlusion"][one.name] = {
+        {"pipeline", to_json(one.pipeline)},
+        {"true_inputs", to_json(one.true_inputs)},
+        {"true_polynomials", to_json(one.polynomials)},
+        {"height_field", to_json(one.depth)},
+        {"height_field_polynomials", to_json(one.depth_polynomials)},
+        {"none", to_json(one.none)}};
+  }
+  return json;
+}
+
+std::string indirect_error_table(const IndirectErrors& errors) {
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(4);
+  text << "RMSE of multi-bounce over " << errors.bounced.count << " pixels: " << errors.bounced.rmse
+       << " (the polynomial on the true visibility " << errors.bounced_truth.rmse
+       << ", the best function of it and albedo " << errors.bounced_best
+       << ", the true visibility alone " << errors.unbounced_truth.rmse << ")\n";
+  for (const SpecularErrors& one : errors.specular) {
+    text << "RMSE of specular occlusion, " << std::left << std::setw(10) << one.name << std::right
+         << one.pipeline.rmse << " (with true visibility and bent normal " << one.true_inputs.rmse
+         << ", with none " << one.none.rmse << ")\n"
+         << "  fifteen polynomials of the true visibility " << one.polynomials.rmse
+         << ", of the height field's " << one.depth_polynomials.rmse
+         << "; the lobe itself in the height field " << one.depth.rmse << "\n";
+  }
+  return text.str();
+}
+
+}  // namespace alcove::sample

@@ -1,0 +1,207 @@
+#include "evaluate/indirect_truths.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+#include <utility>
+
+#include "evaluate/truths.h"
+#include "reference/surface_points.h"
+#include "reference/truth_cache.h"
+#include "support/progress.h"
+
+namespace alcove::sample {
+namespace {
+
+// Raised when a truth is computed otherwise, so that old entries of the cache are not taken.
+constexpr std::uint32_t kLightTruthVersion = 1;
+constexpr double kWantedPoints = 32'000;
+
+std::uint32_t block_size(const Image<float>& depth) {
+  const double pixels = static_cast<double>(depth.pixels.size());
+  return static_cast<std::uint32_t>(std::max(1.0, std::round(std::sqrt(pixels / kWantedPoints))));
+}
+
+// One pixel of each block, where it is no sky. The same for every picture of one size.
+Mask choose_pixels(const Image<float>& depth, std::uint32_t side) {
+  Mask chosen(depth.width, depth.height);
+  std::minstd_rand random;
+  for (std::uint32_t y = 0; y < depth.height; y += side) {
+    for (std::uint32_t x = 0; x < depth.width; x += side) {
+      const auto column =
+          std::min<std::uint32_t>(x + static_cast<std::uint32_t>(random() % side), depth.width - 1);
+      const auto row = std::min<std::uint32_t>(y + static_cast<std::uint32_t>(random() % side),
+                                               depth.height - 1);
+      chosen.at(column, row) = std::isfinite(depth.at(column, row)) ? 1 : 0;
+    }
+  }
+  return chosen;
+}
+
+class Tracer {
+ public:
+  Tracer(const Rendering& rendering, const Options& options, const RayScene& rays,
+         const SurfacePoints& points)
+      : rendering_(rendering),
+        rays_(rays),
+        points_(points),
+        settings_{.radius = rendering.settings.radius, .spp = options.occlusion.spp},
+        cache_(options.use_cache ? TruthCache::default_folder() : std::filesystem::path()) {
+    key_.add(std::string("light truth"));
+    key_.add(kLightTruthVersion);
+    key_.add(rendering.scene);
+    key_.add(rendering.camera);
+    key_.add(settings_.radius);
+    key_.add(settings_.spp);
+    key_.add(points.position_ws);
+    key_.add(points.normal_ws);
+  }
+
+  Image<glm::vec3> interreflection() const {
+    CacheKey key = key_;
+    key.add(std::string("interreflection"));
+    Image<glm::vec3> truth(points_.normal_ws.width, points_.normal_ws.height);
+    if (!cache_.read(key, truth)) {
+      truth =
+          interreflection_truth(rays_, points_, settings_, print_progress("interreflection truth"));
+      cache_.write(key, truth);
+    }
+    return truth;
+  }
+
+  Image<float> specular(const Image<float>& roughness) const {
+    CacheKey key = key_;
+    key.add(std::string("specular"));
+    key.add(roughness);
+    Image<float> truth(points_.normal_ws.width, points_.normal_ws.height);
+    if (!cache_.read(key, truth)) {
+      truth = specular_truth(rays_, points_, roughness, viewer_of(rendering_.camera), settings_,
+                             print_progress("specular truth"));
+      cache_.write(key, truth);
+    }
+    return truth;
+  }
+
+  std::vector<SpecularBaselines> specular_baselines(const std::vector<Image<float>>& roughness,
+                                                    const Image<float>& depth) const {
+    const auto key_of = [&](const Image<float>& one, const char* part) {
+      CacheKey key = key_;
+      key.add(std::string(part));
+      key.add(one);
+      key.add(depth);
+      return key;
+    };
+    // Calls `part(key, image)` for every image until one says no.
+    const auto all_parts = [&](std::vector<SpecularBaselines>& limits, const auto& part) {
+      for (std::size_t i = 0; i < limits.size(); ++i) {
+        if (!part(key_of(roughness[i], "polynomials"), limits[i].polynomials) ||
+            !part(key_of(roughness[i], "depth"), limits[i].depth) ||
+            !part(key_of(roughness[i], "depth polynomials"), limits[i].depth_polynomials)) {
+          return false;
+        }
+      }
+      return true;
+    };
+    const Image<float> empty(depth.width, depth.height);
+    std::vector<SpecularBaselines> limits(roughness.size(), {empty, empty, empty});
+    if (!all_parts(limits, [&](const CacheKey& key, Image<float>& image) {
+          return cache_.read(key, image);
+        })) {
+      limits =
+          sample::specular_baselines(rays_, points_, depth, rendering_.camera, roughness, settings_,
+                                     print_progress("limits of specular occlusion"));
+      all_parts(limits, [&](const CacheKey& key, const Image<float>& image) {
+        cache_.write(key, image);
+        return true;
+      });
+    }
+    return limits;
+  }
+
+  LitTruth lit(const Image<float>& roughness) const {
+    const SurfaceMaterials materials{rendering_.images.albedo, roughness,
+                                     rendering_.images.metallic};
+    CacheKey key = key_;
+    key.add(std::string("lit"));
+    key.add(materials.albedo);
+    key.add(materials.roughness);
+    key.add(materials.metallic);
+    key.add(rendering_.light.environment);
+    const std::uint32_t width = points_.normal_ws.width;
+    const std::uint32_t height = points_.normal_ws.height;
+    LitTruth truth{{width, height}, {width, height}, {width, height}, {width, height}};
+    const std::array<std::pair<const char*, Image<glm::vec3>*>, 4> parts{
+        {{"diffuse", &truth.diffuse},
+         {"specular", &truth.specular},
+         {"diffuse noise", &truth.diffuse_noise},
+         {"specular noise", &truth.specular_noise}}};
+    const auto key_of = [&](const char* part) {
+      CacheKey own = key;
+      own.add(std::string(part));
+      return own;
+    };
+    if (!std::ranges::all_of(parts, [&](const auto& part) {
+          return cache_.read(key_of(part.first), *part.second);
+        })) {
+      truth = lit_truth(rays_, points_, materials, viewer_of(rendering_.camera),
+                        rendering_.light.environment, settings_, print_progress("lit truth"));
+      for (const auto& [name, image] : parts) {
+        cache_.write(key_of(name), *image);
+      }
+    }
+    return truth;
+  }
+
+ private:
+  const Rendering& rendering_;
+  const RayScene& rays_;
+  const SurfacePoints& points_;
+  TruthSettings settings_;
+  TruthCache cache_;
+  CacheKey key_;
+};
+
+}  // namespace
+
+std::vector<Image<float>> roughness_images(const Rendering& rendering) {
+  const Image<float>& materials = rendering.images.roughness;
+  if (rendering.light.roughness.empty()) {
+    return {materials};
+  }
+  std::vector<Image<float>> images;
+  for (const float roughness : rendering.light.roughness) {
+    images.emplace_back(materials.width, materials.height, roughness);
+  }
+  return images;
+}
+
+tl::expected<IndirectTruths, std::string> indirect_truths_of(const Rendering& rendering,
+                                                             const Options& options) {
+  const auto rays = RayScene::create(rendering.scene);
+  if (!rays) {
+    return tl::unexpected(rays.error());
+  }
+  const Image<float> depth = linear_depth(rendering);
+  IndirectTruths truths;
+  truths.block = block_size(depth);
+  truths.sampled = choose_pixels(depth, truths.block);
+  truths.points = surface_points(*rays, rendering.camera, rendering.images.normal_ws, depth);
+  for (std::size_t i = 0; i < truths.sampled.pixels.size(); ++i) {
+    if (truths.sampled.pixels[i] == 0) {
+      truths.points.normal_ws.pixels[i] = glm::vec3(0.0f);
+    }
+  }
+  const Tracer tracer(rendering, options, *rays, truths.points);
+  truths.interreflection = tracer.interreflection();
+  for (const Image<float>& roughness : roughness_images(rendering)) {
+    truths.specular.push_back(tracer.specular(roughness));
+  }
+  truths.specular_baselines = tracer.specular_baselines(roughness_images(rendering), depth);
+  if (options.lit) {
+    truths.lit = tracer.lit(roughness_images(rendering).front());
+  }
+  return truths;
+}
+
+}  // namespace alcove::sample

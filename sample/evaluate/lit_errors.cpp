@@ -1,0 +1,177 @@
+#include "evaluate/lit_errors.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iomanip>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "render/display.h"
+#include "support/image_io.h"
+
+namespace alcove::sample {
+namespace {
+
+Image<glm::vec3> sum(const Image<glm::vec3>& a, const Image<glm::vec3>& b) {
+  Image<glm::vec3> result = a;
+  for (std::size_t i = 0; i < result.pixels.size(); ++i) {
+    result.pixels[i] += b.pixels[i];
+  }
+  return result;
+}
+
+// The mean over the mask's pixels and the channels.
+template <class Value>
+double mean_over(const Mask& mask, const Image<glm::vec3>& image, const Value& value) {
+  double total = 0.0;
+  std::uint64_t count = 0;
+  for (std::size_t i = 0; i < mask.pixels.size(); ++i) {
+    if (mask.pixels[i] != 0) {
+      for (int c = 0; c < 3; ++c) {
+        total += value(double{image.pixels[i][c]});
+      }
+      count += 3;
+    }
+  }
+  return count == 0 ? 0.0 : total / static_cast<double>(count);
+}
+
+// A picture with a pixel for each block: the one that was traced, or else one of the sky.
+Image<glm::vec3> of_blocks(const Image<glm::vec3>& picture, const IndirectTruths& light,
+                           const Image<float>& depth) {
+  const std::uint32_t block = light.block;
+  Image<glm::vec3> small((picture.width + block - 1) / block, (picture.height + block - 1) / block);
+  for (const bool sky : {true, false}) {
+    for (std::uint32_t y = 0; y < picture.height; ++y) {
+      for (std::uint32_t x = 0; x < picture.width; ++x) {
+        if (sky ? std::isinf(depth.at(x, y)) : light.sampled.at(x, y) != 0) {
+          small.at(x / block, y / block) = picture.at(x, y);
+        }
+      }
+    }
+  }
+  return small;
+}
+
+void paste(const Image<glm::vec3>& tile, std::uint32_t left, std::uint32_t top,
+           Image<glm::vec3>& segment) {
+  for (std::uint32_t y = 0; y < tile.height; ++y) {
+    for (std::uint32_t x = 0; x < tile.width; ++x) {
+      segment.at(left + x, top + y) = tile.at(x, y);
+    }
+  }
+}
+
+// As large as the truth where it is wrong by as much as the truth's mean: grey is right.
+Image<glm::vec3> error_colours(const Image<glm::vec3>& result, const Image<glm::vec3>& truth,
+                               double mean) {
+  Image<glm::vec3> colours = result;
+  for (std::size_t i = 0; i < colours.pixels.size(); ++i) {
+    colours.pixels[i] =
+        0.5f + (result.pixels[i] - truth.pixels[i]) / static_cast<float>(std::max(mean, 1e-9));
+  }
+  return colours;
+}
+
+}  // namespace
+
+LitErrors lit_errors_of(const Rendering& rendering, const IndirectTruths& light) {
+  const LitImages& images = rendering.images.lit;
+  const Image<glm::vec3> truth = sum(light.lit->diffuse, light.lit->specular);
+  LitErrors errors;
+  const auto variance_of = [&](const Image<glm::vec3>& noise) {
+    return mean_over(light.sampled, noise, [](double x) { return x * x; });
+  };
+  const double diffuse_variance = variance_of(light.lit->diffuse_noise);
+  const double specular_variance = variance_of(light.lit->specular_noise);
+  const double variance = diffuse_variance + specular_variance;
+  errors.mean_radiance = mean_over(light.sampled, truth, [](double x) { return x; });
+  const double unit = 1.0 / std::max(errors.mean_radiance, 1e-9);
+  errors.noise = std::sqrt(variance) * unit;
+  const auto step = [&](const char* name, const Image<glm::vec3>& image,
+                        const Image<glm::vec3>& against, double noise) {
+    const ErrorSummary summary = compare_images(image, against, light.sampled);
+    errors.pixels = summary.count;
+    const double square = summary.rmse * summary.rmse - noise;
+    return LitStep{name, std::sqrt(std::max(square, 0.0)) * unit, summary.bias * unit};
+  };
+  errors.steps = {step("without occlusion", images.unoccluded, truth, variance),
+                  step("visibility, light along the bent normal", images.occluded, truth, variance),
+                  step("and multi-bounce, on specular light too", images.bounced, truth, variance),
+                  step("and specular light by its own occlusion", images.all, truth, variance)};
+  errors.unbent = step("visibility alone", images.unbent, truth, variance);
+  errors.diffuse =
+      step("diffuse part of the last", images.diffuse, light.lit->diffuse, diffuse_variance);
+  errors.specular =
+      step("specular part of the last", images.specular, light.lit->specular, specular_variance);
+  return errors;
+}
+
+nlohmann::ordered_json to_json(const LitErrors& errors) {
+  nlohmann::ordered_json json;
+  json["pixels"] = errors.pixels;
+  json["mean_radiance"] = errors.mean_radiance;
+  json["noise_of_truth"] = errors.noise;
+  const auto add = [](const LitStep& step) {
+    return nlohmann::ordered_json{{"rmse", step.rmse}, {"bias", step.bias}};
+  };
+  for (const LitStep& step : errors.steps) {
+    json["steps"][step.name] = add(step);
+  }
+  json["visibility_alone"] = add(errors.unbent);
+  json["diffuse"] = add(errors.diffuse);
+  json["specular"] = add(errors.specular);
+  return {{"lit", json}};
+}
+
+std::string lit_error_table(const LitErrors& errors) {
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(4) << "RMSE of the lit picture over " << errors.pixels
+       << " pixels, in parts of its mean radiance " << errors.mean_radiance
+       << " (noise of the truth, taken out: " << errors.noise << ")\n";
+  const auto row = [&](const LitStep& step) {
+    text << "  " << std::left << std::setw(44) << step.name << std::right << step.rmse << "   bias "
+         << std::showpos << step.bias << std::noshowpos << "\n";
+  };
+  for (const LitStep& step : errors.steps) {
+    row(step);
+  }
+  row(errors.unbent);
+  row(errors.diffuse);
+  row(errors.specular);
+  return text.str();
+}
+
+tl::expected<void, std::string> write_lit_steps(const Rendering& rendering,
+                                                const IndirectTruths& light,
+                                                const std::filesystem::path& folder) {
+  const LitImages& images = rendering.images.lit;
+  const float exposure = exposure_of(rendering.light.environment);
+  const Image<glm::vec3> truth = sum(light.lit->diffuse, light.lit->specular);
+  const double mean = mean_over(light.sampled, truth, [](double x) { return x; });
+  const Image<float> depth = linear_depth(rendering);
+  const auto tile = [&](const Image<glm::vec3>& picture) {
+    return display_colours(of_blocks(with_sky(rendering, picture), light, depth), exposure);
+  };
+  const std::array tiles{
+      tile(images.unoccluded),
+      tile(images.occluded),
+      tile(images.bounced),
+      tile(images.all),
+      tile(images.unbent),
+      tile(truth),
+      error_colours(of_blocks(images.all, light, depth), of_blocks(truth, light, depth), mean)};
+  constexpr std::uint32_t kColumns = 4;
+  const std::uint32_t width = tiles[0].width + 2;
+  const std::uint32_t height = tiles[0].height + 2;
+  Image<glm::vec3> segment(width * kColumns, height * 2, glm::vec3(1.0f));
+  for (std::uint32_t i = 0; i < tiles.size(); ++i) {
+    paste(tiles[i], i % kColumns * width, i / kColumns * height, segment);
+  }
+  return write_png(folder / "lit_steps.png", segment).and_then([&] {
+    return write_png(folder / "truth_lit.png", tiles[4]);
+  });
+}
+
+}  // namespace alcove::sample

@@ -1,0 +1,256 @@
+#include "evaluate/motion_paths.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <limits>
+#include <vector>
+
+#include "scene/shapes.h"
+
+namespace alcove::sample {
+namespace {
+
+// Steps of one frame; heights are those of the image.
+const float kOrbitAngle = glm::radians(0.4f);
+constexpr float kDollyStep = 0.006f;    // of the depth
+constexpr float kStrafeStep = 0.004f;   // of a height at that depth: 2.2 pixels at 540
+constexpr float kObjectStep = 0.0075f;  // of a height on the ground: 4 pixels at 540
+const float kObjectTurn = glm::radians(1.5f);
+
+// The column that is strafed past: its depth in parts of that depth, so that it crosses the
+// image faster by as much; its radius in heights.
+constexpr float kColumnDepth = 0.3f;
+constexpr float kColumnRadius = 0.05f;
+// What moves: half its width in heights, and how far it hovers in radii of the occlusion.
+constexpr float kObjectSize = 0.06f;
+constexpr float kObjectGap = 0.2f;
+// Where the camera is cut to: forwards in parts of the depth, and turned.
+constexpr float kCutStep = 0.4f;
+const float kCutAngle = glm::radians(40.0f);
+
+struct Axes {
+  glm::vec3 right;
+  glm::vec3 up;
+  glm::vec3 forward;
+};
+
+Axes axes_of(const Camera& camera) {
+  const glm::mat4 world_from_view = camera_matrices(camera, 1, 1).world_from_view;
+  return {glm::vec3(world_from_view[0]), glm::vec3(world_from_view[1]),
+          -glm::vec3(world_from_view[2])};
+}
+
+// Scene units that the image's height spans at a depth.
+float height_at(const Camera& camera, float depth) {
+  return camera.orthographic ? camera.ortho_height : 2.0f * std::tan(0.5f * camera.fov_y) * depth;
+}
+
+Camera moved(Camera camera, const glm::vec3& by) {
+  camera.eye_ws += by;
+  camera.target_ws += by;
+  return camera;
+}
+
+// From the middle of the path, in frames.
+float from_middle(std::uint32_t frame, std::uint32_t frames) {
+  return static_cast<float>(frame) - 0.5f * static_cast<float>(frames - 1);
+}
+
+// A block with a smaller one on it, about the origin, half as wide as `half` is twice.
+Mesh block_mesh(float half) {
+  SceneBuilder builder;
+  builder.use(builder.add_material("moving", glm::vec3(0.6f, 0.5f, 0.4f), 0.6f));
+  builder.box(glm::vec3(-half), glm::vec3(half, 0.2f * half, half));
+  builder.box(glm::vec3(-0.45f, 0.2f, -0.45f) * half, glm::vec3(0.45f, 1.0f, 0.45f) * half);
+  return builder.finish("moving").meshes.front();
+}
+
+Mesh column_mesh(const MotionStart& start, std::uint32_t frames) {
+  const Axes axes = axes_of(start.camera);
+  const float depth = kColumnDepth * start.depth;
+  const float step = kStrafeStep * height_at(start.camera, start.depth);
+  const float radius = kColumnRadius * height_at(start.camera, depth);
+  const float half_length = start.depth + height_at(start.camera, depth);
+  const std::array profile{glm::vec2(0.0f, -half_length), glm::vec2(radius, -half_length),
+                           glm::vec2(radius, half_length), glm::vec2(0.0f, half_length)};
+  SceneBuilder builder;
+  builder.use(builder.add_material("column", glm::vec3(0.6f), 0.6f));
+  const glm::vec3 foot = start.camera.eye_ws + axes.forward * depth +
+                         axes.right * (step * 0.5f * static_cast<float>(frames - 1));
+  builder.world_from_shape = glm::translate(glm::mat4(1.0f), foot);
+  // A lathe stands on Y, the column on the camera's own up.
+  builder.world_from_shape[0] = glm::vec4(axes.right, 0.0f);
+  builder.world_from_shape[1] = glm::vec4(axes.up, 0.0f);
+  builder.world_from_shape[2] = glm::vec4(-axes.forward, 0.0f);
+  builder.lathe(profile, 48);
+  return builder.finish("column").meshes.front();
+}
+
+float object_half_width(const MotionStart& start) {
+  const float depth =
+      glm::dot(start.ground_ws - start.camera.eye_ws, axes_of(start.camera).forward);
+  return kObjectSize * height_at(start.camera, depth);
+}
+
+bool is_surface(const GBuffer& view, std::size_t pixel) {
+  return view.material.pixels[pixel] != kNoMaterial;
+}
+
+float median_depth(const GBuffer& view) {
+  std::vector<float> depths;
+  for (std::size_t i = 0; i < view.material.pixels.size(); ++i) {
+    if (is_surface(view, i)) {
+      depths.push_back(view.depth_vs.pixels[i]);
+    }
+  }
+  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+  std::ranges::nth_element(depths, middle);
+  return *middle;
+}
+
+}  // namespace
+
+tl::expected<MotionStart, std::string> motion_start(const RayScene& rays, const Camera& camera,
+                                                    float aspect, float radius) {
+  constexpr std::uint32_t kHeight = 45;
+  const auto width = static_cast<std::uint32_t>(
+      std::clamp(std::round(aspect * static_cast<float>(kHeight)), 1.0f, 1000.0f));
+  const GBuffer view = cast_gbuffer(rays, camera, width, kHeight);
+  // The surface nearest on the image to a point of it.
+  const auto nearest = [&](glm::vec2 uv) {
+    std::optional<std::size_t> found;
+    float least = std::numeric_limits<float>::infinity();
+    for (std::size_t i = 0; i < view.material.pixels.size(); ++i) {
+      const std::size_t row = i / width;
+      const glm::vec2 here((static_cast<float>(i - row * width) + 0.5f) / static_cast<float>(width),
+                           (static_cast<float>(row) + 0.5f) / static_cast<float>(kHeight));
+      const float distance = glm::distance(here, uv);
+      if (is_surface(view, i) && distance < least) {
+        least = distance;
+        found = i;
+      }
+    }
+    return found;
+  };
+  const auto ground = nearest({0.5f, 0.72f});
+  if (!ground) {
+    return tl::unexpected<std::string>(
+        "There is nothing in the view that could be seen in motion: turn it with --eye and "
+        "--target.");
+  }
+  return MotionStart{camera, median_depth(view), view.position_ws.pixels[*ground],
+                     view.geometric_normal_ws.pixels[*ground], radius};
+}
+
+MotionPath::MotionPath(MotionKind kind, const MotionStart& start, std::uint32_t frames)
+    : kind_(kind), start_(start), frames_(frames) {
+  const Axes axes = axes_of(start.camera);
+  start_.camera.target_ws = start.camera.eye_ws + axes.forward * start.depth;
+}
+
+Camera MotionPath::camera(std::uint32_t frame) const {
+  const Axes axes = axes_of(start_.camera);
+  const auto steps = static_cast<float>(frame);
+  switch (kind_) {
+    case MotionKind::kOrbit:
+      return orbited(start_.camera, kOrbitAngle * steps);
+    case MotionKind::kDolly:
+      return moved(start_.camera, axes.forward * (kDollyStep * start_.depth * steps));
+    case MotionKind::kStrafe:
+      return moved(start_.camera,
+                   axes.right * (kStrafeStep * height_at(start_.camera, start_.depth) * steps));
+    case MotionKind::kObject:
+      return start_.camera;
+    case MotionKind::kCut:
+      break;
+  }
+  if (frame < frames_ / 2) {
+    return start_.camera;
+  }
+  Camera elsewhere = moved(start_.camera, axes.forward * (kCutStep * start_.depth));
+  const glm::mat3 turn(glm::rotate(glm::mat4(1.0f), kCutAngle, axes.up));
+  elsewhere.target_ws = elsewhere.eye_ws + turn * axes.forward;
+  return elsewhere;
+}
+
+glm::mat4 MotionPath::world_from_moving(std::uint32_t frame) const {
+  if (kind_ != MotionKind::kObject) {
+    return glm::mat4(1.0f);
+  }
+  const Axes axes = axes_of(start_.camera);
+  const glm::vec3& up = start_.ground_normal_ws;
+  // The way to the right over the ground, or upwards where it faces that way.
+  const glm::vec3 sideways = axes.right - up * glm::dot(axes.right, up);
+  const glm::vec3 way = glm::length(sideways) > 0.1f ? glm::normalize(sideways) : axes.up;
+  const float half = object_half_width(start_);
+  const float step = kObjectStep / kObjectSize * half;
+  glm::mat4 placed(glm::mat3(way, up, glm::cross(way, up)));
+  placed[3] = glm::vec4(start_.ground_ws + up * (half + kObjectGap * start_.radius) +
+                            way * (step * from_middle(frame, frames_)),
+                        1.0f);
+  return glm::rotate(placed, kObjectTurn * static_cast<float>(frame), glm::vec3(0, 1, 0));
+}
+
+std::optional<std::uint32_t> MotionPath::cut() const {
+  return kind_ == MotionKind::kCut ? std::optional(frames_ / 2) : std::nullopt;
+}
+
+void MotionPath::add_to(Scene& scene) const {
+  if (kind_ != MotionKind::kStrafe && kind_ != MotionKind::kObject) {
+    return;
+  }
+  Mesh mesh = kind_ == MotionKind::kStrafe ? column_mesh(start_, frames_)
+                                           : block_mesh(object_half_width(start_));
+  mesh.material = static_cast<std::uint32_t>(scene.materials.size());
+  mesh.moves = kind_ == MotionKind::kObject;
+  scene.materials.push_back({.name = mesh.name, .roughness = 0.6f});
+  scene.meshes.push_back(std::move(mesh));
+}
+
+void MotionPath::pose(Scene& scene, std::uint32_t frame) const {
+  if (kind_ != MotionKind::kObject) {
+    return;
+  }
+  const glm::mat4 placed = world_from_moving(frame);
+  const Mesh at_rest = block_mesh(object_half_width(start_));
+  Mesh& mesh = scene.meshes.back();
+  for (std::size_t i = 0; i < at_rest.positions_ws.size(); ++i) {
+    mesh.positions_ws[i] = glm::vec3(placed * glm::vec4(at_rest.positions_ws[i], 1.0f));
+    mesh.normals_ws[i] = glm::mat3(placed) * at_rest.normals_ws[i];
+  }
+}
+
+bool MotionPath::passes_by(const glm::vec3& position_ws, std::uint32_t frame,
+                           std::uint32_t frames) const {
+  if (kind_ != MotionKind::kObject) {
+    return false;
+  }
+  const float half = object_half_width(start_);
+  for (std::uint32_t i = 0; i <= std::min(frames, frame); ++i) {
+    const glm::mat4 placed = world_from_moving(frame - i);
+    // Placed without scale: its inverse turns back.
+    const glm::vec3 offset =
+        glm::transpose(glm::mat3(placed)) * (position_ws - glm::vec3(placed[3]));
+    const glm::vec3 beyond = glm::max(glm::abs(offset) - half, glm::vec3(0.0f));
+    if (glm::dot(beyond, beyond) < start_.radius * start_.radius) {
+      return true;
+    }
+  }
+  return false;
+}
+
+glm::vec3 MotionPath::position_before(const glm::vec3& position_ws, std::uint32_t frame) const {
+  if (kind_ != MotionKind::kObject) {
+    return position_ws;
+  }
+  const glm::vec4 position(position_ws, 1.0f);
+  const glm::vec4 at_rest = glm::inverse(world_from_moving(frame)) * position;
+  const float half = 1.02f * object_half_width(start_);
+  const bool on_it =
+      std::abs(at_rest.x) < half && std::abs(at_rest.y) < half && std::abs(at_rest.z) < half;
+  return on_it ? glm::vec3(world_from_moving(frame - 1) * at_rest) : position_ws;
+}
+
+}  // namespace alcove::sample

@@ -1,0 +1,137 @@
+#include "evaluate/motion_walk.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "reference/surface_points.h"
+#include "reference/truth_cache.h"
+
+namespace alcove::sample {
+namespace {
+
+using Failure = tl::unexpected<std::string>;
+
+// Raised when a truth is computed otherwise, so that old entries of the cache are not taken.
+constexpr std::uint32_t kMotionTruthVersion = 2;
+
+}  // namespace
+
+tl::expected<MotionWalk, std::string> MotionWalk::create(Gpu& gpu, const Scene& scene,
+                                                         const MotionPath& path,
+                                                         const MotionSetup& setup) {
+  MotionWalk walk(path, setup);
+  walk.scene_ = std::make_unique<Scene>(scene);
+  path.add_to(*walk.scene_);
+  auto renderer =
+      FrameRenderer::create(gpu, *walk.scene_, {setup.width, setup.height}, setup.normals);
+  if (!renderer) {
+    return Failure(std::move(renderer.error()));
+  }
+  walk.renderer_ = std::move(*renderer);
+  return walk;
+}
+
+FrameRequest MotionWalk::request(const Step& step) const {
+  const CameraMatrices now = camera_matrices(path_.camera(step.frame), setup_.width, setup_.height);
+  const CameraMatrices before =
+      camera_matrices(path_.camera(step.before), setup_.width, setup_.height);
+  FrameRequest request;
+  request.view = {now.view_from_world,
+                  now.clip_from_view,
+                  before.view_from_world,
+                  before.clip_from_view,
+                  path_.camera(step.frame).reversed_z,
+                  path_.world_from_moving(step.frame),
+                  path_.world_from_moving(step.before)};
+  request.index = step.index;
+  request.restart = step.restart;
+  request.motion_vectors = step.moving;
+  request.occlusion = setup_.occlusion;
+  request.occlusion.specular = passes::Specular::none;
+  request.occlusion.bent_normal = true;
+  if (step.gathered != Gathered::neighbours_and_history) {
+    request.occlusion.history_frames = 0;
+  }
+  if (step.gathered == Gathered::nothing) {
+    request.occlusion.filter_radius = 0;
+  }
+  return request;
+}
+
+tl::expected<SeenFrame, std::string> MotionWalk::draw_and_read(const Step& step) {
+  auto images = renderer_->draw_and_read(request(step));
+  if (!images) {
+    return Failure(std::move(images.error()));
+  }
+  const Camera camera = path_.camera(step.frame);
+  return SeenFrame{camera, linear_depth(camera, images->depth_ndc), std::move(images->normal_ws),
+                   std::move(images->visibility), std::move(images->bent_normal_ws)};
+}
+
+tl::expected<void, std::string> MotionWalk::draw(const Step& step) {
+  return renderer_->draw(request(step)).map([](const FrameCost&) {});
+}
+
+Progress MotionWalk::progress(const std::string& name) const {
+  return setup_.progress ? setup_.progress(name) : Progress([](double) {});
+}
+
+tl::expected<MotionWalk::Truth, std::string> MotionWalk::truth(std::uint32_t frame,
+                                                               const SeenFrame& seen) {
+  path_.pose(*scene_, frame);
+  const TruthCache cache(setup_.cache);
+  const std::uint32_t half = std::max(setup_.spp / 2, 1u);
+  const auto key_of = [&](std::uint32_t index, const char* image) {
+    CacheKey key;
+    key.add(std::string("motion truth"));
+    key.add(kMotionTruthVersion);
+    key.add(*scene_);
+    key.add(seen.camera);
+    key.add(setup_.occlusion.radius);
+    key.add(half);
+    key.add(index);
+    key.add(seen.depth);
+    key.add(seen.normal_ws);
+    key.add(std::string(image));
+    return key;
+  };
+  struct Half {
+    CacheKey visibility_key;
+    CacheKey bent_normal_key;
+    Image<float>& visibility;
+    Image<glm::vec3>& bent_normal_ws;
+  };
+  const Image<float> no_visibility(setup_.width, setup_.height);
+  const Image<glm::vec3> no_directions(setup_.width, setup_.height);
+  Truth truth{{no_visibility, no_visibility}, {no_directions, no_directions}};
+  const std::array halves{Half{key_of(0, "visibility"), key_of(0, "bent normal"),
+                               truth.visibility.first, truth.bent_normal_ws.first},
+                          Half{key_of(1, "visibility"), key_of(1, "bent normal"),
+                               truth.visibility.second, truth.bent_normal_ws.second}};
+  const bool known = std::ranges::all_of(halves, [&](const Half& known_half) {
+    return cache.read(known_half.visibility_key, known_half.visibility) &&
+           cache.read(known_half.bent_normal_key, known_half.bent_normal_ws);
+  });
+  if (known) {
+    return truth;
+  }
+  const auto rays = RayScene::create(*scene_);
+  if (!rays) {
+    return Failure(rays.error());
+  }
+  const SurfacePoints points = surface_points(*rays, seen.camera, seen.normal_ws, seen.depth);
+  const Progress whole = progress("truth of frame " + std::to_string(frame));
+  for (std::uint32_t i = 0; i < halves.size(); ++i) {
+    const TruthSettings settings{.radius = setup_.occlusion.radius, .spp = half, .seed = 1 + i};
+    OcclusionTruth traced =
+        occlusion_truth(*rays, points, settings, [&](double done) { whole(0.5 * (i + done)); });
+    halves[i].visibility = std::move(traced.visibility);
+    halves[i].bent_normal_ws = std::move(traced.bent_normal_ws);
+    cache.write(halves[i].visibility_key, halves[i].visibility);
+    cache.write(halves[i].bent_normal_key, halves[i].bent_normal_ws);
+  }
+  return truth;
+}
+
+}  // namespace alcove::sample

@@ -1,0 +1,135 @@
+#include "evaluate/trade.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "alcove/passes/setting_names.h"
+
+namespace alcove::sample {
+namespace {
+
+using passes::OcclusionSettings;
+using passes::Quality;
+
+// What a way to spend differs by.
+struct SweepPoint {
+  std::uint32_t tile_size;
+  std::uint32_t slices;
+  std::uint32_t steps;
+};
+
+constexpr std::array<SweepPoint, 13> kSweepPoints{{{4, 1, 4},
+                                                   {4, 1, 12},
+                                                   {4, 1, 24},
+                                                   {2, 1, 4},
+                                                   {2, 1, 6},
+                                                   {2, 1, 16},
+                                                   {2, 1, 24},
+                                                   {2, 2, 16},
+                                                   {2, 2, 10},
+                                                   {1, 1, 12},
+                                                   {1, 1, 24},
+                                                   {1, 2, 24},
+                                                   {1, 4, 32}}};
+
+std::string name_of(const SweepPoint& s) {
+  const std::string block = std::to_string(s.tile_size) + "x" + std::to_string(s.tile_size);
+  return (s.tile_size == 1 ? "every pixel" : "one in " + block) + ", " + std::to_string(s.slices) +
+         (s.slices == 1 ? " slice of " : " slices of ") + std::to_string(s.steps);
+}
+
+class WayList {
+ public:
+  explicit WayList(const OcclusionSettings& base) : base_(base) {}
+
+  void add(const std::string& name, const SweepPoint& point) {
+    OcclusionSettings settings = base_;
+    settings.tile_size = point.tile_size;
+    settings.slices = point.slices;
+    settings.steps = point.steps;
+    const bool known =
+        std::ranges::any_of(ways_, [&](const Variant& way) { return way.settings == settings; });
+    if (!known) {
+      ways_.push_back({"", name, settings});
+    }
+  }
+  std::vector<Variant> take() { return std::move(ways_); }
+
+ private:
+  OcclusionSettings base_;
+  std::vector<Variant> ways_;
+};
+
+}  // namespace
+
+std::vector<Variant> preset_sweep(const OcclusionSettings& base) {
+  WayList list(base);
+  for (const Quality quality : {Quality::low, Quality::medium, Quality::high, Quality::ultra}) {
+    const OcclusionSettings preset = passes::quality_settings(quality, base.radius);
+    list.add(std::string(passes::name_of(quality)),
+             {preset.tile_size, preset.slices, preset.steps});
+  }
+  for (const SweepPoint& point : kSweepPoints) {
+    list.add(name_of(point), point);
+  }
+  return list.take();
+}
+
+Trade trade_of(std::vector<TradePoint> points) {
+  std::ranges::stable_sort(points, {}, &TradePoint::gpu_ms);
+  Trade trade{std::move(points), {}};
+  double least = std::numeric_limits<double>::infinity();
+  for (const TradePoint& point : trade.points) {
+    trade.on_pareto_front.push_back(point.rmse < least);
+    least = std::min(least, point.rmse);
+  }
+  return trade;
+}
+
+std::vector<TradePoint> over_scenes(std::span<const std::vector<TradePoint>> scenes) {
+  std::vector<TradePoint> all = scenes.front();
+  const auto count = static_cast<double>(scenes.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto mean = [&](const auto& of) {
+      double sum = 0;
+      for (const std::vector<TradePoint>& points : scenes) {
+        sum += of(points[i]);
+      }
+      return sum / count;
+    };
+    all[i].rmse = std::sqrt(mean([](const TradePoint& p) { return p.rmse * p.rmse; }));
+    all[i].height_field_rmse = std::sqrt(
+        mean([](const TradePoint& p) { return p.height_field_rmse * p.height_field_rmse; }));
+    all[i].gpu_ms = mean([](const TradePoint& p) { return p.gpu_ms; });
+    all[i].processor_ms = mean([](const TradePoint& p) { return p.processor_ms; });
+    for (const std::vector<TradePoint>& points : scenes) {
+      all[i].bytes = std::max(all[i].bytes, points[i].bytes);
+    }
+  }
+  return all;
+}
+
+const TradePoint* nearest_within_ms(std::span<const TradePoint> points, double ms) {
+  const TradePoint* best = nullptr;
+  for (const TradePoint& point : points) {
+    if (point.gpu_ms <= ms && (best == nullptr || point.rmse < best->rmse)) {
+      best = &point;
+    }
+  }
+  return best;
+}
+
+const TradePoint* fastest_within_rmse(std::span<const TradePoint> points, double rmse) {
+  const TradePoint* best = nullptr;
+  for (const TradePoint& point : points) {
+    if (point.rmse <= rmse && (best == nullptr || point.gpu_ms < best->gpu_ms)) {
+      best = &point;
+    }
+  }
+  return best;
+}
+
+}  // namespace alcove::sample

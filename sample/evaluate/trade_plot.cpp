@@ -1,0 +1,150 @@
+#include "evaluate/trade_plot.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+namespace alcove::sample {
+namespace {
+
+constexpr double kWidth = 860;
+constexpr double kHeight = 540;
+constexpr double kLeft = 80;
+constexpr double kRight = 30;
+constexpr double kTop = 50;
+constexpr double kBottom = 60;
+constexpr double kPlotWidth = kWidth - kLeft - kRight;
+constexpr double kPlotHeight = kHeight - kTop - kBottom;
+
+// From times and errors to the picture.
+struct Axes {
+  double first_ms;
+  double last_ms;
+  double least;
+  double most;
+
+  explicit Axes(const Trade& trade)
+      : first_ms(trade.points.front().gpu_ms / 1.2), last_ms(trade.points.back().gpu_ms * 1.2) {
+    const auto [low, high] = std::ranges::minmax(trade.points, {}, &TradePoint::rmse);
+    const double margin = std::max(0.08 * (high.rmse - low.rmse), 1e-4);
+    least = std::max(low.rmse - margin, 0.0);
+    most = high.rmse + margin;
+  }
+  double x(double ms) const {
+    return kLeft + kPlotWidth * std::log(ms / first_ms) / std::log(last_ms / first_ms);
+  }
+  double y(double rmse) const { return kTop + kPlotHeight * (most - rmse) / (most - least); }
+};
+
+// A step of 1, 2 or 5 times a power of ten that divides a range into about `parts`.
+double round_step(double range, double parts) {
+  const double raw = range / parts;
+  const double power = std::pow(10.0, std::floor(std::log10(raw)));
+  const double lead = raw / power;
+  return power * (lead < 1.5 ? 1.0 : lead < 3.5 ? 2.0 : lead < 7.5 ? 5.0 : 10.0);
+}
+
+std::string escaped(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    if (c == '&') {
+      result += "&amp;";
+    } else if (c == '<') {
+      result += "&lt;";
+    } else {
+      result += c;
+    }
+  }
+  return result;
+}
+
+void draw_label(std::ostream& out, double x, double y, const char* anchor,
+                const std::string& text) {
+  out << "<text x=\"" << x << "\" y=\"" << y << "\" text-anchor=\"" << anchor << "\">"
+      << escaped(text) << "</text>\n";
+}
+
+void draw_line(std::ostream& out, double x0, double y0, double x1, double y1) {
+  out << "<line x1=\"" << x0 << "\" y1=\"" << y0 << "\" x2=\"" << x1 << "\" y2=\"" << y1
+      << "\" stroke=\"#ddd\"/>\n";
+}
+
+std::string number(double value) {
+  std::ostringstream out;
+  out << std::setprecision(3) << value;
+  return out.str();
+}
+
+void draw_axes(std::ostream& out, const Axes& axes) {
+  const double step = round_step(axes.most - axes.least, 6);
+  const auto last = static_cast<int>(std::floor(axes.most / step));
+  for (auto i = static_cast<int>(std::ceil(axes.least / step)); i <= last; ++i) {
+    const double y = axes.y(i * step);
+    draw_line(out, kLeft, y, kWidth - kRight, y);
+    draw_label(out, kLeft - 8, y + 4, "end", number(i * step));
+  }
+  const auto first_power = static_cast<int>(std::floor(std::log10(axes.first_ms)));
+  for (int power = first_power; std::pow(10.0, power) <= axes.last_ms; ++power) {
+    for (const double lead : {1.0, 2.0, 5.0}) {
+      const double ms = lead * std::pow(10.0, power);
+      if (ms < axes.first_ms || ms > axes.last_ms) {
+        continue;
+      }
+      draw_line(out, axes.x(ms), kTop, axes.x(ms), kHeight - kBottom);
+      draw_label(out, axes.x(ms), kHeight - kBottom + 18, "middle", number(ms));
+    }
+  }
+  draw_label(out, kLeft + 0.5 * kPlotWidth, kHeight - 14, "middle",
+             "GPU time of the occlusion passes, ms");
+  draw_label(out, kLeft, kTop - 10, "middle", "RMSE");
+}
+
+void draw_front(std::ostream& out, const Trade& trade, const Axes& axes) {
+  out << "<polyline fill=\"none\" stroke=\"#1f6f8b\" stroke-width=\"2\" points=\"";
+  for (std::size_t i = 0; i < trade.points.size(); ++i) {
+    if (trade.on_pareto_front[i]) {
+      out << axes.x(trade.points[i].gpu_ms) << "," << axes.y(trade.points[i].rmse) << " ";
+    }
+  }
+  out << "\"/>\n";
+}
+
+// The front's names stand by turns right above and left below the line, clear of each other.
+void draw_points(std::ostream& out, const Trade& trade, const Axes& axes) {
+  bool above = true;
+  for (std::size_t i = 0; i < trade.points.size(); ++i) {
+    const TradePoint& point = trade.points[i];
+    const double x = axes.x(point.gpu_ms);
+    const double y = axes.y(point.rmse);
+    out << "<g><title>" << escaped(point.name) << ", " << number(point.rmse) << ", "
+        << number(point.gpu_ms) << " ms</title><circle cx=\"" << x << "\" cy=\"" << y
+        << "\" r=\"4\" fill=\"" << (trade.on_pareto_front[i] ? "#1f6f8b" : "#bbb") << "\"/></g>\n";
+    if (!trade.on_pareto_front[i]) {
+      continue;
+    }
+    const double wide = 0.2 * kPlotWidth;
+    const bool right = x < kLeft + wide || (above && x < kWidth - kRight - wide);
+    draw_label(out, x + (right ? 8 : -8), y + (above ? -7 : 16), right ? "start" : "end",
+               point.name);
+    above = !above;
+  }
+}
+
+}  // namespace
+
+std::string plot_of(const Trade& trade, const std::string& title) {
+  const Axes axes(trade);
+  std::ostringstream out;
+  out << "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" << kWidth << "\" height=\"" << kHeight
+      << "\" font-family=\"sans-serif\" font-size=\"12\">\n"
+      << "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n";
+  draw_label(out, 0.5 * kWidth, 20, "middle", title);
+  draw_axes(out, axes);
+  draw_front(out, trade, axes);
+  draw_points(out, trade, axes);
+  out << "</svg>\n";
+  return out.str();
+}
+
+}  // namespace alcove::sample

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+#include <tl/expected.hpp>
+
+#include "cli/options.h"
+#include "reference/height_field_truth.h"
+#include "reference/truth.h"
+#include "scene/scene.h"
+#include "support/image.h"
+
+namespace alcove::sample {
+
+// A frame that truths are wanted of: borrowed.
+struct TruthFrame {
+  const Scene& scene;
+  const Camera& camera;
+  float radius;  // of occlusion, scene units
+  const Image<float>& depth_ndc;
+  const Image<glm::vec3>& normal_ws;  // that the occlusion was given
+};
+
+// Both truths of a frame, and where they can be compared.
+struct Truths {
+  OcclusionTruth scene;           // ray traced
+  HeightFieldTruth height_field;  // by brute force on the same depth buffer
+  Mask surfaces;                  // pixels that are not sky
+};
+
+// Computes them, or takes them from the cache on disk; a view of sky alone has none. Points are
+// where primary rays through the pixel centres meet the scene, normals those that the occlusion was
+// given. Progress on stderr.
+[[nodiscard]] tl::expected<Truths, std::string> truths_of(const TruthFrame& frame,
+                                                          const Options& options);
+
+}  // namespace alcove::sample

@@ -1,0 +1,223 @@
+#include "reference/truth.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <span>
+
+#include "reference/ray_scene.h"
+#include "reference/sampling.h"
+#include "support/parallel.h"
+
+namespace alcove::sample {
+namespace {
+
+constexpr uint32_t kPacket = 16;  // rays traced together
+
+bool is_sky(const glm::vec3& normal) { return normal == glm::vec3(0.0f); }
+
+// Runs `shade(pixel, seed)` for every pixel that has a surface.
+template <class Shade>
+void for_each_surface(const SurfacePoints& points, uint32_t seed, const Progress& progress,
+                      const Shade& shade) {
+  const Image<glm::vec3>& normals = points.normal_ws;
+  parallel_rows(
+      normals.height,
+      [&](uint32_t y) {
+        for (uint32_t x = 0; x < normals.width; ++x) {
+          const size_t pixel = size_t{y} * normals.width + x;
+          if (!is_sky(normals.pixels[pixel])) shade(pixel, hash(seed, pixel));
+        }
+      },
+      progress);
+}
+
+glm::vec3 ray_start(const RayScene& scene, const SurfacePoints& points, size_t pixel) {
+  return scene.impl().off_surface(points.position_ws.pixels[pixel],
+                                  points.geometric_normal_ws.pixels[pixel]);
+}
+
+// What fits one pixel of the g-buffer.
+void store_hit(const Scene& scene, const Hit& hit, const Ray& ray, const glm::vec3& forward,
+               size_t pixel, GBuffer& out) {
+  const glm::vec3 offset = ray.direction_ws * hit.distance;
+  const Material& material = scene.materials[hit.material];
+  const glm::vec4 metal_roughness =
+      sample_texture(scene, material.metal_roughness_texture, hit.uvs);
+  out.depth_vs.pixels[pixel] = glm::dot(offset, forward);
+  out.position_ws.pixels[pixel] = ray.origin_ws + offset;
+  out.geometric_normal_ws.pixels[pixel] = hit.geometric_normal_ws;
+  out.shading_normal_ws.pixels[pixel] = hit.shading_normal_ws;
+  out.albedo.pixels[pixel] = albedo_at(scene, hit);
+  out.roughness.pixels[pixel] = material.roughness * metal_roughness.g;
+  out.metallic.pixels[pixel] = material.metallic * metal_roughness.b;
+  out.material.pixels[pixel] = hit.material;
+}
+
+struct OpenRays {
+  uint32_t count = 0;
+  glm::vec3 sum{0.0f};
+};
+
+OpenRays trace_hemisphere(const RayScene::Impl& scene, const glm::vec3& origin, const Frame& frame,
+                          const TruthSettings& settings, uint64_t seed) {
+  OpenRays open;
+  std::array<glm::vec3, kPacket> directions;
+  for (uint32_t first = 0; first < settings.spp; first += kPacket) {
+    const uint32_t count = std::min(kPacket, settings.spp - first);
+    for (uint32_t i = 0; i < count; ++i) {
+      directions[i] = frame.to_world(cosine_direction(r2_point(first + i, seed)));
+    }
+    const uint32_t blocked =
+        scene.blocked(origin, std::span(directions).first(count), settings.radius);
+    for (uint32_t i = 0; i < count; ++i) {
+      if (blocked >> i & 1u) continue;
+      ++open.count;
+      open.sum += directions[i];
+    }
+  }
+  return open;
+}
+
+// The open share of a GGX lobe.
+float trace_lobe(const RayScene::Impl& scene, const glm::vec3& origin, const Frame& frame,
+                 const LobeSampler& lobe, const TruthSettings& settings, uint64_t seed) {
+  double open = 0.0, all = 0.0;
+  std::array<glm::vec3, kPacket> directions;
+  std::array<float, kPacket> weights{};
+  for (uint32_t first = 0; first < settings.spp; first += kPacket) {
+    const uint32_t most = std::min(kPacket, settings.spp - first);
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < most; ++i) {
+      const LobeLight light = lobe.at(r2_point(first + i, seed));
+      if (light.weight <= 0.0f) continue;
+      weights[count] = light.weight;
+      directions[count++] = frame.to_world(light.direction);
+    }
+    if (count == 0) continue;
+    const uint32_t blocked =
+        scene.blocked(origin, std::span(directions).first(count), settings.radius);
+    for (uint32_t i = 0; i < count; ++i) {
+      all += weights[i];
+      if (!(blocked >> i & 1u)) open += weights[i];
+    }
+  }
+  return all > 0.0 ? static_cast<float>(open / all) : 1.0f;
+}
+
+// Radiance that comes back along one path: the product of the albedos on its way to the open.
+glm::vec3 trace_path(const RayScene::Impl& scene, glm::vec3 origin, glm::vec3 direction,
+                     float radius, uint64_t seed) {
+  constexpr uint32_t kLongest = 256;  // survival below 1e-8 even at an albedo of 0.93
+  constexpr uint32_t kSure = 3;       // bounces before paths may be ended by chance
+  glm::vec3 weight(1.0f);
+  for (uint32_t bounce = 0; bounce < kLongest; ++bounce) {
+    const std::optional<Hit> hit = scene.nearest(origin, direction, radius);
+    if (!hit) return weight;
+    weight *= albedo_at(*scene.scene, *hit);
+    const uint64_t bits = hash(seed, bounce);
+    const float survival = std::min(std::max({weight.x, weight.y, weight.z}), 0.98f);
+    if (survival <= 0.0f) return glm::vec3(0.0f);
+    if (bounce >= kSure) {
+      if (unit_float(hash(bits, 7)) >= survival) return glm::vec3(0.0f);
+      weight /= survival;
+    }
+    origin = scene.off_surface(origin + direction * hit->distance, hit->geometric_normal_ws);
+    const glm::vec2 u(unit_float(bits), unit_float(hash(bits, 3)));
+    direction = frame_of(hit->geometric_normal_ws).to_world(cosine_direction(u));
+  }
+  return glm::vec3(0.0f);
+}
+
+}  // namespace
+
+GBuffer cast_gbuffer(const RayScene& scene, const Camera& camera, uint32_t width, uint32_t height) {
+  const CameraMatrices matrices = camera_matrices(camera, width, height);
+  const glm::vec3 forward = -glm::vec3(matrices.world_from_view[2]);
+  const glm::vec3 zero(0.0f);
+  GBuffer out{{width, height, std::numeric_limits<float>::infinity()},
+              {width, height, zero},
+              {width, height, zero},
+              {width, height, zero},
+              {width, height, zero},
+              {width, height, 1.0f},
+              {width, height, 0.0f},
+              {width, height, kNoMaterial}};
+  parallel_rows(height, [&](uint32_t y) {
+    for (uint32_t x = 0; x < width; ++x) {
+      const glm::vec2 centre(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+      Ray ray = camera_ray(matrices, camera.orthographic, centre, width, height);
+      // Nothing nearer than the near plane is drawn, nor beyond the far one.
+      const float slant = glm::dot(ray.direction_ws, forward);
+      ray.origin_ws += ray.direction_ws * (camera.near_plane / slant);
+      const float far = (camera.far_plane - camera.near_plane) / slant;
+      const auto hit = scene.impl().nearest(ray.origin_ws, ray.direction_ws, far);
+      if (!hit) continue;
+      const size_t pixel = size_t{y} * width + x;
+      store_hit(*scene.impl().scene, *hit, ray, forward, pixel, out);
+      out.depth_vs.pixels[pixel] += camera.near_plane;
+    }
+  });
+  return out;
+}
+
+OcclusionTruth occlusion_truth(const RayScene& scene, const SurfacePoints& points,
+                               const TruthSettings& settings, const Progress& progress) {
+  const uint32_t width = points.normal_ws.width, height = points.normal_ws.height;
+  OcclusionTruth out{{width, height, 1.0f}, {width, height}};
+  for_each_surface(points, settings.seed, progress, [&](size_t pixel, uint64_t seed) {
+    const glm::vec3& normal = points.normal_ws.pixels[pixel];
+    const OpenRays open = trace_hemisphere(scene.impl(), ray_start(scene, points, pixel),
+                                           frame_of(normal), settings, seed);
+    const float length = glm::length(open.sum);
+    out.visibility.pixels[pixel] =
+        static_cast<float>(open.count) / static_cast<float>(settings.spp);
+    out.bent_normal_ws.pixels[pixel] = length > 1e-6f ? open.sum / length : normal;
+  });
+  return out;
+}
+
+Viewer viewer_of(const Camera& camera) {
+  return {camera.orthographic, camera.eye_ws, glm::normalize(camera.eye_ws - camera.target_ws)};
+}
+
+glm::vec3 view_from(const Viewer& viewer, const glm::vec3& position_ws) {
+  // In double, as what is very near has no squares of floats.
+  const glm::dvec3 to_eye = glm::dvec3(viewer.eye_ws) - glm::dvec3(position_ws);
+  const double length = glm::length(to_eye);
+  return viewer.orthographic || !(length > 0.0) ? viewer.view_ws : glm::vec3(to_eye / length);
+}
+
+Image<float> specular_truth(const RayScene& scene, const SurfacePoints& points,
+                            const Image<float>& roughness, const Viewer& viewer,
+                            const TruthSettings& settings, const Progress& progress) {
+  Image<float> out(points.normal_ws.width, points.normal_ws.height, 1.0f);
+  for_each_surface(points, settings.seed, progress, [&](size_t pixel, uint64_t seed) {
+    const Frame frame = frame_of(points.normal_ws.pixels[pixel]);
+    const glm::vec3 view = view_from(viewer, points.position_ws.pixels[pixel]);
+    out.pixels[pixel] =
+        trace_lobe(scene.impl(), ray_start(scene, points, pixel), frame,
+                   LobeSampler(frame.to_local(view), roughness.pixels[pixel]), settings, seed);
+  });
+  return out;
+}
+
+Image<glm::vec3> interreflection_truth(const RayScene& scene, const SurfacePoints& points,
+                                       const TruthSettings& settings, const Progress& progress) {
+  Image<glm::vec3> out(points.normal_ws.width, points.normal_ws.height, glm::vec3(1.0f));
+  for_each_surface(points, settings.seed, progress, [&](size_t pixel, uint64_t seed) {
+    const Frame frame = frame_of(points.normal_ws.pixels[pixel]);
+    const glm::vec3 origin = ray_start(scene, points, pixel);
+    glm::dvec3 sum(0.0);
+    for (uint32_t i = 0; i < settings.spp; ++i) {
+      const glm::vec3 direction = frame.to_world(cosine_direction(r2_point(i, seed)));
+      sum += trace_path(scene.impl(), origin, direction, settings.radius, hash(seed, i + 1));
+    }
+    out.pixels[pixel] = sum / static_cast<double>(settings.spp);
+  });
+  return out;
+}
+
+}  // namespace alcove::sample

@@ -1,0 +1,180 @@
+#include "reference/truth_cache.h"
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <system_error>
+
+#include "support/image_io.h"
+
+namespace alcove::sample {
+namespace {
+
+// Before the floats of an entry; another one means another version, or a damaged file.
+struct Header {
+  std::array<char, 8> magic{'a', 'l', 'c', 'o', 'v', 'e', 't', '1'};
+  uint64_t count = 0;
+  uint64_t checksum = 0;
+};
+
+constexpr uint64_t kPrime = 0x100000001b3u;
+
+// FNV-1a, eight bytes at a time and then one: fast enough for images, and nobody attacks a cache.
+uint64_t mix(uint64_t hash, std::span<const std::byte> bytes) {
+  size_t i = 0;
+  for (; i + 8 <= bytes.size(); i += 8) {
+    uint64_t word = 0;
+    std::memcpy(&word, bytes.data() + i, 8);
+    hash = (hash ^ word) * kPrime;
+    hash ^= hash >> 29;
+  }
+  for (; i < bytes.size(); ++i) {
+    hash = (hash ^ static_cast<uint64_t>(bytes[i])) * kPrime;
+  }
+  return hash;
+}
+
+template <class T>
+void add_vector(CacheKey& key, const std::vector<T>& values) {
+  key.add(static_cast<uint64_t>(values.size()));
+  key.add(std::as_bytes(std::span(values)));
+}
+
+template <int size>
+void add_components(CacheKey& key, const glm::vec<size, float>& vector) {
+  for (int i = 0; i < size; ++i) {
+    key.add(vector[i]);
+  }
+}
+
+void add_use(CacheKey& key, const TextureUse& use) {
+  key.add(use.image);
+  key.add(static_cast<uint8_t>(use.sampler.wrap_u));
+  key.add(static_cast<uint8_t>(use.sampler.wrap_v));
+  key.add(static_cast<uint8_t>(use.sampler.magnify));
+  key.add(use.uv_set);
+  for (int column = 0; column < 3; ++column) {
+    add_components(key, use.texture_from_mesh_uv[column]);
+  }
+}
+
+void add_material(CacheKey& key, const Material& material) {
+  add_components(key, material.base_color);
+  add_use(key, material.base_color_texture);
+  key.add(material.metallic);
+  key.add(material.roughness);
+  add_use(key, material.metal_roughness_texture);
+  key.add(static_cast<uint8_t>(material.alpha_mode));
+  key.add(material.alpha_cutoff);
+}
+
+std::filesystem::path from_environment(const char* name) {
+  const char* value = std::getenv(name);
+  return value == nullptr ? std::filesystem::path() : std::filesystem::path(value);
+}
+
+}  // namespace
+
+void CacheKey::add(std::span<const std::byte> bytes) {
+  low_ = mix(low_, bytes);
+  high_ = mix(high_ ^ static_cast<uint64_t>(bytes.size()), bytes);
+}
+
+void CacheKey::add(const std::string& text) { add(std::as_bytes(std::span(text))); }
+
+void CacheKey::add(const Scene& scene) {
+  for (const Mesh& mesh : scene.meshes) {
+    add(mesh.material);
+    add_vector(*this, mesh.positions_ws);
+    add_vector(*this, mesh.normals_ws);
+    add_vector(*this, mesh.uvs);
+    add_vector(*this, mesh.second_uvs);
+    add_vector(*this, mesh.indices);
+  }
+  for (const Material& material : scene.materials) {
+    add_material(*this, material);
+  }
+  for (const TextureImage& image : scene.images) {
+    add(image.width);
+    add(image.height);
+    add_vector(*this, image.rgba);
+  }
+}
+
+void CacheKey::add(const Camera& camera) {
+  add_components(*this, camera.eye_ws);
+  add_components(*this, camera.target_ws);
+  add_components(*this, camera.up_ws);
+  add(static_cast<uint8_t>(camera.orthographic));
+  add(camera.fov_y);
+  add(camera.ortho_height);
+  add(camera.near_plane);
+  add(camera.far_plane);
+  add(static_cast<uint8_t>(camera.reversed_z));
+  add_components(*this, camera.offset_ndc);
+  add_components(*this, camera.jitter_px);
+}
+
+std::string CacheKey::hex() const {
+  std::array<char, 33> text{};
+  std::snprintf(text.data(), text.size(), "%016llx%016llx", static_cast<unsigned long long>(high_),
+                static_cast<unsigned long long>(low_));
+  return text.data();
+}
+
+std::filesystem::path TruthCache::default_folder() {
+  if (const auto cache = from_environment("XDG_CACHE_HOME"); cache.is_absolute()) {
+    return cache / "alcove";
+  }
+  const auto home = from_environment("HOME");
+  return home.empty() ? home : home / ".cache" / "alcove";
+}
+
+TruthCache::TruthCache(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+std::optional<std::vector<float>> TruthCache::read(const CacheKey& key, size_t count) const {
+  if (folder_.empty()) {
+    return std::nullopt;
+  }
+  std::ifstream file(folder_ / (key.hex() + ".truth"), std::ios::binary);
+  Header header;
+  const Header expected;
+  if (!file.read(reinterpret_cast<char*>(&header), sizeof(header)) ||
+      header.magic != expected.magic || header.count != count) {
+    return std::nullopt;
+  }
+  std::vector<float> values(count);
+  file.read(reinterpret_cast<char*>(values.data()),
+            static_cast<std::streamsize>(count * sizeof(float)));
+  const bool whole = file && file.peek() == std::ifstream::traits_type::eof();
+  if (!whole || mix(0, std::as_bytes(std::span(values))) != header.checksum) {
+    return std::nullopt;
+  }
+  return values;
+}
+
+void TruthCache::write(const CacheKey& key, std::span<const float> values) const {
+  if (folder_.empty()) {
+    return;
+  }
+  std::error_code ignored;
+  std::filesystem::create_directories(folder_, ignored);
+  Header header;
+  header.count = values.size();
+  header.checksum = mix(0, std::as_bytes(values));
+  const auto fill = [&](const std::filesystem::path& path) -> tl::expected<void, std::string> {
+    std::ofstream file(path, std::ios::binary);
+    file.write(reinterpret_cast<const char*>(&header), sizeof(header));
+    file.write(reinterpret_cast<const char*>(values.data()),
+               static_cast<std::streamsize>(values.size_bytes()));
+    file.close();
+    if (!file) {
+      return tl::unexpected(std::string("the truth could not be cached"));
+    }
+    return {};
+  };
+  (void)write_whole(folder_ / (key.hex() + ".truth"), fill);
+}
+
+}  // namespace alcove::sample

@@ -1,0 +1,114 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
+#include "alcove/framegraph/executor.h"
+#include "alcove/framegraph/graph.h"
+#include "alcove/passes/kernels.h"
+#include "render/vulkan_device.h"
+
+namespace alcove::sample {
+
+// A buffer that the host sees: what is uploaded from and read back into. Owned; the device must
+// have finished with it before it goes.
+class HostBuffer {
+ public:
+  [[nodiscard]] static tl::expected<std::unique_ptr<HostBuffer>, std::string> create(
+      const VulkanDevice& device, VkDeviceSize bytes, VkBufferUsageFlags usage);
+  ~HostBuffer();
+  HostBuffer(const HostBuffer&) = delete;
+  HostBuffer& operator=(const HostBuffer&) = delete;
+
+  VkBuffer buffer() const { return buffer_; }
+  std::span<std::byte> bytes() const { return {mapped_, size_}; }
+  // The buffer as a graph imports it: with contents that the host wrote, left for the host to read.
+  framegraph::ImportedBuffer import() const;
+
+ private:
+  explicit HostBuffer(const VulkanDevice& device) : device_(device) {}
+  const VulkanDevice& device_;
+  VkBuffer buffer_ = VK_NULL_HANDLE;
+  VkDeviceMemory memory_ = VK_NULL_HANDLE;
+  std::byte* mapped_ = nullptr;
+  std::size_t size_ = 0;
+  VkBufferUsageFlags usage_ = 0;
+};
+
+// GPU time of a pass.
+struct PassTime {
+  std::string pass;
+  double milliseconds;
+};
+
+// What the sample and the tests run frames with: one graph, its executor and the kernels.
+class Gpu {
+ public:
+  [[nodiscard]] static tl::expected<std::unique_ptr<Gpu>, std::string> create(
+      const DeviceOptions& options = {}, const framegraph::ExecutorOptions& executor = {});
+  ~Gpu();
+  Gpu(const Gpu&) = delete;
+  Gpu& operator=(const Gpu&) = delete;
+
+  const VulkanDevice& device() const { return *device_; }
+  passes::Kernels& kernels() { return *kernels_; }
+  framegraph::Executor& executor() { return *executor_; }
+
+  // Declares a frame with `declare`, submits it and waits for it. An error of `declare` or of the
+  // graph comes back as one sentence (several lines where several things are wrong).
+  using Declare = std::function<tl::expected<void, std::string>(framegraph::Graph&)>;
+  [[nodiscard]] tl::expected<framegraph::FrameReport, std::string> run(const Declare& declare);
+  // The same for a caller with frames in flight, who submits `commands` himself (they are in the
+  // recording state, of the device's family). `slot` takes turns from 0 to frames_in_flight() - 1;
+  // the device must have finished what was last recorded with it, and after an error all that was
+  // recorded before: the kernels have counted a frame that there is none of.
+  [[nodiscard]] tl::expected<framegraph::FrameReport, std::string> record(const Declare& declare,
+                                                                          VkCommandBuffer commands,
+                                                                          std::uint32_t slot);
+  std::uint32_t frames_in_flight() const { return frames_in_flight_; }
+
+  // Of the frame that ran last.
+  std::span<const framegraph::PassTiming> timings() { return executor_->timings(); }
+
+ private:
+  Gpu() = default;
+  VkResult create_commands();
+  VkResult submit_and_wait();
+
+  std::unique_ptr<VulkanDevice> device_;
+  VkCommandPool pool_ = VK_NULL_HANDLE;
+  VkCommandBuffer commands_ = VK_NULL_HANDLE;
+  VkFence fence_ = VK_NULL_HANDLE;
+  std::unique_ptr<framegraph::Executor> executor_;
+  std::unique_ptr<passes::Kernels> kernels_;
+  framegraph::Graph graph_;
+  std::uint32_t frames_in_flight_ = 1;
+};
+
+// Adds a pass that fills mip 0 of `target` from tightly packed texels in `source`, and returns the
+// filled version.
+framegraph::Texture add_copy(framegraph::Graph& graph, const HostBuffer& source,
+                             framegraph::Texture target);
+
+// Adds passes that fill the other mips of a colour texture of `mips`, each from the one before with
+// half its sides, rounded down: by linear blits, which its format must support. Where sides are
+// even that is the mean of four texels, of sRGB formats in linear light. Returns the filled
+// version.
+framegraph::Texture add_mips(framegraph::Graph& graph, framegraph::Texture texture,
+                             std::uint32_t mips);
+
+// Adds a pass that copies mip `mip` of `texture` (colour, or the depth of D32_SFLOAT) to `target`,
+// tightly packed, and makes it an output of the frame.
+void add_read_back(framegraph::Graph& graph, framegraph::Texture texture, const HostBuffer& target,
+                   std::uint32_t mip = 0);
+
+// Half-precision floats as IEEE 754 has them, to float.
+[[nodiscard]] float half_to_float(std::uint16_t half);
+
+}  // namespace alcove::sample

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
+#include "alcove/passes/occlusion.h"
+#include "cli/options.h"
+#include "render/gpu.h"
+#include "scene/camera.h"
+#include "scene/scene.h"
+
+namespace alcove::sample {
+
+// What the options of a command ask for, before anything is drawn.
+struct Session {
+  Scene scene;
+  Camera camera;
+  passes::OcclusionSettings settings;
+  std::unique_ptr<Gpu> gpu;
+};
+
+// Loads the scene, finds camera and settings and opens the device, in this order: the cheapest
+// mistake is told first. What the scene left out goes to stderr as notes. `surface_extensions` are
+// those of a window to present to.
+[[nodiscard]] tl::expected<Session, std::string> session_of(
+    const Options& options, const std::vector<const char*>& surface_extensions = {});
+
+// The device that the options name, opened anew: what is drawn on it has histories of its own.
+[[nodiscard]] tl::expected<std::unique_ptr<Gpu>, std::string> open_gpu(
+    const Options& options, const std::vector<const char*>& surface_extensions = {});
+
+// One sentence where the validation layers said anything.
+[[nodiscard]] tl::expected<void, std::string> check_validation(const Gpu& gpu);
+
+}  // namespace alcove::sample

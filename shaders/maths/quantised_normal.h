@@ -1,0 +1,47 @@
+// A normal that faces the eye in a byte: enough to tell the faces at a crease apart.
+//
+// It is held by its stereographic coordinates in view space, tan(angle / 2) along the direction in
+// which it leans away from the eye's axis. They are conformal, so that distances between them are
+// angles without any decoding.
+#ifndef ALCOVE_MATHS_COARSE_NORMAL_H
+#define ALCOVE_MATHS_COARSE_NORMAL_H
+
+#include "language.h"
+
+ALCOVE_MATHS_BEGIN
+
+struct QuantisedNormal {
+  uint bits;            // 8; the same normal has the same ones
+  vec2 stereographic;   // its coordinates, each in [-1,1]
+  float squared_scale;  // from squared distances of coordinates to squared angles about it
+};
+
+// By its lowest eight bits.
+ALCOVE_INLINE vec2 stereographic_of_bits(uint bits) {
+  return vec2((float(bits & 15u) - 7.0f) * (1.0f / 7.0f),
+              (float((bits >> 4u) & 15u) - 7.0f) * (1.0f / 7.0f));
+}
+
+// Of a unit normal in view space; what leans further than a right angle along either axis is taken
+// to stereographic so far. Each coordinate is one of 15: off by 12 degrees at most.
+ALCOVE_INLINE QuantisedNormal make_quantised_normal(vec3 normal) {
+  vec2 stereographic = vec2(normal.x, normal.y) * (1.0f / max(1.0f + normal.z, 0.1f));
+  QuantisedNormal coarse;
+  coarse.bits = uint(clamp(stereographic.x, -1.0f, 1.0f) * 7.0f + 7.5f) |
+                (uint(clamp(stereographic.y, -1.0f, 1.0f) * 7.0f + 7.5f) << 4u);
+  coarse.stereographic = stereographic_of_bits(coarse.bits);
+  float scale = 2.0f / (1.0f + dot(coarse.stereographic, coarse.stereographic));
+  coarse.squared_scale = scale * scale;
+  return coarse;
+}
+
+// The square of the angle, in radians, to another normal that leans so: 0 where it is the same, off
+// by the more the further they part, and above 0.5 from 60 degrees on.
+ALCOVE_INLINE float squared_turn(QuantisedNormal own, vec2 other) {
+  vec2 apart = other - own.stereographic;
+  return dot(apart, apart) * own.squared_scale;
+}
+
+ALCOVE_MATHS_END
+
+#endif

@@ -1,0 +1,181 @@
+#include "maths/unobserved.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+#include "random_input.h"
+#include "slice_truth.h"
+
+namespace alcove::maths_test {
+namespace {
+
+using maths::Slice;
+using maths::Unobserved;
+using maths::UnobservedArc;
+
+constexpr float kRadiusPx = 40.0f;
+
+// A side of a slice with columns that show nothing, drawn at random.
+struct Case {
+  Slice slice;
+  float side;
+  float per_diamond_angle;
+  std::uint32_t occluded;
+  Unobserved unobserved;
+
+  explicit Case(RandomInput& random)
+      : slice(slice_of(random.uniform(0.05f, 1.0f), random.uniform(-1.5f, 1.5f))),
+        side(random.bits() % 2 == 0 ? 1.0f : -1.0f),
+        per_diamond_angle(maths::sectors_per_diamond_angle(slice, side)),
+        occluded(random.bits() % 3 == 0 ? 0u : 0xffffffffu << random.bits() % 32),
+        unobserved(maths::nothing_unobserved()) {
+    const float first = random.uniform(0.0f, 1.2f) * kRadiusPx;
+    const float width = random.uniform(0.0f, 0.3f) * kRadiusPx;
+    for (unsigned k = random.bits() % 4; k > 0; --k) {
+      unobserved = maths::add_column(unobserved, true, first + float(k - 1) * width, width);
+    }
+  }
+
+  UnobservedArc arc() const {
+    return maths::make_unobserved_arc(slice, side, per_diamond_angle, occluded, unobserved,
+                                      kRadiusPx);
+  }
+
+  double tangent() const { return std::acos(double(maths::tangent_horizon(slice, side))); }
+
+  // Angle to the view vector at which the unobserved directions begin, and that at which they end.
+  double begins() const {
+    return std::asin(std::min(1.0, double(unobserved.first_px) / kRadiusPx));
+  }
+  double ends() const {
+    if (occluded == 0) return tangent();
+    const double y = 1.0 - std::countr_zero(occluded) / double(per_diamond_angle);
+    return std::atan2(1.0 - std::abs(y), y);
+  }
+  double share() const {
+    return std::min(std::sqrt(double(unobserved.width_px) / kRadiusPx),
+                    double(maths::kMostUnobserved));
+  }
+
+  // Share of the integral of `density` over the directions.
+  template <typename Density>
+  double truth(Density density) const {
+    const double from = begins(), to = ends();
+    return from < to ? share() * integrate(density, from, to) : 0.0;
+  }
+};
+
+TEST(Unobserved, ThePartLeftOutIsTheShareOfTheIntegral) {
+  constexpr int kCases = 20000;
+  RandomInput random;
+  double worst = 0.0, sum = 0.0, sum_uniform = 0.0, largest = 0.0;
+  for (int i = 0; i < kCases; ++i) {
+    const Case c(random);
+    const SliceTruth slice(c.slice);
+    const double found = maths::unobserved_part(c.arc(), c.slice, c.side, false);
+    const double truth = c.truth([&](double t) { return slice.density(double(c.side) * t); });
+    const double uniform = maths::unobserved_part(c.arc(), c.slice, c.side, true) -
+                           c.truth([](double t) { return 0.5 * std::sin(t); });
+    worst = std::max({worst, std::abs(found - truth), std::abs(uniform)});
+    sum += std::abs(found - truth);
+    sum_uniform += std::abs(uniform);
+    largest = std::max(largest, truth);
+  }
+  EXPECT_GT(largest, 0.5);
+  // A cosine near 1, or one from a sine near 1, turns its direction by up to 3.5e-4 as it rounds,
+  // and directions count at most a half.
+  EXPECT_LT(worst, 2e-4);
+  // But that is rare, and light_arc() is within 2.4e-5 at the worst.
+  EXPECT_LT(sum / kCases, 3e-6);
+  EXPECT_LT(sum_uniform / kCases, 2e-8);
+}
+
+TEST(Unobserved, ALobeLosesTheShareOfWhatItHasThere) {
+  RandomInput random;
+  for (int i = 0; i < 5000; ++i) {
+    const Case c(random);
+    const maths::LobeSlice lobe = maths::make_lobe_slice(c.slice, random.uniform(0.01f, 1.0f));
+    const auto up_to = [&](double angle) {
+      return double(maths::lobe_arc(c.slice, lobe, c.side, float(std::cos(angle))));
+    };
+    const double from = std::min(c.begins(), c.ends());
+    const double truth = c.share() * (up_to(c.ends()) - up_to(from));
+    EXPECT_NEAR(maths::unobserved_lobe(c.arc(), lobe, c.side), truth, 2e-3 * lobe.open + 1e-6);
+  }
+}
+
+TEST(Unobserved, WhatASideShowsCountsWhole) {
+  RandomInput random;
+  for (int i = 0; i < 1000; ++i) {
+    Case c(random);
+    c.unobserved = maths::nothing_unobserved();
+    EXPECT_EQ(maths::unobserved_part(c.arc(), c.slice, c.side, false), 0.0f);
+    // Behind the first occluder `hidden_occlusion` decides.
+    c = Case(random);
+    c.occluded |= 1u;
+    EXPECT_EQ(maths::unobserved_part(c.arc(), c.slice, c.side, false), 0.0f);
+  }
+}
+
+TEST(Unobserved, ManyNarrowRowsHideNoMoreThanOne) {
+  Unobserved row = maths::add_column(maths::nothing_unobserved(), true, 4.0f, 1.0f);
+  row = maths::add_column(row, true, 6.0f, 3.0f);
+  EXPECT_EQ(maths::mean_row(row).width_px, 4.0f) << "columns side by side are one row";
+  Unobserved leaves = row;
+  for (int i = 1; i < 5; ++i) {
+    leaves = maths::add_column(leaves, false, 10.0f * float(i), 5.0f);
+    leaves = maths::add_column(leaves, true, 10.0f * float(i) + 5.0f, 4.0f);
+  }
+  EXPECT_EQ(maths::mean_row(leaves).width_px, 4.0f);
+  EXPECT_EQ(maths::mean_row(leaves).first_px, 4.0f);
+  EXPECT_EQ(maths::mean_row(maths::nothing_unobserved()).width_px, 0.0f);
+}
+
+TEST(Unobserved, OfWhatLiesBeyondTheBorderAShareIsLeftOut) {
+  const Unobserved some = maths::add_column(maths::nothing_unobserved(), true, 7.0f, 2.0f);
+  const Unobserved border = maths::add_beyond_border(some, 9.0f, 12.0f, 0.5f);
+  EXPECT_EQ(border.first_px, 7.0f);
+  EXPECT_EQ(border.width_px, 5.0f);
+  EXPECT_EQ(maths::add_beyond_border(some, 3.0f, 12.0f, 0.5f).first_px, 3.0f);
+  const Slice slice = maths::make_slice({0.0f, 0.0f, 1.0f}, {1.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 1.0f});
+  const Unobserved all =
+      maths::add_beyond_border(maths::nothing_unobserved(), 0.0f, kRadiusPx, 0.3f);
+  const float per_diamond_angle = maths::sectors_per_diamond_angle(slice, 1.0f);
+  EXPECT_NEAR(maths::make_unobserved_arc(slice, 1.0f, per_diamond_angle, 0u, all, kRadiusPx).share,
+              0.3f, 1e-6f);
+}
+
+TEST(Unobserved, AnImageThatShowsLittleOfTheRadiusTellsNothingOfTheRest) {
+  EXPECT_EQ(maths::border_share(0.0f, 0.0f), 0.5f);
+  EXPECT_EQ(maths::border_share(0.25f, 0.0f), 0.375f);
+  EXPECT_EQ(maths::border_share(1.0f, 0.0f), 0.0f);
+  EXPECT_EQ(maths::border_share(0.0f, 0.5f), 0.46875f);
+  for (const float nearness : {1.0f, 2.0f, 1e30f}) {
+    EXPECT_EQ(maths::border_share(0.0f, nearness), 0.0f);
+  }
+}
+
+TEST(Unobserved, NothingBeyondTheBorderHidesNothing) {
+  const Unobserved none = maths::nothing_unobserved();
+  EXPECT_EQ(maths::add_beyond_border(none, 9.0f, 0.0f, 1.0f).first_px, none.first_px);
+  EXPECT_EQ(maths::add_beyond_border(none, maths::kNowherePx, 10.0f, 1.0f).width_px, 0.0f);
+}
+
+TEST(Unobserved, NeverAllOfASideIsLeftOut) {
+  RandomInput random;
+  for (int i = 0; i < 1000; ++i) {
+    Case c(random);
+    c.occluded = 0;
+    c.unobserved = {.first_px = 0.0f, .width_px = 3.0f * kRadiusPx};
+    const float whole = maths::light_arc(c.slice, c.side, maths::tangent_light(c.slice, c.side));
+    EXPECT_LE(maths::unobserved_part(c.arc(), c.slice, c.side, false),
+              maths::kMostUnobserved * whole + 1e-6f);
+  }
+}
+
+}  // namespace
+}  // namespace alcove::maths_test

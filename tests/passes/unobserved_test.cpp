@@ -1,0 +1,189 @@
+// What foregrounds and the image's border hide is left out of visibility.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "gtao_scenes.h"
+#include "pass_fixture.h"
+
+namespace alcove::passes {
+namespace {
+
+class UnobservedPass : public PassTest {
+ protected:
+  static constexpr float kRadius = 1.2f;
+  static constexpr std::uint32_t kWidth = 96, kHeight = 40;
+
+  HostImage visibility(const TestView& view, const Drawing& drawing, bool unobserved,
+                       Estimator estimator = Estimator::connected, float radius = kRadius) {
+    OcclusionSettings settings = quality_settings(Quality::reference, radius);
+    settings.estimator = estimator;
+    settings.hidden_occlusion = 1.0f;
+    settings.parts.unobserved = unobserved;
+    return run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, settings).visibility;
+  }
+};
+
+std::vector<TestView> two_views() {
+  return {perspective_view("perspective", 1.2, 5.8, 0.1, 100.0, true),
+          orthographic_view("orthographic", 3.0, 1.25, 0.1, 20.0)};
+}
+
+// A floor between two walls along y, the same to both sides.
+Scene trench() {
+  constexpr double kFloor = 4.5, kHalfWidth = 0.5, kDepth = 0.6;
+  Scene scene = {plane({0.0, 0.0, -kFloor}, {0.0, 0.0, 1.0})};
+  Surface bank = plane({0.0, 0.0, kDepth - kFloor}, {0.0, 0.0, 1.0});
+  bank.keep = [](const glm::dvec3& p) { return std::abs(p.x) > kHalfWidth; };
+  scene.push_back(bank);
+  for (const double side : {-1.0, 1.0}) {
+    Surface wall = plane({side * kHalfWidth, 0.0, 0.0}, {-side, 0.0, 0.0});
+    wall.keep = [](const glm::dvec3& p) { return p.z > -kFloor && p.z < kDepth - kFloor; };
+    scene.push_back(wall);
+  }
+  return scene;
+}
+
+// Before all that lies to the right of the eye, and further from it than the radius.
+Surface plate(double edge) {
+  Surface surface = plane({0.0, 0.0, -2.5}, {0.0, 0.0, 1.0});
+  surface.keep = [edge](const glm::dvec3& p) { return p.x > edge; };
+  return surface;
+}
+
+double mean_difference(const HostImage& a, const HostImage& b, std::uint32_t from,
+                       std::uint32_t to) {
+  double sum = 0.0;
+  int count = 0;
+  for (std::uint32_t y = 12; y < a.height - 12; ++y) {
+    for (std::uint32_t x = from; x < to; ++x, ++count) sum += std::abs(a.at(x, y) - b.at(x, y));
+  }
+  return sum / count;
+}
+
+// Half a trench is as open as the whole.
+TEST_F(UnobservedPass, HalfATrenchUnderAPlateIsTakenToBeAsTheOther) {
+  for (const TestView& view : two_views()) {
+    SCOPED_TRACE(view.name);
+    const HostImage truth = visibility(view, draw(view, kWidth, kHeight, trench()), true);
+    Scene covered = trench();
+    covered.push_back(plate(0.05));
+    const Drawing drawing = draw(view, kWidth, kHeight, covered);
+    const auto error = [&](bool unobserved) {
+      return mean_difference(visibility(view, drawing, unobserved), truth, kWidth / 2 - 2,
+                             kWidth / 2);
+    };
+    EXPECT_GT(error(false), 0.1);
+    EXPECT_LT(3.0 * error(true), error(false));
+  }
+}
+
+TEST_F(UnobservedPass, BeyondTheBorderHalfATrenchIsTakenToGoOn) {
+  for (const TestView& view : two_views()) {
+    SCOPED_TRACE(view.name);
+    const HostImage truth = visibility(view, draw(view, kWidth, kHeight, trench()), true);
+    constexpr std::uint32_t kSeen = kWidth / 2 + 2;
+    const TestView part_view = columns_of(view, kWidth, 0, kSeen);
+    const Drawing drawing = draw(part_view, kSeen, kHeight, trench());
+    const auto error = [&](bool unobserved) {
+      return mean_difference(visibility(part_view, drawing, unobserved), truth, kWidth / 2 - 2,
+                             kWidth / 2);
+    };
+    EXPECT_GT(error(false), 0.1);
+    EXPECT_LT(error(true), 0.8 * error(false));
+  }
+}
+
+// A ball on a floor, in a radius wider than the image: what is seen occluded is not multiplied.
+TEST_F(UnobservedPass, AWideRadiusLeavesLittleOut) {
+  for (const TestView& view : two_views()) {
+    SCOPED_TRACE(view.name);
+    const Drawing drawing = draw(view, kWidth, kHeight, ball_on_floor());
+    const auto seen = [&](bool unobserved, float radius) {
+      return visibility(view, drawing, unobserved, Estimator::connected, radius);
+    };
+    const auto left_out = [&](float radius) {
+      return mean_difference(seen(true, radius), seen(false, radius), 0, kWidth);
+    };
+    EXPECT_GT(left_out(1.5f), 0.002) << "of what the ball hides";
+    EXPECT_LT(left_out(3.0f), 0.02);
+    EXPECT_LT(left_out(30.0f), 0.02);
+  }
+}
+
+TEST_F(UnobservedPass, TheBackgroundGoesOnBeyondTheBorder) {
+  for (const TestView& view : two_views()) {
+    SCOPED_TRACE(view.name);
+    // Half a trench, and beside its floor nothing.
+    Scene scene = trench();
+    for (Surface& surface : scene) {
+      const auto keep = surface.keep;
+      surface.keep = [keep](const glm::dvec3& p) { return p.x < 0.1 && (!keep || keep(p)); };
+    }
+    constexpr std::uint32_t kSeen = kWidth / 2 + 12;
+    const TestView part_view = columns_of(view, kWidth, 0, kSeen);
+    const Drawing drawing = draw(part_view, kSeen, kHeight, scene);
+    const HostImage whole = visibility(view, draw(view, kWidth, kHeight, scene), true);
+    EXPECT_LT(
+        mean_difference(visibility(part_view, drawing, true), whole, kWidth / 2 - 4, kWidth / 2),
+        2e-3);
+  }
+}
+
+TEST_F(UnobservedPass, AnOpenPlaneStaysOpenBesideAPlateBeforeIt) {
+  for (const TestView& view : test_views()) {
+    for (const double tilt : {0.0, 30.0, 60.0}) {
+      SCOPED_TRACE(testing::Message() << view.name << ", " << tilt);
+      int open = 0;
+      const Drawing drawing = draw(view, 60, 40, {tilted_plane(tilt, 4.5), plate(0.1)});
+      const HostImage image = visibility(view, drawing, true);
+      const HostImage without = visibility(view, drawing, false);
+      for (std::size_t i = 0; i < image.texels.size(); ++i) {
+        if (without.texels[i] > 0.999f) {
+          EXPECT_GT(image.texels[i], 1.0f - 4.0f * (1.0f - without.texels[i]) - 1e-3f) << i;
+          ++open;
+        }
+      }
+      EXPECT_GT(open, 1900);
+    }
+  }
+}
+
+TEST_F(UnobservedPass, WhatASecondLayerShowsIsSeen) {
+  const TestView view = two_views()[1];
+  Scene covered = trench();
+  covered.push_back(plate(0.05));
+  const Drawing drawing = draw(view, kWidth, kHeight, covered);
+  const HostImage second = draw_second_layer(view, kWidth, kHeight, covered);
+  const auto seen = [&](bool unobserved, std::uint32_t layers) {
+    OcclusionSettings settings = quality_settings(Quality::reference, kRadius);
+    settings.estimator = Estimator::connected;
+    settings.depth_layers = layers;
+    settings.parts.unobserved = unobserved;
+    return run_occlusion({.view = view.view,
+                          .depth_ndc = drawing.depth_ndc,
+                          .normal_vs = &drawing.normal_vs,
+                          .second_depth_ndc = &second},
+                         settings)
+        .visibility;
+  };
+  const auto left_out = [&](std::uint32_t layers) {
+    return mean_difference(seen(true, layers), seen(false, layers), kWidth / 2 - 4, kWidth / 2);
+  };
+  EXPECT_GT(left_out(1), 0.05);
+  EXPECT_LT(left_out(2), 0.2 * left_out(1));
+}
+
+TEST_F(UnobservedPass, OnlyConnectedSamplesLeaveItOut) {
+  const TestView view = two_views()[0];
+  Scene covered = trench();
+  covered.push_back(plate(0.05));
+  const Drawing drawing = draw(view, kWidth, kHeight, covered);
+  for (const Estimator estimator : {Estimator::horizons, Estimator::bitmask}) {
+    EXPECT_EQ(visibility(view, drawing, true, estimator).texels,
+              visibility(view, drawing, false, estimator).texels);
+  }
+}
+
+}  // namespace
+}  // namespace alcove::passes
