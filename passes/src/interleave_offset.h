@@ -15,7 +15,7 @@ struct InterleaveOffset {
 // that follow each other far apart: (0,0), (1,1), (1,0), (0,1), and the same within each quarter of
 // 4x4.
 [[nodiscard]] constexpr InterleaveOffset interleave_offset_of(std::uint32_t tile_size,
-                                                      std::uint32_t frame) {
+                                                              std::uint32_t frame) {
   constexpr std::array<InterleaveOffset, 4> kOrder{{{0, 0}, {1, 1}, {1, 0}, {0, 1}}};
   if (tile_size == 1) {
     return {};

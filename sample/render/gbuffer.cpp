@@ -10,8 +10,8 @@
 
 #include "render/gbuffer_pipelines.h"
 #include "render/gpu_textures.h"
-#include "render/triangles.h"
 #include "render/shaders/gbuffer.h"
+#include "render/triangles.h"
 
 namespace alcove::sample {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "render/gbuffer.h"
 #include "render/shader_module.h"
-#include "render/triangles.h"
 #include "render/shaders/gbuffer.h"
+#include "render/triangles.h"
 #include "spirv/gbuffer_fragment.h"
 #include "spirv/gbuffer_vertex.h"
 #include "spirv/second_layer_fragment.h"

@@ -10,8 +10,8 @@
 
 #include "render/gpu.h"
 #include "render/gpu_image.h"
-#include "scene/scene.h"
 #include "render/shaders/gbuffer.h"
+#include "scene/scene.h"
 
 namespace alcove::sample {
 
