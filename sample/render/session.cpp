@@ -25,7 +25,7 @@ tl::expected<std::unique_ptr<Gpu>, std::string> open_gpu(
 tl::expected<Session, std::string> session_of(const Options& options,
                                               const std::vector<const char*>& surface_extensions) {
   Session session;
-  auto scene = load_scene(options.scene, options.cut_blends);
+  auto scene = load_scene(options.scene, options.materials);
   if (!scene) {
     return Failure(std::move(scene.error()));
   }

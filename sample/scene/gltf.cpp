@@ -6,15 +6,17 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
-#include <glm/gtc/quaternion.hpp>
 #include <new>
 #include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
 
+#include "scene/framing.h"
 #include "scene/gltf_camera.h"
 #include "scene/gltf_material.h"
+#include "scene/gltf_extensions.h"
 #include "scene/gltf_mesh.h"
+#include "scene/gltf_nodes.h"
 #include "support/printable.h"
 
 namespace alcove::sample {
@@ -118,10 +120,6 @@ std::span<const uint8_t> json_of(std::span<const uint8_t> bytes) {
   return bytes.subspan(20, length);
 }
 
-bool is_read(const std::string& extension) {
-  return extension == "KHR_mesh_quantization" || extension == "KHR_texture_transform";
-}
-
 // tinygltf reads every version as if it were the second.
 tl::expected<void, std::string> check_version(const nlohmann::json& root) {
   const auto asset = root.find("asset");
@@ -160,8 +158,7 @@ tl::expected<void, std::string> check_json(std::span<const uint8_t> json) {
   if (required != root.end() && required->is_array()) {
     for (const auto& name : *required) {
       const std::string text = name.is_string() ? name.get<std::string>() : "?";
-      const bool appearance_only = text.starts_with("KHR_materials_");
-      if (!appearance_only && !is_read(text)) {
+      if (!changes_no_shape(text) && !is_extension_read(text)) {
         return Failure("it requires the extension " + text +
                        ", which is not read here; export it without");
       }
@@ -244,108 +241,21 @@ tl::expected<tinygltf::Model, std::string> read_model(std::span<const uint8_t> b
   return model;
 }
 
-glm::dmat4 local_transform(const tinygltf::Node& node) {
-  glm::dmat4 m(1.0);
-  if (node.matrix.size() == 16) {
-    for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = node.matrix[static_cast<size_t>(i)];
-    return m;
-  }
-  if (node.rotation.size() == 4) {
-    const glm::dquat q(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
-    const double length = glm::length(q);
-    if (length > 0.0) m = glm::mat4_cast(q / length);
-  }
-  if (node.scale.size() == 3) {
-    for (int c = 0; c < 3; ++c) m[c] *= node.scale[static_cast<size_t>(c)];
-  }
-  if (node.translation.size() == 3) {
-    for (int c = 0; c < 3; ++c) m[3][c] = node.translation[static_cast<size_t>(c)];
-  }
-  return m;
-}
-
-// The nodes to start from: those of the default scene, or every node that is nobody's child.
-tl::expected<std::vector<int>, std::string> root_nodes(const tinygltf::Model& model) {
-  if (!model.scenes.empty()) {
-    const int index = std::max(model.defaultScene, 0);
-    if (static_cast<size_t>(index) >= model.scenes.size()) {
-      return Failure("it has no scene " + std::to_string(index));
-    }
-    return model.scenes[static_cast<size_t>(index)].nodes;
-  }
-  std::vector<char> is_child(model.nodes.size(), 0);
-  for (const tinygltf::Node& node : model.nodes) {
-    for (const int child : node.children) {
-      if (child >= 0 && static_cast<size_t>(child) < is_child.size()) {
-        is_child[static_cast<size_t>(child)] = 1;
-      }
-    }
-  }
-  std::vector<int> roots;
-  for (size_t i = 0; i < is_child.size(); ++i) {
-    if (!is_child[i]) roots.push_back(static_cast<int>(i));
-  }
-  return roots;
-}
-
-tl::expected<void, std::string> add_mesh(const tinygltf::Model& model, const tinygltf::Node& node,
-                                         const glm::dmat4& world_from_node, MeshBudget& budget,
-                                         Scene& scene) {
-  if (node.mesh < 0) return {};
-  if (static_cast<size_t>(node.mesh) >= model.meshes.size()) {
-    return Failure("node \"" + node.name + "\" has no mesh " + std::to_string(node.mesh));
-  }
-  const tinygltf::Mesh& mesh = model.meshes[static_cast<size_t>(node.mesh)];
-  const std::string name = !mesh.name.empty() ? "\"" + mesh.name + "\"" : std::to_string(node.mesh);
-  for (const tinygltf::Primitive& primitive : mesh.primitives) {
-    if (!primitive.targets.empty()) {
-      scene.warnings.push_back("Mesh " + name + " has morph targets, which are left out.");
-    }
-    auto added = add_primitive(model, primitive, name, world_from_node, budget, scene);
-    if (!added) return added;
-  }
-  if (node.skin >= 0) {
-    scene.warnings.push_back("Mesh " + name + " is skinned and stands in its rest pose.");
-  }
-  return {};
-}
-
-// Every node once, from the roots; a second visit means a cycle or two parents.
-tl::expected<void, std::string> add_nodes(const tinygltf::Model& model, MeshBudget& budget,
-                                          std::vector<PlacedCamera>& cameras, Scene& scene) {
-  auto roots = root_nodes(model);
-  if (!roots) return Failure(roots.error());
-  std::vector<std::pair<int, glm::dmat4>> open;
-  for (auto root = roots->rbegin(); root != roots->rend(); ++root) {
-    open.emplace_back(*root, glm::dmat4(1.0));
-  }
-  std::vector<char> visited(model.nodes.size(), 0);
-  while (!open.empty()) {
-    const auto [index, world_from_parent] = open.back();
-    open.pop_back();
-    if (index < 0 || static_cast<size_t>(index) >= model.nodes.size()) {
-      return Failure("it has no node " + std::to_string(index));
-    }
-    if (std::exchange(visited[static_cast<size_t>(index)], 1)) {
-      return Failure("node " + std::to_string(index) +
-                     " is reached twice: nodes form a cycle or have two parents");
-    }
-    const tinygltf::Node& node = model.nodes[static_cast<size_t>(index)];
-    const glm::dmat4 world_from_node = world_from_parent * local_transform(node);
-    if (auto added = add_mesh(model, node, world_from_node, budget, scene); !added) return added;
-    add_camera(model, node, world_from_node, cameras, scene);
-    for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) {
-      open.emplace_back(*child, world_from_node);
-    }
-  }
-  return {};
-}
-
 // A warning once, however many parts it holds for.
 void tidy(std::vector<std::string>& warnings) {
   for (std::string& warning : warnings) warning = readable(std::move(warning), kMostOfASentence);
   std::sort(warnings.begin(), warnings.end());
   warnings.erase(std::unique(warnings.begin(), warnings.end()), warnings.end());
+}
+
+void add_core(Scene& scene) {
+  const SceneCore core = scene_core(scene.meshes);
+  scene.core_bounds_ws = core.bounds_ws;
+  if (core.triangles_outside == 0) return;
+  scene.warnings.push_back(std::to_string(core.triangles_outside) + " of " +
+                           std::to_string(triangle_count(scene)) +
+                           " triangles surround the others or lie far from them: the default view, "
+                           "radius and near plane are chosen without them.");
 }
 
 tl::expected<Scene, std::string> build_scene(const tinygltf::Model& model,
@@ -354,25 +264,28 @@ tl::expected<Scene, std::string> build_scene(const tinygltf::Model& model,
   if (auto added = add_materials(model, limits.pixels, scene); !added) {
     return Failure(added.error());
   }
-  MeshBudget budget{limits.primitives, limits.vertices, limits.indices};
+  MeshBudget budget{limits.primitives, limits.vertices, limits.indices, limits.instances,
+                    limits.drawn_triangles};
   std::vector<PlacedCamera> cameras;
   if (auto added = add_nodes(model, budget, cameras, scene); !added) return Failure(added.error());
   if (scene.meshes.empty()) return Failure("it has no triangles");
   if (!model.animations.empty()) {
-    scene.warnings.push_back("Animations are left out: nodes stand as the file places them.");
+    scene.warnings.push_back("Animations are left out: nodes and joints stand as the file places them.");
   }
   for (const auto* extensions : {&model.extensionsUsed, &model.extensionsRequired}) {
     for (const std::string& extension : *extensions) {
-      if (!is_read(extension)) {
+      if (!is_extension_read(extension)) {
         scene.warnings.push_back("The extension " + extension + " is left out.");
       }
     }
   }
-  tidy(scene.warnings);
   scene.bounds_ws = bounds_of(scene.meshes);
+  add_core(scene);
   for (const PlacedCamera& camera : cameras) {
-    scene.cameras.push_back(aimed(camera, scene.bounds_ws));
+    scene.cameras.push_back(aimed(camera, scene.core_bounds_ws));
+    scene.cameras.back().origin = scene.origin;
   }
+  tidy(scene.warnings);
   return scene;
 }
 

@@ -18,7 +18,7 @@ namespace alcove::sample {
 [[nodiscard]] tl::expected<std::span<const uint8_t>, std::string> view_bytes(
     const tinygltf::Model& model, int64_t view);
 
-// All elements as floats, `components` (1..4) each, in order; normalised integers are mapped to
+// All elements as floats, `components` (1..4, or 16 for matrices of floats) each, in order; normalised integers are mapped to
 // 0..1 or -1..1, others taken as they are; sparse values are put in. An accessor with more
 // components than asked for is an error, so is one with more than `most` elements.
 [[nodiscard]] tl::expected<std::vector<float>, std::string> read_floats(
