@@ -13,9 +13,9 @@
 #include "evaluate/variant_errors.h"
 #include "reference/surface_points.h"
 #include "render/session.h"
-#include "support/image_io.h"
 #include "support/mib.h"
 #include "support/progress.h"
+#include "support/whole_file.h"
 
 namespace alcove::sample {
 namespace {
@@ -130,8 +130,9 @@ Done run_ablate(const Options& options) {
     return Failure(std::move(session.error()));
   }
   // Before minutes of work, not after.
-  if (auto made = create_folder(options.out); !made) {
-    return made;
+  const auto folder = OutputFolder::create(options.out);
+  if (!folder) {
+    return tl::unexpected(folder.error());
   }
   const auto variants = run_variants(*session, options, variants_of(session->settings), "changes");
   if (!variants) {

@@ -299,9 +299,6 @@ std::string specular_name(const IndirectRequest& light, std::size_t i) {
 
 tl::expected<void, std::string> write_images(const Rendering& rendering,
                                              const std::filesystem::path& folder) {
-  if (auto made = create_folder(folder); !made) {
-    return made;
-  }
   const FrameImages& images = rendering.images;
   return write_exr(folder / "ao.exr", images.visibility)
       .and_then([&] { return write_png(folder / "ao.png", images.visibility); })
