@@ -6,7 +6,7 @@
 #include "cli/settings.h"
 #include "gpu_cost/cost_report.h"
 #include "scene/scene.h"
-#include "support/image_io.h"
+#include "support/whole_file.h"
 #include "support/progress.h"
 
 namespace alcove::sample {
