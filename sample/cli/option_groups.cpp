@@ -149,9 +149,9 @@ void add_view(CLI::App& app, ViewOptions& view) {
   group.add_optional_flag("--reversed-z",
                           "near plane at depth 1, far plane at 0; the default in perspective",
                           view.reversed_z, true);
-  group.add_optional_flag("--standard-z",
-                          "near plane at depth 0, far plane at 1; the default in orthographic views",
-                          view.reversed_z, false);
+  group.add_optional_flag(
+      "--standard-z", "near plane at depth 0, far plane at 1; the default in orthographic views",
+      view.reversed_z, false);
   group.add("--size", "WxH", "of the image in pixels; 960x540",
             [&](const OptionValue& given) { std::tie(view.width, view.height) = given.size(); });
 }
@@ -200,10 +200,11 @@ void add_occlusion(CLI::App& app, OcclusionOptions& occlusion) {
               occlusion.quality =
                   static_cast<passes::Quality>(given.one_of(passes::kNames<passes::Quality>));
             });
-  group.add("--radius", "LENGTH",
-            "distance up to which occluders count, scene units; a twentieth of the scene's diagonal, "
-            "without what only surrounds it",
-            [&](const OptionValue& given) { occlusion.radius = given.length(); });
+  group.add(
+      "--radius", "LENGTH",
+      "distance up to which occluders count, scene units; a twentieth of the scene's diagonal, "
+      "without what only surrounds it",
+      [&](const OptionValue& given) { occlusion.radius = given.length(); });
   group.add_repeatable(
       "--set", "NAME=VALUE", "one of the settings below over the preset; may be repeated",
       [&](const OptionValue& given) {

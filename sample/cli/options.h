@@ -92,8 +92,8 @@ struct CostOptions {
 
 struct Options {
   Command command = Command::kRender;
-  std::string scene;                  // empty: the built-in one
-  std::vector<std::string> scenes;    // bench: any number, each as `scene`
+  std::string scene;                // empty: the built-in one
+  std::vector<std::string> scenes;  // bench: any number, each as `scene`
   MaterialTreatment materials;
   std::filesystem::path environment;  // .hdr or .exr; empty: the procedural sky
   bool lit = false;                   // compare: also trace the lit picture

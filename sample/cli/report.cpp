@@ -7,6 +7,7 @@
 #include "alcove/passes/setting_names.h"
 #include "cli/settings.h"
 #include "support/mib.h"
+#include "support/process_memory.h"
 
 namespace alcove::sample {
 namespace {
@@ -68,6 +69,12 @@ Json report_of(const Rendering& rendering, const Options& options) {
                       {"transient_bytes_lower_bound", rendering.memory.lower_bound},
                       {"history_bytes", rendering.memory.history},
                       {"allocated_bytes", rendering.memory.allocated}};
+  // Of the whole process, with what the driver keeps in main memory.
+  if (const auto peak = peak_memory()) {
+    report["memory"]["peak_process_bytes"] = *peak;
+  }
+  report["scene_triangles"] = triangle_count(rendering.scene);
+  report["load_seconds"] = rendering.load_seconds;
   return report;
 }
 

@@ -173,6 +173,7 @@ tl::expected<Rendering, std::string> render(const Options& options) {
   }
   Rendering result;
   result.scene = std::move(session->scene);
+  result.load_seconds = session->load_seconds;
   result.settings = session->settings;
   auto environment = load_environment(options.environment);
   if (!environment) {

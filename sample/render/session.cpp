@@ -1,11 +1,13 @@
 #include "render/session.h"
 
+#include <chrono>
 #include <iostream>
 #include <utility>
 
 #include "cli/camera_of.h"
 #include "cli/settings.h"
 #include "scene/load_scene.h"
+#include "support/progress.h"
 
 namespace alcove::sample {
 
@@ -22,10 +24,12 @@ tl::expected<std::unique_ptr<Gpu>, std::string> open_gpu(
                      executor);
 }
 
-tl::expected<Session, std::string> session_of(const Options& options,
-                                              const std::vector<const char*>& surface_extensions) {
+tl::expected<Session, std::string> load_session(const Options& options) {
   Session session;
-  auto scene = load_scene(options.scene, options.materials);
+  const auto start = std::chrono::steady_clock::now();
+  auto scene = load_scene(options.scene, options.materials, print_progress("loading"));
+  session.load_seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!scene) {
     return Failure(std::move(scene.error()));
   }
@@ -43,11 +47,20 @@ tl::expected<Session, std::string> session_of(const Options& options,
     return Failure(settings.error());
   }
   session.settings = *settings;
+  return session;
+}
+
+tl::expected<Session, std::string> session_of(const Options& options,
+                                              const std::vector<const char*>& surface_extensions) {
+  auto session = load_session(options);
+  if (!session) {
+    return session;
+  }
   auto gpu = open_gpu(options, surface_extensions);
   if (!gpu) {
     return Failure(std::move(gpu.error()));
   }
-  session.gpu = std::move(*gpu);
+  session->gpu = std::move(*gpu);
   return session;
 }
 

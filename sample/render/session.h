@@ -18,12 +18,16 @@ struct Session {
   Scene scene;
   Camera camera;
   passes::OcclusionSettings settings;
+  double load_seconds = 0.0;  // of the scene
   std::unique_ptr<Gpu> gpu;
 };
 
-// Loads the scene, finds camera and settings and opens the device, in this order: the cheapest
-// mistake is told first. What the scene left out goes to stderr as notes. `surface_extensions` are
-// those of a window to present to.
+// Loads the scene and finds camera and settings, without a device. The scene's warnings go to
+// stderr as notes, and so does progress where loading takes long.
+[[nodiscard]] tl::expected<Session, std::string> load_session(const Options& options);
+
+// load_session(), then opens the device: the cheapest mistake is told first. `surface_extensions`
+// are those of a window to present to.
 [[nodiscard]] tl::expected<Session, std::string> session_of(
     const Options& options, const std::vector<const char*>& surface_extensions = {});
 

@@ -66,8 +66,8 @@ std::vector<Item> items_of(const std::vector<Mesh>& meshes) {
   return items;
 }
 
-// Whether an item only surrounds the rest, which is smaller: a plane, or a shell around it. The rest
-// must have an eighth of its triangles at least, so that a large model is not taken for the
+// Whether an item only surrounds the rest, which is smaller: a plane, or a shell around it. The
+// rest must have an eighth of its triangles at least, so that a large model is not taken for the
 // surroundings of a part of it.
 bool surrounds(const Item& item, const Bounds& rest, double triangles_of_rest) {
   if (8.0 * triangles_of_rest < item.triangles) return false;
@@ -166,8 +166,8 @@ SceneCore trimmed(const std::vector<Mesh>& meshes, std::span<const Item> items, 
   uint64_t index = 0;
   for_each_unit(meshes, items, [&](const Unit& unit) {
     if (index++ % step != 0) return;
-    samples.push_back({0.5f * (unit.bounds_ws.low + unit.bounds_ws.high),
-                       by_area ? unit.area : unit.triangles});
+    samples.push_back(
+        {0.5f * (unit.bounds_ws.low + unit.bounds_ws.high), by_area ? unit.area : unit.triangles});
   });
   const Bounds central = quantile_bounds(samples);
   const auto margin = static_cast<float>(diagonal(central));
@@ -186,7 +186,9 @@ SceneCore trimmed(const std::vector<Mesh>& meshes, std::span<const Item> items, 
 // The part of a convex polygon where `plane` . (x, y, z, 1) is not negative.
 using Polygon = std::vector<glm::dvec3>;
 void clip(Polygon& polygon, const glm::dvec4& plane) {
-  const auto distance = [&](const glm::dvec3& p) { return glm::dot(glm::dvec3(plane), p) + plane.w; };
+  const auto distance = [&](const glm::dvec3& p) {
+    return glm::dot(glm::dvec3(plane), p) + plane.w;
+  };
   Polygon out;
   for (size_t i = 0; i < polygon.size(); ++i) {
     const glm::dvec3& a = polygon[i];
@@ -349,8 +351,8 @@ std::optional<DepthRange> depth_in_view(const Scene& scene, const Camera& camera
     for (size_t i = batch.first; i + 2 < batch.last; i += 3) {
       std::array<glm::dvec3, 3> triangle;
       for (size_t c = 0; c < 3; ++c) {
-        triangle[c] = search.view_position(
-            batch.placed, batch.mesh->positions_ws[batch.mesh->indices[i + c]]);
+        triangle[c] = search.view_position(batch.placed,
+                                           batch.mesh->positions_ws[batch.mesh->indices[i + c]]);
       }
       search.add(triangle, own);
     }

@@ -33,9 +33,9 @@ struct DepthRange {
 [[nodiscard]] std::optional<DepthRange> depth_in_view(const Scene& scene, const Camera& camera,
                                                       double aspect);
 
-// The camera with its near plane at half the distance of the nearest triangle in view, within 1/5000
-// and 1/100 of the core's diagonal, and its far plane behind the farthest one and behind the core
-// from wherever in it the camera may turn to. The planes of an orthographic view enclose the
+// The camera with its near plane at half the distance of the nearest triangle in view, within
+// 1/5000 and 1/100 of the core's diagonal, and its far plane behind the farthest one and behind the
+// core from wherever in it the camera may turn to. The planes of an orthographic view enclose the
 // triangles in view. Unchanged where nothing is in view.
 [[nodiscard]] Camera with_fitted_planes(const Scene& scene, const Camera& camera, double aspect);
 

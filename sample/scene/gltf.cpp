@@ -13,8 +13,8 @@
 
 #include "scene/framing.h"
 #include "scene/gltf_camera.h"
-#include "scene/gltf_material.h"
 #include "scene/gltf_extensions.h"
+#include "scene/gltf_material.h"
 #include "scene/gltf_mesh.h"
 #include "scene/gltf_nodes.h"
 #include "support/printable.h"
@@ -258,8 +258,8 @@ void add_core(Scene& scene) {
                            "radius and near plane are chosen without them.");
 }
 
-tl::expected<Scene, std::string> build_scene(const tinygltf::Model& model,
-                                             const GltfLimits& limits) {
+tl::expected<Scene, std::string> build_scene(const tinygltf::Model& model, const GltfLimits& limits,
+                                             const Progress& progress) {
   Scene scene;
   if (auto added = add_materials(model, limits.pixels, scene); !added) {
     return Failure(added.error());
@@ -267,10 +267,12 @@ tl::expected<Scene, std::string> build_scene(const tinygltf::Model& model,
   MeshBudget budget{limits.primitives, limits.vertices, limits.indices, limits.instances,
                     limits.drawn_triangles};
   std::vector<PlacedCamera> cameras;
-  if (auto added = add_nodes(model, budget, cameras, scene); !added) return Failure(added.error());
+  if (auto added = add_nodes(model, budget, cameras, scene, progress); !added)
+    return Failure(added.error());
   if (scene.meshes.empty()) return Failure("it has no triangles");
   if (!model.animations.empty()) {
-    scene.warnings.push_back("Animations are left out: nodes and joints stand as the file places them.");
+    scene.warnings.push_back(
+        "Animations are left out: nodes and joints stand as the file places them.");
   }
   for (const auto* extensions : {&model.extensionsUsed, &model.extensionsRequired}) {
     for (const std::string& extension : *extensions) {
@@ -292,14 +294,15 @@ tl::expected<Scene, std::string> build_scene(const tinygltf::Model& model,
 }  // namespace
 
 tl::expected<Scene, std::string> parse_gltf(std::span<const uint8_t> bytes, const std::string& name,
-                                            const fs::path& folder, const GltfLimits& limits) {
+                                            const fs::path& folder, const GltfLimits& limits,
+                                            const Progress& progress) {
   const auto refuse = [&](const std::string& why) {
     return Failure("cannot read " + name + ": " + readable(why, kMostOfASentence));
   };
   try {
     const auto model = read_model(bytes, folder);
     if (!model) return refuse(model.error());
-    auto scene = build_scene(*model, limits);
+    auto scene = build_scene(*model, limits, progress);
     if (!scene) return refuse(scene.error());
     scene->name = printable(fs::path(name).stem().string());
     return scene;
@@ -310,7 +313,7 @@ tl::expected<Scene, std::string> parse_gltf(std::span<const uint8_t> bytes, cons
   }
 }
 
-tl::expected<Scene, std::string> load_gltf(const fs::path& file) {
+tl::expected<Scene, std::string> load_gltf(const fs::path& file, const Progress& progress) {
   const auto refuse = [&](const std::string& why) {
     return Failure("cannot read " + file.string() + ": " + why);
   };
@@ -324,7 +327,7 @@ tl::expected<Scene, std::string> load_gltf(const fs::path& file) {
   try {
     if (!read_file(file, kMostFileBytes, bytes, why)) return refuse(why);
     const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-    return parse_gltf(bytes, file.string(), folder);
+    return parse_gltf(bytes, file.string(), folder, {}, progress);
   } catch (const std::bad_alloc&) {
     return refuse(kTooLittleMemory);
   } catch (const std::exception& exception) {

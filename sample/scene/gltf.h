@@ -8,22 +8,23 @@
 #include <tl/expected.hpp>
 
 #include "scene/scene.h"
+#include "support/progress.h"
 
 namespace alcove::sample {
 
 // Reads a glTF 2 file, .gltf or .glb (by its content, not its name), into a scene.
 //
-// Read: node transforms (matrix or TRS, any hierarchy; mirrored ones turn the winding), skins in the
-// pose of the file's nodes, instances (a mesh of several nodes, EXT_mesh_gpu_instancing), triangle
-// lists, strips and fans with and without indices, every accessor type (normalised, interleaved,
-// sparse), embedded, binary and external buffers and images, metallic-roughness materials and
-// KHR_materials_pbrSpecularGlossiness with normal maps and tangents, vertex colours, doubleSided,
-// samplers, two sets of texture coordinates, KHR_texture_transform, alpha masks, cameras,
-// KHR_node_visibility. Triangles without normals have their geometric ones.
+// Read: node transforms (matrix or TRS, any hierarchy; mirrored ones turn the winding), skins in
+// the pose of the file's nodes, instances (a mesh of several nodes, EXT_mesh_gpu_instancing),
+// triangle lists, strips and fans with and without indices, every accessor type (normalised,
+// interleaved, sparse), embedded, binary and external buffers and images, metallic-roughness
+// materials and KHR_materials_pbrSpecularGlossiness with normal maps and tangents, vertex colours,
+// doubleSided, samplers, two sets of texture coordinates, KHR_texture_transform, alpha masks,
+// cameras, KHR_node_visibility. Triangles without normals have their geometric ones.
 //
-// Left out, with a warning in the scene: points and lines, morph targets, animation, further sets of
-// texture coordinates, other extensions. A file that requires an extension that changes shapes is
-// refused. Baked occlusion is left out without a warning, because occlusion is what is computed
+// Left out, with a warning in the scene: points and lines, morph targets, animation, further sets
+// of texture coordinates, other extensions. A file that requires an extension that changes shapes
+// is refused. Baked occlusion is left out without a warning, because occlusion is what is computed
 // here. Alpha-blended materials are opaque; with an alpha of 0 they are not drawn.
 //
 // The file may be hostile: every index, offset, stride and count is checked before it is used, what
@@ -36,15 +37,17 @@ struct GltfLimits {
   uint64_t indices = uint64_t{3} << 25;
   uint64_t instances = uint64_t{1} << 23;
   uint64_t drawn_triangles = uint64_t{1} << 28;  // counted once for each instance
-  uint64_t pixels = uint64_t{1} << 29;  // of all images together
+  uint64_t pixels = uint64_t{1} << 29;           // of all images together
 };
-[[nodiscard]] tl::expected<Scene, std::string> load_gltf(const std::filesystem::path& file);
+[[nodiscard]] tl::expected<Scene, std::string> load_gltf(const std::filesystem::path& file,
+                                                         const Progress& progress = {});
 
 // The same from memory. `name` stands in messages; external files are looked for in `folder`, or
 // refused when it is empty.
 [[nodiscard]] tl::expected<Scene, std::string> parse_gltf(std::span<const uint8_t> bytes,
                                                           const std::string& name,
                                                           const std::filesystem::path& folder,
-                                                          const GltfLimits& limits = {});
+                                                          const GltfLimits& limits = {},
+                                                          const Progress& progress = {});
 
 }  // namespace alcove::sample

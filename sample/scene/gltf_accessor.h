@@ -18,9 +18,10 @@ namespace alcove::sample {
 [[nodiscard]] tl::expected<std::span<const uint8_t>, std::string> view_bytes(
     const tinygltf::Model& model, int64_t view);
 
-// All elements as floats, `components` (1..4, or 16 for matrices of floats) each, in order; normalised integers are mapped to
-// 0..1 or -1..1, others taken as they are; sparse values are put in. An accessor with more
-// components than asked for is an error, so is one with more than `most` elements.
+// All elements as floats, `components` (1..4, or 16 for matrices of floats) each, in order;
+// normalised integers are mapped to 0..1 or -1..1, others taken as they are; sparse values are put
+// in. An accessor with more components than asked for is an error, so is one with more than `most`
+// elements.
 [[nodiscard]] tl::expected<std::vector<float>, std::string> read_floats(
     const tinygltf::Model& model, int64_t accessor, int components, uint64_t most);
 

@@ -57,7 +57,8 @@ tinygltf::TextureInfo texture_info(const tinygltf::Value& extension, const char*
   info.index = int_or(value, "index", -1);
   info.texCoord = int_or(value, "texCoord", 0);
   if (value.Has("extensions") && value.Get("extensions").IsObject()) {
-    for (const auto& [name, extension_value] : value.Get("extensions").Get<tinygltf::Value::Object>()) {
+    for (const auto& [name, extension_value] :
+         value.Get("extensions").Get<tinygltf::Value::Object>()) {
       info.extensions[name] = extension_value;
     }
   }

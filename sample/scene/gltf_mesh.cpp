@@ -347,8 +347,9 @@ tl::expected<void, std::string> add_primitive(const tinygltf::Model& model,
   if (placement.instances != nullptr) mesh.instances = *placement.instances;
   const uint64_t drawn = mesh.indices.size() / 3 * instance_count(mesh);
   if (drawn > budget.drawn_triangles) {
-    return refuse("takes the scene past the number of triangles that is drawn here, instances "
-                  "counted each");
+    return refuse(
+        "takes the scene past the number of triangles that is drawn here, instances "
+        "counted each");
   }
   // Charged here, because triangles without area took time to read too.
   charge(budget.vertices, vertices);

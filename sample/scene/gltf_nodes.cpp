@@ -166,8 +166,8 @@ DeclaredBounds declared_bounds(const tinygltf::Model& model, const tinygltf::Pri
 }
 
 double middle_of(std::vector<double> values, double share) {
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(
-                                       share * static_cast<double>(values.size() - 1));
+  const auto at =
+      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
   std::ranges::nth_element(values, at);
   return *at;
 }
@@ -313,13 +313,16 @@ class NodeReader {
 }  // namespace
 
 tl::expected<void, std::string> add_nodes(const tinygltf::Model& model, MeshBudget& budget,
-                                          std::vector<PlacedCamera>& cameras, Scene& scene) {
+                                          std::vector<PlacedCamera>& cameras, Scene& scene,
+                                          const Progress& progress) {
   const auto layout = place_nodes(model, budget);
   if (!layout) return Failure(layout.error());
   scene.origin = chosen_origin(model, *layout);
   NodeReader reader(model, *layout, budget, scene);
+  size_t done = 0;
   for (const DrawnNode& drawn : layout->drawn) {
     if (auto added = reader.add(drawn.node); !added) return added;
+    if (progress) progress(double(++done) / double(layout->drawn.size()));
     glm::dmat4 world_from_node = layout->world_from_node[drawn.node];
     world_from_node[3] -= glm::dvec4(scene.origin, 0.0);
     add_camera(model, model.nodes[drawn.node], world_from_node, cameras, scene);

@@ -35,7 +35,8 @@ class VertexPlacement {
 };
 
 // For each joint of a skin the transform from the mesh's bind pose to the joint's pose, as the
-// file's nodes give it. `placed` holds the transform of each node. Errors are the end of a sentence.
+// file's nodes give it. `placed` holds the transform of each node. Errors are the end of a
+// sentence.
 [[nodiscard]] tl::expected<std::vector<glm::dmat4>, std::string> joint_matrices(
     const tinygltf::Model& model, int skin, const std::vector<glm::dmat4>& placed);
 

@@ -26,14 +26,15 @@ void treat_materials(Scene& scene, const MaterialTreatment& treatment) {
 }  // namespace
 
 tl::expected<Scene, std::string> load_scene(const std::string& what,
-                                            const MaterialTreatment& treatment) {
+                                            const MaterialTreatment& treatment,
+                                            const Progress& progress) {
   if (what.empty() || what == "builtin") return builtin_scene();
   if (is_analytic_name(what)) {
     auto analytic = analytic_scene(what);
     if (!analytic) return tl::unexpected(analytic.error());
     return std::move(analytic->scene);
   }
-  auto scene = load_gltf(what);
+  auto scene = load_gltf(what, progress);
   if (!scene) return scene;
   treat_materials(*scene, treatment);
   if (scene->cameras.empty()) scene->cameras.push_back(framing_camera(*scene));

@@ -4,6 +4,7 @@
 #include <tl/expected.hpp>
 
 #include "scene/scene.h"
+#include "support/progress.h"
 
 namespace alcove::sample {
 
@@ -18,6 +19,7 @@ struct MaterialTreatment {
 // Errors are one sentence that names the scene and the remedy. A warning names each alpha-blended
 // material.
 [[nodiscard]] tl::expected<Scene, std::string> load_scene(const std::string& what,
-                                                          const MaterialTreatment& treatment = {});
+                                                          const MaterialTreatment& treatment = {},
+                                                          const Progress& progress = {});
 
 }  // namespace alcove::sample

@@ -108,9 +108,9 @@ struct Scene {
   // Where the origin of world space is in the space of the file. Views that people type and read
   // are in that of the file.
   glm::dvec3 origin{0.0};
-  Bounds bounds_ws;       // of all triangles
-  Bounds core_bounds_ws;  // of what the scene is about, see scene_core(); empty: bounds_ws
-  float suggested_radius = 0.0f;      // 0: a twentieth of the diagonal of the core's bounds
+  Bounds bounds_ws;               // of all triangles
+  Bounds core_bounds_ws;          // of what the scene is about, see scene_core(); empty: bounds_ws
+  float suggested_radius = 0.0f;  // 0: a twentieth of the diagonal of the core's bounds
   std::vector<std::string> warnings;  // one sentence each: what the picture does not show as stored
 };
 

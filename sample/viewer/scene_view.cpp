@@ -3,6 +3,7 @@
 #include <GLFW/glfw3.h>
 #include <imgui.h>
 
+#include <algorithm>
 #include <iostream>
 #include <utility>
 
@@ -15,6 +16,10 @@ namespace {
 using framegraph::Graph;
 using framegraph::Texture;
 using Failure = tl::unexpected<std::string>;
+
+std::string title_of(const std::string& scene) {
+  return "alcove: " + (scene.empty() ? "builtin" : scene);
+}
 
 ViewState first_state(const Session& session, const Options& options) {
   ViewState state;
@@ -30,8 +35,7 @@ ViewState first_state(const Session& session, const Options& options) {
 
 tl::expected<std::unique_ptr<SceneView>, std::string> SceneView::create(const Options& options) {
   std::unique_ptr<SceneView> made(new SceneView(options));
-  auto window = Window::create({options.view.width, options.view.height},
-                               "alcove: " + (options.scene.empty() ? "builtin" : options.scene));
+  auto window = Window::create({options.view.width, options.view.height}, title_of(options.scene));
   if (!window) {
     return Failure(std::move(window.error()));
   }
@@ -75,6 +79,65 @@ SceneView::~SceneView() {
   if (presenter_) {
     presenter_->wait();
   }
+}
+
+tl::expected<void, std::string> SceneView::load(const Options& options) {
+  auto loaded = load_session(options);
+  if (!loaded) {
+    return Failure(std::move(loaded.error()));
+  }
+  const auto environment = load_environment(options.environment);
+  if (!environment) {
+    return Failure(environment.error());
+  }
+  auto frame = SceneFrame::create(*session_.gpu, loaded->scene, *environment,
+                                  options.occlusion.normals, presenter_->format());
+  if (!frame) {
+    return Failure(std::move(frame.error()));
+  }
+  presenter_->wait();
+  frame_ = std::move(*frame);
+  session_.scene = std::move(loaded->scene);
+  session_.camera = loaded->camera;
+  session_.settings = loaded->settings;
+  return {};
+}
+
+void SceneView::open(const std::string& scene) {
+  Options options = options_;
+  options.scene = scene;
+  options.view.camera.clear();
+  options.view.eye.reset();
+  options.view.target.reset();
+  options.view.up_ws.reset();
+  options.view.near_plane.reset();
+  options.view.far_plane.reset();
+  options.occlusion.radius.reset();
+  if (auto loaded = load(options); !loaded) {
+    facts_.message = std::move(loaded.error());
+    return;
+  }
+  options_ = std::move(options);
+  state_.camera = session_.camera;
+  state_.settings.radius = session_.settings.radius;
+  state_.kept.radius = session_.settings.radius;
+  good_ = {state_.settings, state_.roughness};
+  refused_.reset();
+  facts_.first_settings = session_.settings;
+  facts_.refusal.clear();
+  facts_.message = scene + " is shown.";
+  window_->set_title(title_of(scene));
+}
+
+Camera SceneView::camera_around_scene() const {
+  Camera camera = state_.camera;
+  if (camera.orthographic || !(glm::length(session_.scene.bounds_ws.high) < 1e12f)) {
+    return camera;
+  }
+  for (const glm::vec3& corner : corners_of(session_.scene.bounds_ws)) {
+    camera.far_plane = std::max(camera.far_plane, 1.01f * glm::distance(corner, camera.eye_ws));
+  }
+  return camera;
 }
 
 void SceneView::take_keys() {
@@ -123,6 +186,7 @@ void SceneView::lay_out() {
 tl::expected<void, std::string> SceneView::draw_choice(const Choice& choice,
                                                        const HostBuffer* read_back) {
   ViewState state = state_;
+  state.camera = camera_around_scene();
   state.settings = choice.settings;
   state.roughness = choice.roughness;
   auto report = presenter_->draw([&](Graph& graph, Texture target) {
@@ -200,6 +264,9 @@ tl::expected<bool, std::string> SceneView::draw() {
   }
   if (!*prepared) {
     return true;
+  }
+  if (!window_->dropped_files().empty()) {
+    open(window_->dropped_files().back());
   }
   lay_out();
   auto drawn = std::exchange(wanted_, false) ? draw_and_read().and_then([&] { return write(); })

@@ -34,6 +34,10 @@ class SceneView {
   // Whether anything but the picture is shown.
   void show_panel(bool shown) { panel_shown_ = shown; }
 
+  // Shows another scene, from its own first view, with the settings that are chosen; their radius
+  // is that of the scene. Where the file cannot be read, the scene stays and the panel says why.
+  void open(const std::string& scene);
+
   ViewState& state() { return state_; }
   const PanelFacts& facts() const { return facts_; }
   Window& window() { return *window_; }
@@ -49,7 +53,10 @@ class SceneView {
   };
 
   explicit SceneView(const Options& options) : options_(options) {}
+  tl::expected<void, std::string> load(const Options& options);
   void take_keys();
+  // The camera with a far plane behind the scene, wherever the user has moved it.
+  Camera camera_around_scene() const;
   void lay_out();
   // Where `read_back` is not null, the window's image goes there.
   tl::expected<void, std::string> draw_choice(const Choice& choice, const HostBuffer* read_back);

@@ -33,9 +33,9 @@ Mesh sphere(float radius, const glm::vec3& centre, uint32_t n) {
     for (uint32_t k = 0; k <= 2 * n; ++k) {
       const float polar = 3.14159265f * float(i) / float(n);
       const float azimuth = 3.14159265f * float(k) / float(n);
-      mesh.positions_ws.push_back(
-          centre + radius * glm::vec3(std::sin(polar) * std::cos(azimuth), std::cos(polar),
-                                      std::sin(polar) * std::sin(azimuth)));
+      mesh.positions_ws.push_back(centre + radius * glm::vec3(std::sin(polar) * std::cos(azimuth),
+                                                              std::cos(polar),
+                                                              std::sin(polar) * std::sin(azimuth)));
       if (i == n || k == 2 * n) continue;
       const uint32_t v = i * (2 * n + 1) + k;
       for (const uint32_t c : {v, v + 1, v + 2 * n + 1, v + 1, v + 2 * n + 2, v + 2 * n + 1}) {
@@ -88,8 +88,7 @@ TEST(SceneCore, StrayTrianglesOfTheSameMeshDoNotStretchIt) {
 
 TEST(SceneCore, SkyDomeAndGroundPlaneAreLeftOut) {
   const Mesh character = sphere(1.0f, {0, 1, 0}, 16);
-  const SceneCore core =
-      scene_core({sphere(5000.0f, {0, 0, 0}, 16), grid(1000.0f, 1), character});
+  const SceneCore core = scene_core({sphere(5000.0f, {0, 0, 0}, 16), grid(1000.0f, 1), character});
   EXPECT_EQ(core.triangles_outside, 4u * 16 * 16 + 2);
   EXPECT_NEAR(size_of(core.bounds_ws), 2.0 * std::sqrt(3.0), 0.1);
 }

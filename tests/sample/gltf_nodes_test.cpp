@@ -161,7 +161,8 @@ TEST(GltfNodes, SceneFarFromTheOriginIsThatAtTheOrigin) {
   const glm::vec3 shift(offset - far_scene.origin);
   for (size_t i = 0; i < 3; ++i) EXPECT_LT(glm::distance(here[i] + shift, there[i]), 1e-6f);
   ASSERT_EQ(far_scene.cameras.size(), 1u);
-  EXPECT_LT(glm::distance(near_scene.cameras[0].eye_ws + shift, far_scene.cameras[0].eye_ws), 1e-6f);
+  EXPECT_LT(glm::distance(near_scene.cameras[0].eye_ws + shift, far_scene.cameras[0].eye_ws),
+            1e-6f);
   EXPECT_EQ(far_scene.cameras[0].origin, far_scene.origin);
 }
 
@@ -187,13 +188,12 @@ TEST(GltfMaterial, MaterialsAreSingleSidedUnlessTheFileSaysOtherwise) {
 }
 
 TEST(GltfMaterial, SpecularGlossinessGivesBaseColourAlphaAndRoughness) {
-  const Material material = only_material(
-      {{"alphaMode", "MASK"},
-       {"extensions",
-        {{"KHR_materials_pbrSpecularGlossiness",
-          {{"diffuseFactor", {0.25, 0.5, 0.75, 0.5}},
-           {"diffuseTexture", {{"index", 0}, {"texCoord", 1}}},
-           {"glossinessFactor", 0.25}}}}}});
+  const Material material = only_material({{"alphaMode", "MASK"},
+                                           {"extensions",
+                                            {{"KHR_materials_pbrSpecularGlossiness",
+                                              {{"diffuseFactor", {0.25, 0.5, 0.75, 0.5}},
+                                               {"diffuseTexture", {{"index", 0}, {"texCoord", 1}}},
+                                               {"glossinessFactor", 0.25}}}}}});
   EXPECT_EQ(material.base_color, glm::vec4(0.25f, 0.5f, 0.75f, 0.5f));
   EXPECT_EQ(material.base_color_texture.image, 0);
   EXPECT_EQ(material.base_color_texture.uv_set, 1u);

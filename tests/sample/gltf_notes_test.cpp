@@ -41,9 +41,8 @@ TEST(GltfNotes, WhatBlendsIsOpaqueUnlessItIsCutOutAndBothAreSaid) {
     const auto scene = load_scene(file, {.cut_blends = cut});
     ASSERT_TRUE(scene) << scene.error();
     EXPECT_EQ(scene->materials[0].alpha_mode, cut ? AlphaMode::kMask : AlphaMode::kBlend);
-    EXPECT_THAT(
-        scene->warnings,
-        testing::ElementsAre(HasSubstr(cut ? "cut out elsewhere" : "--cut-blends")));
+    EXPECT_THAT(scene->warnings,
+                testing::ElementsAre(HasSubstr(cut ? "cut out elsewhere" : "--cut-blends")));
   }
 }
 
