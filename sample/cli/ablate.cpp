@@ -6,13 +6,12 @@
 #include <sstream>
 
 #include "cli/commands.h"
+#include "cli/open_session.h"
 #include "cli/report.h"
-#include "cli/settings.h"
 #include "evaluate/ablation.h"
 #include "evaluate/errors.h"
 #include "evaluate/variant_errors.h"
-#include "reference/surface_points.h"
-#include "render/session.h"
+#include "render/settings_json.h"
 #include "support/image_io.h"
 #include "support/mib.h"
 #include "support/progress.h"
@@ -125,7 +124,7 @@ Json to_json(const VariantErrors& row) {
 }  // namespace
 
 Done run_ablate(const Options& options) {
-  auto session = session_of(options);
+  auto session = open_session(options);
   if (!session) {
     return Failure(std::move(session.error()));
   }
@@ -133,7 +132,7 @@ Done run_ablate(const Options& options) {
   if (auto made = create_folder(options.out); !made) {
     return made;
   }
-  const auto variants = run_variants(*session, options, variants_of(session->settings), "changes");
+  const auto variants = run_variants(*session, static_setup(options, session->camera), truth_options(options), variants_of(session->settings), "changes");
   if (!variants) {
     return Failure(variants.error());
   }

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "cli/option_value.h"
-#include "cli/setting_table.h"
+#include "render/setting_table.h"
 #include "cli/settings.h"
 
 namespace alcove::sample {

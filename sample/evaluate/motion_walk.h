@@ -8,7 +8,7 @@
 #include <tl/expected.hpp>
 
 #include "alcove/passes/occlusion.h"
-#include "cli/options.h"
+#include "render/normal_source.h"
 #include "evaluate/motion_errors.h"
 #include "evaluate/motion_paths.h"
 #include "render/frame_renderer.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "alcove/passes/occlusion.h"
-#include "cli/options.h"
+#include "render/normal_source.h"
 #include "render/frame_renderer.h"
 #include "render/gpu.h"
 #include "scene/camera.h"

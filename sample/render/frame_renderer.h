@@ -8,7 +8,7 @@
 
 #include "alcove/framegraph/executor.h"
 #include "alcove/passes/occlusion.h"
-#include "cli/options.h"
+#include "render/normal_source.h"
 #include "render/gbuffer.h"
 #include "render/gpu.h"
 #include "scene/environment.h"

@@ -4,7 +4,7 @@
 
 #include "alcove/passes/apply.h"
 #include "alcove/passes/occlusion.h"
-#include "cli/options.h"
+#include "render/normal_source.h"
 #include "render/gbuffer.h"
 
 namespace alcove::sample {

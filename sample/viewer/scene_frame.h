@@ -5,7 +5,7 @@
 #include <string>
 #include <tl/expected.hpp>
 
-#include "cli/options.h"
+#include "render/normal_source.h"
 #include "render/gbuffer.h"
 #include "render/gpu.h"
 #include "render/probe.h"
