@@ -12,9 +12,9 @@
 #include "evaluate/errors.h"
 #include "evaluate/variant_errors.h"
 #include "render/settings_json.h"
-#include "support/image_io.h"
 #include "support/mib.h"
 #include "support/progress.h"
+#include "support/whole_file.h"
 
 namespace alcove::sample {
 namespace {
@@ -129,10 +129,13 @@ Done run_ablate(const Options& options) {
     return Failure(std::move(session.error()));
   }
   // Before minutes of work, not after.
-  if (auto made = create_folder(options.out); !made) {
-    return made;
+  const auto folder = OutputFolder::create(options.out);
+  if (!folder) {
+    return tl::unexpected(folder.error());
   }
-  const auto variants = run_variants(*session, static_setup(options, session->camera), truth_options(options), variants_of(session->settings), "changes");
+  const auto variants =
+      run_variants(*session, static_setup(options, session->camera), truth_options(options),
+                   variants_of(session->settings), "changes");
   if (!variants) {
     return Failure(variants.error());
   }

@@ -7,8 +7,8 @@
 #include "evaluate/measured_trade.h"
 #include "evaluate/trade_plot.h"
 #include "scene/load_scene.h"
-#include "support/image_io.h"
 #include "support/printable.h"
+#include "support/whole_file.h"
 
 namespace alcove::sample {
 namespace {
@@ -46,8 +46,9 @@ void tell(const Trade& trade, const std::string& title, const std::string& devic
 }  // namespace
 
 Done run_bench(const Options& options) {
-  if (auto made = create_folder(options.out); !made) {
-    return made;
+  const auto folder = OutputFolder::create(options.out);
+  if (!folder) {
+    return tl::unexpected(folder.error());
   }
   const std::vector<std::string> scenes =
       options.scenes.empty() ? std::vector<std::string>{""} : options.scenes;

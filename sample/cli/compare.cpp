@@ -10,6 +10,7 @@
 #include "evaluate/lit_errors.h"
 #include "evaluate/truths.h"
 #include "support/image_io.h"
+#include "support/whole_file.h"
 
 namespace alcove::sample {
 namespace {
@@ -82,8 +83,9 @@ tl::expected<void, std::string> write_truths(const Rendering& rendering, const T
 
 tl::expected<void, std::string> run_compare(const Options& options) {
   // Before minutes of work, not after.
-  if (auto made = create_folder(options.out); !made) {
-    return made;
+  const auto folder = OutputFolder::create(options.out);
+  if (!folder) {
+    return tl::unexpected(folder.error());
   }
   const auto rendering = render(options);
   if (!rendering) {

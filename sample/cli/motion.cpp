@@ -11,6 +11,7 @@
 #include "render/settings_json.h"
 #include "support/image_io.h"
 #include "support/progress.h"
+#include "support/whole_file.h"
 
 namespace alcove::sample {
 namespace {
@@ -201,8 +202,9 @@ Done run_motion(const Options& options) {
   if (!course) {
     return Failure(std::move(course.error()));
   }
-  if (auto made = create_folder(options.out); !made) {
-    return made;
+  const auto folder = OutputFolder::create(options.out);
+  if (!folder) {
+    return tl::unexpected(folder.error());
   }
   Json report;
   report["device"] = course->session.gpu->device().properties().deviceName;

@@ -66,7 +66,8 @@ Done run_recommend(const Options& options) {
   if (!session) {
     return Failure(session.error());
   }
-  auto points = measure_trade(*session, static_setup(options, session->camera), truth_options(options));
+  auto points =
+      measure_trade(*session, static_setup(options, session->camera), truth_options(options));
   if (!points) {
     return Failure(std::move(points.error()));
   }

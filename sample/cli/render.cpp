@@ -5,7 +5,7 @@
 #include "cli/commands.h"
 #include "cli/open_session.h"
 #include "cli/report.h"
-#include "support/image_io.h"
+#include "support/whole_file.h"
 
 namespace alcove::sample {
 namespace {
@@ -18,8 +18,9 @@ bool shows_surfaces(const Rendering& rendering) {
 }  // namespace
 
 tl::expected<void, std::string> run_render(const Options& options) {
-  if (auto made = create_folder(options.out); !made) {
-    return made;
+  const auto folder = OutputFolder::create(options.out);
+  if (!folder) {
+    return tl::unexpected(folder.error());
   }
   const auto rendering = render(options);
   if (!rendering) {

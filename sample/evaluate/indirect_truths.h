@@ -5,9 +5,9 @@
 #include <tl/expected.hpp>
 #include <vector>
 
+#include "evaluate/truths.h"
 #include "reference/lit_truth.h"
 #include "reference/specular_baselines.h"
-#include "evaluate/truths.h"
 #include "reference/truth.h"
 #include "render/rendering.h"
 #include "support/image.h"
@@ -24,7 +24,7 @@ struct IndirectTruths {
   Image<glm::vec3> interreflection;
   std::vector<Image<float>> specular;                 // for each of roughness_images()
   std::vector<SpecularBaselines> specular_baselines;  // likewise
-  std::optional<LitTruth> lit;                        // where RenderRequest::light asks for it, for the first
+  std::optional<LitTruth> lit;  // where RenderRequest::light asks for it, for the first
 };
 
 // The perceptual roughness that each specular occlusion of a rendering was made for.

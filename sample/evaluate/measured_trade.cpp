@@ -26,9 +26,8 @@ TradePoint point_of(const VariantErrors& errors, const BaseTimes& base) {
 
 }  // namespace
 
-tl::expected<std::vector<TradePoint>, std::string> measure_trade(const Session& session,
-                                                                 const StaticSetup& setup,
-                                                                 const TruthOptions& truth_options) {
+tl::expected<std::vector<TradePoint>, std::string> measure_trade(
+    const Session& session, const StaticSetup& setup, const TruthOptions& truth_options) {
   std::vector<Variant> ways = preset_sweep(session.settings);
   // The session's own settings are drawn as what the others are timed beside.
   std::string own_name = "as given";

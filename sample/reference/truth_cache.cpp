@@ -6,7 +6,8 @@
 #include <fstream>
 #include <system_error>
 
-#include "support/image_io.h"
+#include "support/regular_file.h"
+#include "support/whole_file.h"
 
 namespace alcove::sample {
 namespace {
@@ -131,23 +132,25 @@ std::filesystem::path TruthCache::default_folder() {
   return home.empty() ? home : home / ".cache" / "alcove";
 }
 
-TruthCache::TruthCache(std::filesystem::path folder) : folder_(std::move(folder)) {}
+TruthCache::TruthCache(std::filesystem::path folder) : folder_(std::move(folder)) {
+  if (!folder_.empty()) remove_abandoned(folder_);
+}
 
 std::optional<std::vector<float>> TruthCache::read(const CacheKey& key, size_t count) const {
   if (folder_.empty()) {
     return std::nullopt;
   }
-  std::ifstream file(folder_ / (key.hex() + ".truth"), std::ios::binary);
+  // Anything but a regular file is no entry: reading a named pipe would wait for ever.
+  const auto file = open_regular_file(folder_ / (key.hex() + ".truth"));
   Header header;
   const Header expected;
-  if (!file.read(reinterpret_cast<char*>(&header), sizeof(header)) ||
+  if (!file || std::fread(&header, sizeof(header), 1, file->get()) != 1 ||
       header.magic != expected.magic || header.count != count) {
     return std::nullopt;
   }
   std::vector<float> values(count);
-  file.read(reinterpret_cast<char*>(values.data()),
-            static_cast<std::streamsize>(count * sizeof(float)));
-  const bool whole = file && file.peek() == std::ifstream::traits_type::eof();
+  const bool whole = std::fread(values.data(), sizeof(float), count, file->get()) == count &&
+                     std::getc(file->get()) == EOF;
   if (!whole || mix(0, std::as_bytes(std::span(values))) != header.checksum) {
     return std::nullopt;
   }

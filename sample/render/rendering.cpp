@@ -54,8 +54,7 @@ enum class Outputs : std::uint8_t {
 // The requests of a run's frames, by index: the camera orbits, and motion is from the frame before.
 class Run {
  public:
-  Run(const RenderRequest& request, const Camera& camera,
-      const passes::OcclusionSettings& settings)
+  Run(const RenderRequest& request, const Camera& camera, const passes::OcclusionSettings& settings)
       : request_(request), camera_(camera), settings_(settings) {
     if (!request.light.roughness.empty()) {
       timed_light_.roughness = {request.light.roughness.front()};
@@ -175,8 +174,8 @@ tl::expected<Rendering, std::string> render(Session session, const RenderRequest
 
   const Run run(request, session.camera, result.settings);
   result.camera = run.camera(run.frames() - 1);
-  auto renderer = FrameRenderer::create(
-      gpu, result.scene, {request.width, request.height}, request.normals);
+  auto renderer =
+      FrameRenderer::create(gpu, result.scene, {request.width, request.height}, request.normals);
   if (!renderer) {
     return Failure(std::move(renderer.error()));
   }
@@ -289,9 +288,6 @@ std::string specular_name(const IndirectRequest& light, std::size_t i) {
 
 tl::expected<void, std::string> write_images(const Rendering& rendering,
                                              const std::filesystem::path& folder) {
-  if (auto made = create_folder(folder); !made) {
-    return made;
-  }
   const FrameImages& images = rendering.images;
   return write_exr(folder / "ao.exr", images.visibility)
       .and_then([&] { return write_png(folder / "ao.png", images.visibility); })

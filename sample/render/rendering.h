@@ -65,7 +65,7 @@ struct RenderRequest {
 // by _r30 and the like where several roughness values were asked for.
 [[nodiscard]] std::string specular_name(const IndirectRequest& light, std::size_t i);
 
-// Writes the images of a rendering and creates the folder where it is missing.
+// Writes the images of a rendering to a folder that exists.
 [[nodiscard]] tl::expected<void, std::string> write_images(const Rendering& rendering,
                                                            const std::filesystem::path& folder);
 

@@ -1,22 +1,21 @@
 #include "scene/environment.h"
 
-#include <stb_image.h>
-
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <glm/gtc/constants.hpp>
-#include <memory>
+#include <optional>
 
-#include "support/image_io.h"
+#include "support/block_mean.h"
+#include "support/read_exr.h"
+#include "support/read_hdr.h"
+#include "support/regular_file.h"
 
 namespace alcove::sample {
 namespace {
 
 using Loaded = tl::expected<EnvironmentImage, std::string>;
 
-constexpr int kLargest = 32768;      // pixels a side of a file
-constexpr uint32_t kColumns = 2048;  // that are kept
+constexpr uint32_t kMostPixels = 2048;  // a side, of an environment in memory
 
 glm::vec3 direction_of(double u, double v) {
   const double turn = u * 2.0 * glm::pi<double>(), fall = v * glm::pi<double>();
@@ -37,65 +36,43 @@ glm::vec3 sky_radiance(const glm::vec3& d) {
 }
 
 Loaded refuse(const std::filesystem::path& file, const std::string& why) {
-  return tl::unexpected("The environment " + file.string() + " cannot be used: " + why + ".");
+  return tl::unexpected("The environment " + file.string() + " cannot be used: it " + why + ".");
 }
 
-uint64_t size_of(const std::filesystem::path& file) {
-  std::error_code ignored;
-  const auto size = std::filesystem::file_size(file, ignored);
-  return ignored ? 0 : size;
-}
+// Collects the rows of a file, shrunk by a whole factor to at most kMostPixels a side.
+class EnvironmentRows {
+ public:
+  FloatRows receiver() {
+    return {.begin = [this](uint32_t width, uint32_t height) { begin(width, height); },
+            .row = [this](std::span<const float> row) { add(row); }};
+  }
+  EnvironmentImage take() { return std::move(image_); }
 
-// Of a Radiance file: rows of at least 8 pixels may be coded as runs of up to 127 a channel.
-uint64_t least_bytes(int width, int height) {
-  const auto w = static_cast<uint64_t>(width), h = static_cast<uint64_t>(height);
-  return w < 8 ? 4 * w * h : h * (4 + 8 * ((w + 126) / 127));
-}
+ private:
+  void begin(uint32_t width, uint32_t height) {
+    const uint32_t factor = (std::max(width, height) + kMostPixels - 1) / kMostPixels;
+    mean_.emplace(width, height, 3u, factor);
+    image_ = EnvironmentImage(mean_->reduced(width), mean_->reduced(height));
+    light_.resize(3 * size_t{width});
+  }
 
-Loaded load_hdr(const std::filesystem::path& file) {
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> opened(std::fopen(file.c_str(), "rb"),
-                                                               std::fclose);
-  if (!opened) return refuse(file, "it cannot be opened");
-  int width = 0, height = 0, channels = 0;
-  if (stbi_is_hdr_from_file(opened.get()) == 0 ||
-      stbi_info_from_file(opened.get(), &width, &height, &channels) == 0) {
-    return refuse(file, "it is no Radiance file");
+  void add(std::span<const float> row) {
+    std::ranges::transform(row, light_.begin(), [](float value) {
+      return value > 0.0f && !std::isinf(value) ? value : 0.0f;
+    });
+    mean_->add_row(light_, [this](size_t, double value) {
+      image_.pixels[written_ / 3][static_cast<int>(written_ % 3)] = static_cast<float>(value);
+      ++written_;
+    });
   }
-  const bool in_range = width >= 1 && height >= 1 && width <= kLargest && height <= kLargest;
-  if (!in_range || least_bytes(width, height) > size_of(file)) {
-    return refuse(file, "it says " + std::to_string(width) + "x" + std::to_string(height) +
-                            " pixels, but is too short for that");
-  }
-  const std::unique_ptr<float, void (*)(void*)> pixels(
-      stbi_loadf_from_file(opened.get(), &width, &height, &channels, 3), stbi_image_free);
-  if (!pixels) return refuse(file, "it is damaged");
-  EnvironmentImage image(static_cast<uint32_t>(width), static_cast<uint32_t>(height));
-  for (size_t i = 0; i < image.pixels.size(); ++i) {
-    image.pixels[i] = {pixels.get()[3 * i], pixels.get()[3 * i + 1], pixels.get()[3 * i + 2]};
-  }
-  return image;
-}
 
-void make_light(EnvironmentImage& image) {
-  for (glm::vec3& pixel : image.pixels) {
-    for (int c = 0; c < 3; ++c) {
-      if (!(pixel[c] > 0.0f) || std::isinf(pixel[c])) pixel[c] = 0.0f;
-    }
-  }
-}
+  EnvironmentImage image_;
+  std::optional<BlockMean<float, double>> mean_;
+  std::vector<float> light_;  // a row without what is no radiance
+  size_t written_ = 0;        // components of image_
+};
 
-// The mean of blocks, so that at most kColumns are left.
-EnvironmentImage reduced(const EnvironmentImage& image) {
-  const uint32_t factor = (image.width + kColumns - 1) / kColumns;
-  if (factor <= 1 || image.height < factor) return image;
-  EnvironmentImage out(image.width / factor, image.height / factor);
-  for (uint32_t y = 0; y < out.height * factor; ++y) {
-    for (uint32_t x = 0; x < out.width * factor; ++x) {
-      out.at(x / factor, y / factor) += image.at(x, y) / static_cast<float>(factor * factor);
-    }
-  }
-  return out;
-}
+std::vector<std::string> colour_channels(const ChannelExists&) { return {"R", "G", "B"}; }
 
 std::string lower_case_ending(const std::filesystem::path& file) {
   std::string ending = file.extension().string();
@@ -120,18 +97,15 @@ tl::expected<EnvironmentImage, std::string> load_environment(const std::filesyst
   if (file.empty()) return procedural_sky();
   const std::string ending = lower_case_ending(file);
   if (ending != ".hdr" && ending != ".exr") {
-    return refuse(file, "give an equirectangular .hdr or .exr file");
+    return refuse(file, "is no .hdr or .exr file; give an equirectangular image of these formats");
   }
-  // Opening a pipe that nobody fills waits for ever.
-  std::error_code ignored;
-  const auto status = std::filesystem::status(file, ignored);
-  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    return refuse(file, "it is no regular file");
-  }
-  Loaded image = ending == ".hdr" ? load_hdr(file) : read_exr_rgb(file);
-  if (!image) return image;
-  make_light(*image);
-  return reduced(*image);
+  const auto opened = open_regular_file(file);
+  if (!opened) return refuse(file, opened.error());
+  EnvironmentRows rows;
+  const auto read = ending == ".hdr" ? read_hdr(opened->get(), rows.receiver())
+                                     : read_exr(opened->get(), colour_channels, rows.receiver());
+  if (!read) return refuse(file, read.error());
+  return rows.take();
 }
 
 glm::vec3 radiance(const EnvironmentImage& environment, const glm::vec3& direction) {

@@ -1,11 +1,8 @@
 #include "scene/gltf_material.h"
 
-#include <stb_image.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -13,6 +10,7 @@
 #include "scene/gltf_accessor.h"
 #include "scene/gltf_sampler.h"
 #include "scene/gltf_texture_transform.h"
+#include "support/decode_image.h"
 
 namespace alcove::sample {
 namespace {
@@ -178,27 +176,23 @@ tl::expected<int32_t, std::string> MaterialReader::decode(const std::string& nam
     return kUnreadable;
   };
   if (bytes.empty()) return unreadable("is missing");
-  int width = 0, height = 0, channels = 0;
-  const int size = static_cast<int>(std::min<size_t>(bytes.size(), INT32_MAX));
-  if (!stbi_info_from_memory(bytes.data(), size, &width, &height, &channels) || width < 1 ||
-      height < 1) {
-    return unreadable("is no PNG or JPEG");
+  const auto header = read_image_header(bytes);
+  if (!header) return unreadable(header.error());
+  if (header->width > kLargestImageSide || header->height > kLargestImageSide) {
+    return Failure("uses " + name + ", which is " + std::to_string(header->width) + "x" +
+                   std::to_string(header->height) + " pixels; make it at most " +
+                   std::to_string(kLargestImageSide) + " a side");
   }
-  const uint64_t pixels = static_cast<uint64_t>(width) * static_cast<uint64_t>(height);
-  // No encoder gets below a bit per hundred pixels; a header that promises more is damaged, and
-  // decoding it would only take memory.
-  constexpr uint64_t kMostPixelsPerByte = 2048;
-  if (pixels / kMostPixelsPerByte > bytes.size()) return unreadable("is cut short");
+  const uint64_t pixels = uint64_t{header->width} * header->height;
   if (pixels > pixels_left_) return Failure("uses " + name + ", which is too large");
   pixels_left_ -= pixels;
-  const std::unique_ptr<stbi_uc, void (*)(void*)> rgba(
-      stbi_load_from_memory(bytes.data(), size, &width, &height, &channels, 4), stbi_image_free);
-  if (!rgba) return unreadable("cannot be decoded");
+  auto decoded = decode_image(bytes, *header);
+  if (!decoded) return unreadable(decoded.error());
   TextureImage out;
   out.name = name;
-  out.width = static_cast<uint32_t>(width);
-  out.height = static_cast<uint32_t>(height);
-  out.rgba.assign(rgba.get(), rgba.get() + 4 * pixels);
+  out.width = decoded->width;
+  out.height = decoded->height;
+  out.rgba = std::move(decoded->rgba);
   scene_.images.push_back(std::move(out));
   return static_cast<int32_t>(scene_.images.size() - 1);
 }

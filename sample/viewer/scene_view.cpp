@@ -50,8 +50,7 @@ tl::expected<std::unique_ptr<SceneView>, std::string> SceneView::create(SceneVie
   }
   made->presenter_ = std::move(*presenter);
   const VkFormat format = made->presenter_->format();
-  auto frame = SceneFrame::create(gpu, made->session_.scene, *environment,
-                                  request.normals, format);
+  auto frame = SceneFrame::create(gpu, made->session_.scene, *environment, request.normals, format);
   if (!frame) {
     return Failure(std::move(frame.error()));
   }
@@ -178,8 +177,8 @@ tl::expected<void, std::string> SceneView::write() {
   if (!file) {
     return Failure(file.error());
   }
-  const std::string command = request_.command({state_.camera, good_.settings, good_.roughness,
-                                                screenshot_.width, screenshot_.height});
+  const std::string command = request_.command(
+      {state_.camera, good_.settings, good_.roughness, screenshot_.width, screenshot_.height});
   std::cout << file->string() << "\n" << command << std::endl;
   window_->copy_to_clipboard(command);
   facts_.message = file->string() + " is written; the clipboard has: " + command;

@@ -1,9 +1,11 @@
 #include "viewer/screenshot.h"
 
+#include <optional>
 #include <utility>
 
 #include "render/read_back.h"
 #include "support/image_io.h"
+#include "support/whole_file.h"
 
 namespace alcove::sample {
 
@@ -19,10 +21,11 @@ Image<glm::vec3> screenshot(const HostBuffer& buffer, VkExtent2D size, VkFormat 
 
 tl::expected<std::filesystem::path, std::string> write_screenshot(
     const std::filesystem::path& folder, const Image<glm::vec3>& image) {
+  std::optional<OutputFolder> made;
   if (!folder.empty()) {
-    if (auto made = create_folder(folder); !made) {
-      return tl::unexpected(std::move(made.error()));
-    }
+    auto created = OutputFolder::create(folder);
+    if (!created) return tl::unexpected(std::move(created.error()));
+    made.emplace(std::move(*created));
   }
   std::filesystem::path file = folder / "view.png";
   for (int i = 2; std::filesystem::exists(file); ++i) {

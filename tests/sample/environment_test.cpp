@@ -80,6 +80,75 @@ TEST(Environment, LargeFilesAreBroughtDownToTheirMean) {
   for (const glm::vec3& pixel : loaded->pixels) ASSERT_EQ(pixel, glm::vec3(2.0f));
 }
 
+// The coding by channels: a run of one value, then single values.
+TEST(Environment, RadianceRunsByChannelAreRead) {
+  const TemporaryFolder folder;
+  std::string text = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 8\n";
+  text += std::string("\x02\x02\x00\x08", 4);
+  text += std::string("\x88\x80", 2);                              // red: eight times
+  text += std::string("\x08\x10\x20\x30\x40\x50\x60\x70\x80", 9);  // green: each its own
+  text += std::string("\x84\x00\x84\x40", 4);                      // blue: two runs
+  text += std::string("\x88\x81", 2);                              // exponent: 1 is 128/256 * 2
+  write_file(folder.path / "a.hdr", text);
+  const auto image = load_environment(folder.path / "a.hdr");
+  ASSERT_TRUE(image) << image.error();
+  EXPECT_EQ(image->at(0, 0), glm::vec3(1.0f, 0.125f, 0.0f));
+  EXPECT_EQ(image->at(7, 0), glm::vec3(1.0f, 1.0f, 0.5f));
+}
+
+// The older coding: the pixel (1, 1, 1, n) repeats the one before it n times.
+TEST(Environment, RadianceRunsOfWholePixelsAreRead) {
+  const TemporaryFolder folder;
+  std::string text = "#?RGBE\n\n-Y 2 +X 300\n";
+  const std::string pixel("\x80\x40\x00\x81", 4), other("\x40\x40\x40\x81", 4);
+  // 300 is 1 + 42 + 256 + 1: the count's second digit is in units of 256.
+  text += pixel + std::string("\x01\x01\x01\x2a\x01\x01\x01\x01", 8) + other;
+  for (int i = 0; i < 300; ++i) text += other;
+  write_file(folder.path / "a.hdr", text);
+  const auto image = load_environment(folder.path / "a.hdr");
+  ASSERT_TRUE(image) << image.error();
+  EXPECT_EQ(image->at(298, 0), glm::vec3(1.0f, 0.5f, 0.0f));
+  EXPECT_EQ(image->at(299, 0), glm::vec3(0.5f));
+  EXPECT_EQ(image->at(0, 1), glm::vec3(0.5f));
+}
+
+TEST(Environment, EveryTruncationOfARadianceFileIsRefused) {
+  const TemporaryFolder folder;
+  std::string text = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 8\n";
+  for (int row = 0; row < 2; ++row) {
+    text += std::string("\x02\x02\x00\x08", 4);
+    for (int channel = 0; channel < 4; ++channel) {
+      text += std::string("\x84\x80\x04\x01\x02\x03\x04", 7);
+    }
+  }
+  for (size_t size = 0; size <= text.size(); ++size) {
+    write_file(folder.path / "a.hdr", text.substr(0, size));
+    EXPECT_EQ(load_environment(folder.path / "a.hdr").has_value(), size == text.size()) << size;
+  }
+}
+
+TEST(Environment, RunsPastTheEndOfARowAreRefused) {
+  const TemporaryFolder folder;
+  const std::string header = "#?RADIANCE\n\n-Y 1 +X 8\n";
+  for (const std::string& row :
+       {std::string("\x02\x02\x00\x08\x89\x80", 6), std::string("\x02\x02\x00\x08\x09\x80", 6),
+        std::string("\x02\x02\x00\x08\x00\x80", 6), std::string("\x02\x02\x00\x09\x88\x80", 6),
+        std::string("\x80\x80\x80\x80\x01\x01\x01\xff", 8), std::string("\x01\x01\x01\x01", 4)}) {
+    write_file(folder.path / "a.hdr", header + row + std::string(200, '\x05'));
+    const auto image = load_environment(folder.path / "a.hdr");
+    ASSERT_FALSE(image);
+    EXPECT_THAT(image.error(), HasSubstr("row 0 of 1"));
+  }
+}
+
+TEST(Environment, SidesOverTheLimitAreRefusedBeforeReading) {
+  const TemporaryFolder folder;
+  write_file(folder.path / "a.hdr", "#?RADIANCE\n\n-Y 20000 +X 40000\n");
+  const auto image = load_environment(folder.path / "a.hdr");
+  ASSERT_FALSE(image);
+  EXPECT_THAT(image.error(), HasSubstr("40000x20000"));
+}
+
 TEST(Environment, HostileFilesAreOneSentence) {
   const TemporaryFolder folder;
   const std::string good = radiance_file(8, 4, std::string("\x40\x80\x20\x81", 4));
@@ -106,7 +175,7 @@ TEST(Environment, HostileFilesAreOneSentence) {
   for (const char* name : {"folder.exr", "pipe.hdr"}) {
     const auto loaded = load_environment(folder.path / name);
     ASSERT_FALSE(loaded) << name;
-    EXPECT_THAT(loaded.error(), HasSubstr("no regular file"));
+    EXPECT_THAT(loaded.error(), HasSubstr("not a regular file"));
   }
   const auto missing = load_environment(folder.path / "missing.hdr");
   ASSERT_FALSE(missing);

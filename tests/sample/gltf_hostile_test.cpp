@@ -5,7 +5,9 @@
 #include <cstring>
 #include <limits>
 
+#include "damaged_jpeg.h"
 #include "gltf_maker.h"
+#include "image_maker.h"
 
 namespace alcove::sample {
 namespace {
@@ -168,6 +170,32 @@ TEST(GltfLimits, PartsThatAreLeftOutCountTowardsTheLimitToo) {
   const auto scene = parse_gltf(maker.gltf(), "lines.gltf", "", limits);
   ASSERT_FALSE(scene);
   EXPECT_THAT(scene.error(), HasSubstr("parts"));
+}
+
+// A triangle with one image, given as an embedded PNG whatever the bytes are.
+GltfMaker with_image(const std::string& base64) {
+  GltfMaker maker = painted({{"index", 0}}, {{"index", 0}});
+  maker.json["images"][0] = {{"uri", "data:image/png;base64," + base64}};
+  return maker;
+}
+
+TEST(GltfImage, DamagedJpegIsLeftOutWithANote) {
+  const Scene scene = parsed(with_image(kJpegOfBadHuffmanTable).gltf());
+  EXPECT_THAT(scene.warnings, testing::ElementsAre("image 0 is damaged and is left out."));
+  EXPECT_TRUE(scene.images.empty());
+}
+
+TEST(GltfImage, OtherFormatsThanPngAndJpegAreLeftOutWithANote) {
+  const std::string pgm = "P5 8000 8000 65535\n" + std::string(20'000, '\0');
+  const Scene scene = parsed(with_image(GltfMaker::base64({pgm.begin(), pgm.end()})).gltf());
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_THAT(scene.warnings[0], HasSubstr("image 0 is not a PNG or JPEG"));
+}
+
+TEST(GltfImage, SideOverTheLimitIsRefusedFromTheHeader) {
+  const auto png = make_png_promise(22'000, 22'000, 500'000);
+  EXPECT_THAT(refusal(with_image(GltfMaker::base64(png)).gltf()),
+              HasSubstr("22000x22000 pixels; make it at most 16384 a side"));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "reference/truth_cache.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <fstream>
 
@@ -20,7 +21,7 @@ std::filesystem::path only_file(const std::filesystem::path& folder) {
   return std::filesystem::directory_iterator(folder)->path();
 }
 
-TEST(TruthCache, WhatIsWrittenIsReadUnderItsKeyOnly) {
+TEST(TruthCache, EntryIsReadUnderItsOwnKeyOnly) {
   const TemporaryFolder folder;
   const TruthCache cache(folder.path / "deep" / "cache");
   Image<glm::vec3> image(3, 2, glm::vec3(1, 2, 3));
@@ -51,6 +52,23 @@ TEST(TruthCache, DamagedEntriesReadAsAbsent) {
   cache.write(key_of(1), values);
   std::filesystem::resize_file(file, size - 4);
   EXPECT_FALSE(cache.read(key_of(1), values.size()));
+}
+
+TEST(TruthCache, NamedPipeInPlaceOfAnEntryReadsAsAbsentAndIsReplaced) {
+  const TemporaryFolder folder;
+  const TruthCache cache(folder.path);
+  const std::vector<float> values(100, 0.5f);
+  ASSERT_EQ(mkfifo((folder.path / (key_of(1).hex() + ".truth")).c_str(), 0600), 0);
+  EXPECT_FALSE(cache.read(key_of(1), values.size()));
+  cache.write(key_of(1), values);
+  EXPECT_TRUE(cache.read(key_of(1), values.size()));
+}
+
+TEST(TruthCache, TemporaryFilesOfAKilledRunAreRemoved) {
+  const TemporaryFolder folder;
+  std::ofstream(folder.path / "0123.truth.part77") << "half";
+  const TruthCache cache(folder.path);
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path));
 }
 
 TEST(TruthCache, WritingLeavesNoTemporaryFiles) {
@@ -87,7 +105,7 @@ TEST(TruthCache, KeyChangesWithSceneAndCamera) {
   EXPECT_NE(key.hex(), turned.hex());
 }
 
-TEST(TruthCache, WithoutAFolderNothingIsKept) {
+TEST(TruthCache, WithoutAFolderNothingIsCached) {
   const TruthCache cache("");
   cache.write(key_of(1), std::vector<float>(5, 1.0f));
   EXPECT_FALSE(cache.read(key_of(1), 5));

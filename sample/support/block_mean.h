@@ -1,0 +1,55 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace alcove::sample {
+
+// Shrinks an image while it is read row by row: every block of `factor` x `factor` pixels becomes
+// its mean, blocks at the right and lower edge that of the pixels they have. `Sum` adds up the
+// interleaved components of type `In`.
+template <class In, class Sum>
+class BlockMean {
+ public:
+  // All at least 1.
+  BlockMean(uint32_t width, uint32_t height, uint32_t components, uint32_t factor)
+      : width_(width), components_(components), factor_(factor), rows_left_(height) {
+    sums_.resize(size_t{reduced(width)} * components);
+  }
+
+  [[nodiscard]] uint32_t reduced(uint32_t side) const { return (side + factor_ - 1) / factor_; }
+
+  // Adds the next row from the top. `write(i, mean)` is called for each component of a finished
+  // row, in order.
+  template <class Write>
+  void add_row(std::span<const In> row, const Write& write) {
+    for (uint32_t x = 0; x < width_; ++x) {
+      for (uint32_t c = 0; c < components_; ++c) {
+        sums_[size_t{x / factor_} * components_ + c] +=
+            static_cast<Sum>(row[size_t{x} * components_ + c]);
+      }
+    }
+    --rows_left_;
+    if (++rows_ < factor_ && rows_left_ > 0) return;
+    for (size_t i = 0; i < sums_.size(); ++i) {
+      const auto first = static_cast<uint32_t>(i / components_) * factor_;
+      const uint32_t columns = std::min(factor_, width_ - first);
+      write(i, sums_[i] / static_cast<Sum>(size_t{columns} * rows_));
+    }
+    std::fill(sums_.begin(), sums_.end(), Sum{});
+    rows_ = 0;
+  }
+
+ private:
+  uint32_t width_;
+  uint32_t components_;
+  uint32_t factor_;
+  uint32_t rows_left_;
+  uint32_t rows_ = 0;  // of the block that is being added up
+  std::vector<Sum> sums_;
+};
+
+}  // namespace alcove::sample

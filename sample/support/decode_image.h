@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
+namespace alcove::sample {
+
+// Decoding of PNG (by libpng) and JPEG (by libjpeg-turbo), the two image formats of glTF. Both
+// libraries are maintained for, and fuzzed with, hostile input. The bytes may be anything: a format
+// is told by its signature, and time and memory are bounded by what the header promises before
+// anything is decoded. Errors are the end of a sentence that begins with the image's name.
+// Thread-safe.
+
+enum class ImageFormat : uint8_t { kPng, kJpeg };
+
+struct ImageHeader {
+  ImageFormat format = ImageFormat::kPng;
+  uint32_t width = 0;   // pixels, at least 1
+  uint32_t height = 0;  // pixels, at least 1
+};
+
+// Texels after decoding: 8-bit RGBA as stored in the file (no gamma or colour profile is applied,
+// as glTF asks), top row first, 4 * width * height bytes.
+struct DecodedImage {
+  uint32_t width = 0;
+  uint32_t height = 0;
+  std::vector<uint8_t> rgba;
+};
+
+// The largest side, in pixels, that a caller should decode: the largest texture of most devices.
+constexpr uint32_t kLargestImageSide = 16384;
+
+// Reads the size from the header without decoding. An error: another format, a damaged header, or
+// fewer bytes than that many pixels can be compressed to.
+[[nodiscard]] tl::expected<ImageHeader, std::string> read_image_header(
+    std::span<const uint8_t> bytes);
+
+// Decodes the image whose header that is. Every block of `reduction` x `reduction` pixels (at least
+// 1) becomes its mean; the full image is then not kept in memory, except for an interlaced PNG. An
+// error: the data is damaged or cut short, or a progressive JPEG needs over 512 MiB.
+[[nodiscard]] tl::expected<DecodedImage, std::string> decode_image(std::span<const uint8_t> bytes,
+                                                                   const ImageHeader& header,
+                                                                   uint32_t reduction = 1);
+
+}  // namespace alcove::sample

@@ -1,0 +1,182 @@
+#include "support/decode_jpeg.h"
+
+#include <cstdio>  // jpeglib.h needs it first
+
+#include <jerror.h>
+#include <jpeglib.h>
+
+#include <algorithm>
+#include <csetjmp>
+
+#include "support/block_mean.h"
+
+namespace alcove::sample {
+namespace {
+
+using Failure = tl::unexpected<std::string>;
+using Bytes = std::span<const uint8_t>;
+
+constexpr const char* kDamaged = "is damaged";
+
+struct Errors {
+  jpeg_error_mgr base;  // first: libjpeg hands out a pointer to it
+  std::jmp_buf jump;
+};
+
+[[noreturn]] void leave(j_common_ptr jpeg) {
+  std::longjmp(reinterpret_cast<Errors*>(jpeg->err)->jump, 1);
+}
+
+// libjpeg warns of damaged data (level -1) and goes on with grey; here that is an error, but for
+// what leaves the pixels as they are.
+void judge(j_common_ptr jpeg, int level) {
+  const int code = jpeg->err->msg_code;
+  const bool harmless = code == JWRN_EXTRANEOUS_DATA || code == JWRN_JFIF_MAJOR ||
+                        code == JWRN_BOGUS_ICC || code == JWRN_ADOBE_XFORM;
+  if (level < 0 && !harmless) leave(jpeg);
+}
+
+void print_nothing(j_common_ptr /*jpeg*/) {}
+
+// Each scan of a progressive JPEG goes over the whole image, and a file of a megabyte holds 100,000
+// empty ones. Encoders write at most about 20.
+void limit_scans(j_common_ptr jpeg) {
+  constexpr int kMostScans = 100;
+  if (reinterpret_cast<j_decompress_ptr>(jpeg)->input_scan_number > kMostScans) leave(jpeg);
+}
+
+class JpegReader {
+ public:
+  explicit JpegReader(Bytes bytes) : bytes_(bytes) {
+    jpeg_.err = jpeg_std_error(&errors_.base);
+    errors_.base.error_exit = leave;
+    errors_.base.emit_message = judge;
+    errors_.base.output_message = print_nothing;
+    progress_.progress_monitor = limit_scans;
+  }
+  JpegReader(const JpegReader&) = delete;
+  JpegReader& operator=(const JpegReader&) = delete;
+  ~JpegReader() { jpeg_destroy_decompress(&jpeg_); }
+
+  // False where the header is damaged. Errors of libjpeg come back as a longjmp, which must not
+  // skip the destructor of anything: these functions have trivial locals only.
+  bool read_header() {
+    if (setjmp(errors_.jump)) return false;
+    jpeg_create_decompress(&jpeg_);
+    jpeg_.progress = &progress_;
+    // Progressive images are held as coefficients, 2 bytes a sample, until the last scan.
+    constexpr long kMostMemory = 512L << 20;
+    jpeg_.mem->max_memory_to_use = kMostMemory;
+    jpeg_mem_src(&jpeg_, bytes_.data(), static_cast<unsigned long>(bytes_.size()));
+    return jpeg_read_header(&jpeg_, TRUE) == JPEG_HEADER_OK;
+  }
+
+  // `scale` is 1, 2, 4 or 8: libjpeg then decodes at that fraction of the size.
+  bool start(unsigned scale) {
+    if (setjmp(errors_.jump)) return false;
+    jpeg_.scale_num = 1;
+    jpeg_.scale_denom = scale;
+    const bool four_inks = jpeg_.jpeg_color_space == JCS_CMYK || jpeg_.jpeg_color_space == JCS_YCCK;
+    jpeg_.out_color_space = four_inks ? JCS_CMYK : JCS_EXT_RGBA;
+    return jpeg_start_decompress(&jpeg_) != FALSE;
+  }
+
+  // `row(y)` says where row y goes, as RGBA; `take(y)` is called when it is there.
+  template <class Row, class Take>
+  bool read_rows(const Row& row, const Take& take) {
+    if (setjmp(errors_.jump)) return false;
+    while (jpeg_.output_scanline < jpeg_.output_height) {
+      const uint32_t y = jpeg_.output_scanline;
+      JSAMPROW pointer = row(y);
+      if (jpeg_read_scanlines(&jpeg_, &pointer, 1) != 1) return false;
+      if (jpeg_.out_color_space == JCS_CMYK) make_rgba(pointer);
+      take(y);
+    }
+    return true;
+  }
+
+  // Whether the last failure was the limit on memory.
+  bool lacked_memory() const {
+    const int code = errors_.base.msg_code;
+    return code == JERR_OUT_OF_MEMORY || code == JERR_NO_BACKING_STORE;
+  }
+
+  uint32_t width() const { return jpeg_.image_width; }
+  uint32_t height() const { return jpeg_.image_height; }
+  uint32_t output_width() const { return jpeg_.output_width; }
+  uint32_t output_height() const { return jpeg_.output_height; }
+
+ private:
+  // Adobe's inks are stored inverted: 255 is none.
+  void make_rgba(uint8_t* pixel) const {
+    for (uint32_t x = 0; x < jpeg_.output_width; ++x, pixel += 4) {
+      for (int c = 0; c < 3; ++c) pixel[c] = static_cast<uint8_t>(pixel[c] * pixel[3] / 255);
+      pixel[3] = 0xff;
+    }
+  }
+
+  Bytes bytes_;
+  jpeg_decompress_struct jpeg_{};
+  Errors errors_{};
+  jpeg_progress_mgr progress_{};
+};
+
+Failure failure_of(const JpegReader& reader) {
+  return Failure(reader.lacked_memory()
+                     ? "is a progressive JPEG that needs over 512 MiB to decode (save it as a "
+                       "baseline JPEG)"
+                     : kDamaged);
+}
+
+// libjpeg takes the powers of 2 out of the reduction that it knows.
+unsigned libjpeg_scale(uint32_t reduction) {
+  unsigned scale = 1;
+  while (scale < 8 && reduction % (2 * scale) == 0) scale *= 2;
+  return scale;
+}
+
+}  // namespace
+
+bool is_jpeg(Bytes bytes) {
+  return bytes.size() >= 3 && bytes[0] == 0xff && bytes[1] == 0xd8 && bytes[2] == 0xff;
+}
+
+tl::expected<ImageHeader, std::string> read_jpeg_header(Bytes bytes) {
+  JpegReader reader(bytes);
+  if (!reader.read_header()) return Failure(kDamaged);
+  // A Huffman code has at least one bit, and a block of 64 pixels at least one code; interleaved
+  // sampling and arithmetic coding can save a little more.
+  constexpr uint64_t kMostPixelsPerByte = 2048;
+  if (uint64_t{reader.width()} * reader.height() / kMostPixelsPerByte > bytes.size()) {
+    return Failure("is cut short");
+  }
+  return ImageHeader{ImageFormat::kJpeg, reader.width(), reader.height()};
+}
+
+tl::expected<DecodedImage, std::string> decode_jpeg(Bytes bytes, uint32_t reduction) {
+  JpegReader reader(bytes);
+  const unsigned scale = libjpeg_scale(reduction);
+  if (!reader.read_header() || !reader.start(scale)) return failure_of(reader);
+  const uint32_t width = reader.output_width(), height = reader.output_height();
+  const size_t row_bytes = 4 * size_t{width};
+  BlockMean<uint8_t, uint32_t> mean(width, height, 4, reduction / scale);
+  DecodedImage out{mean.reduced(width), mean.reduced(height), {}};
+  out.rgba.resize(4 * size_t{out.width} * out.height);
+  bool read = false;
+  if (reduction == scale) {
+    read = reader.read_rows([&](uint32_t y) { return out.rgba.data() + y * row_bytes; },
+                            [](uint32_t) {});
+  } else {
+    std::vector<uint8_t> row(row_bytes);
+    auto* next = out.rgba.data();
+    read = reader.read_rows(
+        [&](uint32_t) { return row.data(); },
+        [&](uint32_t) {
+          mean.add_row(row, [&](size_t, uint32_t value) { *next++ = static_cast<uint8_t>(value); });
+        });
+  }
+  if (!read) return failure_of(reader);
+  return out;
+}
+
+}  // namespace alcove::sample

@@ -1,0 +1,126 @@
+#include "support/decode_png.h"
+
+#include <png.h>
+
+#include <csetjmp>
+#include <cstring>
+
+#include "support/block_mean.h"
+
+namespace alcove::sample {
+namespace {
+
+using Failure = tl::unexpected<std::string>;
+using Bytes = std::span<const uint8_t>;
+
+constexpr const char* kDamaged = "is damaged";
+
+void take_bytes(png_structp png, png_bytep out, size_t size) {
+  auto& left = *static_cast<Bytes*>(png_get_io_ptr(png));
+  if (size > left.size()) png_error(png, "cut short");
+  std::memcpy(out, left.data(), size);
+  left = left.subspan(size);
+}
+
+// libpng's default functions print to stderr.
+[[noreturn]] void leave(png_structp png, png_const_charp /*message*/) { png_longjmp(png, 1); }
+void ignore(png_structp /*png*/, png_const_charp /*message*/) {}
+
+// A reader over bytes in memory. Chunks that change nothing of the pixels are skipped unread: glTF
+// ignores colour spaces, and compressed text and profiles could only take time and memory.
+class PngReader {
+ public:
+  explicit PngReader(Bytes bytes) : left_(bytes) {
+    png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, nullptr, leave, ignore);
+    info_ = png_ == nullptr ? nullptr : png_create_info_struct(png_);
+  }
+  PngReader(const PngReader&) = delete;
+  PngReader& operator=(const PngReader&) = delete;
+  ~PngReader() { png_destroy_read_struct(&png_, &info_, nullptr); }
+
+  // False where the header is damaged. Errors of libpng come back as a longjmp, which must not skip
+  // the destructor of anything: these functions have trivial locals only.
+  bool read_header() {
+    if (info_ == nullptr || setjmp(png_jmpbuf(png_))) return false;
+    png_set_read_fn(png_, &left_, take_bytes);
+    png_set_user_limits(png_, PNG_UINT_31_MAX, PNG_UINT_31_MAX);  // callers have their own
+    png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
+    png_read_info(png_, info_);
+    return true;
+  }
+
+  // `rows` has room for one row of RGBA, or for all of them where `stride`, the bytes from one to
+  // the next, is not 0. `take(y)` is called when row y is complete.
+  template <class Take>
+  bool read_rows(uint8_t* rows, size_t stride, const Take& take) {
+    if (setjmp(png_jmpbuf(png_))) return false;
+    png_set_expand(png_);    // palettes, fewer than 8 bits, transparent colours
+    png_set_scale_16(png_);  // to 8 bits
+    png_set_gray_to_rgb(png_);
+    png_set_add_alpha(png_, 0xff, PNG_FILLER_AFTER);
+    const int passes = png_set_interlace_handling(png_);
+    png_read_update_info(png_, info_);
+    for (int pass = 0; pass < passes; ++pass) {
+      for (uint32_t y = 0; y < height(); ++y) {
+        png_read_row(png_, rows + y * stride, nullptr);
+        if (pass == passes - 1) take(y);
+      }
+    }
+    return true;
+  }
+
+  uint32_t width() const { return png_get_image_width(png_, info_); }
+  uint32_t height() const { return png_get_image_height(png_, info_); }
+  bool interlaced() const { return png_get_interlace_type(png_, info_) != PNG_INTERLACE_NONE; }
+  uint64_t bits_per_pixel() const {
+    return uint64_t{png_get_channels(png_, info_)} * png_get_bit_depth(png_, info_);
+  }
+
+ private:
+  Bytes left_;
+  png_structp png_ = nullptr;
+  png_infop info_ = nullptr;
+};
+
+}  // namespace
+
+bool is_png(Bytes bytes) { return bytes.size() >= 8 && png_sig_cmp(bytes.data(), 0, 8) == 0; }
+
+tl::expected<ImageHeader, std::string> read_png_header(Bytes bytes) {
+  PngReader reader(bytes);
+  if (!reader.read_header()) return Failure(kDamaged);
+  // Deflate compresses at most 1032 bytes into one (RFC 1951: 258 bytes by 2 bits).
+  constexpr uint64_t kBestRatio = 1032;
+  const uint64_t row = 1 + (uint64_t{reader.width()} * reader.bits_per_pixel() + 7) / 8;
+  if (row * reader.height() / kBestRatio > bytes.size()) {
+    return Failure("is cut short");
+  }
+  return ImageHeader{ImageFormat::kPng, reader.width(), reader.height()};
+}
+
+tl::expected<DecodedImage, std::string> decode_png(Bytes bytes, uint32_t reduction) {
+  PngReader reader(bytes);
+  if (!reader.read_header()) return Failure(kDamaged);
+  const uint32_t width = reader.width(), height = reader.height();
+  const size_t row_bytes = 4 * size_t{width};
+  BlockMean<uint8_t, uint32_t> mean(width, height, 4, reduction);
+  DecodedImage out{mean.reduced(width), mean.reduced(height), {}};
+  out.rgba.resize(4 * size_t{out.width} * out.height);
+  bool read = false;
+  if (reduction == 1) {
+    read = reader.read_rows(out.rgba.data(), row_bytes, [](uint32_t) {});
+  } else {
+    // Rows of an interlaced image are complete only at its end.
+    const size_t stride = reader.interlaced() ? row_bytes : 0;
+    std::vector<uint8_t> rows(stride == 0 ? row_bytes : row_bytes * height);
+    auto* next = out.rgba.data();
+    read = reader.read_rows(rows.data(), stride, [&](uint32_t y) {
+      mean.add_row({rows.data() + y * stride, row_bytes},
+                   [&](size_t, uint32_t value) { *next++ = static_cast<uint8_t>(value); });
+    });
+  }
+  if (!read) return Failure(kDamaged);
+  return out;
+}
+
+}  // namespace alcove::sample

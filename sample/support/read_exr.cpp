@@ -1,0 +1,142 @@
+#include "support/read_exr.h"
+
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfInputPart.h>
+#include <ImfMultiPartInputFile.h>
+#include <ImfPartType.h>
+#include <ImfTileDescription.h>
+
+#include <algorithm>
+#include <exception>
+#include <stdexcept>
+#include <vector>
+
+namespace alcove::sample {
+namespace {
+
+using Failure = tl::unexpected<std::string>;
+
+// OpenEXR over a file that is already open. OpenEXR takes errors as exceptions.
+class FileStream : public Imf::IStream {
+ public:
+  explicit FileStream(std::FILE* file) : IStream("the file"), file_(file) {}
+
+  bool read(char* out, int size) override {
+    if (size < 0 ||
+        std::fread(out, 1, static_cast<size_t>(size), file_) != static_cast<size_t>(size)) {
+      throw std::runtime_error("it is cut short");
+    }
+    return true;
+  }
+  uint64_t tellg() override { return static_cast<uint64_t>(std::ftell(file_)); }
+  void seekg(uint64_t position) override {
+    if (position > INT64_MAX || std::fseek(file_, static_cast<long>(position), SEEK_SET) != 0) {
+      throw std::runtime_error("it is cut short");
+    }
+  }
+  void clear() override { std::clearerr(file_); }
+
+ private:
+  std::FILE* file_;
+};
+
+struct Size {
+  uint32_t width = 0;
+  uint32_t height = 0;
+  int first_row = 0;
+  int first_column = 0;
+};
+
+uint64_t bytes_per_pixel(const Imf::Header& header) {
+  uint64_t bytes = 0;
+  const Imf::ChannelList& channels = header.channels();
+  for (auto channel = channels.begin(); channel != channels.end(); ++channel) {
+    bytes += channel.channel().type == Imf::HALF ? 2 : 4;
+  }
+  return bytes;
+}
+
+// What OpenEXR takes memory for, before it takes any.
+tl::expected<Size, std::string> check_header(const Imf::Header& header) {
+  if (header.hasType() && Imf::isDeepData(header.type())) {
+    return Failure("is a deep image; flatten it first");
+  }
+  const Imath::Box2i window = header.dataWindow();
+  const int64_t width = int64_t{window.max.x} - window.min.x + 1;
+  const int64_t height = int64_t{window.max.y} - window.min.y + 1;
+  if (width < 1 || height < 1 || width > kLargestFloatSide || height > kLargestFloatSide) {
+    return Failure("is " + std::to_string(width) + "x" + std::to_string(height) +
+                   " pixels, and a side may have from 1 to " + std::to_string(kLargestFloatSide));
+  }
+  // A block is 256 rows at most (DWAB), and OpenEXR holds one packed and one unpacked.
+  constexpr uint64_t kMostRowBytes = uint64_t{1} << 20;
+  const uint64_t pixel = bytes_per_pixel(header);
+  if (static_cast<uint64_t>(width) * pixel > kMostRowBytes) {
+    return Failure("has rows of over 1 MiB; remove the channels that are not needed");
+  }
+  if (header.hasTileDescription()) {
+    constexpr uint64_t kMostTileRowBytes = uint64_t{1} << 28;
+    const Imf::TileDescription& tiles = header.tileDescription();
+    const uint64_t columns = std::max<uint64_t>(static_cast<uint64_t>(width), tiles.xSize);
+    if (tiles.xSize > 2 * kLargestFloatSide || tiles.ySize > 2 * kLargestFloatSide ||
+        columns * tiles.ySize * pixel > kMostTileRowBytes) {
+      return Failure("has tiles that are too large to be read");
+    }
+  }
+  return Size{static_cast<uint32_t>(width), static_cast<uint32_t>(height), window.min.y,
+              window.min.x};
+}
+
+tl::expected<void, std::string> read_checked(FileStream& stream, const ChooseChannels& choose,
+                                             const FloatRows& rows) {
+  // Opening reads the headers and no pixels.
+  Imf::MultiPartInputFile file(stream, 0);
+  const Imf::Header& header = file.header(0);
+  const auto size = check_header(header);
+  if (!size) return Failure(size.error());
+  const auto exists = [&](const std::string& name) {
+    return header.channels().findChannel(name) != nullptr;
+  };
+  const std::vector<std::string> names = choose(exists);
+  const size_t pixel = names.size() * sizeof(float);
+  std::vector<float> row(names.size() * size->width);
+  Imf::FrameBuffer frame;
+  for (size_t c = 0; c < names.size(); ++c) {
+    if (!exists(names[c])) return Failure("has no channel " + names[c]);
+    // A slice's base is the address of column 0, which may lie before the buffer; all rows are read
+    // into the same one.
+    char* base = reinterpret_cast<char*>(row.data() + c) -
+                 ptrdiff_t{size->first_column} * static_cast<ptrdiff_t>(pixel);
+    frame.insert(names[c], Imf::Slice(Imf::FLOAT, base, pixel, 0));
+  }
+  Imf::InputPart part(file, 0);
+  part.setFrameBuffer(frame);
+  rows.begin(size->width, size->height);
+  for (uint32_t y = 0; y < size->height; ++y) {
+    const int line = size->first_row + static_cast<int>(y);
+    part.readPixels(line, line);
+    rows.row(row);
+  }
+  return {};
+}
+
+}  // namespace
+
+tl::expected<void, std::string> read_exr(std::FILE* file, const ChooseChannels& choose,
+                                         const FloatRows& rows) {
+  try {
+    FileStream stream(file);
+    return read_checked(stream, choose, rows);
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    return Failure(
+        std::string("is no OpenEXR file that can be read; save it anew (OpenEXR says: ") +
+        error.what() + ")");
+  }
+}
+
+}  // namespace alcove::sample

@@ -1,0 +1,41 @@
+#pragma once
+
+namespace alcove::sample {
+
+// A JPEG, in base64, whose Huffman table has more codes than there are: a decoder that does not
+// check that writes past the end of its table.
+constexpr const char* kJpegOfBadHuffmanTable =
+    "/9j/xAYXAwAAAAAAAAAA/yCo/0H////xE5QiPPioKZWASVeHbp+nEWNQa05bjI+k2xuV0+jFxfta5zdSkGDnEKk+lxjd"
+    "PilBjpSP6SAfjfs6Is8i6JQdQntUlAu0fBteurJ2mPGf2X8zaGlUh/ZPwRke4wGyAEMuVNc5CVNVZw4H3ab4fH94r+fh"
+    "A2/XUzDwcRTxJBQ0UmkMi3Jf4Nlt6LYT4DKSWOF6OeXpETgZAakt881CJx+rM6sdk4v2AHOsFFTepqy/IOakCffcI/iG"
+    "UOtTkhNzPUYeWtmpUNod/O5x2pQdmrUDPr76G+HzoTLe9MTxZwI4hVwRL63rTKnZvYRu2h4j3lzh2HfDyxj1qg25m3S7"
+    "0/oY5SnF0HVuqjLyGAwQO+ptHMPk34791DgKjtR+Sad4YYyhJl0WlQdIhx9VmFo/BXYC6VaR5irJ8LidbwJF52PRiYou"
+    "nx816KZUPT6ufEMlfy17EBOl2QRed3NgvFrDjeNNvINs8WsTRqhR9CSVGaPClLPVOo3ZmARM+MCnu02KCQkNdft4iEEg"
+    "2jVFb0/oMeOcBh0p4LUtLK3t02k6XnJEa+c/5HCABEq1SbkEMurozvAF99C7JP1oEdDRSy5Dj5orzn6bToLlBMyeCP6I"
+    "8Mx49sNJsedGGfgW60NFLtPfWaFd9PDf2fSrd/yp/+11eOM4wZQfB60XHZhbYscuQSDPnhW/fu6zKWaw02WdSN2AgZ4U"
+    "oKXBuMNaEyUhQWdBEAVW0INFg62rM4AQ0MjuUEmMZOoyJqL1gLUaofaB4gaHOdYKflq3KY03OV4AJ65JtBMz5jnV27mK"
+    "9VqAdzyH/nVdCPO3wBxF91aj931RQTFkdBedSvJW1OiwVV/t3F1iOWVW8SVyNh3I2RRGKlV3j8qPLBSBg+hpMz3IIBkl"
+    "g1OL2USwS3rNFFPiWn030QwBYDkV4rz+S+87FBBVOZOoxGzsdbdmQsu5JCU2XPdDXVd8czk4cYUnrJk3AdLKqZc2lQzu"
+    "+065tHPf68/WLiwtqp9n4hDsCb2FQb5XC2juQv36MPlJ6a28yJiLnsa3zHBXM1JnH1wkpJ3j+6hL6upI5BpBLQTv6cyH"
+    "dGtOLDe+g2oR6oltDy0K8iiyPRKdhfe3xyS7tg6IPYLzi64qSjGUWxwdyCtK0h1yhFqFId982aaglFyuHJoxDyXfOW8R"
+    "zcot6pJYNGR1p+nPLAquqONVSHix95RLKKRxB93gGKurRZU9ncqiEnGL4Z2VkEV55Y3xloSF4qwpU7QHM8yy3hJHHK8R"
+    "vsKCSaMf3jNkVxjySK92zpEj9+TX/hejsPa1+BJlCdAnjBnKq/f+EE8WApfFeGVWm106cltSFgxIywRaMA0qV5lDIkU6"
+    "IFWJNlch/M+GUmvjjd0/3/NLJ79Pge9cq0f27mk7KImQsr/n07u2WQ4hPZv/fHryx6GxFiKhcs3oaLtRo+PaM5WZGmhV"
+    "0cJj8v/+8Xt45EIZlVg7NsoIHjPDb9amSQo84ySkOPVmm+hlmdngEb0iKlN6ZYlFbah4MBdO1mFYEkR9t3xyHRdag7A0"
+    "Y8HxhutEAFDORb12ve2NDMPuZNYy4Y2uVKrFri114pE21BchGBdx5l0uXBob6ibf2Iu1C2xCucDsf28a9FGrKyXCTD7Z"
+    "viQ27IFRCGt350MCnE5v3ggvyoee5Hvwj6YVUfNTK7F4YZ35sqVkKoynLCj2mwb+y9GFabUAWUWnb5aawsFLOiPoM9WO"
+    "l/8aPyxDNcdJM5IauPzQuFUVX8Sr+YdtRMGQLfVlu4xl1cuRGABYYjPrfOvnTKQ8YQMBDf2IekFJCm4+bynL1P+WZReX"
+    "vnnKqfa2kEJazKRdzbFaVSucnzUK3aQ0qHkzP95K1pzEoEW6VtX8sKKgDm9RaMV8BGSxD0FWQ+rPdimtwP9KhJ+PPvZl"
+    "O6YH27R2LR07qSGfWzDhsXPLgOn0Larzdy6SB22IbKgvc4Pj6bAAJVoixLVSpWbGcOavZBNZV4uI6pL1cv6doXEghVrR"
+    "hX8rp0Tg+ulGwFosb74/yRbKUQBcRnJa4xTLA5km1B6l/8bp38DTJYAtUe/r/8AAEQgAEAAQAwERAAIRAAMRAP/aAAwD"
+    "ATMCMwMzAD8A27hPFfIApbQBymtujtfJATisEeMebcfBl0Xw8z4oBJng069U09QJ1J/0wq3MjK6EuUBoVy2wGsT1irg0"
+    "MjzOFI/95+PScLjxZfugsQjON8GOH5m7z7OAxT64evD1SYSFxmxpmVyiC0Ieq/Mm+itoicoCRhq1RuBzANpk9STo+urU"
+    "ZQQyh450pbrny7WTND9etQV4a0zYX8szQ8FXLbzBgaFFM6jUJ04PEJrEo06DgQUJeXDU0k+gBpPh3UAeH8HA5HVpOZw4"
+    "SCzSDU8hEFAmGcoXbR1mDqJ574C5DyD7TwXwOL2NcAa6wpKJ5CLairulISlCiDjkgafluzaFN4UKKL7Hta7N73LfetYC"
+    "VWG9eoPnvIufIQ1Hhkj9DH+DFqfB3d3wK81jC8c6DpwbS5aeM9KpUvQ3Gnt/GIgAGx4n3fwFzihTsbOaa8E4hg3OpcCi"
+    "TxMXhi0ShsQaBuA5Lb61Mw3dBj4RoKnSWK9gp1WgSiUz4Cvg8rGljbeGxmXEfBhR2R4P6z64PpfoHj8+PgljcumP0lzA"
+    "eOl5fzBew6x2lQeUpHJS3TDpxs6ohA2x6P4b99H3uMrhscmSEI2+BiPFmki37aXoV2y3AfBEMllETtAWRgpgp7sqOky4"
+    "+VJbP20j99rIYLG0l7Km2+V/n7NRtvnaliEWwdti+dU11JQi+Ax8wWwu9oNhnWBHnAB6bTbzSM0VXw/wQQlG9d3bGFbn"
+    "FBnUQ49YpC04a0m45bfu2X88bt5LYKDTppayAi8J6kOhPwYxl6rdUJWnCXtf99RetES9fyReVEr0/9k=";
+
+}  // namespace alcove::sample
