@@ -7,7 +7,7 @@
 #include <iostream>
 #include <utility>
 
-#include "cli/render_command.h"
+#include "scene/environment.h"
 #include "viewer/screenshot.h"
 
 namespace alcove::sample {
@@ -17,35 +17,30 @@ using framegraph::Graph;
 using framegraph::Texture;
 using Failure = tl::unexpected<std::string>;
 
-std::string title_of(const std::string& scene) {
-  return "alcove: " + (scene.empty() ? "builtin" : scene);
-}
-
-ViewState first_state(const Session& session, const Options& options) {
+ViewState first_state(const Session& session, std::optional<float> roughness) {
   ViewState state;
   state.camera = session.camera;
   state.settings = session.settings;
-  if (!options.occlusion.roughness.empty()) {
-    state.roughness = options.occlusion.roughness.front();
-  }
+  state.roughness = roughness;
   return state;
 }
 
 }  // namespace
 
-tl::expected<std::unique_ptr<SceneView>, std::string> SceneView::create(const Options& options) {
-  std::unique_ptr<SceneView> made(new SceneView(options));
-  auto window = Window::create({options.view.width, options.view.height}, title_of(options.scene));
+tl::expected<std::unique_ptr<SceneView>, std::string> SceneView::create(SceneViewRequest wanted) {
+  std::unique_ptr<SceneView> made(new SceneView(std::move(wanted)));
+  const SceneViewRequest& request = made->request_;
+  auto window = Window::create({request.width, request.height}, request.title);
   if (!window) {
     return Failure(std::move(window.error()));
   }
   made->window_ = std::move(*window);
-  auto session = session_of(options, Window::instance_extensions());
+  auto session = request.open_session(Window::instance_extensions());
   if (!session) {
     return Failure(std::move(session.error()));
   }
   made->session_ = std::move(*session);
-  const auto environment = load_environment(options.environment);
+  const auto environment = load_environment(request.environment);
   if (!environment) {
     return Failure(environment.error());
   }
@@ -56,8 +51,7 @@ tl::expected<std::unique_ptr<SceneView>, std::string> SceneView::create(const Op
   }
   made->presenter_ = std::move(*presenter);
   const VkFormat format = made->presenter_->format();
-  auto frame = SceneFrame::create(gpu, made->session_.scene, *environment,
-                                  options.occlusion.normals, format);
+  auto frame = SceneFrame::create(gpu, made->session_.scene, *environment, request.normals, format);
   if (!frame) {
     return Failure(std::move(frame.error()));
   }
@@ -67,7 +61,7 @@ tl::expected<std::unique_ptr<SceneView>, std::string> SceneView::create(const Op
     return Failure(std::move(gui.error()));
   }
   made->gui_ = std::move(*gui);
-  made->state_ = first_state(made->session_, options);
+  made->state_ = first_state(made->session_, request.roughness);
   made->good_ = {made->state_.settings, made->state_.roughness};
   made->facts_.first_settings = made->state_.settings;
   made->facts_.device = gpu.device().properties().deviceName;
@@ -81,17 +75,17 @@ SceneView::~SceneView() {
   }
 }
 
-tl::expected<void, std::string> SceneView::load(const Options& options) {
-  auto loaded = load_session(options);
+tl::expected<void, std::string> SceneView::replace_scene(const std::string& scene) {
+  auto loaded = request_.load_session(scene);
   if (!loaded) {
     return Failure(std::move(loaded.error()));
   }
-  const auto environment = load_environment(options.environment);
+  const auto environment = load_environment(request_.environment);
   if (!environment) {
     return Failure(environment.error());
   }
-  auto frame = SceneFrame::create(*session_.gpu, loaded->scene, *environment,
-                                  options.occlusion.normals, presenter_->format());
+  auto frame = SceneFrame::create(*session_.gpu, loaded->scene, *environment, request_.normals,
+                                  presenter_->format());
   if (!frame) {
     return Failure(std::move(frame.error()));
   }
@@ -104,20 +98,10 @@ tl::expected<void, std::string> SceneView::load(const Options& options) {
 }
 
 void SceneView::open(const std::string& scene) {
-  Options options = options_;
-  options.scene = scene;
-  options.view.camera.clear();
-  options.view.eye.reset();
-  options.view.target.reset();
-  options.view.up_ws.reset();
-  options.view.near_plane.reset();
-  options.view.far_plane.reset();
-  options.occlusion.radius.reset();
-  if (auto loaded = load(options); !loaded) {
-    facts_.message = std::move(loaded.error());
+  if (auto replaced = replace_scene(scene); !replaced) {
+    facts_.message = std::move(replaced.error());
     return;
   }
-  options_ = std::move(options);
   state_.camera = session_.camera;
   state_.settings.radius = session_.settings.radius;
   state_.kept.radius = session_.settings.radius;
@@ -126,12 +110,13 @@ void SceneView::open(const std::string& scene) {
   facts_.first_settings = session_.settings;
   facts_.refusal.clear();
   facts_.message = scene + " is shown.";
-  window_->set_title(title_of(scene));
+  window_->set_title("alcove: " + scene);
 }
 
 Camera SceneView::camera_around_scene() const {
   Camera camera = state_.camera;
-  if (camera.orthographic || !(glm::length(session_.scene.bounds_ws.high) < 1e12f)) {
+  constexpr float kFarthest = 1e12f;  // distances beyond have no squares of floats to compare
+  if (camera.orthographic || !(glm::length(session_.scene.bounds_ws.high) < kFarthest)) {
     return camera;
   }
   for (const glm::vec3& corner : corners_of(session_.scene.bounds_ws)) {
@@ -240,13 +225,12 @@ tl::expected<void, std::string> SceneView::draw_and_read() {
 }
 
 tl::expected<void, std::string> SceneView::write() {
-  const auto file = write_screenshot(options_.out, screenshot_);
+  const auto file = write_screenshot(request_.screenshots, screenshot_);
   if (!file) {
     return Failure(file.error());
   }
-  const std::string command =
-      shell_line(render_arguments(options_, {state_.camera, good_.settings, good_.roughness,
-                                             screenshot_.width, screenshot_.height}));
+  const std::string command = request_.command(
+      {state_.camera, good_.settings, good_.roughness, screenshot_.width, screenshot_.height});
   std::cout << file->string() << "\n" << command << std::endl;
   window_->copy_to_clipboard(command);
   facts_.message = file->string() + " is written; the clipboard has: " + command;
@@ -274,7 +258,7 @@ tl::expected<bool, std::string> SceneView::draw() {
   if (!drawn) {
     return Failure(std::move(drawn.error()));
   }
-  state_.camera = orbited(state_.camera, options_.view.orbit);
+  state_.camera = orbited(state_.camera, request_.orbit);
   return true;
 }
 
