@@ -59,8 +59,8 @@ class SceneView {
   // Whether anything but the picture is shown.
   void show_panel(bool shown) { panel_shown_ = shown; }
 
-  // Shows another scene, from its own first view, with the settings that are chosen; their radius is
-  // that of the scene. Where the file cannot be read, the scene stays and the panel says why.
+  // Shows another scene, from its own first view, with the settings that are chosen; their radius
+  // is that of the scene. Where the file cannot be read, the scene stays and the panel says why.
   void open(const std::string& scene);
 
   ViewState& state() { return state_; }
