@@ -192,6 +192,9 @@ tl::expected<std::span<const uint8_t>, std::string> view_bytes(const tinygltf::M
     return refuse("has no buffer " + std::to_string(v.buffer));
   }
   const auto& data = model.buffers[static_cast<size_t>(v.buffer)].data;
+  if (data.empty() && v.byteLength > 0) {
+    return refuse("lies in buffer " + std::to_string(v.buffer) + ", which has no data");
+  }
   if (v.byteOffset > data.size() || v.byteLength > data.size() - v.byteOffset) {
     return refuse("reaches past the end of its buffer");
   }

@@ -95,7 +95,7 @@ TEST(GltfTexture, SamplersAreReadAndFiltersNotGivenAreSmooth) {
 TEST(GltfTexture, SamplersOfValuesUnknownToGltfAreLeftOut) {
   const std::pair<nlohmann::json, std::string> samplers[] = {
       {{{"wrapS", 33070}}, "sampler 0 has a wrap mode unknown to glTF and is left out."},
-      {{{"wrapT", -1}}, "sampler 0 has a wrap mode unknown to glTF and is left out."},
+      {{{"wrapT", 0}}, "sampler 0 has a wrap mode unknown to glTF and is left out."},
       {{{"magFilter", 9987}}, "sampler 0 has a filter unknown to glTF and is left out."},
       {{{"minFilter", 7}}, "sampler 0 has a filter unknown to glTF and is left out."}};
   for (const auto& [sampler, warning] : samplers) {
