@@ -14,6 +14,7 @@ namespace alcove::sample {
 [[nodiscard]] tl::expected<void, std::string> run_ablate(const Options& options);
 [[nodiscard]] tl::expected<void, std::string> run_bench(const Options& options);
 [[nodiscard]] tl::expected<void, std::string> run_recommend(const Options& options);
+[[nodiscard]] tl::expected<void, std::string> run_cost(const Options& options);
 [[nodiscard]] tl::expected<void, std::string> run_graph(const Options& options);
 [[nodiscard]] tl::expected<void, std::string> run_view(const Options& options);
 [[nodiscard]] tl::expected<void, std::string> run_doctor(const Options& options);

@@ -31,6 +31,8 @@ tl::expected<void, std::string> run(const Options& options) {
       return alcove::sample::run_bench(options);
     case Command::kRecommend:
       return alcove::sample::run_recommend(options);
+    case Command::kCost:
+      return alcove::sample::run_cost(options);
     case Command::kGraph:
       return alcove::sample::run_graph(options);
     case Command::kView:

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -182,6 +183,7 @@ void add_occlusion(CLI::App& app, OcclusionOptions& occlusion) {
   const Group group(app, "Occlusion");
   group.add("--quality", "NAME", "low, medium, high, ultra or reference; medium",
             [&](const OptionValue& given) {
+              occlusion.quality_given = true;
               occlusion.quality =
                   static_cast<passes::Quality>(given.one_of(passes::kNames<passes::Quality>));
             });
@@ -248,6 +250,29 @@ void add_limits(CLI::App& app, Options& options) {
   group.add(
       "--tolerance", "E", "the most error, RMSE of visibility: the least time for it",
       [&](const OptionValue& given) { options.tolerance = given.positive("an error above 0"); });
+}
+
+void add_cost(CLI::App& app, Options& options) {
+  const Group group(app, "Cost");
+  group.add("--family", "NAME", "the modelled GPU: bonaire (PS4-like) or navi21 (RDNA2); both",
+            [&](const OptionValue& given) {
+              constexpr std::array<std::string_view, 2> kFamilies{"bonaire", "navi21"};
+              options.cost.family = kFamilies[given.one_of(kFamilies)];
+            });
+  group.add("--size", "WxH", "size of the image in pixels; 1920x1080",
+            [&](const OptionValue& given) {
+              std::tie(options.view.width, options.view.height) = given.size();
+            });
+  group.add_flag("--motion-vectors", "give the passes motion vectors, as a scene in motion does",
+                 options.cost.motion_vectors);
+  group.add_flag("--loops",
+                 "also print the instructions of a wave by kind, and the loops that the compiler "
+                 "left with their iterations",
+                 options.cost.loops);
+  group.add("--json", "FILE", "also write all figures as JSON",
+            [&](const OptionValue& given) { options.cost.json = given.text; });
+  group.add("--chart", "FILE", "also draw an SVG chart of where the time goes",
+            [&](const OptionValue& given) { options.cost.chart = given.text; });
 }
 
 void add_light(CLI::App& app, Options& options) {

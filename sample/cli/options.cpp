@@ -76,6 +76,13 @@ void add_recommend(CLI::App& app, Options& options) {
   add_device(app, options);
 }
 
+void add_cost_command(CLI::App& app, Options& options) {
+  options.view.width = 1920;
+  options.view.height = 1080;
+  add_cost(app, options);
+  add_occlusion(app, options.occlusion);
+}
+
 void add_graph(CLI::App& app, Options& options) {
   add_scene(app, options.scene);
   add_cut_blends(app, options.cut_blends);
@@ -111,7 +118,7 @@ struct Entry {
   const char* help;
   void (*add_options)(CLI::App& app, Options& options);
 };
-constexpr std::array<Entry, 9> kCommands{{
+constexpr std::array<Entry, 10> kCommands{{
     {Command::kRender, "render", "a scene to occlusion images and timings", add_render},
     {Command::kCompare, "compare",
      "the same, and how far it is from the ray-traced and the height-field truth", add_compare},
@@ -126,6 +133,10 @@ constexpr std::array<Entry, 9> kCommands{{
      add_bench},
     {Command::kRecommend, "recommend",
      "the least settings that hold: within a time, or within an error", add_recommend},
+    {Command::kCost, "cost",
+     "what the GPU passes cost by the compiler's account: registers, instructions, modelled time, "
+     "without a GPU",
+     add_cost_command},
     {Command::kGraph, "graph", "the compiled plan of a frame: passes, barriers, memory", add_graph},
     {Command::kView, "view",
      "a window to orbit a scene in and see what each setting does and costs", add_window},

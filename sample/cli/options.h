@@ -23,6 +23,7 @@ enum class Command {
   kAblate,
   kBench,
   kRecommend,
+  kCost,
   kGraph,
   kView,
   kDoctor
@@ -68,11 +69,20 @@ struct ViewOptions {
 
 struct OcclusionOptions {
   passes::Quality quality = passes::Quality::medium;
+  bool quality_given = false;   // --quality was typed
   std::optional<float> radius;  // scene units; none: default_radius(scene)
   NormalSource normals = NormalSource::kShading;
   std::vector<std::pair<std::string, std::string>> set;  // --set name=value, in order
   std::vector<float> roughness;                          // overrides the materials; perceptual
   uint32_t spp = 256;                                    // rays per pixel of the truth
+};
+
+struct CostOptions {
+  std::string family;           // of the modelled GPU; empty for all that the model knows
+  bool motion_vectors = false;  // the passes are given motion vectors
+  bool loops = false;           // also print the loops
+  std::filesystem::path json;   // empty for none
+  std::filesystem::path chart;  // an SVG image; empty for none
 };
 
 struct Options {
@@ -88,6 +98,7 @@ struct Options {
   // recommend: one of the two. Milliseconds of GPU time; RMSE of visibility.
   std::optional<double> budget_ms, tolerance;
   std::optional<MotionKind> path;  // motion: none for all of them
+  CostOptions cost;
   GraphFormat graph_format = GraphFormat::kText;
   int device = -1;
   bool validation = false;

@@ -5,56 +5,96 @@
 #include <cstring>
 
 #include "scene/area.h"
+#include "scene/direction.h"
 
 namespace alcove::sample {
 namespace {
 
 constexpr uint32_t kPacket = 16;
 
-// Base colour's alpha where a triangle of a masked mesh is hit.
+using FilteredMesh = RayScene::Impl::FilteredMesh;
+
+// Alpha of the base colour at a point of a triangle.
 float alpha_at(const Scene& scene, const Mesh& mesh, uint32_t triangle, float u, float v) {
   const Material& material = scene.materials[mesh.material];
   const MeshUvs uvs = uvs_within(mesh, triangle, u, v);
-  return material.base_color.a * sample_texture(scene, material.base_color_texture, uvs).a;
+  return material.base_color.a * color_within(mesh, triangle, u, v).a *
+         sample_texture(scene, material.base_color_texture, uvs).a;
 }
 
-// Rays go through texels whose alpha is below the cutoff.
-void pass_cut_out(const RTCFilterFunctionNArguments* args) {
-  const auto& scene = *static_cast<const Scene*>(args->geometryUserPtr);
-  for (unsigned i = 0; i < args->N; ++i) {
+// Rejects hits that the rasteriser does not draw: back faces of single-sided materials, and points
+// whose alpha is below the cutoff of a mask.
+void reject_invisible(const RTCFilterFunctionNArguments* args) {
+  const auto& [scene, mesh] = *static_cast<const FilteredMesh*>(args->geometryUserPtr);
+  const Material& material = scene->materials[mesh->material];
+  const unsigned count = args->N;
+  for (unsigned i = 0; i < count; ++i) {
     if (args->valid[i] == 0) continue;
-    const unsigned geometry = RTCHitN_geomID(args->hit, args->N, i);
-    const Mesh& mesh = scene.meshes[geometry];
-    const float alpha =
-        alpha_at(scene, mesh, RTCHitN_primID(args->hit, args->N, i),
-                 RTCHitN_u(args->hit, args->N, i), RTCHitN_v(args->hit, args->N, i));
-    if (alpha < scene.materials[mesh.material].alpha_cutoff) args->valid[i] = 0;
+    // Ray and normal are in mesh space, where the sign of their product is that of world space.
+    const float along = RTCRayN_dir_x(args->ray, count, i) * RTCHitN_Ng_x(args->hit, count, i) +
+                        RTCRayN_dir_y(args->ray, count, i) * RTCHitN_Ng_y(args->hit, count, i) +
+                        RTCRayN_dir_z(args->ray, count, i) * RTCHitN_Ng_z(args->hit, count, i);
+    if (!material.double_sided && along > 0.0f) {
+      args->valid[i] = 0;
+    } else if (material.alpha_mode == AlphaMode::kMask) {
+      const float alpha = alpha_at(*scene, *mesh, RTCHitN_primID(args->hit, count, i),
+                                   RTCHitN_u(args->hit, count, i), RTCHitN_v(args->hit, count, i));
+      if (alpha < material.alpha_cutoff) args->valid[i] = 0;
+    }
   }
 }
 
-// Embree reads 16 bytes at the last vertex of a buffer, so vertices are copied rather than shared.
-bool attach(RTCDevice device, RTCScene tree, const Scene& scene, unsigned id) {
-  const Mesh& mesh = scene.meshes[id];
-  if (mesh.indices.empty()) return true;
+bool needs_filter(const Material& material) {
+  return !material.double_sided || material.alpha_mode == AlphaMode::kMask;
+}
+
+// The triangles of a mesh, committed; null without memory. The caller releases it. Embree reads 16
+// bytes at the last vertex of a buffer, so vertices are copied rather than shared.
+RTCGeometry triangles_of(RTCDevice device, const Material& material, FilteredMesh& filtered) {
+  const Mesh& mesh = *filtered.mesh;
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                            sizeof(glm::vec3), mesh.positions_ws.size());
   void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                           3 * sizeof(uint32_t), mesh.indices.size() / 3);
-  const bool room = vertices && indices;
-  if (room) {
-    std::memcpy(vertices, mesh.positions_ws.data(), mesh.positions_ws.size() * sizeof(glm::vec3));
-    std::memcpy(indices, mesh.indices.data(), mesh.indices.size() * sizeof(uint32_t));
-    if (scene.materials[mesh.material].alpha_mode == AlphaMode::kMask) {
-      rtcSetGeometryUserData(geometry, const_cast<Scene*>(&scene));
-      rtcSetGeometryIntersectFilterFunction(geometry, pass_cut_out);
-      rtcSetGeometryOccludedFilterFunction(geometry, pass_cut_out);
-    }
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(tree, geometry, id);
+  if (!vertices || !indices) {
+    rtcReleaseGeometry(geometry);
+    return nullptr;
   }
-  rtcReleaseGeometry(geometry);
-  return room;
+  std::memcpy(vertices, mesh.positions_ws.data(), mesh.positions_ws.size() * sizeof(glm::vec3));
+  std::memcpy(indices, mesh.indices.data(), mesh.indices.size() * sizeof(uint32_t));
+  if (needs_filter(material)) {
+    rtcSetGeometryUserData(geometry, &filtered);
+    rtcSetGeometryIntersectFilterFunction(geometry, reject_invisible);
+    rtcSetGeometryOccludedFilterFunction(geometry, reject_invisible);
+  }
+  rtcCommitGeometry(geometry);
+  return geometry;
+}
+
+RTCScene new_tree(RTCDevice device) {
+  RTCScene tree = rtcNewScene(device);
+  rtcSetSceneFlags(tree, RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneBuildQuality(tree, RTC_BUILD_QUALITY_HIGH);
+  return tree;
+}
+
+// One geometry of `tree` for each instance of the mesh, all with the same triangles.
+void attach_instances(RTCDevice device, RTCScene tree, RTCGeometry triangles, uint32_t mesh_index,
+                      const Mesh& mesh, std::vector<RayScene::Impl::Attached>& attached) {
+  RTCScene shared = new_tree(device);
+  rtcAttachGeometryByID(shared, triangles, 0);
+  rtcCommitScene(shared);
+  for (uint32_t i = 0; i < mesh.instances.size(); ++i) {
+    RTCGeometry instance = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(instance, shared);
+    rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, &mesh.instances[i]);
+    rtcCommitGeometry(instance);
+    rtcAttachGeometryByID(tree, instance, static_cast<unsigned>(attached.size()));
+    rtcReleaseGeometry(instance);
+    attached.push_back({mesh_index, i});
+  }
+  rtcReleaseScene(shared);
 }
 
 // Beyond this, products of three lengths overflow in Embree, which then finds nothing.
@@ -71,6 +111,21 @@ bool is_traceable(const glm::vec3& origin, const glm::vec3& direction) {
   return std::abs(origin.x) < kFarthestStart && std::abs(origin.y) < kFarthestStart &&
          std::abs(origin.z) < kFarthestStart && std::isfinite(glm::dot(direction, direction));
 }
+
+// Takes normals from mesh to world space.
+class NormalTransform {
+ public:
+  explicit NormalTransform(const glm::mat4x3& world_from_mesh) {
+    const glm::dmat3 m{glm::mat3(world_from_mesh)};
+    const double side = glm::determinant(m) < 0.0 ? -1.0 : 1.0;
+    cofactor_ = {side * glm::cross(m[1], m[2]), side * glm::cross(m[2], m[0]),
+                 side * glm::cross(m[0], m[1])};
+  }
+  glm::dvec3 operator()(const glm::dvec3& normal) const { return cofactor_ * normal; }
+
+ private:
+  glm::dmat3 cofactor_;
+};
 
 glm::vec3 facing(const glm::vec3& n, const glm::vec3& direction) {
   return glm::dot(n, direction) > 0.0f ? -n : n;
@@ -99,12 +154,24 @@ tl::expected<RayScene, std::string> RayScene::create(const Scene& scene) {
   impl.scene = &scene;
   impl.device = rtcNewDevice(nullptr);
   if (!impl.device) return tl::unexpected<std::string>("Embree, the ray tracer, cannot start");
-  impl.tree = rtcNewScene(impl.device);
-  rtcSetSceneFlags(impl.tree, RTC_SCENE_FLAG_ROBUST);
-  rtcSetSceneBuildQuality(impl.tree, RTC_BUILD_QUALITY_HIGH);
+  impl.tree = new_tree(impl.device);
+  impl.filtered.reserve(scene.meshes.size());  // Embree keeps their addresses
   bool room = true;
-  for (unsigned id = 0; room && id < scene.meshes.size(); ++id) {
-    room = attach(impl.device, impl.tree, scene, id);
+  for (uint32_t m = 0; room && m < scene.meshes.size(); ++m) {
+    const Mesh& mesh = scene.meshes[m];
+    if (mesh.indices.empty()) continue;
+    impl.filtered.push_back({&scene, &mesh});
+    RTCGeometry triangles =
+        triangles_of(impl.device, scene.materials[mesh.material], impl.filtered.back());
+    room = triangles != nullptr;
+    if (!room) break;
+    if (mesh.instances.empty()) {
+      rtcAttachGeometryByID(impl.tree, triangles, static_cast<unsigned>(impl.attached.size()));
+      impl.attached.push_back({m, 0});
+    } else {
+      attach_instances(impl.device, impl.tree, triangles, m, mesh, impl.attached);
+    }
+    rtcReleaseGeometry(triangles);
   }
   if (room) rtcCommitScene(impl.tree);
   if (!room || rtcGetDeviceError(impl.device) != RTC_ERROR_NONE) {
@@ -121,27 +188,38 @@ std::optional<Hit> RayScene::Impl::nearest(const glm::vec3& origin, const glm::v
   query.ray = {origin.x,    origin.y, origin.z, 0.0f,        direction.x, direction.y,
                direction.z, 0.0f,     far,      0xffffffffu, 0,           0};
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   rtcIntersect1(tree, &context, &query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-  const Mesh& mesh = scene->meshes[query.hit.geomID];
+  const bool instanced = query.hit.instID[0] != RTC_INVALID_GEOMETRY_ID;
+  const Attached& hit_geometry = attached[instanced ? query.hit.instID[0] : query.hit.geomID];
+  const Mesh& mesh = scene->meshes[hit_geometry.mesh];
   const uint32_t* i = &mesh.indices[size_t{3} * query.hit.primID];
   const float u = query.hit.u, v = query.hit.v, w = 1.0f - u - v;
   Hit hit;
   hit.distance = query.ray.tfar;
   hit.material = mesh.material;
-  const glm::dvec3 area = area_of(mesh, size_t{3} * query.hit.primID);
-  const double twice_the_area = glm::length(area);
-  if (!(twice_the_area > 0.0) || !std::isfinite(hit.distance)) return std::nullopt;
-  const glm::vec3 normal(area / twice_the_area);
+  hit.color = color_within(mesh, query.hit.primID, u, v);
+  const NormalTransform placed(world_from_mesh(mesh, hit_geometry.instance));
+  const glm::dvec3 area = placed(area_of(mesh, size_t{3} * query.hit.primID));
+  const double length_of_area = glm::length(area);
+  if (!(length_of_area > 0.0) || !std::isfinite(hit.distance)) return std::nullopt;
+  const glm::vec3 normal(area / length_of_area);
   hit.geometric_normal_ws = facing(normal, direction);
-  const glm::vec3 smooth =
-      w * mesh.normals_ws[i[0]] + u * mesh.normals_ws[i[1]] + v * mesh.normals_ws[i[2]];
-  const float length = glm::length(smooth);
-  // A back face turns its vertices' normals with it, whatever side of the ray they are on.
-  const float side = glm::dot(normal, direction) > 0.0f ? -1.0f : 1.0f;
-  hit.shading_normal_ws = length > 1e-6f ? side * smooth / length : hit.geometric_normal_ws;
+  hit.shading_normal_ws = hit.geometric_normal_ws;
+  if (!mesh.normals_ws.empty()) {
+    const glm::vec3 smooth =
+        w * mesh.normals_ws[i[0]] + u * mesh.normals_ws[i[1]] + v * mesh.normals_ws[i[2]];
+    const glm::vec3 smooth_ws(direction_of(placed(glm::dvec3(smooth))));
+    // On a back face the vertex normals turn round with the triangle's, whichever side of the ray
+    // they are on.
+    const float side = glm::dot(normal, direction) > 0.0f ? -1.0f : 1.0f;
+    if (glm::length(smooth) > 1e-6f && smooth_ws != glm::vec3(0.0f)) {
+      hit.shading_normal_ws = side * smooth_ws;
+    }
+  }
   hit.uvs = uvs_within(mesh, query.hit.primID, u, v);
   return hit;
 }
@@ -186,7 +264,7 @@ glm::vec3 RayScene::Impl::off_surface(const glm::vec3& position_ws,
 
 glm::vec3 albedo_at(const Scene& scene, const Hit& hit) {
   const Material& material = scene.materials[hit.material];
-  glm::vec3 out(material.base_color);
+  glm::vec3 out(material.base_color * hit.color);
   if (material.base_color_texture.image < 0) return out;
   const glm::vec4 texel = sample_texture(scene, material.base_color_texture, hit.uvs);
   for (int c = 0; c < 3; ++c) out[c] *= srgb_to_linear(texel[c]);

@@ -18,13 +18,25 @@ struct Hit {
   glm::vec3 geometric_normal_ws;
   glm::vec3 shading_normal_ws;
   MeshUvs uvs;
+  glm::vec4 color;  // of the vertices, linear RGB and alpha
 };
 
-// Embree's tree over a scene, and the questions that the truths ask of it.
+// The bounding volume hierarchy that Embree builds over a scene, and the queries of it.
 struct RayScene::Impl {
   const Scene* scene = nullptr;
   RTCDevice device = nullptr;
   RTCScene tree = nullptr;
+  // Which mesh and instance each geometry of the tree is, by its number.
+  struct Attached {
+    uint32_t mesh;
+    uint32_t instance;
+  };
+  std::vector<Attached> attached;
+  struct FilteredMesh {
+    const Scene* scene;
+    const Mesh* mesh;
+  };
+  std::vector<FilteredMesh> filtered;  // what Embree's filters are given
 
   ~Impl();
   [[nodiscard]] std::optional<Hit> nearest(const glm::vec3& origin, const glm::vec3& direction,
@@ -32,8 +44,8 @@ struct RayScene::Impl {
   // Whether each of up to 16 rays from one origin meets anything nearer than `far`; bit i is ray i.
   [[nodiscard]] uint32_t blocked(const glm::vec3& origin, std::span<const glm::vec3> directions,
                                  float far) const;
-  // A start for rays that leave a surface: off it by some sixteen times the rounding of positions
-  // in a scene of this size, so that a flat surface does not meet itself.
+  // The origin of rays that leave a surface: moved along the normal by sixteen times the rounding
+  // of positions in a scene of this size, so that a flat surface does not occlude itself.
   [[nodiscard]] glm::vec3 off_surface(const glm::vec3& position_ws,
                                       const glm::vec3& normal_ws) const;
 };

@@ -68,6 +68,7 @@ void add_material(CacheKey& key, const Material& material) {
   add_use(key, material.metal_roughness_texture);
   key.add(static_cast<uint8_t>(material.alpha_mode));
   key.add(material.alpha_cutoff);
+  key.add(static_cast<uint8_t>(material.double_sided));
 }
 
 std::filesystem::path from_environment(const char* name) {
@@ -91,7 +92,9 @@ void CacheKey::add(const Scene& scene) {
     add_vector(*this, mesh.normals_ws);
     add_vector(*this, mesh.uvs);
     add_vector(*this, mesh.second_uvs);
+    add_vector(*this, mesh.colors);
     add_vector(*this, mesh.indices);
+    add_vector(*this, mesh.instances);
   }
   for (const Material& material : scene.materials) {
     add_material(*this, material);

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "render/gbuffer_pipelines.h"
+#include "render/gpu_meshes.h"
 #include "render/gpu_textures.h"
 #include "render/shaders/gbuffer.h"
-#include "render/triangles.h"
 
 namespace alcove::sample {
 namespace {
@@ -21,23 +21,37 @@ using framegraph::RecordContext;
 using framegraph::Texture;
 using Failure = tl::unexpected<std::string>;
 
-// From one frame's parameters to the next's: a multiple of the largest alignment that a device may
-// ask for.
+// Distance between the parameters of two frames or two materials in their buffers: a multiple of
+// the largest alignment that a device may ask for, which is 256 bytes.
 constexpr std::uint32_t kParameterStride = 512;
+constexpr std::uint32_t kMaterialStride = 256;
 static_assert(sizeof(maths::GbufferParameters) <= kParameterStride && kParameterStride % 256 == 0);
+static_assert(sizeof(maths::GbufferMaterial) <= kMaterialStride && kMaterialStride % 256 == 0);
 
-maths::GbufferDraw draw_constants(const Material& material) {
-  maths::GbufferDraw draw{};
-  draw.base_colour = material.base_color;
-  draw.emissive = glm::vec4(material.emissive, 0.0f);
-  draw.metallic = material.metallic;
-  draw.roughness = material.roughness;
-  if (material.alpha_mode == AlphaMode::kMask) {
-    draw.alpha_cutoff = material.alpha_cutoff;
+void set_uv_rows(maths::GbufferMaterial& out, std::uint32_t lookup, const TextureUse& use) {
+  const glm::mat3x2& m = use.texture_from_mesh_uv;
+  for (int row = 0; row < 2; ++row) {
+    out.uv_rows[2 * lookup + static_cast<std::uint32_t>(row)] = {
+        m[0][row], m[1][row], m[2][row], row == 0 ? static_cast<float>(use.uv_set) : 0.0f};
   }
-  draw.has_normal_map = material.normal_texture.image >= 0 ? 1 : 0;
-  draw.normal_scale = material.normal_scale;
-  return draw;
+}
+
+maths::GbufferMaterial parameters_of(const Material& material) {
+  maths::GbufferMaterial out{};
+  out.base_colour = material.base_color;
+  out.emissive = glm::vec4(material.emissive, 0.0f);
+  out.metallic = material.metallic;
+  out.roughness = material.roughness;
+  if (material.alpha_mode == AlphaMode::kMask) {
+    out.alpha_cutoff = material.alpha_cutoff;
+  }
+  out.has_normal_map = material.normal_texture.image >= 0 ? 1 : 0;
+  out.normal_scale = material.normal_scale;
+  set_uv_rows(out, maths::kBaseColourUv, material.base_color_texture);
+  set_uv_rows(out, maths::kMetallicRoughnessUv, material.metal_roughness_texture);
+  set_uv_rows(out, maths::kEmissiveUv, material.emissive_texture);
+  set_uv_rows(out, maths::kNormalUv, material.normal_texture);
+  return out;
 }
 
 }  // namespace
@@ -47,8 +61,9 @@ struct GbufferRenderer::State {
   struct Drawing {
     bool reversed_z = false;
     std::uint32_t parameters_at = 0;
-    VkCullModeFlags culled = VK_CULL_MODE_NONE;
-    Texture first;  // depth of what is left out, with what lies before it; null: nothing is
+    VkCullModeFlags culled = VK_CULL_MODE_BACK_BIT;     // of single-sided materials
+    VkCullModeFlags double_culled = VK_CULL_MODE_NONE;  // of double-sided ones
+    Texture first;  // depth of the first layer, which the second one leaves out; may be null
   };
   explicit State(Gpu& owner) : gpu(owner), device(owner.device().device()) {}
   State(const State&) = delete;
@@ -66,9 +81,9 @@ struct GbufferRenderer::State {
 
   Gpu& gpu;
   VkDevice device;
-  std::vector<TriangleDraw> draws;
-  std::vector<maths::GbufferDraw> constants;  // by material
-  std::unique_ptr<HostBuffer> vertices;
+  std::vector<bool> double_sided;  // by material
+  std::unique_ptr<GpuMeshes> meshes;
+  std::unique_ptr<HostBuffer> materials;   // GbufferMaterial at multiples of kMaterialStride
   std::unique_ptr<HostBuffer> parameters;  // one for each frame in flight
   std::optional<GbufferView> written;      // the latest of them
   std::uint32_t latest = 0;                // where it is
@@ -83,16 +98,24 @@ struct GbufferRenderer::State {
 GbufferRenderer::State::~State() { vkDestroyDescriptorPool(device, pool, nullptr); }
 
 tl::expected<void, std::string> GbufferRenderer::State::upload(const Scene& scene) {
-  const Triangles triangles = flatten(scene);
-  draws = triangles.draws;
-  const std::span<const std::byte> bytes = std::as_bytes(std::span(triangles.vertices));
-  auto vertex_buffer = HostBuffer::create(gpu.device(), std::max<std::size_t>(bytes.size(), 4),
-                                          VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
-  if (!vertex_buffer) {
-    return Failure(std::move(vertex_buffer.error()));
+  auto uploaded = GpuMeshes::create(gpu.device(), scene);
+  if (!uploaded) {
+    return Failure(std::move(uploaded.error()));
   }
-  vertices = std::move(*vertex_buffer);
-  std::ranges::copy(bytes, vertices->bytes().begin());
+  meshes = std::move(*uploaded);
+  auto constants = HostBuffer::create(
+      gpu.device(),
+      VkDeviceSize{kMaterialStride} * std::max<std::size_t>(scene.materials.size(), 1),
+      VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
+  if (!constants) {
+    return Failure(std::move(constants.error()));
+  }
+  materials = std::move(*constants);
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+    const maths::GbufferMaterial material = parameters_of(scene.materials[i]);
+    std::memcpy(materials->bytes().data() + i * kMaterialStride, &material, sizeof(material));
+    double_sided.push_back(scene.materials[i].double_sided);
+  }
   auto uniform =
       HostBuffer::create(gpu.device(), VkDeviceSize{kParameterStride} * gpu.frames_in_flight(),
                          VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
@@ -105,22 +128,19 @@ tl::expected<void, std::string> GbufferRenderer::State::upload(const Scene& scen
     return Failure(std::move(made.error()));
   }
   textures = std::move(*made);
-  for (const Material& material : scene.materials) {
-    constants.push_back(draw_constants(material));
-  }
   return {};
 }
 
 tl::expected<void, std::string> GbufferRenderer::State::create_sets(const Scene& scene) {
   const uint32_t frames = gpu.frames_in_flight();
-  const auto materials = static_cast<uint32_t>(scene.materials.size());
-  const std::array<VkDescriptorPoolSize, 3> sizes{
+  const auto count = static_cast<uint32_t>(scene.materials.size());
+  const std::array<VkDescriptorPoolSize, 4> sizes{
       {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, 1},
-       {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-        maths::kMaterialTextures * std::max(materials, 1u)},
+       {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, std::max(count, 1u)},
+       {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, maths::kMaterialTextures * std::max(count, 1u)},
        {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, frames}}};
   const VkDescriptorPoolCreateInfo pool_info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-                                             .maxSets = 1 + frames + materials,
+                                             .maxSets = 1 + frames + count,
                                              .poolSizeCount = static_cast<uint32_t>(sizes.size()),
                                              .pPoolSizes = sizes.data()};
   VkResult result = vkCreateDescriptorPool(device, &pool_info, nullptr, &pool);
@@ -138,7 +158,7 @@ tl::expected<void, std::string> GbufferRenderer::State::create_sets(const Scene&
   for (VkDescriptorSet& layer : layer_sets) {
     allocate(pipelines->layer_set(), layer);
   }
-  material_sets.resize(materials);
+  material_sets.resize(count);
   for (VkDescriptorSet& material : material_sets) {
     allocate(pipelines->material_set(), material);
   }
@@ -159,12 +179,22 @@ void GbufferRenderer::State::write_sets(const Scene& scene) const {
   vkUpdateDescriptorSets(device, 1, &frame, 0, nullptr);
   for (std::size_t i = 0; i < material_sets.size(); ++i) {
     const auto images = textures->descriptors_of(scene.materials[i]);
-    const VkWriteDescriptorSet material{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                                        .dstSet = material_sets[i],
-                                        .descriptorCount = static_cast<uint32_t>(images.size()),
-                                        .descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-                                        .pImageInfo = images.data()};
-    vkUpdateDescriptorSets(device, 1, &material, 0, nullptr);
+    const VkDescriptorBufferInfo constants{materials->buffer(), i * VkDeviceSize{kMaterialStride},
+                                           sizeof(maths::GbufferMaterial)};
+    const std::array<VkWriteDescriptorSet, 2> writes{
+        {{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+          .dstSet = material_sets[i],
+          .dstBinding = 0,
+          .descriptorCount = static_cast<uint32_t>(images.size()),
+          .descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+          .pImageInfo = images.data()},
+         {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+          .dstSet = material_sets[i],
+          .dstBinding = 1,
+          .descriptorCount = 1,
+          .descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,
+          .pBufferInfo = &constants}}};
+    vkUpdateDescriptorSets(device, static_cast<uint32_t>(writes.size()), writes.data(), 0, nullptr);
   }
 }
 
@@ -229,17 +259,22 @@ void GbufferRenderer::State::record(RecordContext& context, const Gbuffer& gbuff
   if (drawing.first) {
     bind_first_layer(context, drawing.first);
   }
-  const VkBuffer buffer = vertices->buffer();
-  const VkDeviceSize offset = 0;
-  vk.vkCmdBindVertexBuffers(context.commands, 0, 1, &buffer, &offset);
-  vk.vkCmdSetCullMode(context.commands, drawing.culled);
-  for (const TriangleDraw& draw : draws) {
+  for (const MeshDraw& draw : meshes->draws()) {
     vk.vkCmdBindDescriptorSets(context.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 2, 1,
                                &material_sets[draw.material], 0, nullptr);
-    maths::GbufferDraw pushed = constants[draw.material];
-    pushed.moves = draw.moves ? 1 : 0;
-    vk.vkCmdPushConstants(context.commands, layout, kDrawStages, 0, sizeof(pushed), &pushed);
-    vk.vkCmdDraw(context.commands, draw.vertex_count, 1, draw.first_vertex, 0);
+    const maths::GbufferDraw pushed{draw.moves ? 1u : 0u, draw.faceted ? 1u : 0u};
+    vk.vkCmdPushConstants(context.commands, layout, VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof(pushed),
+                          &pushed);
+    vk.vkCmdSetCullMode(context.commands,
+                        double_sided[draw.material] ? drawing.double_culled : drawing.culled);
+    // Not in the graph's table of functions: nothing but the sample's meshes needs these two.
+    vkCmdSetFrontFace(context.commands,
+                      draw.mirrored ? VK_FRONT_FACE_CLOCKWISE : VK_FRONT_FACE_COUNTER_CLOCKWISE);
+    vkCmdBindVertexBuffers2(context.commands, 0, kVertexStreams, draw.buffers.data(),
+                            draw.offsets.data(), nullptr, draw.strides.data());
+    vkCmdBindIndexBuffer(context.commands, draw.index_buffer, draw.index_offset,
+                         VK_INDEX_TYPE_UINT32);
+    vkCmdDrawIndexed(context.commands, draw.index_count, draw.instance_count, 0, 0, 0);
   }
   vk.vkCmdEndRendering(context.commands);
 }
@@ -311,7 +346,8 @@ Texture GbufferRenderer::add_back_faces(Graph& graph, const GbufferView& view, T
       pass.write(depth, framegraph::access::depth_attachment, {}, framegraph::Contents::discard);
   pass.record(
       [state = state_.get(), depth, reversed = view.reversed_z, at](RecordContext& context) {
-        state->record(context, {.depth = depth}, {reversed, at, VK_CULL_MODE_FRONT_BIT});
+        state->record(context, {.depth = depth},
+                      {reversed, at, VK_CULL_MODE_FRONT_BIT, VK_CULL_MODE_FRONT_BIT});
       });
   return depth;
 }
@@ -325,7 +361,8 @@ Texture GbufferRenderer::add_second_layer(Graph& graph, const GbufferView& view,
       pass.write(depth, framegraph::access::depth_attachment, {}, framegraph::Contents::discard);
   pass.record(
       [state = state_.get(), first, depth, reversed = view.reversed_z, at](RecordContext& context) {
-        state->record(context, {.depth = depth}, {reversed, at, VK_CULL_MODE_BACK_BIT, first});
+        state->record(context, {.depth = depth},
+                      {reversed, at, VK_CULL_MODE_BACK_BIT, VK_CULL_MODE_BACK_BIT, first});
       });
   return depth;
 }

@@ -41,7 +41,8 @@ inline constexpr VkFormat kAlbedoFormat = VK_FORMAT_R8G8B8A8_UNORM;
 inline constexpr VkFormat kMotionFormat = VK_FORMAT_R16G16_SFLOAT;
 inline constexpr VkFormat kEmissiveFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
 
-// Draws a scene: its triangles, textures and pipelines on one device.
+// Draws a scene: its meshes, textures and pipelines on one device. Back faces of materials that are
+// not double-sided are culled.
 class GbufferRenderer {
  public:
   // Uploads the scene. `geometric_normals` draws each triangle's own normal instead of the
@@ -56,13 +57,14 @@ class GbufferRenderer {
   // are the same: parameters are kept for each frame in flight, not for each view.
   [[nodiscard]] Gbuffer add(framegraph::Graph& graph, const GbufferView& view,
                             const Gbuffer& targets);
-  // Adds the pass that fills a texture like Gbuffer::depth with the nearest back faces, for a frame
-  // that draws the same view.
+  // Adds the pass that fills a texture like Gbuffer::depth with the nearest back faces of all
+  // materials, for a frame that draws the same view.
   [[nodiscard]] framegraph::Texture add_back_faces(framegraph::Graph& graph,
                                                    const GbufferView& view,
                                                    framegraph::Texture depth);
-  // The same of the nearest front faces, and any faces of double-sided materials, that lie behind
-  // Gbuffer::depth by more than a thousandth of its distance: `first`, of the same view.
+  // Adds the pass that fills a texture like Gbuffer::depth with the second depth layer: the nearest
+  // front faces of all materials that lie behind `first`, which is the Gbuffer::depth of the same
+  // view, by more than a thousandth of its distance.
   [[nodiscard]] framegraph::Texture add_second_layer(framegraph::Graph& graph,
                                                      const GbufferView& view,
                                                      framegraph::Texture first,

@@ -4,9 +4,9 @@
 #include <span>
 
 #include "render/gbuffer.h"
+#include "render/gpu_meshes.h"
 #include "render/shader_module.h"
 #include "render/shaders/gbuffer.h"
-#include "render/triangles.h"
 #include "spirv/gbuffer_fragment.h"
 #include "spirv/gbuffer_vertex.h"
 #include "spirv/second_layer_fragment.h"
@@ -18,22 +18,29 @@ namespace {
 constexpr std::array<VkFormat, 4> kColourFormats{kNormalFormat, kAlbedoFormat, kMotionFormat,
                                                  kEmissiveFormat};
 
-// The state that never changes, as Vulkan wants it: attributes of Vertex, no blending.
+constexpr std::uint32_t binding_of(VertexStream stream) {
+  return static_cast<std::uint32_t>(stream);
+}
+
+// The state that never changes: the vertex streams of MeshDraw, no blending.
 struct FixedState {
-  VkVertexInputBindingDescription binding{0, sizeof(Vertex), VK_VERTEX_INPUT_RATE_VERTEX};
-  // The first two are all that the second layer reads.
-  std::array<VkVertexInputAttributeDescription, 6> attributes{
-      {{0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, position_ws)},
-       // Two sets of coordinates, as in the last.
-       {4, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Vertex, base_color_uv)},
-       {1, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, normal_ws)},
-       {2, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, face_normal_ws)},
-       {3, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Vertex, tangent_ws)},
-       {5, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Vertex, emissive_uv)}}};
+  std::array<VkVertexInputBindingDescription, kVertexStreams> bindings{};
+  // Locations are those of shaders/gbuffer_vertex.h. What the second layer reads comes first.
+  std::array<VkVertexInputAttributeDescription, 9> attributes{
+      {{0, binding_of(VertexStream::kPosition), VK_FORMAT_R32G32B32_SFLOAT, 0},
+       {2, binding_of(VertexStream::kUv), VK_FORMAT_R32G32_SFLOAT, 0},
+       {3, binding_of(VertexStream::kSecondUv), VK_FORMAT_R32G32_SFLOAT, 0},
+       {5, binding_of(VertexStream::kColor), VK_FORMAT_R8G8B8A8_UNORM, 0},
+       {6, binding_of(VertexStream::kInstance), VK_FORMAT_R32G32B32A32_SFLOAT, 0},
+       {7, binding_of(VertexStream::kInstance), VK_FORMAT_R32G32B32A32_SFLOAT, 16},
+       {8, binding_of(VertexStream::kInstance), VK_FORMAT_R32G32B32A32_SFLOAT, 32},
+       {1, binding_of(VertexStream::kNormals), VK_FORMAT_R16G16B16A16_SNORM, 0},
+       {4, binding_of(VertexStream::kTangent), VK_FORMAT_R16G16B16A16_SNORM, 0}}};
+  static constexpr std::uint32_t kDepthAttributes = 7;
   VkPipelineVertexInputStateCreateInfo vertices{
       .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO,
-      .vertexBindingDescriptionCount = 1,
-      .pVertexBindingDescriptions = &binding,
+      .vertexBindingDescriptionCount = kVertexStreams,
+      .pVertexBindingDescriptions = bindings.data(),
       .vertexAttributeDescriptionCount = static_cast<uint32_t>(attributes.size()),
       .pVertexAttributeDescriptions = attributes.data()};
   VkPipelineInputAssemblyStateCreateInfo assembly{
@@ -55,11 +62,12 @@ struct FixedState {
       .sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
       .attachmentCount = 4,
       .pAttachments = attachments.data()};
-  std::array<VkDynamicState, 3> dynamic_states{VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR,
-                                               VK_DYNAMIC_STATE_CULL_MODE};
+  std::array<VkDynamicState, 5> dynamic_states{
+      VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR, VK_DYNAMIC_STATE_CULL_MODE,
+      VK_DYNAMIC_STATE_FRONT_FACE, VK_DYNAMIC_STATE_VERTEX_INPUT_BINDING_STRIDE};
   VkPipelineDynamicStateCreateInfo dynamic{
       .sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO,
-      .dynamicStateCount = 3,
+      .dynamicStateCount = static_cast<uint32_t>(dynamic_states.size()),
       .pDynamicStates = dynamic_states.data()};
   VkPipelineRenderingCreateInfo rendering{
       .sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO,
@@ -68,8 +76,12 @@ struct FixedState {
       .depthAttachmentFormat = kDepthFormat};
 
   explicit FixedState(bool depth_alone) {
+    for (std::uint32_t i = 0; i < kVertexStreams; ++i) {
+      bindings[i] = {i, 0, VK_VERTEX_INPUT_RATE_VERTEX};
+    }
+    bindings[binding_of(VertexStream::kInstance)].inputRate = VK_VERTEX_INPUT_RATE_INSTANCE;
     if (depth_alone) {
-      vertices.vertexAttributeDescriptionCount = 2;
+      vertices.vertexAttributeDescriptionCount = kDepthAttributes;
     }
     for (auto& attachment : attachments) {
       attachment.colorWriteMask = 0xf;
@@ -120,9 +132,10 @@ VkResult GbufferPipelines::create_layout() {
       {{0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, 1, kDrawStages, nullptr}}};
   const std::array<VkDescriptorSetLayoutBinding, 1> layer{
       {{0, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 1, VK_SHADER_STAGE_FRAGMENT_BIT, nullptr}}};
-  const std::array<VkDescriptorSetLayoutBinding, 1> material{
+  const std::array<VkDescriptorSetLayoutBinding, 2> material{
       {{0, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, maths::kMaterialTextures,
-        VK_SHADER_STAGE_FRAGMENT_BIT, nullptr}}};
+        VK_SHADER_STAGE_FRAGMENT_BIT, nullptr},
+       {1, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1, kDrawStages, nullptr}}};
   VkResult result = create_set_layout(device_, frame, frame_set_);
   if (result == VK_SUCCESS) {
     result = create_set_layout(device_, layer, layer_set_);
@@ -134,7 +147,7 @@ VkResult GbufferPipelines::create_layout() {
     return result;
   }
   const std::array sets{frame_set_, layer_set_, material_set_};
-  const VkPushConstantRange range{kDrawStages, 0, sizeof(maths::GbufferDraw)};
+  const VkPushConstantRange range{VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof(maths::GbufferDraw)};
   const VkPipelineLayoutCreateInfo info{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
                                         .setLayoutCount = static_cast<uint32_t>(sets.size()),
                                         .pSetLayouts = sets.data(),

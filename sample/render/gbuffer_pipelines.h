@@ -10,11 +10,11 @@
 
 namespace alcove::sample {
 
-// The g-buffer's pipelines on a device, and the layouts of what they bind. Targets: normal, albedo,
-// motion and emission, each of which may be missing, and depth.
+// The g-buffer's pipelines on a device, and the layouts of their descriptor sets. They write depth
+// and, where these targets are attached, normal, albedo, motion and emission.
 class GbufferPipelines {
  public:
-  // What a pipeline draws: everything, or the depth of the second layer.
+  // What a pipeline writes: all targets, or the depth of the second layer.
   enum class Kind : std::uint8_t { all, second_layer };
 
   // `device` must outlive the pipelines.
@@ -24,7 +24,8 @@ class GbufferPipelines {
   GbufferPipelines(const GbufferPipelines&) = delete;
   GbufferPipelines& operator=(const GbufferPipelines&) = delete;
 
-  // `reversed`: nearer is greater. Viewport, scissor and culling are dynamic.
+  // `reversed`: nearer surfaces have greater depths. Viewport, scissor, cull mode, front face and
+  // the strides of the vertex streams are dynamic.
   [[nodiscard]] VkPipeline pipeline(Kind kind, bool reversed) const {
     return pipelines_[index_of(kind, reversed)];
   }
@@ -33,8 +34,8 @@ class GbufferPipelines {
   [[nodiscard]] VkDescriptorSetLayout frame_set() const { return frame_set_; }
   // Set 1, for the second layer alone: the depth of the first.
   [[nodiscard]] VkDescriptorSetLayout layer_set() const { return layer_set_; }
-  // Set 2: a material's textures. So a scene may have as many as there is memory for: few devices
-  // take hundreds in one set.
+  // Set 2: the textures and the parameters of a material. Each material has a set of its own,
+  // because few devices allow hundreds of textures in one set.
   [[nodiscard]] VkDescriptorSetLayout material_set() const { return material_set_; }
 
  private:
@@ -53,7 +54,7 @@ class GbufferPipelines {
   std::array<VkPipeline, 4> pipelines_{};
 };
 
-// That read what each draw pushes.
+// The stages that read parameters of the frame and of materials.
 inline constexpr VkShaderStageFlags kDrawStages =
     VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
 

@@ -28,6 +28,9 @@ framegraph::DeviceHandles handles_of(const VulkanDevice& device) {
 
 tl::expected<std::unique_ptr<HostBuffer>, std::string> HostBuffer::create(
     const VulkanDevice& device, VkDeviceSize bytes, VkBufferUsageFlags usage) {
+  if (bytes > device.max_allocation()) {
+    return too_large("a buffer", bytes, device);
+  }
   std::unique_ptr<HostBuffer> made(new HostBuffer(device));
   made->size_ = bytes;
   made->usage_ = usage;

@@ -29,6 +29,11 @@ tl::expected<std::unique_ptr<GpuImage>, std::string> GpuImage::create(const Vulk
   if (result == VK_SUCCESS) {
     VkMemoryRequirements needs;
     vkGetImageMemoryRequirements(device, made->image_, &needs);
+    if (needs.size > owner.max_allocation()) {
+      return too_large("an image of " + std::to_string(size.width) + "x" +
+                           std::to_string(size.height) + " pixels",
+                       needs.size, owner);
+    }
     const VkMemoryAllocateInfo allocation{
         .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
         .allocationSize = needs.size,

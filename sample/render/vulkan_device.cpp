@@ -159,6 +159,15 @@ std::string_view result_name(VkResult result) {
   }
 }
 
+tl::unexpected<std::string> too_large(const std::string& what, VkDeviceSize bytes,
+                                      const VulkanDevice& device) {
+  return tl::unexpected("The device gives no memory for " + what + ": it takes " +
+                        std::to_string(bytes) + " bytes, and " +
+                        std::to_string(device.max_allocation()) +
+                        " are its limit for one allocation; choose another device with --device or "
+                        "make the scene smaller.");
+}
+
 tl::unexpected<std::string> device_failure(const std::string& what, VkResult result) {
   return failure("The device could not " + what, result);
 }
@@ -261,6 +270,12 @@ tl::expected<void, std::string> VulkanDevice::choose_physical_device(int index) 
 tl::expected<void, std::string> VulkanDevice::create_device(bool presentation) {
   vkGetPhysicalDeviceProperties(physical_device_, &properties_);
   vkGetPhysicalDeviceMemoryProperties(physical_device_, &memory_);
+  VkPhysicalDeviceMaintenance3Properties limits{
+      .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES};
+  VkPhysicalDeviceProperties2 properties{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
+                                         .pNext = &limits};
+  vkGetPhysicalDeviceProperties2(physical_device_, &properties);
+  max_allocation_ = limits.maxMemoryAllocationSize;
   driver_ = driver_of(physical_device_);
   queue_family_ = find_queue_family(physical_device_);
   const float priority = 1.0f;

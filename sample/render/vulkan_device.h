@@ -52,6 +52,9 @@ class VulkanDevice {
   // What samplers may ask for; 1 where the device has no anisotropic filter or is a processor.
   float max_anisotropy() const { return max_anisotropy_; }
 
+  // The most bytes that one allocation, and so one buffer or image, may have.
+  VkDeviceSize max_allocation() const { return max_allocation_; }
+
   // What the validation layers said so far, errors and warnings, each message once as it came.
   const std::vector<std::string>& validation_messages() const { return messages_; }
 
@@ -78,6 +81,7 @@ class VulkanDevice {
   VkPhysicalDeviceMemoryProperties memory_{};
   std::string driver_;
   float max_anisotropy_ = 1.0f;
+  VkDeviceSize max_allocation_ = 0;
   std::vector<std::string> messages_;
 };
 
@@ -88,5 +92,9 @@ class VulkanDevice {
 [[nodiscard]] std::string_view result_name(VkResult result);
 // "The device could not WHAT (VK_ERROR_DEVICE_LOST)."
 [[nodiscard]] tl::unexpected<std::string> device_failure(const std::string& what, VkResult result);
+// The sentence for `what`, of `bytes`, which is over VulkanDevice::max_allocation(). Drivers may
+// crash where they are asked for more.
+[[nodiscard]] tl::unexpected<std::string> too_large(const std::string& what, VkDeviceSize bytes,
+                                                    const VulkanDevice& device);
 
 }  // namespace alcove::sample

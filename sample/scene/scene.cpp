@@ -22,14 +22,38 @@ glm::vec4 texel(const TextureImage& image, uint32_t x, uint32_t y) {
   return glm::vec4(p[0], p[1], p[2], p[3]) / 255.0f;
 }
 
+Bounds no_bounds() { return {glm::vec3(INFINITY), glm::vec3(-INFINITY)}; }
+
+void include(Bounds& bounds, const glm::vec3& position) {
+  bounds.low = glm::min(bounds.low, position);
+  bounds.high = glm::max(bounds.high, position);
+}
+
 }  // namespace
 
+std::array<glm::vec3, 8> corners_of(const Bounds& bounds) {
+  std::array<glm::vec3, 8> corners;
+  for (size_t i = 0; i < corners.size(); ++i) {
+    for (int c = 0; c < 3; ++c) {
+      corners[i][c] = (i >> c & 1u) != 0 ? bounds.high[c] : bounds.low[c];
+    }
+  }
+  return corners;
+}
+
 Bounds bounds_of(const std::vector<Mesh>& meshes) {
-  Bounds bounds{glm::vec3(INFINITY), glm::vec3(-INFINITY)};
+  Bounds bounds = no_bounds();
   for (const Mesh& mesh : meshes) {
-    for (const uint32_t i : mesh.indices) {
-      bounds.low = glm::min(bounds.low, mesh.positions_ws[i]);
-      bounds.high = glm::max(bounds.high, mesh.positions_ws[i]);
+    Bounds own = no_bounds();
+    for (const uint32_t i : mesh.indices) include(own, mesh.positions_ws[i]);
+    if (mesh.instances.empty()) {
+      if (!mesh.indices.empty()) include(bounds, own.low), include(bounds, own.high);
+      continue;
+    }
+    for (const glm::mat4x3& world_from_mesh : mesh.instances) {
+      for (const glm::vec3& corner : corners_of(own)) {
+        include(bounds, world_from_mesh * glm::vec4(corner, 1.0f));
+      }
     }
   }
   return bounds.low.x <= bounds.high.x ? bounds : Bounds{};
@@ -37,8 +61,12 @@ Bounds bounds_of(const std::vector<Mesh>& meshes) {
 
 uint64_t triangle_count(const Scene& scene) {
   uint64_t count = 0;
-  for (const Mesh& mesh : scene.meshes) count += mesh.indices.size() / 3;
+  for (const Mesh& mesh : scene.meshes) count += mesh.indices.size() / 3 * instance_count(mesh);
   return count;
+}
+
+glm::mat4x3 world_from_mesh(const Mesh& mesh, size_t instance) {
+  return mesh.instances.empty() ? glm::mat4x3(1.0f) : mesh.instances[instance];
 }
 
 Camera framing_camera(const Bounds& bounds) {
@@ -70,15 +98,27 @@ float default_radius(const Scene& scene) {
 }
 
 MeshUvs uvs_at(const Mesh& mesh, uint32_t vertex) {
-  return {mesh.uvs[vertex], mesh.second_uvs.empty() ? glm::vec2(0.0f) : mesh.second_uvs[vertex]};
+  const auto at = [&](const std::vector<glm::vec2>& uvs) {
+    return uvs.empty() ? glm::vec2(0.0f) : uvs[vertex];
+  };
+  return {at(mesh.uvs), at(mesh.second_uvs)};
 }
 
 MeshUvs uvs_within(const Mesh& mesh, uint32_t triangle, float u, float v) {
   const uint32_t* i = &mesh.indices[size_t{3} * triangle];
   const auto mean = [&](const std::vector<glm::vec2>& uvs) {
-    return (1.0f - u - v) * uvs[i[0]] + u * uvs[i[1]] + v * uvs[i[2]];
+    return uvs.empty() ? glm::vec2(0.0f)
+                       : (1.0f - u - v) * uvs[i[0]] + u * uvs[i[1]] + v * uvs[i[2]];
   };
-  return {mean(mesh.uvs), mesh.second_uvs.empty() ? glm::vec2(0.0f) : mean(mesh.second_uvs)};
+  return {mean(mesh.uvs), mean(mesh.second_uvs)};
+}
+
+glm::vec4 color_within(const Mesh& mesh, uint32_t triangle, float u, float v) {
+  if (mesh.colors.empty()) return glm::vec4(1.0f);
+  const uint32_t* i = &mesh.indices[size_t{3} * triangle];
+  return ((1.0f - u - v) * glm::vec4(mesh.colors[i[0]]) + u * glm::vec4(mesh.colors[i[1]]) +
+          v * glm::vec4(mesh.colors[i[2]])) /
+         255.0f;
 }
 
 glm::vec2 texture_uv(const TextureUse& use, const MeshUvs& mesh_uvs) {

@@ -65,24 +65,31 @@ struct Material {
   float normal_scale = 1.0f;  // of x and y; -1e6..1e6
   AlphaMode alpha_mode = AlphaMode::kOpaque;
   float alpha_cutoff = 0.5f;  // of kMask: kept where alpha >= cutoff
+  // False: back faces are neither drawn nor hit by rays (glTF 2.0 section 3.9.6).
+  bool double_sided = true;
 };
 
-// Triangles of one material in world space, counter-clockwise from the front. The vertex arrays
-// have one length; every index is below it. Normals are unit, uvs zero where there were none; the
-// second ones are empty where no texture of the material is read by them, and read as zero.
-// Tangents are the file's, unit or zero, w the side of the bitangent w * cross(normal, tangent); an
-// empty array leaves them to be made (tangents.h).
+// Triangles of one material, counter-clockwise seen from the front. They stand once, in world
+// space, or several times, in a space of their own, as `instances` says. Every array of vertices
+// has the length of `positions_ws` or is empty; every index is below that length.
 struct Mesh {
   std::string name;
   uint32_t material = 0;  // indexes Scene::materials
   std::vector<glm::vec3> positions_ws;
-  std::vector<glm::vec3> normals_ws;
-  std::vector<glm::vec2> uvs;
-  std::vector<glm::vec2> second_uvs;
+  std::vector<glm::vec3> normals_ws;  // unit; empty: each triangle has its geometric normal
+  std::vector<glm::vec2> uvs;         // empty: zero
+  std::vector<glm::vec2> second_uvs;  // empty: zero
+  // The file's tangents, unit or zero; w is the side of the bitangent w * cross(normal, tangent).
+  // Empty: corner_tangents() computes them from texture coordinates.
   std::vector<glm::vec4> tangents_ws;
+  // Linear RGB and alpha, 8-bit unsigned normalised, that multiply the base colour; empty: white.
+  std::vector<glm::u8vec4> colors;
   std::vector<uint32_t> indices;  // 3 per triangle
-  // Drawn where GbufferView::world_from_moving puts it, from a space of its own; traced as it
-  // stands.
+  // World from mesh space, one for each instance, affine. Empty: the mesh stands once and its
+  // arrays are in world space.
+  std::vector<glm::mat4x3> instances;
+  // The rasteriser places the mesh by GbufferView::world_from_moving, the ray tracer leaves it
+  // where it is.
   bool moves = false;
 };
 
@@ -91,8 +98,7 @@ struct Bounds {
   glm::vec3 high{0.0f};
 };
 
-// Everything that is drawn and traced, ready for both: no transforms, no instances. Materials hold
-// at least one entry wherever there is a mesh.
+// Everything that is drawn and traced. Materials hold at least one entry wherever there is a mesh.
 struct Scene {
   std::string name;
   std::vector<Mesh> meshes;
@@ -104,8 +110,12 @@ struct Scene {
   std::vector<std::string> warnings;  // one sentence each: what of the file was left out
 };
 
-// Of the triangles: vertices that none uses do not count.
+[[nodiscard]] std::array<glm::vec3, 8> corners_of(const Bounds& bounds);
+
+// Axis-aligned bounds of all instances of the triangles; an instance counts with the box around its
+// mesh. Vertices that no triangle uses do not count.
 [[nodiscard]] Bounds bounds_of(const std::vector<Mesh>& meshes);
+// Triangles of all meshes, counted once for each instance.
 [[nodiscard]] uint64_t triangle_count(const Scene& scene);
 
 // A view from above and to the side that holds the whole of `bounds`.
@@ -117,11 +127,20 @@ struct Scene {
 // The radius where none is given, in scene units.
 [[nodiscard]] float default_radius(const Scene& scene);
 
+// The transform of an instance; the identity where the mesh stands once. `instance` is below
+// instance_count().
+[[nodiscard]] glm::mat4x3 world_from_mesh(const Mesh& mesh, size_t instance);
+[[nodiscard]] inline size_t instance_count(const Mesh& mesh) {
+  return mesh.instances.empty() ? 1 : mesh.instances.size();
+}
+
 // A mesh's texture coordinates at a point of it, by TextureUse::uv_set.
 using MeshUvs = std::array<glm::vec2, 2>;
 [[nodiscard]] MeshUvs uvs_at(const Mesh& mesh, uint32_t vertex);
-// Where a triangle's corners weigh 1 - u - v, u and v.
+// The texture coordinates at the barycentric coordinates (1 - u - v, u, v) of a triangle.
 [[nodiscard]] MeshUvs uvs_within(const Mesh& mesh, uint32_t triangle, float u, float v);
+// The vertex colour at the same point, 0..1.
+[[nodiscard]] glm::vec4 color_within(const Mesh& mesh, uint32_t triangle, float u, float v);
 
 // Where a use looks for its texel, by the mesh's coordinates. Finite.
 [[nodiscard]] glm::vec2 texture_uv(const TextureUse& use, const MeshUvs& mesh_uvs);

@@ -13,29 +13,30 @@ layout(location = 2) flat in vec3 face_normal_ws;
 layout(location = 3) in vec4 tangent_ws;  // w: the side of the bitangent
 layout(location = 4) in vec4 surface_uv;  // of base colour, of metal and roughness
 layout(location = 5) in vec4 detail_uv;   // of emission, of the normal map
-layout(location = 6) in vec4 clip;
-layout(location = 7) in vec4 previous_clip;
+layout(location = 6) in vec4 color;       // of the vertices, linear RGB and alpha
+layout(location = 7) in vec4 clip;
+layout(location = 8) in vec4 previous_clip;
 
 layout(location = 0) out vec4 out_normal_ws;  // unit, towards the eye
 layout(location = 1) out vec4 out_albedo;     // linear RGB; alpha: perceptual roughness
 layout(location = 2) out vec2 out_motion_uv;  // where this surface is, minus where it was
 layout(location = 3) out vec4 out_emissive;   // linear RGB; alpha: metallic
 
-// The vertices' normal as the normal map's `texel` bends it; `normal` itself where there is no map
-// or nothing to lay it along. Not unit.
+// The normal of the vertices, perturbed by the normal map's `texel`; `normal` itself where there is
+// no map or no tangent. Not unit.
 vec3 mapped_normal(vec3 normal, vec3 texel) {
   vec3 across = tangent_ws.xyz - normal * dot(normal, tangent_ws.xyz);
   float squared = dot(across, across);
-  if (draw.has_normal_map == 0u || !(squared > 1e-12)) {
+  if (material.has_normal_map == 0u || !(squared > 1e-12)) {
     return normal;
   }
   vec3 tangent = across * inversesqrt(squared);
   vec3 bitangent = cross(normal, tangent) * (tangent_ws.w < 0.0 ? -1.0 : 1.0);
-  vec2 slope = texel.xy * draw.normal_scale;
+  vec2 slope = texel.xy * material.normal_scale;
   return tangent * slope.x + bitangent * slope.y + normal * texel.z;
 }
 
-// Both faces of a triangle are seen, so normals are turned to the side that is.
+// The shading normal, turned towards the eye, since both faces of a triangle may be visible.
 vec3 facing_normal(vec3 texel) {
   vec3 to_eye = parameters.eye_ws.xyz - position_ws * parameters.eye_ws.w;
   vec3 face = dot(face_normal_ws, to_eye) < 0.0 ? -face_normal_ws : face_normal_ws;
@@ -45,7 +46,8 @@ vec3 facing_normal(vec3 texel) {
   }
   vec3 normal = normal_ws * inversesqrt(squared);
   vec3 mapped = mapped_normal(normal, texel);
-  // A map turns with the vertices' normal, and bends no further than into the face.
+  // On a back face the whole tangent frame turns round. A normal that the map perturbs past the
+  // triangle's own plane is moved back into that plane.
   vec3 shading = dot(normal, face) < 0.0 ? -mapped : mapped;
   shading -= face * min(dot(shading, face), 0.0);
   squared = dot(shading, shading);
@@ -53,17 +55,17 @@ vec3 facing_normal(vec3 texel) {
 }
 
 void main() {
-  // All before any fragment is dropped or branches: mips go by the differences between neighbours.
+  // All lookups come before the first branch: mip levels need derivatives between neighbours.
   vec3 base = texture(textures[kBaseColourTexture], surface_uv.xy).rgb;
   // glTF: roughness in green, metal in blue.
   vec2 surface = texture(textures[kMetallicRoughnessTexture], surface_uv.zw).gb;
   vec3 emissive = texture(textures[kEmissiveTexture], detail_uv.xy).rgb;
   vec3 bend = texture(textures[kNormalTexture], detail_uv.zw).xyz * 2.0 - 1.0;
-  if (is_cut_out(surface_uv.xy)) {
+  if (is_cut_out(surface_uv.xy, color.a)) {
     discard;
   }
   out_normal_ws = vec4(facing_normal(bend), 0.0);
-  out_albedo = vec4(draw.base_colour.rgb * base, draw.roughness * surface.x);
+  out_albedo = vec4(material.base_colour.rgb * color.rgb * base, material.roughness * surface.x);
   out_motion_uv = 0.5 * (clip.xy / clip.w - previous_clip.xy / previous_clip.w);
-  out_emissive = vec4(draw.emissive.rgb * emissive, draw.metallic * surface.y);
+  out_emissive = vec4(material.emissive.rgb * emissive, material.metallic * surface.y);
 }

@@ -25,16 +25,34 @@ const uint kEmissiveTexture = 3u;
 const uint kNormalTexture = 4u;
 const uint kMaterialTextures = 5u;
 
-// Once a draw, as push constants.
-struct GbufferDraw {
+// Rows of GbufferMaterial::uv_rows: two for each lookup.
+const uint kBaseColourUv = 0u;
+const uint kMetallicRoughnessUv = 1u;
+const uint kEmissiveUv = 2u;
+const uint kNormalUv = 3u;
+const uint kMaterialUvs = 4u;
+
+// One for each material, in its descriptor set.
+struct GbufferMaterial {
   vec4 base_colour;  // linear RGB, alpha
   vec4 emissive;     // linear RGB; w unused
   float metallic;
   float roughness;     // perceptual
-  float alpha_cutoff;  // below it a fragment is dropped; 0 for opaque materials
-  float normal_scale;  // of the normal map's x and y
+  float alpha_cutoff;  // fragments of less alpha are discarded; 0 for opaque materials
+  float normal_scale;  // multiplies the x and y of the normal map
   uint has_normal_map;
-  uint moves;  // 1: positions and normals are those of GbufferParameters::world_from_moving
+  uint unused_0;
+  uint unused_1;
+  uint unused_2;
+  // Texture coordinates u and v of each lookup as dot(row.xyz, (mesh_uv, 1)); the first row's w is
+  // the set of the mesh's coordinates, 0 or 1.
+  vec4 uv_rows[8];
+};
+
+// Push constants of each draw.
+struct GbufferDraw {
+  uint moves;    // 1: placed by GbufferParameters::world_from_moving
+  uint faceted;  // 1: without vertex normals
 };
 
 ALCOVE_MATHS_END

@@ -2,15 +2,16 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
-// The depth of what lies behind the first surface of each pixel: drawn with back faces culled, so
-// that a solid's own back is not what is found, and with what the first layer shows left out.
+// The depth of the second surface of each pixel: the nearest one behind the first. Back faces of
+// solids are culled, so that the second surface of a pixel is not the back of the first.
 
 #include "cut_out.h"
 
 layout(set = 0, binding = 0) uniform Parameters { GbufferParameters parameters; };
-layout(set = 1, binding = 0) uniform texture2D first_depth;  // as gl_FragCoord.z has it
+layout(set = 1, binding = 0) uniform texture2D first_depth;  // NDC depth, as gl_FragCoord.z
 
 layout(location = 0) in vec2 base_colour_uv;
+layout(location = 1) in float vertex_alpha;
 
 float linear_depth(float depth_ndc) {
   vec4 p = parameters.depth_unproject;
@@ -19,8 +20,8 @@ float linear_depth(float depth_ndc) {
 
 void main() {
   float first = linear_depth(texelFetch(first_depth, ivec2(gl_FragCoord.xy), 0).r);
-  // The same surface, drawn again, rounds to within this.
-  if (is_cut_out(base_colour_uv) || linear_depth(gl_FragCoord.z) <= first * 1.001) {
+  // The first surface itself is drawn again and rounds to within a thousandth.
+  if (is_cut_out(base_colour_uv, vertex_alpha) || linear_depth(gl_FragCoord.z) <= first * 1.001) {
     discard;
   }
 }

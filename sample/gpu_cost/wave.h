@@ -1,0 +1,72 @@
+// The instructions that one wave executes, from the compiler's text: its basic blocks, times how
+// often each of them runs.
+//
+// The compiler's own figures assume that every loop runs 8 times and that branches are taken half
+// or three quarters of the time. Here each loop runs as often as its pass declares, and every
+// branch is taken, so divergent branches count in full.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
+#include "cost/work.h"
+#include "gpu_cost/compiled_shader.h"
+
+namespace alcove::sample {
+
+// Sums over all instructions that a wave executes.
+struct WaveWork {
+  double instructions = 0;
+  double vector_instructions = 0;
+  double scalar_instructions = 0;
+  double transcendentals = 0;    // reciprocals, roots, exponentials and the like
+  double selects = 0;            // v_cndmask
+  double loads = 0;              // image loads, samples and gathers
+  double stores = 0;             // image stores
+  double shared_operations = 0;  // on shared memory (LDS)
+  double shared_words = 0;       // 32-bit words that each lane moves by them
+  // Cycles of a SIMD's execution units, and of its compute unit's texture unit.
+  double vector_cycles = 0;
+  double complex_cycles = 0;  // of the unit for transcendentals (RDNA)
+  double scalar_cycles = 0;
+  double branch_cycles = 0;
+  double memory_cycles = 0;
+  double texture_cycles = 0;
+  // The busiest of the execution units.
+  double busiest() const;
+};
+
+struct Instruction {
+  std::string operation;
+  double result_words = 1;  // 32-bit words that a lane loads or stores
+  std::uint32_t repeats = 1;
+};
+
+struct BasicBlock {
+  std::uint32_t index = 0;
+  std::vector<std::uint32_t> predecessors;
+  std::vector<Instruction> instructions;
+};
+
+// The blocks of a shader in the order of the code. Errors: the driver gave no text, or text that is
+// not the format of Mesa's AMD compiler (ACO).
+[[nodiscard]] tl::expected<std::vector<BasicBlock>, std::string> blocks_of(
+    const CompiledShader& shader);
+
+// A loop, and the blocks from `first` to `last` that it consists of.
+struct Loop {
+  passes::cost::CompiledLoop summary;
+  std::uint32_t first = 0;
+  std::uint32_t last = 0;
+};
+[[nodiscard]] std::vector<Loop> loops_of(const std::vector<BasicBlock>& blocks);
+
+// `iterations[i]` is how often loop i runs each time that it is entered.
+[[nodiscard]] WaveWork wave_work(const std::vector<BasicBlock>& blocks,
+                                 const std::vector<Loop>& loops,
+                                 const std::vector<double>& iterations, bool rdna,
+                                 std::uint32_t wave);
+
+}  // namespace alcove::sample
