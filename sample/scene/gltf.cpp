@@ -25,20 +25,17 @@ namespace fs = std::filesystem;
 constexpr size_t kMostOfASentence = 200;  // bytes
 constexpr const char* kTooLittleMemory = "there is not enough memory for it";
 
-// One line that can be read, whatever the file has for names: they may be as long as the file, and
-// a URI may be the data itself.
+// One line of at most `most` bytes: names may be as long as the file.
 std::string readable(std::string text, size_t most) {
   text = printable(text);
   if (text.size() <= most) return text;
-  const std::string data = "data:";
-  const size_t uri = text.find(data);
-  size_t end = uri < most ? uri + data.size() : most;
+  size_t end = most;
   while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0u) == 0x80) --end;  // UTF-8
   return text.substr(0, end) + "...";
 }
 
-// Short enough that a sentence has its reason beside the name. And every part and node that bears a
-// name has it again: a long one many times over is more than the memory.
+// Shortens names, so that a sentence has room for its reason, and so that a long name that many
+// nodes share does not take more memory than there is.
 void make_names_readable(tinygltf::Model& model) {
   constexpr size_t kMost = 100;
   const auto each = [](auto& things) {
