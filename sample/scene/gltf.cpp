@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "scene/gltf_camera.h"
+#include "scene/gltf_extensions.h"
 #include "scene/gltf_files.h"
 #include "scene/gltf_material.h"
 #include "scene/gltf_mesh.h"

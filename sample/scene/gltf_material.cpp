@@ -14,10 +14,10 @@ namespace {
 
 using Failure = tl::unexpected<std::string>;
 
-// What of a texture's use its kinds have in common.
+// A reference of a material to a texture, whichever property of the material it is.
 struct TextureReference {
   const char* role;
-  int index;  // below 0: none
+  int index;  // negative where there is none
   int set;
   const tinygltf::ExtensionMap* extensions;
 };
@@ -127,7 +127,7 @@ tl::expected<TextureUse, std::string> MaterialReader::texture(const TextureRefer
   if (!transform) return Failure(transform.error());
   use.texture_from_mesh_uv = *transform;
   if (texture.source < 0) {
-    // Such as one that only an extension names.
+    // An extension may name the image instead, such as KHR_texture_basisu.
     scene_.warnings.push_back("texture " + std::to_string(index) +
                               " has no image that is read here and is left out.");
     return use;

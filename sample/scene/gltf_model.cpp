@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "scene/gltf_container.h"
+#include "scene/gltf_extensions.h"
 #include "scene/gltf_files.h"
 #include "scene/gltf_properties.h"
 #include "support/printable.h"
@@ -63,15 +64,6 @@ Checked check_version(const json& asset) {
     }
   }
   return {};
-}
-
-// Extensions that leave the shape of the scene as it is: a file may require them, and is drawn
-// without.
-bool changes_no_shape(const std::string& extension) {
-  constexpr std::string_view kPrefixes[] = {"KHR_materials_", "KHR_lights_", "EXT_lights_",
-                                            "KHR_xmp", "KHR_animation_pointer"};
-  return std::ranges::any_of(
-      kPrefixes, [&](std::string_view prefix) { return extension.starts_with(prefix); });
 }
 
 Checked check_required_extensions(const json& root) {
@@ -286,10 +278,6 @@ void fill_images(const json& images, const std::vector<char>& used, GltfFiles& f
 }
 
 }  // namespace
-
-bool is_extension_read(const std::string& name) {
-  return name == "KHR_mesh_quantization" || name == "KHR_texture_transform";
-}
 
 tl::expected<GltfModel, std::string> read_gltf_model(std::vector<uint8_t> file,
                                                      const std::filesystem::path& folder) {

@@ -26,7 +26,4 @@ struct GltfModel {
 [[nodiscard]] tl::expected<GltfModel, std::string> read_gltf_model(
     std::vector<uint8_t> file, const std::filesystem::path& folder);
 
-// Whether the loader reads an extension.
-[[nodiscard]] bool is_extension_read(const std::string& name);
-
 }  // namespace alcove::sample

@@ -115,6 +115,8 @@ constexpr Property kProperties[] = {
     object("nodes/*/extensions/EXT_mesh_gpu_instancing"),
     object("nodes/*/extensions/EXT_mesh_gpu_instancing/attributes", kRequired),
     index("nodes/*/extensions/EXT_mesh_gpu_instancing/attributes/*"),
+    object("nodes/*/extensions/KHR_node_visibility"),
+    boolean("nodes/*/extensions/KHR_node_visibility/visible"),
 
     objects("meshes"),
     text("meshes/*/name"),

@@ -1,4 +1,4 @@
-// Files that are wrong, cut short or ask for too much.
+// Files that are invalid, truncated or too large.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// A hostile file: what is changed, and a word of the sentence that refuses it.
+// A change to a valid file, and a part of the sentence that refuses the result.
 struct Hostile {
   const char* name;
   void (*spoil)(GltfMaker&);
@@ -136,7 +136,7 @@ GltfMaker with_image(const std::string& base64) {
   return maker;
 }
 
-TEST(GltfLimits, EveryCutOfAFileIsReadOrRefused) {
+TEST(GltfLimits, EveryTruncationIsRefused) {
   const auto glb = GltfMaker::triangle().glb();
   for (size_t size = 0; size < glb.size(); ++size) {
     const std::vector<uint8_t> cut(glb.begin(), glb.begin() + static_cast<std::ptrdiff_t>(size));
@@ -192,8 +192,8 @@ TEST(GltfLimits, InstancesBeyondTheLimitAreRefused) {
   EXPECT_FALSE(scene);
 }
 
-// Reading them takes as long as if they had an area.
-TEST(GltfLimits, InstancesThatComeToNothingCountTowardsTheLimitToo) {
+// Triangles without area take as long to read as others.
+TEST(GltfLimits, InstancesWithoutAreaCountTowardsTheLimit) {
   for (const bool indexed : {false, true}) {
     GltfMaker maker = GltfMaker::triangle();
     maker.json["accessors"][0].erase("bufferView");  // zeroes
@@ -214,7 +214,7 @@ TEST(GltfLimits, InstancesThatComeToNothingCountTowardsTheLimitToo) {
   }
 }
 
-TEST(GltfLimits, PartsThatAreLeftOutCountTowardsTheLimitToo) {
+TEST(GltfLimits, PrimitivesThatAreLeftOutCountTowardsTheLimit) {
   GltfMaker maker = GltfMaker::triangle();
   maker.primitive()["mode"] = 1;
   const nlohmann::json lines = maker.primitive();
