@@ -7,6 +7,7 @@
 #include <string>
 #include <tl/expected.hpp>
 
+#include "scene/gltf_images.h"
 #include "scene/scene.h"
 #include "support/progress.h"
 
@@ -37,7 +38,7 @@ struct GltfLimits {
   uint64_t indices = uint64_t{3} << 25;
   uint64_t instances = uint64_t{1} << 23;
   uint64_t drawn_triangles = uint64_t{1} << 28;  // counted once for each instance
-  uint64_t pixels = uint64_t{1} << 29;           // of all images together
+  ImageLimits images;
 };
 [[nodiscard]] tl::expected<Scene, std::string> load_gltf(const std::filesystem::path& file,
                                                          const Progress& progress = {});
