@@ -249,8 +249,8 @@ tl::expected<bool, std::string> SceneView::draw() {
   if (!*prepared) {
     return true;
   }
-  if (!window_->dropped_files().empty()) {
-    open(window_->dropped_files().back());
+  if (const auto dropped = window_->take_dropped_files(); !dropped.empty()) {
+    open(dropped.back());
   }
   lay_out();
   auto drawn = std::exchange(wanted_, false) ? draw_and_read().and_then([&] { return write(); })

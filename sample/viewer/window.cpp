@@ -85,7 +85,6 @@ void Window::show() { glfwShowWindow(window_); }
 
 void Window::poll() {
   pressed_keys_.clear();
-  dropped_files_.clear();
   glfwPollEvents();
   constexpr double kSeconds = 0.1;
   if (const VkExtent2D now = size(); now.width == 0 || now.height == 0) {

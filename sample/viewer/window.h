@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 #include <tl/expected.hpp>
+#include <utility>
 #include <vector>
 
 struct GLFWwindow;
@@ -37,8 +38,8 @@ class Window {
   float content_scale() const;
   // GLFW's numbers of the keys that were pressed before the last poll(), in order.
   const std::vector<int>& pressed_keys() const { return pressed_keys_; }
-  // The files that were dropped on the window before the last poll().
-  const std::vector<std::string>& dropped_files() const { return dropped_files_; }
+  // The files that were dropped on the window since the last call, in order.
+  std::vector<std::string> take_dropped_files() { return std::exchange(dropped_files_, {}); }
   void set_title(const std::string& title);
   void copy_to_clipboard(const std::string& text);
   GLFWwindow* handle() const { return window_; }
