@@ -116,10 +116,15 @@ TEST_F(CInputs, NormalsOfACameraThatLooksAlongPlusZAreMirroredInAndOut) {
 }
 
 TEST_F(CInputs, MotionInAnyUnitReadsTheSameHistory) {
-  GivenView moving = given();
+  // Planes that face the eye: a history that is read in the wrong place is not rejected by its
+  // depth.
+  GivenView moving = given_view(test_views()[2], kWidth, kHeight, step(0.31, 0.6));
+  moving.settings.bent_normal = true;
+  moving.settings.estimator = Estimator::horizons;
+  moving.settings.radius = 1.5f;
   moving.motion = {kWidth, kHeight, {}, 2};
   for (std::uint32_t i = 0; i < kWidth * kHeight; ++i) {
-    moving.motion.texels.insert(moving.motion.texels.end(), {0.15f, -0.1f});
+    moving.motion.texels.insert(moving.motion.texels.end(), {0.05f, -0.025f});
   }
   const Results expected = results(moving, 3, [](AlcoveView&) {});
   const auto with = [&](float scale_x, float scale_y, float x, float y) {
