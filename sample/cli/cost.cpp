@@ -52,7 +52,7 @@ tl::expected<std::vector<SettingsCost>, std::string> measure(const Options& opti
       if (!inputs) {
         return Failure(inputs.error());
       }
-      auto frames = frame_costs(part, *device, *inputs);
+      auto frames = modelled_frames(part, *device, *inputs);
       if (!frames) {
         return Failure(std::move(frames.error()));
       }

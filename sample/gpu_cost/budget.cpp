@@ -23,7 +23,7 @@ BudgetedSettings preset(Quality quality) {
   return settings;
 }
 
-Json budget_of_pass(const PassCost& pass) {
+Json budget_of_pass(const ModelledPass& pass) {
   return {{"instructions_per_pixel", std::ceil(10 * pass.instructions_per_pixel) / 10},
           {"vector_registers", pass.vector_registers},
           {"waves_per_simd", pass.waves_per_simd},
@@ -38,7 +38,7 @@ struct Figure {
   bool at_least = false;
 };
 
-void check(const Json& budget, const PassCost& pass, const std::string& where,
+void check(const Json& budget, const ModelledPass& pass, const std::string& where,
            std::vector<std::string>& complaints) {
   const Figure figures[] = {{"instructions_per_pixel", pass.instructions_per_pixel, kTolerance},
                             {"vector_registers", pass.vector_registers},
@@ -98,7 +98,7 @@ tl::expected<std::vector<SettingsCost>, std::string> budgeted_costs() {
       return Failure(device.error());
     }
     for (const BudgetedSettings& settings : budgeted_settings()) {
-      auto frames = frame_costs(part, *device, settings.inputs);
+      auto frames = modelled_frames(part, *device, settings.inputs);
       if (!frames) {
         return Failure(std::move(frames.error()));
       }
@@ -122,8 +122,8 @@ Json budget_of(const std::vector<SettingsCost>& costs, const std::string& compil
   budget["written_by"] = "alcove cost --write-budget";
   budget["compiler"] = compiler;
   for (const SettingsCost& cost : costs) {
-    for (const FrameCost& frame : cost.frames) {
-      for (const PassCost& pass : frame.passes) {
+    for (const ModelledFrame& frame : cost.frames) {
+      for (const ModelledPass& pass : frame.passes) {
         budget["passes"][cost.family][cost.label][std::string(name_of(frame.state))][pass.pass] =
             budget_of_pass(pass);
       }
@@ -135,9 +135,9 @@ Json budget_of(const std::vector<SettingsCost>& costs, const std::string& compil
 std::vector<std::string> over_budget(const Json& budget, const std::vector<SettingsCost>& costs) {
   std::vector<std::string> complaints;
   for (const SettingsCost& cost : costs) {
-    for (const FrameCost& frame : cost.frames) {
+    for (const ModelledFrame& frame : cost.frames) {
       const std::string state(name_of(frame.state));
-      for (const PassCost& pass : frame.passes) {
+      for (const ModelledPass& pass : frame.passes) {
         check(at(budget, {"passes", cost.family, cost.label, state, pass.pass}), pass,
               cost.family + ", " + cost.label + ", " + state + " frame, " + pass.pass, complaints);
       }

@@ -22,7 +22,7 @@ struct BudgetedSettings {
 // specular occlusion.
 [[nodiscard]] std::vector<BudgetedSettings> budgeted_settings();
 
-// The costs of these on all parts. Errors: as create_null_device() and frame_costs() have them.
+// The costs of these on all parts. Errors: as create_null_device() and modelled_frames() have them.
 [[nodiscard]] tl::expected<std::vector<SettingsCost>, std::string> budgeted_costs();
 
 // The driver whose compiler made the pipelines. Another one makes others.

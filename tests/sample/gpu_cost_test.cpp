@@ -111,7 +111,7 @@ TEST(GpuCost, LoopWithoutDeclaredIterationsIsReported) {
 }
 
 SettingsCost one_pass(double instructions, double registers, double waves, double spills) {
-  PassCost pass;
+  ModelledPass pass;
   pass.pass = "gtao";
   pass.instructions_per_pixel = instructions;
   pass.vector_registers = registers;
