@@ -321,7 +321,10 @@ void add_device(CLI::App& app, Options& options) {
 }
 
 void add_out(CLI::App& app, Options& options, const std::string& help) {
-  Group(app).add("--out", "DIR", help, [&](const OptionValue& given) { options.out = given.text; });
+  Group(app).add("--out", "DIR", help, [&](const OptionValue& given) {
+    if (given.text.empty()) given.refuse("the name of a folder, such as out");
+    options.out = given.text;
+  });
 }
 
 void check_together(const Options& options) {
