@@ -82,7 +82,10 @@ void Replay::check_write(const AccessRecord& access, std::uint32_t expected, Sub
     sub.spoiled = false;
     return;
   }
-  if (expected != kGarbage && (sub.content != expected || expected == kMissing)) sub.spoiled = true;
+  if (expected == kGarbage || (sub.content == expected && !sub.spoiled)) return;
+  if (reads_of(access.access) != 0)
+    fail("the update of " + name(access.resource) + " does not find what was written for it");
+  sub.spoiled = true;
 }
 
 // Whoever had these bytes before must be done.

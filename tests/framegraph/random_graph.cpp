@@ -176,7 +176,7 @@ class Declarer {
     pass.record([](RecordContext&) {});
     const std::uint32_t reads = dice_.roll(4);
     for (std::uint32_t i = 0; i < reads && !known_.empty(); ++i) read(pass, index, queue);
-    const std::uint32_t writes = 1 + dice_.roll(2);
+    const std::uint32_t writes = 1 + dice_.roll(3);
     for (std::uint32_t i = 0; i < writes; ++i) write(pass, index, queue);
     if (dice_.chance(20)) pass.side_effect();
   }

@@ -125,10 +125,15 @@ struct ImportedBuffer {
   State final_state;
 };
 
-// What a write does to what was there in its range.
+// What a write does to the earlier contents of its range.
 enum class Contents : std::uint8_t {
-  keep,     // the write may be partial: earlier contents stay, and so do the passes that made them
-  discard,  // every texel is written: earlier contents may be thrown away
+  // The write may be partial: the earlier contents stay. The passes that made them run if the
+  // result
+  // is wanted, or if the access reads as well (blending, a depth test, atomics): the pass then
+  // depends on the earlier contents, whatever becomes of the result.
+  keep,
+  // The pass writes every texel and reads none: the earlier contents may be thrown away.
+  discard,
 };
 
 // Whether a write has to take place.
