@@ -113,10 +113,12 @@ struct Sum {
 
 ivec2 size_px() { return imageSize(inverse_depth_image); }
 
-// Towards the eye where none is given: what is no number there would stay in the history.
+#include "depth_normal.h"
+
+// Not unit, in the space of the normals; from depth where the texture has no direction.
 vec3 fetch_normal(ivec2 pixel) {
-  vec3 normal = texelFetch(normal_image, pixel, 0).xyz;
-  return has_direction(normal) ? normal : parameters.normal_from_view[2].xyz;
+  vec3 given = texelFetch(normal_image, pixel, 0).xyz;
+  return has_direction(given) ? given : mat3(parameters.normal_from_view) * depth_normal(pixel);
 }
 
 LobeSurface fetch_lobe_surface(ivec2 pixel, vec3 normal) {
@@ -289,8 +291,8 @@ Neighbourhood add_up(Surface surface, float inverse_squared_width, Found around[
 vec3 traced_normal(ivec2 pixel) {
   vec2 slope =
       parameters.slope.zw + (kPerspective ? (vec2(pixel) + 0.5) * parameters.slope.xy : vec2(0.0));
-  vec3 normal = normalize(fetch_normal(pixel) * mat3(parameters.normal_from_view));
-  return facing_normal(normal, normalize(vec3(-slope, 1.0)));
+  vec3 given = texelFetch(normal_image, pixel, 0).xyz * mat3(parameters.normal_from_view);
+  return seen_normal(pixel, given, normalize(vec3(-slope, 1.0)));
 }
 
 void store(ivec2 pixel, Sum sum, float visibility) {

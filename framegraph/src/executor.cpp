@@ -193,8 +193,10 @@ tl::expected<void, Errors> Executor::Implementation::find_physical(const Graph& 
       result = pool->transient(record, cached.plan, placement, description.resource_name(r),
                                cached.physical[r]);
     if (result != VK_SUCCESS)
-      return tl::unexpected(vulkan_error(
-          result, std::string("'").append(description.resource_name(r)) + "' cannot be created"));
+      return tl::unexpected(
+          vulkan_error(result, std::string(record.origin == Origin::history ? "the history '" : "'")
+                                       .append(description.resource_name(r)) +
+                                   "' cannot be created"));
     cached.physical[r]->last_frame = frame;
   }
   cached.generation = pool->generation();
