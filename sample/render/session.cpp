@@ -3,6 +3,7 @@
 #include <iostream>
 #include <utility>
 
+#include "alcove/framegraph/verify.h"
 #include "cli/camera_of.h"
 #include "cli/settings.h"
 #include "scene/load_scene.h"
@@ -14,7 +15,7 @@ using Failure = tl::unexpected<std::string>;
 tl::expected<std::unique_ptr<Gpu>, std::string> open_gpu(
     const Options& options, const std::vector<const char*>& surface_extensions) {
   framegraph::ExecutorOptions executor;
-  executor.verify = executor.verify || options.validation;
+  if (options.validation) executor.verify = framegraph::verify;
   executor.check_uses = executor.check_uses || options.validation;
   return Gpu::create({.validation = options.validation,
                       .index = options.device,

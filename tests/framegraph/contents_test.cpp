@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "alcove/framegraph/verify.h"
 #include "checksum_kernels.h"
 #include "gpu.h"
 #include "random_graph.h"
@@ -288,7 +289,6 @@ enum class Path { record, submit, submit_to_three };
 struct Way {
   Path path = Path::record;
   bool alias = true;
-  bool split = false;
   std::uint32_t threads = 1;
 };
 
@@ -306,9 +306,8 @@ std::string messages(const Gpu& gpu, const Way& way) {
 tl::expected<Executor, Errors> make_executor(const Gpu& gpu, const Way& way) {
   ExecutorOptions options;
   options.alias = way.alias;
-  options.split_barriers = way.split;
   options.recording_threads = way.threads;
-  options.verify = true;
+  options.verify = verify;
   options.check_uses = true;
   DeviceHandles handles = gpu.handles();
   // One queue plays all three: the submissions and their semaphores are those of three.
@@ -320,7 +319,6 @@ tl::expected<Executor, Errors> make_executor(const Gpu& gpu, const Way& way) {
 struct Totals {
   VkDeviceSize aliased = 0;
   VkDeviceSize unaliased = 0;
-  std::size_t split = 0;
 };
 
 void run_frames(Gpu& gpu, Executor& executor, const Way& way, std::uint64_t seed, Totals& totals) {
@@ -342,7 +340,6 @@ void run_frames(Gpu& gpu, Executor& executor, const Way& way, std::uint64_t seed
     }
     totals.aliased += report->memory.aliased;
     totals.unaliased += report->memory.unaliased;
-    totals.split += report->plan->sets.size();
   }
 }
 
@@ -355,7 +352,6 @@ void expect_contents(const Way& way, std::uint64_t seed) {
     Totals totals;
     run_frames(gpu, *executor, way, seed, totals);
     EXPECT_EQ(totals.aliased < totals.unaliased, way.alias);
-    EXPECT_EQ(totals.split > 10, way.split);
   }
   EXPECT_EQ(messages(gpu, way), "");
 }
@@ -374,10 +370,5 @@ TEST(Contents, OfRandomFramesThatThreeThreadsRecordAreRight) {
 TEST(Contents, OfRandomFramesThatThreeThreadsRecordForSeveralQueuesAreRight) {
   expect_contents({.path = Path::submit_to_three, .threads = 3}, 3000);
 }
-TEST(Contents, OfRandomFramesWithSplitBarriersAreRight) { expect_contents({.split = true}, 4000); }
-TEST(Contents, OfRandomFramesWithSplitBarriersThatThreeThreadsRecordAreRight) {
-  expect_contents({.split = true, .threads = 3}, 4000);
-}
-
 }  // namespace
 }  // namespace alcove::framegraph

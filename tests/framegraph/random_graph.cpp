@@ -118,7 +118,7 @@ class Declarer {
     known.texture = dice_.chance(160);
     if (known.texture) {
       ImportedTexture import;
-      import.image = fake_handle<VkImage>();
+      import.image = fake_handle<VkImage>(known_.size());
       import.desc = {VK_FORMAT_R8G8B8A8_UNORM, Extent::absolute(side(), side()), 1, 1,
                      VK_SAMPLE_COUNT_1_BIT};
       import.usage = ~VkImageUsageFlags{0};
@@ -138,7 +138,7 @@ class Declarer {
       known.handle = graph_.import_texture(numbered('i', known_.size()), import);
     } else {
       ImportedBuffer import;
-      import.buffer = fake_handle<VkBuffer>();
+      import.buffer = fake_handle<VkBuffer>(known_.size());
       import.desc.size = 1024;
       import.usage = ~VkBufferUsageFlags{0};
       import.has_contents = full;
@@ -178,7 +178,7 @@ class Declarer {
     for (std::uint32_t i = 0; i < reads && !known_.empty(); ++i) read(pass, index, queue);
     const std::uint32_t writes = 1 + dice_.roll(3);
     for (std::uint32_t i = 0; i < writes; ++i) write(pass, index, queue);
-    if (dice_.chance(20)) pass.side_effect();
+    if (dice_.chance(options_.side_effects)) pass.side_effect();
   }
 
   // Half of the time one of the last few, else any.
@@ -224,7 +224,8 @@ class Declarer {
     // Of an older slot what is there is updated in place.
     if ((known.old && !known.written[0]) || known.last_pass == index) return;
     known.last_pass = index;
-    const Contents contents = !known.old && dice_.chance(80) ? Contents::discard : Contents::keep;
+    Contents contents = !known.old && dice_.chance(80) ? Contents::discard : Contents::keep;
+    if (contents == Contents::keep && dice_.chance(80)) contents = Contents::accumulate;
     const Need need = dice_.chance(40) ? Need::optional : Need::required;
     if (!known.texture) {
       known.buffer = pass.write(known.buffer,

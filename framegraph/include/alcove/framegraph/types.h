@@ -134,6 +134,10 @@ enum class Contents : std::uint8_t {
   keep,
   // The pass writes every texel and reads none: the earlier contents may be thrown away.
   discard,
+  // As `keep`, and the order among writes of this kind does not matter, as with atomic additions:
+  // writes that follow each other with the same access on one queue get no barrier between them.
+  // All of them come after what was before, and before the next read or other write.
+  accumulate,
 };
 
 // Whether a write has to take place.
