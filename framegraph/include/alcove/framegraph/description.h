@@ -68,6 +68,8 @@ enum AccessFlags : std::uint32_t {
   kOnBuffer = 128,  // the handle was of a buffer
   // Contents::accumulate: the write is not ordered among others of the same access.
   kUnordered = 256,
+  // Of an OutputRecord that stands for a PassBuilder which was used after reset().
+  kStaleBuilder = 1u << 16,
 };
 
 // The access bits that write: those of Vulkan and of its extensions, but for video.
@@ -116,7 +118,7 @@ static_assert(std::has_unique_object_representations_v<PassRecord>);
 struct OutputRecord {
   std::uint32_t resource = kNone;
   std::uint32_t version = 0;
-  std::uint32_t flags = 0;  // kForeign, kNull
+  std::uint32_t flags = 0;  // kForeign, kNull, kStaleBuilder
 };
 static_assert(std::has_unique_object_representations_v<OutputRecord>);
 
