@@ -313,7 +313,8 @@ TEST_F(GraphHistory, ContentsSurviveAChangeOfAccess) {
 TEST_F(GraphHistory, OneDeclarationCanBeRecordedSeveralTimesIntoOneCommandBuffer) {
   ExecutorOptions options;
   options.frames_in_flight = 3;
-  options.verify = options.check_uses = true;
+  options.verify = verify;
+  options.check_uses = true;
   auto executor = Executor::create(gpu_.handles(), options);
   ASSERT_TRUE(executor);
   const TextureHistory history = graph_->create_texture_history(
