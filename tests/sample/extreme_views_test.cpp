@@ -2,6 +2,7 @@
 // angles, planes millions apart, tiny and huge radii. Every output stays finite and in its range.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <random>
