@@ -257,7 +257,12 @@ tl::expected<void, std::string> add_normals(const tinygltf::Model& model,
   mesh.normals_ws = std::move(*normals);
   mend_normals(mesh);
   const int tangent = attribute(primitive, "TANGENT");
-  if (tangent < 0 || material.normal_texture.image < 0) return {};
+  if (tangent < 0) return {};
+  if (static_cast<size_t>(tangent) < model.accessors.size() &&
+      model.accessors[static_cast<size_t>(tangent)].count != vertices) {
+    return Failure("has tangents for some of its vertices only");
+  }
+  if (material.normal_texture.image < 0) return {};
   auto tangents = world_tangents(model, tangent, placement, vertices);
   if (!tangents) return Failure(tangents.error());
   if (tangents->size() != vertices) return Failure("has tangents for some of its vertices only");

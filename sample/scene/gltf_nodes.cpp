@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
+#include "scene/gltf_accessor.h"
 #include "scene/gltf_placement.h"
 
 namespace alcove::sample {
@@ -140,29 +142,28 @@ tl::expected<Layout, std::string> place_nodes(const tinygltf::Model& model, Mesh
   return layout;
 }
 
-// The middle of a primitive by the bounds that its accessor declares, in mesh space, with half
-// their diagonal.
-struct DeclaredBounds {
+// The middle of a primitive in mesh space, and half the diagonal of its bounds.
+struct PrimitiveExtent {
   glm::dvec3 middle{0.0};
   double reach = 0.0;
 };
 
-DeclaredBounds declared_bounds(const tinygltf::Model& model, const tinygltf::Primitive& primitive) {
+// Reads the positions; zero where they cannot be read, which add_primitive() reports.
+PrimitiveExtent extent_of(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
+                          uint64_t most) {
   const auto position = primitive.attributes.find("POSITION");
-  if (position == primitive.attributes.end() || position->second < 0 ||
-      static_cast<size_t>(position->second) >= model.accessors.size()) {
-    return {};
+  if (position == primitive.attributes.end()) return {};
+  const auto values = read_floats(model, position->second, 3, most);
+  if (!values || values->empty()) return {};
+  glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
+  for (size_t i = 0; i + 2 < values->size(); i += 3) {
+    const glm::dvec3 at((*values)[i], (*values)[i + 1], (*values)[i + 2]);
+    low = glm::min(low, at);
+    high = glm::max(high, at);
   }
-  const tinygltf::Accessor& accessor = model.accessors[static_cast<size_t>(position->second)];
-  if (accessor.minValues.size() != 3 || accessor.maxValues.size() != 3) return {};
-  glm::dvec3 low(0.0), high(0.0);
-  for (int c = 0; c < 3; ++c) {
-    low[c] = accessor.minValues[static_cast<size_t>(c)];
-    high[c] = accessor.maxValues[static_cast<size_t>(c)];
-  }
-  const DeclaredBounds out{0.5 * (low + high), 0.5 * glm::length(high - low)};
-  return std::isfinite(out.reach) && std::isfinite(glm::length(out.middle)) ? out
-                                                                            : DeclaredBounds{};
+  const PrimitiveExtent out{0.5 * (low + high), 0.5 * glm::length(high - low)};
+  const bool finite = std::isfinite(out.reach) && std::isfinite(glm::length(out.middle));
+  return finite ? out : PrimitiveExtent{};
 }
 
 double middle_of(std::vector<double> values, double share) {
@@ -175,8 +176,10 @@ double middle_of(std::vector<double> values, double share) {
 // The origin of world space in that of the file: zero, or for a scene further from it than 256
 // times its own size a point in its middle. At that distance floats round to 2^-16 of the size.
 // Medians, so that a few parts elsewhere change nothing.
-glm::dvec3 chosen_origin(const tinygltf::Model& model, const Layout& layout) {
+glm::dvec3 chosen_origin(const tinygltf::Model& model, const Layout& layout,
+                         uint64_t most_vertices) {
   constexpr double kFarthest = 256.0;  // in sizes of the scene
+  std::vector<std::vector<PrimitiveExtent>> extents(model.meshes.size());  // those read so far
   std::vector<glm::dvec3> middles;
   std::vector<double> reaches;
   for (const DrawnNode& drawn : layout.drawn) {
@@ -190,8 +193,13 @@ glm::dvec3 chosen_origin(const tinygltf::Model& model, const Layout& layout) {
       if (joint < 0 || static_cast<size_t>(joint) >= model.nodes.size()) continue;
       placed = layout.world_from_node[static_cast<size_t>(joint)];
     }
-    for (const auto& primitive : model.meshes[static_cast<size_t>(node.mesh)].primitives) {
-      const DeclaredBounds bounds = declared_bounds(model, primitive);
+    const auto mesh = static_cast<size_t>(node.mesh);
+    if (extents[mesh].empty()) {
+      for (const auto& primitive : model.meshes[mesh].primitives) {
+        extents[mesh].push_back(extent_of(model, primitive, most_vertices));
+      }
+    }
+    for (const PrimitiveExtent& bounds : extents[mesh]) {
       const glm::dvec3 middle(placed * glm::dvec4(bounds.middle, 1.0));
       const double scale = std::cbrt(std::abs(glm::determinant(glm::dmat3(placed))));
       if (!std::isfinite(glm::length(middle)) || !std::isfinite(scale)) continue;
@@ -317,7 +325,7 @@ tl::expected<void, std::string> add_nodes(const tinygltf::Model& model, MeshBudg
                                           const Progress& progress) {
   const auto layout = place_nodes(model, budget);
   if (!layout) return Failure(layout.error());
-  scene.origin = chosen_origin(model, *layout);
+  scene.origin = chosen_origin(model, *layout, budget.vertices);
   NodeReader reader(model, *layout, budget, scene);
   size_t done = 0;
   for (const DrawnNode& drawn : layout->drawn) {

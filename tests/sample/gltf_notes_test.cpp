@@ -25,7 +25,6 @@ TEST(GltfNotes, PartsThatAreLeftOutAreReported) {
           "The extension KHR_materials_unlit is left out.",
           "Material \"tiles\" has its normal map by texture coordinates 2, neither 0 nor 1: "
           "it is left out.",
-          "Mesh 0 has colours of its vertices, which are left out.",
           "texture 0 has no image that is read here and is left out."));
 }
 
