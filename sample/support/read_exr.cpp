@@ -43,6 +43,76 @@ class FileStream : public Imf::IStream {
   std::FILE* file_;
 };
 
+// Little-endian, as all of OpenEXR.
+bool read_word(std::FILE* file, uint32_t& out) {
+  uint8_t bytes[4];
+  if (std::fread(bytes, 1, 4, file) != 4) return false;
+  out = uint32_t{bytes[0]} | uint32_t{bytes[1]} << 8 | uint32_t{bytes[2]} << 16 |
+        uint32_t{bytes[3]} << 24;
+  return true;
+}
+
+// A name up to its terminating null.
+bool read_name(std::FILE* file, std::string& out) {
+  constexpr size_t kLongest = 255;  // bytes
+  out.clear();
+  for (int c = std::getc(file); c != EOF && out.size() <= kLongest; c = std::getc(file)) {
+    if (c == 0) return true;
+    out.push_back(static_cast<char>(c));
+  }
+  return false;
+}
+
+// Whether the sizes within an attribute of `size` bytes fit into it.
+bool holds_together(std::FILE* file, const std::string& type, uint32_t size) {
+  uint32_t first = 0, second = 0;
+  if (type == "preview") {
+    return size >= 8 && read_word(file, first) && read_word(file, second) &&
+           first <= kLargestFloatSide && second <= kLargestFloatSide &&
+           uint64_t{4} * first * second == size - 8;
+  }
+  while (type == "stringvector" && size > 0) {
+    if (size < 4 || !read_word(file, first) || first > size - 4) return false;
+    size -= 4 + first;
+    if (std::fseek(file, static_cast<long>(first), SEEK_CUR) != 0) return false;
+  }
+  return true;
+}
+
+// Goes over the attributes of all headers, and back to the beginning of the file. OpenEXR takes
+// memory for an attribute by the size that the file gives, before it reads.
+tl::expected<void, std::string> check_attributes(std::FILE* file) {
+  constexpr uint32_t kMagic = 20000630, kMultiPart = 0x1000;
+  const long end = std::fseek(file, 0, SEEK_END) == 0 ? std::ftell(file) : -1;
+  std::rewind(file);
+  uint32_t magic = 0, version = 0;
+  if (!read_word(file, magic) || !read_word(file, version) || magic != kMagic) {
+    return Failure("is no OpenEXR file");
+  }
+  std::string name, type;
+  // A header ends with an empty name, the list of the headers of several parts with another one.
+  for (bool new_header = true;;) {
+    if (!read_name(file, name)) return Failure("is cut short in its header");
+    if (name.empty()) {
+      if (new_header || (version & kMultiPart) == 0) break;
+      new_header = true;
+      continue;
+    }
+    new_header = false;
+    uint32_t size = 0;
+    if (!read_name(file, type) || !read_word(file, size)) {
+      return Failure("is cut short in its header");
+    }
+    const long begin = std::ftell(file);
+    if (begin < 0 || int64_t{size} > int64_t{end} - begin || !holds_together(file, type, size) ||
+        std::fseek(file, begin + static_cast<long>(size), SEEK_SET) != 0) {
+      return Failure("is damaged: its attribute " + name + " is longer than the file or itself");
+    }
+  }
+  std::rewind(file);
+  return {};
+}
+
 struct Size {
   uint32_t width = 0;
   uint32_t height = 0;
@@ -64,7 +134,7 @@ tl::expected<Size, std::string> check_header(const Imf::Header& header) {
   if (header.hasType() && Imf::isDeepData(header.type())) {
     return Failure("is a deep image; flatten it first");
   }
-  const Imath::Box2i window = header.dataWindow();
+  const Imath::Box2i& window = header.dataWindow();
   const int64_t width = int64_t{window.max.x} - window.min.x + 1;
   const int64_t height = int64_t{window.max.y} - window.min.y + 1;
   if (width < 1 || height < 1 || width > kLargestFloatSide || height > kLargestFloatSide) {
@@ -127,6 +197,7 @@ tl::expected<void, std::string> read_checked(FileStream& stream, const ChooseCha
 
 tl::expected<void, std::string> read_exr(std::FILE* file, const ChooseChannels& choose,
                                          const FloatRows& rows) {
+  if (auto fine = check_attributes(file); !fine) return fine;
   try {
     FileStream stream(file);
     return read_checked(stream, choose, rows);
