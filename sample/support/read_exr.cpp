@@ -11,7 +11,9 @@
 
 #include <algorithm>
 #include <exception>
+#include <iterator>
 #include <stdexcept>
+#include <string_view>
 #include <vector>
 
 namespace alcove::sample {
@@ -63,20 +65,64 @@ bool read_name(std::FILE* file, std::string& out) {
   return false;
 }
 
-// Whether the sizes within an attribute of `size` bytes fit into it.
-bool holds_together(std::FILE* file, const std::string& type, uint32_t size) {
-  uint32_t first = 0, second = 0;
-  if (type == "preview") {
-    return size >= 8 && read_word(file, first) && read_word(file, second) &&
-           first <= kLargestFloatSide && second <= kLargestFloatSide &&
-           uint64_t{4} * first * second == size - 8;
+// The size in bytes of the types of attributes that have only one; 0 for others. OpenEXR reads that
+// many bytes whatever the file gives as the size.
+uint32_t fixed_size(const std::string& type) {
+  struct Entry {
+    std::string_view type;
+    uint32_t size;
+  };
+  constexpr Entry kSizes[] = {{"box2f", 16},         {"box2i", 16},    {"chromaticities", 32},
+                              {"compression", 1},    {"double", 8},    {"envmap", 1},
+                              {"deepImageState", 1}, {"float", 4},     {"int", 4},
+                              {"keycode", 28},       {"lineOrder", 1}, {"m33d", 72},
+                              {"m33f", 36},          {"m44d", 128},    {"m44f", 64},
+                              {"rational", 8},       {"tiledesc", 9},  {"timecode", 8},
+                              {"v2d", 16},           {"v2f", 8},       {"v2i", 8},
+                              {"v3d", 24},           {"v3f", 12},      {"v3i", 12}};
+  const auto found = std::ranges::find(kSizes, type, &Entry::type);
+  return found == std::end(kSizes) ? 0 : found->size;
+}
+
+// A list of channels: names with 16 bytes each, up to an empty name.
+bool is_channel_list(std::FILE* file, uint32_t size) {
+  constexpr uint32_t kChannel = 16;
+  std::string name;
+  for (uint32_t left = size; read_name(file, name) && left > name.size();) {
+    left -= static_cast<uint32_t>(name.size()) + 1;
+    if (name.empty()) return left == 0;
+    if (left < kChannel || std::fseek(file, kChannel, SEEK_CUR) != 0) return false;
+    left -= kChannel;
   }
-  while (type == "stringvector" && size > 0) {
-    if (size < 4 || !read_word(file, first) || first > size - 4) return false;
-    size -= 4 + first;
-    if (std::fseek(file, static_cast<long>(first), SEEK_CUR) != 0) return false;
+  return false;
+}
+
+// Strings with a length each.
+bool is_string_vector(std::FILE* file, uint32_t size) {
+  uint32_t length = 0;
+  while (size > 0) {
+    if (size < 4 || !read_word(file, length) || length > size - 4) return false;
+    size -= 4 + length;
+    if (std::fseek(file, static_cast<long>(length), SEEK_CUR) != 0) return false;
   }
   return true;
+}
+
+// A width, a height and that many pixels.
+bool is_preview(std::FILE* file, uint32_t size) {
+  uint32_t width = 0, height = 0;
+  return size >= 8 && read_word(file, width) && read_word(file, height) &&
+         width <= kLargestFloatSide && height <= kLargestFloatSide &&
+         uint64_t{4} * width * height == size - 8;
+}
+
+// Whether OpenEXR reads exactly `size` bytes for an attribute, and takes no more memory than that.
+bool has_size(std::FILE* file, const std::string& type, uint32_t size) {
+  if (const uint32_t fixed = fixed_size(type); fixed != 0) return size == fixed;
+  if (type == "chlist") return is_channel_list(file, size);
+  if (type == "stringvector") return is_string_vector(file, size);
+  if (type == "preview") return is_preview(file, size);
+  return type != "floatvector" || size % 4 == 0;
 }
 
 // Goes over the attributes of all headers, and back to the beginning of the file. OpenEXR takes
@@ -104,9 +150,9 @@ tl::expected<void, std::string> check_attributes(std::FILE* file) {
       return Failure("is cut short in its header");
     }
     const long begin = std::ftell(file);
-    if (begin < 0 || int64_t{size} > int64_t{end} - begin || !holds_together(file, type, size) ||
+    if (begin < 0 || int64_t{size} > int64_t{end} - begin || !has_size(file, type, size) ||
         std::fseek(file, begin + static_cast<long>(size), SEEK_SET) != 0) {
-      return Failure("is damaged: its attribute " + name + " is longer than the file or itself");
+      return Failure("is damaged: its attribute " + name + " has a wrong size");
     }
   }
   std::rewind(file);

@@ -151,18 +151,21 @@ TEST(Environment, SidesOverTheLimitAreRefusedBeforeReading) {
 }
 
 // OpenEXR would take as much memory as the attribute says.
-TEST(Environment, ExrAttributesLargerThanTheFileAreRefused) {
+TEST(Environment, ExrAttributesOfAWrongSizeAreRefused) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_exr(folder.path / "a.exr", EnvironmentImage(8, 4)));
   std::ifstream in(folder.path / "a.exr", std::ios::binary);
   std::string bytes{std::istreambuf_iterator<char>(in), {}};
   const size_t size = bytes.find(std::string("screenWindowWidth\0float\0", 24)) + 24;
   ASSERT_LT(size, bytes.size());
-  bytes[size + 3] = 0x70;
-  write_file(folder.path / "b.exr", bytes);
-  const auto image = load_environment(folder.path / "b.exr");
-  ASSERT_FALSE(image);
-  EXPECT_THAT(image.error(), HasSubstr("its attribute screenWindowWidth is longer"));
+  for (const auto& [offset, value] : {std::pair<size_t, char>{3, 0x70}, {0, 0}, {0, 8}}) {
+    std::string damaged = bytes;
+    damaged[size + offset] = value;
+    write_file(folder.path / "b.exr", damaged);
+    const auto image = load_environment(folder.path / "b.exr");
+    ASSERT_FALSE(image);
+    EXPECT_THAT(image.error(), HasSubstr("its attribute screenWindowWidth has a wrong size"));
+  }
 }
 
 TEST(Environment, EveryTruncationOfAnExrIsRefused) {
