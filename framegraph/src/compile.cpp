@@ -34,6 +34,11 @@ tl::expected<void, Errors> Compiler::compile(const GraphDescription& graph, cons
   order(graph, limits, workspace, plan);
   assign_queues(graph, limits, workspace, plan);
   lifetimes(graph, workspace, plan);
+  find_contents(graph, limits, workspace, plan);
+  if (!check_images(graph, limits, plan, errors)) {
+    plan = {};
+    return tl::unexpected(std::move(errors));
+  }
   place(graph, limits, workspace, plan);
   synchronise(graph, limits, workspace, plan);
   return {};
