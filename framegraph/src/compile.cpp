@@ -5,15 +5,38 @@
 namespace alcove::framegraph {
 namespace {
 
-// What the phases append to; the rest they overwrite.
-void clear(Plan& plan) {
-  plan.batches.clear();
-  plan.transitions.clear();
-  plan.sets.clear();
+// Queues, lifetimes and memory for the order of execution in the workspace. The bytes of all heaps.
+// Nothing is placed where the device cannot make a texture, which is an error.
+VkDeviceSize schedule(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
+                      Plan& plan, Errors& errors) {
   plan.submissions.clear();
   plan.waits.clear();
   plan.heaps.clear();
-  plan.finals.clear();
+  assign_queues(graph, limits, workspace, plan);
+  lifetimes(graph, workspace, plan);
+  find_contents(graph, limits, workspace, plan);
+  if (!check_images(graph, limits, plan, errors)) return 0;
+  place(graph, limits, workspace, plan);
+  VkDeviceSize bytes = 0;
+  for (const Heap& heap : plan.heaps) bytes += heap.size;
+  return bytes;
+}
+
+// In order of declaration, or in another order where that takes fewer bytes in the end: the two are
+// compared as they are scheduled, with the device's requirements and over the same queues.
+bool schedule_lowest(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
+                     Plan& plan, Errors& errors) {
+  order_as_declared(workspace, plan);
+  const VkDeviceSize declared = schedule(graph, limits, workspace, plan, errors);
+  plan.reordered = false;
+  if (!errors.empty()) return false;
+  if (!find_lower_order(graph, limits, workspace, plan)) return true;
+  workspace.order = workspace.reorder.order;
+  plan.reordered = schedule(graph, limits, workspace, plan, errors) < declared;
+  if (plan.reordered) return true;
+  workspace.order = workspace.reorder.declared;
+  schedule(graph, limits, workspace, plan, errors);
+  return true;
 }
 
 }  // namespace
@@ -29,17 +52,14 @@ tl::expected<void, Errors> Compiler::compile(const GraphDescription& graph, cons
     plan = {};
     return tl::unexpected(std::move(errors));
   }
-  clear(plan);
+  plan.batches.clear();
+  plan.transitions.clear();
+  plan.finals.clear();
   cull(graph, workspace, plan);
-  order(graph, limits, workspace, plan);
-  assign_queues(graph, limits, workspace, plan);
-  lifetimes(graph, workspace, plan);
-  find_contents(graph, limits, workspace, plan);
-  if (!check_images(graph, limits, plan, errors)) {
+  if (!schedule_lowest(graph, limits, workspace, plan, errors)) {
     plan = {};
     return tl::unexpected(std::move(errors));
   }
-  place(graph, limits, workspace, plan);
   synchronise(graph, limits, workspace, plan);
   return {};
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "alcove/framegraph/compile.h"
+#include "alcove/framegraph/verify.h"
 #include "fake_handle.h"
 
 namespace alcove::framegraph {
@@ -54,6 +55,74 @@ TEST_F(Validate, AttachmentsAndDiscardingWritesNeedNoContents) {
   const Texture stored = graph_.create_texture("stored", kDesc);
   (void)pass("update").write(stored, access::storage_read_write_compute, {}, Contents::discard);
   EXPECT_TRUE(compile(graph_));
+}
+
+TEST_F(Validate, AttachmentsOfDifferentRenderingsMayDifferInSize) {
+  for (const bool separate : {true, false}) {
+    graph_.reset();
+    const Texture large = graph_.create_texture("large", kDesc);
+    const Texture small =
+        graph_.create_texture("small", {kDesc.format, Extent::relative(large, 2)});
+    PassBuilder both = pass("both");
+    (void)both.write(large, access::color_attachment);
+    if (separate) both.next_rendering();
+    (void)both.write(small, access::color_attachment);
+    if (separate)
+      EXPECT_TRUE(compile(graph_));
+    else
+      expect(ErrorCode::attachment_mismatch, "next_rendering()");
+  }
+}
+
+TEST_F(Validate, ResolveTargetsHaveOneSampleBesideMultisampledAttachments) {
+  TextureDesc multisampled = kDesc;
+  multisampled.samples = VK_SAMPLE_COUNT_4_BIT;
+  for (const bool first : {true, false}) {
+    graph_.reset();
+    const Texture msaa = graph_.create_texture("msaa", multisampled);
+    const Texture target = graph_.create_texture("target", kDesc);
+    PassBuilder draw = pass("draw");
+    if (first) (void)draw.write(target, access::resolve_target);
+    (void)draw.write(msaa, access::color_attachment);
+    if (!first) (void)draw.write(target, access::resolve_target);
+    EXPECT_TRUE(compile(graph_));
+  }
+}
+
+TEST_F(Validate, RelativeExtentsMultiplyAndDivide) {
+  const Texture base = graph_.create_texture("base", {kDesc.format, Extent::absolute(100, 7)});
+  const auto size = [&](std::uint32_t divisor, std::uint32_t multiplier) {
+    const VkExtent3D extent = graph_.extent(
+        graph_.create_texture("t", {kDesc.format, Extent::relative(base, divisor, multiplier)}));
+    return std::pair{extent.width, extent.height};
+  };
+  EXPECT_EQ(size(3, 2), (std::pair{67u, 5u}));
+  EXPECT_EQ(size(1, 2), (std::pair{200u, 14u}));
+  EXPECT_EQ(size(1000, 1), (std::pair{1u, 1u}));
+  EXPECT_EQ(size(2, 0), (std::pair{0u, 0u}));
+}
+
+// The depth of a prepass that nothing reads later, on a device with lazily allocated memory.
+TEST_F(Validate, AttachmentsWithoutContentsAreTransientOnDevicesWithLazyMemory) {
+  for (const bool read_later : {false, true}) {
+    graph_.reset();
+    Texture color = graph_.create_texture("color", kDesc);
+    Texture depth = graph_.create_texture("depth", {VK_FORMAT_D32_SFLOAT, kDesc.extent});
+    PassBuilder draw = pass("draw");
+    color = draw.write(color, access::color_attachment);
+    depth = draw.write(depth, access::depth_attachment);
+    graph_.output(color);
+    if (read_later) pass("later").read(depth, access::depth_read_compute);
+    Limits limits;
+    limits.has_lazy_memory = true;
+    const auto plan = compile(graph_, limits);
+    ASSERT_TRUE(plan);
+    const auto is_transient = [&](Texture texture) {
+      return (plan->placements[texture.index].usage & VK_IMAGE_USAGE_TRANSIENT_ATTACHMENT_BIT) != 0;
+    };
+    EXPECT_FALSE(is_transient(color));
+    EXPECT_EQ(is_transient(depth), !read_later);
+  }
 }
 
 TEST_F(Validate, ALayerOrMipThatDoesNotFitIsNotTakenForAnother) {
@@ -279,6 +348,82 @@ TEST_F(Validate, AllErrorsComeAtOnce) {
   const auto plan = compile(graph_);
   ASSERT_FALSE(plan);
   EXPECT_EQ(plan.error().size(), 3u);
+}
+
+TEST_F(Validate, OneImageImportedUnderTwoNamesIsRefused) {
+  ImportedTexture import;
+  import.image = fake_handle<VkImage>();
+  import.desc = kDesc;
+  (void)graph_.import_texture("swap", import);
+  (void)graph_.import_texture("back buffer", import);
+  expect(ErrorCode::bad_import,
+         "texture 'back buffer' and texture 'swap' are imported with one VkImage: import it once");
+}
+
+TEST_F(Validate, OneBufferImportedUnderTwoNamesIsRefused) {
+  ImportedBuffer import;
+  import.buffer = fake_handle<VkBuffer>();
+  import.desc.size = 4;
+  (void)graph_.import_buffer("counter", import);
+  (void)graph_.import_buffer("count", import);
+  expect(ErrorCode::bad_import,
+         "buffer 'count' and buffer 'counter' are imported with one VkBuffer: import it once");
+}
+
+TEST_F(Validate, DisjointLayersOfOneImageMayBeImportedUnderTwoNames) {
+  ImportedTexture import;
+  import.image = fake_handle<VkImage>();
+  import.desc = kDesc;
+  import.desc.layers = 2;
+  (void)graph_.import_texture("first two", import);
+  import.first_layer = 2;
+  (void)graph_.import_texture("next two", import);
+  EXPECT_TRUE(compile(graph_));
+  import.first_layer = 3;
+  (void)graph_.import_texture("overlapping", import);
+  expect(ErrorCode::bad_import,
+         "'overlapping' and texture 'next two' are imported with one VkImage");
+}
+
+// Access bits of extensions that write, each in a stage that has it.
+constexpr Access kExtensionWrites[] = {
+    buffer_access::acceleration_structure_build,
+    buffer_access::build_scratch,
+    {VK_PIPELINE_STAGE_2_TRANSFORM_FEEDBACK_BIT_EXT, VK_ACCESS_2_TRANSFORM_FEEDBACK_WRITE_BIT_EXT},
+    {VK_PIPELINE_STAGE_2_TRANSFORM_FEEDBACK_BIT_EXT,
+     VK_ACCESS_2_TRANSFORM_FEEDBACK_COUNTER_WRITE_BIT_EXT}};
+
+TEST_F(Validate, WritesOfExtensionsAreWrites) {
+  for (const Access& access : kExtensionWrites) {
+    graph_.reset();
+    PassBuilder writer = pass("writer");
+    (void)writer.write(graph_.create_buffer("b", {64}), access, Contents::discard);
+    EXPECT_TRUE(compile(graph_));
+    graph_.reset();
+    Buffer buffer = graph_.create_buffer("b", {64});
+    buffer = pass("writer").write(buffer, buffer_access::fill, Contents::discard);
+    pass("reader").read(buffer, access);
+    expect(ErrorCode::bad_access, "with an access that writes: declare it with write()");
+  }
+}
+
+TEST_F(Validate, ImportWrittenByAnExtensionIsMadeVisible) {
+  for (const Access& access : kExtensionWrites) {
+    graph_.reset();
+    const Buffer buffer = graph_.import_buffer(
+        "b", {.buffer = fake_handle<VkBuffer>(),
+              .desc = {64},
+              .usage = ~VkBufferUsageFlags{0},
+              .initial_state = {access.stages, access.access, VK_IMAGE_LAYOUT_UNDEFINED}});
+    pass("reader").read(buffer, buffer_access::storage_read_compute);
+    auto plan = compile(graph_);
+    ASSERT_TRUE(plan);
+    ASSERT_EQ(plan->transitions.size(), 1u);
+    EXPECT_EQ(plan->transitions[0].src_access, access.access & kWriteBits);
+    EXPECT_TRUE(verify(graph_.description(), {}, *plan));
+    plan->transitions[0].src_access = 0;
+    EXPECT_FALSE(verify(graph_.description(), {}, *plan));
+  }
 }
 
 }  // namespace

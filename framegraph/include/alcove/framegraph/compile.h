@@ -50,8 +50,10 @@ struct ImageOracle {
 };
 
 enum class Ordering : std::uint8_t {
-  program,     // as declared
-  lower_peak,  // reordered where that lowers the memory peak; never a higher one
+  program,  // as declared
+  // In another order where that lowers the bytes of all heaps, as they are placed: never a higher
+  // peak. Passes with side effects keep their order among each other.
+  lower_peak,
 };
 
 // What the device allows and what the caller wants. The defaults are those of any desktop device.
@@ -79,8 +81,6 @@ struct Limits {
   // comparisons of two resources; 0 takes the first way.
   std::int64_t placement_effort = 1 << 24;
   bool alias = true;  // false gives each transient bytes of its own
-  // Barriers with work between what they wait for and what waits become events.
-  bool split_barriers = false;
 };
 
 // Everything that compiling needs beside its input: kept from call to call, so that no memory is

@@ -47,20 +47,16 @@ namespace alcove::framegraph {
   X(vkCmdFillBuffer)                          \
   X(vkCmdPipelineBarrier2)                    \
   X(vkCmdPushConstants)                       \
-  X(vkCmdResetEvent2)                         \
   X(vkCmdResetQueryPool)                      \
-  X(vkCmdSetEvent2)                           \
   X(vkCmdSetScissor)                          \
   X(vkCmdSetViewport)                         \
   X(vkCmdUpdateBuffer)                        \
-  X(vkCmdWaitEvents2)                         \
   X(vkCmdWriteTimestamp2)                     \
   X(vkCreateBuffer)                           \
   X(vkCreateCommandPool)                      \
   X(vkCreateComputePipelines)                 \
   X(vkCreateDescriptorPool)                   \
   X(vkCreateDescriptorSetLayout)              \
-  X(vkCreateEvent)                            \
   X(vkCreateFence)                            \
   X(vkCreateImage)                            \
   X(vkCreateImageView)                        \
@@ -74,7 +70,6 @@ namespace alcove::framegraph {
   X(vkDestroyCommandPool)                     \
   X(vkDestroyDescriptorPool)                  \
   X(vkDestroyDescriptorSetLayout)             \
-  X(vkDestroyEvent)                           \
   X(vkDestroyFence)                           \
   X(vkDestroyImage)                           \
   X(vkDestroyImageView)                       \
@@ -104,7 +99,6 @@ namespace alcove::framegraph {
   X(vkResetCommandBuffer)                     \
   X(vkResetCommandPool)                       \
   X(vkResetDescriptorPool)                    \
-  X(vkResetEvent)                             \
   X(vkResetFences)                            \
   X(vkUnmapMemory)                            \
   X(vkUpdateDescriptorSets)                   \
