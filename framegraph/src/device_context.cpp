@@ -108,7 +108,9 @@ VkDeviceSize max_buffer_size(const DeviceContext& context) {
   all.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
   all.pNext = &allocations;
   context.vk.vkGetPhysicalDeviceProperties2(context.handles.physical_device, &all);
-  return buffers.maxBufferSize != 0 ? buffers.maxBufferSize : allocations.maxMemoryAllocationSize;
+  if (buffers.maxBufferSize != 0) return buffers.maxBufferSize;
+  if (allocations.maxMemoryAllocationSize != 0) return allocations.maxMemoryAllocationSize;
+  return Limits{}.max_buffer_size;  // The driver tells neither.
 }
 
 void read_limits(DeviceContext& context) {
