@@ -30,7 +30,7 @@ struct MeasuredTrade {
     const Session& session, const StaticSetup& setup, const TruthOptions& truth_options);
 [[nodiscard]] std::string grid_table(const std::vector<double>& rmse);
 
-// A line for each point, those on the front marked.
+// A line for each point; points on the Pareto front are marked.
 [[nodiscard]] std::string table_of(const Trade& trade, const std::string& clock_title);
 
 [[nodiscard]] nlohmann::ordered_json to_json(const Trade& trade);

@@ -1,4 +1,5 @@
-// The trade of speed for accuracy: what can be spent, what it buys, and the least that will do.
+// Error against time over many settings: the sweep, its Pareto front, and the choice of a setting by
+// a budget or by a tolerance.
 #pragma once
 
 #include <array>
@@ -12,8 +13,8 @@
 
 namespace alcove::sample {
 
-// The qualities, and what lies between and beyond them: resolution, slices and steps vary, all else
-// is as in `base`. Each is there once, `base` among them if it is one of them.
+// The presets and settings between and beyond them: tile size, slices and steps vary, everything else
+// is as in `base`. No setting appears twice. `base` itself is among them if it equals one of them.
 [[nodiscard]] std::vector<Variant> preset_sweep(const passes::OcclusionSettings& base);
 
 // `base` with 8, 16, 32 and 64 steps and 1, 2, 4 and 8 slices, by steps first: whether the
@@ -29,7 +30,7 @@ enum class Clock : std::uint8_t {
   processor,   // processor time of all threads, for software devices
 };
 
-// Settings with what they cost on a device and how far their visibility is from the truth.
+// Settings, what they cost, and the error of their visibility.
 struct TradePoint {
   std::string name;
   passes::OcclusionSettings settings;
@@ -49,12 +50,13 @@ struct Trade {
 };
 [[nodiscard]] Trade trade_of(std::vector<TradePoint> points);
 
-// Of the same ways in several scenes: mean times, root mean squares of errors, most bytes. All
-// lists are as long and in the same order; there is at least one.
+// Combines the points of the same settings in several scenes: mean times and spreads, root mean
+// squares of errors, the largest number of bytes. There is at least one list; all lists have one
+// length and one order.
 [[nodiscard]] std::vector<TradePoint> over_scenes(std::span<const std::vector<TradePoint>> scenes);
 
-// The nearest to the truth that takes at most so many milliseconds, and the fastest
-// that errs by at most so much; null where none does.
+// The point with the least error among those that take at most `ms`, and the fastest among those
+// with an error of at most `rmse`; null where there is none.
 [[nodiscard]] const TradePoint* nearest_within_ms(std::span<const TradePoint> points, double ms);
 [[nodiscard]] const TradePoint* fastest_within_rmse(std::span<const TradePoint> points,
                                                     double rmse);
