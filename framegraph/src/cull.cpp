@@ -82,10 +82,12 @@ class Culler {
     for (const AccessRecord& access : accesses) {
       std::uint8_t& needed = *live++;
       if (!(access.flags & kOptional)) needed = 1;
-      if (!(access.flags & kWrite))
+      if (needed && !(access.flags & kWrite))
         begin_need(access, pass);
       else if (needed && (access.flags & kDiscard))
         end_need(access);
+      else if (needed && (access.access & ~kWriteBits) != 0)
+        begin_need(access, pass);  // It reads what it updates, whoever wants the result.
       if (needed && !(access.flags & kDiscard)) find_history(access, pass);
     }
     return cull_reason;

@@ -22,6 +22,8 @@ void note(UseState& state, const AccessRecord& access, std::int32_t time) {
     state.transition = kNone;
     state.handed_over = 0;
     state.by_wait = 0;
+    state.unordered = (access.flags & kUnordered) != 0;
+    state.unordered_access = access.access;
   } else {
     state.read_stages |= access.stages;
     state.read_time = time;
@@ -30,13 +32,19 @@ void note(UseState& state, const AccessRecord& access, std::int32_t time) {
   state.used = 1;
 }
 
+// Whether the access is one more of a series of writes whose order does not matter: all of them
+// come after what the first came after.
+bool goes_on(const UseState& state, const AccessRecord& access) {
+  return (access.flags & kUnordered) && state.unordered && state.read_stages == 0 &&
+         state.write_stages == access.stages && state.unordered_access == access.access;
+}
+
 }  // namespace
 
 void Synchroniser::run() {
   // Those from outside get their states on initial_state, transients when they take over their
   // memory.
   s_.states.resize(workspace_.first_sub.back());
-  s_.latest.clear();
   arrive();
   find_last_uses();
   const auto count = static_cast<std::uint32_t>(plan_.passes.size());
@@ -59,7 +67,6 @@ void Synchroniser::run() {
     planned.batch_count = 1;
   }
   depart();
-  if (limits_.split_barriers) split();
 }
 
 // The frame before used memory as this one will: who had which bytes last, and with what. Only
@@ -226,6 +233,10 @@ void Synchroniser::read_again(std::uint32_t position, const AccessRecord& access
 
 void Synchroniser::write_again(std::uint32_t position, const AccessRecord& access,
                                UseState& state) {
+  if (goes_on(state, access)) {
+    state.write_time = pass_time(position);
+    return;
+  }
   Transition wanted;
   wanted.src_stages = state.read_stages | state.write_stages;
   wanted.src_access = state.write_access;

@@ -1,5 +1,5 @@
 // The synchroniser: see synchronise.cpp, externals.cpp for how imports and histories arrive and are
-// left, queue_transfer.cpp for what goes from queue to queue, split_barriers.cpp for events.
+// left, queue_transfer.cpp for what goes from queue to queue.
 #pragma once
 
 #include <algorithm>
@@ -73,11 +73,6 @@ class Synchroniser {
                         const Range& range) const;
   void add_releases();
 
-  // split_barriers.cpp
-  void split();
-  std::uint32_t set_position(std::uint32_t position) const;
-  bool can_split(const Batch& batch) const;
-
   Batch& batch_after(std::int32_t time, std::uint32_t position);
   Transition& next_image(std::int32_t time, std::uint32_t position);
   void join_neighbours();
@@ -101,9 +96,6 @@ inline Batch& Synchroniser::batch_after(std::int32_t time, std::uint32_t positio
   if (batch_time_ < time) {
     batch_time_ = batch_time(position);
     plan_.batches.push_back({static_cast<std::uint32_t>(plan_.transitions.size()), 0});
-    s_.latest.push_back(time);
-  } else {
-    s_.latest.back() = std::max(s_.latest.back(), time);
   }
   return plan_.batches.back();
 }
@@ -142,6 +134,8 @@ inline void Synchroniser::note_change(std::uint32_t position, const AccessRecord
   if (access.flags & kWrite) {
     state.write_access = access.access & kWriteBits;
     state.write_time = pass_time(position);
+    state.unordered = (access.flags & kUnordered) != 0;
+    state.unordered_access = access.access;
     return;
   }
   state.write_time = batch_time_;

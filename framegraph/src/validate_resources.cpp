@@ -71,8 +71,24 @@ bool check_buffer(Validation& v, std::uint32_t index, const ResourceRecord& r) {
   return false;
 }
 
+// The resource that was made from an external.
+std::uint32_t resource_of(const GraphDescription& graph, std::uint32_t external) {
+  std::uint32_t index = 0;
+  while (graph.resources[index].external != external) ++index;
+  return index;
+}
+
 void check_external(Validation& v, std::uint32_t index, const ResourceRecord& r) {
-  if (!v.graph.externals[r.external].has_handle)
+  const ExternalRecord& external = v.graph.externals[r.external];
+  if (external.same_as != kNone)
+    v.fail(ErrorCode::bad_import,
+           v.resource_text(index) + " and " +
+               v.resource_text(resource_of(v.graph, external.same_as)) + " are imported with one " +
+               (r.kind == ResourceKind::texture ? "VkImage" : "VkBuffer") +
+               ": import it once and use that handle in every pass, because the graph orders the "
+               "uses of each resource by itself",
+           kNone, index);
+  if (!external.has_handle)
     v.fail(
         ErrorCode::bad_import,
         v.resource_text(index) + " is imported without a Vulkan handle: set " +

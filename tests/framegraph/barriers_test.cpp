@@ -5,7 +5,6 @@
 #include <iostream>
 
 #include "alcove/framegraph/compile.h"
-#include "alcove/framegraph/print.h"
 #include "alcove/framegraph/verify.h"
 #include "barrier_search.h"
 #include "deferred_frame.h"
@@ -250,60 +249,6 @@ TEST(Barriers, AWriteAfterReadsThatSawTheLastWriteMakesNothingVisible) {
   ASSERT_EQ(plan->transitions.size(), 3u);
   EXPECT_EQ(plan->transitions[2].src_access, VK_ACCESS_2_NONE);
   EXPECT_EQ(plan->transitions[2].dst_access, VK_ACCESS_2_NONE);
-}
-
-// With as few commands as this, little is left to split: each waits for the pass before it, as a
-// rule.
-TEST(Barriers, FewCommandsHaveWorkBetween) {
-  Graph graph;
-  Limits limits;
-  limits.split_barriers = true;
-  declare_deferred_frame(graph, 1920, 1080);
-  const auto deferred = compile(graph, limits);
-  ASSERT_TRUE(deferred);
-  std::cerr << "deferred frame: " << deferred->sets.size() << " of " << deferred->batches.size()
-            << " barrier commands are split";
-  std::size_t split = 0;
-  std::size_t all = 0;
-  for (std::uint64_t seed = 0; seed < 1000; ++seed) {
-    graph.reset();
-    graph.reset_histories();
-    Dice dice(seed);
-    declare_random(graph, dice);
-    const auto plan = compile(graph, limits);
-    ASSERT_TRUE(plan);
-    EXPECT_TRUE(verify(graph.description(), limits, *plan));
-    split += plan->sets.size();
-    all += plan->batches.size();
-  }
-  std::cerr << "; of 1,000 random graphs " << split << " of " << all << "\n";
-  EXPECT_GT(split, 0u);
-}
-
-TEST(Barriers, AnEventLetsThePassesBetweenRunOn) {
-  Graph graph;
-  const auto make = [&](const char* name, Texture from) {
-    Texture to = graph.create_texture(name, {VK_FORMAT_R8_UNORM, Extent::absolute(8, 8)});
-    PassBuilder pass = graph.add_pass(name);
-    if (from) pass.read(from, access::sampled_compute);
-    pass.side_effect();
-    return pass.write(to, access::storage_write_compute);
-  };
-  const Texture first = make("first", {});
-  (void)make("between", {});
-  (void)make("last", first);
-  Limits limits;
-  limits.split_barriers = true;
-  limits.ordering = Ordering::program;
-  limits.alias = false;
-  const auto plan = compile(graph, limits);
-  ASSERT_TRUE(plan);
-  EXPECT_TRUE(verify(graph.description(), limits, *plan));
-  ASSERT_EQ(plan->sets.size(), 1u);
-  EXPECT_EQ(plan->passes[0].set_count, 1u);
-  EXPECT_EQ(plan->batches[plan->passes[2].first_batch].event, 0u);
-  EXPECT_NE(print_text(graph.description(), *plan).find("event set after 0: compute -> compute"),
-            std::string::npos);
 }
 
 }  // namespace

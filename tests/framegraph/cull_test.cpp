@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "alcove/framegraph/compile.h"
+#include "alcove/framegraph/verify.h"
 
 namespace alcove::framegraph {
 namespace {
@@ -124,6 +125,81 @@ TEST_F(Cull, AnUpdateInPlaceIsKeptWhereTheHistoryIsRead) {
   EXPECT_EQ(kept.passes.size(), 3u);
   EXPECT_EQ(kept.cull_reasons[2].cull_reason, CullReason::feeds_history);
   EXPECT_EQ(kept.cull_reasons[2].consumer, 1u);
+}
+
+// A pass that updates `acc` and writes a second texture, which alone is wanted:
+//
+//   clear -> acc -> update -> acc (unread)
+//                      +----> second -> output
+class CullUpdate : public Cull {
+ protected:
+  // The plan of that frame, with these accesses to `acc`.
+  Plan plan_of_update(const Access& clear, Contents cleared, Need need, const Access& update) {
+    TextureDesc desc = kDesc;
+    if (update.usage & VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT)
+      desc.format = VK_FORMAT_D32_SFLOAT;
+    Texture acc = graph_.create_texture("acc", desc);
+    Texture second = graph_.create_texture("second", kDesc);
+    PassBuilder first = graph_.add_pass("clear");
+    acc = first.write(acc, clear, {}, cleared, need);
+    PassBuilder both = graph_.add_pass("update");
+    (void)both.write(acc, update);
+    second = both.write(second, access::storage_write_compute, {}, Contents::discard);
+    graph_.output(second);
+    return plan();
+  }
+  static void expect_both(const Plan& plan) {
+    EXPECT_EQ(plan.passes.size(), 2u);
+    EXPECT_EQ(plan.cull_reasons[0].cull_reason, CullReason::feeds_pass);
+    EXPECT_EQ(plan.cull_reasons[0].consumer, 1u);
+    EXPECT_EQ(plan.live_accesses, (std::vector<std::uint8_t>{1, 1, 1}));
+  }
+};
+
+TEST_F(CullUpdate, ReadModifyWriteKeepsTheProducerOfWhatItReads) {
+  expect_both(plan_of_update(access::clear, Contents::discard, Need::required,
+                             access::storage_read_write_compute));
+}
+
+TEST_F(CullUpdate, BlendingKeepsTheProducerOfWhatItReads) {
+  expect_both(
+      plan_of_update(access::clear, Contents::discard, Need::required, access::color_attachment));
+}
+
+TEST_F(CullUpdate, DepthTestKeepsTheDepthPrepass) {
+  expect_both(plan_of_update(access::depth_attachment, Contents::discard, Need::required,
+                             access::depth_attachment));
+}
+
+TEST_F(CullUpdate, OptionalOutputIsLiveWhenOnlyAnUpdateReadsIt) {
+  expect_both(plan_of_update(access::storage_write_compute, Contents::keep, Need::optional,
+                             access::storage_read_write_compute));
+}
+
+TEST_F(CullUpdate, PartialWriteThatReadsNothingDoesNotKeepTheProducer) {
+  const Plan result = plan_of_update(access::clear, Contents::discard, Need::required,
+                                     access::storage_write_compute);
+  EXPECT_EQ(result.passes.size(), 1u);
+  EXPECT_EQ(result.cull_reasons[0].cull_reason, CullReason::unread);
+}
+
+TEST_F(CullUpdate, VerifierRefusesAPlanWithoutTheProducerOfWhatAnUpdateReads) {
+  Plan result = plan_of_update(access::clear, Contents::discard, Need::required,
+                               access::storage_read_write_compute);
+  // The plan of the same frame in which the update does not read: nothing clears `acc`.
+  const GraphDescription& description = graph_.description();
+  GraphDescription not_reading = description;
+  not_reading.accesses[1].access = access::storage_write_compute.access;
+  const auto wrong = compile(not_reading);
+  ASSERT_TRUE(wrong);
+  ASSERT_EQ(wrong->passes.size(), 1u);
+  EXPECT_TRUE(verify(not_reading, {}, *wrong));
+  EXPECT_TRUE(verify(description, {}, result));
+  const auto verified = verify(description, {}, *wrong);
+  ASSERT_FALSE(verified);
+  EXPECT_NE(
+      to_string(verified.error()).find("the update of 'acc' does not find what was written for it"),
+      std::string::npos);
 }
 
 }  // namespace

@@ -79,12 +79,5 @@ RC_GTEST_PROP(Fuzz, EveryPlanWithCoarseGranularityIsVerified, ()) {
   expect_verified({}, limits);
 }
 
-RC_GTEST_PROP(Fuzz, EveryPlanWithSplitBarriersIsVerified, ()) {
-  Limits limits = with_families(0, 1, kNone);
-  limits.split_barriers = true;
-  const bool several = *rc::gen::arbitrary<bool>();
-  expect_verified(several ? on_all_queues() : RandomOptions{}, limits);
-}
-
 }  // namespace
 }  // namespace alcove::framegraph

@@ -22,7 +22,7 @@ class Queues : public testing::Test {
     const State state{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_READ_BIT,
                       VK_IMAGE_LAYOUT_GENERAL};
     return graph_.import_texture(
-        name, {.image = fake_handle<VkImage>(),
+        name, {.image = fake_handle<VkImage>(imports_++),
                .desc = kDesc,
                .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
                .initial_state = state,
@@ -37,6 +37,7 @@ class Queues : public testing::Test {
   }
   Graph graph_;
   Limits limits_;
+  std::size_t imports_ = 0;
 };
 
 //   a (graphics) -- x --> b (compute) -- z --> c (transfer)

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "alcove/framegraph/compile.h"
+#include "alcove/framegraph/verify.h"
 #include "fake_handle.h"
 
 namespace alcove::framegraph {
@@ -279,6 +280,82 @@ TEST_F(Validate, AllErrorsComeAtOnce) {
   const auto plan = compile(graph_);
   ASSERT_FALSE(plan);
   EXPECT_EQ(plan.error().size(), 3u);
+}
+
+TEST_F(Validate, OneImageImportedUnderTwoNamesIsRefused) {
+  ImportedTexture import;
+  import.image = fake_handle<VkImage>();
+  import.desc = kDesc;
+  (void)graph_.import_texture("swap", import);
+  (void)graph_.import_texture("back buffer", import);
+  expect(ErrorCode::bad_import,
+         "texture 'back buffer' and texture 'swap' are imported with one VkImage: import it once");
+}
+
+TEST_F(Validate, OneBufferImportedUnderTwoNamesIsRefused) {
+  ImportedBuffer import;
+  import.buffer = fake_handle<VkBuffer>();
+  import.desc.size = 4;
+  (void)graph_.import_buffer("counter", import);
+  (void)graph_.import_buffer("count", import);
+  expect(ErrorCode::bad_import,
+         "buffer 'count' and buffer 'counter' are imported with one VkBuffer: import it once");
+}
+
+TEST_F(Validate, DisjointLayersOfOneImageMayBeImportedUnderTwoNames) {
+  ImportedTexture import;
+  import.image = fake_handle<VkImage>();
+  import.desc = kDesc;
+  import.desc.layers = 2;
+  (void)graph_.import_texture("first two", import);
+  import.first_layer = 2;
+  (void)graph_.import_texture("next two", import);
+  EXPECT_TRUE(compile(graph_));
+  import.first_layer = 3;
+  (void)graph_.import_texture("overlapping", import);
+  expect(ErrorCode::bad_import,
+         "'overlapping' and texture 'next two' are imported with one VkImage");
+}
+
+// Access bits of extensions that write, each in a stage that has it.
+constexpr Access kExtensionWrites[] = {
+    buffer_access::acceleration_structure_build,
+    buffer_access::build_scratch,
+    {VK_PIPELINE_STAGE_2_TRANSFORM_FEEDBACK_BIT_EXT, VK_ACCESS_2_TRANSFORM_FEEDBACK_WRITE_BIT_EXT},
+    {VK_PIPELINE_STAGE_2_TRANSFORM_FEEDBACK_BIT_EXT,
+     VK_ACCESS_2_TRANSFORM_FEEDBACK_COUNTER_WRITE_BIT_EXT}};
+
+TEST_F(Validate, WritesOfExtensionsAreWrites) {
+  for (const Access& access : kExtensionWrites) {
+    graph_.reset();
+    PassBuilder writer = pass("writer");
+    (void)writer.write(graph_.create_buffer("b", {64}), access, Contents::discard);
+    EXPECT_TRUE(compile(graph_));
+    graph_.reset();
+    Buffer buffer = graph_.create_buffer("b", {64});
+    buffer = pass("writer").write(buffer, buffer_access::fill, Contents::discard);
+    pass("reader").read(buffer, access);
+    expect(ErrorCode::bad_access, "with an access that writes: declare it with write()");
+  }
+}
+
+TEST_F(Validate, ImportWrittenByAnExtensionIsMadeVisible) {
+  for (const Access& access : kExtensionWrites) {
+    graph_.reset();
+    const Buffer buffer = graph_.import_buffer(
+        "b", {.buffer = fake_handle<VkBuffer>(),
+              .desc = {64},
+              .usage = ~VkBufferUsageFlags{0},
+              .initial_state = {access.stages, access.access, VK_IMAGE_LAYOUT_UNDEFINED}});
+    pass("reader").read(buffer, buffer_access::storage_read_compute);
+    auto plan = compile(graph_);
+    ASSERT_TRUE(plan);
+    ASSERT_EQ(plan->transitions.size(), 1u);
+    EXPECT_EQ(plan->transitions[0].src_access, access.access & kWriteBits);
+    EXPECT_TRUE(verify(graph_.description(), {}, *plan));
+    plan->transitions[0].src_access = 0;
+    EXPECT_FALSE(verify(graph_.description(), {}, *plan));
+  }
 }
 
 }  // namespace
