@@ -53,7 +53,8 @@ class Orderer {
     for (const OutputRecord& output : graph_.outputs) ++s_.uses[output.resource];
   }
 
-  // What running a pass adds to the live bytes while it runs, and what it gives up afterwards.
+  // The bytes that become live when a pass runs (`gained`), that are free after it (`freed`), and
+  // of all transients that it uses (`own`).
   struct Step {
     std::int64_t gained = 0;
     std::int64_t freed = 0;
@@ -173,8 +174,8 @@ class Orderer {
     return peak;
   }
 
-  // The ready pass that leaves least; one that stays below the peak so far before one that does
-  // not.
+  // Of the ready passes, the one after which the fewest bytes are live. Passes that stay below the
+  // peak so far are preferred to those that raise it.
   std::size_t choose(std::int64_t live, std::int64_t peak) {
     std::size_t best = 0;
     bool best_below = false;

@@ -1,5 +1,5 @@
-// The synchroniser: see synchronise.cpp, externals.cpp for how imports and histories arrive and are
-// left, queue_transfer.cpp for what goes from queue to queue.
+// The synchroniser. synchronise.cpp follows the passes, externals.cpp the initial and final states
+// of imports and histories, and queue_transfer.cpp what goes from one queue to another.
 #pragma once
 
 #include <algorithm>
@@ -16,10 +16,10 @@ inline VkPipelineStageFlags2 waited_stages(const AccessRecord& access) {
   return stages != 0 ? stages : VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
 }
 
-// UseState::seen_access of what is seen in every way.
+// The value of UseState::seen_access when every access sees the write.
 inline constexpr VkAccessFlags2 kEveryAccess = ~VkAccessFlags2{0};
 
-// The same as barriers and states name it.
+// Seen accesses as barriers and states name them.
 inline VkAccessFlags2 reads_in(VkAccessFlags2 seen) {
   return seen == kEveryAccess ? VK_ACCESS_2_MEMORY_READ_BIT : seen;
 }
@@ -85,9 +85,9 @@ class Synchroniser {
   Plan& plan_;
   Workspace::Synchronise& s_;
   std::int32_t batch_time_ = kNever;  // of the last batch
-  // When the submission of the pass in hand begins: no barrier can be put before.
+  // The start of the current pass's submission, before which no barrier can be placed.
   std::int32_t earliest_ = kBeforeFrame;
-  QueueClass queue_ = QueueClass::graphics;  // of the pass in hand
+  QueueClass queue_ = QueueClass::graphics;  // of the current pass
 };
 
 // The dependencies go into the last batch if that comes after `time`, else into a new one.

@@ -4,7 +4,7 @@
 namespace alcove::framegraph {
 namespace {
 
-// What a queue class cannot run.
+// The stages that a queue class cannot run.
 constexpr VkPipelineStageFlags2 kGraphicsStages =
     VK_PIPELINE_STAGE_2_VERTEX_INPUT_BIT | VK_PIPELINE_STAGE_2_INDEX_INPUT_BIT |
     VK_PIPELINE_STAGE_2_VERTEX_ATTRIBUTE_INPUT_BIT | VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT |

@@ -55,7 +55,7 @@ bool check_texture(Validation& v, std::uint32_t index, const ResourceRecord& r) 
   return true;
 }
 
-// What most resources are, found out at once: a right texture of one subresource.
+// The fast path for most resources: whether it is a valid texture of one subresource.
 bool is_plainly_right(const ResourceRecord& r, std::uint32_t limit) {
   return r.kind == ResourceKind::texture && r.external == kNone && r.flags == 0 && r.depth == 1 &&
          r.mips == 1 && r.layers == 1 && r.samples == 1 && r.width - 1 < limit &&
@@ -102,7 +102,7 @@ void check_external(Validation& v, std::uint32_t index, const ResourceRecord& r)
         kNone, index);
 }
 
-// Any resource; how many subresources it has, none when its description is wrong.
+// Checks any resource. Returns the number of its subresources, 0 if its description is invalid.
 std::uint32_t look_closely(Validation& v, std::uint32_t index, const ResourceRecord& r) {
   const bool texture = r.kind == ResourceKind::texture;
   const bool right = texture ? check_texture(v, index, r) : check_buffer(v, index, r);

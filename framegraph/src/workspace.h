@@ -1,4 +1,5 @@
-// What the phases of compile hand to each other, kept between calls for its memory.
+// The data that the phases of compile share. It is kept from call to call, so that its memory is
+// used again.
 #pragma once
 
 #include <cstdint>

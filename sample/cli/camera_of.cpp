@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "cli/option_value.h"
+#include "scene/framing.h"
 
 namespace alcove::sample {
 namespace {
@@ -39,15 +41,13 @@ tl::expected<Camera, std::string> camera_of(const ViewOptions& view, const Scene
         "the scene has no camera \"" + view.camera + "\"; it has " +
         (scene.cameras.empty() ? "none: use --eye and --target" : names_of(scene.cameras)));
   }
-  Camera camera = named ? *named : framing_camera(scene.bounds_ws);
-  camera.eye_ws = view.eye_ws.value_or(camera.eye_ws);
-  camera.target_ws = view.target_ws.value_or(camera.target_ws);
-  // A view that is typed stands upright: what is up for the scene's camera fits its own view.
-  if (view.eye_ws || view.target_ws) camera.up_ws = Camera().up_ws;
+  Camera camera = named ? *named : framing_camera(scene);
+  camera.origin = scene.origin;
+  if (view.eye) camera.eye_ws = *view.eye - scene.origin;
+  if (view.target) camera.target_ws = *view.target - scene.origin;
+  // A typed view stands upright: the up vector of the scene's camera belongs to the camera's view.
+  if (view.eye || view.target) camera.up_ws = Camera().up_ws;
   camera.up_ws = view.up_ws.value_or(camera.up_ws);
-  camera.near_plane = view.near_plane.value_or(camera.near_plane);
-  camera.far_plane = view.far_plane.value_or(camera.far_plane);
-  camera.reversed_z = camera.reversed_z || view.reversed_z;
   if (view.fov_y) {
     camera.orthographic = false;
     camera.fov_y = *view.fov_y;
@@ -57,6 +57,8 @@ tl::expected<Camera, std::string> camera_of(const ViewOptions& view, const Scene
     camera.ortho_height = *view.ortho_height;
     if (std::isinf(camera.far_plane)) camera.far_plane = 1000.0f * camera.ortho_height;
   }
+  camera.reversed_z = view.reversed_z.value_or(!camera.orthographic);
+  camera.fit_planes = camera.fit_planes || view.eye || view.target || view.ortho_height;
   if (camera.eye_ws == camera.target_ws) {
     return tl::unexpected<std::string>("--eye and --target are one point: move one of them");
   }
@@ -65,6 +67,11 @@ tl::expected<Camera, std::string> camera_of(const ViewOptions& view, const Scene
         "--eye, --target and --up are too large or too near each other for a view to be made: give "
         "lengths from 1e-15 to 1e15");
   }
+  if (std::exchange(camera.fit_planes, false) && !(view.near_plane && view.far_plane)) {
+    camera = with_fitted_planes(scene, camera, static_cast<double>(view.width) / view.height);
+  }
+  camera.near_plane = view.near_plane.value_or(camera.near_plane);
+  camera.far_plane = view.far_plane.value_or(camera.far_plane);
   if (!camera.orthographic && !(camera.near_plane > 0.0f)) {
     return tl::unexpected("the near plane (" + shown(camera.near_plane) +
                           ") of a perspective view must lie before the eye: give --near");

@@ -1,20 +1,24 @@
 #include "cli/open_session.h"
 
+#include <chrono>
 #include <iostream>
 #include <utility>
 
 #include "cli/camera_of.h"
 #include "cli/settings.h"
 #include "scene/load_scene.h"
+#include "support/progress.h"
 
 namespace alcove::sample {
 
 using Failure = tl::unexpected<std::string>;
 
-tl::expected<Session, std::string> open_session(
-    const Options& options, const std::vector<const char*>& surface_extensions) {
+tl::expected<Session, std::string> load_session(const Options& options) {
   Session session;
-  auto scene = load_scene(options.scene, options.cut_blends);
+  const auto start = std::chrono::steady_clock::now();
+  auto scene = load_scene(options.scene, options.materials, print_progress("loading"));
+  session.load_seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!scene) {
     return Failure(std::move(scene.error()));
   }
@@ -32,12 +36,21 @@ tl::expected<Session, std::string> open_session(
     return Failure(settings.error());
   }
   session.settings = *settings;
-  session.device = {options.device, options.validation, surface_extensions};
-  auto gpu = open_gpu(session.device);
+  return session;
+}
+
+tl::expected<Session, std::string> open_session(
+    const Options& options, const std::vector<const char*>& surface_extensions) {
+  auto session = load_session(options);
+  if (!session) {
+    return session;
+  }
+  session->device = {options.device, options.validation, surface_extensions};
+  auto gpu = open_gpu(session->device);
   if (!gpu) {
     return Failure(std::move(gpu.error()));
   }
-  session.gpu = std::move(*gpu);
+  session->gpu = std::move(*gpu);
   return session;
 }
 

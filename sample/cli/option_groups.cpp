@@ -51,6 +51,13 @@ class Group {
         ->group(heading_);
   }
 
+  void add_optional_flag(const std::string& option, const std::string& help,
+                         std::optional<bool>& flag, bool meaning) const {
+    app_.add_flag_callback(
+            option, [&flag, meaning] { flag = meaning; }, help)
+        ->group(heading_);
+  }
+
  private:
   CLI::App& app_;
   std::string heading_;
@@ -109,9 +116,9 @@ void add_view(CLI::App& app, ViewOptions& view) {
             "a camera of the scene, by name; else its first, else a view of all of it",
             [&](const OptionValue& given) { view.camera = given.text; });
   group.add("--eye", "X,Y,Z", "where the camera stands, scene units",
-            [&](const OptionValue& given) { view.eye_ws = given.vector(); });
+            [&](const OptionValue& given) { view.eye = given.vector(); });
   group.add("--target", "X,Y,Z", "what it looks at",
-            [&](const OptionValue& given) { view.target_ws = given.vector(); });
+            [&](const OptionValue& given) { view.target = given.vector(); });
   group.add("--up", "X,Y,Z", "what is up; 0,1,0", [&](const OptionValue& given) {
     view.up_ws = given.vector();
     if (*view.up_ws == glm::vec3(0.0f)) given.refuse("a direction, not zero");
@@ -126,19 +133,25 @@ void add_view(CLI::App& app, ViewOptions& view) {
             [&](const OptionValue& given) { view.ortho_height = given.length(); });
   constexpr double kLargest = std::numeric_limits<float>::max();
   group.add("--near", "LENGTH",
-            "near plane; the camera's, as is the far one. An orthographic view's may lie behind it",
+            "near plane; that of the scene's camera, or fitted to the geometry in view. That of an "
+            "orthographic view may lie behind the eye",
             [&](const OptionValue& given) {
               view.near_plane = static_cast<float>(
                   given.number(-kLargest, kLargest, "a length above 0, in the scene's units"));
             });
-  group.add("--far", "LENGTH", "far plane, or inf", [&](const OptionValue& given) {
+  group.add("--far", "LENGTH", "far plane, or inf; as --near", [&](const OptionValue& given) {
     const bool infinite = given.text == "inf" || given.text == "infinity";
     view.far_plane =
         infinite
             ? std::numeric_limits<float>::infinity()
             : static_cast<float>(given.number(-kLargest, kLargest, "a length above 0, or inf"));
   });
-  group.add_flag("--reversed-z", "near at depth 1, far at 0: finer far away", view.reversed_z);
+  group.add_optional_flag("--reversed-z",
+                          "near plane at depth 1, far plane at 0; the default in perspective",
+                          view.reversed_z, true);
+  group.add_optional_flag(
+      "--standard-z", "near plane at depth 0, far plane at 1; the default in orthographic views",
+      view.reversed_z, false);
   group.add("--size", "WxH", "of the image in pixels; 960x540",
             [&](const OptionValue& given) { std::tie(view.width, view.height) = given.size(); });
 }
@@ -187,9 +200,11 @@ void add_occlusion(CLI::App& app, OcclusionOptions& occlusion) {
               occlusion.quality =
                   static_cast<passes::Quality>(given.one_of(passes::kNames<passes::Quality>));
             });
-  group.add("--radius", "LENGTH",
-            "how far an occluder counts, scene units; a twentieth of the scene's diagonal",
-            [&](const OptionValue& given) { occlusion.radius = given.length(); });
+  group.add(
+      "--radius", "LENGTH",
+      "distance up to which occluders count, scene units; a twentieth of the scene's diagonal, "
+      "without what only surrounds it",
+      [&](const OptionValue& given) { occlusion.radius = given.length(); });
   group.add_repeatable(
       "--set", "NAME=VALUE", "one of the settings below over the preset; may be repeated",
       [&](const OptionValue& given) {
@@ -293,11 +308,16 @@ void add_light(CLI::App& app, Options& options) {
            [&](const OptionValue& given) { options.environment = given.text; });
 }
 
-void add_cut_blends(CLI::App& app, bool& cut_blends) {
-  Group(app).add_flag("--cut-blends",
-                      "cut materials that blend out at half their alpha, as leaves want it; else "
-                      "they are opaque",
-                      cut_blends);
+void add_materials(CLI::App& app, MaterialTreatment& materials) {
+  const Group group(app);
+  group.add_flag("--cut-blends",
+                 "cut alpha-blended materials out where their alpha is below a half, as foliage "
+                 "needs it; without it they are rendered opaque",
+                 materials.cut_blends);
+  group.add_flag("--both-sides",
+                 "draw single-sided materials from behind too; without it their back faces are "
+                 "culled, as glTF asks for",
+                 materials.both_sides);
 }
 
 void add_lit(CLI::App& app, bool& lit) {

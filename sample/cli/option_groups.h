@@ -37,7 +37,7 @@ void add_cost(CLI::App& app, Options& options);
 // For `bench`: the table of steps and slices.
 void add_grid(CLI::App& app, bool& grid);
 void add_light(CLI::App& app, Options& options);
-void add_cut_blends(CLI::App& app, bool& cut_blends);
+void add_materials(CLI::App& app, MaterialTreatment& materials);
 void add_lit(CLI::App& app, bool& lit);
 void add_format(CLI::App& app, GraphFormat& format);
 void add_device(CLI::App& app, Options& options);

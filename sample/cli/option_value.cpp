@@ -23,14 +23,14 @@ std::optional<double> number_of(const std::string& text) {
 }
 
 // Numbers between commas; empty where any is malformed.
-std::vector<float> numbers_of(const std::string& text) {
-  std::vector<float> values;
+std::vector<double> numbers_of(const std::string& text) {
+  std::vector<double> values;
   std::size_t start = 0;
   while (start <= text.size()) {
     const std::size_t comma = std::min(text.find(',', start), text.size());
     const auto value = number_of(text.substr(start, comma - start));
     if (!value) return {};
-    values.push_back(static_cast<float>(*value));
+    values.push_back(*value);
     start = comma + 1;
   }
   return values;
@@ -74,9 +74,11 @@ float OptionValue::length() const {
   return value;
 }
 
-glm::vec3 OptionValue::vector() const {
-  const std::vector<float> v = numbers_of(text);
-  if (v.size() != 3 || !std::isfinite(v[0] + v[1] + v[2])) {
+glm::dvec3 OptionValue::vector() const {
+  const std::vector<double> v = numbers_of(text);
+  if (v.size() != 3 || !std::isfinite(static_cast<float>(v[0] + v[1] + v[2])) ||
+      !std::isfinite(static_cast<float>(v[0])) || !std::isfinite(static_cast<float>(v[1])) ||
+      !std::isfinite(static_cast<float>(v[2]))) {
     refuse("three numbers, such as 0,1.5,-2");
   }
   return {v[0], v[1], v[2]};
@@ -84,7 +86,8 @@ glm::vec3 OptionValue::vector() const {
 
 std::vector<float> OptionValue::numbers(std::size_t most, float low, float high,
                                         const std::string& wanted) const {
-  std::vector<float> values = numbers_of(text);
+  const std::vector<double> typed = numbers_of(text);
+  std::vector<float> values(typed.begin(), typed.end());
   const bool within =
       std::ranges::all_of(values, [&](float value) { return value >= low && value <= high; });
   if (values.empty() || values.size() > most || !within) refuse(wanted);
@@ -113,6 +116,16 @@ std::size_t OptionValue::one_of(std::span<const std::string_view> names) const {
     refuse("one of " + all);
   }
   return static_cast<std::size_t>(found - names.begin());
+}
+
+std::string shown_coordinate(float value, double origin) {
+  if (origin == 0.0) return shown(value);
+  std::array<char, 40> text{};
+  for (int digits = 6; digits <= 17; ++digits) {
+    std::snprintf(text.data(), text.size(), "%.*g", digits, origin + static_cast<double>(value));
+    if (static_cast<float>(std::strtod(text.data(), nullptr) - origin) == value) break;
+  }
+  return text.data();
 }
 
 std::string shown(float value) {

@@ -33,7 +33,7 @@ struct OptionValue {
   double positive(const std::string& wanted) const;
   // The same, in the scene's units.
   float length() const;
-  glm::vec3 vector() const;
+  glm::dvec3 vector() const;  // finite as floats too
   // Numbers between commas, at least one and at most `most`, each within [low, high].
   std::vector<float> numbers(std::size_t most, float low, float high,
                              const std::string& wanted) const;
@@ -45,5 +45,9 @@ struct OptionValue {
 
 // A number for people: as few digits as tell it from every other.
 [[nodiscard]] std::string shown(float value);
+
+// A coordinate in the space of the scene's file, of which `origin` was taken: the shortest text
+// that gives the same float again.
+[[nodiscard]] std::string shown_coordinate(float value, double origin);
 
 }  // namespace alcove::sample

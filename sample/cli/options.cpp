@@ -18,7 +18,7 @@ void add_output(CLI::App& app, Options& options) {
 // Takes --spp too, which has no effect, so that a line for `compare` serves; so does `graph`.
 void add_render(CLI::App& app, Options& options) {
   add_scene(app, options.scene);
-  add_cut_blends(app, options.cut_blends);
+  add_materials(app, options.materials);
   add_view(app, options.view);
   add_course(app, options.view, "how many to render; 1. The last is written");
   add_occlusion(app, options.occlusion);
@@ -36,7 +36,7 @@ void add_compare(CLI::App& app, Options& options) {
 
 void add_motion_command(CLI::App& app, Options& options) {
   add_scene(app, options.scene);
-  add_cut_blends(app, options.cut_blends);
+  add_materials(app, options.materials);
   add_motion(app, options);
   add_view(app, options.view);
   add_occlusion(app, options.occlusion);
@@ -56,7 +56,7 @@ void add_comparison(CLI::App& app, Options& options) {
 
 void add_ablate(CLI::App& app, Options& options) {
   add_scene(app, options.scene);
-  add_cut_blends(app, options.cut_blends);
+  add_materials(app, options.materials);
   add_comparison(app, options);
   add_output(app, options);
 }
@@ -64,14 +64,14 @@ void add_ablate(CLI::App& app, Options& options) {
 void add_bench(CLI::App& app, Options& options) {
   add_scenes(app, options.scenes);
   add_grid(app, options.grid);
-  add_cut_blends(app, options.cut_blends);
+  add_materials(app, options.materials);
   add_comparison(app, options);
   add_output(app, options);
 }
 
 void add_recommend(CLI::App& app, Options& options) {
   add_scene(app, options.scene);
-  add_cut_blends(app, options.cut_blends);
+  add_materials(app, options.materials);
   add_limits(app, options);
   add_comparison(app, options);
   add_device(app, options);
@@ -86,7 +86,7 @@ void add_cost_command(CLI::App& app, Options& options) {
 
 void add_graph(CLI::App& app, Options& options) {
   add_scene(app, options.scene);
-  add_cut_blends(app, options.cut_blends);
+  add_materials(app, options.materials);
   add_view(app, options.view);
   add_occlusion(app, options.occlusion);
   add_rays(app, options.occlusion);
@@ -99,7 +99,7 @@ void add_window(CLI::App& app, Options& options) {
   options.view.frames = 0;
   options.out.clear();
   add_scene(app, options.scene);
-  add_cut_blends(app, options.cut_blends);
+  add_materials(app, options.materials);
   add_view(app, options.view);
   add_course(app, options.view, "how many to draw; else until the window is closed");
   add_occlusion(app, options.occlusion);

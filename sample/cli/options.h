@@ -14,6 +14,7 @@
 #include "alcove/passes/occlusion.h"
 #include "evaluate/motion_kind.h"
 #include "render/normal_source.h"
+#include "scene/load_scene.h"
 #include "support/glm.h"
 
 namespace alcove::sample {
@@ -37,9 +38,13 @@ inline constexpr std::array<std::string_view, 3> kGraphFormatNames{"text", "json
 // Only what was typed; the camera of the scene fills the rest. Angles already in radians.
 struct ViewOptions {
   std::string camera;  // name of a scene's camera; empty: the default one
-  std::optional<glm::vec3> eye_ws, target_ws, up_ws;
+  // In the space of the scene's file: Scene::origin is taken from them.
+  std::optional<glm::dvec3> eye, target;
+  std::optional<glm::vec3> up_ws;
   std::optional<float> fov_y, ortho_height, near_plane, far_plane;
-  bool reversed_z = false;
+  // Near at depth 1. None: reversed in perspective, where that spreads the precision of floats
+  // evenly over distances, and not in orthographic views.
+  std::optional<bool> reversed_z;
   uint32_t width = 960;
   uint32_t height = 540;
   uint32_t frames = 1;  // 0: `view` draws until its window is closed
@@ -67,9 +72,9 @@ struct CostOptions {
 
 struct Options {
   Command command = Command::kRender;
-  std::string scene;                  // empty: the built-in one
-  std::vector<std::string> scenes;    // bench: any number, each as `scene`
-  bool cut_blends = false;            // what blends is cut out, not opaque
+  std::string scene;                // empty: the built-in one
+  std::vector<std::string> scenes;  // bench: any number, each as `scene`
+  MaterialTreatment materials;
   std::filesystem::path environment;  // .hdr or .exr; empty: the procedural sky
   bool lit = false;                   // compare: also trace the lit picture
   ViewOptions view;

@@ -58,7 +58,11 @@ std::vector<std::string> changes(Quality quality, const OcclusionSettings& setti
 }
 
 void append_camera(const Camera& camera, std::vector<std::string>& to) {
-  to.insert(to.end(), {"--eye", text_of(camera.eye_ws), "--target", text_of(camera.target_ws),
+  const auto position = [&](const glm::vec3& p) {
+    return shown_coordinate(p.x, camera.origin.x) + "," + shown_coordinate(p.y, camera.origin.y) +
+           "," + shown_coordinate(p.z, camera.origin.z);
+  };
+  to.insert(to.end(), {"--eye", position(camera.eye_ws), "--target", position(camera.target_ws),
                        "--up", text_of(camera.up_ws)});
   if (camera.orthographic) {
     to.insert(to.end(), {"--ortho-height", text_of(camera.ortho_height)});
@@ -66,8 +70,8 @@ void append_camera(const Camera& camera, std::vector<std::string>& to) {
     to.insert(to.end(), {"--fov-y", degrees_text(camera.fov_y)});
   }
   to.insert(to.end(), {"--near", text_of(camera.near_plane), "--far", text_of(camera.far_plane)});
-  if (camera.reversed_z) {
-    to.emplace_back("--reversed-z");
+  if (camera.reversed_z == camera.orthographic) {  // not the default
+    to.emplace_back(camera.reversed_z ? "--reversed-z" : "--standard-z");
   }
 }
 
@@ -96,8 +100,11 @@ std::vector<std::string> render_arguments(const Options& options, const Shot& sh
   if (!options.scene.empty()) {
     arguments.push_back(options.scene);
   }
-  if (options.cut_blends) {
+  if (options.materials.cut_blends) {
     arguments.emplace_back("--cut-blends");
+  }
+  if (options.materials.both_sides) {
+    arguments.emplace_back("--both-sides");
   }
   if (!options.view.camera.empty()) {
     arguments.insert(arguments.end(), {"--camera", options.view.camera});

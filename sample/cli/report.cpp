@@ -7,6 +7,7 @@
 #include "alcove/passes/setting_names.h"
 #include "render/settings_json.h"
 #include "support/mib.h"
+#include "support/process_memory.h"
 
 namespace alcove::sample {
 namespace {
@@ -15,10 +16,17 @@ using Json = nlohmann::ordered_json;
 
 Json vector_json(glm::vec3 v) { return Json::array({v.x, v.y, v.z}); }
 
+Json position_json(const Camera& camera, glm::vec3 position) {
+  if (camera.origin == glm::dvec3(0.0)) return vector_json(position);
+  const glm::dvec3 p = camera.origin + glm::dvec3(position);
+  return Json::array({p.x, p.y, p.z});
+}
+
 Json camera_json(const Camera& camera) {
   Json json;
-  json["eye"] = vector_json(camera.eye_ws);
-  json["target"] = vector_json(camera.target_ws);
+  // In the space of the scene's file, as --eye and --target take them.
+  json["eye"] = position_json(camera, camera.eye_ws);
+  json["target"] = position_json(camera, camera.target_ws);
   json["up"] = vector_json(camera.up_ws);
   if (camera.orthographic) {
     json["ortho_height"] = camera.ortho_height;
@@ -61,6 +69,12 @@ Json report_of(const Rendering& rendering, const Options& options) {
                       {"transient_bytes_lower_bound", rendering.memory.lower_bound},
                       {"history_bytes", rendering.memory.history},
                       {"allocated_bytes", rendering.memory.allocated}};
+  // Of the whole process, with what the driver keeps in main memory.
+  if (const auto peak = peak_memory()) {
+    report["memory"]["peak_process_bytes"] = *peak;
+  }
+  report["scene_triangles"] = triangle_count(rendering.scene);
+  report["load_seconds"] = rendering.load_seconds;
   return report;
 }
 

@@ -166,6 +166,7 @@ passes::Specular specular_model(const passes::OcclusionSettings& settings) {
 tl::expected<Rendering, std::string> render(Session session, const RenderRequest& request) {
   Rendering result;
   result.scene = std::move(session.scene);
+  result.load_seconds = session.load_seconds;
   result.settings = session.settings;
   result.light = request.light;
   Gpu& gpu = *session.gpu;

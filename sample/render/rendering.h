@@ -22,7 +22,8 @@ struct Costs {
 // Everything that `alcove render` knows of what it drew; `compare` adds truths to it.
 struct Rendering {
   Scene scene;
-  Camera camera;  // of the last frame
+  double load_seconds = 0.0;  // of the scene
+  Camera camera;              // of the last frame
   passes::OcclusionSettings settings;
   IndirectRequest light;
   // Of the last frame. Specular occlusion and what is lit with it are of a run of their own where

@@ -23,6 +23,9 @@ struct Camera {
   bool reversed_z = false;     // near at depth 1, far at depth 0
   glm::vec2 offset_ndc{0.0f};  // off-centre: where the axis of the view lands, in -1..1, y down
   glm::vec2 jitter_px{0.0f};   // moves the image by so many pixels, x right, y down
+  // Scene::origin: what is added to a position that people read, and taken from one that they type.
+  glm::dvec3 origin{0.0};
+  bool fit_planes = false;  // near and far are provisional: camera_of() fits them to the view
 };
 
 // What shaders and ray casting need of a camera. `prev` matrices are the caller's business: take

@@ -44,6 +44,8 @@ int component_count(int type) {
       return 3;
     case TINYGLTF_TYPE_VEC4:
       return 4;
+    case TINYGLTF_TYPE_MAT4:  // columns of bytes and shorts would be padded; floats are not
+      return 16;
     default:
       return 0;
   }
@@ -122,7 +124,10 @@ tl::expected<Elements, std::string> resolve(const tinygltf::Model& model, int64_
   out.components = component_count(accessor.type);
   out.normalized = accessor.normalized;
   const uint64_t component = component_size(accessor.componentType);
-  if (component == 0 || out.components == 0) return refuse("has a type that is not read here");
+  const bool padded =
+      out.components == 16 && accessor.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT;
+  if (component == 0 || out.components == 0 || padded)
+    return refuse("has a type that is not read here");
   if (out.count > most) return refuse("has too many elements: " + std::to_string(out.count));
   const uint64_t size = component * static_cast<uint64_t>(out.components);
   out.stride = size;

@@ -7,7 +7,9 @@
 namespace alcove::sample {
 
 bool is_extension_read(const std::string& name) {
-  constexpr std::array<std::string_view, 2> kRead{"KHR_mesh_quantization", "KHR_texture_transform"};
+  constexpr std::array<std::string_view, 5> kRead{
+      "EXT_mesh_gpu_instancing", "KHR_materials_pbrSpecularGlossiness", "KHR_mesh_quantization",
+      "KHR_node_visibility", "KHR_texture_transform"};
   return std::ranges::find(kRead, name) != kRead.end();
 }
 

@@ -27,6 +27,59 @@ TextureReference reference(const char* role, const Info& info) {
   return {role, info.index, coordinate_set(info.texCoord, info.extensions), &info.extensions};
 }
 
+const tinygltf::Value* specular_glossiness(const tinygltf::Material& material) {
+  const auto found = material.extensions.find("KHR_materials_pbrSpecularGlossiness");
+  return found != material.extensions.end() && found->second.IsObject() ? &found->second : nullptr;
+}
+
+double number_or(const tinygltf::Value& object, const char* key, double otherwise) {
+  if (!object.Has(key)) return otherwise;
+  const tinygltf::Value& value = object.Get(key);
+  return value.IsNumber() ? value.GetNumberAsDouble() : otherwise;
+}
+
+int int_or(const tinygltf::Value& object, const char* key, int otherwise) {
+  const double value = number_or(object, key, otherwise);
+  return value >= -1.0 && value < 2147483647.0 ? static_cast<int>(value) : otherwise;
+}
+
+// A texture reference that lies in an extension.
+tinygltf::TextureInfo texture_info(const tinygltf::Value& extension, const char* key) {
+  tinygltf::TextureInfo info;
+  if (!extension.Has(key) || !extension.Get(key).IsObject()) return info;
+  const tinygltf::Value& value = extension.Get(key);
+  info.index = int_or(value, "index", -1);
+  info.texCoord = int_or(value, "texCoord", 0);
+  if (value.Has("extensions") && value.Get("extensions").IsObject()) {
+    for (const auto& [name, extension_value] :
+         value.Get("extensions").Get<tinygltf::Value::Object>()) {
+      info.extensions[name] = extension_value;
+    }
+  }
+  return info;
+}
+
+// The material as metallic-roughness has it: the diffuse colour and texture are the base colour of
+// a dielectric, 1 - glossiness is the roughness. The specular colour is left out.
+tinygltf::Material as_metallic_roughness(const tinygltf::Material& material,
+                                         const tinygltf::Value& extension) {
+  tinygltf::Material out = material;
+  auto& pbr = out.pbrMetallicRoughness;
+  pbr = {};
+  pbr.metallicFactor = 0.0;
+  pbr.roughnessFactor = 1.0 - number_or(extension, "glossinessFactor", 1.0);
+  pbr.baseColorTexture = texture_info(extension, "diffuseTexture");
+  if (extension.Has("diffuseFactor")) {
+    const tinygltf::Value& factor = extension.Get("diffuseFactor");
+    for (int c = 0; factor.IsArray() && c < 4 && c < static_cast<int>(factor.ArrayLen()); ++c) {
+      if (factor.Get(c).IsNumber()) {
+        pbr.baseColorFactor[static_cast<size_t>(c)] = factor.Get(c).GetNumberAsDouble();
+      }
+    }
+  }
+  return out;
+}
+
 std::array<TextureReference, 4> references(const tinygltf::Material& material) {
   const auto& pbr = material.pbrMetallicRoughness;
   return {reference("base colour", pbr.baseColorTexture),
@@ -71,6 +124,7 @@ tl::expected<void, std::string> MaterialReader::add(const tinygltf::Material& in
   out.alpha_mode = in.alphaMode == "MASK"    ? AlphaMode::kMask
                    : in.alphaMode == "BLEND" ? AlphaMode::kBlend
                                              : AlphaMode::kOpaque;
+  out.double_sided = in.doubleSided;
   out.alpha_cutoff = clamped(in.alphaCutoff, 0.0, 1e6, 0.5);
   if (auto added = add_textures(in, out); !added) {
     return Failure("material \"" + in.name + "\" " + added.error());
@@ -147,9 +201,13 @@ tl::expected<void, std::string> add_materials(const tinygltf::Model& model,
                                               const ImageLimits& limits, Scene& scene) {
   MaterialReader reader(model, limits, scene);
   for (const tinygltf::Material& material : model.materials) {
-    if (auto added = reader.add(material); !added) return added;
+    const tinygltf::Value* extension = specular_glossiness(material);
+    auto added = extension == nullptr ? reader.add(material)
+                                      : reader.add(as_metallic_roughness(material, *extension));
+    if (!added) return added;
   }
   scene.materials.emplace_back();
+  scene.materials.back().double_sided = false;
   scene.materials.back().name = "default";
   return {};
 }

@@ -9,6 +9,7 @@
 #include "scene/area.h"
 #include "scene/direction.h"
 #include "scene/gltf_accessor.h"
+#include "scene/gltf_placement.h"
 
 namespace alcove::sample {
 namespace {
@@ -25,12 +26,12 @@ bool finite(const glm::vec3& v) {
 }
 
 // Strips and fans as lists. Every second triangle of a strip turns, so that all keep one side.
-std::vector<uint32_t> as_list(const std::vector<uint32_t>& in, int mode) {
-  std::vector<uint32_t> out;
+std::vector<uint32_t> as_list(std::vector<uint32_t> in, int mode) {
   if (mode == TINYGLTF_MODE_TRIANGLES) {
-    out.assign(in.begin(), in.end() - static_cast<std::ptrdiff_t>(in.size() % 3));
-    return out;
+    in.resize(in.size() - in.size() % 3);
+    return in;
   }
+  std::vector<uint32_t> out;
   for (size_t i = 2; i < in.size(); ++i) {
     const bool fan = mode == TINYGLTF_MODE_TRIANGLE_FAN;
     const size_t odd = fan ? 0 : i % 2;
@@ -44,7 +45,7 @@ std::vector<uint32_t> as_list(const std::vector<uint32_t>& in, int mode) {
 
 tl::expected<std::vector<glm::vec3>, std::string> world_positions(const tinygltf::Model& model,
                                                                   int accessor,
-                                                                  const glm::dmat4& transform,
+                                                                  const VertexPlacement& placement,
                                                                   uint64_t most) {
   const auto values = read_floats(model, accessor, 3, most);
   if (!values) return Failure(values.error());
@@ -53,7 +54,7 @@ tl::expected<std::vector<glm::vec3>, std::string> world_positions(const tinygltf
   constexpr float kFarthest = 1e15f;
   for (size_t i = 0; i < out.size(); ++i) {
     const glm::dvec4 local((*values)[3 * i], (*values)[3 * i + 1], (*values)[3 * i + 2], 1.0);
-    out[i] = glm::vec3(transform * local);
+    out[i] = glm::vec3(placement.at(i) * local);
     if (!finite(out[i]) ||
         std::max({std::abs(out[i].x), std::abs(out[i].y), std::abs(out[i].z)}) > kFarthest) {
       return Failure("has a vertex " + std::to_string(i) +
@@ -66,17 +67,18 @@ tl::expected<std::vector<glm::vec3>, std::string> world_positions(const tinygltf
 // Normals of the file in world space; zero where the file's are useless.
 tl::expected<std::vector<glm::vec3>, std::string> world_normals(const tinygltf::Model& model,
                                                                 int accessor,
-                                                                const glm::dmat4& transform,
+                                                                const VertexPlacement& placement,
                                                                 uint64_t most) {
   const auto values = read_floats(model, accessor, 3, most);
   if (!values) return Failure(values.error());
-  // The cofactor matrix is the inverse transpose times the determinant, and exists where that is 0.
-  const glm::dmat3 m(transform);
-  const double side = glm::determinant(m) < 0.0 ? -1.0 : 1.0;
-  const glm::dmat3 cofactor(side * glm::cross(m[1], m[2]), side * glm::cross(m[2], m[0]),
-                            side * glm::cross(m[0], m[1]));
   std::vector<glm::vec3> out(values->size() / 3);
   for (size_t i = 0; i < out.size(); ++i) {
+    // The cofactor matrix is the inverse transpose times the determinant, and exists where that is
+    // 0.
+    const glm::dmat3 m(placement.at(i));
+    const double side = glm::determinant(m) < 0.0 ? -1.0 : 1.0;
+    const glm::dmat3 cofactor(side * glm::cross(m[1], m[2]), side * glm::cross(m[2], m[0]),
+                              side * glm::cross(m[0], m[1]));
     const float* in = &(*values)[3 * i];
     out[i] = glm::vec3(direction_of(cofactor * glm::dvec3(in[0], in[1], in[2])));
   }
@@ -86,19 +88,28 @@ tl::expected<std::vector<glm::vec3>, std::string> world_normals(const tinygltf::
 // Tangents of the file in world space; zero where the file's are useless.
 tl::expected<std::vector<glm::vec4>, std::string> world_tangents(const tinygltf::Model& model,
                                                                  int accessor,
-                                                                 const glm::dmat4& transform,
+                                                                 const VertexPlacement& placement,
                                                                  uint64_t most) {
   const auto values = read_floats(model, accessor, 4, most);
   if (!values) return Failure(values.error());
-  const glm::dmat3 m(transform);
-  const float side = glm::determinant(m) < 0.0 ? -1.0f : 1.0f;
   std::vector<glm::vec4> out(values->size() / 4);
   for (size_t i = 0; i < out.size(); ++i) {
+    const glm::dmat3 m(placement.at(i));
+    const float side = glm::determinant(m) < 0.0 ? -1.0f : 1.0f;
     const float* in = &(*values)[4 * i];
     out[i] = glm::vec4(glm::vec3(direction_of(m * glm::dvec3(in[0], in[1], in[2]))),
                        in[3] < 0.0f ? -side : side);
   }
   return out;
+}
+
+// Triangles that their transform mirrors are wound the other way.
+void turn_mirrored(const VertexPlacement& placement, std::vector<uint32_t>& indices) {
+  for (size_t i = 0; i + 2 < indices.size(); i += 3) {
+    if (glm::determinant(glm::dmat3(placement.at(indices[i]))) < 0.0) {
+      std::swap(indices[i + 1], indices[i + 2]);
+    }
+  }
 }
 
 // Faces without area have no normal, cover no pixel and stop no ray.
@@ -113,17 +124,21 @@ void drop_flat_faces(Mesh& mesh) {
   mesh.indices.resize(kept);
 }
 
-// Flat normals, as glTF asks for where there are none: no vertex is shared any more.
+// Gives each corner a vertex of its own, with the normal of its triangle.
 void make_flat_normals(Mesh& mesh) {
   Mesh flat;
+  const auto copy = [](auto& from, auto& to, uint32_t v) {
+    if (!from.empty()) to.push_back(from[v]);
+  };
   for (size_t i = 0; i < mesh.indices.size(); i += 3) {
     const glm::vec3 normal(glm::normalize(area_of(mesh, i)));
     for (size_t c = 0; c < 3; ++c) {
       const uint32_t v = mesh.indices[i + c];
       flat.positions_ws.push_back(mesh.positions_ws[v]);
       flat.normals_ws.push_back(normal);
-      flat.uvs.push_back(mesh.uvs[v]);
-      if (!mesh.second_uvs.empty()) flat.second_uvs.push_back(mesh.second_uvs[v]);
+      copy(mesh.uvs, flat.uvs, v);
+      copy(mesh.second_uvs, flat.second_uvs, v);
+      copy(mesh.colors, flat.colors, v);
     }
   }
   flat.indices.resize(flat.positions_ws.size());
@@ -132,11 +147,13 @@ void make_flat_normals(Mesh& mesh) {
   mesh.normals_ws = std::move(flat.normals_ws);
   mesh.uvs = std::move(flat.uvs);
   mesh.second_uvs = std::move(flat.second_uvs);
+  mesh.colors = std::move(flat.colors);
   mesh.indices = std::move(flat.indices);
 }
 
 // Vertices whose normal the file left zero or not finite take the mean of their faces.
 void mend_normals(Mesh& mesh) {
+  if (std::ranges::find(mesh.normals_ws, glm::vec3(0.0f)) == mesh.normals_ws.end()) return;
   std::vector<glm::dvec3> sums(mesh.positions_ws.size(), glm::dvec3(0.0));
   for (size_t i = 0; i < mesh.indices.size(); i += 3) {
     const glm::dvec3 area = area_of(mesh, i);
@@ -176,46 +193,77 @@ tl::expected<std::vector<glm::vec2>, std::string> texture_coordinates(
   return out;
 }
 
-// The sets that the mesh's material reads textures by, and the first in any case.
+// The sets that the mesh's material reads textures by.
 tl::expected<void, std::string> add_texture_coordinates(const tinygltf::Model& model,
                                                         const tinygltf::Primitive& primitive,
                                                         Mesh& mesh, Scene& scene) {
   const size_t vertices = mesh.positions_ws.size();
   for (const uint32_t set : {0u, 1u}) {
-    const bool read = reads_by(scene.materials[mesh.material], set);
-    if (set == 1 && !read) continue;
+    if (!reads_by(scene.materials[mesh.material], set)) continue;
     auto uvs = texture_coordinates(model, primitive, set, vertices);
     if (!uvs) return Failure(uvs.error());
-    if (read && uvs->empty()) {
+    if (uvs->empty()) {
       scene.warnings.push_back("Mesh " + mesh.name + " lacks the texture coordinates " +
                                std::to_string(set) +
                                " that its material names: they are taken to be zero.");
     }
     (set == 0 ? mesh.uvs : mesh.second_uvs) = std::move(*uvs);
   }
-  mesh.uvs.resize(vertices, glm::vec2(0.0f));
   return {};
 }
 
-// Normals and tangents of the file's `vertices`; flat normals where it has none, and glTF then has
-// tangents ignored.
+// COLOR_0, with an alpha of 1 where it has none. All of them white is none.
+tl::expected<void, std::string> add_colors(const tinygltf::Model& model,
+                                           const tinygltf::Primitive& primitive, Mesh& mesh) {
+  const int accessor = attribute(primitive, "COLOR_0");
+  if (accessor < 0) return {};
+  const size_t vertices = mesh.positions_ws.size();
+  const bool has_alpha = static_cast<size_t>(accessor) < model.accessors.size() &&
+                         model.accessors[static_cast<size_t>(accessor)].type == TINYGLTF_TYPE_VEC4;
+  const int components = has_alpha ? 4 : 3;
+  const auto values = read_floats(model, accessor, components, vertices);
+  if (!values) return Failure(values.error());
+  const auto width = static_cast<size_t>(components);
+  if (values->size() != width * vertices) return Failure("has colours for some vertices only");
+  mesh.colors.assign(vertices, glm::u8vec4(255));
+  for (size_t v = 0; v < vertices; ++v) {
+    for (size_t c = 0; c < width; ++c) {
+      const float value = (*values)[v * width + c];
+      const float clamped = std::isfinite(value) ? std::clamp(value, 0.0f, 1.0f) : 1.0f;
+      mesh.colors[v][static_cast<int>(c)] = static_cast<uint8_t>(std::lround(255.0f * clamped));
+    }
+  }
+  const auto is_white = [](const glm::u8vec4& color) { return color == glm::u8vec4(255); };
+  if (std::ranges::all_of(mesh.colors, is_white)) mesh.colors = {};
+  return {};
+}
+
+// Normals and tangents of the file's `vertices`. Where it has no normals, triangles have their own
+// and tangents are ignored (glTF 2.0 section 3.7.2.1).
 tl::expected<void, std::string> add_normals(const tinygltf::Model& model,
                                             const tinygltf::Primitive& primitive,
-                                            const glm::dmat4& transform, size_t vertices,
+                                            const Material& material,
+                                            const VertexPlacement& placement, size_t vertices,
                                             Mesh& mesh) {
   const int normal = attribute(primitive, "NORMAL");
   if (normal < 0) {
-    make_flat_normals(mesh);
+    // Tangents of a normal map are computed at vertices that have a normal.
+    if (material.normal_texture.image >= 0) make_flat_normals(mesh);
     return {};
   }
-  auto normals = world_normals(model, normal, transform, vertices);
+  auto normals = world_normals(model, normal, placement, vertices);
   if (!normals) return Failure(normals.error());
   if (normals->size() != vertices) return Failure("has normals for some of its vertices only");
   mesh.normals_ws = std::move(*normals);
   mend_normals(mesh);
   const int tangent = attribute(primitive, "TANGENT");
   if (tangent < 0) return {};
-  auto tangents = world_tangents(model, tangent, transform, vertices);
+  if (static_cast<size_t>(tangent) < model.accessors.size() &&
+      model.accessors[static_cast<size_t>(tangent)].count != vertices) {
+    return Failure("has tangents for some of its vertices only");
+  }
+  if (material.normal_texture.image < 0) return {};
+  auto tangents = world_tangents(model, tangent, placement, vertices);
   if (!tangents) return Failure(tangents.error());
   if (tangents->size() != vertices) return Failure("has tangents for some of its vertices only");
   mesh.tangents_ws = std::move(*tangents);
@@ -233,13 +281,31 @@ tl::expected<std::vector<uint32_t>, std::string> vertex_order(const tinygltf::Mo
   return order;
 }
 
+// How the vertices of a primitive are placed in the space of its mesh.
+tl::expected<VertexPlacement, std::string> vertex_placement(const tinygltf::Model& model,
+                                                            const tinygltf::Primitive& primitive,
+                                                            const PrimitivePlacement& placement,
+                                                            uint64_t most) {
+  if (placement.joints == nullptr) return VertexPlacement(placement.world_from_mesh);
+  const int position = attribute(primitive, "POSITION");
+  const size_t vertices = static_cast<size_t>(position) < model.accessors.size()
+                              ? model.accessors[static_cast<size_t>(position)].count
+                              : 0;
+  if (vertices > most) return Failure("has too many vertices: " + std::to_string(vertices));
+  return VertexPlacement::skinned(model, primitive, vertices, *placement.joints);
+}
+
+bool is_invisible(const Material& material) {
+  return material.alpha_mode == AlphaMode::kBlend && material.base_color.a == 0.0f;
+}
+
 }  // namespace
 
 tl::expected<void, std::string> add_primitive(const tinygltf::Model& model,
                                               const tinygltf::Primitive& primitive,
                                               const std::string& name,
-                                              const glm::dmat4& world_from_mesh, MeshBudget& budget,
-                                              Scene& scene) {
+                                              const PrimitivePlacement& placement,
+                                              MeshBudget& budget, Scene& scene) {
   const auto refuse = [&](const std::string& why) { return Failure("mesh " + name + " " + why); };
   if (budget.primitives == 0) {
     return refuse("takes the scene past the number of parts that is read here");
@@ -254,9 +320,6 @@ tl::expected<void, std::string> add_primitive(const tinygltf::Model& model,
   if (primitive.material >= static_cast<int>(model.materials.size())) {
     return refuse("has no material " + std::to_string(primitive.material));
   }
-  if (attribute(primitive, "COLOR_0") >= 0) {
-    scene.warnings.push_back("Mesh " + name + " has colours of its vertices, which are left out.");
-  }
   const int position = attribute(primitive, "POSITION");
   if (position < 0) return {};
 
@@ -264,7 +327,15 @@ tl::expected<void, std::string> add_primitive(const tinygltf::Model& model,
   mesh.name = name;
   mesh.material = static_cast<uint32_t>(
       primitive.material < 0 ? model.materials.size() : static_cast<size_t>(primitive.material));
-  auto positions = world_positions(model, position, world_from_mesh, budget.vertices);
+  const Material& material = scene.materials[mesh.material];
+  if (is_invisible(material)) {
+    scene.warnings.push_back("Material \"" + material.name +
+                             "\" blends with an alpha of 0: what has it is not drawn.");
+    return {};
+  }
+  auto placed = vertex_placement(model, primitive, placement, budget.vertices);
+  if (!placed) return refuse(placed.error());
+  auto positions = world_positions(model, position, *placed, budget.vertices);
   if (!positions) return refuse(positions.error());
   const size_t vertices = positions->size();
   auto order = vertex_order(model, primitive, vertices, budget.indices);
@@ -273,25 +344,30 @@ tl::expected<void, std::string> add_primitive(const tinygltf::Model& model,
   if (auto added = add_texture_coordinates(model, primitive, mesh, scene); !added) {
     return refuse(added.error());
   }
-  mesh.indices = as_list(*order, mode);
+  if (auto added = add_colors(model, primitive, mesh); !added) return refuse(added.error());
+  mesh.indices = as_list(std::move(*order), mode);
   if (mesh.indices.size() > budget.indices || mesh.indices.size() > budget.vertices) {
     return refuse("takes the scene past the number of triangles that is read here");
   }
-  // Now: what has no area took its time too.
+  if (placement.instances != nullptr) mesh.instances = *placement.instances;
+  const uint64_t drawn = mesh.indices.size() / 3 * instance_count(mesh);
+  if (drawn > budget.drawn_triangles) {
+    return refuse(
+        "takes the scene past the number of triangles that is drawn here, instances "
+        "counted each");
+  }
+  // Charged here, because triangles without area took time to read too.
   charge(budget.vertices, vertices);
   charge(budget.indices, mesh.indices.size());
-  if (glm::determinant(glm::dmat3(world_from_mesh)) < 0.0) {
-    for (size_t i = 0; i < mesh.indices.size(); i += 3) {
-      std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
-    }
-  }
+  charge(budget.drawn_triangles, drawn);
+  turn_mirrored(*placed, mesh.indices);
   drop_flat_faces(mesh);
   if (mesh.indices.empty()) return {};
 
-  if (auto added = add_normals(model, primitive, world_from_mesh, vertices, mesh); !added) {
+  if (auto added = add_normals(model, primitive, material, *placed, vertices, mesh); !added) {
     return refuse(added.error());
   }
-  // Those that flat normals have made.
+  // The vertices that flat normals have added.
   charge(budget.vertices, mesh.positions_ws.size() - std::min(vertices, mesh.positions_ws.size()));
   scene.meshes.push_back(std::move(mesh));
   return {};

@@ -10,21 +10,32 @@
 
 namespace alcove::sample {
 
-// What may still be made of a file, so that a small one cannot ask for all memory by naming the
-// same data again and again. What is read is taken from it, whether or not anything comes of it.
+// What may still be read of a file, so that a small file that names the same data again and again
+// cannot ask for all memory, or for a picture that takes hours. What is read is taken from it,
+// whether or not anything comes of it.
 struct MeshBudget {
   uint64_t primitives;
   uint64_t vertices;
   uint64_t indices;
+  uint64_t instances;
+  uint64_t drawn_triangles;  // counted once for each instance
 };
 
-// Adds the triangles of one primitive, moved to world space, as a mesh. Nothing is added for points
-// and lines (a warning) or where no triangle has an area. A mirroring transform turns the winding.
-// Errors are the end of a sentence.
+// Where a primitive stands in world space.
+struct PrimitivePlacement {
+  glm::dmat4 world_from_mesh{1.0};
+  const std::vector<glm::dmat4>* joints = nullptr;  // of a skin, instead of world_from_mesh
+  // The mesh stays in its own space, with these instances.
+  const std::vector<glm::mat4x3>* instances = nullptr;
+};
+
+// Adds the triangles of one primitive as a mesh. Nothing is added for points and lines (a warning),
+// where no triangle has an area, and for a material that blends with an alpha of 0. A mirroring
+// transform turns the winding. Errors are the end of a sentence.
 [[nodiscard]] tl::expected<void, std::string> add_primitive(const tinygltf::Model& model,
                                                             const tinygltf::Primitive& primitive,
                                                             const std::string& name,
-                                                            const glm::dmat4& world_from_mesh,
+                                                            const PrimitivePlacement& placement,
                                                             MeshBudget& budget, Scene& scene);
 
 }  // namespace alcove::sample

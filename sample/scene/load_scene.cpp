@@ -2,19 +2,22 @@
 
 #include "scene/analytic_scenes.h"
 #include "scene/builtin_scene.h"
+#include "scene/framing.h"
 #include "scene/gltf.h"
 
 namespace alcove::sample {
 
 namespace {
 
-void treat_blends(Scene& scene, bool cut) {
+void treat_materials(Scene& scene, const MaterialTreatment& treatment) {
   for (Material& material : scene.materials) {
-    if (material.alpha_mode != AlphaMode::kBlend) continue;
-    const std::string how = cut ? " blends: it is cut out where alpha is below a half."
-                                : " blends: it is taken to be opaque (--cut-blends cuts it out).";
-    scene.warnings.push_back("Material \"" + material.name + "\"" + how);
-    if (!cut) continue;
+    if (treatment.both_sides) material.double_sided = true;
+    if (material.alpha_mode != AlphaMode::kBlend || material.base_color.a == 0.0f) continue;
+    scene.warnings.push_back(
+        "Material \"" + material.name + "\" is alpha-blended: it is rendered " +
+        (treatment.cut_blends ? "where its alpha is at least a half, and cut out elsewhere."
+                              : "opaque (--cut-blends cuts it out)."));
+    if (!treatment.cut_blends) continue;
     material.alpha_mode = AlphaMode::kMask;
     material.alpha_cutoff = 0.5f;
   }
@@ -22,17 +25,19 @@ void treat_blends(Scene& scene, bool cut) {
 
 }  // namespace
 
-tl::expected<Scene, std::string> load_scene(const std::string& what, bool cut_blends) {
+tl::expected<Scene, std::string> load_scene(const std::string& what,
+                                            const MaterialTreatment& treatment,
+                                            const Progress& progress) {
   if (what.empty() || what == "builtin") return builtin_scene();
   if (is_analytic_name(what)) {
     auto analytic = analytic_scene(what);
     if (!analytic) return tl::unexpected(analytic.error());
     return std::move(analytic->scene);
   }
-  auto scene = load_gltf(what);
+  auto scene = load_gltf(what, progress);
   if (!scene) return scene;
-  treat_blends(*scene, cut_blends);
-  if (scene->cameras.empty()) scene->cameras.push_back(framing_camera(scene->bounds_ws));
+  treat_materials(*scene, treatment);
+  if (scene->cameras.empty()) scene->cameras.push_back(framing_camera(*scene));
   return scene;
 }
 

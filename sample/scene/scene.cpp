@@ -69,20 +69,6 @@ glm::mat4x3 world_from_mesh(const Mesh& mesh, size_t instance) {
   return mesh.instances.empty() ? glm::mat4x3(1.0f) : mesh.instances[instance];
 }
 
-Camera framing_camera(const Bounds& bounds) {
-  const glm::vec3 centre = 0.5f * (bounds.low + bounds.high);
-  const float reach = std::max(0.5f * glm::length(bounds.high - bounds.low), 1e-6f);
-  Camera camera;
-  camera.name = "frame";
-  camera.fov_y = glm::radians(45.0f);
-  const float distance = 1.05f * reach / std::sin(0.5f * camera.fov_y);
-  camera.target_ws = centre;
-  camera.eye_ws = centre + distance * glm::normalize(glm::vec3(0.6f, 0.45f, 0.85f));
-  camera.near_plane = 0.02f * reach;
-  camera.far_plane = distance + 4.0f * reach;
-  return camera;
-}
-
 const Camera* find_camera(const Scene& scene, const std::string& name) {
   if (name.empty()) return scene.cameras.empty() ? nullptr : &scene.cameras.front();
   for (const Camera& camera : scene.cameras) {
@@ -93,8 +79,11 @@ const Camera* find_camera(const Scene& scene, const std::string& name) {
 
 float default_radius(const Scene& scene) {
   if (scene.suggested_radius > 0.0f) return scene.suggested_radius;
-  const float diagonal = glm::length(scene.bounds_ws.high - scene.bounds_ws.low);
-  return diagonal > 0.0f ? 0.05f * diagonal : 1.0f;
+  for (const Bounds& bounds : {scene.core_bounds_ws, scene.bounds_ws}) {
+    const float diagonal = glm::length(bounds.high - bounds.low);
+    if (diagonal > 0.0f) return 0.05f * diagonal;
+  }
+  return 1.0f;
 }
 
 MeshUvs uvs_at(const Mesh& mesh, uint32_t vertex) {

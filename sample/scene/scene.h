@@ -105,9 +105,13 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<TextureImage> images;
   std::vector<Camera> cameras;  // the first is the default view; may be empty
-  Bounds bounds_ws;
-  float suggested_radius = 0.0f;      // 0: take a twentieth of the bounds' diagonal
-  std::vector<std::string> warnings;  // one sentence each: what of the file was left out
+  // Where the origin of world space is in the space of the file. Views that people type and read
+  // are in that of the file.
+  glm::dvec3 origin{0.0};
+  Bounds bounds_ws;               // of all triangles
+  Bounds core_bounds_ws;          // of what the scene is about, see scene_core(); empty: bounds_ws
+  float suggested_radius = 0.0f;  // 0: a twentieth of the diagonal of the core's bounds
+  std::vector<std::string> warnings;  // one sentence each: what the picture does not show as stored
 };
 
 [[nodiscard]] std::array<glm::vec3, 8> corners_of(const Bounds& bounds);
@@ -117,9 +121,6 @@ struct Scene {
 [[nodiscard]] Bounds bounds_of(const std::vector<Mesh>& meshes);
 // Triangles of all meshes, counted once for each instance.
 [[nodiscard]] uint64_t triangle_count(const Scene& scene);
-
-// A view from above and to the side that holds the whole of `bounds`.
-[[nodiscard]] Camera framing_camera(const Bounds& bounds);
 
 // The camera of that name, or for an empty name the first. Null when there is none.
 [[nodiscard]] const Camera* find_camera(const Scene& scene, const std::string& name);

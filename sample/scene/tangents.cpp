@@ -3,19 +3,29 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
+#include <numeric>
+#include <unordered_map>
 
 #include "scene/direction.h"
 
 namespace alcove::sample {
 namespace {
 
-// How a triangle lies in a map.
-struct Layout {
-  glm::dvec3 along_u{0.0};  // unit; zero where the triangle has no area in the map
-  bool mirrored = false;    // the map is seen from behind
+// How a triangle lies in the texture.
+enum class Orientation : uint8_t {
+  kUnknown,  // it has no area there
+  kFront,
+  kMirrored,  // the texture is seen from behind
 };
 
-Layout layout_of(const std::array<glm::dvec3, 3>& corners, const std::array<glm::dvec2, 3>& uvs) {
+struct FaceTangent {
+  glm::dvec3 along_u{0.0};  // unit; zero where the orientation is unknown
+  Orientation orientation = Orientation::kUnknown;
+};
+
+FaceTangent face_tangent(const std::array<glm::dvec3, 3>& corners,
+                         const std::array<glm::dvec2, 3>& uvs) {
   const glm::dvec2 b = uvs[1] - uvs[0];
   const glm::dvec2 c = uvs[2] - uvs[0];
   const double area = b.x * c.y - b.y * c.x;
@@ -23,13 +33,151 @@ Layout layout_of(const std::array<glm::dvec3, 3>& corners, const std::array<glm:
   // v grows downwards in an image, so a triangle that turns left there has a negative area.
   const double sign = area < 0.0 ? -1.0 : 1.0;
   const glm::dvec3 u = (corners[1] - corners[0]) * c.y - (corners[2] - corners[0]) * b.y;
-  return {direction_of(sign * u), area > 0.0};
+  return {direction_of(sign * u), area > 0.0 ? Orientation::kMirrored : Orientation::kFront};
 }
 
-double angle_at(const std::array<glm::dvec3, 3>& corners, size_t corner) {
-  const glm::dvec3 a = direction_of(corners[(corner + 1) % 3] - corners[corner]);
-  const glm::dvec3 b = direction_of(corners[(corner + 2) % 3] - corners[corner]);
-  return std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0));
+glm::dvec3 in_plane(const glm::dvec3& v, const glm::dvec3& normal) {
+  return direction_of(v - normal * glm::dot(normal, v));
+}
+
+// What corners must have in common to be one vertex of MikkTSpace.
+struct CornerValues {
+  glm::vec3 position;
+  glm::vec3 normal;
+  glm::vec2 uv;
+  bool operator==(const CornerValues&) const = default;
+};
+
+struct CornerHash {
+  size_t operator()(const CornerValues& corner) const {
+    std::array<uint32_t, sizeof(CornerValues) / sizeof(uint32_t)> words;
+    std::memcpy(words.data(), &corner, sizeof(corner));
+    uint64_t hash = 0;
+    for (const uint32_t word : words) {
+      // 0 and -0 are equal and must hash alike.
+      hash = (hash ^ (word == 0x80000000u ? 0u : word)) * 0x9e3779b97f4a7c15u;
+      hash ^= hash >> 29;
+    }
+    return static_cast<size_t>(hash);
+  }
+};
+
+// Tangents of the corners of a mesh by the rules of MikkTSpace (Mikkelsen 2008, "Simulation of
+// Wrinkled Surfaces Revisited", and the notes of its reference implementation).
+class TangentBuilder {
+ public:
+  TangentBuilder(const Mesh& mesh, const TextureUse& map) : mesh_(mesh) {
+    weld(map);
+    group_corners();
+  }
+
+  std::vector<glm::vec4> build();
+
+ private:
+  void weld(const TextureUse& map);
+  void group_corners();
+  void join(size_t corner, size_t other);
+  size_t group_of(size_t corner);
+  glm::dvec3 position(size_t corner) const {
+    return glm::dvec3(mesh_.positions_ws[mesh_.indices[corner]]);
+  }
+
+  const Mesh& mesh_;
+  std::vector<FaceTangent> faces_;
+  std::vector<uint32_t> vertex_of_;  // by corner: alike for corners of equal values
+  std::vector<uint32_t> parent_;     // by corner: a forest, one tree for each group
+};
+
+size_t next_corner(size_t corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
+size_t previous_corner(size_t corner) { return corner % 3 == 0 ? corner + 2 : corner - 1; }
+
+void TangentBuilder::weld(const TextureUse& map) {
+  std::unordered_map<CornerValues, uint32_t, CornerHash> known;
+  vertex_of_.resize(mesh_.indices.size());
+  for (size_t first = 0; first + 2 < mesh_.indices.size(); first += 3) {
+    std::array<glm::dvec3, 3> corners;
+    std::array<glm::dvec2, 3> uvs;
+    for (size_t k = 0; k < 3; ++k) {
+      const uint32_t v = mesh_.indices[first + k];
+      const glm::vec2 uv = texture_uv(map, uvs_at(mesh_, v));
+      corners[k] = glm::dvec3(mesh_.positions_ws[v]);
+      uvs[k] = uv;
+      const CornerValues values{mesh_.positions_ws[v], mesh_.normals_ws[v], uv};
+      vertex_of_[first + k] =
+          known.try_emplace(values, static_cast<uint32_t>(first + k)).first->second;
+    }
+    faces_.push_back(face_tangent(corners, uvs));
+  }
+}
+
+size_t TangentBuilder::group_of(size_t corner) {
+  while (parent_[corner] != corner) {
+    parent_[corner] = parent_[parent_[corner]];
+    corner = parent_[corner];
+  }
+  return corner;
+}
+
+void TangentBuilder::join(size_t corner, size_t other) {
+  parent_[group_of(corner)] = static_cast<uint32_t>(group_of(other));
+}
+
+// Corners at one vertex belong together where their triangles share an edge there and lie in the
+// texture alike. A triangle of unknown orientation follows the first of its neighbours.
+void TangentBuilder::group_corners() {
+  struct Edge {
+    uint64_t key;  // from one vertex to another
+    uint32_t corner;
+  };
+  const auto key = [&](size_t from, size_t to) {
+    return uint64_t{vertex_of_[from]} << 32 | vertex_of_[to];
+  };
+  parent_.resize(vertex_of_.size());
+  std::iota(parent_.begin(), parent_.end(), 0u);
+  std::vector<Edge> edges(vertex_of_.size());
+  for (size_t i = 0; i < edges.size(); ++i) {
+    edges[i] = {key(i, next_corner(i)), static_cast<uint32_t>(i)};
+  }
+  std::ranges::sort(edges, {}, &Edge::key);
+  for (const bool known : {true, false}) {
+    for (size_t i = 0; i < vertex_of_.size(); ++i) {
+      const auto [first, last] =
+          std::ranges::equal_range(edges, key(next_corner(i), i), {}, &Edge::key);
+      for (auto edge = first; edge != last; ++edge) {
+        const Orientation here = faces_[i / 3].orientation;
+        const Orientation there = faces_[edge->corner / 3].orientation;
+        const bool alike = known ? here == there && here != Orientation::kUnknown
+                                 : here == Orientation::kUnknown && there != here;
+        if (!alike) continue;
+        // The edge runs the other way in the neighbour.
+        join(i, next_corner(edge->corner));
+        join(next_corner(i), edge->corner);
+        if (!known) break;
+      }
+    }
+  }
+}
+
+std::vector<glm::vec4> TangentBuilder::build() {
+  std::vector<glm::dvec3> sums(vertex_of_.size(), glm::dvec3(0.0));
+  std::vector<float> sides(vertex_of_.size(), 1.0f);
+  for (size_t i = 0; i < vertex_of_.size(); ++i) {
+    const FaceTangent& face = faces_[i / 3];
+    if (face.orientation == Orientation::kUnknown) continue;
+    const glm::dvec3 normal(mesh_.normals_ws[mesh_.indices[i]]);
+    const glm::dvec3 a = in_plane(position(next_corner(i)) - position(i), normal);
+    const glm::dvec3 b = in_plane(position(previous_corner(i)) - position(i), normal);
+    const double angle = std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0));
+    const size_t group = group_of(i);
+    sums[group] += in_plane(face.along_u, normal) * angle;
+    sides[group] = face.orientation == Orientation::kMirrored ? -1.0f : 1.0f;
+  }
+  std::vector<glm::vec4> out(vertex_of_.size());
+  for (size_t i = 0; i < out.size(); ++i) {
+    const size_t group = group_of(i);
+    out[i] = glm::vec4(glm::vec3(direction_of(sums[group])), sides[group]);
+  }
+  return out;
 }
 
 std::vector<glm::vec4> given_tangents(const Mesh& mesh) {
@@ -42,36 +190,7 @@ std::vector<glm::vec4> given_tangents(const Mesh& mesh) {
 
 std::vector<glm::vec4> corner_tangents(const Mesh& mesh, const TextureUse& map) {
   if (!mesh.tangents_ws.empty()) return given_tangents(mesh);
-  // Of each vertex, seen from in front and from behind.
-  using Sides = std::array<glm::dvec3, 2>;
-  std::vector<Sides> sums(mesh.positions_ws.size(), Sides{glm::dvec3(0.0), glm::dvec3(0.0)});
-  std::vector<char> mirrored(mesh.indices.size());
-  for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-    std::array<glm::dvec3, 3> corners;
-    std::array<glm::dvec2, 3> uvs;
-    for (size_t k = 0; k < 3; ++k) {
-      corners[k] = mesh.positions_ws[mesh.indices[i + k]];
-      uvs[k] = texture_uv(map, uvs_at(mesh, mesh.indices[i + k]));
-    }
-    const Layout layout = layout_of(corners, uvs);
-    const glm::dvec3 face = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
-    for (size_t k = 0; k < 3; ++k) {
-      const uint32_t v = mesh.indices[i + k];
-      const glm::dvec3 normal(mesh.normals_ws[v]);
-      // Which side the bitangent is on goes by the vertex's normal, wherever the face looks.
-      const bool behind = layout.mirrored != (glm::dot(normal, face) < 0.0);
-      const glm::dvec3 flat = layout.along_u - normal * glm::dot(normal, layout.along_u);
-      mirrored[i + k] = behind;
-      sums[v][behind] += direction_of(flat) * angle_at(corners, k);
-    }
-  }
-  std::vector<glm::vec4> out(mesh.indices.size());
-  for (size_t i = 0; i < out.size(); ++i) {
-    const bool behind = mirrored[i] != 0;
-    const glm::vec3 tangent(direction_of(sums[mesh.indices[i]][behind]));
-    out[i] = glm::vec4(tangent, behind ? -1.0f : 1.0f);
-  }
-  return out;
+  return TangentBuilder(mesh, map).build();
 }
 
 }  // namespace alcove::sample

@@ -3,6 +3,7 @@
 #include <GLFW/glfw3.h>
 #include <imgui.h>
 
+#include <algorithm>
 #include <iostream>
 #include <utility>
 
@@ -74,6 +75,56 @@ SceneView::~SceneView() {
   }
 }
 
+tl::expected<void, std::string> SceneView::replace_scene(const std::string& scene) {
+  auto loaded = request_.load_session(scene);
+  if (!loaded) {
+    return Failure(std::move(loaded.error()));
+  }
+  const auto environment = load_environment(request_.environment);
+  if (!environment) {
+    return Failure(environment.error());
+  }
+  auto frame = SceneFrame::create(*session_.gpu, loaded->scene, *environment, request_.normals,
+                                  presenter_->format());
+  if (!frame) {
+    return Failure(std::move(frame.error()));
+  }
+  presenter_->wait();
+  frame_ = std::move(*frame);
+  session_.scene = std::move(loaded->scene);
+  session_.camera = loaded->camera;
+  session_.settings = loaded->settings;
+  return {};
+}
+
+void SceneView::open(const std::string& scene) {
+  if (auto replaced = replace_scene(scene); !replaced) {
+    facts_.message = std::move(replaced.error());
+    return;
+  }
+  state_.camera = session_.camera;
+  state_.settings.radius = session_.settings.radius;
+  state_.kept.radius = session_.settings.radius;
+  good_ = {state_.settings, state_.roughness};
+  refused_.reset();
+  facts_.first_settings = session_.settings;
+  facts_.refusal.clear();
+  facts_.message = scene + " is shown.";
+  window_->set_title("alcove: " + scene);
+}
+
+Camera SceneView::camera_around_scene() const {
+  Camera camera = state_.camera;
+  constexpr float kFarthest = 1e12f;  // distances beyond have no squares of floats to compare
+  if (camera.orthographic || !(glm::length(session_.scene.bounds_ws.high) < kFarthest)) {
+    return camera;
+  }
+  for (const glm::vec3& corner : corners_of(session_.scene.bounds_ws)) {
+    camera.far_plane = std::max(camera.far_plane, 1.01f * glm::distance(corner, camera.eye_ws));
+  }
+  return camera;
+}
+
 void SceneView::take_keys() {
   if (ImGui::GetIO().WantTextInput) {
     return;  // a number is being typed
@@ -120,6 +171,7 @@ void SceneView::lay_out() {
 tl::expected<void, std::string> SceneView::draw_choice(const Choice& choice,
                                                        const HostBuffer* read_back) {
   ViewState state = state_;
+  state.camera = camera_around_scene();
   state.settings = choice.settings;
   state.roughness = choice.roughness;
   auto report = presenter_->draw([&](Graph& graph, Texture target) {
@@ -196,6 +248,9 @@ tl::expected<bool, std::string> SceneView::draw() {
   }
   if (!*prepared) {
     return true;
+  }
+  if (const auto dropped = window_->take_dropped_files(); !dropped.empty()) {
+    open(dropped.back());
   }
   lay_out();
   auto drawn = std::exchange(wanted_, false) ? draw_and_read().and_then([&] { return write(); })

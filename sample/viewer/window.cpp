@@ -51,6 +51,10 @@ tl::expected<std::unique_ptr<Window>, std::string> Window::create(VkExtent2D siz
       static_cast<Window*>(glfwGetWindowUserPointer(window))->pressed_keys_.push_back(key);
     }
   });
+  glfwSetDropCallback(made->window_, [](GLFWwindow* window, int count, const char** paths) {
+    auto& files = static_cast<Window*>(glfwGetWindowUserPointer(window))->dropped_files_;
+    files.insert(files.end(), paths, paths + count);
+  });
   return made;
 }
 
@@ -112,6 +116,8 @@ float Window::content_scale() const {
   glfwGetWindowContentScale(window_, &x, &y);
   return x;
 }
+
+void Window::set_title(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
 
 void Window::copy_to_clipboard(const std::string& text) {
   glfwSetClipboardString(window_, text.c_str());

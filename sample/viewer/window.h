@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 #include <tl/expected.hpp>
+#include <utility>
 #include <vector>
 
 struct GLFWwindow;
@@ -37,6 +38,9 @@ class Window {
   float content_scale() const;
   // GLFW's numbers of the keys that were pressed before the last poll(), in order.
   const std::vector<int>& pressed_keys() const { return pressed_keys_; }
+  // The files that were dropped on the window since the last call, in order.
+  std::vector<std::string> take_dropped_files() { return std::exchange(dropped_files_, {}); }
+  void set_title(const std::string& title);
   void copy_to_clipboard(const std::string& text);
   GLFWwindow* handle() const { return window_; }
 
@@ -44,6 +48,7 @@ class Window {
   Window() = default;
   GLFWwindow* window_ = nullptr;
   std::vector<int> pressed_keys_;
+  std::vector<std::string> dropped_files_;
 };
 
 }  // namespace alcove::sample

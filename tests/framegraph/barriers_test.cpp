@@ -16,7 +16,7 @@ namespace {
 
 // Without transient buffers: what those must wait for in the frame before could now and then be met
 // by a command of that frame, and compile meets it in this one.
-TEST(Barriers, NoPlacementOfFewerCommandsIsRight) {
+TEST(Barriers, NoPlacementOfFewerBarrierCommandsIsVerified) {
   Graph graph;
   std::uint32_t tried = 0;
   RandomOptions options;
@@ -72,7 +72,7 @@ TEST(Barriers, LayersAndMipsThatChangeAlikeShareABarrier) {
   }
 }
 
-TEST(Barriers, ReadsAfterReadsCostNothing) {
+TEST(Barriers, ReadAfterReadNeedsNoBarrier) {
   Graph graph;
   Texture texture = graph.create_texture("t", {VK_FORMAT_R8_UNORM, Extent::absolute(8, 8)});
   PassBuilder writer = graph.add_pass("writer");
@@ -91,7 +91,7 @@ TEST(Barriers, ReadsAfterReadsCostNothing) {
 }
 
 // Where a stage reads in a second way, and another stage read that way before it or does after.
-TEST(Barriers, WhatOneStageSeesInOneWayItDoesNotSeeInAnother) {
+TEST(Barriers, WriteSeenByOneAccessIsNotSeenByAnotherAccessOfTheStage) {
   Graph graph;
   Buffer data = graph.create_buffer("data", {64});
   Buffer other = graph.create_buffer("other", {64});
@@ -140,7 +140,7 @@ class InitialStates : public testing::Test {
   Graph graph_;
 };
 
-TEST_F(InitialStates, WhatOneStageReadIsYetToBeSeenByAnother) {
+TEST_F(InitialStates, WriteSeenByOneStageIsMadeVisibleToAnother) {
   for (const Access& initial_state : {access::sampled_compute, access::sampled_fragment}) {
     graph_.reset();
     const Texture texture = import(state_of(initial_state));
@@ -156,7 +156,7 @@ TEST_F(InitialStates, WhatOneStageReadIsYetToBeSeenByAnother) {
   }
 }
 
-TEST_F(InitialStates, WhatNoPassReadsIsSeenByThoseItDepartsTo) {
+TEST_F(InitialStates, UnreadImportIsMadeVisibleToItsFinalState) {
   const State written{VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
                       VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
                       VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
@@ -167,7 +167,7 @@ TEST_F(InitialStates, WhatNoPassReadsIsSeenByThoseItDepartsTo) {
   EXPECT_EQ(plan.transitions[0].dst_stages, access::sampled_fragment.stages);
 }
 
-TEST_F(InitialStates, AHistoryIsSeenByWhateverReadsItNext) {
+TEST_F(InitialStates, HistoryIsMadeVisibleToItsNextReader) {
   const auto declare = [&](const Access& own, const Access& old) {
     graph_.reset();
     const TextureHistory history =
@@ -193,7 +193,7 @@ TEST_F(InitialStates, AHistoryIsSeenByWhateverReadsItNext) {
   EXPECT_EQ(seen.dst_stages, VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT);
 }
 
-TEST_F(InitialStates, AHistoryThatWasWrittenInPartIsNotValid) {
+TEST_F(InitialStates, PartlyWrittenHistoryIsNotValid) {
   const auto declare = [&](Range range) {
     graph_.reset();
     const TextureHistory history =
@@ -223,7 +223,7 @@ TEST(Barriers, NeighbouringMipsThatChangeAlikeAreOneBarrier) {
   EXPECT_EQ(plan->transitions.size(), 2u);
 }
 
-TEST(Barriers, TheDeferredFrameCannotDoWithACommandFewer) {
+TEST(Barriers, DeferredFrameNeedsAllOfItsBarrierCommands) {
   Graph graph;
   declare_deferred_frame(graph, 1920, 1080);
   Limits limits;
@@ -233,7 +233,7 @@ TEST(Barriers, TheDeferredFrameCannotDoWithACommandFewer) {
   expect_no_command_too_many("deferred frame", graph.description(), limits, *plan);
 }
 
-TEST(Barriers, AWriteAfterReadsThatSawTheLastWriteMakesNothingVisible) {
+TEST(Barriers, WriteAfterReadsThatSawTheLastWriteMakesNothingVisible) {
   Graph graph;
   Texture texture = graph.create_texture("t", {VK_FORMAT_R8_UNORM, Extent::absolute(8, 8)});
   PassBuilder writer = graph.add_pass("writer");

@@ -1,9 +1,10 @@
-// Random frames on the device whose passes mix what they read into what they write: the contents
-// must be those that a plain model of the frame computes on the host, with memory shared and
-// without.
+// Random frames on the device. Their passes mix what they read into what they write, some into two
+// textures of which they update one. The contents must be those that a plain model of the frame
+// computes on the host, with transients that share memory and with transients that do not.
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
 
 #include "alcove/framegraph/verify.h"
@@ -14,10 +15,14 @@
 namespace alcove::framegraph {
 namespace {
 
-constexpr std::uint32_t kFrames = 400;
+// Frames of each test: 400, or as many as ALCOVE_RANDOM_FRAMES says, as the soak tests do.
+std::uint32_t frame_count() {
+  const char* const text = std::getenv("ALCOVE_RANDOM_FRAMES");
+  return text == nullptr ? 400 : static_cast<std::uint32_t>(std::strtoul(text, nullptr, 10));
+}
 constexpr VkDeviceSize kHostWords = 1 << 16;
 
-// A resource and the words that it should hold.
+// A resource and the words that it must hold.
 struct Modelled {
   bool texture = true;
   Texture handle;
@@ -127,7 +132,7 @@ class FrameMaker {
     all_.push_back(std::move(made));
   }
 
-  // Into a new texture, or into one that is there and takes part itself.
+  // Mixes two textures into a new texture, or into one that exists, whose contents take part then.
   void mix_texture() {
     const Modelled sampled = *choose(true);
     const Modelled storage = *choose(true);
@@ -325,7 +330,8 @@ void run_frames(Gpu& gpu, Executor& executor, const Way& way, std::uint64_t seed
   ChecksumKernels kernels(gpu);
   const HostBuffer host = gpu.make_host_buffer(4 * kHostWords);
   Graph graph;
-  for (std::uint32_t i = 0; i < kFrames; ++i) {
+  const std::uint32_t frames = frame_count();
+  for (std::uint32_t i = 0; i < frames; ++i) {
     SCOPED_TRACE("seed " + std::to_string(seed + i));
     kernels.reset();
     FrameMaker maker(graph, kernels, host, seed + i);
@@ -356,18 +362,18 @@ void expect_contents(const Way& way, std::uint64_t seed) {
   EXPECT_EQ(messages(gpu, way), "");
 }
 
-TEST(Contents, OfRandomFramesThatShareMemoryAreRight) { expect_contents({}, 1000); }
-TEST(Contents, OfRandomFramesThatShareNoMemoryAreRight) { expect_contents({.alias = false}, 1000); }
-TEST(Contents, OfRandomFramesThatTheExecutorSubmitsAreRight) {
+TEST(Contents, AreRightInRandomFramesThatShareMemory) { expect_contents({}, 1000); }
+TEST(Contents, AreRightInRandomFramesThatShareNoMemory) { expect_contents({.alias = false}, 1000); }
+TEST(Contents, AreRightInRandomFramesThatTheExecutorSubmits) {
   expect_contents({.path = Path::submit}, 2000);
 }
-TEST(Contents, OfRandomFramesOverSeveralQueuesAreRight) {
+TEST(Contents, AreRightInRandomFramesOverSeveralQueues) {
   expect_contents({.path = Path::submit_to_three}, 3000);
 }
-TEST(Contents, OfRandomFramesThatThreeThreadsRecordAreRight) {
+TEST(Contents, AreRightInRandomFramesThatThreeThreadsRecord) {
   expect_contents({.threads = 3}, 1000);
 }
-TEST(Contents, OfRandomFramesThatThreeThreadsRecordForSeveralQueuesAreRight) {
+TEST(Contents, AreRightInRandomFramesThatThreeThreadsRecordForSeveralQueues) {
   expect_contents({.path = Path::submit_to_three, .threads = 3}, 3000);
 }
 }  // namespace

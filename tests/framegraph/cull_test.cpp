@@ -24,7 +24,7 @@ class Cull : public testing::Test {
   Graph graph_;
 };
 
-TEST_F(Cull, WhatNobodyReadsCostsNothing) {
+TEST_F(Cull, UnreadPassesAndTheirTexturesAreCulled) {
   const Texture wanted = make("wanted");
   (void)make("unwanted");
   graph_.output(wanted);
@@ -35,7 +35,7 @@ TEST_F(Cull, WhatNobodyReadsCostsNothing) {
   EXPECT_EQ(result.placements[1].heap, kNone);
 }
 
-TEST_F(Cull, AChainIsKeptByItsEndAndSaysSo) {
+TEST_F(Cull, PassIsKeptByTheConsumerThatItNames) {
   const Texture first = make("first");
   Texture second = graph_.create_texture("second", kDesc);
   PassBuilder pass = graph_.add_pass("reader");
@@ -48,7 +48,7 @@ TEST_F(Cull, AChainIsKeptByItsEndAndSaysSo) {
   EXPECT_EQ(result.cull_reasons[0].resource, 0u);
 }
 
-TEST_F(Cull, ASideEffectKeepsAPassThatWritesNothing) {
+TEST_F(Cull, SideEffectKeepsAPassThatWritesNothing) {
   graph_.add_pass("kept").side_effect();
   (void)graph_.add_pass("gone");
   const Plan result = plan();
@@ -56,7 +56,7 @@ TEST_F(Cull, ASideEffectKeepsAPassThatWritesNothing) {
   EXPECT_EQ(result.cull_reasons[1].cull_reason, CullReason::writes_nothing);
 }
 
-TEST_F(Cull, AWriteThatDiscardsMakesEarlierWritesUnread) {
+TEST_F(Cull, DiscardingWriteMakesEarlierWritesUnread) {
   Texture texture = make("first");
   texture = write("second", texture, Contents::discard);
   graph_.output(texture);
@@ -65,7 +65,7 @@ TEST_F(Cull, AWriteThatDiscardsMakesEarlierWritesUnread) {
   EXPECT_EQ(result.cull_reasons[1].cull_reason, CullReason::output);
 }
 
-TEST_F(Cull, AnOptionalOutputThatNobodyReadsHasNoMemory) {
+TEST_F(Cull, UnreadOptionalOutputHasNoMemory) {
   Texture main = graph_.create_texture("main", kDesc);
   Texture extra = graph_.create_texture("extra", kDesc);
   PassBuilder pass = graph_.add_pass("pass");
@@ -77,7 +77,7 @@ TEST_F(Cull, AnOptionalOutputThatNobodyReadsHasNoMemory) {
   EXPECT_EQ(result.placements[extra.index].heap, kNone);
 }
 
-TEST_F(Cull, OneMipKeepsOnlyItsWriter) {
+TEST_F(Cull, ReadingOneMipKeepsOnlyTheWriterOfThatMip) {
   TextureDesc desc = kDesc;
   desc.mips = 3;
   Texture texture = graph_.create_texture("t", desc);
@@ -94,7 +94,7 @@ TEST_F(Cull, OneMipKeepsOnlyItsWriter) {
   EXPECT_EQ(result.cull_reasons[2].cull_reason, CullReason::unread);
 }
 
-TEST_F(Cull, AHistoryKeepsItsWriterOnlyWhereItIsRead) {
+TEST_F(Cull, HistoryKeepsItsWriterOnlyIfItIsRead) {
   const TextureHistory history = graph_.create_texture_history("h", kDesc);
   Texture result = graph_.create_texture("result", kDesc);
   PassBuilder accumulate = graph_.add_pass("accumulate");
@@ -110,7 +110,7 @@ TEST_F(Cull, AHistoryKeepsItsWriterOnlyWhereItIsRead) {
   EXPECT_EQ(kept.cull_reasons[1].consumer, 0u);
 }
 
-TEST_F(Cull, AnUpdateInPlaceIsKeptWhereTheHistoryIsRead) {
+TEST_F(Cull, UpdateInPlaceIsKeptIfTheHistoryIsRead) {
   const TextureHistory history = graph_.create_texture_history("h", kDesc);
   (void)write("remember", history.current);
   Texture result = graph_.create_texture("result", kDesc);

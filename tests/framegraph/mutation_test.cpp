@@ -86,14 +86,14 @@ void expect_agreement(const Counts& counts) {
   }
 }
 
-TEST(Mutation, TheVerifierKillsEveryMutantThatDoesHarm) {
+TEST(Mutation, VerifierRefusesEveryHarmfulMutant) {
   const Counts counts = mutate_graphs(400, {}, {});
   expect_harmless_only(counts, {"drop a barrier"});
   EXPECT_GE(killed(counts), 10'000u);
   expect_agreement(counts);
 }
 
-TEST(Mutation, QueueHandoversCannotBeSpoiled) {
+TEST(Mutation, VerifierRefusesHarmfulMutantsOfQueueTransfers) {
   Limits limits;
   limits.queue_families[1] = 1;
   limits.queue_families[2] = 2;
@@ -107,7 +107,7 @@ TEST(Mutation, QueueHandoversCannotBeSpoiled) {
   expect_agreement(counts);
 }
 
-TEST(Mutation, QueuesOfOneFamilyCannotBeSpoiled) {
+TEST(Mutation, VerifierRefusesHarmfulMutantsOfQueuesOfOneFamily) {
   Limits limits;
   limits.queue_families[1] = limits.queue_families[2] = 0;
   RandomOptions options;
@@ -143,7 +143,7 @@ struct Diamond {
   }
 };
 
-TEST(Mutation, InTheSixPassDiamondNothingThatLivesTogetherSharesMemory) {
+TEST(Mutation, TexturesThatLiveTogetherInADiamondShareNoMemory) {
   Diamond diamond;
   const GraphDescription& description = diamond.graph.description();
   const auto plan = compile(diamond.graph);

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kMebibyte = 1 << 20;
 
-TEST(Place, AnEstimateIsOfTheBytesOfAFormatsTexels) {
+TEST(Place, EstimateMatchesTheTexelSizeOfTheFormat) {
   struct Case {
     VkFormat format;
     VkDeviceSize bytes;  // a texel
@@ -40,7 +40,7 @@ TEST(Place, AnEstimateIsOfTheBytesOfAFormatsTexels) {
   }
 }
 
-TEST(Place, TheDeferredFrameMeetsItsLowerBound) {
+TEST(Place, DeferredFrameMeetsItsLowerBound) {
   Graph graph;
   declare_deferred_frame(graph, 1920, 1080);
   Limits limits;
@@ -133,7 +133,7 @@ TEST(Place, MoreEffortComesWithinTwoPercentOfTheLowerBound) {
   expect_close_to_bound(20, 1 << 24, 1.0, 1.02);
 }
 
-TEST(Place, WithoutAliasingNothingSharesBytes) {
+TEST(Place, TransientsShareNoBytesWithoutAliasing) {
   Graph graph;
   declare_deferred_frame(graph, 640, 360);
   Limits limits;
@@ -143,7 +143,7 @@ TEST(Place, WithoutAliasingNothingSharesBytes) {
   EXPECT_EQ(plan->heaps[0].size, plan->heaps[0].unaliased);
 }
 
-TEST(Place, MemoryTypesThatDifferGetHeapsOfTheirOwn) {
+TEST(Place, DifferentMemoryTypesGetSeparateHeaps) {
   Graph graph;
   declare_deferred_frame(graph, 640, 360);
   Limits limits;

@@ -42,7 +42,7 @@ class Queues : public testing::Test {
 
 //   a (graphics) -- x --> b (compute) -- z --> c (transfer)
 //         +--------------- y -------------------^
-TEST_F(Queues, AWaitThatAnotherImpliesIsLeftOut) {
+TEST_F(Queues, WaitThatAnotherWaitImpliesIsLeftOut) {
   PassBuilder a = graph_.add_pass("a");
   const Texture x = a.write(make("x"), access::storage_write_compute);
   const Texture y = a.write(make("y"), access::storage_write_compute);
@@ -59,7 +59,7 @@ TEST_F(Queues, AWaitThatAnotherImpliesIsLeftOut) {
   EXPECT_EQ(plan.waits[plan.submissions[2].first_wait].submission, 1u) << "not for a as well";
 }
 
-TEST_F(Queues, TheEndOfAFrameWaitsForTheLastOfAChainAlone) {
+TEST_F(Queues, EndOfFrameWaitsOnlyForTheLastPassOfAChain) {
   Texture x = import("x");
   Texture y = import("y");
   PassBuilder first = graph_.add_pass("first", QueueClass::compute);
@@ -75,7 +75,7 @@ TEST_F(Queues, TheEndOfAFrameWaitsForTheLastOfAChainAlone) {
   EXPECT_EQ(plan.submissions[plan.waits[last.first_wait].submission].queue, QueueClass::transfer);
 }
 
-TEST_F(Queues, WhatGraphicsUsedBeforeTheFrameIsWaitedForOnce) {
+TEST_F(Queues, ResourcesThatGraphicsUsedBeforeTheFrameAreWaitedForOnce) {
   const Texture x = import("x");
   const Texture y = import("y");
   for (const Texture texture : {x, y}) {
@@ -88,7 +88,7 @@ TEST_F(Queues, WhatGraphicsUsedBeforeTheFrameIsWaitedForOnce) {
 }
 
 // What another queue left comes by its release, in a frame without passes there too.
-TEST_F(Queues, AHistoryOfAnotherQueueComesToAFrameThatOnlyHasGraphics) {
+TEST_F(Queues, HistoryOfAnotherQueueCanBeUsedInAFrameWithGraphicsOnly) {
   const auto declare = [&](QueueClass queue) {
     graph_.reset();
     const TextureHistory history = graph_.create_texture_history("history", kDesc);
@@ -110,7 +110,7 @@ TEST_F(Queues, AHistoryOfAnotherQueueComesToAFrameThatOnlyHasGraphics) {
 
 // The part that no pass uses is given by the queue that has it, in a submission of its other
 // passes.
-TEST_F(Queues, APartOfAHistoryIsUpdatedOnTheQueueThatHasItAll) {
+TEST_F(Queues, PartOfAHistoryIsUpdatedOnTheQueueThatOwnsIt) {
   const auto declare = [&] {
     graph_.reset();
     return graph_.create_texture_history("h", {VK_FORMAT_R8_UNORM, Extent::absolute(8, 8), 2});

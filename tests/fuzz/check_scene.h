@@ -11,7 +11,12 @@ namespace alcove::sample {
 
 // Any bytes are a scene that holds together, or a sentence. Small limits keep each run short.
 inline void check_scene(std::span<const uint8_t> bytes) {
-  const GltfLimits limits{1 << 16, 3 << 16, 1 << 20, {1 << 16, 1 << 20}};
+  const GltfLimits limits{.primitives = 1 << 16,
+                          .vertices = 3 << 16,
+                          .indices = 1 << 20,
+                          .instances = 1 << 12,
+                          .drawn_triangles = 1 << 20,
+                          .images = {1 << 16, 1 << 20}};
   const auto scene = parse_gltf(bytes, "fuzz", "", limits);
   if (!scene) {
     if (scene.error().empty()) __builtin_trap();
@@ -25,8 +30,11 @@ inline void check_scene(std::span<const uint8_t> bytes) {
       if (i >= mesh.positions_ws.size()) __builtin_trap();
     }
     if (mesh.material >= scene->materials.size()) __builtin_trap();
-    const size_t vertices = mesh.positions_ws.size(), second = mesh.second_uvs.size();
-    if (mesh.uvs.size() != vertices || (second != 0 && second != vertices)) __builtin_trap();
+    for (const size_t count : {mesh.normals_ws.size(), mesh.uvs.size(), mesh.second_uvs.size(),
+                               mesh.tangents_ws.size(), mesh.colors.size()}) {
+      if (count != 0 && count != mesh.positions_ws.size()) __builtin_trap();
+    }
+    if (mesh.normals_ws.empty()) continue;  // without normals there are no tangents
     const TextureUse& map = scene->materials[mesh.material].normal_texture;
     for (const glm::vec4& tangent : corner_tangents(mesh, map)) {
       // Unit or zero; NaN fails both comparisons.

@@ -10,7 +10,7 @@ namespace {
 
 using testing::HasSubstr;
 
-TEST(CameraOf, TakesTheScenesAndThenWhatWasTyped) {
+TEST(CameraOf, TypedValuesOverrideTheSceneCamera) {
   const Scene scene = builtin_scene();
   ViewOptions view;
   view.camera = "court";
@@ -21,7 +21,7 @@ TEST(CameraOf, TakesTheScenesAndThenWhatWasTyped) {
   EXPECT_EQ(camera->fov_y, 0.5f);
 }
 
-TEST(CameraOf, ACameraThatTheSceneLacksIsRefusedWithThoseItHas) {
+TEST(CameraOf, UnknownCameraNameIsReportedWithTheKnownOnes) {
   ViewOptions view;
   view.camera = "kitchen";
   const auto camera = camera_of(view, builtin_scene());
@@ -29,7 +29,7 @@ TEST(CameraOf, ACameraThatTheSceneLacksIsRefusedWithThoseItHas) {
   EXPECT_THAT(camera.error(), HasSubstr("court"));
 }
 
-TEST(CameraOf, NamesOfCamerasCannotBeTakenForOneAnother) {
+TEST(CameraOf, KnownCameraNamesAreQuoted) {
   Scene scene;
   scene.cameras = {{.name = "great hall"}, {.name = "roof"}};
   ViewOptions view;
@@ -38,7 +38,7 @@ TEST(CameraOf, NamesOfCamerasCannotBeTakenForOneAnother) {
             "the scene has no camera \"hall\"; it has \"great hall\", \"roof\"");
 }
 
-TEST(CameraOf, OfThousandsOfCamerasOnlySomeAreListed) {
+TEST(CameraOf, AtMostTenCameraNamesAreListed) {
   Scene scene;
   for (const char digit : {'0', '1', '2', '3', '4', '5', '6', '7', '8', '9'}) {
     scene.cameras.push_back({.name = {'c', digit}});
@@ -52,28 +52,28 @@ TEST(CameraOf, OfThousandsOfCamerasOnlySomeAreListed) {
             "\"c5\", \"c6\", \"c7\", \"c8\", \"c9\" and 1990 more");
 }
 
-TEST(CameraOf, AViewThatIsTypedStandsUprightWhateverTheScenesCameraCallsUp) {
+TEST(CameraOf, TypedViewStandsUpright) {
   Scene scene;
   scene.cameras = {{.name = "tilted", .up_ws = {0.6f, 0.8f, 0.0f}}};
   ViewOptions view;
   EXPECT_EQ(camera_of(view, scene)->up_ws, glm::vec3(0.6f, 0.8f, 0.0f));
-  view.eye_ws = glm::vec3(6.0f, 3.0f, -4.0f);
+  view.eye = glm::dvec3(6.0, 3.0, -4.0);
   EXPECT_EQ(camera_of(view, scene)->up_ws, glm::vec3(0, 1, 0));
-  view.target_ws = glm::vec3(1, 0, -3);
+  view.target = glm::dvec3(1, 0, -3);
   EXPECT_EQ(camera_of(view, scene)->up_ws, glm::vec3(0, 1, 0));
-  view.eye_ws.reset();
+  view.eye.reset();
   EXPECT_EQ(camera_of(view, scene)->up_ws, glm::vec3(0, 1, 0));
   view.up_ws = glm::vec3(0, 0, 1);
   EXPECT_EQ(camera_of(view, scene)->up_ws, glm::vec3(0, 0, 1));
 }
 
-TEST(CameraOf, EyeOnTheTargetIsRefused) {
+TEST(CameraOf, EyeAtTheTargetIsRefused) {
   ViewOptions view;
-  view.eye_ws = view.target_ws = glm::vec3(1.0f);
+  view.eye = view.target = glm::dvec3(1.0);
   EXPECT_FALSE(camera_of(view, builtin_scene()));
 }
 
-TEST(CameraOf, APerspectiveHasNoPlaneBehindItsEye) {
+TEST(CameraOf, PerspectiveViewNeedsANearPlaneInFrontOfTheEye) {
   Scene scene;
   scene.cameras = {{.name = "plan", .orthographic = true, .near_plane = -3.0f}};
   ViewOptions view;
@@ -86,19 +86,43 @@ TEST(CameraOf, APerspectiveHasNoPlaneBehindItsEye) {
   EXPECT_TRUE(camera_of(view, scene));
 }
 
-TEST(CameraOf, LengthsWhoseSquaresAreNoNumbersAreRefused) {
+TEST(CameraOf, LengthsWhoseSquaresOverflowAreRefused) {
   ViewOptions view;
-  view.eye_ws = glm::vec3(0.0f, 0.0f, 1.0f);
-  view.target_ws = glm::vec3(0.0f);
+  view.eye = glm::dvec3(0.0, 0.0, 1.0);
+  view.target = glm::dvec3(0.0);
   ASSERT_TRUE(camera_of(view, builtin_scene()));
   for (const float scale : {1e-30f, 1e30f}) {
     ViewOptions scaled = view;
-    scaled.eye_ws = scale * *view.eye_ws;
+    scaled.eye = double{scale} * *view.eye;
     EXPECT_FALSE(camera_of(scaled, builtin_scene())) << scale;
     scaled = view;
     scaled.up_ws = glm::vec3(0.0f, scale, 0.0f);
     EXPECT_FALSE(camera_of(scaled, builtin_scene())) << scale;
   }
+}
+
+TEST(CameraOf, DepthIsReversedInPerspectiveUnlessTyped) {
+  const Scene scene = builtin_scene();
+  ViewOptions view;
+  EXPECT_TRUE(camera_of(view, scene)->reversed_z);
+  view.reversed_z = false;
+  EXPECT_FALSE(camera_of(view, scene)->reversed_z);
+  view.reversed_z.reset();
+  view.ortho_height = 5.0f;
+  EXPECT_FALSE(camera_of(view, scene)->reversed_z);
+  view.reversed_z = true;
+  EXPECT_TRUE(camera_of(view, scene)->reversed_z);
+}
+
+TEST(CameraOf, TypedPositionsAreRelativeToTheOriginOfTheFile) {
+  Scene scene = builtin_scene();
+  scene.origin = {1e7, 0.0, -3e7};
+  ViewOptions view;
+  view.eye = scene.origin + glm::dvec3(0.125, 1.0, 5.0);
+  view.target = scene.origin;
+  EXPECT_EQ(camera_of(view, scene)->eye_ws, glm::vec3(0.125f, 1.0f, 5.0f));
+  EXPECT_EQ(camera_of(view, scene)->target_ws, glm::vec3(0.0f));
+  EXPECT_EQ(camera_of(view, scene)->origin, scene.origin);
 }
 
 }  // namespace

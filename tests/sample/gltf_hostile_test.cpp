@@ -187,7 +187,7 @@ TEST(GltfLimits, InstancesBeyondTheLimitAreRefused) {
     maker.json["scenes"][0]["nodes"][static_cast<size_t>(i)] = i;
   }
   GltfLimits limits;
-  limits.vertices = 200;
+  limits.drawn_triangles = 50;
   const auto scene = parse_gltf(maker.gltf(), "many.gltf", "", limits);
   EXPECT_FALSE(scene);
 }
@@ -207,7 +207,7 @@ TEST(GltfLimits, InstancesWithoutAreaCountTowardsTheLimit) {
       maker.json["scenes"][0]["nodes"][static_cast<size_t>(i)] = i;
     }
     GltfLimits limits;
-    (indexed ? limits.indices : limits.vertices) = 200;
+    limits.drawn_triangles = 50;
     const auto scene = parse_gltf(maker.gltf(), "many.gltf", "", limits);
     ASSERT_FALSE(scene);
     EXPECT_THAT(scene.error(), testing::Not(HasSubstr("no triangles")));

@@ -182,5 +182,50 @@ TEST(Tangents, AreUnitOrZeroAndPerpendicularToNormalsOfACurvedMesh) {
   }
 }
 
+// MikkTSpace welds corners of equal values, so it makes no difference whether a file does.
+TEST(Tangents, UnsharedVerticesHaveThoseOfSharedOnes) {
+  Scene scene = quad();
+  const Mesh shared = scene.meshes[0];
+  Mesh apart = shared;
+  apart.positions_ws.clear();
+  apart.normals_ws.clear();
+  apart.uvs.clear();
+  apart.indices.clear();
+  for (const std::uint32_t v : shared.indices) {
+    apart.indices.push_back(static_cast<std::uint32_t>(apart.positions_ws.size()));
+    apart.positions_ws.push_back(shared.positions_ws[v]);
+    apart.normals_ws.push_back(shared.normals_ws[v]);
+    apart.uvs.push_back(shared.uvs[v]);
+  }
+  const auto one = corner_tangents(shared, {}), other = corner_tangents(apart, {});
+  ASSERT_EQ(one.size(), other.size());
+  for (std::size_t i = 0; i < one.size(); ++i) EXPECT_EQ(one[i], other[i]);
+}
+
+TEST(Tangents, TrianglesThatMeetInAVertexAloneDoNotShareItsTangent) {
+  Mesh mesh;
+  mesh.positions_ws = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {-1, 0, 0}, {-1, -1, 0}};
+  mesh.normals_ws.assign(5, glm::vec3(0, 0, 1));
+  // The second triangle's u runs along y, and it is as little mirrored as the first.
+  mesh.uvs = {{0, 0}, {1, 0}, {1, -1}, {0, -1}, {-1, -1}};
+  mesh.indices = {0, 1, 2, 0, 3, 4};
+  const auto tangents = corner_tangents(mesh, {});
+  EXPECT_EQ(tangents[0], glm::vec4(1, 0, 0, 1));
+  EXPECT_LT(glm::distance(glm::vec3(tangents[3]), glm::vec3(0, 1, 0)), 1e-6f);
+}
+
+// A triangle without area in the texture takes the tangents of the one beside it.
+TEST(Tangents, TriangleWithoutAreaInTheTextureFollowsItsNeighbour) {
+  Mesh mesh;
+  mesh.positions_ws = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  mesh.normals_ws.assign(4, glm::vec3(0, 0, 1));
+  mesh.uvs = {{0, 0}, {1, 0}, {1, -1}, {0, 0}};
+  mesh.indices = {0, 1, 2, 0, 2, 3};
+  const auto tangents = corner_tangents(mesh, {});
+  for (const std::size_t corner : {0u, 1u, 2u, 3u, 4u}) {
+    EXPECT_EQ(tangents[corner], glm::vec4(1, 0, 0, 1)) << corner;
+  }
+}
+
 }  // namespace
 }  // namespace alcove::sample

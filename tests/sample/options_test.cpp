@@ -50,7 +50,8 @@ TEST(Options, AFullCommandLineIsUnderstood) {
   EXPECT_EQ(options->scene, "scene.glb");
   EXPECT_EQ(options->environment, "sky.hdr");
   EXPECT_TRUE(options->lit);
-  EXPECT_EQ(*options->view.eye_ws, glm::vec3(-9, 5.5f, -0.4f));
+  EXPECT_EQ(*options->view.eye, glm::dvec3(-9, 5.5, -0.4));
+  EXPECT_EQ(options->view.reversed_z, true);
   EXPECT_TRUE(std::isinf(*options->view.far_plane));
   EXPECT_EQ(options->occlusion.quality, passes::Quality::ultra);
   EXPECT_EQ(options->occlusion.normals, NormalSource::kGeometric);

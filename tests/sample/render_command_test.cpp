@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "cli/camera_of.h"
+#include "cli/option_value.h"
 #include "cli/settings.h"
 #include "scene/builtin_scene.h"
 
@@ -151,11 +152,37 @@ TEST(CommandLine, TheDeviceIsThatOfTheOptions) {
   EXPECT_EQ(parse(render_arguments(options, some_shot()))->device, 3);
 }
 
-TEST(CommandLine, WhatIsCutOutIsCutOutAgain) {
-  Options options;
-  EXPECT_FALSE(parse(render_arguments(options, some_shot()))->cut_blends);
-  options.cut_blends = true;
-  EXPECT_TRUE(parse(render_arguments(options, some_shot()))->cut_blends);
+TEST(CommandLine, TreatmentOfMaterialsIsReadBack) {
+  for (const MaterialTreatment treatment :
+       {MaterialTreatment{}, MaterialTreatment{.cut_blends = true},
+        MaterialTreatment{.both_sides = true}}) {
+    Options options;
+    options.materials = treatment;
+    const auto read = parse(render_arguments(options, some_shot()));
+    ASSERT_TRUE(read);
+    EXPECT_EQ(read->materials.cut_blends, treatment.cut_blends);
+    EXPECT_EQ(read->materials.both_sides, treatment.both_sides);
+  }
+}
+
+TEST(CommandLine, DepthDirectionIsReadBack) {
+  Shot shot = some_shot();
+  for (const bool reversed : {false, true}) {
+    shot.camera.reversed_z = reversed;
+    expect_round_trip(kDefaults, shot);
+  }
+}
+
+TEST(CommandLine, PositionsFarFromTheOriginAreReadBackExactly) {
+  const glm::dvec3 origin(100000.0, -3.0, 2e7);
+  for (const float value : {2.3f, -0.1f, 1e-7f, 12345.678f}) {
+    for (int c = 0; c < 3; ++c) {
+      const double typed = std::stod(shown_coordinate(value, origin[c]));
+      // What a float far from the origin rounds away is not in the text either.
+      EXPECT_NEAR(typed - origin[c], value, 4e-9);
+    }
+  }
+  EXPECT_EQ(shown_coordinate(2.3f, 100000.0), "100002.3");
 }
 
 TEST(CommandLine, AnyAngleOfViewIsReadBack) {

@@ -1,12 +1,15 @@
 // Needs a display; ctest gives it one of its own. Everything under the validation layers.
 #include "cli/scene_view_request.h"
 
+#include <GLFW/glfw3.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 
+#include "gltf_maker.h"
 #include "render/frame_renderer.h"
 #include "temporary_folder.h"
 
@@ -177,6 +180,46 @@ TEST_F(SceneViewTest, AClosedWindowDrawsNothing) {
   const auto drawn = view_->draw();
   ASSERT_TRUE(drawn) << drawn.error();
   EXPECT_FALSE(*drawn);
+}
+
+// Calls what GLFW calls when the user drops a file.
+void drop(Window& window, const std::string& file) {
+  const GLFWdropfun callback = glfwSetDropCallback(window.handle(), nullptr);
+  glfwSetDropCallback(window.handle(), callback);
+  ASSERT_NE(callback, nullptr);
+  const char* paths[] = {file.c_str()};
+  callback(window.handle(), 1, paths);
+}
+
+TEST_F(SceneViewTest, DroppedFileTakesTheScenesPlaceWithAViewOfItsOwn) {
+  draw(2);
+  const float radius = view_->state().settings.radius;
+  // 100 units large, around a point far from the origin.
+  GltfMaker maker = GltfMaker::triangle();
+  maker.json["materials"] = {{{"doubleSided", true}}};
+  maker.primitive()["material"] = 0;
+  maker.json["nodes"][0]["scale"] = {100, 100, 100};
+  maker.json["nodes"][0]["translation"] = {4000, 0, 0};
+  const std::vector<uint8_t> bytes = maker.glb();
+  const std::string file = (folder_.path / "dropped.glb").string();
+  std::ofstream(file, std::ios::binary).write(reinterpret_cast<const char*>(bytes.data()),
+                                              static_cast<std::streamsize>(bytes.size()));
+  drop(view_->window(), file);
+  view_->show_panel(false);
+  draw(1);
+  EXPECT_EQ(view_->scene().name, "dropped");
+  EXPECT_GT(view_->state().settings.radius, 4.0f * radius);
+  view_->state().picture = Picture::kNormals;
+  EXPECT_FALSE(is_plain(draw_and_look()));
+}
+
+TEST_F(SceneViewTest, DroppedFileThatCannotBeReadLeavesTheSceneAsItIs) {
+  draw(1);
+  const std::string name = view_->scene().name;
+  drop(view_->window(), (folder_.path / "missing.glb").string());
+  draw(2);
+  EXPECT_EQ(view_->scene().name, name);
+  EXPECT_THAT(view_->facts().message, HasSubstr("missing.glb"));
 }
 
 }  // namespace

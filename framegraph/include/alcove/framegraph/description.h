@@ -39,7 +39,7 @@ enum ResourceFlags : std::uint32_t {
   kRelativeToNothing = 1,  // a relative extent of a dead handle
 };
 
-// What is known of a resource that lives outside the frame.
+// The state of a resource that exists outside the frame: an import or a history slot.
 struct ExternalRecord {
   State initial_state;
   State final_state;
@@ -62,8 +62,8 @@ enum AccessFlags : std::uint32_t {
   kForeign = 8,  // the handle was of another graph or frame
   kNull = 16,    // the handle was never made
   kClosed = 32,  // declared on a pass that is not the last
-  // All of a transient with one subresource, with stages, access bits and layout that fit: by
-  // itself right on a queue that can run anything. Compile looks closer at any other.
+  // An access to a whole transient of one subresource, with valid stages, access bits and layout.
+  // It needs no further validation on the graphics queue.
   kPlain = 64,
   kOnBuffer = 128,  // the handle was of a buffer
   // Contents::accumulate: the write is not ordered among others of the same access.
@@ -128,11 +128,11 @@ struct GraphDescription {
   Records<ResourceRecord> resources;
   Records<ExternalRecord> externals;
   Records<OutputRecord> outputs;
-  // What the records, but for passes, hold at this many: the number of the frame that first
-  // declared them, which no other frame of any graph has.
+  // The number of the frame that first declared these records, passes excepted. Descriptions of one
+  // edition have the same records, because no two frames of any graph have the same number.
   std::uint64_t edition = 0;
 
-  // Names are for people: they are no part of the key.
+  // Names appear in messages only and are not compared.
   struct Name {
     std::uint32_t size = 0;
     std::uint32_t offset = 0;  // in long_names, where it is too long for the place here

@@ -1,10 +1,12 @@
-// Checks a plan against the declaration by replaying it access by access. Shares no code with
+// Checks a plan against the declaration by replaying it access by access. It shares no code with
 // compile.
 //
-// Two frames of the plan are replayed, so that what the second does to the memory of the first is
-// seen. For every pair of conflicting accesses (to one subresource, or to the same bytes) it asks
-// for a happens-before with availability and visibility, over queues; it follows the layout and
-// owner of every subresource, what each byte last held, and the final_states of imports.
+// Two frames of the plan are replayed, because a frame also has to wait for the uses of its memory
+// in the frame before. Every access must happen after the earlier conflicting accesses, to its
+// subresource or to its bytes, with their writes available and visible, over all queues. The
+// verifier also follows the layout and the owner of every subresource, its contents, and the final
+// states of imports. The time is linear in the number of accesses, times the logarithm of the
+// number of transients that live at once.
 #pragma once
 
 #include <tl/expected.hpp>

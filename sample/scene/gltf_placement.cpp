@@ -1,0 +1,188 @@
+#include "scene/gltf_placement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
+#include <optional>
+
+#include "scene/gltf_accessor.h"
+
+namespace alcove::sample {
+namespace {
+
+using Failure = tl::unexpected<std::string>;
+
+glm::dmat4 transform_of(const glm::dvec3& translation, const glm::dquat& rotation,
+                        const glm::dvec3& scale) {
+  glm::dmat4 m(1.0);
+  const double length = glm::length(rotation);
+  if (length > 0.0) m = glm::mat4_cast(rotation / length);
+  for (int c = 0; c < 3; ++c) m[c] *= scale[c];
+  m[3] = glm::dvec4(translation, 1.0);
+  return m;
+}
+
+// The accessor of an attribute of EXT_mesh_gpu_instancing; -1 where there is none.
+int instance_attribute(const tinygltf::Value& extension, const char* name) {
+  if (!extension.IsObject() || !extension.Has("attributes")) return -1;
+  const tinygltf::Value& attributes = extension.Get("attributes");
+  if (!attributes.IsObject() || !attributes.Has(name)) return -1;
+  const tinygltf::Value& accessor = attributes.Get(name);
+  return accessor.IsNumber() ? accessor.GetNumberAsInt() : -1;
+}
+
+}  // namespace
+
+tl::expected<VertexPlacement, std::string> VertexPlacement::skinned(
+    const tinygltf::Model& model, const tinygltf::Primitive& primitive, size_t vertices,
+    const std::vector<glm::dmat4>& joints) {
+  constexpr size_t kPerSet = 4;
+  VertexPlacement out(glm::dmat4(1.0));
+  out.joints_ = &joints;
+  std::vector<std::vector<float>> joint_sets, weight_sets;
+  for (int set = 0;; ++set) {
+    const auto joint = primitive.attributes.find("JOINTS_" + std::to_string(set));
+    const auto weight = primitive.attributes.find("WEIGHTS_" + std::to_string(set));
+    if (joint == primitive.attributes.end() || weight == primitive.attributes.end()) break;
+    auto joint_values = read_floats(model, joint->second, kPerSet, vertices);
+    if (!joint_values) return Failure(joint_values.error());
+    auto weight_values = read_floats(model, weight->second, kPerSet, vertices);
+    if (!weight_values) return Failure(weight_values.error());
+    if (joint_values->size() != kPerSet * vertices || weight_values->size() != kPerSet * vertices) {
+      return Failure("has joints or weights for some of its vertices only");
+    }
+    joint_sets.push_back(std::move(*joint_values));
+    weight_sets.push_back(std::move(*weight_values));
+  }
+  out.influences_ = kPerSet * joint_sets.size();
+  out.joint_of_.resize(vertices * out.influences_);
+  out.weight_of_.resize(vertices * out.influences_);
+  for (size_t v = 0; v < vertices; ++v) {
+    float* weights = out.weight_of_.data() + v * out.influences_;
+    float sum = 0.0f;
+    for (size_t i = 0; i < out.influences_; ++i) {
+      const float joint = joint_sets[i / kPerSet][v * kPerSet + i % kPerSet];
+      const float weight = weight_sets[i / kPerSet][v * kPerSet + i % kPerSet];
+      weights[i] = std::isfinite(weight) ? std::max(weight, 0.0f) : 0.0f;
+      sum += weights[i];
+      const bool exists = joint >= 0.0f && joint < static_cast<float>(joints.size());
+      if (!exists && weights[i] > 0.0f) {
+        return Failure("has a vertex of joint " + std::to_string(static_cast<int64_t>(joint)) +
+                       ", and its skin has " + std::to_string(joints.size()) + " joints");
+      }
+      out.joint_of_[v * out.influences_ + i] = exists ? static_cast<uint16_t>(joint) : uint16_t{0};
+    }
+    if (out.influences_ > 0 && !(sum > 0.0f)) weights[0] = sum = 1.0f;
+    for (size_t i = 0; i < out.influences_; ++i) weights[i] /= sum;
+  }
+  return out;
+}
+
+glm::dmat4 VertexPlacement::at(size_t vertex) const {
+  if (joints_ == nullptr || influences_ == 0) return transform_;
+  glm::dmat4 sum(0.0);
+  for (size_t i = vertex * influences_; i < (vertex + 1) * influences_; ++i) {
+    if (weight_of_[i] > 0.0f) sum += (*joints_)[joint_of_[i]] * static_cast<double>(weight_of_[i]);
+  }
+  return sum;
+}
+
+tl::expected<std::vector<glm::dmat4>, std::string> joint_matrices(
+    const tinygltf::Model& model, int index, const std::vector<glm::dmat4>& placed) {
+  if (index < 0 || static_cast<size_t>(index) >= model.skins.size()) {
+    return Failure("has no skin " + std::to_string(index));
+  }
+  const tinygltf::Skin& skin = model.skins[static_cast<size_t>(index)];
+  const std::string name = "has skin " + std::to_string(index) + ", which ";
+  constexpr size_t kMost = UINT16_MAX + size_t{1};  // JOINTS_n are 16-bit at most
+  if (skin.joints.empty() || skin.joints.size() > kMost) {
+    return Failure(name + "has " + std::to_string(skin.joints.size()) + " joints");
+  }
+  std::optional<std::vector<float>> inverse_bind;
+  if (skin.inverseBindMatrices >= 0) {
+    auto read = read_floats(model, skin.inverseBindMatrices, 16, kMost);
+    if (!read) return Failure(name + read.error());
+    if (read->size() < 16 * skin.joints.size()) {
+      return Failure(name + "has fewer inverse bind matrices than joints");
+    }
+    inverse_bind = std::move(*read);
+  }
+  std::vector<glm::dmat4> out;
+  for (size_t i = 0; i < skin.joints.size(); ++i) {
+    const int joint = skin.joints[i];
+    if (joint < 0 || static_cast<size_t>(joint) >= placed.size()) {
+      return Failure(name + "has no node " + std::to_string(joint) + " for a joint");
+    }
+    glm::dmat4 bind(1.0);
+    for (int c = 0; inverse_bind && c < 16; ++c) {
+      bind[c / 4][c % 4] = (*inverse_bind)[16 * i + static_cast<size_t>(c)];
+    }
+    out.push_back(placed[static_cast<size_t>(joint)] * bind);
+  }
+  return out;
+}
+
+glm::dmat4 local_transform(const tinygltf::Node& node) {
+  if (node.matrix.size() == 16) {
+    glm::dmat4 m(1.0);
+    for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = node.matrix[static_cast<size_t>(i)];
+    return m;
+  }
+  glm::dvec3 translation(0.0), scale(1.0);
+  glm::dquat rotation(1.0, 0.0, 0.0, 0.0);
+  if (node.rotation.size() == 4) {
+    rotation = {node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]};
+  }
+  for (int c = 0; c < 3; ++c) {
+    if (node.scale.size() == 3) scale[c] = node.scale[static_cast<size_t>(c)];
+    if (node.translation.size() == 3) translation[c] = node.translation[static_cast<size_t>(c)];
+  }
+  return transform_of(translation, rotation, scale);
+}
+
+tl::expected<std::vector<glm::dmat4>, std::string> instances_of(const tinygltf::Model& model,
+                                                                const tinygltf::Node& node,
+                                                                uint64_t most) {
+  const auto found = node.extensions.find("EXT_mesh_gpu_instancing");
+  if (found == node.extensions.end()) return {};
+  struct Attribute {
+    const char* name;
+    int components;
+    std::vector<float> values;
+  };
+  Attribute attributes[] = {{"TRANSLATION", 3, {}}, {"ROTATION", 4, {}}, {"SCALE", 3, {}}};
+  std::optional<size_t> count;
+  for (Attribute& attribute : attributes) {
+    const int accessor = instance_attribute(found->second, attribute.name);
+    if (accessor < 0) continue;
+    auto values = read_floats(model, accessor, attribute.components, most);
+    if (!values) return Failure("has instances whose " + values.error());
+    const size_t elements = values->size() / static_cast<size_t>(attribute.components);
+    if (count.value_or(elements) != elements) {
+      return Failure("has instances whose attributes differ in number");
+    }
+    count = elements;
+    attribute.values = std::move(*values);
+  }
+  if (!count) return {};
+  std::vector<glm::dmat4> out;
+  out.reserve(*count);
+  const auto& [t, r, s] = attributes;
+  for (size_t i = 0; i < *count; ++i) {
+    glm::dvec3 translation(0.0), scale(1.0);
+    glm::dquat rotation(1.0, 0.0, 0.0, 0.0);
+    for (int c = 0; c < 3; ++c) {
+      const size_t at = 3 * i + static_cast<size_t>(c);
+      if (!t.values.empty()) translation[c] = t.values[at];
+      if (!s.values.empty()) scale[c] = s.values[at];
+    }
+    if (!r.values.empty()) {
+      const float* q = &r.values[4 * i];
+      rotation = {q[3], q[0], q[1], q[2]};
+    }
+    out.push_back(transform_of(translation, rotation, scale));
+  }
+  return out;
+}
+
+}  // namespace alcove::sample

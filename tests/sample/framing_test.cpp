@@ -1,0 +1,156 @@
+#include "scene/framing.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "scene/builtin_scene.h"
+
+namespace alcove::sample {
+namespace {
+
+// A grid of 2 n^2 triangles over a square of the given half width, facing up.
+Mesh grid(float half_width, uint32_t n, float height = 0.0f) {
+  Mesh mesh;
+  for (uint32_t z = 0; z <= n; ++z) {
+    for (uint32_t x = 0; x <= n; ++x) {
+      const glm::vec2 at = 2.0f * half_width * (glm::vec2(x, z) / float(n) - 0.5f);
+      mesh.positions_ws.emplace_back(at.x, height, at.y);
+      if (x == n || z == n) continue;
+      const uint32_t i = z * (n + 1) + x;
+      for (const uint32_t v : {i, i + n + 1, i + 1, i + 1, i + n + 1, i + n + 2}) {
+        mesh.indices.push_back(v);
+      }
+    }
+  }
+  return mesh;
+}
+
+// A sphere of 4 n^2 triangles.
+Mesh sphere(float radius, const glm::vec3& centre, uint32_t n) {
+  Mesh mesh;
+  for (uint32_t i = 0; i <= n; ++i) {
+    for (uint32_t k = 0; k <= 2 * n; ++k) {
+      const float polar = 3.14159265f * float(i) / float(n);
+      const float azimuth = 3.14159265f * float(k) / float(n);
+      mesh.positions_ws.push_back(centre + radius * glm::vec3(std::sin(polar) * std::cos(azimuth),
+                                                              std::cos(polar),
+                                                              std::sin(polar) * std::sin(azimuth)));
+      if (i == n || k == 2 * n) continue;
+      const uint32_t v = i * (2 * n + 1) + k;
+      for (const uint32_t c : {v, v + 1, v + 2 * n + 1, v + 1, v + 2 * n + 2, v + 2 * n + 1}) {
+        mesh.indices.push_back(c);
+      }
+    }
+  }
+  return mesh;
+}
+
+Scene scene_of(std::vector<Mesh> meshes) {
+  Scene scene;
+  scene.materials.emplace_back();
+  scene.meshes = std::move(meshes);
+  scene.bounds_ws = bounds_of(scene.meshes);
+  scene.core_bounds_ws = scene_core(scene.meshes).bounds_ws;
+  return scene;
+}
+
+double size_of(const Bounds& bounds) { return glm::length(bounds.high - bounds.low); }
+
+TEST(SceneCore, OrdinaryScenesAreTheirBounds) {
+  const Scene scene = builtin_scene();
+  const SceneCore core = scene_core(scene.meshes);
+  EXPECT_EQ(core.triangles_outside, 0u);
+  EXPECT_EQ(core.bounds_ws.low, scene.bounds_ws.low);
+  EXPECT_EQ(core.bounds_ws.high, scene.bounds_ws.high);
+}
+
+TEST(SceneCore, SliverFarAwayDoesNotStretchIt) {
+  Mesh sliver;
+  sliver.positions_ws = {{2000, 0, 0}, {2000, 0.01f, 0}, {2000, 0, 0.01f}};
+  sliver.indices = {0, 1, 2};
+  const SceneCore core = scene_core({grid(3.0f, 4), sliver});
+  EXPECT_EQ(core.triangles_outside, 1u);
+  EXPECT_LT(size_of(core.bounds_ws), 9.0);
+}
+
+TEST(SceneCore, StrayTrianglesOfTheSameMeshDoNotStretchIt) {
+  Mesh mesh = grid(3.0f, 30);
+  const auto first = static_cast<uint32_t>(mesh.positions_ws.size());
+  for (const glm::vec3 stray : {glm::vec3(0, 9e4f, 0), glm::vec3(50, 9e4f, 0), {0, 9e4f, 50}}) {
+    mesh.positions_ws.push_back(stray);
+  }
+  for (const uint32_t i : {0u, 1u, 2u}) mesh.indices.push_back(first + i);
+  const SceneCore core = scene_core({mesh});
+  EXPECT_EQ(core.triangles_outside, 1u);
+  EXPECT_LT(size_of(core.bounds_ws), 9.0);
+}
+
+TEST(SceneCore, SkyDomeAndGroundPlaneAreLeftOut) {
+  const Mesh character = sphere(1.0f, {0, 1, 0}, 16);
+  const SceneCore core = scene_core({sphere(5000.0f, {0, 0, 0}, 16), grid(1000.0f, 1), character});
+  EXPECT_EQ(core.triangles_outside, 4u * 16 * 16 + 2);
+  EXPECT_NEAR(size_of(core.bounds_ws), 2.0 * std::sqrt(3.0), 0.1);
+}
+
+TEST(SceneCore, LargeModelIsNotTakenForTheSurroundingsOfAPartOfIt) {
+  Mesh terrain = grid(500.0f, 100);
+  for (size_t i = 0; i < terrain.positions_ws.size(); ++i) {
+    terrain.positions_ws[i].y = 100.0f * std::sin(0.37f * float(i));
+  }
+  const SceneCore core = scene_core({terrain, sphere(1.0f, {0, 0, 0}, 8)});
+  EXPECT_EQ(core.triangles_outside, 0u);
+}
+
+TEST(Framing, AllOfTheCoreIsInViewWithItsPlanes) {
+  const Scene scene =
+      scene_of({sphere(5000.0f, {0, 0, 0}, 16), grid(1000.0f, 1), sphere(1.0f, {0, 1, 0}, 16)});
+  const Camera camera = with_fitted_planes(scene, framing_camera(scene), 16.0 / 9.0);
+  EXPECT_LT(glm::distance(camera.eye_ws, camera.target_ws), 10.0f);
+  EXPECT_LT(camera.near_plane, 0.1f);
+  EXPECT_GT(camera.far_plane, 4000.0f);
+  const CameraMatrices matrices = camera_matrices(camera, 160, 90);
+  for (const glm::vec3& corner : corners_of(scene.core_bounds_ws)) {
+    const glm::vec4 clip = matrices.clip_from_world * glm::vec4(corner, 1.0f);
+    EXPECT_LT(std::max({std::abs(clip.x), std::abs(clip.y), std::abs(clip.z)}), clip.w);
+  }
+}
+
+TEST(Framing, EyeStandsInsideOfARoomAroundTheCore) {
+  Mesh walls = sphere(10.0f, {-8, 0, -8}, 4);
+  const Scene scene = scene_of({walls, sphere(0.5f, {-3, 0, -3}, 16)});
+  const glm::vec3 eye = framing_camera(scene).eye_ws;
+  EXPECT_LT(eye.x, 2.0f);
+  EXPECT_LT(eye.z, 2.0f);
+}
+
+TEST(DepthInView, TrianglesOutsideOfTheImageDoNotCount) {
+  // A floor that reaches behind the eye: the nearest visible point is on the image's lower edge.
+  const Scene scene = scene_of({grid(100.0f, 1)});
+  Camera camera;
+  camera.eye_ws = {0.0f, 2.0f, 0.0f};
+  camera.target_ws = {0.0f, 2.0f, -1.0f};
+  camera.fov_y = glm::radians(90.0f);
+  const auto range = depth_in_view(scene, camera, 1.0);
+  ASSERT_TRUE(range);
+  EXPECT_NEAR(range->nearest, 2.0, 1e-4);
+  EXPECT_NEAR(range->farthest, 100.0, 1e-3);
+  camera.target_ws = {0.0f, 3.0f, 0.01f};
+  EXPECT_FALSE(depth_in_view(scene, camera, 1.0));
+}
+
+TEST(DepthInView, InstancesCountWhereTheyStand) {
+  Mesh mesh = sphere(1.0f, {0, 0, 0}, 16);
+  for (const float z : {-10.0f, -30.0f}) {
+    glm::mat4x3 placed(1.0f);
+    placed[3] = {0, 0, z};
+    mesh.instances.push_back(placed);
+  }
+  const auto range = depth_in_view(scene_of({mesh}), Camera(), 1.0);
+  ASSERT_TRUE(range);
+  EXPECT_NEAR(range->nearest, 9.0, 0.05);
+  EXPECT_NEAR(range->farthest, 31.0, 0.05);
+}
+
+}  // namespace
+}  // namespace alcove::sample

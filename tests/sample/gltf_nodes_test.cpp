@@ -1,0 +1,241 @@
+// Where nodes, skins and instances of a glTF file put its meshes, and what its materials hide.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "gltf_maker.h"
+#include "reference/truth.h"
+#include "scene/area.h"
+
+namespace alcove::sample {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+// A triangle bound to two joints. Its first two vertices follow joint 0, the third both alike.
+GltfMaker skinned_triangle() {
+  GltfMaker maker = GltfMaker::triangle();
+  const int normals = maker.view<float>({0, 0, 1, 0, 0, 1, 0, 0, 1});
+  const int joints = maker.view<uint8_t>({0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0});
+  const int weights = maker.view<float>({1, 0, 0, 0, 2, 0, 0, 0, 0.5f, 0.5f, 0, 0});
+  // Undoes a bind pose that lies 10 units along x.
+  const int bind = maker.view<float>({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -10, 0, 0, 1,
+                                      1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -10, 0, 0, 1});
+  auto& attributes = maker.primitive()["attributes"];
+  attributes["NORMAL"] = maker.accessor(normals, 5126, "VEC3", 3);
+  attributes["JOINTS_0"] = maker.accessor(joints, 5121, "VEC4", 3);
+  attributes["WEIGHTS_0"] = maker.accessor(weights, 5126, "VEC4", 3);
+  maker.json["skins"] = {
+      {{"joints", {1, 2}}, {"inverseBindMatrices", maker.accessor(bind, 5126, "MAT4", 2)}}};
+  const float h = std::sqrt(0.5f);
+  maker.json["nodes"] = {{{"mesh", 0}, {"skin", 0}, {"translation", {7, 8, 9}}},
+                         {{"translation", {10, 0, 5}}, {"rotation", {0, h, 0, h}}},
+                         {{"translation", {10, 4, 5}}, {"rotation", {0, h, 0, h}}}};
+  maker.json["scenes"][0]["nodes"] = {0, 1};  // a joint may stand outside of the scene
+  return maker;
+}
+
+TEST(GltfSkin, JointsPlaceVerticesAndTheNodeOfTheMeshDoesNot) {
+  const Scene scene = parsed(skinned_triangle().gltf());
+  const auto read = corners(scene);
+  ASSERT_EQ(read.size(), 3u);
+  // Less 10 along x, turned from x to -z, moved to the joint.
+  EXPECT_LT(glm::distance(read[0], glm::vec3(10, 0, 15)), 1e-5f);
+  EXPECT_LT(glm::distance(read[1], glm::vec3(10, 0, 14)), 1e-5f);
+  EXPECT_LT(glm::distance(read[2], glm::vec3(10, 3, 15)), 1e-5f);
+  for (const glm::vec3& normal : scene.meshes[0].normals_ws) {
+    EXPECT_LT(glm::distance(normal, glm::vec3(1, 0, 0)), 1e-5f);
+  }
+  EXPECT_THAT(scene.warnings, IsEmpty());
+}
+
+TEST(GltfSkin, JointsWithoutInverseBindMatricesPlaceTheMeshAsItIs) {
+  GltfMaker maker = skinned_triangle();
+  maker.json["skins"][0].erase("inverseBindMatrices");
+  EXPECT_LT(glm::distance(corners(parsed(maker.gltf()))[0], glm::vec3(10, 0, 5)), 1e-5f);
+}
+
+TEST(GltfSkin, JointThatDoesNotExistIsRefused) {
+  GltfMaker maker = skinned_triangle();
+  maker.json["skins"][0]["joints"] = {1};
+  EXPECT_THAT(refusal(maker.gltf()), HasSubstr("joint"));
+  maker = skinned_triangle();
+  maker.json["skins"][0]["joints"] = {1, 77};
+  EXPECT_THAT(refusal(maker.gltf()), HasSubstr("77"));
+  maker = skinned_triangle();
+  maker.json["nodes"][0]["skin"] = 3;
+  EXPECT_THAT(refusal(maker.gltf()), HasSubstr("skin 3"));
+}
+
+TEST(GltfSkin, FewerInverseBindMatricesThanJointsAreRefused) {
+  GltfMaker maker = skinned_triangle();
+  maker.json["accessors"].back()["count"] = 1;
+  EXPECT_THAT(refusal(maker.gltf()), HasSubstr("inverse bind"));
+}
+
+TEST(GltfInstances, NodesOfOneMeshShareIt) {
+  GltfMaker maker = GltfMaker::triangle();
+  maker.json["nodes"] = {{{"mesh", 0}},
+                         {{"mesh", 0}, {"translation", {5, 0, 0}}},
+                         {{"mesh", 0}, {"scale", {-1, 2, 1}}}};
+  maker.json["scenes"][0]["nodes"] = {0, 1, 2};
+  const Scene scene = parsed(maker.gltf());
+  ASSERT_EQ(scene.meshes.size(), 1u);
+  ASSERT_EQ(scene.meshes[0].instances.size(), 3u);
+  EXPECT_EQ(triangle_count(scene), 3u);
+  EXPECT_EQ(scene.bounds_ws.low, glm::vec3(-1, 0, 0));
+  EXPECT_EQ(scene.bounds_ws.high, glm::vec3(6, 2, 0));
+}
+
+TEST(GltfInstances, FlatTransformIsNotAnInstance) {
+  GltfMaker maker = GltfMaker::triangle();
+  maker.json["nodes"] = {{{"mesh", 0}}, {{"mesh", 0}}, {{"mesh", 0}, {"scale", {1, 1, 0}}}};
+  maker.json["scenes"][0]["nodes"] = {0, 1, 2};
+  const Scene scene = parsed(maker.gltf());
+  ASSERT_EQ(scene.meshes.size(), 2u);
+  EXPECT_EQ(triangle_count(scene), 3u);
+}
+
+TEST(GltfInstances, GpuInstancesAreThoseOfTheExtension) {
+  GltfMaker maker = GltfMaker::triangle();
+  const int translations = maker.view<float>({0, 0, 0, 3, 0, 0});
+  const int scales = maker.view<float>({1, 1, 1, 2, 2, 2});
+  maker.json["nodes"][0]["translation"] = {0, 10, 0};
+  maker.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {
+      {"TRANSLATION", maker.accessor(translations, 5126, "VEC3", 2)},
+      {"SCALE", maker.accessor(scales, 5126, "VEC3", 2)}};
+  maker.json["extensionsRequired"] = {"EXT_mesh_gpu_instancing"};
+  const Scene scene = parsed(maker.gltf());
+  EXPECT_EQ(triangle_count(scene), 2u);
+  EXPECT_EQ(scene.bounds_ws.high, glm::vec3(5, 12, 0));
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  maker.json["accessors"].back()["count"] = 1;
+  EXPECT_THAT(refusal(maker.gltf()), HasSubstr("differ in number"));
+}
+
+TEST(GltfNodes, HiddenNodesAreNotDrawn) {
+  GltfMaker maker = GltfMaker::triangle();
+  maker.json["nodes"] = {
+      {{"mesh", 0}},
+      {{"children", {2}}, {"extensions", {{"KHR_node_visibility", {{"visible", false}}}}}},
+      {{"mesh", 0}}};
+  maker.json["scenes"][0]["nodes"] = {0, 1};
+  EXPECT_EQ(triangle_count(parsed(maker.gltf())), 1u);
+}
+
+TEST(GltfNodes, ExtensionsThatChangeNoShapeMayBeRequired) {
+  GltfMaker maker = GltfMaker::triangle();
+  for (const char* name : {"KHR_lights_punctual", "KHR_materials_unlit", "KHR_xmp_json_ld"}) {
+    maker.json["extensionsRequired"] = {name};
+    EXPECT_EQ(triangle_count(parsed(maker.gltf())), 1u) << name;
+  }
+  for (const char* name : {"KHR_draco_mesh_compression", "EXT_meshopt_compression", "unknown"}) {
+    maker.json["extensionsRequired"] = {name};
+    EXPECT_THAT(refusal(maker.gltf()), HasSubstr(name));
+  }
+}
+
+// Ten triangles around the origin, and a camera, moved by `offset`.
+GltfMaker scene_at(const glm::dvec3& offset) {
+  GltfMaker maker = GltfMaker::triangle();
+  maker.json["accessors"][0]["min"] = {0, 0, 0};
+  maker.json["accessors"][0]["max"] = {1, 1, 0};
+  maker.json["cameras"] = {
+      {{"name", "c"}, {"type", "perspective"}, {"perspective", {{"yfov", 1.0}, {"znear", 0.1}}}}};
+  maker.json["nodes"] = {
+      {{"mesh", 0}, {"translation", {offset.x + 0.3, offset.y, offset.z - 0.7}}},
+      {{"camera", 0}, {"translation", {offset.x + 0.5, offset.y + 0.3, offset.z + 2.25}}}};
+  maker.json["scenes"][0]["nodes"] = {0, 1};
+  return maker;
+}
+
+TEST(GltfNodes, SceneFarFromTheOriginIsThatAtTheOrigin) {
+  const Scene near_scene = parsed(scene_at(glm::dvec3(0.0)).gltf());
+  EXPECT_EQ(near_scene.origin, glm::dvec3(0.0));
+  const glm::dvec3 offset(100000.3, -4e6, 2e8 + 0.7);
+  const Scene far_scene = parsed(scene_at(offset).gltf());
+  EXPECT_LT(glm::distance(far_scene.origin, offset), 3.0);
+  const auto here = corners(near_scene), there = corners(far_scene);
+  const glm::vec3 shift(offset - far_scene.origin);
+  for (size_t i = 0; i < 3; ++i) EXPECT_LT(glm::distance(here[i] + shift, there[i]), 1e-6f);
+  ASSERT_EQ(far_scene.cameras.size(), 1u);
+  EXPECT_LT(glm::distance(near_scene.cameras[0].eye_ws + shift, far_scene.cameras[0].eye_ws),
+            1e-6f);
+  EXPECT_EQ(far_scene.cameras[0].origin, far_scene.origin);
+}
+
+TEST(GltfNodes, OriginStaysWhereOnlyAPartIsFarAway) {
+  GltfMaker maker = scene_at(glm::dvec3(0.0));
+  for (int i = 0; i < 4; ++i) maker.json["nodes"].push_back({{"mesh", 0}});
+  maker.json["nodes"].push_back({{"mesh", 0}, {"translation", {1e6, 0, 0}}});
+  maker.json["scenes"][0]["nodes"] = {0, 1, 2, 3, 4, 5, 6};
+  EXPECT_EQ(parsed(maker.gltf()).origin, glm::dvec3(0.0));
+}
+
+Material only_material(const nlohmann::json& material) {
+  GltfMaker maker = GltfMaker::triangle();
+  maker.white_texture();
+  maker.json["materials"] = {material};
+  maker.primitive()["material"] = 0;
+  return parsed(maker.gltf()).materials[0];
+}
+
+TEST(GltfMaterial, MaterialsAreSingleSidedUnlessTheFileSaysOtherwise) {
+  EXPECT_FALSE(only_material(nlohmann::json::object()).double_sided);
+  EXPECT_TRUE(only_material({{"doubleSided", true}}).double_sided);
+}
+
+TEST(GltfMaterial, SpecularGlossinessGivesBaseColourAlphaAndRoughness) {
+  const Material material = only_material({{"alphaMode", "MASK"},
+                                           {"extensions",
+                                            {{"KHR_materials_pbrSpecularGlossiness",
+                                              {{"diffuseFactor", {0.25, 0.5, 0.75, 0.5}},
+                                               {"diffuseTexture", {{"index", 0}, {"texCoord", 1}}},
+                                               {"glossinessFactor", 0.25}}}}}});
+  EXPECT_EQ(material.base_color, glm::vec4(0.25f, 0.5f, 0.75f, 0.5f));
+  EXPECT_EQ(material.base_color_texture.image, 0);
+  EXPECT_EQ(material.base_color_texture.uv_set, 1u);
+  EXPECT_EQ(material.metallic, 0.0f);
+  EXPECT_EQ(material.roughness, 0.75f);
+}
+
+// A masked triangle with vertex colours, and whether a ray meets it near its first corner.
+bool is_hit(const std::vector<uint8_t>& colors) {
+  GltfMaker maker = GltfMaker::triangle();
+  const int view = maker.view<uint8_t>(colors);
+  maker.primitive()["attributes"]["COLOR_0"] = maker.accessor(view, 5121, "VEC4", 3, true);
+  maker.json["materials"] = {{{"alphaMode", "MASK"}}};
+  maker.primitive()["material"] = 0;
+  const Scene scene = parsed(maker.gltf());
+  const auto rays = RayScene::create(scene);
+  EXPECT_TRUE(rays);
+  Camera camera;
+  camera.eye_ws = {0.1f, 0.1f, 1.0f};
+  camera.target_ws = {0.1f, 0.1f, 0.0f};
+  return cast_gbuffer(*rays, camera, 1, 1).material.pixels[0] == 0;
+}
+
+TEST(GltfMaterial, AlphaOfVertexColoursCutsOut) {
+  EXPECT_TRUE(is_hit({9, 9, 9, 255, 9, 9, 9, 255, 9, 9, 9, 255}));
+  EXPECT_FALSE(is_hit({9, 9, 9, 0, 9, 9, 9, 0, 9, 9, 9, 0}));
+  EXPECT_TRUE(is_hit({9, 9, 9, 255, 9, 9, 9, 0, 9, 9, 9, 0}));
+}
+
+TEST(GltfMaterial, BlendingWithAnAlphaOfZeroIsNotDrawn) {
+  GltfMaker maker = GltfMaker::triangle();
+  maker.json["materials"] = {{{"name", "ghost"},
+                              {"alphaMode", "BLEND"},
+                              {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 0}}}}},
+                             nlohmann::json::object()};
+  const nlohmann::json visible = maker.primitive();
+  maker.primitive()["material"] = 0;
+  maker.json["meshes"][0]["primitives"].push_back(visible);
+  const Scene scene = parsed(maker.gltf());
+  EXPECT_EQ(scene.meshes.size(), 1u);
+  EXPECT_THAT(scene.warnings, testing::Contains(HasSubstr("ghost")));
+}
+
+}  // namespace
+}  // namespace alcove::sample
