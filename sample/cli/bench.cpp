@@ -38,9 +38,23 @@ Done check_scenes(const std::vector<std::string>& scenes, const ViewOptions& vie
 }
 
 // Tells of a trade on stdout and in `report`.
-void tell(const Trade& trade, const std::string& title, const std::string& device, Json& report) {
-  std::cout << title << ", on " << device << "\n" << table_of(trade) << std::flush;
+void tell(const Trade& trade, const std::string& title, const std::string& clock, Json& report) {
+  std::cout << title << "\n" << table_of(trade, clock) << std::flush;
   report["trades"].push_back({{"of", title}, {"points", to_json(trade)}});
+}
+
+// The errors of more and more samples, on stdout and in `report`.
+Done tell_grid(const Session& session, const StaticSetup& setup, const Options& options,
+               Json& report) {
+  const auto rmse = measure_grid(session, setup, truth_options(options));
+  if (!rmse) {
+    return Failure(rmse.error());
+  }
+  const std::string title = title_of(options, options.scene);
+  std::cout << title << "\n" << grid_table(*rmse) << std::flush;
+  report["grids"].push_back(
+      {{"of", title}, {"steps", kGridSteps}, {"slices", kGridSlices}, {"rmse_by_steps", *rmse}});
+  return {};
 }
 
 }  // namespace
@@ -57,7 +71,7 @@ Done run_bench(const Options& options) {
   }
   Json report;
   report["frames"] = options.view.frames;
-  std::string device;
+  std::string clock;
   std::vector<std::vector<TradePoint>> measured;
   for (const std::string& scene : scenes) {
     Options one = options;
@@ -66,23 +80,33 @@ Done run_bench(const Options& options) {
     if (!session) {
       return Failure(session.error());
     }
-    auto points = measure_trade(*session, static_setup(one, session->camera), truth_options(one));
-    if (!points) {
-      return Failure(std::move(points.error()));
+    report["device"] = session->gpu->device().properties().deviceName;
+    const StaticSetup setup = static_setup(one, session->camera);
+    if (options.grid) {
+      if (auto done = tell_grid(*session, setup, one, report); !done) {
+        return done;
+      }
+      continue;
     }
-    device = session->gpu->device().properties().deviceName;
-    report["device"] = device;
-    tell(trade_of(*points), title_of(options, scene), device, report);
-    measured.push_back(std::move(*points));
+    auto trade = measure_trade(*session, setup, truth_options(one));
+    if (!trade) {
+      return Failure(std::move(trade.error()));
+    }
+    report["time"] = clock = trade->clock_title;
+    tell(trade_of(trade->points), title_of(options, scene), clock, report);
+    measured.push_back(std::move(trade->points));
+  }
+  if (options.grid) {
+    return write_text(options.out / "report.json", report.dump(2) + "\n");
   }
   const Trade overall = trade_of(over_scenes(measured));
   const std::string title = scenes.size() == 1
                                 ? title_of(options, scenes.front())
                                 : "mean of " + std::to_string(scenes.size()) + " scenes";
   if (scenes.size() > 1) {
-    tell(overall, title, device, report);
+    tell(overall, title, clock, report);
   }
-  if (auto written = write_text(options.out / "trade.svg", plot_of(overall, title + ", " + device));
+  if (auto written = write_text(options.out / "trade.svg", plot_of(overall, title, clock));
       !written) {
     return written;
   }

@@ -267,6 +267,14 @@ void add_limits(CLI::App& app, Options& options) {
       [&](const OptionValue& given) { options.tolerance = given.positive("an error above 0"); });
 }
 
+void add_grid(CLI::App& app, bool& grid) {
+  Group(app).add_flag(
+      "--grid",
+      "instead, a table of the error with 8 to 64 steps and 1 to 8 slices, all else "
+      "as --quality and --set give it; nothing is timed",
+      grid);
+}
+
 void add_cost(CLI::App& app, Options& options) {
   const Group group(app, "Cost");
   group.add("--family", "NAME", "the modelled GPU: bonaire (PS4-like) or navi21 (RDNA2); both",

@@ -34,6 +34,8 @@ void add_no_cache(CLI::App& app, bool& use_cache);
 void add_limits(CLI::App& app, Options& options);
 // For `cost`: which GPU, which image, and where to write.
 void add_cost(CLI::App& app, Options& options);
+// For `bench`: the table of steps and slices.
+void add_grid(CLI::App& app, bool& grid);
 void add_light(CLI::App& app, Options& options);
 void add_materials(CLI::App& app, MaterialTreatment& materials);
 void add_lit(CLI::App& app, bool& lit);

@@ -63,6 +63,7 @@ void add_ablate(CLI::App& app, Options& options) {
 
 void add_bench(CLI::App& app, Options& options) {
   add_scenes(app, options.scenes);
+  add_grid(app, options.grid);
   add_materials(app, options.materials);
   add_comparison(app, options);
   add_output(app, options);

@@ -18,8 +18,8 @@ using Done = tl::expected<void, std::string>;
 std::string shown(const TradePoint& point) {
   std::ostringstream out;
   out << point.name << std::fixed << ": RMSE " << std::setprecision(4) << point.rmse << " in "
-      << std::setprecision(2) << point.gpu_ms << " ms, " << std::setprecision(1) << mib(point.bytes)
-      << " MiB";
+      << std::setprecision(3) << point.time_ms << " ms, " << std::setprecision(1)
+      << mib(point.bytes) << " MiB";
   return out.str();
 }
 
@@ -66,19 +66,19 @@ Done run_recommend(const Options& options) {
   if (!session) {
     return Failure(session.error());
   }
-  auto points =
+  auto measured =
       measure_trade(*session, static_setup(options, session->camera), truth_options(options));
-  if (!points) {
-    return Failure(std::move(points.error()));
+  if (!measured) {
+    return Failure(std::move(measured.error()));
   }
-  const Trade trade = trade_of(std::move(*points));
+  const Trade trade = trade_of(std::move(measured->points));
   const TradePoint* chosen = chosen_of(trade, options);
   if (chosen == nullptr) {
     return Failure(nothing_holds(trade, options));
   }
   std::cout << shown(*chosen) << "\n";
   print_neighbours(trade, *chosen);
-  std::cout << "RMSE of visibility against ray-traced truth, GPU time of the occlusion passes at "
+  std::cout << "RMSE of visibility against ray-traced truth; " << measured->clock_title << " at "
             << options.view.width << "x" << options.view.height << " on "
             << session->gpu->device().properties().deviceName << "\n"
             << shell_line(render_arguments(

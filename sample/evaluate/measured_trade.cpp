@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "evaluate/variant_errors.h"
+#include "gpu_cost/modelled_frame.h"
 #include "render/settings_json.h"
 #include "support/mib.h"
 
@@ -14,20 +15,87 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-TradePoint point_of(const VariantErrors& errors, const BaseTimes& base) {
-  return {errors.variant.name,
-          errors.variant.settings,
-          errors.scene.rmse,
-          errors.height_field.rmse,
-          errors.cost.gpu * base.gpu_ms,
-          errors.cost.processor * base.processor_ms,
-          errors.cost.bytes};
+using Failure = tl::unexpected<std::string>;
+
+constexpr const GpuPart& kModelledPart = kGpuParts[1];
+
+// The times of variants by a clock that is chosen once.
+class TradeClock {
+ public:
+  TradeClock(const VkPhysicalDeviceProperties& device, const StaticSetup& setup) : setup_(setup) {
+    if (device.deviceType != VK_PHYSICAL_DEVICE_TYPE_CPU) {
+      clock_ = Clock::timestamps;
+    } else if (auto made = create_null_device(kModelledPart.family)) {
+      clock_ = Clock::modelled;
+      null_device_ = *made;
+    }
+  }
+
+  Clock clock() const { return clock_; }
+  std::string title() const;
+  tl::expected<TradePoint, std::string> point_of(const VariantErrors& errors,
+                                                 const BaseTimes& base) const;
+
+ private:
+  tl::expected<double, std::string> modelled_ms(const passes::OcclusionSettings& settings) const;
+
+  StaticSetup setup_;
+  Clock clock_ = Clock::processor;
+  NullDevice null_device_;
+};
+
+std::string TradeClock::title() const {
+  switch (clock_) {
+    case Clock::modelled:
+      return "modelled time of a frame in motion on " + std::string(kModelledPart.title);
+    case Clock::timestamps:
+      return "GPU time";
+    default:
+      return "processor time of all threads";
+  }
+}
+
+tl::expected<double, std::string> TradeClock::modelled_ms(
+    const passes::OcclusionSettings& settings) const {
+  CostInputs inputs{setup_.width, setup_.height, setup_.normals != NormalSource::kDepth, false,
+                    settings};
+  // As variants are drawn.
+  inputs.settings.specular = passes::Specular::none;
+  inputs.settings.bent_normal = false;
+  const auto frames = modelled_frames(kModelledPart, null_device_, inputs);
+  if (!frames) {
+    return Failure(frames.error());
+  }
+  return (*frames)[static_cast<std::size_t>(passes::cost::FrameState::moving)].milliseconds();
+}
+
+tl::expected<TradePoint, std::string> TradeClock::point_of(const VariantErrors& errors,
+                                                           const BaseTimes& base) const {
+  TradePoint point{errors.variant.name, errors.variant.settings, errors.scene.rmse,
+                   errors.height_field.rmse};
+  point.processor_ms = errors.cost.processor * base.processor_ms;
+  point.bytes = errors.cost.bytes;
+  if (clock_ == Clock::modelled) {
+    const auto modelled = modelled_ms(point.settings);
+    if (!modelled) {
+      return Failure(modelled.error());
+    }
+    point.time_ms = *modelled;
+  } else if (clock_ == Clock::timestamps) {
+    point.time_ms = errors.cost.gpu * base.gpu_ms;
+    point.spread_ms = errors.cost.gpu_spread * base.gpu_ms;
+  } else {
+    point.time_ms = point.processor_ms;
+    point.spread_ms = errors.cost.processor_spread * base.processor_ms;
+  }
+  return point;
 }
 
 }  // namespace
 
-tl::expected<std::vector<TradePoint>, std::string> measure_trade(
-    const Session& session, const StaticSetup& setup, const TruthOptions& truth_options) {
+tl::expected<MeasuredTrade, std::string> measure_trade(const Session& session,
+                                                       const StaticSetup& setup,
+                                                       const TruthOptions& truth_options) {
   std::vector<Variant> ways = preset_sweep(session.settings);
   // The session's own settings are drawn as what the others are timed beside.
   std::string own_name = "as given";
@@ -36,37 +104,75 @@ tl::expected<std::vector<TradePoint>, std::string> measure_trade(
     own_name = own->name;
     ways.erase(own);
   }
+  const VkPhysicalDeviceProperties& device = session.gpu->device().properties();
+  const TradeClock clock(device, setup);
   const auto report = run_variants(session, setup, truth_options, ways, "trade");
   if (!report) {
     return tl::unexpected(report.error());
   }
-  std::vector<TradePoint> points;
+  MeasuredTrade trade{{}, clock.clock(), clock.title()};
   for (const VariantErrors& errors : report->rows) {
-    points.push_back(point_of(errors, report->base_times));
+    auto point = clock.point_of(errors, report->base_times);
+    if (!point) {
+      return Failure(std::move(point.error()));
+    }
+    trade.points.push_back(std::move(*point));
   }
-  points.front().name = own_name;
-  if (!std::ranges::all_of(points, [](const TradePoint& point) { return point.gpu_ms > 0; })) {
-    return tl::unexpected("The device " +
-                          std::string(session.gpu->device().properties().deviceName) +
-                          " does not time its passes; choose another with --device.");
+  trade.points.front().name = own_name;
+  if (!std::ranges::all_of(trade.points, [](const TradePoint& p) { return p.time_ms > 0; })) {
+    return Failure("The device " + std::string(device.deviceName) +
+                   " does not time its passes; choose another with --device.");
   }
-  return points;
+  return trade;
 }
 
-std::string table_of(const Trade& trade) {
+tl::expected<std::vector<double>, std::string> measure_grid(const Session& session,
+                                                            const StaticSetup& setup,
+                                                            const TruthOptions& truth_options) {
+  const auto report =
+      run_variants(session, setup, truth_options, sampling_grid(session.settings), "grid", false);
+  if (!report) {
+    return Failure(report.error());
+  }
+  std::vector<double> rmse;
+  for (auto row = report->rows.begin() + 1; row != report->rows.end(); ++row) {
+    rmse.push_back(row->scene.rmse);
+  }
+  return rmse;
+}
+
+std::string grid_table(const std::vector<double>& rmse) {
   std::ostringstream out;
-  out << std::left << std::setw(34) << "  RMSE of visibility against" << std::right
-      << "scene truth   height field    GPU ms   processor ms     MiB\n"
+  out << "RMSE of visibility against scene truth\n  slices:         ";
+  for (const std::uint32_t slices : kGridSlices) {
+    out << std::setw(8) << slices;
+  }
+  out << "\n" << std::fixed << std::setprecision(4);
+  for (std::size_t i = 0; i < rmse.size(); ++i) {
+    if (i % kGridSlices.size() == 0) {
+      out << "  " << std::setw(2) << kGridSteps[i / kGridSlices.size()] << " steps a side";
+    }
+    out << std::setw(8) << rmse[i] << ((i + 1) % kGridSlices.size() == 0 ? "\n" : "");
+  }
+  return out.str();
+}
+
+std::string table_of(const Trade& trade, const std::string& clock_title) {
+  std::ostringstream out;
+  out << "Time: " << clock_title << "\n"
+      << std::left << std::setw(34) << "  RMSE of visibility against" << std::right
+      << "scene truth   height field   time ms   spread   processor ms     MiB\n"
       << std::fixed;
   for (std::size_t i = 0; i < trade.points.size(); ++i) {
     const TradePoint& point = trade.points[i];
     out << (trade.on_pareto_front[i] ? "* " : "  ") << std::left << std::setw(34) << point.name
         << std::right << std::setprecision(4) << std::setw(9) << point.rmse << std::setw(15)
-        << point.height_field_rmse << std::setprecision(2) << std::setw(10) << point.gpu_ms
-        << std::setw(15) << point.processor_ms << std::setprecision(1) << std::setw(8)
-        << mib(point.bytes) << "\n";
+        << point.height_field_rmse << std::setprecision(3) << std::setw(10) << point.time_ms
+        << std::setw(9) << point.spread_ms << std::setprecision(1) << std::setw(15)
+        << point.processor_ms << std::setprecision(1) << std::setw(8) << mib(point.bytes) << "\n";
   }
-  return out.str() + "* nothing here is both faster and nearer to the scene's truth\n";
+  return out.str() +
+         "* every setting that errs by as little or less is slower by more than the spread\n";
 }
 
 Json to_json(const Trade& trade) {
@@ -77,7 +183,8 @@ Json to_json(const Trade& trade) {
                     {"on_pareto_front", bool(trade.on_pareto_front[i])},
                     {"rmse_scene_truth", point.rmse},
                     {"rmse_height_field_truth", point.height_field_rmse},
-                    {"gpu_ms", point.gpu_ms},
+                    {"time_ms", point.time_ms},
+                    {"spread_ms", point.spread_ms},
                     {"processor_ms", point.processor_ms},
                     {"bytes", point.bytes},
                     {"settings", to_json(point.settings)}});

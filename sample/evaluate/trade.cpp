@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "alcove/passes/setting_names.h"
@@ -78,13 +77,35 @@ std::vector<Variant> preset_sweep(const OcclusionSettings& base) {
   return list.take();
 }
 
+std::vector<Variant> sampling_grid(const OcclusionSettings& base) {
+  std::vector<Variant> grid;
+  for (const std::uint32_t steps : kGridSteps) {
+    for (const std::uint32_t slices : kGridSlices) {
+      OcclusionSettings settings = base;
+      settings.steps = steps;
+      settings.slices = slices;
+      grid.push_back({"", std::to_string(slices) + " x " + std::to_string(steps), settings});
+    }
+  }
+  return grid;
+}
+
 Trade trade_of(std::vector<TradePoint> points) {
-  std::ranges::stable_sort(points, {}, &TradePoint::gpu_ms);
+  // Of equal times the least error comes first.
+  std::ranges::stable_sort(points, [](const TradePoint& a, const TradePoint& b) {
+    return std::pair(a.time_ms, a.rmse) < std::pair(b.time_ms, b.rmse);
+  });
   Trade trade{std::move(points), {}};
-  double least = std::numeric_limits<double>::infinity();
-  for (const TradePoint& point : trade.points) {
-    trade.on_pareto_front.push_back(point.rmse < least);
-    least = std::min(least, point.rmse);
+  for (std::size_t i = 0; i < trade.points.size(); ++i) {
+    const TradePoint& point = trade.points[i];
+    bool ahead = true;
+    for (std::size_t j = 0; j < trade.points.size() && ahead; ++j) {
+      const TradePoint& other = trade.points[j];
+      const bool errs_less = other.rmse < point.rmse || (other.rmse == point.rmse && j < i);
+      ahead =
+          j == i || !errs_less || other.time_ms > point.time_ms + point.spread_ms + other.spread_ms;
+    }
+    trade.on_pareto_front.push_back(ahead);
   }
   return trade;
 }
@@ -103,7 +124,8 @@ std::vector<TradePoint> over_scenes(std::span<const std::vector<TradePoint>> sce
     all[i].rmse = std::sqrt(mean([](const TradePoint& p) { return p.rmse * p.rmse; }));
     all[i].height_field_rmse = std::sqrt(
         mean([](const TradePoint& p) { return p.height_field_rmse * p.height_field_rmse; }));
-    all[i].gpu_ms = mean([](const TradePoint& p) { return p.gpu_ms; });
+    all[i].time_ms = mean([](const TradePoint& p) { return p.time_ms; });
+    all[i].spread_ms = mean([](const TradePoint& p) { return p.spread_ms; });
     all[i].processor_ms = mean([](const TradePoint& p) { return p.processor_ms; });
     for (const std::vector<TradePoint>& points : scenes) {
       all[i].bytes = std::max(all[i].bytes, points[i].bytes);
@@ -115,7 +137,7 @@ std::vector<TradePoint> over_scenes(std::span<const std::vector<TradePoint>> sce
 const TradePoint* nearest_within_ms(std::span<const TradePoint> points, double ms) {
   const TradePoint* best = nullptr;
   for (const TradePoint& point : points) {
-    if (point.gpu_ms <= ms && (best == nullptr || point.rmse < best->rmse)) {
+    if (point.time_ms <= ms && (best == nullptr || point.rmse < best->rmse)) {
       best = &point;
     }
   }
@@ -125,7 +147,7 @@ const TradePoint* nearest_within_ms(std::span<const TradePoint> points, double m
 const TradePoint* fastest_within_rmse(std::span<const TradePoint> points, double rmse) {
   const TradePoint* best = nullptr;
   for (const TradePoint& point : points) {
-    if (point.rmse <= rmse && (best == nullptr || point.gpu_ms < best->gpu_ms)) {
+    if (point.rmse <= rmse && (best == nullptr || point.time_ms < best->time_ms)) {
       best = &point;
     }
   }

@@ -1,6 +1,8 @@
-// The trade of speed for accuracy: what can be spent, what it buys, and the least that will do.
+// Error against time over many settings: the sweep, its Pareto front, and the choice of a setting by
+// a budget or by a tolerance.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -11,35 +13,50 @@
 
 namespace alcove::sample {
 
-// The qualities, and what lies between and beyond them: resolution, slices and steps vary, all else
-// is as in `base`. Each is there once, `base` among them if it is one of them.
+// The presets and settings between and beyond them: tile size, slices and steps vary, everything else
+// is as in `base`. No setting appears twice. `base` itself is among them if it equals one of them.
 [[nodiscard]] std::vector<Variant> preset_sweep(const passes::OcclusionSettings& base);
 
-// Settings with what they cost on a device and how far their visibility is from the truth.
+// `base` with 8, 16, 32 and 64 steps and 1, 2, 4 and 8 slices, by steps first: whether the
+// estimator converges, so that more samples never err by more.
+inline constexpr std::array<std::uint32_t, 4> kGridSteps{8, 16, 32, 64};
+inline constexpr std::array<std::uint32_t, 4> kGridSlices{1, 2, 4, 8};
+[[nodiscard]] std::vector<Variant> sampling_grid(const passes::OcclusionSettings& base);
+
+// What a trade's times are.
+enum class Clock : std::uint8_t {
+  modelled,    // GPU time of a frame with a moving camera by the cost model (gpu_cost)
+  timestamps,  // GPU time by the device's timestamps
+  processor,   // processor time of all threads, for software devices
+};
+
+// Settings, what they cost, and the error of their visibility.
 struct TradePoint {
   std::string name;
   passes::OcclusionSettings settings;
   double rmse = 0;               // against ray-traced scene truth
   double height_field_rmse = 0;  // against brute force on the same depth buffer
-  double gpu_ms = 0;             // GPU time of the occlusion passes of a frame
-  double processor_ms = 0;       // processor time of all threads for them
+  double time_ms = 0;            // of the occlusion passes of a frame, by the trade's clock
+  double spread_ms = 0;          // of that time; 0 where it is modelled
+  double processor_ms = 0;       // processor time of all threads for them; 0 where it was not taken
   std::uint64_t bytes = 0;       // of transients at their peak, and histories
 };
 
-// In order of GPU time; `on_pareto_front[i]` says that no other point is both faster and nearer to
-// the truth than point i.
+// In order of time. `on_pareto_front[i]` says that every point that errs by as little as point i or
+// less is slower by more than the spread of both: a lead within the spread may be chance.
 struct Trade {
   std::vector<TradePoint> points;
   std::vector<bool> on_pareto_front;
 };
 [[nodiscard]] Trade trade_of(std::vector<TradePoint> points);
 
-// Of the same ways in several scenes: mean times, root mean squares of errors, most bytes. All
-// lists are as long and in the same order; there is at least one.
+// Combines the points of the same settings in several scenes: mean times and spreads, root mean
+// squares of errors, the largest number of bytes. There is at least one list; all lists have one
+// length and one order.
 [[nodiscard]] std::vector<TradePoint> over_scenes(std::span<const std::vector<TradePoint>> scenes);
 
-// The nearest to the truth that takes at most so many milliseconds of GPU time, and the fastest
-// that errs by at most so much; null where none does.
+// The point with the least error among those that take at most `ms`, and the fastest among those
+// with an error of at most `rmse`; null where there is none.
 [[nodiscard]] const TradePoint* nearest_within_ms(std::span<const TradePoint> points, double ms);
 [[nodiscard]] const TradePoint* fastest_within_rmse(std::span<const TradePoint> points,
                                                     double rmse);

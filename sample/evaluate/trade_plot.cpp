@@ -4,6 +4,8 @@
 #include <cmath>
 #include <iomanip>
 #include <sstream>
+#include <utility>
+#include <vector>
 
 namespace alcove::sample {
 namespace {
@@ -25,7 +27,7 @@ struct Axes {
   double most;
 
   explicit Axes(const Trade& trade)
-      : first_ms(trade.points.front().gpu_ms / 1.2), last_ms(trade.points.back().gpu_ms * 1.2) {
+      : first_ms(trade.points.front().time_ms / 1.2), last_ms(trade.points.back().time_ms * 1.2) {
     const auto [low, high] = std::ranges::minmax(trade.points, {}, &TradePoint::rmse);
     const double margin = std::max(0.08 * (high.rmse - low.rmse), 1e-4);
     least = std::max(low.rmse - margin, 0.0);
@@ -76,7 +78,7 @@ std::string number(double value) {
   return out.str();
 }
 
-void draw_axes(std::ostream& out, const Axes& axes) {
+void draw_axes(std::ostream& out, const Axes& axes, const std::string& clock_title) {
   const double step = round_step(axes.most - axes.least, 6);
   const auto last = static_cast<int>(std::floor(axes.most / step));
   for (auto i = static_cast<int>(std::ceil(axes.least / step)); i <= last; ++i) {
@@ -95,8 +97,7 @@ void draw_axes(std::ostream& out, const Axes& axes) {
       draw_label(out, axes.x(ms), kHeight - kBottom + 18, "middle", number(ms));
     }
   }
-  draw_label(out, kLeft + 0.5 * kPlotWidth, kHeight - 14, "middle",
-             "GPU time of the occlusion passes, ms");
+  draw_label(out, kLeft + 0.5 * kPlotWidth, kHeight - 14, "middle", clock_title + ", ms");
   draw_label(out, kLeft, kTop - 10, "middle", "RMSE");
 }
 
@@ -104,43 +105,101 @@ void draw_front(std::ostream& out, const Trade& trade, const Axes& axes) {
   out << "<polyline fill=\"none\" stroke=\"#1f6f8b\" stroke-width=\"2\" points=\"";
   for (std::size_t i = 0; i < trade.points.size(); ++i) {
     if (trade.on_pareto_front[i]) {
-      out << axes.x(trade.points[i].gpu_ms) << "," << axes.y(trade.points[i].rmse) << " ";
+      out << axes.x(trade.points[i].time_ms) << "," << axes.y(trade.points[i].rmse) << " ";
     }
   }
   out << "\"/>\n";
 }
 
-// The front's names stand by turns right above and left below the line, clear of each other.
+struct Box {
+  double left, top, right, bottom;
+
+  bool overlaps(const Box& other) const {
+    return left < other.right && other.left < right && top < other.bottom && other.top < bottom;
+  }
+};
+
+// Places texts of 12 pixels so that none covers another or a point.
+class Labels {
+ public:
+  explicit Labels(std::vector<Box> points) : taken_(std::move(points)) {}
+
+  // Draws `text` beside the point, as near as there is room, with a line to it from further away.
+  void draw(std::ostream& out, double x, double y, const std::string& text) {
+    constexpr double kStep = 16;
+    constexpr int kRows = 14;
+    for (int row = 0; row < kRows; ++row) {
+      // By turns above and below, further away each time, right of the point before left of it.
+      const double distance = kStep * (row / 2);
+      const double base = row % 2 == 0 ? y - 7 - distance : y + 16 + distance;
+      for (const bool right : {true, false}) {
+        if (const Box box = box_of(x, base, right, text); is_free(box)) {
+          taken_.push_back(box);
+          if (row > 1) {
+            draw_line(out, x, y, x + (right ? 8 : -8), base - 4);
+          }
+          draw_label(out, x + (right ? 9 : -9), base, right ? "start" : "end", text);
+          return;
+        }
+      }
+    }
+  }
+
+ private:
+  static Box box_of(double x, double base, bool right, const std::string& text) {
+    const double width = 6.6 * static_cast<double>(text.size());
+    const double left = right ? x + 9 : x - 9 - width;
+    return {left, base - 11, left + width, base + 4};
+  }
+  bool is_free(const Box& box) const {
+    return box.left > kLeft && box.right < kWidth - 4 && box.top > kTop &&
+           box.bottom < kHeight - kBottom &&
+           std::ranges::none_of(taken_, [&](const Box& other) { return box.overlaps(other); });
+  }
+
+  std::vector<Box> taken_;
+};
+
 void draw_points(std::ostream& out, const Trade& trade, const Axes& axes) {
-  bool above = true;
+  std::vector<Box> circles;
+  for (const TradePoint& point : trade.points) {
+    const double x = axes.x(point.time_ms);
+    const double y = axes.y(point.rmse);
+    circles.push_back({x - 5, y - 5, x + 5, y + 5});
+  }
+  Labels labels(circles);
   for (std::size_t i = 0; i < trade.points.size(); ++i) {
     const TradePoint& point = trade.points[i];
-    const double x = axes.x(point.gpu_ms);
+    const double x = axes.x(point.time_ms);
     const double y = axes.y(point.rmse);
-    out << "<g><title>" << escaped(point.name) << ", " << number(point.rmse) << ", "
-        << number(point.gpu_ms) << " ms</title><circle cx=\"" << x << "\" cy=\"" << y
-        << "\" r=\"4\" fill=\"" << (trade.on_pareto_front[i] ? "#1f6f8b" : "#bbb") << "\"/></g>\n";
-    if (!trade.on_pareto_front[i]) {
-      continue;
+    const char* colour = trade.on_pareto_front[i] ? "#1f6f8b" : "#bbb";
+    if (point.spread_ms > 0 && point.spread_ms < point.time_ms) {
+      out << "<line x1=\"" << axes.x(point.time_ms - point.spread_ms) << "\" y1=\"" << y
+          << "\" x2=\"" << axes.x(point.time_ms + point.spread_ms) << "\" y2=\"" << y
+          << "\" stroke=\"" << colour << "\"/>\n";
     }
-    const double wide = 0.2 * kPlotWidth;
-    const bool right = x < kLeft + wide || (above && x < kWidth - kRight - wide);
-    draw_label(out, x + (right ? 8 : -8), y + (above ? -7 : 16), right ? "start" : "end",
-               point.name);
-    above = !above;
+    out << "<g><title>" << escaped(point.name) << ", " << number(point.rmse) << ", "
+        << number(point.time_ms) << " ms</title><circle cx=\"" << x << "\" cy=\"" << y
+        << "\" r=\"4\" fill=\"" << colour << "\"/></g>\n";
+  }
+  for (std::size_t i = 0; i < trade.points.size(); ++i) {
+    if (trade.on_pareto_front[i]) {
+      labels.draw(out, axes.x(trade.points[i].time_ms), axes.y(trade.points[i].rmse),
+                  trade.points[i].name);
+    }
   }
 }
 
 }  // namespace
 
-std::string plot_of(const Trade& trade, const std::string& title) {
+std::string plot_of(const Trade& trade, const std::string& title, const std::string& clock_title) {
   const Axes axes(trade);
   std::ostringstream out;
   out << "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" << kWidth << "\" height=\"" << kHeight
       << "\" font-family=\"sans-serif\" font-size=\"12\">\n"
       << "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n";
   draw_label(out, 0.5 * kWidth, 20, "middle", title);
-  draw_axes(out, axes);
+  draw_axes(out, axes, clock_title);
   draw_front(out, trade, axes);
   draw_points(out, trade, axes);
   out << "</svg>\n";

@@ -80,7 +80,8 @@ BaseTimes VariantRunner::base_times() const {
   return {median(base_gpu_ms_), median(base_processor_ms_)};
 }
 
-tl::expected<VariantResult, std::string> VariantRunner::run(Gpu& gpu, const Variant& variant) {
+tl::expected<VariantResult, std::string> VariantRunner::run(Gpu& gpu, const Variant& variant,
+                                                            bool timed) {
   const auto renderer =
       FrameRenderer::create(gpu, scene_, {setup_.width, setup_.height}, setup_.normals);
   if (!renderer) {
@@ -90,7 +91,10 @@ tl::expected<VariantResult, std::string> VariantRunner::run(Gpu& gpu, const Vari
   if (!images) {
     return Failure(std::move(images.error()));
   }
-  VariantResult result{std::move(images->visibility), {}};
+  VariantResult result{std::move(images->visibility), {.bytes = bytes_of(**renderer)}};
+  if (!timed) {
+    return result;
+  }
   std::vector<double> gpu_ratios;
   std::vector<double> processor_ratios;
   for (std::uint32_t i = 0; i <= kTimedPairs; ++i) {
@@ -109,8 +113,8 @@ tl::expected<VariantResult, std::string> VariantRunner::run(Gpu& gpu, const Vari
       processor_ratios.push_back(other->cpu_ms / base->cpu_ms);
     }
   }
-  result.cost = {median(std::move(gpu_ratios)), median(std::move(processor_ratios)),
-                 bytes_of(**renderer)};
+  result.cost = {median(gpu_ratios), median(processor_ratios), bytes_of(**renderer),
+                 quartile_spread(gpu_ratios), quartile_spread(processor_ratios)};
   return result;
 }
 

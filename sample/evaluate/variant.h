@@ -39,10 +39,13 @@ struct StaticSetup {
     const passes::OcclusionSettings& settings);
 
 // What a variant costs beside the base: medians over pairs of frames, drawn one after the other.
+// The spreads are half of the distance between the quartiles of the same ratios.
 struct VariantCost {
   double gpu = 1;           // GPU time of the occlusion over that of the base
   double processor = 1;     // processor time of all threads for it, alike
   std::uint64_t bytes = 0;  // of transients at their peak, and histories
+  double gpu_spread = 0;
+  double processor_spread = 0;
 };
 
 struct VariantResult {
@@ -68,7 +71,10 @@ class VariantRunner {
   // Over all variants so far; nothing before the first.
   BaseTimes base_times() const;
   // `gpu` is another device on which nothing was drawn: its histories are the variant's own.
-  [[nodiscard]] tl::expected<VariantResult, std::string> run(Gpu& gpu, const Variant& variant);
+  // Without `timed` only the image is drawn, and the cost is left at its defaults but for the
+  // bytes.
+  [[nodiscard]] tl::expected<VariantResult, std::string> run(Gpu& gpu, const Variant& variant,
+                                                             bool timed = true);
 
  private:
   VariantRunner(const Scene& scene, const StaticSetup& setup, const passes::OcclusionSettings& base)

@@ -19,12 +19,12 @@ VariantErrors errors_of(const Variant& variant, const VariantResult& result, con
 // On a device of its own: the variant's histories begin anew.
 tl::expected<VariantResult, std::string> run_variant(VariantRunner& runner,
                                                      const DeviceRequest& device,
-                                                     const Variant& variant) {
+                                                     const Variant& variant, bool timed) {
   const auto gpu = open_gpu(device);
   if (!gpu) {
     return Failure(gpu.error());
   }
-  auto result = runner.run(**gpu, variant);
+  auto result = runner.run(**gpu, variant, timed);
   if (!result) {
     return result;
   }
@@ -40,7 +40,7 @@ tl::expected<VariantReport, std::string> run_variants(const Session& session,
                                                       const StaticSetup& setup,
                                                       const TruthOptions& truth_options,
                                                       const std::vector<Variant>& variants,
-                                                      const std::string& progress) {
+                                                      const std::string& progress, bool timed) {
   auto runner = VariantRunner::create(*session.gpu, session.scene, setup, session.settings);
   if (!runner) {
     return Failure(std::move(runner.error()));
@@ -57,7 +57,7 @@ tl::expected<VariantReport, std::string> run_variants(const Session& session,
                                   {base.visibility, {.bytes = runner->base_bytes()}}, *truths));
   const Progress print = print_progress(progress);
   for (const Variant& variant : variants) {
-    const auto result = run_variant(*runner, session.device, variant);
+    const auto result = run_variant(*runner, session.device, variant, timed);
     if (!result) {
       return Failure(result.error());
     }

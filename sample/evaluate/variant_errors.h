@@ -25,9 +25,9 @@ struct VariantReport {
 };
 
 // Draws the session's own settings and the variants beside them. `progress` names what is under
-// way.
+// way; without `timed` nothing is timed, which is quicker.
 [[nodiscard]] tl::expected<VariantReport, std::string> run_variants(
     const Session& session, const StaticSetup& setup, const TruthOptions& truth_options,
-    const std::vector<Variant>& variants, const std::string& progress);
+    const std::vector<Variant>& variants, const std::string& progress, bool timed = true);
 
 }  // namespace alcove::sample

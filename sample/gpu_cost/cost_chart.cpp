@@ -13,12 +13,17 @@ constexpr double kLeft = 170;   // of the bars
 constexpr double kRight = 130;  // for the totals
 constexpr double kBar = 14;
 constexpr double kRow = 18;
+constexpr double kGap = 6;       // between labels
 constexpr double kHeading = 44;  // of a part
 constexpr double kLegend = 34;
 
 // Told apart in print and by people who see no red or green (the palette of Okabe and Ito).
 constexpr std::array<const char*, 7> kColours{"#0072b2", "#e69f00", "#009e73", "#cc79a7",
                                               "#56b4e9", "#d55e00", "#999999"};
+
+// Text on lines: with a white edge, so that it stays readable.
+constexpr const char* kOverLines =
+    " stroke=\"white\" stroke-width=\"4\" paint-order=\"stroke\" stroke-linejoin=\"round\"";
 
 void draw_text(std::ostream& out, double x, double y, const char* anchor, const std::string& text,
                const char* more = "") {
@@ -89,7 +94,9 @@ void Chart::draw_part(const GpuPart& part) {
   const PeerTime& peer = part.peers[2];
   double longest = peer.milliseconds;
   std::size_t rows = 0;
+  std::size_t labels = 0;
   for (const SettingsCost& cost : costs_) {
+    labels += cost.family == part.family ? 1 : 0;
     for (const ModelledFrame& frame : cost.frames) {
       if (cost.family == part.family) {
         longest = std::max(longest, frame.milliseconds());
@@ -108,6 +115,10 @@ void Chart::draw_part(const GpuPart& part) {
   draw_text(body_, line, top - 6, "middle",
             std::string(peer.name) + " " + number(peer.milliseconds));
   y_ = top;
+  // Below the bars and their texts.
+  const double height = kRow * static_cast<double>(rows) + kGap * static_cast<double>(labels);
+  body_ << "<line x1=\"" << line << "\" y1=\"" << top - 2 << "\" x2=\"" << line << "\" y2=\""
+        << top + height << "\" stroke=\"black\" stroke-dasharray=\"4 3\"/>\n";
   for (const SettingsCost& cost : costs_) {
     if (cost.family != part.family) {
       continue;
@@ -123,13 +134,11 @@ void Chart::draw_part(const GpuPart& part) {
                      std::string(pass.limit()));
         x += width;
       }
-      draw_text(body_, x + 6, y_ + kBar - 2, "start", number(frame.milliseconds()));
+      draw_text(body_, x + 6, y_ + kBar - 2, "start", number(frame.milliseconds()), kOverLines);
       y_ += kRow;
     }
-    y_ += 6;
+    y_ += kGap;
   }
-  body_ << "<line x1=\"" << line << "\" y1=\"" << top - 2 << "\" x2=\"" << line << "\" y2=\"" << y_
-        << "\" stroke=\"black\" stroke-dasharray=\"4 3\"/>\n";
 }
 
 void Chart::draw_legend() {

@@ -16,4 +16,15 @@ inline double median(std::vector<double> values) {
   return *middle;
 }
 
+// Half the distance between the first and the third quartile: how far apart values are, whatever a
+// few of them are. 0 of nothing.
+inline double quartile_spread(std::vector<double> values) {
+  if (values.empty()) {
+    return 0;
+  }
+  std::ranges::sort(values);
+  const std::size_t last = values.size() - 1;
+  return 0.5 * (values[3 * last / 4] - values[last / 4]);
+}
+
 }  // namespace alcove::sample

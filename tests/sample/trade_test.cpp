@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -14,8 +16,8 @@ namespace {
 
 using passes::OcclusionSettings;
 
-TradePoint point(const std::string& name, double gpu_ms, double rmse) {
-  return {name, {}, rmse, 0.5 * rmse, gpu_ms, 2.0 * gpu_ms, 1000};
+TradePoint point(const std::string& name, double time_ms, double rmse, double spread_ms = 0) {
+  return {name, {}, rmse, 0.5 * rmse, time_ms, spread_ms, 2.0 * time_ms, 1000};
 }
 
 TEST(PresetSweep, AreEachThereOnceWithTheQualitiesAmongThem) {
@@ -61,6 +63,43 @@ TEST(Trade, TheFrontIsWhatNothingIsBothFasterAndNearerThan) {
   EXPECT_EQ(trade.on_pareto_front, (std::vector<bool>{true, true, false, false, true}));
 }
 
+TEST(Trade, ALeadWithinTheSpreadIsNone) {
+  const Trade trade =
+      trade_of({point("no faster", 10.0, 0.06, 0.3), point("nearer", 10.4, 0.05, 0.2),
+                point("surely faster", 9.0, 0.08, 0.3)});
+  EXPECT_EQ(trade.on_pareto_front, (std::vector<bool>{true, false, true}));
+}
+
+TEST(Trade, TheFrontDoesNotDependOnNoiseWithinTheSpread) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> noise(-0.07, 0.07);
+  for (int run = 0; run < 100; ++run) {
+    const Trade trade = trade_of({point("a", 2.0 + noise(random), 0.06, 0.1),
+                                  point("b", 2.05 + noise(random), 0.05, 0.1),
+                                  point("c", 3.0 + noise(random), 0.04, 0.1)});
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_EQ(trade.on_pareto_front[i], trade.points[i].name != "a") << run;
+    }
+  }
+}
+
+TEST(Trade, OfPointsThatAreEqualOneIsOnTheFront) {
+  const Trade trade = trade_of({point("a", 1, 0.1), point("b", 1, 0.1)});
+  EXPECT_EQ(trade.on_pareto_front, (std::vector<bool>{true, false}));
+}
+
+TEST(SamplingGrid, HasEveryPairOfStepsAndSlicesByStepsFirst) {
+  const OcclusionSettings base = passes::quality_settings(passes::Quality::high, 0.5f);
+  const std::vector<Variant> grid = sampling_grid(base);
+  ASSERT_EQ(grid.size(), kGridSteps.size() * kGridSlices.size());
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    OcclusionSettings expected = base;
+    expected.steps = kGridSteps[i / kGridSlices.size()];
+    expected.slices = kGridSlices[i % kGridSlices.size()];
+    EXPECT_EQ(grid[i].settings, expected);
+  }
+}
+
 TEST(Trade, ChoosesTheLeastThatHolds) {
   const std::vector<TradePoint> points{point("fast", 1, 0.1), point("fair", 3, 0.05),
                                        point("slow", 9, 0.01)};
@@ -76,7 +115,7 @@ TEST(Trade, OverScenesTimesAreMeansAndErrorsRootMeanSquares) {
   const std::vector<std::vector<TradePoint>> scenes{{point("a", 1, 0.3)}, {point("a", 3, 0.4)}};
   const std::vector<TradePoint> all = over_scenes(scenes);
   ASSERT_EQ(all.size(), 1u);
-  EXPECT_DOUBLE_EQ(all[0].gpu_ms, 2.0);
+  EXPECT_DOUBLE_EQ(all[0].time_ms, 2.0);
   EXPECT_DOUBLE_EQ(all[0].processor_ms, 4.0);
   EXPECT_NEAR(all[0].rmse, std::sqrt(0.125), 1e-12);
   EXPECT_EQ(all[0].bytes, 1000u);
@@ -85,7 +124,7 @@ TEST(Trade, OverScenesTimesAreMeansAndErrorsRootMeanSquares) {
 TEST(TradePlot, NamesTheFrontAndEscapesText) {
   const std::string plot =
       plot_of(trade_of({point("fast", 1, 0.1), point("a < b", 30, 0.05), point("off", 40, 0.06)}),
-              "scene & size");
+              "scene & size", "modelled time");
   EXPECT_NE(plot.find(">fast</text>"), std::string::npos);
   EXPECT_NE(plot.find(">a &lt; b</text>"), std::string::npos);
   EXPECT_NE(plot.find("scene &amp; size"), std::string::npos);
@@ -94,8 +133,45 @@ TEST(TradePlot, NamesTheFrontAndEscapesText) {
   EXPECT_EQ(plot.find("inf"), std::string::npos);
 }
 
+// The left edge, baseline and width of each name, as the plot estimates them.
+struct PlacedName {
+  double left, baseline, width;
+};
+
+std::vector<PlacedName> placed_names(const std::string& plot, const std::string& prefix) {
+  std::vector<PlacedName> names;
+  const std::regex text(
+      "<text x=\"([0-9.e+-]+)\" y=\"([0-9.e+-]+)\" text-anchor=\"(start|end)\">(" + prefix +
+      "[^<]*)<");
+  for (std::sregex_iterator at(plot.begin(), plot.end(), text), end; at != end; ++at) {
+    const double width = 6.6 * static_cast<double>((*at)[4].length());
+    const double x = std::stod((*at)[1]);
+    names.push_back({(*at)[3] == "start" ? x : x - width, std::stod((*at)[2]), width});
+  }
+  return names;
+}
+
+TEST(TradePlot, NamesOfPointsThatLieCloseTogetherDoNotOverlap) {
+  std::vector<TradePoint> points;
+  for (int i = 0; i < 9; ++i) {
+    points.push_back(
+        point("setting number " + std::to_string(i), 1.0 + 0.02 * i, 0.1 - 0.0005 * i));
+  }
+  const std::vector<PlacedName> names =
+      placed_names(plot_of(trade_of(points), "close", "time"), "setting number");
+  ASSERT_EQ(names.size(), points.size());
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const bool apart = std::abs(names[i].baseline - names[j].baseline) >= 12 ||
+                         names[i].left >= names[j].left + names[j].width ||
+                         names[j].left >= names[i].left + names[i].width;
+      EXPECT_TRUE(apart) << i << " and " << j;
+    }
+  }
+}
+
 TEST(TradePlot, OnePointHasAPlotToo) {
-  const std::string plot = plot_of(trade_of({point("only", 1, 0.0)}), "one");
+  const std::string plot = plot_of(trade_of({point("only", 1, 0.0)}), "one", "time");
   EXPECT_NE(plot.find("<circle"), std::string::npos);
   EXPECT_EQ(plot.find("nan"), std::string::npos);
 }
