@@ -50,44 +50,28 @@ ALCOVE_INLINE bool hidden_samples_join(float discontinuity_here, float discontin
   return discontinuity_here * discontinuity_there == 0.0f;
 }
 
-// Where between two samples the edge of the second one's surface is taken to be, if they are on
-// two: this part of the way back to the first. Coarser searches miss more of it.
-ALCOVE_INLINE float edge_share(uint steps) { return steps > 6u ? 0.5f : 0.75f; }
+// Where between two samples the edge of the second one's surface is taken to be, if they are on two:
+// this fraction of the way back to the first.
+const float kEdgeShare = 0.5f;
 
-// How thick the occluder at a sample is, along the view vector: as the settings say, but where a
-// surface begins no more than what is `drawn` of it, since what is thin across the image is mostly
-// a blade, a bar or a leaf. All times w.
-ALCOVE_INLINE float sample_thickness(float settings, bool begins, float drawn) {
-  return min(settings, begins ? drawn : 1e30f);
+// Whether a point of the slice's plane stands above the tangent plane by more than a fifth of its
+// distance. `height` is the gradient of the height over the tangent plane.
+ALCOVE_INLINE bool stands_above_tangent(vec2 point, vec2 height) {
+  float above = point.x * height.x + point.y * height.y;
+  return above * abs(above) > 0.04f * (point.x * point.x + point.y * point.y);
 }
 
-// By how much a point, as slice_point() gives it, lies beyond the radius, times its w; negative
-// within it.
-ALCOVE_INLINE float radius_excess(vec3 point, float radius) {
-  return sqrt(point.x * point.x + point.y * point.y) - radius * point.z;
-}
-
-// Towards the place where the straight between two such points, of which one lies within the
-// radius, leaves it: in proportion to their distances.
-ALCOVE_INLINE vec2 radius_crossing(vec3 here, float here_excess, vec3 there, float there_excess) {
-  float of_here = abs(there_excess);
-  float of_there = abs(here_excess);
-  return vec2(here.x * of_here + there.x * of_there, here.y * of_here + there.y * of_there);
+// One less the diamond angle of the back of an occluder whose front has `height` =
+// y / (x + |y|) and `scale` = 1 / (x + |y|), a thickness along the view direction behind it. It is
+// linear in the thickness, three times as steep as the exact angle at the front: this fits the
+// reference best in the development scenes, and costs no division.
+ALCOVE_INLINE float height_of_back(float height, float scale, float thickness) {
+  return height - thickness * scale * (3.0f - 3.0f * abs(height));
 }
 
 // How far a surface goes on beyond the image's border, as a multiple of the way it was searched to
 // there.
 const float kExtrapolationRatio = 4.0f;
-
-// Where a plane gets to that went `way` over the last step, all as slice_point() gives points, `x`
-// (x w) further on; before that where its w falls to a tenth of that of `here`, and at `here` if it
-// went nowhere.
-ALCOVE_INLINE vec3 extrapolated_point(vec3 here, vec3 way, float x) {
-  float steps = way.x > 0.0f ? x / way.x : 0.0f;
-  float away = max(-way.z, 0.0f);
-  steps = min(steps, 0.9f * here.z / max(away, 1e-30f));
-  return here + way * steps;
-}
 
 ALCOVE_MATHS_END
 

@@ -120,17 +120,17 @@ ALCOVE_INLINE vec3 normal_of_gradient(vec2 per_px, vec2 slope, float inverse_dep
   return normalize(vec3(x, y, perspective ? 1.0f + x * slope.x + y * slope.y : 1.0f));
 }
 
-// How far a sample, `off_plane` off the tangent plane in `line` and so many pixels away, is moved
-// towards the exact place it stands for along that plane: 1 on the plane, which stays exactly flat,
-// 0 off it, where an occluder stays where it was found.
-ALCOVE_INLINE float tangent_share(TangentPlane t, float off_plane, float offset_px) {
-  return max(1.0f - t.fading * abs(off_plane) / offset_px, 0.0f);
+// Whether a sample, `off_plane` off the tangent plane in inverse depth and so many pixels away, is
+// taken to lie on that plane, and is moved along it to the exact place that it stands for. The plane
+// itself then stays exactly flat, and an occluder stays where it was found.
+ALCOVE_INLINE bool lies_on_tangent_plane(TangentPlane t, float off_plane, float offset_px) {
+  return t.fading * abs(off_plane) < offset_px;
 }
 
-// A sample's `line` after a correction. In perspective it stays before the eye, and the sky afar.
-ALCOVE_INLINE float moved_inverse_depth(float inverse_depth, float by, bool perspective) {
-  float moved = inverse_depth + by;
-  return perspective ? clamp(moved, 0.1f * inverse_depth, 10.0f * inverse_depth) : moved;
+// A sample's inverse depth after a correction. In perspective it stays before the eye, at most ten
+// times as far away.
+ALCOVE_INLINE float moved_inverse_depth(float inverse_depth, float moved, bool perspective) {
+  return perspective ? max(moved, 0.1f * inverse_depth) : moved;
 }
 
 // Pixels along the line that a sphere of radius `radius` (scene units) around the point spans on
