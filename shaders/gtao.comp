@@ -148,27 +148,27 @@ SliceResult search_slice(Surface surface, vec3 direction, float step_offset) {
   if (kLobe) lobe = make_lobe_slice(slice, surface.lobe.roughness * surface.lobe.roughness);
   float radius_px = slice_radius_px(slice_line, parameters.radius, surface.depth, kPerspective);
   vec2 border_px = border_distances(surface.centre, slice_line.direction_px);
+  vec2 open_arcs = kUniformWeight ? vec2(uniform_arc(tangent_light(slice, 1.0)),
+                                         uniform_arc(tangent_light(slice, -1.0)))
+                                  : tangent_arcs(slice);
   SliceSum sum = SliceSum(0.0, 0.0, vec2(0.0), no_lobe(), 0.0);
   uint i = 0u;
-  do {
+  [[dont_unroll]] do {
     float side = i == 0u ? 1.0 : -1.0;
     HalfSlice half_slice =
         make_half_slice(surface, slice_line, slice, side, radius_px,
                         i == 0u ? border_px.x : border_px.y, step_offset);
-    switch (kEstimator) {
-      case kConnected:
-        add_connected(sum, half_slice, slice, lobe, i == 0u ? border_px.y : border_px.x);
-        break;
-      case kBitmask:
-        add_bitmask(sum, half_slice, slice, lobe);
-        break;
-      default:
-        add_horizon(sum, half_slice, slice, lobe);
-        break;
+    if (kEstimator == kConnected) {
+      add_connected(sum, half_slice, slice, lobe, i == 0u ? open_arcs.x : open_arcs.y,
+                    i == 0u ? border_px.y : border_px.x);
+    } else if (kEstimator == kBitmask) {
+      add_bitmask(sum, half_slice, slice, lobe);
+    } else {
+      add_horizon(sum, half_slice, slice, lobe);
     }
     ++i;
   } while (i < 2u);
-  float open = kUniformWeight ? 1.0 : open_slice(slice);
+  float open = open_arcs.x + open_arcs.y;
   SliceResult result;
   result.residual = vec3(0.0);
   result.expected_residual = vec3(0.0);
@@ -214,26 +214,33 @@ SearchResult sky_result() {
                       uvec2(0u));
 }
 
+void add_slice(inout SliceResult sum, Surface surface, ViewBasis basis, SliceNoise noise, uint i) {
+  WeightedAngle angle = WeightedAngle(slice_angle(i, kSliceCount, noise.direction), 1.0);
+  if (kLobe) {
+    angle = lobe_angle(angle.phi, lobe_plane(surface.normal, basis), surface.lobe.roughness);
+  }
+  SliceResult more = search_slice(surface, slice_direction(basis, angle.phi), noise.offset);
+  sum.raw_occlusion.visible += angle.weight * more.raw_occlusion.visible;
+  sum.raw_occlusion.open += angle.weight * more.raw_occlusion.open;
+  sum.residual += angle.weight * more.residual;
+  sum.expected_residual += angle.weight * more.expected_residual;
+  sum.lobe.visible += angle.weight * more.lobe.visible;
+  sum.lobe.open += angle.weight * more.lobe.open;
+}
+
 SearchResult search_pixel(ivec2 pixel, float inverse_depth, SliceNoise noise) {
   Surface surface = fetch_surface(pixel, inverse_depth);
   ViewBasis basis = make_view_basis(surface.view);
-  SliceResult sum =
-      SliceResult(RawOcclusion(0.0, 0.0), vec3(0.0), vec3(0.0), no_lobe());
-  uint i = 0;
-  do {
-    WeightedAngle angle = WeightedAngle(slice_angle(i, kSliceCount, noise.direction), 1.0);
-    if (kLobe) {
-      angle = lobe_angle(angle.phi, lobe_plane(surface.normal, basis), surface.lobe.roughness);
-    }
-    SliceResult more = search_slice(surface, slice_direction(basis, angle.phi), noise.offset);
-    sum.raw_occlusion.visible += angle.weight * more.raw_occlusion.visible;
-    sum.raw_occlusion.open += angle.weight * more.raw_occlusion.open;
-    sum.residual += angle.weight * more.residual;
-    sum.expected_residual += angle.weight * more.expected_residual;
-    sum.lobe.visible += angle.weight * more.lobe.visible;
-    sum.lobe.open += angle.weight * more.lobe.open;
-    ++i;
-  } while (i < kSliceCount);
+  SliceResult sum = SliceResult(RawOcclusion(0.0, 0.0), vec3(0.0), vec3(0.0), no_lobe());
+  if (kSliceCount == 1u) {
+    add_slice(sum, surface, basis, noise, 0u);
+  } else {
+    uint i = 0u;
+    do {
+      add_slice(sum, surface, basis, noise, i);
+      ++i;
+    } while (i < kSliceCount);
+  }
   float mean = 1.0 / float(kSliceCount);
   uvec2 lobe = kLobe ? pack_scaled_lobe(surface.lobe,
                                         RawOcclusion(sum.lobe.visible * mean, sum.lobe.open * mean))

@@ -28,8 +28,8 @@ uint occluded_by_layer(HalfSlice half_slice, float per_diamond_angle, uint layer
     SliceSample here = fetch_sample(half_slice, layer, k);
     float front = sector_position(per_diamond_angle, here.point.xy);
     bool known = kBackFaces && here.back.y < kNoBack;
-    vec2 back = known ? here.back : here.point.xy - vec2(0.0, settings_thickness(here));
-    bool inside = within_radius(here);
+    vec2 back = known ? here.back : here.point.xy - vec2(0.0, settings_thickness(half_slice, here));
+    bool inside = within_radius(half_slice, here);
     occluded |= inside ? sectors_between(front, sector_position(per_diamond_angle, back)) : 0u;
     bool hides = front < float(kSectorCount - 1u) && (inside || here.point.y > 0.0);
     if (layer == 0u) runs = add_run_sample(runs, hides, here.offset_px - last_px, here.offset_px);
@@ -47,7 +47,7 @@ void add_bitmask(inout SliceSum sum, HalfSlice half_slice, Slice slice, LobeSlic
   if (kSecondLayer) occluded |= occluded_by_layer(half_slice, per_diamond_angle, 1u, runs);
   float way_px = kNearestStep + half_slice.reach_px - runs.before_first_px;
   float hidden_occlusion = hidden_occlusion_behind(
-      runs.width_px / (max(runs.count, 1.0) * max(way_px, 1e-3)), parameters.hidden_occlusion);
+      runs.width_px / (max(runs.count, 1.0) * max(way_px, 1e-3)), parameters.hidden_exponent);
   VisiblePart part = visible_part(slice, half_slice.side, per_diamond_angle, occluded,
                                   hidden_occlusion, PartRequest(kUniformWeight, kBentNormal));
   sum.visible += part.arc;

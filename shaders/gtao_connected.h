@@ -12,7 +12,7 @@ struct SegmentState {
   float rise;         // change of inverse depth over the last sample interval
   float interval_px;  // width of the last sample interval
   float bend;         // depth_discontinuity() at the last sample
-  float edge_x;       // x (times w) of the leading edge of the last sample's surface
+  float x;            // x (times w) of the last sample
   uint beyond;        // sectors beyond the last sample
   bool inside;        // whether the last sample lies within the radius
   uint occluded;      // sectors, so far
@@ -48,16 +48,16 @@ bool tells_unobserved(uint layer) {
 // before the sample the surface begins if not.
 void add_sample(inout SegmentState state, HalfSlice half_slice, float sectors, uint layer, uint bit,
                 SliceSample here, bool joined, float edge_px) {
-  bool inside = within_radius(here);
+  bool inside = within_radius(half_slice, here);
   // A surface that begins here is drawn in up to its edge.
-  float drawn = joined ? 0.0 : edge_px * half_slice.line.x_per_step;
-  state.edge_x = joined ? state.edge_x : here.point.x - drawn;
-  float x = here.point.x - drawn;
+  float x = joined ? here.point.x : here.point.x - edge_px;
   float scale = 1.0 / (x + abs(here.point.y));
   float height = here.point.y * scale;
   uint front = biased_position(sectors, height);
   uint beyond = sectors_beyond(front);
-  float thickness = min(settings_thickness(here), here.point.x - state.edge_x);
+  // At its leading edge an occluder is at most as thick as its visible width.
+  float thickness = settings_thickness(half_slice, here);
+  thickness = joined ? thickness : min(thickness, edge_px);
   uint back = biased_position(sectors, height_of_back(height, scale, thickness));
   if (kBackFaces && here.back.y < kNoBack) {
     back = biased_position(sectors, 1.0 - diamond_angle(here.back));
@@ -75,6 +75,7 @@ void add_sample(inout SegmentState state, HalfSlice half_slice, float sectors, u
   }
   state.beyond = beyond;
   state.inside = inside;
+  state.x = here.point.x;
 }
 
 // Adds `here`, a sample after the first, now that the sample `next` after it shows how the line of
@@ -95,15 +96,15 @@ void pass_sample(inout SegmentState state, inout SliceSample here, HalfSlice hal
 
 // The sectors of a surface that leaves the image without a discontinuity: it goes on as the plane
 // that its last two samples lie on.
-uint extrapolated_sectors(SegmentState state, HalfSlice half_slice, float sectors,
-                          SliceSample last) {
-  float way_px = half_slice.extrapolated_px;
-  float inverse_depth = moved_inverse_depth(
-      last.inverse_depth, last.inverse_depth + state.rise * (way_px / state.interval_px),
-      kPerspective);
-  float along_px = last.offset_px + way_px;
-  vec2 end = slice_point(half_slice.line, along_px, inverse_depth, half_slice.depth, kPerspective).xy;
-  bool goes_on = way_px > 0.0 && state.bend == 0.0 && state.inside;
+uint extrapolated_sectors(SegmentState state, float last_step_px, HalfSlice half_slice,
+                          float sectors, SliceSample last) {
+  float slope = state.rise / max(last_step_px, 1e-3);
+  float way_px =
+      extrapolated_way(last.inverse_depth, slope, half_slice.extrapolated_px, kPerspective);
+  vec2 end = slice_point(half_slice.line, last.point.x + way_px, last.inverse_depth + slope * way_px,
+                         half_slice.depth, kPerspective)
+                 .xy;
+  bool goes_on = way_px > 0.0 && last_step_px > 0.1 && state.bend == 0.0 && state.inside;
   return goes_on ? state.beyond ^ sectors_beyond(biased_position(sectors, 1.0 - diamond_angle(end)))
                  : 0u;
 }
@@ -124,7 +125,6 @@ Occluders find_in_layer(HalfSlice half_slice, float sectors, uint layer) {
   state.inside = false;
   // The first sample continues the surface itself if it lies on its tangent plane.
   bool joined = !stands_above_tangent(first.point.xy, half_slice.height);
-  state.edge_x = 0.0;
   state.interval_px = first.offset_px;
   add_sample(state, half_slice, sectors, layer, 1u, first, joined, kEdgeShare * first.offset_px);
   state.rise = here.inverse_depth - first.inverse_depth;
@@ -150,10 +150,11 @@ Occluders find_in_layer(HalfSlice half_slice, float sectors, uint layer) {
   }
   // No sample shows how the last interval ends: the sample is joined only if its surface did not
   // bend before.
+  float last_step_px = here.point.x - state.x;
   add_sample(state, half_slice, sectors, layer, sample_bit(kStepCount - 1u), here,
              state.bend == 0.0, kEdgeShare * state.interval_px);
   uint extrapolated =
-      kExtrapolation ? extrapolated_sectors(state, half_slice, sectors, here) : 0u;
+      kExtrapolation ? extrapolated_sectors(state, last_step_px, half_slice, sectors, here) : 0u;
   float searched_px = kNearestStep + half_slice.reach_px;
   Occluders found;
   found.occluded = state.occluded | extrapolated;
@@ -162,14 +163,17 @@ Occluders find_in_layer(HalfSlice half_slice, float sectors, uint layer) {
                               : sample_offset_px(half_slice, first_sample(state.runs) - 1.0);
   float run_share = state.run_px / (max(run_count(state.runs), 1.0) *
                                     max(searched_px - before_first_px, 1e-3));
-  found.hidden_occlusion = hidden_occlusion_behind(run_share, parameters.hidden_occlusion);
+  found.hidden_occlusion = hidden_occlusion_behind(run_share, parameters.hidden_exponent);
   found.unobserved = nothing_unobserved();
   if (tells_unobserved(layer)) {
+    float first_k = first_sample(state.unobserved);
+    float count = float(bitCount(state.unobserved)) * max(float(kStepCount) / 32.0, 1.0);
     found.unobserved.first_px =
-        state.unobserved == 0u ? kNowherePx
-                               : sample_offset_px(half_slice, first_sample(state.unobserved));
-    found.unobserved.width_px =
-        float(bitCount(state.unobserved)) * (searched_px / float(min(kStepCount, 32u)));
+        state.unobserved == 0u ? kNowherePx : sample_offset_px(half_slice, first_k);
+    // The sample intervals grow outwards; all are taken to follow the first.
+    found.unobserved.width_px = max(
+        half_slice.reach_per_step * count * (2.0 * (first_k + half_slice.step_offset) + count - 2.0),
+        0.0);
     found.unobserved.rows = run_count(state.unobserved);
   }
   bool known = extrapolated != 0u || here.inverse_depth == sky_inverse_depth(kPerspective);
@@ -188,37 +192,56 @@ Occluders find_occluders(HalfSlice half_slice, float sectors) {
   return found;
 }
 
-UnobservedArc find_unobserved(HalfSlice half_slice, Slice slice, float per_diamond_angle,
-                              float other_outside, Occluders found) {
+UnobservedArc find_unobserved(HalfSlice half_slice, vec2 first_light, float other_outside,
+                              Occluders found) {
   float nearness = kPerspective ? parameters.radius / half_slice.depth : 0.0;
   Unobserved unobserved = add_beyond_border(mean_row(found.unobserved), found.border_px,
                                             half_slice.outside * half_slice.radius_px,
                                             border_share(other_outside, nearness));
-  return make_unobserved_arc(slice, half_slice.side, per_diamond_angle, found.occluded, unobserved,
-                             half_slice.radius_px);
+  return make_unobserved_arc(first_light, unobserved, half_slice.radius_px);
 }
 
 // Adds the visible part of a half-slice, less a share of its unobserved directions.
+// `tangent_arc` is the visible part if nothing is occluded, `other_border_px` the distance to the
+// image's border in the other half-slice.
 void add_connected(inout SliceSum sum, HalfSlice half_slice, Slice slice, LobeSlice lobe,
-                   float other_border_px) {
-  float tangent = tangent_diamond_angle(slice, half_slice.side);
-  float per_diamond_angle = float(kEvenSectorCount) / tangent;
-  Occluders found = find_occluders(half_slice, 1.0 / tangent);
-  VisiblePart part =
-      visible_part_by_share(slice, half_slice.side, per_diamond_angle, found.occluded,
-                            found.hidden_occlusion, PartRequest(kUniformWeight, kBentNormal));
-  sum.visible += part.arc;
-  sum.bent += part.bent;
+                   float tangent_arc, float other_border_px) {
+  vec2 tangent = tangent_light(slice, half_slice.side);
+  float tangent_angle = tangent_diamond_angle(slice, half_slice.side);
+  Occluders found = find_occluders(half_slice, 1.0 / tangent_angle);
+  float sector = tangent_angle * (1.0 / float(kEvenSectorCount));
+  vec2 first_light =
+      found.occluded == 0u ? tangent : diamond_angle_light(float(findLSB(found.occluded)) * sector);
+  float arc = part_arc(slice, half_slice.side, first_light, kUniformWeight);
+  if (kBackFaces || kSecondLayer) {
+    // What lies beyond the first occluder is known: it is integrated run by run.
+    VisiblePart part = visible_part(slice, half_slice.side, 1.0 / sector,
+                                    repeat_last_sector(found.occluded), found.hidden_occlusion,
+                                    PartRequest(kUniformWeight, kBentNormal));
+    sum.visible += part.arc;
+    sum.bent += part.bent;
+  } else {
+    // The part of the directions beyond the first occluded one that is visible.
+    float share = (1.0 - found.hidden_occlusion) * open_share_beyond_first(found.occluded);
+    sum.visible += mix(arc, tangent_arc, share);
+    if (kBentNormal) {
+      sum.bent += mix(bent_light_arc(slice, half_slice.side, first_light),
+                      bent_light_arc(slice, half_slice.side, tangent), share);
+    }
+  }
   if (kLobe) {
-    sum.lobe.visible += visible_lobe(lobe, half_slice.side, per_diamond_angle,
-                                     repeat_last_sector(found.occluded), found.hidden_occlusion);
+    sum.lobe.visible +=
+        visible_lobe(lobe, half_slice.side, 1.0 / sector, repeat_last_sector(found.occluded),
+                     found.hidden_occlusion);
   }
   if (kLeaveOutUnobserved) {
-    UnobservedArc arc =
-        find_unobserved(half_slice, slice, per_diamond_angle,
-                        saturate(1.0 - other_border_px / half_slice.radius_px), found);
-    sum.left_out += unobserved_part(arc, slice, half_slice.side, kUniformWeight);
-    if (kLobe) sum.lobe_left_out += unobserved_lobe(arc, lobe, half_slice.side);
+    UnobservedArc unobserved =
+        find_unobserved(half_slice, first_light, outside_share(other_border_px, half_slice.radius_px),
+                        found);
+    sum.left_out +=
+        unobserved.share *
+        (arc - part_arc(slice, half_slice.side, unobserved.from, kUniformWeight));
+    if (kLobe) sum.lobe_left_out += unobserved_lobe(unobserved, lobe, half_slice.side);
   }
 }
 

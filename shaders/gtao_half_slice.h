@@ -7,7 +7,11 @@
 // point.
 struct HalfSlice {
   float side;            // +1 along the slice's direction, -1 against it
-  SliceLine line;        // outwards; its direction_px is zero where there is nothing to search
+  // Outwards, in units of the width of a pixel at the surface's depth (x_per_step is 1). Its
+  // direction_px is zero where there is nothing to search.
+  SliceLine line;
+  float radius;          // in the same unit, as settings_thickness() is
+  float unit;            // from scene units to that unit
   float slope;           // change of the tangent plane's inverse depth per pixel outwards
   float tangent_cosine;  // cosine of the tangent plane's horizon
   float reach_px;        // from the first sample to the last; 0 where there is nothing to search
@@ -42,6 +46,11 @@ vec2 border_distances(vec2 centre, vec2 direction) {
   return vec2(min(along.x, along.y), -max(against.x, against.y)) - 0.01;
 }
 
+// The part of the radius that lies beyond the image's border, [0,1].
+float outside_share(float border_px, float radius_px) {
+  return radius_px < kNearestStep ? 0.0 : max(1.0 - border_px / radius_px, 0.0);
+}
+
 // `border_px` is the distance to the border in the half-slice's direction, `radius_px` the radius on
 // the image.
 HalfSlice make_half_slice(Surface surface, SliceLine slice_line, Slice slice, float side,
@@ -50,7 +59,11 @@ HalfSlice make_half_slice(Surface surface, SliceLine slice_line, Slice slice, fl
   half_slice.side = side;
   half_slice.line = slice_line;
   half_slice.line.direction_px *= side;
-  half_slice.line.y_per_step *= side;
+  half_slice.unit = 1.0 / max(slice_line.x_per_step, 1e-30);
+  half_slice.line.x_per_step = 1.0;
+  half_slice.line.y_per_step *= side * half_slice.unit;
+  half_slice.line.y_per_depth *= half_slice.unit;
+  half_slice.radius = parameters.radius * half_slice.unit;
   half_slice.tangent_cosine = tangent_horizon(slice, side);
   half_slice.radius_px = radius_px;
   // Where the surface faces away from a half-slice, what stands above its tangent plane within the
@@ -64,7 +77,7 @@ HalfSlice make_half_slice(Surface surface, SliceLine slice_line, Slice slice, fl
       half_slice.reach_px * (1.0 / (float(kStepCount) * float(kStepCount)));
   half_slice.extrapolated_px =
       clamp(distance_px - border_px, 0.0, kExtrapolationRatio * half_slice.reach_px);
-  half_slice.outside = distance_px < kNearestStep ? 0.0 : max(1.0 - border_px / distance_px, 0.0);
+  half_slice.outside = outside_share(border_px, radius_px);
   // All samples of an empty half-slice are the shaded pixel: the first step may lie outside the
   // image.
   half_slice.line.direction_px = empty ? vec2(0.0) : half_slice.line.direction_px;
@@ -96,13 +109,13 @@ SliceSample fetch_sample(HalfSlice half_slice, uint layer, uint k) {
       layer == 0u ? imageLoad(inverse_depth_image, texel).r : imageLoad(second_image, texel).r;
   float along_px =
       kSnapToTexels ? dot(snapped, half_slice.line.direction_px) : found.offset_px;
-  float plane_here = half_slice.tangent.inverse_depth + dot(snapped, half_slice.tangent.gradient);
-  float plane_there = half_slice.tangent.inverse_depth + along_px * half_slice.slope;
+  vec2 gradient = half_slice.tangent.gradient;
+  float plane_here =
+      snapped.x * gradient.x + (snapped.y * gradient.y + half_slice.tangent.inverse_depth);
+  float plane_there = along_px * half_slice.slope + half_slice.tangent.inverse_depth;
   float off_plane = inverse_depth - plane_here;
   bool on_plane = lies_on_tangent_plane(half_slice.tangent, off_plane, found.offset_px);
-  float moved =
-      moved_inverse_depth(inverse_depth, off_plane + (on_plane ? plane_there : plane_here),
-                          kPerspective);
+  float moved = off_plane + (on_plane ? plane_there : plane_here);
   found.inverse_depth = kSnapToTexels ? moved : inverse_depth;
   found.point = slice_point(half_slice.line, along_px, found.inverse_depth, half_slice.depth,
                             kPerspective);
@@ -119,17 +132,17 @@ SliceSample fetch_sample(HalfSlice half_slice, uint layer, uint k) {
 
 // The thickness that the settings give an occluder at a sample, as slice_point() gives lengths
 // (times w).
-float settings_thickness(SliceSample here) {
+float settings_thickness(HalfSlice half_slice, SliceSample here) {
   // In perspective w times the distance is 1; an orthographic depth may lie behind the eye.
   float distance = kPerspective ? 1.0 : abs(here.inverse_depth);
-  return parameters.thickness * (kThicknessOfDistance ? distance : here.point.z);
+  return parameters.thickness * half_slice.unit * (kThicknessOfDistance ? distance : here.point.z);
 }
 
 float squared_length(vec2 v) { return dot(v, v); }
 
 // Whether a sample lies within the radius around the shaded point.
-bool within_radius(SliceSample here) {
-  float radius = parameters.radius * here.point.z;
+bool within_radius(HalfSlice half_slice, SliceSample here) {
+  float radius = half_slice.radius * here.point.z;
   return squared_length(here.point.xy) <= radius * radius;
 }
 

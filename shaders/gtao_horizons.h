@@ -8,7 +8,7 @@
 // The cosine of the horizon after one more sample of its half-slice.
 float next_horizon(float horizon, HalfSlice half_slice, vec3 point) {
   float squared = squared_length(point.xy);
-  float radius = parameters.radius * point.z;
+  float radius = half_slice.radius * point.z;
   float inverse = inversesqrt(max(squared, 1e-30));
   float found = point.y * inverse;
   if (kFalloff) {

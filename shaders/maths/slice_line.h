@@ -127,12 +127,6 @@ ALCOVE_INLINE bool lies_on_tangent_plane(TangentPlane t, float off_plane, float 
   return t.fading * abs(off_plane) < offset_px;
 }
 
-// A sample's inverse depth after a correction. In perspective it stays before the eye, at most ten
-// times as far away.
-ALCOVE_INLINE float moved_inverse_depth(float inverse_depth, float moved, bool perspective) {
-  return perspective ? max(moved, 0.1f * inverse_depth) : moved;
-}
-
 // Pixels along the line that a sphere of radius `radius` (scene units) around the point spans on
 // one side. In perspective the sphere bulges towards the eye, and one around the eye spans
 // everything: at most 1e30.

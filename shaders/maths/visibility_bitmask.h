@@ -83,6 +83,15 @@ ALCOVE_INLINE uint biased_position(float per_tangent, float height) {
 // between the two positions.
 ALCOVE_INLINE uint sectors_beyond(uint position) { return 0xffffffffu << (position & 31u); }
 
+// The part of the sectors beyond the first occluded one that is open, [0,1]; with nothing occluded any
+// number in [0,2]. Beyond the first occluder directions count by the number of their sectors, which
+// costs one integral per half-slice rather than one per end of a run of occluded sectors.
+ALCOVE_INLINE float open_share_beyond_first(uint occluded) {
+  float beyond = float(int(kEvenSectorCount) - findLSB(occluded));
+  return (float(bitCount(~occluded)) - 1.0f - float(kEvenSectorCount) + beyond) /
+         max(beyond, 1.0f);
+}
+
 // Repeats the state of the last of kEvenSectorCount sectors in the highest bit, as visible_part() and
 // visible_lobe() expect a mask.
 ALCOVE_INLINE uint repeat_last_sector(uint occluded) {
@@ -113,16 +122,22 @@ ALCOVE_INLINE VisiblePart add_part(VisiblePart sum, float weight, Slice s, float
   return sum;
 }
 
+// The exponent of hidden_occlusion_behind() for a mean of `hidden_occlusion`, [0,1].
+const float kNoHiddenOcclusion = 1e3f;
+ALCOVE_INLINE float hidden_exponent(float hidden_occlusion) {
+  return hidden_occlusion > 0.0f ? max(1.0f / max(hidden_occlusion, 1e-3f) - 1.0f, 0.0f)
+                                 : kNoHiddenOcclusion;
+}
+
 // What part of what lies behind the occluders of a side counts as occluded, [0,1]. `front` is the
 // mean width of the fronts that the side's columns show, [0,1], in parts of its way along the image
 // from the first of them on: a ray is hidden all the way behind a wall, seen but for an inch behind
 // a blade of grass, and seen between the slats of a blind however much of the way they
 // hidden_occlusion. `hidden_occlusion` is the mean over all `front`; 0 is nothing behind any front,
 // 1 everything.
-ALCOVE_INLINE float hidden_occlusion_behind(float front, float hidden_occlusion) {
-  float exponent = 1.0f / max(hidden_occlusion, 1e-3f) - 1.0f;
-  float part = pow(clamp(front, 1e-6f, 1.0f), max(exponent, 0.0f));
-  return hidden_occlusion > 0.0f ? part : 0.0f;
+ALCOVE_INLINE float hidden_occlusion_behind(float front, float exponent) {
+  float part = pow(clamp(front, 1e-6f, 1.0f), exponent);
+  return exponent < kNoHiddenOcclusion ? part : 0.0f;
 }
 
 // Exact over the visible sectors. What lies behind an occluder, up to the tangent plane, is
@@ -149,25 +164,6 @@ ALCOVE_INLINE VisiblePart visible_part(Slice s, float side, float per_diamond_an
     } while (ends != 0u);
   }
   return sum;
-}
-
-// The same for a mask of kEvenSectorCount sectors, with one integral fewer per end of a run: exact
-// up to the first occluded sector; the sectors beyond it count by their number, in parts of all
-// beyond it. Errs by at most 0.1 of the half-slice where sectors beyond the first occluder are open.
-ALCOVE_INLINE VisiblePart visible_part_by_share(Slice s, float side, float per_diamond_angle,
-                                                uint occluded, float hidden_occlusion,
-                                                PartRequest request) {
-  float first = float(findLSB(occluded));
-  vec2 light = occluded == 0u ? tangent_light(s, side)
-                              : diamond_angle_light(first / per_diamond_angle);
-  float beyond = float(kEvenSectorCount) - first;
-  float open_beyond = float(bitCount(~occluded)) - 1.0f - first;
-  float share = (1.0f - hidden_occlusion) * (open_beyond / max(beyond, 1.0f));
-  VisiblePart sum;
-  sum.arc = 0.0f;
-  sum.bent = vec2(0.0f, 0.0f);
-  sum = add_part(sum, 1.0f - share, s, side, light, request);
-  return add_part(sum, share, s, side, tangent_light(s, side), request);
 }
 
 ALCOVE_MATHS_END
