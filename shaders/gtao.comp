@@ -159,8 +159,7 @@ SliceResult search_slice(Surface surface, vec3 direction, float step_offset) {
         make_half_slice(surface, slice_line, slice, side, radius_px,
                         i == 0u ? border_px.x : border_px.y, step_offset);
     if (kEstimator == kConnected) {
-      add_connected(sum, half_slice, slice, lobe, i == 0u ? open_arcs.x : open_arcs.y,
-                    i == 0u ? border_px.y : border_px.x);
+      add_connected(sum, half_slice, slice, lobe, i == 0u ? border_px.y : border_px.x);
     } else if (kEstimator == kBitmask) {
       add_bitmask(sum, half_slice, slice, lobe);
     } else {

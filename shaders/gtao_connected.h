@@ -202,10 +202,9 @@ UnobservedArc find_unobserved(HalfSlice half_slice, vec2 first_light, float othe
 }
 
 // Adds the visible part of a half-slice, less a share of its unobserved directions.
-// `tangent_arc` is the visible part if nothing is occluded, `other_border_px` the distance to the
-// image's border in the other half-slice.
+// `other_border_px` is the distance to the image's border in the other half-slice.
 void add_connected(inout SliceSum sum, HalfSlice half_slice, Slice slice, LobeSlice lobe,
-                   float tangent_arc, float other_border_px) {
+                   float other_border_px) {
   vec2 tangent = tangent_light(slice, half_slice.side);
   float tangent_angle = tangent_diamond_angle(slice, half_slice.side);
   Occluders found = find_occluders(half_slice, 1.0 / tangent_angle);
@@ -213,22 +212,11 @@ void add_connected(inout SliceSum sum, HalfSlice half_slice, Slice slice, LobeSl
   vec2 first_light =
       found.occluded == 0u ? tangent : diamond_angle_light(float(findLSB(found.occluded)) * sector);
   float arc = part_arc(slice, half_slice.side, first_light, kUniformWeight);
-  if (kBackFaces || kSecondLayer) {
-    // What lies beyond the first occluder is known: it is integrated run by run.
-    VisiblePart part = visible_part(slice, half_slice.side, 1.0 / sector,
-                                    repeat_last_sector(found.occluded), found.hidden_occlusion,
-                                    PartRequest(kUniformWeight, kBentNormal));
-    sum.visible += part.arc;
-    sum.bent += part.bent;
-  } else {
-    // The part of the directions beyond the first occluded one that is visible.
-    float share = (1.0 - found.hidden_occlusion) * open_share_beyond_first(found.occluded);
-    sum.visible += mix(arc, tangent_arc, share);
-    if (kBentNormal) {
-      sum.bent += mix(bent_light_arc(slice, half_slice.side, first_light),
-                      bent_light_arc(slice, half_slice.side, tangent), share);
-    }
-  }
+  VisiblePart part = visible_part(slice, half_slice.side, 1.0 / sector,
+                                  repeat_last_sector(found.occluded), found.hidden_occlusion,
+                                  PartRequest(kUniformWeight, kBentNormal));
+  sum.visible += part.arc;
+  sum.bent += part.bent;
   if (kLobe) {
     sum.lobe.visible +=
         visible_lobe(lobe, half_slice.side, 1.0 / sector, repeat_last_sector(found.occluded),

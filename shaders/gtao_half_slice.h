@@ -116,6 +116,8 @@ SliceSample fetch_sample(HalfSlice half_slice, uint layer, uint k) {
   float off_plane = inverse_depth - plane_here;
   bool on_plane = lies_on_tangent_plane(half_slice.tangent, off_plane, found.offset_px);
   float moved = off_plane + (on_plane ? plane_there : plane_here);
+  // Near the plane's horizon the sample stays before the eye.
+  moved = kPerspective ? max(moved, 0.1 * inverse_depth) : moved;
   found.inverse_depth = kSnapToTexels ? moved : inverse_depth;
   found.point = slice_point(half_slice.line, along_px, found.inverse_depth, half_slice.depth,
                             kPerspective);

@@ -83,15 +83,6 @@ ALCOVE_INLINE uint biased_position(float per_tangent, float height) {
 // between the two positions.
 ALCOVE_INLINE uint sectors_beyond(uint position) { return 0xffffffffu << (position & 31u); }
 
-// The part of the sectors beyond the first occluded one that is open, [0,1]; with nothing occluded any
-// number in [0,2]. Beyond the first occluder directions count by the number of their sectors, which
-// costs one integral per half-slice rather than one per end of a run of occluded sectors.
-ALCOVE_INLINE float open_share_beyond_first(uint occluded) {
-  float beyond = float(int(kEvenSectorCount) - findLSB(occluded));
-  return (float(bitCount(~occluded)) - 1.0f - float(kEvenSectorCount) + beyond) /
-         max(beyond, 1.0f);
-}
-
 // Repeats the state of the last of kEvenSectorCount sectors in the highest bit, as visible_part() and
 // visible_lobe() expect a mask.
 ALCOVE_INLINE uint repeat_last_sector(uint occluded) {

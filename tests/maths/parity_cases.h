@@ -61,7 +61,7 @@ ALCOVE_INLINE vec4 parity_of_slices(uint which, vec4 a, vec4 b) {
       return vec4(s.along, s.toward, s.scale, slice_gamma(s) * s.scale);
     case 1u:
       return vec4(slice_arc(s, 1.0f, ahead), slice_arc(s, -1.0f, behind),
-                  slice_visibility(s, ahead, behind), tangent_arcs(s).x + 2.0f * tangent_arcs(s).y);
+                  slice_visibility(s, ahead, behind), open_slice(s));
     case 2u: {
       vec3 view = parity_view(a.x, a.y);
       vec3 direction = slice_direction(make_view_basis(view), a.z * kPi);

@@ -115,14 +115,7 @@ TEST(VisibilityBitmask, ExclusiveOrOfTwoMasksHoldsTheSectorsBetweenThem) {
   }
 }
 
-TEST(VisibilityBitmask, TheOpenShareCountsSectorsBeyondTheFirstOccludedOne) {
-  constexpr std::uint32_t kAll = 0x7fffffffu;
-  EXPECT_EQ(maths::open_share_beyond_first(kAll), 0.0f);
-  EXPECT_EQ(maths::open_share_beyond_first(kAll << 10 & kAll), 0.0f);
-  EXPECT_FLOAT_EQ(maths::open_share_beyond_first(1u), 30.0f / 31.0f);
-  EXPECT_FLOAT_EQ(maths::open_share_beyond_first(1u << 21), 0.9f);
-  EXPECT_EQ(maths::open_share_beyond_first(1u << 30), 0.0f);
-  EXPECT_TRUE(std::isfinite(maths::open_share_beyond_first(0u)));
+TEST(VisibilityBitmask, TheHighestBitRepeatsTheLastOf31Sectors) {
   EXPECT_EQ(maths::repeat_last_sector(1u << 30), 3u << 30);
   EXPECT_EQ(maths::repeat_last_sector(1u << 29), 1u << 29);
 }
