@@ -24,6 +24,7 @@ struct HalfSlice {
   float depth;            // linear depth of the shaded point
   vec2 height;            // dot product with a point of the slice's plane: height over the tangent plane
   float sharp;            // smallest bend of the line of depth that parts two surfaces
+  float depth_step;       // of the depth buffer there, as SliceSample::inverse_depth
   TangentPlane tangent;
 };
 
@@ -84,6 +85,7 @@ HalfSlice make_half_slice(Surface surface, SliceLine slice_line, Slice slice, fl
   half_slice.step_offset = step_offset;
   half_slice.texel_bias = surface.pixel - kRoundingBits;
   half_slice.depth = surface.depth;
+  half_slice.depth_step = surface.depth_step;
   half_slice.tangent = surface.tangent;
   half_slice.height = vec2(side * slice.along, slice.toward);
   half_slice.sharp = kDepthDiscontinuity * slice_line.x_per_step *
@@ -114,10 +116,14 @@ SliceSample fetch_sample(HalfSlice half_slice, uint layer, uint k) {
       snapped.x * gradient.x + (snapped.y * gradient.y + half_slice.tangent.inverse_depth);
   float plane_there = along_px * half_slice.slope + half_slice.tangent.inverse_depth;
   float off_plane = inverse_depth - plane_here;
+  // A difference below the step of the depth buffer is not known to be one.
+  float rounding = clamp(off_plane, -half_slice.depth_step, half_slice.depth_step);
+  off_plane -= rounding;
+  inverse_depth -= rounding;
   bool on_plane = lies_on_tangent_plane(half_slice.tangent, off_plane, found.offset_px);
   float moved = off_plane + (on_plane ? plane_there : plane_here);
-  // Near the plane's horizon the sample stays before the eye.
-  moved = kPerspective ? max(moved, 0.1 * inverse_depth) : moved;
+  // A plane that is seen edge-on runs to any depth within a pixel.
+  moved = kPerspective ? clamp(moved, 0.1 * inverse_depth, 10.0 * inverse_depth) : moved;
   found.inverse_depth = kSnapToTexels ? moved : inverse_depth;
   found.point = slice_point(half_slice.line, along_px, found.inverse_depth, half_slice.depth,
                             kPerspective);

@@ -173,6 +173,20 @@ Buffer Graph::create_buffer(std::string_view name, const BufferDesc& desc) {
   return {add_resource(name, record), 0, tag_};
 }
 
+// The external that has the same image, in some of the same layers, or the same buffer.
+std::uint32_t Graph::imported_before(VkImage image, VkBuffer buffer, std::uint32_t layer,
+                                     const ResourceRecord& record) const {
+  if (image == VK_NULL_HANDLE && buffer == VK_NULL_HANDLE) return kNone;
+  for (std::uint32_t i = 0; i < imports_.size(); ++i) {
+    const ImportHandles& other = imports_[i];
+    if (other.image != image || other.buffer != buffer) continue;
+    const std::uint64_t end = std::uint64_t{layer} + record.layers;
+    const std::uint64_t other_end = std::uint64_t{other.layer} + other.layers;
+    if (buffer != VK_NULL_HANDLE || (layer < other_end && other.layer < end)) return i;
+  }
+  return kNone;
+}
+
 Texture Graph::import_texture(std::string_view name, const ImportedTexture& import) {
   ResourceRecord record = texture_record(import.desc);
   record.origin = Origin::imported;
@@ -184,8 +198,10 @@ Texture Graph::import_texture(std::string_view name, const ImportedTexture& impo
   external.has_contents = import.initial_state.layout != VK_IMAGE_LAYOUT_UNDEFINED;
   external.has_final_state = has_final_state(import.final_state);
   external.has_handle = import.image != VK_NULL_HANDLE;
+  external.same_as = imported_before(import.image, VK_NULL_HANDLE, import.first_layer, record);
   add(description_.externals, external);
-  imports_.push_back({import.image, import.view, VK_NULL_HANDLE, kNone, import.first_layer});
+  imports_.push_back(
+      {import.image, import.view, VK_NULL_HANDLE, kNone, import.first_layer, record.layers});
   return {add_resource(name, record), 0, tag_};
 }
 
@@ -202,9 +218,46 @@ Buffer Graph::import_buffer(std::string_view name, const ImportedBuffer& import)
   external.has_contents = import.has_contents;
   external.has_final_state = has_final_state(import.final_state);
   external.has_handle = import.buffer != VK_NULL_HANDLE;
+  external.same_as = imported_before(VK_NULL_HANDLE, import.buffer, 0, record);
   add(description_.externals, external);
   imports_.push_back({VK_NULL_HANDLE, VK_NULL_HANDLE, import.buffer, kNone});
   return {add_resource(name, record), 0, tag_};
+}
+
+ExternalRecord Graph::external_of(const HistoryEntry& entry, std::uint32_t slot) {
+  const HistorySlot& state = entry.slots[entry.physical(slot)];
+  ExternalRecord external;
+  external.initial_state = state.state;
+  external.validity = state.validity;
+  external.has_contents = slot != 0 && state.validity == HistoryValidity::valid;
+  external.queue = state.queue;
+  external.has_handle = 1;
+  return external;
+}
+
+bool Graph::refresh_histories() {
+  if (!histories_.have_moved()) return true;
+  bool changes = false;
+  for (const ResourceRecord& record : description_.resources) {
+    if (record.origin != Origin::history) continue;
+    const HistoryEntry& entry = histories_.entry(imports_[record.external].history);
+    if (entry.dropped) return false;
+    const ExternalRecord now = external_of(entry, record.slot);
+    ExternalRecord& declared = description_.externals[record.external];
+    if (std::memcmp(&declared, &now, sizeof now) == 0) continue;
+    declared = now;
+    changes = true;
+  }
+  if (changes) description_.edition = next_frame();
+  histories_.clear_moved();
+  return true;
+}
+
+void Graph::add_stale_builder() {
+  for (const OutputRecord& output : description_.outputs) {
+    if (output.flags == kStaleBuilder) return;
+  }
+  add(description_.outputs, {kNone, 0, kStaleBuilder});
 }
 
 std::uint32_t Graph::add_history(std::string_view name, ResourceRecord record, std::uint32_t slots,
@@ -215,20 +268,14 @@ std::uint32_t Graph::add_history(std::string_view name, ResourceRecord record, s
   const HistoryEntry& entry = histories_.entries()[history];
   std::uint32_t first = kNone;
   for (std::uint32_t slot = 0; slot < record.slots; ++slot) {
-    const HistorySlot& state = entry.slots[entry.physical(slot)];
-    ExternalRecord external;
-    external.initial_state = state.state;
-    external.validity = state.validity;
-    external.has_contents = slot != 0 && state.validity == HistoryValidity::valid;
-    external.queue = state.queue;
-    external.has_handle = 1;
+    const ExternalRecord external = external_of(entry, slot);
     record.external = static_cast<std::uint32_t>(description_.externals.size());
     record.slot = static_cast<std::uint8_t>(slot);
     add(description_.externals, external);
     imports_.push_back({VK_NULL_HANDLE, VK_NULL_HANDLE, VK_NULL_HANDLE, history});
     const std::uint32_t index = add_resource(name, record);
     if (slot == 0) first = index;
-    if (slot == 1) validity = state.validity;
+    if (slot == 1) validity = external.validity;
   }
   return first;
 }

@@ -16,6 +16,7 @@
 #include "alcove/passes/kernels.h"
 #include "alcove/passes/reconstruct.h"
 #include "c_context_info.h"
+#include "c_diagnose.h"
 #include "c_failure.h"
 #include "c_images.h"
 #include "c_view.h"
@@ -68,6 +69,7 @@ struct AlcoveContext {
   passes::Kernels kernels;
   framegraph::Graph graph;
   passes::ImageTable images;
+  passes::CallObserver observer;
   framegraph::FrameReport report;  // of the frame recorded last; its plan null before there is one
   std::uint32_t slot = 0;          // of that frame
   bool may_discard = false;        // it was recorded by the last alcoveRecordFrame
@@ -78,16 +80,21 @@ struct AlcoveContext {
 
 namespace {
 
-// Runs `call`, which gives a Result, and keeps what it says of a failure. Nothing is thrown beyond.
+AlcoveResult keep(Message& message, const Result& result) {
+  if (result) {
+    return ALCOVE_SUCCESS;
+  }
+  write(message, result.error().message);
+  return result.error().result;
+}
+
+// Runs `call`, which gives a Result, and keeps its message where it failed. Nothing of ours throws,
+// but operator new may: built without exceptions, the program then ends there.
 template <typename Call>
 AlcoveResult guarded(Message& message, const Call& call) {
+#ifdef __cpp_exceptions
   try {
-    const Result result = call();
-    if (result) {
-      return ALCOVE_SUCCESS;
-    }
-    write(message, result.error().message);
-    return result.error().result;
+    return keep(message, call());
   } catch (const std::bad_alloc&) {
     write(message, "The host is out of memory.");
     return ALCOVE_ERROR_OUT_OF_HOST_MEMORY;
@@ -95,6 +102,9 @@ AlcoveResult guarded(Message& message, const Call& call) {
     write(message, "The library failed for a reason that it does not know.");
     return ALCOVE_ERROR_INTERNAL;
   }
+#else
+  return keep(message, call());
+#endif
 }
 
 // The same for a call on a context, which keeps what was said.
@@ -242,6 +252,7 @@ Result record(AlcoveContext& context, VkCommandBuffer commands, const AlcoveFram
   context.slot = frame->slot;
   context.may_discard = declaration.recorded = true;
   context.passes_of_views[frame->slot] = *passes;
+  context.observer.observe(*frame);
   return {};
 }
 
@@ -352,6 +363,16 @@ size_t alcovePrintPlan(AlcoveContext* context, char* text, size_t size) {
   guarded(context, [&]() -> Result {
     length = copy_text(framegraph::print_text(context->graph.description(), *context->report.plan),
                        text, size);
+    return {};
+  });
+  return length;
+}
+
+size_t alcoveDiagnose(AlcoveContext* context, char* text, size_t size) {
+  copy_text("", text, size);
+  std::size_t length = 0;
+  guarded(context, [&]() -> Result {
+    length = copy_text(context->observer.describe(), text, size);
     return {};
   });
   return length;

@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "cli/commands.h"
+#include "cli/open_session.h"
 #include "cli/report.h"
 #include "evaluate/indirect_errors.h"
 #include "evaluate/indirect_truths.h"
@@ -98,11 +99,11 @@ tl::expected<void, std::string> run_compare(const Options& options) {
   const FrameImages& images = rendering->images;
   const auto truths = truths_of({rendering->scene, rendering->camera, rendering->settings.radius,
                                  images.depth_ndc, images.normal_ws},
-                                options);
+                                truth_options(options));
   if (!truths) {
     return tl::unexpected(truths.error());
   }
-  const auto light = indirect_truths_of(*rendering, options);
+  const auto light = indirect_truths_of(*rendering, truth_options(options));
   if (!light) {
     return tl::unexpected(light.error());
   }

@@ -4,11 +4,11 @@
 #include <sstream>
 
 #include "cli/commands.h"
-#include "cli/settings.h"
+#include "cli/open_session.h"
 #include "evaluate/errors.h"
 #include "evaluate/motion_run.h"
 #include "reference/truth_cache.h"
-#include "render/session.h"
+#include "render/settings_json.h"
 #include "support/image_io.h"
 #include "support/progress.h"
 #include "support/whole_file.h"
@@ -28,7 +28,7 @@ struct Course {
 };
 
 tl::expected<Course, std::string> course_of(const Options& options) {
-  auto session = session_of(options);
+  auto session = open_session(options);
   if (!session) {
     return Failure(std::move(session.error()));
   }

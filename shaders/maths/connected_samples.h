@@ -6,7 +6,7 @@
 // are joined into a segment when depth alone says that they continue one surface (samples_join),
 // the edge of a surface that appears between two samples is placed between them (edge_share), and
 // every sample has a thickness: along the view vector, or as far as its back face
-// (sample_thickness). A surface that leaves the image goes on as it left (extrapolated_point). What
+// (height_of_back). A surface that leaves the image is extrapolated (extrapolated_way). What
 // is hidden behind a front stays unknown: something between thin and infinitely thick, the nearer
 // to the latter the wider the fronts stand in the image (hidden_occlusion_behind()), errs less than
 // either (see the table in sample/README.md).

@@ -44,11 +44,14 @@ struct ExternalRecord {
   State initial_state;
   State final_state;
   VkFlags usage = 0;
-  std::uint32_t has_contents = 0;                     // 0 or 1
-  std::uint32_t has_final_state = 0;                  // 0 or 1
+  // The external that was imported before with the same Vulkan handle, kNone where there is none.
+  std::uint32_t same_as = kNone;
+  std::uint8_t has_contents = 0;                      // 0 or 1
+  std::uint8_t has_final_state = 0;                   // 0 or 1
+  std::uint8_t has_handle = 0;                        // 0 or 1: its Vulkan handle was given
   HistoryValidity validity = HistoryValidity::valid;  // of a history slot
   QueueClass queue = QueueClass::graphics;            // that used it last
-  std::uint16_t has_handle = 0;                       // 0 or 1: its Vulkan handle was given
+  std::uint8_t reserved[3] = {};
 };
 static_assert(std::has_unique_object_representations_v<ExternalRecord>);
 
@@ -63,13 +66,22 @@ enum AccessFlags : std::uint32_t {
   // itself right on a queue that can run anything. Compile looks closer at any other.
   kPlain = 64,
   kOnBuffer = 128,  // the handle was of a buffer
+  // Contents::accumulate: the write is not ordered among others of the same access.
+  kUnordered = 256,
+  // Of an OutputRecord that stands for a PassBuilder which was used after reset().
+  kStaleBuilder = 1u << 16,
 };
 
-// The access bits that write.
+// The access bits that write: those of Vulkan and of its extensions, but for video.
 inline constexpr VkAccessFlags2 kWriteBits =
     VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT |
     VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT |
-    VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_HOST_WRITE_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+    VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_HOST_WRITE_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT |
+    VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR |
+    VK_ACCESS_2_TRANSFORM_FEEDBACK_WRITE_BIT_EXT |
+    VK_ACCESS_2_TRANSFORM_FEEDBACK_COUNTER_WRITE_BIT_EXT |
+    VK_ACCESS_2_COMMAND_PREPROCESS_WRITE_BIT_NV | VK_ACCESS_2_MICROMAP_WRITE_BIT_EXT |
+    VK_ACCESS_2_OPTICAL_FLOW_WRITE_BIT_NV;
 
 constexpr bool layout_is_usable(VkImageLayout layout) {
   return layout != VK_IMAGE_LAYOUT_UNDEFINED && layout != VK_IMAGE_LAYOUT_PREINITIALIZED;
@@ -106,7 +118,7 @@ static_assert(std::has_unique_object_representations_v<PassRecord>);
 struct OutputRecord {
   std::uint32_t resource = kNone;
   std::uint32_t version = 0;
-  std::uint32_t flags = 0;  // kForeign, kNull
+  std::uint32_t flags = 0;  // kForeign, kNull, kStaleBuilder
 };
 static_assert(std::has_unique_object_representations_v<OutputRecord>);
 

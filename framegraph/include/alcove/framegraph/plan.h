@@ -48,9 +48,6 @@ struct Transition {
 struct Batch {
   std::uint32_t first = 0;  // into Plan::transitions
   std::uint32_t count = 0;
-  // Index into Plan::sets of a split barrier: its event is set after an earlier pass of the
-  // submission and waited for here. It orders what came before the set; the passes between run on.
-  std::uint32_t event = kNone;
 };
 
 // A pass in execution order. Positions index Plan::passes; within a submission they run in order.
@@ -60,8 +57,6 @@ struct PlannedPass {
   std::uint32_t submission = 0;   // into Plan::submissions
   std::uint32_t first_batch = 0;  // batches that come before it
   std::uint32_t batch_count = 0;
-  std::uint32_t first_set = 0;  // into Plan::sets: events that are set after it
-  std::uint32_t set_count = 0;
 };
 
 // Work handed to one queue in one piece. Submissions are in an order in which each waits only on
@@ -117,7 +112,6 @@ struct Plan {
   std::vector<PlannedPass> passes;
   std::vector<Batch> batches;
   std::vector<Transition> transitions;
-  std::vector<std::uint32_t> sets;  // by event: its batch
   std::vector<Submission> submissions;
   std::vector<Wait> waits;
   std::vector<Placement> placements;  // by resource

@@ -1,0 +1,217 @@
+// The verifier's checks of single accesses, and of how a frame ends.
+#include "replay.h"
+
+namespace alcove::framegraph::verifier {
+
+void Replay::check_access(std::uint32_t position, std::uint32_t access_index) {
+  const AccessRecord& access = graph_.accesses[access_index];
+  const auto queue = static_cast<std::uint8_t>(plan_.passes[position].queue);
+  take_memory(access.resource);
+  bool fresh = false;
+  std::size_t expected = first_expected_[access_index];
+  for_each_sub(access.resource, access.range, [&](Sub& sub) {
+    fresh |= sub.fresh;
+    check_state(access, sub, queue);
+    if (access.flags & kWrite)
+      check_write(access, expected_[expected++], sub, queue);
+    else
+      check_read(access, expected_[expected++], sub, queue);
+  });
+  if (fresh) check_former(access, queue);
+}
+
+void Replay::check_state(const AccessRecord& access, const Sub& sub, std::uint8_t queue) {
+  const ResourceRecord& record = graph_.resources[access.resource];
+  if (record.kind == ResourceKind::texture && sub.layout != access.layout)
+    fail(name(access.resource) + " is in layout " + std::to_string(sub.layout) + ", needed is " +
+         std::to_string(access.layout));
+  if (sub.released) fail(name(access.resource) + " is used between release and acquire");
+  // A buffer whose contents are thrown away can be taken by anybody.
+  const bool taken = record.kind == ResourceKind::buffer && (access.flags & kDiscard);
+  if (!taken && sub.family != kNone && sub.family != family(queue))
+    fail(name(access.resource) + " is used by a queue family that does not own it");
+}
+
+void Replay::check_read(const AccessRecord& access, std::uint32_t expected, const Sub& sub,
+                        std::uint8_t queue) {
+  const ResourceRecord& record = graph_.resources[access.resource];
+  // A history slot that was never written may hold anything.
+  const bool any = record.origin == Origin::history && expected == kGarbage;
+  if (!any && (sub.content != expected || sub.spoiled))
+    fail("the read of " + name(access.resource) + " does not find what was written for it");
+  for (const Operation& write : sub.last.writes) {
+    if (!order_.is_ordered(write, queue, access.stages))
+      fail("the read of " + name(access.resource) + " does not come after its write");
+    else if (!order_.is_visible(write, queue, access.stages, access.access))
+      fail("the read of " + name(access.resource) + " comes after its write, but cannot see it");
+  }
+}
+
+// Whether the access is one more of a series of writes that are not ordered among themselves.
+bool Replay::continues(const Sub& sub, const AccessRecord& access, std::uint8_t queue) const {
+  if (sub.series == kNone || !(access.flags & kUnordered) || !sub.last.reads.empty() ||
+      sub.last.writes.back().queue != queue)
+    return false;
+  const AccessRecord& before = graph_.accesses[sub.series];
+  return before.stages == access.stages && before.access == access.access &&
+         before.layout == access.layout;
+}
+
+void Replay::check_write(const AccessRecord& access, std::uint32_t expected, Sub& sub,
+                         std::uint8_t queue) {
+  const History& before = continues(sub, access, queue) ? sub.before_series : sub.last;
+  for (const Operation& read : before.reads) {
+    if (!order_.is_ordered(read, queue, access.stages))
+      fail("the write of " + name(access.resource) + " overtakes a read");
+  }
+  // A write right after a write must see it. After reads it comes after those, and must see what it
+  // reads itself.
+  const Accesses seen = before.reads.empty()      ? access.access
+                        : access.flags & kDiscard ? Accesses{0}
+                                                  : reads_of(access.access);
+  for (const Operation& write : before.writes) {
+    if (!order_.is_available(write, queue, access.stages) ||
+        !order_.is_visible(write, queue, access.stages, seen))
+      fail("the write of " + name(access.resource) + " overtakes a write, or cannot see it");
+  }
+  if (access.flags & kDiscard) {
+    sub.spoiled = false;
+    return;
+  }
+  if (expected == kGarbage || (sub.content == expected && !sub.spoiled)) return;
+  if (reads_of(access.access) != 0)
+    fail("the update of " + name(access.resource) + " does not find what was written for it");
+  sub.spoiled = true;
+}
+
+// Those that had the memory before must be done.
+void Replay::check_former(const AccessRecord& access, std::uint8_t queue) {
+  const Accesses writes = access.access & ~reads_of(access.access);
+  for (const Former& former : resources_[access.resource].former) {
+    const bool right = former.writes
+                           ? order_.is_available(former.operation, queue, access.stages) &&
+                                 (former.read_since ||
+                                  order_.is_visible(former.operation, queue, access.stages, writes))
+                           : order_.is_ordered(former.operation, queue, access.stages);
+    if (!right)
+      fail(name(access.resource) + " takes the memory of " + name(former.resource) +
+           " before its last " + (former.writes ? "write is done" : "read"));
+  }
+}
+
+void Replay::apply_access(std::uint32_t position, std::uint32_t access_index) {
+  const AccessRecord& access = graph_.accesses[access_index];
+  const auto queue = static_cast<std::uint8_t>(plan_.passes[position].queue);
+  const Accesses accesses = expand_accesses(access.access);
+  Operation operation{Operation::Kind::access,      queue, order_.now(),
+                      expand_stages(access.stages), 0,     0};
+  if (access.flags & kWrite) operation.writes = accesses & ~reads_of(accesses);
+  for_each_sub(access.resource, access.range, [&](Sub& sub) {
+    sub.fresh = false;
+    if (!(access.flags & kWrite)) {
+      sub.last.reads.push_back(operation);
+      return;
+    }
+    sub.content = access_index;
+    sub.family = family(queue);
+    if (continues(sub, access, queue)) {
+      sub.last.writes.push_back(operation);
+      sub.series = access_index;
+      return;
+    }
+    if (access.flags & kUnordered) sub.before_series = sub.last;
+    sub.series = access.flags & kUnordered ? access_index : kNone;
+    sub.last.reads.clear();
+    sub.last.writes.assign(1, operation);
+  });
+}
+
+void Replay::end_frame() {
+  where_ = "at the end of the frame";
+  for (std::uint32_t r = 0; r < resources_.size(); ++r) {
+    const ResourceRecord& record = graph_.resources[r];
+    if (record.external != kNone && graph_.externals[record.external].has_final_state)
+      check_final_state(r);
+  }
+  for (const OutputRecord& output : graph_.outputs) {
+    const auto& subs = resources_[output.resource].subs;
+    for (std::size_t i = 0; i < subs.size(); ++i) {
+      const std::uint32_t expected = last_[output.resource][i];
+      if (expected == kGarbage) continue;
+      if (subs[i].content != expected || subs[i].spoiled)
+        fail("output " + name(output.resource) + " does not hold what was written for it");
+    }
+  }
+  for (const FinalState& final : plan_.finals) check_final(final);
+}
+
+void Replay::check_final_state(std::uint32_t resource) {
+  const ResourceRecord& record = graph_.resources[resource];
+  const State& final_state = graph_.externals[record.external].final_state;
+  const auto queue = static_cast<std::uint8_t>(QueueClass::graphics);
+  for (std::size_t i = 0; i < resources_[resource].subs.size(); ++i) {
+    const Sub& sub = resources_[resource].subs[i];
+    const std::uint32_t expected = last_[resource][i];
+    if (record.kind == ResourceKind::texture && sub.layout != final_state.layout)
+      fail(name(resource) + " is left in layout " + std::to_string(sub.layout) +
+           ", its final_state is " + std::to_string(final_state.layout));
+    if (expected != kGarbage && (sub.content != expected || sub.spoiled))
+      fail(name(resource) + " does not leave with what was written for it");
+    if (sub.released || (sub.family != kNone && sub.family != family(queue)))
+      fail(name(resource) + " is left with another queue family than it came with");
+    for (const Operation& read : sub.last.reads) {
+      // Whoever has it next waits for its own stages alone, or for what they come after.
+      const bool waited_for = !is_write(final_state.access) && read.queue == queue &&
+                              (read.stages & ~expand_stages(final_state.stages)) == 0;
+      if (!waited_for && !order_.is_ordered(read, queue, final_state.stages))
+        fail(name(resource) + " leaves before its last read is done");
+    }
+    for (const Operation& write : sub.last.writes) {
+      if (!order_.is_ordered(write, queue, final_state.stages) ||
+          !order_.is_visible(write, queue, final_state.stages, final_state.access))
+        fail(name(resource) + " leaves before its last write can be seen");
+    }
+  }
+}
+
+// The next frame arrives in what this one claims to leave.
+void Replay::check_final(const FinalState& final) {
+  if (final.resource >= resources_.size()) {
+    fail("the final state of a resource that was not declared");
+    return;
+  }
+  const Stages stages = expand_stages(final.state.stages);
+  for (const Sub& sub : resources_[final.resource].subs) {
+    if (graph_.resources[final.resource].kind == ResourceKind::texture &&
+        sub.layout != final.state.layout)
+      fail(name(final.resource) + " is said to be left in another layout than it is");
+    for (const Operation& read : sub.last.reads) {
+      if (read.stages & ~stages) fail(name(final.resource) + " is read by a stage not told of");
+    }
+    check_final_writes(final, sub);
+    if (sub.family != kNone && sub.family != family(static_cast<std::uint8_t>(final.queue)))
+      fail(name(final.resource) + " is said to be owned by another queue than it is");
+  }
+}
+
+void Replay::check_final_writes(const FinalState& final, const Sub& sub) {
+  const Stages stages = expand_stages(final.state.stages);
+  const Accesses accesses = expand_accesses(final.state.access);
+  const auto queue = static_cast<std::uint8_t>(final.queue);
+  for (const Operation& write : sub.last.writes) {
+    if (is_write(accesses)) {
+      const bool told = write.kind != Operation::Kind::access ||
+                        ((write.stages & ~stages) == 0 && (write.writes & ~accesses) == 0);
+      if (sub.last.reads.empty() && !told)
+        fail(name(final.resource) + " is written in a way not told of");
+    } else if (!several_queues_ && stages != 0) {
+      const bool seen = accesses == 0
+                            ? order_.is_before_any(write, queue, final.state.stages)
+                            : order_.is_available(write, queue, final.state.stages) &&
+                                  order_.is_visible(write, queue, final.state.stages, accesses);
+      if (!seen) fail(name(final.resource) + " is said to be seen by what does not see it");
+    }
+  }
+}
+
+}  // namespace alcove::framegraph::verifier

@@ -1,0 +1,225 @@
+#include <algorithm>
+#include <iterator>
+#include <set>
+#include <utility>
+
+#include "replay.h"
+
+namespace alcove::framegraph::verifier {
+namespace {
+
+class Tables {
+ public:
+  Tables(const GraphDescription& graph, const Limits& limits, const Plan& plan, Errors& errors)
+      : graph_(graph), limits_(limits), plan_(plan), errors_(errors) {}
+
+  bool run() {
+    if (plan_.placements.size() != graph_.resources.size() ||
+        plan_.live_accesses.size() != graph_.accesses.size() ||
+        plan_.cull_reasons.size() != graph_.passes.size()) {
+      fail("the plan is of another graph: its tables have other sizes");
+      return false;
+    }
+    check_passes();
+    check_submissions();
+    check_batches();
+    if (!errors_.empty()) return false;  // indices may be wrong
+    check_lifetimes();
+    for (std::uint32_t r = 0; r < graph_.resources.size(); ++r) check_placement(r);
+    check_overlaps();
+    return true;
+  }
+
+ private:
+  void fail(std::string message) {
+    errors_.push_back({ErrorCode::verification, std::move(message), VK_SUCCESS, kNone, kNone, 0});
+  }
+  std::string name(std::uint32_t resource) const {
+    return std::string("'").append(graph_.resource_name(resource)).append("'");
+  }
+
+  void check_passes() {
+    std::vector<std::uint32_t> seen(graph_.passes.size(), 0);
+    for (const PlannedPass& planned : plan_.passes) {
+      if (planned.pass >= graph_.passes.size()) {
+        fail("the plan runs a pass that was not declared");
+        return;
+      }
+      if (seen[planned.pass]++) fail("the plan runs a pass twice");
+      const auto queue = static_cast<std::size_t>(planned.queue);
+      if (queue >= kQueueClasses || (queue != 0 && limits_.queue_families[queue] == kNone))
+        fail("a pass runs on a queue that the device does not have");
+    }
+    std::uint32_t last_effect[kQueueClasses] = {};
+    for (const PlannedPass& planned : plan_.passes) {
+      if (!(graph_.passes[planned.pass].flags & kSideEffect)) continue;
+      std::uint32_t& last = last_effect[static_cast<std::size_t>(planned.queue)];
+      if (planned.pass < last) fail("passes with side effects run in another order than declared");
+      last = planned.pass;
+    }
+    for (std::uint32_t pass = 0; pass < graph_.passes.size(); ++pass) {
+      if ((graph_.passes[pass].flags & kSideEffect) && !seen[pass])
+        fail(std::string("pass '").append(graph_.pass_name(pass)) +
+             "' has a side effect but was culled");
+      const std::uint32_t first = graph_.passes[pass].first_access;
+      for (std::uint32_t i = 0; i < graph_.pass_accesses(pass).size(); ++i) {
+        const bool must = seen[pass] && !(graph_.accesses[first + i].flags & kOptional);
+        if (must != (plan_.live_accesses[first + i] != 0) && (must || !seen[pass]))
+          fail("an access is live where its pass is not, or the reverse");
+      }
+    }
+  }
+
+  void check_submissions() {
+    std::uint32_t next = 0;
+    for (std::uint32_t s = 0; s < plan_.submissions.size(); ++s) {
+      const Submission& submission = plan_.submissions[s];
+      if (submission.first_pass != next ||
+          submission.pass_count > plan_.passes.size() - submission.first_pass) {
+        fail("submissions do not cover the passes in order");
+        return;
+      }
+      next += submission.pass_count;
+      for (std::uint32_t p = submission.first_pass; p < next; ++p) {
+        if (plan_.passes[p].queue != submission.queue)
+          fail("a pass is submitted to another queue than it was planned for");
+      }
+      if (submission.first_wait + submission.wait_count > plan_.waits.size()) {
+        fail("a submission's waits are out of range");
+        return;
+      }
+      for (std::uint32_t w = 0; w < submission.wait_count; ++w) {
+        if (plan_.waits[submission.first_wait + w].submission >= s)
+          fail("a submission waits for itself or a later one: it would hang");
+      }
+    }
+    if (next != plan_.passes.size()) fail("a pass is in no submission");
+  }
+
+  void check_batches() {
+    for (const Batch& batch : plan_.batches) {
+      if (batch.count > plan_.transitions.size() ||
+          batch.first > plan_.transitions.size() - batch.count)
+        fail("a batch's transitions are out of range");
+    }
+    const auto check = [this](std::uint32_t first, std::uint32_t count) {
+      if (count > plan_.batches.size() || first > plan_.batches.size() - count)
+        fail("batches are out of range");
+    };
+    for (const PlannedPass& planned : plan_.passes) check(planned.first_batch, planned.batch_count);
+    for (const Submission& s : plan_.submissions) check(s.first_batch, s.batch_count);
+    for (const Transition& t : plan_.transitions) {
+      if (t.resource == kNone) continue;
+      if (t.resource >= graph_.resources.size()) {
+        fail("a transition is of a resource that was not declared");
+        return;
+      }
+      const ResourceRecord& r = graph_.resources[t.resource];
+      if (r.kind == ResourceKind::texture &&
+          (t.range.mips == 0 || t.range.layers == 0 || t.range.base_mip + t.range.mips > r.mips ||
+           t.range.base_layer + t.range.layers > r.layers))
+        fail("a transition of " + name(t.resource) + " is out of its mips or layers");
+    }
+  }
+
+  void check_lifetimes() {
+    for (std::uint32_t position = 0; position < plan_.passes.size(); ++position) {
+      const std::uint32_t pass = plan_.passes[position].pass;
+      const std::uint32_t first = graph_.passes[pass].first_access;
+      for (std::uint32_t i = 0; i < graph_.pass_accesses(pass).size(); ++i) {
+        if (!plan_.live_accesses[first + i]) continue;
+        const AccessRecord& access = graph_.accesses[first + i];
+        const Placement& placement = plan_.placements[access.resource];
+        if (placement.first == kNone || position < placement.first || position > placement.last)
+          fail(name(access.resource) + " is used at position " + std::to_string(position) +
+               ", outside its lifetime");
+        if (access.usage & ~placement.usage)
+          fail(name(access.resource) + " is made without a usage that a pass needs");
+      }
+    }
+    for (const OutputRecord& output : graph_.outputs) {
+      const Placement& placement = plan_.placements[output.resource];
+      if (placement.first != kNone && placement.last + 1 < plan_.passes.size() &&
+          graph_.resources[output.resource].origin == Origin::transient)
+        fail("output " + name(output.resource) + " does not live to the end of the frame");
+    }
+  }
+
+  void check_placement(std::uint32_t r) {
+    const Placement& placement = plan_.placements[r];
+    if (graph_.resources[r].origin != Origin::transient || placement.first == kNone) return;
+    if (placement.heap >= plan_.heaps.size()) {
+      fail(name(r) + " is used but has no memory");
+      return;
+    }
+    const MemoryRequirements needed =
+        limits_.memory.query
+            ? limits_.memory.query(limits_.memory.context, graph_.resources[r], placement.usage)
+            : estimate_requirements(graph_.resources[r]);
+    if (placement.offset % needed.alignment != 0) fail(name(r) + " is not aligned");
+    if (placement.size < needed.size) fail(name(r) + " has too few bytes");
+    const Heap& heap = plan_.heaps[placement.heap];
+    if (placement.size > heap.size || placement.offset > heap.size - placement.size)
+      fail(name(r) + " reaches beyond its heap");
+    if (heap.memory_types & ~needed.memory_types)
+      fail(name(r) + " lies in a heap whose memory types it does not allow");
+  }
+
+  // Resources that live together share no byte, and a buffer and an image no page of the
+  // granularity. In order of first use each is compared with its neighbours in memory of those that
+  // live then.
+  void check_overlaps() {
+    std::vector<std::uint32_t> order;
+    for (std::uint32_t r = 0; r < graph_.resources.size(); ++r) {
+      if (plan_.placements[r].heap < plan_.heaps.size() && plan_.placements[r].size != 0)
+        order.push_back(r);
+    }
+    std::vector<std::uint32_t> ending = order;
+    const auto& placements = plan_.placements;
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return placements[a].first < placements[b].first;
+    });
+    std::sort(ending.begin(), ending.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return placements[a].last < placements[b].last;
+    });
+    std::vector<std::set<std::pair<VkDeviceSize, std::uint32_t>>> live(plan_.heaps.size());
+    std::size_t ended = 0;
+    for (const std::uint32_t r : order) {
+      for (; placements[ending[ended]].last < placements[r].first; ++ended)
+        live[placements[ending[ended]].heap].erase(
+            {placements[ending[ended]].offset, ending[ended]});
+      auto& there = live[placements[r].heap];
+      const auto at = there.insert({placements[r].offset, r}).first;
+      if (at != there.begin()) check_neighbours(std::prev(at)->second, r);
+      if (std::next(at) != there.end()) check_neighbours(r, std::next(at)->second);
+    }
+  }
+
+  void check_neighbours(std::uint32_t a, std::uint32_t b) {
+    if (meet(a, b, 1)) fail(name(a) + " and " + name(b) + " live together on the same bytes");
+    if (graph_.resources[a].kind != graph_.resources[b].kind &&
+        meet(a, b, limits_.buffer_image_granularity))
+      fail(name(a) + " and " + name(b) + " share a page of the buffer-image granularity");
+  }
+
+  bool meet(std::uint32_t a, std::uint32_t b, VkDeviceSize page) const {
+    const Placement& x = plan_.placements[a];
+    const Placement& y = plan_.placements[b];
+    return x.offset / page <= (y.offset + y.size - 1) / page &&
+           y.offset / page <= (x.offset + x.size - 1) / page;
+  }
+
+  const GraphDescription& graph_;
+  const Limits& limits_;
+  const Plan& plan_;
+  Errors& errors_;
+};
+
+}  // namespace
+
+bool check_tables(const GraphDescription& graph, const Limits& limits, const Plan& plan,
+                  Errors& errors) {
+  return Tables(graph, limits, plan, errors).run();
+}
+
+}  // namespace alcove::framegraph::verifier
