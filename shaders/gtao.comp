@@ -48,10 +48,10 @@ layout(constant_id = 16) const bool kExtrapolation = true;  // surfaces go on be
 layout(constant_id = 17) const bool kUnobserved = true;     // is left out, with connected samples
 layout(constant_id = 18) const uint kNormalEncoding = 0;    // as NormalEncoding has them
 
+const uint kBitmask = 2;
+const uint kConnected = 3;
 const bool kHeuristic = kEstimator == 1;
-const bool kBitmask = kEstimator >= 2;
-const bool kConnected = kEstimator == 3;
-const bool kLeaveOutUnobserved = kConnected && kUnobserved;
+const bool kLeaveOutUnobserved = kEstimator == kConnected && kUnobserved;
 
 layout(set = 0, binding = 0) uniform Parameters { GtaoParameters parameters; };
 layout(set = 0, binding = 1,
@@ -116,136 +116,76 @@ Surface fetch_surface(ivec2 pixel, float inverse_depth) {
   return surface;
 }
 
-#include "gtao_search.h"
-#include "gtao_sectors.h"
+// Sums over the half-slices of a slice.
+struct SliceSum {
+  float visible;        // visible part
+  float left_out;       // part of it in unobserved directions
+  vec2 bent;            // sum of visible directions: along the slice's direction, and the view's
+  RawOcclusion lobe;
+  float lobe_left_out;
+};
 
-// `horizon` (a cosine) after a sample of its side.
-float next_horizon(float horizon, Search search, vec3 point) {
-  float squared = squared_length(point.xy);
-  float radius = parameters.radius * point.z;
-  float inverse = inversesqrt(max(squared, 1e-30));
-  float found = point.y * inverse;
-  if (kFalloff) {
-    found = mix(search.lowest, found, radius_weight(squared * inverse, radius, parameters.falloff));
-  }
-  float next = kHeuristic ? raise_horizon(horizon, found, parameters.blend) : max(horizon, found);
-  return squared <= radius * radius ? next : horizon;
-}
+RawOcclusion no_lobe() { return RawOcclusion(0.0, 0.0); }
 
-// Cosine of the horizon within the radius on one side; -1 where there is none.
-float find_horizon(Search search) {
-  float horizon = -1.0;
-  uint k = 0;
-  do {
-    horizon = next_horizon(horizon, search, fetch_sample(search, 0u, k).point);
-    ++k;
-  } while (k < kStepCount);
-  return search.reach_px > 0.0 ? horizon : -1.0;
-}
+#include "gtao_half_slice.h"
+
+#include "gtao_bitmask.h"
+#include "gtao_connected.h"
+#include "gtao_horizons.h"
 
 // What a slice adds to the pixel's sums.
-struct SliceSum {
-  float visible;
-  float open;
+struct SliceResult {
+  RawOcclusion raw_occlusion;
   vec3 residual;
   vec3 expected_residual;
   RawOcclusion lobe;
 };
 
-RawOcclusion no_lobe() { return RawOcclusion(0.0, 0.0); }
-
-LobeSlice lobe_of(Surface surface, Slice slice) {
-  return make_lobe_slice(slice, surface.lobe.roughness * surface.lobe.roughness);
-}
-
-UnobservedArc unobserved_arc(Slice slice, Search search, Search other, Occluders found) {
-  float nearness = kPerspective ? parameters.radius / search.depth : 0.0;
-  float radius_px =
-      slice_radius_px(search.slice_line, parameters.radius, search.depth, kPerspective);
-  Unobserved unobserved =
-      add_beyond_border(mean_row(found.unobserved), found.border_px, search.outside * radius_px,
-                        border_share(other.outside, nearness));
-  return make_unobserved_arc(slice, search.side, search.per_diamond_angle, found.occluded,
-                             unobserved, radius_px);
-}
-
-VisiblePart find_visible_part(Slice slice, Search search, Occluders found) {
-  const PartRequest request = PartRequest(kUniformWeight, kBentNormal);
-  return visible_part(slice, search.side, search.per_diamond_angle, found.occluded,
-                      found.hidden_occlusion, request);
-}
-
-float find_visible_lobe(LobeSlice lobe, Search search, Occluders found) {
-  return visible_lobe(lobe, search.side, search.per_diamond_angle, found.occluded,
-                      found.hidden_occlusion);
-}
-
 RawOcclusion leave_out(RawOcclusion sum, float part) {
   return RawOcclusion(max(sum.visible - part, 0.0), sum.open - part);
 }
 
-// Once the slice's visible part is known; `part` is its part of the bent normal, `open` all of it.
-void add_residuals(inout SliceSum sum, Surface surface, Slice slice, vec3 direction, vec3 part,
-                   float open) {
-  sum.residual = kBentNormal ? residual_of(part, sum.visible, surface.normal) : vec3(0.0);
-  sum.expected_residual =
-      kBentNormal ? expected_residual(slice, direction, surface.view, surface.normal, open)
-                  : vec3(0.0);
-}
-
-SliceSum bitmask_slice(Surface surface, Slice slice, vec3 direction, Search ahead, Search behind) {
-  Occluders ahead_found = find_occluders(ahead);
-  Occluders behind_found = find_occluders(behind);
-  VisiblePart front = find_visible_part(slice, ahead, ahead_found);
-  VisiblePart back = find_visible_part(slice, behind, behind_found);
-  SliceSum sum;
-  sum.visible = front.arc + back.arc;
-  sum.open = kUniformWeight ? 1.0
-                            : light_arc(slice, 1.0, tangent_light(slice, 1.0)) +
-                                  light_arc(slice, -1.0, tangent_light(slice, -1.0));
-  float open = sum.open;
-  UnobservedArc ahead_unobserved, behind_unobserved;
-  if (kLeaveOutUnobserved) {
-    ahead_unobserved = unobserved_arc(slice, ahead, behind, ahead_found);
-    behind_unobserved = unobserved_arc(slice, behind, ahead, behind_found);
-    RawOcclusion seen =
-        leave_out(RawOcclusion(sum.visible, sum.open),
-                  unobserved_part(ahead_unobserved, slice, 1.0, kUniformWeight) +
-                      unobserved_part(behind_unobserved, slice, -1.0, kUniformWeight));
-    sum.visible = seen.visible;
-    sum.open = seen.open;
-  }
-  vec2 bent = front.bent + back.bent;
-  add_residuals(sum, surface, slice, direction, direction * bent.x + surface.view * bent.y, open);
-  sum.lobe = no_lobe();
-  if (kLobe) {
-    LobeSlice lobe = lobe_of(surface, slice);
-    sum.lobe.visible =
-        find_visible_lobe(lobe, ahead, ahead_found) + find_visible_lobe(lobe, behind, behind_found);
-    sum.lobe.open = lobe.open;
-    if (kLeaveOutUnobserved) {
-      sum.lobe = leave_out(sum.lobe, unobserved_lobe(ahead_unobserved, lobe, 1.0) +
-                                         unobserved_lobe(behind_unobserved, lobe, -1.0));
+// Searches both half-slices of a slice, and integrates what they leave visible.
+SliceResult search_slice(Surface surface, vec3 direction, float step_offset) {
+  Slice slice = make_slice(surface.normal, direction, surface.view);
+  SliceLine slice_line = make_slice_line(parameters.slope.xy, direction, surface.view);
+  LobeSlice lobe;
+  if (kLobe) lobe = make_lobe_slice(slice, surface.lobe.roughness * surface.lobe.roughness);
+  float radius_px = slice_radius_px(slice_line, parameters.radius, surface.depth, kPerspective);
+  vec2 border_px = border_distances(surface.centre, slice_line.direction_px);
+  vec2 open_arcs = kUniformWeight ? vec2(uniform_arc(tangent_light(slice, 1.0)),
+                                         uniform_arc(tangent_light(slice, -1.0)))
+                                  : tangent_arcs(slice);
+  SliceSum sum = SliceSum(0.0, 0.0, vec2(0.0), no_lobe(), 0.0);
+  uint i = 0u;
+  [[dont_unroll]] do {
+    float side = i == 0u ? 1.0 : -1.0;
+    HalfSlice half_slice =
+        make_half_slice(surface, slice_line, slice, side, radius_px,
+                        i == 0u ? border_px.x : border_px.y, step_offset);
+    if (kEstimator == kConnected) {
+      add_connected(sum, half_slice, slice, lobe, i == 0u ? border_px.y : border_px.x);
+    } else if (kEstimator == kBitmask) {
+      add_bitmask(sum, half_slice, slice, lobe);
+    } else {
+      add_horizon(sum, half_slice, slice, lobe);
     }
+    ++i;
+  } while (i < 2u);
+  float open = open_arcs.x + open_arcs.y;
+  SliceResult result;
+  result.residual = vec3(0.0);
+  result.expected_residual = vec3(0.0);
+  if (kBentNormal) {
+    vec3 part = direction * sum.bent.x + surface.view * sum.bent.y;
+    result.residual = residual_of(part, sum.visible, surface.normal);
+    result.expected_residual =
+        expected_residual(slice, direction, surface.view, surface.normal, open);
   }
-  return sum;
-}
-
-SliceSum horizon_slice(Surface surface, Slice slice, vec3 direction, Search ahead, Search behind) {
-  float front = find_horizon(ahead);
-  float back = find_horizon(behind);
-  SliceSum sum;
-  sum.visible = kUniformWeight ? uniform_slice_visibility(slice, front, back)
-                               : slice_visibility(slice, front, back);
-  sum.open = kUniformWeight ? 1.0 : open_slice(slice);
-  add_residuals(sum, surface, slice, direction,
-                slice_bent_normal(slice, direction, surface.view, front, back), sum.open);
-  sum.lobe = no_lobe();
-  if (kLobe) {
-    LobeSlice lobe = lobe_of(surface, slice);
-    sum.lobe = RawOcclusion(horizon_lobe(slice, lobe, front, back), lobe.open);
-  }
-  return sum;
+  result.raw_occlusion = leave_out(RawOcclusion(sum.visible, open), sum.left_out);
+  result.lobe = no_lobe();
+  if (kLobe) result.lobe = leave_out(RawOcclusion(sum.lobe.visible, lobe.open), sum.lobe_left_out);
+  return result;
 }
 
 SliceNoise noise_at(uvec2 block) {
@@ -271,8 +211,8 @@ RawOcclusion faded(RawOcclusion sum, float to_open) {
 }
 
 // Fades to open where the depth buffer cannot resolve the radius.
-SliceSum fade_unresolved(SliceSum sum, float to_open) {
-  sum.visible = mix(sum.visible, sum.open, to_open);
+SliceResult fade_unresolved(SliceResult sum, float to_open) {
+  sum.raw_occlusion = faded(sum.raw_occlusion, to_open);
   sum.residual = kBentNormal ? mix(sum.residual, sum.expected_residual, to_open) : vec3(0.0);
   if (kLobe) {
     sum.lobe = faded(sum.lobe, to_open);
@@ -292,38 +232,41 @@ SearchResult sky_result() {
                       uvec2(0u));
 }
 
+void add_slice(inout SliceResult sum, Surface surface, ViewBasis basis, SliceNoise noise, uint i) {
+  WeightedAngle angle = WeightedAngle(slice_angle(i, kSliceCount, noise.direction), 1.0);
+  if (kLobe) {
+    angle = lobe_angle(angle.phi, lobe_plane(surface.normal, basis), surface.lobe.roughness);
+  }
+  SliceResult more = search_slice(surface, slice_direction(basis, angle.phi), noise.offset);
+  sum.raw_occlusion.visible += angle.weight * more.raw_occlusion.visible;
+  sum.raw_occlusion.open += angle.weight * more.raw_occlusion.open;
+  sum.residual += angle.weight * more.residual;
+  sum.expected_residual += angle.weight * more.expected_residual;
+  sum.lobe.visible += angle.weight * more.lobe.visible;
+  sum.lobe.open += angle.weight * more.lobe.open;
+}
+
 SearchResult search_pixel(ivec2 pixel, float inverse_depth, SliceNoise noise) {
   Surface surface = fetch_surface(pixel, inverse_depth);
   ViewBasis basis = make_view_basis(surface.view);
-  SliceSum sum = SliceSum(0.0, 0.0, vec3(0.0), vec3(0.0), no_lobe());
-  uint i = 0;
-  do {
-    WeightedAngle angle = WeightedAngle(slice_angle(i, kSliceCount, noise.direction), 1.0);
-    if (kLobe) {
-      angle = lobe_angle(angle.phi, lobe_plane(surface.normal, basis), surface.lobe.roughness);
-    }
-    vec3 direction = slice_direction(basis, angle.phi);
-    Slice slice = make_slice(surface.normal, direction, surface.view);
-    SliceLine slice_line = make_slice_line(parameters.slope.xy, direction, surface.view);
-    Search ahead = make_search(surface, slice_line, slice, 1.0, noise.offset);
-    Search behind = make_search(surface, slice_line, slice, -1.0, noise.offset);
-    SliceSum more = kBitmask ? bitmask_slice(surface, slice, direction, ahead, behind)
-                             : horizon_slice(surface, slice, direction, ahead, behind);
-    sum.visible += angle.weight * more.visible;
-    sum.open += angle.weight * more.open;
-    sum.residual += angle.weight * more.residual;
-    sum.expected_residual += angle.weight * more.expected_residual;
-    sum.lobe.visible += angle.weight * more.lobe.visible;
-    sum.lobe.open += angle.weight * more.lobe.open;
-    ++i;
-  } while (i < kSliceCount);
+  SliceResult sum = SliceResult(RawOcclusion(0.0, 0.0), vec3(0.0), vec3(0.0), no_lobe());
+  if (kSliceCount == 1u) {
+    add_slice(sum, surface, basis, noise, 0u);
+  } else {
+    uint i = 0u;
+    do {
+      add_slice(sum, surface, basis, noise, i);
+      ++i;
+    } while (i < kSliceCount);
+  }
   float step_length = depth_step_length(surface.depth_step, inverse_depth, kPerspective);
   sum = fade_unresolved(sum, unresolved_occlusion(step_length, parameters.radius));
   float mean = 1.0 / float(kSliceCount);
   uvec2 lobe = kLobe ? pack_scaled_lobe(surface.lobe,
                                         RawOcclusion(sum.lobe.visible * mean, sum.lobe.open * mean))
                      : uvec2(0u);
-  RawOcclusion raw_occlusion = RawOcclusion(sum.visible * mean, sum.open * mean);
+  RawOcclusion raw_occlusion =
+      RawOcclusion(sum.raw_occlusion.visible * mean, sum.raw_occlusion.open * mean);
   uint normal = make_quantised_normal(surface.normal).bits;
   return SearchResult(
       uvec4(pack_raw_occlusion(raw_occlusion, normal), floatBitsToUint(inverse_depth), lobe),

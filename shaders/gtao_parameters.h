@@ -12,8 +12,7 @@ struct GtaoParameters {
   float radius;            // scene units
   uint frame;              // turns the noise
   float thickness;         // of an occluder, scene units or parts of its distance from the eye
-  float hidden_occlusion;  // of hidden_occlusion_behind(): how much is taken to lie behind
-                           // occluders, [0,1]
+  float hidden_exponent;   // of hidden_occlusion_behind()
   float blend;             // of a horizon towards each lower sample, [0,1] (heuristic)
   float falloff;    // last part of the radius, over which occluders fade, [0,1] (horizons and
                     // heuristic)

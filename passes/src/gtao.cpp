@@ -11,6 +11,7 @@
 #include "gtao_parameters.h"
 #include "interleave_offset.h"
 #include "maths/slice_line.h"
+#include "maths/visibility_bitmask.h"
 #include "number_text.h"
 #include "output_format.h"
 #include "view_parameters.h"
@@ -182,7 +183,7 @@ maths::GtaoParameters parameters_of(const Frame& frame, const GtaoInputs& inputs
       settings.radius,
       frame.index,
       settings.thickness * (of_distance(settings) ? 1.0f : settings.radius),
-      settings.hidden_occlusion,
+      maths::hidden_exponent(settings.hidden_occlusion),
       settings.blend,
       settings.falloff,
       settings.roughness,

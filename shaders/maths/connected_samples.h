@@ -6,7 +6,7 @@
 // are joined into a segment when depth alone says that they continue one surface (samples_join),
 // the edge of a surface that appears between two samples is placed between them (edge_share), and
 // every sample has a thickness: along the view vector, or as far as its back face
-// (sample_thickness). A surface that leaves the image goes on as it left (extrapolated_point). What
+// (height_of_back). A surface that leaves the image is extrapolated (extrapolated_way). What
 // is hidden behind a front stays unknown: something between thin and infinitely thick, the nearer
 // to the latter the wider the fronts stand in the image (hidden_occlusion_behind()), errs less than
 // either (see the table in sample/README.md).
@@ -50,43 +50,34 @@ ALCOVE_INLINE bool hidden_samples_join(float discontinuity_here, float discontin
   return discontinuity_here * discontinuity_there == 0.0f;
 }
 
-// Where between two samples the edge of the second one's surface is taken to be, if they are on
-// two: this part of the way back to the first. Coarser searches miss more of it.
-ALCOVE_INLINE float edge_share(uint steps) { return steps > 6u ? 0.5f : 0.75f; }
+// Where between two samples the edge of the second one's surface is taken to be, if they are on two:
+// this fraction of the way back to the first.
+const float kEdgeShare = 0.5f;
 
-// How thick the occluder at a sample is, along the view vector: as the settings say, but where a
-// surface begins no more than what is `drawn` of it, since what is thin across the image is mostly
-// a blade, a bar or a leaf. All times w.
-ALCOVE_INLINE float sample_thickness(float settings, bool begins, float drawn) {
-  return min(settings, begins ? drawn : 1e30f);
+// Whether a point of the slice's plane stands above the tangent plane by more than a fifth of its
+// distance. `height` is the gradient of the height over the tangent plane.
+ALCOVE_INLINE bool stands_above_tangent(vec2 point, vec2 height) {
+  float above = point.x * height.x + point.y * height.y;
+  return above * abs(above) > 0.04f * (point.x * point.x + point.y * point.y);
 }
 
-// By how much a point, as slice_point() gives it, lies beyond the radius, times its w; negative
-// within it.
-ALCOVE_INLINE float radius_excess(vec3 point, float radius) {
-  return sqrt(point.x * point.x + point.y * point.y) - radius * point.z;
-}
-
-// Towards the place where the straight between two such points, of which one lies within the
-// radius, leaves it: in proportion to their distances.
-ALCOVE_INLINE vec2 radius_crossing(vec3 here, float here_excess, vec3 there, float there_excess) {
-  float of_here = abs(there_excess);
-  float of_there = abs(here_excess);
-  return vec2(here.x * of_here + there.x * of_there, here.y * of_here + there.y * of_there);
+// One less the diamond angle of the back of an occluder whose front has `height` =
+// y / (x + |y|) and `scale` = 1 / (x + |y|), a `thickness` along the view direction behind it. It is
+// linear in the thickness, which costs no division, and one and a half times as steep as the exact
+// function at the front. Gains of 1 to 3 change the mean error in the four development views by less
+// than 1.1 %.
+ALCOVE_INLINE float height_of_back(float height, float scale, float thickness) {
+  return height - thickness * scale * (1.5f - 1.5f * abs(height));
 }
 
 // How far a surface goes on beyond the image's border, as a multiple of the way it was searched to
 // there.
 const float kExtrapolationRatio = 4.0f;
 
-// Where a plane gets to that went `way` over the last step, all as slice_point() gives points, `x`
-// (x w) further on; before that where its w falls to a tenth of that of `here`, and at `here` if it
-// went nowhere.
-ALCOVE_INLINE vec3 extrapolated_point(vec3 here, vec3 way, float x) {
-  float steps = way.x > 0.0f ? x / way.x : 0.0f;
-  float away = max(-way.z, 0.0f);
-  steps = min(steps, 0.9f * here.z / max(away, 1e-30f));
-  return here + way * steps;
+// How far a plane is extrapolated that changes by `slope` in inverse depth per pixel: `way_px`, but in
+// perspective no further than to where it lies ten times as far away as its last sample at `last`.
+ALCOVE_INLINE float extrapolated_way(float last, float slope, float way_px, bool perspective) {
+  return perspective ? min(way_px, 0.9f * last / max(-slope, 1e-30f)) : way_px;
 }
 
 ALCOVE_MATHS_END

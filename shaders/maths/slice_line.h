@@ -1,7 +1,7 @@
 // The image line of a slice, and depth samples on it as points of the slice's plane.
 //
 // A sample snapped to a texel's centre lies beside the line. If it is of the surface's own tangent
-// plane its depth is moved onto the line along that plane (tangent_share), so an open plane stays
+// plane its depth is moved onto the line along that plane (lies_on_tangent_plane), so it stays
 // exactly open at any tilt and any snap_to_texels; the further it stands off the plane, the less of
 // that. (The paper projects nothing; others use the sample as it is, and see a tilted plane occlude
 // itself.)
@@ -150,17 +150,11 @@ ALCOVE_INLINE float unresolved_occlusion(float step_length, float radius) {
   return saturate((step_length / radius - 0.25f) * (4.0f / 3.0f));
 }
 
-// How far a sample, `off_plane` off the tangent plane in `line` and so many pixels away, is moved
-// towards the exact place it stands for along that plane: 1 on the plane, which stays exactly flat,
-// 0 off it, where an occluder stays where it was found.
-ALCOVE_INLINE float tangent_share(TangentPlane t, float off_plane, float offset_px) {
-  return max(1.0f - t.fading * abs(off_plane) / offset_px, 0.0f);
-}
-
-// A sample's `line` after a correction. In perspective it stays before the eye, and the sky afar.
-ALCOVE_INLINE float moved_inverse_depth(float inverse_depth, float by, bool perspective) {
-  float moved = inverse_depth + by;
-  return perspective ? clamp(moved, 0.1f * inverse_depth, 10.0f * inverse_depth) : moved;
+// Whether a sample, `off_plane` off the tangent plane in inverse depth and so many pixels away, is
+// taken to lie on that plane, and is moved along it to the exact place that it stands for. The plane
+// itself then stays exactly flat, and an occluder stays where it was found.
+ALCOVE_INLINE bool lies_on_tangent_plane(TangentPlane t, float off_plane, float offset_px) {
+  return t.fading * abs(off_plane) < offset_px;
 }
 
 // Pixels along the line that a sphere of radius `radius` (scene units) around the point spans on

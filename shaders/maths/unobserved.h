@@ -84,18 +84,16 @@ struct UnobservedArc {
 // Something of every slice counts.
 const float kMostUnobserved = 0.98f;
 
-// From where a direction within the radius meets the innermost column to the first occluder, if any
-// (`occluded` as visible_part() has it). The share is the square root of what part of the radius
-// the columns are wide, which errs less than the part itself or all. `radius_px` is
-// slice_radius_px().
-ALCOVE_INLINE UnobservedArc make_unobserved_arc(Slice s, float side, float per_diamond_angle,
-                                                uint occluded, Unobserved unobserved,
+// From where a direction within the radius meets the innermost unobserved sample to the first
+// occluder, or to the tangent plane if nothing is occluded (`first`: sine and cosine of its angle).
+// The share is the square root of the part of the radius that the unobserved samples are wide, which
+// errs less than the part itself or all of it. `radius_px` is slice_radius_px().
+ALCOVE_INLINE UnobservedArc make_unobserved_arc(vec2 first, Unobserved unobserved,
                                                 float radius_px) {
   UnobservedArc arc;
   float x = min(unobserved.first_px / radius_px, 1.0f);
   arc.from = vec2(x, sqrt(1.0f - x * x));
-  arc.to = occluded == 0u ? tangent_light(s, side)
-                          : diamond_angle_light(float(findLSB(occluded)) / per_diamond_angle);
+  arc.to = first;
   float share = min(sqrt(unobserved.width_px / radius_px), kMostUnobserved);
   arc.share = unobserved.width_px > 0.0f && arc.to.y < arc.from.y ? share : 0.0f;
   return arc;

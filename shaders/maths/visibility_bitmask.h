@@ -36,9 +36,14 @@ ALCOVE_INLINE vec2 diamond_angle_light(float at) {
 // Sine and cosine of the angle at which a side meets the tangent plane.
 ALCOVE_INLINE vec2 tangent_light(Slice s, float side) { return vec2(s.cosine, -side * s.sine); }
 
+// Diamond angle of the tangent plane in a half-slice, at least 1e-4.
+ALCOVE_INLINE float tangent_diamond_angle(Slice s, float side) {
+  return max(diamond_angle(tangent_light(s, side)), 1e-4f);
+}
+
 // Sectors of a side for each unit of diamond_angle, at least 16.
 ALCOVE_INLINE float sectors_per_diamond_angle(Slice s, float side) {
-  return float(kSectorCount) / max(diamond_angle(tangent_light(s, side)), 1e-4f);
+  return float(kSectorCount) / tangent_diamond_angle(s, side);
 }
 
 // Position of a point among the sectors of its side, in [0,32]; what lies under the tangent plane
@@ -57,6 +62,31 @@ ALCOVE_INLINE uint sectors_from_to(float from, float to) {
 // The same of positions in either order.
 ALCOVE_INLINE uint sectors_between(float a, float b) {
   return sectors_from_to(min(a, b), max(a, b));
+}
+
+// A cheaper form of the same, for a search that adds an interval per sample. It has one sector less,
+// so that a position fits into five bits and an interval between two positions, in either order, is
+// the exclusive or of two masks.
+const uint kEvenSectorCount = 31u;
+
+// Bits of the float 2^23, which has no fraction bits: adding it rounds to an integer.
+const uint kPositionBits = 0x4b000000u;
+
+// Position among kEvenSectorCount sectors, in the low bits of a word that grows with the position.
+// `height` is 1 less the diamond angle, `per_tangent` 1 over tangent_diamond_angle().
+ALCOVE_INLINE uint biased_position(float per_tangent, float height) {
+  float share = clamp(per_tangent - height * per_tangent, 0.0f, 1.0f);
+  return floatBitsToUint(share * float(kEvenSectorCount) + 8388608.0f);
+}
+
+// The sectors from a position on, and one more: the exclusive or of two such masks holds the sectors
+// between the two positions.
+ALCOVE_INLINE uint sectors_beyond(uint position) { return 0xffffffffu << (position & 31u); }
+
+// Repeats the state of the last of kEvenSectorCount sectors in the highest bit, as visible_part() and
+// visible_lobe() expect a mask.
+ALCOVE_INLINE uint repeat_last_sector(uint occluded) {
+  return occluded | ((occluded << 1u) & 0x80000000u);
 }
 
 // What is asked of a side.
@@ -83,16 +113,22 @@ ALCOVE_INLINE VisiblePart add_part(VisiblePart sum, float weight, Slice s, float
   return sum;
 }
 
+// The exponent of hidden_occlusion_behind() for a mean of `hidden_occlusion`, [0,1].
+const float kNoHiddenOcclusion = 1e3f;
+ALCOVE_INLINE float hidden_exponent(float hidden_occlusion) {
+  return hidden_occlusion > 0.0f ? max(1.0f / max(hidden_occlusion, 1e-3f) - 1.0f, 0.0f)
+                                 : kNoHiddenOcclusion;
+}
+
 // What part of what lies behind the occluders of a side counts as occluded, [0,1]. `front` is the
 // mean width of the fronts that the side's columns show, [0,1], in parts of its way along the image
 // from the first of them on: a ray is hidden all the way behind a wall, seen but for an inch behind
 // a blade of grass, and seen between the slats of a blind however much of the way they
 // hidden_occlusion. `hidden_occlusion` is the mean over all `front`; 0 is nothing behind any front,
 // 1 everything.
-ALCOVE_INLINE float hidden_occlusion_behind(float front, float hidden_occlusion) {
-  float exponent = 1.0f / max(hidden_occlusion, 1e-3f) - 1.0f;
-  float part = pow(clamp(front, 1e-6f, 1.0f), max(exponent, 0.0f));
-  return hidden_occlusion > 0.0f ? part : 0.0f;
+ALCOVE_INLINE float hidden_occlusion_behind(float front, float exponent) {
+  float part = pow(clamp(front, 1e-6f, 1.0f), exponent);
+  return exponent < kNoHiddenOcclusion ? part : 0.0f;
 }
 
 // Exact over the visible sectors. What lies behind an occluder, up to the tangent plane, is

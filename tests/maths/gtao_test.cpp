@@ -266,5 +266,18 @@ TEST(Gtao, ThicknessHeuristicRaisesAtOnceAndFallsByTheBlend) {
   EXPECT_EQ(maths::raise_horizon(0.5f, 0.1f, 0.0f), 0.5f);
 }
 
+TEST(Gtao, TangentArcsAreTheTwoPartsOfAnOpenSlice) {
+  RandomInput random;
+  for (int i = 0; i < 2000; ++i) {
+    const maths::Slice s = slice_of(random.uniform(0.01f, 1.0f), random.uniform(-1.57f, 1.57f));
+    const glm::vec2 arcs = maths::tangent_arcs(s);
+    for (const float side : {-1.0f, 1.0f}) {
+      const float expected = maths::light_arc(s, side, {s.cosine, -side * s.sine});
+      EXPECT_NEAR(side > 0.0f ? arcs.x : arcs.y, expected, 5e-5f);
+    }
+    EXPECT_NEAR(arcs.x + arcs.y, maths::open_slice(s), 1e-4f);
+  }
+}
+
 }  // namespace
 }  // namespace alcove::maths_test

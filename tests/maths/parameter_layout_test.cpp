@@ -40,7 +40,7 @@ const std::map<std::string, Offsets> kExpected = {
      {ALCOVE_OFFSET(GtaoParameters, view_from_normal), ALCOVE_OFFSET(GtaoParameters, slope),
       ALCOVE_OFFSET(GtaoParameters, interleave_offset), ALCOVE_OFFSET(GtaoParameters, radius),
       ALCOVE_OFFSET(GtaoParameters, frame), ALCOVE_OFFSET(GtaoParameters, thickness),
-      ALCOVE_OFFSET(GtaoParameters, hidden_occlusion), ALCOVE_OFFSET(GtaoParameters, blend),
+      ALCOVE_OFFSET(GtaoParameters, hidden_exponent), ALCOVE_OFFSET(GtaoParameters, blend),
       ALCOVE_OFFSET(GtaoParameters, falloff), ALCOVE_OFFSET(GtaoParameters, roughness),
       ALCOVE_OFFSET(GtaoParameters, depth_step),
       ALCOVE_OFFSET(GtaoParameters, depth_step_per_inverse_depth)}},

@@ -201,7 +201,7 @@ ALCOVE_INLINE vec4 parity_of_sampling(uint which, vec4 a, vec4 b) {
       request.bent = true;
       VisiblePart part =
           visible_part(s, -1.0f, sectors_per_diamond_angle(s, -1.0f), parity_word(pixel.x),
-                       hidden_occlusion_behind(b.y, b.x), request);
+                       hidden_occlusion_behind(b.y, hidden_exponent(b.x)), request);
       return vec4(part.arc, part.bent.x, part.bent.y, radius_weight(b.y, 0.8f, b.z));
     }
     case 21u: {
@@ -223,7 +223,7 @@ ALCOVE_INLINE vec4 parity_of_sampling(uint which, vec4 a, vec4 b) {
                             border_share(b.x, b.y));
       // Sectors are whole: only without occluders does a rounding not move an end.
       UnobservedArc arc =
-          make_unobserved_arc(s, 1.0f, sectors_per_diamond_angle(s, 1.0f), 0u, unobserved, 1.0f);
+          make_unobserved_arc(tangent_light(s, 1.0f), unobserved, 1.0f);
       return vec4(unobserved_part(arc, s, 1.0f, false), unobserved_part(arc, s, 1.0f, true),
                   unobserved_lobe(arc, lobe, 1.0f), arc.share);
     }

@@ -123,7 +123,7 @@ TEST(SliceLine, AnOccludersBackLiesOnTheViewRayOfItsFront) {
   }
 }
 
-TEST(SliceLine, ASampleOfTheTangentPlaneIsMovedAlongIt) {
+TEST(SliceLine, SamplesOfTheTangentPlaneMoveAlongItAndStayOnIt) {
   RandomInput random;
   for (int i = 0; i < 5000; ++i) {
     const Setting s(random);
@@ -132,28 +132,15 @@ TEST(SliceLine, ASampleOfTheTangentPlaneIsMovedAlongIt) {
         maths::ray_per_px(s.projection), s.normal, s.view, s.depth, s.perspective());
     const vec2 exact = s.line.direction_px * random.uniform(2.0f, 40.0f);
     const vec2 snapped = round(exact);
-    const float line = tangent.inverse_depth + dot(snapped, tangent.gradient);
+    const float inverse_depth = tangent.inverse_depth + dot(snapped, tangent.gradient);
     const float on_plane = dot(snapped, tangent.gradient);
-    const float share =
-        maths::tangent_share(tangent, line - tangent.inverse_depth - on_plane, length(exact));
-    const float moved = line + share * dot(exact - snapped, tangent.gradient);
+    const float off_plane = inverse_depth - tangent.inverse_depth - on_plane;
+    EXPECT_TRUE(maths::lies_on_tangent_plane(tangent, off_plane, length(exact)));
+    const float moved = inverse_depth + dot(exact - snapped, tangent.gradient);
     const float depth = s.perspective() ? 1.0f / moved : moved;
     // A plane that passes behind the eye has no image there.
     if (!(depth > 0.0f) || depth > 10.0f * s.depth) continue;
     EXPECT_NEAR(dot(s.delta(exact, depth), s.normal), 0.0f, 2e-4f * depth);
-  }
-}
-
-TEST(SliceLine, AMovedSampleStaysBeforeTheEyeAndTheSkyAfar) {
-  RandomInput random;
-  for (int i = 0; i < 1000; ++i) {
-    const float line = random.log_uniform(1e-12f, 1e4f);
-    const float by = random.log_uniform(1e-6f, 1e6f) * (i % 2 == 0 ? 1.0f : -1.0f);
-    const float moved = maths::moved_inverse_depth(line, by, true);
-    EXPECT_GT(moved, 0.0f);
-    EXPECT_LE(moved, 10.0f * line);
-    // Orthographic depth may be negative, and is moved all the way.
-    EXPECT_EQ(maths::moved_inverse_depth(-line, by, false), -line + by);
   }
 }
 
@@ -175,15 +162,17 @@ TEST(SliceLine, RawDepthOfAnyKindIsBetweenTheNearPlaneAndTheSky) {
   }
 }
 
-TEST(SliceLine, ASampleFarOffTheTangentPlaneIsLeftAsItIs) {
+TEST(SliceLine, SamplesFarOffTheTangentPlaneDoNotLieOnIt) {
   RandomInput random;
   for (int i = 0; i < 1000; ++i) {
     const Setting s(random);
     const maths::TangentPlane tangent = maths::make_tangent_plane(
         maths::ray_per_px(s.projection), s.normal, s.view, s.depth, s.perspective());
     const float offset_px = random.uniform(1.3f, 60.0f);
-    EXPECT_EQ(maths::tangent_share(tangent, 1.01f * offset_px / tangent.fading, offset_px), 0.0f);
-    EXPECT_EQ(maths::tangent_share(tangent, -1.01f * offset_px / tangent.fading, offset_px), 0.0f);
+    const float limit = offset_px / tangent.fading;
+    EXPECT_FALSE(maths::lies_on_tangent_plane(tangent, 1.01f * limit, offset_px));
+    EXPECT_FALSE(maths::lies_on_tangent_plane(tangent, -1.01f * limit, offset_px));
+    EXPECT_TRUE(maths::lies_on_tangent_plane(tangent, 0.99f * limit, offset_px));
   }
 }
 
@@ -222,14 +211,14 @@ TEST(SliceLine, RadiusSpansTheSilhouetteOfItsSphere) {
   }
 }
 
-TEST(ConnectedSamples, JoinAlongAPlaneAndAcrossACreaseButNotOverAGap) {
+TEST(ConnectedSamples, SamplesJoinAlongPlanesAndAcrossCreasesButNotOverGaps) {
   EXPECT_TRUE(maths::samples_join(0.0f, 0.0f)) << "a plane";
   EXPECT_TRUE(maths::samples_join(0.0f, -3.0f)) << "a plane that ends";
   EXPECT_TRUE(maths::samples_join(2.0f, 1.0f)) << "a crease between the two";
   EXPECT_FALSE(maths::samples_join(2.0f, -1.0f)) << "one surface in front of another";
 }
 
-TEST(ConnectedSamples, OfWhatIsHiddenJoinAlongAPlaneAlone) {
+TEST(ConnectedSamples, HiddenSamplesJoinAlongPlanesOnly) {
   EXPECT_TRUE(maths::hidden_samples_join(0.0f, 0.0f)) << "a plane";
   EXPECT_TRUE(maths::hidden_samples_join(0.0f, -3.0f)) << "a plane that ends";
   EXPECT_TRUE(maths::hidden_samples_join(2.0f, 0.0f)) << "and one that begins";
@@ -237,13 +226,38 @@ TEST(ConnectedSamples, OfWhatIsHiddenJoinAlongAPlaneAlone) {
   EXPECT_FALSE(maths::hidden_samples_join(2.0f, -1.0f)) << "one surface in front of another";
 }
 
-TEST(ConnectedSamples, ASurfaceThatBeginsIsNoThickerThanWhatIsDrawnOfIt) {
-  EXPECT_EQ(maths::sample_thickness(0.5f, true, 0.2f), 0.2f);
-  EXPECT_EQ(maths::sample_thickness(0.5f, true, 2.0f), 0.5f);
-  EXPECT_EQ(maths::sample_thickness(0.5f, false, 0.2f), 0.5f);
+TEST(ConnectedSamples, OccluderBacksMoveAwayFromTheViewDirectionWithThickness) {
+  RandomInput random;
+  for (int i = 0; i < 2000; ++i) {
+    const vec2 front(random.uniform(0.01f, 2.0f), random.uniform(-2.0f, 2.0f));
+    const float scale = 1.0f / (front.x + std::abs(front.y));
+    const float height = front.y * scale;
+    EXPECT_EQ(maths::height_of_back(height, scale, 0.0f), height) << "no thickness";
+    const float thin = maths::height_of_back(height, scale, 1e-3f);
+    EXPECT_LT(thin, height);
+    EXPECT_LT(maths::height_of_back(height, scale, 2e-3f), thin);
+    // A diamond angle falls by thickness * scale * (1 - |height|) with a small thickness.
+    EXPECT_NEAR((height - thin) / 1.5e-3f, scale * (1.0f - std::abs(height)), 0.02f * scale);
+  }
 }
 
-TEST(ConnectedSamples, OnlySharpBendsCountAndTheirSignIsTheTurns) {
+TEST(ConnectedSamples, OnlyPointsWellAboveTheTangentPlaneStandOnIt) {
+  for (const double gamma : {-0.8, 0.0, 0.8}) {
+    const vec2 gradient(std::sin(gamma), std::cos(gamma));
+    for (const double length : {0.1, 10.0}) {
+      const auto at = [&](double sine_of_height) {
+        const double angle = std::acos(sine_of_height) + gamma;
+        return vec2(float(length * std::sin(angle)), float(length * std::cos(angle)));
+      };
+      EXPECT_FALSE(maths::stands_above_tangent(at(0.0), gradient));
+      EXPECT_FALSE(maths::stands_above_tangent(at(0.19), gradient));
+      EXPECT_FALSE(maths::stands_above_tangent(at(-0.5), gradient));
+      EXPECT_TRUE(maths::stands_above_tangent(at(0.21), gradient));
+    }
+  }
+}
+
+TEST(ConnectedSamples, OnlySharpBendsCountAndTheirSignIsTheChangeOfSlope) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
     const float before = random.uniform(-1.0f, 1.0f), after = random.uniform(-1.0f, 1.0f);
@@ -259,49 +273,11 @@ TEST(ConnectedSamples, OnlySharpBendsCountAndTheirSignIsTheTurns) {
   }
 }
 
-TEST(ConnectedSamples, ASheetIsCutWhereItLeavesTheRadius) {
-  RandomInput random;
-  for (int i = 0; i < 2000; ++i) {
-    const vec2 inside = random.uniform(0.1f, 0.9f) * normalize(vec2(random.uniform(0, 1), 1.0f));
-    const vec2 outside = random.uniform(1.1f, 9.0f) * normalize(vec2(1.0f, random.uniform(-1, 1)));
-    // In proportion to the distances from the shaded point.
-    const float part = (1.0f - length(inside)) / (length(outside) - length(inside));
-    const vec2 expected = normalize(mix(inside, outside, part));
-    const vec3 a = vec3(inside, 1.0f) * random.uniform(0.1f, 2.0f);
-    const vec3 b = vec3(outside, 1.0f) * random.uniform(0.1f, 2.0f);
-    const float ea = maths::radius_excess(a, 1.0f), eb = maths::radius_excess(b, 1.0f);
-    EXPECT_LT(ea, 0.0f);
-    EXPECT_GT(eb, 0.0f);
-    EXPECT_LT(distance(normalize(maths::radius_crossing(a, ea, b, eb)), expected), 1e-4f);
-    EXPECT_LT(distance(normalize(maths::radius_crossing(b, eb, a, ea)), expected), 1e-4f);
-  }
-}
-
-TEST(ConnectedSamples, APlaneGoesOnWhereItWent) {
-  RandomInput random;
-  for (int i = 0; i < 2000; ++i) {
-    const Setting s(random);
-    // A plane in the image: `line` is linear along it.
-    const float line = inverse_depth_of(s.depth, s.perspective());
-    const float slope = line * random.uniform(-0.004f, 0.004f);
-    const auto at = [&](float offset) {
-      return maths::slice_point(s.line, offset, line + slope * offset, s.depth, s.perspective());
-    };
-    const float last = random.uniform(2.0f, 30.0f), here = last + random.uniform(1.0f, 20.0f);
-    const float further = random.uniform(0.0f, 100.0f);
-    const vec3 expected = at(here + further);
-    const vec3 found =
-        maths::extrapolated_point(at(here), at(here) - at(last), further * s.line.x_per_step);
-    EXPECT_LT(distance(found, expected), 1e-3f * length(expected));
-  }
-}
-
-TEST(ConnectedSamples, APlaneThatGoesOnStaysInFrontOfTheEye) {
-  const vec3 here(1.0f, 2.0f, 0.5f);
-  EXPECT_EQ(maths::extrapolated_point(here, vec3(0.0f, 1.0f, 0.1f), 3.0f), here) << "went nowhere";
-  const vec3 end = maths::extrapolated_point(here, vec3(1.0f, 1.0f, -0.1f), 1e6f);
-  EXPECT_NEAR(end.z, 0.05f, 1e-6f);
-  EXPECT_NEAR(end.x, 5.5f, 1e-5f);
+TEST(ConnectedSamples, ExtrapolatedPlanesStayBeforeTheEye) {
+  EXPECT_EQ(maths::extrapolated_way(0.5f, 0.25f, 8.0f, true), 8.0f) << "it comes nearer";
+  EXPECT_EQ(maths::extrapolated_way(0.5f, -0.03125f, 8.0f, true), 8.0f);
+  EXPECT_FLOAT_EQ(maths::extrapolated_way(0.5f, -0.25f, 8.0f, true), 1.8f);
+  EXPECT_EQ(maths::extrapolated_way(0.5f, -0.25f, 8.0f, false), 8.0f) << "orthographic";
 }
 
 TEST(TangentPlane, ItsGradientGivesTheNormalBack) {

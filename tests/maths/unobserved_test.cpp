@@ -41,8 +41,14 @@ struct Case {
   }
 
   UnobservedArc arc() const {
-    return maths::make_unobserved_arc(slice, side, per_diamond_angle, occluded, unobserved,
-                                      kRadiusPx);
+    return maths::make_unobserved_arc(first_light(), unobserved, kRadiusPx);
+  }
+
+  // Sine and cosine of the angle of the first occluded direction, or of the tangent plane.
+  glm::vec2 first_light() const {
+    return occluded == 0 ? maths::tangent_light(slice, side)
+                         : maths::diamond_angle_light(float(std::countr_zero(occluded)) /
+                                                      per_diamond_angle);
   }
 
   double tangent() const { return std::acos(double(maths::tangent_horizon(slice, side))); }
@@ -144,9 +150,8 @@ TEST(Unobserved, OfWhatLiesBeyondTheBorderAShareIsLeftOut) {
   const Slice slice = maths::make_slice({0.0f, 0.0f, 1.0f}, {1.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 1.0f});
   const Unobserved all =
       maths::add_beyond_border(maths::nothing_unobserved(), 0.0f, kRadiusPx, 0.3f);
-  const float per_diamond_angle = maths::sectors_per_diamond_angle(slice, 1.0f);
-  EXPECT_NEAR(maths::make_unobserved_arc(slice, 1.0f, per_diamond_angle, 0u, all, kRadiusPx).share,
-              0.3f, 1e-6f);
+  const glm::vec2 tangent = maths::tangent_light(slice, 1.0f);
+  EXPECT_NEAR(maths::make_unobserved_arc(tangent, all, kRadiusPx).share, 0.3f, 1e-6f);
 }
 
 TEST(Unobserved, AnImageThatShowsLittleOfTheRadiusTellsNothingOfTheRest) {

@@ -48,7 +48,7 @@ VisiblePart part_of(const Slice& s, float side, std::uint32_t occluded, float hi
                              hidden_occlusion, {.uniform_weight = uniform_weight, .bent = true});
 }
 
-TEST(VisibilityBitmask, BearingsGrowWithTheAngleAndTurnBackIntoIt) {
+TEST(VisibilityBitmask, DiamondAnglesGrowWithTheAngleAndConvertBack) {
   float before = -1.0f;
   for (double angle = 0.0; angle <= kPi; angle += 0.001) {
     const vec2 light = light_at(angle);
@@ -89,6 +89,35 @@ TEST(VisibilityBitmask, SectorsBetweenPositionsAreThoseWithinThem) {
                 expected);
     }
   }
+}
+
+TEST(VisibilityBitmask, ExclusiveOrOfTwoMasksHoldsTheSectorsBetweenThem) {
+  RandomInput random;
+  for (int i = 0; i < 5000; ++i) {
+    const Slice s = random_slice(random);
+    const float side = random_side(random);
+    const float tangent = maths::tangent_diamond_angle(s, side);
+    const float a = random.uniform(0.0f, 1.2f), b = random.uniform(0.0f, 1.2f);
+    const auto position = [&](float share) {
+      return maths::biased_position(1.0f / tangent, 1.0f - share * tangent);
+    };
+    // Positions beyond the tangent plane count as on it.
+    const auto expected = [](float share) {
+      return std::min(std::nearbyint(share * 31.0f), 31.0f);
+    };
+    if (std::abs(a * 31.0f - std::floor(a * 31.0f) - 0.5f) < 0.02f ||
+        std::abs(b * 31.0f - std::floor(b * 31.0f) - 0.5f) < 0.02f || tangent < 0.02f) {
+      continue;
+    }
+    EXPECT_EQ(maths::sectors_beyond(position(a)) ^ maths::sectors_beyond(position(b)),
+              maths::sectors_between(expected(a), expected(b)));
+    EXPECT_EQ(position(a) - maths::kPositionBits, std::uint32_t(expected(a)));
+  }
+}
+
+TEST(VisibilityBitmask, TheHighestBitRepeatsTheLastOf31Sectors) {
+  EXPECT_EQ(maths::repeat_last_sector(1u << 30), 3u << 30);
+  EXPECT_EQ(maths::repeat_last_sector(1u << 29), 1u << 29);
 }
 
 // What `occluded` leaves visible, sector by sector in double; behind the first occluder only the
@@ -168,7 +197,7 @@ TEST(VisibilityBitmask, OpenAndFullAreExact) {
   }
 }
 
-TEST(VisibilityBitmask, FilledOccludersGiveTheHorizon) {
+TEST(VisibilityBitmask, FullHiddenOcclusionGivesTheHorizon) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
     const Slice s = random_slice(random);
@@ -181,28 +210,29 @@ TEST(VisibilityBitmask, FilledOccludersGiveTheHorizon) {
   }
 }
 
-TEST(VisibilityBitmask, WhatIsFilledBehindGrowsWithTheFrontAndIsTheSettingInTheMean) {
+TEST(VisibilityBitmask, HiddenOcclusionGrowsWithTheRunWidthAndItsMeanIsTheSetting) {
   for (const float hidden_occlusion : {0.1f, 0.35f, 0.5f, 0.9f}) {
+    const float exponent = maths::hidden_exponent(hidden_occlusion);
     constexpr int kSteps = 4000;
     double sum = 0.0;
     float last = 0.0f;
     for (int i = 0; i < kSteps; ++i) {
       const float part =
-          maths::hidden_occlusion_behind((float(i) + 0.5f) / kSteps, hidden_occlusion);
+          maths::hidden_occlusion_behind((float(i) + 0.5f) / kSteps, exponent);
       EXPECT_GE(part, last);
       sum += part;
       last = part;
     }
     // What the mid-point rule errs by where the part rises steeply from 0.
     EXPECT_NEAR(sum / kSteps, hidden_occlusion, 2e-3) << hidden_occlusion;
-    EXPECT_EQ(maths::hidden_occlusion_behind(1.0f, hidden_occlusion), 1.0f);
+    EXPECT_EQ(maths::hidden_occlusion_behind(1.0f, exponent), 1.0f);
   }
 }
 
-TEST(VisibilityBitmask, NothingOrAllIsFilledAtTheEndsOfTheSetting) {
+TEST(VisibilityBitmask, HiddenOcclusionOfZeroAndOneAreNothingAndAll) {
   for (const float front : {0.0f, 1e-4f, 0.5f, 1.0f, 1.0001f}) {
-    EXPECT_EQ(maths::hidden_occlusion_behind(front, 0.0f), 0.0f);
-    EXPECT_EQ(maths::hidden_occlusion_behind(front, 1.0f), 1.0f);
+    EXPECT_EQ(maths::hidden_occlusion_behind(front, maths::hidden_exponent(0.0f)), 0.0f);
+    EXPECT_EQ(maths::hidden_occlusion_behind(front, maths::hidden_exponent(1.0f)), 1.0f);
   }
 }
 

@@ -245,7 +245,7 @@ TEST_F(GtaoTruth, ThicknessOfDistanceIsThatOfTheRadiusAtOneDistance) {
   for (const Estimator estimator : {Estimator::bitmask, Estimator::connected}) {
     OcclusionSettings settings = exact(estimator, radius);
     settings.hidden_occlusion = 0.0f;
-    settings.thickness = 0.2f;
+    settings.thickness = 0.05f;
     const auto of_radius =
         run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, settings).visibility;
     settings.thickness_unit = ThicknessUnit::distance;
@@ -272,6 +272,7 @@ TEST_F(GtaoTruth, MoreIsFilledBehindAWideOccluderThanBehindNarrowOnes) {
       };
       const auto beside = [&](float hidden_occlusion) {
         OcclusionSettings settings = exact(Estimator::connected, 1.2f);
+        settings.thickness = 0.01f;  // so that there is something to hide behind the front
         settings.hidden_occlusion = hidden_occlusion;
         return visibility_beside(view, front, settings);
       };
