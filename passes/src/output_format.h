@@ -33,10 +33,16 @@ namespace alcove::passes {
   return precision == Precision::unorm8 ? VK_FORMAT_R8G8B8A8_SNORM : colour_format(precision);
 }
 
-// What a search leaves, and its history: two words, and two more for a lobe.
+// Raw occlusion, as add_gtao writes it: two words, and two more for a lobe.
 [[nodiscard]] inline VkFormat raw_format(bool lobe) {
   return lobe ? VK_FORMAT_R32G32B32A32_UINT : VK_FORMAT_R32G32_UINT;
 }
 inline constexpr VkFormat kBentRawFormat = VK_FORMAT_R32G32_UINT;
+
+// Histories: of visibility (maths::pack_history_texel), of bent normals (maths::pack_residual) and of
+// GGX lobes (maths::pack_lobe_texel).
+inline constexpr VkFormat kHistoryFormat = VK_FORMAT_R32_UINT;
+inline constexpr VkFormat kBentHistoryFormat = VK_FORMAT_R32_UINT;
+inline constexpr VkFormat kLobeHistoryFormat = VK_FORMAT_R16_UINT;
 
 }  // namespace alcove::passes
