@@ -193,7 +193,7 @@ const float kWidth = kTileSize > 2 ? 2.5 : 1.0;
 float window_of(History history) {
   const float own = 0.58 * kWidth;
   float first = 1.0 / (parameters.window_px * parameters.window_px);
-  return 0.125 * min(1.0 / (own * own + 2.6 * history.between), first * (history.weight + 1.0));
+  return 0.125 * min(1.0 / (own * own + 2.6 * history.between), first * (3.0 * history.weight + 1.0));
 }
 
 // How much nearer to the tangent plane a neighbour has to be than in a first frame: the more samples
@@ -201,7 +201,7 @@ float window_of(History history) {
 // 32 frames at each tile size (`alcove compare --frames`).
 float plane_weight_growth(float weight) {
   const float own = 1.0 / float(kTileSize * kTileSize);  // traced frames per frame
-  return min(1.0 + 4.0 * own * weight, 5.0);
+  return min(1.0 + 12.0 * own * weight, 5.0);
 }
 
 // Where something moves, visibility changes on surfaces at rest: the mean of the last few frames
@@ -285,7 +285,7 @@ void reconstruct(Surface surface, bool sky) {
   }
   // Not normalised: a frame that traced the pixel itself has more weight than one that traced its
   // neighbours. Divided by the window's area, so that all windows have the same weight in the mean.
-  float scale = 0.42 * 8.0 * kWidth * kWidth * window;
+  float scale = 0.65 * 8.0 * kWidth * kWidth * window;
   float open = max(scale * now.open, 1e-30);
   float total = history.weight + open;
   float inverse_total = 1.0 / total;

@@ -114,15 +114,14 @@ ALCOVE_INLINE float unpack_mantissa(uint word, uint first, uint bits) {
 // together as floats, which is cheaper than three conversions.
 ALCOVE_INLINE uint pack_history_texel(HistoryTexel texel, float dither) {
   float low_bits = dithered(texel.occlusion, 10u, dither) * 256.0f +
-                   dithered(texel.recent, 4u, dither) * 16.0f +
-                   dithered(texel.log_weight, 4u, dither);
+                   dithered(texel.log_weight, 8u, dither);
   return (uint(texel.depth * 16383.0f + 0.5f) << 18u) | uint(low_bits);
 }
 
 ALCOVE_INLINE float texel_depth(uint bits) { return unpack_mantissa(bits, 18u, 14u); }
 ALCOVE_INLINE float texel_occlusion(uint bits) { return unpack_mantissa(bits, 8u, 10u); }
 ALCOVE_INLINE float texel_recent(uint bits) { return unpack_mantissa(bits, 4u, 4u); }
-ALCOVE_INLINE float texel_log_weight(uint bits) { return unpack_mantissa(bits, 0u, 4u); }
+ALCOVE_INLINE float texel_log_weight(uint bits) { return unpack_mantissa(bits, 0u, 8u); }
 
 ALCOVE_INLINE HistoryTexel unpack_history_texel(uint bits) {
   HistoryTexel texel;
