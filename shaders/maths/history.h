@@ -40,7 +40,7 @@ ALCOVE_INLINE float weight_after_clamp(float weight, float before, float after, 
 }
 
 // Variance of the visibility that one frame measures at a pixel. Mean over the development scenes.
-const float kFrameVariance = 0.08f;
+const float kFrameVariance = 0.02f;
 
 // Variance of the visibility between a surface and its neighbours that stand in for a history texel
 // of another surface. Mean over the development scenes.
@@ -61,7 +61,7 @@ ALCOVE_INLINE float weight_after_blur(float weight, float variance, float missin
 struct HistoryTexel {
   float depth;       // of history_depth(), [0,1], to 2^-15
   float occlusion;   // 1 - visibility, [0,1]; 0 is exact
-  float recent;      // occlusion of the last few frames, [0,1]; 0 is exact
+  float recent;      // occlusion of the last few frames, [0,1], by its root; 0 is exact
   float log_weight;  // of log_weight_of(), [0,1]; 0 is exact
 };
 
@@ -110,18 +110,32 @@ ALCOVE_INLINE float unpack_mantissa(uint word, uint first, uint bits) {
   return uintBitsToFloat((mantissa & (last << (23u - bits))) | 0x3f800000u) * scale - scale;
 }
 
+// A logarithmic weight as an integer of 4 bits, as a float. The probability of rounding up is linear
+// in the weight rather than in its logarithm, so that the mean weight is exact: between two codes,
+// which differ by a factor of 2^(11/15), it is (2^(11/15 f) - 1) / (2^(11/15) - 1), here to 2e-3.
+ALCOVE_INLINE float dithered_log_weight(float log_weight, float dither) {
+  float code = clamp(log_weight, 0.0f, 1.0f) * 15.0f;
+  float whole = floor(code);
+  float part = code - whole;
+  return whole + (part * (part * 0.253f + 0.747f) + dither >= 1.0f ? 1.0f : 0.0f);
+}
+
 // 14 bits of depth, 10 of occlusion, 4 of recent occlusion, 4 of weight. The last three are put
 // together as floats, which is cheaper than three conversions.
 ALCOVE_INLINE uint pack_history_texel(HistoryTexel texel, float dither) {
   float low_bits = dithered(texel.occlusion, 10u, dither) * 256.0f +
-                   dithered(texel.log_weight, 8u, dither);
+                   dithered(sqrt(max(texel.recent, 0.0f)), 4u, dither) * 16.0f +
+                   dithered_log_weight(texel.log_weight, dither);
   return (uint(texel.depth * 16383.0f + 0.5f) << 18u) | uint(low_bits);
 }
 
 ALCOVE_INLINE float texel_depth(uint bits) { return unpack_mantissa(bits, 18u, 14u); }
 ALCOVE_INLINE float texel_occlusion(uint bits) { return unpack_mantissa(bits, 8u, 10u); }
-ALCOVE_INLINE float texel_recent(uint bits) { return unpack_mantissa(bits, 4u, 4u); }
-ALCOVE_INLINE float texel_log_weight(uint bits) { return unpack_mantissa(bits, 0u, 8u); }
+ALCOVE_INLINE float texel_recent(uint bits) {
+  float root = unpack_mantissa(bits, 4u, 4u);
+  return root * root;
+}
+ALCOVE_INLINE float texel_log_weight(uint bits) { return unpack_mantissa(bits, 0u, 4u); }
 
 ALCOVE_INLINE HistoryTexel unpack_history_texel(uint bits) {
   HistoryTexel texel;
@@ -167,7 +181,7 @@ ALCOVE_INLINE float update_recent(float recent, float weight, float now, float o
 // occluded, 1 well beyond it.
 ALCOVE_INLINE float visibility_changed(float all, float recent) {
   float spread = sqrt(max(min(all * (1.0f - all), recent * (1.0f - recent)), 0.0f));
-  float beyond = abs(recent - all) - (0.01f + 0.25f * spread);
+  float beyond = abs(recent - all) - (0.02f + 0.25f * spread);
   return clamp(beyond * 10.0f, 0.0f, 1.0f);
 }
 
