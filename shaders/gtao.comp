@@ -92,6 +92,8 @@ float fetch_roughness(ivec2 pixel) {
   return parameters.roughness;
 }
 
+#include "depth_normal.h"
+
 Surface fetch_surface(ivec2 pixel, float inverse_depth) {
   Surface surface;
   surface.pixel = pixel;
@@ -101,9 +103,8 @@ Surface fetch_surface(ivec2 pixel, float inverse_depth) {
       parameters.slope.zw + (kPerspective ? surface.centre * parameters.slope.xy : vec2(0.0));
   surface.view = normalize(vec3(-slope, 1.0));
   vec3 given = texelFetch(normal_image, pixel, 0).xyz;
-  vec3 normal = mat3(parameters.view_from_normal) * given;
-  surface.normal = facing_normal(normalize(normal), surface.view);
-  vec3 own = has_direction(given) ? given : surface.view * mat3(parameters.view_from_normal);
+  surface.normal = seen_normal(pixel, mat3(parameters.view_from_normal) * given, surface.view);
+  vec3 own = has_direction(given) ? given : surface.normal * mat3(parameters.view_from_normal);
   surface.lobe = LobeSurface(own, fetch_roughness(pixel));
   surface.tangent = make_tangent_plane(parameters.slope.xy, surface.normal, surface.view,
                                        surface.depth, kPerspective);

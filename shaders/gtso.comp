@@ -8,6 +8,7 @@
 #include "gtso_parameters.h"
 #include "maths/gtso.h"
 #include "maths/projection.h"
+#include "maths/slice.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -95,7 +96,8 @@ void main() {
   if (!is_sky_depth(depth)) {
     vec2 uv = pixel_centre_uv(parameters.projection, uvec2(pixel));
     vec3 view = view_vector(parameters.projection, position_vs(parameters.projection, uv, depth));
-    result = occlusion_of(pixel, fetch_direction(normal_image, pixel, view), view);
+    vec3 normal = facing_normal(fetch_direction(normal_image, pixel, view), view);
+    result = occlusion_of(pixel, normal, view);
   }
   imageStore(result_image, pixel, vec4(result));
 }

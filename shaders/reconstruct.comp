@@ -132,7 +132,10 @@ ivec2 size_px() { return imageSize(inverse_depth_image); }
 
 ivec2 last_tile() { return (size_px() + (kTileSize - 1)) / kTileSize - 1; }
 
-// The normal towards the eye where none is given: a NaN would stay in the history.
+#include "depth_normal.h"
+
+// Not unit, in the space of the normals. The direction to the eye where the texture has none, which
+// is enough for the filter's weights; a NaN would stay in the history.
 vec3 fetch_normal(ivec2 pixel) {
   vec3 normal = texelFetch(normal_image, pixel, 0).xyz;
   return has_direction(normal) ? normal : parameters.normal_from_view[2].xyz;
@@ -318,8 +321,9 @@ void add_ring(inout Sums sums, Surface surface, float inverse_squared_width, int
 vec3 traced_normal(Surface surface) {
   vec2 slope = parameters.slope.zw +
                (kPerspective ? (surface.corner + 0.5) * parameters.slope.xy : vec2(0.0));
-  vec3 normal = normalize(surface.lobe.normal * mat3(parameters.normal_from_view));
-  return facing_normal(normal, normalize(vec3(-slope, 1.0)));
+  vec3 given =
+      texelFetch(normal_image, surface.pixel, 0).xyz * mat3(parameters.normal_from_view);
+  return seen_normal(surface.pixel, given, normalize(vec3(-slope, 1.0)));
 }
 
 // Results of a pixel.

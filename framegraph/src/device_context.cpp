@@ -143,9 +143,9 @@ Errors vulkan_error(VkResult result, std::string what) {
 const char* result_name(VkResult result) {
   switch (result) {
     case VK_ERROR_OUT_OF_HOST_MEMORY:
-      return "VK_ERROR_OUT_OF_HOST_MEMORY";
+      return "the host is out of memory";
     case VK_ERROR_OUT_OF_DEVICE_MEMORY:
-      return "VK_ERROR_OUT_OF_DEVICE_MEMORY";
+      return "the device is out of memory";
     case VK_ERROR_DEVICE_LOST:
       return "VK_ERROR_DEVICE_LOST";
     case VK_ERROR_TOO_MANY_OBJECTS:

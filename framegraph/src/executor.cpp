@@ -17,6 +17,13 @@ constexpr VkBufferUsageFlags kEveryBufferUsage =
     VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT |
     VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
 
+tl::unexpected<Errors> failure(ErrorCode code, std::string message) {
+  Errors errors(1);
+  errors[0].code = code;
+  errors[0].message = std::move(message);
+  return tl::unexpected(std::move(errors));
+}
+
 // What a frame may run on: record() has one queue, submit() all that the device gives.
 enum class Queues : std::uint8_t { one, all };
 
@@ -31,7 +38,9 @@ struct Executor::Implementation {
   tl::expected<FrameReport, Errors> prepare(Graph& graph, const FrameInfo& info, Queues queues,
                                             CachedPlan*& cached);
   tl::expected<void, Errors> check_slot(std::uint32_t slot) const;
-  static tl::expected<void, Errors> check_histories(const Graph& graph);
+  tl::expected<void, Errors> check_call(const FrameInfo& info) const;
+  tl::expected<void, Errors> adopt(Graph& graph) const;
+  static tl::expected<void, Errors> check_histories(Graph& graph);
   bool starts_anew(const CachedPlan& cached) const;
   tl::expected<FrameReport, Errors> record(Graph& graph, VkCommandBuffer commands,
                                            const FrameInfo& info);
@@ -59,6 +68,8 @@ struct Executor::Implementation {
   std::uint64_t finished = 0;
   const CachedPlan* before = nullptr;  // the plan of the frame before
   std::uint64_t before_generation = 0;
+  bool records = false;  // A frame is being recorded: callbacks may run.
+  std::shared_ptr<const char> life = std::make_shared<const char>('\0');
   std::unique_ptr<Submitter> submitter;  // destroyed first: it waits for the device
 };
 
@@ -66,10 +77,12 @@ struct Executor::Implementation {
 struct Executor::Attempt {
   Attempt(Implementation& implementation, Graph& of, const FrameInfo& with)
       : self(implementation), graph(of), info(with) {
+    self.records = true;
     graph.histories().begin_end();
     self.begin_frame(info);
   }
   ~Attempt() {
+    self.records = false;
     if (!runs) self.give_up(info.slot);
   }
   Attempt(const Attempt&) = delete;
@@ -176,7 +189,7 @@ tl::expected<void, Errors> Executor::Implementation::find_physical(const Graph& 
                                                                    CachedPlan& cached) {
   const GraphDescription& description = graph.description();
   cached.physical.resize(description.resources.size());
-  if (const VkResult result = pool->reserve(cached.plan, frame))
+  if (const VkResult result = pool->reserve(description, cached.plan, frame))
     return tl::unexpected(vulkan_error(result, "the frame's transients cannot be allocated"));
   const bool again = cached.generation == pool->generation();
   for (std::uint32_t r = 0; r < description.resources.size(); ++r) {
@@ -193,8 +206,10 @@ tl::expected<void, Errors> Executor::Implementation::find_physical(const Graph& 
       result = pool->transient(record, cached.plan, placement, description.resource_name(r),
                                cached.physical[r]);
     if (result != VK_SUCCESS)
-      return tl::unexpected(vulkan_error(
-          result, std::string("'").append(description.resource_name(r)) + "' cannot be created"));
+      return tl::unexpected(
+          vulkan_error(result, std::string(record.origin == Origin::history ? "the history '" : "'")
+                                       .append(description.resource_name(r)) +
+                                   "' cannot be created"));
     cached.physical[r]->last_frame = frame;
   }
   cached.generation = pool->generation();
@@ -210,20 +225,45 @@ void Executor::Implementation::begin_frame(const FrameInfo& info) {
 
 tl::expected<void, Errors> Executor::Implementation::check_slot(std::uint32_t slot) const {
   if (slot < slot_frames.size()) return {};
-  Errors errors(1);
-  errors[0].message = std::string("frame slot ").append(std::to_string(slot)) +
-                      " is not below the " + std::to_string(slot_frames.size()) +
-                      " frames in flight: raise ExecutorOptions::frames_in_flight";
-  return tl::unexpected(std::move(errors));
+  return failure(ErrorCode::misuse, std::string("frame slot ").append(std::to_string(slot)) +
+                                        " is not below the " + std::to_string(slot_frames.size()) +
+                                        " frames in flight: raise "
+                                        "ExecutorOptions::frames_in_flight");
 }
 
-tl::expected<void, Errors> Executor::Implementation::check_histories(const Graph& graph) {
-  if (!graph.histories().must_be_declared_anew()) return {};
-  Errors errors(1);
-  errors[0].code = ErrorCode::bad_description;
-  errors[0].message =
-      "the frame was discarded, and with it the sizes or formats of its histories: declare it anew";
-  return tl::unexpected(std::move(errors));
+tl::expected<void, Errors> Executor::Implementation::check_call(const FrameInfo& info) const {
+  if (records)
+    return failure(
+        ErrorCode::misuse,
+        "record() or submit() was called from a recording callback of the same executor: "
+        "call it after the frame is recorded, or use a second executor");
+  return check_slot(info.slot);
+}
+
+// A graph belongs to one executor, which holds the contents of its histories.
+tl::expected<void, Errors> Executor::Implementation::adopt(Graph& graph) const {
+  const std::shared_ptr<const char> other = graph.executor_.lock();
+  if (other == life) return {};
+  if (other)
+    return failure(ErrorCode::misuse,
+                   "the graph was recorded by another executor, which holds its histories: use one "
+                   "executor for a graph, or destroy the other one first");
+  const bool was_used = graph.executor_.owner_before(std::weak_ptr<const char>{}) ||
+                        std::weak_ptr<const char>{}.owner_before(graph.executor_);
+  if (was_used) graph.histories().forget_contents();
+  graph.executor_ = life;
+  return {};
+}
+
+tl::expected<void, Errors> Executor::Implementation::check_histories(Graph& graph) {
+  if (graph.histories().must_be_declared_anew())
+    return failure(ErrorCode::bad_description,
+                   "the frame was discarded, and with it the sizes or formats of its histories: "
+                   "declare it anew");
+  if (!graph.refresh_histories())
+    return failure(ErrorCode::bad_description,
+                   "a history that the frame declares was dropped since: declare the frame anew");
+  return {};
 }
 
 // A plan expects in memory what it left there; what another plan left needs a barrier of its own.
@@ -235,6 +275,7 @@ tl::expected<FrameReport, Errors> Executor::Implementation::prepare(Graph& graph
                                                                     const FrameInfo& info,
                                                                     Queues queues,
                                                                     CachedPlan*& cached) {
+  if (auto right = adopt(graph); !right) return tl::unexpected(std::move(right.error()));
   if (auto right = check_histories(graph); !right) return tl::unexpected(std::move(right.error()));
   pool->retire_histories(graph.histories(), frame);
   FrameReport report;
@@ -310,8 +351,7 @@ tl::expected<FrameReport, Errors> Executor::Implementation::record(Graph& graph,
 tl::expected<FrameReport, Errors> Executor::record(Graph& graph, VkCommandBuffer commands,
                                                    const FrameInfo& info) {
   Implementation& self = *implementation_;
-  if (auto right = self.check_slot(info.slot); !right)
-    return tl::unexpected(std::move(right.error()));
+  if (auto right = self.check_call(info); !right) return tl::unexpected(std::move(right.error()));
   Attempt attempt(self, graph, info);
   auto report = self.record(graph, commands, info);
   attempt.runs = report.has_value();
@@ -319,20 +359,17 @@ tl::expected<FrameReport, Errors> Executor::record(Graph& graph, VkCommandBuffer
 }
 
 void Executor::discard(Graph& graph, const FrameInfo& info) {
-  if (!implementation_->check_slot(info.slot)) return;
+  if (!implementation_->check_call(info)) return;
   graph.histories().undo();
   implementation_->give_up(info.slot);
 }
 
 tl::expected<FrameReport, Errors> Executor::submit(Graph& graph, const FrameInfo& info) {
   Implementation& self = *implementation_;
-  if (self.device.handles.queues[0].queue == VK_NULL_HANDLE) {
-    Errors errors(1);
-    errors[0].code = ErrorCode::no_queue;
-    errors[0].message =
-        "the executor has no graphics queue to submit to: set DeviceHandles::queues[0]";
-    return tl::unexpected(std::move(errors));
-  }
+  if (auto right = self.check_call(info); !right) return tl::unexpected(std::move(right.error()));
+  if (self.device.handles.queues[0].queue == VK_NULL_HANDLE)
+    return failure(ErrorCode::no_queue,
+                   "the executor has no graphics queue to submit to: set DeviceHandles::queues[0]");
   if (auto waited = wait(info.slot); !waited) return tl::unexpected(std::move(waited.error()));
   Attempt attempt(self, graph, info);
   CachedPlan* cached = nullptr;

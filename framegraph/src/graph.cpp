@@ -207,6 +207,42 @@ Buffer Graph::import_buffer(std::string_view name, const ImportedBuffer& import)
   return {add_resource(name, record), 0, tag_};
 }
 
+ExternalRecord Graph::external_of(const HistoryEntry& entry, std::uint32_t slot) {
+  const HistorySlot& state = entry.slots[entry.physical(slot)];
+  ExternalRecord external;
+  external.initial_state = state.state;
+  external.validity = state.validity;
+  external.has_contents = slot != 0 && state.validity == HistoryValidity::valid;
+  external.queue = state.queue;
+  external.has_handle = 1;
+  return external;
+}
+
+bool Graph::refresh_histories() {
+  if (!histories_.have_moved()) return true;
+  bool changes = false;
+  for (const ResourceRecord& record : description_.resources) {
+    if (record.origin != Origin::history) continue;
+    const HistoryEntry& entry = histories_.entry(imports_[record.external].history);
+    if (entry.dropped) return false;
+    const ExternalRecord now = external_of(entry, record.slot);
+    ExternalRecord& declared = description_.externals[record.external];
+    if (std::memcmp(&declared, &now, sizeof now) == 0) continue;
+    declared = now;
+    changes = true;
+  }
+  if (changes) description_.edition = next_frame();
+  histories_.clear_moved();
+  return true;
+}
+
+void Graph::add_stale_builder() {
+  for (const OutputRecord& output : description_.outputs) {
+    if (output.flags == kStaleBuilder) return;
+  }
+  add(description_.outputs, {kNone, 0, kStaleBuilder});
+}
+
 std::uint32_t Graph::add_history(std::string_view name, ResourceRecord record, std::uint32_t slots,
                                  HistoryValidity& validity) {
   record.origin = Origin::history;
@@ -215,20 +251,14 @@ std::uint32_t Graph::add_history(std::string_view name, ResourceRecord record, s
   const HistoryEntry& entry = histories_.entries()[history];
   std::uint32_t first = kNone;
   for (std::uint32_t slot = 0; slot < record.slots; ++slot) {
-    const HistorySlot& state = entry.slots[entry.physical(slot)];
-    ExternalRecord external;
-    external.initial_state = state.state;
-    external.validity = state.validity;
-    external.has_contents = slot != 0 && state.validity == HistoryValidity::valid;
-    external.queue = state.queue;
-    external.has_handle = 1;
+    const ExternalRecord external = external_of(entry, slot);
     record.external = static_cast<std::uint32_t>(description_.externals.size());
     record.slot = static_cast<std::uint8_t>(slot);
     add(description_.externals, external);
     imports_.push_back({VK_NULL_HANDLE, VK_NULL_HANDLE, VK_NULL_HANDLE, history});
     const std::uint32_t index = add_resource(name, record);
     if (slot == 0) first = index;
-    if (slot == 1) validity = state.validity;
+    if (slot == 1) validity = external.validity;
   }
   return first;
 }

@@ -88,7 +88,7 @@ void HistoryTable::begin_end() {
 
 void HistoryTable::leave(std::uint32_t index, std::uint32_t slot, const HistorySlot& left) {
   remember(index);
-  ended_ = true;
+  ended_ = moved_ = true;
   HistoryEntry& entry = entries_[index];
   entry.slots[entry.physical(slot)] = left;
 }
@@ -119,6 +119,18 @@ void HistoryTable::undo() {
   }
   before_.clear();
   ended_ = false;
+  moved_ = true;
+}
+
+void HistoryTable::forget_contents() {
+  before_.clear();
+  moved_ = true;
+  for (HistoryEntry& entry : entries_) {
+    for (HistorySlot& slot : entry.slots) {
+      const bool held = slot.validity == HistoryValidity::valid;
+      slot = {{}, QueueClass::graphics, held ? HistoryValidity::reset : slot.validity};
+    }
+  }
 }
 
 bool HistoryTable::needs(std::uint32_t index, std::uint32_t generation) const {
@@ -131,7 +143,7 @@ bool HistoryTable::needs(std::uint32_t index, std::uint32_t generation) const {
 void HistoryTable::begin_frame() {
   end_frame();
   before_.clear();
-  ended_ = anew_ = false;
+  ended_ = anew_ = moved_ = false;
 }
 
 void HistoryTable::end_frame() {

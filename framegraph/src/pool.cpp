@@ -23,6 +23,19 @@ bool is_of(const std::weak_ptr<const char>& life, const HistoryTable& table) {
   return !life.owner_before(own) && !own.owner_before(life);
 }
 
+bool has_address(const ResourceRecord& record, VkFlags usage) {
+  return record.kind == ResourceKind::buffer &&
+         (usage & VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT) != 0;
+}
+
+bool wants_addresses(const GraphDescription& graph, const Plan& plan, std::uint32_t heap) {
+  for (std::size_t r = 0; r < plan.placements.size(); ++r) {
+    const Placement& placement = plan.placements[r];
+    if (placement.heap == heap && has_address(graph.resources[r], placement.usage)) return true;
+  }
+  return false;
+}
+
 bool same(const ResourceRecord& a, const ResourceRecord& b) {
   // Where a resource came from does not matter to what it is.
   return a.kind == b.kind && a.size == b.size && a.format == b.format && a.width == b.width &&
@@ -44,25 +57,30 @@ Pool::~Pool() {
     device_.vk.vkFreeMemory(device_.handles.device, heap.memory, nullptr);
 }
 
-VkResult Pool::reserve(const Plan& plan, std::uint64_t frame) {
-  for (const Heap& wanted : plan.heaps) {
-    auto heap = std::find_if(heaps_.begin(), heaps_.end(), [&](const HeapMemory& h) {
-      return h.memory_types == wanted.memory_types;
+VkResult Pool::reserve(const GraphDescription& graph, const Plan& plan, std::uint64_t frame) {
+  for (std::uint32_t h = 0; h < plan.heaps.size(); ++h) {
+    const Heap& wanted = plan.heaps[h];
+    auto heap = std::find_if(heaps_.begin(), heaps_.end(), [&](const HeapMemory& made) {
+      return made.memory_types == wanted.memory_types;
     });
     if (heap == heaps_.end()) {
-      heaps_.push_back({wanted.memory_types, VK_NULL_HANDLE, 0});
+      heaps_.push_back({wanted.memory_types});
       heap = heaps_.end() - 1;
     }
-    if (heap->size >= wanted.size) continue;
+    const bool has_addresses = heap->has_addresses || wants_addresses(graph, plan, h);
+    if (heap->size >= wanted.size && heap->has_addresses == has_addresses) continue;
+    const VkDeviceSize size = std::max(heap->size, wanted.size);
     make_room(retired_, transients_.size() + 1);
     VkDeviceMemory memory = VK_NULL_HANDLE;
-    if (const VkResult result = allocate(wanted.memory_types, wanted.size, memory)) return result;
+    if (const VkResult result = allocate(wanted.memory_types, size, has_addresses, memory))
+      return result;
     // Everything in the old memory goes with it; other heaps' transients are cheap to make again.
     for (auto& physical : transients_) retired_.push_back({frame, std::move(physical)});
     transients_.clear();
     if (heap->memory) retired_.push_back({frame, nullptr, heap->memory, heap->size});
     heap->memory = memory;
-    heap->size = wanted.size;
+    heap->size = size;
+    heap->has_addresses = has_addresses;
     ++generation_;
   }
   return VK_SUCCESS;
@@ -233,7 +251,8 @@ VkResult Pool::create(Physical& physical, std::string_view name) {
   if (physical.heap != kNone) {
     memory = heaps_[physical.heap].memory;
   } else {
-    result = allocate(needed.memoryTypeBits, needed.size, physical.own_memory);
+    result = allocate(needed.memoryTypeBits, needed.size,
+                      has_address(physical.record, physical.usage), physical.own_memory);
     if (result != VK_SUCCESS) return result;
     physical.own_size = needed.size;
     memory = physical.own_memory;
@@ -243,7 +262,8 @@ VkResult Pool::create(Physical& physical, std::string_view name) {
              : device_.vk.vkBindBufferMemory(device, physical.buffer, memory, physical.offset);
 }
 
-VkResult Pool::allocate(std::uint32_t memory_types, VkDeviceSize size, VkDeviceMemory& memory) {
+VkResult Pool::allocate(std::uint32_t memory_types, VkDeviceSize size, bool has_addresses,
+                        VkDeviceMemory& memory) {
   std::uint32_t type = kNone;
   for (std::uint32_t i = device_.memory.memoryTypeCount; i-- > 0;) {
     if (!(memory_types & (1u << i))) continue;
@@ -254,6 +274,10 @@ VkResult Pool::allocate(std::uint32_t memory_types, VkDeviceSize size, VkDeviceM
   if (type == kNone) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
   VkMemoryAllocateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
+  VkMemoryAllocateFlagsInfo flags{};
+  flags.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO;
+  flags.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
+  if (has_addresses) info.pNext = &flags;
   info.allocationSize = size;
   info.memoryTypeIndex = type;
   return device_.vk.vkAllocateMemory(device_.handles.device, &info, nullptr, &memory);

@@ -45,7 +45,8 @@ class Pool {
 
   // Makes the heaps of a plan large enough. When one had to grow, all transients are retired and
   // `generation` changes.
-  [[nodiscard]] VkResult reserve(const Plan& plan, std::uint64_t frame);
+  [[nodiscard]] VkResult reserve(const GraphDescription& graph, const Plan& plan,
+                                 std::uint64_t frame);
   // The transient of this description at this place.
   [[nodiscard]] VkResult transient(const ResourceRecord& record, const Plan& plan,
                                    const Placement& placement, std::string_view name,
@@ -77,6 +78,7 @@ class Pool {
     std::uint32_t memory_types = 0;
     VkDeviceMemory memory = VK_NULL_HANDLE;
     VkDeviceSize size = 0;
+    bool has_addresses = false;  // Buffers in it may have a device address.
   };
   struct HistoryImage {
     std::weak_ptr<const char> table;  // HistoryTable::life()
@@ -93,7 +95,8 @@ class Pool {
   };
 
   VkResult create(Physical& physical, std::string_view name);
-  VkResult allocate(std::uint32_t memory_types, VkDeviceSize size, VkDeviceMemory& memory);
+  VkResult allocate(std::uint32_t memory_types, VkDeviceSize size, bool has_addresses,
+                    VkDeviceMemory& memory);
   void destroy(Physical& physical);
   void set_name(const Physical& physical, std::string_view name);
 

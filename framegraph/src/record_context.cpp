@@ -6,7 +6,7 @@ namespace alcove::framegraph {
 
 VkImageView RecordContext::view(Texture texture) const {
   const AccessRecord* access = recorder_.declared(pass_, texture.index);
-  return access ? view(texture, access->range) : VK_NULL_HANDLE;
+  return access ? view(texture, access->range) : VkImageView{VK_NULL_HANDLE};
 }
 
 VkImageView RecordContext::view(Texture texture, Range range) const {
@@ -15,9 +15,8 @@ VkImageView RecordContext::view(Texture texture, Range range) const {
   if (physical == nullptr || physical->image == VK_NULL_HANDLE) return VK_NULL_HANDLE;
   const GraphDescription& graph = recorder_.graph_->description();
   const ResourceRecord& record = graph.resources[texture.index];
-  if (range.mips == kAll) range.mips = static_cast<std::uint16_t>(record.mips - range.base_mip);
-  if (range.layers == kAll)
-    range.layers = static_cast<std::uint16_t>(record.layers - range.base_layer);
+  range = Graph::resolved_range(range, record);
+  if (!recorder_.check_view(pass_, texture.index, range)) return VK_NULL_HANDLE;
   if (record.origin == Origin::imported && range.mips == record.mips &&
       range.layers == record.layers) {
     const VkImageView given = recorder_.graph_->imports_[record.external].view;

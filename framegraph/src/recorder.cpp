@@ -191,4 +191,41 @@ const AccessRecord* Recorder::declared(std::uint32_t pass, std::uint32_t resourc
   return nullptr;
 }
 
+bool Recorder::check_view(std::uint32_t pass, std::uint32_t resource, const Range& range) const {
+  const GraphDescription& graph = graph_->description();
+  const ResourceRecord& record = graph.resources[resource];
+  const auto fail = [&](ErrorCode code, const std::string& reason) {
+    errors_.push_back({code,
+                       std::string("pass '").append(graph.pass_name(pass)) +
+                           "' asks for a view of '" + std::string(graph.resource_name(resource)) +
+                           "' from mip " + std::to_string(range.base_mip) + " and layer " +
+                           std::to_string(range.base_layer) + " on, " + reason,
+                       VK_SUCCESS, pass, resource, 0});
+    return false;
+  };
+  if (range.mips == 0 || range.layers == 0 || range.base_mip + range.mips > record.mips ||
+      range.base_layer + range.layers > record.layers)
+    return fail(ErrorCode::bad_range, "but the texture has " + std::to_string(record.mips) +
+                                          " mips and " + std::to_string(record.layers) + " layers");
+  if (!check_uses_) return true;
+  const auto is_declared = [&](std::uint32_t mip, std::uint32_t layer) {
+    for (const AccessRecord& access : graph.pass_accesses(pass)) {
+      const Range& own = access.range;
+      if (access.resource == resource && mip >= own.base_mip && mip < own.base_mip + own.mips &&
+          layer >= own.base_layer && layer < own.base_layer + own.layers)
+        return true;
+    }
+    return false;
+  };
+  for (std::uint32_t layer = range.base_layer; layer < range.base_layer + range.layers; ++layer) {
+    for (std::uint32_t mip = range.base_mip; mip < range.base_mip + range.mips; ++mip) {
+      if (!is_declared(mip, layer))
+        return fail(ErrorCode::undeclared_use,
+                    "part of which it did not declare: add a read or a "
+                    "write of that range");
+    }
+  }
+  return true;
+}
+
 }  // namespace alcove::framegraph

@@ -59,6 +59,9 @@ class Recorder {
   // The access of the running pass that names this resource; null, and an error where uses are
   // checked, when there is none.
   const AccessRecord* declared(std::uint32_t pass, std::uint32_t resource) const;
+  // Whether a texture that the pass declared has this range and, where uses are checked, whether
+  // the pass declared all of it. An error where not.
+  bool check_view(std::uint32_t pass, std::uint32_t resource, const Range& range) const;
 
   const DeviceContext& device_;
   Pool& pool_;

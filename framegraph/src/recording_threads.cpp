@@ -1,11 +1,27 @@
 #include "recording_threads.h"
 
 #include <algorithm>
-#include <new>
-#include <system_error>
 #include <utility>
 
 namespace alcove::framegraph {
+namespace {
+
+// Calls f and returns what it throws. Without exceptions nothing is thrown.
+template <typename Function>
+std::exception_ptr thrown_by(Function&& f) {
+#if defined(__cpp_exceptions) || defined(_CPPUNWIND)
+  try {
+    f();
+  } catch (...) {
+    return std::current_exception();
+  }
+#else
+  f();
+#endif
+  return nullptr;
+}
+
+}  // namespace
 
 RecordingThreads::RecordingThreads(const DeviceContext& device, Pool& pool, std::uint32_t threads,
                                    std::uint32_t slots)
@@ -16,15 +32,13 @@ RecordingThreads::RecordingThreads(const DeviceContext& device, Pool& pool, std:
   start(threads - 1);
 }
 
-// Where the system has no more threads, or no memory for them, those that there are do the work.
+// Where the system has no more threads, or no memory for them, the existing ones do the work.
 void RecordingThreads::start(std::size_t threads) {
   threads_.reserve(threads);
-  try {
+  (void)thrown_by([&] {
     while (threads_.size() < threads)
       threads_.emplace_back([this, own = threads_.size() + 1] { work(own); });
-  } catch (const std::system_error&) {
-  } catch (const std::bad_alloc&) {
-  }
+  });
 }
 
 RecordingThreads::~RecordingThreads() {
@@ -125,15 +139,11 @@ void RecordingThreads::work(std::size_t thread) {
   }
 }
 
-// Throws nothing: what a callback throws, or operator new, is the caller's to see once every thread
+// Throws nothing: submission() rethrows what a callback or operator new threw, once every thread
 // has finished.
 void RecordingThreads::record_pieces(std::size_t thread) {
   for (std::size_t i = next_piece_++; i < pieces_.size(); i = next_piece_++) {
-    try {
-      pieces_[i].result = record(pieces_[i], thread);
-    } catch (...) {
-      pieces_[i].thrown = std::current_exception();
-    }
+    pieces_[i].thrown = thrown_by([&] { pieces_[i].result = record(pieces_[i], thread); });
   }
 }
 

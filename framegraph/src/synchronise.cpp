@@ -246,8 +246,8 @@ void Synchroniser::write_again(std::uint32_t position, const AccessRecord& acces
   note(state, access, pass_time(position));
 }
 
-// Makes `last` cover the mips of `next` too, if the two are neighbours that change alike: both are
-// of one resource.
+// Makes `last` cover the mips or layers of `next` too, if the two are neighbours that change alike:
+// both are of one resource.
 bool Synchroniser::extend(Transition& last, const Transition& next) {
   const Range& a = last.range;
   const Range& b = next.range;
@@ -255,10 +255,15 @@ bool Synchroniser::extend(Transition& last, const Transition& next) {
                      last.dst_stages == next.dst_stages && last.dst_access == next.dst_access &&
                      last.old_layout == next.old_layout && last.new_layout == next.new_layout &&
                      last.src_queue == next.src_queue && last.dst_queue == next.dst_queue;
-  const bool neighbours =
+  const bool next_mips =
       a.base_layer == b.base_layer && a.layers == b.layers && a.base_mip + a.mips == b.base_mip;
-  if (!alike || !neighbours) return false;
-  last.range.mips = static_cast<std::uint16_t>(a.mips + b.mips);
+  const bool next_layers =
+      a.base_mip == b.base_mip && a.mips == b.mips && a.base_layer + a.layers == b.base_layer;
+  if (!alike || !(next_mips || next_layers)) return false;
+  if (next_mips)
+    last.range.mips = static_cast<std::uint16_t>(a.mips + b.mips);
+  else
+    last.range.layers = static_cast<std::uint16_t>(a.layers + b.layers);
   return true;
 }
 

@@ -116,11 +116,19 @@ inline Transition& Synchroniser::next_image(std::int32_t time, std::uint32_t pos
 
 // Neighbouring mips and layers that change alike become one barrier.
 inline void Synchroniser::join_neighbours() {
-  if (plan_.batches.back().count < 2) return;
-  Transition* const last = &plan_.transitions.back();
-  if (last[-1].resource != last->resource || !extend(last[-1], *last)) return;
-  plan_.transitions.pop_back();
-  --plan_.batches.back().count;
+  while (plan_.batches.back().count >= 2) {
+    Transition* const last = &plan_.transitions.back();
+    const std::uint32_t resource = last->resource;
+    if (last[-1].resource != resource || !extend(last[-1], *last)) return;
+    plan_.transitions.pop_back();
+    --plan_.batches.back().count;
+    // The mips of a layer that are joined with the layer before name the barrier that is gone.
+    const auto gone = static_cast<std::uint32_t>(plan_.transitions.size());
+    const auto& first = workspace_.first_sub;
+    for (std::uint32_t sub = first[resource]; sub < first[resource + 1]; ++sub) {
+      if (s_.states[sub].transition == gone) --s_.states[sub].transition;
+    }
+  }
 }
 
 // The state after an access for which the last image barrier was just added.

@@ -10,6 +10,13 @@ constexpr VkAccessFlags2 kAttachmentBits =
     VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT |
     VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
 
+// Whether an access needs contents to read. An attachment that nothing wrote is not loaded.
+constexpr bool reads_contents(const AccessRecord& access) {
+  if (!(access.flags & kWrite)) return true;
+  return !(access.flags & kDiscard) && (access.access & kWriteBits) != 0 &&
+         (access.access & ~(kWriteBits | kAttachmentBits)) != 0;
+}
+
 class Replay {
  public:
   explicit Replay(Validation& validation) : v_(validation), s_(validation.workspace.validate) {}
@@ -47,8 +54,8 @@ class Replay {
     std::uint32_t& version = s_.versions[access.resource];
     Workspace::Touch& touched = s_.touches[v_.workspace.first_sub[access.resource]];
     const bool writes = (access.flags & kWrite) != 0;
-    if (access.version != version || touched.stamp == pass + 1 || !(writes || touched.written))
-      return false;
+    const bool has_contents = touched.written || !reads_contents(access);
+    if (access.version != version || touched.stamp == pass + 1 || !has_contents) return false;
     version += writes;
     touched = {pass + 1, access.layout, !writes, writes, true};
     return true;
@@ -76,6 +83,7 @@ class Replay {
     }
     if (access.flags & kWrite) {
       conflict_ |= touched.reads || touched.writes;
+      unwritten_ |= !touched.written && reads_contents(access);
       touched.writes = touched.written = true;
     } else {
       conflict_ |= touched.writes || (touched.reads && touched.layout != access.layout);
@@ -149,8 +157,8 @@ class Replay {
       return;
     }
     v_.fail(ErrorCode::read_before_write,
-            v_.pass_text(pass) + " reads " + v_.resource_text(access.resource) + " version " +
-                std::to_string(access.version) +
+            v_.pass_text(pass) + (access.flags & kWrite ? " reads and writes " : " reads ") +
+                v_.resource_text(access.resource) + " version " + std::to_string(access.version) +
                 ", parts of which nothing has written: write it in an earlier pass" +
                 (resource.origin == Origin::imported ? ", or import it with its contents" : ""),
             pass, access.resource, access.version);
@@ -189,6 +197,11 @@ class Replay {
   }
 
   void check_output(const OutputRecord& output) {
+    if (output.flags == kStaleBuilder) {
+      v_.fail(ErrorCode::closed_pass,
+              "a PassBuilder of a frame before reset() was used: add the pass anew in this frame");
+      return;
+    }
     if (output.flags != 0) {
       v_.fail(output.flags & kNull ? ErrorCode::null_handle : ErrorCode::foreign_handle,
               "an output is given by a handle that is null, or of another graph or frame: pass one "

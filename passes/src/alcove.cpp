@@ -89,7 +89,7 @@ AlcoveResult guarded(Message& message, const Call& call) {
     write(message, result.error().message);
     return result.error().result;
   } catch (const std::bad_alloc&) {
-    write(message, "The host has no memory left.");
+    write(message, "The host is out of memory.");
     return ALCOVE_ERROR_OUT_OF_HOST_MEMORY;
   } catch (...) {
     write(message, "The library failed for a reason that it does not know.");

@@ -146,7 +146,7 @@ maths::ApplyParameters parameters_of(const Frame& frame, const ApplyInputs& inpu
                                      const ApplySettings& settings,
                                      const maths::Projection& projection) {
   const maths::mat4 world_from_view(
-      glm::transpose(maths::mat3(to_mat4(frame.view.view_from_world))));
+      glm::transpose(maths::mat3(to_rigid(frame.view.view_from_world))));
   maths::ApplyParameters parameters{
       projection, world_from_view,
       inputs.normals_in_view_space ? world_from_view : maths::mat4(1.0f)};

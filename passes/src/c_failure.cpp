@@ -61,10 +61,15 @@ Failure failure_of(const framegraph::Errors& errors) {
 
 Failure failure_of(const Error& error, std::string_view where) {
   std::string message = std::string(where) + ": " + error.message;
-  if (error.result != VK_SUCCESS && error.result != VK_ERROR_FEATURE_NOT_PRESENT) {
+  const AlcoveResult result = result_of(error.result);
+  if (result == ALCOVE_ERROR_OUT_OF_HOST_MEMORY) {
+    message += " The host is out of memory.";
+  } else if (result == ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY) {
+    message += " The device is out of memory.";
+  } else if (error.result != VK_SUCCESS && error.result != VK_ERROR_FEATURE_NOT_PRESENT) {
     message += " Vulkan's result is " + std::to_string(error.result) + ".";
   }
-  return {result_of(error.result), std::move(message)};
+  return {result, std::move(message)};
 }
 
 }  // namespace alcove::passes

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <span>
 
+#include "format_name.h"
+
 namespace alcove::passes {
 namespace {
 
@@ -109,7 +111,7 @@ tl::expected<void, Failure> check(const ImageRole& role, const AlcoveImage& imag
                 "; make them equal.");
   }
   if (!suits(role, image.format)) {
-    return fail("has VkFormat " + std::to_string(image.format) + "; it must be " +
+    return fail("has the format " + format_name(image.format) + "; it must be " +
                 wanted_format(role) + ".");
   }
   if (image.final_state.layout == VK_IMAGE_LAYOUT_UNDEFINED ||
@@ -119,8 +121,7 @@ tl::expected<void, Failure> check(const ImageRole& role, const AlcoveImage& imag
   if (!role.output && image.initial_state.layout == VK_IMAGE_LAYOUT_UNDEFINED) {
     return fail(
         "arrives in VK_IMAGE_LAYOUT_UNDEFINED, without contents; set AlcoveImage::initial_state to "
-        "how "
-        "it was left.");
+        "how it was left.");
   }
   const VkImageUsageFlags needed =
       role.output ? VK_IMAGE_USAGE_STORAGE_BIT : VK_IMAGE_USAGE_SAMPLED_BIT;

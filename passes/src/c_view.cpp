@@ -34,17 +34,11 @@ struct Textures {
 
 std::string sentence_begin(const AlcoveView& view) { return "View " + std::to_string(view.id); }
 
-// Projections are checked by the passes.
-tl::expected<View, Failure> to_view(const AlcoveView& view, const AlcoveCamera& camera,
-                                    const char* name) {
+// The passes check it.
+View to_view(const AlcoveCamera& camera) {
   View result;
   std::copy_n(camera.clip_from_view, 16, result.clip_from_view.begin());
   std::copy_n(camera.view_from_world, 16, result.view_from_world.begin());
-  if (!is_rotation_and_translation(result.view_from_world)) {
-    return invalid(sentence_begin(view) + ": " + name +
-                   ".view_from_world is no rotation and translation; it must be column-major, "
-                   "without scale and finite.");
-  }
   return result;
 }
 
@@ -150,12 +144,6 @@ tl::expected<void, Failure> add_view(framegraph::Graph& graph, Kernels& kernels,
   }
   OcclusionSettings& settings = given->settings;
   const bool reset = view.reset_history != VK_FALSE;
-  const bool alone = reset || settings.history_frames == 0;
-  auto now = to_view(view, view.camera, "camera");
-  auto before = alone ? now : to_view(view, view.previous_camera, "previous_camera");
-  if (!now || !before) {
-    return tl::unexpected(std::move(now ? before.error() : now.error()));
-  }
   auto right = check_given(view).and_then([&] { return check_hidden(view, settings); });
   if (!right) {
     return right;
@@ -171,7 +159,12 @@ tl::expected<void, Failure> add_view(framegraph::Graph& graph, Kernels& kernels,
   if (reset) {
     graph.reset_history(ViewName(view.id));
   }
-  Frame frame{graph, kernels, *now, frame_index, *before, reset ? 0 : view.static_frames};
+  Frame frame{graph,
+              kernels,
+              to_view(view.camera),
+              frame_index,
+              to_view(view.previous_camera),
+              reset ? 0 : view.static_frames};
   frame.prepare = prepare;
   frame.largest_size = {view.largest_width, view.largest_height};
   if (!reset) {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "check_inputs.h"
+#include "format_name.h"
 #include "maths/history.h"
 #include "number_text.h"
 #include "output_format.h"
@@ -63,11 +64,11 @@ tl::expected<void, Error> check_blocks(const Frame& frame, Texture depth, std::u
   if (found.width == blocks.width && found.height == blocks.height && found_format == format) {
     return {};
   }
-  return tl::unexpected(Error{
-      "The pass reconstruct was given " + std::string(name) + " of " + std::to_string(found.width) +
-      "x" + std::to_string(found.height) + " texels and VkFormat " + std::to_string(found_format) +
-      "; it needs " + std::to_string(blocks.width) + "x" + std::to_string(blocks.height) +
-      ", one a block, and VkFormat " + std::to_string(format) + "."});
+  return tl::unexpected(Error{"The pass reconstruct was given " + std::string(name) + " of " +
+                              std::to_string(found.width) + "x" + std::to_string(found.height) +
+                              " texels and " + format_name(found_format) + "; it needs " +
+                              std::to_string(blocks.width) + "x" + std::to_string(blocks.height) +
+                              ", one for each tile, and " + format_name(format) + "."});
 }
 
 tl::expected<void, Error> check_raw_occlusion(const Frame& frame, const ReconstructInputs& inputs) {

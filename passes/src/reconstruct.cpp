@@ -333,9 +333,8 @@ maths::ReconstructParameters parameters_of(const Frame& frame, const maths::Proj
                                            const ReconstructSettings& settings) {
   const maths::mat4 from_pixel = view_from_pixel(projection);
   // In double: far from the world's origin the two all but cancel.
-  const maths::dmat4 to_previous =
-      maths::dmat4(to_mat4(frame.previous_view.view_from_world)) *
-      maths::inverse(maths::dmat4(to_mat4(frame.view.view_from_world)));
+  const maths::dmat4 to_previous = to_rigid(frame.previous_view.view_from_world) *
+                                   maths::inverse(to_rigid(frame.view.view_from_world));
   const maths::mat4 to_view = view_from_normal(frame, normals_in_view_space);
   maths::ReconstructParameters parameters{};
   const maths::mat4 previous_from_pixel = maths::transpose(
@@ -379,7 +378,7 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& given_frame,
                                                const ReconstructSettings& settings,
                                                std::string_view history_name) {
   const bool history = settings.history_frames > 0;
-  const Frame frame = history ? given_frame : without_past(given_frame);
+  Frame frame = history ? given_frame : without_past(given_frame);
   ReconstructInputs inputs = given;
   if (frame.view == frame.previous_view && frame.static_frames > 0 && !frame.prepare) {
     inputs.motion = {};
@@ -401,12 +400,16 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& given_frame,
   if (!projection) {
     return tl::unexpected(projection.error());
   }
-  const auto previous = projection_of(frame.previous_view, sizes->previous, "The previous view");
-  if (!previous) {
-    return tl::unexpected(previous.error());
-  }
   bool history_valid = false;
   Textures textures = create_textures(frame, inputs, settings, *sizes, history_name, history_valid);
+  if (!history_valid) {  // the previous view is not read
+    frame.previous_view = frame.view;
+  }
+  const auto previous = projection_of(frame.previous_view, sizes->previous, "The previous view");
+  if (!previous) {
+    return tl::unexpected(Error{previous.error().message +
+                                " Where there was none, reset the history (reset_history)."});
+  }
   const Past past = past_of(frame, *sizes, history_valid, bool(inputs.motion));
   const auto kernel = get_kernel(frame, inputs, settings, is_perspective(*projection), past);
   if (!kernel) {

@@ -8,40 +8,17 @@
 
 #include "alcove/passes/frame.h"
 #include "maths/make_projection.h"
+#include "rigid_transform.h"
 
 namespace alcove::passes {
 
-[[nodiscard]] inline maths::mat4 to_mat4(const Matrix& matrix) {
-  maths::mat4 result;
-  for (int i = 0; i < 16; ++i) {
-    result[i / 4][i % 4] = matrix[static_cast<std::size_t>(i)];
-  }
-  return result;
-}
-
-// A rotation leaves its axes at right angles and of length 1, and so does a mirror, which a
-// left-handed world needs. Engines scale rarely, and hand over transposed matrices often.
-[[nodiscard]] inline bool is_rotation_and_translation(const Matrix& m) {
-  constexpr float kSlack = 1e-3f;
-  for (std::size_t a = 0; a < 3; ++a) {
-    for (std::size_t b = a; b < 3; ++b) {
-      const float* const u = &m[4 * a];
-      const float* const v = &m[4 * b];
-      const float dot = u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
-      if (!(std::abs(dot - (a == b ? 1.0f : 0.0f)) <= kSlack)) {
-        return false;
-      }
-    }
-  }
-  return m[3] == 0.0f && m[7] == 0.0f && m[11] == 0.0f && m[15] == 1.0f && std::isfinite(m[12]) &&
-         std::isfinite(m[13]) && std::isfinite(m[14]);
-}
-
-// Whether the 1 by which a perspective has w from z stands where the depth of its near plane does.
-// Such a matrix is a perspective too, of a scaled w and between other planes, and nobody's.
+// Whether a perspective was given row by row: the factor 1 of w = -z then stands where the offset
+// of the depth belongs. Such a matrix could also be a perspective whose w is scaled; engines have
+// none.
 [[nodiscard]] inline bool is_transposed(const Matrix& clip_from_view) {
-  const float w_from_z = std::abs(clip_from_view[11]);
-  return std::abs(clip_from_view[14]) == 1.0f && w_from_z != 1.0f && w_from_z != 0.0f;
+  const auto is_one = [](float value) { return std::abs(std::abs(value) - 1.0f) <= 1e-5f; };
+  return is_one(clip_from_view[14]) && !is_one(clip_from_view[11]) && clip_from_view[11] != 0.0f &&
+         clip_from_view[15] == 0.0f;
 }
 
 // The projection of a view over an image of `size` pixels, or what is wrong with the view, which
@@ -51,10 +28,10 @@ namespace alcove::passes {
   const auto unusable = [name](const std::string& why) {
     return Error{std::string(name) + " cannot be used: " + why + "."};
   };
-  if (!is_rotation_and_translation(view.view_from_world)) {
+  if (!is_rigid(view.view_from_world)) {
     return tl::unexpected(
-        unusable("view_from_world is no rotation and translation; it must be column-major, without "
-                 "scale and finite"));
+        unusable("view_from_world is not a rotation and translation; it must be column-major, "
+                 "without scale and finite"));
   }
   if (is_transposed(view.clip_from_view)) {
     return tl::unexpected(unusable("clip_from_view is transposed; it must be column-major"));
@@ -72,7 +49,8 @@ namespace alcove::passes {
 
 // The rotation that turns normals into view space.
 [[nodiscard]] inline maths::mat4 view_from_normal(const Frame& frame, bool normals_in_view_space) {
-  return normals_in_view_space ? maths::mat4(1.0f) : to_mat4(frame.view.view_from_world);
+  return normals_in_view_space ? maths::mat4(1.0f)
+                               : maths::mat4(to_rigid(frame.view.view_from_world));
 }
 
 [[nodiscard]] inline bool is_perspective(const maths::Projection& projection) {

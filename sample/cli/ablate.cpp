@@ -6,13 +6,12 @@
 #include <sstream>
 
 #include "cli/commands.h"
+#include "cli/open_session.h"
 #include "cli/report.h"
-#include "cli/settings.h"
 #include "evaluate/ablation.h"
 #include "evaluate/errors.h"
 #include "evaluate/variant_errors.h"
-#include "reference/surface_points.h"
-#include "render/session.h"
+#include "render/settings_json.h"
 #include "support/mib.h"
 #include "support/progress.h"
 #include "support/whole_file.h"
@@ -125,7 +124,7 @@ Json to_json(const VariantErrors& row) {
 }  // namespace
 
 Done run_ablate(const Options& options) {
-  auto session = session_of(options);
+  auto session = open_session(options);
   if (!session) {
     return Failure(std::move(session.error()));
   }
@@ -134,7 +133,9 @@ Done run_ablate(const Options& options) {
   if (!folder) {
     return tl::unexpected(folder.error());
   }
-  const auto variants = run_variants(*session, options, variants_of(session->settings), "changes");
+  const auto variants =
+      run_variants(*session, static_setup(options, session->camera), truth_options(options),
+                   variants_of(session->settings), "changes");
   if (!variants) {
     return Failure(variants.error());
   }

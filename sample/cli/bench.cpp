@@ -3,6 +3,7 @@
 
 #include "cli/camera_of.h"
 #include "cli/commands.h"
+#include "cli/open_session.h"
 #include "evaluate/measured_trade.h"
 #include "evaluate/trade_plot.h"
 #include "scene/load_scene.h"
@@ -61,11 +62,11 @@ Done run_bench(const Options& options) {
   for (const std::string& scene : scenes) {
     Options one = options;
     one.scene = scene;
-    const auto session = session_of(one);
+    const auto session = open_session(one);
     if (!session) {
       return Failure(session.error());
     }
-    auto points = measure_trade(*session, one);
+    auto points = measure_trade(*session, static_setup(one, session->camera), truth_options(one));
     if (!points) {
       return Failure(std::move(points.error()));
     }

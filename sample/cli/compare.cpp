@@ -3,11 +3,13 @@
 #include <sstream>
 
 #include "cli/commands.h"
+#include "cli/open_session.h"
 #include "cli/report.h"
 #include "evaluate/indirect_errors.h"
 #include "evaluate/indirect_truths.h"
 #include "evaluate/lit_errors.h"
 #include "evaluate/truths.h"
+#include "evaluate/weave.h"
 #include "support/image_io.h"
 #include "support/whole_file.h"
 
@@ -21,6 +23,7 @@ struct Errors {
   AngleSummary bent_normal;
   AngleSummary surface_normal;  // the plain normal in its place
   OpenSurfaceSummary open;
+  Weave weave;  // against scene truth
 };
 
 Errors errors_of(const Rendering& rendering, const Truths& truths) {
@@ -31,7 +34,8 @@ Errors errors_of(const Rendering& rendering, const Truths& truths) {
           compare_images(truths.height_field.visibility, scene, truths.surfaces),
           compare_directions(images.bent_normal_ws, truths.scene.bent_normal_ws, truths.surfaces),
           compare_directions(images.normal_ws, truths.scene.bent_normal_ws, truths.surfaces),
-          open_surfaces(images.visibility, scene, truths.surfaces)};
+          open_surfaces(images.visibility, scene, truths.surfaces),
+          weave_of(images.visibility, scene, truths.surfaces)};
 }
 
 nlohmann::ordered_json errors_json(const Errors& errors) {
@@ -40,7 +44,8 @@ nlohmann::ordered_json errors_json(const Errors& errors) {
           {"height_field_limit", to_json(errors.limit)},
           {"bent_normal", to_json(errors.bent_normal)},
           {"surface_normal", to_json(errors.surface_normal)},
-          {"open_surfaces", to_json(errors.open)}};
+          {"open_surfaces", to_json(errors.open)},
+          {"weave", to_json(errors.weave)}};
 }
 
 std::string error_table(const Errors& errors) {
@@ -60,7 +65,8 @@ std::string error_table(const Errors& errors) {
        << errors.surface_normal.percentile_95_degrees << ")\n"
        << std::setprecision(4) << "Open surfaces: mean visibility " << errors.open.mean_visibility
        << ", " << std::setprecision(2) << 100.0 * errors.open.fraction_below_95
-       << " % of pixels below 0.95\n";
+       << " % of pixels below 0.95\n"
+       << weave_line(errors.weave);
   return text.str();
 }
 
@@ -93,11 +99,11 @@ tl::expected<void, std::string> run_compare(const Options& options) {
   const FrameImages& images = rendering->images;
   const auto truths = truths_of({rendering->scene, rendering->camera, rendering->settings.radius,
                                  images.depth_ndc, images.normal_ws},
-                                options);
+                                truth_options(options));
   if (!truths) {
     return tl::unexpected(truths.error());
   }
-  const auto light = indirect_truths_of(*rendering, options);
+  const auto light = indirect_truths_of(*rendering, truth_options(options));
   if (!light) {
     return tl::unexpected(light.error());
   }

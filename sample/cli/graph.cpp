@@ -3,7 +3,7 @@
 #include "alcove/framegraph/compile.h"
 #include "alcove/framegraph/print.h"
 #include "cli/commands.h"
-#include "render/session.h"
+#include "cli/open_session.h"
 #include "render/surfaces.h"
 
 namespace alcove::sample {
@@ -59,7 +59,7 @@ tl::expected<void, std::string> declare(framegraph::Graph& graph, Session& sessi
 }  // namespace
 
 tl::expected<void, std::string> run_graph(const Options& options) {
-  auto session = session_of(options);
+  auto session = open_session(options);
   if (!session) {
     return tl::unexpected(session.error());
   }

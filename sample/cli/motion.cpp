@@ -4,11 +4,11 @@
 #include <sstream>
 
 #include "cli/commands.h"
-#include "cli/settings.h"
+#include "cli/open_session.h"
 #include "evaluate/errors.h"
 #include "evaluate/motion_run.h"
 #include "reference/truth_cache.h"
-#include "render/session.h"
+#include "render/settings_json.h"
 #include "support/image_io.h"
 #include "support/progress.h"
 #include "support/whole_file.h"
@@ -28,7 +28,7 @@ struct Course {
 };
 
 tl::expected<Course, std::string> course_of(const Options& options) {
-  auto session = session_of(options);
+  auto session = open_session(options);
   if (!session) {
     return Failure(std::move(session.error()));
   }
@@ -108,7 +108,8 @@ Json to_json(const MotionReport& report) {
             {"still", report.flicker.still},
             {"truth", report.flicker.truth},
             {"ratio", report.flicker.ratio()},
-            {"ratio_to_searches", report.flicker.ratio_to_searches()}}}};
+            {"ratio_to_searches", report.flicker.ratio_to_searches()}}},
+          {"weave", {{"moving", to_json(report.weave)}, {"still", to_json(report.static_weave)}}}};
 }
 
 Json to_json(const CutReport& report) {
@@ -151,7 +152,8 @@ std::string table_of(MotionKind kind, const MotionReport& report) {
       << "    of the searches alone           " << flicker.searches << ": ratio "
       << std::setprecision(3) << flicker.ratio_to_searches() << "\n"
       << "    filtered, without history       " << std::setprecision(4) << flicker.without
-      << ": ratio " << std::setprecision(3) << flicker.ratio() << "\n";
+      << ": ratio " << std::setprecision(3) << flicker.ratio() << "\n"
+      << "  Moving: " << weave_line(report.weave) << "  Still: " << weave_line(report.static_weave);
   return out.str();
 }
 

@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "alcove/passes/occlusion.h"
+#include "evaluate/motion_kind.h"
+#include "render/normal_source.h"
 #include "support/glm.h"
 
 namespace alcove::sample {
@@ -28,32 +30,9 @@ enum class Command {
   kView,
   kDoctor
 };
-// Names are in the order of the enum.
-enum class NormalSource { kShading, kGeometric, kDepth };
-inline constexpr std::array<std::string_view, 3> kNormalSourceNames{"shading", "geometric",
-                                                                    "depth"};
-constexpr std::string_view name_of(NormalSource source) {
-  return kNormalSourceNames[static_cast<std::size_t>(source)];
-}
+// Names are in the order of the enumerators.
 enum class GraphFormat { kText, kJson, kDot };
 inline constexpr std::array<std::string_view, 3> kGraphFormatNames{"text", "json", "dot"};
-
-// The paths of `motion`.
-enum class MotionKind : std::uint8_t {
-  kOrbit,   // about a point in the middle of the view, as deep as the median surface
-  kDolly,   // towards it
-  kStrafe,  // to the right, past a column that is put near the eye
-  kObject,  // the camera stands still, a thing slides over the ground
-  kCut,     // it stands still, and in the middle of the path stands elsewhere
-};
-inline constexpr std::array kMotionKinds{MotionKind::kOrbit, MotionKind::kDolly,
-                                         MotionKind::kStrafe, MotionKind::kObject,
-                                         MotionKind::kCut};
-inline constexpr std::array<std::string_view, 5> kMotionKindNames{"orbit", "dolly", "strafe",
-                                                                  "object", "cut"};
-constexpr std::string_view name_of(MotionKind kind) {
-  return kMotionKindNames[static_cast<std::size_t>(kind)];
-}
 
 // Only what was typed; the camera of the scene fills the rest. Angles already in radians.
 struct ViewOptions {

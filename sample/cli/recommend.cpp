@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "cli/commands.h"
+#include "cli/open_session.h"
 #include "cli/render_command.h"
 #include "evaluate/measured_trade.h"
 #include "support/mib.h"
@@ -61,11 +62,12 @@ void print_neighbours(const Trade& trade, const TradePoint& chosen) {
 }  // namespace
 
 Done run_recommend(const Options& options) {
-  const auto session = session_of(options);
+  const auto session = open_session(options);
   if (!session) {
     return Failure(session.error());
   }
-  auto points = measure_trade(*session, options);
+  auto points =
+      measure_trade(*session, static_setup(options, session->camera), truth_options(options));
   if (!points) {
     return Failure(std::move(points.error()));
   }

@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "cli/commands.h"
+#include "cli/open_session.h"
 #include "cli/report.h"
 #include "support/whole_file.h"
 

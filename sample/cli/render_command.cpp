@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "cli/option_value.h"
-#include "cli/setting_table.h"
 #include "cli/settings.h"
+#include "render/setting_table.h"
 
 namespace alcove::sample {
 namespace {

@@ -1,25 +1,12 @@
 #pragma once
 
-#include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "alcove/passes/occlusion.h"
 #include "cli/options.h"
-#include "scene/camera.h"
+#include "render/shot.h"
 
 namespace alcove::sample {
-
-// A view of a scene and what its occlusion is found with.
-struct Shot {
-  Camera camera;
-  passes::OcclusionSettings settings;
-  std::optional<float> roughness;  // over that of the materials
-  std::uint32_t width = 0;
-  std::uint32_t height = 0;
-  std::uint32_t frames = 0;  // that are drawn; 0: as many as the history averages
-};
 
 // What `alcove render` has to be called with to draw the shot: the program's name, then arguments
 // that parse_options reads back. Scene, whether blends are cut out, environment, normals, device

@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "alcove/passes/setting_names.h"
-#include "cli/settings.h"
+#include "render/settings_json.h"
 #include "support/mib.h"
 
 namespace alcove::sample {

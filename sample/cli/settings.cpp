@@ -2,19 +2,17 @@
 
 #include <charconv>
 #include <iomanip>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string_view>
 #include <utility>
 
-#include "cli/setting_table.h"
+#include "render/setting_table.h"
 
 namespace alcove::sample {
 namespace {
 
 using passes::OcclusionSettings;
 using Failure = tl::unexpected<std::string>;
-using Json = nlohmann::ordered_json;
 
 // Each overload reads `text` into a setting; what it takes, when that fails.
 std::string parse(const std::string& text, const SettingInfo& /*info*/, float& value) {
@@ -61,13 +59,6 @@ std::string choices(Choice /*value*/) {
     all += (i + 1 < names.size() ? ", " : " or ") + std::string(names[i]);
   }
   return (names.size() == 2 ? " Either " : " One of ") + all + ".";
-}
-
-Json show(float value) { return value; }
-Json show(std::uint32_t value) { return value; }
-template <typename Choice>
-Json show(Choice value) {
-  return std::string(passes::name_of(value));
 }
 
 // Sets one by its name; what to give instead, where that fails.
@@ -117,13 +108,6 @@ tl::expected<OcclusionSettings, std::string> occlusion_settings(const OcclusionO
     }
   }
   return settings;
-}
-
-Json to_json(const OcclusionSettings& settings) {
-  Json json;
-  for_each_setting(
-      settings, [&](const SettingInfo& info, const auto& field) { json[info.name] = show(field); });
-  return json;
 }
 
 }  // namespace alcove::sample

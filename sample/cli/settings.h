@@ -1,6 +1,5 @@
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <tl/expected.hpp>
@@ -23,8 +22,5 @@ namespace alcove::sample {
 
 // All settings with what they mean, a line each.
 [[nodiscard]] std::string settings_help();
-
-// Every setting by the name that --set knows it by.
-[[nodiscard]] nlohmann::ordered_json to_json(const passes::OcclusionSettings& settings);
 
 }  // namespace alcove::sample

@@ -1,12 +1,12 @@
 #include <iostream>
 
 #include "cli/commands.h"
-#include "viewer/scene_view.h"
+#include "cli/scene_view_request.h"
 
 namespace alcove::sample {
 
 tl::expected<void, std::string> run_view(const Options& options) {
-  auto view = SceneView::create(options);
+  auto view = SceneView::create(scene_view_request(options));
   if (!view) {
     return tl::unexpected(std::move(view.error()));
   }

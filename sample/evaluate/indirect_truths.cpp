@@ -41,12 +41,12 @@ Mask choose_pixels(const Image<float>& depth, std::uint32_t side) {
 
 class Tracer {
  public:
-  Tracer(const Rendering& rendering, const Options& options, const RayScene& rays,
+  Tracer(const Rendering& rendering, const TruthOptions& options, const RayScene& rays,
          const SurfacePoints& points)
       : rendering_(rendering),
         rays_(rays),
         points_(points),
-        settings_{.radius = rendering.settings.radius, .spp = options.occlusion.spp},
+        settings_{.radius = rendering.settings.radius, .spp = options.spp},
         cache_(options.use_cache ? TruthCache::default_folder() : std::filesystem::path()) {
     key_.add(std::string("light truth"));
     key_.add(kLightTruthVersion);
@@ -177,7 +177,7 @@ std::vector<Image<float>> roughness_images(const Rendering& rendering) {
 }
 
 tl::expected<IndirectTruths, std::string> indirect_truths_of(const Rendering& rendering,
-                                                             const Options& options) {
+                                                             const TruthOptions& options) {
   const auto rays = RayScene::create(rendering.scene);
   if (!rays) {
     return tl::unexpected(rays.error());
@@ -198,7 +198,7 @@ tl::expected<IndirectTruths, std::string> indirect_truths_of(const Rendering& re
     truths.specular.push_back(tracer.specular(roughness));
   }
   truths.specular_baselines = tracer.specular_baselines(roughness_images(rendering), depth);
-  if (options.lit) {
+  if (rendering.light.lit_steps) {
     truths.lit = tracer.lit(roughness_images(rendering).front());
   }
   return truths;

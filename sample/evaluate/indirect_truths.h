@@ -5,6 +5,7 @@
 #include <tl/expected.hpp>
 #include <vector>
 
+#include "evaluate/truths.h"
 #include "reference/lit_truth.h"
 #include "reference/specular_baselines.h"
 #include "reference/truth.h"
@@ -23,7 +24,7 @@ struct IndirectTruths {
   Image<glm::vec3> interreflection;
   std::vector<Image<float>> specular;                 // for each of roughness_images()
   std::vector<SpecularBaselines> specular_baselines;  // likewise
-  std::optional<LitTruth> lit;                        // with --lit, for the first of them
+  std::optional<LitTruth> lit;  // where RenderRequest::light asks for it, for the first
 };
 
 // The perceptual roughness that each specular occlusion of a rendering was made for.
@@ -31,6 +32,6 @@ struct IndirectTruths {
 
 // Computes them, or takes them from the cache on disk. Progress on stderr.
 [[nodiscard]] tl::expected<IndirectTruths, std::string> indirect_truths_of(
-    const Rendering& rendering, const Options& options);
+    const Rendering& rendering, const TruthOptions& options);
 
 }  // namespace alcove::sample

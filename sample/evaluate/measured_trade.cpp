@@ -5,8 +5,8 @@
 #include <sstream>
 #include <utility>
 
-#include "cli/settings.h"
 #include "evaluate/variant_errors.h"
+#include "render/settings_json.h"
 #include "support/mib.h"
 
 namespace alcove::sample {
@@ -26,8 +26,8 @@ TradePoint point_of(const VariantErrors& errors, const BaseTimes& base) {
 
 }  // namespace
 
-tl::expected<std::vector<TradePoint>, std::string> measure_trade(const Session& session,
-                                                                 const Options& options) {
+tl::expected<std::vector<TradePoint>, std::string> measure_trade(
+    const Session& session, const StaticSetup& setup, const TruthOptions& truth_options) {
   std::vector<Variant> ways = preset_sweep(session.settings);
   // The session's own settings are drawn as what the others are timed beside.
   std::string own_name = "as given";
@@ -36,7 +36,7 @@ tl::expected<std::vector<TradePoint>, std::string> measure_trade(const Session& 
     own_name = own->name;
     ways.erase(own);
   }
-  const auto report = run_variants(session, options, ways, "trade");
+  const auto report = run_variants(session, setup, truth_options, ways, "trade");
   if (!report) {
     return tl::unexpected(report.error());
   }

@@ -5,7 +5,7 @@
 #include <string>
 #include <tl/expected.hpp>
 
-#include "cli/options.h"
+#include "evaluate/motion_kind.h"
 #include "reference/truth.h"
 #include "scene/camera.h"
 #include "scene/scene.h"

@@ -166,6 +166,8 @@ struct Comparison {
   SquaresPair bent_normals;
   RunningMean static_change;
   RunningMean truth_change;
+  Weave weave;
+  Weave static_weave;
   std::vector<MotionPicture> pictures;
 };
 
@@ -198,8 +200,11 @@ Done compare(MotionWalk& walk, const Compared& compared, Comparison& sums) {
                         surfaces);
   sums.static_change += standing->change;
   sums.truth_change += least_change(truth->visibility, truth_before->visibility, compared.retraced);
-  sums.pictures.push_back({compared.frame, seen.visibility, std::move(standing->visibility),
-                           mean_of(truth->visibility)});
+  Image<float> mean_truth = mean_of(truth->visibility);
+  sums.weave += weave_of(seen.visibility, mean_truth, surfaces);
+  sums.static_weave += weave_of(standing->visibility, mean_truth, surfaces);
+  sums.pictures.push_back(
+      {compared.frame, seen.visibility, std::move(standing->visibility), std::move(mean_truth)});
   return {};
 }
 
@@ -266,6 +271,8 @@ tl::expected<MotionReport, std::string> run_motion(Gpu& gpu, const Scene& scene,
       .bent_normals = sums.bent_normals.errors(),
       .flicker = {passed->change.mean(), unkept->change.mean(), unfiltered->change.mean(),
                   sums.static_change.mean(), sums.truth_change.mean()},
+      .weave = sums.weave,
+      .static_weave = sums.static_weave,
       .pictures = std::move(sums.pictures)};
 }
 

@@ -8,6 +8,7 @@
 #include "evaluate/motion_errors.h"
 #include "evaluate/motion_paths.h"
 #include "evaluate/motion_walk.h"
+#include "evaluate/weave.h"
 #include "render/gpu.h"
 #include "scene/scene.h"
 #include "support/image.h"
@@ -57,6 +58,8 @@ struct MotionReport {
   ErrorPair passed_by;     // surfaces by which something moves, or did in the last kTrailFrames
   ErrorPair bent_normals;  // radians, on all surfaces
   Flicker flicker;
+  Weave weave;         // of the moving frames
+  Weave static_weave;  // of the same frames under a camera that always stood there
   std::vector<MotionPicture> pictures;
 };
 

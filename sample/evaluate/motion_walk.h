@@ -8,11 +8,11 @@
 #include <tl/expected.hpp>
 
 #include "alcove/passes/occlusion.h"
-#include "cli/options.h"
 #include "evaluate/motion_errors.h"
 #include "evaluate/motion_paths.h"
 #include "render/frame_renderer.h"
 #include "render/gpu.h"
+#include "render/normal_source.h"
 #include "scene/scene.h"
 
 namespace alcove::sample {

@@ -18,7 +18,7 @@ constexpr std::uint32_t kHeightFieldSlices = 24;
 
 // A truth by its key from the cache, else as `compute` gives it, which is kept there.
 template <typename Truth, typename Compute>
-tl::expected<Truth, std::string> cached(const Options& options, const Image<float>& depth,
+tl::expected<Truth, std::string> cached(const TruthOptions& options, const Image<float>& depth,
                                         const CacheKey& key, const Compute& compute) {
   CacheKey bent_key = key;
   bent_key.add(std::string("bent"));
@@ -38,9 +38,9 @@ tl::expected<Truth, std::string> cached(const Options& options, const Image<floa
 }
 
 tl::expected<OcclusionTruth, std::string> scene_truth(const TruthFrame& frame,
-                                                      const Options& options,
+                                                      const TruthOptions& options,
                                                       const Image<float>& depth) {
-  const TruthSettings settings{.radius = frame.radius, .spp = options.occlusion.spp};
+  const TruthSettings settings{.radius = frame.radius, .spp = options.spp};
   CacheKey key;
   key.add(std::string("scene truth"));
   key.add(kTruthVersion);
@@ -58,7 +58,7 @@ tl::expected<OcclusionTruth, std::string> scene_truth(const TruthFrame& frame,
   });
 }
 
-HeightFieldTruth depth_truth(const TruthFrame& frame, const Options& options,
+HeightFieldTruth depth_truth(const TruthFrame& frame, const TruthOptions& options,
                              const Image<float>& depth) {
   const HeightFieldSettings settings{frame.radius, kHeightFieldSlices};
   CacheKey key;
@@ -78,7 +78,7 @@ HeightFieldTruth depth_truth(const TruthFrame& frame, const Options& options,
 
 }  // namespace
 
-tl::expected<Truths, std::string> truths_of(const TruthFrame& frame, const Options& options) {
+tl::expected<Truths, std::string> truths_of(const TruthFrame& frame, const TruthOptions& options) {
   const Image<float> depth = linear_depth(frame.camera, frame.depth_ndc);
   Truths truths;
   truths.surfaces = Mask(depth.width, depth.height);

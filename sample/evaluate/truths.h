@@ -3,13 +3,18 @@
 #include <string>
 #include <tl/expected.hpp>
 
-#include "cli/options.h"
 #include "reference/height_field_truth.h"
 #include "reference/truth.h"
 #include "scene/scene.h"
 #include "support/image.h"
 
 namespace alcove::sample {
+
+// How exactly truths are computed.
+struct TruthOptions {
+  std::uint32_t spp = 256;  // rays per pixel
+  bool use_cache = true;    // Reads and writes the cache on disk.
+};
 
 // A frame that truths are wanted of: borrowed.
 struct TruthFrame {
@@ -31,6 +36,6 @@ struct Truths {
 // where primary rays through the pixel centres meet the scene, normals those that the occlusion was
 // given. Progress on stderr.
 [[nodiscard]] tl::expected<Truths, std::string> truths_of(const TruthFrame& frame,
-                                                          const Options& options);
+                                                          const TruthOptions& options);
 
 }  // namespace alcove::sample

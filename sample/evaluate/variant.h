@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "alcove/passes/occlusion.h"
-#include "cli/options.h"
 #include "render/frame_renderer.h"
 #include "render/gpu.h"
+#include "render/normal_source.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
 #include "support/image.h"

@@ -17,9 +17,10 @@ VariantErrors errors_of(const Variant& variant, const VariantResult& result, con
 }
 
 // On a device of its own: the variant's histories begin anew.
-tl::expected<VariantResult, std::string> run_variant(VariantRunner& runner, const Options& options,
+tl::expected<VariantResult, std::string> run_variant(VariantRunner& runner,
+                                                     const DeviceRequest& device,
                                                      const Variant& variant) {
-  const auto gpu = open_gpu(options);
+  const auto gpu = open_gpu(device);
   if (!gpu) {
     return Failure(gpu.error());
   }
@@ -35,24 +36,19 @@ tl::expected<VariantResult, std::string> run_variant(VariantRunner& runner, cons
 
 }  // namespace
 
-StaticSetup static_setup(const Options& options, const Camera& camera) {
-  return {camera, options.view.width, options.view.height, options.view.frames,
-          options.occlusion.normals};
-}
-
 tl::expected<VariantReport, std::string> run_variants(const Session& session,
-                                                      const Options& options,
+                                                      const StaticSetup& setup,
+                                                      const TruthOptions& truth_options,
                                                       const std::vector<Variant>& variants,
                                                       const std::string& progress) {
-  auto runner = VariantRunner::create(*session.gpu, session.scene,
-                                      static_setup(options, session.camera), session.settings);
+  auto runner = VariantRunner::create(*session.gpu, session.scene, setup, session.settings);
   if (!runner) {
     return Failure(std::move(runner.error()));
   }
   const FrameImages& base = runner->base();
   const auto truths = truths_of(
-      {session.scene, session.camera, session.settings.radius, base.depth_ndc, base.normal_ws},
-      options);
+      {session.scene, setup.camera, session.settings.radius, base.depth_ndc, base.normal_ws},
+      truth_options);
   if (!truths) {
     return Failure(truths.error());
   }
@@ -61,7 +57,7 @@ tl::expected<VariantReport, std::string> run_variants(const Session& session,
                                   {base.visibility, {.bytes = runner->base_bytes()}}, *truths));
   const Progress print = print_progress(progress);
   for (const Variant& variant : variants) {
-    const auto result = run_variant(*runner, options, variant);
+    const auto result = run_variant(*runner, session.device, variant);
     if (!result) {
       return Failure(result.error());
     }

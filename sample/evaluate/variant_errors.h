@@ -4,8 +4,8 @@
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "cli/options.h"
 #include "evaluate/errors.h"
+#include "evaluate/truths.h"
 #include "evaluate/variant.h"
 #include "render/session.h"
 
@@ -24,13 +24,10 @@ struct VariantReport {
   BaseTimes base_times;
 };
 
-// The standing view of the options.
-[[nodiscard]] StaticSetup static_setup(const Options& options, const Camera& camera);
-
 // Draws the session's own settings and the variants beside them. `progress` names what is under
 // way.
 [[nodiscard]] tl::expected<VariantReport, std::string> run_variants(
-    const Session& session, const Options& options, const std::vector<Variant>& variants,
-    const std::string& progress);
+    const Session& session, const StaticSetup& setup, const TruthOptions& truth_options,
+    const std::vector<Variant>& variants, const std::string& progress);
 
 }  // namespace alcove::sample

@@ -1,22 +1,8 @@
 #include "reference/surface_points.h"
 
 #include <cmath>
-#include <limits>
 
 namespace alcove::sample {
-
-Image<float> linear_depth(const Camera& camera, const Image<float>& depth_ndc) {
-  const CameraMatrices matrices = camera_matrices(camera, depth_ndc.width, depth_ndc.height);
-  const float sky = camera.reversed_z ? 0.0f : 1.0f;
-  Image<float> depth(depth_ndc.width, depth_ndc.height, std::numeric_limits<float>::infinity());
-  for (std::size_t i = 0; i < depth.pixels.size(); ++i) {
-    if (depth_ndc.pixels[i] != sky) {
-      depth.pixels[i] =
-          static_cast<float>(view_depth(matrices.clip_from_view, depth_ndc.pixels[i]));
-    }
-  }
-  return depth;
-}
 
 SurfacePoints surface_points(const RayScene& rays, const Camera& camera,
                              const Image<glm::vec3>& normal_ws, const Image<float>& depth) {

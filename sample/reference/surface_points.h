@@ -7,9 +7,6 @@
 
 namespace alcove::sample {
 
-// Distance along the view axis of what a depth buffer holds, infinity in the sky.
-[[nodiscard]] Image<float> linear_depth(const Camera& camera, const Image<float>& depth_ndc);
-
 // The rasteriser's pixels as points for the ray tracer: where primary rays through the pixel
 // centres meet the scene, and the depth buffer's where they miss what was rasterised (an edge
 // through the centre). `normal_ws` is what the occlusion was given, `depth` as linear_depth() has

@@ -8,9 +8,9 @@
 
 #include "alcove/framegraph/executor.h"
 #include "alcove/passes/occlusion.h"
-#include "cli/options.h"
 #include "render/gbuffer.h"
 #include "render/gpu.h"
+#include "render/normal_source.h"
 #include "scene/environment.h"
 #include "support/image.h"
 

@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <utility>
 
-#include "reference/surface_points.h"
 #include "render/display.h"
 #include "render/session.h"
 #include "scene/camera.h"
@@ -55,18 +54,17 @@ enum class Outputs : std::uint8_t {
 // The requests of a run's frames, by index: the camera orbits, and motion is from the frame before.
 class Run {
  public:
-  Run(const Options& options, const Camera& camera, const passes::OcclusionSettings& settings,
-      const IndirectRequest& light)
-      : options_(options), camera_(camera), settings_(settings), light_(light) {
-    if (!light.roughness.empty()) {
-      timed_light_.roughness = {light.roughness.front()};
+  Run(const RenderRequest& request, const Camera& camera, const passes::OcclusionSettings& settings)
+      : request_(request), camera_(camera), settings_(settings) {
+    if (!request.light.roughness.empty()) {
+      timed_light_.roughness = {request.light.roughness.front()};
     }
   }
 
-  std::uint32_t frames() const { return options_.view.frames; }
+  std::uint32_t frames() const { return request_.frames; }
 
   Camera camera(std::uint32_t frame) const {
-    return orbited(camera_, options_.view.orbit * static_cast<float>(frame));
+    return orbited(camera_, request_.orbit * static_cast<float>(frame));
   }
 
   FrameRequest request(std::uint32_t frame, Outputs outputs) const {
@@ -76,7 +74,7 @@ class Run {
     request.view = {now.view_from_world, now.clip_from_view, before.view_from_world,
                     before.clip_from_view, camera_.reversed_z};
     request.index = frame;
-    request.static_frames = options_.view.orbit == 0.0f ? frame : 0;
+    request.static_frames = request_.orbit == 0.0f ? frame : 0;
     request.occlusion = settings_;
     if (outputs == Outputs::kSpecular || outputs == Outputs::kAll) {
       request.occlusion.specular = specular_model(settings_);
@@ -84,19 +82,18 @@ class Run {
     if (outputs == Outputs::kBentNormals || outputs == Outputs::kAll) {
       request.occlusion.bent_normal = true;
     }
-    request.light = outputs == Outputs::kAll ? &light_ : &timed_light_;
+    request.light = outputs == Outputs::kAll ? &request_.light : &timed_light_;
     return request;
   }
 
  private:
   CameraMatrices matrices(std::uint32_t frame) const {
-    return camera_matrices(camera(frame), options_.view.width, options_.view.height);
+    return camera_matrices(camera(frame), request_.width, request_.height);
   }
 
-  const Options& options_;
+  const RenderRequest& request_;
   Camera camera_;
   passes::OcclusionSettings settings_;
-  const IndirectRequest& light_;
   IndirectRequest timed_light_;  // one roughness, and no light
 };
 
@@ -166,27 +163,19 @@ passes::Specular specular_model(const passes::OcclusionSettings& settings) {
   return settings.specular == passes::Specular::none ? passes::Specular::slices : settings.specular;
 }
 
-tl::expected<Rendering, std::string> render(const Options& options) {
-  auto session = session_of(options);
-  if (!session) {
-    return Failure(std::move(session.error()));
-  }
+tl::expected<Rendering, std::string> render(Session session, const RenderRequest& request) {
   Rendering result;
-  result.scene = std::move(session->scene);
-  result.settings = session->settings;
-  auto environment = load_environment(options.environment);
-  if (!environment) {
-    return Failure(std::move(environment.error()));
-  }
-  result.light = {options.occlusion.roughness, std::move(*environment), options.lit};
-  Gpu& gpu = *session->gpu;
+  result.scene = std::move(session.scene);
+  result.settings = session.settings;
+  result.light = request.light;
+  Gpu& gpu = *session.gpu;
   result.device = gpu.device().properties().deviceName;
   result.driver = gpu.device().driver();
 
-  const Run run(options, session->camera, result.settings, result.light);
+  const Run run(request, session.camera, result.settings);
   result.camera = run.camera(run.frames() - 1);
-  auto renderer = FrameRenderer::create(
-      gpu, result.scene, {options.view.width, options.view.height}, options.occlusion.normals);
+  auto renderer =
+      FrameRenderer::create(gpu, result.scene, {request.width, request.height}, request.normals);
   if (!renderer) {
     return Failure(std::move(renderer.error()));
   }

@@ -5,9 +5,9 @@
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "cli/options.h"
 #include "render/frame_renderer.h"
 #include "render/gpu.h"
+#include "render/session.h"
 #include "scene/scene.h"
 
 namespace alcove::sample {
@@ -38,8 +38,19 @@ struct Rendering {
 // The model that specular occlusion is drawn by: slices where the settings want none.
 [[nodiscard]] passes::Specular specular_model(const passes::OcclusionSettings& settings);
 
-// Loads the scene, draws its frames and reads the last one back.
-[[nodiscard]] tl::expected<Rendering, std::string> render(const Options& options);
+// Which frames of a session to draw, and what to make of the last one.
+struct RenderRequest {
+  std::uint32_t width = 960;  // pixels
+  std::uint32_t height = 540;
+  std::uint32_t frames = 1;
+  float orbit = 0.0f;  // radians that the camera orbits its target by, per frame
+  NormalSource normals = NormalSource::kShading;
+  IndirectRequest light;
+};
+
+// Draws the frames and reads the last one back.
+[[nodiscard]] tl::expected<Rendering, std::string> render(Session session,
+                                                          const RenderRequest& request);
 
 // Distance along the view axis, infinity in the sky.
 [[nodiscard]] Image<float> linear_depth(const Rendering& rendering);

@@ -6,32 +6,33 @@
 #include <vector>
 
 #include "alcove/passes/occlusion.h"
-#include "cli/options.h"
 #include "render/gpu.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
 
 namespace alcove::sample {
 
-// What the options of a command ask for, before anything is drawn.
+// Which Vulkan device to open, and how.
+struct DeviceRequest {
+  int index = -1;           // As `alcove doctor` lists them; -1 chooses the first suitable one.
+  bool validation = false;  // Turns on the validation layers and the checks of the render graph.
+  std::vector<const char*> surface_extensions;  // Instance extensions of a window, if any.
+};
+
+// A scene with a camera, settings and a device to draw it on.
 struct Session {
   Scene scene;
   Camera camera;
   passes::OcclusionSettings settings;
+  DeviceRequest device;
   std::unique_ptr<Gpu> gpu;
 };
 
-// Loads the scene, finds camera and settings and opens the device, in this order: the cheapest
-// mistake is told first. What the scene left out goes to stderr as notes. `surface_extensions` are
-// those of a window to present to.
-[[nodiscard]] tl::expected<Session, std::string> session_of(
-    const Options& options, const std::vector<const char*>& surface_extensions = {});
-
-// The device that the options name, opened anew: what is drawn on it has histories of its own.
+// Opens the device. Each call opens it anew, with histories of its own.
 [[nodiscard]] tl::expected<std::unique_ptr<Gpu>, std::string> open_gpu(
-    const Options& options, const std::vector<const char*>& surface_extensions = {});
+    const DeviceRequest& request);
 
-// One sentence where the validation layers said anything.
+// Returns an error with the first message if the validation layers reported any.
 [[nodiscard]] tl::expected<void, std::string> check_validation(const Gpu& gpu);
 
 }  // namespace alcove::sample

@@ -4,8 +4,8 @@
 
 #include "alcove/passes/apply.h"
 #include "alcove/passes/occlusion.h"
-#include "cli/options.h"
 #include "render/gbuffer.h"
+#include "render/normal_source.h"
 
 namespace alcove::sample {
 

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "support/glm.h"
+#include "support/image.h"
 
 namespace alcove::sample {
 
@@ -50,6 +51,9 @@ struct Ray {
 // Positive distance along the view axis of a depth buffer's value; infinity for the value of an
 // infinite far plane.
 [[nodiscard]] double view_depth(const glm::mat4& clip_from_view, double depth_ndc);
+
+// Distance along the view axis of each value of a depth buffer; infinity in the sky.
+[[nodiscard]] Image<float> linear_depth(const Camera& camera, const Image<float>& depth_ndc);
 
 // Turned about the target by `angle` radians around `up_ws`, as `--orbit` does between frames.
 [[nodiscard]] Camera orbited(const Camera& camera, float angle);

@@ -5,9 +5,9 @@
 #include <string>
 #include <tl/expected.hpp>
 
-#include "cli/options.h"
 #include "render/gbuffer.h"
 #include "render/gpu.h"
+#include "render/normal_source.h"
 #include "render/probe.h"
 #include "render/surfaces.h"
 #include "scene/environment.h"

@@ -6,7 +6,7 @@
 #include <iostream>
 #include <utility>
 
-#include "cli/render_command.h"
+#include "scene/environment.h"
 #include "viewer/screenshot.h"
 
 namespace alcove::sample {
@@ -16,32 +16,30 @@ using framegraph::Graph;
 using framegraph::Texture;
 using Failure = tl::unexpected<std::string>;
 
-ViewState first_state(const Session& session, const Options& options) {
+ViewState first_state(const Session& session, std::optional<float> roughness) {
   ViewState state;
   state.camera = session.camera;
   state.settings = session.settings;
-  if (!options.occlusion.roughness.empty()) {
-    state.roughness = options.occlusion.roughness.front();
-  }
+  state.roughness = roughness;
   return state;
 }
 
 }  // namespace
 
-tl::expected<std::unique_ptr<SceneView>, std::string> SceneView::create(const Options& options) {
-  std::unique_ptr<SceneView> made(new SceneView(options));
-  auto window = Window::create({options.view.width, options.view.height},
-                               "alcove: " + (options.scene.empty() ? "builtin" : options.scene));
+tl::expected<std::unique_ptr<SceneView>, std::string> SceneView::create(SceneViewRequest wanted) {
+  std::unique_ptr<SceneView> made(new SceneView(std::move(wanted)));
+  const SceneViewRequest& request = made->request_;
+  auto window = Window::create({request.width, request.height}, request.title);
   if (!window) {
     return Failure(std::move(window.error()));
   }
   made->window_ = std::move(*window);
-  auto session = session_of(options, Window::instance_extensions());
+  auto session = request.open_session(Window::instance_extensions());
   if (!session) {
     return Failure(std::move(session.error()));
   }
   made->session_ = std::move(*session);
-  const auto environment = load_environment(options.environment);
+  const auto environment = load_environment(request.environment);
   if (!environment) {
     return Failure(environment.error());
   }
@@ -52,8 +50,7 @@ tl::expected<std::unique_ptr<SceneView>, std::string> SceneView::create(const Op
   }
   made->presenter_ = std::move(*presenter);
   const VkFormat format = made->presenter_->format();
-  auto frame = SceneFrame::create(gpu, made->session_.scene, *environment,
-                                  options.occlusion.normals, format);
+  auto frame = SceneFrame::create(gpu, made->session_.scene, *environment, request.normals, format);
   if (!frame) {
     return Failure(std::move(frame.error()));
   }
@@ -63,7 +60,7 @@ tl::expected<std::unique_ptr<SceneView>, std::string> SceneView::create(const Op
     return Failure(std::move(gui.error()));
   }
   made->gui_ = std::move(*gui);
-  made->state_ = first_state(made->session_, options);
+  made->state_ = first_state(made->session_, request.roughness);
   made->good_ = {made->state_.settings, made->state_.roughness};
   made->facts_.first_settings = made->state_.settings;
   made->facts_.device = gpu.device().properties().deviceName;
@@ -176,13 +173,12 @@ tl::expected<void, std::string> SceneView::draw_and_read() {
 }
 
 tl::expected<void, std::string> SceneView::write() {
-  const auto file = write_screenshot(options_.out, screenshot_);
+  const auto file = write_screenshot(request_.screenshots, screenshot_);
   if (!file) {
     return Failure(file.error());
   }
-  const std::string command =
-      shell_line(render_arguments(options_, {state_.camera, good_.settings, good_.roughness,
-                                             screenshot_.width, screenshot_.height}));
+  const std::string command = request_.command(
+      {state_.camera, good_.settings, good_.roughness, screenshot_.width, screenshot_.height});
   std::cout << file->string() << "\n" << command << std::endl;
   window_->copy_to_clipboard(command);
   facts_.message = file->string() + " is written; the clipboard has: " + command;
@@ -207,7 +203,7 @@ tl::expected<bool, std::string> SceneView::draw() {
   if (!drawn) {
     return Failure(std::move(drawn.error()));
   }
-  state_.camera = orbited(state_.camera, options_.view.orbit);
+  state_.camera = orbited(state_.camera, request_.orbit);
   return true;
 }
 

@@ -1,10 +1,17 @@
 #pragma once
 
+#include <filesystem>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <tl/expected.hpp>
+#include <utility>
+#include <vector>
 
+#include "render/normal_source.h"
 #include "render/session.h"
+#include "render/shot.h"
 #include "viewer/gui.h"
 #include "viewer/panel.h"
 #include "viewer/presenter.h"
@@ -14,12 +21,28 @@
 
 namespace alcove::sample {
 
+// What a window shows at first, and what it asks of the program around it.
+struct SceneViewRequest {
+  std::uint32_t width = 960;  // of the window, pixels
+  std::uint32_t height = 540;
+  std::string title;
+  float orbit = 0.0f;  // radians that the camera orbits its target by, per frame
+  NormalSource normals = NormalSource::kShading;
+  std::optional<float> roughness;     // perceptual, of every surface; none: of the materials
+  std::filesystem::path environment;  // .hdr or .exr; empty: the procedural sky
+  std::filesystem::path screenshots;  // folder for them; empty: the current one
+  // Loads the scene and opens a device with these instance extensions.
+  std::function<tl::expected<Session, std::string>(const std::vector<const char*>&)> open_session;
+  // The shell command that draws a shot without a window.
+  std::function<std::string(const Shot&)> command;
+};
+
 // A scene in a window: what `alcove view` runs, frame by frame.
 class SceneView {
  public:
   // Opens the window before the scene is loaded: where there is no display, that is told first.
   [[nodiscard]] static tl::expected<std::unique_ptr<SceneView>, std::string> create(
-      const Options& options);
+      SceneViewRequest request);
   ~SceneView();
   SceneView(const SceneView&) = delete;
   SceneView& operator=(const SceneView&) = delete;
@@ -48,7 +71,7 @@ class SceneView {
     bool operator==(const Choice&) const = default;
   };
 
-  explicit SceneView(const Options& options) : options_(options) {}
+  explicit SceneView(SceneViewRequest request) : request_(std::move(request)) {}
   void take_keys();
   void lay_out();
   // Where `read_back` is not null, the window's image goes there.
@@ -58,7 +81,7 @@ class SceneView {
   tl::expected<void, std::string> draw_and_read();
   tl::expected<void, std::string> write();
 
-  Options options_;
+  SceneViewRequest request_;
   std::unique_ptr<Window> window_;  // outlives what is on it
   Session session_;
   std::unique_ptr<Presenter> presenter_;

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "cli/setting_table.h"
+#include "render/setting_table.h"
 
 namespace alcove::sample {
 namespace {

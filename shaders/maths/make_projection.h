@@ -19,39 +19,73 @@ inline bool all_finite(const mat4& m) {
   return true;
 }
 
-// Why `m` is none of the projections that a Projection can hold; null when it is one.
-inline const char* projection_fault(const mat4& m) {
-  if (!all_finite(m)) return "the projection matrix holds a value that is not finite";
-  const float slack = 1e-6f * (std::abs(m[0][0]) + std::abs(m[1][1]));
-  if (m[0][0] == 0.0f || m[1][1] == 0.0f)
+// Elements that are zero in every projection may hold this much of rounding, relative to the
+// elements that they are compared with. Matrices that were multiplied or inverted in float stay
+// well below it.
+constexpr double kRounding = 1e-5;
+
+// Whether w hardly depends on z: not over the whole depth range, and not next to the constant part.
+inline bool is_orthographic(const dmat4& m) {
+  const double w_per_z = std::abs(m[2][3]);
+  return w_per_z == 0.0 ||
+         (w_per_z <= kRounding * std::abs(m[3][3]) && w_per_z <= 1e-4 * std::abs(m[2][2]));
+}
+
+// Whether the constant part of w is at most a rounding error: it would move the eye along z by less
+// than a ten-thousandth of the near plane's distance.
+inline bool has_no_constant_w(const dmat4& m) {
+  return std::abs(m[3][3]) <= std::max(1e-6 * std::abs(m[2][3]), 1e-4 * std::abs(m[3][2]));
+}
+
+// Why `m` is not a projection that a Projection can hold; null where it is one.
+inline const char* projection_fault(const dmat4& m) {
+  const double size = std::abs(m[0][0]) + std::abs(m[1][1]);
+  const double w_size = std::abs(m[2][3]) + std::abs(m[3][3]);
+  const double depth_size = std::abs(m[2][2]) + w_size;
+  if (m[0][0] == 0.0 || m[1][1] == 0.0)
     return "the projection matrix flattens x or y: its first two diagonal elements must not be 0";
-  if (std::abs(m[0][1]) > slack || std::abs(m[1][0]) > slack)
+  if (std::abs(m[0][1]) > kRounding * size || std::abs(m[1][0]) > kRounding * size)
     return "the projection matrix mixes x and y: pass it without the display's rotation";
-  if (std::abs(m[0][3]) > 1e-6f || std::abs(m[1][3]) > 1e-6f)
+  if (std::abs(m[0][3]) > kRounding * w_size || std::abs(m[1][3]) > kRounding * w_size)
     return "the projection matrix tilts the image plane: its w must depend on z alone";
-  if (std::abs(m[0][2]) > 1e-6f || std::abs(m[1][2]) > 1e-6f)
+  if (std::abs(m[0][2]) > kRounding * depth_size || std::abs(m[1][2]) > kRounding * depth_size)
     return "the projection matrix has an oblique near plane: its depth must depend on z alone";
-  if (m[2][3] > 0.0f || (m[2][3] == 0.0f && m[3][3] <= 0.0f))
+  const bool orthographic = is_orthographic(m);
+  if (orthographic ? m[3][3] <= 0.0 : m[2][3] > 0.0)
     return "the projection matrix looks along +Z: view space must have the camera along -Z";
-  if (m[2][3] != 0.0f && std::abs(m[3][3]) > -1e-6f * m[2][3])
+  if (!orthographic && !has_no_constant_w(m))
     return "the projection matrix moves the eye along z: in perspective its w must be 0 where z is";
-  if (double(m[2][2]) * double(m[3][3]) == double(m[3][2]) * double(m[2][3]))
+  if (m[2][2] * m[3][3] == m[3][2] * m[2][3])
     return "the projection matrix gives every point the same depth";
   return nullptr;
+}
+
+// `m`, which is a projection, with exact zeros where w has them.
+inline dmat4 without_rounding(dmat4 m) {
+  if (is_orthographic(m)) {
+    m[2][3] = 0.0;
+  } else {
+    m[3][3] = 0.0;
+  }
+  return m;
 }
 
 }  // namespace detail
 
 // The Projection of `matrix`, which takes view space (right-handed, camera along -Z) to Vulkan clip
 // space (y down, depth 0 to 1), column-major as in GLM, over an image of width x height pixels.
-// Jitter belongs in the matrix. The error is a sentence (static storage) that says what is wrong.
+// Jitter belongs in the matrix. Rounding errors in elements that a projection has as zeros are
+// accepted and removed. The error is a clause (static storage) that says what is wrong.
 [[nodiscard]] inline tl::expected<Projection, const char*> make_projection(const mat4& matrix,
                                                                            std::uint32_t width,
                                                                            std::uint32_t height) {
   if (width == 0 || height == 0) return tl::unexpected<const char*>("the image has no pixels");
-  if (const char* fault = detail::projection_fault(matrix)) return tl::unexpected(fault);
+  if (!detail::all_finite(matrix))
+    return tl::unexpected<const char*>("the projection matrix holds a value that is not finite");
+  const dmat4 given(matrix);
+  if (const char* fault = detail::projection_fault(given)) return tl::unexpected(fault);
 
-  const dmat4 m(matrix);
+  const dmat4 m = detail::without_rounding(given);
   const dvec2 scale(m[0][0], m[1][1]), per_z(m[2][0], m[2][1]), constant(m[3][0], m[3][1]);
   const double w_per_depth = -m[2][3], w_constant = m[3][3];
   // clip.xy = scale * xy - per_z * depth + constant, and equals (2 uv - 1) w: solved for xy.

@@ -49,7 +49,8 @@ struct Slice {
 };
 
 // `normal`, `direction` and `view` are unit and of one space, the last two perpendicular. A normal
-// that points away from the eye is taken as perpendicular to the view vector; see facing_normal().
+// that points away from the eye is taken as perpendicular to the view vector; facing_normal() gives
+// one that does not.
 ALCOVE_INLINE Slice make_slice(vec3 normal, vec3 direction, vec3 view) {
   Slice s;
   s.along = dot(normal, direction);
@@ -70,13 +71,19 @@ ALCOVE_INLINE float slice_gamma(Slice s) {
   return steep ? (s.sine < 0.0f ? -angle : angle) : kHalfPi - angle;
 }
 
-// `normal` if the eye can see its side, else the nearest normal that the eye sees edge-on.
-// Interpolated and mapped normals turn away from the eye near silhouettes.
+// A normal whose cosine to the view vector is below minus this belongs to the other side of the
+// surface: interpolated and mapped normals seldom lean further away from the eye near silhouettes.
+const float kFlippedNormal = 0.25f;
+
+// The normal of the side that the eye sees: `normal` where it faces the eye, its opposite where it
+// faces away by more than kFlippedNormal (double-sided materials, inverted normals), and in between
+// the nearest direction that is perpendicular to the view vector. Both arguments are unit.
 ALCOVE_INLINE vec3 facing_normal(vec3 normal, vec3 view) {
-  float away = min(dot(normal, view), 0.0f);
-  vec3 turned = normal - view * away;
-  float squared = dot(turned, turned);
-  return squared > 1e-8f ? turned * inversesqrt(squared) : view;
+  float towards = dot(normal, view);
+  vec3 side = towards < -kFlippedNormal ? -normal : normal;
+  vec3 bent = side - view * min(dot(side, view), 0.0f);
+  float squared = dot(bent, bent);
+  return squared > 1e-8f ? bent * inversesqrt(squared) : view;
 }
 
 // Cosine of the horizon that the surface's own tangent plane makes on a side: no horizon is lower.

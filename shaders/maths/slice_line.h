@@ -108,6 +108,18 @@ ALCOVE_INLINE TangentPlane make_tangent_plane(vec2 per_px, vec3 normal, vec3 vie
   return t;
 }
 
+// The inverse of make_tangent_plane(): the unit normal, towards the eye, of a surface whose
+// SliceSample::inverse_depth is `inverse_depth` at a pixel and changes by `gradient` for each
+// pixel. `slope` is the view ray's x and y at unit depth there, which orthographic views do not
+// have.
+ALCOVE_INLINE vec3 normal_of_gradient(vec2 per_px, vec2 slope, float inverse_depth, vec2 gradient,
+                                      bool perspective) {
+  float scale = perspective ? -1.0f / inverse_depth : 1.0f;
+  float x = gradient.x * scale / per_px.x;
+  float y = gradient.y * scale / per_px.y;
+  return normalize(vec3(x, y, perspective ? 1.0f + x * slope.x + y * slope.y : 1.0f));
+}
+
 // How far a sample, `off_plane` off the tangent plane in `line` and so many pixels away, is moved
 // towards the exact place it stands for along that plane: 1 on the plane, which stays exactly flat,
 // 0 off it, where an occluder stays where it was found.

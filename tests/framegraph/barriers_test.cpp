@@ -43,6 +43,36 @@ TEST(Barriers, NoPlacementOfFewerCommandsIsRight) {
   std::cerr << tried << " placements of fewer commands refused\n";
 }
 
+// Each face of a cube, and each of its mips, is written by a pass of its own; one barrier suffices
+// for the pass that reads the cube.
+TEST(Barriers, LayersAndMipsThatChangeAlikeShareABarrier) {
+  for (const std::uint32_t mips : {1u, 3u}) {
+    Graph graph;
+    Texture cube =
+        graph.create_texture("cube", {VK_FORMAT_R8_UNORM, Extent::absolute(8, 8), mips, 6});
+    for (std::uint32_t mip = 0; mip < mips; ++mip) {
+      for (std::uint32_t face = 0; face < 6; ++face) {
+        const Range range{static_cast<std::uint16_t>(mip), 1, static_cast<std::uint16_t>(face), 1};
+        cube = graph.add_pass("face").write(cube, access::color_attachment, range);
+      }
+    }
+    PassBuilder reader = graph.add_pass("reader");
+    reader.read(cube, access::sampled_fragment);
+    reader.side_effect();
+    // A later stage: the barrier that it needs is the one before the first reader, made wider.
+    PassBuilder later = graph.add_pass("later");
+    later.read(cube, access::sampled_compute);
+    later.side_effect();
+    const auto plan = compile(graph);
+    ASSERT_TRUE(plan) << to_string(plan.error());
+    EXPECT_TRUE(verify(graph.description(), {}, *plan));
+    const PlannedPass& first = plan->passes[std::size_t{6} * mips];
+    ASSERT_EQ(first.batch_count, 1u);
+    EXPECT_EQ(plan->batches[first.first_batch].count, 1u);
+    EXPECT_EQ(plan->passes.back().batch_count, 0u);
+  }
+}
+
 TEST(Barriers, ReadsAfterReadsCostNothing) {
   Graph graph;
   Texture texture = graph.create_texture("t", {VK_FORMAT_R8_UNORM, Extent::absolute(8, 8)});

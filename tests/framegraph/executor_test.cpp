@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "extra_device.h"
 #include "failing_device.h"
 #include "gpu.h"
 
@@ -92,6 +93,96 @@ TEST_F(ExecutorTest, AnUndeclaredUseIsNamedWhereUsesAreChecked) {
   ASSERT_FALSE(report);
   EXPECT_EQ(report.error()[0].code, ErrorCode::undeclared_use);
   EXPECT_THAT(report.error()[0].message, testing::HasSubstr("'nosy' uses 'secret'"));
+}
+
+// A texture of four mips of which a pass declares the second.
+TEST_F(ExecutorTest, ViewsOutsideOfTheDeclaredRangeAreRefused) {
+  struct Case {
+    Range range;
+    ErrorCode code;
+    bool checked;  // Only where uses are checked.
+  };
+  const Case cases[] = {{Range::mip(0), ErrorCode::undeclared_use, true},
+                        {{1, 2, 0, 1}, ErrorCode::undeclared_use, true},
+                        {{}, ErrorCode::undeclared_use, true},
+                        {Range::mip(6), ErrorCode::bad_range, false},
+                        {Range::layer(1), ErrorCode::bad_range, false},
+                        {{3, 2, 0, 1}, ErrorCode::bad_range, false}};
+  for (const bool check : {false, true}) {
+    ExecutorOptions options;
+    options.check_uses = check;
+    Executor executor = make(options);
+    for (const Case& c : cases) {
+      if (c.checked && !check) continue;
+      Graph graph;
+      Texture texture = graph.create_texture("t", {VK_FORMAT_R32_UINT, Extent::absolute(8, 8), 4});
+      PassBuilder pass = graph.add_pass("store");
+      texture = pass.write(texture, access::storage_write_compute, Range::mip(1));
+      pass.side_effect();
+      pass.record([=](RecordContext& context) {
+        EXPECT_NE(context.view(texture), VkImageView{VK_NULL_HANDLE});
+        EXPECT_EQ(context.view(texture, c.range), VkImageView{VK_NULL_HANDLE});
+      });
+      const auto report = gpu_.record(executor, graph);
+      ASSERT_FALSE(report);
+      EXPECT_EQ(report.error()[0].code, c.code) << report.error()[0].message;
+      EXPECT_THAT(report.error()[0].message, testing::HasSubstr("pass 'store' asks for a view of"));
+    }
+  }
+}
+
+TEST_F(ExecutorTest, ACallbackCannotRecordWithItsOwnExecutor) {
+  Executor executor = make();
+  Graph graph;
+  Graph other;
+  PassBuilder pass = graph.add_pass("nested");
+  pass.side_effect();
+  std::size_t refused = 0;
+  pass.record([&](RecordContext& c) {
+    for (Graph* nested : {&graph, &other}) {
+      const auto recorded = executor.record(*nested, c.commands);
+      const auto submitted = executor.submit(*nested);
+      for (const auto* report : {&recorded, &submitted})
+        refused += !*report && report->error()[0].code == ErrorCode::misuse;
+      executor.discard(*nested);
+    }
+  });
+  const auto report = gpu_.run(executor, graph);
+  ASSERT_TRUE(report) << to_string(report.error());
+  EXPECT_EQ(refused, 4u);
+}
+
+// Of a transient, of a transient in a heap that had none before, and of a history.
+TEST_F(ExecutorTest, BuffersWithADeviceAddressHaveMemoryForIt) {
+  VkPhysicalDeviceVulkan12Features v12{};
+  v12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
+  v12.bufferDeviceAddress = v12.timelineSemaphore = VK_TRUE;
+  VkPhysicalDeviceVulkan13Features v13{};
+  v13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;
+  v13.pNext = &v12;
+  v13.synchronization2 = VK_TRUE;
+  const ExtraDevice device(gpu_, &v13);
+  auto executor = Executor::create(device.handles());
+  ASSERT_TRUE(executor) << to_string(executor.error());
+  Access addressed = buffer_access::storage_write_compute;
+  addressed.usage |= VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT;
+  Graph graph;
+  std::uint32_t found = 0;
+  for (const bool by_address : {false, true}) {
+    graph.reset();
+    Buffer buffer = graph.create_buffer("b", {64});
+    PassBuilder pass = graph.add_pass("store");
+    buffer = pass.write(buffer, by_address ? addressed : buffer_access::storage_write_compute);
+    pass.side_effect();
+    pass.record([&, buffer](RecordContext& c) {
+      const VkBufferDeviceAddressInfo info{VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO, nullptr,
+                                           c.buffer(buffer)};
+      if (by_address) found += vkGetBufferDeviceAddress(device.device(), &info) != 0;
+    });
+    const auto report = executor->submit(graph);
+    ASSERT_TRUE(report) << to_string(report.error());
+  }
+  EXPECT_EQ(found, 1u);
 }
 
 TEST_F(ExecutorTest, WhatIsReplacedCountsAsAllocatedUntilItIsFreed) {

@@ -307,5 +307,56 @@ TEST_F(GraphHistory, ContentsSurviveAChangeOfAccess) {
   EXPECT_EQ(slot(2), 2u);
 }
 
+// Recorded again without being declared again, into the same command buffer: every record goes on
+// from the histories that the record before left.
+TEST_F(GraphHistory, OneDeclarationCanBeRecordedSeveralTimesIntoOneCommandBuffer) {
+  ExecutorOptions options;
+  options.frames_in_flight = 3;
+  options.verify = options.check_uses = true;
+  auto executor = Executor::create(gpu_.handles(), options);
+  ASSERT_TRUE(executor);
+  const TextureHistory history = graph_->create_texture_history(
+      "history", {VK_FORMAT_R32_UINT, Extent::absolute(8, 8)}, kSlots);
+  std::uint32_t value = 0;
+  PassBuilder pass = graph_->add_pass("write");
+  const Texture current = pass.write(history.current, access::clear);
+  pass.record([&value, current](RecordContext& c) {
+    VkClearColorValue color{};
+    color.uint32[0] = ++value;
+    const VkImageSubresourceRange range{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+    c.vk.vkCmdClearColorImage(c.commands, c.image(current), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                              &color, 1, &range);
+  });
+  Buffer out = graph_->import_buffer("host", Gpu::imported(host_));
+  for (std::uint32_t age = 1; age < kSlots; ++age)
+    out = read_by_copy(history.previous(age), out, age);
+  gpu_.begin();
+  for (std::uint32_t slot = 0; slot < 3; ++slot) {
+    const auto report = executor->record(*graph_, gpu_.commands(), {slot});
+    ASSERT_TRUE(report) << to_string(report.error());
+  }
+  gpu_.end_and_wait();
+  EXPECT_EQ(slot(1), 2u);
+  EXPECT_EQ(slot(2), 1u);
+}
+
+// The first executor takes the contents of the histories with it.
+TEST_F(GraphHistory, AGraphWhoseExecutorIsGoneBeginsWithoutHistories) {
+  run({1});
+  run({2});
+  EXPECT_EQ(slot(1), 1u);
+  auto second = Executor::create(gpu_.handles(), {});
+  ASSERT_TRUE(second);
+  const auto refused = gpu_.record(*second, *graph_);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error()[0].code, ErrorCode::misuse);
+  EXPECT_NE(refused.error()[0].message.find("another executor"), std::string::npos);
+  *executor_ = std::move(*second);
+  run({3});
+  EXPECT_EQ(slot(1), 0xffffu) << "what the first executor held was taken for valid";
+  run({4});
+  EXPECT_EQ(slot(1), 3u);
+}
+
 }  // namespace
 }  // namespace alcove::framegraph

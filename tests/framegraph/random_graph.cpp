@@ -227,25 +227,31 @@ class Declarer {
     const Contents contents = !known.old && dice_.chance(80) ? Contents::discard : Contents::keep;
     const Need need = dice_.chance(40) ? Need::optional : Need::required;
     if (!known.texture) {
-      known.buffer = pass.write(known.buffer,
-                                kBufferWrites[pick(dice_, queue, {0, 1, 2, 3}, {0, 1, 2, 3}, {2})],
-                                contents, need);
+      std::uint32_t way = pick(dice_, queue, {0, 1, 2, 3}, {0, 1, 2, 3}, {2});
+      // Only what was written can be read and written.
+      if (way == 1 && !known.written[0] && contents == Contents::keep) way = 0;
+      known.buffer = pass.write(known.buffer, kBufferWrites[way], contents, need);
       known.written[0] = true;
       return;
     }
     Range range;
+    bool had_contents = true;
     if (known.written.size() > 1 && dice_.chance(150)) {
       const auto start = dice_.roll(static_cast<std::uint32_t>(known.written.size()));
       range = {static_cast<std::uint16_t>(start % known.mips), 1,
                static_cast<std::uint16_t>(start / known.mips), 1};
+      had_contents = known.written[start];
       known.written[start] = true;
     } else {
+      had_contents =
+          std::find(known.written.begin(), known.written.end(), false) == known.written.end();
       known.written.assign(known.written.size(), true);
     }
     std::uint32_t way = pick(dice_, queue, {0, 1, 2, 3, 4}, {0, 1, 3, 4}, {3});
     // The attachments of a pass would have to be of one size.
     if (way == 2 && drawn_in_ == index) way = 4;
     if (way == 2) drawn_in_ = index;
+    if (way == 1 && !had_contents && contents == Contents::keep) way = 0;
     known.handle = pass.write(known.handle, kWrites[way], range, contents, need);
   }
 

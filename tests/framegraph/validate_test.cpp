@@ -40,6 +40,52 @@ TEST_F(Validate, ARightGraphHasNoErrors) {
   EXPECT_TRUE(compile(graph_));
 }
 
+TEST_F(Validate, ReadModifyWriteOfWhatNothingWroteIsRefused) {
+  const Texture texture = graph_.create_texture("t", kDesc);
+  (void)pass("update").write(texture, access::storage_read_write_compute);
+  expect(
+      ErrorCode::read_before_write,
+      "pass 'update' reads and writes texture 't' version 0, parts of which nothing has written");
+}
+
+TEST_F(Validate, AttachmentsAndDiscardingWritesNeedNoContents) {
+  const Texture drawn = graph_.create_texture("drawn", kDesc);
+  (void)pass("draw").write(drawn, access::color_attachment);
+  const Texture stored = graph_.create_texture("stored", kDesc);
+  (void)pass("update").write(stored, access::storage_read_write_compute, {}, Contents::discard);
+  EXPECT_TRUE(compile(graph_));
+}
+
+TEST_F(Validate, ALayerOrMipThatDoesNotFitIsNotTakenForAnother) {
+  const Texture texture = written("t");
+  pass("reader").read(texture, access::sampled_compute, Range::layer(65536));
+  expect(ErrorCode::bad_range, "pass 'reader' reads texture 't'");
+  graph_.reset();
+  const Texture other = written("t");
+  pass("reader").read(other, access::sampled_compute, Range::mip(65536));
+  expect(ErrorCode::bad_range, "pass 'reader' reads texture 't'");
+}
+
+TEST_F(Validate, APassBuilderUsedAfterResetIsAnError) {
+  using Use = void (*)(PassBuilder&, Texture, Buffer);
+  const Use uses[] = {
+      [](PassBuilder& old, Texture t, Buffer) { old.read(t, access::sampled_compute); },
+      [](PassBuilder& old, Texture t, Buffer) { (void)old.write(t, access::clear); },
+      [](PassBuilder& old, Texture, Buffer b) { old.read(b, buffer_access::indirect); },
+      [](PassBuilder& old, Texture, Buffer b) { (void)old.write(b, buffer_access::fill); },
+      [](PassBuilder& old, Texture, Buffer) { old.side_effect(); },
+      [](PassBuilder& old, Texture, Buffer) { old.record([](RecordContext&) {}); },
+  };
+  for (const Use use : uses) {
+    PassBuilder old = pass("old");
+    graph_.reset();
+    const Texture texture = written("t");
+    use(old, texture, graph_.create_buffer("b", {4}));
+    expect(ErrorCode::closed_pass, "a PassBuilder of a frame before reset() was used");
+    graph_.reset();
+  }
+}
+
 TEST_F(Validate, AnEmptyGraphIsRight) { EXPECT_TRUE(compile(graph_)); }
 
 TEST_F(Validate, AStaleHandleIsNamedWithItsVersions) {

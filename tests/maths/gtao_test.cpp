@@ -65,7 +65,7 @@ TEST(Slice, NormalOfLengthZeroOrDenormalStaysFinite) {
   }
 }
 
-TEST(Slice, FacingNormalTurnsOnlyNormalsThatTheEyeCannotSee) {
+TEST(Slice, FacingNormalFlipsBeyondTheThresholdAndBendsBeforeIt) {
   RandomInput random;
   for (int i = 0; i < 1000; ++i) {
     const vec3 view = random.unit_vector(), normal = random.unit_vector();
@@ -74,6 +74,11 @@ TEST(Slice, FacingNormalTurnsOnlyNormalsThatTheEyeCannotSee) {
     EXPECT_GE(dot(facing, view), -2e-3f);
     if (dot(normal, view) > 0.0f) {
       EXPECT_LT(distance(facing, normal), 1e-5f);
+    } else if (dot(normal, view) < -maths::kFlippedNormal) {
+      EXPECT_LT(distance(facing, -normal), 1e-5f);
+    } else {
+      EXPECT_NEAR(dot(facing, view), 0.0f, 2e-3f);
+      EXPECT_GT(dot(facing, normal), 0.95f);
     }
   }
   EXPECT_EQ(maths::facing_normal(vec3(0, 0, -1), vec3(0, 0, 1)), vec3(0, 0, 1));

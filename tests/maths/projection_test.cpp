@@ -263,6 +263,36 @@ TEST(Projection, TopOfTheImageIsTheTopOfTheView) {
   EXPECT_LT(maths::position_vs(projection_of(upside_down), vec2(0.5f, 0.0f), 1.0f).y, -0.9f);
 }
 
+// Elements that are zero in the exact matrix hold what products and inverses in float leave there.
+TEST(MakeProjection, AcceptsRoundingErrorsAndRemovesThem) {
+  RandomInput random;
+  for (int i = 0; i < 20000; ++i) {
+    const Frustum f = random_frustum(random);
+    const mat4 exact = matrix_of(f);
+    mat4 rounded = exact;
+    for (int column = 0; column < 4; ++column) {
+      for (int row = 0; row < 4; ++row) {
+        if (exact[column][row] != 0.0f) continue;
+        const float scale = row == 3 && column == 3 ? std::abs(exact[3][2])
+                            : row == 3              ? std::abs(exact[2][3]) + std::abs(exact[3][3])
+                            : row == 2              ? std::abs(exact[2][2])
+                                                    : std::abs(exact[row][row]);
+        rounded[column][row] = random.uniform(-3e-7f, 3e-7f) * scale;
+      }
+    }
+    // The depth of an orthographic view may span 1e6, over which w must stay 1.
+    if (!f.perspective) rounded[2][3] = random.uniform(-1e-5f, 1e-5f) * std::abs(exact[2][2]);
+    const auto accepted = maths::make_projection(rounded, 64, 64);
+    ASSERT_TRUE(accepted.has_value()) << accepted.error() << ' ' << describe(f);
+    const Projection expected = projection_of(f, 64, 64);
+    EXPECT_EQ(accepted->eye.w, expected.eye.w) << describe(f);
+    EXPECT_EQ(accepted->sky, expected.sky) << describe(f);
+    EXPECT_LT(distance(accepted->uv_to_slope, expected.uv_to_slope),
+              1e-5f * (length(expected.uv_to_slope) + length(expected.uv_to_origin)))
+        << describe(f);
+  }
+}
+
 TEST(MakeProjection, RefusesWhatIsNoProjectionAndSaysWhy) {
   const mat4 good = matrix_of(Frustum{});
   const auto fault = [](const mat4& m) {

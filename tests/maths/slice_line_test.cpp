@@ -304,5 +304,24 @@ TEST(ConnectedSamples, APlaneThatGoesOnStaysInFrontOfTheEye) {
   EXPECT_NEAR(end.x, 5.5f, 1e-5f);
 }
 
+TEST(TangentPlane, ItsGradientGivesTheNormalBack) {
+  RandomInput random;
+  for (int i = 0; i < 5000; ++i) {
+    const bool perspective = i % 2 == 0;
+    const vec2 per_px(random.uniform(1e-4f, 1e-1f), -random.uniform(1e-4f, 1e-1f));
+    const vec2 slope = perspective ? vec2(random.uniform(-2, 2), random.uniform(-2, 2)) : vec2(0);
+    const vec3 view = normalize(vec3(-slope.x, -slope.y, 1.0f));
+    const vec3 normal = random.facing(view);
+    if (dot(normal, view) < 0.05f) continue;
+    const float depth = random.log_uniform(1e-2f, 1e6f);
+    const maths::TangentPlane t =
+        maths::make_tangent_plane(per_px, normal, view, depth, perspective);
+    EXPECT_LT(
+        distance(maths::normal_of_gradient(per_px, slope, t.inverse_depth, t.gradient, perspective),
+                 normal),
+        2e-4f);
+  }
+}
+
 }  // namespace
 }  // namespace alcove::maths_test

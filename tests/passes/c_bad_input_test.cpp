@@ -177,25 +177,39 @@ TEST_F(CBadInput, ACameraThatIsNoneIsNamed) {
     std::function<void(AlcoveView&)> spoil;
   };
   const Case cases[] = {
-      {"camera.view_from_world", [](AlcoveView& v) { v.camera.view_from_world[13] = kNaN; }},
-      {"camera.view_from_world", [](AlcoveView& v) { v.camera.view_from_world[0] = kNaN; }},
-      {"camera.view_from_world", [](AlcoveView& v) { v.camera.view_from_world[0] = 2.0f; }},
+      {"The view cannot be used: view_from_world",
+       [](AlcoveView& v) { v.camera.view_from_world[13] = kNaN; }},
+      {"The view cannot be used: view_from_world",
+       [](AlcoveView& v) { v.camera.view_from_world[0] = kNaN; }},
+      {"The view cannot be used: view_from_world",
+       [](AlcoveView& v) { v.camera.view_from_world[0] = 2.0f; }},
       // Row-major: the translation lies in the last row.
       {"column-major", [](AlcoveView& v) { v.camera.view_from_world[3] = 5.0f; }},
-      {"previous_camera.view_from_world", [](AlcoveView& v) { v.previous_camera = {}; }},
       {"The view cannot be used", [](AlcoveView& v) { v.camera.clip_from_view[0] = kNaN; }},
       {"The view cannot be used", [](AlcoveView& v) { v.camera.clip_from_view[11] = 1.0f; }},
-      {"The previous view cannot be used",
-       [](AlcoveView& v) { v.previous_camera.clip_from_view[5] = 0.0f; }},
   };
   for (const Case& bad : cases) {
     const std::string said = error_of([&](Spoilt& s) { bad.spoil(s.views[0]); });
     EXPECT_THAT(said, HasSubstr(bad.names));
     EXPECT_PRED1(is_a_sentence, said);
   }
-  // What was before a cut is not read.
-  view().reset_history = VK_TRUE;
+  expect_a_good_frame();
+}
+
+TEST_F(CBadInput, PreviousCameraIsReadOnlyWhereItsViewHasAHistory) {
   view().previous_camera = {};
+  const AlcoveFrame frame{
+      .struct_size = sizeof(AlcoveFrame), .index = 0, .view_count = 1, .views = &view()};
+  EXPECT_EQ(alcovePrepareFrame(context(), &frame), ALCOVE_SUCCESS) << alcoveGetMessage(context());
+  run_frame(*context(), {&view(), 1}, 0);  // the view's first frame
+  engine().submit(1, [&](VkCommandBuffer commands) {
+    EXPECT_EQ(alcoveRecordFrame(context(), commands, &frame), ALCOVE_ERROR_INVALID_INPUT);
+  });
+  const std::string said = alcoveGetMessage(context());
+  EXPECT_THAT(said, HasSubstr("The previous view cannot be used"));
+  EXPECT_THAT(said, HasSubstr("reset_history"));
+  EXPECT_PRED1(is_a_sentence, said);
+  view().reset_history = VK_TRUE;
   expect_a_good_frame();
 }
 
@@ -227,22 +241,26 @@ TEST_F(CBadInput, AnImageThatDoesNotDoIsNamed) {
       {"depth", [](AlcoveView& v) { v.depth.format = VK_FORMAT_R8G8B8A8_UNORM; }},
       {"depth", [](AlcoveView& v) { v.depth.format = VK_FORMAT_UNDEFINED; }},
       {"normals is 15x12", [](AlcoveView& v) { v.normals.width = 15; }},
-      {"normals has VkFormat", [](AlcoveView& v) { v.normals.format = VK_FORMAT_R8G8B8A8_UNORM; }},
-      {"normals has VkFormat", [](AlcoveView& v) { v.normals.format = VK_FORMAT_R16G16_SFLOAT; }},
-      {"motion vectors has VkFormat",
+      {"normals has the format VK_FORMAT_R8G8B8A8_UNORM",
+       [](AlcoveView& v) { v.normals.format = VK_FORMAT_R8G8B8A8_UNORM; }},
+      {"normals has the format VK_FORMAT",
+       [](AlcoveView& v) { v.normals.format = VK_FORMAT_R16G16_SFLOAT; }},
+      {"motion vectors has the format VK_FORMAT",
        [](AlcoveView& v) { v.motion.format = VK_FORMAT_R32G32_UINT; }},
-      {"roughness has VkFormat", [](AlcoveView& v) { v.roughness.format = VK_FORMAT_R8_UNORM; }},
+      {"roughness has the format VK_FORMAT",
+       [](AlcoveView& v) { v.roughness.format = VK_FORMAT_R8_UNORM; }},
       {"back-face depth is 16x13", [](AlcoveView& v) { v.back_depth.height = 13; }},
       {"second depth is 16x13", [](AlcoveView& v) { v.second_depth.height = 13; }},
-      {"albedo has VkFormat", [](AlcoveView& v) { v.albedo.format = VK_FORMAT_BC7_SRGB_BLOCK; }},
+      {"albedo has the format VK_FORMAT",
+       [](AlcoveView& v) { v.albedo.format = VK_FORMAT_BC7_SRGB_BLOCK; }},
       {"no image of albedo", [](AlcoveView& v) { v.albedo = {}; }},
-      {"visibility has VkFormat",
+      {"visibility has the format VK_FORMAT",
        [](AlcoveView& v) { v.visibility.format = VK_FORMAT_D32_SFLOAT; }},
-      {"bent normals has VkFormat",
+      {"bent normals has the format VK_FORMAT",
        [](AlcoveView& v) { v.bent_normal.format = VK_FORMAT_R8G8B8A8_UNORM; }},
       {"visibility of view 0' with usage SAMPLED",
        [](AlcoveView& v) { v.visibility.usage = VK_IMAGE_USAGE_STORAGE_BIT; }},
-      {"multi-bounce has VkFormat",
+      {"multi-bounce has the format VK_FORMAT",
        [](AlcoveView& v) { v.multi_bounce.format = VK_FORMAT_R32_SFLOAT; }},
       {"specular occlusion is 1x1",
        [](AlcoveView& v) { v.specular.width = v.specular.height = 1; }},

@@ -1,5 +1,5 @@
 // Needs a display; ctest gives it one of its own. Everything under the validation layers.
-#include "viewer/scene_view.h"
+#include "cli/scene_view_request.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ class SceneViewTest : public testing::Test {
 
   void open() {
     view_.reset();
-    auto made = SceneView::create(options_);
+    auto made = SceneView::create(scene_view_request(options_));
     ASSERT_TRUE(made) << made.error();
     view_ = std::move(*made);
   }
@@ -99,7 +99,7 @@ TEST_F(SceneViewTest, ThePictureIsWhatRenderDraws) {
   view_->show_panel(false);
   const Image<glm::vec3> seen = draw_and_look();
   const ViewState& state = view_->state();
-  const auto gpu = open_gpu(options_);
+  const auto gpu = open_gpu({options_.device, options_.validation, {}});
   ASSERT_TRUE(gpu) << gpu.error();
   const VkExtent2D size{seen.width, seen.height};
   const auto renderer =

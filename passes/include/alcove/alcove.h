@@ -264,13 +264,20 @@ typedef struct AlcoveImage {
   AlcoveState final_state;
 } AlcoveImage;
 
-// As depth was drawn, jitter included. Where the viewport has a negative height, the second row of
-// an engine's clip_from_view changes sign. Where its view space looks along +Z, the third column of
-// clip_from_view and the third row of view_from_world do, and z of normals in view space.
+// The camera that depth was drawn with, jitter included. Where the viewport has a negative height,
+// change the sign of the second row of the engine's clip_from_view. Where the engine's view space
+// looks along +Z, change the sign of the third column of clip_from_view, of the third row of
+// view_from_world, and of z of normals in view space.
+//
+// Rounding errors are accepted and removed: elements that should be 0 or 1 may be off by what float
+// products and inverses leave there, with fused multiply-adds or without.
 typedef struct AlcoveCamera {
-  float clip_from_view[16];   // any projection: finite, infinite, reversed, off-centre, jittered,
-                              // flipped in Y, orthographic; a perspective from depth 0
-  float view_from_world[16];  // rotation and translation only; a reflection for left-handed worlds
+  // Any projection: finite, infinite, reversed, off-centre, jittered, flipped in Y, orthographic.
+  // In perspective w must be 0 at the eye.
+  float clip_from_view[16];
+  // A rotation and a translation, without scale; or a reflection and a translation, for left-handed
+  // worlds.
+  float view_from_world[16];
 } AlcoveCamera;
 
 // One view of a frame: an eye, a part of a split screen, in images or layers of its own. Outputs
@@ -290,8 +297,9 @@ typedef struct AlcoveView {
   uint32_t static_frames;
   const AlcoveSettings* settings;
   AlcoveCamera camera;
-  AlcoveCamera previous_camera;  // when this id was last recorded; unread with reset_history, and
-                                 // without history_frames
+  // The camera with which this id was last recorded. It is not read, and may be zeros, in an id's
+  // first frame, with reset_history, without history_frames and by alcovePrepareFrame.
+  AlcoveCamera previous_camera;
   // Dynamic resolution: history has room for `largest`, and goes on while the size changes within
   // it. Zeros: it is as large as depth, and a change of size begins it anew. A change of `largest`
   // does in any case. Unread without history_frames, as are the next.
@@ -303,8 +311,13 @@ typedef struct AlcoveView {
 
   // Inputs.
   AlcoveImage depth;  // as clip_from_view has it: any depth format, or R32_SFLOAT. Needed
-  // Unit vectors in xyz, signed (not packed into [0,1]). No image: normals are made from depth, and
-  // bent normals come in view space.
+  // Unit vectors in xyz, signed (not packed into [0,1]). Without an image, normals are made from
+  // depth, and bent normals are in view space.
+  //
+  // A normal that faces away from the eye by more than 14 degrees is flipped, so that double-sided
+  // surfaces may have either sign. One that faces away by less is flipped or bent until it is
+  // edge-on, as the depth buffer shows the surface. A normal that is zero or not finite is taken
+  // from depth at its pixel.
   AlcoveImage normals;
   // xy: uv in this frame's image minus uv in the last's (y down, so with the jitter of both
   // cameras), signed; none: only the camera moves. Where it is given history is held to what the

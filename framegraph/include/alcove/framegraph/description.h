@@ -63,6 +63,8 @@ enum AccessFlags : std::uint32_t {
   // itself right on a queue that can run anything. Compile looks closer at any other.
   kPlain = 64,
   kOnBuffer = 128,  // the handle was of a buffer
+  // Of an OutputRecord that stands for a PassBuilder which was used after reset().
+  kStaleBuilder = 1u << 16,
 };
 
 // The access bits that write.
@@ -106,7 +108,7 @@ static_assert(std::has_unique_object_representations_v<PassRecord>);
 struct OutputRecord {
   std::uint32_t resource = kNone;
   std::uint32_t version = 0;
-  std::uint32_t flags = 0;  // kForeign, kNull
+  std::uint32_t flags = 0;  // kForeign, kNull, kStaleBuilder
 };
 static_assert(std::has_unique_object_representations_v<OutputRecord>);
 

@@ -28,6 +28,7 @@ enum class ErrorCode : std::uint8_t {
   closed_pass,            // an access declared after the next pass was begun
   missing_callback,       // a live pass has nothing to record
   undeclared_use,         // a recording callback touched what its pass did not declare
+  misuse,                 // a call that is not allowed at this point
   no_queue,               // no queue for the pass
   verification,           // the verifier found the plan wrong: an error of the compiler
   vulkan,                 // a Vulkan call failed; see `result`

@@ -59,7 +59,9 @@ class PassBuilder {
   void side_effect();
 
   // What records the pass: called with a RecordContext& once a frame if the pass is live. It is
-  // moved into the graph's own memory and lives until reset. It must not throw.
+  // moved into the graph's own memory and lives until reset. It must not throw where the library is
+  // built without exceptions; with them, what it throws leaves Executor::record or submit once all
+  // recording threads have finished, and the frame is given up.
   template <typename Callable>
   void record(Callable&& callable);
 
@@ -67,9 +69,14 @@ class PassBuilder {
 
  private:
   friend class Graph;
-  PassBuilder(Graph& graph, std::uint32_t pass) : graph_(graph), pass_(pass) {}
+  PassBuilder(Graph& graph, std::uint32_t pass, std::uint32_t tag)
+      : graph_(graph), pass_(pass), tag_(tag) {}
+  // Whether the frame of the pass is still being declared. A use after reset() becomes an error.
+  bool is_current();
+
   Graph& graph_;
   std::uint32_t pass_;
+  std::uint32_t tag_;  // Graph::tag_ of the frame
 };
 
 // A resource with memory from frame to frame. `current` is written this frame; previous(k) is what
@@ -146,6 +153,9 @@ class Graph {
   HistoryTable& histories() { return histories_; }
   const HistoryTable& histories() const { return histories_; }
   void leave_histories(std::span<const FinalState> finals);
+  // Takes over into the declaration how histories were left since it was made: it can then be
+  // compiled and recorded once more. False where a history that it declares was dropped.
+  [[nodiscard]] bool refresh_histories();
 
  private:
   friend class PassBuilder;
@@ -194,6 +204,8 @@ class Graph {
   void* allocate(std::size_t size, std::size_t alignment);
   void* allocate_in_next_block(std::size_t size, std::size_t alignment);
   void destroy_callables();
+  static ExternalRecord external_of(const HistoryEntry& entry, std::uint32_t slot);
+  void add_stale_builder();
 
   GraphDescription description_;
   AccessRecord* next_access_ = nullptr;  // description_.accesses.next()
@@ -209,6 +221,7 @@ class Graph {
   std::uint32_t tag_ = 0;    // of the handles of this frame of this graph: half of its number
   std::uint32_t repeating_tag_ = 0;  // the same until something changed(), 0 from then on
   HistoryTable histories_;
+  std::weak_ptr<const char> executor_;  // Tells which executor the graph was last recorded by.
 };
 
 }  // namespace alcove::framegraph

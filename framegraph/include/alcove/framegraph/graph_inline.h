@@ -17,6 +17,8 @@ namespace alcove::framegraph {
 template <typename Callable>
 void PassBuilder::record(Callable&& callable) {
   using Stored = std::decay_t<Callable>;
+  if (!is_current()) [[unlikely]]
+    return;
   void* object = graph_.allocate(sizeof(Stored), alignof(Stored));
   ::new (object) Stored(std::forward<Callable>(callable));
   graph_.callbacks_[pass_] = {
@@ -125,7 +127,14 @@ inline PassBuilder Graph::add_pass(std::string_view name, QueueClass queue) {
   record.reserved = 0;
   description_.passes.repeat();
   keep_name(name, description_.pass_names[index]);
-  return {*this, index};
+  return {*this, index, tag_};
+}
+
+inline bool PassBuilder::is_current() {
+  if (tag_ == graph_.tag_) [[likely]]
+    return true;
+  graph_.add_stale_builder();
+  return false;
 }
 
 // Whether stages, access bits and layout are as kPlain has them.
@@ -179,18 +188,18 @@ inline std::uint32_t Graph::add_access(std::uint32_t pass, const Handle& handle,
 }
 
 inline void PassBuilder::read(Texture texture, const Access& access, Range range) {
-  graph_.add_access(pass_, texture, access, range, 0);
+  if (is_current()) graph_.add_access(pass_, texture, access, range, 0);
 }
 
 inline void PassBuilder::read(Buffer buffer, const Access& access) {
-  graph_.add_access(pass_, buffer, access, {}, 0);
+  if (is_current()) graph_.add_access(pass_, buffer, access, {}, 0);
 }
 
 inline Texture PassBuilder::write(Texture texture, const Access& access, Range range,
                                   Contents contents, Need need) {
   const std::uint32_t flags = kWrite | (contents == Contents::discard ? kDiscard : 0u) |
                               (need == Need::optional ? kOptional : 0u);
-  texture.version = graph_.add_access(pass_, texture, access, range, flags);
+  if (is_current()) texture.version = graph_.add_access(pass_, texture, access, range, flags);
   return texture;
 }
 
@@ -198,10 +207,12 @@ inline Buffer PassBuilder::write(Buffer buffer, const Access& access, Contents c
                                  Need need) {
   const std::uint32_t flags = kWrite | (contents == Contents::discard ? kDiscard : 0u) |
                               (need == Need::optional ? kOptional : 0u);
-  buffer.version = graph_.add_access(pass_, buffer, access, {}, flags);
+  if (is_current()) buffer.version = graph_.add_access(pass_, buffer, access, {}, flags);
   return buffer;
 }
 
-inline void PassBuilder::side_effect() { graph_.description_.passes[pass_].flags |= kSideEffect; }
+inline void PassBuilder::side_effect() {
+  if (is_current()) graph_.description_.passes[pass_].flags |= kSideEffect;
+}
 
 }  // namespace alcove::framegraph

@@ -64,6 +64,11 @@ class HistoryTable {
   void undo();
   // Whether undo() took back a description that the declared frame still goes by.
   bool must_be_declared_anew() const { return anew_; }
+  // No slot has contents any more, nor a state: the executor that had them is gone.
+  void forget_contents();
+  // Whether a frame has left or taken back slots since begin_frame() or clear_moved().
+  bool have_moved() const { return moved_; }
+  void clear_moved() { moved_ = false; }
   // Whether the resources of a generation are in use, or undo() could bring them back.
   bool needs(std::uint32_t index, std::uint32_t generation) const;
 
@@ -88,6 +93,7 @@ class HistoryTable {
   std::vector<Before> before_;  // room for all entries
   bool ended_ = false;          // the frame has left some
   bool anew_ = false;
+  bool moved_ = false;
   std::shared_ptr<const char> life_ = std::make_shared<const char>('\0');
 };
 

@@ -77,12 +77,16 @@ struct Range {
   std::uint16_t base_layer = 0;
   std::uint16_t layers = kAll;
 
-  static Range mip(std::uint32_t mip) { return {static_cast<std::uint16_t>(mip), 1, 0, kAll}; }
-  static Range layer(std::uint32_t layer) {
-    return {0, kAll, static_cast<std::uint16_t>(layer), 1};
-  }
+  static constexpr Range mip(std::uint32_t mip) { return {base(mip), 1, 0, kAll}; }
+  static constexpr Range layer(std::uint32_t layer) { return {0, kAll, base(layer), 1}; }
   constexpr bool operator==(const Range& other) const {
     return std::bit_cast<std::uint64_t>(*this) == std::bit_cast<std::uint64_t>(other);
+  }
+
+ private:
+  // An index that does not fit stays out of range: no texture has so many mips or layers.
+  static constexpr std::uint16_t base(std::uint32_t index) {
+    return index < kAll ? static_cast<std::uint16_t>(index) : kAll;
   }
 };
 

@@ -22,9 +22,12 @@ inline constexpr Matrix kIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1
 // any perspective or orthographic projection, finite or infinite, reversed, off-centre, jittered or
 // flipped in Y, a perspective from depth 0. AlcoveCamera (alcove.h) says what engines of other
 // conventions change.
+//
+// Rounding errors are accepted and removed: see AlcoveCamera.
 struct View {
   Matrix clip_from_view = kIdentity;
-  Matrix view_from_world = kIdentity;  // rotation and translation only
+  // A rotation and a translation, or a reflection and a translation; without scale.
+  Matrix view_from_world = kIdentity;
 
   bool operator==(const View&) const = default;
 };
@@ -41,8 +44,10 @@ struct Frame {
   framegraph::Graph& graph;
   Kernels& kernels;
   View view;
-  std::uint32_t index = 0;    // counts frames: it turns the noise and moves the traced pixels
-  View previous_view = view;  // of the frame before: what history is reprojected with
+  std::uint32_t index = 0;  // counts frames: it turns the noise and moves the traced pixels
+  // The view of the frame before, by which history is reprojected. It is not read where there is no
+  // history to read: in a first frame, after a reset, and with `prepare`.
+  View previous_view = view;
   // Frames in a row, up to this one, that show the very same as the one before each; 0: this one
   // differs, or nobody knows. It starts again wherever histories do: after a cut, and where size,
   // settings or wanted results change. From 1 on motion vectors are not read; from 16 on a search

@@ -121,7 +121,9 @@ struct GtaoSettings : SearchSettings {
 
 struct GtaoInputs {
   framegraph::Texture inverse_depth;  // as add_inverse_depth makes it
-  framegraph::Texture normals;        // xyz unit, in world space unless `normals_in_view_space`
+  // xyz unit, in world space unless `normals_in_view_space`. What AlcoveView::normals says of
+  // normals that face away from the eye, or are missing, holds here too.
+  framegraph::Texture normals;
   bool normals_in_view_space = false;
   framegraph::Texture roughness;  // perceptual, [0,1]; null: GtaoSettings::roughness
   // Of OcclusionInputs::back_depth_ndc, as add_inverse_depth makes it; only where

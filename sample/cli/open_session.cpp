@@ -1,0 +1,71 @@
+#include "cli/open_session.h"
+
+#include <iostream>
+#include <utility>
+
+#include "cli/camera_of.h"
+#include "cli/settings.h"
+#include "scene/load_scene.h"
+
+namespace alcove::sample {
+
+using Failure = tl::unexpected<std::string>;
+
+tl::expected<Session, std::string> open_session(
+    const Options& options, const std::vector<const char*>& surface_extensions) {
+  Session session;
+  auto scene = load_scene(options.scene, options.cut_blends);
+  if (!scene) {
+    return Failure(std::move(scene.error()));
+  }
+  session.scene = std::move(*scene);
+  for (const std::string& warning : session.scene.warnings) {
+    std::cerr << "note: " << warning << "\n";
+  }
+  const auto camera = camera_of(options.view, session.scene);
+  if (!camera) {
+    return Failure(camera.error());
+  }
+  session.camera = *camera;
+  const auto settings = occlusion_settings(options.occlusion, session.scene);
+  if (!settings) {
+    return Failure(settings.error());
+  }
+  session.settings = *settings;
+  session.device = {options.device, options.validation, surface_extensions};
+  auto gpu = open_gpu(session.device);
+  if (!gpu) {
+    return Failure(std::move(gpu.error()));
+  }
+  session.gpu = std::move(*gpu);
+  return session;
+}
+
+tl::expected<Rendering, std::string> render(const Options& options) {
+  auto session = open_session(options);
+  if (!session) {
+    return Failure(std::move(session.error()));
+  }
+  auto environment = load_environment(options.environment);
+  if (!environment) {
+    return Failure(std::move(environment.error()));
+  }
+  return render(std::move(*session),
+                {options.view.width,
+                 options.view.height,
+                 options.view.frames,
+                 options.view.orbit,
+                 options.occlusion.normals,
+                 {options.occlusion.roughness, std::move(*environment), options.lit}});
+}
+
+StaticSetup static_setup(const Options& options, const Camera& camera) {
+  return {camera, options.view.width, options.view.height, options.view.frames,
+          options.occlusion.normals};
+}
+
+TruthOptions truth_options(const Options& options) {
+  return {options.occlusion.spp, options.use_cache};
+}
+
+}  // namespace alcove::sample

@@ -1,0 +1,24 @@
+// Where the occlusion's normals come from.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string_view>
+
+namespace alcove::sample {
+
+enum class NormalSource {
+  kShading,    // The g-buffer's interpolated normals, with normal maps.
+  kGeometric,  // The g-buffer's flat triangle normals.
+  kDepth,      // None are given: the library reconstructs them from the depth buffer.
+};
+
+// Names in the order of the enumerators.
+inline constexpr std::array<std::string_view, 3> kNormalSourceNames{"shading", "geometric",
+                                                                    "depth"};
+
+constexpr std::string_view name_of(NormalSource source) {
+  return kNormalSourceNames[static_cast<std::size_t>(source)];
+}
+
+}  // namespace alcove::sample

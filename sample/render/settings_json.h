@@ -1,0 +1,12 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "alcove/passes/occlusion.h"
+
+namespace alcove::sample {
+
+// Every occlusion setting by the name that --set accepts.
+[[nodiscard]] nlohmann::ordered_json to_json(const passes::OcclusionSettings& settings);
+
+}  // namespace alcove::sample

@@ -1,0 +1,55 @@
+// The normal of the surface that the depth buffer shows at a pixel, for pixels whose given normal
+// is missing. Included by shaders that have inverse_depth_image, parameters.slope, kPerspective and
+// size_px().
+#ifndef ALCOVE_DEPTH_NORMAL_H
+#define ALCOVE_DEPTH_NORMAL_H
+
+// Stands for the change of depth towards a pixel of the sky.
+const float kNoSurface = 1e30;
+
+float inverse_depth_rise(ivec2 pixel, float here) {
+  float there = imageLoad(inverse_depth_image, pixel).r;
+  return there == sky_inverse_depth(kPerspective) ? kNoSurface : there - here;
+}
+
+// Change of the inverse depth from one pixel to the next along an axis of the image. Of the two
+// neighbours the one that is nearer in depth is more likely to lie on the same surface. 0 where
+// there is none.
+float inverse_depth_gradient(ivec2 pixel, ivec2 axis, float here) {
+  ivec2 last = size_px() - 1;
+  float before = -inverse_depth_rise(max(pixel - axis, ivec2(0)), here);
+  float after = inverse_depth_rise(min(pixel + axis, last), here);
+  bool first = any(lessThan(pixel - axis, ivec2(0)));
+  bool final = any(greaterThan(pixel + axis, last));
+  float nearer = first || (!final && abs(after) < abs(before)) ? after : before;
+  return abs(nearer) < kNoSurface ? nearer : 0.0;
+}
+
+// Unit, towards the eye, view space.
+vec3 depth_normal(ivec2 pixel) {
+  float here = imageLoad(inverse_depth_image, pixel).r;
+  if (here == sky_inverse_depth(kPerspective)) {
+    return vec3(0.0, 0.0, 1.0);
+  }
+  vec2 gradient = vec2(inverse_depth_gradient(pixel, ivec2(1, 0), here),
+                       inverse_depth_gradient(pixel, ivec2(0, 1), here));
+  vec2 slope = parameters.slope.zw + (vec2(pixel) + 0.5) * parameters.slope.xy;
+  return normal_of_gradient(parameters.slope.xy, slope, here, gradient, kPerspective);
+}
+
+// The unit normal, in view space, of the side of the surface that the eye sees. `given` is the normal
+// of the texture in view space, of any length; it is taken from depth where it has no direction. One
+// that faces away by less than kFlippedNormal belongs to the other side of the surface or leans over
+// a silhouette: the depth buffer tells which.
+vec3 seen_normal(ivec2 pixel, vec3 given, vec3 view) {
+  bool missing = !has_direction(given);
+  vec3 normal = normalize(given);
+  float towards = dot(normal, view);
+  if (missing || (towards < 0.0 && towards >= -kFlippedNormal)) {
+    vec3 of_depth = depth_normal(pixel);
+    normal = missing ? of_depth : dot(normal, of_depth) < 0.0 ? -normal : normal;
+  }
+  return facing_normal(normal, view);
+}
+
+#endif

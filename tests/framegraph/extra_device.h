@@ -1,0 +1,43 @@
+// A second device of the physical device of a Gpu, with features and extensions of its own.
+#pragma once
+
+#include <vector>
+
+#include "gpu.h"
+
+namespace alcove::framegraph {
+
+class ExtraDevice {
+ public:
+  // `features` is the chain of VkDeviceCreateInfo.
+  ExtraDevice(Gpu& gpu, const void* features, const std::vector<const char*>& extensions = {})
+      : handles_(gpu.handles()) {
+    const float priority = 1.0f;
+    VkDeviceQueueCreateInfo queue{};
+    queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
+    queue.queueFamilyIndex = gpu.device().queue_family();
+    queue.queueCount = 1;
+    queue.pQueuePriorities = &priority;
+    VkDeviceCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
+    info.pNext = features;
+    info.queueCreateInfoCount = 1;
+    info.pQueueCreateInfos = &queue;
+    info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
+    info.ppEnabledExtensionNames = extensions.data();
+    EXPECT_EQ(vkCreateDevice(gpu.device().physical_device(), &info, nullptr, &handles_.device),
+              VK_SUCCESS);
+    vkGetDeviceQueue(handles_.device, queue.queueFamilyIndex, 0, &handles_.queues[0].queue);
+  }
+  ~ExtraDevice() { vkDestroyDevice(handles_.device, nullptr); }
+  ExtraDevice(const ExtraDevice&) = delete;
+  ExtraDevice& operator=(const ExtraDevice&) = delete;
+
+  VkDevice device() const { return handles_.device; }
+  const DeviceHandles& handles() const { return handles_; }
+
+ private:
+  DeviceHandles handles_;
+};
+
+}  // namespace alcove::framegraph
