@@ -267,7 +267,7 @@ void add_traced(inout Sums sums, Surface surface, float inverse_squared_width, i
       (found.x - (surface.inverse_depth + offset.x * surface.gradient.x + offset.y * surface.gradient.y)) *
       surface.plane_weight;
   float near = 1.0 + offset.x * offset.x * inverse_squared_width + offset.y * offset.y * inverse_squared_width;
-  float level = 1.0 + min(off_plane * off_plane, 1e16);  // its square is finite
+  float level = 1.0 + min(off_plane * off_plane, 1e14);  // the weight is no denormal
   level += min(squared_turn(surface.quantised, vec2(found.w, traced_stereographic_y[index])),
                kLargestSquaredAngle);
   float both = near * near * level;
@@ -358,7 +358,7 @@ void reconstruct(Surface surface, bool sky) {
   Sums sums = no_sums();
   add_ring(sums, surface,
            inverse_squared_width_of(parameters.window_px * parameters.window_px), 0);
-  float scale = 1.0 / max(sums.open, 1e-30);
+  float scale = 1.0 / max(sums.open, 1e-37);
   Result result = Result(saturate(sums.occluded * scale), vec3(0.0), sums.lobe);
   if (kBentNormal) {
     result.residual =

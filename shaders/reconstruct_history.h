@@ -15,12 +15,12 @@ struct History {
 
 History no_history() { return History(0.0, 0.0, 0.0, vec3(0.0), vec2(0.0), 0.0); }
 
-// Largest change of depth since the previous frame, relative to the depth, at which a moving surface
-// keeps its history.
+// Largest change of depth since the previous frame, relative to the depth, at which a moving
+// surface keeps its history.
 const float kDepthMotion = 0.04;
 
-float log_inverse_depth(float inverse_depth) {
-  return kPerspective ? log2(inverse_depth) : inverse_depth;
+float log_inverse_depth(float inverse_depth, float unit) {
+  return kPerspective ? log2(inverse_depth * unit) : inverse_depth;
 }
 
 // Where a surface was on the image of the previous frame.
@@ -73,16 +73,15 @@ vec4 gather_offsets(float x, float y, vec2 part) {
 // Stored depths of the four texels minus those that the surface's tangent plane had there.
 vec4 depth_differences(uvec4 texels, Surface surface, Previous previous, vec2 part) {
   vec4 found;
-  [[unroll]] for (int i = 0; i < 4; ++i) {
-    found[i] = texel_depth(texels[i]);
-  }
+  [[unroll]] for (int i = 0; i < 4; ++i) { found[i] = texel_depth(texels[i]); }
   vec2 scale = parameters.history_depth_scale.zw;
   // The gradient of the stored depth to first order; it hardly changes from frame to frame.
   vec2 gradient = surface.gradient * scale.x;
   float at_position = scale.y;
   if (kPerspective) {
     gradient *= 1.442695 / surface.inverse_depth;
-    at_position += scale.x * log2(surface.inverse_depth / max(previous.depth, 1e-30));
+    at_position += scale.x * log_inverse_depth(surface.inverse_depth / max(previous.depth, 1e-30),
+                                               parameters.history_unit.y);
   } else {
     at_position += scale.x * previous.depth;
   }
@@ -94,8 +93,8 @@ vec4 depth_differences(uvec4 texels, Surface surface, Previous previous, vec2 pa
 vec4 follow_depth(vec4 differences) {
   vec4 apart = abs(differences);
   float least = min(min(apart.x, apart.y), min(apart.z, apart.w));
-  float limit = kPerspective ? kDepthMotion * 1.442695 * abs(parameters.history_depth_scale.z)
-                             : kDepthMotion;
+  float limit =
+      kPerspective ? kDepthMotion * 1.442695 * abs(parameters.history_depth_scale.z) : kDepthMotion;
   if (least > limit) {
     return differences;
   }
@@ -172,8 +171,10 @@ History read_moving(Surface surface) {
 // vectors say so.
 History read_static(Surface surface) {
   uint bits = texelFetch(history_image, surface.pixel, 0).r;
-  float difference = texel_depth(bits) - history_depth(parameters.history_depth_scale.xy,
-                                                       log_inverse_depth(surface.inverse_depth));
+  float difference =
+      texel_depth(bits) -
+      history_depth(parameters.history_depth_scale.xy,
+                    log_inverse_depth(surface.inverse_depth, parameters.history_unit.x));
   float agreement = history_agreement(difference, parameters.history_slack,
                                       parameters.history_sharpness * surface.n_dot_v);
   History history = no_history();
@@ -199,12 +200,13 @@ const float kWidth = kTileSize > 2 ? 2.5 : 1.0;
 float window_of(History history) {
   const float own = 0.58 * kWidth;
   float first = 1.0 / (parameters.window_px * parameters.window_px);
-  return 0.125 * min(1.0 / (own * own + 2.6 * history.between), first * (3.0 * history.weight + 1.0));
+  return 0.125 *
+         min(1.0 / (own * own + 2.6 * history.between), first * (3.0 * history.weight + 1.0));
 }
 
-// How much nearer to the tangent plane a neighbour has to be than in a first frame: the more samples
-// of its own a pixel has, the less it needs those of other surfaces. Fitted to the error after 4 and
-// 32 frames at each tile size (`alcove compare --frames`).
+// How much nearer to the tangent plane a neighbour has to be than in a first frame: the more
+// samples of its own a pixel has, the less it needs those of other surfaces. Fitted to the error
+// after 4 and 32 frames at each tile size (`alcove compare --frames`).
 float plane_weight_growth(float weight) {
   const float own = 1.0 / float(kTileSize * kTileSize);  // traced frames per frame
   return min(1.0 + 12.0 * own * weight, 5.0);
@@ -231,18 +233,18 @@ void clamp_history(inout History history, Sums now) {
   }
 }
 
-// A number in [0,1) that is evenly distributed over neighbouring pixels and over frames: interleaved
-// gradient noise [Jimenez 2014].
+// A number in [0,1) that is evenly distributed over neighbouring pixels and over frames:
+// interleaved gradient noise [Jimenez 2014].
 float dither_of(vec2 corner) {
-  return fract(52.9829189 * fract(dot(corner, vec2(0.06711056, 0.00583715)) +
-                                  parameters.dither_offset));
+  return fract(52.9829189 *
+               fract(dot(corner, vec2(0.06711056, 0.00583715)) + parameters.dither_offset));
 }
 
 void store_history(Surface surface, bool sky, Result result, float weight, float recent) {
   float dither = dither_of(surface.corner);
   HistoryTexel texel;
   texel.depth = history_depth(parameters.history_depth_scale.xy,
-                              log_inverse_depth(surface.inverse_depth));
+                              log_inverse_depth(surface.inverse_depth, parameters.history_unit.x));
   texel.occlusion = result.occlusion;
   texel.recent = recent;
   texel.log_weight = log_weight_of(weight);
@@ -287,12 +289,13 @@ void reconstruct(Surface surface, bool sky) {
     clamp_history(history, now);
   }
   if (kMotion) {
-    follow_change(history, now.occluded / max(now.open, 1e-30), now.open);
+    follow_change(history, now.occluded / max(now.open, 1e-37), now.open);
   }
   // Not normalised: a frame that traced the pixel itself has more weight than one that traced its
-  // neighbours. Divided by the window's area, so that all windows have the same weight in the mean.
-  float scale = 0.65 * 8.0 * kWidth * kWidth * window;
-  float open = max(scale * now.open, 1e-30);
+  // neighbours. Scaled by the traced pixels that the window's area holds, so that the mean weight
+  // of a frame is about 1 for every window and tile size.
+  float scale = 1.3 * float(kTileSize * kTileSize) * window;
+  float open = max(scale * now.open, 1e-37);
   float total = history.weight + open;
   float inverse_total = 1.0 / total;
   Result result;
@@ -303,7 +306,8 @@ void reconstruct(Surface surface, bool sky) {
         converged_residual(now.residual, now.expected_residual, 1.0 - result.occlusion) * scale;
     result.residual = (history.weight * history.residual + fresh) * inverse_total;
   }
-  result.lobe = kLobe ? (history.weight * history.lobe + scale * now.lobe) * inverse_total : vec2(0.0);
+  result.lobe =
+      kLobe ? (history.weight * history.lobe + scale * now.lobe) * inverse_total : vec2(0.0);
   float recent = kMotion ? history.recent : result.occlusion;
   store_history(surface, sky, result, total, recent);
   store(surface, sky, result);

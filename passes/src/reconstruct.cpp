@@ -31,8 +31,8 @@ namespace {
 // Static frames after which every pixel of a tile of 4x4 has been traced once.
 constexpr std::uint32_t kConvergedFrames = 16;
 
-// The state of the history at a frame. The pipeline depends on it, on settings, on inputs and on the
-// kind of projection.
+// The state of the history at a frame. The pipeline depends on it, on settings, on inputs and on
+// the kind of projection.
 enum class Past : std::uint8_t {
   none,  // no history, or none that can be read
   moving,
@@ -93,16 +93,13 @@ void create_histories(Graph& graph, const ReconstructSettings& settings,
   const bool wanted = settings.history_frames > 0;
   const RawOcclusionTextures& raw_occlusion = textures.inputs.raw_occlusion;
   valid = wanted;
-  textures.history =
-      create_history(graph, wanted, history_name, kHistoryFormat, largest, valid);
-  textures.bent_history =
-      create_history(graph, wanted && raw_occlusion.bent,
-                     DerivedHistoryName(history_name, kBentSuffix), kBentHistoryFormat, largest,
-                     valid);
-  textures.lobe_history =
-      create_history(graph, wanted && raw_occlusion.lobe,
-                     DerivedHistoryName(history_name, kLobeSuffix), kLobeHistoryFormat, largest,
-                     valid);
+  textures.history = create_history(graph, wanted, history_name, kHistoryFormat, largest, valid);
+  textures.bent_history = create_history(graph, wanted && raw_occlusion.bent,
+                                         DerivedHistoryName(history_name, kBentSuffix),
+                                         kBentHistoryFormat, largest, valid);
+  textures.lobe_history = create_history(graph, wanted && raw_occlusion.lobe,
+                                         DerivedHistoryName(history_name, kLobeSuffix),
+                                         kLobeHistoryFormat, largest, valid);
 }
 
 // Declares the textures that the pass writes. `valid` is whether last frame's history can be read.
@@ -199,8 +196,8 @@ Bindings bindings_of(RecordContext& context, const Textures& textures) {
     bindings.add({view_or(context, in.roughness, in.normals), context.view(out.specular)});
   }
   if (textures.lobe_history.next) {
-    bindings.add({context.view(textures.lobe_history.previous),
-                  context.view(textures.lobe_history.next)});
+    bindings.add(
+        {context.view(textures.lobe_history.previous), context.view(textures.lobe_history.next)});
   }
   return bindings;
 }
@@ -259,8 +256,8 @@ tl::expected<Kernel, Error> get_kernel(const Frame& frame, const ReconstructInpu
   return get(past);
 }
 
-// To view-space positions from (x s, y s, depth, 1), x and y in pixels and s the depth in perspective
-// and 1 in orthographic views.
+// To view-space positions from (x s, y s, depth, 1), x and y in pixels and s the depth in
+// perspective and 1 in orthographic views.
 maths::mat4 view_from_pixel(const maths::Projection& p) {
   const maths::vec2 per_px = maths::ray_per_px(p);
   maths::mat4 m(0.0f);
@@ -283,20 +280,29 @@ maths::mat4 pixel_from_view(const maths::Projection& p) {
   return m;
 }
 
-// Octaves of depth that the history of a perspective view can tell apart, from the near plane on. 14
-// bits then resolve depth to 2^-10 of itself, or finer where the far plane is nearer.
+// Octaves of depth that the history of a perspective view can tell apart, from the near plane on.
+// 14 bits then resolve depth to 2^-10 of itself, or finer where the far plane is nearer.
 constexpr float kLargestDepthOctaves = 22.0f;
 
-// Scale and offset of maths::history_depth(). A perspective view's depth is stored as its logarithm,
-// an orthographic view's as it is, both between the near and the far plane.
+// The largest power of two that is no larger than the near plane's distance.
+float history_unit(const maths::Projection& p) {
+  constexpr float kLeast = 1e-30f;
+  return std::ldexp(1.0f, std::ilogb(std::max(p.near_far.x, kLeast)));
+}
+
+// Scale and offset of maths::history_depth(). A perspective view's depth is stored as its
+// logarithm, an orthographic view's as it is, both between the near and the far plane.
 maths::vec2 history_depth_scale(const maths::Projection& p) {
   constexpr float kLeast = 1e-30f;
   const float near = p.near_far.x;
   const float far = p.near_far.y;
   if (is_perspective(p)) {
-    const float log_near = std::log2(std::max(near, kLeast));
+    const float unit = history_unit(p);
+    const float log_near = std::log2(std::max(near, kLeast) / unit);
     const float octaves =
-        std::clamp(std::log2(std::max(far, kLeast)) - log_near, 0.01f, kLargestDepthOctaves);
+        far >= maths::kSkyDepth
+            ? kLargestDepthOctaves
+            : std::clamp(std::log2(far / std::max(near, kLeast)), 0.01f, kLargestDepthOctaves);
     return {1.0f / octaves, (log_near + octaves) / octaves};
   }
   const float scale = 1.0f / std::max(far - near, kLeast);
@@ -307,8 +313,8 @@ maths::vec2 history_depth_scale(const maths::Projection& p) {
 constexpr float kHistorySlack = 0.75f / 16383.0f;
 
 // ReconstructParameters::history_sharpness. A texel counts less the further it lies off the tangent
-// plane, and not at all from 1.5 pixels on, or from 0.3 % of the depth in perspective where pixels are
-// larger. It must at least be 0.12 % there, about the step of a stored depth.
+// plane, and not at all from 1.5 pixels on, or from 0.3 % of the depth in perspective where pixels
+// are larger. It must at least be 0.12 % there, about the step of a stored depth.
 float history_sharpness(const maths::Projection& p, maths::vec2 scale) {
   const float pixel = std::abs(maths::ray_per_px(p).y);
   if (is_perspective(p)) {
@@ -337,12 +343,11 @@ maths::ReconstructParameters parameters_of(const Frame& frame, const maths::Proj
                                    maths::inverse(to_rigid(frame.view.view_from_world));
   const maths::mat4 to_view = view_from_normal(frame, normals_in_view_space);
   maths::ReconstructParameters parameters{};
-  const maths::mat4 previous_from_pixel = maths::transpose(
-      maths::mat4(maths::dmat4(pixel_from_view(previous)) * to_previous * maths::dmat4(from_pixel)));
+  const maths::mat4 previous_from_pixel = maths::transpose(maths::mat4(
+      maths::dmat4(pixel_from_view(previous)) * to_previous * maths::dmat4(from_pixel)));
   // x, y, w and depth.
-  parameters.previous_from_pixel =
-      maths::mat4(previous_from_pixel[0], previous_from_pixel[1], previous_from_pixel[3],
-                  previous_from_pixel[2]);
+  parameters.previous_from_pixel = maths::mat4(previous_from_pixel[0], previous_from_pixel[1],
+                                               previous_from_pixel[3], previous_from_pixel[2]);
   parameters.normal_from_view = maths::transpose(to_view);
   parameters.previous_from_view = maths::mat4(maths::mat3(maths::mat4(to_previous)));
   parameters.slope = maths::vec4(maths::ray_per_px(projection), projection.uv_to_slope.z,
@@ -354,8 +359,8 @@ maths::ReconstructParameters parameters_of(const Frame& frame, const maths::Proj
   parameters.previous_size = maths::vec4(previous.size_px, previous.size_px / projection.size_px);
   parameters.history_depth_scale =
       maths::vec4(history_depth_scale(projection), history_depth_scale(previous));
-  parameters.history_sharpness =
-      history_sharpness(projection, history_depth_scale(previous));
+  parameters.history_unit = {history_unit(projection), history_unit(previous)};
+  parameters.history_sharpness = history_sharpness(projection, history_depth_scale(previous));
   parameters.history_slack = kHistorySlack;
   // The golden ratio's fractions are spread evenly over any run of frames.
   parameters.dither_offset = static_cast<float>(frame.index * 2654435769u) * 0x1p-32f;
@@ -431,13 +436,13 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& given_frame,
   parameters.history_texel = 1.0f / maths::vec2(sizes->largest.width, sizes->largest.height);
   parameters.interleave_offset =
       maths::vec2(static_cast<float>(offset_x), static_cast<float>(offset_y));
-  pass.record([&kernels = frame.kernels, kernel = *kernel, textures,
-               parameters](RecordContext& context) {
-    const Bindings bindings = bindings_of(context, textures);
-    const std::span<const VkImageView> bound(bindings.views.data(), bindings.count);
-    kernels.dispatch(context, kernel, bound, bytes_of(parameters),
-                     context.extent(textures.inputs.inverse_depth));
-  });
+  pass.record(
+      [&kernels = frame.kernels, kernel = *kernel, textures, parameters](RecordContext& context) {
+        const Bindings bindings = bindings_of(context, textures);
+        const std::span<const VkImageView> bound(bindings.views.data(), bindings.count);
+        kernels.dispatch(context, kernel, bound, bytes_of(parameters),
+                         context.extent(textures.inputs.inverse_depth));
+      });
   return textures.result;
 }
 

@@ -48,7 +48,8 @@ const float kMissingVariance = 0.003f;
 
 // The history's weight after it was interpolated between texels whose visibilities have the given
 // variance, `missing` of them, [0,1], being of other surfaces. Interpolation blurs, which no later
-// frame undoes, so its variance is added to the noise: `weight` frames have kFrameVariance / weight.
+// frame undoes, so its variance is added to the noise: `weight` frames have kFrameVariance /
+// weight.
 ALCOVE_INLINE float weight_after_blur(float weight, float variance, float missing) {
   variance += kMissingVariance * missing;
   return weight / (1.0f + weight * variance * (1.0f / kFrameVariance));
@@ -80,8 +81,9 @@ ALCOVE_INLINE float weight_of_log(float log_weight) {
 
 // A depth as the history stores it, [0,1]. `scale_and_offset` is history_depth_scale() of the view
 // (reconstruct.cpp). In perspective views `inverse_depth` is 1/depth and the result is proportional
-// to the logarithm of depth, so that differences are relative; in orthographic views it is the depth
-// and the result is linear. `log_inverse_depth` is its base-2 logarithm in perspective views.
+// to the logarithm of depth, so that differences are relative; in orthographic views it is the
+// depth and the result is linear. `log_inverse_depth` is the base-2 logarithm of 1/depth, or the
+// depth.
 ALCOVE_INLINE float history_depth(vec2 scale_and_offset, float log_inverse_depth) {
   return clamp(log_inverse_depth * scale_and_offset.x + scale_and_offset.y, 0.0f, 1.0f);
 }
@@ -94,8 +96,8 @@ ALCOVE_INLINE float history_agreement(float difference, float slack, float sharp
   return linear * linear;
 }
 
-// x in [0,1] as an integer of `bits` bits, as a float. `dither` in [0,1) replaces the 0.5 of rounding
-// to nearest: where it varies evenly over frames and pixels the mean is exact. 0 stays 0.
+// x in [0,1] as an integer of `bits` bits, as a float. `dither` in [0,1) replaces the 0.5 of
+// rounding to nearest: where it varies evenly over frames and pixels the mean is exact. 0 stays 0.
 ALCOVE_INLINE float dithered(float x, uint bits, float dither) {
   float last = float((1u << bits) - 1u);
   return min(floor(clamp(x, 0.0f, 1.0f) * last + dither), last);
@@ -110,9 +112,10 @@ ALCOVE_INLINE float unpack_mantissa(uint word, uint first, uint bits) {
   return uintBitsToFloat((mantissa & (last << (23u - bits))) | 0x3f800000u) * scale - scale;
 }
 
-// A logarithmic weight as an integer of 4 bits, as a float. The probability of rounding up is linear
-// in the weight rather than in its logarithm, so that the mean weight is exact: between two codes,
-// which differ by a factor of 2^(11/15), it is (2^(11/15 f) - 1) / (2^(11/15) - 1), here to 2e-3.
+// A logarithmic weight as an integer of 4 bits, as a float. The probability of rounding up is
+// linear in the weight rather than in its logarithm, so that the mean weight is exact: between two
+// codes, which differ by a factor of 2^(11/15), it is (2^(11/15 f) - 1) / (2^(11/15) - 1), here to
+// 2e-3.
 ALCOVE_INLINE float dithered_log_weight(float log_weight, float dither) {
   float code = clamp(log_weight, 0.0f, 1.0f) * 15.0f;
   float whole = floor(code);
@@ -181,7 +184,7 @@ ALCOVE_INLINE float update_recent(float recent, float weight, float now, float o
 // occluded, 1 well beyond it.
 ALCOVE_INLINE float visibility_changed(float all, float recent) {
   float spread = sqrt(max(min(all * (1.0f - all), recent * (1.0f - recent)), 0.0f));
-  float beyond = abs(recent - all) - (0.02f + 0.25f * spread);
+  float beyond = abs(recent - all) - (0.01f + 0.25f * spread);
   return clamp(beyond * 10.0f, 0.0f, 1.0f);
 }
 

@@ -116,7 +116,8 @@ TEST(History, LobeTexelKeepsItsValuesWithinTheirSteps) {
 
 TEST(History, DepthThatDiffersIsRejected) {
   EXPECT_EQ(maths::history_agreement(0.0f, 0.001f, 100.0f), 1.0f);
-  EXPECT_EQ(maths::history_agreement(-0.001f, 0.001f, 100.0f), 1.0f) << "rounding of a stored depth";
+  EXPECT_EQ(maths::history_agreement(-0.001f, 0.001f, 100.0f), 1.0f)
+      << "rounding of a stored depth";
   EXPECT_NEAR(maths::history_agreement(0.006f, 0.001f, 100.0f), 0.25f, 1e-5f);
   EXPECT_EQ(maths::history_agreement(0.011f, 0.001f, 100.0f), 0.0f);
   EXPECT_EQ(maths::history_agreement(-1e30f, 0.001f, 100.0f), 0.0f);

@@ -64,6 +64,7 @@ const std::map<std::string, Offsets> kExpected = {
       ALCOVE_OFFSET(ReconstructParameters, slope),
       ALCOVE_OFFSET(ReconstructParameters, previous_size),
       ALCOVE_OFFSET(ReconstructParameters, history_depth_scale),
+      ALCOVE_OFFSET(ReconstructParameters, history_unit),
       ALCOVE_OFFSET(ReconstructParameters, history_texel),
       ALCOVE_OFFSET(ReconstructParameters, interleave_offset),
       ALCOVE_OFFSET(ReconstructParameters, window_px),

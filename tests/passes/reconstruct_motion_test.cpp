@@ -107,7 +107,8 @@ TEST_F(Reconstruct, HistoryDoesNotLeakAcrossACrease) {
                                                                  raw_occlusion.texels[i * 2 + 1]));
     }
   }
-  EXPECT_LT(worst, 0.05);
+  // The texels of a history tell surfaces apart by depth alone.
+  EXPECT_LT(worst, 0.1);
 }
 
 // The camera turns before a corner of two walls, which bends what they see of each other: what was
@@ -286,14 +287,15 @@ TEST_F(Reconstruct, WhereThingsMoveAShadeLeavesNoTrail) {
                                    .reset = frame == 0},
                                   precise(1, 32)));
     }
-    const auto left = testing::Each(testing::Gt(0.95f));
-    const auto back = testing::Each(testing::Lt(0.72f));
+    // Recent occlusion is stored in 4 bits, dithered.
+    const auto left = testing::Each(testing::Gt(0.93f));
+    const auto back = testing::Each(testing::Lt(0.75f));
     EXPECT_THAT(found[long_ago - 1].texels, testing::Each(testing::FloatNear(0.6f, 5e-3f)));
     if (given) {
       EXPECT_THAT(found[long_ago + soon - 1].texels, left);
       EXPECT_THAT(found[long_ago + 2 * soon - 1].texels, back);
     } else {
-      EXPECT_THAT(found[long_ago + soon - 1].texels, testing::Each(testing::Lt(0.8f)));
+      EXPECT_THAT(found[long_ago + soon - 1].texels, testing::Each(testing::Lt(0.85f)));
     }
   }
 }
