@@ -22,6 +22,7 @@
 #include "maths/bent_normal.h"
 #include "maths/history.h"
 #include "maths/lobe_slice.h"
+#include "maths/normal_encoding.h"
 #include "maths/projection.h"
 #include "maths/quantised_normal.h"
 #include "maths/raw_occlusion.h"
@@ -41,6 +42,8 @@ layout(constant_id = 7) const bool kRoughnessTexture = false;
 layout(constant_id = 8) const int kRoughnessChannel = 0;
 layout(constant_id = 9) const bool kFresh = true;        // there is no history to read yet
 layout(constant_id = 10) const bool kVisibility = true;  // whether visibility_image is written
+layout(constant_id = 11) const uint kNormalEncoding = 0;  // as NormalEncoding has them
+layout(constant_id = 12) const bool kShaped = false;      // power or intensity is not 1
 
 #ifdef SPECULAR
 const bool kLobe = true;
@@ -137,7 +140,7 @@ ivec2 last_tile() { return (size_px() + (kTileSize - 1)) / kTileSize - 1; }
 // Not unit, in the space of the normals. The direction to the eye where the texture has none, which
 // is enough for the filter's weights; a NaN would stay in the history.
 vec3 fetch_normal(ivec2 pixel) {
-  vec3 normal = texelFetch(normal_image, pixel, 0).xyz;
+  vec3 normal = decode_normal(texelFetch(normal_image, pixel, 0).xyz, kNormalEncoding);
   return has_direction(normal) ? normal : parameters.normal_from_view[2].xyz;
 }
 
@@ -321,8 +324,8 @@ void add_ring(inout Sums sums, Surface surface, float inverse_squared_width, int
 vec3 traced_normal(Surface surface) {
   vec2 slope = parameters.slope.zw +
                (kPerspective ? (surface.corner + 0.5) * parameters.slope.xy : vec2(0.0));
-  vec3 given =
-      texelFetch(normal_image, surface.pixel, 0).xyz * mat3(parameters.normal_from_view);
+  vec3 given = decode_normal(texelFetch(normal_image, surface.pixel, 0).xyz, kNormalEncoding) *
+               mat3(parameters.normal_from_view);
   return seen_normal(surface.pixel, given, normalize(vec3(-slope, 1.0)));
 }
 
@@ -336,7 +339,8 @@ struct Result {
 void store(Surface surface, bool sky, Result result) {
   float visibility = sky ? 1.0 : 1.0 - result.occlusion;
   if (kVisibility) {
-    imageStore(visibility_image, surface.pixel, vec4(visibility));
+    float shaped = shaped_visibility(visibility, parameters.power, parameters.intensity);
+    imageStore(visibility_image, surface.pixel, vec4(kShaped ? shaped : visibility));
   }
   if (kBentNormal) {
     vec3 residual = sky ? vec3(0.0) : result.residual;

@@ -42,7 +42,8 @@ Previous reproject(Surface surface) {
   previous.moves = false;
   if (kMotion) {
     vec2 here = centre * parameters.previous_size.zw;
-    vec2 motion = texelFetch(motion_image, surface.pixel, 0).rg * parameters.previous_size.xy;
+    vec2 motion =
+        texelFetch(motion_image, surface.pixel, 0).rg * parameters.motion.xy + parameters.motion.zw;
     // More than the rounding of motion vectors, which is 2^-11 in half precision.
     float apart = distance(here - motion, position);
     previous.moves = apart > 0.1 + length(motion) * (1.0 / 512.0);

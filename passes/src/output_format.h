@@ -39,10 +39,15 @@ namespace alcove::passes {
 }
 inline constexpr VkFormat kBentRawFormat = VK_FORMAT_R32G32_UINT;
 
-// Histories: of visibility (maths::pack_history_texel), of bent normals (maths::pack_residual) and of
-// GGX lobes (maths::pack_lobe_texel).
+// Histories: of visibility (maths::pack_history_texel), of bent normals (maths::pack_residual) and
+// of GGX lobes (maths::pack_lobe_texel).
 inline constexpr VkFormat kHistoryFormat = VK_FORMAT_R32_UINT;
 inline constexpr VkFormat kBentHistoryFormat = VK_FORMAT_R32_UINT;
 inline constexpr VkFormat kLobeHistoryFormat = VK_FORMAT_R16_UINT;
+
+// Bytes a pixel of all textures of a history, as add_reconstruct() declares them: two of each.
+[[nodiscard]] inline std::uint64_t history_bytes(bool lobe, bool bent) {
+  return 2u * (4u + (lobe ? 2u : 0u) + (bent ? 4u : 0u));
+}
 
 }  // namespace alcove::passes

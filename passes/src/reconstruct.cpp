@@ -222,7 +222,7 @@ Past past_of(const Frame& frame, const ReconstructSizes& sizes, bool history_val
 }
 
 // The shader's specialisation constants, in its order.
-std::array<std::uint32_t, 11> constants_of(const ReconstructInputs& inputs,
+std::array<std::uint32_t, 13> constants_of(const ReconstructInputs& inputs,
                                            const ReconstructSettings& settings, bool perspective,
                                            Past past) {
   return {inputs.raw_occlusion.tile_size,
@@ -235,7 +235,9 @@ std::array<std::uint32_t, 11> constants_of(const ReconstructInputs& inputs,
           flag(bool(inputs.roughness)),
           channel_if(bool(inputs.roughness), settings.roughness_channel),
           flag(past == Past::none),
-          flag(settings.visibility)};
+          flag(settings.visibility),
+          static_cast<std::uint32_t>(inputs.normal_encoding),
+          flag(settings.power != 1.0f || settings.intensity != 1.0f)};
 }
 
 tl::expected<Kernel, Error> get_kernel(const Frame& frame, const ReconstructInputs& inputs,
@@ -335,13 +337,14 @@ float window_px(const RawOcclusionTextures& raw_occlusion) {
 
 maths::ReconstructParameters parameters_of(const Frame& frame, const maths::Projection& projection,
                                            const maths::Projection& previous,
-                                           bool normals_in_view_space,
+                                           const ReconstructInputs& inputs,
                                            const ReconstructSettings& settings) {
   const maths::mat4 from_pixel = view_from_pixel(projection);
   // In double: far from the world's origin the two all but cancel.
   const maths::dmat4 to_previous = to_rigid(frame.previous_view.view_from_world) *
                                    maths::inverse(to_rigid(frame.view.view_from_world));
-  const maths::mat4 to_view = view_from_normal(frame, normals_in_view_space);
+  const maths::mat4 to_view =
+      view_from_normal(frame, inputs.normals_in_view_space, inputs.normals_forward_z);
   maths::ReconstructParameters parameters{};
   const maths::mat4 previous_from_pixel = maths::transpose(maths::mat4(
       maths::dmat4(pixel_from_view(previous)) * to_previous * maths::dmat4(from_pixel)));
@@ -364,7 +367,13 @@ maths::ReconstructParameters parameters_of(const Frame& frame, const maths::Proj
   parameters.history_slack = kHistorySlack;
   // The golden ratio's fractions are spread evenly over any run of frames.
   parameters.dither_offset = static_cast<float>(frame.index * 2654435769u) * 0x1p-32f;
+  const MotionConvention& motion = inputs.motion_convention;
+  parameters.motion =
+      maths::vec4(maths::vec2(motion.scale[0], motion.scale[1]) * previous.size_px,
+                  maths::vec2(motion.offset[0], motion.offset[1]) * previous.size_px);
   parameters.roughness = settings.roughness;
+  parameters.power = settings.power;
+  parameters.intensity = settings.intensity;
   return parameters;
 }
 
@@ -425,7 +434,7 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& given_frame,
   const auto [offset_x, offset_y] =
       interleave_offset_of(inputs.raw_occlusion.tile_size, frame.index);
   maths::ReconstructParameters parameters =
-      parameters_of(frame, *projection, *previous, inputs.normals_in_view_space, settings);
+      parameters_of(frame, *projection, *previous, inputs, settings);
   parameters.window_px = window_px(inputs.raw_occlusion);
   // Distances from the plane count for more with the slices, as the window narrows with them.
   parameters.tolerance *= std::sqrt(static_cast<float>(inputs.raw_occlusion.slices));

@@ -9,6 +9,7 @@
 
 #include "cli/commands.h"
 #include "cli/options.h"
+#include "support/printable.h"
 #include "support/standard_streams.h"
 
 namespace {
@@ -42,12 +43,14 @@ tl::expected<void, std::string> run(const Options& options) {
   }
 }
 
+// Sentences repeat arguments and names of files, which may hold anything.
 int fail(const std::string& sentence) {
-  std::cerr << "alcove: " << sentence << "\n";
+  constexpr std::size_t kLongest = 600;  // bytes
+  std::cerr << "alcove: " << alcove::sample::shortened(sentence, kLongest) << "\n";
   return 1;
 }
 
-// What was printed may have gone nowhere: a full disk shows only here.
+// Reports output that could not be written; a full disk shows only when the stream is flushed.
 int flush_output() {
   errno = 0;
   if (std::cout.flush()) return 0;

@@ -271,6 +271,9 @@ void add_cost(CLI::App& app, Options& options) {
                  options.cost.loops);
   group.add("--json", "FILE", "also write all figures as JSON",
             [&](const OptionValue& given) { options.cost.json = given.text; });
+  group.add("--write-budget", "FILE",
+            "only write the costs of all presets, as the budget that the tests hold them to",
+            [&](const OptionValue& given) { options.cost.budget = given.text; });
   group.add("--chart", "FILE", "also draw an SVG chart of where the time goes",
             [&](const OptionValue& given) { options.cost.chart = given.text; });
 }
@@ -318,7 +321,10 @@ void add_device(CLI::App& app, Options& options) {
 }
 
 void add_out(CLI::App& app, Options& options, const std::string& help) {
-  Group(app).add("--out", "DIR", help, [&](const OptionValue& given) { options.out = given.text; });
+  Group(app).add("--out", "DIR", help, [&](const OptionValue& given) {
+    if (given.text.empty()) given.refuse("the name of a folder, such as out");
+    options.out = given.text;
+  });
 }
 
 void check_together(const Options& options) {

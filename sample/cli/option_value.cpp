@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <optional>
 
+#include "support/printable.h"
+
 namespace alcove::sample {
 namespace {
 
@@ -39,7 +41,9 @@ bool is_positive(double value) { return std::isfinite(value) && value > 0.0; }
 }  // namespace
 
 void OptionValue::refuse(const std::string& wanted) const {
-  throw Mistake{option + " " + text + ": give " + wanted};
+  constexpr std::size_t kLongest = 80;  // bytes of an argument that are repeated
+  throw Mistake{option + " " + (text.empty() ? "''" : shortened(text, kLongest)) + ": give " +
+                wanted};
 }
 
 double OptionValue::number(double low, double high, const std::string& wanted) const {

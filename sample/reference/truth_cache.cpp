@@ -12,7 +12,7 @@
 namespace alcove::sample {
 namespace {
 
-// Before the floats of an entry; another one means another version, or a damaged file.
+// Stands before the floats of an entry. A different one means another version or a damaged file.
 struct Header {
   std::array<char, 8> magic{'a', 'l', 'c', 'o', 'v', 'e', 't', '1'};
   uint64_t count = 0;
@@ -21,7 +21,8 @@ struct Header {
 
 constexpr uint64_t kPrime = 0x100000001b3u;
 
-// FNV-1a, eight bytes at a time and then one: fast enough for images, and nobody attacks a cache.
+// FNV-1a over words of eight bytes, then over single bytes. It is fast, and not secure against
+// forgery.
 uint64_t mix(uint64_t hash, std::span<const std::byte> bytes) {
   size_t i = 0;
   for (; i + 8 <= bytes.size(); i += 8) {

@@ -16,8 +16,8 @@
 
 namespace alcove::sample {
 
-// Hash of everything a truth depends on. Add in a fixed order; two keys are equal only when all
-// that was added is (128 bits).
+// A 128-bit hash of everything that a reference image depends on. Add the parts in a fixed order:
+// keys are equal when all parts are equal.
 class CacheKey {
  public:
   void add(std::span<const std::byte> bytes);
@@ -40,17 +40,17 @@ class CacheKey {
   uint64_t high_ = 0xc2b2ae3d27d4eb4fu;
 };
 
-// Named float arrays on disk by key. An entry that is damaged, cut short or of another version
-// reads as absent, so it is computed anew; entries are written to a temporary name and renamed.
-// Several processes may share a folder. Failures to write are silent: a cache may always be empty.
+// Arrays of floats on disk, found by key. An entry that is damaged, cut short or of another version
+// reads as absent and is then computed again. Several processes may share a folder. Failures to
+// write are ignored, because a cache may always be empty.
 class TruthCache {
  public:
-  // `$XDG_CACHE_HOME/alcove`, else `~/.cache/alcove`; empty (caches nothing) where neither is
-  // known.
+  // `$XDG_CACHE_HOME/alcove`, or else `~/.cache/alcove`. Empty, which caches nothing, where neither
+  // is known.
   [[nodiscard]] static std::filesystem::path default_folder();
   explicit TruthCache(std::filesystem::path folder);
 
-  // Exactly `count` floats, or nothing.
+  // Reads an entry of exactly `count` floats.
   [[nodiscard]] std::optional<std::vector<float>> read(const CacheKey& key, size_t count) const;
   void write(const CacheKey& key, std::span<const float> values) const;
 

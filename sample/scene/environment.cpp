@@ -15,7 +15,7 @@ namespace {
 
 using Loaded = tl::expected<EnvironmentImage, std::string>;
 
-constexpr uint32_t kMostPixels = 2048;  // a side, of an environment in memory
+constexpr uint32_t kLargestSide = 2048;  // pixels, of an environment in memory
 
 glm::vec3 direction_of(double u, double v) {
   const double turn = u * 2.0 * glm::pi<double>(), fall = v * glm::pi<double>();
@@ -39,7 +39,7 @@ Loaded refuse(const std::filesystem::path& file, const std::string& why) {
   return tl::unexpected("The environment " + file.string() + " cannot be used: it " + why + ".");
 }
 
-// Collects the rows of a file, shrunk by a whole factor to at most kMostPixels a side.
+// Collects the rows of a file, reduced by a whole factor to at most kLargestSide pixels a side.
 class EnvironmentRows {
  public:
   FloatRows receiver() {
@@ -50,7 +50,7 @@ class EnvironmentRows {
 
  private:
   void begin(uint32_t width, uint32_t height) {
-    const uint32_t factor = (std::max(width, height) + kMostPixels - 1) / kMostPixels;
+    const uint32_t factor = (std::max(width, height) + kLargestSide - 1) / kLargestSide;
     mean_.emplace(width, height, 3u, factor);
     image_ = EnvironmentImage(mean_->reduced(width), mean_->reduced(height));
     light_.resize(3 * size_t{width});
@@ -68,8 +68,8 @@ class EnvironmentRows {
 
   EnvironmentImage image_;
   std::optional<BlockMean<float, double>> mean_;
-  std::vector<float> light_;  // a row without what is no radiance
-  size_t written_ = 0;        // components of image_
+  std::vector<float> light_;  // a row of the file, invalid radiance as 0
+  size_t written_ = 0;        // how many components of image_ are complete
 };
 
 std::vector<std::string> colour_channels(const ChannelExists&) { return {"R", "G", "B"}; }

@@ -13,20 +13,21 @@ namespace alcove::sample {
 // 0, top row up (+Y), the left edge at -Z and a quarter to the right +X.
 using EnvironmentImage = Image<glm::vec3>;
 
-// A hazy sky, bright towards a low sun, over brown ground; no sun disc: that is direct light. Its
-// mean radiance is about 1.
+// A hazy sky over brown ground, brightest towards a low sun. It has no sun disc, which would be
+// direct light. Its mean radiance is about 1.
 [[nodiscard]] EnvironmentImage procedural_sky();
 
-// A .hdr (Radiance) or .exr file, brought down to at most 2048 columns by whole factors; an empty
-// name gives the procedural sky. Radiance that is not finite or below 0 counts as 0. Errors, one
-// sentence with the file's name: one that cannot be read, is damaged, or of another kind.
+// Reads a .hdr (Radiance) or .exr file of at most 16384 pixels a side, and reduces it by a whole
+// factor to at most 2048. An empty name gives the procedural sky. Radiance that is negative or not
+// finite becomes 0. The error is a sentence with the file's name: unreadable, damaged, or another
+// format.
 [[nodiscard]] tl::expected<EnvironmentImage, std::string> load_environment(
     const std::filesystem::path& file);
 
-// Radiance from a unit direction, bilinear.
+// The radiance from a unit direction in world space, interpolated bilinearly.
 [[nodiscard]] glm::vec3 radiance(const EnvironmentImage& environment, const glm::vec3& direction);
 
-// Over all directions.
+// The mean radiance over all directions.
 [[nodiscard]] glm::vec3 mean_radiance(const EnvironmentImage& environment);
 
 }  // namespace alcove::sample

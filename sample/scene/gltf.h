@@ -7,13 +7,14 @@
 #include <string>
 #include <tl/expected.hpp>
 
+#include "scene/gltf_images.h"
 #include "scene/scene.h"
 
 namespace alcove::sample {
 
 // Reads a glTF 2 file, .gltf or .glb (by its content, not its name), into world-space triangles.
 //
-// Taken: node transforms (matrix or TRS, any hierarchy; mirrored ones turn the winding), triangle
+// Read: node transforms (matrix or TRS, any hierarchy; mirrored ones turn the winding), triangle
 // lists, strips and fans with and without indices, every accessor type (normalised, interleaved,
 // sparse), embedded, binary and external buffers and images, metal-roughness materials with normal
 // maps and tangents, samplers, two sets of texture coordinates, KHR_texture_transform, alpha mask,
@@ -29,7 +30,7 @@ struct GltfLimits {
   uint64_t primitives = uint64_t{1} << 20;  // as vertices
   uint64_t vertices = uint64_t{1} << 25;    // of all meshes together, instances counted each
   uint64_t indices = uint64_t{3} << 25;
-  uint64_t pixels = uint64_t{1} << 29;  // of all images together
+  ImageLimits images;
 };
 [[nodiscard]] tl::expected<Scene, std::string> load_gltf(const std::filesystem::path& file);
 

@@ -8,9 +8,9 @@ namespace {
 
 using Failure = tl::unexpected<std::string>;
 
-// Elements of one type at regular steps, all of them within the bytes.
+// Elements of one type, `stride` bytes apart, all of them within their buffer view.
 struct Elements {
-  const uint8_t* first = nullptr;  // null: every element is zero
+  const uint8_t* first = nullptr;  // null where there is no buffer view: all elements are zero
   uint64_t stride = 0;
   uint64_t count = 0;
   int component_type = 0;
@@ -91,14 +91,15 @@ bool is_unsigned(int type) {
          type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
 }
 
-// `count` elements of `size` bytes from `offset` of a view, `stride` apart.
+// The address of `count` elements of `size` bytes, `stride` bytes apart, from `offset` of a view
+// on.
 tl::expected<const uint8_t*, std::string> elements_of(const tinygltf::Model& model, int64_t view,
                                                       uint64_t offset, uint64_t count,
                                                       uint64_t size, uint64_t stride) {
   const auto bytes = view_bytes(model, view);
   if (!bytes) return Failure(bytes.error());
   const uint64_t length = bytes->size();
-  // Written so that nothing overflows: the last element must end within the view.
+  // The last element must end within the view. No term of these comparisons can overflow.
   if (count > 0 && (offset > length || size > length - offset ||
                     (count - 1) > (length - offset - size) / stride)) {
     return Failure("reads past the end of buffer view " + std::to_string(view));
@@ -139,8 +140,8 @@ tl::expected<Elements, std::string> resolve(const tinygltf::Model& model, int64_
   return out;
 }
 
-// The sparse part of an accessor: `put(target, bytes)` for each replaced element, target below the
-// accessor's count.
+// Calls `put(target, bytes)` for each element that the sparse part of an accessor replaces.
+// `target` is below the accessor's count.
 template <class Put>
 tl::expected<void, std::string> for_each_sparse(const tinygltf::Model& model, int64_t index,
                                                 const Elements& elements, const Put& put) {
@@ -192,6 +193,9 @@ tl::expected<std::span<const uint8_t>, std::string> view_bytes(const tinygltf::M
     return refuse("has no buffer " + std::to_string(v.buffer));
   }
   const auto& data = model.buffers[static_cast<size_t>(v.buffer)].data;
+  if (data.empty() && v.byteLength > 0) {
+    return refuse("lies in buffer " + std::to_string(v.buffer) + ", which has no data");
+  }
   if (v.byteOffset > data.size() || v.byteLength > data.size() - v.byteOffset) {
     return refuse("reaches past the end of its buffer");
   }

@@ -10,9 +10,9 @@ namespace {
 
 bool positive(double value) { return std::isfinite(value) && value > 0.0; }
 
-// Where the camera stands and what is up there. False: the node's matrix is of no use for that.
+// Sets position and axes from the node. False where its matrix gives no direction or is too large.
 bool place(const glm::dmat4& world_from_node, PlacedCamera& out) {
-  constexpr double kFarthest = 1e15;  // of vertices too
+  constexpr double kFarthest = 1e15;  // scene units, the limit for vertices too
   const glm::dvec3 eye(world_from_node[3]), back(world_from_node[2]), up(world_from_node[1]);
   if (!positive(glm::length(back)) || !positive(glm::length(up)) ||
       !(glm::length(eye) <= kFarthest)) {
@@ -24,7 +24,7 @@ bool place(const glm::dmat4& world_from_node, PlacedCamera& out) {
   return true;
 }
 
-// Its kind, its size or angle, near and far plane. False: they make no view.
+// Sets projection, angle or size, near and far plane. False where they make no view.
 bool read_lens(const tinygltf::Camera& in, Camera& out) {
   double near_plane = 0.0, far_plane = 0.0;
   if (in.type == "orthographic") {
@@ -37,7 +37,7 @@ bool read_lens(const tinygltf::Camera& in, Camera& out) {
     out.fov_y = static_cast<float>(in.perspective.yfov);
     near_plane = in.perspective.znear;
     far_plane = in.perspective.zfar > 0.0 ? in.perspective.zfar : INFINITY;
-    // What --fov-y takes too, so that any camera can be typed.
+    // The limits of --fov-y, so that every camera of a file can be given as options.
     constexpr float kNarrowest = 2e-5f, kWidest = 3.1f;
     const bool opens = out.fov_y >= kNarrowest && out.fov_y <= kWidest;
     if (!positive(near_plane) || !opens) return false;
@@ -68,8 +68,9 @@ void add_camera(const tinygltf::Model& model, const tinygltf::Node& node,
 }
 
 Camera aimed(const PlacedCamera& placed, const Bounds& bounds_ws) {
-  constexpr double kRounding = 1e-3;  // of the eye: floats are 1e-7 of it apart there
-  constexpr double kNearest = 1e-15;  // what camera_of takes
+  constexpr double kRounding =
+      1e-3;  // of the distance from the origin, where floats are 1e-7 of it apart
+  constexpr double kNearest = 1e-15;  // scene units, the limit of camera_of()
   Camera camera = placed.camera;
   const glm::dvec3 low(bounds_ws.low), high(bounds_ws.high), eye(camera.eye_ws);
   const double depth = glm::dot(0.5 * (low + high) - eye, placed.forward_ws);

@@ -3,27 +3,21 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
-#include <span>
 #include <vector>
 
-#include "scene/gltf_accessor.h"
+#include "scene/gltf_images.h"
 #include "scene/gltf_sampler.h"
 #include "scene/gltf_texture_transform.h"
-#include "support/decode_image.h"
 
 namespace alcove::sample {
 namespace {
 
 using Failure = tl::unexpected<std::string>;
 
-constexpr int32_t kUntried = -2;
-constexpr int32_t kUnreadable = -1;
-
-// What of a texture's use its kinds have in common.
+// A reference of a material to a texture, whichever property of the material it is.
 struct TextureReference {
   const char* role;
-  int index;  // below 0: none
+  int index;  // negative where there is none
   int set;
   const tinygltf::ExtensionMap* extensions;
 };
@@ -44,24 +38,18 @@ std::array<TextureReference, 4> references(const tinygltf::Material& material) {
 // Adds materials to a scene, and images as materials ask for them.
 class MaterialReader {
  public:
-  MaterialReader(const tinygltf::Model& model, uint64_t most_pixels, Scene& scene)
-      : model_(model), scene_(scene), pixels_left_(most_pixels) {
-    image_of_.assign(model.images.size(), kUntried);
-  }
+  MaterialReader(const tinygltf::Model& model, const ImageLimits& limits, Scene& scene)
+      : model_(model), scene_(scene), images_(model, limits, scene) {}
 
   tl::expected<void, std::string> add(const tinygltf::Material& material);
 
  private:
   tl::expected<void, std::string> add_textures(const tinygltf::Material& in, Material& out);
   tl::expected<TextureUse, std::string> texture(const TextureReference& reference);
-  tl::expected<int32_t, std::string> image(size_t index);
-  tl::expected<int32_t, std::string> decode(const std::string& name,
-                                            std::span<const uint8_t> bytes);
 
   const tinygltf::Model& model_;
   Scene& scene_;
-  uint64_t pixels_left_;
-  std::vector<int32_t> image_of_;
+  GltfImages images_;
 };
 
 float clamped(double value, double low, double high, double otherwise) {
@@ -139,7 +127,7 @@ tl::expected<TextureUse, std::string> MaterialReader::texture(const TextureRefer
   if (!transform) return Failure(transform.error());
   use.texture_from_mesh_uv = *transform;
   if (texture.source < 0) {
-    // Such as one that only an extension names.
+    // An extension may name the image instead, such as KHR_texture_basisu.
     scene_.warnings.push_back("texture " + std::to_string(index) +
                               " has no image that is read here and is left out.");
     return use;
@@ -147,61 +135,17 @@ tl::expected<TextureUse, std::string> MaterialReader::texture(const TextureRefer
   if (static_cast<size_t>(texture.source) >= model_.images.size()) {
     return Failure("has a texture without its image " + std::to_string(texture.source));
   }
-  auto read = image(static_cast<size_t>(texture.source));
+  auto read = images_.decode(static_cast<size_t>(texture.source));
   if (!read) return Failure(read.error());
   use.image = *read;
   return use;
 }
 
-tl::expected<int32_t, std::string> MaterialReader::image(size_t index) {
-  if (image_of_[index] != kUntried) return image_of_[index];
-  const tinygltf::Image& in = model_.images[index];
-  const std::string name =
-      "image " + std::to_string(index) + (in.uri.empty() ? "" : " (" + in.uri + ")");
-  std::span<const uint8_t> bytes = in.image;
-  if (in.bufferView >= 0) {
-    auto view = view_bytes(model_, in.bufferView);
-    if (!view) return Failure("uses " + name + ", whose " + view.error());
-    bytes = *view;
-  }
-  auto decoded = decode(name, bytes);
-  if (decoded) image_of_[index] = *decoded;
-  return decoded;
-}
-
-tl::expected<int32_t, std::string> MaterialReader::decode(const std::string& name,
-                                                          std::span<const uint8_t> bytes) {
-  const auto unreadable = [&](const std::string& why) {
-    scene_.warnings.push_back(name + " " + why + " and is left out.");
-    return kUnreadable;
-  };
-  if (bytes.empty()) return unreadable("is missing");
-  const auto header = read_image_header(bytes);
-  if (!header) return unreadable(header.error());
-  if (header->width > kLargestImageSide || header->height > kLargestImageSide) {
-    return Failure("uses " + name + ", which is " + std::to_string(header->width) + "x" +
-                   std::to_string(header->height) + " pixels; make it at most " +
-                   std::to_string(kLargestImageSide) + " a side");
-  }
-  const uint64_t pixels = uint64_t{header->width} * header->height;
-  if (pixels > pixels_left_) return Failure("uses " + name + ", which is too large");
-  pixels_left_ -= pixels;
-  auto decoded = decode_image(bytes, *header);
-  if (!decoded) return unreadable(decoded.error());
-  TextureImage out;
-  out.name = name;
-  out.width = decoded->width;
-  out.height = decoded->height;
-  out.rgba = std::move(decoded->rgba);
-  scene_.images.push_back(std::move(out));
-  return static_cast<int32_t>(scene_.images.size() - 1);
-}
-
 }  // namespace
 
-tl::expected<void, std::string> add_materials(const tinygltf::Model& model, uint64_t most_pixels,
-                                              Scene& scene) {
-  MaterialReader reader(model, most_pixels, scene);
+tl::expected<void, std::string> add_materials(const tinygltf::Model& model,
+                                              const ImageLimits& limits, Scene& scene) {
+  MaterialReader reader(model, limits, scene);
   for (const tinygltf::Material& material : model.materials) {
     if (auto added = reader.add(material); !added) return added;
   }

@@ -20,7 +20,7 @@ std::optional<Wrap> wrap_of(int mode) {
   }
 }
 
-// The filter within a mip. glTF names that between mips, if any, in the same number.
+// The filter within a mip level. glTF gives the one between mip levels by the same number.
 std::optional<Filter> filter_of(int filter) {
   switch (filter) {
     case kNotGiven:
@@ -56,7 +56,7 @@ tl::expected<Sampler, std::string> read_sampler(const tinygltf::Sampler& in) {
   const auto wrap_u = wrap_of(in.wrapS), wrap_v = wrap_of(in.wrapT);
   if (!wrap_u || !wrap_v) return tl::unexpected<std::string>("has a wrap mode unknown to glTF");
   const auto magnify = filter_of(in.magFilter), minify = filter_of(in.minFilter);
-  // Nothing lies between mips where there is but one.
+  // Magnification reads mip level 0 only, so its filter cannot name one between mip levels.
   const bool magnifies =
       in.magFilter == kNotGiven || mip_filter_of(in.magFilter) == MipFilter::kNone;
   if (!magnify || !minify || !magnifies) {

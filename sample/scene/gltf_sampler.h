@@ -9,8 +9,8 @@
 
 namespace alcove::sample {
 
-// A sampler of the file (glTF 2.0 section 5.26). Filters that it does not give are linear, between
-// mips too. A value unknown to glTF is an error, the middle of a sentence.
+// Converts a sampler (glTF 2.0 section 5.26). Filters that the file leaves open are linear, also
+// between mip levels. A value that glTF does not define is an error, the middle of a sentence.
 [[nodiscard]] tl::expected<Sampler, std::string> read_sampler(const tinygltf::Sampler& in);
 
 }  // namespace alcove::sample

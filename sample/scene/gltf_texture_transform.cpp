@@ -9,7 +9,7 @@ using tinygltf::Value;
 
 constexpr const char* kExtension = "KHR_texture_transform";
 
-// Null where there is none.
+// A member of the extension, or null.
 const Value* member(const tinygltf::ExtensionMap& extensions, const std::string& name) {
   const auto found = extensions.find(kExtension);
   if (found == extensions.end() || !found->second.IsObject()) return nullptr;
@@ -34,7 +34,7 @@ tl::expected<glm::mat3x2, std::string> texture_transform(const tinygltf::Extensi
   const glm::dvec2 scale = pair(member(extensions, "scale"), 1.0);
   const double rotation = number(member(extensions, "rotation"), 0.0);
   const double c = std::cos(rotation), s = std::sin(rotation);
-  // Columns: what u gives, what v gives, what is added.
+  // The columns are the images of the u axis, the v axis and the origin.
   const glm::mat3x2 out(c * scale.x, -s * scale.x, s * scale.y, c * scale.y, offset.x, offset.y);
   for (int column = 0; column < 3; ++column) {
     if (!std::isfinite(out[column].x) || !std::isfinite(out[column].y)) {

@@ -29,7 +29,7 @@ std::string radiance_file(int width, int height, const std::string& pixel) {
   return text;
 }
 
-TEST(Environment, TheSkyIsMeanOneAndBrightestAbove) {
+TEST(Environment, SkyHasMeanOneAndIsBrighterThanTheGround) {
   const auto sky = load_environment({});
   ASSERT_TRUE(sky);
   const glm::vec3 mean = mean_radiance(*sky);
@@ -37,7 +37,7 @@ TEST(Environment, TheSkyIsMeanOneAndBrightestAbove) {
   EXPECT_GT(radiance(*sky, {0, 1, 0}).z, radiance(*sky, {0, -1, 0}).z);
 }
 
-TEST(Environment, LightIsFoundWhereTheHeaderSays) {
+TEST(Environment, DirectionsMapToPixelsAsDocumented) {
   EnvironmentImage image(64, 32);
   image.at(16, 16) = glm::vec3(5);  // a quarter to the right: +X, just under the horizon
   const glm::vec3 there = glm::normalize(glm::vec3(1.0f, -0.05f, 0.05f));
@@ -58,7 +58,7 @@ TEST(Environment, ExrAndRadianceFilesAreRead) {
   const auto exr = load_environment(folder.path / "a.exr");
   ASSERT_TRUE(exr) << exr.error();
   EXPECT_EQ(exr->at(0, 0), glm::vec3(0.5f, 1.0f, 2.0f));
-  EXPECT_EQ(exr->at(3, 1), glm::vec3(0.0f)) << "what is no light counts as none";
+  EXPECT_EQ(exr->at(3, 1), glm::vec3(0.0f)) << "negative, infinite and NaN radiance becomes 0";
 
   write_file(folder.path / "b.HDR", radiance_file(8, 4, std::string("\x40\x80\x20\x81", 4)));
   const auto hdr = load_environment(folder.path / "b.HDR");
@@ -67,7 +67,7 @@ TEST(Environment, ExrAndRadianceFilesAreRead) {
   EXPECT_NEAR(hdr->at(5, 2).y, 1.0f, 0.01f);
 }
 
-TEST(Environment, LargeFilesAreBroughtDownToTheirMean) {
+TEST(Environment, LargeFilesAreReducedToTheirMean) {
   const TemporaryFolder folder;
   EnvironmentImage image(4096, 4);
   for (uint32_t y = 0; y < 4; ++y) {
@@ -149,7 +149,7 @@ TEST(Environment, SidesOverTheLimitAreRefusedBeforeReading) {
   EXPECT_THAT(image.error(), HasSubstr("40000x20000"));
 }
 
-TEST(Environment, HostileFilesAreOneSentence) {
+TEST(Environment, InvalidFilesAreRefusedInOneSentence) {
   const TemporaryFolder folder;
   const std::string good = radiance_file(8, 4, std::string("\x40\x80\x20\x81", 4));
   const std::vector<std::pair<std::string, std::string>> files{

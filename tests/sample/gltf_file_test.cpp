@@ -1,6 +1,7 @@
 // Which files a glTF scene is read from, and which not.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 #include <fstream>
@@ -44,7 +45,7 @@ TEST(GltfFile, ExternalBufferIsReadFromTheFolderAndNowhereElse) {
   }
 }
 
-TEST(GltfFile, AFileThatIsThereAndMayNotBeReadIsNotCalledMissing) {
+TEST(GltfFile, FileOutsideTheFolderIsNotCalledMissing) {
   const TemporaryFolder folder;
   const std::filesystem::path inside = folder.path / "inside";
   std::filesystem::create_directories(inside);
@@ -58,17 +59,17 @@ TEST(GltfFile, AFileThatIsThereAndMayNotBeReadIsNotCalledMissing) {
     std::ofstream(inside / "scene.gltf") << json.dump();
     const auto scene = load_gltf(inside / "scene.gltf");
     ASSERT_FALSE(scene);
-    EXPECT_THAT(scene.error(), HasSubstr(uri + " lies outside the scene's folder"));
+    EXPECT_THAT(scene.error(), HasSubstr("(" + uri + ") lies outside the scene's folder"));
   }
   maker.json["images"][0] = {{"uri", "../t.png"}};
   const std::vector<uint8_t> bytes = maker.gltf();
   const auto scene = parse_gltf(bytes, "test.gltf", inside);
   ASSERT_TRUE(scene) << scene.error();
   EXPECT_THAT(scene->warnings,
-              testing::Contains(HasSubstr("image 0 (../t.png, outside the scene's folder)")));
+              testing::Contains(HasSubstr("image 0 (../t.png) lies outside the scene's folder")));
 }
 
-TEST(GltfFile, WhatKeepsAFileFromBeingOpenedIsSaid) {
+TEST(GltfFile, ReasonThatAFileCannotBeOpenedIsReported) {
   const TemporaryFolder folder;
   std::filesystem::create_symlink("loop.gltf", folder.path / "loop.gltf");
   const auto scene = load_gltf(folder.path / "loop.gltf");
@@ -84,7 +85,7 @@ TEST(GltfFile, MissingFileIsNamed) {
   EXPECT_EQ(scene.error(), "cannot read no/such/scene.glb: there is no such file");
 }
 
-TEST(GltfFile, OnlyTheSecondVersionIsRead) {
+TEST(GltfFile, OnlyVersionTwoIsRead) {
   GltfMaker maker = GltfMaker::triangle();
   for (const char* version : {"1.0", "3.0", "20.0"}) {
     maker.json["asset"]["version"] = version;
@@ -96,6 +97,188 @@ TEST(GltfFile, OnlyTheSecondVersionIsRead) {
   std::vector<uint8_t> glb = maker.glb();
   glb[4] = 1;
   EXPECT_THAT(refusal(glb), HasSubstr("binary glTF of version 1"));
+}
+
+// A scene whose buffer has that URI, in a folder in which the file has that name.
+tl::expected<Scene, std::string> scene_with(const std::string& uri, const std::string& file_name) {
+  const TemporaryFolder folder;
+  const GltfMaker maker = GltfMaker::triangle();
+  nlohmann::json json = maker.json;
+  json["buffers"] = {{{"byteLength", maker.bytes.size()}, {"uri", uri}}};
+  std::ofstream(folder.path / "scene.gltf") << json.dump();
+  std::ofstream(folder.path / file_name, std::ios::binary)
+      << std::string(maker.bytes.begin(), maker.bytes.end());
+  return load_gltf(folder.path / "scene.gltf");
+}
+
+// RFC 3986 section 2.1: only %XX is decoded.
+TEST(GltfFile, UriIsDecodedAfterRfc3986) {
+  const std::pair<const char*, const char*> names[] = {
+      {"a+b.bin", "a+b.bin"},
+      {"c%2Bd.bin", "c+d.bin"},
+      {"e%20f.bin", "e f.bin"},
+      {"g h.bin", "g h.bin"},
+      {"50%2525.bin", "50%25.bin"},
+      {"60%.bin", "60%.bin"},
+      {"%zz%4.bin", "%zz%4.bin"},
+      {"50%25.bin", "50%25.bin"},  // not decoded: the file has the name as it is written
+      {"t%C3%B6st.bin", "t\xc3\xb6st.bin"},
+      {"r\xc3\xa4um.bin", "r\xc3\xa4um.bin"},
+      {"./k.bin", "k.bin"},
+      {".\\l.bin", "l.bin"},
+      {"m#1?.bin", "m#1?.bin"},
+  };
+  for (const auto& [uri, file_name] : names) {
+    const auto scene = scene_with(uri, file_name);
+    EXPECT_TRUE(scene) << uri << ": " << scene.error();
+  }
+  const auto missing = scene_with("a b.bin", "a+b.bin");
+  ASSERT_FALSE(missing);
+  EXPECT_THAT(missing.error(), HasSubstr("buffers[0] (a b.bin) is not in the scene's folder"));
+}
+
+TEST(GltfFile, EncodedPathsOutOfTheFolderAreRefused) {
+  for (const char* uri : {"%2e%2e/own.bin", "..\\own.bin", "/etc/passwd", "file:///etc/passwd",
+                          "https://example.org/a.bin", "inside/../../own.bin", "a%00.bin"}) {
+    const auto scene = scene_with(uri, "own.bin");
+    ASSERT_FALSE(scene) << uri;
+    EXPECT_THAT(scene.error(), HasSubstr("folder")) << uri;
+  }
+}
+
+TEST(GltfFile, NamedPipesAndFoldersInPlaceOfInputsAreRefused) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(mkfifo((folder.path / "pipe").c_str(), 0600), 0);
+  const auto scene = load_gltf(folder.path / "pipe");
+  ASSERT_FALSE(scene);
+  EXPECT_THAT(scene.error(), HasSubstr("not a regular file"));
+  nlohmann::json json = GltfMaker::triangle().json;
+  for (const char* uri : {"pipe", ".", "/dev/zero"}) {
+    json["buffers"] = {{{"byteLength", 36}, {"uri", uri}}};
+    std::ofstream(folder.path / "scene.gltf") << json.dump();
+    EXPECT_FALSE(load_gltf(folder.path / "scene.gltf")) << uri;
+  }
+}
+
+tl::expected<Scene, std::string> scene_with_data(const std::string& uri, size_t length) {
+  nlohmann::json json = GltfMaker::triangle().json;
+  json["buffers"] = {{{"byteLength", length}, {"uri", uri}}};
+  const std::string text = json.dump();
+  return parse_gltf({reinterpret_cast<const uint8_t*>(text.data()), text.size()}, "a.gltf", "");
+}
+
+TEST(GltfFile, EmbeddedDataMayHaveAnyMediaTypeAndEncoding) {
+  const GltfMaker maker = GltfMaker::triangle();
+  const std::string base64 = GltfMaker::base64(maker.bytes);
+  std::string percent, spaced = base64;
+  for (const uint8_t byte : maker.bytes) {
+    constexpr const char* kDigits = "0123456789abcdef";
+    percent += std::string("%") + kDigits[byte >> 4] + kDigits[byte & 15];
+  }
+  spaced.insert(10, "\n ");
+  for (const std::string& uri :
+       {"data:application/octet-stream;base64," + base64,
+        "data:application/gltf-buffer;base64," + base64, "data:;base64," + base64,
+        "DATA:text/plain;charset=x;BASE64," + base64, "data:," + percent,
+        "data:application/octet-stream," + percent, "data:;base64," + spaced}) {
+    const auto scene = scene_with_data(uri, maker.bytes.size());
+    EXPECT_TRUE(scene) << uri.substr(0, 40) << ": " << scene.error();
+  }
+  const std::pair<std::string, const char*> wrong[] = {
+      {"data:;base64,!!!!", "is not valid base64"},
+      {"data:;base64,AAAAA", "cut short"},
+      {"data:;base64", "without data"},
+      {"data:;base64,AAAA", "has 3 bytes, and its byteLength says 36"}};
+  for (const auto& [uri, sentence] : wrong) {
+    const auto scene = scene_with_data(uri, 36);
+    ASSERT_FALSE(scene);
+    EXPECT_THAT(scene.error(), HasSubstr(sentence));
+  }
+}
+
+// glTF 2.0 section 3.6.1: a buffer may have no URI, as a placeholder for an extension.
+TEST(GltfFile, BufferWithoutDataIsAllowedUnlessItIsRead) {
+  GltfMaker maker = GltfMaker::triangle();
+  nlohmann::json root = nlohmann::json::parse(maker.gltf());
+  root["buffers"].push_back({{"byteLength", 1000}});
+  root["buffers"].push_back({{"byteLength", 1000}});
+  const auto text = [&] {
+    const std::string dumped = root.dump();
+    return std::vector<uint8_t>(dumped.begin(), dumped.end());
+  };
+  EXPECT_EQ(corners(parsed(text())), corners(parsed(maker.gltf())));
+  root["bufferViews"][0]["buffer"] = 1;
+  EXPECT_THAT(refusal(text()), HasSubstr("buffer view 0 lies in buffer 1, which has no data"));
+}
+
+// glTF 2.0 section 3.6.2.1: an accessor without a buffer view is zeroes, which sparse values
+// replace.
+TEST(GltfFile, IndicesWithoutABufferViewAreRead) {
+  GltfMaker maker = GltfMaker::triangle();
+  maker.json["accessors"].push_back(
+      {{"componentType", 5123},
+       {"type", "SCALAR"},
+       {"count", 3},
+       {"sparse",
+        {{"count", 2},
+         {"indices", {{"bufferView", maker.view<uint8_t>({1, 2})}, {"componentType", 5121}}},
+         {"values", {{"bufferView", maker.view<uint16_t>({1, 2})}}}}}});
+  const auto expected = corners(parsed(maker.gltf()));
+  maker.primitive()["indices"] = 1;
+  EXPECT_EQ(corners(parsed(maker.gltf())), expected);
+}
+
+TEST(GltfFile, ExtensionsThatChangeNoShapeMayBeRequired) {
+  GltfMaker maker = GltfMaker::triangle();
+  for (const char* name : {"KHR_lights_punctual", "KHR_materials_unlit", "KHR_xmp_json_ld"}) {
+    maker.json["extensionsRequired"] = {name};
+    EXPECT_EQ(parsed(maker.gltf()).meshes.size(), 1u);
+  }
+}
+
+// Sets a little-endian word of a file.
+void set_word(std::vector<uint8_t>& file, size_t at, uint32_t value) {
+  for (size_t i = 0; i < 4; ++i) file[at + i] = static_cast<uint8_t>(value >> 8 * i);
+}
+
+TEST(GltfFile, MalformedChunksOfABinaryFileAreRefused) {
+  const std::vector<uint8_t> good = GltfMaker::triangle().glb();
+  const auto word = [&](size_t at) {
+    return uint32_t{good[at]} | uint32_t{good[at + 1]} << 8 | uint32_t{good[at + 2]} << 16;
+  };
+  const uint32_t json_length = word(12);
+  const size_t binary = 20 + json_length;
+  struct Case {
+    const char* sentence;
+    size_t at;
+    uint32_t value;
+  };
+  const Case cases[] = {
+      {"its header gives a length of", 8, static_cast<uint32_t>(good.size() + 4)},
+      {"its header gives a length of", 8, static_cast<uint32_t>(good.size() - 4)},
+      {"its chunk 0 reaches past the end of the file", 12, 0xfffffff0u},
+      {"its chunk 0 has a length that is no multiple of 4", 12, json_length + 1},
+      {"its chunk 0 is not of the type JSON", 16, 0x004e4942},
+      {"its chunk 1 is JSON, as the first one is", binary + 4, 0x4e4f534a},
+      {"its chunk 1 reaches past the end of the file", binary, word(binary) + 4},
+  };
+  for (const Case& c : cases) {
+    std::vector<uint8_t> file = good;
+    set_word(file, c.at, c.value);
+    EXPECT_THAT(refusal(file), HasSubstr(c.sentence));
+  }
+  std::vector<uint8_t> twice = good;
+  twice.insert(twice.end(), good.begin() + static_cast<ptrdiff_t>(binary), good.end());
+  set_word(twice, 8, static_cast<uint32_t>(twice.size()));
+  EXPECT_THAT(refusal(twice), HasSubstr("its chunk 2 is binary data, which has to be chunk 1"));
+}
+
+TEST(GltfFile, UnknownChunksOfABinaryFileAreSkipped) {
+  std::vector<uint8_t> file = GltfMaker::triangle().glb();
+  const auto expected = corners(parsed(file));
+  file.insert(file.end(), {4, 0, 0, 0, 'M', 'I', 'N', 'E', 1, 2, 3, 4});
+  set_word(file, 8, static_cast<uint32_t>(file.size()));
+  EXPECT_EQ(corners(parsed(file)), expected);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Files that are wrong, cut short or ask for too much.
+// Files that are invalid, truncated or too large.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// A hostile file: what is changed, and a word of the sentence that refuses it.
+// A change to a valid file, and a part of the sentence that refuses the result.
 struct Hostile {
   const char* name;
   void (*spoil)(GltfMaker&);
@@ -66,13 +66,6 @@ const Hostile kHostile[] = {
      "finite"},
     {"ScalarPositions", [](GltfMaker& m) { m.json["accessors"][0]["type"] = "SCALAR"; },
      "components"},
-    {"DeepNesting",
-     [](GltfMaker& m) {
-       nlohmann::json deep = 1;
-       for (int i = 0; i < 500; ++i) deep = nlohmann::json::array({deep});
-       m.json["extras"] = deep;
-     },
-     "nested"},
     {"UnknownRequiredExtension",
      [](GltfMaker& m) { m.json["extensionsRequired"] = {"KHR_draco_mesh_compression"}; },
      "KHR_draco_mesh_compression"},
@@ -112,17 +105,78 @@ const Hostile kHostile[] = {
        m.json["textures"][0]["sampler"] = 3;
      },
      "material \"tiles\" has a texture without its sampler 3"},
+    {"NodeCycleWithoutScenes",
+     [](GltfMaker& m) {
+       m.json.erase("scene");
+       m.json.erase("scenes");
+       m.json["nodes"] = {
+           {{"mesh", 0}}, {{"mesh", 0}, {"children", {2}}}, {{"mesh", 0}, {"children", {1}}}};
+     },
+     "twice"},
+    {"NodeOfTwoParents",
+     [](GltfMaker& m) {
+       m.json["nodes"] = {{{"children", {2}}}, {{"children", {2}}}, {{"mesh", 0}}};
+     },
+     "node 2 is reached twice"},
+    {"NoSuchChild", [](GltfMaker& m) { m.json["nodes"][0]["children"] = {7}; },
+     "nodes[0].children names node 7"},
+    {"LaterVersionIsNeeded", [](GltfMaker& m) { m.json["asset"]["minVersion"] = "2.1"; },
+     "it is glTF 2.1 (asset.minVersion)"},
+    {"VersionThatIsNone", [](GltfMaker& m) { m.json["asset"]["version"] = "two"; },
+     "asset.version is \"two\""},
     {"NoTriangles", [](GltfMaker& m) { m.primitive()["mode"] = 0; }, "no triangles"},
 };
 INSTANTIATE_TEST_SUITE_P(All, HostileGltf, testing::ValuesIn(kHostile),
                          [](const auto& param) { return std::string(param.param.name); });
 
-TEST(GltfLimits, EveryCutOfAFileIsReadOrRefused) {
+// A triangle with one image, given as an embedded PNG whatever the bytes are.
+GltfMaker with_image(const std::string& base64) {
+  GltfMaker maker = painted({{"index", 0}}, {{"index", 0}});
+  maker.json["images"][0] = {{"uri", "data:image/png;base64," + base64}};
+  return maker;
+}
+
+TEST(GltfLimits, EveryTruncationIsRefused) {
   const auto glb = GltfMaker::triangle().glb();
   for (size_t size = 0; size < glb.size(); ++size) {
     const std::vector<uint8_t> cut(glb.begin(), glb.begin() + static_cast<std::ptrdiff_t>(size));
     EXPECT_FALSE(parse_gltf(cut, "cut.glb", "")) << size;
   }
+}
+
+TEST(GltfImage, ImagesThatAreLargeTogetherAreReduced) {
+  GltfMaker maker = textured({{"index", 0}}, {{"index", 1}});
+  maker.json.erase("textures");
+  for (const uint32_t side : {64u, 16u}) {
+    maker.json["images"].push_back({{"bufferView", maker.view(make_plain_png(side, side, 200))}});
+    maker.json["textures"].push_back({{"source", maker.json["images"].size() - 1}});
+  }
+  GltfLimits limits;
+  limits.images.kept = 1024;
+  const auto scene = parse_gltf(maker.gltf(), "large.gltf", "", limits);
+  ASSERT_TRUE(scene) << scene.error();
+  ASSERT_EQ(scene->images.size(), 2u);
+  EXPECT_EQ(scene->images[0].width, 16u);
+  EXPECT_EQ(scene->images[1].width, 16u);
+  EXPECT_EQ(scene->images[0].rgba[0], 200);
+  EXPECT_THAT(scene->warnings, testing::Contains(HasSubstr("over 16 pixels a side are reduced")));
+}
+
+TEST(GltfImage, MorePixelsThanAreDecodedAreRefusedFromTheHeaders) {
+  GltfMaker maker = with_image(GltfMaker::base64(make_png_promise(1024, 1024, 2000)));
+  GltfLimits limits;
+  limits.images.decoded = 1 << 19;
+  const auto scene = parse_gltf(maker.gltf(), "large.gltf", "", limits);
+  ASSERT_FALSE(scene);
+  EXPECT_THAT(scene.error(), HasSubstr("image 0, which takes the images of the scene past"));
+}
+
+TEST(GltfImage, ImagesThatNoMeshUsesAreNotRead) {
+  GltfMaker maker = with_image(GltfMaker::base64(make_png_promise(22'000, 22'000, 500'000)));
+  maker.primitive().erase("material");
+  const Scene scene = parsed(maker.gltf());
+  EXPECT_TRUE(scene.images.empty());
+  EXPECT_THAT(scene.warnings, testing::IsEmpty());
 }
 
 TEST(GltfLimits, InstancesBeyondTheLimitAreRefused) {
@@ -138,8 +192,8 @@ TEST(GltfLimits, InstancesBeyondTheLimitAreRefused) {
   EXPECT_FALSE(scene);
 }
 
-// Reading them takes as long as if they had an area.
-TEST(GltfLimits, InstancesThatComeToNothingCountTowardsTheLimitToo) {
+// Triangles without area take as long to read as others.
+TEST(GltfLimits, InstancesWithoutAreaCountTowardsTheLimit) {
   for (const bool indexed : {false, true}) {
     GltfMaker maker = GltfMaker::triangle();
     maker.json["accessors"][0].erase("bufferView");  // zeroes
@@ -160,7 +214,7 @@ TEST(GltfLimits, InstancesThatComeToNothingCountTowardsTheLimitToo) {
   }
 }
 
-TEST(GltfLimits, PartsThatAreLeftOutCountTowardsTheLimitToo) {
+TEST(GltfLimits, PrimitivesThatAreLeftOutCountTowardsTheLimit) {
   GltfMaker maker = GltfMaker::triangle();
   maker.primitive()["mode"] = 1;
   const nlohmann::json lines = maker.primitive();
@@ -170,13 +224,6 @@ TEST(GltfLimits, PartsThatAreLeftOutCountTowardsTheLimitToo) {
   const auto scene = parse_gltf(maker.gltf(), "lines.gltf", "", limits);
   ASSERT_FALSE(scene);
   EXPECT_THAT(scene.error(), HasSubstr("parts"));
-}
-
-// A triangle with one image, given as an embedded PNG whatever the bytes are.
-GltfMaker with_image(const std::string& base64) {
-  GltfMaker maker = painted({{"index", 0}}, {{"index", 0}});
-  maker.json["images"][0] = {{"uri", "data:image/png;base64," + base64}};
-  return maker;
 }
 
 TEST(GltfImage, DamagedJpegIsLeftOutWithANote) {

@@ -1,4 +1,4 @@
-// What is said of a glTF file beside its scene.
+// Warnings and error sentences about glTF files.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace {
 
 using testing::HasSubstr;
 
-TEST(GltfNotes, WhatIsLeftOutIsSaid) {
+TEST(GltfNotes, PartsThatAreLeftOutAreReported) {
   GltfMaker maker = textured({{"index", 0}}, {{"index", 0}, {"texCoord", 2}});
   maker.json["extensionsUsed"] = {"KHR_texture_transform", "KHR_materials_unlit"};
   maker.primitive()["attributes"]["COLOR_0"] = maker.primitive()["attributes"]["POSITION"];
@@ -29,7 +29,7 @@ TEST(GltfNotes, WhatIsLeftOutIsSaid) {
           "texture 0 has no image that is read here and is left out."));
 }
 
-TEST(GltfNotes, WhatBlendsIsOpaqueUnlessItIsCutOutAndBothAreSaid) {
+TEST(GltfNotes, BlendedMaterialIsOpaqueOrCutOutAndBothAreReported) {
   GltfMaker maker = GltfMaker::triangle();
   maker.json["materials"] = {{{"name", "leaf"}, {"alphaMode", "BLEND"}}};
   maker.primitive()["material"] = 0;
@@ -47,7 +47,7 @@ TEST(GltfNotes, WhatBlendsIsOpaqueUnlessItIsCutOutAndBothAreSaid) {
   }
 }
 
-TEST(GltfNotes, ASentenceStaysShortHoweverLongWhatItSpeaksOf) {
+TEST(GltfNotes, SentenceStaysShortForLongNamesAndUris) {
   GltfMaker maker = GltfMaker::triangle();
   nlohmann::json json = maker.json;
   json["buffers"] = {
@@ -72,7 +72,7 @@ TEST(GltfNotes, ASentenceStaysShortHoweverLongWhatItSpeaksOf) {
 }
 
 // report.json and trade.svg have it, and are of UTF-8.
-TEST(GltfNotes, ASceneIsNamedInUtf8WhateverItsFileIsCalled) {
+TEST(GltfNotes, SceneNameIsUtf8ForAnyFileName) {
   const auto scene = parse_gltf(GltfMaker::triangle().gltf(), "caf\xe9.gltf", "");
   ASSERT_TRUE(scene) << scene.error();
   EXPECT_EQ(scene->name, "caf\xef\xbf\xbd");

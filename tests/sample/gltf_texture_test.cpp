@@ -11,7 +11,7 @@
 namespace alcove::sample {
 namespace {
 
-TEST(GltfTexture, TextureTransformsScaleThenTurnCounterClockwiseThenMove) {
+TEST(GltfTexture, TransformScalesThenRotatesCounterClockwiseThenTranslates) {
   // The lower left quarter of the image, turned: the extension's own example.
   const nlohmann::json quarter = {
       {"offset", {0, 1}}, {"rotation", 1.57079632679}, {"scale", {0.5, 0.5}}};
@@ -32,7 +32,7 @@ TEST(GltfTexture, TextureTransformsScaleThenTurnCounterClockwiseThenMove) {
             1e-5f);
 }
 
-TEST(GltfTexture, EachTextureHasTheSetThatItOrItsTransformNames) {
+TEST(GltfTexture, TextureUsesTheSetOfItsReferenceOrTransform) {
   nlohmann::json overridden = transformed({{"texCoord", 1}});
   overridden["texCoord"] = 0;
   for (const nlohmann::json& second : {nlohmann::json{{"index", 0}, {"texCoord", 1}}, overridden}) {
@@ -49,12 +49,12 @@ TEST(GltfTexture, EachTextureHasTheSetThatItOrItsTransformNames) {
   }
 }
 
-TEST(GltfTexture, ASecondSetThatNoTextureNamesIsNotKept) {
+TEST(GltfTexture, SecondSetThatNoTextureUsesIsDropped) {
   const Scene scene = parsed(painted({{"index", 0}}, {{"index", 0}}).gltf());
   EXPECT_TRUE(scene.meshes[0].second_uvs.empty());
 }
 
-TEST(GltfTexture, ASetThatTheMeshLacksIsSaid) {
+TEST(GltfTexture, MissingSetIsReported) {
   for (const std::string set : {"0", "1"}) {
     GltfMaker maker = painted({{"index", 0}}, {{"index", 0}, {"texCoord", 1}});
     maker.primitive()["attributes"].erase("TEXCOORD_" + set);
@@ -67,7 +67,7 @@ TEST(GltfTexture, ASetThatTheMeshLacksIsSaid) {
   }
 }
 
-TEST(GltfTexture, SamplersAreReadAndFiltersNotGivenAreSmooth) {
+TEST(GltfTexture, SamplersAreReadAndMissingFiltersAreLinear) {
   GltfMaker maker = painted({{"index", 0}}, {{"index", 1}});
   maker.white_texture();
   maker.json["samplers"] = {
@@ -95,7 +95,7 @@ TEST(GltfTexture, SamplersAreReadAndFiltersNotGivenAreSmooth) {
 TEST(GltfTexture, SamplersOfValuesUnknownToGltfAreLeftOut) {
   const std::pair<nlohmann::json, std::string> samplers[] = {
       {{{"wrapS", 33070}}, "sampler 0 has a wrap mode unknown to glTF and is left out."},
-      {{{"wrapT", -1}}, "sampler 0 has a wrap mode unknown to glTF and is left out."},
+      {{{"wrapT", 0}}, "sampler 0 has a wrap mode unknown to glTF and is left out."},
       {{{"magFilter", 9987}}, "sampler 0 has a filter unknown to glTF and is left out."},
       {{{"minFilter", 7}}, "sampler 0 has a filter unknown to glTF and is left out."}};
   for (const auto& [sampler, warning] : samplers) {

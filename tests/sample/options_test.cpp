@@ -271,5 +271,21 @@ TEST(Options, AMistakeIsNamedWithWhereHelpIs) {
   EXPECT_THAT(unknown, testing::EndsWith("; see alcove render --help"));
 }
 
+TEST(Options, EmptyFolderNameIsRefused) {
+  for (const char* command : {"render", "compare", "view"}) {
+    const auto options = parse({command, "--out", ""});
+    ASSERT_FALSE(options);
+    EXPECT_EQ(options.error().text, "--out '': give the name of a folder, such as out");
+  }
+}
+
+TEST(Options, ControlCharactersOfArgumentsAreNotRepeatedAndLongOnesAreCut) {
+  const std::string text = "\x1b[31m" + std::string(5000, 'x');
+  const auto options = parse({"render", "--radius", text.c_str()});
+  ASSERT_FALSE(options);
+  EXPECT_EQ(options.error().text.find('\x1b'), std::string::npos);
+  EXPECT_LT(options.error().text.size(), 200u);
+}
+
 }  // namespace
 }  // namespace alcove::sample

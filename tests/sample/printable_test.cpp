@@ -42,5 +42,25 @@ TEST(Printable, AnyBytesCanBeWrittenAsJson) {
   }
 }
 
+TEST(Printable, LongTextKeepsItsBeginningAndItsEnd) {
+  EXPECT_EQ(shortened("short", 16), "short");
+  EXPECT_EQ(shortened("a\x1b[31mb", 16), "a [31mb");
+  const std::string sentence = "cannot read " + std::string(5000, 'x') + ": it is damaged";
+  const std::string cut = shortened(sentence, 100);
+  EXPECT_EQ(cut.size(), 100u);
+  EXPECT_TRUE(cut.starts_with("cannot read xxx"));
+  EXPECT_TRUE(cut.ends_with("xxx: it is damaged"));
+}
+
+TEST(Printable, TextIsNotCutWithinACharacter) {
+  std::string text;
+  for (int i = 0; i < 100; ++i) text += "\xc3\xa9";
+  for (size_t most = 16; most < 40; ++most) {
+    const std::string cut = shortened(text, most);
+    EXPECT_LE(cut.size(), most);
+    EXPECT_EQ(printable(cut), cut);
+  }
+}
+
 }  // namespace
 }  // namespace alcove::sample

@@ -1,0 +1,29 @@
+#include "scene/gltf_extensions.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+namespace alcove::sample {
+
+bool is_extension_read(const std::string& name) {
+  constexpr std::array<std::string_view, 2> kRead{"KHR_mesh_quantization", "KHR_texture_transform"};
+  return std::ranges::find(kRead, name) != kRead.end();
+}
+
+bool changes_no_shape(const std::string& name) {
+  // Prefixes of families, then whole names. Not here, because they hold or place triangles: the
+  // compressions of meshes (KHR_draco_mesh_compression, EXT_meshopt_compression),
+  // KHR_texture_basisu and its kind where a texture has no other source, and whatever is unknown.
+  constexpr std::array<std::string_view, 4> kFamilies{"KHR_materials_", "ADOBE_materials_",
+                                                      "EXT_lights_", "KHR_lights_"};
+  constexpr std::array<std::string_view, 8> kNames{
+      "AGI_stk_metadata",        "CESIUM_primitive_outline",
+      "EXT_structural_metadata", "KHR_animation_pointer",
+      "KHR_audio_emitter",       "KHR_xmp",
+      "KHR_xmp_json_ld",         "MSFT_packing_occlusionRoughnessMetallic"};
+  return std::ranges::any_of(kFamilies, [&](auto family) { return name.starts_with(family); }) ||
+         std::ranges::find(kNames, name) != kNames.end();
+}
+
+}  // namespace alcove::sample

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <tiny_gltf.h>
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
+#include "scene/scene.h"
+#include "support/decode_image.h"
+
+namespace alcove::sample {
+
+// Limits on the images of a scene, in pixels.
+struct ImageLimits {
+  uint64_t kept = uint64_t{1} << 27;     // all together, in memory: 512 MiB
+  uint64_t decoded = uint64_t{1} << 30;  // all together, in their files: some seconds of decoding
+};
+
+// Decodes the images of a model into a scene as materials ask for them, each at most once. The
+// headers of all are read first: where the images would take more than the limit together, every
+// image is reduced by a power of 2 to a side that lets them fit, and the scene gets a warning.
+class GltfImages {
+ public:
+  GltfImages(const tinygltf::Model& model, const ImageLimits& limits, Scene& scene);
+
+  // The index in Scene::images, or -1 for an image that cannot be read, with a warning once. The
+  // error, the end of a sentence about the material that uses it: too large, or a buffer view that
+  // does not exist.
+  [[nodiscard]] tl::expected<int32_t, std::string> decode(size_t index);
+
+ private:
+  struct Entry {
+    std::span<const uint8_t> bytes;
+    tl::expected<ImageHeader, std::string> header = tl::unexpected<std::string>("");
+    std::string refusal;  // a reason to refuse the scene where a material uses the image
+    bool tried = false;
+    int32_t image = -1;
+  };
+  std::string name(size_t index) const;
+  void read_header(size_t index);
+  void limit_sides(const ImageLimits& limits);
+  uint32_t reduction(const ImageHeader& header) const;
+
+  const tinygltf::Model& model_;
+  Scene& scene_;
+  std::vector<Entry> entries_;
+  uint32_t largest_side_ = kLargestImageSide;
+};
+
+}  // namespace alcove::sample

@@ -1,0 +1,472 @@
+#include "scene/gltf_properties.h"
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace alcove::sample {
+namespace {
+
+using nlohmann::json;
+using Failure = tl::unexpected<std::string>;
+using Checked = tl::expected<void, std::string>;
+
+enum class Type : uint8_t {
+  kObject,   // its members have rows of their own
+  kObjects,  // an array of objects
+  kWhole,    // an integer from `low` to `high`
+  kWholes,   // an array of them
+  kNumber,   // a finite number from `low` to `high`
+  kNumbers,  // an array of `count` of them
+  kBoolean,
+  kString,   // one of `choices`, which `|` separates; any where that is empty
+  kStrings,  // an array of strings
+};
+
+enum class Presence : uint8_t { kOptional, kRequired };
+
+// `path`: names from the root, separated by /; * stands for every element of an array or member of
+// an object. Parents come before their members.
+struct Property {
+  std::string_view path;
+  Type type;
+  double low = 0.0;
+  double high = 0.0;
+  size_t count = 0;
+  std::string_view choices = {};
+  Presence presence = Presence::kOptional;
+};
+
+constexpr auto kRequired = Presence::kRequired;
+constexpr double kLargestIndex = std::numeric_limits<int32_t>::max();
+constexpr double kLargestExact = 9007199254740992.0;  // 2^53: integers above it are not exact
+constexpr double kAny = std::numeric_limits<double>::max();
+constexpr double kLargestColour = 1e6;  // 1 by the specification; exporters write brighter ones
+constexpr double kLargestStride = 252.0;
+constexpr double kLargestEnumerator = 65535.0;
+
+constexpr Property object(std::string_view path, Presence presence = Presence::kOptional) {
+  return {path, Type::kObject, 0, 0, 0, {}, presence};
+}
+constexpr Property objects(std::string_view path, Presence presence = Presence::kOptional) {
+  return {path, Type::kObjects, 0, 0, 0, {}, presence};
+}
+constexpr Property index(std::string_view path, Presence presence = Presence::kOptional) {
+  return {path, Type::kWhole, 0, kLargestIndex, 0, {}, presence};
+}
+constexpr Property indices(std::string_view path, Presence presence = Presence::kOptional) {
+  return {path, Type::kWholes, 0, kLargestIndex, 0, {}, presence};
+}
+constexpr Property whole(std::string_view path, double low, double high,
+                         Presence presence = Presence::kOptional) {
+  return {path, Type::kWhole, low, high, 0, {}, presence};
+}
+constexpr Property number(std::string_view path, double low, double high,
+                          Presence presence = Presence::kOptional) {
+  return {path, Type::kNumber, low, high, 0, {}, presence};
+}
+constexpr Property numbers(std::string_view path, size_t count, double low, double high) {
+  return {path, Type::kNumbers, low, high, count};
+}
+constexpr Property boolean(std::string_view path) { return {path, Type::kBoolean}; }
+constexpr Property text(std::string_view path, std::string_view choices = {},
+                        Presence presence = Presence::kOptional) {
+  return {path, Type::kString, 0, 0, 0, choices, presence};
+}
+constexpr Property texts(std::string_view path) { return {path, Type::kStrings}; }
+
+// A reference of a material to a texture, with the extension that places it.
+#define ALCOVE_TEXTURE_INFO(path)                                                   \
+  object(path), index(path "/index", kRequired), index(path "/texCoord"),           \
+      object(path "/extensions"), object(path "/extensions/KHR_texture_transform"), \
+      numbers(path "/extensions/KHR_texture_transform/offset", 2, -kAny, kAny),     \
+      numbers(path "/extensions/KHR_texture_transform/scale", 2, -kAny, kAny),      \
+      number(path "/extensions/KHR_texture_transform/rotation", -kAny, kAny),       \
+      index(path "/extensions/KHR_texture_transform/texCoord")
+
+constexpr Property kProperties[] = {
+    object("asset", kRequired),
+    text("asset/version", {}, kRequired),
+    text("asset/minVersion"),
+    texts("extensionsUsed"),
+    texts("extensionsRequired"),
+
+    index("scene"),
+    objects("scenes"),
+    indices("scenes/*/nodes"),
+
+    objects("nodes"),
+    text("nodes/*/name"),
+    indices("nodes/*/children"),
+    index("nodes/*/mesh"),
+    index("nodes/*/camera"),
+    index("nodes/*/skin"),
+    numbers("nodes/*/matrix", 16, -kAny, kAny),
+    numbers("nodes/*/translation", 3, -kAny, kAny),
+    numbers("nodes/*/rotation", 4, -kAny, kAny),
+    numbers("nodes/*/scale", 3, -kAny, kAny),
+    object("nodes/*/extensions"),
+    object("nodes/*/extensions/EXT_mesh_gpu_instancing"),
+    object("nodes/*/extensions/EXT_mesh_gpu_instancing/attributes", kRequired),
+    index("nodes/*/extensions/EXT_mesh_gpu_instancing/attributes/*"),
+    object("nodes/*/extensions/KHR_node_visibility"),
+    boolean("nodes/*/extensions/KHR_node_visibility/visible"),
+
+    objects("meshes"),
+    text("meshes/*/name"),
+    objects("meshes/*/primitives", kRequired),
+    object("meshes/*/primitives/*/attributes", kRequired),
+    index("meshes/*/primitives/*/attributes/*"),
+    index("meshes/*/primitives/*/indices"),
+    index("meshes/*/primitives/*/material"),
+    whole("meshes/*/primitives/*/mode", 0, 6),
+    objects("meshes/*/primitives/*/targets"),
+
+    objects("skins"),
+    indices("skins/*/joints", kRequired),
+    index("skins/*/inverseBindMatrices"),
+    index("skins/*/skeleton"),
+
+    objects("accessors"),
+    index("accessors/*/bufferView"),
+    whole("accessors/*/byteOffset", 0, kLargestExact),
+    whole("accessors/*/componentType", 5120, 5126, kRequired),
+    boolean("accessors/*/normalized"),
+    whole("accessors/*/count", 0, kLargestExact, kRequired),
+    text("accessors/*/type", "SCALAR|VEC2|VEC3|VEC4|MAT2|MAT3|MAT4", kRequired),
+    object("accessors/*/sparse"),
+    index("accessors/*/sparse/count", kRequired),
+    object("accessors/*/sparse/indices", kRequired),
+    index("accessors/*/sparse/indices/bufferView", kRequired),
+    index("accessors/*/sparse/indices/byteOffset"),
+    whole("accessors/*/sparse/indices/componentType", 5121, 5125, kRequired),
+    object("accessors/*/sparse/values", kRequired),
+    index("accessors/*/sparse/values/bufferView", kRequired),
+    index("accessors/*/sparse/values/byteOffset"),
+
+    objects("bufferViews"),
+    index("bufferViews/*/buffer", kRequired),
+    whole("bufferViews/*/byteOffset", 0, kLargestExact),
+    whole("bufferViews/*/byteLength", 0, kLargestExact, kRequired),
+    whole("bufferViews/*/byteStride", 0, kLargestStride),
+
+    objects("buffers"),
+    text("buffers/*/uri"),
+    whole("buffers/*/byteLength", 0, kLargestExact, kRequired),
+
+    objects("images"),
+    text("images/*/uri"),
+    text("images/*/mimeType"),
+    index("images/*/bufferView"),
+
+    objects("textures"),
+    index("textures/*/source"),
+    index("textures/*/sampler"),
+
+    objects("samplers"),
+    whole("samplers/*/magFilter", 0, kLargestEnumerator),
+    whole("samplers/*/minFilter", 0, kLargestEnumerator),
+    whole("samplers/*/wrapS", 0, kLargestEnumerator),
+    whole("samplers/*/wrapT", 0, kLargestEnumerator),
+
+    objects("materials"),
+    text("materials/*/name"),
+    text("materials/*/alphaMode", "OPAQUE|MASK|BLEND"),
+    number("materials/*/alphaCutoff", 0, kAny),
+    boolean("materials/*/doubleSided"),
+    numbers("materials/*/emissiveFactor", 3, 0, kAny),
+    ALCOVE_TEXTURE_INFO("materials/*/normalTexture"),
+    number("materials/*/normalTexture/scale", -kAny, kAny),
+    ALCOVE_TEXTURE_INFO("materials/*/emissiveTexture"),
+    object("materials/*/pbrMetallicRoughness"),
+    numbers("materials/*/pbrMetallicRoughness/baseColorFactor", 4, 0, kLargestColour),
+    number("materials/*/pbrMetallicRoughness/metallicFactor", 0, kLargestColour),
+    number("materials/*/pbrMetallicRoughness/roughnessFactor", 0, kLargestColour),
+    ALCOVE_TEXTURE_INFO("materials/*/pbrMetallicRoughness/baseColorTexture"),
+    ALCOVE_TEXTURE_INFO("materials/*/pbrMetallicRoughness/metallicRoughnessTexture"),
+    object("materials/*/extensions"),
+    object("materials/*/extensions/KHR_materials_unlit"),
+    object("materials/*/extensions/KHR_materials_emissive_strength"),
+    number("materials/*/extensions/KHR_materials_emissive_strength/emissiveStrength", 0, kAny),
+    object("materials/*/extensions/KHR_materials_pbrSpecularGlossiness"),
+    numbers("materials/*/extensions/KHR_materials_pbrSpecularGlossiness/diffuseFactor", 4, 0,
+            kLargestColour),
+    numbers("materials/*/extensions/KHR_materials_pbrSpecularGlossiness/specularFactor", 3, 0,
+            kLargestColour),
+    number("materials/*/extensions/KHR_materials_pbrSpecularGlossiness/glossinessFactor", 0,
+           kLargestColour),
+    ALCOVE_TEXTURE_INFO(
+        "materials/*/extensions/KHR_materials_pbrSpecularGlossiness/diffuseTexture"),
+    ALCOVE_TEXTURE_INFO(
+        "materials/*/extensions/KHR_materials_pbrSpecularGlossiness/specularGlossinessTexture"),
+
+    objects("cameras"),
+    text("cameras/*/name"),
+    text("cameras/*/type", "perspective|orthographic", kRequired),
+    object("cameras/*/perspective"),
+    number("cameras/*/perspective/aspectRatio", 0, kAny),
+    number("cameras/*/perspective/yfov", 0, kAny, kRequired),
+    number("cameras/*/perspective/znear", 0, kAny, kRequired),
+    number("cameras/*/perspective/zfar", 0, kAny),
+    object("cameras/*/orthographic"),
+    number("cameras/*/orthographic/xmag", -kAny, kAny, kRequired),
+    number("cameras/*/orthographic/ymag", -kAny, kAny, kRequired),
+    number("cameras/*/orthographic/znear", 0, kAny, kRequired),
+    number("cameras/*/orthographic/zfar", 0, kAny, kRequired),
+
+    objects("animations"),
+};
+
+#undef ALCOVE_TEXTURE_INFO
+
+// Shortest form of a limit, such as 0, 5126 or 2^53.
+std::string shown(double value) {
+  if (value == kLargestExact) return "2^53";
+  return json(static_cast<int64_t>(value)).dump();
+}
+
+std::string expectation(const Property& property) {
+  const bool bounded_above = property.high<kAny, bounded_below = property.low> - kAny;
+  const std::string range =
+      !bounded_below
+          ? ""
+          : (bounded_above ? " from " + shown(property.low) + " to " + shown(property.high)
+                           : " of at least " + shown(property.low));
+  switch (property.type) {
+    case Type::kObject:
+      return "an object";
+    case Type::kObjects:
+      return "an array of objects";
+    case Type::kWhole:
+      return "a whole number" + range;
+    case Type::kWholes:
+      return "an array of whole numbers" + range;
+    case Type::kNumber:
+      return "a number" + range;
+    case Type::kNumbers:
+      return "an array of " + std::to_string(property.count) + " numbers" + range;
+    case Type::kBoolean:
+      return "true or false";
+    case Type::kStrings:
+      return "an array of strings";
+    case Type::kString:
+      break;
+  }
+  if (property.choices.empty()) return "a string";
+  std::string all;
+  for (const char c : property.choices) {
+    if (c == '|') {
+      all.append(", ");
+    } else {
+      all.push_back(c);
+    }
+  }
+  return "one of " + all;
+}
+
+// The beginning of a value as JSON, short enough for a sentence.
+std::string shown(const json& value) {
+  constexpr size_t kLongest = 40;  // bytes
+  if (value.is_object()) return "an object";
+  if (value.is_array()) return "an array of " + std::to_string(value.size()) + " elements";
+  if (value.is_string() && value.get_ref<const std::string&>().size() > kLongest) {
+    return "a string of " + std::to_string(value.get_ref<const std::string&>().size()) + " bytes";
+  }
+  return value.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+// Copies the properties of the table from one tree to another, and checks them on the way.
+class Copier {
+ public:
+  Checked copy(const Property& property, json& from, json& to) {
+    property_ = &property;
+    place_.clear();
+    return descend(property.path, from, to);
+  }
+
+ private:
+  // `path` is below `from`. place_ ends where it has begun, unless there is an error.
+  Checked descend(std::string_view path, json& from, json& to) {
+    const size_t slash = path.find('/');
+    const std::string_view name = path.substr(0, slash);
+    const bool last = slash == std::string_view::npos;
+    const std::string_view rest = last ? std::string_view() : path.substr(slash + 1);
+    if (name == "*") return visit_each(last, rest, from, to);
+    const std::string key(name);
+    const auto found = from.find(key);
+    place_.emplace_back(name);
+    if (found != from.end()) {
+      if (auto done = visit(last, rest, *found, last ? to[key] : to.at(key)); !done) return done;
+    } else if (last && property_->presence == Presence::kRequired) {
+      return missing();
+    }
+    place_.pop_back();
+    return {};
+  }
+
+  Checked visit_each(bool last, std::string_view rest, json& from, json& to) {
+    if (from.is_array()) {
+      for (size_t i = 0; i < from.size(); ++i) {
+        place_.emplace_back(i);
+        if (auto done = visit(last, rest, from[i], to[i]); !done) return done;
+        place_.pop_back();
+      }
+      return {};
+    }
+    for (auto member = from.begin(); member != from.end(); ++member) {
+      place_.emplace_back(std::string_view(member.key()));
+      json& target = last ? to[member.key()] : to.at(member.key());
+      if (auto done = visit(last, rest, member.value(), target); !done) return done;
+      place_.pop_back();
+    }
+    return {};
+  }
+
+  Checked visit(bool last, std::string_view rest, json& from, json& to) {
+    return last ? take(from, to) : descend(rest, from, to);
+  }
+
+  Checked take(json& from, json& to) {
+    switch (property_->type) {
+      case Type::kObject:
+        if (!from.is_object()) return wrong(from);
+        to = json::object();
+        return {};
+      case Type::kObjects:
+        return take_objects(from, to);
+      case Type::kWhole:
+        return take_whole(from, to);
+      case Type::kNumber:
+        return take_number(from, to);
+      case Type::kWholes:
+      case Type::kNumbers:
+      case Type::kStrings:
+        return take_array(from, to);
+      case Type::kBoolean:
+        if (!from.is_boolean()) return wrong(from);
+        to = std::move(from);
+        return {};
+      case Type::kString:
+        return take_string(from, to);
+    }
+    return {};
+  }
+
+  Checked take_objects(const json& from, json& to) {
+    if (!from.is_array()) return wrong(from);
+    for (size_t i = 0; i < from.size(); ++i) {
+      if (from[i].is_object()) continue;
+      place_.emplace_back(i);
+      return wrong(from[i], "an object");
+    }
+    to = json(from.size(), json::object());
+    return {};
+  }
+
+  Checked take_array(json& from, json& to) {
+    const Type type = property_->type;
+    if (!from.is_array() || (type == Type::kNumbers && from.size() != property_->count)) {
+      return wrong(from);
+    }
+    to = json::array();
+    for (size_t i = 0; i < from.size(); ++i) {
+      place_.emplace_back(i);
+      json element;
+      auto taken = type == Type::kWholes    ? take_whole(from[i], element)
+                   : type == Type::kNumbers ? take_number(from[i], element)
+                                            : take_string(from[i], element);
+      if (!taken) return taken;
+      place_.pop_back();
+      to.push_back(std::move(element));
+    }
+    return {};
+  }
+
+  Checked take_whole(const json& from, json& to) {
+    if (!from.is_number()) return wrong_element(from);
+    const auto value = from.get<double>();
+    const bool whole = std::isfinite(value) && value == std::floor(value);
+    if (!whole || value < property_->low || value > property_->high) return wrong_element(from);
+    to = from.is_number_float() ? json(static_cast<uint64_t>(value)) : from;
+    return {};
+  }
+
+  Checked take_number(const json& from, json& to) {
+    if (!from.is_number()) return wrong_element(from);
+    const auto value = from.get<double>();
+    if (!(value >= property_->low && value <= property_->high)) return wrong_element(from);
+    to = from;
+    return {};
+  }
+
+  Checked take_string(json& from, json& to) {
+    if (!from.is_string()) return wrong_element(from);
+    const std::string& value = from.get_ref<const std::string&>();
+    if (!property_->choices.empty() && !is_choice(value)) return wrong_element(from);
+    to = std::move(from);
+    return {};
+  }
+
+  bool is_choice(std::string_view value) const {
+    std::string_view left = property_->choices;
+    for (;;) {
+      const size_t bar = left.find('|');
+      if (left.substr(0, bar) == value) return true;
+      if (bar == std::string_view::npos) return false;
+      left.remove_prefix(bar + 1);
+    }
+  }
+
+  // The path to the place that is looked at, such as nodes[3].scale[1].
+  std::string path() const {
+    std::string out;
+    for (const auto& step : place_) {
+      if (const auto* i = std::get_if<size_t>(&step)) {
+        out.append("[").append(std::to_string(*i)).append("]");
+      } else {
+        constexpr size_t kLongest = 40;  // bytes of a name: the file chooses some of them
+        const auto name = std::get<std::string_view>(step);
+        out.append(out.empty() ? "" : ".").append(name.substr(0, kLongest));
+      }
+    }
+    return out;
+  }
+
+  Failure wrong(const json& value, const std::string& expected) const {
+    return Failure(path() + " is " + shown(value) + "; it must be " + expected);
+  }
+  Failure wrong(const json& value) const { return wrong(value, expectation(*property_)); }
+  // Of a value that may be one of an array.
+  Failure wrong_element(const json& value) const {
+    Property element = *property_;
+    if (element.type == Type::kWholes) element.type = Type::kWhole;
+    if (element.type == Type::kNumbers) element.type = Type::kNumber;
+    if (element.type == Type::kStrings) element.type = Type::kString;
+    return wrong(value, expectation(element));
+  }
+  Failure missing() const {
+    return Failure(path() + " is missing; it must be " + expectation(*property_));
+  }
+
+  const Property* property_ = nullptr;
+  std::vector<std::variant<size_t, std::string_view>> place_;
+};
+
+}  // namespace
+
+tl::expected<json, std::string> checked_properties(json root) {
+  json out = json::object();
+  Copier copier;
+  for (const Property& property : kProperties) {
+    if (auto copied = copier.copy(property, root, out); !copied) return Failure(copied.error());
+  }
+  return out;
+}
+
+}  // namespace alcove::sample
