@@ -295,7 +295,7 @@ TEST_F(Reconstruct, WhereThingsMoveAShadeLeavesNoTrail) {
       EXPECT_THAT(found[long_ago + soon - 1].texels, left);
       EXPECT_THAT(found[long_ago + 2 * soon - 1].texels, back);
     } else {
-      EXPECT_THAT(found[long_ago + soon - 1].texels, testing::Each(testing::Lt(0.85f)));
+      EXPECT_THAT(found[long_ago + soon - 1].texels, testing::Each(testing::Lt(0.9f)));
     }
   }
 }

@@ -362,9 +362,9 @@ typedef struct AlcoveView {
   VkBool32 normals_forward_z;
   // Frames in a row, up to this one, that show the very same of this id as the one before each; 0:
   // this one differs, or nobody knows. It starts again after reset_history (with which it is not
-  // read) and where size, settings or outputs change. From 1 on `motion` is not read; from 16 on a
-  // search at lower resolution brings forward only the pixels that it reached, and all frames
-  // count.
+  // read) and where size, settings or outputs change. From 1 on `motion` is not read
+  // and history is not reprojected; from 16 on the history averages up to 127 frames, whatever
+  // history_frames is.
   uint32_t static_frames;
   const AlcoveSettings* settings;
   AlcoveCamera camera;
