@@ -5,15 +5,33 @@
 namespace alcove::framegraph {
 namespace {
 
-// What the phases append to; the rest they overwrite.
-void clear(Plan& plan) {
-  plan.batches.clear();
-  plan.transitions.clear();
-  plan.sets.clear();
+// Queues, lifetimes and memory for the order of execution in the workspace. The bytes of all heaps.
+VkDeviceSize schedule(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
+                      Plan& plan) {
   plan.submissions.clear();
   plan.waits.clear();
   plan.heaps.clear();
-  plan.finals.clear();
+  assign_queues(graph, limits, workspace, plan);
+  lifetimes(graph, workspace, plan);
+  place(graph, limits, workspace, plan);
+  VkDeviceSize bytes = 0;
+  for (const Heap& heap : plan.heaps) bytes += heap.size;
+  return bytes;
+}
+
+// In order of declaration, or in another order where that takes fewer bytes in the end: the two are
+// compared as they are scheduled, with the device's requirements and over the same queues.
+void schedule_lowest(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
+                     Plan& plan) {
+  order_as_declared(workspace, plan);
+  const VkDeviceSize declared = schedule(graph, limits, workspace, plan);
+  plan.reordered = false;
+  if (!find_lower_order(graph, limits, workspace, plan)) return;
+  workspace.order = workspace.reorder.order;
+  plan.reordered = schedule(graph, limits, workspace, plan) < declared;
+  if (plan.reordered) return;
+  workspace.order = workspace.reorder.declared;
+  schedule(graph, limits, workspace, plan);
 }
 
 }  // namespace
@@ -29,12 +47,11 @@ tl::expected<void, Errors> Compiler::compile(const GraphDescription& graph, cons
     plan = {};
     return tl::unexpected(std::move(errors));
   }
-  clear(plan);
+  plan.batches.clear();
+  plan.transitions.clear();
+  plan.finals.clear();
   cull(graph, workspace, plan);
-  order(graph, limits, workspace, plan);
-  assign_queues(graph, limits, workspace, plan);
-  lifetimes(graph, workspace, plan);
-  place(graph, limits, workspace, plan);
+  schedule_lowest(graph, limits, workspace, plan);
   synchronise(graph, limits, workspace, plan);
   return {};
 }

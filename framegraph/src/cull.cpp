@@ -1,6 +1,7 @@
-// Culling: one walk backwards over the passes, from what is wanted after the frame, by subresource.
-// Program order is a valid order of dependence, so that one walk suffices; only a history that is
-// found to be read makes its writer wanted, and the walk is repeated.
+// Culling: one walk over the passes from the last to the first. It follows, for each subresource,
+// whether its contents are needed by an output or by a later pass that runs. The order of
+// declaration is an order of dependence, so that one walk is enough. Only when a pass turns out to
+// read a history is the walk repeated, with that history's writers needed.
 #include "workspace.h"
 
 namespace alcove::framegraph {
@@ -8,7 +9,7 @@ namespace {
 
 constexpr std::uint32_t kUnneeded = kNone;
 constexpr std::uint32_t kByOutput = kNone - 1;
-// Reader of a history slot, kept for later frames: the pass is below this bit.
+// Marks the need of a pass that reads an older slot of a history. The bits below hold the pass.
 constexpr std::uint32_t kHistoryBit = 0x4000'0000;
 
 class Culler {
@@ -77,15 +78,17 @@ class Culler {
       if (!writes) cull_reason.cull_reason = CullReason::writes_nothing;
       return cull_reason;
     }
-    // A pass does not read what it writes in another access: these can be in any order.
+    // The accesses of a pass are to different subresources, so that their order does not matter.
     live = first_live;
     for (const AccessRecord& access : accesses) {
       std::uint8_t& needed = *live++;
       if (!(access.flags & kOptional)) needed = 1;
-      if (!(access.flags & kWrite))
+      if (needed && !(access.flags & kWrite))
         begin_need(access, pass);
       else if (needed && (access.flags & kDiscard))
         end_need(access);
+      else if (needed && (access.access & ~kWriteBits) != 0)
+        begin_need(access, pass);  // It reads what it updates, whoever wants the result.
       if (needed && !(access.flags & kDiscard)) find_history(access, pass);
     }
     return cull_reason;
@@ -99,7 +102,7 @@ class Culler {
     return why;
   }
 
-  // A write that discards is where the need ends; one that keeps passes it on to earlier writers.
+  // A write that discards ends the need for earlier contents. A write that keeps them does not.
   void end_need(const AccessRecord& access) {
     for_each_sub(graph_, workspace_, access,
                  [&](std::uint32_t sub) { workspace_.cull.needed_by[sub] = kUnneeded; });
@@ -110,7 +113,8 @@ class Culler {
                  [&](std::uint32_t sub) { workspace_.cull.needed_by[sub] = pass; });
   }
 
-  // Whether the access reads a history, be it to update it in place: its writers are wanted.
+  // If the access reads or updates an older slot of a history, the writers of the history are
+  // needed.
   void find_history(const AccessRecord& access, std::uint32_t pass) {
     const ResourceRecord& resource = graph_.resources[access.resource];
     if (resource.origin != Origin::history || resource.slot == 0) return;

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 
+#ifdef ALCOVE_FRAMEGRAPH_VERIFIES
 #include "alcove/framegraph/verify.h"
-#include "events.h"
+#endif
 #include "plan_cache.h"
 #include "recording_threads.h"
 #include "submitter.h"
@@ -59,7 +60,6 @@ struct Executor::Implementation {
   Compiler compiler;
   PlanCache plans[2];  // by Queues
   std::unique_ptr<Pool> pool;
-  std::unique_ptr<Events> events;
   std::unique_ptr<RecordingThreads> recording_threads;
   std::vector<std::unique_ptr<Timestamps>> timestamps;  // by slot and queue class; may be null
   std::vector<PassTiming> timings;                      // what timings() returned last
@@ -98,13 +98,17 @@ tl::expected<Executor, Errors> Executor::create(const DeviceHandles& device,
                                                 const ExecutorOptions& options) {
   auto made = std::make_unique<Implementation>(options);
   made->options.frames_in_flight = std::clamp(options.frames_in_flight, 1u, 8u);
+#ifdef ALCOVE_FRAMEGRAPH_VERIFIES
+  if (made->options.verify == nullptr) made->options.verify = verify;
+#endif
   if (auto opened = open(made->device, device); !opened)
     return tl::unexpected(std::move(opened.error()));
   made->device.limits.ordering = options.ordering;
   made->device.limits.alias = options.alias;
-  made->device.limits.split_barriers = options.split_barriers;
+  made->device.limits.placement_effort = options.placement_effort;
+  for (PlanCache& plans : made->plans)
+    plans.set_capacity(std::clamp(options.cached_plans, 1u, 4096u));
   made->pool = std::make_unique<Pool>(made->device);
-  made->events = std::make_unique<Events>(made->device, made->options.frames_in_flight);
   made->recording_threads = std::make_unique<RecordingThreads>(
       made->device, *made->pool, std::clamp(options.recording_threads, 1u, 64u),
       made->options.frames_in_flight);
@@ -154,8 +158,8 @@ tl::expected<CachedPlan*, Errors> Executor::Implementation::plan_for(const Graph
                       VK_SUCCESS, planned.pass, kNone, 0});
   }
   if (!errors.empty()) return tl::unexpected(std::move(errors));
-  if (options.verify) {
-    if (auto right = verify(description, limits, room.plan); !right)
+  if (options.verify != nullptr) {
+    if (auto right = options.verify(description, limits, room.plan); !right)
       return tl::unexpected(std::move(right.error()));
   }
   cache.keep(room, description);
@@ -285,12 +289,9 @@ tl::expected<FrameReport, Errors> Executor::Implementation::prepare(Graph& graph
   if (auto done = find_physical(graph, *cached); !done)
     return tl::unexpected(std::move(done.error()));
   cached->last_frame = frame;
-  const auto events_of_frame = events->begin_frame(info.slot, cached->plan.sets.size());
-  if (!events_of_frame)
-    return tl::unexpected(vulkan_error(events_of_frame.error(), "events cannot be created"));
-  const RecordedFrame recorded{&graph,           &cached->plan,      &cached->physical,
-                               *events_of_frame, options.check_uses, starts_anew(*cached),
-                               info.slot};
+  const RecordedFrame recorded{
+      &graph,   &cached->plan, &cached->physical, options.check_uses, starts_anew(*cached),
+      info.slot};
   if (const VkResult result = recording_threads->begin(recorded))
     return tl::unexpected(vulkan_error(result, "command buffers cannot be used again"));
   report.plan = &cached->plan;

@@ -1,11 +1,11 @@
-// What comes from outside the frame and goes there again: how imports and histories arrive, and how
-// they are left.
+// Imports and histories: their states at the start of the frame, and how the frame leaves them.
 #include "synchronise.h"
 
 namespace alcove::framegraph {
 namespace {
 
-// Whoever read it since saw what was written before. Others have yet to.
+// The reads of an initial state saw what was written before. Other stages and accesses have not
+// seen it.
 void note_seen(UseState& state, const State& initial_state) {
   const bool every_access = (initial_state.access & VK_ACCESS_2_MEMORY_READ_BIT) != 0;
   const bool every_stage = (initial_state.stages & VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT) != 0;
@@ -72,8 +72,8 @@ void Synchroniser::depart() {
   if (!s_.releases.empty()) add_releases();
 }
 
-// Whoever has it next waits for its own uses alone, so these come after reads that they do not
-// cover. A change or a write does by itself.
+// The next user waits for the stages of the final state only. These stages therefore come after
+// reads in other stages. A layout change or a write at the end has that order already.
 void Synchroniser::end_reads(std::uint32_t resource, const State& final_state) {
   const bool texture = graph_.resources[resource].kind == ResourceKind::texture;
   if ((final_state.access & kWriteBits) != 0 || final_state.stages == 0 ||
@@ -105,7 +105,7 @@ AccessRecord Synchroniser::outside_use(std::uint32_t resource, const State& stat
   return access;
 }
 
-// How a history slot is left: all of it in one layout.
+// The state in which a history slot is left. All of it is in one layout.
 void Synchroniser::leave(std::uint32_t resource) {
   const std::uint32_t first = workspace_.first_sub[resource];
   const std::uint32_t last = workspace_.first_sub[resource + 1];
@@ -124,12 +124,13 @@ void Synchroniser::leave(std::uint32_t resource) {
     written += s_.last_uses[sub].write_stages != 0 ? 1 : 0;
   }
   if (written != 0) final.written = written == last - first ? Written::whole : Written::part;
-  // What readers saw is told where it holds for all of them.
+  // The accesses that saw the write are part of the state if they are the same for all
+  // subresources.
   if (final.state.access == 0 && seen_alike && (lead.read_stages & ~lead.seen_stages) == 0)
     final.state.access = reads_in(lead.seen_access);
   final.state.layout = lead.layout;
   if (workspace_.several_queues) {
-    // Other queues' uses are not followed apart. The next frame waits for all of them.
+    // Uses on other queues are not kept separately. The next frame waits for all of them.
     const bool pending = written != 0 || (final.state.access & kWriteBits) != 0;
     final.state.stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
     final.state.access = pending ? VK_ACCESS_2_MEMORY_WRITE_BIT : VK_ACCESS_2_MEMORY_READ_BIT;

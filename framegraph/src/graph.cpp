@@ -173,6 +173,20 @@ Buffer Graph::create_buffer(std::string_view name, const BufferDesc& desc) {
   return {add_resource(name, record), 0, tag_};
 }
 
+// The external that has the same image, in some of the same layers, or the same buffer.
+std::uint32_t Graph::imported_before(VkImage image, VkBuffer buffer, std::uint32_t layer,
+                                     const ResourceRecord& record) const {
+  if (image == VK_NULL_HANDLE && buffer == VK_NULL_HANDLE) return kNone;
+  for (std::uint32_t i = 0; i < imports_.size(); ++i) {
+    const ImportHandles& other = imports_[i];
+    if (other.image != image || other.buffer != buffer) continue;
+    const std::uint64_t end = std::uint64_t{layer} + record.layers;
+    const std::uint64_t other_end = std::uint64_t{other.layer} + other.layers;
+    if (buffer != VK_NULL_HANDLE || (layer < other_end && other.layer < end)) return i;
+  }
+  return kNone;
+}
+
 Texture Graph::import_texture(std::string_view name, const ImportedTexture& import) {
   ResourceRecord record = texture_record(import.desc);
   record.origin = Origin::imported;
@@ -184,8 +198,10 @@ Texture Graph::import_texture(std::string_view name, const ImportedTexture& impo
   external.has_contents = import.initial_state.layout != VK_IMAGE_LAYOUT_UNDEFINED;
   external.has_final_state = has_final_state(import.final_state);
   external.has_handle = import.image != VK_NULL_HANDLE;
+  external.same_as = imported_before(import.image, VK_NULL_HANDLE, import.first_layer, record);
   add(description_.externals, external);
-  imports_.push_back({import.image, import.view, VK_NULL_HANDLE, kNone, import.first_layer});
+  imports_.push_back(
+      {import.image, import.view, VK_NULL_HANDLE, kNone, import.first_layer, record.layers});
   return {add_resource(name, record), 0, tag_};
 }
 
@@ -202,6 +218,7 @@ Buffer Graph::import_buffer(std::string_view name, const ImportedBuffer& import)
   external.has_contents = import.has_contents;
   external.has_final_state = has_final_state(import.final_state);
   external.has_handle = import.buffer != VK_NULL_HANDLE;
+  external.same_as = imported_before(VK_NULL_HANDLE, import.buffer, 0, record);
   add(description_.externals, external);
   imports_.push_back({VK_NULL_HANDLE, VK_NULL_HANDLE, import.buffer, kNone});
   return {add_resource(name, record), 0, tag_};

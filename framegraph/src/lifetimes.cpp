@@ -1,5 +1,5 @@
-// Lifetimes: the positions between which a transient's memory is its own, and what it must be made
-// with.
+// Lifetimes: for each resource the positions of its first and last use, between which a transient's
+// memory is used by nothing else, and the usage flags that it is created with.
 #include <algorithm>
 
 #include "workspace.h"
@@ -8,7 +8,8 @@ namespace alcove::framegraph {
 
 namespace {
 
-// A pass of another queue that may run beside the last use must not have the memory.
+// Lengthens lifetimes up to the last pass of another queue that may run at the same time as the
+// last use.
 void lengthen(const GraphDescription& graph, const Workspace& workspace, Plan& plan) {
   for (std::uint32_t position = 0; position < plan.passes.size(); ++position) {
     const std::uint32_t until = taken_until(workspace, plan, position);
@@ -38,7 +39,7 @@ void lifetimes(const GraphDescription& graph, Workspace& workspace, Plan& plan) 
     ++position;
   }
   if (workspace.several_queues) lengthen(graph, workspace, plan);
-  // What is wanted after the frame keeps its memory to the end.
+  // An output keeps its memory to the end of the frame.
   for (const OutputRecord& output : graph.outputs) {
     Placement& placement = plan.placements[output.resource];
     if (placement.first != kNone)

@@ -1,8 +1,8 @@
-// Ordering: program order, unless another lowers the memory peak.
+// Order: the order of declaration, unless another order lowers the memory peak.
 //
 // The other order is made greedily: of the passes whose inputs are ready, the one that leaves the
-// fewest bytes live comes next, the earliest declared among equals. It is taken only where its peak
-// is below that of program order; a graph in which no order could be lower is not tried.
+// fewest bytes live comes next, the earliest declared among equals. A graph in which no order could
+// have a lower peak is not tried. compile() schedules both orders and takes the one of fewer bytes.
 #include <algorithm>
 
 #include "workspace.h"
@@ -12,57 +12,49 @@ namespace {
 
 class Orderer {
  public:
-  Orderer(const GraphDescription& graph, const Limits& limits, Workspace& workspace, Plan& plan)
+  Orderer(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
+          const Plan& plan)
       : graph_(graph), limits_(limits), workspace_(workspace), plan_(plan), s_(workspace.reorder) {}
 
-  void run() {
-    const auto count = static_cast<std::uint32_t>(graph_.passes.size());
-    workspace_.order.resize(count);
-    std::size_t live = 0;
-    for (std::uint32_t pass = 0; pass < count; ++pass) {
-      workspace_.order[live] = pass;
-      live += plan_.cull_reasons[pass].is_live();
+  bool run() {
+    const std::size_t live = plan_.passes.size();
+    if (limits_.ordering != Ordering::lower_peak || !limits_.alias || live < 3 ||
+        live > limits_.reorder_passes)
+      return false;
+    s_.declared.clear();
+    for (std::uint32_t pass = 0; pass < graph_.passes.size(); ++pass) {
+      if (plan_.cull_reasons[pass].is_live()) s_.declared.push_back(pass);
     }
-    workspace_.order.resize(live);
-    const bool worthwhile = limits_.ordering == Ordering::lower_peak && limits_.alias &&
-                            workspace_.order.size() >= 3 &&
-                            workspace_.order.size() <= limits_.reorder_passes;
-    plan_.reordered = worthwhile && reorder();
+    measure();
+    std::int64_t floor = 0;
+    const std::int64_t peak = peak_as_declared(floor);
+    // The resources of one pass are live together in any order.
+    if (peak <= floor) return false;
+    find_edges();
+    return list_greedily(peak) < peak && s_.order.size() == live;
   }
 
  private:
-  bool reorder() {
-    measure();
-    std::int64_t floor = 0;
-    const std::int64_t peak = peak_in_program_order(floor);
-    // A pass's own resources are live together in any order.
-    if (peak <= floor) return false;
-    find_edges();
-    const std::int64_t other = list_greedily(peak);
-    if (other >= peak || s_.order.size() != workspace_.order.size()) return false;
-    workspace_.order = s_.order;
-    return true;
-  }
-
-  // Bytes of each transient, and how many passes use it.
+  // Bytes of each transient, and the number of passes that use it.
   void measure() {
     s_.bytes.assign(graph_.resources.size(), 0);
     s_.uses.assign(graph_.resources.size(), 0);
     s_.seen.assign(graph_.resources.size(), kNone);
-    for (const std::uint32_t pass : workspace_.order) {
+    for (const std::uint32_t r : workspace_.transients)
+      s_.bytes[r] = static_cast<std::int64_t>(plan_.placements[r].size);
+    for (const std::uint32_t pass : s_.declared) {
       for_each_live(graph_, plan_, pass, [&](const AccessRecord& access) {
-        const ResourceRecord& record = graph_.resources[access.resource];
-        if (record.origin != Origin::transient || s_.seen[access.resource] == pass) return;
+        if (s_.bytes[access.resource] == 0 || s_.seen[access.resource] == pass) return;
         s_.seen[access.resource] = pass;
-        if (s_.uses[access.resource]++ == 0)
-          s_.bytes[access.resource] = static_cast<std::int64_t>(estimate_requirements(record).size);
+        ++s_.uses[access.resource];
       });
     }
-    // What is wanted after the frame is never given up.
+    // An output keeps its memory to the end of the frame.
     for (const OutputRecord& output : graph_.outputs) ++s_.uses[output.resource];
   }
 
-  // What running a pass adds to the live bytes while it runs, and what it gives up afterwards.
+  // The bytes that become live when a pass runs (`gained`), that are free after it (`freed`), and
+  // of all transients that it uses (`own`).
   struct Step {
     std::int64_t gained = 0;
     std::int64_t freed = 0;
@@ -100,11 +92,11 @@ class Orderer {
     });
   }
 
-  std::int64_t peak_in_program_order(std::int64_t& floor) {
+  std::int64_t peak_as_declared(std::int64_t& floor) {
     begin_walk();
     std::int64_t live = 0;
     std::int64_t peak = 0;
-    for (const std::uint32_t pass : workspace_.order) {
+    for (const std::uint32_t pass : s_.declared) {
       const Step s = step(pass);
       floor = std::max(floor, s.own);
       peak = std::max(peak, live + s.gained);
@@ -121,7 +113,8 @@ class Orderer {
     ++s_.waiting[to];
   }
 
-  // A read follows the last write; a write follows that and all reads since.
+  // A read follows the last write. A write follows the last write and all reads since. Passes with
+  // side effects follow each other as declared.
   void find_edges() {
     s_.edges.clear();
     s_.first_edge.assign(graph_.passes.size(), kNone);
@@ -129,11 +122,15 @@ class Orderer {
     s_.writer.assign(workspace_.first_sub.back(), kNone);
     s_.first_reader.assign(workspace_.first_sub.back(), kNone);
     s_.readers.clear();
-    for (const std::uint32_t pass : workspace_.order) {
+    std::uint32_t last_effect = kNone;
+    for (const std::uint32_t pass : s_.declared) {
       for_each_live(graph_, plan_, pass, [&](const AccessRecord& access) {
         for_each_sub(graph_, workspace_, access,
                      [&](std::uint32_t sub) { depend(pass, sub, access.flags & kWrite); });
       });
+      if ((graph_.passes[pass].flags & kSideEffect) == 0) continue;
+      add_edge(last_effect, pass);
+      last_effect = pass;
     }
   }
 
@@ -154,7 +151,7 @@ class Orderer {
     begin_walk();
     s_.order.clear();
     s_.ready.clear();
-    for (const std::uint32_t pass : workspace_.order) {
+    for (const std::uint32_t pass : s_.declared) {
       if (s_.waiting[pass] == 0) s_.ready.push_back(pass);
     }
     std::int64_t live = 0;
@@ -177,8 +174,8 @@ class Orderer {
     return peak;
   }
 
-  // The ready pass that leaves least; one that stays below the peak so far before one that does
-  // not.
+  // Of the ready passes, the one after which the fewest bytes are live. Passes that stay below the
+  // peak so far are preferred to those that raise it.
   std::size_t choose(std::int64_t live, std::int64_t peak) {
     std::size_t best = 0;
     bool best_below = false;
@@ -202,15 +199,26 @@ class Orderer {
   const GraphDescription& graph_;
   const Limits& limits_;
   Workspace& workspace_;
-  Plan& plan_;
+  const Plan& plan_;
   Workspace::Reorder& s_;
   std::uint32_t stamp_ = 0;
 };
 
 }  // namespace
 
-void order(const GraphDescription& graph, const Limits& limits, Workspace& workspace, Plan& plan) {
-  Orderer(graph, limits, workspace, plan).run();
+void order_as_declared(Workspace& workspace, const Plan& plan) {
+  workspace.order.resize(plan.cull_reasons.size());
+  std::size_t live = 0;
+  for (std::uint32_t pass = 0; pass < plan.cull_reasons.size(); ++pass) {
+    workspace.order[live] = pass;
+    live += plan.cull_reasons[pass].is_live();
+  }
+  workspace.order.resize(live);
+}
+
+bool find_lower_order(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
+                      const Plan& plan) {
+  return Orderer(graph, limits, workspace, plan).run();
 }
 
 }  // namespace alcove::framegraph

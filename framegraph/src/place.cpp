@@ -1,10 +1,12 @@
 // Placement: offsets for all transients, in one heap for each set of memory types that they allow.
 //
-// First the cheapest way: first fit in order of first use. It meets the lower bound (the most bytes
-// live at once) when sizes are alike. Where it does not, first fit by falling size, by falling
-// bytes times positions and by falling lifetime are tried, and then the best order is improved: the
-// resources that end at the peak are placed first, or two change places. The search ends at the
-// lower bound, or when its budget of steps, which does not depend on time, is spent.
+// The cheapest way comes first: first fit in order of first use. It meets the lower bound (the most
+// bytes that are live at once) when sizes are alike. Where it does not, first fit is tried in other
+// orders: by falling size, by falling product of size and lifetime, by falling lifetime, and
+// outwards from the peak. Then the best order is changed at random, one change at a time: a
+// resource that ends at the peak is placed earlier, or two resources change places. The search ends
+// at the lower bound, or when its budget of comparisons is used up. The budget does not depend on
+// time, so that a frame always gets the same plan.
 #include <algorithm>
 #include <numeric>
 
@@ -37,14 +39,14 @@ class Placer {
   }
 
  private:
-  // Gives each transient its heap, and gathers those of all heaps.
+  // Gives each transient its heap, and lists the transients of all heaps.
   void make_heaps() {
     s_.items.resize(workspace_.transients.size());
     PlaceItem* item = s_.items.data();
     for (const std::uint32_t r : workspace_.transients) {
       Placement& placement = plan_.placements[r];
       const MemoryRequirements needed = requirements(graph_.resources[r], placement.usage);
-      // Buffers and images never meet in one page when both keep to whole pages.
+      // Whole pages keep buffers and images apart by the granularity.
       placement.alignment = std::max(needed.alignment, limits_.buffer_image_granularity);
       placement.size = align_up(needed.size, limits_.buffer_image_granularity);
       placement.heap = heap_of(needed.memory_types);
@@ -73,7 +75,7 @@ class Placer {
     return {placement.size, placement.alignment, 0, placement.first, placement.last, resource};
   }
 
-  // Those of one heap.
+  // Lists the transients of one heap.
   void gather(std::uint32_t heap) {
     s_.items.clear();
     for (const std::uint32_t r : workspace_.transients) {
@@ -122,8 +124,8 @@ class Placer {
     improve(bound);
   }
 
-  // First fit in order of first use, against what is taken then: kept in order of offset. What has
-  // ended stays there until it is come across.
+  // First fit in order of first use. `taken` holds the ranges of bytes in use, in order of offset.
+  // A range whose lifetime has ended is removed when the search comes across it.
   VkDeviceSize fit_by_time() {
     VkDeviceSize peak = 0;
     std::vector<Workspace::Taken>& taken = s_.taken;
@@ -143,7 +145,7 @@ class Placer {
       item.offset = offset;
       const Workspace::Taken own{offset, offset + item.size, item.last};
       peak = std::max(peak, own.end);
-      // It takes the place of the first that has ended.
+      // The new range replaces the first ended one.
       if (kept == next) {
         taken.insert(taken.begin() + static_cast<std::ptrdiff_t>(kept), own);
         continue;
@@ -167,8 +169,8 @@ class Placer {
     try_order();
   }
 
-  // What is live where most is live has the least choice: it comes first, then the rest by
-  // distance from there, in order of time on either side.
+  // Resources that are live at the peak have the least choice and come first. The others follow by
+  // their distance in time from the peak.
   void try_from_peak() {
     std::int64_t live = 0;
     std::int64_t most = -1;
@@ -199,8 +201,8 @@ class Placer {
     try_order();
   }
 
-  // First fit in s_.order; kept if it beats the best, given up when it goes beyond `limit`. What
-  // comes before `from` in the order stays where the settled order had it.
+  // First fit in s_.order. The result is kept if it is lower than the best, and given up when it
+  // exceeds `limit`. Resources before `from` in the order keep the offsets of the settled order.
   bool try_order(VkDeviceSize limit = ~VkDeviceSize{0}, std::size_t from = 0) {
     VkDeviceSize peak = keep_before(from);
     for (std::size_t i = from; i < s_.order.size(); ++i) {
@@ -218,7 +220,7 @@ class Placer {
     return true;
   }
 
-  // Puts those where the settled order had them; their peak.
+  // Places the resources before `from` at their settled offsets, and returns their peak.
   VkDeviceSize keep_before(std::size_t from) {
     s_.live.clear();
     s_.offsets.resize(s_.items.size());
@@ -237,7 +239,7 @@ class Placer {
     return peak;
   }
 
-  // Puts one as low as it goes; its end.
+  // Places one resource at the lowest offset at which it fits, and returns its end.
   VkDeviceSize fit(std::uint32_t index) {
     const PlaceItem& item = s_.items[index];
     VkDeviceSize offset = 0;
@@ -259,7 +261,7 @@ class Placer {
     return offset + item.size;
   }
 
-  // Further changes are made to this order.
+  // Makes this order the one to which further changes are made.
   void settle() {
     s_.settled_order = s_.order;
     s_.settled_offsets = s_.offsets;
@@ -272,17 +274,17 @@ class Placer {
     while (best_ > bound && budget_ > 0) {
       budget_ -= 16;
       const std::size_t from = change_order();
-      // Slightly worse steps are taken too: they lead away from where nothing improves.
+      // Slightly worse orders are accepted too, to leave local minima.
       const VkDeviceSize limit = settled_peak_ + bound / 256 * roll(3);
       if (!try_order(limit, from) && last_ <= limit) settle();
     }
     s_.settled_order.clear();
   }
 
-  // The settled order with one change; the first place that differs.
+  // Makes one change to the settled order, and returns the first place that differs.
   std::size_t change_order() {
     s_.order = s_.settled_order;
-    // What ends at the peak had too little choice: let it choose earlier.
+    // A resource that ends at the peak had too little choice: it is moved to an earlier place.
     const auto high = std::find_if(s_.order.begin(), s_.order.end(), [this](std::uint32_t i) {
       return s_.settled_offsets[i] + s_.items[i].size == settled_peak_;
     });

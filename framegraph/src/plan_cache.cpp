@@ -18,7 +18,7 @@ CachedPlan* PlanCache::find(const GraphDescription& graph) {
 
 CachedPlan& PlanCache::room(std::uint64_t frame) {
   CachedPlan* room = nullptr;
-  if (plans_.size() < kCapacity) {
+  if (plans_.size() < capacity_) {
     plans_.push_back(std::make_unique<CachedPlan>());
     room = plans_.back().get();
   } else {

@@ -22,6 +22,8 @@ struct CachedPlan {
 
 class PlanCache {
  public:
+  // At least 1; before the first plan.
+  void set_capacity(std::size_t capacity) { capacity_ = capacity; }
   // A plan for these declarations; null when they were not seen lately. The last one is tried
   // first, without hashing.
   CachedPlan* find(const GraphDescription& graph);
@@ -30,7 +32,7 @@ class PlanCache {
   void keep(CachedPlan& plan, const GraphDescription& graph);
 
  private:
-  static constexpr std::size_t kCapacity = 16;
+  std::size_t capacity_ = 1;
   std::vector<std::unique_ptr<CachedPlan>> plans_;
   CachedPlan* last_ = nullptr;
 };

@@ -54,7 +54,6 @@ class DotPrinter {
         barriers += plan_.batches[planned.first_batch + b].count;
       label = std::to_string(position_[pass]).append(" ").append(label);
       if (barriers > 0) label.append(" | ").append(std::to_string(barriers)).append(" barriers");
-      if (planned.batch_count > 0) label += event_of(plan_.batches[planned.first_batch]);
       constexpr const char* kColors[] = {"lightsteelblue", "palegreen", "moccasin"};
       style = std::string("style=filled fillcolor=")
                   .append(kColors[static_cast<std::size_t>(planned.queue)]);
@@ -62,11 +61,6 @@ class DotPrinter {
     out_.append("  ").append(id(pass)).append(" [label=").append(quoted(label));
     out_.append(" tooltip=").append(quoted(reason(graph_, plan_.cull_reasons[pass])));
     out_.append(" ").append(style).append("];\n");
-  }
-
-  std::string event_of(const Batch& batch) const {
-    const std::uint32_t after = set_after(plan_, batch);
-    return after == kNone ? "" : std::string(" since ").append(std::to_string(after));
   }
 
   // From the last writers of what a pass uses, in program order: one edge for each of those.

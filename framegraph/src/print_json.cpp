@@ -153,14 +153,13 @@ class JsonPrinter {
     for (std::uint32_t b = first; b < first + count; ++b) {
       const Batch& batch = plan_.batches[b];
       for (std::uint32_t t = batch.first; t < batch.first + batch.count; ++t)
-        print_transition(plan_.transitions[t], set_after(plan_, batch));
+        print_transition(plan_.transitions[t]);
     }
     json_.end(']');
   }
 
-  void print_transition(const Transition& t, std::uint32_t event_set_after) {
+  void print_transition(const Transition& t) {
     json_.begin('{');
-    if (event_set_after != kNone) json_.field("event_set_after", event_set_after);
     json_.field("src_stages", stage_names(t.src_stages));
     json_.field("src_accesses", access_names(t.src_access));
     json_.field("dst_stages", stage_names(t.dst_stages));

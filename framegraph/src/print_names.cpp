@@ -27,6 +27,9 @@ constexpr Bit kStages[] = {
     {VK_PIPELINE_STAGE_2_RESOLVE_BIT, "resolve"},
     {VK_PIPELINE_STAGE_2_CLEAR_BIT, "clear"},
     {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, "transfer"},
+    {VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR, "acceleration structure build"},
+    {VK_PIPELINE_STAGE_2_RAY_TRACING_SHADER_BIT_KHR, "ray tracing"},
+    {VK_PIPELINE_STAGE_2_TRANSFORM_FEEDBACK_BIT_EXT, "transform feedback"},
     {VK_PIPELINE_STAGE_2_HOST_BIT, "host"},
     {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, "all commands"},
     {VK_PIPELINE_STAGE_2_ALL_GRAPHICS_BIT, "all graphics"},
@@ -49,6 +52,9 @@ constexpr Bit kAccesses[] = {
     {VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT, "depth write"},
     {VK_ACCESS_2_TRANSFER_READ_BIT, "transfer read"},
     {VK_ACCESS_2_TRANSFER_WRITE_BIT, "transfer write"},
+    {VK_ACCESS_2_INPUT_ATTACHMENT_READ_BIT, "input attachment read"},
+    {VK_ACCESS_2_ACCELERATION_STRUCTURE_READ_BIT_KHR, "acceleration structure read"},
+    {VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR, "acceleration structure write"},
     {VK_ACCESS_2_HOST_READ_BIT, "host read"},
     {VK_ACCESS_2_HOST_WRITE_BIT, "host write"},
     {VK_ACCESS_2_MEMORY_READ_BIT, "memory read"},
@@ -201,13 +207,6 @@ std::string reason(const GraphDescription& graph, const PassCullReason& cull_rea
       return "it writes nothing and has no side effect";
   }
   return "";
-}
-
-std::uint32_t set_after(const Plan& plan, const Batch& batch) {
-  for (std::uint32_t p = 0; p < plan.passes.size() && batch.event != kNone; ++p) {
-    if (batch.event - plan.passes[p].first_set < plan.passes[p].set_count) return p;
-  }
-  return kNone;
 }
 
 }  // namespace alcove::framegraph

@@ -23,7 +23,5 @@ std::string range_name(const Range& range, std::uint32_t mips, std::uint32_t lay
 std::vector<std::string> resource_names(const GraphDescription& graph);
 // Why a pass runs, "for 'lighting'", or why it does not.
 std::string reason(const GraphDescription& graph, const PassCullReason& cull_reason);
-// The position of the pass after which a split barrier's event is set; kNone for other barriers.
-std::uint32_t set_after(const Plan& plan, const Batch& batch);
 
 }  // namespace alcove::framegraph

@@ -108,7 +108,6 @@ class TextPrinter {
 
   // One line for all transitions that wait for and hold up the same stages.
   void batch(const Batch& batch) {
-    const std::uint32_t event_set_after = set_after(plan_, batch);
     std::vector<std::uint8_t> done(batch.count, 0);
     for (std::uint32_t i = 0; i < batch.count; ++i) {
       if (done[i]) continue;
@@ -121,8 +120,6 @@ class TextPrinter {
         items.push_back(change(t));
       }
       std::string head = "      | ";
-      if (event_set_after != kNone)
-        head.append("event set after ").append(std::to_string(event_set_after)).append(": ");
       head.append(stage_names(lead.src_stages)).append(" -> ");
       head.append(stage_names(lead.dst_stages)).append(": ");
       line(wrapped(head, items, ", "));

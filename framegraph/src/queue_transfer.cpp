@@ -1,12 +1,14 @@
-// What goes from queue to queue: by a wait that is there already, and between queue families by a
-// release after the last pass of the giver's submission and an acquire before the taker's pass.
+// Resources that go from one queue to another. The semaphore wait between the two submissions
+// orders them. Between queue families there is also a release after the last pass of the first
+// submission and an acquire before the pass that takes the resource.
 #include <algorithm>
 
 #include "synchronise.h"
 
 namespace alcove::framegraph {
 
-// True when the subresource changed hands, with its layout, and nothing is left to do.
+// True if an ownership transfer was added, which also changes the layout: nothing is left to do
+// then.
 bool Synchroniser::change_queue(std::uint32_t position, const AccessRecord& access, UseState& state,
                                 const Range& range) {
   const auto family = [this](QueueClass queue) {
@@ -34,21 +36,21 @@ bool Synchroniser::change_queue(std::uint32_t position, const AccessRecord& acce
   return true;
 }
 
-// That after which the queue of a state has no more to do with it.
+// The submission that releases the subresource: the last one that uses it on its queue.
 std::uint32_t Synchroniser::giving_submission(const UseState& state) const {
   const std::int32_t time = std::max(state.read_time, state.write_time);
   if (time >= 0) return plan_.passes[static_cast<std::size_t>(time / 2)].submission;
   const std::uint32_t opening = workspace_.queues.opening[static_cast<std::size_t>(state.queue)];
   if (opening != kNone) return opening;
-  // Part of a history that no pass used, beside a part that this queue did: any of its submissions
-  // comes before the end of the frame, which takes it.
+  // No pass used this part of a history, and the end of the frame takes it. Any submission of its
+  // queue comes before that.
   const auto own = std::find_if(
       plan_.submissions.begin(), plan_.submissions.end(),
       [&state](const Submission& submission) { return submission.queue == state.queue; });
   return static_cast<std::uint32_t>(own - plan_.submissions.begin());
 }
 
-// Without its contents an image needs no giver, if it comes from the undefined layout.
+// An image whose contents are not kept needs no release: it is taken from the undefined layout.
 void Synchroniser::take_without_giver(UseState& state, bool same_family) const {
   UseState taken;
   taken.queue = queue_;
@@ -56,12 +58,12 @@ void Synchroniser::take_without_giver(UseState& state, bool same_family) const {
   taken.used = state.used;
   taken.layout = same_family ? state.layout : VK_IMAGE_LAYOUT_UNDEFINED;
   if (state.handed_over) {
-    // Who had the memory before may have been on this queue: no wait stands between.
+    // The resource that had the memory before may have been on this queue, with no wait in between.
     taken.handed_over = 1;
     taken.write_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
     taken.write_access = VK_ACCESS_2_MEMORY_WRITE_BIT;
   } else {
-    // The wait covers all that commands do, but nothing that the host does.
+    // The wait covers all commands, but not the host.
     taken.seen_stages = ~VkPipelineStageFlags2{VK_PIPELINE_STAGE_2_HOST_BIT};
     taken.seen_access = kEveryAccess;
   }

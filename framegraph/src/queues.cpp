@@ -1,11 +1,11 @@
-// Queues: gives each pass its queue, cuts the order of execution into submissions where one queue
-// must wait for another, and finds what each queue knows of the others, which says until when a
-// transient's memory is taken.
+// Queues: gives each pass its queue, and cuts the order of execution into submissions where one
+// queue must wait for another. It also finds, for each pass, up to which pass of every other queue
+// is known to be done, which decides how long a transient's memory is in use.
 //
-// A submission begins with the pass that waits and ends with the pass that is waited for, so that
-// none waits longer than it must and none waits for what comes after it. With one queue there is
-// one submission. Two passes of different queues depend on each other when they use one
-// subresource, reads too: it may have to change hands or layouts between them.
+// A submission begins with a pass that waits and ends with a pass that is waited for, so that no
+// queue waits longer than it must. With one queue there is one submission. Two passes on different
+// queues depend on each other when they use one subresource, even if both read: its layout or its
+// owner may have to change between them.
 #include <algorithm>
 
 #include "workspace.h"
@@ -39,7 +39,8 @@ class QueueAssigner {
     return limits_.queue_families[static_cast<std::size_t>(queue)];
   }
 
-  // The queue that a pass asks for, or graphics where the device has none of that class.
+  // Each pass gets the queue of its class, or the graphics queue where the device has none of that
+  // class.
   void choose_queues() {
     plan_.passes.resize(workspace_.order.size());
     workspace_.several_queues = false;
@@ -55,7 +56,7 @@ class QueueAssigner {
     }
   }
 
-  // Whether a pass uses what a queue beside graphics had before the frame.
+  // Whether a pass uses a resource that another queue than graphics used before the frame.
   bool takes_from_others(std::uint32_t pass) const {
     bool takes = false;
     for_each_live(graph_, plan_, pass, [&](const AccessRecord& access) {
@@ -64,7 +65,8 @@ class QueueAssigner {
     return takes;
   }
 
-  // For each pass, the last pass of each other queue that it must wait for, and was not known done.
+  // For each pass and each other queue, the last pass that it must wait for, unless that is known
+  // to be done.
   void find_waits() {
     const std::size_t count = plan_.passes.size();
     s_.waits.assign(count * kQueueClasses, kNobody);
@@ -102,7 +104,7 @@ class QueueAssigner {
     }
   }
 
-  // A wait for a pass that another pass waited for already knows of is not needed.
+  // Drops a wait that another wait of the same pass implies.
   void drop_implied(std::uint32_t* waits) const {
     for (std::size_t other = 0; other < kQueueClasses; ++other) {
       for (std::size_t third = 0; third < kQueueClasses; ++third) {
@@ -114,7 +116,8 @@ class QueueAssigner {
     }
   }
 
-  // What the queue knows of the others once this pass runs: what it waits for, and what that knew.
+  // When this pass runs, its queue knows to be done what the pass waits for, and what that knew to
+  // be done.
   void learn(std::uint32_t position) {
     const auto own = static_cast<std::size_t>(plan_.passes[position].queue);
     for (std::size_t other = 0; other < kQueueClasses; ++other) {
@@ -152,7 +155,7 @@ class QueueAssigner {
     });
   }
 
-  // Submissions by pass, numbered in order of their first passes.
+  // Assigns passes to submissions, which are numbered in order of their first passes.
   void cut() {
     open_before();
     std::uint32_t open[kQueueClasses] = {kNobody, kNobody, kNobody};
@@ -186,8 +189,8 @@ class QueueAssigner {
     ++plan_.submissions.back().wait_count;
   }
 
-  // What another queue used before the frame is waited for, and given away, by a submission of that
-  // queue without passes.
+  // Resources that another queue used before the frame are waited for, and released, by a
+  // submission without passes on that queue.
   void open_before() {
     std::fill(std::begin(s_.opening), std::end(s_.opening), kNobody);
     std::uint8_t opened = 0;
@@ -201,12 +204,12 @@ class QueueAssigner {
     }
   }
 
-  // A queue that this frame does not have leaves its resources to graphics.
+  // Resources of a queue that this frame does not have belong to the graphics queue.
   QueueClass initial_queue(const ExternalRecord& external) const {
     return family(external.queue) == kNone ? QueueClass::graphics : external.queue;
   }
 
-  // Passes in order of submissions; submissions hold runs of positions.
+  // Reorders the passes by submission, so that each submission is a range of positions.
   void regroup() {
     std::uint32_t next = 0;
     for (Submission& submission : plan_.submissions) {
@@ -224,7 +227,8 @@ class QueueAssigner {
       s_.moved[to].submission = s_.submission_of[position];
       s_.new_position[position] = to;
     }
-    // What was known of a queue, in new positions: a queue's passes keep their order.
+    // Translates what is known of each queue to the new positions. The passes of a queue keep their
+    // order.
     for (std::uint32_t position = 0; position < plan_.passes.size(); ++position) {
       for (std::size_t other = 0; other < kQueueClasses; ++other) {
         const std::int32_t old = s_.known_at[position * kQueueClasses + other];
@@ -238,7 +242,8 @@ class QueueAssigner {
       workspace_.order[position] = plan_.passes[position].pass;
   }
 
-  // Imports depart from graphics, after their last use; so do histories of which parts may differ.
+  // Imports are left on the graphics queue after their last use. So are histories whose parts may
+  // be in different states.
   void close() {
     if (graph_.externals.empty()) return;
     std::uint32_t last[kQueueClasses] = {kNobody, kNobody, kNobody};
@@ -294,7 +299,8 @@ std::uint32_t taken_until(const Workspace& workspace, const Plan& plan, std::uin
   std::uint32_t until = position;
   for (std::size_t other = 0; other < kQueueClasses; ++other) {
     if (other == own) continue;
-    // Later passes of the other queue that do not know this one done may run beside it.
+    // Later passes of the other queue may run at the same time unless they know this one to be
+    // done.
     for (std::uint32_t later = position + 1; later < plan.passes.size(); ++later) {
       if (static_cast<std::size_t>(plan.passes[later].queue) != other) continue;
       if (workspace.queues.known[later * kQueueClasses + own] >=

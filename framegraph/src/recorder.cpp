@@ -5,12 +5,23 @@
 #include "aspects.h"
 
 namespace alcove::framegraph {
+namespace {
+
+// The execution dependency of a transition without its memory dependency.
+VkMemoryBarrier2 execution(const Transition& t) {
+  VkMemoryBarrier2 barrier{};
+  barrier.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2;
+  barrier.srcStageMask = t.src_stages;
+  barrier.dstStageMask = t.dst_stages;
+  return barrier;
+}
+
+}  // namespace
 
 void Recorder::begin(const RecordedFrame& frame) {
   graph_ = frame.graph;
   plan_ = frame.plan;
   physical_ = frame.physical;
-  events_ = frame.events;
   check_uses_ = frame.check_uses;
   slot_ = frame.slot;
   errors_.clear();
@@ -66,24 +77,12 @@ void Recorder::pass(const PlannedPass& planned, VkCommandBuffer commands, Timest
   callback.call(callback.object, context);
   if (timestamps) timestamps->end_pass(commands, time);
   if (label) device_.vk.vkCmdEndDebugUtilsLabelEXT(commands);
-  set_events(planned, commands);
 }
 
 void Recorder::batches(std::uint32_t first, std::uint32_t count, VkCommandBuffer commands) {
   for (std::uint32_t b = first; b < first + count; ++b) {
-    const Batch& batch = plan_->batches[b];
-    const VkDependencyInfo info = dependency(batch);
-    if (batch.event == kNone)
-      device_.vk.vkCmdPipelineBarrier2(commands, &info);
-    else
-      device_.vk.vkCmdWaitEvents2(commands, 1, &events_[batch.event], &info);
-  }
-}
-
-void Recorder::set_events(const PlannedPass& planned, VkCommandBuffer commands) {
-  for (std::uint32_t e = planned.first_set; e < planned.first_set + planned.set_count; ++e) {
-    const VkDependencyInfo info = dependency(plan_->batches[plan_->sets[e]]);
-    device_.vk.vkCmdSetEvent2(commands, events_[e], &info);
+    const VkDependencyInfo info = dependency(plan_->batches[b]);
+    device_.vk.vkCmdPipelineBarrier2(commands, &info);
   }
 }
 
@@ -103,14 +102,16 @@ VkDependencyInfo Recorder::dependency(const Batch& batch) {
     if (t.resource != kNone && (*physical_)[t.resource]->image) {
       images_.push_back(image_barrier(t));
       // An image barrier orders all commands of its stages, whatever they touch. The validation
-      // layers take it to concern the image alone, and miss that a buffer which had the memory
-      // before, and one that has it after, are ordered by way of the image: told so, at no cost.
-      if (t.old_layout == VK_IMAGE_LAYOUT_UNDEFINED && shares_with_buffers_)
-        memories_.push_back(memory);
+      // layers (1.3.239) apply it to its own image only, and report a hazard between two other
+      // resources that are ordered by way of it. A memory barrier over the same stages tells them.
+      // It makes nothing available or visible that the image barrier does not, so that it costs
+      // nothing.
+      const bool takes_over = t.old_layout == VK_IMAGE_LAYOUT_UNDEFINED && shares_with_buffers_;
+      add_memory(takes_over ? memory : execution(t));
     } else if (t.resource != kNone) {
       buffers_.push_back(buffer_barrier(t));
     } else {
-      memories_.push_back(memory);
+      add_memory(memory);
     }
   }
   VkDependencyInfo info{};
@@ -124,6 +125,17 @@ VkDependencyInfo Recorder::dependency(const Batch& batch) {
   return info;
 }
 
+// A barrier that is in the dependency already is not added again.
+void Recorder::add_memory(const VkMemoryBarrier2& barrier) {
+  for (const VkMemoryBarrier2& there : memories_) {
+    if (there.srcStageMask == barrier.srcStageMask && there.dstStageMask == barrier.dstStageMask &&
+        (barrier.srcAccessMask & ~there.srcAccessMask) == 0 &&
+        (barrier.dstAccessMask & ~there.dstAccessMask) == 0)
+      return;
+  }
+  memories_.push_back(barrier);
+}
+
 VkImageMemoryBarrier2 Recorder::image_barrier(const Transition& t) const {
   const Physical& physical = *(*physical_)[t.resource];
   VkImageMemoryBarrier2 barrier{};
@@ -135,6 +147,11 @@ VkImageMemoryBarrier2 Recorder::image_barrier(const Transition& t) const {
   // and else take what another plan wrote last for a hazard: told so, at no cost.
   if (starts_anew_ && t.old_layout == VK_IMAGE_LAYOUT_UNDEFINED)
     barrier.srcAccessMask |= VK_ACCESS_2_MEMORY_WRITE_BIT;
+  // Nor do they follow an image's last write to the next image on its bytes by way of a buffer that
+  // had them in between, unless the barrier names the access by which that was read. Reads have
+  // nothing to make available, so that naming them costs nothing.
+  if (t.old_layout == VK_IMAGE_LAYOUT_UNDEFINED && t.src_stages != 0)
+    barrier.srcAccessMask |= VK_ACCESS_2_MEMORY_READ_BIT;
   barrier.dstStageMask = t.dst_stages;
   barrier.dstAccessMask = t.dst_access;
   barrier.oldLayout = t.old_layout;

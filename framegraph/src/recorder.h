@@ -2,7 +2,6 @@
 // recorders may record parts of one plan at the same time.
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "alcove/framegraph/graph.h"
@@ -18,7 +17,6 @@ struct RecordedFrame {
   const Graph* graph = nullptr;
   const Plan* plan = nullptr;
   const std::vector<Physical*>* physical = nullptr;
-  std::span<const VkEvent> events;  // of the plan's split barriers
   bool check_uses = false;
   bool starts_anew = false;  // what came before was of another plan: it begins with full_barrier()
   std::uint32_t slot = 0;
@@ -50,8 +48,8 @@ class Recorder {
   void pass(const PlannedPass& planned, VkCommandBuffer commands, Timestamps* timestamps,
             std::uint32_t time);
   void begin_label(std::string_view name, VkCommandBuffer commands) const;
-  void set_events(const PlannedPass& planned, VkCommandBuffer commands);
   VkDependencyInfo dependency(const Batch& batch);
+  void add_memory(const VkMemoryBarrier2& barrier);
   VkImageMemoryBarrier2 image_barrier(const Transition& transition) const;
   VkBufferMemoryBarrier2 buffer_barrier(const Transition& transition) const;
   std::uint32_t family(const Transition& transition, QueueClass queue) const;
@@ -68,7 +66,6 @@ class Recorder {
   const Graph* graph_ = nullptr;
   const Plan* plan_ = nullptr;
   const std::vector<Physical*>* physical_ = nullptr;
-  std::span<const VkEvent> events_;
   bool check_uses_ = false;
   bool shares_with_buffers_ = false;  // the plan has transient buffers
   bool starts_anew_ = false;

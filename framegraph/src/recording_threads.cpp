@@ -53,8 +53,7 @@ RecordingThreads::~RecordingThreads() {
 
 VkResult RecordingThreads::begin(const RecordedFrame& frame) {
   for (const auto& recorder : recorders_) recorder->begin(frame);
-  // The validation layers do not follow events through secondary command buffers.
-  together_ = !threads_.empty() && frame.plan->sets.empty();
+  together_ = !threads_.empty();
   slot_ = frame.slot;
   for (std::size_t i = 0; i < buffers_.size(); ++i) {
     if (i / kQueueClasses % slots_ != slot_) continue;

@@ -1,7 +1,8 @@
-// Synchronisation: follows every subresource through the passes in execution order and puts each
-// dependency into the batch before the pass that needs it, or into the last batch before that if it
-// lies after the work waited for. A dependency is an interval of positions; choosing the end of the
-// interval that ends first is the least number of batches that meets them all.
+// Synchronisation: follows every subresource through the passes in order of execution. Each
+// dependency goes into the last batch of barriers, if that comes after the work that is waited for,
+// and else into a new batch before the pass that needs it. A dependency is an interval of positions
+// in which its barrier may be. Placing a batch at the end of the interval that ends first gives the
+// least number of batches.
 #include "synchronise.h"
 
 #include <algorithm>
@@ -9,7 +10,7 @@
 namespace alcove::framegraph {
 namespace {
 
-// Records a use in a state, with no regard to dependencies.
+// Records a use in a state without adding dependencies.
 void note(UseState& state, const AccessRecord& access, std::int32_t time) {
   if (access.flags & kWrite) {
     state.write_stages = access.stages;
@@ -22,6 +23,8 @@ void note(UseState& state, const AccessRecord& access, std::int32_t time) {
     state.transition = kNone;
     state.handed_over = 0;
     state.by_wait = 0;
+    state.unordered = (access.flags & kUnordered) != 0;
+    state.unordered_access = access.access;
   } else {
     state.read_stages |= access.stages;
     state.read_time = time;
@@ -30,13 +33,19 @@ void note(UseState& state, const AccessRecord& access, std::int32_t time) {
   state.used = 1;
 }
 
+// Whether the access is one more of a series of writes whose order does not matter: all of them
+// come after what the first came after.
+bool goes_on(const UseState& state, const AccessRecord& access) {
+  return (access.flags & kUnordered) && state.unordered && state.read_stages == 0 &&
+         state.write_stages == access.stages && state.unordered_access == access.access;
+}
+
 }  // namespace
 
 void Synchroniser::run() {
-  // Those from outside get their states on initial_state, transients when they take over their
+  // Imports and histories get their states from outside the frame, transients when they take over
   // memory.
   s_.states.resize(workspace_.first_sub.back());
-  s_.latest.clear();
   arrive();
   find_last_uses();
   const auto count = static_cast<std::uint32_t>(plan_.passes.size());
@@ -59,11 +68,10 @@ void Synchroniser::run() {
     planned.batch_count = 1;
   }
   depart();
-  if (limits_.split_barriers) split();
 }
 
-// The frame before used memory as this one will: who had which bytes last, and with what. Only
-// their last uses are looked for, and those of histories.
+// The frame before used memory as this one does. Finds the last use of each resource that has some
+// of the bytes at the end of a frame, and of each history.
 void Synchroniser::find_last_uses() {
   s_.last_uses.resize(workspace_.first_sub.back());
   s_.is_last.assign(graph_.resources.size(), 0);
@@ -91,7 +99,8 @@ void Synchroniser::find_last_uses() {
   }
 }
 
-// Backwards over the transients: bytes belong to the last that has them. Most heaps are full soon.
+// Bytes belong to the last transient that has them, so that this goes backwards and ends when all
+// bytes of all heaps have an owner.
 void Synchroniser::find_last_owners() {
   s_.memory.resize(std::max(s_.memory.size(), plan_.heaps.size()));
   for (MemoryMap& map : s_.memory) map.clear();
@@ -105,7 +114,7 @@ void Synchroniser::find_last_owners() {
   }
 }
 
-// A transient's first use comes after the last uses of all that had its bytes before.
+// A transient's first use comes after the last uses of all resources that had its bytes before.
 inline void Synchroniser::take_over_memory(std::uint32_t resource) {
   const Placement& placed = plan_.placements[resource];
   const std::uint32_t* const subs = workspace_.first_sub.data();
@@ -115,7 +124,7 @@ inline void Synchroniser::take_over_memory(std::uint32_t resource) {
     const UseState* const theirs = segment.before ? s_.last_uses.data() : states;
     for (std::uint32_t sub = subs[segment.resource]; sub < subs[segment.resource + 1]; ++sub) {
       const UseState& state = theirs[sub];
-      // With several queues a frame begins when all of the one before is done.
+      // With several queues a frame begins when the frame before is done.
       if (workspace_.several_queues && (segment.before || state.queue != queue_)) {
         merged.by_wait = 1;
         continue;
@@ -183,11 +192,12 @@ inline void Synchroniser::use_range(std::uint32_t position, const AccessRecord& 
 inline void Synchroniser::change_layout(std::uint32_t position, const AccessRecord& access,
                                         UseState& state, const Range& range) {
   Transition& wanted = next_image(std::max(state.read_time, state.write_time), position);
-  // Reads come after the write that they saw; a memory hand-over may have both.
+  // Reads come after the write that they saw. Memory that others had may have reads and writes of
+  // different resources.
   const bool after_reads = state.read_stages != 0 && !state.handed_over;
   wanted.src_stages = after_reads ? state.read_stages : state.read_stages | state.write_stages;
   wanted.src_access = after_reads ? 0 : state.write_access;
-  // A wait covers all stages, so that any stage follows on it.
+  // A semaphore wait covers all stages, so that any stage comes after it.
   if (wanted.src_stages == 0 && state.by_wait) wanted.src_stages = waited_stages(access);
   wanted.dst_stages = access.stages;
   wanted.dst_access = access.access;
@@ -211,7 +221,8 @@ void Synchroniser::read_again(std::uint32_t position, const AccessRecord& access
       Transition wanted;
       wanted.src_stages = state.by_wait ? VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT : state.write_stages;
       wanted.src_access = state.write_access;
-      // Stages and accesses that see it are followed apart: all of one see by all of the other.
+      // The stages and the accesses that see the write are kept in separate masks. The barrier
+      // covers every combination of the two.
       wanted.dst_stages = access.stages;
       if (access.access & ~state.seen_access) wanted.dst_stages |= state.seen_stages;
       wanted.dst_access = access.access;
@@ -226,6 +237,10 @@ void Synchroniser::read_again(std::uint32_t position, const AccessRecord& access
 
 void Synchroniser::write_again(std::uint32_t position, const AccessRecord& access,
                                UseState& state) {
+  if (goes_on(state, access)) {
+    state.write_time = pass_time(position);
+    return;
+  }
   Transition wanted;
   wanted.src_stages = state.read_stages | state.write_stages;
   wanted.src_access = state.write_access;
@@ -236,7 +251,7 @@ void Synchroniser::write_again(std::uint32_t position, const AccessRecord& acces
   wanted.dst_stages = access.stages;
   wanted.dst_access = access.access;
   if (state.read_stages != 0 && !state.handed_over) {
-    // Coming after the reads is enough, but for what this access reads itself.
+    // An execution dependency on the reads is enough, unless this access reads something itself.
     wanted.dst_access &= access.flags & kDiscard ? 0 : ~kWriteBits;
     if ((wanted.dst_access & ~state.seen_access) == 0 && (access.stages & ~state.seen_stages) == 0)
       wanted.dst_access = 0;

@@ -1,5 +1,5 @@
-// The synchroniser: see synchronise.cpp, externals.cpp for how imports and histories arrive and are
-// left, queue_transfer.cpp for what goes from queue to queue, split_barriers.cpp for events.
+// The synchroniser. synchronise.cpp follows the passes, externals.cpp the initial and final states
+// of imports and histories, and queue_transfer.cpp what goes from one queue to another.
 #pragma once
 
 #include <algorithm>
@@ -16,10 +16,10 @@ inline VkPipelineStageFlags2 waited_stages(const AccessRecord& access) {
   return stages != 0 ? stages : VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
 }
 
-// UseState::seen_access of what is seen in every way.
+// The value of UseState::seen_access when every access sees the write.
 inline constexpr VkAccessFlags2 kEveryAccess = ~VkAccessFlags2{0};
 
-// The same as barriers and states name it.
+// Seen accesses as barriers and states name them.
 inline VkAccessFlags2 reads_in(VkAccessFlags2 seen) {
   return seen == kEveryAccess ? VK_ACCESS_2_MEMORY_READ_BIT : seen;
 }
@@ -73,11 +73,6 @@ class Synchroniser {
                         const Range& range) const;
   void add_releases();
 
-  // split_barriers.cpp
-  void split();
-  std::uint32_t set_position(std::uint32_t position) const;
-  bool can_split(const Batch& batch) const;
-
   Batch& batch_after(std::int32_t time, std::uint32_t position);
   Transition& next_image(std::int32_t time, std::uint32_t position);
   void join_neighbours();
@@ -90,9 +85,9 @@ class Synchroniser {
   Plan& plan_;
   Workspace::Synchronise& s_;
   std::int32_t batch_time_ = kNever;  // of the last batch
-  // When the submission of the pass in hand begins: no barrier can be put before.
+  // The start of the current pass's submission, before which no barrier can be placed.
   std::int32_t earliest_ = kBeforeFrame;
-  QueueClass queue_ = QueueClass::graphics;  // of the pass in hand
+  QueueClass queue_ = QueueClass::graphics;  // of the current pass
 };
 
 // The dependencies go into the last batch if that comes after `time`, else into a new one.
@@ -101,9 +96,6 @@ inline Batch& Synchroniser::batch_after(std::int32_t time, std::uint32_t positio
   if (batch_time_ < time) {
     batch_time_ = batch_time(position);
     plan_.batches.push_back({static_cast<std::uint32_t>(plan_.transitions.size()), 0});
-    s_.latest.push_back(time);
-  } else {
-    s_.latest.back() = std::max(s_.latest.back(), time);
   }
   return plan_.batches.back();
 }
@@ -142,6 +134,8 @@ inline void Synchroniser::note_change(std::uint32_t position, const AccessRecord
   if (access.flags & kWrite) {
     state.write_access = access.access & kWriteBits;
     state.write_time = pass_time(position);
+    state.unordered = (access.flags & kUnordered) != 0;
+    state.unordered_access = access.access;
     return;
   }
   state.write_time = batch_time_;

@@ -1,4 +1,4 @@
-// Validation: replays the declaration in program order, following versions and contents.
+// Validation: follows versions and contents through the passes in order of declaration.
 #include "validate.h"
 
 #include <algorithm>
@@ -47,7 +47,8 @@ class Replay {
     }
   }
 
-  // What most accesses are, found out and followed at once; false with nothing done for any other.
+  // The fast path for most accesses, which are valid. False, with nothing done, for any other
+  // access.
   bool is_plainly_right(std::uint32_t pass, const AccessRecord& access) {
     if ((access.flags & (kPlain | kClosed)) != kPlain || (access.access & kAttachmentBits) != 0)
       return false;
@@ -93,7 +94,7 @@ class Replay {
     touched.layout = access.layout;
   }
 
-  // All attachments of a pass are drawn to together.
+  // The attachments of a pass are used in one rendering and must be of one size.
   void check_attachment(std::uint32_t pass, const AccessRecord& access) {
     const ResourceRecord& r = v_.graph.resources[access.resource];
     const auto side = [&access](std::uint32_t size) {

@@ -1,4 +1,4 @@
-// The parts of validation, and what they collect errors with.
+// The parts of validation and the state that they share.
 #pragma once
 
 #include <string>
@@ -29,10 +29,10 @@ struct Validation {
   }
 };
 
-// Descriptions, imports and histories; numbers the subresources of what is right.
+// Checks descriptions, imports and histories, and numbers the subresources of valid resources.
 void validate_resources(Validation& validation);
 
-// One access by itself: its handle, range, usage and masks. False when it cannot be followed.
+// Checks the handle, range, usage and masks of one access. False when the access names no resource.
 bool validate_access(Validation& validation, std::uint32_t pass, const AccessRecord& access);
 
 }  // namespace alcove::framegraph

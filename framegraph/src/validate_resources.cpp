@@ -55,7 +55,7 @@ bool check_texture(Validation& v, std::uint32_t index, const ResourceRecord& r) 
   return true;
 }
 
-// What most resources are, found out at once: a right texture of one subresource.
+// The fast path for most resources: whether it is a valid texture of one subresource.
 bool is_plainly_right(const ResourceRecord& r, std::uint32_t limit) {
   return r.kind == ResourceKind::texture && r.external == kNone && r.flags == 0 && r.depth == 1 &&
          r.mips == 1 && r.layers == 1 && r.samples == 1 && r.width - 1 < limit &&
@@ -71,8 +71,24 @@ bool check_buffer(Validation& v, std::uint32_t index, const ResourceRecord& r) {
   return false;
 }
 
+// The resource that was made from an external.
+std::uint32_t resource_of(const GraphDescription& graph, std::uint32_t external) {
+  std::uint32_t index = 0;
+  while (graph.resources[index].external != external) ++index;
+  return index;
+}
+
 void check_external(Validation& v, std::uint32_t index, const ResourceRecord& r) {
-  if (!v.graph.externals[r.external].has_handle)
+  const ExternalRecord& external = v.graph.externals[r.external];
+  if (external.same_as != kNone)
+    v.fail(ErrorCode::bad_import,
+           v.resource_text(index) + " and " +
+               v.resource_text(resource_of(v.graph, external.same_as)) + " are imported with one " +
+               (r.kind == ResourceKind::texture ? "VkImage" : "VkBuffer") +
+               ": import it once and use that handle in every pass, because the graph orders the "
+               "uses of each resource by itself",
+           kNone, index);
+  if (!external.has_handle)
     v.fail(
         ErrorCode::bad_import,
         v.resource_text(index) + " is imported without a Vulkan handle: set " +
@@ -86,7 +102,7 @@ void check_external(Validation& v, std::uint32_t index, const ResourceRecord& r)
         kNone, index);
 }
 
-// Any resource; how many subresources it has, none when its description is wrong.
+// Checks any resource. Returns the number of its subresources, 0 if its description is invalid.
 std::uint32_t look_closely(Validation& v, std::uint32_t index, const ResourceRecord& r) {
   const bool texture = r.kind == ResourceKind::texture;
   const bool right = texture ? check_texture(v, index, r) : check_buffer(v, index, r);

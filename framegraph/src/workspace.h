@@ -1,4 +1,5 @@
-// What the phases of compile hand to each other, kept between calls for its memory.
+// The data that the phases of compile share. It is kept from call to call, so that its memory is
+// used again.
 #pragma once
 
 #include <cstdint>
@@ -24,6 +25,7 @@ struct UseState {
   VkPipelineStageFlags2 read_stages = 0;   // of the reads since
   VkPipelineStageFlags2 seen_stages = 0;   // by which the write can be seen
   VkAccessFlags2 seen_access = 0;
+  VkAccessFlags2 unordered_access = 0;  // of the last write, where that is unordered
   std::int32_t write_time = kNever;
   std::int32_t read_time = kNever;
   VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
@@ -34,6 +36,7 @@ struct UseState {
   std::uint8_t by_wait = 0;
   QueueClass queue = QueueClass::graphics;  // of the last use
   std::uint8_t used = 0;                    // in this frame, or arrived with contents
+  std::uint8_t unordered = 0;               // the last write was with Contents::accumulate
   bool operator==(const UseState&) const = default;
 };
 
@@ -97,7 +100,8 @@ struct Workspace {
     std::vector<std::uint32_t> first_edge;  // by pass, into edges
     std::vector<std::uint32_t> waiting;     // by pass: edges that lead to it
     std::vector<std::uint32_t> ready;
-    std::vector<std::uint32_t> order;
+    std::vector<std::uint32_t> order;     // another order that may have a lower peak
+    std::vector<std::uint32_t> declared;  // the live passes in order of declaration
   } reorder;
   struct Queues {
     std::vector<std::uint32_t> waits;      // by position and queue: the pass waited for
@@ -136,7 +140,6 @@ struct Workspace {
     std::vector<UseState> last_uses;    // by subresource, at the end of a frame, where is_last
     std::vector<std::uint8_t> is_last;  // by resource: had its memory last, or is a history
     std::vector<MemoryMap> memory;      // by heap
-    std::vector<std::int32_t> latest;   // by batch: the last time that it waits for
     struct Release {
       std::uint32_t submission = 0;
       std::uint32_t number = 0;  // in order of need
@@ -181,8 +184,13 @@ bool validate(const GraphDescription& graph, const Limits& limits, Workspace& wo
               Errors& errors);
 // Which passes and accesses are needed; fills cull_reasons and live_accesses.
 void cull(const GraphDescription& graph, Workspace& workspace, Plan& plan);
-// The order of execution.
-void order(const GraphDescription& graph, const Limits& limits, Workspace& workspace, Plan& plan);
+// The live passes in order of declaration, as the order of execution.
+void order_as_declared(Workspace& workspace, const Plan& plan);
+// Looks for an order whose peak is lower, by the sizes of a plan in order of declaration. If there
+// is one that looks lower it is in workspace.reorder.order, and the order of declaration is in
+// workspace.reorder.declared.
+bool find_lower_order(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
+                      const Plan& plan);
 // Which queue runs what, in which submissions.
 void assign_queues(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
                    Plan& plan);

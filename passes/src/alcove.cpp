@@ -16,6 +16,7 @@
 #include "alcove/passes/kernels.h"
 #include "alcove/passes/reconstruct.h"
 #include "c_context_info.h"
+#include "c_diagnose.h"
 #include "c_failure.h"
 #include "c_images.h"
 #include "c_view.h"
@@ -68,6 +69,7 @@ struct AlcoveContext {
   passes::Kernels kernels;
   framegraph::Graph graph;
   passes::ImageTable images;
+  passes::CallObserver observer;
   framegraph::FrameReport report;  // of the frame recorded last; its plan null before there is one
   std::uint32_t slot = 0;          // of that frame
   bool may_discard = false;        // it was recorded by the last alcoveRecordFrame
@@ -250,6 +252,7 @@ Result record(AlcoveContext& context, VkCommandBuffer commands, const AlcoveFram
   context.slot = frame->slot;
   context.may_discard = declaration.recorded = true;
   context.passes_of_views[frame->slot] = *passes;
+  context.observer.observe(*frame);
   return {};
 }
 
@@ -360,6 +363,16 @@ size_t alcovePrintPlan(AlcoveContext* context, char* text, size_t size) {
   guarded(context, [&]() -> Result {
     length = copy_text(framegraph::print_text(context->graph.description(), *context->report.plan),
                        text, size);
+    return {};
+  });
+  return length;
+}
+
+size_t alcoveDiagnose(AlcoveContext* context, char* text, size_t size) {
+  copy_text("", text, size);
+  std::size_t length = 0;
+  guarded(context, [&]() -> Result {
+    length = copy_text(context->observer.describe(), text, size);
     return {};
   });
   return length;

@@ -35,7 +35,7 @@ static_assert(same(ThicknessUnit::radius, ALCOVE_THICKNESS_UNIT_RADIUS) &&
               same(ThicknessUnit::back_faces, ALCOVE_THICKNESS_UNIT_BACK_FACES));
 static_assert(same(Pattern::golden, ALCOVE_PATTERN_GOLDEN) &&
               same(Pattern::hilbert, ALCOVE_PATTERN_HILBERT) &&
-              same(Pattern::paper, ALCOVE_PATTERN_MEMO));
+              same(Pattern::paper, ALCOVE_PATTERN_PAPER));
 static_assert(same(Specular::slices, ALCOVE_SPECULAR_SLICES) &&
               same(Specular::table, ALCOVE_SPECULAR_TABLE) &&
               same(Specular::cone, ALCOVE_SPECULAR_CONE) &&

@@ -1,10 +1,12 @@
 #include "render/session.h"
 
+#include "alcove/framegraph/verify.h"
+
 namespace alcove::sample {
 
 tl::expected<std::unique_ptr<Gpu>, std::string> open_gpu(const DeviceRequest& request) {
   framegraph::ExecutorOptions executor;
-  executor.verify = executor.verify || request.validation;
+  if (request.validation) executor.verify = framegraph::verify;
   executor.check_uses = executor.check_uses || request.validation;
   return Gpu::create({.validation = request.validation,
                       .index = request.index,

@@ -51,7 +51,7 @@ class EnvironmentRows {
  private:
   void begin(uint32_t width, uint32_t height) {
     const uint32_t factor = (std::max(width, height) + kLargestSide - 1) / kLargestSide;
-    mean_.emplace(width, height, 3u, factor);
+    mean_.emplace(width, height, factor);
     image_ = EnvironmentImage(mean_->reduced(width), mean_->reduced(height));
     light_.resize(3 * size_t{width});
   }
@@ -67,7 +67,7 @@ class EnvironmentRows {
   }
 
   EnvironmentImage image_;
-  std::optional<BlockMean<float, double>> mean_;
+  std::optional<BlockMean<float, double, 3>> mean_;
   std::vector<float> light_;  // a row of the file, invalid radiance as 0
   size_t written_ = 0;        // how many components of image_ are complete
 };

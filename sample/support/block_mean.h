@@ -9,15 +9,15 @@
 namespace alcove::sample {
 
 // Shrinks an image while it is read row by row: every block of `factor` x `factor` pixels becomes
-// its mean, blocks at the right and lower edge that of the pixels they have. `Sum` adds up the
-// interleaved components of type `In`.
-template <class In, class Sum>
+// its mean, blocks at the right and lower edge that of the pixels they have. A pixel has
+// `kComponents` interleaved components of type `In`, which are added up as `Sum`.
+template <class In, class Sum, uint32_t kComponents>
 class BlockMean {
  public:
   // All at least 1.
-  BlockMean(uint32_t width, uint32_t height, uint32_t components, uint32_t factor)
-      : width_(width), components_(components), factor_(factor), rows_left_(height) {
-    sums_.resize(size_t{reduced(width)} * components);
+  BlockMean(uint32_t width, uint32_t height, uint32_t factor)
+      : width_(width), factor_(factor), rows_left_(height) {
+    sums_.resize(size_t{reduced(width)} * kComponents);
   }
 
   [[nodiscard]] uint32_t reduced(uint32_t side) const { return (side + factor_ - 1) / factor_; }
@@ -27,17 +27,18 @@ class BlockMean {
   template <class Write>
   void add_row(std::span<const In> row, const Write& write) {
     for (uint32_t x = 0; x < width_; ++x) {
-      for (uint32_t c = 0; c < components_; ++c) {
-        sums_[size_t{x / factor_} * components_ + c] +=
-            static_cast<Sum>(row[size_t{x} * components_ + c]);
+      for (uint32_t c = 0; c < kComponents; ++c) {
+        sums_[size_t{x / factor_} * kComponents + c] +=
+            static_cast<Sum>(row[size_t{x} * kComponents + c]);
       }
     }
     --rows_left_;
     if (++rows_ < factor_ && rows_left_ > 0) return;
     for (size_t i = 0; i < sums_.size(); ++i) {
-      const auto first = static_cast<uint32_t>(i / components_) * factor_;
+      const auto first = static_cast<uint32_t>(i / kComponents) * factor_;
       const uint32_t columns = std::min(factor_, width_ - first);
-      write(i, sums_[i] / static_cast<Sum>(size_t{columns} * rows_));
+      const size_t pixels = std::max(size_t{columns} * rows_, size_t{1});
+      write(i, sums_[i] / static_cast<Sum>(pixels));
     }
     std::fill(sums_.begin(), sums_.end(), Sum{});
     rows_ = 0;
@@ -45,7 +46,6 @@ class BlockMean {
 
  private:
   uint32_t width_;
-  uint32_t components_;
   uint32_t factor_;
   uint32_t rows_left_;
   uint32_t rows_ = 0;  // of the block that is being added up

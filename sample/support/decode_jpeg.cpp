@@ -159,7 +159,7 @@ tl::expected<DecodedImage, std::string> decode_jpeg(Bytes bytes, uint32_t reduct
   if (!reader.read_header() || !reader.start(scale)) return failure_of(reader);
   const uint32_t width = reader.output_width(), height = reader.output_height();
   const size_t row_bytes = 4 * size_t{width};
-  BlockMean<uint8_t, uint32_t> mean(width, height, 4, reduction / scale);
+  BlockMean<uint8_t, uint32_t, 4> mean(width, height, reduction / scale);
   DecodedImage out{mean.reduced(width), mean.reduced(height), {}};
   out.rgba.resize(4 * size_t{out.width} * out.height);
   bool read = false;

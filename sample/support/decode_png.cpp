@@ -103,7 +103,7 @@ tl::expected<DecodedImage, std::string> decode_png(Bytes bytes, uint32_t reducti
   if (!reader.read_header()) return Failure(kDamaged);
   const uint32_t width = reader.width(), height = reader.height();
   const size_t row_bytes = 4 * size_t{width};
-  BlockMean<uint8_t, uint32_t> mean(width, height, 4, reduction);
+  BlockMean<uint8_t, uint32_t, 4> mean(width, height, reduction);
   DecodedImage out{mean.reduced(width), mean.reduced(height), {}};
   out.rgba.resize(4 * size_t{out.width} * out.height);
   bool read = false;

@@ -11,7 +11,9 @@
 
 #include <algorithm>
 #include <exception>
+#include <iterator>
 #include <stdexcept>
+#include <string_view>
 #include <vector>
 
 namespace alcove::sample {
@@ -43,6 +45,120 @@ class FileStream : public Imf::IStream {
   std::FILE* file_;
 };
 
+// Little-endian, as all of OpenEXR.
+bool read_word(std::FILE* file, uint32_t& out) {
+  uint8_t bytes[4];
+  if (std::fread(bytes, 1, 4, file) != 4) return false;
+  out = uint32_t{bytes[0]} | uint32_t{bytes[1]} << 8 | uint32_t{bytes[2]} << 16 |
+        uint32_t{bytes[3]} << 24;
+  return true;
+}
+
+// A name up to its terminating null.
+bool read_name(std::FILE* file, std::string& out) {
+  constexpr size_t kLongest = 255;  // bytes
+  out.clear();
+  for (int c = std::getc(file); c != EOF && out.size() <= kLongest; c = std::getc(file)) {
+    if (c == 0) return true;
+    out.push_back(static_cast<char>(c));
+  }
+  return false;
+}
+
+// The size in bytes of the types of attributes that have only one; 0 for others. OpenEXR reads that
+// many bytes whatever the file gives as the size.
+uint32_t fixed_size(const std::string& type) {
+  struct Entry {
+    std::string_view type;
+    uint32_t size;
+  };
+  constexpr Entry kSizes[] = {{"box2f", 16},         {"box2i", 16},    {"chromaticities", 32},
+                              {"compression", 1},    {"double", 8},    {"envmap", 1},
+                              {"deepImageState", 1}, {"float", 4},     {"int", 4},
+                              {"keycode", 28},       {"lineOrder", 1}, {"m33d", 72},
+                              {"m33f", 36},          {"m44d", 128},    {"m44f", 64},
+                              {"rational", 8},       {"tiledesc", 9},  {"timecode", 8},
+                              {"v2d", 16},           {"v2f", 8},       {"v2i", 8},
+                              {"v3d", 24},           {"v3f", 12},      {"v3i", 12}};
+  const auto found = std::ranges::find(kSizes, type, &Entry::type);
+  return found == std::end(kSizes) ? 0 : found->size;
+}
+
+// A list of channels: names with 16 bytes each, up to an empty name.
+bool is_channel_list(std::FILE* file, uint32_t size) {
+  constexpr uint32_t kChannel = 16;
+  std::string name;
+  for (uint32_t left = size; read_name(file, name) && left > name.size();) {
+    left -= static_cast<uint32_t>(name.size()) + 1;
+    if (name.empty()) return left == 0;
+    if (left < kChannel || std::fseek(file, kChannel, SEEK_CUR) != 0) return false;
+    left -= kChannel;
+  }
+  return false;
+}
+
+// Strings with a length each.
+bool is_string_vector(std::FILE* file, uint32_t size) {
+  uint32_t length = 0;
+  while (size > 0) {
+    if (size < 4 || !read_word(file, length) || length > size - 4) return false;
+    size -= 4 + length;
+    if (std::fseek(file, static_cast<long>(length), SEEK_CUR) != 0) return false;
+  }
+  return true;
+}
+
+// A width, a height and that many pixels.
+bool is_preview(std::FILE* file, uint32_t size) {
+  uint32_t width = 0, height = 0;
+  return size >= 8 && read_word(file, width) && read_word(file, height) &&
+         width <= kLargestFloatSide && height <= kLargestFloatSide &&
+         uint64_t{4} * width * height == size - 8;
+}
+
+// Whether OpenEXR reads exactly `size` bytes for an attribute, and takes no more memory than that.
+bool has_size(std::FILE* file, const std::string& type, uint32_t size) {
+  if (const uint32_t fixed = fixed_size(type); fixed != 0) return size == fixed;
+  if (type == "chlist") return is_channel_list(file, size);
+  if (type == "stringvector") return is_string_vector(file, size);
+  if (type == "preview") return is_preview(file, size);
+  return type != "floatvector" || size % 4 == 0;
+}
+
+// Goes over the attributes of all headers, and back to the beginning of the file. OpenEXR takes
+// memory for an attribute by the size that the file gives, before it reads.
+tl::expected<void, std::string> check_attributes(std::FILE* file) {
+  constexpr uint32_t kMagic = 20000630, kMultiPart = 0x1000;
+  const long end = std::fseek(file, 0, SEEK_END) == 0 ? std::ftell(file) : -1;
+  std::rewind(file);
+  uint32_t magic = 0, version = 0;
+  if (!read_word(file, magic) || !read_word(file, version) || magic != kMagic) {
+    return Failure("is no OpenEXR file");
+  }
+  std::string name, type;
+  // A header ends with an empty name, the list of the headers of several parts with another one.
+  for (bool new_header = true;;) {
+    if (!read_name(file, name)) return Failure("is cut short in its header");
+    if (name.empty()) {
+      if (new_header || (version & kMultiPart) == 0) break;
+      new_header = true;
+      continue;
+    }
+    new_header = false;
+    uint32_t size = 0;
+    if (!read_name(file, type) || !read_word(file, size)) {
+      return Failure("is cut short in its header");
+    }
+    const long begin = std::ftell(file);
+    if (begin < 0 || int64_t{size} > int64_t{end} - begin || !has_size(file, type, size) ||
+        std::fseek(file, begin + static_cast<long>(size), SEEK_SET) != 0) {
+      return Failure("is damaged: its attribute " + name + " has a wrong size");
+    }
+  }
+  std::rewind(file);
+  return {};
+}
+
 struct Size {
   uint32_t width = 0;
   uint32_t height = 0;
@@ -64,7 +180,7 @@ tl::expected<Size, std::string> check_header(const Imf::Header& header) {
   if (header.hasType() && Imf::isDeepData(header.type())) {
     return Failure("is a deep image; flatten it first");
   }
-  const Imath::Box2i window = header.dataWindow();
+  const Imath::Box2i& window = header.dataWindow();
   const int64_t width = int64_t{window.max.x} - window.min.x + 1;
   const int64_t height = int64_t{window.max.y} - window.min.y + 1;
   if (width < 1 || height < 1 || width > kLargestFloatSide || height > kLargestFloatSide) {
@@ -127,6 +243,7 @@ tl::expected<void, std::string> read_checked(FileStream& stream, const ChooseCha
 
 tl::expected<void, std::string> read_exr(std::FILE* file, const ChooseChannels& choose,
                                          const FloatRows& rows) {
+  if (auto fine = check_attributes(file); !fine) return fine;
   try {
     FileStream stream(file);
     return read_checked(stream, choose, rows);

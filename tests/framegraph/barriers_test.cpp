@@ -5,7 +5,6 @@
 #include <iostream>
 
 #include "alcove/framegraph/compile.h"
-#include "alcove/framegraph/print.h"
 #include "alcove/framegraph/verify.h"
 #include "barrier_search.h"
 #include "deferred_frame.h"
@@ -17,7 +16,7 @@ namespace {
 
 // Without transient buffers: what those must wait for in the frame before could now and then be met
 // by a command of that frame, and compile meets it in this one.
-TEST(Barriers, NoPlacementOfFewerCommandsIsRight) {
+TEST(Barriers, NoPlacementOfFewerBarrierCommandsIsVerified) {
   Graph graph;
   std::uint32_t tried = 0;
   RandomOptions options;
@@ -73,7 +72,7 @@ TEST(Barriers, LayersAndMipsThatChangeAlikeShareABarrier) {
   }
 }
 
-TEST(Barriers, ReadsAfterReadsCostNothing) {
+TEST(Barriers, ReadAfterReadNeedsNoBarrier) {
   Graph graph;
   Texture texture = graph.create_texture("t", {VK_FORMAT_R8_UNORM, Extent::absolute(8, 8)});
   PassBuilder writer = graph.add_pass("writer");
@@ -92,7 +91,7 @@ TEST(Barriers, ReadsAfterReadsCostNothing) {
 }
 
 // Where a stage reads in a second way, and another stage read that way before it or does after.
-TEST(Barriers, WhatOneStageSeesInOneWayItDoesNotSeeInAnother) {
+TEST(Barriers, WriteSeenByOneAccessIsNotSeenByAnotherAccessOfTheStage) {
   Graph graph;
   Buffer data = graph.create_buffer("data", {64});
   Buffer other = graph.create_buffer("other", {64});
@@ -141,7 +140,7 @@ class InitialStates : public testing::Test {
   Graph graph_;
 };
 
-TEST_F(InitialStates, WhatOneStageReadIsYetToBeSeenByAnother) {
+TEST_F(InitialStates, WriteSeenByOneStageIsMadeVisibleToAnother) {
   for (const Access& initial_state : {access::sampled_compute, access::sampled_fragment}) {
     graph_.reset();
     const Texture texture = import(state_of(initial_state));
@@ -157,7 +156,7 @@ TEST_F(InitialStates, WhatOneStageReadIsYetToBeSeenByAnother) {
   }
 }
 
-TEST_F(InitialStates, WhatNoPassReadsIsSeenByThoseItDepartsTo) {
+TEST_F(InitialStates, UnreadImportIsMadeVisibleToItsFinalState) {
   const State written{VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
                       VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
                       VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
@@ -168,7 +167,7 @@ TEST_F(InitialStates, WhatNoPassReadsIsSeenByThoseItDepartsTo) {
   EXPECT_EQ(plan.transitions[0].dst_stages, access::sampled_fragment.stages);
 }
 
-TEST_F(InitialStates, AHistoryIsSeenByWhateverReadsItNext) {
+TEST_F(InitialStates, HistoryIsMadeVisibleToItsNextReader) {
   const auto declare = [&](const Access& own, const Access& old) {
     graph_.reset();
     const TextureHistory history =
@@ -194,7 +193,7 @@ TEST_F(InitialStates, AHistoryIsSeenByWhateverReadsItNext) {
   EXPECT_EQ(seen.dst_stages, VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT);
 }
 
-TEST_F(InitialStates, AHistoryThatWasWrittenInPartIsNotValid) {
+TEST_F(InitialStates, PartlyWrittenHistoryIsNotValid) {
   const auto declare = [&](Range range) {
     graph_.reset();
     const TextureHistory history =
@@ -224,7 +223,7 @@ TEST(Barriers, NeighbouringMipsThatChangeAlikeAreOneBarrier) {
   EXPECT_EQ(plan->transitions.size(), 2u);
 }
 
-TEST(Barriers, TheDeferredFrameCannotDoWithACommandFewer) {
+TEST(Barriers, DeferredFrameNeedsAllOfItsBarrierCommands) {
   Graph graph;
   declare_deferred_frame(graph, 1920, 1080);
   Limits limits;
@@ -234,7 +233,7 @@ TEST(Barriers, TheDeferredFrameCannotDoWithACommandFewer) {
   expect_no_command_too_many("deferred frame", graph.description(), limits, *plan);
 }
 
-TEST(Barriers, AWriteAfterReadsThatSawTheLastWriteMakesNothingVisible) {
+TEST(Barriers, WriteAfterReadsThatSawTheLastWriteMakesNothingVisible) {
   Graph graph;
   Texture texture = graph.create_texture("t", {VK_FORMAT_R8_UNORM, Extent::absolute(8, 8)});
   PassBuilder writer = graph.add_pass("writer");
@@ -250,60 +249,6 @@ TEST(Barriers, AWriteAfterReadsThatSawTheLastWriteMakesNothingVisible) {
   ASSERT_EQ(plan->transitions.size(), 3u);
   EXPECT_EQ(plan->transitions[2].src_access, VK_ACCESS_2_NONE);
   EXPECT_EQ(plan->transitions[2].dst_access, VK_ACCESS_2_NONE);
-}
-
-// With as few commands as this, little is left to split: each waits for the pass before it, as a
-// rule.
-TEST(Barriers, FewCommandsHaveWorkBetween) {
-  Graph graph;
-  Limits limits;
-  limits.split_barriers = true;
-  declare_deferred_frame(graph, 1920, 1080);
-  const auto deferred = compile(graph, limits);
-  ASSERT_TRUE(deferred);
-  std::cerr << "deferred frame: " << deferred->sets.size() << " of " << deferred->batches.size()
-            << " barrier commands are split";
-  std::size_t split = 0;
-  std::size_t all = 0;
-  for (std::uint64_t seed = 0; seed < 1000; ++seed) {
-    graph.reset();
-    graph.reset_histories();
-    Dice dice(seed);
-    declare_random(graph, dice);
-    const auto plan = compile(graph, limits);
-    ASSERT_TRUE(plan);
-    EXPECT_TRUE(verify(graph.description(), limits, *plan));
-    split += plan->sets.size();
-    all += plan->batches.size();
-  }
-  std::cerr << "; of 1,000 random graphs " << split << " of " << all << "\n";
-  EXPECT_GT(split, 0u);
-}
-
-TEST(Barriers, AnEventLetsThePassesBetweenRunOn) {
-  Graph graph;
-  const auto make = [&](const char* name, Texture from) {
-    Texture to = graph.create_texture(name, {VK_FORMAT_R8_UNORM, Extent::absolute(8, 8)});
-    PassBuilder pass = graph.add_pass(name);
-    if (from) pass.read(from, access::sampled_compute);
-    pass.side_effect();
-    return pass.write(to, access::storage_write_compute);
-  };
-  const Texture first = make("first", {});
-  (void)make("between", {});
-  (void)make("last", first);
-  Limits limits;
-  limits.split_barriers = true;
-  limits.ordering = Ordering::program;
-  limits.alias = false;
-  const auto plan = compile(graph, limits);
-  ASSERT_TRUE(plan);
-  EXPECT_TRUE(verify(graph.description(), limits, *plan));
-  ASSERT_EQ(plan->sets.size(), 1u);
-  EXPECT_EQ(plan->passes[0].set_count, 1u);
-  EXPECT_EQ(plan->batches[plan->passes[2].first_batch].event, 0u);
-  EXPECT_NE(print_text(graph.description(), *plan).find("event set after 0: compute -> compute"),
-            std::string::npos);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "alcove/framegraph/compile.h"
+#include "alcove/framegraph/verify.h"
 
 namespace alcove::framegraph {
 namespace {
@@ -23,7 +24,7 @@ class Cull : public testing::Test {
   Graph graph_;
 };
 
-TEST_F(Cull, WhatNobodyReadsCostsNothing) {
+TEST_F(Cull, UnreadPassesAndTheirTexturesAreCulled) {
   const Texture wanted = make("wanted");
   (void)make("unwanted");
   graph_.output(wanted);
@@ -34,7 +35,7 @@ TEST_F(Cull, WhatNobodyReadsCostsNothing) {
   EXPECT_EQ(result.placements[1].heap, kNone);
 }
 
-TEST_F(Cull, AChainIsKeptByItsEndAndSaysSo) {
+TEST_F(Cull, PassIsKeptByTheConsumerThatItNames) {
   const Texture first = make("first");
   Texture second = graph_.create_texture("second", kDesc);
   PassBuilder pass = graph_.add_pass("reader");
@@ -47,7 +48,7 @@ TEST_F(Cull, AChainIsKeptByItsEndAndSaysSo) {
   EXPECT_EQ(result.cull_reasons[0].resource, 0u);
 }
 
-TEST_F(Cull, ASideEffectKeepsAPassThatWritesNothing) {
+TEST_F(Cull, SideEffectKeepsAPassThatWritesNothing) {
   graph_.add_pass("kept").side_effect();
   (void)graph_.add_pass("gone");
   const Plan result = plan();
@@ -55,7 +56,7 @@ TEST_F(Cull, ASideEffectKeepsAPassThatWritesNothing) {
   EXPECT_EQ(result.cull_reasons[1].cull_reason, CullReason::writes_nothing);
 }
 
-TEST_F(Cull, AWriteThatDiscardsMakesEarlierWritesUnread) {
+TEST_F(Cull, DiscardingWriteMakesEarlierWritesUnread) {
   Texture texture = make("first");
   texture = write("second", texture, Contents::discard);
   graph_.output(texture);
@@ -64,7 +65,7 @@ TEST_F(Cull, AWriteThatDiscardsMakesEarlierWritesUnread) {
   EXPECT_EQ(result.cull_reasons[1].cull_reason, CullReason::output);
 }
 
-TEST_F(Cull, AnOptionalOutputThatNobodyReadsHasNoMemory) {
+TEST_F(Cull, UnreadOptionalOutputHasNoMemory) {
   Texture main = graph_.create_texture("main", kDesc);
   Texture extra = graph_.create_texture("extra", kDesc);
   PassBuilder pass = graph_.add_pass("pass");
@@ -76,7 +77,7 @@ TEST_F(Cull, AnOptionalOutputThatNobodyReadsHasNoMemory) {
   EXPECT_EQ(result.placements[extra.index].heap, kNone);
 }
 
-TEST_F(Cull, OneMipKeepsOnlyItsWriter) {
+TEST_F(Cull, ReadingOneMipKeepsOnlyTheWriterOfThatMip) {
   TextureDesc desc = kDesc;
   desc.mips = 3;
   Texture texture = graph_.create_texture("t", desc);
@@ -93,7 +94,7 @@ TEST_F(Cull, OneMipKeepsOnlyItsWriter) {
   EXPECT_EQ(result.cull_reasons[2].cull_reason, CullReason::unread);
 }
 
-TEST_F(Cull, AHistoryKeepsItsWriterOnlyWhereItIsRead) {
+TEST_F(Cull, HistoryKeepsItsWriterOnlyIfItIsRead) {
   const TextureHistory history = graph_.create_texture_history("h", kDesc);
   Texture result = graph_.create_texture("result", kDesc);
   PassBuilder accumulate = graph_.add_pass("accumulate");
@@ -109,7 +110,7 @@ TEST_F(Cull, AHistoryKeepsItsWriterOnlyWhereItIsRead) {
   EXPECT_EQ(kept.cull_reasons[1].consumer, 0u);
 }
 
-TEST_F(Cull, AnUpdateInPlaceIsKeptWhereTheHistoryIsRead) {
+TEST_F(Cull, UpdateInPlaceIsKeptIfTheHistoryIsRead) {
   const TextureHistory history = graph_.create_texture_history("h", kDesc);
   (void)write("remember", history.current);
   Texture result = graph_.create_texture("result", kDesc);
@@ -124,6 +125,81 @@ TEST_F(Cull, AnUpdateInPlaceIsKeptWhereTheHistoryIsRead) {
   EXPECT_EQ(kept.passes.size(), 3u);
   EXPECT_EQ(kept.cull_reasons[2].cull_reason, CullReason::feeds_history);
   EXPECT_EQ(kept.cull_reasons[2].consumer, 1u);
+}
+
+// A pass that updates `acc` and writes a second texture, which alone is wanted:
+//
+//   clear -> acc -> update -> acc (unread)
+//                      +----> second -> output
+class CullUpdate : public Cull {
+ protected:
+  // The plan of that frame, with these accesses to `acc`.
+  Plan plan_of_update(const Access& clear, Contents cleared, Need need, const Access& update) {
+    TextureDesc desc = kDesc;
+    if (update.usage & VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT)
+      desc.format = VK_FORMAT_D32_SFLOAT;
+    Texture acc = graph_.create_texture("acc", desc);
+    Texture second = graph_.create_texture("second", kDesc);
+    PassBuilder first = graph_.add_pass("clear");
+    acc = first.write(acc, clear, {}, cleared, need);
+    PassBuilder both = graph_.add_pass("update");
+    (void)both.write(acc, update);
+    second = both.write(second, access::storage_write_compute, {}, Contents::discard);
+    graph_.output(second);
+    return plan();
+  }
+  static void expect_both(const Plan& plan) {
+    EXPECT_EQ(plan.passes.size(), 2u);
+    EXPECT_EQ(plan.cull_reasons[0].cull_reason, CullReason::feeds_pass);
+    EXPECT_EQ(plan.cull_reasons[0].consumer, 1u);
+    EXPECT_EQ(plan.live_accesses, (std::vector<std::uint8_t>{1, 1, 1}));
+  }
+};
+
+TEST_F(CullUpdate, ReadModifyWriteKeepsTheProducerOfWhatItReads) {
+  expect_both(plan_of_update(access::clear, Contents::discard, Need::required,
+                             access::storage_read_write_compute));
+}
+
+TEST_F(CullUpdate, BlendingKeepsTheProducerOfWhatItReads) {
+  expect_both(
+      plan_of_update(access::clear, Contents::discard, Need::required, access::color_attachment));
+}
+
+TEST_F(CullUpdate, DepthTestKeepsTheDepthPrepass) {
+  expect_both(plan_of_update(access::depth_attachment, Contents::discard, Need::required,
+                             access::depth_attachment));
+}
+
+TEST_F(CullUpdate, OptionalOutputIsLiveWhenOnlyAnUpdateReadsIt) {
+  expect_both(plan_of_update(access::storage_write_compute, Contents::keep, Need::optional,
+                             access::storage_read_write_compute));
+}
+
+TEST_F(CullUpdate, PartialWriteThatReadsNothingDoesNotKeepTheProducer) {
+  const Plan result = plan_of_update(access::clear, Contents::discard, Need::required,
+                                     access::storage_write_compute);
+  EXPECT_EQ(result.passes.size(), 1u);
+  EXPECT_EQ(result.cull_reasons[0].cull_reason, CullReason::unread);
+}
+
+TEST_F(CullUpdate, VerifierRefusesAPlanWithoutTheProducerOfWhatAnUpdateReads) {
+  Plan result = plan_of_update(access::clear, Contents::discard, Need::required,
+                               access::storage_read_write_compute);
+  // The plan of the same frame in which the update does not read: nothing clears `acc`.
+  const GraphDescription& description = graph_.description();
+  GraphDescription not_reading = description;
+  not_reading.accesses[1].access = access::storage_write_compute.access;
+  const auto wrong = compile(not_reading);
+  ASSERT_TRUE(wrong);
+  ASSERT_EQ(wrong->passes.size(), 1u);
+  EXPECT_TRUE(verify(not_reading, {}, *wrong));
+  EXPECT_TRUE(verify(description, {}, result));
+  const auto verified = verify(description, {}, *wrong);
+  ASSERT_FALSE(verified);
+  EXPECT_NE(
+      to_string(verified.error()).find("the update of 'acc' does not find what was written for it"),
+      std::string::npos);
 }
 
 }  // namespace

@@ -59,6 +59,25 @@ void declare_chain(Graph& graph, const HostBuffer& host, std::uint32_t length) {
   }
 }
 
+// Graphs in turn on one executor: each is compiled once, as long as there is room for all plans.
+TEST_F(ExecutorTest, PlansOfGraphsInTurnAreKept) {
+  for (const std::uint32_t graphs : {60u, 3u}) {
+    ExecutorOptions options;
+    if (graphs == 3) options.cached_plans = 2;
+    Executor executor = make(options);
+    Graph graph;
+    const HostBuffer host = gpu_.make_host_buffer(graphs * sizeof(std::uint32_t));
+    for (int turn = 0; turn < 2; ++turn) {
+      for (std::uint32_t length = 1; length <= graphs; ++length) {
+        declare_chain(graph, host, length);
+        const auto report = gpu_.run(executor, graph);
+        ASSERT_TRUE(report) << to_string(report.error());
+        EXPECT_EQ(report->compiled, turn == 0 || graphs == 3);
+      }
+    }
+  }
+}
+
 TEST_F(ExecutorTest, TransientsThatShareMemoryKeepTheirContents) {
   Executor executor = make();
   const HostBuffer host = gpu_.make_host_buffer(8 * sizeof(std::uint32_t));
@@ -252,7 +271,6 @@ class FailingDeviceTest : public ExecutorTest {
 void FailingDeviceTest::expect_out_of_memory_anywhere_is_an_error(std::uint32_t threads) {
   ExecutorOptions options;
   options.recording_threads = threads;
-  options.split_barriers = true;
   int failed = 0;
   int last = 0;
   for (const bool submits : {false, true}) {

@@ -7,6 +7,12 @@
 //   compile  Compiler::compile, everything it needs already allocated
 //   steady   declaring the same frame again and finding its plan: what a frame costs as a rule
 // and the allocations of a steady frame, counted by replacing operator new.
+//
+// Then what a frame costs whose declaration changes, in milliseconds, with the memory peak over the
+// lower bound (the most bytes live at once) beside it:
+//   all sizes  each frame has textures of other sizes
+//   one size   one texture changes its size from frame to frame, as with dynamic resolution
+// And how long verify() takes for the plans of `random`.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -16,6 +22,7 @@
 #include <vector>
 
 #include "alcove/framegraph/compile.h"
+#include "alcove/framegraph/verify.h"
 #include "allocation_counter.h"
 #include "random_graph.h"
 
@@ -112,6 +119,71 @@ void measure(Shape shape, std::uint32_t passes) {
               passes);
 }
 
+// One texture a pass, of any size, from up to three of the last 16. All passes are needed.
+void declare_sizes(Graph& graph, std::uint64_t seed, std::uint32_t passes, std::uint32_t width) {
+  graph.reset();
+  Dice dice(seed);
+  std::vector<Texture> textures;
+  for (std::uint32_t i = 0; i < passes; ++i) {
+    const Extent extent = Extent::absolute(1 + dice.roll(1920), 1 + dice.roll(1080));
+    TextureDesc desc{VK_FORMAT_R8G8B8A8_UNORM, extent};
+    if (i == passes / 2 && width != 0) desc.extent.width = width;
+    const Texture texture = graph.create_texture("texture", desc);
+    PassBuilder pass = graph.add_pass("pass");
+    Texture used[3];
+    for (std::uint32_t reads = dice.roll(4); reads > 0 && !textures.empty(); --reads) {
+      const auto count = static_cast<std::uint32_t>(textures.size());
+      const std::uint32_t window = std::min(count, dice.chance(128) ? 4u : 16u);
+      const Texture from = textures[count - 1 - dice.roll(window)];
+      if (std::find(std::begin(used), std::end(used), from) != std::end(used)) continue;
+      used[reads - 1] = from;
+      pass.read(from, access::sampled_compute);
+    }
+    textures.push_back(pass.write(texture, access::storage_write_compute));
+    pass.side_effect();
+  }
+}
+
+void measure_changes(bool all_sizes, std::uint32_t passes, std::int64_t effort) {
+  Graph graph;
+  Compiler compiler;
+  Plan plan;
+  Limits limits;
+  limits.placement_effort = effort;
+  std::vector<double> times;
+  std::vector<double> ratios;
+  constexpr std::uint32_t kFrames = 201;
+  for (std::uint32_t frame = 0; frame < kFrames; ++frame) {
+    times.push_back(time_ns(1,
+                            [&] {
+                              declare_sizes(graph, all_sizes ? frame : 1, passes,
+                                            all_sizes ? 0 : 960 + 4 * frame);
+                              if (!compiler.compile(graph.description(), limits, plan))
+                                std::abort();
+                            }) *
+                    1e-6);
+    ratios.push_back(static_cast<double>(plan.heaps[0].size) /
+                     static_cast<double>(plan.heaps[0].lower_bound));
+  }
+  const auto highest = [](const std::vector<double>& values) {
+    return *std::max_element(values.begin(), values.end());
+  };
+  std::printf("%-9s %5u  %8lld  %7.3f %7.3f  %7.4f %7.4f\n", all_sizes ? "all sizes" : "one size",
+              passes, static_cast<long long>(effort), median(times), highest(times), median(ratios),
+              highest(ratios));
+}
+
+void measure_verifier(std::uint32_t passes) {
+  Graph graph;
+  std::vector<Texture> textures(passes);
+  declare(graph, choose_reads(Shape::random, passes), textures);
+  const auto plan = compile(graph);
+  const double time = time_ns(3, [&] {
+    if (!plan || !verify(graph.description(), {}, *plan)) std::abort();
+  });
+  std::printf("%5u passes: %.1f ms\n", passes, time * 1e-6);
+}
+
 }  // namespace
 }  // namespace alcove::framegraph
 
@@ -122,5 +194,15 @@ int main() {
   for (const Shape shape : {Shape::chain, Shape::random}) {
     for (const std::uint32_t passes : {10u, 100u, 1000u, 5000u}) measure(shape, passes);
   }
+  std::printf("\nmilliseconds of processor time of a changed frame, peak over lower bound\n");
+  std::printf("frame     passes    effort   median highest   median highest\n");
+  for (const bool all_sizes : {true, false}) {
+    for (const std::uint32_t passes : {120u, 200u}) {
+      for (const std::int64_t effort : {std::int64_t{0}, Limits{}.placement_effort})
+        measure_changes(all_sizes, passes, effort);
+    }
+  }
+  std::printf("\nverify()\n");
+  for (const std::uint32_t passes : {100u, 1000u, 5000u}) measure_verifier(passes);
   return 0;
 }

@@ -1,6 +1,7 @@
 // Histories on the device: what each slot holds, frame by frame, is what history.h promises.
 #include <gtest/gtest.h>
 
+#include "alcove/framegraph/verify.h"
 #include "checksum_kernels.h"
 #include "gpu.h"
 
@@ -27,7 +28,7 @@ class GraphHistory : public testing::Test {
     ASSERT_EQ(gpu_.problem(), "");
     kernels_ = std::make_unique<ChecksumKernels>(gpu_);
     ExecutorOptions options;
-    options.verify = true;
+    options.verify = verify;
     options.check_uses = true;
     auto made = Executor::create(gpu_.handles(), options);
     ASSERT_TRUE(made) << to_string(made.error());
@@ -312,7 +313,8 @@ TEST_F(GraphHistory, ContentsSurviveAChangeOfAccess) {
 TEST_F(GraphHistory, OneDeclarationCanBeRecordedSeveralTimesIntoOneCommandBuffer) {
   ExecutorOptions options;
   options.frames_in_flight = 3;
-  options.verify = options.check_uses = true;
+  options.verify = verify;
+  options.check_uses = true;
   auto executor = Executor::create(gpu_.handles(), options);
   ASSERT_TRUE(executor);
   const TextureHistory history = graph_->create_texture_history(

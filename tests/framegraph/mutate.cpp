@@ -25,7 +25,6 @@ class Mutator {
       collide(i);
     }
     for (std::uint32_t i = 0; i < plan_.submissions.size(); ++i) drop_waits(i);
-    for (std::uint32_t i = 0; i < plan_.passes.size(); ++i) spoil_sets(i);
   }
 
  private:
@@ -144,38 +143,6 @@ class Mutator {
       }
       visit_("drop a semaphore", mutant);
     }
-  }
-
-  // Of the events that are set after a pass: the last is never set, set only after the wait, or set
-  // too early.
-  void spoil_sets(std::uint32_t position) {
-    const PlannedPass& planned = plan_.passes[position];
-    if (planned.set_count == 0) return;
-    const std::uint32_t event = planned.first_set + planned.set_count - 1;
-    Plan mutant = plan_;
-    --mutant.passes[position].set_count;
-    visit_("drop a set", mutant);
-    const Submission& submission = plan_.submissions[planned.submission];
-    const std::uint32_t waits = waits_at(event);
-    for (const std::uint32_t to : {waits, position - 1}) {
-      if (to - submission.first_pass >= submission.pass_count) continue;
-      if (mutant.passes[to].set_count != 0) continue;
-      Plan moved = mutant;
-      moved.passes[to].first_set = event;
-      moved.passes[to].set_count = 1;
-      visit_(to == waits ? "set after the wait" : "set an event early", moved);
-    }
-    mutant = plan_;
-    mutant.batches[plan_.sets[event]].count = 0;
-    visit_("drop a wait", mutant);
-  }
-
-  std::uint32_t waits_at(std::uint32_t event) const {
-    for (std::uint32_t p = 0; p < plan_.passes.size(); ++p) {
-      if (plan_.passes[p].batch_count != 0 && plan_.passes[p].first_batch == plan_.sets[event])
-        return p;
-    }
-    return kNone;
   }
 
   const GraphDescription& graph_;

@@ -52,6 +52,10 @@ class Oracle {
     const Operation& y = trace_.operations[y_index];
     const bool leaves = y.departs && (x.queue != y.queue || (x.stages & ~y.stages) != 0);
     if (!x.writes && !y.writes && !leaves) return false;
+    if (x.unordered && y.unordered && x.queue == y.queue && x.resource == y.resource &&
+        x.stages == y.stages && x.access == y.access && x.frame == y.frame &&
+        !is_between(x_index, y_index))
+      return false;
     // One pass's accesses, and one command's changes, are not ordered among themselves.
     if (x.queue == y.queue && x.step == y.step && (x.change != nullptr) == (y.change != nullptr))
       return false;
@@ -61,13 +65,33 @@ class Oracle {
            (x.resource != y.resource && overlap(x.resource, y.resource));
   }
 
+  // Whether something but an unordered write of that access is done to y's subresource in between.
+  bool is_between(std::size_t x_index, std::size_t y_index) const {
+    const Operation& y = trace_.operations[y_index];
+    for (std::size_t i = x_index + 1; i < y_index; ++i) {
+      const Operation& z = trace_.operations[i];
+      if (z.resource == y.resource && z.sub == y.sub &&
+          !(z.unordered && z.stages == y.stages && z.access == y.access && z.queue == y.queue))
+        return true;
+    }
+    return false;
+  }
+
+  // Whether the bytes of one resource hold all of another's.
+  bool holds(std::uint32_t outer, std::uint32_t inner) const {
+    const Placement& x = plan_.placements[outer];
+    const Placement& y = plan_.placements[inner];
+    return overlap(outer, inner) && x.offset <= y.offset && x.offset + x.size >= y.offset + y.size;
+  }
+
   // Whether something between the two does to the same subresource what makes `y` follow it
-  // instead of `x`: a write for any, a read for a write.
+  // instead of `x`: a write for any, a read for a write. Or another resource took all the bytes.
   bool superseded(std::size_t x_index, std::size_t y_index) const {
     const Operation& x = trace_.operations[x_index];
     const Operation& y = trace_.operations[y_index];
     for (std::size_t i = x_index + 1; i < y_index; ++i) {
       const Operation& z = trace_.operations[i];
+      if (z.resource != y.resource && z.writes && holds(z.resource, y.resource)) return true;
       if (z.resource != y.resource || z.sub != y.sub) continue;
       if (z.step == y.step && z.change == nullptr && y.change == nullptr) continue;
       if (z.writes || (y.writes && x.writes)) return true;

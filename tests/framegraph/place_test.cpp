@@ -7,6 +7,7 @@
 #include "alcove/framegraph/compile.h"
 #include "alcove/framegraph/verify.h"
 #include "deferred_frame.h"
+#include "fake_handle.h"
 #include "random_graph.h"
 
 namespace alcove::framegraph {
@@ -14,7 +15,7 @@ namespace {
 
 constexpr double kMebibyte = 1 << 20;
 
-TEST(Place, AnEstimateIsOfTheBytesOfAFormatsTexels) {
+TEST(Place, EstimateMatchesTheTexelSizeOfTheFormat) {
   struct Case {
     VkFormat format;
     VkDeviceSize bytes;  // a texel
@@ -39,7 +40,7 @@ TEST(Place, AnEstimateIsOfTheBytesOfAFormatsTexels) {
   }
 }
 
-TEST(Place, TheDeferredFrameMeetsItsLowerBound) {
+TEST(Place, DeferredFrameMeetsItsLowerBound) {
   Graph graph;
   declare_deferred_frame(graph, 1920, 1080);
   Limits limits;
@@ -83,19 +84,28 @@ void declare_sizes(Graph& graph, Dice& dice, std::uint32_t fewest = 20) {
           {VK_FORMAT_R8_UNORM, Extent::absolute(1 + dice.roll(2048), 1 + dice.roll(1080))});
       textures.push_back(pass.write(texture, access::storage_write_compute));
     }
-    pass.side_effect();
+    // What keeps the pass: an import of its own, so that no two passes are ordered by it.
+    const Buffer kept = graph.import_buffer("kept", {.buffer = fake_handle<VkBuffer>(i),
+                                                     .desc = {4},
+                                                     .usage = ~VkBufferUsageFlags{0},
+                                                     .has_contents = false,
+                                                     .final_state = buffer_access::host_read});
+    (void)pass.write(kept, buffer_access::storage_write_compute, Contents::discard);
   }
 }
 
-// Peak over lower bound of 1,000 graphs.
-void expect_close_to_bound(std::uint32_t fewest_passes) {
+// Peak over lower bound of 1,000 graphs: the median and the 99th percentile are at most these.
+void expect_close_to_bound(std::uint32_t fewest_passes, std::int64_t effort, double median,
+                           double percentile) {
   std::vector<double> ratios;
   Graph graph;
   for (std::uint64_t seed = 0; seed < 1000; ++seed) {
     graph.reset();
     Dice dice(seed);
     declare_sizes(graph, dice, fewest_passes);
-    const auto plan = compile(graph);
+    Limits limits;
+    limits.placement_effort = effort;
+    const auto plan = compile(graph, limits);
     ASSERT_TRUE(plan) << to_string(plan.error());
     ratios.push_back(static_cast<double>(plan->heaps[0].size) /
                      static_cast<double>(plan->heaps[0].lower_bound));
@@ -104,18 +114,26 @@ void expect_close_to_bound(std::uint32_t fewest_passes) {
   std::cerr << "peak over lower bound, " << fewest_passes << " to " << 2 * fewest_passes
             << " passes: median " << ratios[500] << ", 99th percentile " << ratios[990]
             << ", worst " << ratios[999] << "\n";
-  EXPECT_EQ(ratios[500], 1.0);
-  EXPECT_LE(ratios[990], 1.02);
+  EXPECT_LE(ratios[500], median);
+  EXPECT_LE(ratios[990], percentile);
 }
 
-TEST(Place, GraphsOf20To40PassesComeWithinTwoPercentOfTheirLowerBound) {
-  expect_close_to_bound(20);
+constexpr std::int64_t kDefaultEffort = Limits{}.placement_effort;
+
+TEST(Place, GraphsOf20To40PassesAreCloseToTheirLowerBound) {
+  expect_close_to_bound(20, kDefaultEffort, 1.0, 1.08);
 }
-TEST(Place, GraphsOf40To80PassesComeWithinTwoPercentOfTheirLowerBound) {
-  expect_close_to_bound(40);
+TEST(Place, GraphsOf40To80PassesAreCloseToTheirLowerBound) {
+  expect_close_to_bound(40, kDefaultEffort, 1.01, 1.10);
+}
+TEST(Place, GraphsOf100To200PassesAreCloseToTheirLowerBound) {
+  expect_close_to_bound(100, kDefaultEffort, 1.03, 1.15);
+}
+TEST(Place, MoreEffortComesWithinTwoPercentOfTheLowerBound) {
+  expect_close_to_bound(20, 1 << 24, 1.0, 1.02);
 }
 
-TEST(Place, WithoutAliasingNothingSharesBytes) {
+TEST(Place, TransientsShareNoBytesWithoutAliasing) {
   Graph graph;
   declare_deferred_frame(graph, 640, 360);
   Limits limits;
@@ -125,7 +143,7 @@ TEST(Place, WithoutAliasingNothingSharesBytes) {
   EXPECT_EQ(plan->heaps[0].size, plan->heaps[0].unaliased);
 }
 
-TEST(Place, MemoryTypesThatDifferGetHeapsOfTheirOwn) {
+TEST(Place, DifferentMemoryTypesGetSeparateHeaps) {
   Graph graph;
   declare_deferred_frame(graph, 640, 360);
   Limits limits;
@@ -141,26 +159,81 @@ TEST(Place, MemoryTypesThatDifferGetHeapsOfTheirOwn) {
   EXPECT_TRUE(verify(graph.description(), limits, *plan));
 }
 
-TEST(Order, AnotherOrderIsTakenOnlyWhereItsPeakIsLower) {
+// Frames that differ in memory requirements and queues: the peak is what they end up with.
+void expect_no_higher_peak(const Limits& limits, bool queues) {
   std::uint32_t reordered = 0;
   Graph graph;
-  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+  RandomOptions options;
+  options.queues = queues;
+  for (std::uint64_t seed = 0; seed < 2000; ++seed) {
     graph.reset();
+    graph.reset_histories();
     Dice dice(seed);
-    declare_sizes(graph, dice);
-    Limits limits;
-    limits.placement_effort = 0;
+    declare_random(graph, dice, options);
+    Limits program = limits;
+    program.ordering = Ordering::program;
     const auto free = compile(graph, limits);
-    limits.ordering = Ordering::program;
-    const auto program = compile(graph, limits);
-    ASSERT_TRUE(free && program);
-    ASSERT_FALSE(program->reordered);
-    EXPECT_LE(free->heaps[0].lower_bound, program->heaps[0].lower_bound) << "seed " << seed;
-    if (!free->reordered) continue;
-    ++reordered;
-    EXPECT_LT(free->heaps[0].lower_bound, program->heaps[0].lower_bound) << "seed " << seed;
+    const auto declared = compile(graph, program);
+    ASSERT_TRUE(free && declared);
+    ASSERT_FALSE(declared->reordered);
+    const auto bytes = [](const Plan& plan) {
+      VkDeviceSize sum = 0;
+      for (const Heap& heap : plan.heaps) sum += heap.size;
+      return sum;
+    };
+    if (free->reordered) {
+      ++reordered;
+      EXPECT_LT(bytes(*free), bytes(*declared)) << "seed " << seed;
+    } else {
+      EXPECT_EQ(bytes(*free), bytes(*declared)) << "seed " << seed;
+    }
   }
   EXPECT_GT(reordered, 10u);
+}
+
+TEST(Order, AnotherOrderIsTakenOnlyWhereItsPeakIsLower) { expect_no_higher_peak({}, false); }
+
+TEST(Order, AnotherOrderHasALowerPeakInPagesOf64KiB) {
+  Limits limits;
+  limits.memory.query = paged_requirements;
+  expect_no_higher_peak(limits, false);
+}
+
+TEST(Order, AnotherOrderHasALowerPeakOverTwoQueues) {
+  Limits limits;
+  limits.queue_families[1] = 1;
+  expect_no_higher_peak(limits, true);
+}
+
+TEST(Order, SideEffectsKeepTheirOrderOfDeclaration) {
+  Graph graph;
+  std::uint32_t reordered = 0;
+  for (std::uint64_t seed = 0; seed < 2000; ++seed) {
+    graph.reset();
+    graph.reset_histories();
+    Dice dice(seed);
+    declare_random(graph, dice, {.side_effects = 128});
+    const auto plan = compile(graph);
+    ASSERT_TRUE(plan) << to_string(plan.error());
+    reordered += plan->reordered;
+    std::uint32_t last = 0;
+    for (const PlannedPass& planned : plan->passes) {
+      if (!(graph.description().passes[planned.pass].flags & kSideEffect)) continue;
+      EXPECT_GE(planned.pass, last) << "seed " << seed;
+      last = planned.pass;
+    }
+  }
+  EXPECT_GT(reordered, 10u);
+}
+
+TEST(Order, VerifierRefusesSideEffectsOutOfOrder) {
+  Graph graph;
+  for (const char* name : {"first", "second"}) graph.add_pass(name).side_effect();
+  auto plan = compile(graph);
+  ASSERT_TRUE(plan);
+  EXPECT_TRUE(verify(graph.description(), {}, *plan));
+  std::swap(plan->passes[0].pass, plan->passes[1].pass);
+  EXPECT_FALSE(verify(graph.description(), {}, *plan));
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ class Queues : public testing::Test {
     const State state{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_READ_BIT,
                       VK_IMAGE_LAYOUT_GENERAL};
     return graph_.import_texture(
-        name, {.image = fake_handle<VkImage>(),
+        name, {.image = fake_handle<VkImage>(imports_++),
                .desc = kDesc,
                .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
                .initial_state = state,
@@ -37,11 +37,12 @@ class Queues : public testing::Test {
   }
   Graph graph_;
   Limits limits_;
+  std::size_t imports_ = 0;
 };
 
 //   a (graphics) -- x --> b (compute) -- z --> c (transfer)
 //         +--------------- y -------------------^
-TEST_F(Queues, AWaitThatAnotherImpliesIsLeftOut) {
+TEST_F(Queues, WaitThatAnotherWaitImpliesIsLeftOut) {
   PassBuilder a = graph_.add_pass("a");
   const Texture x = a.write(make("x"), access::storage_write_compute);
   const Texture y = a.write(make("y"), access::storage_write_compute);
@@ -58,7 +59,7 @@ TEST_F(Queues, AWaitThatAnotherImpliesIsLeftOut) {
   EXPECT_EQ(plan.waits[plan.submissions[2].first_wait].submission, 1u) << "not for a as well";
 }
 
-TEST_F(Queues, TheEndOfAFrameWaitsForTheLastOfAChainAlone) {
+TEST_F(Queues, EndOfFrameWaitsOnlyForTheLastPassOfAChain) {
   Texture x = import("x");
   Texture y = import("y");
   PassBuilder first = graph_.add_pass("first", QueueClass::compute);
@@ -74,7 +75,7 @@ TEST_F(Queues, TheEndOfAFrameWaitsForTheLastOfAChainAlone) {
   EXPECT_EQ(plan.submissions[plan.waits[last.first_wait].submission].queue, QueueClass::transfer);
 }
 
-TEST_F(Queues, WhatGraphicsUsedBeforeTheFrameIsWaitedForOnce) {
+TEST_F(Queues, ResourcesThatGraphicsUsedBeforeTheFrameAreWaitedForOnce) {
   const Texture x = import("x");
   const Texture y = import("y");
   for (const Texture texture : {x, y}) {
@@ -87,7 +88,7 @@ TEST_F(Queues, WhatGraphicsUsedBeforeTheFrameIsWaitedForOnce) {
 }
 
 // What another queue left comes by its release, in a frame without passes there too.
-TEST_F(Queues, AHistoryOfAnotherQueueComesToAFrameThatOnlyHasGraphics) {
+TEST_F(Queues, HistoryOfAnotherQueueCanBeUsedInAFrameWithGraphicsOnly) {
   const auto declare = [&](QueueClass queue) {
     graph_.reset();
     const TextureHistory history = graph_.create_texture_history("history", kDesc);
@@ -109,7 +110,7 @@ TEST_F(Queues, AHistoryOfAnotherQueueComesToAFrameThatOnlyHasGraphics) {
 
 // The part that no pass uses is given by the queue that has it, in a submission of its other
 // passes.
-TEST_F(Queues, APartOfAHistoryIsUpdatedOnTheQueueThatHasItAll) {
+TEST_F(Queues, PartOfAHistoryIsUpdatedOnTheQueueThatOwnsIt) {
   const auto declare = [&] {
     graph_.reset();
     return graph_.create_texture_history("h", {VK_FORMAT_R8_UNORM, Extent::absolute(8, 8), 2});

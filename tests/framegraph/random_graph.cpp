@@ -118,7 +118,7 @@ class Declarer {
     known.texture = dice_.chance(160);
     if (known.texture) {
       ImportedTexture import;
-      import.image = fake_handle<VkImage>();
+      import.image = fake_handle<VkImage>(known_.size());
       import.desc = {VK_FORMAT_R8G8B8A8_UNORM, Extent::absolute(side(), side()), 1, 1,
                      VK_SAMPLE_COUNT_1_BIT};
       import.usage = ~VkImageUsageFlags{0};
@@ -138,7 +138,7 @@ class Declarer {
       known.handle = graph_.import_texture(numbered('i', known_.size()), import);
     } else {
       ImportedBuffer import;
-      import.buffer = fake_handle<VkBuffer>();
+      import.buffer = fake_handle<VkBuffer>(known_.size());
       import.desc.size = 1024;
       import.usage = ~VkBufferUsageFlags{0};
       import.has_contents = full;
@@ -176,9 +176,9 @@ class Declarer {
     pass.record([](RecordContext&) {});
     const std::uint32_t reads = dice_.roll(4);
     for (std::uint32_t i = 0; i < reads && !known_.empty(); ++i) read(pass, index, queue);
-    const std::uint32_t writes = 1 + dice_.roll(2);
+    const std::uint32_t writes = 1 + dice_.roll(3);
     for (std::uint32_t i = 0; i < writes; ++i) write(pass, index, queue);
-    if (dice_.chance(20)) pass.side_effect();
+    if (dice_.chance(options_.side_effects)) pass.side_effect();
   }
 
   // Half of the time one of the last few, else any.
@@ -224,12 +224,13 @@ class Declarer {
     // Of an older slot what is there is updated in place.
     if ((known.old && !known.written[0]) || known.last_pass == index) return;
     known.last_pass = index;
-    const Contents contents = !known.old && dice_.chance(80) ? Contents::discard : Contents::keep;
+    Contents contents = !known.old && dice_.chance(80) ? Contents::discard : Contents::keep;
+    if (contents == Contents::keep && dice_.chance(80)) contents = Contents::accumulate;
     const Need need = dice_.chance(40) ? Need::optional : Need::required;
     if (!known.texture) {
       std::uint32_t way = pick(dice_, queue, {0, 1, 2, 3}, {0, 1, 2, 3}, {2});
       // Only what was written can be read and written.
-      if (way == 1 && !known.written[0] && contents == Contents::keep) way = 0;
+      if (way == 1 && !known.written[0] && contents != Contents::discard) way = 0;
       known.buffer = pass.write(known.buffer, kBufferWrites[way], contents, need);
       known.written[0] = true;
       return;
@@ -251,7 +252,7 @@ class Declarer {
     // The attachments of a pass would have to be of one size.
     if (way == 2 && drawn_in_ == index) way = 4;
     if (way == 2) drawn_in_ = index;
-    if (way == 1 && !had_contents && contents == Contents::keep) way = 0;
+    if (way == 1 && !had_contents && contents != Contents::discard) way = 0;
     known.handle = pass.write(known.handle, kWrites[way], range, contents, need);
   }
 

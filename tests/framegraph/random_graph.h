@@ -51,8 +51,9 @@ struct RandomOptions {
   bool imports = true;
   bool histories = true;
   bool transient_buffers = true;
-  bool queues = false;    // passes on compute and transfer queues too
-  bool mistakes = false;  // stale and foreign handles, wrong ranges and sizes
+  bool queues = false;              // passes on compute and transfer queues too
+  std::uint32_t side_effects = 20;  // of 256 passes
+  bool mistakes = false;            // stale and foreign handles, wrong ranges and sizes
 };
 
 // Declares a frame. The callbacks record nothing.

@@ -54,7 +54,7 @@ std::size_t allocations_of_steady_frames(Path path, std::uint32_t threads = 1) {
   if (path == Path::submit_to_three) handles.queues[1] = handles.queues[2] = handles.queues[0];
   ExecutorOptions options;
   options.recording_threads = threads;
-  options.verify = options.check_uses = false;
+  options.check_uses = false;
   auto executor = Executor::create(handles, options);
   EXPECT_TRUE(executor);
   const HostBuffer host = gpu.make_host_buffer(VkDeviceSize{4} * 16 * 16);

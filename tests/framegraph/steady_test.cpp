@@ -48,7 +48,7 @@ TEST(Steady, CompilingAFrameAgainAllocatesNothing) {
   EXPECT_EQ(allocations() - before, 0u);
 }
 
-TEST(Steady, AnyDifferenceMakesAnotherKey) {
+TEST(Steady, AnyDifferenceChangesTheKey) {
   Graph one;
   Graph other;
   declare_deferred_frame(one, 1920, 1080);
@@ -83,7 +83,7 @@ void declare_one_of_few(Graph& graph, Dice& order) {
   if (order.roll(4) != 0) declare_random(graph, dice, options);
 }
 
-TEST(Steady, FramesAreTheSameWhereTheirBytesAre) {
+TEST(Steady, FramesWithEqualBytesAreTheSame) {
   Graph graph;
   std::vector<GraphDescription> kept;
   Dice order(7);
@@ -104,7 +104,7 @@ TEST(Steady, FramesAreTheSameWhereTheirBytesAre) {
   }
 }
 
-TEST(Steady, AUsedGraphDeclaresAsAFreshOne) {
+TEST(Steady, ReusedGraphDeclaresAsANewOne) {
   Graph used;
   Dice order(11);
   for (int frame = 0; frame < 2000; ++frame) {
@@ -125,7 +125,7 @@ TEST(Steady, AUsedGraphDeclaresAsAFreshOne) {
 }
 
 // What an older, longer frame left behind was said of a texture that is another one now.
-TEST(Steady, AnAccessBehindTheLastFramesEndIsLookedAtAnew) {
+TEST(Steady, AccessBeyondTheEndOfTheLastFrameIsComparedAgain) {
   const auto declare = [](Graph& graph, std::uint32_t mips, bool reads) {
     graph.reset();
     Texture texture =
@@ -145,7 +145,7 @@ TEST(Steady, AnAccessBehindTheLastFramesEndIsLookedAtAnew) {
 
 // A handle made up by counting from another names nothing until that is declared, even where the
 // frame before declared it.
-TEST(Steady, AMadeUpHandleIsForeign) {
+TEST(Steady, InventedHandleIsRefused) {
   Graph graph;
   for (int frame = 0; frame < 3; ++frame) {
     graph.reset();

@@ -38,7 +38,6 @@ class Tracer {
   }
 
   void unroll(std::uint32_t frame) {
-    set_at_.assign(plan_.sets.size(), {});
     for (std::uint32_t r = 0; r < graph_.resources.size(); ++r) {
       const std::uint32_t external = graph_.resources[r].external;
       if (external == kNone) continue;
@@ -81,8 +80,6 @@ class Tracer {
       if (plan_.live_accesses[graph_.passes[planned.pass].first_access + i])
         add_access(accesses[i], queue, frame);
     }
-    for (std::uint32_t e = planned.first_set; e < planned.first_set + planned.set_count; ++e)
-      set_at_[e] = {trace_.operations.size(), static_cast<std::uint32_t>(trace_.steps.size())};
   }
 
   void outside(std::uint32_t resource, const State& state, std::uint32_t frame, std::size_t queue) {
@@ -110,6 +107,7 @@ class Tracer {
     operation.stages = plain(access.stages);
     operation.access = plain_access(access.access);
     operation.writes = (access.flags & kWrite) != 0;
+    operation.unordered = (access.flags & kUnordered) != 0;
     add(operation, access.resource, access.range, frame);
   }
 
@@ -137,10 +135,6 @@ class Tracer {
       step.queue = queue;
       step.operations_before = trace_.operations.size();
       step.steps_before = static_cast<std::uint32_t>(trace_.steps.size());
-      if (batch.event != kNone) {
-        step.operations_before = set_at_[batch.event].operations;
-        step.steps_before = set_at_[batch.event].steps;
-      }
       for (std::uint32_t t = batch.first; t < batch.first + batch.count; ++t)
         step.barriers.push_back(&plan_.transitions[t]);
       trace_.steps.push_back(step);
@@ -161,14 +155,8 @@ class Tracer {
     add(change, t.resource, t.range, frame);
   }
 
-  struct SetAt {
-    std::size_t operations = 0;
-    std::uint32_t steps = 0;
-  };
-
   const GraphDescription& graph_;
   const Plan& plan_;
-  std::vector<SetAt> set_at_;  // by event
   Trace trace_;
 };
 

@@ -27,8 +27,9 @@ struct Operation {
   VkPipelineStageFlags2 stages = 0;
   VkAccessFlags2 access = 0;
   bool writes = false;
-  bool releases = false;  // to another queue: nothing on this one follows it
-  bool departs = false;   // the use after the frame: it comes after reads in other stages too
+  bool unordered = false;  // Contents::accumulate
+  bool releases = false;   // to another queue: nothing on this one follows it
+  bool departs = false;    // the use after the frame: it comes after reads in other stages too
   std::uint32_t frame = 0;
   std::uint32_t step = 0;  // steps at or above this come after it
   const Transition* change = nullptr;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "alcove/framegraph/compile.h"
+#include "alcove/framegraph/verify.h"
 #include "fake_handle.h"
 
 namespace alcove::framegraph {
@@ -34,7 +35,7 @@ class Validate : public testing::Test {
   Graph graph_;
 };
 
-TEST_F(Validate, ARightGraphHasNoErrors) {
+TEST_F(Validate, ValidGraphHasNoErrors) {
   const Texture texture = written("t");
   pass("reader").read(texture, access::sampled_compute);
   EXPECT_TRUE(compile(graph_));
@@ -86,9 +87,9 @@ TEST_F(Validate, APassBuilderUsedAfterResetIsAnError) {
   }
 }
 
-TEST_F(Validate, AnEmptyGraphIsRight) { EXPECT_TRUE(compile(graph_)); }
+TEST_F(Validate, EmptyGraphIsValid) { EXPECT_TRUE(compile(graph_)); }
 
-TEST_F(Validate, AStaleHandleIsNamedWithItsVersions) {
+TEST_F(Validate, StaleHandleIsReportedWithItsVersions) {
   const Texture old = written("t");
   PassBuilder second = pass("second");
   (void)second.write(old, access::storage_read_write_compute);
@@ -97,7 +98,7 @@ TEST_F(Validate, AStaleHandleIsNamedWithItsVersions) {
          "pass 'reader' reads texture 't' version 1, but the version then is 2: pass 'second'");
 }
 
-TEST_F(Validate, AWriteAfterTheValueWasConsumedElsewhereIsRefused) {
+TEST_F(Validate, WriteThroughAConsumedVersionIsRefused) {
   const Texture old = written("t");
   PassBuilder second = pass("second");
   (void)second.write(old, access::storage_read_write_compute);
@@ -108,14 +109,14 @@ TEST_F(Validate, AWriteAfterTheValueWasConsumedElsewhereIsRefused) {
   EXPECT_THAT(plan.error()[0].message, HasSubstr("pass 'third' writes texture 't' version 1"));
 }
 
-TEST_F(Validate, AHandleOfAnotherGraphIsForeign) {
+TEST_F(Validate, HandleOfAnotherGraphIsRefused) {
   Graph other;
   const Texture foreign = other.create_texture("foreign", kDesc);
   pass("reader").read(foreign, access::sampled_compute);
   expect(ErrorCode::foreign_handle, "'reader' reads a texture through a handle of another graph");
 }
 
-TEST_F(Validate, AHandleFromBeforeResetIsForeign) {
+TEST_F(Validate, HandleFromBeforeResetIsRefused) {
   const Texture old = graph_.create_texture("t", kDesc);
   graph_.reset();
   PassBuilder writer = pass("writer");
@@ -123,7 +124,7 @@ TEST_F(Validate, AHandleFromBeforeResetIsForeign) {
   expect(ErrorCode::foreign_handle, "of a frame before reset");
 }
 
-TEST_F(Validate, ANullHandleIsRefused) {
+TEST_F(Validate, NullHandleIsRefused) {
   pass("reader").read(Buffer{}, buffer_access::vertex_buffer);
   expect(ErrorCode::null_handle, "'reader' reads a buffer through a null handle");
 }
@@ -152,7 +153,7 @@ TEST_F(Validate, ReadingAndWritingOneSubresourceIsRefused) {
   expect(ErrorCode::read_and_write, "'both' uses a subresource of texture 't'");
 }
 
-TEST_F(Validate, ReadingOneMipAndWritingAnotherIsRight) {
+TEST_F(Validate, ReadingOneMipAndWritingAnotherIsAllowed) {
   TextureDesc desc = kDesc;
   desc.mips = 2;
   Texture texture = graph_.create_texture("t", desc);
@@ -181,7 +182,7 @@ TEST_F(Validate, AttachmentsOfDifferentSizesAreRefused) {
   expect(ErrorCode::attachment_mismatch, "'draw' draws to texture 'depth' of 16x8");
 }
 
-TEST_F(Validate, AnImportWithoutTheNeededUsageIsRefused) {
+TEST_F(Validate, ImportWithoutTheNeededUsageIsRefused) {
   ImportedTexture import;
   import.image = fake_handle<VkImage>();
   import.desc = kDesc;
@@ -193,14 +194,14 @@ TEST_F(Validate, AnImportWithoutTheNeededUsageIsRefused) {
          "with usage STORAGE, but it was imported with SAMPLED: create it with STORAGE too");
 }
 
-TEST_F(Validate, AnImportWithoutItsHandleIsRefused) {
+TEST_F(Validate, ImportWithoutAVulkanHandleIsRefused) {
   ImportedTexture import;
   import.desc = kDesc;
   (void)graph_.import_texture("swap", import);
   expect(ErrorCode::bad_import, "set ImportedTexture::image");
 }
 
-TEST_F(Validate, AFormatWithoutSupportIsRefused) {
+TEST_F(Validate, UnsupportedFormatIsRefused) {
   (void)written("t");
   Limits limits;
   limits.formats.query = [](const void*, VkFormat) {
@@ -209,7 +210,7 @@ TEST_F(Validate, AFormatWithoutSupportIsRefused) {
   expect(ErrorCode::unsupported_format, "does not support on this device", limits);
 }
 
-TEST_F(Validate, ARangeBeyondTheMipsIsRefused) {
+TEST_F(Validate, RangeBeyondTheMipsIsRefused) {
   const Texture texture = written("t");
   pass("reader").read(texture, access::sampled_compute, Range::mip(3));
   expect(ErrorCode::bad_range, "but it has 1 mips and 1 layers");
@@ -227,32 +228,32 @@ TEST_F(Validate, ZeroSizesAndSizesOverTheLimitsAreRefused) {
   for (const Error& error : plan.error()) EXPECT_EQ(error.code, ErrorCode::bad_description);
 }
 
-TEST_F(Validate, AnExtentRelativeToAForeignTextureIsRefused) {
+TEST_F(Validate, ExtentRelativeToAForeignTextureIsRefused) {
   Graph other;
   const Texture foreign = other.create_texture("foreign", kDesc);
   (void)graph_.create_texture("half", {VK_FORMAT_R8_UNORM, Extent::relative(foreign, 2)});
   expect(ErrorCode::bad_description, "relative to a handle of another graph");
 }
 
-TEST_F(Validate, AHistoryThatNothingWritesIsRefused) {
+TEST_F(Validate, HistoryThatNothingWritesIsRefused) {
   const TextureHistory history = graph_.create_texture_history("h", kDesc);
   pass("reader").read(history.previous(), access::sampled_compute);
   expect(ErrorCode::history_never_written, "write its current slot");
 }
 
-TEST_F(Validate, AHistoryOfOneSlotIsACycle) {
+TEST_F(Validate, HistoryOfOneSlotIsRefused) {
   (void)graph_.create_texture_history("h", kDesc, 1);
   expect(ErrorCode::history_cycle, "at least 2 slots");
 }
 
-TEST_F(Validate, AGraphicsStageOnTheComputeQueueIsRefused) {
+TEST_F(Validate, GraphicsStageOnTheComputeQueueIsRefused) {
   Texture texture = graph_.create_texture("t", kDesc);
   PassBuilder draw = pass("draw", QueueClass::compute);
   (void)draw.write(texture, access::color_attachment);
   expect(ErrorCode::bad_access, "put the pass on QueueClass::graphics");
 }
 
-TEST_F(Validate, AnAccessDeclaredTooLateIsRefused) {
+TEST_F(Validate, AccessDeclaredAfterTheNextPassIsRefused) {
   Texture texture = graph_.create_texture("t", kDesc);
   PassBuilder early = pass("early");
   (void)pass("late");
@@ -260,25 +261,101 @@ TEST_F(Validate, AnAccessDeclaredTooLateIsRefused) {
   expect(ErrorCode::closed_pass, "before the next add_pass");
 }
 
-TEST_F(Validate, AWriteThatOnlyReadsIsRefused) {
+TEST_F(Validate, WriteWithAnAccessThatOnlyReadsIsRefused) {
   Texture texture = graph_.create_texture("t", kDesc);
   PassBuilder writer = pass("writer");
   (void)writer.write(texture, access::sampled_compute);
   expect(ErrorCode::bad_access, "declare it with read()");
 }
 
-TEST_F(Validate, AnOutputThatNothingWritesIsRefused) {
+TEST_F(Validate, OutputThatNothingWritesIsRefused) {
   graph_.output(graph_.create_texture("t", kDesc));
   expect(ErrorCode::read_before_write, "output texture 't' is written by no pass");
 }
 
-TEST_F(Validate, AllErrorsComeAtOnce) {
+TEST_F(Validate, AllErrorsAreReportedAtOnce) {
   pass("one").read(Texture{}, access::sampled_compute);
   pass("two").read(graph_.create_texture("t", kDesc), access::sampled_compute);
   (void)graph_.create_buffer("empty", {0});
   const auto plan = compile(graph_);
   ASSERT_FALSE(plan);
   EXPECT_EQ(plan.error().size(), 3u);
+}
+
+TEST_F(Validate, OneImageImportedUnderTwoNamesIsRefused) {
+  ImportedTexture import;
+  import.image = fake_handle<VkImage>();
+  import.desc = kDesc;
+  (void)graph_.import_texture("swap", import);
+  (void)graph_.import_texture("back buffer", import);
+  expect(ErrorCode::bad_import,
+         "texture 'back buffer' and texture 'swap' are imported with one VkImage: import it once");
+}
+
+TEST_F(Validate, OneBufferImportedUnderTwoNamesIsRefused) {
+  ImportedBuffer import;
+  import.buffer = fake_handle<VkBuffer>();
+  import.desc.size = 4;
+  (void)graph_.import_buffer("counter", import);
+  (void)graph_.import_buffer("count", import);
+  expect(ErrorCode::bad_import,
+         "buffer 'count' and buffer 'counter' are imported with one VkBuffer: import it once");
+}
+
+TEST_F(Validate, DisjointLayersOfOneImageMayBeImportedUnderTwoNames) {
+  ImportedTexture import;
+  import.image = fake_handle<VkImage>();
+  import.desc = kDesc;
+  import.desc.layers = 2;
+  (void)graph_.import_texture("first two", import);
+  import.first_layer = 2;
+  (void)graph_.import_texture("next two", import);
+  EXPECT_TRUE(compile(graph_));
+  import.first_layer = 3;
+  (void)graph_.import_texture("overlapping", import);
+  expect(ErrorCode::bad_import,
+         "'overlapping' and texture 'next two' are imported with one VkImage");
+}
+
+// Access bits of extensions that write, each in a stage that has it.
+constexpr Access kExtensionWrites[] = {
+    buffer_access::acceleration_structure_build,
+    buffer_access::build_scratch,
+    {VK_PIPELINE_STAGE_2_TRANSFORM_FEEDBACK_BIT_EXT, VK_ACCESS_2_TRANSFORM_FEEDBACK_WRITE_BIT_EXT},
+    {VK_PIPELINE_STAGE_2_TRANSFORM_FEEDBACK_BIT_EXT,
+     VK_ACCESS_2_TRANSFORM_FEEDBACK_COUNTER_WRITE_BIT_EXT}};
+
+TEST_F(Validate, WritesOfExtensionsAreWrites) {
+  for (const Access& access : kExtensionWrites) {
+    graph_.reset();
+    PassBuilder writer = pass("writer");
+    (void)writer.write(graph_.create_buffer("b", {64}), access, Contents::discard);
+    EXPECT_TRUE(compile(graph_));
+    graph_.reset();
+    Buffer buffer = graph_.create_buffer("b", {64});
+    buffer = pass("writer").write(buffer, buffer_access::fill, Contents::discard);
+    pass("reader").read(buffer, access);
+    expect(ErrorCode::bad_access, "with an access that writes: declare it with write()");
+  }
+}
+
+TEST_F(Validate, ImportWrittenByAnExtensionIsMadeVisible) {
+  for (const Access& access : kExtensionWrites) {
+    graph_.reset();
+    const Buffer buffer = graph_.import_buffer(
+        "b", {.buffer = fake_handle<VkBuffer>(),
+              .desc = {64},
+              .usage = ~VkBufferUsageFlags{0},
+              .initial_state = {access.stages, access.access, VK_IMAGE_LAYOUT_UNDEFINED}});
+    pass("reader").read(buffer, buffer_access::storage_read_compute);
+    auto plan = compile(graph_);
+    ASSERT_TRUE(plan);
+    ASSERT_EQ(plan->transitions.size(), 1u);
+    EXPECT_EQ(plan->transitions[0].src_access, access.access & kWriteBits);
+    EXPECT_TRUE(verify(graph_.description(), {}, *plan));
+    plan->transitions[0].src_access = 0;
+    EXPECT_FALSE(verify(graph_.description(), {}, *plan));
+  }
 }
 
 }  // namespace

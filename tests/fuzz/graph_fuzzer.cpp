@@ -25,7 +25,6 @@ Limits limits_of(std::uint8_t choice) {
   if (choice & 4) limits.buffer_image_granularity = 1024;
   if (choice & 8) limits.queue_families[1] = choice & 16 ? 1 : 0;
   if (choice & 32) limits.queue_families[2] = 2;
-  limits.split_barriers = (choice & 64) != 0;
   return limits;
 }
 

@@ -6,6 +6,8 @@
 #include <limits>
 #include <span>
 
+#include "alcove/framegraph/verify.h"
+
 namespace alcove::passes {
 
 using framegraph::Graph;
@@ -75,7 +77,8 @@ VkFormat uploaded_format(std::uint32_t channels) {
 }  // namespace
 
 void PassTest::SetUp() {
-  auto made = sample::Gpu::create({.validation = true}, {.verify = true, .check_uses = true});
+  auto made =
+      sample::Gpu::create({.validation = true}, {.verify = framegraph::verify, .check_uses = true});
   ASSERT_TRUE(made) << made.error();
   gpu_ = std::move(*made);
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "alcove/framegraph/verify.h"
 #include "drawing.h"
 #include "gtao_scenes.h"
 #include "pass_fixture.h"
@@ -103,7 +104,8 @@ std::string messages(const sample::Gpu& gpu) {
 // The visibility of each view of each frame, recorded by so many threads.
 std::vector<std::vector<float>> run_frames(std::uint32_t threads, std::uint32_t frames) {
   const auto gpu = sample::Gpu::create(
-      {.validation = true}, {.recording_threads = threads, .verify = true, .check_uses = true});
+      {.validation = true},
+      {.recording_threads = threads, .verify = framegraph::verify, .check_uses = true});
   EXPECT_TRUE(gpu) << gpu.error();
   Views views(**gpu);
   std::vector<std::vector<float>> found;

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <limits>
 #include <string>
 
@@ -147,6 +148,35 @@ TEST(Environment, SidesOverTheLimitAreRefusedBeforeReading) {
   const auto image = load_environment(folder.path / "a.hdr");
   ASSERT_FALSE(image);
   EXPECT_THAT(image.error(), HasSubstr("40000x20000"));
+}
+
+// OpenEXR would take as much memory as the attribute says.
+TEST(Environment, ExrAttributesOfAWrongSizeAreRefused) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_exr(folder.path / "a.exr", EnvironmentImage(8, 4)));
+  std::ifstream in(folder.path / "a.exr", std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  const size_t size = bytes.find(std::string("screenWindowWidth\0float\0", 24)) + 24;
+  ASSERT_LT(size, bytes.size());
+  for (const auto& [offset, value] : {std::pair<size_t, char>{3, 0x70}, {0, 0}, {0, 8}}) {
+    std::string damaged = bytes;
+    damaged[size + offset] = value;
+    write_file(folder.path / "b.exr", damaged);
+    const auto image = load_environment(folder.path / "b.exr");
+    ASSERT_FALSE(image);
+    EXPECT_THAT(image.error(), HasSubstr("its attribute screenWindowWidth has a wrong size"));
+  }
+}
+
+TEST(Environment, EveryTruncationOfAnExrIsRefused) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_exr(folder.path / "a.exr", EnvironmentImage(8, 4, glm::vec3(0.5f))));
+  std::ifstream in(folder.path / "a.exr", std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  for (size_t size = 0; size < bytes.size(); ++size) {
+    write_file(folder.path / "b.exr", bytes.substr(0, size));
+    EXPECT_FALSE(load_environment(folder.path / "b.exr")) << size;
+  }
 }
 
 TEST(Environment, InvalidFilesAreRefusedInOneSentence) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "alcove/framegraph/verify.h"
 #include "render/gpu.h"
 
 // A device under validation for tests, which fail by what the layers say of it.
@@ -23,7 +24,7 @@ using ValidatedGpu = std::unique_ptr<Gpu, ReportAndClose>;
 
 // Null, and the test fails, where there is no device.
 inline ValidatedGpu open_validated() {
-  auto made = Gpu::create({.validation = true}, {.verify = true, .check_uses = true});
+  auto made = Gpu::create({.validation = true}, {.verify = framegraph::verify, .check_uses = true});
   EXPECT_TRUE(made) << made.error();
   return ValidatedGpu(made ? made->release() : nullptr);
 }

@@ -1,5 +1,6 @@
 # `alcove ARGUMENTS` ends with status STATUS, else 1, and one sentence on stderr, which begins with
-# SENTENCE. ALCOVE: the program; LAUNCHER: what starts it, if anything.
+# SENTENCE. ALCOVE: the program; LAUNCHER: what starts it, if anything; ABSENT: a path that must not
+# exist afterwards.
 if(NOT DEFINED STATUS)
   set(STATUS 1)
 endif()
@@ -11,4 +12,7 @@ if(NOT status EQUAL ${STATUS})
 endif()
 if(NOT error MATCHES "^alcove: ${SENTENCE}[^\n]*\n$" OR output)
   message(FATAL_ERROR "Not the sentence that was expected: ${output}${error}")
+endif()
+if(DEFINED ABSENT AND EXISTS ${ABSENT})
+  message(FATAL_ERROR "${ABSENT} was left behind.")
 endif()

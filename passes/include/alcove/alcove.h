@@ -1,26 +1,28 @@
 // Alcove from C: ambient occlusion recorded into an engine's own command buffer, on its own device.
 //
-//   alcoveCreateContext once                 AlcoveSettings from alcoveGetSettings, changed at will
-//   frame: wait for the fence of slot s;     alcoveRecordFrame into a command buffer in recording
-//          end it, submit it with that fence
-//   alcoveDestroyContext when the device has finished, before or after the engine's images go
+//   Once:       alcoveCreateContext, and AlcoveSettings from alcoveGetSettings.
+//   Each frame: wait for the fence of slot s, call alcoveRecordFrame with a command buffer in the
+//               recording state, end the command buffer and submit it with that fence.
+//   At the end: alcoveDestroyContext, when the device has finished.
+//
+// passes/INTEGRATION.md leads from an engine with a depth buffer to a picture.
 //
 // Space. View space is right-handed with the camera along -Z, clip space is Vulkan's (y down, depth
 // 0 to 1), matrices are column-major: row r of column c at 4 * c + r. Lengths are in the scene's
 // units. A visibility of 1 is open.
 //
-// Threads. A context is for one thread at a time, and takes no lock; contexts, also of one device,
-// share nothing.
+// Threads. One thread at a time may call functions on a context, which takes no lock. Contexts
+// share nothing, not even on one device.
 //
 // Errors. A call on a context that fails records nothing and changes no history, and
-// alcoveGetMessage says in a sentence what was wrong. Where memory or the device gives out in the
-// middle of a frame, what was recorded of it, and the command buffer with it, is to be thrown away;
-// the next one may be tried. No exception leaves the library, and nothing is printed.
+// alcoveGetMessage says in a sentence what was wrong. Where memory runs out or the device is lost
+// in the middle of a frame, throw the command buffer away; the next frame may be tried. No
+// exception leaves the library, and nothing is printed.
 //
 // Versions. A struct that may grow begins with struct_size, which the caller sets to sizeof the
-// struct: so the library knows which version of this header the caller was compiled with. Structs
-// grow at their end, and what an older caller does not have stays off. Values of enums never
-// change.
+// struct. It tells the library which version of this header the caller was compiled with. From the
+// first release on, structs grow at their end, fields that an older caller does not have stay off,
+// and values of enums do not change.
 #ifndef ALCOVE_ALCOVE_H_
 #define ALCOVE_ALCOVE_H_
 
@@ -32,32 +34,32 @@
 extern "C" {
 #endif
 
-#define ALCOVE_VERSION VK_MAKE_API_VERSION(0, 0, 1, 0)  // of this header
-#define ALCOVE_MAX_VIEWS 8                              // of a frame
+#define ALCOVE_VERSION VK_MAKE_API_VERSION(0, 0, 1, 0)  // the version of this header
+#define ALCOVE_MAX_VIEWS 8                              // the most views in a frame
 #define ALCOVE_MAX_FRAMES_IN_FLIGHT 8
-#define ALCOVE_MAX_NAME 32      // of a pass: bytes, terminating zero included
-#define ALCOVE_MAX_MESSAGE 512  // the same of a message; longer ones are cut
+#define ALCOVE_MAX_NAME 32      // bytes of a pass's name, terminating zero included
+#define ALCOVE_MAX_MESSAGE 512  // bytes of a message, the same way; longer messages are cut
 
 typedef enum AlcoveResult {
   ALCOVE_SUCCESS = 0,
-  ALCOVE_ERROR_INVALID_INPUT = -1,  // what the caller gave
-  ALCOVE_ERROR_UNSUPPORTED = -2,    // what the device lacks
+  ALCOVE_ERROR_INVALID_INPUT = -1,  // the caller gave something that cannot be used
+  ALCOVE_ERROR_UNSUPPORTED = -2,    // the device lacks something
   ALCOVE_ERROR_OUT_OF_HOST_MEMORY = -3,
   ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY = -4,
-  ALCOVE_ERROR_DEVICE_LOST = -5,  // destroy the context
-  ALCOVE_ERROR_VULKAN = -6,       // another of Vulkan's: the message has its number
-  ALCOVE_ERROR_INTERNAL = -7,     // the library's own fault
+  ALCOVE_ERROR_DEVICE_LOST = -5,  // the context is of no more use: destroy it
+  ALCOVE_ERROR_VULKAN = -6,       // another error of Vulkan; the message has its number
+  ALCOVE_ERROR_INTERNAL = -7,     // an error of the library itself
   ALCOVE_RESULT_MAX_ENUM = 0x7fffffff
 } AlcoveResult;
 
-// "ALCOVE_SUCCESS" and so on: static, and never null.
+// The name of a result, such as "ALCOVE_SUCCESS". Static storage, never null.
 const char* alcoveGetResultName(AlcoveResult result);
 
-// ALCOVE_VERSION of the library.
+// ALCOVE_VERSION as it was when the library was compiled.
 uint32_t alcoveGetVersion(void);
 
-// What alcoveGetSettings gives each quality; all else is the default that AlcoveSettings states,
-// and REFERENCE has HORIZONS, no filter and FLOAT32 besides.
+// Presets for alcoveGetSettings. Fields that the table does not have are the defaults that
+// AlcoveSettings states. REFERENCE also has the estimator HORIZONS, no filter and FLOAT32.
 //
 //              slices  steps  tile_size  history_frames  depth fetches a pixel and frame
 //   LOW             1      8        4              32                                1
@@ -66,54 +68,62 @@ uint32_t alcoveGetVersion(void);
 //   ULTRA           4     24        2              32                               48
 //   REFERENCE      32     64        1               0                             4096
 typedef enum AlcoveQuality {
-  ALCOVE_QUALITY_LOW = 0,        // one search in 4x4 pixels a frame
-  ALCOVE_QUALITY_MEDIUM = 1,     // one in 2x2: the one to begin with
-  ALCOVE_QUALITY_HIGH = 2,       // the same of three slices
-  ALCOVE_QUALITY_ULTRA = 3,      // of four, and finer
-  ALCOVE_QUALITY_REFERENCE = 4,  // every pixel at once: a still image to compare with
+  ALCOVE_QUALITY_LOW = 0,        // traces one of 4x4 pixels in each frame
+  ALCOVE_QUALITY_MEDIUM = 1,     // traces one of 2x2; the preset to begin with
+  ALCOVE_QUALITY_HIGH = 2,       // MEDIUM with three slices and more steps
+  ALCOVE_QUALITY_ULTRA = 3,      // MEDIUM with four slices and more steps
+  ALCOVE_QUALITY_REFERENCE = 4,  // traces every pixel: a static image to compare with
   ALCOVE_QUALITY_MAX_ENUM = 0x7fffffff
 } AlcoveQuality;
 
-// What stands behind an occluder's front, which is all that a depth buffer shows.
+// How thick occluders are taken to be. A depth buffer shows only their front faces.
 typedef enum AlcoveEstimator {
-  ALCOVE_ESTIMATOR_HORIZONS = 0,   // everything: occluders are infinitely thick
-  ALCOVE_ESTIMATOR_HEURISTIC = 1,  // the same, but lower samples further out pull horizons down
-  ALCOVE_ESTIMATOR_BITMASK = 2,    // each sample is an occluder alone, as thick as `thickness` says
-  ALCOVE_ESTIMATOR_CONNECTED = 3,  // and samples of one surface are joined: thin things and walls
+  // Infinitely thick: the horizons of [Jimenez 2016].
+  ALCOVE_ESTIMATOR_HORIZONS = 0,
+  // The paper's thickness heuristic: lower samples further out lower a horizon.
+  ALCOVE_ESTIMATOR_HEURISTIC = 1,
+  // A visibility bitmask: each sample is an occluder of its own, as thick as `thickness` says.
+  ALCOVE_ESTIMATOR_BITMASK = 2,
+  // A bitmask in which neighbouring samples of one surface are connected to a segment without gaps.
+  // Suits thin objects and walls alike.
+  ALCOVE_ESTIMATOR_CONNECTED = 3,
   ALCOVE_ESTIMATOR_MAX_ENUM = 0x7fffffff
 } AlcoveEstimator;
 
-// What a visible direction counts in visibility. Bent normals are weighted by the cosine always.
+// The weight of a visible direction in visibility. Bent normals always have the cosine's.
 typedef enum AlcoveWeighting {
-  ALCOVE_WEIGHTING_COSINE = 0,   // the cosine of its angle to the normal: what diffuse light needs
-  ALCOVE_WEIGHTING_UNIFORM = 1,  // 1: the share of the hemisphere's solid angle
+  ALCOVE_WEIGHTING_COSINE = 0,  // the cosine of its angle to the normal, as diffuse light needs it
+  ALCOVE_WEIGHTING_UNIFORM =
+      1,  // 1: visibility is the visible part of the hemisphere's solid angle
   ALCOVE_WEIGHTING_MAX_ENUM = 0x7fffffff
 } AlcoveWeighting;
 
 typedef enum AlcoveThicknessUnit {
-  ALCOVE_THICKNESS_UNIT_RADIUS = 0,      // parts of the radius: one thickness in the scene
-  ALCOVE_THICKNESS_UNIT_DISTANCE = 1,    // parts of the occluder's distance from the eye
-  ALCOVE_THICKNESS_UNIT_BACK_FACES = 2,  // AlcoveView::back_depth; the radius where that has none
+  ALCOVE_THICKNESS_UNIT_RADIUS = 0,    // a fraction of the radius: constant in scene units
+  ALCOVE_THICKNESS_UNIT_DISTANCE = 1,  // a fraction of the occluder's distance from the eye
+  // Occluders end at AlcoveView::back_depth; where that has no face, as with RADIUS.
+  ALCOVE_THICKNESS_UNIT_BACK_FACES = 2,
   ALCOVE_THICKNESS_UNIT_MAX_ENUM = 0x7fffffff
 } AlcoveThicknessUnit;
 
-// How directions are spread over pixels and frames.
+// How slice directions are distributed over pixels and frames.
 typedef enum AlcovePattern {
-  ALCOVE_PATTERN_GOLDEN = 0,   // 4x4 pixels, turned by the golden ratio each frame
-  ALCOVE_PATTERN_HILBERT = 1,  // along a Hilbert curve, by the R2 sequence
-  ALCOVE_PATTERN_MEMO = 2,     // the paper's: 4x4 pixels and six rotations in turn
+  ALCOVE_PATTERN_GOLDEN = 0,   // 4x4 pixels, rotated by the golden ratio in each frame
+  ALCOVE_PATTERN_HILBERT = 1,  // the R2 sequence along a Hilbert curve
+  ALCOVE_PATTERN_PAPER = 2,    // the 4x4 pixels and six rotations of [Jimenez 2016]
   ALCOVE_PATTERN_MAX_ENUM = 0x7fffffff
 } AlcovePattern;
 
-// How specular occlusion is found, where AlcoveView::specular asks for it.
+// How specular occlusion is computed, where AlcoveView::specular asks for it.
 typedef enum AlcoveSpecular {
-  ALCOVE_SPECULAR_SLICES = 1,  // by the slices that find visibility: the most exact
-  // From visibility and bent normal, which are then made too.
-  ALCOVE_SPECULAR_TABLE = 2,        // the lobe itself within a cone, by a table of 54 KiB
-  ALCOVE_SPECULAR_CONE = 3,         // two cones, exactly
-  ALCOVE_SPECULAR_SMOOTH_CONE = 4,  // two cones, by a smooth step: cheaper, up to 0.16 off
-  // From visibility alone.
-  ALCOVE_SPECULAR_LAGARDE = 5,  // a fit by Lagarde and de Rousiers
+  // Integrates the GGX lobe over the slices that visibility is computed from: the most exact.
+  ALCOVE_SPECULAR_SLICES = 1,
+  // The next three use visibility and the bent normal, which are then computed too.
+  ALCOVE_SPECULAR_TABLE = 2,        // the GGX lobe within the visibility cone, by a 54 KiB table
+  ALCOVE_SPECULAR_CONE = 3,         // the exact intersection of two cones
+  ALCOVE_SPECULAR_SMOOTH_CONE = 4,  // the same by a smooth step: cheaper, off by up to 0.16
+  // Uses visibility alone: the fit of Lagarde and de Rousiers 2014.
+  ALCOVE_SPECULAR_LAGARDE = 5,
   ALCOVE_SPECULAR_MAX_ENUM = 0x7fffffff
 } AlcoveSpecular;
 
@@ -131,7 +141,7 @@ typedef enum AlcoveNormalEncoding {
   ALCOVE_NORMAL_ENCODING_MAX_ENUM = 0x7fffffff
 } AlcoveNormalEncoding;
 
-// Of results that others are made from and that no image was given for; an image has its own.
+// The precision of intermediate results that have no image of the engine. Images have their own.
 typedef enum AlcovePrecision {
   ALCOVE_PRECISION_UNORM8 = 0,   // 8 bits a channel
   ALCOVE_PRECISION_FLOAT16 = 1,  // half floats
@@ -139,58 +149,69 @@ typedef enum AlcovePrecision {
   ALCOVE_PRECISION_MAX_ENUM = 0x7fffffff
 } AlcovePrecision;
 
-// From alcoveGetSettings, to be changed at will. A default in brackets is that of every quality but
-// REFERENCE. What the estimator or history does not use is not read, but it has to be in range.
+// Fill it with alcoveGetSettings, then change what is wanted. Brackets hold the default of every
+// quality but REFERENCE. A field that the estimator or the history does not use is not read, but it
+// has to be in range.
 typedef struct AlcoveSettings {
   uint32_t struct_size;  // sizeof(AlcoveSettings)
 
-  // The search: in a pixel `slices` planes through the view vector, in each of them `steps` depths
-  // on either side.
+  // The search. A slice is a plane through the view vector; in each slice, depth is sampled in both
+  // directions.
 
-  // Scene units, over 0: occluders beyond it do not count. A twentieth of a room's height to a
-  // fifth of it is usual.
+  // Scene units, above 0. Occluders further away do not count. A twentieth to a fifth of a room's
+  // height is usual.
   float radius;
-  uint32_t slices;            // 1 to 64
-  uint32_t steps;             // on each side of a slice, 2 to 64
+  // Slices of a traced pixel, 1 to 64. More slices have less noise and cost proportionally more.
+  uint32_t slices;
+  // Samples in each of the two directions of a slice, 2 to 64. More find thinner occluders.
+  uint32_t steps;
   AlcoveEstimator estimator;  // [CONNECTED]
   AlcoveWeighting weighting;  // [COSINE]
-  // Of an occluder, in thickness_unit, at least 0; BITMASK and CONNECTED have it. With CONNECTED a
-  // surface is where it begins no thicker than it is sure to be wide. [0.15]
+  // The thickness of an occluder in thickness_unit, at least 0, for BITMASK and CONNECTED. With
+  // CONNECTED, at its leading edge an occluder is at most as thick as its visible width. [0.15]
   float thickness;
-  AlcoveThicknessUnit thickness_unit;  // [RADIUS]; BITMASK and CONNECTED
-  // What lies behind an occluder of that thickness is hidden from the eye, and may be open or
-  // solid: so much of it counts as solid, 0 nothing to 1 all. In between it is the more, the wider
-  // in the image the occluder is: all behind a wall, little behind a twig. [0.33]; BITMASK and
-  // CONNECTED
+  AlcoveThicknessUnit thickness_unit;  // for BITMASK and CONNECTED [RADIUS]
+  // The fraction of the volume hidden behind an occluder that is treated as solid, 0 to 1, for
+  // BITMASK and CONNECTED. Between 0 and 1 it grows with the occluder's width in the image: more
+  // behind a wall than behind a twig. [0.33]
   float hidden_occlusion;
-  uint32_t depth_layers;  // that are searched: 1, or 2 with AlcoveView::second_depth [1]; BITMASK
-                          // and CONNECTED
-  // How far each lower sample further out pulls a horizon down to it, 0 not at all to 1 wholly
-  // [0.05]; HEURISTIC.
+  // Depth layers that are searched: 1, or 2 with AlcoveView::second_depth. For BITMASK and
+  // CONNECTED. [1]
+  uint32_t depth_layers;
+  // How far each lower sample further out lowers the horizon towards it, 0 (not) to 1 (all the
+  // way), for HEURISTIC. [0.05]
   float blend;
-  // Last part of the radius, over which occluders fade, 0 none to 1 all of it [0]; HORIZONS and
-  // HEURISTIC. Must be 0 with BITMASK and CONNECTED, where a direction is occluded or it is not.
+  // The last part of the radius, over which occluders fade out, 0 to 1, for HORIZONS and HEURISTIC.
+  // Must be 0 with BITMASK and CONNECTED, whose sectors are either occluded or open. [0]
   float falloff;
-  uint32_t tile_size;     // one search a frame in a block of so many pixels a side: 1, 2 or 4. The
-                          // traced pixel of each block moves on from frame to frame
+  // One pixel of a tile of tile_size x tile_size pixels is traced in each frame: 1, 2 or 4. The
+  // interleave offset changes from frame to frame, so that every pixel is traced in time.
+  uint32_t tile_size;
   AlcovePattern pattern;  // [GOLDEN]
 
-  // The filter, in which each pixel gathers searches around it that lie on its surface.
-  uint32_t filter_radius;  // traced pixels on each side that it looks at while it has less than
-                           // two frames of history, 0 to 3 [2]; then one. 0: no filter at all
-  // How far from the pixel's tangent plane a search counts a quarter, over 0, in sizes of a pixel
-  // there [1.5]. So in the first frame of one slice; the more slices and frames, the nearer.
+  // The spatial filter: each pixel averages the traced pixels around it that lie on its surface.
+
+  // Filter radius in tiles for pixels with fewer than two frames of history, 0 to 3; later frames
+  // use
+  // 1. 0 turns the filter off. [2]
+  uint32_t filter_radius;
+  // Distance from the tangent plane, in pixels, at which a neighbour's weight falls to 0.25; above
+  // 0. This is the value for one slice and no history. It shrinks as samples accumulate. [1.5]
   float filter_tolerance_px;
 
   // The history.
-  uint32_t history_frames;  // that are averaged, 0 to 127; 0: no history and no memory for it
-  float clamp_width;        // to which it is held, in standard deviations of this frame around the
-                            // pixel, at least 0; 0 leaves it free [0]
+
+  // Frames that are averaged, 0 to 127. 0 keeps no history and takes no memory for it.
+  uint32_t history_frames;
+  // The history is clamped to the mean of this frame's neighbourhood plus or minus so many standard
+  // deviations, at least 0. 0 does not clamp. [0]
+  float clamp_width;
 
   // Outputs.
-  AlcoveSpecular specular;     // [SLICES]; read where AlcoveView::specular is given
-  float roughness;             // perceptual, 0 to 1, of every pixel where no image has it [0.5]
-  uint32_t roughness_channel;  // of AlcoveView::roughness, 0 to 3 [0]
+
+  AlcoveSpecular specular;     // read where AlcoveView::specular is given [SLICES]
+  float roughness;             // perceptual, 0 to 1, for pixels without AlcoveView::roughness [0.5]
+  uint32_t roughness_channel;  // the channel of AlcoveView::roughness, 0 to 3 [0]
   AlcovePrecision precision;   // [UNORM8]
   // What is written as visibility is 1 - intensity * (1 - visibility^power), cut to [0,1]. 1 and 1
   // change nothing and cost nothing. Multi-bounce, and the specular models but SLICES, read what is
@@ -212,9 +233,8 @@ size_t alcovePrintSettings(const AlcoveSettings* settings, char* text, size_t si
 
 typedef struct AlcoveContext AlcoveContext;
 
-// The engine's own; all of it outlives the context. Memory is the context's own, by
-// vkAllocateMemory and the C++ heap: no allocator can be given, and alcoveGetMemory says how much
-// it is.
+// The engine's device. All of it must outlive the context. The context allocates device memory with
+// vkAllocateMemory and host memory on the C++ heap: alcoveGetMemory says how much.
 typedef struct AlcoveContextInfo {
   uint32_t struct_size;
   uint32_t queue_family;             // of the queue that frames are submitted to: one that computes
@@ -223,16 +243,16 @@ typedef struct AlcoveContextInfo {
   // With the features synchronization2 and shaderStorageImageWriteWithoutFormat enabled.
   VkDevice device;
   PFN_vkGetInstanceProcAddr get_instance_proc_addr;
-  // What the device was made with, chained as for vkCreateDevice: then a feature that the engine
-  // forgot to enable is named. Null: only what the physical device has is checked.
+  // The features that the device was created with, chained as for vkCreateDevice: a feature that
+  // the engine forgot to enable is then named. Null: only the physical device is checked.
   const VkPhysicalDeviceFeatures2* enabled_features;
   uint32_t frames_in_flight;  // 1 to ALCOVE_MAX_FRAMES_IN_FLIGHT
   VkBool32 debug_utils;       // VK_EXT_debug_utils is enabled: passes and images get names
   VkBool32 timestamps;        // the device times each pass: alcoveGetTimings
-  // Where pipelines are looked up and kept; null: nowhere. The engine loads, stores and destroys
-  // it. Vulkan synchronises it, so that other threads and contexts may use it at the same time,
-  // unless it was created with VK_PIPELINE_CACHE_CREATE_EXTERNALLY_SYNCHRONIZED_BIT: then none may
-  // while a frame of this context is prepared or recorded.
+  // The engine's cache, in which pipelines are looked up and stored; null: none. The engine loads,
+  // saves and destroys it. Vulkan synchronises it, so that other threads and contexts may use it at
+  // the same time. If it was created with VK_PIPELINE_CACHE_CREATE_EXTERNALLY_SYNCHRONIZED_BIT,
+  // none of them may while a frame of this context is prepared or recorded.
   VkPipelineCache pipeline_cache;
 } AlcoveContextInfo;
 
@@ -244,12 +264,13 @@ AlcoveResult alcoveCreateContext(const AlcoveContextInfo* info, AlcoveContext** 
 // The device must have finished all that was recorded. Null is fine.
 void alcoveDestroyContext(AlcoveContext* context);
 
-// What the last call on this context that failed had to say; empty before there is one. Valid until
-// the next call. Never null.
+// The message of the last call on this context that failed; empty if none has. Valid until the next
+// call. Never null.
 const char* alcoveGetMessage(const AlcoveContext* context);
 
-// What another queue does is ordered by the engine's semaphores: `stages` are then those at which
-// the context's queue waits for them, or VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, without access.
+// How an image is used before or after a frame. Work on another queue is ordered by the engine's
+// semaphores: give the stages at which the context's queue waits for the semaphore, or
+// VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, and no access.
 typedef struct AlcoveState {
   VkPipelineStageFlags2 stages;
   VkAccessFlags2 access;
@@ -266,22 +287,22 @@ typedef struct AlcoveImage {
   // alcoveForgetImage before the image is destroyed.
   VkImageView view;
   VkFormat format;
-  // Pixels that are read or written, from the first on: all of the image, or fewer (dynamic
-  // resolution). Those of a view are alike. The others of an output are left as they were, but that
-  // a change from VK_IMAGE_LAYOUT_UNDEFINED forgets them.
+  // The size in pixels of the part that is read or written, from the top left corner: the whole
+  // image, or less with dynamic resolution. All images of a view have the same. The other pixels of
+  // an output keep their contents, unless it comes in VK_IMAGE_LAYOUT_UNDEFINED.
   uint32_t width;
   uint32_t height;
-  uint32_t layer;  // of an array of images, both eyes' say
-  // That the image was made with. Inputs need SAMPLED. Outputs need STORAGE, and SAMPLED where
-  // others are made from them: visibility with multi-bounce or a specular model but slices, bent
+  uint32_t layer;  // of an array image, such as one layer for each eye
+  // The usage that the image was created with. Inputs need SAMPLED. Outputs need STORAGE;
+  // visibility also needs SAMPLED with multi-bounce or a specular model other than SLICES, and bent
   // normals with the models that read them.
   VkImageUsageFlags usage;
-  // Who wrote it last (of an output: who read or wrote it last), and in which layout it is then.
-  // The first barrier waits for these stages. An output may come in VK_IMAGE_LAYOUT_UNDEFINED: all
-  // its pixels are overwritten.
+  // The last use before the frame (of an input the last write, of an output the last read or write)
+  // and the layout at that time. The first barrier waits for these stages. An output may come in
+  // VK_IMAGE_LAYOUT_UNDEFINED, because all of its pixels are overwritten.
   AlcoveState initial_state;
-  // Who uses it next, and in which layout: the last barrier puts it there and makes it visible to
-  // these stages, also where no pass reads it. Needed.
+  // The next use, and its layout: the last barrier changes the layout and makes the image visible
+  // to these stages, even where no pass reads it. Required.
   AlcoveState final_state;
 } AlcoveImage;
 
@@ -347,41 +368,43 @@ typedef struct AlcovePerspective {
 // Fills AlcoveCamera::clip_from_view. ALCOVE_ERROR_INVALID_INPUT where a number is out of range.
 AlcoveResult alcoveMakePerspective(const AlcovePerspective* perspective, float* clip_from_view);
 
-// One view of a frame: an eye, a part of a split screen, in images or layers of its own. Outputs
-// that have no image are not made, and cost neither a pass nor memory.
+// One view of a frame, such as an eye or a part of a split screen, with images or layers of its
+// own. An output without an image is not computed and costs neither a pass nor memory.
 typedef struct AlcoveView {
   uint32_t struct_size;
-  uint32_t id;             // any number, other in each view of a frame: each id has its own
-                           // history, kept until alcoveDropView
-  VkBool32 reset_history;  // forget it, at a cut say. A change of size does so by itself, but for
-                           // largest_width
+  // Any number that no other view of the frame has. Each id has a history of its own, which is kept
+  // until alcoveDropView.
+  uint32_t id;
+  // Begin a new history, after a cut for example. A change of size does so by itself, except within
+  // largest_width and largest_height.
+  VkBool32 reset_history;
   VkBool32 normals_in_view_space;  // else in world space
   AlcoveNormalEncoding normal_encoding;
   // Normals in view space have a z that grows away from the eye, as in engines whose camera looks
   // along +Z. Bent normals are written so too.
   VkBool32 normals_forward_z;
-  // Frames in a row, up to this one, that show the very same of this id as the one before each; 0:
-  // this one differs, or nobody knows. It starts again after reset_history (with which it is not
-  // read) and where size, settings or outputs change. From 1 on `motion` is not read
-  // and history is not reprojected; from 16 on the history averages up to 127 frames, whatever
-  // history_frames is.
+  // How many frames in a row, this one included, show exactly the same as the frame before. 0 if
+  // this frame differs, or if the engine does not know. Start again at 0 after reset_history and
+  // where size, settings or outputs change. From 1 on, `motion` is not read. From 16 on, only the
+  // pixels around traced ones are updated, and all frames have the same weight.
   uint32_t static_frames;
   const AlcoveSettings* settings;
   AlcoveCamera camera;
   // The camera with which this id was last recorded. It is not read, and may be zeros, in an id's
   // first frame, with reset_history, without history_frames and by alcovePrepareFrame.
   AlcoveCamera previous_camera;
-  // Dynamic resolution: history has room for `largest`, and goes on while the size changes within
-  // it. Zeros: it is as large as depth, and a change of size begins it anew. A change of `largest`
-  // does in any case. Unread without history_frames, as are the next.
+  // Dynamic resolution: the history has room for this size, and continues while the size of depth
+  // changes within it. Zeros: the size of depth, and a change of size begins a new history. A
+  // change of the largest size always does. Not read without history_frames, as the next two.
   uint32_t largest_width;
   uint32_t largest_height;
-  // Of depth, when this id was last recorded. Zeros: as now. Unread with reset_history.
+  // The size of depth when this id was last recorded. Zeros: the same as now. Not read with
+  // reset_history.
   uint32_t previous_width;
   uint32_t previous_height;
 
   // Inputs.
-  AlcoveImage depth;  // as clip_from_view has it: any depth format, or R32_SFLOAT. Needed
+  AlcoveImage depth;  // as clip_from_view gives it, in any depth format or R32_SFLOAT. Required
   // Unit vectors, as normal_encoding says. Without an image, normals are made from
   // depth, and bent normals are in view space.
   //
@@ -402,82 +425,87 @@ typedef struct AlcoveView {
   AlcoveImage motion;
   float motion_scale[2];
   float motion_offset[2];
-  AlcoveImage roughness;   // perceptual, [0,1]; none: AlcoveSettings::roughness
-  AlcoveImage back_depth;  // of the nearest back faces, as depth; needed with
-                           // ALCOVE_THICKNESS_UNIT_BACK_FACES (bitmask, connected), else unread
-  // The scene drawn once more into another depth, back faces culled and fragments discarded that do
-  // not lie behind `depth` by a thousandth of their distance; as depth. Needed with two
-  // depth_layers (bitmask, connected), else unread.
+  AlcoveImage roughness;  // perceptual, [0,1]; without an image, AlcoveSettings::roughness
+  // The depth of the nearest back faces: the scene drawn with front faces culled, otherwise as
+  // depth. Required with ALCOVE_THICKNESS_UNIT_BACK_FACES and the estimators BITMASK and CONNECTED,
+  // else not read.
+  AlcoveImage back_depth;
+  // The second depth layer: the scene drawn with back faces culled, discarding fragments that are
+  // not behind `depth` by a thousandth of their distance, otherwise as depth. Required with two
+  // depth_layers and the estimators BITMASK and CONNECTED, else not read.
   AlcoveImage second_depth;
   AlcoveImage albedo;  // linear RGB, [0,1], for multi_bounce
 
-  // Outputs. Formats are any that the device can store to, of at least so many channels. The sky
-  // (depth at the far plane, or not a number) is open, its bent normal the normal.
-  AlcoveImage visibility;    // 1 channel, [0,1]: R8_UNORM will do
-  AlcoveImage bent_normal;   // 3, signed: xyz unit, in the space of the normals; R8G8B8A8_SNORM
-  AlcoveImage specular;      // 1, [0,1]: multiplies specular probe light
-  AlcoveImage multi_bounce;  // 3, RGB, [0,1]: visibility with the light that occluders send back
+  // Outputs, in any format that the device can store to and that has enough channels. The sky
+  // (depth at the far plane, or not a number) is open, and its bent normal is the normal.
+  AlcoveImage visibility;  // one channel, [0,1], 1 is open; R8_UNORM is enough
+  // Three channels, signed: the mean visible direction, a unit vector in the space of the normals.
+  // R8G8B8A8_SNORM is enough.
+  AlcoveImage bent_normal;
+  AlcoveImage specular;      // one channel, [0,1]: multiplies specular probe light
+  AlcoveImage multi_bounce;  // three channels, [0,1]: visibility with light reflected by occluders
 } AlcoveView;
 
 typedef struct AlcoveFrame {
   uint32_t struct_size;
-  uint32_t index;  // counts frames: it turns the noise and moves the traced pixels
-  // In flight, below frames_in_flight: what was recorded with it has finished. One that is recorded
-  // apart, a reflection's say, is a frame with a slot of its own.
+  // The number of the frame: it rotates the noise and selects the traced pixels. Must count up.
+  uint32_t index;
+  // The frame in flight, below frames_in_flight. The device must have finished what was last
+  // recorded with this slot. Frames that are recorded separately, of a reflection for example, need
+  // a slot of their own.
   uint32_t slot;
   uint32_t view_count;  // 1 to ALCOVE_MAX_VIEWS
   const AlcoveView* views;
 } AlcoveFrame;
 
-// Makes the pipelines of this frame and of all that have its settings, the same images given and
-// the same kind of projection (perspective or not, reversed or not), whatever lies before them: a
-// view's first frame, one after a cut, in motion, still. Sizes, ids, cameras and the radius make no
-// difference. Records nothing, changes no history and touches no image; memory is left for the
-// first frame to allocate.
+// Creates the pipelines of this frame and of all frames with the same settings, the same images
+// given and the same kind of projection (perspective or not, reversed or not), whether they are a
+// view's first, after a cut, in motion or static. Sizes, ids, cameras and the radius make no
+// difference. Records nothing, changes no history and touches no image; the first frame allocates
+// the memory.
 //
-// To be called while loading, and before a change of settings. It may take the driver seconds, and
-// is a call on the context like any other: one thread at a time. Where another thread records
-// meanwhile, a second context with the same pipeline_cache can prepare, and be destroyed: the first
-// then finds the pipelines in there.
+// Call it while loading, and before settings change. The driver may take seconds. If another thread
+// records meanwhile, prepare with a second context that has the same pipeline_cache, and destroy
+// that context: the first one then finds the pipelines in the cache.
 //
 // Errors: those of alcoveRecordFrame.
 AlcoveResult alcovePrepareFrame(AlcoveContext* context, const AlcoveFrame* frame);
 
-// Records the passes of all views into `commands`: a primary command buffer in recording, of the
-// context's queue family, outside a render pass. Frames are submitted in the order in which they
-// are recorded, each once and all to one queue; else alcoveDiscardFrame. A frame like the one
-// before allocates nothing.
+// Records the passes of all views into `commands`: a primary command buffer in the recording state,
+// of the context's queue family, outside a render pass. Submit frames in the order in which they
+// were recorded, each once and all to one queue; call alcoveDiscardFrame for a frame that is not
+// submitted. A frame like the one before allocates nothing.
 //
-// Pipelines that it needs and that were not made before are made now, which may take the driver a
-// second: see alcovePrepareFrame.
+// Pipelines that are missing are created now, which may take the driver a second: see
+// alcovePrepareFrame.
 //
-// It binds compute pipelines and descriptor set 0 and leaves them bound; other state is untouched.
-// Barriers: each image from its initial_state to SHADER_READ_ONLY_OPTIMAL (inputs) or GENERAL
-// (outputs), for compute shaders, before its first use; to its final_state after the last. In
-// between only the library's own memory is concerned, but that a frame which differs from the one
-// before begins with a full barrier. One image may serve as several inputs, described alike; an
-// output serves as nothing else.
+// It leaves compute pipelines and descriptor set 0 bound and touches no other state. Barriers move
+// each image from its initial_state to SHADER_READ_ONLY_OPTIMAL (inputs) or GENERAL (outputs)
+// before its first use, and to its final_state after the last. Other barriers concern the library's
+// own memory only, except that a frame which differs from the one before begins with a full
+// barrier. One image may be several inputs if it is described the same way; an output must be
+// nothing else.
 //
-// Errors, with nothing recorded: a null pointer, a size of zero or over the largest, an enum's
-// unknown value, a number out of range or that is not finite, a format or a usage that does not do,
-// images that differ in size, a frame without a view, a view without an output.
+// Errors, with nothing recorded: a null pointer, a size that is zero or above the largest, an
+// unknown enum value, a number that is out of range or not finite, a format or usage that cannot be
+// used, images of different sizes, a frame without a view, a view without an output.
 AlcoveResult alcoveRecordFrame(AlcoveContext* context, VkCommandBuffer commands,
                                const AlcoveFrame* frame);
 
-// Call this instead of submitting what was just recorded, before any other call on the context (the
-// window closed, say). The context is then as if the frame had not been recorded, whatever its
-// size, settings and outputs; otherwise the next frames would read histories that were never
-// written. After a frame that failed, or none, there is nothing to do.
+// Call this instead of submitting the frame that was just recorded, before any other call on the
+// context: when the window was closed, for example. The context is then as if the frame had not
+// been recorded. Without this call the next frames would read histories that were never written.
+// After a frame that failed, or before the first, there is nothing to do.
 AlcoveResult alcoveDiscardFrame(AlcoveContext* context);
 
-// Bytes of device memory of the frame recorded last; zeros before there is one, and after one that
-// failed or was discarded. What transients share grows with the largest frame, and stays.
+// Bytes of device memory of the last recorded frame; zeros before the first, and after a frame that
+// failed or was discarded. Memory of transients grows with the largest frame and is kept.
 typedef struct AlcoveMemory {
   uint32_t struct_size;
-  uint64_t transients;           // live during the frame, sharing memory
-  uint64_t transients_unshared;  // what they were, were each given memory of its own
+  uint64_t transients;           // intermediate images, which share memory
+  uint64_t transients_unshared;  // the same if each had memory of its own
   uint64_t history;              // of all views
-  uint64_t allocated;            // all that the context holds, parameters and tables too
+  uint64_t allocated;            // everything that the context holds, with parameters and tables
 } AlcoveMemory;
 
 // Fills `memory`, whose struct_size is set.
@@ -508,22 +536,30 @@ typedef struct AlcoveTiming {
   double milliseconds;
 } AlcoveTiming;
 
-// Device time of each pass, in order, of the frame last recorded with `slot`, once it has finished.
-// `timings` null: *count becomes how many there are; else it says for how many there is room and
-// becomes how many were written. None without timestamps.
+// The device time of each pass of the frame last recorded with `slot`, in order, after the device
+// has finished it. With `timings` null, *count becomes the number of timings; else *count is the
+// room in `timings` and becomes the number written. There are none without
+// AlcoveContextInfo::timestamps.
 AlcoveResult alcoveGetTimings(AlcoveContext* context, uint32_t slot, uint32_t* count,
                               AlcoveTiming* timings);
 
-// The plan of the frame recorded last, for people: passes, barriers, memory. As alcovePrintSettings
-// writes; 0 where there is no such frame, or no memory for its text.
+// Writes the plan of the last recorded frame as text: passes, barriers, memory. Buffer and result
+// are as with alcovePrintSettings. 0 where there is no such frame, or no memory for the text.
 size_t alcovePrintPlan(AlcoveContext* context, char* text, size_t size);
 
-// Forgets a view and its history. The memory is freed in the next frames that are recorded, once
-// the device has finished those that used it. An id that was never recorded is fine.
+// Mistakes that show in what the frames recorded so far were given: a line with a sentence for
+// each, nothing where there is none. Ask after some dozens of frames in which the camera moved. It
+// looks at the calls alone, not at pixels: an index that stands still, a previous_camera that is
+// always this frame's or never the last one's, jitter in only one of the two, static_frames in
+// motion, reset_history in every frame. Buffer and result are as with alcovePrintSettings.
+size_t alcoveDiagnose(AlcoveContext* context, char* text, size_t size);
+
+// Removes a view and its history. The memory is freed while the next frames are recorded, after the
+// device has finished those that used it. An id that was never recorded is allowed.
 AlcoveResult alcoveDropView(AlcoveContext* context, uint32_t id);
 
-// To be called before the engine destroys an image that it gave without a view: another may get the
-// same handle. An image that was never given is fine.
+// Call this before the engine destroys an image that it gave without a view, because another image
+// may get the same handle. An image that was never given is allowed.
 AlcoveResult alcoveForgetImage(AlcoveContext* context, VkImage image);
 
 #ifdef __cplusplus

@@ -1,32 +1,75 @@
-// The common accesses by name: what a pass says when it reads or writes.
+// The common accesses by name: how a pass reads or writes a resource.
+//
+// Functions take the shader stages of the access; constants name the usual stages. Accesses of one
+// pass to one subresource are joined with `|`, because a pass declares each subresource once.
 #pragma once
 
 #include "alcove/framegraph/types.h"
 
+namespace alcove::framegraph {
+
+// Both accesses in one. Where the layouts of a texture differ, the layout is GENERAL, which allows
+// all accesses but those of VK_IMAGE_LAYOUT_PRESENT_SRC_KHR; a read-only depth layout, which also
+// allows sampling, is kept.
+constexpr Access operator|(const Access& a, const Access& b) {
+  constexpr auto kDepth = VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL;
+  constexpr auto kSampled = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+  VkImageLayout layout = a.layout == b.layout ? a.layout : VK_IMAGE_LAYOUT_GENERAL;
+  if ((a.layout == kDepth && b.layout == kSampled) || (a.layout == kSampled && b.layout == kDepth))
+    layout = kDepth;
+  return {a.stages | b.stages, a.access | b.access, layout, a.usage | b.usage};
+}
+
+}  // namespace alcove::framegraph
+
 namespace alcove::framegraph::access {
 
-// Textures.
-inline constexpr Access sampled_compute{
-    VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
-    VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_IMAGE_USAGE_SAMPLED_BIT};
-inline constexpr Access sampled_fragment{
-    VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
-    VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_IMAGE_USAGE_SAMPLED_BIT};
+// Textures. Sampled in any shader stages.
+constexpr Access sampled(VkPipelineStageFlags2 stages) {
+  return {stages, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+          VK_IMAGE_USAGE_SAMPLED_BIT};
+}
 // Sampled in the general layout: for a pass that also stores to other mips of the same texture.
-inline constexpr Access sampled_general_compute{
-    VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
-    VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_USAGE_SAMPLED_BIT};
-inline constexpr Access storage_read_compute{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
-                                             VK_ACCESS_2_SHADER_STORAGE_READ_BIT,
-                                             VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_USAGE_STORAGE_BIT};
-inline constexpr Access storage_write_compute{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
-                                              VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
-                                              VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_USAGE_STORAGE_BIT};
-inline constexpr Access storage_read_write_compute{
-    VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
-    VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
-    VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_USAGE_STORAGE_BIT};
-// Color and depth attachments: the read bits are for blending, testing and load operations.
+constexpr Access sampled_general(VkPipelineStageFlags2 stages) {
+  return {stages, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, VK_IMAGE_LAYOUT_GENERAL,
+          VK_IMAGE_USAGE_SAMPLED_BIT};
+}
+// A depth texture sampled in the layout in which it can be tested against at the same time.
+constexpr Access depth_read(VkPipelineStageFlags2 stages) {
+  return {stages, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
+          VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL, VK_IMAGE_USAGE_SAMPLED_BIT};
+}
+constexpr Access storage_read(VkPipelineStageFlags2 stages) {
+  return {stages, VK_ACCESS_2_SHADER_STORAGE_READ_BIT, VK_IMAGE_LAYOUT_GENERAL,
+          VK_IMAGE_USAGE_STORAGE_BIT};
+}
+constexpr Access storage_write(VkPipelineStageFlags2 stages) {
+  return {stages, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, VK_IMAGE_LAYOUT_GENERAL,
+          VK_IMAGE_USAGE_STORAGE_BIT};
+}
+constexpr Access storage_read_write(VkPipelineStageFlags2 stages) {
+  return storage_read(stages) | storage_write(stages);
+}
+
+inline constexpr Access sampled_compute = sampled(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
+inline constexpr Access sampled_vertex = sampled(VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT);
+inline constexpr Access sampled_fragment = sampled(VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT);
+inline constexpr Access sampled_general_compute =
+    sampled_general(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
+inline constexpr Access depth_read_fragment = depth_read(VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT);
+inline constexpr Access depth_read_compute = depth_read(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
+inline constexpr Access storage_read_compute = storage_read(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
+inline constexpr Access storage_read_fragment =
+    storage_read(VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT);
+inline constexpr Access storage_write_compute =
+    storage_write(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
+inline constexpr Access storage_write_fragment =
+    storage_write(VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT);
+inline constexpr Access storage_read_write_compute =
+    storage_read_write(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
+inline constexpr Access storage_read_write_fragment =
+    storage_read_write(VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT);
+// Colour and depth attachments: the read bits are for blending, testing and load operations.
 inline constexpr Access color_attachment{
     VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
     VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
@@ -40,12 +83,10 @@ inline constexpr Access depth_test{
     VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
     VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT, VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL,
     VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT};
-inline constexpr Access depth_read_fragment{
-    VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
-    VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL, VK_IMAGE_USAGE_SAMPLED_BIT};
-inline constexpr Access depth_read_compute{
-    VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
-    VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL, VK_IMAGE_USAGE_SAMPLED_BIT};
+// Read in the fragment shader at its own pixel, as an input attachment of a render pass.
+inline constexpr Access input_attachment{
+    VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_INPUT_ATTACHMENT_READ_BIT,
+    VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT};
 // Copies, blits and clears (VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT is their union).
 inline constexpr Access transfer_source{VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT,
                                         VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
@@ -62,7 +103,7 @@ inline constexpr Access blit_destination{
 inline constexpr Access clear{VK_PIPELINE_STAGE_2_CLEAR_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                               VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                               VK_IMAGE_USAGE_TRANSFER_DST_BIT};
-// For a final_state: a swapchain image that is to be presented.
+// For a final state: a swapchain image that is presented next.
 inline constexpr State present{VK_PIPELINE_STAGE_2_BOTTOM_OF_PIPE_BIT, 0,
                                VK_IMAGE_LAYOUT_PRESENT_SRC_KHR};
 
@@ -70,28 +111,45 @@ inline constexpr State present{VK_PIPELINE_STAGE_2_BOTTOM_OF_PIPE_BIT, 0,
 
 namespace alcove::framegraph::buffer_access {
 
-inline constexpr Access uniform_compute{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
-                                        VK_ACCESS_2_UNIFORM_READ_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
-                                        VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT};
-inline constexpr Access uniform_graphics{
-    VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
-    VK_ACCESS_2_UNIFORM_READ_BIT, VK_IMAGE_LAYOUT_UNDEFINED, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT};
-inline constexpr Access storage_read_compute{
-    VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_READ_BIT,
-    VK_IMAGE_LAYOUT_UNDEFINED, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT};
-inline constexpr Access storage_write_compute{
-    VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
-    VK_IMAGE_LAYOUT_UNDEFINED, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT};
-inline constexpr Access storage_read_write_compute{
-    VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
-    VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
-    VK_IMAGE_LAYOUT_UNDEFINED, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT};
+constexpr Access uniform(VkPipelineStageFlags2 stages) {
+  return {stages, VK_ACCESS_2_UNIFORM_READ_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
+          VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT};
+}
+constexpr Access storage_read(VkPipelineStageFlags2 stages) {
+  return {stages, VK_ACCESS_2_SHADER_STORAGE_READ_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
+          VK_BUFFER_USAGE_STORAGE_BUFFER_BIT};
+}
+constexpr Access storage_write(VkPipelineStageFlags2 stages) {
+  return {stages, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
+          VK_BUFFER_USAGE_STORAGE_BUFFER_BIT};
+}
+// With Contents::accumulate, atomic operations of several passes need no barrier in between.
+constexpr Access storage_read_write(VkPipelineStageFlags2 stages) {
+  return storage_read(stages) | storage_write(stages);
+}
+
+inline constexpr Access uniform_compute = uniform(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
+inline constexpr Access uniform_graphics =
+    uniform(VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT);
+inline constexpr Access storage_read_compute = storage_read(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
+inline constexpr Access storage_read_vertex = storage_read(VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT);
+inline constexpr Access storage_read_fragment =
+    storage_read(VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT);
+inline constexpr Access storage_write_compute =
+    storage_write(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
+inline constexpr Access storage_write_fragment =
+    storage_write(VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT);
+inline constexpr Access storage_read_write_compute =
+    storage_read_write(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
+inline constexpr Access storage_read_write_fragment =
+    storage_read_write(VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT);
 inline constexpr Access vertex_buffer{VK_PIPELINE_STAGE_2_VERTEX_ATTRIBUTE_INPUT_BIT,
                                       VK_ACCESS_2_VERTEX_ATTRIBUTE_READ_BIT,
                                       VK_IMAGE_LAYOUT_UNDEFINED, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT};
 inline constexpr Access index_buffer{VK_PIPELINE_STAGE_2_INDEX_INPUT_BIT,
                                      VK_ACCESS_2_INDEX_READ_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
                                      VK_BUFFER_USAGE_INDEX_BUFFER_BIT};
+// The arguments of indirect draws and dispatches.
 inline constexpr Access indirect{VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT,
                                  VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
                                  VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT};
@@ -106,7 +164,31 @@ inline constexpr Access transfer_destination{
 inline constexpr Access fill{VK_PIPELINE_STAGE_2_CLEAR_BIT | VK_PIPELINE_STAGE_2_COPY_BIT,
                              VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
                              VK_BUFFER_USAGE_TRANSFER_DST_BIT};
-// For a final_state: a buffer that the host reads once the frame's fence has signalled.
+
+// Ray tracing. An acceleration structure is declared as the buffer that it lies in.
+// Vertices, indices, transforms and instances that a build reads.
+inline constexpr Access build_input{
+    VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR, VK_ACCESS_2_SHADER_READ_BIT,
+    VK_IMAGE_LAYOUT_UNDEFINED,
+    VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR |
+        VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT};
+inline constexpr Access build_scratch{
+    VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR,
+    VK_ACCESS_2_ACCELERATION_STRUCTURE_READ_BIT_KHR |
+        VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR,
+    VK_IMAGE_LAYOUT_UNDEFINED,
+    VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT};
+inline constexpr Access acceleration_structure_build{
+    VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR,
+    VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR, VK_IMAGE_LAYOUT_UNDEFINED,
+    VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_STORAGE_BIT_KHR};
+// Traced by shaders of these stages, or (in the build stage) read by the build of another one.
+constexpr Access acceleration_structure_read(VkPipelineStageFlags2 stages) {
+  return {stages, VK_ACCESS_2_ACCELERATION_STRUCTURE_READ_BIT_KHR, VK_IMAGE_LAYOUT_UNDEFINED,
+          VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_STORAGE_BIT_KHR};
+}
+
+// For a final state: a buffer that the host reads once the frame's fence has signalled.
 inline constexpr State host_read{VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT,
                                  VK_IMAGE_LAYOUT_UNDEFINED};
 

@@ -36,8 +36,10 @@ struct FormatOracle {
 };
 
 enum class Ordering : std::uint8_t {
-  program,     // as declared
-  lower_peak,  // reordered where that lowers the memory peak; never a higher one
+  program,  // as declared
+  // In another order where that lowers the bytes of all heaps, as they are placed: never a higher
+  // peak. Passes with side effects keep their order among each other.
+  lower_peak,
 };
 
 // What the device allows and what the caller wants. The defaults are those of any desktop device.
@@ -57,12 +59,13 @@ struct Limits {
   // Graphs of more live passes than this keep program order: looking for another takes time that
   // grows faster than the graph.
   std::uint32_t reorder_passes = 48;
-  // How long placement looks for the lower bound where the first way does not meet it, in
-  // comparisons of two resources; 0 takes the first way.
-  std::int64_t placement_effort = 1 << 24;
+  // How long placement looks for a lower peak where the first way does not meet the lower bound, in
+  // comparisons of two resources, 0 or more; 0 takes the first way. The time that a changed frame
+  // takes grows with it. For 200 passes with textures of differing sizes (framegraph_benchmark):
+  // 0 takes .05 ms at a median peak of 1.16 times the lower bound, 2^18 takes .6 ms at 1.002, and
+  // 2^24 takes up to 30 ms for the last hundredths of the worst frames.
+  std::int64_t placement_effort = 1 << 18;
   bool alias = true;  // false gives each transient bytes of its own
-  // Barriers with work between what they wait for and what waits become events.
-  bool split_barriers = false;
 };
 
 // Everything that compiling needs beside its input: kept from call to call, so that no memory is

@@ -39,16 +39,19 @@ enum ResourceFlags : std::uint32_t {
   kRelativeToNothing = 1,  // a relative extent of a dead handle
 };
 
-// What is known of a resource that lives outside the frame.
+// The state of a resource that exists outside the frame: an import or a history slot.
 struct ExternalRecord {
   State initial_state;
   State final_state;
   VkFlags usage = 0;
-  std::uint32_t has_contents = 0;                     // 0 or 1
-  std::uint32_t has_final_state = 0;                  // 0 or 1
+  // The external that was imported before with the same Vulkan handle, kNone where there is none.
+  std::uint32_t same_as = kNone;
+  std::uint8_t has_contents = 0;                      // 0 or 1
+  std::uint8_t has_final_state = 0;                   // 0 or 1
+  std::uint8_t has_handle = 0;                        // 0 or 1: its Vulkan handle was given
   HistoryValidity validity = HistoryValidity::valid;  // of a history slot
   QueueClass queue = QueueClass::graphics;            // that used it last
-  std::uint16_t has_handle = 0;                       // 0 or 1: its Vulkan handle was given
+  std::uint8_t reserved[3] = {};
 };
 static_assert(std::has_unique_object_representations_v<ExternalRecord>);
 
@@ -59,19 +62,26 @@ enum AccessFlags : std::uint32_t {
   kForeign = 8,  // the handle was of another graph or frame
   kNull = 16,    // the handle was never made
   kClosed = 32,  // declared on a pass that is not the last
-  // All of a transient with one subresource, with stages, access bits and layout that fit: by
-  // itself right on a queue that can run anything. Compile looks closer at any other.
+  // An access to a whole transient of one subresource, with valid stages, access bits and layout.
+  // It needs no further validation on the graphics queue.
   kPlain = 64,
   kOnBuffer = 128,  // the handle was of a buffer
+  // Contents::accumulate: the write is not ordered among others of the same access.
+  kUnordered = 256,
   // Of an OutputRecord that stands for a PassBuilder which was used after reset().
   kStaleBuilder = 1u << 16,
 };
 
-// The access bits that write.
+// The access bits that write: those of Vulkan and of its extensions, but for video.
 inline constexpr VkAccessFlags2 kWriteBits =
     VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT |
     VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT |
-    VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_HOST_WRITE_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+    VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_HOST_WRITE_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT |
+    VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR |
+    VK_ACCESS_2_TRANSFORM_FEEDBACK_WRITE_BIT_EXT |
+    VK_ACCESS_2_TRANSFORM_FEEDBACK_COUNTER_WRITE_BIT_EXT |
+    VK_ACCESS_2_COMMAND_PREPROCESS_WRITE_BIT_NV | VK_ACCESS_2_MICROMAP_WRITE_BIT_EXT |
+    VK_ACCESS_2_OPTICAL_FLOW_WRITE_BIT_NV;
 
 constexpr bool layout_is_usable(VkImageLayout layout) {
   return layout != VK_IMAGE_LAYOUT_UNDEFINED && layout != VK_IMAGE_LAYOUT_PREINITIALIZED;
@@ -118,11 +128,11 @@ struct GraphDescription {
   Records<ResourceRecord> resources;
   Records<ExternalRecord> externals;
   Records<OutputRecord> outputs;
-  // What the records, but for passes, hold at this many: the number of the frame that first
-  // declared them, which no other frame of any graph has.
+  // The number of the frame that first declared these records, passes excepted. Descriptions of one
+  // edition have the same records, because no two frames of any graph have the same number.
   std::uint64_t edition = 0;
 
-  // Names are for people: they are no part of the key.
+  // Names appear in messages only and are not compared.
   struct Name {
     std::uint32_t size = 0;
     std::uint32_t offset = 0;  // in long_names, where it is too long for the place here

@@ -1,4 +1,4 @@
-// What went wrong, in a sentence that a stranger can act on.
+// An error: a code, the pass and resource it concerns, and a sentence that says what to change.
 #pragma once
 
 #include <cstdint>
@@ -10,19 +10,20 @@
 namespace alcove::framegraph {
 
 enum class ErrorCode : std::uint8_t {
-  stale_handle,           // a version that a later write replaced
-  foreign_handle,         // of another graph, or of a frame before reset
-  null_handle,            // never created
-  read_before_write,      // nothing wrote what is read
-  read_and_write,         // one pass reads and writes one subresource in two accesses
-  two_writers,            // one pass writes one subresource twice
-  attachment_mismatch,    // one pass's attachments differ in size or samples
-  missing_usage,          // an import was not created for this use
-  unsupported_format,     // the format cannot be used so
-  bad_range,              // mips or layers that the texture does not have
-  bad_access,             // an access that contradicts itself or the pass's queue
-  bad_description,        // zero size, undefined format, or over a device limit
-  bad_import,             // an import without its Vulkan handle, or with a relative extent
+  stale_handle,         // a version that a later write has replaced
+  foreign_handle,       // of another graph, or of a frame before reset
+  null_handle,          // never created
+  read_before_write,    // nothing wrote what is read
+  read_and_write,       // one pass reads and writes one subresource in two accesses
+  two_writers,          // one pass writes one subresource twice
+  attachment_mismatch,  // one pass's attachments differ in size or samples
+  missing_usage,        // an import was not created for this use
+  unsupported_format,   // the device does not support this use of the format
+  bad_range,            // mips or layers that the texture does not have
+  bad_access,           // an access that contradicts itself or the pass's queue
+  bad_description,      // zero size, undefined format, or over a device limit
+  bad_import,  // an import without a Vulkan handle, with another import's, or of a relative
+               // extent
   history_never_written,  // a history slot is read that no frame wrote and none writes
   history_cycle,          // a history's slots form a cycle within the frame
   closed_pass,            // an access declared after the next pass was begun

@@ -39,24 +39,33 @@ struct DeviceHandles {
   bool debug_utils = false;  // VK_EXT_debug_utils is enabled on the instance
 };
 
+// Checks a plan against the declaration and the limits that it was made for.
+using PlanCheck = tl::expected<void, Errors>(const GraphDescription&, const Limits&, const Plan&);
+
 struct ExecutorOptions {
   std::uint32_t frames_in_flight = 2;  // frame slots, 1 to 8
   bool timestamps = true;              // GPU time of each pass, on queues that have timestamps
   Ordering ordering = Ordering::lower_peak;
   bool alias = true;
-  // Barriers with work between what they wait for and what waits become events
-  // (framegraph/README.md). Frames that have any are recorded by the caller's thread.
-  bool split_barriers = false;
+  // How long placement looks for a lower memory peak when a frame's declaration changes, in
+  // comparisons of two resources: see Limits::placement_effort.
+  std::int64_t placement_effort = Limits{}.placement_effort;
+  // Plans that are kept, 1 to 4096, for each of record() and submit(). A frame whose declaration is
+  // that of a kept plan is not compiled again. When all are taken, the plan that was unused for
+  // longest is replaced. A plan takes some hundred bytes a pass and resource.
+  std::uint32_t cached_plans = 64;
   // Threads that record passes, the caller's among them, 1 to 64; fewer where the system gives no
   // more. With more than one the callbacks of different passes run at the same time, into secondary
   // command buffers; a caller's query must not be active then in the command buffer that record()
   // is given. What a callback throws reaches the caller from whichever thread it ran in.
   std::uint32_t recording_threads = 1;
+  // Checks every new plan where it is not null, at the time of compiling: framegraph::verify() of
+  // verify.h, in the library alcove::framegraph_verifier. Debug builds of this library check with
+  // that in any case.
+  PlanCheck* verify = nullptr;
 #ifdef NDEBUG
-  bool verify = false;      // every new plan goes through verify()
   bool check_uses = false;  // undeclared uses in callbacks are errors
 #else
-  bool verify = true;
   bool check_uses = true;
 #endif
 };

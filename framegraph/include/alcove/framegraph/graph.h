@@ -103,6 +103,7 @@ struct ImportHandles {
   VkBuffer buffer = VK_NULL_HANDLE;
   std::uint32_t history = kNone;  // of a history slot: index into the graph's histories
   std::uint32_t layer = 0;        // of the image: the texture's first
+  std::uint32_t layers = 1;       // of the texture
 };
 
 class Graph {
@@ -201,6 +202,8 @@ class Graph {
   std::uint32_t add_any_access(std::uint32_t pass, std::uint32_t index, std::uint32_t version,
                                std::uint32_t tag, const Access& access, Range range,
                                std::uint32_t flags);
+  std::uint32_t imported_before(VkImage image, VkBuffer buffer, std::uint32_t layer,
+                                const ResourceRecord& record) const;
   void* allocate(std::size_t size, std::size_t alignment);
   void* allocate_in_next_block(std::size_t size, std::size_t alignment);
   void destroy_callables();

@@ -198,6 +198,7 @@ inline void PassBuilder::read(Buffer buffer, const Access& access) {
 inline Texture PassBuilder::write(Texture texture, const Access& access, Range range,
                                   Contents contents, Need need) {
   const std::uint32_t flags = kWrite | (contents == Contents::discard ? kDiscard : 0u) |
+                              (contents == Contents::accumulate ? kUnordered : 0u) |
                               (need == Need::optional ? kOptional : 0u);
   if (is_current()) texture.version = graph_.add_access(pass_, texture, access, range, flags);
   return texture;
@@ -206,6 +207,7 @@ inline Texture PassBuilder::write(Texture texture, const Access& access, Range r
 inline Buffer PassBuilder::write(Buffer buffer, const Access& access, Contents contents,
                                  Need need) {
   const std::uint32_t flags = kWrite | (contents == Contents::discard ? kDiscard : 0u) |
+                              (contents == Contents::accumulate ? kUnordered : 0u) |
                               (need == Need::optional ? kOptional : 0u);
   if (is_current()) buffer.version = graph_.add_access(pass_, buffer, access, {}, flags);
   return buffer;

@@ -12,24 +12,24 @@ namespace alcove::framegraph {
 
 // Why a pass is in the plan, or is not.
 enum class CullReason : std::uint8_t {
-  side_effect,    // live: it says that it has effects outside the graph
-  output,         // live: it writes what is wanted after the frame
-  feeds_pass,     // live: `consumer` reads what it writes
-  feeds_history,  // live: its history slot is read by `consumer` in later frames
-  unread,         // culled: nothing live reads any of what it writes
+  side_effect,    // it runs: it has effects outside the graph
+  output,         // it runs: it writes an output, or an import with a final state
+  feeds_pass,     // it runs: `consumer` reads what it writes
+  feeds_history,  // it runs: `consumer` reads its history slot in later frames
+  unread,         // culled: no pass that runs reads what it writes
   writes_nothing  // culled: it writes nothing and has no side effect
 };
 
 struct PassCullReason {
   CullReason cull_reason = CullReason::unread;
-  std::uint32_t consumer = kNone;  // the pass that keeps it
-  std::uint32_t resource = kNone;  // by which resource
+  std::uint32_t consumer = kNone;  // the pass that needs it
+  std::uint32_t resource = kNone;  // the resource that the consumer needs
   bool is_live() const { return cull_reason < CullReason::unread; }
 };
 
-// One dependency within a batch. With a resource it is an image barrier over `range`; without one
-// it is a memory barrier over everything. A texture whose layout and owner stay, and every buffer
-// that stays on its queue family, is served by memory barriers.
+// One dependency within a batch. With a resource it is an image barrier over `range`, or the
+// ownership transfer of a buffer. Without a resource it is a memory barrier over all memory:
+// textures whose layout and owner stay, and buffers that stay on their queue family, need no other.
 struct Transition {
   VkPipelineStageFlags2 src_stages = 0;
   VkAccessFlags2 src_access = 0;
@@ -44,13 +44,11 @@ struct Transition {
   QueueClass dst_queue = QueueClass::graphics;
 };
 
-// Transitions that are recorded by one command, just before a pass of a queue (or after its last).
+// Transitions that one barrier command records, before a pass or after the last pass of a
+// submission.
 struct Batch {
   std::uint32_t first = 0;  // into Plan::transitions
   std::uint32_t count = 0;
-  // Index into Plan::sets of a split barrier: its event is set after an earlier pass of the
-  // submission and waited for here. It orders what came before the set; the passes between run on.
-  std::uint32_t event = kNone;
 };
 
 // A pass in execution order. Positions index Plan::passes; within a submission they run in order.
@@ -60,13 +58,11 @@ struct PlannedPass {
   std::uint32_t submission = 0;   // into Plan::submissions
   std::uint32_t first_batch = 0;  // batches that come before it
   std::uint32_t batch_count = 0;
-  std::uint32_t first_set = 0;  // into Plan::sets: events that are set after it
-  std::uint32_t set_count = 0;
 };
 
-// Work handed to one queue in one piece. Submissions are in an order in which each waits only on
-// earlier ones. A frame that uses other queues than graphics begins when all of the frame before is
-// done: each of its first submissions waits for the last ones of that frame.
+// Work that is submitted to one queue at once. A submission waits only for earlier ones. A frame
+// that uses other queues than graphics begins when all of the frame before is done: each of its
+// first submissions waits for the last ones of that frame.
 struct Submission {
   QueueClass queue = QueueClass::graphics;
   std::uint32_t first_pass = 0;  // positions [first_pass, first_pass + pass_count)
@@ -83,7 +79,7 @@ struct Wait {
   VkPipelineStageFlags2 stages = 0;
 };
 
-// Where a transient lies. A resource that no live pass uses has heap == kNone.
+// The memory of a transient. A resource that no live pass uses has heap == kNone.
 struct Placement {
   std::uint32_t heap = kNone;
   VkDeviceSize offset = 0;
@@ -101,11 +97,11 @@ struct Heap {
   VkDeviceSize unaliased = 0;      // sum of the sizes
 };
 
-// How much of a history slot the live passes wrote.
+// How many of the mips and layers of a history slot the live passes wrote.
 enum class Written : std::uint8_t { nothing, part, whole };
 
-// How a history slot is left, for whoever uses it next. Read accesses of the state are those that
-// see what was written before.
+// The state in which the frame leaves a history slot, from which the next frame goes on. If the
+// state has read accesses, those have seen the last write.
 struct FinalState {
   std::uint32_t resource = kNone;
   State state;
@@ -117,7 +113,6 @@ struct Plan {
   std::vector<PlannedPass> passes;
   std::vector<Batch> batches;
   std::vector<Transition> transitions;
-  std::vector<std::uint32_t> sets;  // by event: its batch
   std::vector<Submission> submissions;
   std::vector<Wait> waits;
   std::vector<Placement> placements;  // by resource

@@ -1,4 +1,4 @@
-// A plan for people and for programs.
+// Prints plans as text, as JSON and for Graphviz.
 #pragma once
 
 #include <string>
@@ -8,13 +8,13 @@
 
 namespace alcove::framegraph {
 
-// Passes in order with their barriers and why they are there, what was culled and why, and
-// lifetimes against memory as a picture of characters.
+// The passes in order with their barriers and the reasons why they run, the culled passes with
+// theirs, and a chart of the transients' lifetimes by their offsets in memory.
 std::string print_text(const GraphDescription& graph, const Plan& plan);
 // Everything in the plan as one JSON object.
 std::string print_json(const GraphDescription& graph, const Plan& plan);
-// Graphviz: passes as boxes coloured by queue with their number of barriers, the versions that one
-// hands to another as an edge; culled passes dashed.
+// Graphviz: a box for each pass, coloured by queue, with its number of barriers, and an edge for
+// the resource versions that one pass writes and another uses. Culled passes are dashed.
 std::string print_dot(const GraphDescription& graph, const Plan& plan);
 
 }  // namespace alcove::framegraph

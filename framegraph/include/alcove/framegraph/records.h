@@ -1,4 +1,4 @@
-// A growing array for what is declared anew in every frame.
+// A growing array for records that are declared again in every frame.
 #pragma once
 
 #include <cstddef>
@@ -6,8 +6,8 @@
 
 namespace alcove::framegraph {
 
-// Plain values, one after the other. clear() leaves them where they are: what is declared again is
-// as a rule the same, and comparing it with what is there costs less than writing it.
+// An array of plain values. clear() leaves the values in memory: the next frame mostly declares the
+// same ones, and comparing a value with the one that is there costs less than writing it.
 template <typename Value>
 class Records {
  public:
@@ -29,8 +29,8 @@ class Records {
     capacity_ = capacity;
   }
 
-  // What lies at the next place: repeat() makes it the next value, where there is room. There
-  // always is such a place, if only to look at.
+  // The memory of the next value, which can always be read and written. repeat() adds it to the
+  // array, and may be called only if is_full() is false.
   Value& next() { return values_[size_]; }
   void repeat() { ++size_; }
 

@@ -129,10 +129,19 @@ struct ImportedBuffer {
   State final_state;
 };
 
-// What a write does to what was there in its range.
+// What a write does to the earlier contents of its range.
 enum class Contents : std::uint8_t {
-  keep,     // the write may be partial: earlier contents stay, and so do the passes that made them
-  discard,  // every texel is written: earlier contents may be thrown away
+  // The write may be partial: the earlier contents stay. The passes that made them run if the
+  // result
+  // is wanted, or if the access reads as well (blending, a depth test, atomics): the pass then
+  // depends on the earlier contents, whatever becomes of the result.
+  keep,
+  // The pass writes every texel and reads none: the earlier contents may be thrown away.
+  discard,
+  // As `keep`, and the order among writes of this kind does not matter, as with atomic additions:
+  // writes that follow each other with the same access on one queue get no barrier between them.
+  // All of them come after what was before, and before the next read or other write.
+  accumulate,
 };
 
 // Whether a write has to take place.

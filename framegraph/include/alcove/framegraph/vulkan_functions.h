@@ -47,22 +47,18 @@ namespace alcove::framegraph {
   X(vkCmdFillBuffer)                          \
   X(vkCmdPipelineBarrier2)                    \
   X(vkCmdPushConstants)                       \
-  X(vkCmdResetEvent2)                         \
   X(vkCmdResetQueryPool)                      \
   X(vkCmdSetCullMode)                         \
-  X(vkCmdSetEvent2)                           \
   X(vkCmdSetFrontFace)                        \
   X(vkCmdSetScissor)                          \
   X(vkCmdSetViewport)                         \
   X(vkCmdUpdateBuffer)                        \
-  X(vkCmdWaitEvents2)                         \
   X(vkCmdWriteTimestamp2)                     \
   X(vkCreateBuffer)                           \
   X(vkCreateCommandPool)                      \
   X(vkCreateComputePipelines)                 \
   X(vkCreateDescriptorPool)                   \
   X(vkCreateDescriptorSetLayout)              \
-  X(vkCreateEvent)                            \
   X(vkCreateFence)                            \
   X(vkCreateGraphicsPipelines)                \
   X(vkCreateImage)                            \
@@ -77,7 +73,6 @@ namespace alcove::framegraph {
   X(vkDestroyCommandPool)                     \
   X(vkDestroyDescriptorPool)                  \
   X(vkDestroyDescriptorSetLayout)             \
-  X(vkDestroyEvent)                           \
   X(vkDestroyFence)                           \
   X(vkDestroyImage)                           \
   X(vkDestroyImageView)                       \
@@ -109,7 +104,6 @@ namespace alcove::framegraph {
   X(vkResetCommandBuffer)                     \
   X(vkResetCommandPool)                       \
   X(vkResetDescriptorPool)                    \
-  X(vkResetEvent)                             \
   X(vkResetFences)                            \
   X(vkUnmapMemory)                            \
   X(vkUpdateDescriptorSets)                   \

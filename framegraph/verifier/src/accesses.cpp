@@ -1,39 +1,23 @@
 // The verifier's checks of single accesses, and of how a frame ends.
-#include <algorithm>
-
-#include "verify_replay.h"
+#include "replay.h"
 
 namespace alcove::framegraph::verifier {
-namespace {
-
-template <typename Subs, typename Function>
-void for_each_of_range(Subs& subs, const ResourceRecord& record, const Range& range, Function&& f) {
-  std::uint32_t index = 0;
-  if (record.kind == ResourceKind::buffer) {
-    f(subs[0], index);
-    return;
-  }
-  for (std::uint32_t layer = 0; layer < range.layers; ++layer) {
-    for (std::uint32_t mip = 0; mip < range.mips; ++mip)
-      f(subs[(range.base_layer + layer) * record.mips + range.base_mip + mip], index++);
-  }
-}
-
-}  // namespace
 
 void Replay::check_access(std::uint32_t position, std::uint32_t access_index) {
   const AccessRecord& access = graph_.accesses[access_index];
   const auto queue = static_cast<std::uint8_t>(plan_.passes[position].queue);
-  check_shared_memory(access, queue);
-  for_each_of_range(resources_[access.resource].subs, graph_.resources[access.resource],
-                    access.range, [&](Sub& sub, std::uint32_t i) {
-                      const std::uint32_t expected = expected_[access_index][i];
-                      check_state(access, sub, queue);
-                      if (access.flags & kWrite)
-                        check_write(access, expected, sub, queue);
-                      else
-                        check_read(access, expected, sub, queue);
-                    });
+  take_memory(access.resource);
+  bool fresh = false;
+  std::size_t expected = first_expected_[access_index];
+  for_each_sub(access.resource, access.range, [&](Sub& sub) {
+    fresh |= sub.fresh;
+    check_state(access, sub, queue);
+    if (access.flags & kWrite)
+      check_write(access, expected_[expected++], sub, queue);
+    else
+      check_read(access, expected_[expected++], sub, queue);
+  });
+  if (fresh) check_former(access, queue);
 }
 
 void Replay::check_state(const AccessRecord& access, const Sub& sub, std::uint8_t queue) {
@@ -51,83 +35,95 @@ void Replay::check_state(const AccessRecord& access, const Sub& sub, std::uint8_
 void Replay::check_read(const AccessRecord& access, std::uint32_t expected, const Sub& sub,
                         std::uint8_t queue) {
   const ResourceRecord& record = graph_.resources[access.resource];
-  // What a history slot holds before it was ever written is nobody's business.
+  // A history slot that was never written may hold anything.
   const bool any = record.origin == Origin::history && expected == kGarbage;
   if (!any && (sub.content != expected || sub.spoiled))
     fail("the read of " + name(access.resource) + " does not find what was written for it");
-  for (const Piece& piece : sub.writes) {
-    if (!ordered(piece, queue, access.stages))
+  for (const Operation& write : sub.last.writes) {
+    if (!order_.is_ordered(write, queue, access.stages))
       fail("the read of " + name(access.resource) + " does not come after its write");
-    else if (!visible(piece, queue, access.stages, access.access))
+    else if (!order_.is_visible(write, queue, access.stages, access.access))
       fail("the read of " + name(access.resource) + " comes after its write, but cannot see it");
   }
 }
 
+// Whether the access is one more of a series of writes that are not ordered among themselves.
+bool Replay::continues(const Sub& sub, const AccessRecord& access, std::uint8_t queue) const {
+  if (sub.series == kNone || !(access.flags & kUnordered) || !sub.last.reads.empty() ||
+      sub.last.writes.back().queue != queue)
+    return false;
+  const AccessRecord& before = graph_.accesses[sub.series];
+  return before.stages == access.stages && before.access == access.access &&
+         before.layout == access.layout;
+}
+
 void Replay::check_write(const AccessRecord& access, std::uint32_t expected, Sub& sub,
                          std::uint8_t queue) {
-  for (const Piece& piece : sub.reads) {
-    if (!ordered(piece, queue, access.stages))
+  const History& before = continues(sub, access, queue) ? sub.before_series : sub.last;
+  for (const Operation& read : before.reads) {
+    if (!order_.is_ordered(read, queue, access.stages))
       fail("the write of " + name(access.resource) + " overtakes a read");
   }
-  // A write right after a write must see it; after reads it comes after those, and what it reads
-  // itself it must see.
-  const Accesses seen = sub.reads.empty()         ? access.access
+  // A write right after a write must see it. After reads it comes after those, and must see what it
+  // reads itself.
+  const Accesses seen = before.reads.empty()      ? access.access
                         : access.flags & kDiscard ? Accesses{0}
                                                   : reads_of(access.access);
-  for (const Piece& piece : sub.writes) {
-    if (!available(piece, queue, access.stages) || !visible(piece, queue, access.stages, seen))
+  for (const Operation& write : before.writes) {
+    if (!order_.is_available(write, queue, access.stages) ||
+        !order_.is_visible(write, queue, access.stages, seen))
       fail("the write of " + name(access.resource) + " overtakes a write, or cannot see it");
   }
   if (access.flags & kDiscard) {
     sub.spoiled = false;
     return;
   }
-  if (expected != kGarbage && (sub.content != expected || expected == kMissing)) sub.spoiled = true;
+  if (expected == kGarbage || (sub.content == expected && !sub.spoiled)) return;
+  if (reads_of(access.access) != 0)
+    fail("the update of " + name(access.resource) + " does not find what was written for it");
+  sub.spoiled = true;
 }
 
-// Whoever had these bytes before must be done.
-void Replay::check_shared_memory(const AccessRecord& access, std::uint8_t queue) {
-  const auto& own = resources_[access.resource].subs;
-  const bool first =
-      std::all_of(own.begin(), own.end(), [](const Sub& sub) { return sub.content == kGarbage; });
-  const Accesses writes = first ? access.access & ~reads_of(access.access) : Accesses{0};
-  for (std::uint32_t other : resources_[access.resource].overlapping) {
-    for (const Sub& theirs : resources_[other].subs) {
-      for (const Piece& piece : theirs.reads) {
-        if (!ordered(piece, queue, access.stages))
-          fail(name(access.resource) + " takes the memory of " + name(other) +
-               " before its last read");
-      }
-      for (const Piece& piece : theirs.writes) {
-        if (!available(piece, queue, access.stages) ||
-            (theirs.reads.empty() && !visible(piece, queue, access.stages, writes)))
-          fail(name(access.resource) + " takes the memory of " + name(other) +
-               " before its last write is done");
-      }
-    }
+// Those that had the memory before must be done.
+void Replay::check_former(const AccessRecord& access, std::uint8_t queue) {
+  const Accesses writes = access.access & ~reads_of(access.access);
+  for (const Former& former : resources_[access.resource].former) {
+    const bool right = former.writes
+                           ? order_.is_available(former.operation, queue, access.stages) &&
+                                 (former.read_since ||
+                                  order_.is_visible(former.operation, queue, access.stages, writes))
+                           : order_.is_ordered(former.operation, queue, access.stages);
+    if (!right)
+      fail(name(access.resource) + " takes the memory of " + name(former.resource) +
+           " before its last " + (former.writes ? "write is done" : "read"));
   }
 }
 
 void Replay::apply_access(std::uint32_t position, std::uint32_t access_index) {
   const AccessRecord& access = graph_.accesses[access_index];
   const auto queue = static_cast<std::uint8_t>(plan_.passes[position].queue);
-  for_each_of_range(resources_[access.resource].subs, graph_.resources[access.resource],
-                    access.range, [&](Sub& sub, std::uint32_t) {
-                      if (access.flags & kWrite) {
-                        sub.reads.clear();
-                        sub.writes.clear();
-                        sub.content = access_index;
-                        sub.family = family(queue);
-                        append_pieces(sub.writes, queue, access.stages, access.access);
-                      } else {
-                        append_pieces(sub.reads, queue, access.stages, 0);
-                      }
-                    });
-  if (!(access.flags & kWrite)) return;
-  // Its bytes are nobody else's now.
-  for (std::uint32_t other : resources_[access.resource].overlapping) {
-    for (Sub& theirs : resources_[other].subs) theirs.content = kGarbage;
-  }
+  const Accesses accesses = expand_accesses(access.access);
+  Operation operation{Operation::Kind::access,      queue, order_.now(),
+                      expand_stages(access.stages), 0,     0};
+  if (access.flags & kWrite) operation.writes = accesses & ~reads_of(accesses);
+  for_each_sub(access.resource, access.range, [&](Sub& sub) {
+    sub.fresh = false;
+    if (!(access.flags & kWrite)) {
+      sub.last.reads.push_back(operation);
+      return;
+    }
+    sub.content = access_index;
+    sub.family = family(queue);
+    if (continues(sub, access, queue)) {
+      sub.last.writes.push_back(operation);
+      sub.series = access_index;
+      return;
+    }
+    if (access.flags & kUnordered) sub.before_series = sub.last;
+    sub.series = access.flags & kUnordered ? access_index : kNone;
+    sub.last.reads.clear();
+    sub.last.writes.assign(1, operation);
+  });
 }
 
 void Replay::end_frame() {
@@ -163,16 +159,16 @@ void Replay::check_final_state(std::uint32_t resource) {
       fail(name(resource) + " does not leave with what was written for it");
     if (sub.released || (sub.family != kNone && sub.family != family(queue)))
       fail(name(resource) + " is left with another queue family than it came with");
-    for (const Piece& piece : sub.reads) {
+    for (const Operation& read : sub.last.reads) {
       // Whoever has it next waits for its own stages alone, or for what they come after.
-      const bool waited_for = !is_write(final_state.access) && piece.queue == queue &&
-                              (piece.stage & ~expand_stages(final_state.stages)) == 0;
-      if (!waited_for && !ordered(piece, queue, final_state.stages))
+      const bool waited_for = !is_write(final_state.access) && read.queue == queue &&
+                              (read.stages & ~expand_stages(final_state.stages)) == 0;
+      if (!waited_for && !order_.is_ordered(read, queue, final_state.stages))
         fail(name(resource) + " leaves before its last read is done");
     }
-    for (const Piece& piece : sub.writes) {
-      if (!ordered(piece, queue, final_state.stages) ||
-          !visible(piece, queue, final_state.stages, final_state.access))
+    for (const Operation& write : sub.last.writes) {
+      if (!order_.is_ordered(write, queue, final_state.stages) ||
+          !order_.is_visible(write, queue, final_state.stages, final_state.access))
         fail(name(resource) + " leaves before its last write can be seen");
     }
   }
@@ -189,8 +185,8 @@ void Replay::check_final(const FinalState& final) {
     if (graph_.resources[final.resource].kind == ResourceKind::texture &&
         sub.layout != final.state.layout)
       fail(name(final.resource) + " is said to be left in another layout than it is");
-    for (const Piece& piece : sub.reads) {
-      if (piece.stage & ~stages) fail(name(final.resource) + " is read by a stage not told of");
+    for (const Operation& read : sub.last.reads) {
+      if (read.stages & ~stages) fail(name(final.resource) + " is read by a stage not told of");
     }
     check_final_writes(final, sub);
     if (sub.family != kNone && sub.family != family(static_cast<std::uint8_t>(final.queue)))
@@ -202,14 +198,17 @@ void Replay::check_final_writes(const FinalState& final, const Sub& sub) {
   const Stages stages = expand_stages(final.state.stages);
   const Accesses accesses = expand_accesses(final.state.access);
   const auto queue = static_cast<std::uint8_t>(final.queue);
-  for (const Piece& piece : sub.writes) {
+  for (const Operation& write : sub.last.writes) {
     if (is_write(accesses)) {
-      if (sub.reads.empty() && ((piece.stage & ~stages) || (piece.writes & ~accesses)))
+      const bool told = write.kind != Operation::Kind::access ||
+                        ((write.stages & ~stages) == 0 && (write.writes & ~accesses) == 0);
+      if (sub.last.reads.empty() && !told)
         fail(name(final.resource) + " is written in a way not told of");
     } else if (!several_queues_ && stages != 0) {
-      const bool seen = accesses == 0 ? (piece.available[queue] & stages) != 0
-                                      : available(piece, queue, final.state.stages) &&
-                                            visible(piece, queue, final.state.stages, accesses);
+      const bool seen = accesses == 0
+                            ? order_.is_before_any(write, queue, final.state.stages)
+                            : order_.is_available(write, queue, final.state.stages) &&
+                                  order_.is_visible(write, queue, final.state.stages, accesses);
       if (!seen) fail(name(final.resource) + " is said to be seen by what does not see it");
     }
   }

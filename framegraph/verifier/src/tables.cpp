@@ -1,6 +1,9 @@
 #include <algorithm>
+#include <iterator>
+#include <set>
+#include <utility>
 
-#include "verify_replay.h"
+#include "replay.h"
 
 namespace alcove::framegraph::verifier {
 namespace {
@@ -46,6 +49,13 @@ class Tables {
       const auto queue = static_cast<std::size_t>(planned.queue);
       if (queue >= kQueueClasses || (queue != 0 && limits_.queue_families[queue] == kNone))
         fail("a pass runs on a queue that the device does not have");
+    }
+    std::uint32_t last_effect[kQueueClasses] = {};
+    for (const PlannedPass& planned : plan_.passes) {
+      if (!(graph_.passes[planned.pass].flags & kSideEffect)) continue;
+      std::uint32_t& last = last_effect[static_cast<std::size_t>(planned.queue)];
+      if (planned.pass < last) fail("passes with side effects run in another order than declared");
+      last = planned.pass;
     }
     for (std::uint32_t pass = 0; pass < graph_.passes.size(); ++pass) {
       if ((graph_.passes[pass].flags & kSideEffect) && !seen[pass])
@@ -98,7 +108,6 @@ class Tables {
     };
     for (const PlannedPass& planned : plan_.passes) check(planned.first_batch, planned.batch_count);
     for (const Submission& s : plan_.submissions) check(s.first_batch, s.batch_count);
-    if (errors_.empty()) check_events();
     for (const Transition& t : plan_.transitions) {
       if (t.resource == kNone) continue;
       if (t.resource >= graph_.resources.size()) {
@@ -110,38 +119,6 @@ class Tables {
           (t.range.mips == 0 || t.range.layers == 0 || t.range.base_mip + t.range.mips > r.mips ||
            t.range.base_layer + t.range.layers > r.layers))
         fail("a transition of " + name(t.resource) + " is out of its mips or layers");
-    }
-  }
-
-  // Each event belongs to one batch, and is set once at most.
-  void check_events() {
-    for (std::uint32_t b = 0; b < plan_.batches.size(); ++b) {
-      const std::uint32_t event = plan_.batches[b].event;
-      if (event != kNone && (event >= plan_.sets.size() || plan_.sets[event] != b))
-        fail("a batch waits for an event of another");
-    }
-    std::vector<std::uint32_t> set(plan_.sets.size(), 0);
-    for (const PlannedPass& planned : plan_.passes) {
-      if (planned.set_count > set.size() || planned.first_set > set.size() - planned.set_count) {
-        fail("events are out of range");
-        return;
-      }
-      for (std::uint32_t e = planned.first_set; e < planned.first_set + planned.set_count; ++e) {
-        if (set[e]++) fail("an event is set twice");
-        if (plan_.sets[e] >= plan_.batches.size() || plan_.batches[plan_.sets[e]].event != e)
-          fail("an event is set that no batch waits for");
-        else if (plan_.batches[plan_.sets[e]].count != 0)
-          check_event_scopes(plan_.batches[plan_.sets[e]]);
-      }
-    }
-  }
-
-  void check_event_scopes(const Batch& batch) {
-    for (std::uint32_t i = batch.first; i < batch.first + batch.count; ++i) {
-      const Transition& t = plan_.transitions[i];
-      if (((t.src_stages | t.dst_stages) & VK_PIPELINE_STAGE_2_HOST_BIT) != 0)
-        fail("an event is to order the host");
-      if (t.src_queue != t.dst_queue) fail("an event is to change an owner");
     }
   }
 
@@ -188,22 +165,46 @@ class Tables {
       fail(name(r) + " lies in a heap whose memory types it does not allow");
   }
 
-  // What lives together shares no byte, and a buffer and an image no page of the granularity.
+  // Resources that live together share no byte, and a buffer and an image no page of the
+  // granularity. In order of first use each is compared with its neighbours in memory of those that
+  // live then.
   void check_overlaps() {
-    const VkDeviceSize page = limits_.buffer_image_granularity;
-    for (std::uint32_t a = 0; a < graph_.resources.size(); ++a) {
-      for (std::uint32_t b = a + 1; b < graph_.resources.size(); ++b) {
-        if (meet(a, b, 1)) fail(name(a) + " and " + name(b) + " live together on the same bytes");
-        if (graph_.resources[a].kind != graph_.resources[b].kind && meet(a, b, page))
-          fail(name(a) + " and " + name(b) + " share a page of the buffer-image granularity");
-      }
+    std::vector<std::uint32_t> order;
+    for (std::uint32_t r = 0; r < graph_.resources.size(); ++r) {
+      if (plan_.placements[r].heap < plan_.heaps.size() && plan_.placements[r].size != 0)
+        order.push_back(r);
     }
+    std::vector<std::uint32_t> ending = order;
+    const auto& placements = plan_.placements;
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return placements[a].first < placements[b].first;
+    });
+    std::sort(ending.begin(), ending.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return placements[a].last < placements[b].last;
+    });
+    std::vector<std::set<std::pair<VkDeviceSize, std::uint32_t>>> live(plan_.heaps.size());
+    std::size_t ended = 0;
+    for (const std::uint32_t r : order) {
+      for (; placements[ending[ended]].last < placements[r].first; ++ended)
+        live[placements[ending[ended]].heap].erase(
+            {placements[ending[ended]].offset, ending[ended]});
+      auto& there = live[placements[r].heap];
+      const auto at = there.insert({placements[r].offset, r}).first;
+      if (at != there.begin()) check_neighbours(std::prev(at)->second, r);
+      if (std::next(at) != there.end()) check_neighbours(r, std::next(at)->second);
+    }
+  }
+
+  void check_neighbours(std::uint32_t a, std::uint32_t b) {
+    if (meet(a, b, 1)) fail(name(a) + " and " + name(b) + " live together on the same bytes");
+    if (graph_.resources[a].kind != graph_.resources[b].kind &&
+        meet(a, b, limits_.buffer_image_granularity))
+      fail(name(a) + " and " + name(b) + " share a page of the buffer-image granularity");
   }
 
   bool meet(std::uint32_t a, std::uint32_t b, VkDeviceSize page) const {
     const Placement& x = plan_.placements[a];
     const Placement& y = plan_.placements[b];
-    if (x.heap == kNone || x.heap != y.heap || x.last < y.first || y.last < x.first) return false;
     return x.offset / page <= (y.offset + y.size - 1) / page &&
            y.offset / page <= (x.offset + x.size - 1) / page;
   }

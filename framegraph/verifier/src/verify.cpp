@@ -1,6 +1,6 @@
 #include "alcove/framegraph/verify.h"
 
-#include "verify_replay.h"
+#include "replay.h"
 
 namespace alcove::framegraph {
 

@@ -1,0 +1,25 @@
+// Checks a plan against the declaration by replaying it access by access. It shares no code with
+// compile.
+//
+// Two frames of the plan are replayed, because a frame also has to wait for the uses of its memory
+// in the frame before. Every access must happen after the earlier conflicting accesses, to its
+// subresource or to its bytes, with their writes available and visible, over all queues. The
+// verifier also follows the layout and the owner of every subresource, its contents, and the final
+// states of imports. The time is linear in the number of accesses, times the logarithm of the
+// number of transients that live at once.
+#pragma once
+
+#include <tl/expected.hpp>
+
+#include "alcove/framegraph/compile.h"
+#include "alcove/framegraph/description.h"
+#include "alcove/framegraph/error.h"
+#include "alcove/framegraph/plan.h"
+
+namespace alcove::framegraph {
+
+// The limits are those that the plan was made for. Errors have code `verification`.
+[[nodiscard]] tl::expected<void, Errors> verify(const GraphDescription& graph, const Limits& limits,
+                                                const Plan& plan);
+
+}  // namespace alcove::framegraph

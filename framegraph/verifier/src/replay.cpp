@@ -1,0 +1,302 @@
+#include "replay.h"
+
+#include <algorithm>
+
+namespace alcove::framegraph::verifier {
+
+Replay::Replay(const GraphDescription& graph, const Limits& limits, const Plan& plan,
+               Errors& errors)
+    : graph_(graph), limits_(limits), plan_(plan), errors_(errors), order_(order_of(graph, plan)) {}
+
+// All that the frame and the plan name. A mask of all commands only stands for stages that are
+// named besides.
+HappensBefore Replay::order_of(const GraphDescription& graph, const Plan& plan) {
+  Stages stages = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+  Accesses accesses = 0;
+  std::uint32_t queues = 1;
+  const auto add = [&](Stages in, Accesses by) {
+    stages |= expand_stages(in & ~VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
+    constexpr Accesses kAll = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+    accesses |= expand_accesses(by & ~kAll);
+  };
+  for (const AccessRecord& access : graph.accesses) add(access.stages, access.access);
+  for (const ExternalRecord& external : graph.externals) {
+    add(external.initial_state.stages, external.initial_state.access);
+    add(external.final_state.stages, external.final_state.access);
+    queues = std::max(queues, static_cast<std::uint32_t>(external.queue) + 1);
+  }
+  for (const Transition& t : plan.transitions) {
+    add(t.src_stages, t.src_access);
+    add(t.dst_stages, t.dst_access);
+    queues = std::max({queues, static_cast<std::uint32_t>(t.src_queue) + 1,
+                       static_cast<std::uint32_t>(t.dst_queue) + 1});
+  }
+  for (const FinalState& final : plan.finals) add(final.state.stages, final.state.access);
+  for (const Submission& submission : plan.submissions)
+    queues = std::max(queues, static_cast<std::uint32_t>(submission.queue) + 1);
+  return {stages, accesses, queues};
+}
+
+void Replay::run() {
+  resources_.resize(graph_.resources.size());
+  for (std::uint32_t r = 0; r < graph_.resources.size(); ++r) {
+    const ResourceRecord& record = graph_.resources[r];
+    resources_[r].subs.resize(record.kind == ResourceKind::texture ? record.mips * record.layers
+                                                                   : 1);
+  }
+  memory_.resize(plan_.heaps.size());
+  find_expected();
+  for (int frame = 0; frame < 2 && errors_.empty(); ++frame) {
+    begin_frame(frame == 0);
+    for (std::uint32_t s = 0; s < plan_.submissions.size(); ++s) submission(s);
+    end_frame();
+  }
+}
+
+// What each access must find, from the declaration alone: the last write declared before it.
+void Replay::find_expected() {
+  last_.resize(graph_.resources.size());
+  for (std::uint32_t r = 0; r < graph_.resources.size(); ++r) {
+    const std::uint32_t external = graph_.resources[r].external;
+    const bool full = external != kNone && graph_.externals[external].has_contents;
+    last_[r].assign(resources_[r].subs.size(), full ? kInitial : kGarbage);
+  }
+  for (std::uint32_t i = 0; i < graph_.accesses.size(); ++i) {
+    const AccessRecord& access = graph_.accesses[i];
+    first_expected_.push_back(expected_.size());
+    for_each_sub(access.resource, access.range, [&](Sub& sub) {
+      std::uint32_t& there =
+          last_[access.resource]
+               [static_cast<std::size_t>(&sub - resources_[access.resource].subs.data())];
+      expected_.push_back(there);
+      if (access.flags & kWrite) there = plan_.live_accesses[i] ? i : kMissing;
+    });
+  }
+}
+
+// Transients hold nothing, imports come as declared. Where queues other than graphics take part, a
+// frame begins when all of the frame before is done. Else its commands follow those before.
+void Replay::begin_frame(bool first) {
+  where_ = first ? "at the start of the frame" : "at the start of the next frame";
+  several_queues_ =
+      std::any_of(plan_.submissions.begin(), plan_.submissions.end(),
+                  [](const Submission& s) { return s.queue != QueueClass::graphics; });
+  if (several_queues_) order_.join();
+  order_.next();
+  for (std::uint32_t r = 0; r < resources_.size(); ++r) {
+    const ResourceRecord& record = graph_.resources[r];
+    for (Sub& sub : resources_[r].subs) {
+      sub.content = kGarbage;
+      sub.spoiled = sub.released = false;
+      sub.family = sub.series = kNone;
+      if (record.external == kNone) continue;
+      const ExternalRecord& external = graph_.externals[record.external];
+      const auto queue = static_cast<std::uint8_t>(external.queue);
+      sub.last = {};
+      arrive(sub, queue, external.initial_state);
+      sub.layout = external.initial_state.layout;
+      if (!external.has_contents) continue;
+      sub.content = kInitial;
+      sub.family = family(queue);
+    }
+  }
+}
+
+// What was written before is seen by the reads of the initial state, and by nothing else yet. An
+// initial state without access bits has seen nothing: it came before some of the stages only, and
+// all of them must be waited for.
+void Replay::arrive(Sub& sub, std::uint8_t queue, const State& initial_state) {
+  using Kind = Operation::Kind;
+  const Stages stages = expand_stages(initial_state.stages);
+  const Accesses accesses = expand_accesses(initial_state.access);
+  const Time time = order_.next();
+  if (is_write(accesses)) {
+    const Accesses writes = accesses & ~reads_of(accesses);
+    if (stages != 0) sub.last.writes.push_back({Kind::access, queue, time, stages, writes, 0});
+    return;
+  }
+  for (Stages left = accesses == 0 ? stages : 0; left != 0; left &= left - 1)
+    sub.last.writes.push_back({Kind::change, queue, time, left & (~left + 1), 0, 0});
+  if (accesses != 0) sub.last.writes.push_back({Kind::change, queue, time, stages, 0, accesses});
+  if (stages != 0) sub.last.reads.push_back({Kind::access, queue, time, stages, 0, 0});
+}
+
+void Replay::submission(std::uint32_t index) {
+  const Submission& submission = plan_.submissions[index];
+  const auto queue = static_cast<std::uint8_t>(submission.queue);
+  for (std::uint32_t w = 0; w < submission.wait_count; ++w) {
+    const Wait& wait_for = plan_.waits[submission.first_wait + w];
+    order_.wait(queue, wait_for.submission, wait_for.stages);
+  }
+  for (std::uint32_t p = 0; p < submission.pass_count; ++p) {
+    const PlannedPass& planned = plan_.passes[submission.first_pass + p];
+    where_ = std::string("before pass '").append(graph_.pass_name(planned.pass)).append("'");
+    batches(planned.first_batch, planned.batch_count, submission.queue);
+    where_ = std::string("in pass '").append(graph_.pass_name(planned.pass)).append("'");
+    pass(submission.first_pass + p);
+  }
+  where_ = "after the last pass";
+  batches(submission.first_batch, submission.batch_count, submission.queue);
+  order_.signal(queue, index);
+}
+
+// The transitions of a batch do not see each other: all are checked, then all apply.
+void Replay::batches(std::uint32_t first, std::uint32_t count, QueueClass queue) {
+  for (std::uint32_t b = first; b < first + count; ++b) {
+    const Batch& batch = plan_.batches[b];
+    order_.next();
+    barriers_.clear();
+    for (std::uint32_t i = batch.first; i < batch.first + batch.count; ++i) {
+      const Transition& t = plan_.transitions[i];
+      barriers_.push_back(barrier_of(t, queue));
+      if (t.resource == kNone) continue;
+      take_memory(t.resource);
+      for_each_sub(t.resource, t.range, [&](Sub& sub) {
+        check_order_of_change(t.resource, barriers_.back(), sub);
+        check_state_of_change(t, sub, static_cast<std::uint8_t>(queue));
+      });
+    }
+    order_.apply(barriers_);
+    for (std::uint32_t i = batch.first; i < batch.first + batch.count; ++i) {
+      if (plan_.transitions[i].resource != kNone) change(plan_.transitions[i], queue);
+    }
+  }
+}
+
+// Whether everything that was done to the subresource and its bytes comes before the change. An
+// image barrier's memory dependency covers the bytes of its image, whichever resource wrote them.
+void Replay::check_order_of_change(std::uint32_t resource, const Barrier& barrier, const Sub& sub) {
+  for (const Operation& read : sub.last.reads) {
+    if (!order_.is_before(read, barrier))
+      fail("a layout change of " + name(resource) + " overtakes a read");
+  }
+  for (const Operation& write : sub.last.writes) {
+    if (!order_.is_available_by(write, barrier))
+      fail("a layout change of " + name(resource) +
+           " overtakes a write, or does not make it available");
+  }
+  if (!sub.fresh) return;
+  for (const Former& former : resources_[resource].former) {
+    if (former.writes ? !order_.is_available_by(former.operation, barrier)
+                      : !order_.is_before(former.operation, barrier))
+      fail(name(resource) + " takes the memory of " + name(former.resource) + " before its last " +
+           (former.writes ? "write is done" : "read"));
+  }
+}
+
+// Whether the subresource is in the layout and with the owner that the change expects.
+void Replay::check_state_of_change(const Transition& t, const Sub& sub, std::uint8_t queue) {
+  const bool transfer = family(static_cast<std::uint8_t>(t.src_queue)) !=
+                        family(static_cast<std::uint8_t>(t.dst_queue));
+  const bool acquires = transfer && queue == static_cast<std::uint8_t>(t.dst_queue);
+  const bool texture = graph_.resources[t.resource].kind == ResourceKind::texture;
+  if (texture && t.old_layout != VK_IMAGE_LAYOUT_UNDEFINED && t.old_layout != sub.layout)
+    fail("a change of " + name(t.resource) + " expects layout " + std::to_string(t.old_layout) +
+         ", but it is in " + std::to_string(sub.layout));
+  if (acquires && (!sub.released || sub.released_to != family(queue) ||
+                   (texture && sub.released_layout != t.new_layout)))
+    fail(name(t.resource) + " is acquired by a queue family to which it was not released so");
+  if (!acquires && sub.released) fail(name(t.resource) + " is used between release and acquire");
+  if (!transfer && sub.family != kNone && sub.family != family(queue) &&
+      t.old_layout != VK_IMAGE_LAYOUT_UNDEFINED)
+    fail(name(t.resource) + " is changed by a queue family that does not own it");
+}
+
+void Replay::change(const Transition& t, QueueClass on) {
+  using Kind = Operation::Kind;
+  const Barrier barrier = barrier_of(t, on);
+  const std::uint32_t src = family(static_cast<std::uint8_t>(t.src_queue));
+  const std::uint32_t dst = family(static_cast<std::uint8_t>(t.dst_queue));
+  const bool releases = src != dst && on == t.src_queue;
+  const Time time = order_.next();
+  for_each_sub(t.resource, t.range, [&](Sub& sub) {
+    sub.last = {};
+    sub.series = kNone;
+    sub.fresh = false;
+    if (releases) {
+      sub.last.writes.push_back({Kind::release, barrier.queue, time, ~Stages{0}, 0, 0});
+      sub.released = true;
+      sub.released_to = dst;
+      sub.released_layout = t.new_layout;
+      return;
+    }
+    sub.last.writes.push_back(
+        {Kind::change, barrier.queue, time, barrier.dst, 0, barrier.dst_access});
+    sub.released = false;
+    sub.family = family(barrier.queue);
+    if (graph_.resources[t.resource].kind != ResourceKind::texture) return;
+    if (t.old_layout == VK_IMAGE_LAYOUT_UNDEFINED) sub.content = kGarbage;
+    sub.layout = t.new_layout;
+  });
+}
+
+// A transient's bytes are its own from its first use on, until another takes them: then they hold
+// nothing of its any more. What comes after the taker's first use comes after what that came after,
+// so that only those need be looked at who had the bytes just before.
+void Replay::take_memory(std::uint32_t resource) {
+  const Placement& placement = plan_.placements[resource];
+  Resource& taker = resources_[resource];
+  if (placement.heap == kNone || taker.has_memory) return;
+  taker.has_memory = true;
+  taker.former.clear();
+  Memory& memory = memory_[placement.heap];
+  const VkDeviceSize begin = placement.offset;
+  const VkDeviceSize end = begin + placement.size;
+  bool had_bytes = false;
+  for (auto at = memory.upper_bound(begin); at != memory.end() && at->second.begin < end;) {
+    const Bytes bytes = at->second;
+    const VkDeviceSize bytes_end = at->first;
+    at = memory.erase(at);
+    if (bytes.resource == resource)
+      had_bytes = true;
+    else
+      keep_former(taker, bytes.resource);
+    if (bytes.begin < begin) memory[begin] = bytes;
+    if (bytes_end > end) at = memory.insert({bytes_end, {end, bytes.resource}}).first;
+  }
+  memory[end] = {begin, resource};
+  for (Sub& sub : taker.subs) {
+    sub.fresh = true;
+    if (!had_bytes) sub.last = {};
+  }
+}
+
+void Replay::keep_former(Resource& taker, std::uint32_t resource) {
+  Resource& giver = resources_[resource];
+  giver.has_memory = false;
+  // The mips and layers of one access are one entry, as a rule.
+  const auto keep = [&taker](const Former& former) {
+    if (taker.former.empty() || taker.former.back() != former) taker.former.push_back(former);
+  };
+  for (Sub& sub : giver.subs) {
+    sub.content = kGarbage;
+    for (const Operation& read : sub.last.reads) keep({resource, read, false, false});
+  }
+  for (const Sub& sub : giver.subs) {
+    for (const Operation& write : sub.last.writes)
+      keep({resource, write, true, !sub.last.reads.empty()});
+  }
+}
+
+void Replay::pass(std::uint32_t position) {
+  const std::uint32_t pass = plan_.passes[position].pass;
+  const std::uint32_t first = graph_.passes[pass].first_access;
+  const auto count = static_cast<std::uint32_t>(graph_.pass_accesses(pass).size());
+  order_.next();
+  for (std::uint32_t i = first; i < first + count; ++i) {
+    if (plan_.live_accesses[i]) check_access(position, i);
+  }
+  for (std::uint32_t i = first; i < first + count; ++i) {
+    if (plan_.live_accesses[i]) apply_access(position, i);
+  }
+}
+
+void Replay::fail(const std::string& what) {
+  errors_.push_back({ErrorCode::verification, where_ + ": " + what, VK_SUCCESS, kNone, kNone, 0});
+}
+
+std::string Replay::name(std::uint32_t resource) const {
+  return std::string("'").append(graph_.resource_name(resource)).append("'");
+}
+
+}  // namespace alcove::framegraph::verifier

@@ -1,0 +1,133 @@
+// The verifier's replay of a plan: see verify.h.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "alcove/framegraph/verify.h"
+#include "happens_before.h"
+
+namespace alcove::framegraph::verifier {
+
+// The contents of a subresource: the access that wrote it last, by index, or one of these.
+inline constexpr std::uint32_t kGarbage = kNone;      // nothing, or another resource's bytes
+inline constexpr std::uint32_t kInitial = kNone - 1;  // what an import came with
+inline constexpr std::uint32_t kMissing = kNone - 2;  // where an expected writer does not run
+
+// What was last done to a subresource.
+struct History {
+  std::vector<Operation> writes;  // the last write or layout change; several if unordered
+  std::vector<Operation> reads;   // since
+};
+
+struct Sub {
+  History last;
+  // Of a series of unordered writes (Contents::accumulate): its last access, and what was done
+  // before.
+  std::uint32_t series = kNone;
+  History before_series;
+  VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
+  std::uint32_t content = kGarbage;
+  bool spoiled = false;          // a partial write fell on contents that were not the expected ones
+  bool fresh = false;            // not used since the resource took its memory
+  std::uint32_t family = kNone;  // owner; kNone: any queue family may take it
+  bool released = false;         // on its way to `released_to`
+  std::uint32_t released_to = kNone;
+  VkImageLayout released_layout = VK_IMAGE_LAYOUT_UNDEFINED;
+};
+
+class Replay {
+ public:
+  Replay(const GraphDescription& graph, const Limits& limits, const Plan& plan, Errors& errors);
+  void run();
+
+ private:
+  // What was last done to bytes by the resources that had them before.
+  struct Former {
+    std::uint32_t resource = kNone;
+    Operation operation;
+    bool writes = false;
+    bool read_since = false;
+    bool operator==(const Former&) const = default;
+  };
+  struct Resource {
+    std::vector<Sub> subs;  // mips within layers
+    bool has_memory = false;
+    std::vector<Former> former;
+  };
+  // Bytes of a heap by their end: who has them, and where they begin.
+  struct Bytes {
+    VkDeviceSize begin = 0;
+    std::uint32_t resource = kNone;
+  };
+  using Memory = std::map<VkDeviceSize, Bytes>;
+
+  static HappensBefore order_of(const GraphDescription& graph, const Plan& plan);
+  void find_expected();
+  void begin_frame(bool first);
+  void arrive(Sub& sub, std::uint8_t queue, const State& initial_state);
+  void submission(std::uint32_t index);
+  void batches(std::uint32_t first, std::uint32_t count, QueueClass queue);
+  void change(const Transition& transition, QueueClass queue);
+  void check_order_of_change(std::uint32_t resource, const Barrier& barrier, const Sub& sub);
+  void check_state_of_change(const Transition& transition, const Sub& sub, std::uint8_t queue);
+  void take_memory(std::uint32_t resource);
+  void keep_former(Resource& taker, std::uint32_t resource);
+  void pass(std::uint32_t position);
+
+  // accesses.cpp
+  void check_access(std::uint32_t position, std::uint32_t access_index);
+  void check_read(const AccessRecord& access, std::uint32_t expected, const Sub& sub,
+                  std::uint8_t queue);
+  void check_write(const AccessRecord& access, std::uint32_t expected, Sub& sub,
+                   std::uint8_t queue);
+  void check_state(const AccessRecord& access, const Sub& sub, std::uint8_t queue);
+  void check_former(const AccessRecord& access, std::uint8_t queue);
+  bool continues(const Sub& sub, const AccessRecord& access, std::uint8_t queue) const;
+  void apply_access(std::uint32_t position, std::uint32_t access_index);
+  void end_frame();
+  void check_final_state(std::uint32_t resource);
+  void check_final(const FinalState& final);
+  void check_final_writes(const FinalState& final, const Sub& sub);
+
+  template <typename Function>
+  void for_each_sub(std::uint32_t resource, const Range& range, Function&& f) {
+    auto& subs = resources_[resource].subs;
+    const ResourceRecord& record = graph_.resources[resource];
+    if (record.kind == ResourceKind::buffer) {
+      f(subs[0]);
+      return;
+    }
+    for (std::uint32_t layer = 0; layer < range.layers; ++layer) {
+      for (std::uint32_t mip = 0; mip < range.mips; ++mip)
+        f(subs[(range.base_layer + layer) * record.mips + range.base_mip + mip]);
+    }
+  }
+  void fail(const std::string& what);
+  std::string name(std::uint32_t resource) const;
+  std::uint32_t family(std::uint8_t queue) const { return limits_.queue_families[queue]; }
+
+  const GraphDescription& graph_;
+  const Limits& limits_;
+  const Plan& plan_;
+  Errors& errors_;
+  HappensBefore order_;
+  std::vector<Resource> resources_;
+  std::vector<Memory> memory_;  // by heap
+  // By access, by subresource of its range: the contents that it must find. The first of each
+  // access.
+  std::vector<std::uint32_t> expected_;
+  std::vector<std::size_t> first_expected_;
+  std::vector<std::vector<std::uint32_t>> last_;  // by resource: the contents at the end
+  bool several_queues_ = false;
+  std::vector<Barrier> barriers_;  // of the batch in hand
+  std::string where_;
+};
+
+// The plan's tables by themselves: indices, passes, lifetimes, heaps. False when a replay would not
+// be safe.
+bool check_tables(const GraphDescription& graph, const Limits& limits, const Plan& plan,
+                  Errors& errors);
+
+}  // namespace alcove::framegraph::verifier

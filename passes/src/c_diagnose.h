@@ -1,0 +1,54 @@
+// Mistakes that show in what the frames of a context are given, one frame after the other.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "alcove/alcove.h"
+
+namespace alcove::passes {
+
+// Watches the calls; it looks at no pixel and allocates nothing but the text of describe().
+class CallObserver {
+ public:
+  // A frame was recorded.
+  void observe(const AlcoveFrame& frame);
+
+  // A line for each mistake; empty where there is none.
+  [[nodiscard]] std::string describe() const;
+
+ private:
+  // How often something was seen in frames in which it could be seen. Counts stop at a thousand.
+  struct Share {
+    std::uint32_t seen = 0;
+    std::uint32_t of = 0;
+    void add(bool now) {
+      if (of < 1000) {
+        ++of;
+        seen += now ? 1 : 0;
+      }
+    }
+    // In all of them, and in enough to be sure.
+    bool always() const { return of >= kSureFrames && seen == of; }
+    static constexpr std::uint32_t kSureFrames = 8;
+  };
+  struct View {
+    bool used = false;
+    std::uint32_t id = 0;
+    AlcoveCamera camera{};        // of the frame recorded last
+    Share previous_is_this;       // previous_camera is this frame's, where the camera moved
+    Share previous_is_another;    // it is neither this frame's nor the last one's
+    Share projection_is_another;  // only its projection is not the last frame's
+    Share static_in_motion;       // static_frames is not 0, where the camera moved
+    Share reset;                  // reset_history is set, after the first frame
+  };
+  void observe(View& view, const AlcoveView& given);
+
+  std::array<View, ALCOVE_MAX_VIEWS> views_;
+  bool began_ = false;
+  std::uint32_t index_ = 0;
+  std::uint32_t same_index_ = 0;  // frames in a row with this index
+};
+
+}  // namespace alcove::passes

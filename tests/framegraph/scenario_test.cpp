@@ -1,0 +1,267 @@
+// Frames that renderers have, as they are known from the tests of other render graphs: what each
+// must run, how many barriers it needs, and that its plan is verified.
+#include <gtest/gtest.h>
+
+#include "alcove/framegraph/compile.h"
+#include "alcove/framegraph/print.h"
+#include "alcove/framegraph/verify.h"
+#include "fake_handle.h"
+
+namespace alcove::framegraph {
+namespace {
+
+const TextureDesc kColor{VK_FORMAT_R8G8B8A8_UNORM, Extent::absolute(64, 64)};
+const TextureDesc kDepth{VK_FORMAT_D32_SFLOAT, Extent::absolute(64, 64)};
+
+class Scenario : public testing::Test {
+ protected:
+  Plan plan() {
+    auto compiled = compile(graph_);
+    EXPECT_TRUE(compiled) << to_string(compiled.error());
+    if (!compiled) return {};
+    const auto verified = verify(graph_.description(), {}, *compiled);
+    EXPECT_TRUE(verified) << to_string(verified.error());
+    return std::move(*compiled);
+  }
+  // How many transitions come before the pass that was declared at this place.
+  static std::uint32_t transitions_before(const Plan& plan, std::uint32_t pass) {
+    std::uint32_t count = 0;
+    for (const PlannedPass& planned : plan.passes) {
+      if (planned.pass != pass) continue;
+      for (std::uint32_t b = 0; b < planned.batch_count; ++b)
+        count += plan.batches[planned.first_batch + b].count;
+    }
+    return count;
+  }
+  Graph graph_;
+};
+
+// prepass -> depth -> opaque -> colour -> output
+TEST_F(Scenario, DepthPrepassRunsBeforeTheOpaquePassThatTestsAgainstIt) {
+  Texture depth = graph_.create_texture("depth", kDepth);
+  Texture color = graph_.create_texture("color", kColor);
+  PassBuilder prepass = graph_.add_pass("prepass");
+  depth = prepass.write(depth, access::depth_attachment, {}, Contents::discard);
+  PassBuilder opaque = graph_.add_pass("opaque");
+  (void)opaque.write(depth, access::depth_attachment);
+  color = opaque.write(color, access::color_attachment, {}, Contents::discard);
+  graph_.output(color);
+  EXPECT_EQ(plan().passes.size(), 2u);
+}
+
+// clear -> counter -> count -> draw arguments -> draw
+TEST_F(Scenario, CounterIsClearedCountedAndReadAsIndirectArguments) {
+  Buffer counter = graph_.create_buffer("counter", {16});
+  Texture color = graph_.create_texture("color", kColor);
+  PassBuilder clear = graph_.add_pass("clear");
+  counter = clear.write(counter, buffer_access::fill, Contents::discard);
+  PassBuilder count = graph_.add_pass("count");
+  counter = count.write(counter, buffer_access::storage_read_write_compute);
+  PassBuilder draw = graph_.add_pass("draw");
+  draw.read(counter, buffer_access::indirect);
+  color = draw.write(color, access::color_attachment, {}, Contents::discard);
+  graph_.output(color);
+  const Plan result = plan();
+  EXPECT_EQ(result.passes.size(), 3u);
+  const Transition& before_draw =
+      result.transitions[result.batches[result.passes[2].first_batch].first];
+  EXPECT_EQ(before_draw.dst_stages & VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT,
+            VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT);
+}
+
+// clear -> counter -> three passes that add to it in any order -> reader
+TEST_F(Scenario, AtomicAdditionsThatAreUnorderedGetNoBarrierBetween) {
+  Buffer counter = graph_.create_buffer("counter", {16});
+  PassBuilder clear = graph_.add_pass("clear");
+  counter = clear.write(counter, buffer_access::fill, Contents::discard);
+  for (int i = 0; i < 3; ++i) {
+    PassBuilder add = graph_.add_pass("add");
+    counter = add.write(counter, buffer_access::storage_read_write_compute, Contents::accumulate);
+  }
+  PassBuilder reader = graph_.add_pass("reader");
+  reader.read(counter, buffer_access::storage_read_fragment);
+  reader.side_effect();
+  Plan result = plan();
+  ASSERT_EQ(result.passes.size(), 5u);
+  EXPECT_EQ(transitions_before(result, 1), 1u);
+  EXPECT_EQ(transitions_before(result, 2), 0u);
+  EXPECT_EQ(transitions_before(result, 3), 0u);
+  EXPECT_EQ(transitions_before(result, 4), 1u);
+  // The barriers around the series are needed for all of it.
+  for (const std::uint32_t position : {1u, 4u}) {
+    Plan wrong = result;
+    wrong.batches[wrong.passes[position].first_batch].count = 0;
+    EXPECT_FALSE(verify(graph_.description(), {}, wrong)) << position;
+  }
+}
+
+TEST_F(Scenario, AtomicAdditionsThatAreOrderedGetABarrierEach) {
+  Buffer counter = graph_.create_buffer("counter", {16});
+  PassBuilder clear = graph_.add_pass("clear");
+  counter = clear.write(counter, buffer_access::fill, Contents::discard);
+  for (int i = 0; i < 3; ++i) {
+    PassBuilder add = graph_.add_pass("add");
+    counter = add.write(counter, buffer_access::storage_read_write_compute);
+  }
+  graph_.output(counter);
+  const Plan result = plan();
+  for (const std::uint32_t pass : {1u, 2u, 3u}) EXPECT_EQ(transitions_before(result, pass), 1u);
+}
+
+// a -> b -> a -> b -> output: two textures in turn
+TEST_F(Scenario, PingPongNeedsTwoTexturesAndKeepsEveryPass) {
+  Texture a = graph_.create_texture("a", kColor);
+  Texture b = graph_.create_texture("b", kColor);
+  PassBuilder first = graph_.add_pass("first");
+  a = first.write(a, access::storage_write_compute, {}, Contents::discard);
+  for (int i = 0; i < 4; ++i) {
+    PassBuilder blur = graph_.add_pass("blur");
+    blur.read(a, access::sampled_compute);
+    b = blur.write(b, access::storage_write_compute, {}, Contents::discard);
+    std::swap(a, b);
+  }
+  graph_.output(a);
+  const Plan result = plan();
+  EXPECT_EQ(result.passes.size(), 5u);
+  ASSERT_EQ(result.heaps.size(), 1u);
+  EXPECT_EQ(result.heaps[0].size, 2u * 64 * 64 * 4);
+}
+
+TEST_F(Scenario, MipChainInManyPassesReadsEachMipForTheNext) {
+  TextureDesc desc = kColor;
+  desc.mips = 5;
+  Texture chain = graph_.create_texture("chain", desc);
+  PassBuilder first = graph_.add_pass("mip 0");
+  chain = first.write(chain, access::storage_write_compute, Range::mip(0), Contents::discard);
+  for (std::uint32_t mip = 1; mip < desc.mips; ++mip) {
+    PassBuilder down = graph_.add_pass("down");
+    down.read(chain, access::sampled_compute, Range::mip(mip - 1));
+    chain = down.write(chain, access::storage_write_compute, Range::mip(mip), Contents::discard);
+  }
+  PassBuilder reader = graph_.add_pass("reader");
+  reader.read(chain, access::sampled_fragment);
+  reader.side_effect();
+  const Plan result = plan();
+  EXPECT_EQ(result.passes.size(), 6u);
+  // Only the last mip is left to change for the reader, which sees the others by a barrier besides.
+  EXPECT_LE(transitions_before(result, 5), 2u);
+}
+
+TEST_F(Scenario, MipChainInOnePassIsOneWriteOfAllMips) {
+  TextureDesc desc = kColor;
+  desc.mips = 5;
+  Texture chain = graph_.create_texture("chain", desc);
+  PassBuilder down = graph_.add_pass("down");
+  chain = down.write(chain, access::storage_read_write_compute, {}, Contents::discard);
+  PassBuilder reader = graph_.add_pass("reader");
+  reader.read(chain, access::sampled_fragment);
+  reader.side_effect();
+  const Plan result = plan();
+  EXPECT_EQ(result.transitions.size(), 2u);
+}
+
+// The first graph leaves the texture in the state in which the second takes it over.
+TEST_F(Scenario, TextureHandedFromOneGraphToAnotherNeedsNoSecondBarrier) {
+  const State between{access::sampled_fragment.stages, access::sampled_fragment.access,
+                      access::sampled_fragment.layout};
+  ImportedTexture import{.image = fake_handle<VkImage>(),
+                         .desc = kColor,
+                         .usage = ~VkImageUsageFlags{0},
+                         .final_state = between};
+  PassBuilder draw = graph_.add_pass("draw");
+  (void)draw.write(graph_.import_texture("shared", import), access::color_attachment, {},
+                   Contents::discard);
+  EXPECT_EQ(plan().transitions.size(), 2u);
+
+  graph_.reset();
+  import.initial_state = between;
+  import.final_state = {};
+  PassBuilder reader = graph_.add_pass("reader");
+  reader.read(graph_.import_texture("shared", import), access::sampled_fragment);
+  reader.side_effect();
+  EXPECT_EQ(plan().transitions.size(), 0u);
+}
+
+// clear -> sum -> accumulate -> sum (unread)
+//                     +------> picture -> output
+TEST_F(Scenario, AccumulationWithASecondOutputKeepsWhatItAccumulatesOn) {
+  Texture sum = graph_.create_texture("sum", kColor);
+  Texture picture = graph_.create_texture("picture", kColor);
+  PassBuilder clear = graph_.add_pass("clear");
+  sum = clear.write(sum, access::clear, {}, Contents::discard);
+  PassBuilder accumulate = graph_.add_pass("accumulate");
+  (void)accumulate.write(sum, access::color_attachment);
+  picture = accumulate.write(picture, access::color_attachment, {}, Contents::discard);
+  graph_.output(picture);
+  EXPECT_EQ(plan().passes.size(), 2u);
+}
+
+TEST_F(Scenario, AccelerationStructureIsBuiltAndTraced) {
+  constexpr VkPipelineStageFlags2 kBuild = VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR;
+  Buffer vertices = graph_.create_buffer("vertices", {1024});
+  Buffer bottom = graph_.create_buffer("bottom level", {4096});
+  Buffer top = graph_.create_buffer("top level", {4096});
+  Buffer scratch = graph_.create_buffer("scratch", {4096});
+  Texture picture = graph_.create_texture("picture", kColor);
+  PassBuilder skin = graph_.add_pass("skin");
+  vertices = skin.write(vertices, buffer_access::storage_write_compute, Contents::discard);
+  PassBuilder build = graph_.add_pass("build bottom level");
+  build.read(vertices, buffer_access::build_input);
+  scratch = build.write(scratch, buffer_access::build_scratch, Contents::discard);
+  bottom = build.write(bottom, buffer_access::acceleration_structure_build, Contents::discard);
+  PassBuilder build_top = graph_.add_pass("build top level");
+  build_top.read(bottom, buffer_access::acceleration_structure_read(kBuild));
+  scratch = build_top.write(scratch, buffer_access::build_scratch, Contents::discard);
+  top = build_top.write(top, buffer_access::acceleration_structure_build, Contents::discard);
+  PassBuilder trace = graph_.add_pass("trace");
+  trace.read(top, buffer_access::acceleration_structure_read(
+                      VK_PIPELINE_STAGE_2_RAY_TRACING_SHADER_BIT_KHR));
+  picture =
+      trace.write(picture, access::storage_write(VK_PIPELINE_STAGE_2_RAY_TRACING_SHADER_BIT_KHR),
+                  {}, Contents::discard);
+  graph_.output(picture);
+  const Plan result = plan();
+  EXPECT_EQ(result.passes.size(), 4u);
+  for (std::uint32_t b = 0; b < result.batches.size(); ++b) {
+    Plan wrong = result;
+    wrong.batches[b].count = 0;
+    EXPECT_FALSE(verify(graph_.description(), {}, wrong)) << "without the barriers " << b;
+  }
+}
+
+TEST_F(Scenario, DepthIsTestedAndSampledInOneAccess) {
+  Texture depth = graph_.create_texture("depth", kDepth);
+  Texture color = graph_.create_texture("color", kColor);
+  PassBuilder prepass = graph_.add_pass("prepass");
+  depth = prepass.write(depth, access::depth_attachment, {}, Contents::discard);
+  PassBuilder particles = graph_.add_pass("soft particles");
+  particles.read(depth, access::depth_test | access::sampled_fragment);
+  color = particles.write(color, access::color_attachment, {}, Contents::discard);
+  graph_.output(color);
+  constexpr Access kBoth = access::depth_test | access::sampled_fragment;
+  static_assert(kBoth.layout == VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL);
+  const Plan result = plan();
+  EXPECT_EQ(result.passes.size(), 2u);
+  EXPECT_EQ(result.placements[depth.index].usage,
+            VkFlags{VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT});
+}
+
+// 1,000 passes, each of which reads some of the last textures. A debug build verifies such a plan
+// whenever it compiles it; framegraph_benchmark prints how long that takes.
+TEST_F(Scenario, PlanOfAThousandPassesIsVerified) {
+  std::vector<Texture> textures;
+  for (std::uint32_t i = 0; i < 1000; ++i) {
+    Texture texture = graph_.create_texture("texture", kColor);
+    PassBuilder pass = graph_.add_pass("pass");
+    if (i > 0) pass.read(textures[i - 1], access::sampled_compute);
+    if (i > 20) pass.read(textures[i - 1 - i % 20 - 1], access::sampled_compute);
+    textures.push_back(pass.write(texture, access::storage_write_compute, {}, Contents::discard));
+    pass.side_effect();
+  }
+  Plan result = plan();
+  result.batches[result.passes[900].first_batch].count = 0;
+  EXPECT_FALSE(verify(graph_.description(), {}, result));
+}
+
+}  // namespace
+}  // namespace alcove::framegraph
