@@ -3,20 +3,21 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
-// From traced pixels to every pixel: the paper's spatial filter, the upsampling of a search at
-// lower resolution, and (compiled with HISTORY) accumulation over frames. They read the same
-// neighbourhood with the same weights, so they are one pass, and what is off is not compiled in.
+// Spatial filter, upsampling and temporal accumulation [Jimenez 2016, sections 4.4 and 4.5] in one
+// pass, because all three read the same neighbourhood with the same weights.
 //
-// A block of kTileSize x kTileSize pixels has one search a frame, of a pixel that moves through the
-// block from frame to frame: every pixel is searched at its own depth in time, and edges come back
-// sharp. With a history a pixel looks at the four searched ones around it; without one, or while it
-// has next to nothing of its own there, at the 4x4 around it (`kFilterRadius` is 2) but for the
-// corners, which would cost a fourth and have a tenth of the weight. They weigh by their distance
-// on the image, in a window that narrows as a pixel gathers frames, by their distance from the
-// pixel's tangent plane, so that a plane at any tilt is filtered whole and nothing leaks across an
-// edge, and by their normals, so that little leaks across a crease. Sums are added up, visible and
-// open parts each, and divided last. Those of the GGX lobe weigh by normal and roughness too: the
-// narrower the lobe, the more of it hangs on where it points.
+// One pixel of each tile of kTileSize x kTileSize pixels is traced in a frame, at a position that
+// moves through the tile from frame to frame (`interleave_offset`). Each invocation computes one
+// pixel. A group of 8x8 adjacent pixels first unpacks the traced pixels around it into shared
+// memory. A pixel then averages the traced pixels around it: 2x2 of them where it has a history,
+// kFilterRadius on each side, without the corners, where it has none. Their weights fall with the
+// distance on the image, with the distance from the pixel's tangent plane, so that a plane at any
+// tilt is filtered as a whole and nothing leaks across a depth edge, and with the angle between the
+// normals, so that little leaks across a crease. Occluded and open parts are summed separately and
+// divided last. Sums of the GGX lobe are also weighted by how alike normals and roughnesses are.
+//
+// Sums hold occlusion rather than visibility: an unoccluded surface then sums zeros, and its
+// visibility is exactly 1 after any number of frames.
 
 #include "maths/bent_normal.h"
 #include "maths/history.h"
@@ -36,15 +37,13 @@ layout(constant_id = 2) const bool kBentNormal = false;
 layout(constant_id = 3) const bool kMotion = false;
 layout(constant_id = 4) const bool kPerspective = true;
 layout(constant_id = 5) const bool kClamp = false;
-layout(constant_id = 6) const bool kStatic = false;  // nothing moved since the last frame
+layout(constant_id = 6) const bool kStatic = false;  // the previous frame shows the same
 layout(constant_id = 7) const bool kRoughnessTexture = false;
 layout(constant_id = 8) const int kRoughnessChannel = 0;
 layout(constant_id = 9) const bool kFresh = true;        // there is no history to read yet
-layout(constant_id = 10) const bool kVisibility = true;  // else it is found but not written
-// Still for so long that only pixels which this frame's searches reached have anything to learn.
-layout(constant_id = 11) const bool kConverged = false;
-layout(constant_id = 12) const uint kNormalEncoding = 0;  // as NormalEncoding has them
-layout(constant_id = 13) const bool kShaped = false;      // power or intensity is not 1
+layout(constant_id = 10) const bool kVisibility = true;  // whether visibility_image is written
+layout(constant_id = 11) const uint kNormalEncoding = 0;  // as NormalEncoding has them
+layout(constant_id = 12) const bool kShaped = false;      // power or intensity is not 1
 
 #ifdef SPECULAR
 const bool kLobe = true;
@@ -54,28 +53,25 @@ const bool kLobe = false;
 #define RAW_FORMAT rg32ui
 #endif
 
-layout(set = 0, binding = 0) uniform Parameters { ReconstructParameters given; };
-// Loaded once: a driver may load what is uniform again after each store.
-ReconstructParameters parameters;
-// What our own passes wrote is read as storage: a texel at a known place needs no sampler.
-layout(set = 0, binding = 1, RAW_FORMAT) uniform readonly uimage2D raw_image;  // by blocks
-// Where there is none, the raw_occlusion.
+layout(set = 0, binding = 0) uniform Parameters { ReconstructParameters parameters; };
+layout(set = 0, binding = 1, RAW_FORMAT) uniform readonly uimage2D raw_image;  // one texel a tile
+// Another image where there are no bent normals.
 layout(set = 0, binding = 2, rg32ui) uniform readonly uimage2D bent_image;
 layout(set = 0, binding = 3,
        r32f) uniform readonly image2D inverse_depth_image;    // SliceSample::inverse_depth
 layout(set = 0, binding = 4) uniform texture2D normal_image;  // xyz
-// Bound to another result and never written where it is not wanted, as is the next.
+// Another image where it is not written; so is the next.
 layout(set = 0, binding = 5) uniform writeonly image2D visibility_image;
 // In the space of the normals.
 layout(set = 0, binding = 6) uniform writeonly image2D bent_normal_image;
 #ifdef HISTORY
-layout(set = 0, binding = 7) uniform texture2D motion_image;  // where there is none, the normals
-layout(set = 0, binding = 8, RAW_FORMAT) uniform readonly uimage2D history_image;
-// Where there is none, the inverse depth.
-layout(set = 0, binding = 9, rgba16f) uniform readonly image2D bent_history_image;
-// With kStatic these are the two before, updated in place.
-layout(set = 0, binding = 10) uniform writeonly uimage2D next_history_image;
-layout(set = 0, binding = 11) uniform writeonly image2D next_bent_history_image;
+// HistoryTexel. With a nearest sampler that clamps to the edge.
+layout(set = 0, binding = 7) uniform usampler2D history_image;
+layout(set = 0, binding = 8) uniform writeonly uimage2D next_history_image;
+layout(set = 0, binding = 9) uniform texture2D motion_image;  // another one without kMotion
+// Bent-normal residuals of pack_residual(); other images where there are no bent normals.
+layout(set = 0, binding = 10) uniform usampler2D bent_history_image;
+layout(set = 0, binding = 11) uniform writeonly uimage2D next_bent_history_image;
 const int kFirstLobeBinding = 12;
 #else
 const int kFirstLobeBinding = 7;
@@ -83,45 +79,69 @@ const int kFirstLobeBinding = 7;
 #ifdef SPECULAR
 layout(set = 0, binding = kFirstLobeBinding) uniform texture2D roughness_image;  // perceptual
 layout(set = 0, binding = kFirstLobeBinding + 1) uniform writeonly image2D specular_image;
+#ifdef HISTORY
+// LobeTexel.
+layout(set = 0, binding = kFirstLobeBinding + 2) uniform usampler2D lobe_history_image;
+layout(set = 0, binding = kFirstLobeBinding + 3) uniform writeonly uimage2D next_lobe_history_image;
+#endif
 #endif
 
-// Whether pixels lie between searched ones; else each was searched, or takes what its block has.
+// Whether pixels lie between traced ones; else each was traced, or takes its tile's value.
 const bool kBetween = kTileSize > 1 && kFilterRadius > 0;
-// Searched pixels that a pixel looks at: so many on each side, and its own where it has one.
-const int kSide = kFresh || kFilterRadius == 0 ? kFilterRadius : 1;
-const int kAcross = kBetween ? 2 * kSide : 2 * kSide + 1;
-const int kAround = kAcross * kAcross;
+// Traced pixels on each side that a pixel with a history averages.
+const int kNearRadius = kFilterRadius == 0 ? 0 : 1;
+// Traced tiles that the pixels of a group average, in each direction.
+const int kSpan = 8 / kTileSize + 2 * kFilterRadius;
+const int kShift = kTileSize == 4 ? 2 : kTileSize == 2 ? 1 : 0;
+
+// What a traced tile holds, unpacked.
+struct TracedPixel {
+  float inverse_depth;
+  float occluded;
+  float open;
+  vec2 stereographic;  // of QuantisedNormal
+  vec3 residual;
+  vec3 expected_residual;
+  RawOcclusion lobe;
+  uint lobe_surface;
+};
+
+shared vec4 traced[kSpan * kSpan];  // inverse depth, occluded, open, stereographic x
+shared float traced_stereographic_y[kSpan * kSpan];
+// The arrays of results that are not computed have one element, which nothing reads.
+const int kBentSpan = kBentNormal ? kSpan * kSpan : 1;
+shared vec4 traced_residual[kBentSpan];           // residual, expected residual x
+shared vec2 traced_expected_residual[kBentSpan];  // yz
+const int kLobeSpan = kLobe ? kSpan * kSpan : 1;
+shared vec2 traced_lobe[kLobeSpan];  // occluded, open
+shared uint traced_lobe_surface[kLobeSpan];
 
 struct Surface {
   ivec2 pixel;
-  ivec2 cell;           // that the pixel is in
-  vec2 centre;          // of the pixel, pixels
-  float inverse_depth;  // linear along the image of any plane: 1/depth in perspective, depth
-                        // otherwise
-  float depth;          // linear
-  vec2 gradient;        // of `line` on the tangent plane, for each pixel
-  float plane_weight;   // tolerances that a unit of `line` off the tangent plane stands for
-  float n_dot_v;        // cosine between normal and view vector, on the axis
+  vec2 corner;          // of the pixel, in pixels
+  float inverse_depth;  // 1/depth in perspective, depth otherwise: linear along any plane's image
+  vec2 gradient;        // of inverse_depth on the tangent plane, per pixel
+  float plane_weight;   // tolerances per unit of inverse_depth off the tangent plane
+  float n_dot_v;        // cosine between normal and view direction, on the camera's axis
   vec3 normal;          // unit, towards the eye, view space
-  QuantisedNormal coarse;
+  QuantisedNormal quantised;
   LobeSurface lobe;  // normal as it was given
-};
-
-// What is added up: over neighbours, then over frames.
-struct Sum {
-  RawOcclusion raw_occlusion;
-  vec3 residual;
-  RawOcclusion lobe;
+  int first_tile;    // index in `traced` of the tile to the upper left
+  vec2 offset;       // to the pixel that was traced there, pixels, before clamping to the image
+  vec4 traced_range; // smallest and largest offset of a traced pixel in the image
 };
 
 ivec2 size_px() { return imageSize(inverse_depth_image); }
 
+ivec2 last_tile() { return (size_px() + (kTileSize - 1)) / kTileSize - 1; }
+
 #include "depth_normal.h"
 
-// Not unit, in the space of the normals; from depth where the texture has no direction.
+// Not unit, in the space of the normals. The direction to the eye where the texture has none, which
+// is enough for the filter's weights; a NaN would stay in the history.
 vec3 fetch_normal(ivec2 pixel) {
-  vec3 given = decode_normal(texelFetch(normal_image, pixel, 0).xyz, kNormalEncoding);
-  return has_direction(given) ? given : mat3(parameters.normal_from_view) * depth_normal(pixel);
+  vec3 normal = decode_normal(texelFetch(normal_image, pixel, 0).xyz, kNormalEncoding);
+  return has_direction(normal) ? normal : parameters.normal_from_view[2].xyz;
 }
 
 LobeSurface fetch_lobe_surface(ivec2 pixel, vec3 normal) {
@@ -134,290 +154,232 @@ LobeSurface fetch_lobe_surface(ivec2 pixel, vec3 normal) {
   return surface;
 }
 
-Surface fetch_surface(ivec2 pixel, ivec2 cell, float inverse_depth) {
+// The tile of which a pixel's neighbourhood of radius 1 begins, or the pixel's own tile.
+ivec2 cell_of(ivec2 pixel) {
+  return kBetween ? (pixel - ivec2(parameters.interleave_offset)) >> kShift : pixel >> kShift;
+}
+
+// The first tile of the group.
+ivec2 first_tile_of_group() {
+  ivec2 cell = cell_of(ivec2(gl_WorkGroupID.xy) * 8);
+  return cell - (kBetween ? kFilterRadius - 1 : kFilterRadius);
+}
+
+void load_tile(ivec2 first, ivec2 place) {
+  ivec2 tile = clamp(first + place, ivec2(0), last_tile());
+  int i = place.y * kSpan + place.x;
+  uvec4 stored = imageLoad(raw_image, tile);
+  RawOcclusion raw = unpack_raw_occlusion(stored.x);
+  vec2 stereographic = stereographic_of_bits(raw_occlusion_normal(stored.x));
+  traced[i] = vec4(uintBitsToFloat(stored.y), raw.open - raw.visible, raw.open, stereographic.x);
+  traced_stereographic_y[i] = stereographic.y;
+  if (kBentNormal) {
+    uvec2 bent = imageLoad(bent_image, tile).xy;
+    vec3 expected = unpack_residual(bent.y);
+    traced_residual[i] = vec4(unpack_residual(bent.x), expected.x);
+    traced_expected_residual[i] = expected.yz;
+  }
+  if (kLobe) {
+    RawOcclusion lobe = unpack_lobe(stored.z);
+    traced_lobe[i] = vec2(lobe.open - lobe.visible, lobe.open);
+    traced_lobe_surface[i] = stored.w;
+  }
+}
+
+void load_tiles() {
+  ivec2 first = first_tile_of_group();
+  ivec2 local = ivec2(gl_LocalInvocationID.xy);
+  [[unroll]] for (int y = 0; y < kSpan; y += 8) {
+    [[unroll]] for (int x = 0; x < kSpan; x += 8) {
+      ivec2 place = local + ivec2(x, y);
+      if (all(lessThan(place, ivec2(kSpan)))) {
+        load_tile(first, place);
+      }
+    }
+  }
+  barrier();
+}
+
+Surface fetch_surface(ivec2 pixel, float inverse_depth) {
   Surface surface;
   surface.pixel = pixel;
-  surface.cell = cell;
-  surface.centre = vec2(pixel) + 0.5;
+  surface.corner = vec2(pixel);
   surface.inverse_depth = inverse_depth;
-  surface.depth = kPerspective ? 1.0 / surface.inverse_depth : surface.inverse_depth;
   vec3 given = fetch_normal(pixel);
   vec3 normal = normalize(given * mat3(parameters.normal_from_view));
-  // dot((x s, y s, depth), plane) is constant on the tangent plane, x and y in pixels and s the
-  // depth in perspective and 1 otherwise.
+  // dot((x s, y s, depth), plane) is constant on the tangent plane, where x and y are in pixels and
+  // s is the depth in perspective and 1 otherwise.
   vec3 plane =
       vec3(normal.xy * parameters.slope.xy, dot(normal.xy, parameters.slope.zw) - normal.z);
-  // How the distance from the plane grows with depth along the pixel's ray. Seen edge-on, a plane
-  // would run to any depth.
-  float along = plane.z + (kPerspective ? dot(surface.centre, plane.xy) : 0.0);
+  // How the distance from the plane grows with depth along the pixel's ray. Bounded below, because
+  // a plane seen edge-on would reach any depth.
+  float along = plane.z + (kPerspective ? dot(surface.corner + 0.5, plane.xy) : 0.0);
   surface.n_dot_v = max(abs(along), 0.02);
-  float per_line = (along < 0.0 ? -1.0 : 1.0) / surface.n_dot_v;
-  surface.gradient = plane.xy * (kPerspective ? surface.inverse_depth * per_line : -per_line);
+  float facing = along < 0.0 ? 1.0 : -1.0;
+  float per_unit = facing / surface.n_dot_v;
+  surface.gradient = plane.xy * (kPerspective ? -inverse_depth * per_unit : per_unit);
   surface.plane_weight =
-      surface.n_dot_v * parameters.tolerance * (kPerspective ? surface.depth : 1.0);
-  surface.normal = along > 0.0 ? -normal : normal;
-  surface.coarse = make_quantised_normal(surface.normal);
+      surface.n_dot_v * parameters.tolerance * (kPerspective ? 1.0 / inverse_depth : 1.0);
+  surface.normal = normal * facing;
+  surface.quantised = make_quantised_normal(surface.normal);
   surface.lobe = fetch_lobe_surface(pixel, given);
+  ivec2 cell = cell_of(pixel);
+  ivec2 place = cell - first_tile_of_group();
+  surface.first_tile = place.y * kSpan + place.x;
+  surface.offset = vec2(cell * kTileSize) + parameters.interleave_offset - surface.corner;
+  vec2 largest =
+      min(vec2(last_tile() * kTileSize) + parameters.interleave_offset, vec2(size_px() - 1));
+  surface.traced_range = vec4(min(parameters.interleave_offset, largest), largest) - surface.corner.xyxy;
   return surface;
 }
 
-Sum no_sum() {
-  Sum sum;
-  sum.raw_occlusion.visible = 0.0;
-  sum.raw_occlusion.open = 0.0;
-  sum.residual = vec3(0.0);
-  sum.lobe = sum.raw_occlusion;
-  return sum;
-}
-
-void add(inout RawOcclusion sum, float weight, RawOcclusion more) {
-  sum.visible += weight * more.visible;
-  sum.open += weight * more.open;
-}
-
-void add(inout Sum sum, float weight, Sum more) {
-  add(sum.raw_occlusion, weight, more.raw_occlusion);
-  if (kBentNormal) {
-    sum.residual += weight * more.residual;
-  }
-  if (kLobe) {
-    add(sum.lobe, weight, more.lobe);
-  }
-}
-
-// What a block's search found, and where.
-struct Found {
-  Sum sum;  // the lobe as it is for the searched surface
+// Weighted sums over traced pixels.
+struct Sums {
+  float occluded;
+  float open;
+  vec3 residual;
   vec3 expected_residual;
-  uint lobe_surface;
-  vec2 searched;  // pixel
-  float inverse_depth;
-  vec2 stereographic;  // QuantisedNormal::stereographic
-};
-
-Found fetch_tile(ivec2 block) {
-  uvec4 stored = imageLoad(raw_image, block);
-  Found found;
-  found.sum = no_sum();
-  found.sum.raw_occlusion = unpack_raw_occlusion(stored.x);
-  found.inverse_depth = uintBitsToFloat(stored.y);
-  found.stereographic = stereographic_of_bits(raw_occlusion_normal(stored.x));
-  found.searched =
-      vec2(min(block * kTileSize + ivec2(parameters.interleave_offset), size_px() - 1));
-  if (kBentNormal) {
-    uvec2 bent = imageLoad(bent_image, block).xy;
-    found.sum.residual = unpack_residual(bent.x);
-    found.expected_residual = unpack_residual(bent.y);
-  }
-  if (kLobe) {
-    found.sum.lobe = unpack_lobe(stored.z);
-    found.lobe_surface = stored.w;
-  }
-  return found;
-}
-
-ivec2 last_tile() { return (size_px() + (kTileSize - 1)) / kTileSize - 1; }
-
-int across_of(int side) { return kBetween ? 2 * side : 2 * side + 1; }
-
-// Block i by rows of those around a cell, `side` on each side. Beyond the image the outermost stand
-// for those that there are not.
-ivec2 tile_around(ivec2 cell, int side, int i) {
-  int across = across_of(side);
-  ivec2 block = cell + ivec2(i % across, i / across) - (kBetween ? side - 1 : side);
-  return clamp(block, ivec2(0), last_tile());
-}
-
-// Of those, one that nothing looks at.
-bool is_corner(int side, int i) {
-  int last = across_of(side) - 1;
-  ivec2 place = ivec2(i % (last + 1), i / (last + 1));
-  return side > 1 && (place.x == 0 || place.x == last) && (place.y == 0 || place.y == last);
-}
-
-// A neighbour at distance d weighs 1 / (1 + inverse_squared_width d^2)^4.
-float inverse_squared_width_of(float squared_width_px) { return 0.125 / squared_width_px; }
-
-// A neighbour across a crease weighs no less than 1 / (1 + this)^2, a fifth: where there are few
-// others its search is better than none. By the error of first frames (`alcove compare --frames
-// 1`).
-const float kWidestTurn = 1.23;
-
-// What a neighbour's search weighs: it falls with the distance on the image, with that from the
-// tangent plane and with the angle between normals, and never to nothing: where no neighbour lies
-// on the plane, the nearest to it count.
-float neighbour_weight(Surface surface, float inverse_squared_width, vec2 offset, Found found) {
-  float off_plane = (found.inverse_depth - surface.inverse_depth - dot(offset, surface.gradient)) *
-                    surface.plane_weight;
-  float near = 1.0 + inverse_squared_width * dot(offset, offset);
-  float level = 1.0 + min(off_plane * off_plane, 1e16);  // whose square still is a float
-  level += min(squared_turn(surface.coarse, found.stereographic), kWidestTurn);
-  float both = near * near * level;
-  return 1.0 / (both * both);
-}
-
-struct Neighbourhood {
-  Sum sum;
-  vec3 expected_residual;
+  vec2 lobe;     // occluded, open
   vec3 moments;  // of the visibility
 };
 
-void add_tile(inout Neighbourhood sum, Surface surface, float inverse_squared_width, Found found) {
-  vec2 offset = found.searched - vec2(surface.pixel);
-  float weight = neighbour_weight(surface, inverse_squared_width, offset, found);
-  add(sum.sum.raw_occlusion, weight, found.sum.raw_occlusion);
+Sums no_sums() { return Sums(0.0, 0.0, vec3(0.0), vec3(0.0), vec2(0.0), vec3(0.0)); }
+
+// A neighbour at distance d is weighted by 1 / (1 + inverse_squared_width d^2)^4.
+float inverse_squared_width_of(float squared_width_px) { return 0.125 / squared_width_px; }
+
+// Bound of the squared angle between normals in a neighbour's weight, which is then at least
+// 1 / (1 + 1.23)^2 = 0.2: where a pixel has few other neighbours, one across a crease is better than
+// none. Fitted to the error of first frames (`alcove compare --frames 1`).
+const float kLargestSquaredAngle = 1.23;
+
+// The offset in pixels of the traced pixel `i` tiles to the right of (below) the surface's first.
+float traced_offset(Surface surface, int axis, int i) {
+  return clamp(surface.offset[axis] + float(i * kTileSize), surface.traced_range[axis],
+               surface.traced_range[axis + 2]);
+}
+
+// Adds the traced pixel at `offset` pixels. Its weight falls with the distance on the image, with
+// the distance from the tangent plane and with the angle between the normals, but never to zero:
+// where no neighbour lies on the plane, the nearest to it count.
+void add_traced(inout Sums sums, Surface surface, float inverse_squared_width, int i, int j) {
+  vec2 offset = vec2(traced_offset(surface, 0, i), traced_offset(surface, 1, j));
+  int index = surface.first_tile + j * kSpan + i;
+  vec4 found = traced[index];
+  float off_plane =
+      (found.x - (surface.inverse_depth + offset.x * surface.gradient.x + offset.y * surface.gradient.y)) *
+      surface.plane_weight;
+  float near = 1.0 + offset.x * offset.x * inverse_squared_width + offset.y * offset.y * inverse_squared_width;
+  float level = 1.0 + min(off_plane * off_plane, 1e14);  // the weight is no denormal
+  level += min(squared_turn(surface.quantised, vec2(found.w, traced_stereographic_y[index])),
+               kLargestSquaredAngle);
+  float both = near * near * level;
+  float weight = 1.0 / (both * both);
+  sums.occluded += weight * found.y;
+  sums.open += weight * found.z;
   if (kBentNormal) {
-    sum.sum.residual += weight * found.sum.residual;
-    sum.expected_residual += weight * found.expected_residual;
+    vec4 residual = traced_residual[index];
+    sums.residual += weight * residual.xyz;
+    sums.expected_residual += weight * vec3(residual.w, traced_expected_residual[index]);
   }
   if (kLobe) {
-    // As far as it is like the surface's own.
-    add(sum.sum.lobe, weight * lobe_weight(surface.lobe, found.lobe_surface), found.sum.lobe);
+    sums.lobe += weight * lobe_weight(surface.lobe, traced_lobe_surface[index]) * traced_lobe[index];
   }
   if (kClamp) {
-    float visibility = found.sum.raw_occlusion.visible / max(found.sum.raw_occlusion.open, 1e-9);
-    sum.moments += weight * vec3(1.0, visibility, visibility * visibility);
+    float visibility = 1.0 - found.y / max(found.z, 1e-9);
+    sums.moments += weight * vec3(1.0, visibility, visibility * visibility);
   }
 }
 
-Neighbourhood add_up(Surface surface, float inverse_squared_width, Found around[kAround]) {
-  Neighbourhood sum = Neighbourhood(no_sum(), vec3(0.0), vec3(0.0));
-  [[unroll]] for (int i = 0; i < kAround; ++i) {
-    if (!is_corner(kSide, i)) {
-      add_tile(sum, surface, inverse_squared_width, around[i]);
+// The traced pixels of radius kNearRadius.
+Sums sum_near(Surface surface, float inverse_squared_width) {
+  Sums sums = no_sums();
+  const int first = kBetween ? 0 : -kNearRadius;
+  [[unroll]] for (int j = first; j <= kNearRadius; ++j) {
+    [[unroll]] for (int i = first; i <= kNearRadius; ++i) {
+      add_traced(sums, surface, inverse_squared_width, i, j);
     }
   }
-  return sum;
+  return sums;
 }
 
-// In view space, as a search of the pixel takes it.
-vec3 traced_normal(ivec2 pixel) {
-  vec2 slope =
-      parameters.slope.zw + (kPerspective ? (vec2(pixel) + 0.5) * parameters.slope.xy : vec2(0.0));
-  vec3 given = decode_normal(texelFetch(normal_image, pixel, 0).xyz, kNormalEncoding) *
+// The traced pixels of radius kFilterRadius without the corners, except those nearer than `inner` on
+// both axes.
+void add_ring(inout Sums sums, Surface surface, float inverse_squared_width, int inner) {
+  const int first = kBetween ? 1 - kFilterRadius : -kFilterRadius;
+  const int inner_first = kBetween ? 1 - inner : -inner;
+  [[dont_unroll]] for (int j = first; j <= kFilterRadius; ++j) {
+    bool edge = kFilterRadius > 1 && (j == first || j == kFilterRadius);
+    bool inside = inner > 0 && j >= inner_first && j <= inner;
+    int i = edge ? first + 1 : first;
+    int last = edge ? kFilterRadius - 1 : kFilterRadius;
+    [[dont_unroll]] while (i <= last) {
+      add_traced(sums, surface, inverse_squared_width, i, j);
+      i += inside && i == inner_first - 1 ? inner + 1 - i : 1;
+    }
+  }
+}
+
+// The normal in view space, as the search of the pixel uses it.
+vec3 traced_normal(Surface surface) {
+  vec2 slope = parameters.slope.zw +
+               (kPerspective ? (surface.corner + 0.5) * parameters.slope.xy : vec2(0.0));
+  vec3 given = decode_normal(texelFetch(normal_image, surface.pixel, 0).xyz, kNormalEncoding) *
                mat3(parameters.normal_from_view);
-  return seen_normal(pixel, given, normalize(vec3(-slope, 1.0)));
+  return seen_normal(surface.pixel, given, normalize(vec3(-slope, 1.0)));
 }
 
-void store(ivec2 pixel, Sum sum, float visibility) {
+// Results of a pixel.
+struct Result {
+  float occlusion;
+  vec3 residual;
+  vec2 lobe;  // occluded, open
+};
+
+void store(Surface surface, bool sky, Result result) {
+  float visibility = sky ? 1.0 : 1.0 - result.occlusion;
   if (kVisibility) {
     float shaped = shaped_visibility(visibility, parameters.power, parameters.intensity);
-    imageStore(visibility_image, pixel, vec4(kShaped ? shaped : visibility));
+    imageStore(visibility_image, surface.pixel, vec4(kShaped ? shaped : visibility));
   }
   if (kBentNormal) {
-    vec3 bent = finish_bent_normal(sum.residual, sum.raw_occlusion.visible, traced_normal(pixel));
-    imageStore(bent_normal_image, pixel, vec4(mat3(parameters.normal_from_view) * bent, 0.0));
+    vec3 residual = sky ? vec3(0.0) : result.residual;
+    vec3 bent = finish_bent_normal(residual, visibility, traced_normal(surface));
+    imageStore(bent_normal_image, surface.pixel,
+               vec4(mat3(parameters.normal_from_view) * bent, 0.0));
   }
 #ifdef SPECULAR
-  imageStore(specular_image, pixel, vec4(mean_visibility(sum.lobe)));
+  float occlusion = sky ? 0.0 : saturate(result.lobe.x / max(result.lobe.y, 1e-30));
+  imageStore(specular_image, surface.pixel, vec4(1.0 - occlusion));
 #endif
 }
 
 #ifdef HISTORY
-
 #include "reconstruct_history.h"
-
-// Stores are many to a pixel and take turns on a processor: the sky has none of its own.
-void reconstruct(Surface surface, bool sky, Found around[kAround]) {
-  History next = advance(surface, around, read_history(surface));
-  float visibility = mean_visibility(next.sum.raw_occlusion);
-  uvec4 packed = pack_history(next, visibility, surface);
-  if (sky) {
-    next.sum = no_sum();
-    visibility = 1.0;
-    packed = kNothingHeld;
-  }
-  imageStore(next_history_image, surface.pixel, packed);
-  if (kBentNormal) {
-    imageStore(next_bent_history_image, surface.pixel, vec4(next.sum.residual, 0.0));
-  }
-  store(surface.pixel, next.sum, visibility);
-}
-
 #else
 
-void reconstruct(Surface surface, bool sky, Found around[kAround]) {
-  float inverse_squared_width =
-      inverse_squared_width_of(parameters.window_px * parameters.window_px);
-  Neighbourhood now = add_up(surface, inverse_squared_width, around);
-  Sum sum = now.sum;
-  sum.residual =
-      converged_residual(sum.residual, now.expected_residual, mean_visibility(sum.raw_occlusion));
-  if (sky) {
-    sum = no_sum();
-  }
-  store(surface.pixel, sum, mean_visibility(sum.raw_occlusion));
-}
-
-#endif
-
-void reconstruct_pixel(ivec2 pixel, ivec2 cell, Found around[kAround]) {
-  float inverse_depth = imageLoad(inverse_depth_image, pixel).r;
-  reconstruct(fetch_surface(pixel, cell, inverse_depth),
-              inverse_depth == sky_inverse_depth(kPerspective), around);
-}
-
-// As reconstruct_pixel, for a pixel of which this frame tells nothing new.
-void keep_pixel(ivec2 pixel) {
-#ifdef HISTORY
-  uvec4 stored = imageLoad(history_image, pixel);
-  Sum sum = no_sum();
+void reconstruct(Surface surface, bool sky) {
+  Sums sums = no_sums();
+  add_ring(sums, surface,
+           inverse_squared_width_of(parameters.window_px * parameters.window_px), 0);
+  float scale = 1.0 / max(sums.open, 1e-37);
+  Result result = Result(saturate(sums.occluded * scale), vec3(0.0), sums.lobe);
   if (kBentNormal) {
-    sum.residual = imageLoad(bent_history_image, pixel).xyz;
+    result.residual =
+        converged_residual(sums.residual, sums.expected_residual, 1.0 - result.occlusion) * scale;
   }
-  sum.lobe = RawOcclusion(uintBitsToFloat(stored.z), uintBitsToFloat(stored.w));
-  HistoryTexel texel = unpack_history_texel(stored.xy);
-  sum.raw_occlusion = RawOcclusion(texel.visibility * texel.open, texel.open);
-  store(pixel, sum, texel.visibility);
+  store(surface, sky, result);
+}
+
 #endif
-}
 
-// Pixels of a cell, a bit each by rows from the first, a searched one: those next to a searched one
-// of a cell of 4x4, the searched one itself of a smaller.
-const uint kCell = kTileSize == 4 ? 0xffffu : kTileSize == 2 ? 0xfu : 1u;
-const uint kReached = kConverged && kBetween ? (kTileSize == 4 ? 0x101bu : 1u) : kCell;
-
-ivec2 pixel_of_bit(ivec2 first, uint bits) {
-  int i = findLSB(bits);
-  return first + ivec2(i % kTileSize, i / kTileSize);
-}
-
-bool inside(ivec2 pixel) {
-  return all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, size_px()));
-}
-
-// Each invocation has the kTileSize x kTileSize pixels of a cell, which look at the same searched
-// ones: those are fetched once. With kBetween a cell lies between four traced pixels, else it is
-// a block.
 void main() {
-  parameters = given;
-  ivec2 cell = ivec2(gl_GlobalInvocationID.xy) - (kBetween ? 1 : 0);
-  ivec2 first = cell * kTileSize + (kBetween ? ivec2(parameters.interleave_offset) : ivec2(0));
-  if (any(greaterThanEqual(first, size_px()))) {
+  load_tiles();
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(pixel, size_px()))) {
     return;
   }
-  Found around[kAround];
-  [[unroll]] for (int i = 0; i < kAround; ++i) {
-    if (!is_corner(kSide, i)) {
-      around[i] = fetch_tile(tile_around(cell, kSide, i));
-    }
-  }
-  uint reached = kReached;
-  do {
-    ivec2 pixel = pixel_of_bit(first, reached);
-    if (inside(pixel)) {
-      reconstruct_pixel(pixel, cell, around);
-    }
-    reached &= reached - 1;
-  } while (reached != 0);
-  if (kReached != kCell) {
-    uint rest = kCell ^ kReached;
-    do {
-      ivec2 pixel = pixel_of_bit(first, rest);
-      if (inside(pixel)) {
-        keep_pixel(pixel);
-      }
-      rest &= rest - 1;
-    } while (rest != 0);
-  }
+  float inverse_depth = imageLoad(inverse_depth_image, pixel).r;
+  reconstruct(fetch_surface(pixel, inverse_depth),
+              inverse_depth == sky_inverse_depth(kPerspective));
 }

@@ -1,275 +1,317 @@
-// The history part of reconstruct.comp, which includes it: what a pixel has gathered over the
-// frames, found where its surface was, held to what is seen now, and this frame added.
+// Temporal accumulation, the part of reconstruct.comp with HISTORY: reads the history where the
+// surface was in the previous frame, rejects texels of other surfaces, and adds this frame.
 #ifndef ALCOVE_RECONSTRUCT_HISTORY_H
 #define ALCOVE_RECONSTRUCT_HISTORY_H
 
-// What a pixel has gathered so far.
+// The history of a surface.
 struct History {
-  Sum sum;        // weighted means over frames
-  float count;    // frames; 0 where nothing of this surface is known
-  float recent;   // visibility of the last few frames, to tell change by
-  float between;  // how far from texels' centres it was read: 0 at one, to 0.5 amid four
+  float weight;     // frames; 0 where nothing of this surface is known
+  float occlusion;  // [0,1]
+  float recent;     // occlusion of the last few frames, [0,1]
+  vec3 residual;    // of the bent normal, for a weight of 1
+  vec2 lobe;        // occluded, open, for a weight of 1
+  float between;    // distance from texel centres: 0 at one, 0.5 amid four
 };
 
-const float kDepthTolerance = 0.003;      // of the depth, for a surface seen head-on
-const float kPlaneTolerance = 1.0 / 3.0;  // of the filter's
-// How far what moves by itself may have come nearer or gone since the last frame, of its depth.
+History no_history() { return History(0.0, 0.0, 0.0, vec3(0.0), vec2(0.0), 0.0); }
+
+// Largest change of depth since the previous frame, relative to the depth, at which a moving
+// surface keeps its history.
 const float kDepthMotion = 0.04;
 
-// A texel that is of no surface: open, with nothing to weigh it by.
-const uvec4 kNothingHeld = uvec4(0xffffu, 0u, 0u, 0u);
-
-uvec4 pack_history(History history, float visibility, Surface surface) {
-  // A normal that is not a number must not stay in the history.
-  RawOcclusion lobe = history.sum.lobe;
-  if (!(lobe.visible >= 0.0 && lobe.visible <= lobe.open && lobe.open < 1e30)) {
-    lobe = RawOcclusion(0.0, 0.0);
-  }
-  HistoryTexel texel = HistoryTexel(visibility, history.sum.raw_occlusion.open,
-                                    held_depth(parameters.history_depth.xy, surface.depth),
-                                    history.count, history.recent, surface.coarse.bits);
-  return uvec4(pack_history_texel(texel), floatBitsToUint(lobe.visible),
-               floatBitsToUint(lobe.open));
+float log_inverse_depth(float inverse_depth, float unit) {
+  return kPerspective ? log2(inverse_depth * unit) : inverse_depth;
 }
 
-// Where the surface was on the last frame's image.
-struct Before {
-  vec2 position;  // in pixels
-  float depth;    // there, had only the camera moved; a number that can be divided by
+// Where a surface was on the image of the previous frame.
+struct Previous {
+  vec2 position;  // pixels, clamped to the centres of the outermost texels
+  float depth;    // linear, over the depth now in perspective; positive
   bool seen;      // it was on the image
-  bool moves;     // not only the camera did
+  bool moves;     // the surface moved, not only the camera
 };
 
-Before reproject(Surface surface) {
-  float scale = kPerspective ? surface.depth : 1.0;
-  vec4 standing = parameters.previous_from_pixel * vec4(surface.centre * scale, surface.depth, 1.0);
-  Before before = Before(standing.xy / standing.w, standing.z, standing.w > 0.0, false);
+Previous reproject(Surface surface) {
+  vec2 centre = surface.corner + 0.5;
+  vec4 from = kPerspective ? vec4(centre, 1.0, surface.inverse_depth)
+                           : vec4(centre, surface.inverse_depth, 1.0);
+  vec4 to = from * parameters.previous_from_pixel;
+  vec2 position = to.xy * (1.0 / to.z);
+  Previous previous;
+  previous.depth = to.w;
+  previous.moves = false;
   if (kMotion) {
-    vec2 here = surface.centre * parameters.previous_size.zw;
+    vec2 here = centre * parameters.previous_size.zw;
     vec2 motion =
         texelFetch(motion_image, surface.pixel, 0).rg * parameters.motion.xy + parameters.motion.zw;
-    // More than the motion vector's rounding, which in a half is 2^-11 of it.
-    float apart = distance(here - motion, before.position);
-    before.moves = apart > 0.1 + length(motion) * (1.0 / 512.0);
-    before.position = here - motion;
+    // More than the rounding of motion vectors, which is 2^-11 in half precision.
+    float apart = distance(here - motion, position);
+    previous.moves = apart > 0.1 + length(motion) * (1.0 / 512.0);
+    position = here - motion;
   }
-  before.seen = before.seen && all(greaterThanEqual(before.position, vec2(0.0))) &&
-                all(lessThanEqual(before.position, parameters.previous_size.xy));
-  if (!before.seen) {
-    before = Before(vec2(0.0), 1.0, false, false);
-  }
-  return before;
+  vec2 within = clamp(position, vec2(0.5), parameters.previous_size.xy - 0.5);
+  // A NaN fails the comparison.
+  vec2 outside = abs(position - within);
+  previous.seen = to.z > 0.0 && max(outside.x, outside.y) <= 0.5;
+  previous.position = previous.seen ? within : vec2(0.5);
+  return previous;
 }
 
-// What was read of the last frame's texels, as sums over them.
-struct Read {
-  History history;
-  vec3 moments;  // of the visibility
-  float same;    // of one share: how much is of the same surface
-  float most;    // that a texel counts for
-};
-
-// A texel of history, all of it or none as its depth and normal tell whether it is of the same
-// surface; of those the ones on the tangent plane, at the depth `expected` as it is held, and with
-// the same `normal`, as the last frame saw it, count for most, so that nothing leaks across a
-// crease.
-void add_history(inout Read read, Surface surface, QuantisedNormal normal, ivec2 pixel,
-                 float expected, float share) {
-  uvec4 stored = imageLoad(history_image, pixel);
-  HistoryTexel texel = unpack_history_texel(stored.xy);
-  float apart = held_apart(expected, texel.depth);
-  float turn = kStatic ? 0.0 : squared_turn(normal, stereographic_of_bits(texel.quantised_normal));
-  float same =
-      history_weight(apart, kDepthTolerance, surface.n_dot_v) * history_weight_by_normal(turn);
-  float off_plane = kPerspective ? apart : apart * abs(expected) / parameters.history_depth.z;
-  off_plane *= surface.n_dot_v * parameters.tolerance * (1.0 / kPlaneTolerance);
-  float level = 1.0 + min(off_plane * off_plane, 1e6);
-  float agreement = max(1.0 - 0.5 * turn, 0.0);  // the cosine, about
-  float counts = same * sixteenth_power(agreement * agreement) / (level * level);
-  float weight = share * counts;
-  Sum here = no_sum();
-  here.raw_occlusion = RawOcclusion(texel.visibility * texel.open, texel.open);
-  if (kBentNormal) {
-    here.residual = imageLoad(bent_history_image, pixel).xyz;
-  }
-  here.lobe = RawOcclusion(uintBitsToFloat(stored.z), uintBitsToFloat(stored.w));
-  add(read.history.sum, weight, here);
-  read.history.count += weight * texel.count;
-  read.history.recent += weight * texel.recent;
-  read.moments += weight * vec3(1.0, texel.visibility, texel.visibility * texel.visibility);
-  read.same += share * same;
-  read.most = max(read.most, counts);
+// Weights of the four texels of a bilinear footprint, in the order of textureGather.
+vec4 bilinear_weights(vec2 part) {
+  vec2 rest = 1.0 - part;
+  return vec4(rest.x * part.y, part.x * part.y, part.x * rest.y, rest.x * rest.y);
 }
 
-History no_history() { return History(no_sum(), 0.0, 0.0, 0.0); }
+vec4 gather_offsets(float x, float y, vec2 part) {
+  float left = -part.x * x;
+  float top = -part.y * y;
+  float right = left + x;
+  float bottom = top + y;
+  return vec4(left + bottom, right + bottom, right + top, left + top);
+}
 
-// Motion vectors do not say how far a surface that moves has come nearer or gone. The one of these
-// texels that lies nearest to where it would have been does, if it lies near enough. As depths are
-// held.
-float moved_in_depth(ivec2 texels[4], vec4 expected) {
-  float moved = 0.0;
-  float least = kDepthMotion;
-  [[unroll]] for (int i = 0; i < 4; ++i) {
-    float found = unpack_history_texel(imageLoad(history_image, texels[i]).xy).depth;
-    float part = abs(found - expected[i]) / max(expected[i], 1e-6);
-    if (part < least) {
-      least = part;
-      moved = found - expected[i];
+// Stored depths of the four texels minus those that the surface's tangent plane had there.
+vec4 depth_differences(uvec4 texels, Surface surface, Previous previous, vec2 part) {
+  vec4 found;
+  [[unroll]] for (int i = 0; i < 4; ++i) { found[i] = texel_depth(texels[i]); }
+  vec2 scale = parameters.history_depth_scale.zw;
+  // The gradient of the stored depth to first order; it hardly changes from frame to frame.
+  vec2 gradient = surface.gradient * scale.x;
+  float at_position = scale.y;
+  if (kPerspective) {
+    gradient *= 1.442695 / surface.inverse_depth;
+    at_position += scale.x * log_inverse_depth(surface.inverse_depth / max(previous.depth, 1e-30),
+                                               parameters.history_unit.y);
+  } else {
+    at_position += scale.x * previous.depth;
+  }
+  return found - (gather_offsets(gradient.x, gradient.y, part) + at_position);
+}
+
+// Motion vectors do not say how far a moving surface has come nearer. The texel that lies nearest
+// to the expected depth does, if it lies near enough.
+vec4 follow_depth(vec4 differences) {
+  vec4 apart = abs(differences);
+  float least = min(min(apart.x, apart.y), min(apart.z, apart.w));
+  float limit =
+      kPerspective ? kDepthMotion * 1.442695 * abs(parameters.history_depth_scale.z) : kDepthMotion;
+  if (least > limit) {
+    return differences;
+  }
+  float shift = apart.x == least   ? differences.x
+                : apart.y == least ? differences.y
+                : apart.z == least ? differences.z
+                                   : differences.w;
+  return differences - shift;
+}
+
+vec3 residual_of_texel(uint bits) { return unpack_residual(bits); }
+
+// Between four texels.
+History read_moving(Surface surface) {
+  Previous previous = reproject(surface);
+  vec2 first = floor(previous.position - 0.5);
+  vec2 part = previous.position - 0.5 - first;
+  // The corner that the four texels share, so that no rounding can move the footprint.
+  vec2 uv = (first + 1.0) * parameters.history_texel;
+  uvec4 texels = textureGather(history_image, uv);
+  vec4 differences = depth_differences(texels, surface, previous, part);
+  if (kMotion) {
+    if (previous.moves) {
+      differences = follow_depth(differences);
     }
   }
-  return moved;
-}
-
-// Between texels, where the surface was.
-void read_moved(inout Read read, Surface surface) {
-  Before before = reproject(surface);
-  ivec2 last = ivec2(parameters.previous_size.xy) - 1;
-  vec2 first = floor(before.position - 0.5);
-  vec2 part = before.position - 0.5 - first;
-  read.history.between = dot(part, 1.0 - part);
-  ivec2 texels[4];
-  vec4 expected;
-  [[unroll]] for (int i = 0; i < 4; ++i) {
-    ivec2 corner = ivec2(i & 1, i >> 1);
-    texels[i] = clamp(ivec2(first) + corner, ivec2(0), last);
-    // Where the surface's tangent plane passes that texel; it hardly turns from frame to frame.
-    vec2 offset = vec2(corner) - part;
-    float inverse_depth =
-        (kPerspective ? 1.0 / before.depth : before.depth) + dot(offset, surface.gradient);
-    float depth = kPerspective ? 1.0 / max(inverse_depth, 0.5 / before.depth) : inverse_depth;
-    expected[i] = held_depth(parameters.history_depth.zw, depth);
-  }
-  if (before.moves) {
-    expected += moved_in_depth(texels, expected);
-  }
-  QuantisedNormal normal =
-      make_quantised_normal(mat3(parameters.before_from_view) * surface.normal);
-  [[unroll]] for (int i = 0; i < 4; ++i) {
-    vec2 near = abs(1.0 - vec2(i & 1, i >> 1) - part);
-    add_history(read, surface, normal, texels[i], expected[i], before.seen ? near.x * near.y : 0.0);
-  }
-}
-
-History read_history(Surface surface) {
-  if (kFresh) {
-    return no_history();
-  }
-  Read read = Read(no_history(), vec3(0.0), 0.0, 0.0);
-  if (kStatic) {
-    add_history(read, surface, surface.coarse, surface.pixel,
-                held_depth(parameters.history_depth.zw, surface.depth), 1.0);
-  } else {
-    read_moved(read, surface);
-  }
-  float scale = read.same < 0.05 ? 0.0 : 1.0 / read.moments.x;
+  vec4 shares = bilinear_weights(part);
+  float sharpness = parameters.history_sharpness * surface.n_dot_v;
+  float total = 0.0;
+  float squares = 0.0;
+  float log_weight = 0.0;
   History history = no_history();
-  add(history.sum, scale, read.history.sum);
-  history.count = read.history.count * scale;
-  history.recent = read.history.recent * scale;
-  history.between = read.history.between;
-  if (!kStatic) {
-    // From the view space of the frame before.
-    history.sum.residual = history.sum.residual * mat3(parameters.before_from_view);
-    vec2 means = read.moments.yz * scale;
-    float variance = max(means.y - means.x * means.x, 0.0);
-    float missing = max(1.0 - read.moments.x / max(read.most, 1e-20), 0.0);
-    history.count = count_after_blur(history.count, variance, missing);
+  vec4 weights;
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    float weight =
+        shares[i] * history_agreement(differences[i], parameters.history_slack, sharpness);
+    weights[i] = weight;
+    float occlusion = texel_occlusion(texels[i]);
+    total += weight;
+    history.occlusion += weight * occlusion;
+    squares += weight * occlusion * occlusion;
+    log_weight += weight * texel_log_weight(texels[i]);
+    if (kMotion) {
+      history.recent += weight * texel_recent(texels[i]);
+    }
   }
+  bool known = previous.seen && total >= 0.05;
+  float scale = 1.0 / max(total, 0.05);
+  history.occlusion *= scale;
+  history.recent *= scale;
+  float variance = max(squares * scale - history.occlusion * history.occlusion, 0.0);
+  float weight = min(weight_of_log(log_weight * scale), parameters.largest_weight);
+  history.weight = known ? weight_after_blur(weight, variance, 1.0 - total) : 0.0;
+  history.between = dot(part, 1.0 - part);
+  if (kBentNormal) {
+    uvec4 residuals = textureGather(bent_history_image, uv);
+    [[unroll]] for (int i = 0; i < 4; ++i) {
+      history.residual += weights[i] * residual_of_texel(residuals[i]);
+    }
+    // From the view space of the previous frame.
+    history.residual = (history.residual * scale) * mat3(parameters.previous_from_view);
+  }
+#ifdef SPECULAR
+  uvec4 lobes = textureGather(lobe_history_image, uv);
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    LobeTexel lobe = unpack_lobe_texel(lobes[i]);
+    history.lobe += weights[i] * scale * lobe.open * vec2(lobe.occlusion, 1.0);
+  }
+#endif
   return history;
 }
 
-// A block of 4 gives a pixel few searches of its own even in time.
+// The pixel's own texel. Its depth is checked too, for something may have moved although no motion
+// vectors say so.
+History read_static(Surface surface) {
+  uint bits = texelFetch(history_image, surface.pixel, 0).r;
+  float difference =
+      texel_depth(bits) -
+      history_depth(parameters.history_depth_scale.xy,
+                    log_inverse_depth(surface.inverse_depth, parameters.history_unit.x));
+  float agreement = history_agreement(difference, parameters.history_slack,
+                                      parameters.history_sharpness * surface.n_dot_v);
+  History history = no_history();
+  history.occlusion = texel_occlusion(bits);
+  history.recent = texel_recent(bits);
+  float weight = min(weight_of_log(texel_log_weight(bits)), parameters.largest_weight);
+  history.weight = agreement >= 0.05 ? weight : 0.0;
+  if (kBentNormal) {
+    history.residual = residual_of_texel(texelFetch(bent_history_image, surface.pixel, 0).r);
+  }
+#ifdef SPECULAR
+  LobeTexel lobe = unpack_lobe_texel(texelFetch(lobe_history_image, surface.pixel, 0).r);
+  history.lobe = lobe.open * vec2(lobe.occlusion, 1.0);
+#endif
+  return history;
+}
+
+// With tiles of 4 pixels few samples are a pixel's own even in time, so the window stays wider.
 const float kWidth = kTileSize > 2 ? 2.5 : 1.0;
 
-// Squared, in pixels: wide while a pixel has little of its own, then hardly more than the pixel
-// itself, or as wide as reading between texels blurs anyway.
-float squared_window(History history) {
+// 0.125 / w^2 for a window of w pixels: wide while a pixel has few samples of its own, then hardly
+// wider than the pixel, or as wide as interpolation blurs anyway.
+float window_of(History history) {
   const float own = 0.58 * kWidth;
-  return max(own * own + 2.6 * history.between,
-             parameters.window_px * parameters.window_px / (history.count + 1.0));
+  float first = 1.0 / (parameters.window_px * parameters.window_px);
+  return 0.125 *
+         min(1.0 / (own * own + 2.6 * history.between), first * (3.0 * history.weight + 1.0));
 }
 
 // How much nearer to the tangent plane a neighbour has to be than in a first frame: the more
-// searches a pixel has had of its own, the less it needs those off its plane, which see other
-// things. By the error after 4 and 32 frames at each tile_size (`alcove compare --frames`).
-float plane_weight_growth(float count) {
-  const float own = 1.0 / float(kTileSize * kTileSize);  // in a frame
-  return min(1.0 + 4.0 * own * count, 5.0);
+// samples of its own a pixel has, the less it needs those of other surfaces. Fitted to the error
+// after 4 and 32 frames at each tile size (`alcove compare --frames`).
+float plane_weight_growth(float weight) {
+  const float own = 1.0 / float(kTileSize * kTileSize);  // traced frames per frame
+  return min(1.0 + 12.0 * own * weight, 5.0);
 }
 
-void clamp_history(inout History history, Spread spread) {
-  float before = mean_visibility(history.sum.raw_occlusion);
-  float after = clamp_to_spread(before, spread, parameters.clamp_width);
-  if (history.count > 0.0) {
-    history.sum.raw_occlusion.visible = after * history.sum.raw_occlusion.open;
-    history.count = count_after_clamp(history.count, before, after, 0.25);
+// Where something moves, visibility changes on surfaces at rest: the mean of the last few frames
+// then replaces that of all.
+void follow_change(inout History history, float now, float open) {
+  history.recent = update_recent(history.recent, history.weight, now, open);
+  float changed =
+      history.weight > 0.0 ? visibility_changed(history.occlusion, history.recent) : 0.0;
+  history.occlusion = mix(history.occlusion, history.recent, changed);
+  history.weight = mix(history.weight, min(history.weight, kRecentFrames), changed);
+}
+
+void clamp_history(inout History history, Sums now) {
+  vec3 moments = now.moments / now.moments.x;
+  float before = 1.0 - history.occlusion;
+  float after =
+      clamp_to_spread(before, spread_of_sums(moments.y, moments.z, 1.0), parameters.clamp_width);
+  if (history.weight > 0.0) {
+    history.occlusion = 1.0 - after;
+    history.weight = weight_after_clamp(history.weight, before, after, 0.25);
   }
 }
 
-// Where something moves, visibility changes on surfaces that stand still: what the last few frames
-// say then replaces what all of them do.
-void follow_change(inout History history, RawOcclusion now) {
-  float before = mean_visibility(history.sum.raw_occlusion);
-  history.recent = recent_visibility(history.recent, history.count, mean_visibility(now), now.open);
-  float changed = history.count > 0.0 ? visibility_changed(before, history.recent) : 0.0;
-  history.sum.raw_occlusion.visible =
-      mix(before, history.recent, changed) * history.sum.raw_occlusion.open;
-  history.count = mix(history.count, min(history.count, kRecentFrames), changed);
+// A number in [0,1) that is evenly distributed over neighbouring pixels and over frames:
+// interleaved gradient noise [Jimenez 2014].
+float dither_of(vec2 corner) {
+  return fract(52.9829189 *
+               fract(dot(corner, vec2(0.06711056, 0.00583715)) + parameters.dither_offset));
 }
 
-// Whether some pixels may look further than others: a pixel that has hardly any history as far as
-// all of a first frame.
-const bool kLooksFurther = !kFresh && kFilterRadius > kSide;
-
-// The next of tile_around(cell, kFilterRadius) that lies further away than those around the cell
-// and is no corner.
-int next_further(int i) {
-  const int margin = kFilterRadius - kSide;
-  int across = across_of(kFilterRadius);
-  i += 1;
-  bool within = i % across == margin && i / across >= margin && i / across < margin + kAcross;
-  return i + (within ? kAcross : is_corner(kFilterRadius, i) ? 1 : 0);
-}
-
-void add_further(inout Neighbourhood sum, Surface surface, float inverse_squared_width) {
-  int last = across_of(kFilterRadius) * across_of(kFilterRadius) - 1;
-  for (int i = next_further(-1); i < last; i = next_further(i)) {
-    add_tile(sum, surface, inverse_squared_width,
-             fetch_tile(tile_around(surface.cell, kFilterRadius, i)));
+void store_history(Surface surface, bool sky, Result result, float weight, float recent) {
+  float dither = dither_of(surface.corner);
+  HistoryTexel texel;
+  texel.depth = history_depth(parameters.history_depth_scale.xy,
+                              log_inverse_depth(surface.inverse_depth, parameters.history_unit.x));
+  texel.occlusion = result.occlusion;
+  texel.recent = recent;
+  texel.log_weight = log_weight_of(weight);
+  uint bits = pack_history_texel(texel, dither);
+  imageStore(next_history_image, surface.pixel, uvec4(sky ? 0u : bits));
+  if (kBentNormal) {
+    uint residual = pack_residual_dithered(sky ? vec3(0.0) : result.residual, dither);
+    imageStore(next_bent_history_image, surface.pixel, uvec4(residual));
   }
+#ifdef SPECULAR
+  // Written so that a NaN becomes nothing, for it would stay in the history.
+  bool valid = !sky && result.lobe.x >= 0.0 && result.lobe.y < 1e30;
+  LobeTexel lobe = LobeTexel(valid ? result.lobe.x / max(result.lobe.y, 1e-30) : 0.0,
+                             valid ? result.lobe.y : 0.0);
+  imageStore(next_lobe_history_image, surface.pixel, uvec4(pack_lobe_texel(lobe, dither)));
+#endif
 }
 
-// The pixel's sums with this frame's neighbourhood added.
-History advance(Surface surface, Found around[kAround], History history) {
-  surface.plane_weight *= plane_weight_growth(history.count);
-  float inverse_squared_width = inverse_squared_width_of(squared_window(history));
-  Neighbourhood now = add_up(surface, inverse_squared_width, around);
-  if (kLooksFurther && history.count < 2.0) {
-    add_further(now, surface, inverse_squared_width);
+// The neighbourhood of this frame, with a wider one where a pixel has hardly any history.
+Sums sum_neighbourhood(Surface surface, History history, float window) {
+  if (kFresh) {
+    Sums sums = no_sums();
+    add_ring(sums, surface, window, 0);
+    return sums;
   }
+  Sums sums = sum_near(surface, window);
+  if (kFilterRadius > kNearRadius && history.weight < 1.5) {
+    add_ring(sums, surface, window, kNearRadius);
+  }
+  return sums;
+}
+
+void reconstruct(Surface surface, bool sky) {
+  History history = no_history();
+  if (!kFresh) {
+    history = kStatic ? read_static(surface) : read_moving(surface);
+  }
+  surface.plane_weight *= plane_weight_growth(history.weight);
+  float window = window_of(history);
+  Sums now = sum_neighbourhood(surface, history, window);
   if (kClamp) {
-    vec3 moments = now.moments / now.moments.x;
-    clamp_history(history, spread_of_sums(moments.y, moments.z, 1.0));
+    clamp_history(history, now);
   }
   if (kMotion) {
-    follow_change(history, now.sum.raw_occlusion);
+    follow_change(history, now.occluded / max(now.open, 1e-37), now.open);
   }
-  // Not divided by the weight found: a frame that searched the pixel itself counts for more than
-  // one that searched its neighbours. Divided by the window's size, so that wide ones do not.
-  float fresh = accumulation_weight(history.count, parameters.longest);
-  float scale = 0.42 * kWidth * kWidth / squared_window(history) * fresh;
-  History next;
-  next.sum = no_sum();
-  add(next.sum, 1.0 - fresh, history.sum);
-  add(next.sum, scale, now.sum);
+  // Not normalised: a frame that traced the pixel itself has more weight than one that traced its
+  // neighbours. Scaled by the traced pixels that the window's area holds, so that the mean weight
+  // of a frame is about 1 for every window and tile size.
+  float scale = 1.3 * float(kTileSize * kTileSize) * window;
+  float open = max(scale * now.open, 1e-37);
+  float total = history.weight + open;
+  float inverse_total = 1.0 / total;
+  Result result;
+  result.occlusion =
+      saturate((history.weight * history.occlusion + scale * now.occluded) * inverse_total);
   if (kBentNormal) {
-    float visibility = mean_visibility(next.sum.raw_occlusion);
-    next.sum.residual =
-        converged_residual(next.sum.residual, scale * now.expected_residual, visibility);
+    vec3 fresh =
+        converged_residual(now.residual, now.expected_residual, 1.0 - result.occlusion) * scale;
+    result.residual = (history.weight * history.residual + fresh) * inverse_total;
   }
-  next.count = next_count(history.count, parameters.longest);
-  next.recent = kMotion ? history.recent : mean_visibility(next.sum.raw_occlusion);
-  return next;
+  result.lobe =
+      kLobe ? (history.weight * history.lobe + scale * now.lobe) * inverse_total : vec2(0.0);
+  float recent = kMotion ? history.recent : result.occlusion;
+  store_history(surface, sky, result, total, recent);
+  store(surface, sky, result);
 }
 
 #endif

@@ -6,24 +6,31 @@
 ALCOVE_MATHS_BEGIN
 
 struct ReconstructParameters {
-  // To the image of the frame before, from (x s, y s, depth, 1), x and y in pixels and s the depth
-  // in perspective and 1 in orthographic views: x w and y w in pixels, the depth there, and w.
+  // From (x, y, 1, 1/depth) in perspective or (x, y, depth, 1) in orthographic views, x and y in
+  // pixels of this frame, to the previous frame: x w and y w in pixels there, w, and the depth
+  // there (over the depth here in perspective). Rows, so that each is one dot product.
   mat4 previous_from_pixel;
-  mat4 normal_from_view;  // rotation from view space to the space of the normals
-  mat4 before_from_view;  // rotation from view space to that of the last frame
-  vec4 slope;             // xy: ray_per_px(); zw: of the ray at the image's corner; view space
-  // Of the frame before: xy its size in pixels, zw that in parts of this frame's.
-  vec4 previous_size;
-  vec4 history_depth;      // for held_depth(): xy of this frame, zw of the frame before
-  vec4 motion;             // from motion vectors to pixels of the frame before: xy scale, zw offset
-  vec2 interleave_offset;  // which pixel of each block was searched this frame
-  float window_px;         // width of the window over one frame's searches
-  float tolerance;         // scale of distances from the tangent plane, in depths
-  float longest;           // frames that history counts at most
-  float clamp_width;       // history is held to so many deviations of this frame's neighbourhood
-  float roughness;         // perceptual, of every surface where no texture has it
-  float power;             // of shaped_visibility(), as the next
-  float intensity;
+  mat4 normal_from_view;     // rotation from view space to the space of the normals
+  mat4 previous_from_view;   // rotation from view space to that of the previous frame
+  vec4 slope;                // xy: ray_per_px(); zw: of the ray at the image's corner; view space
+  vec4 previous_size;        // of the previous frame: xy its size in pixels, zw as parts of this
+                             // frame's
+  vec4 history_depth_scale;  // of history_depth(): xy of this frame, zw of the previous frame
+  vec4 motion;         // from motion vectors to pixels of the previous frame: xy scale, zw offset
+  vec2 history_unit;   // of this and of the previous frame: a power of two near the near plane,
+                       // in which depths are held, so that no unit of length changes a bit
+  vec2 history_texel;  // 1 over the size of the history's texture
+  vec2 interleave_offset;   // pixel of each tile that was traced this frame
+  float window_px;          // width of the filter's window in a first frame, pixels
+  float tolerance;          // scale of distances from the tangent plane, in depths
+  float history_sharpness;  // of history_agreement(), for a surface seen head-on
+  float history_slack;      // of history_agreement()
+  float largest_weight;     // of the history, frames
+  float clamp_width;        // of clamp_to_spread()
+  float roughness;          // perceptual, of every surface where no texture has it
+  float power;              // of shaped_visibility()
+  float intensity;          // of shaped_visibility()
+  float dither_offset;      // [0,1), another one each frame
 };
 
 ALCOVE_MATHS_END

@@ -41,6 +41,8 @@ VkDescriptorType descriptor_type(char binding) {
   switch (binding) {
     case 's':
       return VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
+    case 'g':
+      return VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
     case 't':
       return VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
     default:
@@ -94,6 +96,7 @@ struct Kernels::State {
   VkPhysicalDevice physical_device = VK_NULL_HANDLE;
   VkDevice device = VK_NULL_HANDLE;
   VkPipelineCache cache = VK_NULL_HANDLE;  // the caller's
+  VkSampler sampler = VK_NULL_HANDLE;      // nearest, clamps to the edge: for gathers
   std::array<VkShaderModule, kShaderCount> modules{};
   std::array<VkDescriptorSetLayout, kShaderCount> set_layouts{};
   std::array<VkPipelineLayout, kShaderCount> pipeline_layouts{};
@@ -112,6 +115,7 @@ struct Kernels::State {
   State& operator=(const State&) = delete;
   ~State();
 
+  tl::expected<void, Error> create_sampler();
   tl::expected<void, Error> create_layouts();
   tl::expected<void, Error> create_slots(std::uint32_t count);
   tl::expected<void, Error> create_parameters(std::uint32_t slot_count);
@@ -141,6 +145,22 @@ Kernels::State::~State() {
   for (const FrameSlot& frame : slots) {
     vk.vkDestroyDescriptorPool(device, frame.pool, nullptr);
   }
+  vk.vkDestroySampler(device, sampler, nullptr);
+}
+
+tl::expected<void, Error> Kernels::State::create_sampler() {
+  const VkSamplerCreateInfo info{.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
+                                 .magFilter = VK_FILTER_NEAREST,
+                                 .minFilter = VK_FILTER_NEAREST,
+                                 .mipmapMode = VK_SAMPLER_MIPMAP_MODE_NEAREST,
+                                 .addressModeU = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+                                 .addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+                                 .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE};
+  if (const VkResult result = vk.vkCreateSampler(device, &info, nullptr, &sampler);
+      result != VK_SUCCESS) {
+    return failure("a sampler", result);
+  }
+  return {};
 }
 
 tl::expected<void, Error> Kernels::State::create_layouts() {
@@ -151,7 +171,7 @@ tl::expected<void, Error> Kernels::State::create_layouts() {
     described[0] = {0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr};
     for (std::uint32_t b = 0; b < bindings.size(); ++b) {
       described[b + 1] = {b + 1, descriptor_type(bindings[b]), 1, VK_SHADER_STAGE_COMPUTE_BIT,
-                          nullptr};
+                          bindings[b] == 'g' ? &sampler : nullptr};
     }
     const VkDescriptorSetLayoutCreateInfo set_info{
         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
@@ -176,9 +196,10 @@ tl::expected<void, Error> Kernels::State::create_slots(std::uint32_t count) {
   const auto worst = [](VkDescriptorType type) {
     return VkDescriptorPoolSize{type, kMaxDispatches * most_bound(type)};
   };
-  const std::array<VkDescriptorPoolSize, 4> sizes{
+  const std::array<VkDescriptorPoolSize, 5> sizes{
       {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, kMaxDispatches},
        worst(VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
+       worst(VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER),
        worst(VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE),
        worst(VK_DESCRIPTOR_TYPE_STORAGE_IMAGE)}};
   const VkDescriptorPoolCreateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
@@ -311,7 +332,7 @@ void Kernels::State::write_set(VkDescriptorSet set, Shader shader,
   for (std::uint32_t i = 0; i < views.size(); ++i) {
     images[i + 1] = {
         VK_NULL_HANDLE, views[i],
-        bindings[i] == 's' ? VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL : VK_IMAGE_LAYOUT_GENERAL};
+        bindings[i] == 't' ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
   }
   vk.vkUpdateDescriptorSets(device, static_cast<std::uint32_t>(bindings.size() + 1), writes.data(),
                             0, nullptr);
@@ -346,6 +367,7 @@ tl::expected<Kernels, Error> Kernels::create(const framegraph::DeviceHandles& de
   state->device = device.device;
   state->cache = cache;
   auto done = check_limits(state->vk, device.physical_device)
+                  .and_then([&] { return state->create_sampler(); })
                   .and_then([&] { return state->create_layouts(); })
                   .and_then([&] { return state->create_slots(frames_in_flight); })
                   .and_then([&] { return state->create_parameters(frames_in_flight); });

@@ -33,16 +33,21 @@ namespace alcove::passes {
   return precision == Precision::unorm8 ? VK_FORMAT_R8G8B8A8_SNORM : colour_format(precision);
 }
 
-// What a search leaves, and its history: two words, and two more for a lobe.
+// Raw occlusion, as add_gtao writes it: two words, and two more for a lobe.
 [[nodiscard]] inline VkFormat raw_format(bool lobe) {
   return lobe ? VK_FORMAT_R32G32B32A32_UINT : VK_FORMAT_R32G32_UINT;
 }
 inline constexpr VkFormat kBentRawFormat = VK_FORMAT_R32G32_UINT;
 
-// Bytes a pixel of all textures of a history, as add_reconstruct() declares them: two of
-// raw_format() and, with bent normals, two of RGBA16_SFLOAT.
+// Histories: of visibility (maths::pack_history_texel), of bent normals (maths::pack_residual) and
+// of GGX lobes (maths::pack_lobe_texel).
+inline constexpr VkFormat kHistoryFormat = VK_FORMAT_R32_UINT;
+inline constexpr VkFormat kBentHistoryFormat = VK_FORMAT_R32_UINT;
+inline constexpr VkFormat kLobeHistoryFormat = VK_FORMAT_R16_UINT;
+
+// Bytes a pixel of all textures of a history, as add_reconstruct() declares them: two of each.
 [[nodiscard]] inline std::uint64_t history_bytes(bool lobe, bool bent) {
-  return 2u * ((lobe ? 16u : 8u) + (bent ? 8u : 0u));
+  return 2u * (4u + (lobe ? 2u : 0u) + (bent ? 4u : 0u));
 }
 
 }  // namespace alcove::passes

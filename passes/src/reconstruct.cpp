@@ -28,26 +28,24 @@ using framegraph::TextureHistory;
 
 namespace {
 
-// Still frames after which every pixel of a block of 4 has been searched once.
+// Static frames after which every pixel of a tile of 4x4 has been traced once.
 constexpr std::uint32_t kConvergedFrames = 16;
 
-// What lies before a frame: all that its pipeline depends on besides settings, inputs and the kind
-// of projection.
+// The state of the history at a frame. The pipeline depends on it, on settings, on inputs and on
+// the kind of projection.
 enum class Past : std::uint8_t {
   none,  // no history, or none that can be read
   moving,
-  still,    // the frame before shows the very same
-  settled,  // as do kConvergedFrames
+  unchanged,  // the previous frame shows the same
 };
 
-// The history of bent normals that goes with one of this name. On the stack, so that a steady frame
-// allocates nothing for it.
-class BentHistoryName {
+// The name of another history that goes with `history_name`. Its memory is part of the object, so
+// that a steady frame allocates nothing for it.
+class DerivedHistoryName {
  public:
-  explicit BentHistoryName(std::string_view history_name) {
-    constexpr std::string_view kAfter = " bent normal";
-    text_.reserve(history_name.size() + kAfter.size());
-    text_.append(history_name).append(kAfter);
+  DerivedHistoryName(std::string_view history_name, std::string_view suffix) {
+    text_.reserve(history_name.size() + suffix.size());
+    text_.append(history_name).append(suffix);
   }
   operator std::string_view() const { return text_; }
 
@@ -57,44 +55,51 @@ class BentHistoryName {
   std::pmr::string text_{&memory_};
 };
 
-// All that the pass touches; null where it is not wanted.
+constexpr std::string_view kBentSuffix = " bent normal";
+constexpr std::string_view kLobeSuffix = " specular";
+
+// A history's texture of the previous frame and that of this frame; null where it is not wanted.
+struct HistoryTextures {
+  Texture previous;
+  Texture next;
+};
+
+// Every texture that the pass accesses; null where it is not wanted.
 struct Textures {
   ReconstructInputs inputs;
   Occlusion result;
-  Texture history;
-  Texture next_history;  // the history where that is updated in place, as with the bent one
-  Texture bent_history;
-  Texture next_bent_history;
+  HistoryTextures history;
+  HistoryTextures bent_history;
+  HistoryTextures lobe_history;
 };
 
-// Declares the histories; `valid` is whether last frame's can be read. One that is not wanted now
-// is old by the time that it is wanted again.
+// Declares a history, or resets it where it is not wanted, since it is out of date by the time that
+// it is wanted again. Clears `valid` where the previous frame's texture cannot be read.
+HistoryTextures create_history(Graph& graph, bool wanted, std::string_view name, VkFormat format,
+                               framegraph::Extent largest, bool& valid) {
+  if (!wanted) {
+    graph.reset_history(name);
+    return {};
+  }
+  const TextureHistory history = graph.create_texture_history(name, {format, largest});
+  valid = valid && history.validity == framegraph::HistoryValidity::valid;
+  return {history.previous(), history.current};
+}
+
+// Declares the histories; `valid` is whether those of the previous frame can be read.
 void create_histories(Graph& graph, const ReconstructSettings& settings,
                       std::string_view history_name, framegraph::Extent largest, Textures& textures,
                       bool& valid) {
-  const BentHistoryName bent_name(history_name);
   const bool wanted = settings.history_frames > 0;
-  const bool bent_wanted = wanted && textures.inputs.raw_occlusion.bent;
-  if (!wanted) {
-    graph.reset_history(history_name);
-  }
-  if (!bent_wanted) {
-    graph.reset_history(bent_name);
-  }
-  if (wanted) {
-    const TextureHistory history = graph.create_texture_history(
-        history_name, {raw_format(textures.inputs.raw_occlusion.lobe), largest});
-    valid = history.validity == framegraph::HistoryValidity::valid;
-    textures.history = history.previous();
-    textures.next_history = history.current;
-  }
-  if (bent_wanted) {
-    const TextureHistory bent =
-        graph.create_texture_history(bent_name, {VK_FORMAT_R16G16B16A16_SFLOAT, largest});
-    valid = valid && bent.validity == framegraph::HistoryValidity::valid;
-    textures.bent_history = bent.previous();
-    textures.next_bent_history = bent.current;
-  }
+  const RawOcclusionTextures& raw_occlusion = textures.inputs.raw_occlusion;
+  valid = wanted;
+  textures.history = create_history(graph, wanted, history_name, kHistoryFormat, largest, valid);
+  textures.bent_history = create_history(graph, wanted && raw_occlusion.bent,
+                                         DerivedHistoryName(history_name, kBentSuffix),
+                                         kBentHistoryFormat, largest, valid);
+  textures.lobe_history = create_history(graph, wanted && raw_occlusion.lobe,
+                                         DerivedHistoryName(history_name, kLobeSuffix),
+                                         kLobeHistoryFormat, largest, valid);
 }
 
 // Declares the textures that the pass writes. `valid` is whether last frame's history can be read.
@@ -143,24 +148,16 @@ void declare_accesses(const Graph& graph, framegraph::PassBuilder& pass, Texture
   write(textures.result.visibility);
   write(textures.result.bent_normal);
   write(textures.result.specular);
-  const auto declare_history = [&](Texture& history, Texture& next) {
-    if (!history) {
-      return;
-    }
-    if (next == history) {
-      history = next = pass.write(history, framegraph::access::storage_read_write_compute);
-      return;
-    }
-    pass.read(history, stored);
-    write(next);
-  };
-  declare_history(textures.history, textures.next_history);
-  declare_history(textures.bent_history, textures.next_bent_history);
+  for (HistoryTextures* const history :
+       {&textures.history, &textures.bent_history, &textures.lobe_history}) {
+    read(history->previous, sampled);
+    write(history->next);
+  }
 }
 
-// As many as the shader can have.
+// The views of a dispatch; the array has room for all bindings of the shader.
 struct Bindings {
-  std::array<VkImageView, 13> views{};
+  std::array<VkImageView, 15> views{};
   std::size_t count = 0;
 
   void add(std::initializer_list<VkImageView> more) {
@@ -170,7 +167,7 @@ struct Bindings {
   }
 };
 
-// A result that is wanted.
+// One of the results that are wanted.
 Texture any_of(const Occlusion& results) {
   if (results.visibility) {
     return results.visibility;
@@ -189,14 +186,18 @@ Bindings bindings_of(RecordContext& context, const Textures& textures) {
                 context.view(in.inverse_depth), context.view(in.normals),
                 view_or(context, out.visibility, written),
                 view_or(context, out.bent_normal, written)});
-  if (textures.history) {
-    bindings.add({view_or(context, in.motion, in.normals), context.view(textures.history),
-                  view_or(context, textures.bent_history, in.inverse_depth),
-                  context.view(textures.next_history),
-                  view_or(context, textures.next_bent_history, written)});
+  if (textures.history.next) {
+    bindings.add({context.view(textures.history.previous), context.view(textures.history.next),
+                  view_or(context, in.motion, in.normals),
+                  view_or(context, textures.bent_history.previous, textures.history.previous),
+                  view_or(context, textures.bent_history.next, textures.history.next)});
   }
   if (in.raw_occlusion.lobe) {
     bindings.add({view_or(context, in.roughness, in.normals), context.view(out.specular)});
+  }
+  if (textures.lobe_history.next) {
+    bindings.add(
+        {context.view(textures.lobe_history.previous), context.view(textures.lobe_history.next)});
   }
   return bindings;
 }
@@ -217,14 +218,11 @@ Past past_of(const Frame& frame, const ReconstructSizes& sizes, bool history_val
   if (motion || !same_size || frame.view != frame.previous_view) {
     return Past::moving;
   }
-  return frame.static_frames >= kConvergedFrames ? Past::settled : Past::still;
+  return Past::unchanged;
 }
 
-// Whether a pixel reads no history but its own.
-bool is_static(Past past) { return past == Past::still || past == Past::settled; }
-
-// Of the shader, in its order.
-std::array<std::uint32_t, 14> constants_of(const ReconstructInputs& inputs,
+// The shader's specialisation constants, in its order.
+std::array<std::uint32_t, 13> constants_of(const ReconstructInputs& inputs,
                                            const ReconstructSettings& settings, bool perspective,
                                            Past past) {
   return {inputs.raw_occlusion.tile_size,
@@ -233,12 +231,11 @@ std::array<std::uint32_t, 14> constants_of(const ReconstructInputs& inputs,
           flag(inputs.motion && past == Past::moving),
           flag(perspective),
           flag(settings.clamp_width > 0.0f),
-          flag(is_static(past)),
+          flag(past == Past::unchanged),
           flag(bool(inputs.roughness)),
           channel_if(bool(inputs.roughness), settings.roughness_channel),
           flag(past == Past::none),
           flag(settings.visibility),
-          flag(past == Past::settled),
           static_cast<std::uint32_t>(inputs.normal_encoding),
           flag(settings.power != 1.0f || settings.intensity != 1.0f)};
 }
@@ -252,7 +249,7 @@ tl::expected<Kernel, Error> get_kernel(const Frame& frame, const ReconstructInpu
                              constants_of(inputs, settings, perspective, of));
   };
   if (history && frame.prepare) {
-    for (const Past each : {Past::none, Past::moving, Past::still, Past::settled}) {
+    for (const Past each : {Past::none, Past::moving, Past::unchanged}) {
       if (auto made = get(each); !made) {
         return made;
       }
@@ -261,8 +258,8 @@ tl::expected<Kernel, Error> get_kernel(const Frame& frame, const ReconstructInpu
   return get(past);
 }
 
-// View-space positions from (x s, y s, depth, 1), as ReconstructParameters::previous_from_pixel has
-// them.
+// To view-space positions from (x s, y s, depth, 1), x and y in pixels and s the depth in
+// perspective and 1 in orthographic views.
 maths::mat4 view_from_pixel(const maths::Projection& p) {
   const maths::vec2 per_px = maths::ray_per_px(p);
   maths::mat4 m(0.0f);
@@ -285,21 +282,54 @@ maths::mat4 pixel_from_view(const maths::Projection& p) {
   return m;
 }
 
-// Scale and offset for maths::held_depth(). A perspective's near plane is at the least half of full
-// precision, 2^-14; an orthographic view, whose depths may begin anywhere, is held from its near
-// plane to its far plane. Powers of two, so that no digit is lost.
-maths::vec2 history_depth(const maths::Projection& p) {
+// Octaves of depth that the history of a perspective view can tell apart, from the near plane on.
+// 14 bits then resolve depth to 2^-10 of itself, or finer where the far plane is nearer.
+constexpr float kLargestDepthOctaves = 22.0f;
+
+// The largest power of two that is no larger than the near plane's distance.
+float history_unit(const maths::Projection& p) {
+  constexpr float kLeast = 1e-30f;
+  return std::ldexp(1.0f, std::ilogb(std::max(p.near_far.x, kLeast)));
+}
+
+// Scale and offset of maths::history_depth(). A perspective view's depth is stored as its
+// logarithm, an orthographic view's as it is, both between the near and the far plane.
+maths::vec2 history_depth_scale(const maths::Projection& p) {
   constexpr float kLeast = 1e-30f;
   const float near = p.near_far.x;
+  const float far = p.near_far.y;
   if (is_perspective(p)) {
-    return {std::ldexp(1.0f, -14 - std::ilogb(std::max(near, kLeast))), 0.0f};
+    const float unit = history_unit(p);
+    const float log_near = std::log2(std::max(near, kLeast) / unit);
+    const float octaves =
+        far >= maths::kSkyDepth
+            ? kLargestDepthOctaves
+            : std::clamp(std::log2(far / std::max(near, kLeast)), 0.01f, kLargestDepthOctaves);
+    return {1.0f / octaves, (log_near + octaves) / octaves};
   }
-  const float scale = std::ldexp(1.0f, 14 - std::ilogb(std::max(p.near_far.y - near, kLeast)));
+  const float scale = 1.0f / std::max(far - near, kLeast);
   return {scale, -near * scale};
 }
 
-// The width of the window over one frame's searches: few slices are filtered far, many hardly
-// further than the blocks lie apart. By the error of first frames (`alcove compare --frames 1`).
+// Half a step of the 14 bits of a stored depth, and what computing it rounds.
+constexpr float kHistorySlack = 0.75f / 16383.0f;
+
+// ReconstructParameters::history_sharpness. A texel counts less the further it lies off the tangent
+// plane, and not at all from 1.5 pixels on, or from 0.3 % of the depth in perspective where pixels
+// are larger. It must at least be 0.12 % there, about the step of a stored depth.
+float history_sharpness(const maths::Projection& p, maths::vec2 scale) {
+  const float pixel = std::abs(maths::ray_per_px(p).y);
+  if (is_perspective(p)) {
+    // The stored depth changes by scale / ln 2 times a relative change of depth.
+    constexpr float kLn2 = 0.69314718f;
+    return kLn2 / (std::clamp(1.5f * pixel, 0.0012f, 0.003f) * scale.x);
+  }
+  return 1.0f / std::max(1.5f * pixel * scale.x, 2.0f * kHistorySlack);
+}
+
+// The width in pixels of the filter's window in a first frame: wide for few slices, for many hardly
+// wider than the distance between tiles. Fitted to the error of first frames (`alcove compare
+// --frames 1`).
 float window_px(const RawOcclusionTextures& raw_occlusion) {
   const float few = 1.1f / std::sqrt(static_cast<float>(raw_occlusion.slices));
   return static_cast<float>(raw_occlusion.tile_size) * std::max(few, 0.55f);
@@ -316,18 +346,27 @@ maths::ReconstructParameters parameters_of(const Frame& frame, const maths::Proj
   const maths::mat4 to_view =
       view_from_normal(frame, inputs.normals_in_view_space, inputs.normals_forward_z);
   maths::ReconstructParameters parameters{};
-  parameters.previous_from_pixel =
-      maths::mat4(maths::dmat4(pixel_from_view(previous)) * to_previous * maths::dmat4(from_pixel));
+  const maths::mat4 previous_from_pixel = maths::transpose(maths::mat4(
+      maths::dmat4(pixel_from_view(previous)) * to_previous * maths::dmat4(from_pixel)));
+  // x, y, w and depth.
+  parameters.previous_from_pixel = maths::mat4(previous_from_pixel[0], previous_from_pixel[1],
+                                               previous_from_pixel[3], previous_from_pixel[2]);
   parameters.normal_from_view = maths::transpose(to_view);
-  parameters.before_from_view = maths::mat4(maths::mat3(maths::mat4(to_previous)));
+  parameters.previous_from_view = maths::mat4(maths::mat3(maths::mat4(to_previous)));
   parameters.slope = maths::vec4(maths::ray_per_px(projection), projection.uv_to_slope.z,
                                  projection.uv_to_slope.w);
   parameters.tolerance =
       1.0f / (settings.filter_tolerance_px * std::abs(maths::ray_per_px(projection).y));
-  parameters.longest = static_cast<float>(settings.history_frames);
+  parameters.largest_weight = static_cast<float>(settings.history_frames) - 1.0f;
   parameters.clamp_width = settings.clamp_width;
   parameters.previous_size = maths::vec4(previous.size_px, previous.size_px / projection.size_px);
-  parameters.history_depth = maths::vec4(history_depth(projection), history_depth(previous));
+  parameters.history_depth_scale =
+      maths::vec4(history_depth_scale(projection), history_depth_scale(previous));
+  parameters.history_unit = {history_unit(projection), history_unit(previous)};
+  parameters.history_sharpness = history_sharpness(projection, history_depth_scale(previous));
+  parameters.history_slack = kHistorySlack;
+  // The golden ratio's fractions are spread evenly over any run of frames.
+  parameters.dither_offset = static_cast<float>(frame.index * 2654435769u) * 0x1p-32f;
   const MotionConvention& motion = inputs.motion_convention;
   parameters.motion =
       maths::vec4(maths::vec2(motion.scale[0], motion.scale[1]) * previous.size_px,
@@ -336,17 +375,6 @@ maths::ReconstructParameters parameters_of(const Frame& frame, const maths::Proj
   parameters.power = settings.power;
   parameters.intensity = settings.intensity;
   return parameters;
-}
-
-// An invocation has a cell of pixels between the searched ones, of which there is one more than of
-// blocks, since the outermost stick out of the image. A search of every pixel leaves nothing
-// between.
-VkExtent3D cells_of(VkExtent3D size, std::uint32_t tile_size) {
-  if (tile_size == 1) {
-    return size;
-  }
-  return {(size.width + tile_size - 1) / tile_size + 1,
-          (size.height + tile_size - 1) / tile_size + 1, 1};
 }
 
 // Without a history nothing of the frame before is read.
@@ -401,36 +429,36 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& given_frame,
   if (!kernel) {
     return tl::unexpected(kernel.error());
   }
-  if (is_static(past)) {
-    textures.next_history = textures.history;
-    textures.next_bent_history = textures.bent_history;
-  }
   auto pass = frame.graph.add_pass("reconstruct");
   declare_accesses(frame.graph, pass, textures);
-  const auto [phase_x, phase_y] = interleave_offset_of(inputs.raw_occlusion.tile_size, frame.index);
+  const auto [offset_x, offset_y] =
+      interleave_offset_of(inputs.raw_occlusion.tile_size, frame.index);
   maths::ReconstructParameters parameters =
       parameters_of(frame, *projection, *previous, inputs, settings);
   parameters.window_px = window_px(inputs.raw_occlusion);
   // Distances from the plane count for more with the slices, as the window narrows with them.
   parameters.tolerance *= std::sqrt(static_cast<float>(inputs.raw_occlusion.slices));
-  if (past == Past::settled) {  // nothing to follow: all frames count alike
-    parameters.longest = static_cast<float>(maths::kMaxHistoryFrames);
+  // Nothing changes, so all frames count alike.
+  if (past == Past::unchanged && frame.static_frames >= kConvergedFrames) {
+    parameters.largest_weight = static_cast<float>(maths::kMaxHistoryFrames) - 1.0f;
   }
+  parameters.history_texel = 1.0f / maths::vec2(sizes->largest.width, sizes->largest.height);
   parameters.interleave_offset =
-      maths::vec2(static_cast<float>(phase_x), static_cast<float>(phase_y));
-  pass.record([&kernels = frame.kernels, kernel = *kernel, textures, parameters,
-               tile_size = inputs.raw_occlusion.tile_size](RecordContext& context) {
-    const Bindings bindings = bindings_of(context, textures);
-    const std::span<const VkImageView> bound(bindings.views.data(), bindings.count);
-    kernels.dispatch(context, kernel, bound, bytes_of(parameters),
-                     cells_of(context.extent(textures.inputs.inverse_depth), tile_size));
-  });
+      maths::vec2(static_cast<float>(offset_x), static_cast<float>(offset_y));
+  pass.record(
+      [&kernels = frame.kernels, kernel = *kernel, textures, parameters](RecordContext& context) {
+        const Bindings bindings = bindings_of(context, textures);
+        const std::span<const VkImageView> bound(bindings.views.data(), bindings.count);
+        kernels.dispatch(context, kernel, bound, bytes_of(parameters),
+                         context.extent(textures.inputs.inverse_depth));
+      });
   return textures.result;
 }
 
 void drop_reconstruct_history(Graph& graph, std::string_view history_name) {
   graph.drop_history(history_name);
-  graph.drop_history(BentHistoryName(history_name));
+  graph.drop_history(DerivedHistoryName(history_name, kBentSuffix));
+  graph.drop_history(DerivedHistoryName(history_name, kLobeSuffix));
 }
 
 }  // namespace alcove::passes

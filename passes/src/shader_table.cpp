@@ -37,14 +37,14 @@ const ShaderSource& shader_source(Shader shader) {
       {kReconstruct, "tttstt"},
       {kReconstructHistory,
        "tttstt"
-       "stttt"},
+       "gtsgt"},
       {kReconstructSpecular,
        "tttstt"
        "st"},
       {kReconstructSpecularHistory,
        "tttstt"
-       "stttt"
-       "st"},
+       "gtsgt"
+       "stgt"},
       {kMultiBounce, "sst"},
       {kGtso, "ssssst"},
       {kGtsoByTable, "ssssstb", kGtsoTable},

@@ -11,7 +11,8 @@ namespace alcove::passes {
 
 struct ShaderSource {
   std::span<const std::uint32_t> code;
-  // One letter a binding from binding 1 on: 's' a sampled image, 't' a storage image, and as the
+  // One letter a binding from binding 1 on: 's' a sampled image, 'g' one with a
+  // nearest sampler that clamps to the edge, 't' a storage image, and as the
   // last of them 'b' a storage buffer with `table`.
   std::string_view bindings;
   std::span<const std::uint32_t> table = {};

@@ -51,10 +51,13 @@ const float kLargestResidual = 4.0f / 3.0f;
 
 // A residual in 10 bits a component, each clamped to kLargestResidual in size and within 0.0014
 // after unpack_residual(); 0 comes back as it is.
-ALCOVE_INLINE uint pack_residual(vec3 residual) {
-  vec3 scaled = clamp(residual * (1.0f / kLargestResidual), -1.0f, 1.0f) * 511.0f + 512.5f;
+ALCOVE_INLINE uint pack_residual_dithered(vec3 residual, float dither) {
+  vec3 scaled =
+      clamp(residual * (1.0f / kLargestResidual), -1.0f, 1.0f) * 511.0f + (512.0f + dither);
   return uint(scaled.x) | (uint(scaled.y) << 10u) | (uint(scaled.z) << 20u);
 }
+
+ALCOVE_INLINE uint pack_residual(vec3 residual) { return pack_residual_dithered(residual, 0.5f); }
 
 ALCOVE_INLINE vec3 unpack_residual(uint bits) {
   vec3 scaled =

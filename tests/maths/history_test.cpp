@@ -1,90 +1,127 @@
-// What history is kept, and how frames add up.
+// What the history stores, and how frames accumulate.
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "maths/history.h"
-#include "maths/projection.h"
 #include "random_input.h"
 
 namespace alcove::maths_test {
 namespace {
 
-maths::HistoryTexel texel_of(float visibility, float open, float depth, float count, float recent,
-                             unsigned quantised_normal) {
+maths::HistoryTexel texel_of(float depth, float occlusion, float recent, float log_weight) {
   maths::HistoryTexel texel;
-  texel.visibility = visibility;
-  texel.open = open;
   texel.depth = depth;
-  texel.count = count;
+  texel.occlusion = occlusion;
   texel.recent = recent;
-  texel.quantised_normal = quantised_normal;
+  texel.log_weight = log_weight;
   return texel;
 }
 
-maths::HistoryTexel stored(const maths::HistoryTexel& texel) {
-  return maths::unpack_history_texel(maths::pack_history_texel(texel));
+maths::HistoryTexel stored(const maths::HistoryTexel& texel, float dither) {
+  return maths::unpack_history_texel(maths::pack_history_texel(texel, dither));
 }
 
-maths::HistoryTexel held_as(float depth) {
-  return stored(texel_of(1.0f, 0.0f, depth, 0.0f, 0.0f, 0u));
-}
-
-TEST(History, DepthThatDiffersIsRejectedAndSlantedDepthGivenRoom) {
-  EXPECT_EQ(maths::history_weight(0.0f, 0.02f, 1.0f), 1.0f);
-  EXPECT_EQ(maths::history_weight(0.03f, 0.02f, 1.0f), 0.0f);
-  EXPECT_GT(maths::history_weight(0.03f, 0.02f, 0.2f), 0.5f);
-  const float sky = maths::held_apart(10.0f, maths::kSkyDepth);
-  EXPECT_EQ(maths::history_weight(sky, 0.02f, 0.0f), 0.0f);
-  EXPECT_EQ(maths::history_weight(maths::held_apart(0.0f, 0.0f), 0.02f, 0.0f), 1.0f);
-}
-
-TEST(History, NormalsThatDifferAreRejected) {
-  const auto weight = [](float angle) { return maths::history_weight_by_normal(angle * angle); };
-  EXPECT_EQ(weight(0.0f), 1.0f);
-  EXPECT_GE(weight(0.2f), 0.9f);
-  EXPECT_EQ(weight(0.65f), 0.0f);
-  EXPECT_EQ(weight(3.0f), 0.0f);
-}
-
-TEST(History, WhatAHalfRoundsAwayIsNoDistance) {
+TEST(History, TexelKeepsItsValuesWithinTheirSteps) {
   RandomInput random;
-  for (int i = 0; i < 2000; ++i) {
-    const float depth = std::exp(random.uniform(-7.0f, 11.0f));
-    const float held = held_as(depth).depth;
-    EXPECT_EQ(maths::held_apart(depth, held), 0.0f);
-    EXPECT_NEAR(maths::held_apart(depth, 1.01f * depth), 0.01f, 6e-4f);
+  for (int i = 0; i < 20000; ++i) {
+    const maths::HistoryTexel texel = texel_of(random.uniform(0, 1), random.uniform(0, 1),
+                                               random.uniform(0, 1), random.uniform(0, 1));
+    const maths::HistoryTexel back = stored(texel, random.uniform(0.0f, 0.999f));
+    EXPECT_NEAR(back.depth, texel.depth, 0.5f / 16383.0f + 2e-6f);
+    EXPECT_NEAR(back.occlusion, texel.occlusion, 1.0f / 1023.0f + 2e-6f);
+    EXPECT_NEAR(std::sqrt(back.recent), std::sqrt(texel.recent), 1.0f / 15.0f + 2e-6f);
+    EXPECT_NEAR(back.log_weight, texel.log_weight, 1.0f / 15.0f + 2e-6f);
   }
 }
 
-TEST(History, EqualFramesWeighTheSameUntilTheLongest) {
+TEST(History, TexelKeepsItsBoundsExactlyAtAnyDither) {
+  for (const float dither : {0.0f, 0.3f, 0.9999f}) {
+    const maths::HistoryTexel least = stored(texel_of(0, 0, 0, 0), dither);
+    EXPECT_EQ(least.depth, 0.0f);
+    EXPECT_EQ(least.occlusion, 0.0f);
+    EXPECT_EQ(least.recent, 0.0f);
+    EXPECT_EQ(least.log_weight, 0.0f);
+    const maths::HistoryTexel most = stored(texel_of(1, 1, 1, 1), dither);
+    EXPECT_FLOAT_EQ(most.depth, 1.0f);
+    EXPECT_FLOAT_EQ(most.occlusion, 1.0f);
+    EXPECT_FLOAT_EQ(most.recent, 1.0f);
+    EXPECT_FLOAT_EQ(most.log_weight, 1.0f);
+    const maths::HistoryTexel beyond = stored(texel_of(1, 9, 9, 9), dither);
+    EXPECT_FLOAT_EQ(beyond.occlusion, 1.0f);
+    EXPECT_FLOAT_EQ(beyond.log_weight, 1.0f);
+  }
+}
+
+TEST(History, DitherKeepsTheMean) {
+  constexpr int kSteps = 1000;
+  for (const float value : {0.0004f, 0.1234f, 0.5f, 0.9871f}) {
+    for (const float weight : {0.3f, 2.0f, 17.0f, 100.0f}) {
+      double occlusion = 0.0;
+      double mean_weight = 0.0;
+      for (int i = 0; i < kSteps; ++i) {
+        const float dither = (static_cast<float>(i) + 0.5f) / kSteps;
+        const maths::HistoryTexel back =
+            stored(texel_of(0.5f, value, 0.0f, maths::log_weight_of(weight)), dither);
+        occlusion += back.occlusion / kSteps;
+        mean_weight += maths::weight_of_log(back.log_weight) / kSteps;
+      }
+      EXPECT_NEAR(occlusion, value, 2e-6);
+      EXPECT_NEAR(mean_weight, weight, 0.003 * weight);
+    }
+  }
+}
+
+TEST(History, LogarithmOfAWeightIsInvertible) {
+  EXPECT_EQ(maths::log_weight_of(0.0f), 0.0f);
+  EXPECT_EQ(maths::weight_of_log(0.0f), 0.0f);
+  for (float weight = 0.1f; weight <= float(maths::kMaxHistoryFrames); weight *= 1.3f) {
+    EXPECT_NEAR(maths::weight_of_log(maths::log_weight_of(weight)), weight, 1e-4f * weight);
+    EXPECT_LE(maths::log_weight_of(weight), 1.0f);
+  }
+}
+
+TEST(History, MantissaBitsAreUnpackedAtAnyPlace) {
+  for (unsigned bits = 1; bits <= 16; ++bits) {
+    for (unsigned first = 0; first + bits <= 32; ++first) {
+      const unsigned last = (1u << bits) - 1u;
+      const unsigned others = ~(last << first);
+      EXPECT_EQ(maths::unpack_mantissa(others, first, bits), 0.0f);
+      EXPECT_FLOAT_EQ(maths::unpack_mantissa(~others, first, bits), 1.0f);
+      const unsigned value = last / 3u;
+      EXPECT_NEAR(maths::unpack_mantissa(others | (value << first), first, bits),
+                  float(value) / float(last), 1e-6f);
+    }
+  }
+}
+
+TEST(History, LobeTexelKeepsItsValuesWithinTheirSteps) {
   RandomInput random;
-  float history = 0.0f, count = 0.0f;
-  double sum = 0.0;
-  for (int frame = 1; frame <= 32; ++frame) {
-    const float now = random.uniform(0, 1);
-    sum += now;
-    history = glm::mix(history, now, maths::accumulation_weight(count, 64.0f));
-    count = maths::next_count(count, 64.0f);
-    EXPECT_NEAR(history, sum / frame, 1e-5);
+  for (int i = 0; i < 20000; ++i) {
+    maths::LobeTexel texel;
+    texel.occlusion = random.uniform(0, 1);
+    texel.open = std::exp2(random.uniform(-11.0f, 3.9f));
+    const maths::LobeTexel back =
+        maths::unpack_lobe_texel(maths::pack_lobe_texel(texel, random.uniform(0.0f, 0.999f)));
+    EXPECT_NEAR(back.occlusion, texel.occlusion, 1.0f / 511.0f + 2e-6f);
+    EXPECT_NEAR(std::log2(back.open), std::log2(texel.open), 0.3f);
   }
+  maths::LobeTexel none;
+  none.occlusion = 0.0f;
+  none.open = 0.0f;
+  const maths::LobeTexel back = maths::unpack_lobe_texel(maths::pack_lobe_texel(none, 0.9f));
+  EXPECT_EQ(back.occlusion, 0.0f);
+  EXPECT_EQ(back.open, 0.0f);
 }
 
-TEST(History, NeverDriftsOrLocksOverAMillionFrames) {
-  float history = 0.0f, count = 0.0f;
-  for (int frame = 0; frame < 1000000; ++frame) {
-    history = glm::mix(history, 0.7f, maths::accumulation_weight(count, 32.0f));
-    count = maths::next_count(count, 32.0f);
-  }
-  EXPECT_NEAR(history, 0.7f, 1e-6f);
-  EXPECT_EQ(count, 32.0f);
-  for (int frame = 0; frame < 400; ++frame)
-    history = glm::mix(history, 0.2f, maths::accumulation_weight(count, 32.0f));
-  EXPECT_NEAR(history, 0.2f, 1e-5f);
+TEST(History, DepthThatDiffersIsRejected) {
+  EXPECT_EQ(maths::history_agreement(0.0f, 0.001f, 100.0f), 1.0f);
+  EXPECT_EQ(maths::history_agreement(-0.001f, 0.001f, 100.0f), 1.0f)
+      << "rounding of a stored depth";
+  EXPECT_NEAR(maths::history_agreement(0.006f, 0.001f, 100.0f), 0.25f, 1e-5f);
+  EXPECT_EQ(maths::history_agreement(0.011f, 0.001f, 100.0f), 0.0f);
+  EXPECT_EQ(maths::history_agreement(-1e30f, 0.001f, 100.0f), 0.0f);
 }
-
-TEST(History, FirstFrameStandsAlone) { EXPECT_EQ(maths::accumulation_weight(0.0f, 32.0f), 1.0f); }
 
 TEST(History, SpreadIsMeanAndDeviation) {
   const maths::Spread s = maths::spread_of_sums(1.0f + 2.0f + 3.0f, 1.0f + 4.0f + 9.0f, 3.0f);
@@ -94,81 +131,33 @@ TEST(History, SpreadIsMeanAndDeviation) {
   EXPECT_GE(maths::spread_of_sums(9 * 0.1f, 9 * 0.01f - 1e-6f, 9.0f).deviation, 0.0f);
 }
 
-TEST(History, ClampKeepsWhatAgreesAndCountForgetsWhatMoved) {
+TEST(History, ClampKeepsWhatAgreesAndReducesTheWeightOfWhatMoved) {
   maths::Spread now;
   now.mean = 0.5f;
   now.deviation = 0.1f;
   EXPECT_EQ(maths::clamp_to_spread(0.55f, now, 1.0f), 0.55f);
   EXPECT_FLOAT_EQ(maths::clamp_to_spread(0.9f, now, 1.0f), 0.6f);
-  EXPECT_EQ(maths::count_after_clamp(20.0f, 0.55f, 0.55f, 0.2f), 20.0f);
-  EXPECT_EQ(maths::count_after_clamp(20.0f, 0.9f, 0.6f, 0.2f), 1.0f);
-  EXPECT_FLOAT_EQ(maths::count_after_clamp(21.0f, 0.7f, 0.6f, 0.2f), 11.0f);
+  EXPECT_EQ(maths::weight_after_clamp(20.0f, 0.55f, 0.55f, 0.2f), 20.0f);
+  EXPECT_EQ(maths::weight_after_clamp(20.0f, 0.9f, 0.6f, 0.2f), 1.0f);
+  EXPECT_FLOAT_EQ(maths::weight_after_clamp(21.0f, 0.7f, 0.6f, 0.2f), 11.0f);
 }
 
-TEST(History, WhatIsBlurredCountsAsNoiseOfItsVariance) {
+TEST(History, BlurCountsAsNoiseOfItsVariance) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
-    const float count = random.uniform(1.0f, 255.0f);
+    const float weight = random.uniform(1.0f, 127.0f);
     const float variance = random.uniform(0.0f, 0.25f);
     const float missing = random.uniform(0.0f, 1.0f);
     // The variance of a mean of so many frames, before and after.
-    const float before = maths::kFrameVariance / count;
-    const float after = maths::kFrameVariance / maths::count_after_blur(count, variance, missing);
-    EXPECT_NEAR(after, before + variance + maths::kUnobservedVariance * missing, 1e-5f * after);
+    const float before = maths::kFrameVariance / weight;
+    const float after = maths::kFrameVariance / maths::weight_after_blur(weight, variance, missing);
+    EXPECT_NEAR(after, before + variance + maths::kMissingVariance * missing, 1e-5f * after);
   }
-  EXPECT_EQ(maths::count_after_blur(32.0f, 0.0f, 0.0f), 32.0f);
-  EXPECT_EQ(maths::count_after_blur(0.0f, 0.2f, 1.0f), 0.0f);
+  EXPECT_EQ(maths::weight_after_blur(32.0f, 0.0f, 0.0f), 32.0f);
+  EXPECT_EQ(maths::weight_after_blur(0.0f, 0.2f, 1.0f), 0.0f);
 }
 
-TEST(History, ATexelKeepsWhatItHolds) {
-  RandomInput random;
-  for (int i = 0; i < 20000; ++i) {
-    const float open = random.uniform(1e-3f, maths::kLargestOpen);
-    const float visibility = i % 5 == 0 ? 1.0f : random.uniform(0.0f, 1.0f);
-    const float depth = std::exp(random.uniform(-7.0f, 11.0f));
-    const float count = std::floor(random.uniform(0.0f, maths::kMaxHistoryFrames + 0.99f));
-    const float recent = random.uniform(0.0f, 1.0f);
-    const auto normal = static_cast<unsigned>(i % 256);
-    const maths::HistoryTexel texel =
-        stored(texel_of(visibility, open, depth, count, recent, normal));
-    EXPECT_NEAR(texel.open, open, open / 120);
-    EXPECT_NEAR(texel.visibility, visibility, 1e-5f);
-    if (visibility == 1.0f) {
-      EXPECT_EQ(texel.visibility, 1.0f);
-    }
-    EXPECT_NEAR(texel.depth, depth, depth * std::ldexp(1.0f, -11));
-    EXPECT_EQ(texel.count, count);
-    EXPECT_NEAR(texel.recent, recent, 0.5f / 127.0f + 1e-6f);
-    EXPECT_EQ(texel.quantised_normal, normal);
-  }
-}
-
-TEST(History, ATexelHoldsTheNearestOfWhatItCannot) {
-  const maths::HistoryTexel least = stored(texel_of(-1.0f, -1.0f, -1.0f, -1.0f, -1.0f, 0u));
-  EXPECT_EQ(least.count + least.recent + least.depth + least.visibility + least.open, 0.0f);
-  EXPECT_EQ(least.quantised_normal, 0u);
-  const maths::HistoryTexel most = stored(texel_of(9.0f, 8.0f, 6e4f, 300.0f, 2.0f, 255u));
-  EXPECT_EQ(most.count, float(maths::kMaxHistoryFrames));
-  EXPECT_EQ(most.recent, 1.0f);
-  EXPECT_EQ(most.open, maths::kLargestOpen);
-  EXPECT_EQ(most.visibility, 1.0f);
-  EXPECT_EQ(most.quantised_normal, 255u);
-}
-
-TEST(History, DepthOfAnyUnitIsHeldAlike) {
-  for (const int exponent : {-40, 0, 40}) {
-    // As a near plane at 0.125 units, brought to 2^-14.
-    const glm::vec2 scale(std::ldexp(1.0f, -11 - exponent), 0.0f);
-    for (const float depth : {0.125f, 1.0f, 4.7f, 1e6f}) {
-      const float held = maths::held_depth(scale, std::ldexp(depth, exponent));
-      EXPECT_EQ(held, std::ldexp(depth, -11));
-      EXPECT_NEAR(held_as(held).depth, held, held * std::ldexp(1.0f, -11));
-    }
-    EXPECT_EQ(maths::held_depth(scale, 1e30f), 6e4f);
-  }
-}
-
-TEST(History, ChangeIsToldFromTheNoiseOfAFewSearches) {
+TEST(History, ChangeIsToldFromTheNoiseOfAFewSamples) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
     const float a = random.uniform(0.0f, 1.0f);
@@ -179,27 +168,27 @@ TEST(History, ChangeIsToldFromTheNoiseOfAFewSearches) {
     EXPECT_LE(changed, 1.0f);
     EXPECT_EQ(changed, maths::visibility_changed(b, a));
   }
-  // There is no noise in the open, where a trail is seen at once.
+  // There is no noise on an open surface, where a trail is seen at once.
   EXPECT_EQ(maths::visibility_changed(0.8f, 1.0f), 1.0f);
   EXPECT_EQ(maths::visibility_changed(1.0f, 0.8f), 1.0f);
   EXPECT_EQ(maths::visibility_changed(0.55f, 0.45f), 0.0f);
   EXPECT_EQ(maths::visibility_changed(0.2f, 0.8f), 1.0f);
 }
 
-TEST(History, RecentIsAMeanThatForgetsInAFewFrames) {
-  EXPECT_EQ(maths::recent_visibility(0.3f, 0.0f, 0.9f, 1.0f), 0.9f);
-  EXPECT_FLOAT_EQ(maths::recent_visibility(0.2f, 1.0f, 0.4f, 1.0f), 0.3f);
+TEST(History, RecentOcclusionForgetsInAFewFrames) {
+  EXPECT_EQ(maths::update_recent(0.3f, 0.0f, 0.9f, 1.0f), 0.9f);
+  EXPECT_FLOAT_EQ(maths::update_recent(0.2f, 1.0f, 0.4f, 1.0f), 0.3f);
   const auto after_a_dozen = [](float open) {
     float recent = 0.0f;
     for (int frame = 0; frame < 12; ++frame) {
-      recent = maths::recent_visibility(recent, 32.0f, 1.0f, open);
+      recent = maths::update_recent(recent, 32.0f, 1.0f, open);
     }
     return recent;
   };
   EXPECT_GT(after_a_dozen(1.0f), 0.95f);
-  // What hardly any search of the pixel's own surface says changes little; a first frame is taken.
+  // Samples that hardly belong to the pixel's surface change little; a first frame is taken whole.
   EXPECT_LT(after_a_dozen(0.02f), 0.35f);
-  EXPECT_EQ(maths::recent_visibility(0.3f, 0.0f, 0.9f, 0.0f), 0.9f);
+  EXPECT_EQ(maths::update_recent(0.3f, 0.0f, 0.9f, 0.0f), 0.9f);
 }
 
 }  // namespace

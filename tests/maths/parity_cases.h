@@ -79,7 +79,7 @@ ALCOVE_INLINE vec4 parity_of_slices(uint which, vec4 a, vec4 b) {
     }
     case 4u:
       return vec4(arc_cosine(ahead), arc_cosine(behind), raise_horizon(ahead, behind, b.z),
-                  recent_visibility(b.x, floor(b.y * 40.0f), b.z, b.w));
+                  update_recent(b.x, floor(b.y * 40.0f), b.z, b.w));
   }
   return vec4(0.0f);
 }
@@ -93,7 +93,7 @@ ALCOVE_INLINE vec4 parity_of_cameras(uint which, vec4 a, vec4 b, Projection p) {
     case 5u:
       return vec4(position.x, position.y, position.z, linear_depth(p, b.x));
     case 6u:
-      return vec4(history_weight(held_apart(depth, depth * (1.0f + b.w * 0.01f)), 0.02f, view.z),
+      return vec4(history_agreement(history_depth(vec2(0.05f, 0.5f), log2(depth)) - b.w, 0.001f, 2.0f),
                   visibility_changed(b.x, b.y), view.x, view.z);
   }
   return vec4(0.0f);
@@ -151,12 +151,12 @@ ALCOVE_INLINE vec4 parity_of_storage(uint which, vec4 a, vec4 b) {
     }
     case 15u:
       return vec4(average_depth(vec4(1.0f + a.x, 1.0f + a.y, 1.0f + a.z, 1.0f + a.w), 0.1f + b.x),
-                  next_count(floor(b.z * 40.0f), 32.0f),
-                  count_after_clamp(b.y * 32.0f, b.z, b.w, 0.25f), 0.0f);
+                  weight_of_log(log_weight_of(b.z * 40.0f)),
+                  weight_after_clamp(b.y * 32.0f, b.z, b.w, 0.25f), 0.0f);
     case 16u: {
       Spread spread = spread_of_sums(a.x + a.y + a.z, a.x * a.x + a.y * a.y + a.z * a.z, 3.0f);
       return vec4(spread.mean, spread.deviation, clamp_to_spread(a.w, spread, 1.0f),
-                  accumulation_weight(floor(b.z * 40.0f), 32.0f));
+                  weight_after_blur(b.z * 40.0f, b.y * 0.25f, b.x));
     }
     case 23u: {
       RawOcclusion lobe;

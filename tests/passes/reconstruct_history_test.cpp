@@ -2,7 +2,6 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <array>
 #include <random>
 
 #include "gtao_scenes.h"
@@ -11,7 +10,15 @@
 namespace alcove::passes {
 namespace {
 
-TEST_F(Reconstruct, AStaticViewConverges) {
+double mean_of(const HostImage& image) {
+  double mean = 0.0;
+  for (const float texel : image.texels) {
+    mean += texel / static_cast<double>(image.texels.size());
+  }
+  return mean;
+}
+
+TEST_F(Reconstruct, StaticViewConverges) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(30.0, 4.0)});
   const std::uint32_t seed = 17;
@@ -28,67 +35,11 @@ TEST_F(Reconstruct, AStaticViewConverges) {
   }
   EXPECT_LT(variances[7], 0.5 * variances[0]);
   EXPECT_LT(variances[39], 0.1 * variances[0]);
-  double mean = 0.0;
-  for (const float texel : last.texels) {
-    mean += texel / static_cast<double>(last.texels.size());
-  }
-  EXPECT_NEAR(mean, 0.5, 0.01);
+  EXPECT_NEAR(mean_of(last), 0.5, 0.01);
 }
 
-// From the 16th frame of a still view on, what a search did not reach stays as it was.
-TEST_F(Reconstruct, ASettledViewBringsForwardWhatItsSearchesReached) {
-  const TestView view = test_views()[2];
-  Surface half = plane({0.0, 0.0, -3.0}, {0.0, 0.0, 1.0});
-  half.keep = [](const glm::dvec3& p) { return p.x < 0.4; };
-  const Drawing drawing = draw(view, 33, 23, {half});
-  for (const std::uint32_t tile_size : {1u, 2u, 4u}) {
-    SCOPED_TRACE(testing::Message() << "by " << tile_size);
-    // The last two frames of a run whose camera is known to stand still up to frame `known`.
-    const auto run_static = [&](std::uint32_t known) {
-      std::mt19937 random(11);
-      std::uniform_real_distribution<float> noise(0.1f, 0.9f);
-      std::array<HostImage, 2> last;
-      for (std::uint32_t frame = 0; frame <= 16; ++frame) {
-        const HostImage raw_occlusion =
-            raw_occlusion_of(blocks(33, tile_size), blocks(23, tile_size),
-                             [&](std::uint32_t, std::uint32_t) { return noise(random); });
-        last[0] = std::move(last[1]);
-        last[1] = reconstruct({.view = view.view,
-                               .drawing = drawing,
-                               .raw_occlusion = raw_occlusion,
-                               .tile_size = tile_size,
-                               .index = frame,
-                               .reset = frame == 0,
-                               .static_frames = frame <= known ? frame : 0},
-                              precise(1, 32));
-      }
-      return last;
-    };
-    const auto [before, settled] = run_static(16);
-    const auto [same, all] = run_static(15);
-    EXPECT_THAT(same.texels, testing::Pointwise(testing::FloatEq(), before.texels));
-    // Frame 16 searches the first pixel of each block.
-    for (std::uint32_t y = 0; y < 23; ++y) {
-      for (std::uint32_t x = 0; x < 33; ++x) {
-        const std::uint32_t aside = std::min(x % tile_size, tile_size - x % tile_size);
-        const std::uint32_t below = std::min(y % tile_size, tile_size - y % tile_size);
-        const bool reached = tile_size == 4 ? aside + below <= 1 : aside + below == 0;
-        if (reached) {
-          ASSERT_EQ(settled.at(x, y), all.at(x, y)) << "at " << x << ", " << y;
-        } else {
-          // What is stored has 16 bits.
-          ASSERT_NEAR(settled.at(x, y), before.at(x, y), 2e-5) << "at " << x << ", " << y;
-        }
-        if (drawing.is_sky(x, y)) {
-          ASSERT_EQ(settled.at(x, y), 1.0f) << "at " << x << ", " << y;
-        }
-      }
-    }
-  }
-}
-
-// However short the history: where nothing moves there is nothing to follow.
-TEST_F(Reconstruct, ASettledViewAveragesAllItsFrames) {
+// A view that has been static for 16 frames averages up to 127 of them, whatever history_frames is.
+TEST_F(Reconstruct, ConvergedViewAveragesAllItsFrames) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(30.0, 4.0)});
   const auto variance_after = [&](bool still) {
@@ -109,7 +60,7 @@ TEST_F(Reconstruct, ASettledViewAveragesAllItsFrames) {
   EXPECT_LT(variance_after(true), 0.35 * variance_after(false));
 }
 
-TEST_F(Reconstruct, MotionVectorsOfAStillViewAreNotRead) {
+TEST_F(Reconstruct, MotionVectorsOfAStaticViewAreNotRead) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(30.0, 4.0)});
   std::mt19937 random(3);
@@ -132,7 +83,8 @@ TEST_F(Reconstruct, MotionVectorsOfAStillViewAreNotRead) {
   EXPECT_EQ(second_frame(&wrong).texels, second_frame(nullptr).texels);
 }
 
-// A history of many more frames than it counts: what is stored must neither drift nor lock.
+// A history of many more frames than its largest weight. Visibility is stored in steps of 2^-10,
+// dithered, so single pixels may differ by a few steps; the mean must neither drift nor lock.
 TEST_F(Reconstruct, HundredsOfEqualFramesDoNotDrift) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, 9, 7, {tilted_plane(30.0, 4.0)});
@@ -148,7 +100,12 @@ TEST_F(Reconstruct, HundredsOfEqualFramesDoNotDrift) {
                            .reset = frame == 0},
                           precise(1, 127));
     }
-    EXPECT_THAT(found.texels, testing::Each(testing::FloatNear(visibility, 2e-3f)));
+    const auto expect_kept = [&] {
+      EXPECT_THAT(found.texels,
+                  testing::Each(testing::FloatNear(visibility, visibility == 1.0f ? 0.0f : 5e-3f)));
+      EXPECT_NEAR(mean_of(found), visibility, 1e-3);
+    };
+    expect_kept();
     // From a wrong start the history comes back to within what it can store.
     const HostImage wrong = constant_raw_occlusion(9, 7, 1.0f - visibility);
     for (std::uint32_t frame = 0; frame < 130; ++frame) {
@@ -159,11 +116,11 @@ TEST_F(Reconstruct, HundredsOfEqualFramesDoNotDrift) {
                            .reset = frame == 0},
                           precise(1, 8));
     }
-    EXPECT_THAT(found.texels, testing::Each(testing::FloatNear(visibility, 4e-3f)));
+    expect_kept();
   }
 }
 
-TEST_F(Reconstruct, ARestartForgetsWhatWas) {
+TEST_F(Reconstruct, ResetForgetsTheHistory) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(30.0, 4.0)});
   const Drawing smaller = draw(view, kWidth - 3, kHeight, {tilted_plane(30.0, 4.0)});

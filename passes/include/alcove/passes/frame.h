@@ -58,8 +58,8 @@ struct Frame {
   View previous_view = view;
   // Frames in a row, up to this one, that show the very same as the one before each; 0: this one
   // differs, or nobody knows. It starts again wherever histories do: after a cut, and where size,
-  // settings or wanted results change. From 1 on motion vectors are not read; from 16 on a search
-  // at lower resolution brings forward only the pixels that it reached, and all frames count.
+  // settings or wanted results change. From 1 on motion vectors are not read and history is not
+  // reprojected; from 16 on the history averages up to 127 frames.
   std::uint32_t static_frames = 0;
   // Where the size of the depth changes and history is to go on (dynamic resolution). Zero is as
   // the depth is now.
