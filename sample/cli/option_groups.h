@@ -36,7 +36,7 @@ void add_limits(CLI::App& app, Options& options);
 void add_cost(CLI::App& app, Options& options);
 void add_light(CLI::App& app, Options& options);
 void add_cut_blends(CLI::App& app, bool& cut_blends);
-void add_lit(CLI::App& app, bool& lit);
+void add_lit(CLI::App& app, bool& lit, std::uint32_t& points);
 void add_format(CLI::App& app, GraphFormat& format);
 void add_device(CLI::App& app, Options& options);
 void add_out(CLI::App& app, Options& options, const std::string& help);
