@@ -37,10 +37,10 @@ vec3 depth_normal(ivec2 pixel) {
   return normal_of_gradient(parameters.slope.xy, slope, here, gradient, kPerspective);
 }
 
-// The unit normal, in view space, of the side of the surface that the eye sees. `given` is the normal
-// of the texture in view space, of any length; it is taken from depth where it has no direction. One
-// that faces away by less than kFlippedNormal belongs to the other side of the surface or leans over
-// a silhouette: the depth buffer tells which.
+// The unit normal, in view space, of the side of the surface that the eye sees. `given` is the
+// normal of the texture in view space, of any length; it is taken from depth where it has no
+// direction. One that faces away by less than kFlippedNormal belongs to the other side of the
+// surface or leans over a silhouette: the depth buffer tells which.
 vec3 seen_normal(ivec2 pixel, vec3 given, vec3 view) {
   bool missing = !has_direction(given);
   vec3 normal = normalize(given);

@@ -18,6 +18,7 @@
 #include "maths/connected_samples.h"
 #include "maths/gtao.h"
 #include "maths/lobe_slice.h"
+#include "maths/normal_encoding.h"
 #include "maths/quantised_normal.h"
 #include "maths/raw_occlusion.h"
 #include "maths/sampling.h"
@@ -45,6 +46,7 @@ layout(constant_id = 14) const bool kByPattern = false;     // tile_by_pattern()
 layout(constant_id = 15) const bool kSecondLayer = false;   // second_image occludes too
 layout(constant_id = 16) const bool kExtrapolation = true;  // surfaces go on beyond the image
 layout(constant_id = 17) const bool kUnobserved = true;     // is left out, with connected samples
+layout(constant_id = 18) const uint kNormalEncoding = 0;    // as NormalEncoding has them
 
 const bool kHeuristic = kEstimator == 1;
 const bool kBitmask = kEstimator >= 2;
@@ -75,8 +77,9 @@ struct Surface {
   ivec2 pixel;
   vec2 centre;  // of the pixel, pixels
   float depth;
-  vec3 normal;  // unit, view space
-  vec3 view;    // unit, view space, towards the eye
+  float depth_step;  // of the depth buffer there, as SliceSample::inverse_depth
+  vec3 normal;       // unit, view space
+  vec3 view;         // unit, view space, towards the eye
   TangentPlane tangent;
   LobeSurface lobe;  // normal as it was given
 };
@@ -99,10 +102,12 @@ Surface fetch_surface(ivec2 pixel, float inverse_depth) {
   surface.pixel = pixel;
   surface.centre = vec2(pixel) + 0.5;
   surface.depth = kPerspective ? 1.0 / inverse_depth : inverse_depth;
+  surface.depth_step = depth_step_at(
+      DepthStep(parameters.depth_step, parameters.depth_step_per_inverse_depth), inverse_depth);
   vec2 slope =
       parameters.slope.zw + (kPerspective ? surface.centre * parameters.slope.xy : vec2(0.0));
   surface.view = normalize(vec3(-slope, 1.0));
-  vec3 given = texelFetch(normal_image, pixel, 0).xyz;
+  vec3 given = decode_normal(texelFetch(normal_image, pixel, 0).xyz, kNormalEncoding);
   surface.normal = seen_normal(pixel, mat3(parameters.view_from_normal) * given, surface.view);
   vec3 own = has_direction(given) ? given : surface.normal * mat3(parameters.view_from_normal);
   surface.lobe = LobeSurface(own, fetch_roughness(pixel));
@@ -261,6 +266,20 @@ uvec2 pack_scaled_lobe(LobeSurface surface, RawOcclusion lobe) {
   return uvec2(pack_lobe(lobe), pack_lobe_surface(surface));
 }
 
+RawOcclusion faded(RawOcclusion sum, float to_open) {
+  return RawOcclusion(mix(sum.visible, sum.open, to_open), sum.open);
+}
+
+// Fades to open where the depth buffer cannot resolve the radius.
+SliceSum fade_unresolved(SliceSum sum, float to_open) {
+  sum.visible = mix(sum.visible, sum.open, to_open);
+  sum.residual = kBentNormal ? mix(sum.residual, sum.expected_residual, to_open) : vec3(0.0);
+  if (kLobe) {
+    sum.lobe = faded(sum.lobe, to_open);
+  }
+  return sum;
+}
+
 // What a search leaves at its block.
 struct SearchResult {
   uvec4 raw_occlusion;
@@ -298,6 +317,8 @@ SearchResult search_pixel(ivec2 pixel, float inverse_depth, SliceNoise noise) {
     sum.lobe.open += angle.weight * more.lobe.open;
     ++i;
   } while (i < kSliceCount);
+  float step_length = depth_step_length(surface.depth_step, inverse_depth, kPerspective);
+  sum = fade_unresolved(sum, unresolved_occlusion(step_length, parameters.radius));
   float mean = 1.0 / float(kSliceCount);
   uvec2 lobe = kLobe ? pack_scaled_lobe(surface.lobe,
                                         RawOcclusion(sum.lobe.visible * mean, sum.lobe.open * mean))

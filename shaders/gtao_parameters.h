@@ -18,6 +18,9 @@ struct GtaoParameters {
   float falloff;    // last part of the radius, over which occluders fade, [0,1] (horizons and
                     // heuristic)
   float roughness;  // perceptual, of every surface where no texture has it
+  // DepthStep, whose alignment in a uniform block would differ from C++.
+  float depth_step;
+  float depth_step_per_inverse_depth;
 };
 
 ALCOVE_MATHS_END

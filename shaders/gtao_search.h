@@ -20,6 +20,7 @@ struct Search {
   float outside;          // part of the radius beyond the image's border, [0,1]
   float offset;           // of the steps, [0,1)
   float depth;            // linear, of the shaded point
+  float depth_step;       // of the depth buffer there, as SliceSample::inverse_depth
   TangentPlane tangent;
   float gradient;  // of the tangent line, outwards
   float lowest;    // cosine of the tangent plane's horizon
@@ -53,6 +54,7 @@ Search make_search(Surface surface, SliceLine slice_line, Slice slice, float sid
   search.outside = distance_px < kNearestStep ? 0.0 : max(1.0 - border / distance_px, 0.0);
   search.offset = offset;
   search.depth = surface.depth;
+  search.depth_step = surface.depth_step;
   search.tangent = surface.tangent;
   search.gradient = dot(search.slice_line.direction_px, surface.tangent.gradient);
   search.height = vec2(side * slice.along, slice.toward);
@@ -82,8 +84,11 @@ SliceSample fetch_sample(Search search, uint layer, uint k) {
   // Only across the line: along it a sample stays where it was found.
   float along_px = kSnapToTexels ? dot(snapped, search.slice_line.direction_px) : found.offset_px;
   float on_plane = dot(snapped, search.tangent.gradient);
-  float share = tangent_share(
-      search.tangent, inverse_depth - search.tangent.inverse_depth - on_plane, found.offset_px);
+  float off_plane = inverse_depth - search.tangent.inverse_depth - on_plane;
+  // A difference below the step of the depth buffer is not known to be one.
+  float rounding = clamp(off_plane, -search.depth_step, search.depth_step);
+  inverse_depth -= rounding;
+  float share = tangent_share(search.tangent, off_plane - rounding, found.offset_px);
   float moved = moved_inverse_depth(inverse_depth, share * (along_px * search.gradient - on_plane),
                                     kPerspective);
   found.inverse_depth = kSnapToTexels ? moved : inverse_depth;

@@ -7,6 +7,7 @@
 
 #include "gtso_parameters.h"
 #include "maths/gtso.h"
+#include "maths/normal_encoding.h"
 #include "maths/projection.h"
 #include "maths/slice.h"
 
@@ -15,6 +16,8 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const int kModel = 0;  // SpecularModel
 layout(constant_id = 1) const bool kRoughnessTexture = false;
 layout(constant_id = 2) const int kRoughnessChannel = 0;
+layout(constant_id = 3) const uint kNormalEncoding =
+    0;  // of normal_image, as NormalEncoding has them
 
 layout(set = 0, binding = 0) uniform Parameters { GtsoParameters parameters; };
 layout(set = 0, binding = 1) uniform texture2D visibility_image;
@@ -33,8 +36,8 @@ layout(set = 0, binding = 7) readonly buffer Table { uint gtso_table[]; };
 const int kSmoothCone = 1;
 const int kLagarde = 2;
 
-vec3 fetch_direction(texture2D image, ivec2 pixel, vec3 instead) {
-  vec3 given = texelFetch(image, pixel, 0).xyz;
+vec3 fetch_direction(texture2D image, ivec2 pixel, uint encoding, vec3 instead) {
+  vec3 given = decode_normal(texelFetch(image, pixel, 0).xyz, encoding);
   return has_direction(given) ? normalize(mat3(parameters.view_from_normal) * given) : instead;
 }
 
@@ -75,7 +78,7 @@ float occlusion_of(ivec2 pixel, vec3 normal, vec3 view) {
     return lagarde_specular_occlusion(dot(normal, view), visibility, alpha);
   }
   vec3 bent =
-      raised_bent_normal(fetch_direction(bent_normal_image, pixel, normal), normal, visibility);
+      raised_bent_normal(fetch_direction(bent_normal_image, pixel, 0u, normal), normal, visibility);
   vec3 reflection = mirror_direction(normal, view);
 #ifdef TABLE
   return occlusion_by_table(visibility, bent, normal, reflection, roughness);
@@ -96,7 +99,7 @@ void main() {
   if (!is_sky_depth(depth)) {
     vec2 uv = pixel_centre_uv(parameters.projection, uvec2(pixel));
     vec3 view = view_vector(parameters.projection, position_vs(parameters.projection, uv, depth));
-    vec3 normal = facing_normal(fetch_direction(normal_image, pixel, view), view);
+    vec3 normal = facing_normal(fetch_direction(normal_image, pixel, kNormalEncoding, view), view);
     result = occlusion_of(pixel, normal, view);
   }
   imageStore(result_image, pixel, vec4(result));

@@ -1,12 +1,12 @@
-#ifndef ALCOVE_LINE_DEPTH_PARAMETERS_H
-#define ALCOVE_LINE_DEPTH_PARAMETERS_H
+#ifndef ALCOVE_INVERSE_DEPTH_PARAMETERS_H
+#define ALCOVE_INVERSE_DEPTH_PARAMETERS_H
 
-#include "maths/language.h"
+#include "maths/slice_line.h"
 
 ALCOVE_MATHS_BEGIN
 
 struct InverseDepthParameters {
-  vec2 inverse_depth_from_ndc;  // line = x * depth_ndc + y
+  InverseDepthFromNdc inverse_depth_from_ndc;
 };
 
 ALCOVE_MATHS_END

@@ -21,6 +21,7 @@
 #include "maths/bent_normal.h"
 #include "maths/history.h"
 #include "maths/lobe_slice.h"
+#include "maths/normal_encoding.h"
 #include "maths/projection.h"
 #include "maths/quantised_normal.h"
 #include "maths/raw_occlusion.h"
@@ -42,6 +43,8 @@ layout(constant_id = 9) const bool kFresh = true;        // there is no history 
 layout(constant_id = 10) const bool kVisibility = true;  // else it is found but not written
 // Still for so long that only pixels which this frame's searches reached have anything to learn.
 layout(constant_id = 11) const bool kConverged = false;
+layout(constant_id = 12) const uint kNormalEncoding = 0;  // as NormalEncoding has them
+layout(constant_id = 13) const bool kShaped = false;      // power or intensity is not 1
 
 #ifdef SPECULAR
 const bool kLobe = true;
@@ -117,7 +120,7 @@ ivec2 size_px() { return imageSize(inverse_depth_image); }
 
 // Not unit, in the space of the normals; from depth where the texture has no direction.
 vec3 fetch_normal(ivec2 pixel) {
-  vec3 given = texelFetch(normal_image, pixel, 0).xyz;
+  vec3 given = decode_normal(texelFetch(normal_image, pixel, 0).xyz, kNormalEncoding);
   return has_direction(given) ? given : mat3(parameters.normal_from_view) * depth_normal(pixel);
 }
 
@@ -291,13 +294,15 @@ Neighbourhood add_up(Surface surface, float inverse_squared_width, Found around[
 vec3 traced_normal(ivec2 pixel) {
   vec2 slope =
       parameters.slope.zw + (kPerspective ? (vec2(pixel) + 0.5) * parameters.slope.xy : vec2(0.0));
-  vec3 given = texelFetch(normal_image, pixel, 0).xyz * mat3(parameters.normal_from_view);
+  vec3 given = decode_normal(texelFetch(normal_image, pixel, 0).xyz, kNormalEncoding) *
+               mat3(parameters.normal_from_view);
   return seen_normal(pixel, given, normalize(vec3(-slope, 1.0)));
 }
 
 void store(ivec2 pixel, Sum sum, float visibility) {
   if (kVisibility) {
-    imageStore(visibility_image, pixel, vec4(visibility));
+    float shaped = shaped_visibility(visibility, parameters.power, parameters.intensity);
+    imageStore(visibility_image, pixel, vec4(kShaped ? shaped : visibility));
   }
   if (kBentNormal) {
     vec3 bent = finish_bent_normal(sum.residual, sum.raw_occlusion.visible, traced_normal(pixel));

@@ -46,7 +46,8 @@ Before reproject(Surface surface) {
   Before before = Before(standing.xy / standing.w, standing.z, standing.w > 0.0, false);
   if (kMotion) {
     vec2 here = surface.centre * parameters.previous_size.zw;
-    vec2 motion = texelFetch(motion_image, surface.pixel, 0).rg * parameters.previous_size.xy;
+    vec2 motion =
+        texelFetch(motion_image, surface.pixel, 0).rg * parameters.motion.xy + parameters.motion.zw;
     // More than the motion vector's rounding, which in a half is 2^-11 of it.
     float apart = distance(here - motion, before.position);
     before.moves = apart > 0.1 + length(motion) * (1.0 / 512.0);

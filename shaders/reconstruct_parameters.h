@@ -15,12 +15,15 @@ struct ReconstructParameters {
   // Of the frame before: xy its size in pixels, zw that in parts of this frame's.
   vec4 previous_size;
   vec4 history_depth;      // for held_depth(): xy of this frame, zw of the frame before
+  vec4 motion;             // from motion vectors to pixels of the frame before: xy scale, zw offset
   vec2 interleave_offset;  // which pixel of each block was searched this frame
   float window_px;         // width of the window over one frame's searches
   float tolerance;         // scale of distances from the tangent plane, in depths
   float longest;           // frames that history counts at most
   float clamp_width;       // history is held to so many deviations of this frame's neighbourhood
   float roughness;         // perceptual, of every surface where no texture has it
+  float power;             // of shaped_visibility(), as the next
+  float intensity;
 };
 
 ALCOVE_MATHS_END

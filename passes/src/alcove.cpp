@@ -78,16 +78,21 @@ struct AlcoveContext {
 
 namespace {
 
-// Runs `call`, which gives a Result, and keeps what it says of a failure. Nothing is thrown beyond.
+AlcoveResult keep(Message& message, const Result& result) {
+  if (result) {
+    return ALCOVE_SUCCESS;
+  }
+  write(message, result.error().message);
+  return result.error().result;
+}
+
+// Runs `call`, which gives a Result, and keeps its message where it failed. Nothing of ours throws,
+// but operator new may: built without exceptions, the program then ends there.
 template <typename Call>
 AlcoveResult guarded(Message& message, const Call& call) {
+#ifdef __cpp_exceptions
   try {
-    const Result result = call();
-    if (result) {
-      return ALCOVE_SUCCESS;
-    }
-    write(message, result.error().message);
-    return result.error().result;
+    return keep(message, call());
   } catch (const std::bad_alloc&) {
     write(message, "The host is out of memory.");
     return ALCOVE_ERROR_OUT_OF_HOST_MEMORY;
@@ -95,6 +100,9 @@ AlcoveResult guarded(Message& message, const Call& call) {
     write(message, "The library failed for a reason that it does not know.");
     return ALCOVE_ERROR_INTERNAL;
   }
+#else
+  return keep(message, call());
+#endif
 }
 
 // The same for a call on a context, which keeps what was said.

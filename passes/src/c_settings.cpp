@@ -45,15 +45,6 @@ static_assert(same(Precision::unorm8, ALCOVE_PRECISION_UNORM8) &&
               same(Precision::float16, ALCOVE_PRECISION_FLOAT16) &&
               same(Precision::float32, ALCOVE_PRECISION_FLOAT32));
 
-// The bits of an enum that C wrote: reading one that is no value is undefined in C++.
-template <typename Theirs>
-std::uint32_t number_of(const Theirs& value) {
-  std::uint32_t number = 0;
-  static_assert(sizeof value == sizeof number);
-  std::memcpy(&number, &value, sizeof number);
-  return number;
-}
-
 // Calls `visit(name, value in C, value in C++)` for every setting that both have.
 template <typename Theirs, typename Ours, typename Visit>
 void for_each_setting(Theirs& theirs, Ours& ours, const Visit& visit) {
@@ -78,6 +69,8 @@ void for_each_setting(Theirs& theirs, Ours& ours, const Visit& visit) {
   visit("roughness", theirs.roughness, ours.roughness);
   visit("roughness_channel", theirs.roughness_channel, ours.roughness_channel);
   visit("precision", theirs.precision, ours.precision);
+  visit("power", theirs.power, ours.power);
+  visit("intensity", theirs.intensity, ours.intensity);
 }
 
 // An enum that has no such value.

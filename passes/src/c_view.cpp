@@ -16,7 +16,6 @@ using framegraph::Texture;
 using Kind = ImageRole::Kind;
 
 constexpr ImageRole kDepth{"depth", Kind::depth};
-constexpr ImageRole kNormals{"normals", Kind::signed_colour, 3};
 constexpr ImageRole kMotion{"motion vectors", Kind::signed_colour, 2};
 constexpr ImageRole kBackDepth{"back-face depth", Kind::depth};
 constexpr ImageRole kSecondDepth{"second depth", Kind::depth};
@@ -76,14 +75,48 @@ tl::expected<void, Failure> check_hidden(const AlcoveView& view,
   return {};
 }
 
+tl::expected<NormalEncoding, Failure> normal_encoding(const AlcoveView& view) {
+  const std::uint32_t number = number_of(view.normal_encoding);
+  if (number > static_cast<std::uint32_t>(NormalEncoding::unsigned_octahedral)) {
+    return invalid(sentence_begin(view) + ": AlcoveView::normal_encoding is " +
+                   std::to_string(number) + ", which is none of its values.");
+  }
+  return static_cast<NormalEncoding>(number);
+}
+
+ImageRole normals_role(NormalEncoding encoding) {
+  const bool packed =
+      encoding == NormalEncoding::unsigned_xyz || encoding == NormalEncoding::unsigned_octahedral;
+  const bool two =
+      encoding == NormalEncoding::octahedral || encoding == NormalEncoding::unsigned_octahedral;
+  return {"normals", packed ? Kind::colour : Kind::signed_colour, two ? 2u : 3u};
+}
+
+MotionConvention motion_convention(const AlcoveView& view) {
+  MotionConvention result{{view.motion_scale[0], view.motion_scale[1]},
+                          {view.motion_offset[0], view.motion_offset[1]}};
+  if (result.scale[0] == 0.0f && result.scale[1] == 0.0f) {
+    result.scale = {1.0f, 1.0f};
+  }
+  return result;
+}
+
 tl::expected<Textures, Failure> import_images(framegraph::Graph& graph, ImageTable& images,
                                               const AlcoveView& view,
                                               const OcclusionSettings& settings) {
   // A texture need have no more channels than are read.
   const ImageRole roughness{"roughness", Kind::colour,
                             std::min(settings.roughness_channel, 3u) + 1};
+  const auto encoding = normal_encoding(view);
+  if (!encoding) {
+    return tl::unexpected(encoding.error());
+  }
+  const ImageRole normals = normals_role(*encoding);
   Textures textures;
   textures.inputs.normals_in_view_space = view.normals_in_view_space != VK_FALSE;
+  textures.inputs.normal_encoding = *encoding;
+  textures.inputs.normals_forward_z = view.normals_forward_z != VK_FALSE;
+  textures.inputs.motion_convention = motion_convention(view);
   struct Import {
     const ImageRole& role;
     const AlcoveImage& image;
@@ -92,7 +125,7 @@ tl::expected<Textures, Failure> import_images(framegraph::Graph& graph, ImageTab
   // As many as a view has: else it does not compile.
   const Import imports[ImageTable::kImagesOfAView] = {
       {kDepth, view.depth, textures.inputs.depth_ndc},
-      {kNormals, view.normals, textures.inputs.normals},
+      {normals, view.normals, textures.inputs.normals},
       {kMotion, view.motion, textures.inputs.motion},
       {roughness, view.roughness, textures.inputs.roughness},
       {kBackDepth, view.back_depth, textures.inputs.back_depth_ndc},

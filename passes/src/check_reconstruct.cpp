@@ -16,6 +16,7 @@ namespace {
 using framegraph::Texture;
 
 constexpr std::uint32_t kMaxReach = 3;
+constexpr float kMaxShape = 16.0f;  // of power and intensity
 
 tl::expected<void, Error> check_settings(const ReconstructSettings& settings) {
   if (!(settings.filter_tolerance_px > 0.0f) || !std::isfinite(settings.filter_tolerance_px)) {
@@ -36,7 +37,27 @@ tl::expected<void, Error> check_settings(const ReconstructSettings& settings) {
     return tl::unexpected(Error{"The history's clamp is " + number_text(settings.clamp_width) +
                                 " deviations wide; it must be at least 0 and finite."});
   }
+  if (!(settings.power > 0.0f && settings.power <= kMaxShape)) {
+    return tl::unexpected(Error{"The power is " + number_text(settings.power) +
+                                "; it must be above 0 and at most 16."});
+  }
+  if (!(settings.intensity >= 0.0f && settings.intensity <= kMaxShape)) {
+    return tl::unexpected(
+        Error{"The intensity is " + number_text(settings.intensity) + "; it must be 0 to 16."});
+  }
   return check_roughness(settings.roughness, settings.roughness_channel);
+}
+
+tl::expected<void, Error> check_motion(const MotionConvention& motion) {
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (!std::isfinite(motion.scale[i]) || motion.scale[i] == 0.0f ||
+        !std::isfinite(motion.offset[i])) {
+      return tl::unexpected(Error{"The scale of motion vectors is " + number_text(motion.scale[i]) +
+                                  " and their offset " + number_text(motion.offset[i]) +
+                                  "; both must be finite, and the scale not 0."});
+    }
+  }
+  return {};
 }
 
 tl::expected<void, Error> check_textures(const Frame& frame, const ReconstructInputs& inputs) {
@@ -100,6 +121,7 @@ tl::expected<void, Error> check_reconstruct(const Frame& frame, const Reconstruc
               "lobe; ask for one of the three."});
   }
   return check_settings(settings)
+      .and_then([&] { return check_motion(inputs.motion_convention); })
       .and_then([&] { return check_textures(frame, inputs); })
       .and_then([&] { return check_raw_occlusion(frame, inputs); });
 }

@@ -123,8 +123,8 @@ bool of_distance(const GtaoSettings& settings) {
 }
 
 // Of the shader, in its order.
-std::array<std::uint32_t, 18> constants_of(const GtaoSettings& settings, const Reads& reads,
-                                           bool perspective) {
+std::array<std::uint32_t, 19> constants_of(const GtaoInputs& inputs, const GtaoSettings& settings,
+                                           const Reads& reads, bool perspective) {
   return {settings.slices,
           settings.steps,
           flag(settings.bent_normal),
@@ -142,7 +142,8 @@ std::array<std::uint32_t, 18> constants_of(const GtaoSettings& settings, const R
           flag(by_pattern(settings)),
           flag(reads.second_layer),
           flag(settings.parts.extrapolation),
-          flag(settings.parts.unobserved)};
+          flag(settings.parts.unobserved),
+          static_cast<std::uint32_t>(inputs.normal_encoding)};
 }
 
 void declare_accesses(framegraph::PassBuilder& pass, const GtaoInputs& inputs, const Reads& reads,
@@ -172,8 +173,9 @@ maths::GtaoParameters parameters_of(const Frame& frame, const GtaoInputs& inputs
                                     const GtaoSettings& settings,
                                     const maths::Projection& projection) {
   const InterleaveOffset interleave_offset = interleave_offset_of(settings.tile_size, frame.index);
+  const maths::DepthStep step = depth_step(projection, inputs.depth_format);
   return {
-      view_from_normal(frame, inputs.normals_in_view_space),
+      view_from_normal(frame, inputs.normals_in_view_space, inputs.normals_forward_z),
       maths::vec4(maths::ray_per_px(projection), projection.uv_to_slope.z,
                   projection.uv_to_slope.w),
       maths::vec2(static_cast<float>(interleave_offset.x), static_cast<float>(interleave_offset.y)),
@@ -183,7 +185,9 @@ maths::GtaoParameters parameters_of(const Frame& frame, const GtaoInputs& inputs
       settings.hidden_occlusion,
       settings.blend,
       settings.falloff,
-      settings.roughness};
+      settings.roughness,
+      step.constant,
+      step.per_inverse_depth};
 }
 
 // In the order of the shader's bindings; what is not read is bound to something of its kind.
@@ -222,8 +226,9 @@ tl::expected<RawOcclusionTextures, Error> add_gtao(const Frame& frame, const Gta
   if (!projection) {
     return tl::unexpected(projection.error());
   }
-  const auto kernel = frame.kernels.get(settings.lobe ? Shader::gtao_specular : Shader::gtao,
-                                        constants_of(settings, reads, is_perspective(*projection)));
+  const auto kernel =
+      frame.kernels.get(settings.lobe ? Shader::gtao_specular : Shader::gtao,
+                        constants_of(inputs, settings, reads, is_perspective(*projection)));
   if (!kernel) {
     return tl::unexpected(kernel.error());
   }

@@ -64,7 +64,8 @@ tl::expected<Texture, Error> add_gtso(const Frame& frame, const GtsoInputs& give
   }
   const std::array constants{static_cast<std::uint32_t>(settings.model),
                              flag(bool(inputs.roughness)),
-                             channel_if(bool(inputs.roughness), settings.roughness_channel)};
+                             channel_if(bool(inputs.roughness), settings.roughness_channel),
+                             static_cast<std::uint32_t>(inputs.normal_encoding)};
   const auto kernel = frame.kernels.get(
       settings.model == SpecularModel::table ? Shader::gtso_by_table : Shader::gtso, constants);
   if (!kernel) {
@@ -77,7 +78,8 @@ tl::expected<Texture, Error> add_gtso(const Frame& frame, const GtsoInputs& give
   declare_reads(pass, inputs);
   result = write_result(frame.graph, pass, result);
   const maths::GtsoParameters parameters{
-      *projection, view_from_normal(frame, inputs.normals_in_view_space), settings.roughness};
+      *projection, view_from_normal(frame, inputs.normals_in_view_space, inputs.normals_forward_z),
+      settings.roughness};
   pass.record([&kernels = frame.kernels, kernel = *kernel, inputs, result,
                parameters](RecordContext& context) {
     const std::array views{context.view(inputs.visibility),

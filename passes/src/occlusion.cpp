@@ -60,6 +60,8 @@ ReconstructSettings reconstruct_settings(const OcclusionSettings& settings) {
   result.roughness = settings.roughness;
   result.roughness_channel = settings.roughness_channel;
   result.precision = settings.precision;
+  result.power = settings.power;
+  result.intensity = settings.intensity;
   return result;
 }
 
@@ -74,6 +76,9 @@ tl::expected<OcclusionOutputs, Error> add_model(const Frame& frame, OcclusionOut
                    .depth = outputs.linear_depth,
                    .roughness = inputs.roughness,
                    .normals_in_view_space = in_view_space,
+                   .normal_encoding =
+                       inputs.normals ? inputs.normal_encoding : NormalEncoding::signed_xyz,
+                   .normals_forward_z = inputs.normals && inputs.normals_forward_z,
                    .into = inputs.into.specular},
                   {.model = model_of(settings.specular),
                    .roughness = settings.roughness,
@@ -134,6 +139,9 @@ tl::expected<OcclusionOutputs, Error> add_occlusion(const Frame& frame,
   }
   framegraph::Texture normals = inputs.normals;
   const bool in_view_space = inputs.normals_in_view_space || !normals;
+  // Those that are made from depth are plain vectors with the camera along -Z.
+  const NormalEncoding encoding = normals ? inputs.normal_encoding : NormalEncoding::signed_xyz;
+  const bool forward_z = normals && inputs.normals_forward_z;
   if (!normals) {
     auto made = add_normals(frame, *depth);
     if (!made) {
@@ -154,16 +162,32 @@ tl::expected<OcclusionOutputs, Error> add_occlusion(const Frame& frame,
   if (!back_line || !second_line) {
     return tl::unexpected(back_line ? second_line.error() : back_line.error());
   }
-  const auto raw_occlusion =
-      add_gtao(frame, {*line, normals, in_view_space, inputs.roughness, *back_line, *second_line},
-               gtao_settings(settings));
+  const auto raw_occlusion = add_gtao(frame,
+                                      {.inverse_depth = *line,
+                                       .normals = normals,
+                                       .normals_in_view_space = in_view_space,
+                                       .roughness = inputs.roughness,
+                                       .back_inverse_depth = *back_line,
+                                       .second_inverse_depth = *second_line,
+                                       .depth_format = frame.graph.format(inputs.depth_ndc),
+                                       .normal_encoding = encoding,
+                                       .normals_forward_z = forward_z},
+                                      gtao_settings(settings));
   if (!raw_occlusion) {
     return tl::unexpected(raw_occlusion.error());
   }
-  const auto filtered = add_reconstruct(
-      frame,
-      {*raw_occlusion, *line, normals, in_view_space, inputs.motion, inputs.roughness, inputs.into},
-      reconstruct_settings(settings), history_name);
+  const auto filtered = add_reconstruct(frame,
+                                        {.raw_occlusion = *raw_occlusion,
+                                         .inverse_depth = *line,
+                                         .normals = normals,
+                                         .normals_in_view_space = in_view_space,
+                                         .motion = inputs.motion,
+                                         .roughness = inputs.roughness,
+                                         .into = inputs.into,
+                                         .normal_encoding = encoding,
+                                         .normals_forward_z = forward_z,
+                                         .motion_convention = inputs.motion_convention},
+                                        reconstruct_settings(settings), history_name);
   if (!filtered) {
     return tl::unexpected(filtered.error());
   }

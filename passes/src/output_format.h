@@ -39,4 +39,10 @@ namespace alcove::passes {
 }
 inline constexpr VkFormat kBentRawFormat = VK_FORMAT_R32G32_UINT;
 
+// Bytes a pixel of all textures of a history, as add_reconstruct() declares them: two of
+// raw_format() and, with bent normals, two of RGBA16_SFLOAT.
+[[nodiscard]] inline std::uint64_t history_bytes(bool lobe, bool bent) {
+  return 2u * ((lobe ? 16u : 8u) + (bent ? 8u : 0u));
+}
+
 }  // namespace alcove::passes

@@ -224,7 +224,7 @@ Past past_of(const Frame& frame, const ReconstructSizes& sizes, bool history_val
 bool is_static(Past past) { return past == Past::still || past == Past::settled; }
 
 // Of the shader, in its order.
-std::array<std::uint32_t, 12> constants_of(const ReconstructInputs& inputs,
+std::array<std::uint32_t, 14> constants_of(const ReconstructInputs& inputs,
                                            const ReconstructSettings& settings, bool perspective,
                                            Past past) {
   return {inputs.raw_occlusion.tile_size,
@@ -238,7 +238,9 @@ std::array<std::uint32_t, 12> constants_of(const ReconstructInputs& inputs,
           channel_if(bool(inputs.roughness), settings.roughness_channel),
           flag(past == Past::none),
           flag(settings.visibility),
-          flag(past == Past::settled)};
+          flag(past == Past::settled),
+          static_cast<std::uint32_t>(inputs.normal_encoding),
+          flag(settings.power != 1.0f || settings.intensity != 1.0f)};
 }
 
 tl::expected<Kernel, Error> get_kernel(const Frame& frame, const ReconstructInputs& inputs,
@@ -305,13 +307,14 @@ float window_px(const RawOcclusionTextures& raw_occlusion) {
 
 maths::ReconstructParameters parameters_of(const Frame& frame, const maths::Projection& projection,
                                            const maths::Projection& previous,
-                                           bool normals_in_view_space,
+                                           const ReconstructInputs& inputs,
                                            const ReconstructSettings& settings) {
   const maths::mat4 from_pixel = view_from_pixel(projection);
   // In double: far from the world's origin the two all but cancel.
   const maths::dmat4 to_previous = to_rigid(frame.previous_view.view_from_world) *
                                    maths::inverse(to_rigid(frame.view.view_from_world));
-  const maths::mat4 to_view = view_from_normal(frame, normals_in_view_space);
+  const maths::mat4 to_view =
+      view_from_normal(frame, inputs.normals_in_view_space, inputs.normals_forward_z);
   maths::ReconstructParameters parameters{};
   parameters.previous_from_pixel =
       maths::mat4(maths::dmat4(pixel_from_view(previous)) * to_previous * maths::dmat4(from_pixel));
@@ -325,7 +328,13 @@ maths::ReconstructParameters parameters_of(const Frame& frame, const maths::Proj
   parameters.clamp_width = settings.clamp_width;
   parameters.previous_size = maths::vec4(previous.size_px, previous.size_px / projection.size_px);
   parameters.history_depth = maths::vec4(history_depth(projection), history_depth(previous));
+  const MotionConvention& motion = inputs.motion_convention;
+  parameters.motion =
+      maths::vec4(maths::vec2(motion.scale[0], motion.scale[1]) * previous.size_px,
+                  maths::vec2(motion.offset[0], motion.offset[1]) * previous.size_px);
   parameters.roughness = settings.roughness;
+  parameters.power = settings.power;
+  parameters.intensity = settings.intensity;
   return parameters;
 }
 
@@ -400,7 +409,7 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& given_frame,
   declare_accesses(frame.graph, pass, textures);
   const auto [phase_x, phase_y] = interleave_offset_of(inputs.raw_occlusion.tile_size, frame.index);
   maths::ReconstructParameters parameters =
-      parameters_of(frame, *projection, *previous, inputs.normals_in_view_space, settings);
+      parameters_of(frame, *projection, *previous, inputs, settings);
   parameters.window_px = window_px(inputs.raw_occlusion);
   // Distances from the plane count for more with the slices, as the window narrows with them.
   parameters.tolerance *= std::sqrt(static_cast<float>(inputs.raw_occlusion.slices));

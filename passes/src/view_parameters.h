@@ -8,6 +8,7 @@
 
 #include "alcove/passes/frame.h"
 #include "maths/make_projection.h"
+#include "maths/slice_line.h"
 #include "rigid_transform.h"
 
 namespace alcove::passes {
@@ -47,10 +48,16 @@ namespace alcove::passes {
   return projection_of(view, {extent.width, extent.height});
 }
 
-// The rotation that turns normals into view space.
-[[nodiscard]] inline maths::mat4 view_from_normal(const Frame& frame, bool normals_in_view_space) {
-  return normals_in_view_space ? maths::mat4(1.0f)
-                               : maths::mat4(to_rigid(frame.view.view_from_world));
+// The rotation, or reflection, that turns normals into view space. `forward_z` is of normals in
+// view space whose z grows away from the eye.
+[[nodiscard]] inline maths::mat4 view_from_normal(const Frame& frame, bool normals_in_view_space,
+                                                  bool forward_z = false) {
+  maths::mat4 result =
+      normals_in_view_space ? maths::mat4(1.0f) : maths::mat4(to_rigid(frame.view.view_from_world));
+  if (normals_in_view_space && forward_z) {
+    result[2][2] = -1.0f;
+  }
+  return result;
 }
 
 [[nodiscard]] inline bool is_perspective(const maths::Projection& projection) {
@@ -62,11 +69,45 @@ namespace alcove::passes {
 }
 
 // From raw depth to a number that is linear along the image of any plane, 1/depth in perspective
-// and depth in orthographic views: x * depth_ndc + y.
-[[nodiscard]] inline maths::vec2 inverse_depth_from_ndc(const maths::Projection& projection) {
-  const maths::vec4& unproject = projection.depth_unproject;
-  return is_perspective(projection) ? maths::vec2(unproject.z, unproject.w) / unproject.y
-                                    : maths::vec2(unproject.x, unproject.y) / unproject.w;
+// and depth in orthographic views.
+[[nodiscard]] inline maths::InverseDepthFromNdc inverse_depth_from_ndc(
+    const maths::Projection& projection) {
+  const maths::dvec4 unproject(projection.depth_unproject);
+  const bool perspective = is_perspective(projection);
+  const maths::dvec2 linear = perspective ? maths::dvec2(unproject.z, unproject.w) / unproject.y
+                                          : maths::dvec2(unproject.x, unproject.y) / unproject.w;
+  // The raw depth of the far plane in perspective, that of the near plane in orthographic views.
+  const double origin = is_reversed(projection) == perspective ? 0.0 : 1.0;
+  return {static_cast<float>(linear.x), static_cast<float>(origin),
+          static_cast<float>(linear.x * origin + linear.y)};
+}
+
+// The step of a depth buffer of this format.
+[[nodiscard]] inline maths::DepthStep depth_step(const maths::Projection& projection,
+                                                 VkFormat format) {
+  const maths::InverseDepthFromNdc from = inverse_depth_from_ndc(projection);
+  const double scale = std::abs(double{from.scale});
+  // Half a step more than the step: rasterisers do not round as exactly as they may.
+  const auto fixed = [&](double levels) {
+    return maths::DepthStep{static_cast<float>(1.5 * scale / levels), 0.0f};
+  };
+  switch (format) {
+    case VK_FORMAT_D16_UNORM:
+    case VK_FORMAT_D16_UNORM_S8_UINT:
+    case VK_FORMAT_R16_UNORM:
+      return fixed(65535.0);
+    case VK_FORMAT_X8_D24_UNORM_PACK32:
+    case VK_FORMAT_D24_UNORM_S8_UINT:
+      return fixed(16777215.0);
+    default: {
+      // Floats: at most 2^-23 of the raw depth, and 2^-24 from a half to 1. The raw depth is
+      // (inverse_depth - offset) / scale + origin.
+      const double step = std::ldexp(1.0, -23);
+      const double sign = from.scale < 0.0f ? -1.0 : 1.0;
+      return {static_cast<float>(step * (scale * from.origin - sign * from.offset)),
+              static_cast<float>(step * sign)};
+    }
+  }
 }
 
 template <typename Parameters>

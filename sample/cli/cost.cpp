@@ -4,10 +4,11 @@
 #include "alcove/passes/setting_names.h"
 #include "cli/commands.h"
 #include "cli/settings.h"
+#include "gpu_cost/budget.h"
 #include "gpu_cost/cost_report.h"
 #include "scene/scene.h"
-#include "support/whole_file.h"
 #include "support/progress.h"
+#include "support/whole_file.h"
 
 namespace alcove::sample {
 namespace {
@@ -51,7 +52,7 @@ tl::expected<std::vector<SettingsCost>, std::string> measure(const Options& opti
       if (!inputs) {
         return Failure(inputs.error());
       }
-      auto frames = frame_costs(part, *device, *inputs);
+      auto frames = modelled_frames(part, *device, *inputs);
       if (!frames) {
         return Failure(std::move(frames.error()));
       }
@@ -65,9 +66,24 @@ tl::expected<std::vector<SettingsCost>, std::string> measure(const Options& opti
   return costs;
 }
 
+Done write_budget(const std::filesystem::path& file) {
+  const auto device = create_null_device(kGpuParts.front().family);
+  if (!device) {
+    return Failure(device.error());
+  }
+  const auto costs = budgeted_costs();
+  if (!costs) {
+    return Failure(costs.error());
+  }
+  return write_text(file, budget_of(*costs, compiler_name(*device)).dump(1) + "\n");
+}
+
 }  // namespace
 
 Done run_cost(const Options& options) {
+  if (!options.cost.budget.empty()) {
+    return write_budget(options.cost.budget);
+  }
   const auto costs = measure(options);
   if (!costs) {
     return Failure(costs.error());

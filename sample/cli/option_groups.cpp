@@ -271,6 +271,9 @@ void add_cost(CLI::App& app, Options& options) {
                  options.cost.loops);
   group.add("--json", "FILE", "also write all figures as JSON",
             [&](const OptionValue& given) { options.cost.json = given.text; });
+  group.add("--write-budget", "FILE",
+            "only write the costs of all presets, as the budget that the tests hold them to",
+            [&](const OptionValue& given) { options.cost.budget = given.text; });
   group.add("--chart", "FILE", "also draw an SVG chart of where the time goes",
             [&](const OptionValue& given) { options.cost.chart = given.text; });
 }

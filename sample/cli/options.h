@@ -57,11 +57,12 @@ struct OcclusionOptions {
 };
 
 struct CostOptions {
-  std::string family;           // of the modelled GPU; empty for all that the model knows
-  bool motion_vectors = false;  // the passes are given motion vectors
-  bool loops = false;           // also print the loops
-  std::filesystem::path json;   // empty for none
-  std::filesystem::path chart;  // an SVG image; empty for none
+  std::string family;            // of the modelled GPU; empty for all that the model knows
+  bool motion_vectors = false;   // the passes are given motion vectors
+  bool loops = false;            // also print the loops
+  std::filesystem::path json;    // empty for none
+  std::filesystem::path budget;  // of the presets, in place of all else; empty for none
+  std::filesystem::path chart;   // an SVG image; empty for none
 };
 
 struct Options {

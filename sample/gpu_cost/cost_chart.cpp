@@ -42,8 +42,8 @@ std::string number(double value) {
 std::vector<std::string> pass_names(std::span<const SettingsCost> costs) {
   std::vector<std::string> names;
   for (const SettingsCost& cost : costs) {
-    for (const FrameCost& frame : cost.frames) {
-      for (const PassCost& pass : frame.passes) {
+    for (const ModelledFrame& frame : cost.frames) {
+      for (const ModelledPass& pass : frame.passes) {
         if (std::ranges::find(names, pass.pass) == names.end()) {
           names.push_back(pass.pass);
         }
@@ -90,7 +90,7 @@ void Chart::draw_part(const GpuPart& part) {
   double longest = peer.milliseconds;
   std::size_t rows = 0;
   for (const SettingsCost& cost : costs_) {
-    for (const FrameCost& frame : cost.frames) {
+    for (const ModelledFrame& frame : cost.frames) {
       if (cost.family == part.family) {
         longest = std::max(longest, frame.milliseconds());
         ++rows;
@@ -112,11 +112,11 @@ void Chart::draw_part(const GpuPart& part) {
     if (cost.family != part.family) {
       continue;
     }
-    for (const FrameCost& frame : cost.frames) {
+    for (const ModelledFrame& frame : cost.frames) {
       draw_text(body_, kLeft - 8, y_ + kBar - 2, "end",
                 cost.label + ", " + std::string(name_of(frame.state)));
       double x = kLeft;
-      for (const PassCost& pass : frame.passes) {
+      for (const ModelledPass& pass : frame.passes) {
         const double width = pass.milliseconds() * scale;
         draw_box(body_, x, y_, width, colour_of(names_, pass.pass),
                  pass.pass + ": " + number(pass.milliseconds()) + " ms, limited by " +

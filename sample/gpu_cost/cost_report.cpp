@@ -19,7 +19,7 @@ const GpuPart& part_of(const SettingsCost& cost) {
 
 double reference_ms(const GpuPart& part) { return part.peers[kXeGtaoHigh].milliseconds; }
 
-void print_pass(std::ostream& out, const PassCost& pass) {
+void print_pass(std::ostream& out, const ModelledPass& pass) {
   out << "    " << std::left << std::setw(20) << pass.pass << std::right << std::fixed
       << std::setprecision(3) << std::setw(8) << pass.milliseconds() << "  " << std::left
       << std::setw(14) << pass.limit() << std::right << std::setprecision(0) << std::setw(8)
@@ -33,7 +33,7 @@ void print_pass(std::ostream& out, const PassCost& pass) {
       << pass.latency_ms << "\n";
 }
 
-void print_wave(std::ostream& out, const PassCost& pass) {
+void print_wave(std::ostream& out, const ModelledPass& pass) {
   out << std::setprecision(0) << "      a wave: " << pass.wave.instructions << " instructions, "
       << pass.wave.vector_instructions << " vector (" << pass.wave.transcendentals
       << " transcendental, " << pass.wave.selects << " select), " << pass.wave.scalar_instructions
@@ -50,11 +50,11 @@ void print_wave(std::ostream& out, const PassCost& pass) {
 
 void print_settings(std::ostream& out, const SettingsCost& cost, bool loops) {
   const double reference = reference_ms(part_of(cost));
-  for (const FrameCost& frame : cost.frames) {
+  for (const ModelledFrame& frame : cost.frames) {
     out << "  " << cost.label << ", " << name_of(frame.state) << " frame: " << std::fixed
         << std::setprecision(3) << frame.milliseconds() << " ms, " << std::setprecision(2)
         << frame.milliseconds() / reference << " of XeGTAO high\n";
-    for (const PassCost& pass : frame.passes) {
+    for (const ModelledPass& pass : frame.passes) {
       print_pass(out, pass);
       if (loops) {
         print_wave(out, pass);
@@ -63,7 +63,7 @@ void print_settings(std::ostream& out, const SettingsCost& cost, bool loops) {
   }
 }
 
-Json to_json(const PassCost& pass) {
+Json to_json(const ModelledPass& pass) {
   return {{"pass", pass.pass},
           {"ms", pass.milliseconds()},
           {"limit", pass.limit()},
@@ -129,9 +129,9 @@ Json to_json(std::span<const SettingsCost> costs) {
         continue;
       }
       Json frames = Json::array();
-      for (const FrameCost& frame : cost.frames) {
+      for (const ModelledFrame& frame : cost.frames) {
         Json passes = Json::array();
-        for (const PassCost& pass : frame.passes) {
+        for (const ModelledPass& pass : frame.passes) {
           passes.push_back(to_json(pass));
         }
         frames.push_back({{"frame", name_of(frame.state)},

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "gpu_cost/frame_cost.h"
+#include "gpu_cost/modelled_frame.h"
 
 namespace alcove::sample {
 
@@ -14,7 +14,7 @@ namespace alcove::sample {
 struct SettingsCost {
   std::string label;  // a preset's name, say
   std::string family;
-  std::vector<FrameCost> frames;
+  std::vector<ModelledFrame> frames;
 };
 
 // A table for each part, with the passes of each frame and their sums. With `loops`, also the

@@ -79,11 +79,17 @@ void for_each_setting(Settings& settings, const Visit& visit) {
              "How far from the tangent plane a neighbour counts in a first frame, in pixels.", 0.1f,
              8.0f, [](Of s) { return s.filter_radius > 0; }},
         settings.filter_tolerance_px);
-  visit(Info{"history_frames", "Frames that are averaged; 0: no history.", 0, 255},
+  visit(Info{"history_frames", "Frames that are averaged; 0: no history.", 0, 127},
         settings.history_frames);
   visit(Info{"clamp_width", "Deviations that history is held to; 0: free.", 0.0f, 8.0f,
              [](Of s) { return s.history_frames > 0; }},
         settings.clamp_width);
+  visit(Info{"power", "Exponent of visibility in the image that is written; 1 changes nothing.",
+             0.1f, 16.0f},
+        settings.power);
+  visit(Info{"intensity", "Factor of occlusion in the image that is written; 1 changes nothing.",
+             0.0f, 16.0f},
+        settings.intensity);
   visit(Info{"bent_normal", "Also the mean visible direction."}, settings.bent_normal);
   visit(Info{"specular", "How specular occlusion is found."}, settings.specular);
   visit(Info{"precision", "Bits of the results."}, settings.precision);

@@ -111,6 +111,12 @@ ALCOVE_INLINE float lobe_weight(LobeSurface own, uint neighbour) {
   return sixteenth * sixteenth * max(1.0f - abs(apart), 0.0f);
 }
 
+// The visibility that an artist wants of `visibility`: 1 - intensity * (1 - visibility^power), cut
+// to [0,1]. Open stays open; a power or an intensity over 1 darkens, one below 1 brightens.
+ALCOVE_INLINE float shaped_visibility(float visibility, float power, float intensity) {
+  return saturate(1.0f - intensity * (1.0f - pow(max(visibility, 0.0f), power)));
+}
+
 ALCOVE_MATHS_END
 
 #endif

@@ -24,12 +24,19 @@ ALCOVE_INLINE float sky_inverse_depth(bool perspective) {
   return perspective ? 1.0f / kSkyDepth : kSkyDepth;
 }
 
-// SliceSample::inverse_depth of a raw depth that is not the sky's, by inverse_depth_from_ndc's
-// scale and offset: before the near plane it is the near plane's, beyond the sky the sky's.
-ALCOVE_INLINE float inverse_depth_of_ndc(vec2 inverse_depth_from_ndc, float depth_ndc,
+// SliceSample::inverse_depth of a raw depth that is not the sky's, which is scale * (depth_ndc -
+// origin) + offset. Before the near plane it is the near plane's, beyond the sky the sky's. The
+// origin, 0 or 1, is the raw depth whose inverse depth is smallest: the difference is then exact,
+// and no digit that the depth buffer holds is lost.
+struct InverseDepthFromNdc {
+  float scale;
+  float origin;
+  float offset;
+};
+
+ALCOVE_INLINE float inverse_depth_of_ndc(InverseDepthFromNdc from, float depth_ndc,
                                          bool perspective) {
-  float inverse_depth =
-      inverse_depth_from_ndc.x * clamp(depth_ndc, 0.0f, 1.0f) + inverse_depth_from_ndc.y;
+  float inverse_depth = from.scale * (clamp(depth_ndc, 0.0f, 1.0f) - from.origin) + from.offset;
   return perspective ? max(inverse_depth, sky_inverse_depth(true))
                      : min(inverse_depth, sky_inverse_depth(false));
 }
@@ -118,6 +125,29 @@ ALCOVE_INLINE vec3 normal_of_gradient(vec2 per_px, vec2 slope, float inverse_dep
   float x = gradient.x * scale / per_px.x;
   float y = gradient.y * scale / per_px.y;
   return normalize(vec3(x, y, perspective ? 1.0f + x * slope.x + y * slope.y : 1.0f));
+}
+
+// The step of a depth buffer as SliceSample::inverse_depth: the difference between neighbouring
+// values that it can hold is at most constant + per_inverse_depth * inverse_depth.
+struct DepthStep {
+  float constant;
+  float per_inverse_depth;
+};
+
+ALCOVE_INLINE float depth_step_at(DepthStep s, float inverse_depth) {
+  return max(s.constant + s.per_inverse_depth * inverse_depth, 0.0f);
+}
+
+// How far a point that differs by `step` from one at `inverse_depth` lies before or behind it, in
+// scene units.
+ALCOVE_INLINE float depth_step_length(float step, float inverse_depth, bool perspective) {
+  return perspective ? step / (inverse_depth * inverse_depth) : step;
+}
+
+// How much of the occlusion at a surface the depth buffer cannot resolve: 0 while its step is below
+// a quarter of the radius, 1 from the whole radius on.
+ALCOVE_INLINE float unresolved_occlusion(float step_length, float radius) {
+  return saturate((step_length / radius - 0.25f) * (4.0f / 3.0f));
 }
 
 // How far a sample, `off_plane` off the tangent plane in `line` and so many pixels away, is moved

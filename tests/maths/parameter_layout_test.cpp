@@ -41,7 +41,9 @@ const std::map<std::string, Offsets> kExpected = {
       ALCOVE_OFFSET(GtaoParameters, interleave_offset), ALCOVE_OFFSET(GtaoParameters, radius),
       ALCOVE_OFFSET(GtaoParameters, frame), ALCOVE_OFFSET(GtaoParameters, thickness),
       ALCOVE_OFFSET(GtaoParameters, hidden_occlusion), ALCOVE_OFFSET(GtaoParameters, blend),
-      ALCOVE_OFFSET(GtaoParameters, falloff), ALCOVE_OFFSET(GtaoParameters, roughness)}},
+      ALCOVE_OFFSET(GtaoParameters, falloff), ALCOVE_OFFSET(GtaoParameters, roughness),
+      ALCOVE_OFFSET(GtaoParameters, depth_step),
+      ALCOVE_OFFSET(GtaoParameters, depth_step_per_inverse_depth)}},
     {"GtsoParameters",
      {ALCOVE_OFFSET(GtsoParameters, projection), ALCOVE_OFFSET(GtsoParameters, view_from_normal),
       ALCOVE_OFFSET(GtsoParameters, roughness)}},
@@ -64,12 +66,14 @@ const std::map<std::string, Offsets> kExpected = {
       ALCOVE_OFFSET(ReconstructParameters, slope),
       ALCOVE_OFFSET(ReconstructParameters, previous_size),
       ALCOVE_OFFSET(ReconstructParameters, history_depth),
+      ALCOVE_OFFSET(ReconstructParameters, motion),
       ALCOVE_OFFSET(ReconstructParameters, interleave_offset),
       ALCOVE_OFFSET(ReconstructParameters, window_px),
       ALCOVE_OFFSET(ReconstructParameters, tolerance),
       ALCOVE_OFFSET(ReconstructParameters, longest),
       ALCOVE_OFFSET(ReconstructParameters, clamp_width),
-      ALCOVE_OFFSET(ReconstructParameters, roughness)}},
+      ALCOVE_OFFSET(ReconstructParameters, roughness), ALCOVE_OFFSET(ReconstructParameters, power),
+      ALCOVE_OFFSET(ReconstructParameters, intensity)}},
 };
 
 TEST(ParameterStructs, LieInUniformBlocksWhereTheyLieInCpp) {

@@ -29,5 +29,5 @@ layout(std430, set = 0, binding = 10) buffer Sum { float sum; };
 void main() {
   sum = projection.size_px.x + linear_depth.reach + gtao.radius + normals.projection.size_px.x +
         reconstruct.longest + gtso.roughness + multi_bounce.size_px.x + apply.roughness +
-        environment.size + inverse_depth.inverse_depth_from_ndc.x;
+        environment.size + inverse_depth.inverse_depth_from_ndc.scale + gtao.depth_step;
 }

@@ -163,13 +163,13 @@ TEST(SliceLine, RawDepthOfAnyKindIsBetweenTheNearPlaneAndTheSky) {
   // behind infinity; orthographic.
   for (const float ndc : {-kInfinity, -1e30f, -1.0f, 0.0f, 1e-45f, 1e-38f, 0.5f, 0.99999994f, 1.0f,
                           2.0f, 1e30f, kInfinity}) {
-    const float reversed = maths::inverse_depth_of_ndc({10.0f, 0.0f}, ndc, true);
+    const float reversed = maths::inverse_depth_of_ndc({10.0f, 0.0f, 0.0f}, ndc, true);
     EXPECT_GE(reversed, maths::sky_inverse_depth(true)) << ndc;
     EXPECT_LE(reversed, 10.0f) << ndc;
-    const float rounded = maths::inverse_depth_of_ndc({-10.0f, 9.9999994f}, ndc, true);
+    const float rounded = maths::inverse_depth_of_ndc({-10.0f, 1.0f, -6e-7f}, ndc, true);
     EXPECT_GE(rounded, maths::sky_inverse_depth(true)) << ndc;
     EXPECT_LE(rounded, 10.0f) << ndc;
-    const float orthographic = maths::inverse_depth_of_ndc({20.0f, -10.0f}, ndc, false);
+    const float orthographic = maths::inverse_depth_of_ndc({20.0f, 0.0f, -10.0f}, ndc, false);
     EXPECT_GE(orthographic, -10.0f) << ndc;
     EXPECT_LE(orthographic, 10.0f) << ndc;
   }

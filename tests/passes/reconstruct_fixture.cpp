@@ -21,7 +21,7 @@ HostImage packed_raw_occlusion(const View& view, const Drawing& drawing,
   const HostImage& depth = drawing.depth_ndc;
   const auto projection =
       maths::make_projection(to_mat4(view.clip_from_view), depth.width, depth.height);
-  const maths::vec2 from_ndc = inverse_depth_from_ndc(projection.value());
+  const maths::InverseDepthFromNdc from_ndc = inverse_depth_from_ndc(projection.value());
   const InterleaveOffset interleave_offset = interleave_offset_of(tile_size, index);
   HostImage packed = raw_occlusion;
   for (std::uint32_t y = 0; y < packed.height; ++y) {
@@ -37,7 +37,7 @@ HostImage packed_raw_occlusion(const View& view, const Drawing& drawing,
       sums.open = texel[1];
       texel[0] = std::bit_cast<float>(
           maths::pack_raw_occlusion(sums, maths::make_quantised_normal(normal).bits));
-      texel[1] = from_ndc.x * ndc + from_ndc.y;
+      texel[1] = from_ndc.scale * (ndc - from_ndc.origin) + from_ndc.offset;
     }
   }
   return packed;

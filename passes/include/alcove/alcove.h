@@ -117,6 +117,20 @@ typedef enum AlcoveSpecular {
   ALCOVE_SPECULAR_MAX_ENUM = 0x7fffffff
 } AlcoveSpecular;
 
+// How AlcoveView::normals holds normals. The decoded vectors may have any length but 0.
+typedef enum AlcoveNormalEncoding {
+  // xyz in a signed or float format of at least 3 channels.
+  ALCOVE_NORMAL_ENCODING_SIGNED_XYZ = 0,
+  // xyz packed into [0,1], 0.5 + 0.5 * normal, in any format of at least 3 channels:
+  // A2B10G10R10_UNORM, R8G8B8A8_UNORM.
+  ALCOVE_NORMAL_ENCODING_UNSIGNED_XYZ = 1,
+  // The octahedral map (Cigolle et al. 2014) in xy of a signed or float format.
+  ALCOVE_NORMAL_ENCODING_OCTAHEDRAL = 2,
+  // The same packed into [0,1], in any format of at least 2 channels.
+  ALCOVE_NORMAL_ENCODING_UNSIGNED_OCTAHEDRAL = 3,
+  ALCOVE_NORMAL_ENCODING_MAX_ENUM = 0x7fffffff
+} AlcoveNormalEncoding;
+
 // Of results that others are made from and that no image was given for; an image has its own.
 typedef enum AlcovePrecision {
   ALCOVE_PRECISION_UNORM8 = 0,   // 8 bits a channel
@@ -178,6 +192,11 @@ typedef struct AlcoveSettings {
   float roughness;             // perceptual, 0 to 1, of every pixel where no image has it [0.5]
   uint32_t roughness_channel;  // of AlcoveView::roughness, 0 to 3 [0]
   AlcovePrecision precision;   // [UNORM8]
+  // What is written as visibility is 1 - intensity * (1 - visibility^power), cut to [0,1]. 1 and 1
+  // change nothing and cost nothing. Multi-bounce, and the specular models but SLICES, read what is
+  // written.
+  float power;      // above 0 to 16 [1]
+  float intensity;  // 0 to 16 [1]
 } AlcoveSettings;
 
 // Fills `settings`, whose struct_size is set, with those of a quality at a radius (scene units,
@@ -238,11 +257,13 @@ typedef struct AlcoveState {
 } AlcoveState;
 
 // An image of the engine's: 2D, optimal tiling, one mip, one sample, of the queue family of the
-// context or shared. Zeroed: there is none.
+// context or shared. Zeroed: there is none. Depth of several samples is resolved by the engine
+// first, to that of sample 0 (VK_RESOLVE_MODE_SAMPLE_ZERO_BIT): an average lies on no surface.
 typedef struct AlcoveImage {
   VkImage image;
-  // 2D, of the layer, of the depth aspect alone in formats that have it. Null: the library makes
-  // one and keeps it; call alcoveForgetImage before the image is destroyed.
+  // 2D, of the layer, of the depth aspect alone in formats that have it: Vulkan allows no shader to
+  // read a view of depth and stencil together. Null: the library makes one and keeps it; call
+  // alcoveForgetImage before the image is destroyed.
   VkImageView view;
   VkFormat format;
   // Pixels that are read or written, from the first on: all of the image, or fewer (dynamic
@@ -280,6 +301,52 @@ typedef struct AlcoveCamera {
   float view_from_world[16];
 } AlcoveCamera;
 
+// What an engine's matrices have otherwise than AlcoveCamera: for alcoveConvertCamera, to be
+// combined.
+typedef enum AlcoveCameraConvention {
+  // Clip space has y up: the viewport has a negative height, or the API's y points up.
+  ALCOVE_CAMERA_CONVENTION_CLIP_Y_UP = 1,
+  // Clip space has depth -1 to 1, which is stored as 0.5 + 0.5 * depth.
+  ALCOVE_CAMERA_CONVENTION_DEPTH_FROM_MINUS_ONE = 2,
+  // The camera looks along +Z of view space.
+  ALCOVE_CAMERA_CONVENTION_FORWARD_Z = 4,
+  // Matrices of column vectors lie in memory row by row. (Matrices of row vectors that lie row by
+  // row, as those of DirectXMath and Unreal, need no bit: in memory they are the same.)
+  ALCOVE_CAMERA_CONVENTION_ROW_MAJOR = 8,
+
+  // glm::perspectiveRH_ZO and glm::lookAtRH, drawn with a viewport of negative height. Where the
+  // engine changes the sign of the projection's [1][1] instead, no conversion is needed.
+  ALCOVE_CAMERA_CONVENTION_GLM = 1,
+  // gluPerspective, glFrustum.
+  ALCOVE_CAMERA_CONVENTION_OPENGL = 3,
+  // Direct3D, DirectXMath's ...LH functions and Unreal's view and projection matrices.
+  ALCOVE_CAMERA_CONVENTION_DIRECT3D = 5,
+  ALCOVE_CAMERA_CONVENTION_UNREAL = 5,
+  ALCOVE_CAMERA_CONVENTION_MAX_ENUM = 0x7fffffff
+} AlcoveCameraConvention;
+
+// Fills `camera` with an engine's matrices of 16 floats each. `conventions` is any combination of
+// AlcoveCameraConvention, 0 for none. ALCOVE_ERROR_INVALID_INPUT where a pointer is null or a bit
+// is unknown; what the matrices hold is checked when a frame is recorded. Normals in view space of
+// a camera that looks along +Z need AlcoveView::normals_forward_z too.
+AlcoveResult alcoveConvertCamera(const float* clip_from_view, const float* view_from_world,
+                                 uint32_t conventions, AlcoveCamera* camera);
+
+// A perspective in plain numbers.
+typedef struct AlcovePerspective {
+  uint32_t struct_size;
+  float fov_y;        // vertical angle of view in radians, above 0 and below pi
+  float near_plane;   // distance in scene units, above 0
+  float far_plane;    // above near_plane; 0 or infinity: infinite
+  VkBool32 reversed;  // near at depth 1, far at depth 0
+  uint32_t width;     // of the image in pixels
+  uint32_t height;
+  float jitter_px[2];  // by which the image is shifted, in pixels, x right and y down
+} AlcovePerspective;
+
+// Fills AlcoveCamera::clip_from_view. ALCOVE_ERROR_INVALID_INPUT where a number is out of range.
+AlcoveResult alcoveMakePerspective(const AlcovePerspective* perspective, float* clip_from_view);
+
 // One view of a frame: an eye, a part of a split screen, in images or layers of its own. Outputs
 // that have no image are not made, and cost neither a pass nor memory.
 typedef struct AlcoveView {
@@ -289,6 +356,10 @@ typedef struct AlcoveView {
   VkBool32 reset_history;  // forget it, at a cut say. A change of size does so by itself, but for
                            // largest_width
   VkBool32 normals_in_view_space;  // else in world space
+  AlcoveNormalEncoding normal_encoding;
+  // Normals in view space have a z that grows away from the eye, as in engines whose camera looks
+  // along +Z. Bent normals are written so too.
+  VkBool32 normals_forward_z;
   // Frames in a row, up to this one, that show the very same of this id as the one before each; 0:
   // this one differs, or nobody knows. It starts again after reset_history (with which it is not
   // read) and where size, settings or outputs change. From 1 on `motion` is not read; from 16 on a
@@ -311,7 +382,7 @@ typedef struct AlcoveView {
 
   // Inputs.
   AlcoveImage depth;  // as clip_from_view has it: any depth format, or R32_SFLOAT. Needed
-  // Unit vectors in xyz, signed (not packed into [0,1]). Without an image, normals are made from
+  // Unit vectors, as normal_encoding says. Without an image, normals are made from
   // depth, and bent normals are in view space.
   //
   // A normal that faces away from the eye by more than 14 degrees is flipped, so that double-sided
@@ -319,10 +390,18 @@ typedef struct AlcoveView {
   // edge-on, as the depth buffer shows the surface. A normal that is zero or not finite is taken
   // from depth at its pixel.
   AlcoveImage normals;
-  // xy: uv in this frame's image minus uv in the last's (y down, so with the jitter of both
-  // cameras), signed; none: only the camera moves. Where it is given history is held to what the
-  // last few frames say, for shades that move: leave it out where nothing but the camera does.
+  // How each surface moved on the image, in xy of a signed format. Without an image only the camera
+  // moves. With one, history is held to what the last few frames say, because occluders may move:
+  // leave it out where nothing but the camera does.
+  //
+  // motion_scale * vector + motion_offset is uv in this frame's image minus uv in the last frame's,
+  // y down, with the jitter of both cameras. A scale of zeros stands for 1 and 1. Vectors in pixels
+  // have a scale of 1 / size, those in normalised device coordinates 0.5 (y down, as Vulkan has
+  // it), those from this frame to the last -1. Vectors that were drawn without jitter have an
+  // offset: this frame's jitter minus the last frame's, in uv.
   AlcoveImage motion;
+  float motion_scale[2];
+  float motion_offset[2];
   AlcoveImage roughness;   // perceptual, [0,1]; none: AlcoveSettings::roughness
   AlcoveImage back_depth;  // of the nearest back faces, as depth; needed with
                            // ALCOVE_THICKNESS_UNIT_BACK_FACES (bitmask, connected), else unread
@@ -403,6 +482,25 @@ typedef struct AlcoveMemory {
 
 // Fills `memory`, whose struct_size is set.
 AlcoveResult alcoveGetMemory(AlcoveContext* context, AlcoveMemory* memory);
+
+// Outputs, to be combined.
+typedef enum AlcoveOutput {
+  ALCOVE_OUTPUT_VISIBILITY = 1,
+  ALCOVE_OUTPUT_BENT_NORMAL = 2,
+  ALCOVE_OUTPUT_SPECULAR = 4,
+  ALCOVE_OUTPUT_MULTI_BOUNCE = 8,
+  ALCOVE_OUTPUT_MAX_ENUM = 0x7fffffff
+} AlcoveOutput;
+
+// Fills `memory`, whose struct_size is set, with the bytes that one view of width x height pixels
+// takes, before there is a context or a frame. `outputs` is a combination of AlcoveOutput;
+// `normals_given` says that AlcoveView::normals has an image. The figures are those of texels:
+// drivers round each image up. `transients` is what the view needs when nothing shares memory, as
+// is `transients_unshared`; a frame that was recorded may need less. `allocated` is the sum of
+// transients and history. ALCOVE_ERROR_INVALID_INPUT where an argument is invalid; there is no
+// message.
+AlcoveResult alcoveEstimateMemory(const AlcoveSettings* settings, uint32_t width, uint32_t height,
+                                  uint32_t outputs, VkBool32 normals_given, AlcoveMemory* memory);
 
 typedef struct AlcoveTiming {
   char pass[ALCOVE_MAX_NAME];

@@ -39,6 +39,14 @@ enum class Precision : std::uint8_t {
   float32,  // R32_SFLOAT, RGBA32_SFLOAT
 };
 
+// How a texture holds normals. The decoded normal may have any length but 0.
+enum class NormalEncoding : std::uint8_t {
+  signed_xyz,    // xyz in a signed or float format
+  unsigned_xyz,  // xyz packed into [0,1]: 0.5 + 0.5 * normal
+  octahedral,    // the octahedral map (Cigolle et al. 2014) in xy of a signed or float format
+  unsigned_octahedral,  // the same packed into [0,1]
+};
+
 // Where the passes of one frame go. Borrowed, all of it, until the frame is recorded.
 struct Frame {
   framegraph::Graph& graph;

@@ -131,6 +131,15 @@ struct GtaoInputs {
   framegraph::Texture back_inverse_depth;
   // The same of OcclusionInputs::second_depth_ndc; only where needs_second_depth().
   framegraph::Texture second_inverse_depth;
+  // Of the depth buffer that inverse_depth was made from. Its format and the projection tell the
+  // step between the depths that it can hold. Samples within about one step of the surface's
+  // tangent plane do not occlude, and visibility fades to open while the step grows from a quarter
+  // of the radius to the radius. The step at a distance z is z^2 / near * 2^-24 with 32-bit floats
+  // or 24 bits and depth that is not reversed, z^2 / near * 2^-16 with 16 bits, z * 2^-23 with
+  // reversed floats.
+  VkFormat depth_format = VK_FORMAT_D32_SFLOAT;
+  NormalEncoding normal_encoding = NormalEncoding::signed_xyz;
+  bool normals_forward_z = false;  // as OcclusionInputs has it
 };
 
 // What filters and history work on: sums over slices, one texel a block.

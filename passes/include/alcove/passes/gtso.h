@@ -38,6 +38,8 @@ struct GtsoInputs {
   framegraph::Texture depth;        // linear, as add_linear_depth makes it
   framegraph::Texture roughness;    // perceptual, [0,1]; null: GtsoSettings::roughness
   bool normals_in_view_space = false;
+  NormalEncoding normal_encoding = NormalEncoding::signed_xyz;  // of `normals`
+  bool normals_forward_z = false;                               // as OcclusionInputs has it
   framegraph::Texture into;  // to be written, whole; null: a transient of GtsoSettings::precision
 };
 

@@ -43,6 +43,11 @@ struct OcclusionSettings : SearchSettings, FilterSettings {
   float roughness = 0.5f;               // perceptual, [0,1], of every pixel where no texture has it
   std::uint32_t roughness_channel = 0;  // of the roughness texture, 0 to 3
   Precision precision = Precision::unorm8;
+  // What is written as visibility is 1 - intensity * (1 - visibility^power), cut to [0,1]: 1 and 1
+  // change nothing and cost nothing. Above 0 to 16, and 0 to 16. Specular models and multi-bounce
+  // read the visibility that is written.
+  float power = 1.0f;
+  float intensity = 1.0f;
 
   friend bool operator==(const OcclusionSettings&, const OcclusionSettings&) = default;
 };
@@ -52,7 +57,7 @@ struct OcclusionSettings : SearchSettings, FilterSettings {
 
 struct OcclusionInputs {
   framegraph::Texture depth_ndc;       // as the view's projection wrote it
-  framegraph::Texture normals;         // xyz unit; null: they are made from depth
+  framegraph::Texture normals;         // unit vectors; null: they are made from depth
   bool normals_in_view_space = false;  // else in world space
   framegraph::Texture motion;          // as ReconstructInputs::motion; null: only the camera moves
   framegraph::Texture roughness;       // perceptual, [0,1]; null: OcclusionSettings::roughness
@@ -71,6 +76,11 @@ struct OcclusionInputs {
   framegraph::Texture second_depth_ndc;
   // As ReconstructInputs::into: textures of the caller's for the results that the settings ask for.
   Occlusion into;
+  NormalEncoding normal_encoding = NormalEncoding::signed_xyz;
+  // Normals in view space have a z that grows away from the eye: engines whose camera looks along
+  // +Z. Bent normals are then written so too.
+  bool normals_forward_z = false;
+  MotionConvention motion_convention;
 };
 
 struct OcclusionOutputs {

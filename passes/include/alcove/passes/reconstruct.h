@@ -1,6 +1,7 @@
 // From traced pixels to every pixel: spatial filter, upsampling and history in one pass.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string_view>
 
@@ -33,6 +34,17 @@ struct ReconstructSettings : FilterSettings {
   float roughness = 0.5f;  // as GtaoSettings has them; read where the raw_occlusion has a lobe
   std::uint32_t roughness_channel = 0;
   Precision precision = Precision::unorm8;
+  float power = 1.0f;      // as OcclusionSettings has it
+  float intensity = 1.0f;  // the same
+};
+
+// What motion vectors mean: uv in this frame's image minus uv in the last frame's, y down, is
+// scale * vector + offset. Vectors in pixels have a scale of 1 / size, those in normalised device
+// coordinates 0.5 (y of Vulkan down), those from this frame to the last -1. Vectors that were drawn
+// without jitter have an offset: this frame's jitter minus the last frame's, in uv.
+struct MotionConvention {
+  std::array<float, 2> scale{1.0f, 1.0f};
+  std::array<float, 2> offset{0.0f, 0.0f};
 };
 
 struct Occlusion {
@@ -49,14 +61,17 @@ struct ReconstructInputs {
   framegraph::Texture inverse_depth;   // as add_inverse_depth makes it
   framegraph::Texture normals;         // as GtaoInputs::normals
   bool normals_in_view_space = false;
-  // xy: uv in this frame's image minus uv in the last's, y down, so with the jitter of both views;
-  // null: only the camera moves. Where it is given, things may, and with them the visibility of
+  // xy: how each surface moved on the image, in the units of `motion_convention`. Null: only the
+  // camera moves. Where motion is given, occluders may move too, and with them the visibility of
   // surfaces that stand still: history is held to what the last few frames say.
   framegraph::Texture motion;
   framegraph::Texture roughness;  // as GtaoInputs::roughness
   // Textures of the depth's size, of the caller's, that results are written to, whole; null: a
   // transient of ReconstructSettings::precision. Read only where the result is wanted.
   Occlusion into;
+  NormalEncoding normal_encoding = NormalEncoding::signed_xyz;
+  bool normals_forward_z = false;  // as OcclusionInputs has it
+  MotionConvention motion_convention;
 };
 
 // `history_name` tells the histories of one graph apart: each view needs its own. A history begins

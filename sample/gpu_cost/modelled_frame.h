@@ -26,7 +26,7 @@ struct CountedLoop {
   double iterations = 0;
 };
 
-struct PassCost {
+struct ModelledPass {
   std::string pass;
   double vector_registers = 0;  // of an invocation
   double scalar_registers = 0;  // of a wave
@@ -53,15 +53,15 @@ struct PassCost {
   std::string_view limit() const;  // which of the five it is
 };
 
-struct FrameCost {
+struct ModelledFrame {
   passes::cost::FrameState state = passes::cost::FrameState::first;
-  std::vector<PassCost> passes;
+  std::vector<ModelledPass> passes;
   double milliseconds() const;
 };
 
 // A frame of each state on one part. Errors: as record_frames() has them, the driver's text is not
 // understood, or a loop's iterations are not declared.
-[[nodiscard]] tl::expected<std::vector<FrameCost>, std::string> frame_costs(
+[[nodiscard]] tl::expected<std::vector<ModelledFrame>, std::string> modelled_frames(
     const GpuPart& part, const NullDevice& device, const CostInputs& inputs);
 
 }  // namespace alcove::sample

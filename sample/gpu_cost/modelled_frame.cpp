@@ -1,4 +1,4 @@
-#include "gpu_cost/frame_cost.h"
+#include "gpu_cost/modelled_frame.h"
 
 #include <algorithm>
 #include <array>
@@ -67,13 +67,13 @@ struct Model {
   const CostInputs& inputs;
 
   double pixels() const { return static_cast<double>(inputs.width) * inputs.height; }
-  tl::expected<PassCost, std::string> cost(const RecordedPass& pass, FrameState state) const;
+  tl::expected<ModelledPass, std::string> cost(const RecordedPass& pass, FrameState state) const;
   tl::expected<void, std::string> add_dispatch(const RecordedDispatch& dispatch, FrameState state,
-                                               PassCost& cost) const;
+                                               ModelledPass& cost) const;
 };
 
 tl::expected<void, std::string> Model::add_dispatch(const RecordedDispatch& dispatch,
-                                                    FrameState state, PassCost& cost) const {
+                                                    FrameState state, ModelledPass& cost) const {
   const CompiledShader* shader = device.compiled(dispatch.pipeline);
   if (shader == nullptr) {
     return Failure("The pass '" + cost.pass + "' runs a pipeline that was not recorded.");
@@ -126,8 +126,9 @@ tl::expected<void, std::string> Model::add_dispatch(const RecordedDispatch& disp
   return {};
 }
 
-tl::expected<PassCost, std::string> Model::cost(const RecordedPass& pass, FrameState state) const {
-  PassCost cost;
+tl::expected<ModelledPass, std::string> Model::cost(const RecordedPass& pass,
+                                                    FrameState state) const {
+  ModelledPass cost;
   cost.pass = pass.name;
   for (const RecordedDispatch& dispatch : pass.dispatches) {
     if (auto added = add_dispatch(dispatch, state, cost); !added) {
@@ -145,11 +146,11 @@ tl::expected<PassCost, std::string> Model::cost(const RecordedPass& pass, FrameS
 
 }  // namespace
 
-double PassCost::milliseconds() const {
+double ModelledPass::milliseconds() const {
   return std::max({alu_ms, texture_ms, shared_ms, bandwidth_ms, latency_ms});
 }
 
-std::string_view PassCost::limit() const {
+std::string_view ModelledPass::limit() const {
   const double longest = milliseconds();
   return longest == alu_ms         ? "ALU"
          : longest == texture_ms   ? "texture"
@@ -158,26 +159,26 @@ std::string_view PassCost::limit() const {
                                    : "latency";
 }
 
-double FrameCost::milliseconds() const {
+double ModelledFrame::milliseconds() const {
   double sum = 0;
-  for (const PassCost& pass : passes) {
+  for (const ModelledPass& pass : passes) {
     sum += pass.milliseconds();
   }
   return sum;
 }
 
-tl::expected<std::vector<FrameCost>, std::string> frame_costs(const GpuPart& part,
-                                                              const NullDevice& device,
-                                                              const CostInputs& inputs) {
+tl::expected<std::vector<ModelledFrame>, std::string> modelled_frames(const GpuPart& part,
+                                                                      const NullDevice& device,
+                                                                      const CostInputs& inputs) {
   RecordingDevice recording(device);
   const auto frames = record_frames(recording, inputs);
   if (!frames) {
     return Failure(frames.error());
   }
   const Model model{part, recording, inputs};
-  std::vector<FrameCost> costs;
+  std::vector<ModelledFrame> costs;
   for (const RecordedFrame& frame : *frames) {
-    FrameCost cost{frame.state, {}};
+    ModelledFrame cost{frame.state, {}};
     for (const RecordedPass& pass : frame.passes) {
       auto modelled = model.cost(pass, frame.state);
       if (!modelled) {

@@ -1,0 +1,20 @@
+// Normals as g-buffers store them.
+#ifndef ALCOVE_MATHS_NORMAL_ENCODING_H
+#define ALCOVE_MATHS_NORMAL_ENCODING_H
+
+#include "octahedral.h"
+
+ALCOVE_MATHS_BEGIN
+
+// The normal of a texel, of any length. `encoding` is a NormalEncoding: 0 is xyz, 1 is xyz packed
+// into [0,1], 2 and 3 are the octahedral map in xy and the same packed into [0,1]. It is a constant
+// in shaders, so that the branches cost nothing.
+ALCOVE_INLINE vec3 decode_normal(vec3 texel, uint encoding) {
+  bool packed = encoding == 1u || encoding == 3u;
+  vec3 value = packed ? texel * 2.0f - vec3(1.0f) : texel;
+  return encoding >= 2u ? octahedral_decode(vec2(value.x, value.y)) : value;
+}
+
+ALCOVE_MATHS_END
+
+#endif

@@ -1,0 +1,161 @@
+// Cameras of other conventions, and cameras from plain numbers.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <glm/glm.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <limits>
+
+#include "alcove/alcove.h"
+
+namespace {
+
+constexpr float kNear = 0.1f;
+constexpr float kFar = 50.0f;
+constexpr float kFovY = 0.9f;
+constexpr float kAspect = 1.5f;
+
+glm::mat4 matrix_of(const float* values) {
+  glm::mat4 result;
+  std::memcpy(&result, values, sizeof result);
+  return result;
+}
+
+// glm::lookAtRH, and a projection with depth 0 to 1 and y down on the image.
+const glm::vec3 kEye(1.0f, 2.0f, 3.0f);
+const glm::vec3 kTarget(-0.5f, 0.3f, -2.0f);
+const glm::vec3 kUp(0.0f, 1.0f, 0.0f);
+
+glm::mat4 expected_view() { return glm::lookAtRH(kEye, kTarget, kUp); }
+glm::mat4 expected_clip() {
+  glm::mat4 clip = glm::perspectiveRH_ZO(kFovY, kAspect, kNear, kFar);
+  clip[1][1] = -clip[1][1];
+  return clip;
+}
+
+void expect_near(const glm::mat4& found, const glm::mat4& expected) {
+  for (int column = 0; column < 4; ++column) {
+    for (int row = 0; row < 4; ++row) {
+      EXPECT_NEAR(found[column][row], expected[column][row], 1e-5f) << column << ", " << row;
+    }
+  }
+}
+
+void expect_converted(const glm::mat4& clip, const glm::mat4& view, std::uint32_t conventions) {
+  AlcoveCamera camera{};
+  ASSERT_EQ(alcoveConvertCamera(&clip[0][0], &view[0][0], conventions, &camera), ALCOVE_SUCCESS);
+  expect_near(matrix_of(camera.clip_from_view), expected_clip());
+  expect_near(matrix_of(camera.view_from_world), expected_view());
+}
+
+TEST(CCamera, MatricesWithTheRightConventionStayAsTheyAre) {
+  expect_converted(expected_clip(), expected_view(), 0);
+}
+
+TEST(CCamera, GlmMatricesForANegativeViewportHeightAreConverted) {
+  expect_converted(glm::perspectiveRH_ZO(kFovY, kAspect, kNear, kFar), expected_view(),
+                   ALCOVE_CAMERA_CONVENTION_GLM);
+}
+
+TEST(CCamera, OpenGlMatricesAreConverted) {
+  expect_converted(glm::perspectiveRH_NO(kFovY, kAspect, kNear, kFar), expected_view(),
+                   ALCOVE_CAMERA_CONVENTION_OPENGL);
+}
+
+// The camera looks along +Z of its own space, x to the right and y up, in the same world.
+TEST(CCamera, Direct3dMatricesAreConverted) {
+  glm::mat4 view = expected_view();
+  for (int column = 0; column < 4; ++column) {
+    view[column][2] = -view[column][2];
+  }
+  expect_converted(glm::perspectiveLH_ZO(kFovY, kAspect, kNear, kFar), view,
+                   ALCOVE_CAMERA_CONVENTION_DIRECT3D);
+}
+
+TEST(CCamera, RowMajorMatricesAreTransposed) {
+  expect_converted(glm::transpose(expected_clip()), glm::transpose(expected_view()),
+                   ALCOVE_CAMERA_CONVENTION_ROW_MAJOR);
+}
+
+TEST(CCamera, NullPointersAndUnknownConventionsAreErrors) {
+  const glm::mat4 m(1.0f);
+  AlcoveCamera camera{};
+  EXPECT_EQ(alcoveConvertCamera(nullptr, &m[0][0], 0, &camera), ALCOVE_ERROR_INVALID_INPUT);
+  EXPECT_EQ(alcoveConvertCamera(&m[0][0], nullptr, 0, &camera), ALCOVE_ERROR_INVALID_INPUT);
+  EXPECT_EQ(alcoveConvertCamera(&m[0][0], &m[0][0], 0, nullptr), ALCOVE_ERROR_INVALID_INPUT);
+  EXPECT_EQ(alcoveConvertCamera(&m[0][0], &m[0][0], 16, &camera), ALCOVE_ERROR_INVALID_INPUT);
+}
+
+AlcovePerspective perspective() {
+  return {.struct_size = sizeof(AlcovePerspective),
+          .fov_y = kFovY,
+          .near_plane = kNear,
+          .far_plane = kFar,
+          .width = 300,
+          .height = 200};
+}
+
+TEST(CCamera, APerspectiveInPlainNumbersIsGlms) {
+  const AlcovePerspective given = perspective();
+  float clip[16];
+  ASSERT_EQ(alcoveMakePerspective(&given, clip), ALCOVE_SUCCESS);
+  expect_near(matrix_of(clip), expected_clip());
+}
+
+TEST(CCamera, NearAndFarPlanesHaveTheDepthsThatTheyShould) {
+  for (const bool reversed : {false, true}) {
+    for (const float far : {kFar, 0.0f, std::numeric_limits<float>::infinity()}) {
+      AlcovePerspective given = perspective();
+      given.reversed = reversed ? VK_TRUE : VK_FALSE;
+      given.far_plane = far;
+      float clip[16];
+      ASSERT_EQ(alcoveMakePerspective(&given, clip), ALCOVE_SUCCESS);
+      const auto depth_at = [&](float distance) {
+        const glm::vec4 p = matrix_of(clip) * glm::vec4(0.0f, 0.0f, -distance, 1.0f);
+        return p.z / p.w;
+      };
+      EXPECT_NEAR(depth_at(kNear), reversed ? 1.0f : 0.0f, 1e-6f);
+      EXPECT_NEAR(depth_at(far == kFar ? kFar : 1e9f), reversed ? 0.0f : 1.0f, 1e-6f);
+    }
+  }
+}
+
+TEST(CCamera, JitterShiftsTheImageByItsPixels) {
+  AlcovePerspective given = perspective();
+  float still[16], moved[16];
+  ASSERT_EQ(alcoveMakePerspective(&given, still), ALCOVE_SUCCESS);
+  given.jitter_px[0] = 0.25f;
+  given.jitter_px[1] = -0.5f;
+  ASSERT_EQ(alcoveMakePerspective(&given, moved), ALCOVE_SUCCESS);
+  const auto pixel_of = [](const float* clip, const glm::vec3& p) {
+    const glm::vec4 at = matrix_of(clip) * glm::vec4(p, 1.0f);
+    return (glm::vec2(at) / at.w * 0.5f + 0.5f) * glm::vec2(300.0f, 200.0f);
+  };
+  const glm::vec3 p(0.7f, -0.4f, -3.0f);
+  const glm::vec2 shift = pixel_of(moved, p) - pixel_of(still, p);
+  EXPECT_NEAR(shift.x, 0.25f, 1e-3f);
+  EXPECT_NEAR(shift.y, -0.5f, 1e-3f);
+}
+
+TEST(CCamera, NumbersOutOfRangeAreErrors) {
+  const auto result = [](void (*spoil)(AlcovePerspective&)) {
+    AlcovePerspective given = perspective();
+    spoil(given);
+    float clip[16];
+    return alcoveMakePerspective(&given, clip);
+  };
+  for (const auto spoil : {+[](AlcovePerspective& p) { p.struct_size = 0; },
+                           +[](AlcovePerspective& p) { p.fov_y = 0.0f; },
+                           +[](AlcovePerspective& p) { p.fov_y = 4.0f; },
+                           +[](AlcovePerspective& p) { p.near_plane = 0.0f; },
+                           +[](AlcovePerspective& p) { p.near_plane = NAN; },
+                           +[](AlcovePerspective& p) { p.far_plane = 0.05f; },
+                           +[](AlcovePerspective& p) { p.far_plane = -1.0f; },
+                           +[](AlcovePerspective& p) { p.width = 0; },
+                           +[](AlcovePerspective& p) { p.jitter_px[1] = NAN; }}) {
+    EXPECT_EQ(result(spoil), ALCOVE_ERROR_INVALID_INPUT);
+  }
+}
+
+}  // namespace

@@ -1,0 +1,125 @@
+// Open planes seen by depth buffers that cannot hold their depths.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "alcove/passes/inverse_depth.h"
+#include "drawing.h"
+#include "gtao_scenes.h"
+#include "pass_fixture.h"
+
+namespace alcove::passes {
+namespace {
+
+constexpr std::uint32_t kWidth = 96;
+constexpr std::uint32_t kHeight = 64;
+
+class DepthStep : public PassTest {
+ protected:
+  // The visibility of the last of `frames` frames, of a depth buffer of `format`.
+  HostImage visibility(const TestView& view, const Drawing& drawing, VkFormat format,
+                       const OcclusionSettings& settings, std::uint32_t frames) {
+    for (std::uint32_t index = 0; index < frames; ++index) {
+      run([&](framegraph::Graph& graph) {
+        if (index == 0) {
+          graph.reset_histories();
+        }
+        const Frame frame{graph, gpu().kernels(), view.view, index};
+        const auto inverse_depth = add_inverse_depth(frame, upload(graph, drawing.depth_ndc));
+        ASSERT_TRUE(inverse_depth) << inverse_depth.error().message;
+        const framegraph::Texture normals = upload(graph, drawing.normal_vs);
+        GtaoSettings search{static_cast<const SearchSettings&>(settings)};
+        const auto raw = add_gtao(frame,
+                                  {.inverse_depth = *inverse_depth,
+                                   .normals = normals,
+                                   .normals_in_view_space = true,
+                                   .depth_format = format},
+                                  search);
+        ASSERT_TRUE(raw) << raw.error().message;
+        ReconstructSettings filter{static_cast<const FilterSettings&>(settings)};
+        filter.precision = Precision::float32;
+        const auto result = add_reconstruct(frame,
+                                            {.raw_occlusion = *raw,
+                                             .inverse_depth = *inverse_depth,
+                                             .normals = normals,
+                                             .normals_in_view_space = true},
+                                            filter);
+        ASSERT_TRUE(result) << result.error().message;
+        read_back(graph, result->visibility);
+      });
+    }
+    return result();
+  }
+
+  void expect_open(const TestView& view, const Drawing& drawing, VkFormat format, float radius) {
+    for (const Quality quality : {Quality::medium, Quality::high}) {
+      for (const Estimator estimator : {Estimator::connected, Estimator::horizons}) {
+        SCOPED_TRACE(testing::Message() << "radius " << radius << ", quality " << int(quality)
+                                        << ", estimator " << int(estimator));
+        OcclusionSettings settings = quality_settings(quality, radius);
+        settings.estimator = estimator;
+        const HostImage image = visibility(view, drawing, format, settings, 3);
+        EXPECT_GE(*std::ranges::min_element(image.texels), 0.98f);
+      }
+    }
+  }
+};
+
+Drawing with_fixed_point_depth(Drawing drawing, double levels) {
+  for (float& depth : drawing.depth_ndc.texels) {
+    depth = static_cast<float>(std::round(depth * levels) / levels);
+  }
+  return drawing;
+}
+
+// Ground 60 units below the eye, seen 500 units away by a telephoto lens.
+TEST_F(DepthStep, FlatGroundIsOpenWithFloatsThatAreNotReversed) {
+  const double scale = 1.0 / std::tan(1.5 * std::numbers::pi / 180.0);
+  const TestView view = perspective_view("", scale / 1.5, scale, 0.01, 5000.0, false);
+  const double slope = std::atan2(60.0, 500.0);
+  const Drawing drawing = draw(
+      view, kWidth, kHeight, {plane({0.0, 0.0, -503.6}, {0.0, std::cos(slope), std::sin(slope)})});
+  for (const float radius : {1.0f, 4.0f, 20.0f}) {
+    expect_open(view, drawing, VK_FORMAT_D32_SFLOAT, radius);
+  }
+}
+
+TEST_F(DepthStep, AFloorFiftyUnitsAwayIsOpenInSixteenBits) {
+  const TestView view = perspective_view("", 1.2, 1.8, 0.1, 1000.0, false);
+  const Drawing drawing = with_fixed_point_depth(
+      draw(view, kWidth, kHeight, {plane({0.0, 0.0, -50.0}, {0.0, 0.8, 0.6})}), 65535.0);
+  for (const float radius : {0.5f, 2.0f, 8.0f}) {
+    expect_open(view, drawing, VK_FORMAT_D16_UNORM, radius);
+  }
+}
+
+TEST_F(DepthStep, AFloorIsOpenInAnOrthographicViewOfReversedDepth) {
+  TestView view = orthographic_view("", 6.0, 4.0, 0.1, 1e6);
+  view.view.clip_from_view[10] = -view.view.clip_from_view[10];
+  view.view.clip_from_view[14] = 1.0f - view.view.clip_from_view[14];
+  const Drawing drawing = draw(view, kWidth, kHeight, {plane({0.0, 0.0, -20.0}, {0.0, 0.7, 0.7})});
+  for (const float radius : {0.5f, 2.0f}) {
+    expect_open(view, drawing, VK_FORMAT_D32_SFLOAT, radius);
+  }
+}
+
+// The tolerance must not take away what a depth buffer resolves.
+TEST_F(DepthStep, AGrooveOfManyStepsKeepsItsOcclusion) {
+  const TestView view = perspective_view("", 1.2, 1.8, 0.1, 100.0, false);
+  const Drawing exact = draw(view, kWidth, kHeight, groove(0.8));
+  const OcclusionSettings settings = quality_settings(Quality::high, 0.5f);
+  const HostImage expected = visibility(view, exact, VK_FORMAT_D32_SFLOAT, settings, 3);
+  const HostImage found =
+      visibility(view, with_fixed_point_depth(exact, 65535.0), VK_FORMAT_D16_UNORM, settings, 3);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < found.texels.size(); ++i) {
+    sum += std::pow(double{found.texels[i]} - expected.texels[i], 2.0);
+  }
+  EXPECT_LT(std::sqrt(sum / static_cast<double>(found.texels.size())), 0.02);
+  EXPECT_LT(*std::ranges::min_element(found.texels), 0.75f);
+}
+
+}  // namespace
+}  // namespace alcove::passes

@@ -1,0 +1,190 @@
+// The GPU cost model, and the budget that the shipped presets are held to.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "gpu_cost/budget.h"
+
+namespace alcove::sample {
+namespace {
+
+using passes::cost::CompiledLoop;
+using passes::cost::FrameState;
+using passes::cost::PassWork;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+// Two loops, one within the other, as ACO prints them before registers are assigned.
+constexpr const char* kNestedLoops =
+    "After Spilling:\n"
+    "ACO shader stage: compute_cs\n"
+    "BB0\n"
+    "/* logical preds: / linear preds: / kind: top-level, */\n"
+    "\t v1: %1 = v_mul_f32 %2, %3\n"
+    "BB1\n"
+    "/* logical preds: BB0, BB3, / linear preds: BB0, BB3, / kind: loop-header, */\n"
+    "\t v1: %4 = v_rcp_f32 %1\n"
+    "\tp_logical_start\n"
+    "BB2\n"
+    "/* logical preds: BB1, BB2, / linear preds: BB1, BB2, / kind: loop-header, */\n"
+    "\t v4: %5 = image_load %6, s8: undef, v1: undef, %4\n"
+    "BB3\n"
+    "/* logical preds: BB2, / linear preds: BB2, / kind: continue, */\n"
+    "\t s1: %7 = s_add_i32 %8, 1\n"
+    "BB4\n"
+    "/* logical preds: BB3, / linear preds: BB3, / kind: top-level, */\n"
+    "\timage_store %6, s8: undef, %5, %4\n"
+    "\ts_endpgm\n";
+
+CompiledShader shader_of(const char* aco, const char* assembly = "not supported") {
+  CompiledShader shader;
+  shader.texts = {{"ACO IR", aco}, {"Assembly", assembly}};
+  return shader;
+}
+
+TEST(GpuCost, LoopsAreFoundWithTheirNestingAndContents) {
+  const auto blocks = blocks_of(shader_of(kNestedLoops));
+  ASSERT_TRUE(blocks) << blocks.error();
+  const std::vector<Loop> loops = loops_of(*blocks);
+  ASSERT_EQ(loops.size(), 2u);
+  EXPECT_EQ(loops[0].first, 1u);
+  EXPECT_EQ(loops[0].last, 3u);
+  EXPECT_EQ(loops[0].summary.depth, 1u);
+  EXPECT_EQ(loops[0].summary.instructions, 3u);
+  EXPECT_EQ(loops[1].summary.depth, 2u);
+  EXPECT_EQ(loops[1].summary.loads, 1u);
+}
+
+TEST(GpuCost, InstructionsAreMultipliedByTheIterationsOfAllLoopsAroundThem) {
+  const auto blocks = blocks_of(shader_of(kNestedLoops));
+  ASSERT_TRUE(blocks) << blocks.error();
+  const WaveWork work = wave_work(*blocks, loops_of(*blocks), {3, 5}, false, 64);
+  EXPECT_EQ(work.loads, 15);
+  EXPECT_EQ(work.stores, 1);
+  EXPECT_EQ(work.transcendentals, 3);
+  EXPECT_EQ(work.vector_instructions, 1 + 3);
+  EXPECT_EQ(work.instructions, 1 + 3 * (1 + 5 + 1) + 2);
+  EXPECT_EQ(work.vector_cycles, 4 + 3 * 16);
+  // Four words for each lane take twice as long as one or two.
+  EXPECT_EQ(work.texture_cycles, 15 * 16 * 2 + 16);
+}
+
+TEST(GpuCost, DisassemblyIsPreferredToTheCompilersOwnText) {
+  const auto blocks = blocks_of(shader_of(kNestedLoops,
+                                          "BB0:\n"
+                                          "\tv_cndmask_b32_e32 v0, v1, v2, vcc ; 02000300\n"
+                                          "BB2:\n"
+                                          "\timage_load v[0:3], v[2:3], s[0:7] dmask:0xf ; f000\n"
+                                          "\tds_read2_b64 v[0:3], v4 ; d8ee\n"
+                                          "BB4:\n"
+                                          "\ts_endpgm ; bf810000\n"));
+  ASSERT_TRUE(blocks) << blocks.error();
+  const WaveWork work = wave_work(*blocks, loops_of(*blocks), {1, 2}, true, 64);
+  EXPECT_EQ(work.selects, 1);
+  EXPECT_EQ(work.loads, 2);
+  EXPECT_EQ(work.shared_operations, 2);
+  EXPECT_EQ(work.shared_words, 2 * 4);
+  EXPECT_EQ(work.instructions, 1 + 2 * 2 + 1);
+}
+
+TEST(GpuCost, TextOfAnotherCompilerIsReported) {
+  CompiledShader shader;
+  shader.texts = {{"Final Assembly", "mov r0, r1\n"}};
+  const auto none = blocks_of(shader);
+  ASSERT_FALSE(none);
+  EXPECT_THAT(none.error(), HasSubstr("Mesa's AMD driver is needed"));
+  EXPECT_FALSE(blocks_of(shader_of("no blocks here")));
+}
+
+TEST(GpuCost, LoopWithoutDeclaredIterationsIsReported) {
+  const passes::OcclusionSettings settings;
+  const CompiledLoop loop{.index = 0, .depth = 1, .instructions = 7};
+  const PassWork work{"inverse depth", settings, FrameState::moving, {&loop, 1}};
+  const auto iterations = passes::cost::iterations(work, loop);
+  ASSERT_FALSE(iterations);
+  EXPECT_THAT(iterations.error(), HasSubstr("'inverse depth' (moving frame)"));
+  EXPECT_THAT(iterations.error(), HasSubstr("7 instructions"));
+}
+
+SettingsCost one_pass(double instructions, double registers, double waves, double spills) {
+  ModelledPass pass;
+  pass.pass = "gtao";
+  pass.instructions_per_pixel = instructions;
+  pass.vector_registers = registers;
+  pass.waves_per_simd = waves;
+  pass.spills = spills;
+  return {"medium", "navi21", {{FrameState::moving, {pass}}}};
+}
+
+TEST(GpuBudget, AnyFigureThatIsWorseThanItsBudgetIsReported) {
+  const auto budget = budget_of({one_pass(100, 64, 8, 0)}, "compiler");
+  EXPECT_THAT(over_budget(budget, {one_pass(100.9, 64, 8, 0)}), IsEmpty());
+  EXPECT_THAT(over_budget(budget, {one_pass(80, 48, 10, 0)}), IsEmpty());
+  EXPECT_THAT(over_budget(budget, {one_pass(101.5, 64, 8, 0)}),
+              ElementsAre("navi21, medium, moving frame, gtao: instructions_per_pixel is 101.5, "
+                          "the budget is 100."));
+  EXPECT_THAT(over_budget(budget, {one_pass(100, 68, 8, 0)}), ElementsAre(HasSubstr("registers")));
+  EXPECT_THAT(over_budget(budget, {one_pass(100, 64, 7, 0)}), ElementsAre(HasSubstr("waves")));
+  EXPECT_THAT(over_budget(budget, {one_pass(100, 64, 8, 1)}), ElementsAre(HasSubstr("spilled")));
+}
+
+TEST(GpuBudget, PassWithoutABudgetIsReported) {
+  EXPECT_THAT(over_budget(nlohmann::ordered_json::object(), {one_pass(1, 1, 1, 0)}),
+              testing::Contains(HasSubstr("the budget is missing")));
+}
+
+struct Budgeted {
+  const GpuPart* part;
+  BudgetedSettings settings;
+};
+
+std::vector<Budgeted> all_budgeted() {
+  std::vector<Budgeted> all;
+  for (const GpuPart& part : kGpuParts) {
+    for (const BudgetedSettings& settings : budgeted_settings()) {
+      all.push_back({&part, settings});
+    }
+  }
+  return all;
+}
+
+std::string name_of_test(const testing::TestParamInfo<Budgeted>& info) {
+  std::string name(info.param.part->family);
+  name += "_" + info.param.settings.label;
+  std::ranges::replace(name, ' ', '_');
+  return name;
+}
+
+class ShippedPresets : public testing::TestWithParam<Budgeted> {};
+
+TEST_P(ShippedPresets, KeepToTheirGpuBudget) {
+  const auto device = create_null_device(GetParam().part->family);
+  if (!device) {
+    GTEST_SKIP() << device.error();
+  }
+  std::ifstream file(ALCOVE_GPU_BUDGET);
+  const auto budget = nlohmann::ordered_json::parse(file, nullptr, false);
+  ASSERT_TRUE(budget.is_object()) << ALCOVE_GPU_BUDGET << " is not a JSON object.";
+  const std::string compiler = compiler_name(*device);
+  if (budget.value("compiler", "") != compiler) {
+    GTEST_SKIP() << "The budget is of " << budget["compiler"] << "; the compiler here is "
+                 << compiler << ", which makes other code.";
+  }
+  auto frames = modelled_frames(*GetParam().part, *device, GetParam().settings.inputs);
+  ASSERT_TRUE(frames) << frames.error();
+  const auto complaints = over_budget(
+      budget,
+      {{GetParam().settings.label, std::string(GetParam().part->family), std::move(*frames)}});
+  for (const std::string& complaint : complaints) {
+    ADD_FAILURE() << complaint << " If it is meant: alcove cost --write-budget " ALCOVE_GPU_BUDGET;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Gpu, ShippedPresets, testing::ValuesIn(all_budgeted()), name_of_test);
+
+}  // namespace
+}  // namespace alcove::sample
