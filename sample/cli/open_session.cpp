@@ -78,7 +78,7 @@ StaticSetup static_setup(const Options& options, const Camera& camera) {
 }
 
 TruthOptions truth_options(const Options& options) {
-  return {options.occlusion.spp, options.use_cache};
+  return {options.occlusion.spp, options.lit_points, options.use_cache};
 }
 
 }  // namespace alcove::sample

@@ -320,12 +320,18 @@ void add_materials(CLI::App& app, MaterialTreatment& materials) {
                  materials.both_sides);
 }
 
-void add_lit(CLI::App& app, bool& lit) {
-  Group(app).add_flag(
-      "--lit",
-      "path trace the picture lit by the environment too, and say how far it is off without "
-      "occlusion and with each part of it; takes minutes",
-      lit);
+void add_lit(CLI::App& app, bool& lit, std::uint32_t& points) {
+  Group(app).add_flag("--lit",
+                      "also path trace the picture lit by the environment, and print the error of "
+                      "the lit picture without occlusion and with each part of it; takes minutes",
+                      lit);
+  Group(app).add("--lit-points", "N",
+                 "pixels at which multi-bounce, specular occlusion and the lit picture are traced, "
+                 "one in each square block; 32000",
+                 [&](const OptionValue& given) {
+                   points = static_cast<std::uint32_t>(
+                       given.whole_number(1, 100'000'000, "pixels, 1 to 100000000"));
+                 });
 }
 
 void add_format(CLI::App& app, GraphFormat& format) {

@@ -30,7 +30,7 @@ void add_render(CLI::App& app, Options& options) {
 
 void add_compare(CLI::App& app, Options& options) {
   add_render(app, options);
-  add_lit(app, options.lit);
+  add_lit(app, options.lit, options.lit_points);
   add_no_cache(app, options.use_cache);
 }
 

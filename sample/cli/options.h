@@ -77,6 +77,7 @@ struct Options {
   MaterialTreatment materials;
   std::filesystem::path environment;  // .hdr or .exr; empty: the procedural sky
   bool lit = false;                   // compare: also trace the lit picture
+  uint32_t lit_points = 32'000;       // compare: pixels at which light is traced, about
   ViewOptions view;
   OcclusionOptions occlusion;
   std::filesystem::path out = "out";  // empty: `view` was given none

@@ -16,11 +16,10 @@ namespace {
 
 // Raised when a truth is computed otherwise, so that old entries of the cache are not taken.
 constexpr std::uint32_t kLightTruthVersion = 1;
-constexpr double kWantedPoints = 32'000;
 
-std::uint32_t block_size(const Image<float>& depth) {
+std::uint32_t block_size(const Image<float>& depth, std::uint32_t points) {
   const double pixels = static_cast<double>(depth.pixels.size());
-  return static_cast<std::uint32_t>(std::max(1.0, std::round(std::sqrt(pixels / kWantedPoints))));
+  return static_cast<std::uint32_t>(std::max(1.0, std::round(std::sqrt(pixels / points))));
 }
 
 // One pixel of each block, where it is no sky. The same for every picture of one size.
@@ -184,7 +183,7 @@ tl::expected<IndirectTruths, std::string> indirect_truths_of(const Rendering& re
   }
   const Image<float> depth = linear_depth(rendering);
   IndirectTruths truths;
-  truths.block = block_size(depth);
+  truths.block = block_size(depth, options.indirect_points);
   truths.sampled = choose_pixels(depth, truths.block);
   truths.points = surface_points(*rays, rendering.camera, rendering.images.normal_ws, depth);
   for (std::size_t i = 0; i < truths.sampled.pixels.size(); ++i) {

@@ -55,10 +55,10 @@ Image<glm::vec3> of_blocks(const Image<glm::vec3>& picture, const IndirectTruths
 }
 
 void paste(const Image<glm::vec3>& tile, std::uint32_t left, std::uint32_t top,
-           Image<glm::vec3>& segment) {
+           Image<glm::vec3>& sheet) {
   for (std::uint32_t y = 0; y < tile.height; ++y) {
     for (std::uint32_t x = 0; x < tile.width; ++x) {
-      segment.at(left + x, top + y) = tile.at(x, y);
+      sheet.at(left + x, top + y) = tile.at(x, y);
     }
   }
 }
@@ -162,16 +162,23 @@ tl::expected<void, std::string> write_lit_steps(const Rendering& rendering,
       tile(images.unbent),
       tile(truth),
       error_colours(of_blocks(images.all, light, depth), of_blocks(truth, light, depth), mean)};
+  constexpr std::size_t kTruth = 5;
   constexpr std::uint32_t kColumns = 4;
   const std::uint32_t width = tiles[0].width + 2;
   const std::uint32_t height = tiles[0].height + 2;
-  Image<glm::vec3> segment(width * kColumns, height * 2, glm::vec3(1.0f));
+  Image<glm::vec3> sheet(width * kColumns, height * 2, glm::vec3(1.0f));
   for (std::uint32_t i = 0; i < tiles.size(); ++i) {
-    paste(tiles[i], i % kColumns * width, i / kColumns * height, segment);
+    paste(tiles[i], i % kColumns * width, i / kColumns * height, sheet);
   }
-  return write_png(folder / "lit_steps.png", segment).and_then([&] {
-    return write_png(folder / "truth_lit.png", tiles[4]);
-  });
+  return write_png(folder / "lit_steps.png", sheet)
+      .and_then([&] { return write_png(folder / "truth_lit.png", tiles[kTruth]); })
+      .and_then([&] {
+        Image<glm::vec3> comparison(width * 3 - 2, tiles[0].height, glm::vec3(1.0f));
+        paste(tiles[0], 0, 0, comparison);
+        paste(tiles[3], width, 0, comparison);
+        paste(tiles[kTruth], 2 * width, 0, comparison);
+        return write_png(folder / "lit_comparison.png", comparison);
+      });
 }
 
 }  // namespace alcove::sample
