@@ -13,9 +13,12 @@ constexpr double kOccluderRuns = 2.5;
 std::optional<double> gtao_iterations(const PassWork& work, const CompiledLoop& loop) {
   const OcclusionSettings& settings = work.settings;
   const bool sectors = has_thickness(settings.estimator);
-  // Over the slices of a pixel. With one slice and horizons the compiler removes this loop.
-  if (loop.depth == 1 && (sectors || settings.slices > 1)) {
+  // Over the slices of a pixel, where there are several; within it over the two half-slices.
+  if (settings.slices > 1 && loop.depth == 1) {
     return settings.slices;
+  }
+  if (loop.depth == (settings.slices > 1 ? 2 : 1)) {
+    return 2;
   }
   if (loop.loads > 0) {
     // Over the steps of a half-slice. With sectors the first two are outside of the loop, and the

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "alcove/framegraph/framegraph.h"
+#include "alcove/framegraph/verify.h"
 #include "render/vulkan_device.h"
 
 namespace alcove::framegraph {

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <glm/glm.hpp>
 #include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/type_ptr.hpp>
 #include <limits>
 
 #include "alcove/alcove.h"
@@ -17,9 +18,7 @@ constexpr float kFovY = 0.9f;
 constexpr float kAspect = 1.5f;
 
 glm::mat4 matrix_of(const float* values) {
-  glm::mat4 result;
-  std::memcpy(&result, values, sizeof result);
-  return result;
+  return glm::make_mat4(values);
 }
 
 // glm::lookAtRH, and a projection with depth 0 to 1 and y down on the image.

@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <span>
+#include <numeric>
 #include <vector>
 
 #include "alcove/framegraph/plan.h"
@@ -59,6 +60,9 @@ class HappensBefore {
  public:
   // What the plan's accesses and barriers name, expanded, and how many queue classes it uses.
   HappensBefore(Stages stages, Accesses accesses, std::uint32_t queues);
+
+  // The stages of the first argument of the constructor.
+  Stages tracked_stages() const { return std::accumulate(stages_.begin(), stages_.end(), Stages{0}); }
 
   // The next command's time.
   Time next() { return ++now_; }

@@ -115,7 +115,9 @@ void Replay::arrive(Sub& sub, std::uint8_t queue, const State& initial_state) {
     if (stages != 0) sub.last.writes.push_back({Kind::access, queue, time, stages, writes, 0});
     return;
   }
-  for (Stages left = accesses == 0 ? stages : 0; left != 0; left &= left - 1)
+  // Stages that nothing in the frame names cannot be told from each other, and are not tracked.
+  for (Stages left = accesses == 0 ? stages & order_.tracked_stages() : 0; left != 0;
+       left &= left - 1)
     sub.last.writes.push_back({Kind::change, queue, time, left & (~left + 1), 0, 0});
   if (accesses != 0) sub.last.writes.push_back({Kind::change, queue, time, stages, 0, accesses});
   if (stages != 0) sub.last.reads.push_back({Kind::access, queue, time, stages, 0, 0});

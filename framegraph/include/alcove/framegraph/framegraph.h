@@ -6,4 +6,3 @@
 #include "alcove/framegraph/executor.h"
 #include "alcove/framegraph/graph.h"
 #include "alcove/framegraph/print.h"
-#include "alcove/framegraph/verify.h"
