@@ -6,13 +6,16 @@ namespace alcove::framegraph {
 namespace {
 
 // Queues, lifetimes and memory for the order of execution in the workspace. The bytes of all heaps.
+// Nothing is placed where the device cannot make a texture, which is an error.
 VkDeviceSize schedule(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
-                      Plan& plan) {
+                      Plan& plan, Errors& errors) {
   plan.submissions.clear();
   plan.waits.clear();
   plan.heaps.clear();
   assign_queues(graph, limits, workspace, plan);
   lifetimes(graph, workspace, plan);
+  find_contents(graph, limits, workspace, plan);
+  if (!check_images(graph, limits, plan, errors)) return 0;
   place(graph, limits, workspace, plan);
   VkDeviceSize bytes = 0;
   for (const Heap& heap : plan.heaps) bytes += heap.size;
@@ -21,17 +24,19 @@ VkDeviceSize schedule(const GraphDescription& graph, const Limits& limits, Works
 
 // In order of declaration, or in another order where that takes fewer bytes in the end: the two are
 // compared as they are scheduled, with the device's requirements and over the same queues.
-void schedule_lowest(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
-                     Plan& plan) {
+bool schedule_lowest(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
+                     Plan& plan, Errors& errors) {
   order_as_declared(workspace, plan);
-  const VkDeviceSize declared = schedule(graph, limits, workspace, plan);
+  const VkDeviceSize declared = schedule(graph, limits, workspace, plan, errors);
   plan.reordered = false;
-  if (!find_lower_order(graph, limits, workspace, plan)) return;
+  if (!errors.empty()) return false;
+  if (!find_lower_order(graph, limits, workspace, plan)) return true;
   workspace.order = workspace.reorder.order;
-  plan.reordered = schedule(graph, limits, workspace, plan) < declared;
-  if (plan.reordered) return;
+  plan.reordered = schedule(graph, limits, workspace, plan, errors) < declared;
+  if (plan.reordered) return true;
   workspace.order = workspace.reorder.declared;
-  schedule(graph, limits, workspace, plan);
+  schedule(graph, limits, workspace, plan, errors);
+  return true;
 }
 
 }  // namespace
@@ -51,7 +56,10 @@ tl::expected<void, Errors> Compiler::compile(const GraphDescription& graph, cons
   plan.transitions.clear();
   plan.finals.clear();
   cull(graph, workspace, plan);
-  schedule_lowest(graph, limits, workspace, plan);
+  if (!schedule_lowest(graph, limits, workspace, plan, errors)) {
+    plan = {};
+    return tl::unexpected(std::move(errors));
+  }
   synchronise(graph, limits, workspace, plan);
   return {};
 }

@@ -44,6 +44,7 @@ class Culler {
       if (resource.origin == Origin::imported &&
           graph_.externals[resource.external].has_final_state)
         need_all(r, kByOutput);
+      if (resource.flags & kPersistent) need_all(r, kByOutput);
       const std::uint32_t reader = workspace_.cull.history_reader[r - resource.slot];
       if (reader != kNone) need_all(r, reader | kHistoryBit);
     }

@@ -1,15 +1,40 @@
 #include "device_context.h"
 
+#include <algorithm>
+#include <bit>
 #include <vector>
 
 namespace alcove::framegraph {
 namespace {
 
+// A device without VK_KHR_maintenance4 tells the requirements of resources that exist.
+VkMemoryRequirements made_requirements(const DeviceContext& device, const ResourceRecord& record,
+                                       VkFlags usage) {
+  const VkDevice handle = device.handles.device;
+  VkMemoryRequirements found{};
+  if (record.kind == ResourceKind::texture) {
+    const VkImageCreateInfo info = image_info(record, usage);
+    VkImage image = VK_NULL_HANDLE;
+    if (device.vk.vkCreateImage(handle, &info, nullptr, &image) != VK_SUCCESS) return found;
+    device.vk.vkGetImageMemoryRequirements(handle, image, &found);
+    device.vk.vkDestroyImage(handle, image, nullptr);
+  } else {
+    const VkBufferCreateInfo info = buffer_info(record, usage);
+    VkBuffer buffer = VK_NULL_HANDLE;
+    if (device.vk.vkCreateBuffer(handle, &info, nullptr, &buffer) != VK_SUCCESS) return found;
+    device.vk.vkGetBufferMemoryRequirements(handle, buffer, &found);
+    device.vk.vkDestroyBuffer(handle, buffer, nullptr);
+  }
+  return found;
+}
+
 MemoryRequirements device_requirements(const void* context, const ResourceRecord& record,
                                        VkFlags usage) {
   const auto& device = *static_cast<const DeviceContext*>(context);
   VkMemoryRequirements2 found{VK_STRUCTURE_TYPE_MEMORY_REQUIREMENTS_2, nullptr, {}};
-  if (record.kind == ResourceKind::texture) {
+  if (!device.vk.vkGetDeviceImageMemoryRequirements) {
+    found.memoryRequirements = made_requirements(device, record, usage);
+  } else if (record.kind == ResourceKind::texture) {
     const VkImageCreateInfo info = image_info(record, usage);
     const VkDeviceImageMemoryRequirements query{VK_STRUCTURE_TYPE_DEVICE_IMAGE_MEMORY_REQUIREMENTS,
                                                 nullptr, &info, VK_IMAGE_ASPECT_COLOR_BIT};
@@ -22,6 +47,28 @@ MemoryRequirements device_requirements(const void* context, const ResourceRecord
   }
   const VkMemoryRequirements& r = found.memoryRequirements;
   return {r.size, r.alignment, r.memoryTypeBits};
+}
+
+ImageLimits image_limits(const void* context, const ResourceRecord& record, VkFlags usage) {
+  const auto& device = *static_cast<const DeviceContext*>(context);
+  const VkImageCreateInfo image = image_info(record, usage);
+  VkPhysicalDeviceImageFormatInfo2 info{};
+  info.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_IMAGE_FORMAT_INFO_2;
+  info.format = image.format;
+  info.type = image.imageType;
+  info.tiling = image.tiling;
+  info.usage = image.usage;
+  info.flags = image.flags;
+  VkImageFormatProperties2 found{};
+  found.sType = VK_STRUCTURE_TYPE_IMAGE_FORMAT_PROPERTIES_2;
+  const VkResult result = device.vk.vkGetPhysicalDeviceImageFormatProperties2(
+      device.handles.physical_device, &info, &found);
+  if (result != VK_SUCCESS) return {};
+  const bool stores = (usage & VK_IMAGE_USAGE_STORAGE_BIT) != 0;
+  if (stores && !device.handles.storage_multisample)
+    found.imageFormatProperties.sampleCounts &= VK_SAMPLE_COUNT_1_BIT;
+  const VkImageFormatProperties& p = found.imageFormatProperties;
+  return {p.maxExtent, p.maxMipLevels, p.maxArrayLayers, p.sampleCounts};
 }
 
 VkImageUsageFlags format_usage(const void* context, VkFormat format) {
@@ -50,15 +97,43 @@ VkImageUsageFlags format_usage(const void* context, VkFormat format) {
   return usage;
 }
 
+// Without VK_KHR_maintenance4, a buffer can be as large as one allocation.
+VkDeviceSize max_buffer_size(const DeviceContext& context) {
+  VkPhysicalDeviceMaintenance4Properties buffers{};
+  buffers.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_4_PROPERTIES;
+  VkPhysicalDeviceMaintenance3Properties allocations{};
+  allocations.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES;
+  if (context.vk.vkGetDeviceBufferMemoryRequirements) allocations.pNext = &buffers;
+  VkPhysicalDeviceProperties2 all{};
+  all.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
+  all.pNext = &allocations;
+  context.vk.vkGetPhysicalDeviceProperties2(context.handles.physical_device, &all);
+  if (buffers.maxBufferSize != 0) return buffers.maxBufferSize;
+  if (allocations.maxMemoryAllocationSize != 0) return allocations.maxMemoryAllocationSize;
+  return Limits{}.max_buffer_size;  // The driver tells neither.
+}
+
 void read_limits(DeviceContext& context) {
   Limits& limits = context.limits;
   const VkPhysicalDeviceLimits& device = context.properties.limits;
   limits.max_extent_2d = device.maxImageDimension2D;
   limits.max_extent_3d = device.maxImageDimension3D;
   limits.max_layers = device.maxImageArrayLayers;
+  // The largest count of any format. What a single texture may have, image_limits() knows.
+  const VkSampleCountFlags samples =
+      device.framebufferColorSampleCounts | device.framebufferDepthSampleCounts |
+      device.sampledImageColorSampleCounts | device.sampledImageIntegerSampleCounts |
+      device.sampledImageDepthSampleCounts;
+  limits.max_samples = std::bit_floor(std::max(samples, VkSampleCountFlags{1}));
+  limits.max_buffer_size = max_buffer_size(context);
   limits.buffer_image_granularity = device.bufferImageGranularity;
   limits.memory = {device_requirements, &context};
   limits.formats = {format_usage, &context};
+  limits.images = {image_limits, &context};
+  for (std::uint32_t i = 0; i < context.memory.memoryTypeCount; ++i) {
+    if (context.memory.memoryTypes[i].propertyFlags & VK_MEMORY_PROPERTY_LAZILY_ALLOCATED_BIT)
+      limits.has_lazy_memory = true;
+  }
   for (std::size_t i = 0; i < kQueueClasses; ++i) {
     const QueueHandle& queue = context.handles.queues[i];
     limits.queue_families[i] = queue.queue == VK_NULL_HANDLE && i != 0 ? kNone : queue.family;
@@ -97,11 +172,12 @@ tl::expected<void, Errors> open(DeviceContext& context, const DeviceHandles& han
   if (const char* name =
           load(context.vk, handles.get_instance_proc_addr, handles.instance, handles.device))
     return tl::unexpected(missing(std::string("the device has no ") + name +
-                                  ": create instance and device for Vulkan 1.3"));
+                                  ": create instance and device for Vulkan 1.3, or for Vulkan 1.2 "
+                                  "with VK_KHR_synchronization2"));
   context.vk.vkGetPhysicalDeviceProperties(handles.physical_device, &context.properties);
-  if (context.properties.apiVersion < VK_API_VERSION_1_3)
+  if (context.properties.apiVersion < VK_API_VERSION_1_2)
     return tl::unexpected(missing(std::string("the device '") + context.properties.deviceName +
-                                  "' is below Vulkan 1.3: choose another or update its driver"));
+                                  "' is below Vulkan 1.2: choose another or update its driver"));
   context.vk.vkGetPhysicalDeviceMemoryProperties(handles.physical_device, &context.memory);
   read_limits(context);
   read_timestamp_bits(context);
@@ -112,6 +188,7 @@ VkImageCreateInfo image_info(const ResourceRecord& record, VkFlags usage) {
   VkImageCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
   info.imageType = record.depth > 1 ? VK_IMAGE_TYPE_3D : VK_IMAGE_TYPE_2D;
+  info.flags = record.create_flags;
   info.format = record.format;
   info.extent = {record.width, record.height, record.depth};
   info.mipLevels = record.mips;

@@ -8,15 +8,10 @@
 #include "plan_cache.h"
 #include "recording_threads.h"
 #include "submitter.h"
+#include "workspace.h"
 
 namespace alcove::framegraph {
 namespace {
-
-constexpr VkBufferUsageFlags kEveryBufferUsage =
-    VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
-    VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
-    VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT |
-    VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
 
 tl::unexpected<Errors> failure(ErrorCode code, std::string message) {
   Errors errors(1);
@@ -178,15 +173,9 @@ VkResult Executor::Implementation::find_external(const Graph& graph, CachedPlan&
     return VK_SUCCESS;
   }
   const HistoryEntry& entry = graph.histories().entries()[handles.history];
-  // Made for all that it could be used for, so that it need never be made again, contents lost,
-  // when a later frame uses it otherwise.
-  const VkFlags usage =
-      record.kind == ResourceKind::buffer
-          ? kEveryBufferUsage
-          : device.limits.formats.query(device.limits.formats.context, record.format) &
-                ~(VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSIENT_ATTACHMENT_BIT);
   return pool->history(graph.histories(), handles.history, entry.physical(record.slot), record,
-                       usage, description.resource_name(resource), found);
+                       history_usage(device.limits, record), description.resource_name(resource),
+                       found);
 }
 
 tl::expected<void, Errors> Executor::Implementation::find_physical(const Graph& graph,
@@ -379,7 +368,7 @@ tl::expected<FrameReport, Errors> Executor::submit(Graph& graph, const FrameInfo
   Timestamps* timestamps[kQueueClasses] = {};
   for (std::size_t q = 0; q < kQueueClasses; ++q) timestamps[q] = self.timestamps_of(info.slot, q);
   self.forget_timestamps(info.slot);
-  const VkResult result = self.submitter->submit(cached->plan, *self.recording_threads, info.slot,
+  const VkResult result = self.submitter->submit(cached->plan, *self.recording_threads, info,
                                                  timestamps, self.starts_anew(*cached));
   if (result != VK_SUCCESS) {
     // Half a frame may have written to any of them.

@@ -18,9 +18,12 @@ std::uint64_t next_frame() {
   }
 }
 
-std::uint32_t divided(std::uint32_t size, std::uint32_t divisor) {
-  if (divisor == 0) return 0;
-  return std::max<std::uint32_t>(1, size / divisor + (size % divisor != 0));
+// The size relative to another one; 0 where it is not a size.
+std::uint32_t relative_size(std::uint32_t size, const Extent& extent) {
+  if (extent.divisor == 0 || extent.multiplier == 0) return 0;
+  const std::uint64_t multiplied = std::uint64_t{size} * extent.multiplier;
+  const std::uint64_t divided = multiplied / extent.divisor + (multiplied % extent.divisor != 0);
+  return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(divided, 1, ~std::uint32_t{0}));
 }
 
 bool has_final_state(const State& state) {
@@ -115,9 +118,9 @@ ResourceRecord Graph::texture_record(const TextureDesc& desc) const {
     return record;
   }
   const ResourceRecord& other = description_.resources[base.index];
-  record.width = divided(other.width, desc.extent.divisor);
-  record.height = divided(other.height, desc.extent.divisor);
-  record.depth = divided(other.depth, desc.extent.divisor);
+  record.width = relative_size(other.width, desc.extent);
+  record.height = relative_size(other.height, desc.extent);
+  record.depth = relative_size(other.depth, desc.extent);
   return record;
 }
 
@@ -202,6 +205,8 @@ Texture Graph::import_texture(std::string_view name, const ImportedTexture& impo
   add(description_.externals, external);
   imports_.push_back(
       {import.image, import.view, VK_NULL_HANDLE, kNone, import.first_layer, record.layers});
+  imports_.back().initial_family = import.initial_family;
+  imports_.back().final_family = import.final_family;
   return {add_resource(name, record), 0, tag_};
 }
 
@@ -221,15 +226,18 @@ Buffer Graph::import_buffer(std::string_view name, const ImportedBuffer& import)
   external.same_as = imported_before(VK_NULL_HANDLE, import.buffer, 0, record);
   add(description_.externals, external);
   imports_.push_back({VK_NULL_HANDLE, VK_NULL_HANDLE, import.buffer, kNone});
+  imports_.back().initial_family = import.initial_family;
+  imports_.back().final_family = import.final_family;
   return {add_resource(name, record), 0, tag_};
 }
 
 ExternalRecord Graph::external_of(const HistoryEntry& entry, std::uint32_t slot) {
   const HistorySlot& state = entry.slots[entry.physical(slot)];
+  const bool keeps = slot != 0 || (entry.record.flags & kPersistent) != 0;
   ExternalRecord external;
   external.initial_state = state.state;
   external.validity = state.validity;
-  external.has_contents = slot != 0 && state.validity == HistoryValidity::valid;
+  external.has_contents = keeps && state.validity == HistoryValidity::valid;
   external.queue = state.queue;
   external.has_handle = 1;
   return external;
@@ -275,7 +283,7 @@ std::uint32_t Graph::add_history(std::string_view name, ResourceRecord record, s
     imports_.push_back({VK_NULL_HANDLE, VK_NULL_HANDLE, VK_NULL_HANDLE, history});
     const std::uint32_t index = add_resource(name, record);
     if (slot == 0) first = index;
-    if (slot == 1) validity = external.validity;
+    if (slot == 1 || record.slots == 1) validity = external.validity;
   }
   return first;
 }
@@ -289,7 +297,10 @@ void Graph::leave_histories(std::span<const FinalState> finals) {
     slot.state = final.state;
     slot.queue = final.queue;
     if (record.slot == 0 && final.written != Written::nothing) {
-      const bool whole = final.written == Written::whole;
+      // What is valid and persistent stays so when a part of it is written anew.
+      const bool whole =
+          final.written == Written::whole ||
+          ((record.flags & kPersistent) != 0 && slot.validity == HistoryValidity::valid);
       slot.validity = whole ? HistoryValidity::valid : HistoryValidity::written_in_part;
     }
     histories_.leave(index, record.slot, slot);
@@ -317,6 +328,26 @@ BufferHistory Graph::create_buffer_history(std::string_view name, const BufferDe
   BufferHistory history;
   history.current = {add_history(name, record, slots, history.validity), 0, tag_};
   history.slots = std::clamp(slots, 1u, kMaxHistorySlots);
+  return history;
+}
+
+TextureHistory Graph::create_persistent_texture(std::string_view name, const TextureDesc& desc) {
+  ResourceRecord record = texture_record(desc);
+  record.flags |= kPersistent;
+  TextureHistory history;
+  history.current = {add_history(name, record, 1, history.validity), 0, tag_};
+  history.slots = 1;
+  return history;
+}
+
+BufferHistory Graph::create_persistent_buffer(std::string_view name, const BufferDesc& desc) {
+  ResourceRecord record;
+  record.kind = ResourceKind::buffer;
+  record.size = desc.size;
+  record.flags = kPersistent;
+  BufferHistory history;
+  history.current = {add_history(name, record, 1, history.validity), 0, tag_};
+  history.slots = 1;
   return history;
 }
 

@@ -40,7 +40,7 @@ bool same(const ResourceRecord& a, const ResourceRecord& b) {
   // Where a resource came from does not matter to what it is.
   return a.kind == b.kind && a.size == b.size && a.format == b.format && a.width == b.width &&
          a.height == b.height && a.depth == b.depth && a.mips == b.mips && a.layers == b.layers &&
-         a.samples == b.samples;
+         a.samples == b.samples && a.create_flags == b.create_flags;
 }
 
 }  // namespace
@@ -179,25 +179,29 @@ void Pool::forget(VkImage image, std::uint64_t frame) {
   });
 }
 
-VkImageView Pool::view(Physical& physical, const Range& range) {
+VkImageView Pool::view(Physical& physical, const Range& range, VkImageViewType type,
+                       VkFormat format) {
+  if (type == kViewTypeByRange)
+    type = physical.record.depth > 1 ? VK_IMAGE_VIEW_TYPE_3D
+           : range.layers > 1        ? VK_IMAGE_VIEW_TYPE_2D_ARRAY
+                                     : VK_IMAGE_VIEW_TYPE_2D;
+  if (format == VK_FORMAT_UNDEFINED) format = physical.record.format;
   const std::lock_guard lock(views_mutex_);
   for (const CachedView& cached : physical.views) {
-    if (cached.range == range) return cached.view;
+    if (cached.range == range && cached.type == type && cached.format == format) return cached.view;
   }
   make_room(physical.views);
   VkImageViewCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
   info.image = physical.image;
-  info.viewType = physical.record.depth > 1 ? VK_IMAGE_VIEW_TYPE_3D
-                  : range.layers > 1        ? VK_IMAGE_VIEW_TYPE_2D_ARRAY
-                                            : VK_IMAGE_VIEW_TYPE_2D;
-  info.format = physical.record.format;
+  info.viewType = type;
+  info.format = format;
   info.subresourceRange = {view_aspect(physical.record.format), range.base_mip, range.mips,
                            physical.layer + range.base_layer, range.layers};
   VkImageView view = VK_NULL_HANDLE;
   if (device_.vk.vkCreateImageView(device_.handles.device, &info, nullptr, &view) != VK_SUCCESS)
     return VK_NULL_HANDLE;
-  physical.views.push_back({range, view});
+  physical.views.push_back({range, type, format, view});
   return view;
 }
 
@@ -264,12 +268,16 @@ VkResult Pool::create(Physical& physical, std::string_view name) {
 
 VkResult Pool::allocate(std::uint32_t memory_types, VkDeviceSize size, bool has_addresses,
                         VkDeviceMemory& memory) {
+  // Lazily allocated types are allowed for transient attachments only, and best for those.
+  const auto rank = [this](std::uint32_t type) {
+    const VkMemoryPropertyFlags flags = device_.memory.memoryTypes[type].propertyFlags;
+    if (flags & VK_MEMORY_PROPERTY_LAZILY_ALLOCATED_BIT) return 2;
+    return flags & VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT ? 1 : 0;
+  };
   std::uint32_t type = kNone;
   for (std::uint32_t i = device_.memory.memoryTypeCount; i-- > 0;) {
     if (!(memory_types & (1u << i))) continue;
-    const bool local =
-        device_.memory.memoryTypes[i].propertyFlags & VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
-    if (type == kNone || local) type = i;
+    if (type == kNone || rank(i) >= rank(type)) type = i;
   }
   if (type == kNone) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
   VkMemoryAllocateInfo info{};

@@ -12,12 +12,15 @@
 #include <mutex>
 #include <vector>
 
+#include "alcove/framegraph/record_context.h"
 #include "device_context.h"
 
 namespace alcove::framegraph {
 
 struct CachedView {
   Range range;
+  VkImageViewType type = kViewTypeByRange;
+  VkFormat format = VK_FORMAT_UNDEFINED;
   VkImageView view = VK_NULL_HANDLE;
 };
 
@@ -63,7 +66,7 @@ class Pool {
   void forget(VkImage image, std::uint64_t frame);
   // The view of a range, made on first use; null when the device is out of memory. Several threads
   // may ask at the same time.
-  VkImageView view(Physical& physical, const Range& range);
+  VkImageView view(Physical& physical, const Range& range, VkImageViewType type, VkFormat format);
 
   // Destroys what is retired or was not used for long, up to a frame that the device has finished.
   void collect(std::uint64_t finished, std::uint64_t frame);

@@ -1,5 +1,6 @@
 #include "alcove/framegraph/record_context.h"
 
+#include "aspects.h"
 #include "recorder.h"
 
 namespace alcove::framegraph {
@@ -9,7 +10,8 @@ VkImageView RecordContext::view(Texture texture) const {
   return access ? view(texture, access->range) : VkImageView{VK_NULL_HANDLE};
 }
 
-VkImageView RecordContext::view(Texture texture, Range range) const {
+VkImageView RecordContext::view(Texture texture, Range range, VkImageViewType type,
+                                VkFormat format) const {
   if (!recorder_.declared(pass_, texture.index)) return VK_NULL_HANDLE;
   Physical* physical = (*recorder_.physical_)[texture.index];
   if (physical == nullptr || physical->image == VK_NULL_HANDLE) return VK_NULL_HANDLE;
@@ -18,11 +20,11 @@ VkImageView RecordContext::view(Texture texture, Range range) const {
   range = Graph::resolved_range(range, record);
   if (!recorder_.check_view(pass_, texture.index, range)) return VK_NULL_HANDLE;
   if (record.origin == Origin::imported && range.mips == record.mips &&
-      range.layers == record.layers) {
+      range.layers == record.layers && type == kViewTypeByRange && format == VK_FORMAT_UNDEFINED) {
     const VkImageView given = recorder_.graph_->imports_[record.external].view;
     if (given != VK_NULL_HANDLE) return given;
   }
-  const VkImageView view = recorder_.pool_.view(*physical, range);
+  const VkImageView view = recorder_.pool_.view(*physical, range, type, format);
   if (view == VK_NULL_HANDLE) {
     recorder_.errors_.push_back(
         {ErrorCode::vulkan,
@@ -31,6 +33,90 @@ VkImageView RecordContext::view(Texture texture, Range range) const {
          VK_ERROR_OUT_OF_DEVICE_MEMORY, pass_, texture.index, texture.version});
   }
   return view;
+}
+
+VkRenderingAttachmentInfo RecordContext::attachment(const Attachment& wanted) const {
+  VkRenderingAttachmentInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
+  const std::uint32_t index = recorder_.attachment_access(pass_, wanted.texture.index);
+  if (index == kNone) return info;
+  const AccessRecord& access = recorder_.graph_->description().accesses[index];
+  const std::uint8_t contents = recorder_.plan_->contents[index];
+  info.imageView = view(wanted.texture, access.range);
+  info.imageLayout = access.layout;
+  info.loadOp = (contents & kHasContents) != 0 ? VK_ATTACHMENT_LOAD_OP_LOAD
+                : wanted.clear                 ? VK_ATTACHMENT_LOAD_OP_CLEAR
+                                               : VK_ATTACHMENT_LOAD_OP_DONT_CARE;
+  // One that is only tested against is not stored, which would be a write.
+  info.storeOp = !(access.flags & kWrite)      ? VK_ATTACHMENT_STORE_OP_NONE
+                 : (contents & kIsNeeded) != 0 ? VK_ATTACHMENT_STORE_OP_STORE
+                                               : VK_ATTACHMENT_STORE_OP_DONT_CARE;
+  if (wanted.clear) info.clearValue = *wanted.clear;
+  if (!wanted.resolve) return info;
+  const std::uint32_t to = recorder_.attachment_access(pass_, wanted.resolve.index);
+  if (to == kNone) return info;
+  const AccessRecord& resolve = recorder_.graph_->description().accesses[to];
+  info.resolveMode = wanted.resolve_mode;
+  info.resolveImageView = view(wanted.resolve, resolve.range);
+  info.resolveImageLayout = resolve.layout;
+  return info;
+}
+
+bool RecordContext::begin_rendering(std::span<const Attachment> colors,
+                                    const Attachment& depth) const {
+  constexpr std::size_t kMost = 8;
+  const auto refuse = [this](ErrorCode code, const char* why) {
+    recorder_.errors_.push_back({code, std::string("pass '").append(pass_name()).append("' ") + why,
+                                 VK_SUCCESS, pass_, kNone, 0});
+    return false;
+  };
+  if (!vk.vkCmdBeginRendering || !vk.vkCmdEndRendering)
+    return refuse(ErrorCode::misuse,
+                  "begins a rendering, but the device has no vkCmdBeginRendering: create it for "
+                  "Vulkan 1.3 or with VK_KHR_dynamic_rendering, and enable dynamicRendering");
+  if (colors.size() > kMost)
+    return refuse(ErrorCode::misuse, "begins a rendering with more than 8 color attachments");
+  VkRenderingAttachmentInfo color_infos[kMost];
+  VkRenderingAttachmentInfo depth_info{};
+  VkRenderingInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_RENDERING_INFO;
+  const GraphDescription& graph = recorder_.graph_->description();
+  std::uint32_t samples = 0;
+  bool alike = true;
+  const auto add = [&](const Attachment& wanted, VkRenderingAttachmentInfo& to) {
+    const std::uint32_t index = recorder_.attachment_access(pass_, wanted.texture.index);
+    to = attachment(wanted);
+    if (index == kNone || to.imageView == VK_NULL_HANDLE) return false;
+    const ResourceRecord& record = graph.resources[wanted.texture.index];
+    const Range& range = graph.accesses[index].range;
+    const VkExtent3D size = extent(wanted.texture, range.base_mip);
+    VkExtent2D& area = info.renderArea.extent;
+    alike =
+        alike && (samples == 0 || (area.width == size.width && area.height == size.height &&
+                                   samples == record.samples && info.layerCount == range.layers));
+    area = {size.width, size.height};
+    samples = record.samples;
+    info.layerCount = range.layers;
+    return true;
+  };
+  for (std::size_t i = 0; i < colors.size(); ++i) {
+    if (!add(colors[i], color_infos[i])) return false;
+  }
+  info.colorAttachmentCount = static_cast<std::uint32_t>(colors.size());
+  info.pColorAttachments = color_infos;
+  if (depth.texture) {
+    if (!add(depth, depth_info)) return false;
+    const VkImageAspectFlags all = aspects(format(depth.texture));
+    if (all & VK_IMAGE_ASPECT_DEPTH_BIT) info.pDepthAttachment = &depth_info;
+    if (all & VK_IMAGE_ASPECT_STENCIL_BIT) info.pStencilAttachment = &depth_info;
+  }
+  if (!alike)
+    return refuse(
+        ErrorCode::attachment_mismatch,
+        "begins a rendering whose attachments differ in size, layers or samples: give them "
+        "one of each");
+  vk.vkCmdBeginRendering(commands, &info);
+  return true;
 }
 
 VkImage RecordContext::image(Texture texture) const {

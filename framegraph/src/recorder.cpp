@@ -27,6 +27,9 @@ void Recorder::begin(const RecordedFrame& frame) {
   errors_.clear();
   shares_with_buffers_ = false;
   starts_anew_ = frame.starts_anew;
+  has_outside_families_ = false;
+  for (const ImportHandles& import : graph_->imports_)
+    has_outside_families_ |= import.initial_family != kNone || import.final_family != kNone;
   const GraphDescription& description = graph_->description();
   for (std::uint32_t r = 0; r < plan_->placements.size(); ++r) {
     if (plan_->placements[r].heap != kNone && description.resources[r].kind == ResourceKind::buffer)
@@ -206,6 +209,89 @@ const AccessRecord* Recorder::declared(std::uint32_t pass, std::uint32_t resourc
     errors_.push_back(std::move(error));
   }
   return nullptr;
+}
+
+std::uint32_t Recorder::attachment_access(std::uint32_t pass, std::uint32_t resource) const {
+  if (!declared(pass, resource)) {
+    if (check_uses_) return kNone;
+  }
+  const GraphDescription& graph = graph_->description();
+  std::uint32_t index = graph.passes[pass].first_access;
+  for (const AccessRecord& access : graph.pass_accesses(pass)) {
+    if (access.resource == resource &&
+        (access.usage &
+         (VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT)) != 0)
+      return index;
+    ++index;
+  }
+  errors_.push_back({ErrorCode::undeclared_use,
+                     std::string("pass '").append(graph.pass_name(pass)) +
+                         "' draws to a texture that it did not declare as an attachment: write it "
+                         "with access::color_attachment or access::depth_attachment",
+                     VK_SUCCESS, pass, resource, 0});
+  return kNone;
+}
+
+void Recorder::acquire_imports(const Submission& submission, VkCommandBuffer commands) {
+  const GraphDescription& graph = graph_->description();
+  for (std::uint32_t r = 0; r < graph.resources.size() && has_outside_families_; ++r) {
+    const std::uint32_t external = graph.resources[r].external;
+    if (external == kNone || graph_->imports_[external].initial_family == kNone) continue;
+    const std::uint32_t first = plan_->placements[r].first;
+    const bool here = first == kNone
+                          ? is_last(submission) && graph.externals[external].has_final_state
+                          : first - submission.first_pass < submission.pass_count;
+    const auto own = device_.limits.queue_families[static_cast<std::size_t>(submission.queue)];
+    if (here)
+      transfer_import(r, graph_->imports_[external].initial_family, own,
+                      graph.externals[external].initial_state, true, commands);
+  }
+}
+
+void Recorder::release_imports(VkCommandBuffer commands) {
+  const GraphDescription& graph = graph_->description();
+  for (std::uint32_t r = 0; r < graph.resources.size() && has_outside_families_; ++r) {
+    const std::uint32_t external = graph.resources[r].external;
+    if (external == kNone || graph_->imports_[external].final_family == kNone) continue;
+    transfer_import(r, device_.limits.queue_families[0], graph_->imports_[external].final_family,
+                    graph.externals[external].final_state, false, commands);
+  }
+}
+
+// Without a change of layout: the plan's own barriers do that. Stages and accesses of the other
+// side of a transfer between families are ignored.
+void Recorder::transfer_import(std::uint32_t resource, std::uint32_t from, std::uint32_t to,
+                               const State& state, bool acquires, VkCommandBuffer commands) {
+  if (from == to) return;
+  const ResourceRecord& record = graph_->description().resources[resource];
+  Transition transition;
+  transition.src_stages = transition.dst_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+  if (acquires)
+    transition.dst_access = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+  else
+    transition.src_access = VK_ACCESS_2_MEMORY_WRITE_BIT;
+  transition.resource = resource;
+  transition.old_layout = transition.new_layout = state.layout;
+  transition.range = {0, static_cast<std::uint16_t>(record.mips), 0,
+                      static_cast<std::uint16_t>(record.layers)};
+  VkDependencyInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
+  VkImageMemoryBarrier2 image{};
+  VkBufferMemoryBarrier2 buffer{};
+  if (record.kind == ResourceKind::texture) {
+    image = image_barrier(transition);
+    image.srcQueueFamilyIndex = from;
+    image.dstQueueFamilyIndex = to;
+    info.imageMemoryBarrierCount = 1;
+    info.pImageMemoryBarriers = &image;
+  } else {
+    buffer = buffer_barrier(transition);
+    buffer.srcQueueFamilyIndex = from;
+    buffer.dstQueueFamilyIndex = to;
+    info.bufferMemoryBarrierCount = 1;
+    info.pBufferMemoryBarriers = &buffer;
+  }
+  device_.vk.vkCmdPipelineBarrier2(commands, &info);
 }
 
 bool Recorder::check_view(std::uint32_t pass, std::uint32_t resource, const Range& range) const {

@@ -40,6 +40,13 @@ class Recorder {
   void full_barrier(VkCommandBuffer commands);
   void passes(const PassRun& run, VkCommandBuffer commands);
   void batches(std::uint32_t first, std::uint32_t count, VkCommandBuffer commands);
+  // Queue ownership transfers of imports from and to families outside of the graph: before the
+  // submission in which they are first used, and after the last one.
+  void acquire_imports(const Submission& submission, VkCommandBuffer commands);
+  void release_imports(VkCommandBuffer commands);
+  bool is_last(const Submission& submission) const {
+    return &submission == &plan_->submissions.back();
+  }
   // What callbacks touched undeclared, and what ran out while recording.
   Errors& errors() { return errors_; }
 
@@ -50,6 +57,8 @@ class Recorder {
   void begin_label(std::string_view name, VkCommandBuffer commands) const;
   VkDependencyInfo dependency(const Batch& batch);
   void add_memory(const VkMemoryBarrier2& barrier);
+  void transfer_import(std::uint32_t resource, std::uint32_t from, std::uint32_t to,
+                       const State& state, bool acquires, VkCommandBuffer commands);
   VkImageMemoryBarrier2 image_barrier(const Transition& transition) const;
   VkBufferMemoryBarrier2 buffer_barrier(const Transition& transition) const;
   std::uint32_t family(const Transition& transition, QueueClass queue) const;
@@ -57,6 +66,9 @@ class Recorder {
   // The access of the running pass that names this resource; null, and an error where uses are
   // checked, when there is none.
   const AccessRecord* declared(std::uint32_t pass, std::uint32_t resource) const;
+  // The index of the access by which the pass draws to a resource; kNone and an error where there
+  // is none.
+  std::uint32_t attachment_access(std::uint32_t pass, std::uint32_t resource) const;
   // Whether a texture that the pass declared has this range and, where uses are checked, whether
   // the pass declared all of it. An error where not.
   bool check_view(std::uint32_t pass, std::uint32_t resource, const Range& range) const;
@@ -69,6 +81,7 @@ class Recorder {
   bool check_uses_ = false;
   bool shares_with_buffers_ = false;  // the plan has transient buffers
   bool starts_anew_ = false;
+  bool has_outside_families_ = false;  // some import comes from or goes to another queue family
   std::uint32_t slot_ = 0;
   std::vector<VkImageMemoryBarrier2> images_;
   std::vector<VkBufferMemoryBarrier2> buffers_;

@@ -67,6 +67,7 @@ VkResult RecordingThreads::submission(const Submission& submission, VkCommandBuf
   const PassRun passes{submission.first_pass, submission.pass_count, timestamps,
                        timestamps ? timestamps->add(submission.pass_count) : 0};
   Recorder& own = *recorders_[0];
+  own.acquire_imports(submission, commands);
   if (!together_ || submission.pass_count < 2) {
     own.passes(passes, commands);
   } else {
@@ -83,6 +84,7 @@ VkResult RecordingThreads::submission(const Submission& submission, VkCommandBuf
                                     recorded_.data());
   }
   own.batches(submission.first_batch, submission.batch_count, commands);
+  if (own.is_last(submission)) own.release_imports(commands);
   return VK_SUCCESS;
 }
 

@@ -3,6 +3,19 @@
 #include <algorithm>
 
 namespace alcove::framegraph {
+namespace {
+
+// The first (or last) submission of a queue class; of the frame where the class runs nothing.
+std::uint32_t outermost(const Plan& plan, QueueClass queue, bool first) {
+  const auto count = static_cast<std::uint32_t>(plan.submissions.size());
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t index = first ? i : count - 1 - i;
+    if (plan.submissions[index].queue == queue) return index;
+  }
+  return first ? 0 : count - 1;
+}
+
+}  // namespace
 
 Submitter::~Submitter() {
   const VkDevice device = device_.handles.device;
@@ -55,27 +68,40 @@ VkResult Submitter::prepare(std::uint32_t slot) {
 }
 
 VkResult Submitter::submit(const Plan& plan, RecordingThreads& recording_threads,
-                           std::uint32_t slot, Timestamps* const* timestamps, bool full_barrier) {
+                           const FrameInfo& info, Timestamps* const* timestamps,
+                           bool full_barrier) {
   submitted_ = 0;
-  if (const VkResult result = prepare(slot)) return result;
+  if (const VkResult result = prepare(info.slot)) return result;
   // All is recorded before anything runs: what fails while recording leaves the device untouched.
-  if (const VkResult result = record(plan, recording_threads, slot, timestamps, full_barrier))
+  if (const VkResult result = record(plan, recording_threads, info.slot, timestamps, full_barrier))
     return result;
   const bool several =
       std::any_of(plan.submissions.begin(), plan.submissions.end(),
                   [](const Submission& s) { return s.queue != QueueClass::graphics; });
   std::copy(std::begin(values_), std::end(values_), std::begin(before_));
-  signalled_.assign(plan.submissions.size(), 0);
+  described_.clear();
+  semaphore_infos_.clear();
   bool begun[kQueueClasses] = {};
   VkResult result = VK_SUCCESS;
-  for (; submitted_ < plan.submissions.size(); ++submitted_) {
-    bool& own = begun[static_cast<std::size_t>(plan.submissions[submitted_].queue)];
-    result = submit_one(plan, submitted_, !own && (several || several_before_));
-    if (result != VK_SUCCESS) break;
+  for (std::uint32_t i = 0; i < plan.submissions.size() && result == VK_SUCCESS; ++i) {
+    const Submission& submission = plan.submissions[i];
+    // A queue is handed what another one waits for before that one is handed the wait.
+    for (std::uint32_t w = 0; w < submission.wait_count && result == VK_SUCCESS; ++w) {
+      const Described& awaited = described_[plan.waits[submission.first_wait + w].submission];
+      if (awaited.pending && awaited.queue != queue_of(submission)) result = flush(awaited.queue);
+    }
+    bool& own = begun[static_cast<std::size_t>(submission.queue)];
+    described_.push_back({});
+    described_.back().first_semaphore = static_cast<std::uint32_t>(semaphore_infos_.size());
+    add_waits(plan, i, !own && (several || several_before_));
+    describe(plan, i, info);
     own = true;
   }
+  for (std::size_t i = 0; i < described_.size() && result == VK_SUCCESS; ++i) {
+    if (described_[i].pending) result = flush(described_[i].queue);
+  }
   several_before_ = several;
-  for (std::size_t q = 0; q < kQueueClasses; ++q) slots_[slot].queues[q].value = values_[q];
+  for (std::size_t q = 0; q < kQueueClasses; ++q) slots_[info.slot].queues[q].value = values_[q];
   return result;
 }
 
@@ -108,46 +134,75 @@ VkResult Submitter::record(const Plan& plan, RecordingThreads& recording_threads
   return VK_SUCCESS;
 }
 
-VkResult Submitter::submit_one(const Plan& plan, std::uint32_t index, bool join) {
+void Submitter::add_waits(const Plan& plan, std::uint32_t index, bool join) {
   const Submission& submission = plan.submissions[index];
-  const auto own = static_cast<std::size_t>(submission.queue);
-  waits_.clear();
-  const auto add_wait = [this](std::size_t queue, std::uint64_t value, VkPipelineStageFlags2 at) {
-    VkSemaphoreSubmitInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO;
-    info.semaphore = semaphores_[queue];
-    info.value = value;
-    info.stageMask = at;
-    waits_.push_back(info);
+  const auto add = [this](std::size_t queue, std::uint64_t value, VkPipelineStageFlags2 at) {
+    semaphore_infos_.push_back(
+        {VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO, nullptr, semaphores_[queue], value, at, 0});
   };
   for (std::size_t q = 0; q < kQueueClasses && join; ++q) {
-    if (before_[q] != 0) add_wait(q, before_[q], VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
+    if (before_[q] != 0) add(q, before_[q], VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
   }
   for (std::uint32_t w = 0; w < submission.wait_count; ++w) {
     const Wait& wait = plan.waits[submission.first_wait + w];
-    add_wait(static_cast<std::size_t>(plan.submissions[wait.submission].queue),
-             signalled_[wait.submission], wait.stages);
+    const Described& awaited = described_[wait.submission];
+    add(static_cast<std::size_t>(awaited.queue_class), awaited.value, wait.stages);
   }
-  VkSemaphoreSubmitInfo signal{};
-  signal.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO;
-  signal.semaphore = semaphores_[own];
-  signal.value = values_[own] + 1;
-  signal.stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-  VkCommandBufferSubmitInfo commands{};
-  commands.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO;
-  commands.commandBuffer = recorded_[index];
-  VkSubmitInfo2 info{};
-  info.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2;
-  info.waitSemaphoreInfoCount = static_cast<std::uint32_t>(waits_.size());
-  info.pWaitSemaphoreInfos = waits_.data();
-  info.commandBufferInfoCount = 1;
-  info.pCommandBufferInfos = &commands;
-  info.signalSemaphoreInfoCount = 1;
-  info.pSignalSemaphoreInfos = &signal;
-  const VkResult result =
-      device_.vk.vkQueueSubmit2(device_.handles.queues[own].queue, 1, &info, VK_NULL_HANDLE);
+}
+
+void Submitter::describe(const Plan& plan, std::uint32_t index, const FrameInfo& info) {
+  const Submission& submission = plan.submissions[index];
+  const auto own = static_cast<std::size_t>(submission.queue);
+  Described& described = described_[index];
+  const auto add_external = [&](std::span<const QueueSemaphore> semaphores, bool first) {
+    for (const QueueSemaphore& s : semaphores) {
+      if (outermost(plan, s.queue, first) != index) continue;
+      semaphore_infos_.push_back(
+          {VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO, nullptr, s.semaphore, s.value, s.stages, 0});
+    }
+    return static_cast<std::uint32_t>(semaphore_infos_.size()) - described.first_semaphore;
+  };
+  described.waits = add_external(info.waits, true);
+  // A submission before this one that is not handed over yet counts.
+  std::uint64_t last = values_[own];
+  for (std::uint32_t i = 0; i < index; ++i) {
+    if (described_[i].queue_class == submission.queue) last = std::max(last, described_[i].value);
+  }
+  described.value = last + 1;
+  semaphore_infos_.push_back({VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO, nullptr, semaphores_[own],
+                              described.value, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, 0});
+  described.signals = add_external(info.signals, false) - described.waits;
+  described.commands.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO;
+  described.commands.commandBuffer = recorded_[index];
+  described.queue = queue_of(submission);
+  described.queue_class = submission.queue;
+}
+
+VkResult Submitter::flush(VkQueue queue) {
+  infos_.clear();
+  const auto is_ready = [queue](const Described& d) { return d.pending && d.queue == queue; };
+  for (const Described& d : described_) {
+    if (!is_ready(d)) continue;
+    const VkSemaphoreSubmitInfo* const semaphores = semaphore_infos_.data() + d.first_semaphore;
+    VkSubmitInfo2 info{};
+    info.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2;
+    info.waitSemaphoreInfoCount = d.waits;
+    info.pWaitSemaphoreInfos = semaphores;
+    info.commandBufferInfoCount = 1;
+    info.pCommandBufferInfos = &d.commands;
+    info.signalSemaphoreInfoCount = d.signals;
+    info.pSignalSemaphoreInfos = semaphores + d.waits;
+    infos_.push_back(info);
+  }
+  const VkResult result = device_.vk.vkQueueSubmit2(
+      queue, static_cast<std::uint32_t>(infos_.size()), infos_.data(), VK_NULL_HANDLE);
   if (result != VK_SUCCESS) return result;
-  signalled_[index] = ++values_[own];
+  for (Described& d : described_) {
+    if (!is_ready(d)) continue;
+    d.pending = false;
+    values_[static_cast<std::size_t>(d.queue_class)] = d.value;
+    ++submitted_;
+  }
   return VK_SUCCESS;
 }
 

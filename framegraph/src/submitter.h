@@ -22,7 +22,7 @@ class Submitter {
   // Records and submits a plan that `recording_threads` was begun with. `timestamps` is by queue
   // class, null where there are none. `full_barrier`: memory holds what another plan left.
   [[nodiscard]] VkResult submit(const Plan& plan, RecordingThreads& recording_threads,
-                                std::uint32_t slot, Timestamps* const* timestamps,
+                                const FrameInfo& info, Timestamps* const* timestamps,
                                 bool full_barrier);
   // Whether submit handed over some of a frame and then failed.
   bool stopped_midway() const { return submitted_ != 0; }
@@ -39,17 +39,36 @@ class Submitter {
   VkResult prepare(std::uint32_t slot);
   VkResult record(const Plan& plan, RecordingThreads& recording_threads, std::uint32_t slot,
                   Timestamps* const* timestamps, bool full_barrier);
-  VkResult submit_one(const Plan& plan, std::uint32_t index, bool join);
+  void add_waits(const Plan& plan, std::uint32_t index, bool join);
+  // Describes a submission; flush() hands over those of a queue that are described.
+  void describe(const Plan& plan, std::uint32_t index, const FrameInfo& info);
+  VkResult flush(VkQueue queue);
+  VkQueue queue_of(const Submission& submission) const {
+    return device_.handles.queues[static_cast<std::size_t>(submission.queue)].queue;
+  }
+
+  // A submission that is described and not yet handed over.
+  struct Described {
+    VkQueue queue = VK_NULL_HANDLE;
+    std::uint32_t first_semaphore = 0;  // into semaphore_infos_: waits, then signals
+    std::uint32_t waits = 0;
+    std::uint32_t signals = 0;
+    VkCommandBufferSubmitInfo commands{};
+    std::uint64_t value = 0;  // of its queue class's semaphore once it is done
+    QueueClass queue_class = QueueClass::graphics;
+    bool pending = true;
+  };
 
   const DeviceContext& device_;
   std::vector<Slot> slots_;
   VkSemaphore semaphores_[kQueueClasses] = {};
   std::uint64_t values_[kQueueClasses] = {};  // last value that will be signalled
   std::uint64_t before_[kQueueClasses] = {};  // the same at the end of the frame before
-  std::vector<std::uint64_t> signalled_;      // by submission of this frame
   std::vector<VkCommandBuffer> recorded_;     // by submission of this frame
   std::uint32_t submitted_ = 0;               // submissions of this frame handed over
-  std::vector<VkSemaphoreSubmitInfo> waits_;
+  std::vector<Described> described_;          // by submission of this frame
+  std::vector<VkSemaphoreSubmitInfo> semaphore_infos_;
+  std::vector<VkSubmitInfo2> infos_;  // of one vkQueueSubmit2
   bool several_before_ = false;
 };
 

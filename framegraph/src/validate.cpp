@@ -94,21 +94,24 @@ class Replay {
     touched.layout = access.layout;
   }
 
-  // The attachments of a pass are used in one rendering and must be of one size.
+  // The attachments of a rendering are drawn to together. One that has one sample and is not read,
+  // beside multisampled ones, is the target of a resolve.
   void check_attachment(std::uint32_t pass, const AccessRecord& access) {
     const ResourceRecord& r = v_.graph.resources[access.resource];
     const auto side = [&access](std::uint32_t size) {
       return std::max(1u, size >> access.range.base_mip);
     };
-    if (attachment_ == kNone) {
+    if (attachment_ == kNone || access.flags / kRendering != rendering_) {
       attachment_ = access.resource;
+      rendering_ = access.flags / kRendering;
       width_ = side(r.width);
       height_ = side(r.height);
-      return;
+      samples_ = 0;
     }
-    if (side(r.width) == width_ && side(r.height) == height_ &&
-        r.samples == v_.graph.resources[attachment_].samples)
-      return;
+    const bool resolved = r.samples == 1 && (access.access & ~kWriteBits) == 0;
+    if (samples_ == 0 && !resolved) samples_ = r.samples;
+    const bool samples_differ = !resolved && r.samples != samples_;
+    if (side(r.width) == width_ && side(r.height) == height_ && !samples_differ) return;
     const auto size = [](std::uint32_t width, std::uint32_t height, std::uint32_t samples) {
       return std::to_string(width)
                  .append("x")
@@ -122,7 +125,8 @@ class Replay {
                 size(side(r.width), side(r.height), r.samples) + " and to " +
                 v_.resource_text(attachment_) + " of " +
                 size(width_, height_, v_.graph.resources[attachment_].samples) +
-                ": give the attachments of a pass one size and one number of samples",
+                ": give the attachments of a rendering one size and one number of samples, or call "
+                "next_rendering() between them",
             pass, access.resource, access.version);
   }
 
@@ -236,6 +240,8 @@ class Replay {
   std::uint32_t attachment_ = kNone;  // the first of this pass, and the size of its mip
   std::uint32_t width_ = 0;
   std::uint32_t height_ = 0;
+  std::uint32_t rendering_ = 0;
+  std::uint32_t samples_ = 0;  // 0 while only resolve targets were seen
 };
 
 }  // namespace

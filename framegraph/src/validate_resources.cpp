@@ -46,6 +46,9 @@ bool check_texture(Validation& v, std::uint32_t index, const ResourceRecord& r) 
   if (r.layers == 0 || r.layers > v.limits.max_layers)
     return bad("has " + std::to_string(r.layers) + " layers: the device allows 1 to " +
                std::to_string(v.limits.max_layers));
+  if ((r.create_flags & VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT) != 0 &&
+      (r.width != r.height || r.layers < 6 || r.samples > 1))
+    return bad("is cube compatible: it must be square and have at least 6 layers and one sample");
   if (r.depth > 1 && r.layers > 1) return bad("is 3D and an array: it can be one of the two");
   if (r.samples == 0 || (r.samples & (r.samples - 1)) != 0 || r.samples > v.limits.max_samples)
     return bad("has " + std::to_string(r.samples) + " samples: a power of two up to " +
@@ -57,9 +60,9 @@ bool check_texture(Validation& v, std::uint32_t index, const ResourceRecord& r) 
 
 // The fast path for most resources: whether it is a valid texture of one subresource.
 bool is_plainly_right(const ResourceRecord& r, std::uint32_t limit) {
-  return r.kind == ResourceKind::texture && r.external == kNone && r.flags == 0 && r.depth == 1 &&
-         r.mips == 1 && r.layers == 1 && r.samples == 1 && r.width - 1 < limit &&
-         r.height - 1 < limit && r.format != VK_FORMAT_UNDEFINED;
+  return r.kind == ResourceKind::texture && r.external == kNone && r.flags == 0 &&
+         r.create_flags == 0 && r.depth == 1 && r.mips == 1 && r.layers == 1 && r.samples == 1 &&
+         r.width - 1 < limit && r.height - 1 < limit && r.format != VK_FORMAT_UNDEFINED;
 }
 
 bool check_buffer(Validation& v, std::uint32_t index, const ResourceRecord& r) {
@@ -94,12 +97,13 @@ void check_external(Validation& v, std::uint32_t index, const ResourceRecord& r)
         v.resource_text(index) + " is imported without a Vulkan handle: set " +
             (r.kind == ResourceKind::texture ? "ImportedTexture::image" : "ImportedBuffer::buffer"),
         kNone, index);
-  if (r.origin == Origin::history && r.slot == 0 && r.slots < 2)
-    v.fail(
-        ErrorCode::history_cycle,
-        v.resource_text(index) +
-            " is a history of one slot, whose last frame is this frame: give it at least 2 slots",
-        kNone, index);
+  if (r.origin == Origin::history && r.slot == 0 && r.slots < 2 && !(r.flags & kPersistent))
+    v.fail(ErrorCode::history_cycle,
+           v.resource_text(index) +
+               " is a history of one slot, whose last frame is this frame: give it at least 2 "
+               "slots, or "
+               "create a persistent texture or buffer",
+           kNone, index);
 }
 
 // Checks any resource. Returns the number of its subresources, 0 if its description is invalid.

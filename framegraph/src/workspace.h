@@ -65,6 +65,7 @@ struct Workspace {
   std::vector<std::uint32_t> transients;
 
   // Scratch of the single phases.
+  std::vector<std::uint8_t> contents;  // by subresource
   struct Touch {
     std::uint32_t stamp = 0;  // the last pass that used it, from 1
     VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
@@ -198,6 +199,16 @@ void assign_queues(const GraphDescription& graph, const Limits& limits, Workspac
 std::uint32_t taken_until(const Workspace& workspace, const Plan& plan, std::uint32_t position);
 // First and last position of each resource, and its usage.
 void lifetimes(const GraphDescription& graph, Workspace& workspace, Plan& plan);
+// Which accesses find contents and which leave some that are needed; what needs no memory of its
+// own.
+void find_contents(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
+                   Plan& plan);
+// Whether the device can make the textures that live passes use. Errors where not.
+bool check_images(const GraphDescription& graph, const Limits& limits, const Plan& plan,
+                  Errors& errors);
+// What a history is made for: all that it could be used for, so that it need never be made again,
+// contents lost, when a later frame uses it otherwise.
+VkFlags history_usage(const Limits& limits, const ResourceRecord& record);
 // Offsets in heaps.
 void place(const GraphDescription& graph, const Limits& limits, Workspace& workspace, Plan& plan);
 // Barriers, submissions and waits.

@@ -11,6 +11,8 @@ std::atomic<int> failing_call = 0;
 std::atomic<int> call_count = 0;
 std::atomic<int> alive_count = 0;
 bool is_lost = false;
+int submit_count = 0;
+int outside_count = 0;
 int submissions_left = -1;  // until the device is lost; below 0: it is not going to be
 
 // Wraps one creating and one destroying function of the device.
@@ -76,8 +78,18 @@ VKAPI_ATTR VkResult VKAPI_CALL allocate_sets(VkDevice device,
 
 VKAPI_ATTR VkResult VKAPI_CALL submit(VkQueue queue, std::uint32_t count, const VkSubmitInfo2* info,
                                       VkFence fence) {
+  ++submit_count;
   if (submissions_left >= 0 && submissions_left-- == 0) is_lost = true;
   return is_lost ? VK_ERROR_DEVICE_LOST : vkQueueSubmit2(queue, count, info, fence);
+}
+
+VKAPI_ATTR void VKAPI_CALL barrier(VkCommandBuffer commands, const VkDependencyInfo* info) {
+  for (std::uint32_t i = 0; i < info->imageMemoryBarrierCount; ++i) {
+    const VkImageMemoryBarrier2& image = info->pImageMemoryBarriers[i];
+    outside_count += image.srcQueueFamilyIndex == VK_QUEUE_FAMILY_EXTERNAL ||
+                     image.dstQueueFamilyIndex == VK_QUEUE_FAMILY_EXTERNAL;
+  }
+  vkCmdPipelineBarrier2(commands, info);
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL wait_semaphores(VkDevice device, const VkSemaphoreWaitInfo* info,
@@ -114,6 +126,7 @@ PFN_vkVoidFunction VKAPI_CALL get_device_proc_addr(VkDevice device, const char* 
       {"vkDestroyPipeline", reinterpret_cast<PFN_vkVoidFunction>(&destroy_pipeline)},
       {"vkAllocateDescriptorSets", reinterpret_cast<PFN_vkVoidFunction>(&allocate_sets)},
       ALCOVE_WRAP(Semaphore, "vkCreateSemaphore", "vkDestroySemaphore"),
+      {"vkCmdPipelineBarrier2", reinterpret_cast<PFN_vkVoidFunction>(&barrier)},
       {"vkQueueSubmit2", reinterpret_cast<PFN_vkVoidFunction>(&submit)},
       {"vkWaitSemaphores", reinterpret_cast<PFN_vkVoidFunction>(&wait_semaphores)},
       {"vkQueueWaitIdle", reinterpret_cast<PFN_vkVoidFunction>(&wait_idle)},
@@ -138,6 +151,8 @@ void lose(bool lost) {
 void lose_after(int submissions) { submissions_left = submissions; }
 int calls() { return call_count; }
 int alive() { return alive_count; }
+int submits() { return submit_count; }
+int outside_transfers() { return outside_count; }
 
 PFN_vkVoidFunction VKAPI_CALL get_instance_proc_addr(VkInstance instance, const char* name) {
   if (std::strcmp(name, "vkGetDeviceProcAddr") == 0)

@@ -16,6 +16,10 @@ void lose(bool lost);
 void lose_after(int submissions);
 // Objects that were created and not destroyed.
 int alive();
+// Calls of vkQueueSubmit2 so far.
+int submits();
+// Image barriers recorded so far whose queue family on one side is VK_QUEUE_FAMILY_EXTERNAL.
+int outside_transfers();
 // To be given to the executor in place of vkGetInstanceProcAddr.
 PFN_vkVoidFunction VKAPI_CALL get_instance_proc_addr(VkInstance instance, const char* name);
 

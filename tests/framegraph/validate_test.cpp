@@ -57,6 +57,74 @@ TEST_F(Validate, AttachmentsAndDiscardingWritesNeedNoContents) {
   EXPECT_TRUE(compile(graph_));
 }
 
+TEST_F(Validate, AttachmentsOfDifferentRenderingsMayDifferInSize) {
+  for (const bool separate : {true, false}) {
+    graph_.reset();
+    const Texture large = graph_.create_texture("large", kDesc);
+    const Texture small =
+        graph_.create_texture("small", {kDesc.format, Extent::relative(large, 2)});
+    PassBuilder both = pass("both");
+    (void)both.write(large, access::color_attachment);
+    if (separate) both.next_rendering();
+    (void)both.write(small, access::color_attachment);
+    if (separate)
+      EXPECT_TRUE(compile(graph_));
+    else
+      expect(ErrorCode::attachment_mismatch, "next_rendering()");
+  }
+}
+
+TEST_F(Validate, ResolveTargetsHaveOneSampleBesideMultisampledAttachments) {
+  TextureDesc multisampled = kDesc;
+  multisampled.samples = VK_SAMPLE_COUNT_4_BIT;
+  for (const bool first : {true, false}) {
+    graph_.reset();
+    const Texture msaa = graph_.create_texture("msaa", multisampled);
+    const Texture target = graph_.create_texture("target", kDesc);
+    PassBuilder draw = pass("draw");
+    if (first) (void)draw.write(target, access::resolve_target);
+    (void)draw.write(msaa, access::color_attachment);
+    if (!first) (void)draw.write(target, access::resolve_target);
+    EXPECT_TRUE(compile(graph_));
+  }
+}
+
+TEST_F(Validate, RelativeExtentsMultiplyAndDivide) {
+  const Texture base = graph_.create_texture("base", {kDesc.format, Extent::absolute(100, 7)});
+  const auto size = [&](std::uint32_t divisor, std::uint32_t multiplier) {
+    const VkExtent3D extent = graph_.extent(
+        graph_.create_texture("t", {kDesc.format, Extent::relative(base, divisor, multiplier)}));
+    return std::pair{extent.width, extent.height};
+  };
+  EXPECT_EQ(size(3, 2), (std::pair{67u, 5u}));
+  EXPECT_EQ(size(1, 2), (std::pair{200u, 14u}));
+  EXPECT_EQ(size(1000, 1), (std::pair{1u, 1u}));
+  EXPECT_EQ(size(2, 0), (std::pair{0u, 0u}));
+}
+
+// The depth of a prepass that nothing reads later, on a device with lazily allocated memory.
+TEST_F(Validate, AttachmentsWithoutContentsAreTransientOnDevicesWithLazyMemory) {
+  for (const bool read_later : {false, true}) {
+    graph_.reset();
+    Texture color = graph_.create_texture("color", kDesc);
+    Texture depth = graph_.create_texture("depth", {VK_FORMAT_D32_SFLOAT, kDesc.extent});
+    PassBuilder draw = pass("draw");
+    color = draw.write(color, access::color_attachment);
+    depth = draw.write(depth, access::depth_attachment);
+    graph_.output(color);
+    if (read_later) pass("later").read(depth, access::depth_read_compute);
+    Limits limits;
+    limits.has_lazy_memory = true;
+    const auto plan = compile(graph_, limits);
+    ASSERT_TRUE(plan);
+    const auto is_transient = [&](Texture texture) {
+      return (plan->placements[texture.index].usage & VK_IMAGE_USAGE_TRANSIENT_ATTACHMENT_BIT) != 0;
+    };
+    EXPECT_FALSE(is_transient(color));
+    EXPECT_EQ(is_transient(depth), !read_later);
+  }
+}
+
 TEST_F(Validate, ALayerOrMipThatDoesNotFitIsNotTakenForAnother) {
   const Texture texture = written("t");
   pass("reader").read(texture, access::sampled_compute, Range::layer(65536));

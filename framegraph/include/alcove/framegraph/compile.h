@@ -35,6 +35,20 @@ struct FormatOracle {
   const void* context = nullptr;
 };
 
+// What the device allows for a texture of a format, dimension, usage and flags.
+struct ImageLimits {
+  VkExtent3D extent{};             // the largest; 0 where the combination is not supported at all
+  std::uint32_t mips = 0;          // the most
+  std::uint32_t layers = 0;        // the most
+  VkSampleCountFlags samples = 0;  // each allowed count
+};
+// Asked for textures that the fixed limits do not settle: with several samples, layers or slices,
+// or with flags. Must be pure.
+struct ImageOracle {
+  ImageLimits (*query)(const void* context, const ResourceRecord& record, VkFlags usage) = nullptr;
+  const void* context = nullptr;
+};
+
 enum class Ordering : std::uint8_t {
   program,  // as declared
   // In another order where that lowers the bytes of all heaps, as they are placed: never a higher
@@ -51,10 +65,14 @@ struct Limits {
   std::uint32_t max_samples = 64;  // mask of VkSampleCountFlagBits is (2 * max_samples - 1)
   // Bytes between a buffer and an image (optimal tiling) that share memory.
   VkDeviceSize buffer_image_granularity = 1;
+  // The device has lazily allocated memory: attachments whose contents no pass loads or needs get
+  // it.
+  bool has_lazy_memory = false;
   // Queue family of each class, kNone where there is none: its passes then run on graphics.
   std::uint32_t queue_families[kQueueClasses] = {0, kNone, kNone};
   MemoryOracle memory;
   FormatOracle formats;
+  ImageOracle images;  // without it everything within the fixed limits is allowed
   Ordering ordering = Ordering::lower_peak;
   // Graphs of more live passes than this keep program order: looking for another takes time that
   // grows faster than the graph.

@@ -32,11 +32,14 @@ struct ResourceRecord {
   std::uint8_t slot = 0;    // of a history: 0 is this frame's, k is that of k frames ago
   std::uint8_t slots = 1;   // of a history
   std::uint32_t flags = 0;  // ResourceFlags
+  VkImageCreateFlags create_flags = 0;
+  std::uint32_t reserved = 0;
 };
 static_assert(std::has_unique_object_representations_v<ResourceRecord>);
 
 enum ResourceFlags : std::uint32_t {
   kRelativeToNothing = 1,  // a relative extent of a dead handle
+  kPersistent = 2,         // a history of one slot, which keeps its contents
 };
 
 // The state of a resource that exists outside the frame: an import or a history slot.
@@ -70,6 +73,8 @@ enum AccessFlags : std::uint32_t {
   kUnordered = 256,
   // Of an OutputRecord that stands for a PassBuilder which was used after reset().
   kStaleBuilder = 1u << 16,
+  // Of an attachment: from this bit on, the number of the rendering within its pass.
+  kRendering = 1u << 24,
 };
 
 // The access bits that write: those of Vulkan and of its extensions, but for video.

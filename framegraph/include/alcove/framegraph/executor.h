@@ -1,6 +1,6 @@
-// Runs graphs on a Vulkan 1.3 device. Of its features synchronization2 has to be enabled, for
-// submit() timelineSemaphore too, on one queue as on several; dynamicRendering where passes draw
-// with it. Never creates a device.
+// Runs graphs on a Vulkan device of version 1.3, or 1.2 with VK_KHR_synchronization2. Of its
+// features synchronization2 has to be enabled, for submit() timelineSemaphore too, on one queue as
+// on several; dynamicRendering where passes draw with it. Never creates a device.
 //
 //   frame:  wait for the fence of slot s;  graph.reset(); declare;  begin commands
 //           executor.record(graph, commands, {s});  end commands, submit with the fence of slot s
@@ -36,7 +36,8 @@ struct DeviceHandles {
   VkDevice device = VK_NULL_HANDLE;
   PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr;
   QueueHandle queues[kQueueClasses];
-  bool debug_utils = false;  // VK_EXT_debug_utils is enabled on the instance
+  bool debug_utils = false;          // VK_EXT_debug_utils is enabled on the instance
+  bool storage_multisample = false;  // the feature shaderStorageImageMultisample is enabled
 };
 
 // Checks a plan against the declaration and the limits that it was made for.
@@ -70,9 +71,25 @@ struct ExecutorOptions {
 #endif
 };
 
+// A semaphore of the caller's that submit() waits for or signals. The wait comes before the frame's
+// first work on `queue`, the signal after its last work there. Where the frame runs nothing on that
+// queue, they go to its first or last submission.
+struct QueueSemaphore {
+  VkSemaphore semaphore = VK_NULL_HANDLE;
+  std::uint64_t value = 0;  // of a timeline semaphore; a binary one ignores it
+  VkPipelineStageFlags2 stages =
+      VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;  // that wait, or are waited for
+  QueueClass queue = QueueClass::graphics;
+};
+
 struct FrameInfo {
   // Which frame in flight: the device must have finished what was last recorded with this slot.
   std::uint32_t slot = 0;
+  // For submit(): record() leaves synchronisation with others to the caller. A swapchain image is
+  // waited for where it is first used, and graphics, on which imports are left in their final
+  // states, signals that it can be presented.
+  std::span<const QueueSemaphore> waits = {};
+  std::span<const QueueSemaphore> signals = {};
 };
 
 // Bytes of the transients of a frame, over all heaps.
@@ -118,10 +135,11 @@ class Executor {
   // lost. To be recorded again it has to be declared anew where it changed a history's description.
   void discard(Graph& graph, const FrameInfo& frame = {});
 
-  // Records and submits on as many queues as there are. Waits itself for what was last submitted
-  // with this slot. Not to be mixed with record() on one executor unless the caller orders the two.
-  // When the device is lost, this and wait() give an error with VK_ERROR_DEVICE_LOST, each time:
-  // what is left is to destroy the executor, which waits for nothing and leaks nothing.
+  // Records and submits on as many queues as there are, with one vkQueueSubmit2 for all that a
+  // queue does before another queue waits for it. Waits itself for what was last submitted with
+  // this slot. Not to be mixed with record() on one executor unless the caller orders the two. When
+  // the device is lost, this and wait() give an error with VK_ERROR_DEVICE_LOST, each time: what is
+  // left is to destroy the executor, which waits for nothing and leaks nothing.
   [[nodiscard]] tl::expected<FrameReport, Errors> submit(Graph& graph, const FrameInfo& frame = {});
   // Waits for what was submitted with this slot.
   [[nodiscard]] tl::expected<void, Errors> wait(std::uint32_t slot = 0);

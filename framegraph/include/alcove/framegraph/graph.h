@@ -55,6 +55,10 @@ class PassBuilder {
     return write(buffer, access, Contents::keep, Need::optional);
   }
 
+  // Attachments that are declared from now on belong to another rendering of the pass. Those of one
+  // rendering have one size, and one number of samples but for resolve targets. At most 255 times.
+  void next_rendering() { rendering_ += kRendering; }
+
   // The pass does something that the graph does not see: it is never culled.
   void side_effect();
 
@@ -76,7 +80,8 @@ class PassBuilder {
 
   Graph& graph_;
   std::uint32_t pass_;
-  std::uint32_t tag_;  // Graph::tag_ of the frame
+  std::uint32_t tag_;            // Graph::tag_ of the frame
+  std::uint32_t rendering_ = 0;  // a multiple of kRendering
 };
 
 // A resource with memory from frame to frame. `current` is written this frame; previous(k) is what
@@ -104,6 +109,8 @@ struct ImportHandles {
   std::uint32_t history = kNone;  // of a history slot: index into the graph's histories
   std::uint32_t layer = 0;        // of the image: the texture's first
   std::uint32_t layers = 1;       // of the texture
+  std::uint32_t initial_family = kNone;
+  std::uint32_t final_family = kNone;
 };
 
 class Graph {
@@ -125,6 +132,11 @@ class Graph {
                                         std::uint32_t slots = 2);
   BufferHistory create_buffer_history(std::string_view name, const BufferDesc& desc,
                                       std::uint32_t slots = 2);
+  // Histories of one slot: `current` keeps its contents from frame to frame, and a write that keeps
+  // them updates it in place. `validity` is that of `current`; it can be read before it is written
+  // where it is valid. Passes that write it are live.
+  TextureHistory create_persistent_texture(std::string_view name, const TextureDesc& desc);
+  BufferHistory create_persistent_buffer(std::string_view name, const BufferDesc& desc);
   // From the next create_*_history on, nothing of the named history (or of all) is valid.
   void reset_history(std::string_view name);
   void reset_histories();

@@ -79,7 +79,8 @@ inline bool Graph::is_texture_record(const ResourceRecord& record, const Texture
          pair(record.mips, record.layers) == pair(desc.mips, desc.layers) &&
          record.samples == desc.samples && record.size == 0 && record.external == kNone &&
          record.kind == ResourceKind::texture && record.origin == Origin::transient &&
-         record.slot == 0 && record.slots == 1 && record.flags == 0;
+         record.slot == 0 && record.slots == 1 && record.flags == 0 &&
+         record.create_flags == desc.flags;
 }
 
 inline void Graph::fill_texture_record(ResourceRecord& record, const TextureDesc& desc) {
@@ -97,6 +98,7 @@ inline void Graph::fill_texture_record(ResourceRecord& record, const TextureDesc
   record.slot = 0;
   record.slots = 1;
   record.flags = 0;
+  record.create_flags = desc.flags;
 }
 
 inline Texture Graph::create_texture(std::string_view name, const TextureDesc& desc) {
@@ -188,7 +190,7 @@ inline std::uint32_t Graph::add_access(std::uint32_t pass, const Handle& handle,
 }
 
 inline void PassBuilder::read(Texture texture, const Access& access, Range range) {
-  if (is_current()) graph_.add_access(pass_, texture, access, range, 0);
+  if (is_current()) graph_.add_access(pass_, texture, access, range, rendering_);
 }
 
 inline void PassBuilder::read(Buffer buffer, const Access& access) {
@@ -199,7 +201,7 @@ inline Texture PassBuilder::write(Texture texture, const Access& access, Range r
                                   Contents contents, Need need) {
   const std::uint32_t flags = kWrite | (contents == Contents::discard ? kDiscard : 0u) |
                               (contents == Contents::accumulate ? kUnordered : 0u) |
-                              (need == Need::optional ? kOptional : 0u);
+                              (need == Need::optional ? kOptional : 0u) | rendering_;
   if (is_current()) texture.version = graph_.add_access(pass_, texture, access, range, flags);
   return texture;
 }

@@ -97,6 +97,12 @@ struct Heap {
   VkDeviceSize unaliased = 0;      // sum of the sizes
 };
 
+// Of an access: what becomes of the contents of its range.
+enum ContentFlags : std::uint8_t {
+  kHasContents = 1,  // the access keeps earlier contents, and there are some
+  kIsNeeded = 2,     // a later pass, or whoever comes after the frame, needs what the access leaves
+};
+
 // How many of the mips and layers of a history slot the live passes wrote.
 enum class Written : std::uint8_t { nothing, part, whole };
 
@@ -119,6 +125,7 @@ struct Plan {
   std::vector<Heap> heaps;
   std::vector<PassCullReason> cull_reasons;  // by declared pass
   std::vector<std::uint8_t> live_accesses;   // by declared access: 0 or 1
+  std::vector<std::uint8_t> contents;        // by declared access: ContentFlags
   std::vector<FinalState> finals;
   bool reordered = false;  // whether the order differs from the declaration's
 };

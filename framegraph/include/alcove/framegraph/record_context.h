@@ -2,12 +2,27 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string_view>
 
 #include "alcove/framegraph/types.h"
 #include "alcove/framegraph/vulkan_functions.h"
 
 namespace alcove::framegraph {
+
+// The type of a view that follows from what it covers: 2D, 2D array where that is more than one
+// layer, or 3D.
+inline constexpr VkImageViewType kViewTypeByRange = VK_IMAGE_VIEW_TYPE_MAX_ENUM;
+
+// A texture as an attachment of a rendering: the pass has to have declared it as one.
+struct Attachment {
+  Texture texture = {};
+  // What it is cleared to where no earlier contents are loaded. Null: they are then undefined.
+  const VkClearValue* clear = nullptr;
+  // Of a multisampled texture: the texture with one sample that it is resolved to, if any.
+  Texture resolve = {};
+  VkResolveModeFlagBits resolve_mode = VK_RESOLVE_MODE_AVERAGE_BIT;
+};
 
 // Valid only during the callback. Any version of a handle finds the same image or buffer.
 //
@@ -28,9 +43,18 @@ class RecordContext {
 
   // A view of the range that the pass declared for this texture (the first access that names it),
   // or of `range`, which must lie within what is declared. 2D, 2D array when more than one layer is
-  // covered, or 3D. Depth formats give the depth aspect.
+  // covered, or 3D, unless a type is given. Depth formats give the depth aspect. Another format
+  // than the texture's needs TextureDesc::flags with MUTABLE_FORMAT, a cube CUBE_COMPATIBLE.
   VkImageView view(Texture texture) const;
-  VkImageView view(Texture texture, Range range) const;
+  VkImageView view(Texture texture, Range range, VkImageViewType type = kViewTypeByRange,
+                   VkFormat format = VK_FORMAT_UNDEFINED) const;
+  // The attachment for vkCmdBeginRendering. Earlier contents are loaded where there are any and the
+  // access keeps them. What is drawn is stored where a later pass or frame needs it.
+  VkRenderingAttachmentInfo attachment(const Attachment& attachment) const;
+  // Begins a rendering over the whole of the attachments' mips and layers. False, and record()
+  // returns an error, where their sizes or samples differ or the device lacks dynamic rendering.
+  bool begin_rendering(std::span<const Attachment> colors, const Attachment& depth = {}) const;
+  void end_rendering() const { vk.vkCmdEndRendering(commands); }
   VkImage image(Texture texture) const;
   VkBuffer buffer(Buffer buffer) const;
   // Size of a mip in texels.

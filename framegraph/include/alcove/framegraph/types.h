@@ -33,19 +33,22 @@ struct Buffer {
   bool operator==(const Buffer&) const = default;
 };
 
-// A size in texels, or a share of another texture's size: each side divided, rounded up, at
-// least 1.
+// A size in texels, or relative to another texture's size: each side is multiplied, then divided
+// and rounded up, and is at least 1.
 struct Extent {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
   std::uint32_t depth = 1;  // over 1 makes a 3D image
   Texture relative_to = {};
   std::uint32_t divisor = 1;
+  std::uint32_t multiplier = 1;
 
   static Extent absolute(std::uint32_t width, std::uint32_t height, std::uint32_t depth = 1) {
-    return {width, height, depth, {}, 1};
+    return {width, height, depth, {}, 1, 1};
   }
-  static Extent relative(Texture to, std::uint32_t divisor = 1) { return {0, 0, 1, to, divisor}; }
+  static Extent relative(Texture to, std::uint32_t divisor = 1, std::uint32_t multiplier = 1) {
+    return {0, 0, 1, to, divisor, multiplier};
+  }
 };
 
 struct TextureDesc {
@@ -54,6 +57,9 @@ struct TextureDesc {
   std::uint32_t mips = 1;
   std::uint32_t layers = 1;  // over 1 makes an array
   VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
+  // For example VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT, or MUTABLE_FORMAT_BIT for views of another
+  // format.
+  VkImageCreateFlags flags = 0;
 };
 
 struct BufferDesc {
@@ -113,6 +119,12 @@ struct ImportedTexture {
   // it; a callback that takes the image itself has to.
   std::uint32_t first_layer = 0;
   State initial_state;
+  // The queue family, or VK_QUEUE_FAMILY_EXTERNAL, that has released the image to the family of the
+  // queue on which the frame first uses it (graphics where no pass does), in initial_state's
+  // layout: the graph records the acquire. kNone: the image is on the right family.
+  std::uint32_t initial_family = kNone;
+  // The family that the graph releases the image to from graphics, in final_state's layout.
+  std::uint32_t final_family = kNone;
   // With a final_state the graph leaves the image so, and a write to it is an output of the frame.
   // All that the frame does with it comes before what is done at these stages later. Without one
   // (layout undefined and no stages) a write that nobody reads is culled.
@@ -127,6 +139,8 @@ struct ImportedBuffer {
   bool has_contents = true;
   State initial_state;
   State final_state;
+  std::uint32_t initial_family = kNone;  // as in ImportedTexture
+  std::uint32_t final_family = kNone;
 };
 
 // What a write does to the earlier contents of its range.

@@ -6,15 +6,18 @@
 
 namespace alcove::framegraph {
 
-// X(name) for each function of the device (or, the first group, of the instance).
+// X(name) for each function of the instance. What a newer version than 1.0 made core is also found
+// under its name with the suffix KHR or EXT.
 #define ALCOVE_FRAMEGRAPH_INSTANCE_FUNCTIONS(X) \
   X(vkGetDeviceProcAddr)                        \
   X(vkGetPhysicalDeviceProperties)              \
   X(vkGetPhysicalDeviceMemoryProperties)        \
   X(vkGetPhysicalDeviceQueueFamilyProperties)   \
   X(vkGetPhysicalDeviceFormatProperties)        \
-  X(vkGetPhysicalDeviceImageFormatProperties)
+  X(vkGetPhysicalDeviceImageFormatProperties2)  \
+  X(vkGetPhysicalDeviceProperties2)
 
+// Functions of the device that the executor calls, or that every device of Vulkan 1.2 has.
 #define ALCOVE_FRAMEGRAPH_DEVICE_FUNCTIONS(X) \
   X(vkAllocateCommandBuffers)                 \
   X(vkAllocateDescriptorSets)                 \
@@ -23,12 +26,10 @@ namespace alcove::framegraph {
   X(vkBindBufferMemory)                       \
   X(vkBindImageMemory)                        \
   X(vkCmdBeginQuery)                          \
-  X(vkCmdBeginRendering)                      \
   X(vkCmdBindDescriptorSets)                  \
   X(vkCmdBindIndexBuffer)                     \
   X(vkCmdBindPipeline)                        \
   X(vkCmdBindVertexBuffers)                   \
-  X(vkCmdBlitImage2)                          \
   X(vkCmdClearColorImage)                     \
   X(vkCmdClearDepthStencilImage)              \
   X(vkCmdCopyBuffer)                          \
@@ -42,14 +43,11 @@ namespace alcove::framegraph {
   X(vkCmdDrawIndexedIndirect)                 \
   X(vkCmdDrawIndirect)                        \
   X(vkCmdEndQuery)                            \
-  X(vkCmdEndRendering)                        \
   X(vkCmdExecuteCommands)                     \
   X(vkCmdFillBuffer)                          \
   X(vkCmdPipelineBarrier2)                    \
   X(vkCmdPushConstants)                       \
   X(vkCmdResetQueryPool)                      \
-  X(vkCmdSetCullMode)                         \
-  X(vkCmdSetFrontFace)                        \
   X(vkCmdSetScissor)                          \
   X(vkCmdSetViewport)                         \
   X(vkCmdUpdateBuffer)                        \
@@ -60,7 +58,6 @@ namespace alcove::framegraph {
   X(vkCreateDescriptorPool)                   \
   X(vkCreateDescriptorSetLayout)              \
   X(vkCreateFence)                            \
-  X(vkCreateGraphicsPipelines)                \
   X(vkCreateImage)                            \
   X(vkCreateImageView)                        \
   X(vkCreatePipelineCache)                    \
@@ -90,8 +87,6 @@ namespace alcove::framegraph {
   X(vkFreeDescriptorSets)                     \
   X(vkFreeMemory)                             \
   X(vkGetBufferMemoryRequirements)            \
-  X(vkGetDeviceBufferMemoryRequirements)      \
-  X(vkGetDeviceImageMemoryRequirements)       \
   X(vkGetDeviceQueue)                         \
   X(vkGetFenceStatus)                         \
   X(vkGetImageMemoryRequirements)             \
@@ -110,8 +105,17 @@ namespace alcove::framegraph {
   X(vkWaitForFences)                          \
   X(vkWaitSemaphores)
 
-// Extensions: null where the device does not have them enabled.
+// Functions of Vulkan 1.3 or of extensions that the executor does without: null where the device
+// does not have them. A callback that calls one checks it first.
 #define ALCOVE_FRAMEGRAPH_OPTIONAL_FUNCTIONS(X) \
+  X(vkCmdBeginRendering)                        \
+  X(vkCmdEndRendering)                          \
+  X(vkCmdBlitImage2)                            \
+  X(vkCmdSetCullMode)                           \
+  X(vkCmdSetFrontFace)                          \
+  X(vkCreateGraphicsPipelines)                  \
+  X(vkGetDeviceBufferMemoryRequirements)        \
+  X(vkGetDeviceImageMemoryRequirements)         \
   X(vkCmdBeginDebugUtilsLabelEXT)               \
   X(vkCmdEndDebugUtilsLabelEXT)                 \
   X(vkSetDebugUtilsObjectNameEXT)               \

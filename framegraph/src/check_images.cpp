@@ -1,0 +1,82 @@
+// What the device can make: textures by format, usage and sample count, once their usage is known.
+#include "print_names.h"
+#include "workspace.h"
+
+namespace alcove::framegraph {
+namespace {
+
+constexpr VkBufferUsageFlags kEveryBufferUsage =
+    VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
+    VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
+    VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT |
+    VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
+
+// Whether the fixed limits and the format's features settle that the device can make the texture.
+bool is_settled(const ResourceRecord& record) {
+  return record.kind == ResourceKind::buffer || record.origin == Origin::imported ||
+         (record.samples == 1 && record.layers == 1 && record.depth == 1 &&
+          record.create_flags == 0);
+}
+
+std::string problem_with(const ResourceRecord& record, const ImageLimits& limits) {
+  const auto at_most = [](const char* what, std::uint32_t has, std::uint32_t most) {
+    return std::string("the device allows at most ") + std::to_string(most) + " " + what +
+           " for it, not " + std::to_string(has);
+  };
+  if (limits.samples == 0) return "the device does not support it";
+  if ((limits.samples & record.samples) == 0) {
+    std::string allowed;
+    for (std::uint32_t count = 1; count <= 64; count *= 2) {
+      if (limits.samples & count) allowed += (allowed.empty() ? "" : ", ") + std::to_string(count);
+    }
+    return "the device allows " + allowed + " sample(s) for it, not " +
+           std::to_string(record.samples);
+  }
+  if (record.layers > limits.layers) return at_most("layers", record.layers, limits.layers);
+  if (record.mips > limits.mips) return at_most("mips", record.mips, limits.mips);
+  if (record.width > limits.extent.width)
+    return at_most("texels of width", record.width, limits.extent.width);
+  if (record.height > limits.extent.height)
+    return at_most("texels of height", record.height, limits.extent.height);
+  if (record.depth > limits.extent.depth)
+    return at_most("slices", record.depth, limits.extent.depth);
+  return {};
+}
+
+}  // namespace
+
+VkFlags history_usage(const Limits& limits, const ResourceRecord& record) {
+  if (record.kind == ResourceKind::buffer) return kEveryBufferUsage;
+  VkFlags usage = limits.formats.query ? limits.formats.query(limits.formats.context, record.format)
+                                       : ~VkFlags{0};
+  usage &= ~VkFlags{VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSIENT_ATTACHMENT_BIT};
+  // Few devices store to multisampled images.
+  if (record.samples > 1) usage &= ~VkFlags{VK_IMAGE_USAGE_STORAGE_BIT};
+  return usage;
+}
+
+bool check_images(const GraphDescription& graph, const Limits& limits, const Plan& plan,
+                  Errors& errors) {
+  if (limits.images.query == nullptr) return true;
+  for (std::uint32_t r = 0; r < graph.resources.size(); ++r) {
+    const ResourceRecord& record = graph.resources[r];
+    const Placement& placement = plan.placements[r];
+    if (placement.first == kNone || is_settled(record)) continue;
+    const bool history = record.origin == Origin::history;
+    const VkFlags usage =
+        history ? history_usage(limits, record) | placement.usage : placement.usage;
+    const std::string problem =
+        problem_with(record, limits.images.query(limits.images.context, record, usage));
+    if (problem.empty()) continue;
+    errors.push_back({ErrorCode::unsupported_format,
+                      "texture '" + std::string(graph.resource_name(r)) + "' has format " +
+                          std::to_string(static_cast<int>(record.format)) + " and usage " +
+                          usage_names(record.kind, usage) + ": " + problem +
+                          ": choose another format, use or number of samples",
+                      VK_SUCCESS, kNone, r, 0});
+    if (history) break;  // The other slots are alike.
+  }
+  return errors.empty();
+}
+
+}  // namespace alcove::framegraph

@@ -1,0 +1,307 @@
+// Scenarios of a renderer on the device, each with a check of what comes out.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <functional>
+
+#include "alcove/framegraph/verify.h"
+#include "failing_device.h"
+#include "gpu.h"
+
+namespace alcove::framegraph {
+namespace {
+
+constexpr VkFormat kColor = VK_FORMAT_R8G8B8A8_UNORM;
+constexpr std::uint32_t kRed = 0xff0000ff;
+constexpr VkClearValue kClearRed{{{1.0f, 0.0f, 0.0f, 1.0f}}};
+
+class Scenario : public testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_EQ(gpu_.problem(), "");
+    failing::fail_at(0);
+    failing::lose(false);
+    host_ = gpu_.make_host_buffer(64);
+  }
+  void TearDown() override {
+    executor_.reset();
+    // The layers do not follow timeline semaphores from submission to submission.
+    EXPECT_EQ(several_queues_ ? gpu_.messages({"vkQueueSubmit2: Hazard"}) : gpu_.messages(), "");
+  }
+
+  Executor& executor() {
+    if (!executor_) {
+      DeviceHandles handles = gpu_.handles();
+      handles.get_instance_proc_addr = failing::get_instance_proc_addr;
+      for (QueueHandle& queue : handles.queues) queue = handles.queues[0];
+      ExecutorOptions options;
+      options.verify = verify;
+      options.check_uses = true;
+      auto made = Executor::create(handles, options);
+      EXPECT_TRUE(made);
+      executor_ = std::make_unique<Executor>(std::move(*made));
+    }
+    return *executor_;
+  }
+  void run(const FrameInfo& info = {}) {
+    const auto report = executor().submit(graph_, info);
+    ASSERT_TRUE(report) << to_string(report.error());
+    plan_ = report->plan;
+    ASSERT_TRUE(executor().wait(info.slot));
+  }
+  Texture texture(const char* name, VkFormat format = kColor,
+                  VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT) {
+    return graph_.create_texture(name, {format, Extent::absolute(16, 16), 1, 1, samples});
+  }
+  // The first texel of each layer, in words of the host's buffer from `word` on.
+  void copy_out(Texture from, std::uint32_t word = 0, std::uint32_t layers = 1,
+                VkImageAspectFlags aspect = VK_IMAGE_ASPECT_COLOR_BIT) {
+    ImportedBuffer import = Gpu::imported(host_);
+    import.has_contents = word != 0;
+    if (!out_) out_ = graph_.import_buffer("host", import);
+    PassBuilder pass = graph_.add_pass("copy out");
+    pass.read(from, access::transfer_source);
+    out_ = pass.write(out_, buffer_access::transfer_destination);
+    pass.record([=, out = out_](RecordContext& c) {
+      for (std::uint32_t layer = 0; layer < layers; ++layer) {
+        VkBufferImageCopy copy{};
+        copy.bufferOffset = VkDeviceSize{4} * (word + layer);
+        copy.imageSubresource = {aspect, 0, layer, 1};
+        copy.imageExtent = {1, 1, 1};
+        c.vk.vkCmdCopyImageToBuffer(c.commands, c.image(from), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                                    c.buffer(out), 1, &copy);
+      }
+    });
+  }
+  void begin() {
+    graph_.reset();
+    out_ = {};
+  }
+  std::uint32_t word(std::uint32_t index) const {
+    return static_cast<const std::uint32_t*>(host_.mapped)[index];
+  }
+
+  Gpu gpu_;
+  HostBuffer host_;
+  std::unique_ptr<Executor> executor_;
+  Graph graph_;
+  Buffer out_;
+  const Plan* plan_ = nullptr;
+  bool several_queues_ = false;
+};
+
+// The multisampled texture is cleared, resolved within its pass, and not stored.
+TEST_F(Scenario, MultisampledColorIsResolvedInItsPass) {
+  begin();
+  Texture msaa = texture("msaa", kColor, VK_SAMPLE_COUNT_4_BIT);
+  Texture resolved = texture("resolved");
+  PassBuilder draw = graph_.add_pass("draw");
+  msaa = draw.write(msaa, access::color_attachment);
+  resolved = draw.write(resolved, access::resolve_target, {}, Contents::discard);
+  draw.record([=](RecordContext& c) {
+    const Attachment color{msaa, &kClearRed, resolved};
+    const VkRenderingAttachmentInfo info = c.attachment(color);
+    EXPECT_EQ(info.loadOp, VK_ATTACHMENT_LOAD_OP_CLEAR);
+    EXPECT_EQ(info.storeOp, VK_ATTACHMENT_STORE_OP_DONT_CARE);
+    ASSERT_TRUE(c.begin_rendering({&color, 1}));
+    c.end_rendering();
+  });
+  copy_out(resolved);
+  run();
+  EXPECT_EQ(word(0), kRed);
+}
+
+// The second pass loads what the first stored; a discarding one does not.
+TEST_F(Scenario, AttachmentsAreLoadedAndStoredWhereContentsAreNeeded) {
+  begin();
+  Texture color = texture("color");
+  Texture depth = texture("depth", VK_FORMAT_D32_SFLOAT);
+  static constexpr VkClearValue kFar{{{1.0f, 0.0f, 0.0f, 0.0f}}};
+  struct Ops {
+    VkAttachmentLoadOp load;
+    VkAttachmentStoreOp store;
+    bool operator==(const Ops&) const = default;
+  };
+  std::array<Ops, 4> ops{};
+  const auto ops_of = [](const VkRenderingAttachmentInfo& info) {
+    return Ops{info.loadOp, info.storeOp};
+  };
+  PassBuilder first = graph_.add_pass("opaque");
+  color = first.write(color, access::color_attachment);
+  depth = first.write(depth, access::depth_attachment);
+  first.record([&, color, depth](RecordContext& c) {
+    const Attachment target{color, &kClearRed};
+    const Attachment tested{depth, &kFar};
+    ops[0] = ops_of(c.attachment(target));
+    ops[1] = ops_of(c.attachment(tested));
+    ASSERT_TRUE(c.begin_rendering({&target, 1}, tested));
+    c.end_rendering();
+  });
+  PassBuilder second = graph_.add_pass("transparent");
+  color = second.write(color, access::color_attachment);
+  second.read(depth, access::depth_test);
+  second.record([&, color, depth](RecordContext& c) {
+    const Attachment target{color, &kClearRed};
+    const Attachment tested{depth, &kFar};
+    ops[2] = ops_of(c.attachment(target));
+    ops[3] = ops_of(c.attachment(tested));
+    ASSERT_TRUE(c.begin_rendering({&target, 1}, tested));
+    c.end_rendering();
+  });
+  copy_out(color);
+  run();
+  EXPECT_EQ(word(0), kRed);
+  EXPECT_EQ(ops[0], (Ops{VK_ATTACHMENT_LOAD_OP_CLEAR, VK_ATTACHMENT_STORE_OP_STORE}));
+  EXPECT_EQ(ops[1], (Ops{VK_ATTACHMENT_LOAD_OP_CLEAR, VK_ATTACHMENT_STORE_OP_STORE}));
+  EXPECT_EQ(ops[2], (Ops{VK_ATTACHMENT_LOAD_OP_LOAD, VK_ATTACHMENT_STORE_OP_STORE}));
+  EXPECT_EQ(ops[3], (Ops{VK_ATTACHMENT_LOAD_OP_LOAD, VK_ATTACHMENT_STORE_OP_NONE}));
+}
+
+// Written in the first frame, read in the others, and in the last one updated in part.
+TEST_F(Scenario, PersistentTextureKeepsItsContents) {
+  for (std::uint32_t frame = 0; frame < 4; ++frame) {
+    begin();
+    const TextureHistory table = graph_.create_persistent_texture(
+        "table", {VK_FORMAT_R32_UINT, Extent::absolute(8, 8), 1, 2});
+    EXPECT_EQ(table.validity, frame == 0 ? HistoryValidity::first_frame : HistoryValidity::valid);
+    Texture current = table.current;
+    if (frame == 0 || frame == 2) {
+      const std::uint32_t first = frame == 0 ? 0 : 1;
+      PassBuilder pass = graph_.add_pass("write");
+      current = pass.write(current, access::clear, frame == 0 ? Range{} : Range::layer(1));
+      pass.record([=](RecordContext& c) {
+        VkClearColorValue value{};
+        value.uint32[0] = 100 + frame;
+        const VkImageSubresourceRange range{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, first, 2 - first};
+        c.vk.vkCmdClearColorImage(c.commands, c.image(current),
+                                  VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &value, 1, &range);
+      });
+    }
+    // A frame without a reader has to write all the same.
+    if (frame != 0 && frame != 2) copy_out(current, 0, 2);
+    run({frame % 2});
+    if (frame == 0 || frame == 2) continue;
+    EXPECT_EQ(word(0), 100u);
+    EXPECT_EQ(word(1), frame == 1 ? 100u : 102u);
+  }
+}
+
+// A pass for each face; the cube is then viewed whole.
+TEST_F(Scenario, CubeShadowMapIsDrawnFaceByFace) {
+  begin();
+  TextureDesc desc{VK_FORMAT_D32_SFLOAT, Extent::absolute(16, 16), 1, 6};
+  desc.flags = VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT;
+  Texture cube = graph_.create_texture("shadow", desc);
+  static std::array<VkClearValue, 6> depths;
+  for (std::uint32_t face = 0; face < 6; ++face) {
+    depths.at(face).depthStencil.depth = static_cast<float>(face) / 8.0f;
+    PassBuilder pass = graph_.add_pass("face");
+    cube = pass.write(cube, access::depth_attachment, Range::layer(face));
+    pass.record([=](RecordContext& c) {
+      ASSERT_TRUE(c.begin_rendering({}, {cube, &depths.at(face)}));
+      c.end_rendering();
+    });
+  }
+  PassBuilder lit = graph_.add_pass("light");
+  lit.read(cube, access::depth_read_fragment);
+  lit.side_effect();
+  lit.record([=](RecordContext& c) {
+    EXPECT_NE(c.view(cube, {}, VK_IMAGE_VIEW_TYPE_CUBE), VkImageView{VK_NULL_HANDLE});
+    EXPECT_NE(c.view(cube, {}, VK_IMAGE_VIEW_TYPE_CUBE), c.view(cube));
+    EXPECT_EQ(c.view(cube, {}, VK_IMAGE_VIEW_TYPE_CUBE), c.view(cube, {}, VK_IMAGE_VIEW_TYPE_CUBE));
+  });
+  copy_out(cube, 0, 6, VK_IMAGE_ASPECT_DEPTH_BIT);
+  run();
+  for (std::uint32_t face = 0; face < 6; ++face) {
+    float depth = 0;
+    std::memcpy(&depth, static_cast<const float*>(host_.mapped) + face, sizeof depth);
+    EXPECT_EQ(depth, static_cast<float>(face) / 8.0f);
+  }
+}
+
+// Graphics, then compute beside graphics, then graphics: the frame waits for a semaphore of the
+// caller's and signals another. All classes run on one queue here, so that one submit suffices.
+TEST_F(Scenario, AsyncComputeIsOrderedWithSemaphoresOfTheCaller) {
+  several_queues_ = true;
+  const VkDevice device = gpu_.device().device();
+  VkSemaphoreTypeCreateInfo type{};
+  type.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO;
+  type.semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE;
+  const VkSemaphoreCreateInfo info{VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO, &type, 0};
+  VkSemaphore semaphore = VK_NULL_HANDLE;
+  ASSERT_EQ(vkCreateSemaphore(device, &info, nullptr, &semaphore), VK_SUCCESS);
+  begin();
+  Texture scene = texture("scene", VK_FORMAT_R32_UINT);
+  Texture ao = texture("ao", VK_FORMAT_R32_UINT);
+  const auto clear = [this](const char* name, Texture to, QueueClass queue, std::uint32_t value) {
+    PassBuilder pass = graph_.add_pass(name, queue);
+    to = pass.write(to, access::clear);
+    pass.record([=](RecordContext& c) {
+      VkClearColorValue color{};
+      color.uint32[0] = value;
+      const VkImageSubresourceRange range{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+      c.vk.vkCmdClearColorImage(c.commands, c.image(to), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                                &color, 1, &range);
+    });
+    return to;
+  };
+  scene = clear("scene", scene, QueueClass::graphics, 7);
+  ao = clear("occlusion", ao, QueueClass::compute, 8);
+  copy_out(scene, 0);
+  copy_out(ao, 1);
+  const int submits = failing::submits();
+  const QueueSemaphore wait{semaphore, 1};
+  const QueueSemaphore signal{semaphore, 2};
+  const auto report = executor().submit(graph_, {0, {&wait, 1}, {&signal, 1}});
+  ASSERT_TRUE(report) << to_string(report.error());
+  EXPECT_GT(report->plan->submissions.size(), 2u);
+  EXPECT_EQ(failing::submits() - submits, 1);
+  std::uint64_t value = 9;
+  vkGetSemaphoreCounterValue(device, semaphore, &value);
+  EXPECT_EQ(value, 0u);
+  VkSemaphoreSignalInfo release{VK_STRUCTURE_TYPE_SEMAPHORE_SIGNAL_INFO, nullptr, semaphore, 1};
+  ASSERT_EQ(vkSignalSemaphore(device, &release), VK_SUCCESS);
+  const std::uint64_t done = 2;
+  VkSemaphoreWaitInfo until{
+      VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO, nullptr, 0, 1, &semaphore, &done};
+  ASSERT_EQ(vkWaitSemaphores(device, &until, ~std::uint64_t{0}), VK_SUCCESS);
+  ASSERT_TRUE(executor().wait());
+  EXPECT_EQ(word(0), 7u);
+  EXPECT_EQ(word(1), 8u);
+  executor_.reset();
+  vkDestroySemaphore(device, semaphore, nullptr);
+}
+
+// The image comes from outside of the device's queue families, and goes there again.
+TEST_F(Scenario, ImportIsTakenFromAndGivenToAnotherQueueFamily) {
+  ImportedTexture import;
+  import.desc = {VK_FORMAT_R32_UINT, Extent::absolute(8, 8)};
+  import.usage = VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  import.image = gpu_.make_image(import.desc, import.usage);
+  gpu_.change_layout(import.image, VK_IMAGE_LAYOUT_GENERAL);
+  import.initial_state = {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
+                          VK_IMAGE_LAYOUT_GENERAL};
+  import.final_state = {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT,
+                        VK_IMAGE_LAYOUT_GENERAL};
+  import.initial_family = import.final_family = VK_QUEUE_FAMILY_EXTERNAL;
+  begin();
+  Texture shared = graph_.import_texture("shared", import);
+  PassBuilder pass = graph_.add_pass("clear");
+  shared = pass.write(shared, access::clear);
+  pass.record([=](RecordContext& c) {
+    VkClearColorValue color{};
+    color.uint32[0] = 5;
+    const VkImageSubresourceRange range{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+    c.vk.vkCmdClearColorImage(c.commands, c.image(shared), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                              &color, 1, &range);
+  });
+  copy_out(shared);
+  const int transfers = failing::outside_transfers();
+  run();
+  EXPECT_EQ(word(0), 5u);
+  EXPECT_EQ(failing::outside_transfers() - transfers, 2);
+}
+
+}  // namespace
+}  // namespace alcove::framegraph
