@@ -84,13 +84,13 @@ tl::expected<void, std::string> SceneView::replace_scene(const std::string& scen
   if (!environment) {
     return Failure(environment.error());
   }
+  presenter_->wait();  // nothing that is in flight may use what is replaced
   auto frame = SceneFrame::create(*session_.gpu, loaded->scene, *environment, request_.normals,
                                   presenter_->format());
   if (!frame) {
     return Failure(std::move(frame.error()));
   }
-  presenter_->wait();
-  frame_ = std::move(*frame);
+  retired_.push_back(std::exchange(frame_, std::move(*frame)));
   session_.scene = std::move(loaded->scene);
   session_.camera = loaded->camera;
   session_.settings = loaded->settings;
@@ -250,7 +250,7 @@ tl::expected<bool, std::string> SceneView::draw() {
     return true;
   }
   if (const auto dropped = window_->take_dropped_files(); !dropped.empty()) {
-    open(dropped.back());
+    facts_.message = "To see the dropped file, start: alcove view " + dropped.back();
   }
   lay_out();
   auto drawn = std::exchange(wanted_, false) ? draw_and_read().and_then([&] { return write(); })

@@ -95,6 +95,8 @@ class SceneView {
   Session session_;
   std::unique_ptr<Presenter> presenter_;
   std::unique_ptr<SceneFrame> frame_;
+  // Those of earlier scenes: command buffers that have recorded them are reused later only.
+  std::vector<std::unique_ptr<SceneFrame>> retired_;
   std::unique_ptr<Gui> gui_;
   ViewState state_;
   Choice good_;                    // the last that could be drawn

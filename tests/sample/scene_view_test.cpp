@@ -191,35 +191,11 @@ void drop(Window& window, const std::string& file) {
   callback(window.handle(), 1, paths);
 }
 
-TEST_F(SceneViewTest, DroppedFileTakesTheScenesPlaceWithAViewOfItsOwn) {
-  draw(2);
-  const float radius = view_->state().settings.radius;
-  // 100 units large, around a point far from the origin.
-  GltfMaker maker = GltfMaker::triangle();
-  maker.json["materials"] = {{{"doubleSided", true}}};
-  maker.primitive()["material"] = 0;
-  maker.json["nodes"][0]["scale"] = {100, 100, 100};
-  maker.json["nodes"][0]["translation"] = {4000, 0, 0};
-  const std::vector<uint8_t> bytes = maker.glb();
-  const std::string file = (folder_.path / "dropped.glb").string();
-  std::ofstream(file, std::ios::binary).write(reinterpret_cast<const char*>(bytes.data()),
-                                              static_cast<std::streamsize>(bytes.size()));
-  drop(view_->window(), file);
-  view_->show_panel(false);
+TEST_F(SceneViewTest, DroppedFileIsNamedInTheCommandThatShowsIt) {
   draw(1);
-  EXPECT_EQ(view_->scene().name, "dropped");
-  EXPECT_GT(view_->state().settings.radius, 4.0f * radius);
-  view_->state().picture = Picture::kNormals;
-  EXPECT_FALSE(is_plain(draw_and_look()));
-}
-
-TEST_F(SceneViewTest, DroppedFileThatCannotBeReadLeavesTheSceneAsItIs) {
+  drop(view_->window(), "some.glb");
   draw(1);
-  const std::string name = view_->scene().name;
-  drop(view_->window(), (folder_.path / "missing.glb").string());
-  draw(2);
-  EXPECT_EQ(view_->scene().name, name);
-  EXPECT_THAT(view_->facts().message, HasSubstr("missing.glb"));
+  EXPECT_THAT(view_->facts().message, HasSubstr("alcove view some.glb"));
 }
 
 }  // namespace
