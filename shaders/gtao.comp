@@ -118,9 +118,9 @@ Surface fetch_surface(ivec2 pixel, float inverse_depth) {
 
 // Sums over the half-slices of a slice.
 struct SliceSum {
-  float visible;        // visible part
-  float left_out;       // part of it in unobserved directions
-  vec2 bent;            // sum of visible directions: along the slice's direction, and the view's
+  float visible;   // visible part
+  float left_out;  // part of it in unobserved directions
+  vec2 bent;       // sum of visible directions: along the slice's direction, and the view's
   RawOcclusion lobe;
   float lobe_left_out;
 };
@@ -160,9 +160,8 @@ SliceResult search_slice(Surface surface, vec3 direction, float step_offset) {
   uint i = 0u;
   [[dont_unroll]] do {
     float side = i == 0u ? 1.0 : -1.0;
-    HalfSlice half_slice =
-        make_half_slice(surface, slice_line, slice, side, radius_px,
-                        i == 0u ? border_px.x : border_px.y, step_offset);
+    HalfSlice half_slice = make_half_slice(surface, slice_line, slice, side, radius_px,
+                                           i == 0u ? border_px.x : border_px.y, step_offset);
     if (kEstimator == kConnected) {
       add_connected(sum, half_slice, slice, lobe, i == 0u ? border_px.y : border_px.x);
     } else if (kEstimator == kBitmask) {
@@ -171,7 +170,9 @@ SliceResult search_slice(Surface surface, vec3 direction, float step_offset) {
       add_horizon(sum, half_slice, slice, lobe);
     }
     ++i;
-  } while (i < 2u);
+  }
+  while (i < 2u)
+    ;
   float open = open_arcs.x + open_arcs.y;
   SliceResult result;
   result.residual = vec3(0.0);

@@ -26,7 +26,8 @@ struct Occluders {
   uint occluded;           // sectors
   float hidden_occlusion;  // fraction of the sectors hidden behind the first that is occluded
   Unobserved unobserved;
-  float border_px;  // offset of the last sample, or kNowherePx if what lies beyond the border is known
+  float border_px;  // offset of the last sample, or kNowherePx if what lies beyond the border is
+                    // known
 };
 
 // Sample bits: with more than 32 samples, several share a bit.
@@ -84,9 +85,10 @@ void pass_sample(inout SegmentState state, inout SliceSample here, HalfSlice hal
                  float sectors, uint layer, uint bit, SliceSample next) {
   float rise = next.inverse_depth - here.inverse_depth;
   float interval_px = next.offset_px - here.offset_px;
-  float bend = depth_discontinuity(state.rise, state.interval_px, rise, interval_px,
-                                   half_slice.sharp);
-  bool joined = layer == 0u ? samples_join(state.bend, bend) : hidden_samples_join(state.bend, bend);
+  float bend =
+      depth_discontinuity(state.rise, state.interval_px, rise, interval_px, half_slice.sharp);
+  bool joined =
+      layer == 0u ? samples_join(state.bend, bend) : hidden_samples_join(state.bend, bend);
   add_sample(state, half_slice, sectors, layer, bit, here, joined, kEdgeShare * state.interval_px);
   state.rise = rise;
   state.interval_px = interval_px;
@@ -101,8 +103,8 @@ uint extrapolated_sectors(SegmentState state, float last_step_px, HalfSlice half
   float slope = state.rise / max(last_step_px, 1e-3);
   float way_px =
       extrapolated_way(last.inverse_depth, slope, half_slice.extrapolated_px, kPerspective);
-  vec2 end = slice_point(half_slice.line, last.point.x + way_px, last.inverse_depth + slope * way_px,
-                         half_slice.depth, kPerspective)
+  vec2 end = slice_point(half_slice.line, last.point.x + way_px,
+                         last.inverse_depth + slope * way_px, half_slice.depth, kPerspective)
                  .xy;
   bool goes_on = way_px > 0.0 && last_step_px > 0.1 && state.bend == 0.0 && state.inside;
   return goes_on ? state.beyond ^ sectors_beyond(biased_position(sectors, 1.0 - diamond_angle(end)))
@@ -129,9 +131,9 @@ Occluders find_in_layer(HalfSlice half_slice, float sectors, uint layer) {
   add_sample(state, half_slice, sectors, layer, 1u, first, joined, kEdgeShare * first.offset_px);
   state.rise = here.inverse_depth - first.inverse_depth;
   state.interval_px = here.offset_px - first.offset_px;
-  state.bend = depth_discontinuity(first.inverse_depth - half_slice.tangent.inverse_depth,
-                                   first.offset_px, state.rise, state.interval_px,
-                                   half_slice.sharp);
+  state.bend =
+      depth_discontinuity(first.inverse_depth - half_slice.tangent.inverse_depth, first.offset_px,
+                          state.rise, state.interval_px, half_slice.sharp);
   const uint rest = (kStepCount - 2u) % kUnrolled;
   uint k = 2u;
   [[unroll]] for (uint i = 0u; i < rest; ++i) {
@@ -161,8 +163,8 @@ Occluders find_in_layer(HalfSlice half_slice, float sectors, uint layer) {
   float before_first_px = (state.runs & 1u) != 0u || state.runs == 0u
                               ? 0.0
                               : sample_offset_px(half_slice, first_sample(state.runs) - 1.0);
-  float run_share = state.run_px / (max(run_count(state.runs), 1.0) *
-                                    max(searched_px - before_first_px, 1e-3));
+  float run_share =
+      state.run_px / (max(run_count(state.runs), 1.0) * max(searched_px - before_first_px, 1e-3));
   found.hidden_occlusion = hidden_occlusion_behind(run_share, parameters.hidden_exponent);
   found.unobserved = nothing_unobserved();
   if (tells_unobserved(layer)) {
@@ -171,9 +173,9 @@ Occluders find_in_layer(HalfSlice half_slice, float sectors, uint layer) {
     found.unobserved.first_px =
         state.unobserved == 0u ? kNowherePx : sample_offset_px(half_slice, first_k);
     // The sample intervals grow outwards; all are taken to follow the first.
-    found.unobserved.width_px = max(
-        half_slice.reach_per_step * count * (2.0 * (first_k + half_slice.step_offset) + count - 2.0),
-        0.0);
+    found.unobserved.width_px = max(half_slice.reach_per_step * count *
+                                        (2.0 * (first_k + half_slice.step_offset) + count - 2.0),
+                                    0.0);
     found.unobserved.rows = run_count(state.unobserved);
   }
   bool known = extrapolated != 0u || here.inverse_depth == sky_inverse_depth(kPerspective);
@@ -212,23 +214,20 @@ void add_connected(inout SliceSum sum, HalfSlice half_slice, Slice slice, LobeSl
   vec2 first_light =
       found.occluded == 0u ? tangent : diamond_angle_light(float(findLSB(found.occluded)) * sector);
   float arc = part_arc(slice, half_slice.side, first_light, kUniformWeight);
-  VisiblePart part = visible_part(slice, half_slice.side, 1.0 / sector,
-                                  repeat_last_sector(found.occluded), found.hidden_occlusion,
-                                  PartRequest(kUniformWeight, kBentNormal));
+  VisiblePart part =
+      visible_part(slice, half_slice.side, 1.0 / sector, repeat_last_sector(found.occluded),
+                   found.hidden_occlusion, PartRequest(kUniformWeight, kBentNormal));
   sum.visible += part.arc;
   sum.bent += part.bent;
   if (kLobe) {
-    sum.lobe.visible +=
-        visible_lobe(lobe, half_slice.side, 1.0 / sector, repeat_last_sector(found.occluded),
-                     found.hidden_occlusion);
+    sum.lobe.visible += visible_lobe(lobe, half_slice.side, 1.0 / sector,
+                                     repeat_last_sector(found.occluded), found.hidden_occlusion);
   }
   if (kLeaveOutUnobserved) {
-    UnobservedArc unobserved =
-        find_unobserved(half_slice, first_light, outside_share(other_border_px, half_slice.radius_px),
-                        found);
-    sum.left_out +=
-        unobserved.share *
-        (arc - part_arc(slice, half_slice.side, unobserved.from, kUniformWeight));
+    UnobservedArc unobserved = find_unobserved(
+        half_slice, first_light, outside_share(other_border_px, half_slice.radius_px), found);
+    sum.left_out += unobserved.share *
+                    (arc - part_arc(slice, half_slice.side, unobserved.from, kUniformWeight));
     if (kLobe) sum.lobe_left_out += unobserved_lobe(unobserved, lobe, half_slice.side);
   }
 }

@@ -6,25 +6,25 @@
 // One of the two directions of a slice, in which depth samples are taken outwards from the shaded
 // point.
 struct HalfSlice {
-  float side;            // +1 along the slice's direction, -1 against it
+  float side;  // +1 along the slice's direction, -1 against it
   // Outwards, in units of the width of a pixel at the surface's depth (x_per_step is 1). Its
   // direction_px is zero where there is nothing to search.
   SliceLine line;
-  float radius;          // in the same unit, as settings_thickness() is
-  float unit;            // from scene units to that unit
-  float slope;           // change of the tangent plane's inverse depth per pixel outwards
-  float tangent_cosine;  // cosine of the tangent plane's horizon
-  float reach_px;        // from the first sample to the last; 0 where there is nothing to search
-  float reach_per_step;  // reach_px over the squared number of steps
-  float step_offset;     // of all samples, in steps, [0,1)
-  float radius_px;       // the radius on the image
+  float radius;           // in the same unit, as settings_thickness() is
+  float unit;             // from scene units to that unit
+  float slope;            // change of the tangent plane's inverse depth per pixel outwards
+  float tangent_cosine;   // cosine of the tangent plane's horizon
+  float reach_px;         // from the first sample to the last; 0 where there is nothing to search
+  float reach_per_step;   // reach_px over the squared number of steps
+  float step_offset;      // of all samples, in steps, [0,1)
+  float radius_px;        // the radius on the image
   float extrapolated_px;  // how far surfaces are extrapolated beyond the image's border
   float outside;          // the part of the radius that lies beyond the image's border, [0,1]
   ivec2 texel_bias;       // the shaded pixel less the bits of kRoundingBias
   float depth;            // linear depth of the shaded point
-  vec2 height;            // dot product with a point of the slice's plane: height over the tangent plane
-  float sharp;            // smallest bend of the line of depth that parts two surfaces
-  float depth_step;       // of the depth buffer there, as SliceSample::inverse_depth
+  vec2 height;       // dot product with a point of the slice's plane: height over the tangent plane
+  float sharp;       // smallest bend of the line of depth that parts two surfaces
+  float depth_step;  // of the depth buffer there, as SliceSample::inverse_depth
   TangentPlane tangent;
 };
 
@@ -52,8 +52,8 @@ float outside_share(float border_px, float radius_px) {
   return radius_px < kNearestStep ? 0.0 : max(1.0 - border_px / radius_px, 0.0);
 }
 
-// `border_px` is the distance to the border in the half-slice's direction, `radius_px` the radius on
-// the image.
+// `border_px` is the distance to the border in the half-slice's direction, `radius_px` the radius
+// on the image.
 HalfSlice make_half_slice(Surface surface, SliceLine slice_line, Slice slice, float side,
                           float radius_px, float border_px, float step_offset) {
   HalfSlice half_slice;
@@ -74,8 +74,7 @@ HalfSlice make_half_slice(Surface surface, SliceLine slice_line, Slice slice, fl
   // Samples stay apart where the radius spans few pixels, and always inside the image.
   float apart_px = max(distance_px - kNearestStep, 0.25 * float(kStepCount));
   half_slice.reach_px = empty ? 0.0 : max(min(apart_px, border_px - kNearestStep), 1e-3);
-  half_slice.reach_per_step =
-      half_slice.reach_px * (1.0 / (float(kStepCount) * float(kStepCount)));
+  half_slice.reach_per_step = half_slice.reach_px * (1.0 / (float(kStepCount) * float(kStepCount)));
   half_slice.extrapolated_px =
       clamp(distance_px - border_px, 0.0, kExtrapolationRatio * half_slice.reach_px);
   half_slice.outside = outside_share(border_px, radius_px);
@@ -109,8 +108,7 @@ SliceSample fetch_sample(HalfSlice half_slice, uint layer, uint k) {
   ivec2 texel = floatBitsToInt(biased) + half_slice.texel_bias;
   float inverse_depth =
       layer == 0u ? imageLoad(inverse_depth_image, texel).r : imageLoad(second_image, texel).r;
-  float along_px =
-      kSnapToTexels ? dot(snapped, half_slice.line.direction_px) : found.offset_px;
+  float along_px = kSnapToTexels ? dot(snapped, half_slice.line.direction_px) : found.offset_px;
   vec2 gradient = half_slice.tangent.gradient;
   float plane_here =
       snapped.x * gradient.x + (snapped.y * gradient.y + half_slice.tangent.inverse_depth);
@@ -125,8 +123,8 @@ SliceSample fetch_sample(HalfSlice half_slice, uint layer, uint k) {
   // A plane that is seen edge-on runs to any depth within a pixel.
   moved = kPerspective ? clamp(moved, 0.1 * inverse_depth, 10.0 * inverse_depth) : moved;
   found.inverse_depth = kSnapToTexels ? moved : inverse_depth;
-  found.point = slice_point(half_slice.line, along_px, found.inverse_depth, half_slice.depth,
-                            kPerspective);
+  found.point =
+      slice_point(half_slice.line, along_px, found.inverse_depth, half_slice.depth, kPerspective);
   if (kBackFaces) {
     float back = imageLoad(back_image, texel).r;
     // A back face is not taken to lie before the front face, which may have been moved.

@@ -40,8 +40,8 @@ layout(constant_id = 5) const bool kClamp = false;
 layout(constant_id = 6) const bool kStatic = false;  // the previous frame shows the same
 layout(constant_id = 7) const bool kRoughnessTexture = false;
 layout(constant_id = 8) const int kRoughnessChannel = 0;
-layout(constant_id = 9) const bool kFresh = true;        // there is no history to read yet
-layout(constant_id = 10) const bool kVisibility = true;  // whether visibility_image is written
+layout(constant_id = 9) const bool kFresh = true;         // there is no history to read yet
+layout(constant_id = 10) const bool kVisibility = true;   // whether visibility_image is written
 layout(constant_id = 11) const uint kNormalEncoding = 0;  // as NormalEncoding has them
 layout(constant_id = 12) const bool kShaped = false;      // power or intensity is not 1
 
@@ -125,10 +125,10 @@ struct Surface {
   float n_dot_v;        // cosine between normal and view direction, on the camera's axis
   vec3 normal;          // unit, towards the eye, view space
   QuantisedNormal quantised;
-  LobeSurface lobe;  // normal as it was given
-  int first_tile;    // index in `traced` of the tile to the upper left
-  vec2 offset;       // to the pixel that was traced there, pixels, before clamping to the image
-  vec4 traced_range; // smallest and largest offset of a traced pixel in the image
+  LobeSurface lobe;   // normal as it was given
+  int first_tile;     // index in `traced` of the tile to the upper left
+  vec2 offset;        // to the pixel that was traced there, pixels, before clamping to the image
+  vec4 traced_range;  // smallest and largest offset of a traced pixel in the image
 };
 
 ivec2 size_px() { return imageSize(inverse_depth_image); }
@@ -229,7 +229,8 @@ Surface fetch_surface(ivec2 pixel, float inverse_depth) {
   surface.offset = vec2(cell * kTileSize) + parameters.interleave_offset - surface.corner;
   vec2 largest =
       min(vec2(last_tile() * kTileSize) + parameters.interleave_offset, vec2(size_px() - 1));
-  surface.traced_range = vec4(min(parameters.interleave_offset, largest), largest) - surface.corner.xyxy;
+  surface.traced_range =
+      vec4(min(parameters.interleave_offset, largest), largest) - surface.corner.xyxy;
   return surface;
 }
 
@@ -249,8 +250,8 @@ Sums no_sums() { return Sums(0.0, 0.0, vec3(0.0), vec3(0.0), vec2(0.0), vec3(0.0
 float inverse_squared_width_of(float squared_width_px) { return 0.125 / squared_width_px; }
 
 // Bound of the squared angle between normals in a neighbour's weight, which is then at least
-// 1 / (1 + 1.23)^2 = 0.2: where a pixel has few other neighbours, one across a crease is better than
-// none. Fitted to the error of first frames (`alcove compare --frames 1`).
+// 1 / (1 + 1.23)^2 = 0.2: where a pixel has few other neighbours, one across a crease is better
+// than none. Fitted to the error of first frames (`alcove compare --frames 1`).
 const float kLargestSquaredAngle = 1.23;
 
 // The offset in pixels of the traced pixel `i` tiles to the right of (below) the surface's first.
@@ -266,10 +267,11 @@ void add_traced(inout Sums sums, Surface surface, float inverse_squared_width, i
   vec2 offset = vec2(traced_offset(surface, 0, i), traced_offset(surface, 1, j));
   int index = surface.first_tile + j * kSpan + i;
   vec4 found = traced[index];
-  float off_plane =
-      (found.x - (surface.inverse_depth + offset.x * surface.gradient.x + offset.y * surface.gradient.y)) *
-      surface.plane_weight;
-  float near = 1.0 + offset.x * offset.x * inverse_squared_width + offset.y * offset.y * inverse_squared_width;
+  float off_plane = (found.x - (surface.inverse_depth + offset.x * surface.gradient.x +
+                                offset.y * surface.gradient.y)) *
+                    surface.plane_weight;
+  float near = 1.0 + offset.x * offset.x * inverse_squared_width +
+               offset.y * offset.y * inverse_squared_width;
   float level = 1.0 + min(off_plane * off_plane, 1e14);  // the weight is no denormal
   level += min(squared_turn(surface.quantised, vec2(found.w, traced_stereographic_y[index])),
                kLargestSquaredAngle);
@@ -283,7 +285,8 @@ void add_traced(inout Sums sums, Surface surface, float inverse_squared_width, i
     sums.expected_residual += weight * vec3(residual.w, traced_expected_residual[index]);
   }
   if (kLobe) {
-    sums.lobe += weight * lobe_weight(surface.lobe, traced_lobe_surface[index]) * traced_lobe[index];
+    sums.lobe +=
+        weight * lobe_weight(surface.lobe, traced_lobe_surface[index]) * traced_lobe[index];
   }
   if (kClamp) {
     float visibility = 1.0 - found.y / max(found.z, 1e-9);
@@ -303,8 +306,8 @@ Sums sum_near(Surface surface, float inverse_squared_width) {
   return sums;
 }
 
-// The traced pixels of radius kFilterRadius without the corners, except those nearer than `inner` on
-// both axes.
+// The traced pixels of radius kFilterRadius without the corners, except those nearer than `inner`
+// on both axes.
 void add_ring(inout Sums sums, Surface surface, float inverse_squared_width, int inner) {
   const int first = kBetween ? 1 - kFilterRadius : -kFilterRadius;
   const int inner_first = kBetween ? 1 - inner : -inner;
@@ -360,8 +363,7 @@ void store(Surface surface, bool sky, Result result) {
 
 void reconstruct(Surface surface, bool sky) {
   Sums sums = no_sums();
-  add_ring(sums, surface,
-           inverse_squared_width_of(parameters.window_px * parameters.window_px), 0);
+  add_ring(sums, surface, inverse_squared_width_of(parameters.window_px * parameters.window_px), 0);
   float scale = 1.0 / max(sums.open, 1e-37);
   Result result = Result(saturate(sums.occluded * scale), vec3(0.0), sums.lobe);
   if (kBentNormal) {

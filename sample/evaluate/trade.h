@@ -1,5 +1,5 @@
-// Error against time over many settings: the sweep, its Pareto front, and the choice of a setting by
-// a budget or by a tolerance.
+// Error against time over many settings: the sweep, its Pareto front, and the choice of a setting
+// by a budget or by a tolerance.
 #pragma once
 
 #include <array>
@@ -13,8 +13,9 @@
 
 namespace alcove::sample {
 
-// The presets and settings between and beyond them: tile size, slices and steps vary, everything else
-// is as in `base`. No setting appears twice. `base` itself is among them if it equals one of them.
+// The presets and settings between and beyond them: tile size, slices and steps vary, everything
+// else is as in `base`. No setting appears twice. `base` itself is among them if it equals one of
+// them.
 [[nodiscard]] std::vector<Variant> preset_sweep(const passes::OcclusionSettings& base);
 
 // `base` with 8, 16, 32 and 64 steps and 1, 2, 4 and 8 slices, by steps first: whether the

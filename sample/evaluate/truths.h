@@ -15,7 +15,7 @@ struct TruthOptions {
   std::uint32_t spp = 256;  // rays per pixel
   // Pixels at which multi-bounce, specular occlusion and the lit picture are traced, about.
   std::uint32_t indirect_points = 32'000;
-  bool use_cache = true;    // Reads and writes the cache on disk.
+  bool use_cache = true;  // Reads and writes the cache on disk.
 };
 
 // A frame that truths are wanted of: borrowed.

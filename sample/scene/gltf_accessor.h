@@ -18,9 +18,10 @@ namespace alcove::sample {
 [[nodiscard]] tl::expected<std::span<const uint8_t>, std::string> view_bytes(
     const tinygltf::Model& model, int64_t view);
 
-// All elements as floats, `components` of each: 1 to 4, or 16 for matrices of floats. Normalised integers are mapped to 0..1 or -1..1,
-// other integers keep their value; sparse values replace those of the buffer view. An accessor of
-// another number of components, or of more than `most` elements, is an error.
+// All elements as floats, `components` of each: 1 to 4, or 16 for matrices of floats. Normalised
+// integers are mapped to 0..1 or -1..1, other integers keep their value; sparse values replace
+// those of the buffer view. An accessor of another number of components, or of more than `most`
+// elements, is an error.
 [[nodiscard]] tl::expected<std::vector<float>, std::string> read_floats(
     const tinygltf::Model& model, int64_t accessor, int components, uint64_t most);
 

@@ -178,7 +178,7 @@ double middle_of(std::vector<double> values, double share) {
 // Medians, so that a few parts elsewhere change nothing.
 glm::dvec3 chosen_origin(const tinygltf::Model& model, const Layout& layout,
                          uint64_t most_vertices) {
-  constexpr double kFarthest = 256.0;  // in sizes of the scene
+  constexpr double kFarthest = 256.0;                                      // in sizes of the scene
   std::vector<std::vector<PrimitiveExtent>> extents(model.meshes.size());  // those read so far
   std::vector<glm::dvec3> middles;
   std::vector<double> reaches;

@@ -69,6 +69,7 @@ tl::expected<std::unique_ptr<SceneFrame>, std::string> SceneFrame::create(
 }
 
 void SceneFrame::begin(Graph& graph, const ViewState& state, VkExtent3D size) {
+  light_ = {};
   const CameraMatrices matrices = camera_matrices(state.camera, size.width, size.height);
   view_ = {matrices.view_from_world, matrices.clip_from_view, matrices.view_from_world,
            matrices.clip_from_view, state.camera.reversed_z};
@@ -238,15 +239,17 @@ tl::expected<Texture, std::string> SceneFrame::add_lit(Graph& graph, const Surfa
                              .bent_normal = outputs.bent_normal,
                              .specular_occlusion = outputs.specular};
   give_surfaces(inputs, surfaces, outputs);
-  const passes::Environment light = probe_->import(graph);
-  inputs.harmonics = light.harmonics;
-  inputs.map = light.map;
+  if (!light_.map) {
+    light_ = probe_->import(graph);
+  }
+  inputs.harmonics = light_.harmonics;
+  inputs.map = light_.map;
   auto lit = passes::add_apply(frame_of(graph), inputs, apply_settings(surfaces));
   if (!lit) {
     return Failure(std::move(lit.error().message));
   }
   shown.linear_depth = outputs.linear_depth;
-  shown.environment = light.map;
+  shown.environment = light_.map;
   return lit->lit;
 }
 

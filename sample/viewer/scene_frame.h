@@ -65,6 +65,7 @@ class SceneFrame {
   NormalSource normals_;
   std::unique_ptr<GbufferRenderer> gbuffer_;
   std::unique_ptr<Probe> probe_;
+  passes::Environment light_;  // the probe in the frame that is declared, once a picture reads it
   std::unique_ptr<PicturePass> picture_;
   float exposure_ = 1.0f;
   std::uint32_t index_ = 0;

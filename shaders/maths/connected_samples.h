@@ -50,8 +50,8 @@ ALCOVE_INLINE bool hidden_samples_join(float discontinuity_here, float discontin
   return discontinuity_here * discontinuity_there == 0.0f;
 }
 
-// Where between two samples the edge of the second one's surface is taken to be, if they are on two:
-// this fraction of the way back to the first.
+// Where between two samples the edge of the second one's surface is taken to be, if they are on
+// two: this fraction of the way back to the first.
 const float kEdgeShare = 0.5f;
 
 // Whether a point of the slice's plane stands above the tangent plane by more than a fifth of its
@@ -62,10 +62,10 @@ ALCOVE_INLINE bool stands_above_tangent(vec2 point, vec2 height) {
 }
 
 // One less the diamond angle of the back of an occluder whose front has `height` =
-// y / (x + |y|) and `scale` = 1 / (x + |y|), a `thickness` along the view direction behind it. It is
-// linear in the thickness, which costs no division, and one and a half times as steep as the exact
-// function at the front. Gains of 1 to 3 change the mean error in the four development views by less
-// than 1.1 %.
+// y / (x + |y|) and `scale` = 1 / (x + |y|), a `thickness` along the view direction behind it. It
+// is linear in the thickness, which costs no division, and one and a half times as steep as the
+// exact function at the front. Gains of 1 to 3 change the mean error in the four development views
+// by less than 1.1 %.
 ALCOVE_INLINE float height_of_back(float height, float scale, float thickness) {
   return height - thickness * scale * (1.5f - 1.5f * abs(height));
 }
@@ -74,8 +74,9 @@ ALCOVE_INLINE float height_of_back(float height, float scale, float thickness) {
 // there.
 const float kExtrapolationRatio = 4.0f;
 
-// How far a plane is extrapolated that changes by `slope` in inverse depth per pixel: `way_px`, but in
-// perspective no further than to where it lies ten times as far away as its last sample at `last`.
+// How far a plane is extrapolated that changes by `slope` in inverse depth per pixel: `way_px`, but
+// in perspective no further than to where it lies ten times as far away as its last sample at
+// `last`.
 ALCOVE_INLINE float extrapolated_way(float last, float slope, float way_px, bool perspective) {
   return perspective ? min(way_px, 0.9f * last / max(-slope, 1e-30f)) : way_px;
 }

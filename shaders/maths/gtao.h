@@ -41,8 +41,8 @@ ALCOVE_INLINE float slice_visibility(Slice s, float ahead, float behind) {
 // uniformly spaced slices is exactly 1, so it is both what a slice weighs and what normalises them.
 ALCOVE_INLINE float open_slice(Slice s) { return s.toward + slice_gamma(s) * s.along; }
 
-// light_arc() of both half-slices up to the tangent plane, x ahead and y behind, with one arc cosine.
-// Their sum is open_slice().
+// light_arc() of both half-slices up to the tangent plane, x ahead and y behind, with one arc
+// cosine. Their sum is open_slice().
 ALCOVE_INLINE vec2 tangent_arcs(Slice s) {
   float level = s.cosine * s.cosine * s.toward;
   float swell = arc_cosine(-s.sine) + s.sine * s.cosine;

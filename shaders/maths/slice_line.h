@@ -151,8 +151,8 @@ ALCOVE_INLINE float unresolved_occlusion(float step_length, float radius) {
 }
 
 // Whether a sample, `off_plane` off the tangent plane in inverse depth and so many pixels away, is
-// taken to lie on that plane, and is moved along it to the exact place that it stands for. The plane
-// itself then stays exactly flat, and an occluder stays where it was found.
+// taken to lie on that plane, and is moved along it to the exact place that it stands for. The
+// plane itself then stays exactly flat, and an occluder stays where it was found.
 ALCOVE_INLINE bool lies_on_tangent_plane(TangentPlane t, float off_plane, float offset_px) {
   return t.fading * abs(off_plane) < offset_px;
 }

@@ -86,8 +86,8 @@ const float kMostUnobserved = 0.98f;
 
 // From where a direction within the radius meets the innermost unobserved sample to the first
 // occluder, or to the tangent plane if nothing is occluded (`first`: sine and cosine of its angle).
-// The share is the square root of the part of the radius that the unobserved samples are wide, which
-// errs less than the part itself or all of it. `radius_px` is slice_radius_px().
+// The share is the square root of the part of the radius that the unobserved samples are wide,
+// which errs less than the part itself or all of it. `radius_px` is slice_radius_px().
 ALCOVE_INLINE UnobservedArc make_unobserved_arc(vec2 first, Unobserved unobserved,
                                                 float radius_px) {
   UnobservedArc arc;

@@ -64,9 +64,9 @@ ALCOVE_INLINE uint sectors_between(float a, float b) {
   return sectors_from_to(min(a, b), max(a, b));
 }
 
-// A cheaper form of the same, for a search that adds an interval per sample. It has one sector less,
-// so that a position fits into five bits and an interval between two positions, in either order, is
-// the exclusive or of two masks.
+// A cheaper form of the same, for a search that adds an interval per sample. It has one sector
+// less, so that a position fits into five bits and an interval between two positions, in either
+// order, is the exclusive or of two masks.
 const uint kEvenSectorCount = 31u;
 
 // Bits of the float 2^23, which has no fraction bits: adding it rounds to an integer.
@@ -79,12 +79,12 @@ ALCOVE_INLINE uint biased_position(float per_tangent, float height) {
   return floatBitsToUint(share * float(kEvenSectorCount) + 8388608.0f);
 }
 
-// The sectors from a position on, and one more: the exclusive or of two such masks holds the sectors
-// between the two positions.
+// The sectors from a position on, and one more: the exclusive or of two such masks holds the
+// sectors between the two positions.
 ALCOVE_INLINE uint sectors_beyond(uint position) { return 0xffffffffu << (position & 31u); }
 
-// Repeats the state of the last of kEvenSectorCount sectors in the highest bit, as visible_part() and
-// visible_lobe() expect a mask.
+// Repeats the state of the last of kEvenSectorCount sectors in the highest bit, as visible_part()
+// and visible_lobe() expect a mask.
 ALCOVE_INLINE uint repeat_last_sector(uint occluded) {
   return occluded | ((occluded << 1u) & 0x80000000u);
 }

@@ -93,8 +93,9 @@ ALCOVE_INLINE vec4 parity_of_cameras(uint which, vec4 a, vec4 b, Projection p) {
     case 5u:
       return vec4(position.x, position.y, position.z, linear_depth(p, b.x));
     case 6u:
-      return vec4(history_agreement(history_depth(vec2(0.05f, 0.5f), log2(depth)) - b.w, 0.001f, 2.0f),
-                  visibility_changed(b.x, b.y), view.x, view.z);
+      return vec4(
+          history_agreement(history_depth(vec2(0.05f, 0.5f), log2(depth)) - b.w, 0.001f, 2.0f),
+          visibility_changed(b.x, b.y), view.x, view.z);
   }
   return vec4(0.0f);
 }
@@ -222,8 +223,7 @@ ALCOVE_INLINE vec4 parity_of_sampling(uint which, vec4 a, vec4 b) {
           add_beyond_border(mean_row(add_column(nothing_unobserved(), true, b.y, b.z)), b.w, b.z,
                             border_share(b.x, b.y));
       // Sectors are whole: only without occluders does a rounding not move an end.
-      UnobservedArc arc =
-          make_unobserved_arc(tangent_light(s, 1.0f), unobserved, 1.0f);
+      UnobservedArc arc = make_unobserved_arc(tangent_light(s, 1.0f), unobserved, 1.0f);
       return vec4(unobserved_part(arc, s, 1.0f, false), unobserved_part(arc, s, 1.0f, true),
                   unobserved_lobe(arc, lobe, 1.0f), arc.share);
     }

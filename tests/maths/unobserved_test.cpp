@@ -46,9 +46,9 @@ struct Case {
 
   // Sine and cosine of the angle of the first occluded direction, or of the tangent plane.
   glm::vec2 first_light() const {
-    return occluded == 0 ? maths::tangent_light(slice, side)
-                         : maths::diamond_angle_light(float(std::countr_zero(occluded)) /
-                                                      per_diamond_angle);
+    return occluded == 0
+               ? maths::tangent_light(slice, side)
+               : maths::diamond_angle_light(float(std::countr_zero(occluded)) / per_diamond_angle);
   }
 
   double tangent() const { return std::acos(double(maths::tangent_horizon(slice, side))); }

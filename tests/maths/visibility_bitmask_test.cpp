@@ -217,8 +217,7 @@ TEST(VisibilityBitmask, HiddenOcclusionGrowsWithTheRunWidthAndItsMeanIsTheSettin
     double sum = 0.0;
     float last = 0.0f;
     for (int i = 0; i < kSteps; ++i) {
-      const float part =
-          maths::hidden_occlusion_behind((float(i) + 0.5f) / kSteps, exponent);
+      const float part = maths::hidden_occlusion_behind((float(i) + 0.5f) / kSteps, exponent);
       EXPECT_GE(part, last);
       sum += part;
       last = part;

@@ -17,9 +17,7 @@ constexpr float kFar = 50.0f;
 constexpr float kFovY = 0.9f;
 constexpr float kAspect = 1.5f;
 
-glm::mat4 matrix_of(const float* values) {
-  return glm::make_mat4(values);
-}
+glm::mat4 matrix_of(const float* values) { return glm::make_mat4(values); }
 
 // glm::lookAtRH, and a projection with depth 0 to 1 and y down on the image.
 const glm::vec3 kEye(1.0f, 2.0f, 3.0f);

@@ -97,7 +97,7 @@ TEST_F(CFailure, WhatADeviceLacksIsNamed) {
   api_version = VK_API_VERSION_1_3;
   storage_images = 8;
   EXPECT_THAT(error_of_context(info, ALCOVE_ERROR_UNSUPPORTED),
-              HasSubstr("8 storage images to a shader; the occlusion passes need 10."));
+              HasSubstr("8 storage images to a shader; the occlusion passes need 9."));
   storage_images = 10;
   missing_function = "vkCmdPipelineBarrier2";
   EXPECT_THAT(error_of_context(info, ALCOVE_ERROR_UNSUPPORTED), HasSubstr("vkCmdPipelineBarrier2"));

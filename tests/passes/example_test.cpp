@@ -1,4 +1,4 @@
-// The C++ example of README.md, as it stands there, run on the device.
+// The C++ example of passes/README.md, as it stands there, run on the device.
 #include <gtest/gtest.h>
 
 #include <array>

@@ -11,6 +11,7 @@
 #include "maths/gtso.h"
 #include "maths/gtso_table.h"
 #include "maths/make_projection.h"
+#include "maths/slice.h"
 #include "pass_fixture.h"
 #include "random_input.h"
 #include "tables.h"
@@ -100,7 +101,7 @@ float expected(const Inputs& inputs, const maths::Projection& projection, Specul
   }
   const maths::vec2 uv = maths::pixel_centre_uv(projection, {x, y});
   const vec3 view = maths::view_vector(projection, maths::position_vs(projection, uv, depth));
-  const vec3 normal = direction(inputs.normals, x, y);
+  const vec3 normal = maths::facing_normal(direction(inputs.normals, x, y), view);
   const float visibility = maths::converged_visibility(inputs.visibility.at(x, y));
   const vec3 bent = maths::raised_bent_normal(direction(inputs.bent, x, y), normal, visibility);
   const float alpha = inputs.surface.at(x, y, 3) * inputs.surface.at(x, y, 3);

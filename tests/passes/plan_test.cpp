@@ -293,7 +293,8 @@ TEST_F(OcclusionPlan, FramesLikeAPreparedOneMakeNoPipelineWhateverLiesBeforeThem
   prepared.prepare = true;
   add(prepared);
   const std::size_t pipelines = gpu().kernels().pipeline_count();
-  EXPECT_EQ(pipelines, 2u + 3u) << "reconstruct for a first frame, for a moving and for a static view";
+  EXPECT_EQ(pipelines, 2u + 3u)
+      << "reconstruct for a first frame, for a moving and for a static view";
   struct Case {
     const View& previous_view;
     std::uint32_t static_frames;

@@ -10,8 +10,8 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <numeric>
+#include <span>
 #include <vector>
 
 #include "alcove/framegraph/plan.h"
@@ -62,7 +62,9 @@ class HappensBefore {
   HappensBefore(Stages stages, Accesses accesses, std::uint32_t queues);
 
   // The stages of the first argument of the constructor.
-  Stages tracked_stages() const { return std::accumulate(stages_.begin(), stages_.end(), Stages{0}); }
+  Stages tracked_stages() const {
+    return std::accumulate(stages_.begin(), stages_.end(), Stages{0});
+  }
 
   // The next command's time.
   Time next() { return ++now_; }

@@ -239,7 +239,7 @@ typedef struct AlcoveContextInfo {
   uint32_t struct_size;
   uint32_t queue_family;             // of the queue that frames are submitted to: one that computes
   VkInstance instance;               // as the device, made for Vulkan 1.3
-  VkPhysicalDevice physical_device;  // that binds 10 storage images to a shader
+  VkPhysicalDevice physical_device;  // that binds 9 storage images to a shader
   // With the features synchronization2 and shaderStorageImageWriteWithoutFormat enabled.
   VkDevice device;
   PFN_vkGetInstanceProcAddr get_instance_proc_addr;

@@ -72,7 +72,7 @@ class Kernels {
   // VK_PIPELINE_CACHE_CREATE_EXTERNALLY_SYNCHRONIZED_BIT: then none may while passes are added.
   //
   // Errors: a handle that is null, frames in flight out of range, a function or a limit that the
-  // device lacks (maxPerStageDescriptorStorageImages must be 10), memory that gives out.
+  // device lacks (maxPerStageDescriptorStorageImages must be 9), memory that gives out.
   [[nodiscard]] static tl::expected<Kernels, Error> create(const framegraph::DeviceHandles& device,
                                                            std::uint32_t frames_in_flight,
                                                            VkPipelineCache cache = VK_NULL_HANDLE);
