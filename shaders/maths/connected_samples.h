@@ -1,15 +1,13 @@
-// Occluders of finite thickness from the depth samples of one side of a slice, joined where they
-// lie on one surface.
+// Occluders of finite thickness from the depth samples of one half-slice.
 //
-// A depth buffer shows fronts only. Taken as infinitely thick, thin things darken whatever is
-// behind them; taken as thin, walls leak light between their samples. So two consecutive samples
-// are joined into a segment when depth alone says that they continue one surface (samples_join),
-// the edge of a surface that appears between two samples is placed between them (edge_share), and
-// every sample has a thickness: along the view vector, or as far as its back face
-// (height_of_back). A surface that leaves the image is extrapolated (extrapolated_way). What
-// is hidden behind a front stays unknown: something between thin and infinitely thick, the nearer
-// to the latter the wider the fronts stand in the image (hidden_occlusion_behind()), errs less than
-// either (see the table in sample/README.md).
+// A depth buffer shows only the fronts of occluders. If they are taken as infinitely thick, thin
+// objects darken everything behind them. If each sample is an occluder of its own and thin, walls
+// leak light between their samples. Therefore two consecutive samples are connected if the depth
+// buffer shows that they continue one surface (samples_join). Where a surface begins between two
+// samples, its edge is placed between them (kEdgeShare). Every sample has a thickness, either along
+// the view direction or up to its back face (height_of_back). A surface that leaves the image is
+// extrapolated (kExtrapolationRatio). hidden_occlusion_behind() estimates what lies hidden behind an
+// occluder. passes/ALGORITHM.md has figures; sample/README.md compares the estimators.
 #ifndef ALCOVE_MATHS_CONNECTED_SAMPLES_H
 #define ALCOVE_MATHS_CONNECTED_SAMPLES_H
 

@@ -39,7 +39,8 @@ ALCOVE_INLINE float weight_after_clamp(float weight, float before, float after, 
   return mix(weight, min(weight, 1.0f), moved);
 }
 
-// Variance of the visibility that one frame measures at a pixel. Mean over the development scenes.
+// Variance of the visibility that one frame measures at a pixel. Tuned with `alcove motion --path
+// orbit` in one view, and checked in another.
 const float kFrameVariance = 0.02f;
 
 // Variance of the visibility between a surface and its neighbours that stand in for a history texel
