@@ -7,8 +7,8 @@
 // these directions is left out of the visible part and of the whole alike: as much of them is taken
 // to be open as of the rest, and an open plane stays exactly open beside anything. A mean direction
 // has no whole to be left out of, and keeps them. After no paper that we know.
-#ifndef ALCOVE_MATHS_UNSEEN_H
-#define ALCOVE_MATHS_UNSEEN_H
+#ifndef ALCOVE_MATHS_UNOBSERVED_H
+#define ALCOVE_MATHS_UNOBSERVED_H
 
 #include "gtao.h"
 #include "language.h"

@@ -120,12 +120,10 @@ ALCOVE_INLINE float hidden_exponent(float hidden_occlusion) {
                                  : kNoHiddenOcclusion;
 }
 
-// What part of what lies behind the occluders of a side counts as occluded, [0,1]. `front` is the
-// mean width of the fronts that the side's columns show, [0,1], in parts of its way along the image
-// from the first of them on: a ray is hidden all the way behind a wall, seen but for an inch behind
-// a blade of grass, and seen between the slats of a blind however much of the way they
-// hidden_occlusion. `hidden_occlusion` is the mean over all `front`; 0 is nothing behind any front,
-// 1 everything.
+// The fraction of the volume hidden behind the occluders of a half-slice that counts as occluded,
+// [0,1]. `front` is the mean width of an occluder run on the image, relative to the distance that
+// was searched beyond the first one, [0,1]. A wall hides everything behind it; a blade of grass, or
+// each slat of a blind, hides little. `exponent` is hidden_exponent() of the mean over all `front`.
 ALCOVE_INLINE float hidden_occlusion_behind(float front, float exponent) {
   float part = pow(clamp(front, 1e-6f, 1.0f), exponent);
   return exponent < kNoHiddenOcclusion ? part : 0.0f;

@@ -7,103 +7,108 @@
 
 namespace alcove::passes {
 
-// What stands behind an occluder's front, which is all that a depth buffer shows.
+// How the thickness of occluders is estimated. A depth buffer shows only their fronts.
 enum class Estimator : std::uint8_t {
-  // Everything: occluders are infinitely thick (the paper's horizons).
+  // Occluders are infinitely thick (the paper's horizons).
   horizons,
-  // The same, but that each lower sample further out pulls the horizon down (the paper's thickness
-  // heuristic).
+  // Occluders are infinitely thick, but each lower sample further out pulls the horizon down (the
+  // paper's thickness heuristic).
   heuristic,
-  // Every sample is an occluder of its own, of one thickness (the visibility bitmask of Therrien et
-  // al. 2023, exactly weighted).
+  // Every sample is a separate occluder of the thickness in the settings (the visibility bitmask of
+  // Therrien et al. 2023, with exact cosine weights).
   bitmask,
-  // The same where samples do not lie on one surface; those that do are joined into a segment
-  // without
-  // gaps (shaders/maths/connected_samples.h). Suits thin things and walls alike.
+  // As `bitmask`, but consecutive samples of one surface are connected without gaps
+  // (shaders/maths/connected_samples.h). Suits both thin objects and walls.
   connected,
 };
 
-// Whether its occluders have a thickness, and hide something; else they may have a falloff.
+// Whether the estimator reads SearchSettings::thickness and hidden_occlusion. Other estimators read
+// SearchSettings::falloff.
 [[nodiscard]] constexpr bool has_thickness(Estimator estimator) {
   return estimator == Estimator::bitmask || estimator == Estimator::connected;
 }
 
-// What an occluder's thickness is measured in, for the estimators that have one.
+// The unit of SearchSettings::thickness, for estimators with has_thickness().
 enum class ThicknessUnit : std::uint8_t {
-  radius,    // parts of the occlusion radius: one thickness in the scene
-  distance,  // parts of the occluder's distance from the eye along the view axis: one in the image
-  // By a second depth buffer, of back faces: each occluder ends where its view ray meets the
-  // nearest of them, however far behind. Of a closed solid that is where the ray leaves it, unless
-  // others stand in it. Where there is none behind the front (cards, planes, sky) as `radius` has
-  // it; a card before a solid is taken to hidden_occlusion all the way to that one's back, which
-  // two depths cannot tell.
+  radius,    // The occlusion radius: the thickness is constant in the scene.
+  distance,  // The occluder's distance along the view axis: the thickness is constant on the image.
+  // A second depth buffer of back faces gives the thickness: each occluder ends at the nearest back
+  // face on its view ray. For a closed solid that is where the ray leaves it, unless another solid
+  // stands inside. Without a back face behind the front (cards, planes, sky) the unit is `radius`.
+  // A card in front of a solid is taken to reach to the solid's back, because two depths cannot
+  // distinguish that case.
   back_faces,
 };
 
-// Whether GtaoInputs::back_inverse_depth and OcclusionInputs::back_depth_ndc are read, and so
-// whether an engine has to draw back faces at all.
+// Whether GtaoInputs::back_inverse_depth and OcclusionInputs::back_depth_ndc are read. If not, an
+// engine need not draw back faces.
 [[nodiscard]] bool needs_back_depth(Estimator estimator, ThicknessUnit unit);
 
-// The same of GtaoInputs::second_inverse_depth and OcclusionInputs::second_depth_ndc.
+// Whether GtaoInputs::second_inverse_depth and OcclusionInputs::second_depth_ndc are read.
 [[nodiscard]] bool needs_second_depth(Estimator estimator, std::uint32_t depth_layers);
 
-// What a visible direction weighs.
+// The weight of a visible direction.
 enum class Weighting : std::uint8_t {
-  cosine,   // of its angle to the normal: what diffuse surfaces reflect
-  uniform,  // 1: the visible part of the hemisphere's solid angle (the paper's appendix A)
+  cosine,   // The cosine of its angle to the normal, as diffuse reflection needs it.
+  uniform,  // 1: visibility is a fraction of the hemisphere's solid angle (the paper's appendix A).
 };
 
-// How directions are spread over pixels and frames (shaders/maths/sampling.h).
+// How slice directions and step offsets vary over pixels and frames (shaders/maths/sampling.h).
 enum class Pattern : std::uint8_t {
-  golden,   // a 4x4 block in the order of ordered dithering, turned by the golden ratio each frame
-  hilbert,  // Hilbert curve and R2 sequence
-  paper,    // the paper's 4x4 block and six rotations
+  golden,   // 4x4 pixels in the order of a Bayer matrix, rotated by the golden ratio each frame.
+  hilbert,  // The R2 sequence along a Hilbert curve.
+  paper,    // The paper's 4x4 pixels and six rotations.
 };
 
-// Which searches a group of the device's threads makes together. The image is the same.
+// Which pixels a workgroup traces. It changes the cost and not the image.
 enum class Grouping : std::uint8_t {
-  neighbours,  // of 8x8 blocks
-  pattern,     // of every fourth block each way, which the 4x4 patterns give one direction
+  neighbours,  // 8x8 adjacent tiles.
+  pattern,     // Every fourth tile in x and y: these have the same slice direction.
 };
 
-// Parts of a search that are there to be measured (`alcove ablate`): the defaults suit engines.
+// Parts of the search that exist to be measured (`alcove ablate`). The defaults suit engines.
 struct SearchParts {
-  // Whether a sample lies where its texel does; else where it was asked for, so that tilted planes
-  // occlude themselves.
+  // Snaps samples to texel centres. Without it, tilted planes occlude themselves.
   bool snap_to_texels = true;
-  // Whether surfaces that leave the image go on beyond its border as they left (connected samples).
+  // Extrapolates surfaces that leave the image beyond its border (`connected` only).
   bool extrapolation = true;
-  // Whether what foregrounds and the image's border hide is left out of visibility, neither open
-  // nor occluded (connected samples, shaders/maths/unobserved.h); else it counts as open.
+  // Excludes directions that foregrounds or the image's border hide from the average (`connected`
+  // only, shaders/maths/unobserved.h). Without it they count as open.
   bool unobserved = true;
   Grouping grouping = Grouping::neighbours;
 
   friend bool operator==(const SearchParts&, const SearchParts&) = default;
 };
 
-// How occluders are searched and what they count.
+// How occluders are searched and integrated.
 struct SearchSettings {
-  float radius = 0.5f;       // scene units, over 0: occluders beyond it do not count
-  std::uint32_t slices = 1;  // a pixel, 1 to 64; with the noise of a 4x4 block, 16 times as many
-  std::uint32_t steps = 12;  // a side of a slice, 2 to 64: 2 * slices * steps depth fetches a pixel
+  // Occluders beyond this distance do not count. Scene units, above 0.
+  float radius = 0.5f;
+  // Slices per traced pixel and frame, 1 to 64. More slices reduce noise.
+  std::uint32_t slices = 1;
+  // Depth samples per half-slice, 2 to 64. A traced pixel costs 2 * slices * steps depth fetches.
+  std::uint32_t steps = 12;
   Estimator estimator = Estimator::connected;
-  Weighting weighting = Weighting::cosine;  // of visibility; bent normals have the cosine always
-  // Of occluders, for bitmask and connected samples, at least 0. With these a surface is where it
-  // begins no thicker than it is sure to be wide: blades, bars and leaves are thin.
+  // The weighting of visibility. Bent normals always have the cosine.
+  Weighting weighting = Weighting::cosine;
+  // Thickness of occluders in `thickness_unit`, at least 0, for `bitmask` and `connected`. With
+  // `connected`, an occluder at its leading edge is at most as thick as its visible width, so that
+  // blades, bars and leaves are thin.
   float thickness = 0.15f;
   ThicknessUnit thickness_unit = ThicknessUnit::radius;
-  // Part of what is hidden behind them that occludes too, [0,1]: 0 nothing, 1 all, between the more
-  // the wider they are in the image (hidden_occlusion_behind(),
-  // shaders/maths/visibility_bitmask.h).
+  // Fraction of the volume hidden behind occluders that counts as occluded, [0,1], in the mean. It
+  // is larger behind occluders that are wide on the image (hidden_occlusion_behind() in
+  // shaders/maths/visibility_bitmask.h). Raising it darkens corners behind foregrounds.
   float hidden_occlusion = 0.33f;
-  std::uint32_t depth_layers = 1;  // that are searched: 1, or 2 with what lies behind the first
-  // For horizons and heuristic.
-  float blend = 0.05f;  // of a horizon towards each lower sample, [0,1] (heuristic)
-  // Last part of the radius, over which occluders fade, [0,1]; 0: none. Must be 0 for bitmask and
-  // connected samples, whose sectors are occluded or not.
+  // Depth layers that are searched: 1, or 2 with GtaoInputs::second_inverse_depth.
+  std::uint32_t depth_layers = 1;
+  // How far each lower sample pulls the horizon down, [0,1] (`heuristic` only).
+  float blend = 0.05f;
+  // Last fraction of the radius over which occluders fade, [0,1]; 0 turns fading off (`horizons`
+  // and `heuristic`). It must be 0 with the other estimators.
   float falloff = 0.0f;
-  // One search a frame in a block of so many pixels a side: 1, 2 or 4. Which of them moves on from
-  // frame to frame.
+  // Width of a tile in pixels: 1, 2 or 4. One pixel per tile is traced in a frame; the interleave
+  // offset moves it from frame to frame.
   std::uint32_t tile_size = 1;
   Pattern pattern = Pattern::golden;
   SearchParts parts;
@@ -112,11 +117,13 @@ struct SearchSettings {
 };
 
 struct GtaoSettings : SearchSettings {
-  bool bent_normal = false;  // also write the mean visible direction
-  // Also write how much of each surface's GGX lobe its slices see (shaders/maths/lobe_slice.h).
+  // Also writes the mean visible direction.
+  bool bent_normal = false;
+  // Also writes the visible fraction of each surface's GGX lobe (shaders/maths/lobe_slice.h).
   bool lobe = false;
-  float roughness = 0.5f;               // perceptual, [0,1], of every pixel where no texture has it
-  std::uint32_t roughness_channel = 0;  // of the roughness texture, 0 to 3
+  // Perceptual roughness of every pixel, [0,1], where there is no roughness texture.
+  float roughness = 0.5f;
+  std::uint32_t roughness_channel = 0;  // Channel of the roughness texture, 0 to 3.
 };
 
 struct GtaoInputs {
@@ -142,23 +149,22 @@ struct GtaoInputs {
   bool normals_forward_z = false;  // as OcclusionInputs has it
 };
 
-// What filters and history work on: sums over slices, one texel a block.
+// The raw occlusion of a frame, one texel per tile: sums over slices, which reconstruction filters.
 struct RawOcclusionTextures {
-  // R32G32_UINT: the visible part of the slices and all of it (shaders/maths/raw_occlusion.h), and
-  // the bits of a float that is linear along the image of any plane. With a lobe R32G32B32A32_UINT:
-  // the same two of it, and the surface it belongs to.
+  // R32G32_UINT: the packed visible and unoccluded parts (shaders/maths/raw_occlusion.h), and the
+  // bits of the traced pixel's inverse depth as a float. With a lobe R32G32B32A32_UINT: also the
+  // packed parts of the lobe and the surface's normal and roughness.
   framegraph::Texture raw_occlusion;
-  // R32G32_UINT: how far the mean visible direction, weighted by the cosine, bends from the normal,
-  // and would if all were open, view space, 10 bits a component (shaders/maths/bent_normal.h); null
-  // where none is wanted.
+  // R32G32_UINT: the bent-normal residual and its expectation when unoccluded, in view space, 10
+  // bits per component (shaders/maths/bent_normal.h). Null without bent normals.
   framegraph::Texture bent;
-  std::uint32_t tile_size = 1;  // pixels on a side of a block
-  std::uint32_t slices = 1;     // that were searched in each
-  bool lobe = false;
+  std::uint32_t tile_size = 1;  // Width of a tile in pixels.
+  std::uint32_t slices = 1;     // Slices per traced pixel.
+  bool lobe = false;            // Whether raw_occlusion holds a lobe.
 };
 
-// Errors: an input that is missing or of another size than the inverse depth, a view that cannot be
-// used, a setting out of range, a falloff that the estimator does not have.
+// Adds the search. Errors: an input that is missing or whose size differs from the inverse depth's,
+// a view that cannot be used, a setting out of range, a falloff with an estimator that has none.
 [[nodiscard]] tl::expected<RawOcclusionTextures, Error> add_gtao(const Frame& frame,
                                                                  const GtaoInputs& inputs,
                                                                  const GtaoSettings& settings);

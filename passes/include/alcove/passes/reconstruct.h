@@ -1,4 +1,5 @@
-// From traced pixels to every pixel: spatial filter, upsampling and history in one pass.
+// Reconstructs every pixel from the traced ones: spatial filter, upsampling and temporal
+// accumulation in one pass (Jimenez et al. 2016, sections 4.4 and 4.5, with other weights).
 #pragma once
 
 #include <array>
@@ -11,27 +12,26 @@
 namespace alcove::passes {
 
 struct FilterSettings {
-  // Searched pixels that a pixel looks at while it has less than two frames of history, or without
-  // any: so many on each side, 0 to 3; then one. 0 filters nothing. They weigh in a window that is
-  // the narrower the more slices were searched.
+  // Filter radius in tiles for pixels with fewer than two frames of history, 0 to 3. Pixels with
+  // more history use 1. 0 turns the spatial filter off.
   std::uint32_t filter_radius = 2;
-  // At this distance from the pixel's tangent plane a neighbour counts a quarter; in sizes of a
-  // pixel there, over 0. That is in the first frame of one slice: the more slices and frames there
-  // are, the nearer it has to be.
+  // Distance from the tangent plane, in pixels, at which a neighbour's weight falls to 0.25. Above
+  // 0. This is the value for one slice and no history; it shrinks as samples accumulate.
   float filter_tolerance_px = 1.5f;
-  // Frames that are averaged, 0 to 127; once Frame::static_frames is 16, up to 127 in any case. 0
-  // keeps no history and allocates none: for engines whose own temporal filter comes after.
+  // Frames that are averaged, 0 to 127; from 16 static frames on, 127. 0 keeps no history and
+  // allocates none, for engines with a temporal filter of their own.
   std::uint32_t history_frames = 0;
-  // History is held to so many standard deviations of this frame's neighbourhood; 0 leaves it free.
+  // The history is clamped to this many standard deviations around the mean of this frame's
+  // neighbourhood. 0 turns clamping off.
   float clamp_width = 0.0f;
 
   friend bool operator==(const FilterSettings&, const FilterSettings&) = default;
 };
 
 struct ReconstructSettings : FilterSettings {
-  bool visibility =
-      true;  // also write it: off where only what else the raw_occlusion has is wanted
-  float roughness = 0.5f;  // as GtaoSettings has them; read where the raw_occlusion has a lobe
+  // Also writes visibility. Turn it off where only bent normals or specular occlusion are wanted.
+  bool visibility = true;
+  float roughness = 0.5f;  // As GtaoSettings::roughness; read where the raw occlusion has a lobe.
   std::uint32_t roughness_channel = 0;
   Precision precision = Precision::unorm8;
   float power = 1.0f;      // as OcclusionSettings has it
@@ -48,18 +48,18 @@ struct MotionConvention {
 };
 
 struct Occlusion {
-  // One channel, [0,1], 1 open, as large as the depth; null where none is wanted.
+  // One channel, [0,1], 1 is open, of the depth's size. Null where it is not wanted.
   framegraph::Texture visibility;
-  framegraph::Texture bent_normal;  // xyz unit, in the space of the normals; null where the
-                                    // raw_occlusion has none
-  framegraph::Texture specular;  // one channel, the visible share of the GGX lobe, [0,1], 1 open;
-                                 // null where the raw_occlusion has no lobe
+  // Unit vectors in xyz, in the space of the normals. Null without bent normals.
+  framegraph::Texture bent_normal;
+  // One channel, the visible fraction of the GGX lobe, [0,1], 1 is open. Null without a lobe.
+  framegraph::Texture specular;
 };
 
 struct ReconstructInputs {
-  RawOcclusionTextures raw_occlusion;  // as add_gtao writes it, of this frame's index
-  framegraph::Texture inverse_depth;   // as add_inverse_depth makes it
-  framegraph::Texture normals;         // as GtaoInputs::normals
+  RawOcclusionTextures raw_occlusion;  // From add_gtao, with the same Frame::index.
+  framegraph::Texture inverse_depth;   // From add_inverse_depth.
+  framegraph::Texture normals;         // As GtaoInputs::normals.
   bool normals_in_view_space = false;
   // xy: how each surface moved on the image, in the units of `motion_convention`. Null: only the
   // camera moves. Where motion is given, occluders may move too, and with them the visibility of
@@ -74,19 +74,19 @@ struct ReconstructInputs {
   MotionConvention motion_convention;
 };
 
-// `history_name` tells the histories of one graph apart: each view needs its own. A history begins
-// anew where the size or the kind of the raw_occlusion changes, where history or bent normals were
-// off in the frame before, and after Graph::reset_history(history_name).
+// Adds the reconstruction. Each view of a graph needs a `history_name` of its own. A history starts
+// anew when the size or the contents of the raw occlusion change, when history or bent normals were
+// off in the previous frame, and after Graph::reset_history(history_name).
 //
-// Errors: an input that is missing or of another size than the inverse depth, a raw_occlusion that
-// is not of its blocks, a view that cannot be used, now or before, sizes that are not within the
+// Errors: an input that is missing or whose size differs from the inverse depth's, raw occlusion
+// with another number of tiles, a view or previous view that cannot be used, sizes above the
 // largest, a setting out of range, nothing to write.
 [[nodiscard]] tl::expected<Occlusion, Error> add_reconstruct(
     const Frame& frame, const ReconstructInputs& inputs, const ReconstructSettings& settings,
     std::string_view history_name = "occlusion");
 
-// Gives back the memory of the histories of this name that the frame being declared, or declared
-// last, does not have, once the device is done with them: see Graph::drop_history.
+// Frees the histories of this name that the current or last declared frame does not use, once the
+// device has finished with them: see Graph::drop_history.
 void drop_reconstruct_history(framegraph::Graph& graph, std::string_view history_name);
 
 }  // namespace alcove::passes
