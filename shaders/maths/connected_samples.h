@@ -6,8 +6,8 @@
 // buffer shows that they continue one surface (samples_join). Where a surface begins between two
 // samples, its edge is placed between them (kEdgeShare). Every sample has a thickness, either along
 // the view direction or up to its back face (height_of_back). A surface that leaves the image is
-// extrapolated (kExtrapolationRatio). hidden_occlusion_behind() estimates what lies hidden behind an
-// occluder. passes/ALGORITHM.md has figures; sample/README.md compares the estimators.
+// extrapolated (kExtrapolationRatio). hidden_occlusion_behind() estimates what lies hidden behind
+// an occluder. passes/ALGORITHM.md has figures; sample/README.md compares the estimators.
 #ifndef ALCOVE_MATHS_CONNECTED_SAMPLES_H
 #define ALCOVE_MATHS_CONNECTED_SAMPLES_H
 
