@@ -100,12 +100,11 @@ tl::expected<void, Error> check_raw_occlusion(const Frame& frame, const Reconstr
   };
   return check_search(raw_occlusion.tile_size, raw_occlusion.slices)
       .and_then([&] {
-        return check(raw_occlusion.raw_occlusion, raw_format(raw_occlusion.lobe),
-                     "a raw_occlusion");
+        return check(raw_occlusion.raw_occlusion, raw_format(raw_occlusion.lobe), "raw occlusion");
       })
       .and_then([&] {
         return raw_occlusion.bent
-                   ? check(raw_occlusion.bent, kBentRawFormat, "a bent raw_occlusion")
+                   ? check(raw_occlusion.bent, kBentRawFormat, "bent-normal residuals")
                    : tl::expected<void, Error>();
       });
 }

@@ -42,17 +42,17 @@ Image<float> shrunk(const Image<float>& image, std::uint32_t scale) {
 }
 
 // Where both images show a surface; a block of pixels does where all of them do.
-Mask common_surfaces(const InvariancePair& pairs, const FrameImages& images,
+Mask common_surfaces(const InvariancePair& pair, const FrameImages& images,
                      const FrameImages& others) {
-  const std::uint32_t scale = pairs.scale;
-  const Image<float> depth = linear_depth(pairs.first, images.depth_ndc);
-  const Image<float> other = linear_depth(pairs.second, others.depth_ndc);
+  const std::uint32_t scale = pair.scale;
+  const Image<float> depth = linear_depth(pair.first, images.depth_ndc);
+  const Image<float> other = linear_depth(pair.second, others.depth_ndc);
   Mask mask(depth.width, depth.height);
   for (std::uint32_t y = 0; y < depth.height * scale; ++y) {
     for (std::uint32_t x = 0; x < depth.width * scale; ++x) {
       const std::size_t i = (y / scale) * depth.width + x / scale;
-      const float apart = other.at(x, y) - pairs.further - depth.pixels[i];
-      const bool here = std::isfinite(apart) && std::abs(apart) <= pairs.tolerance;
+      const float apart = other.at(x, y) - pair.further - depth.pixels[i];
+      const bool here = std::isfinite(apart) && std::abs(apart) <= pair.tolerance;
       mask.pixels[i] = here && (mask.pixels[i] != 0 || (x % scale == 0 && y % scale == 0)) ? 1 : 0;
     }
   }
@@ -61,11 +61,11 @@ Mask common_surfaces(const InvariancePair& pairs, const FrameImages& images,
 
 tl::expected<InvariancePairRow, std::string> run_invariance_pair(Gpu& gpu, const Session& session,
                                                                  const Options& options,
-                                                                 const InvariancePair& pairs) {
-  const StaticSetup first = static_setup(options, pairs.first);
-  StaticSetup second = static_setup(options, pairs.second);
-  second.width *= pairs.scale;
-  second.height *= pairs.scale;
+                                                                 const InvariancePair& pair) {
+  const StaticSetup first = static_setup(options, pair.first);
+  StaticSetup second = static_setup(options, pair.second);
+  second.width *= pair.scale;
+  second.height *= pair.scale;
   const auto images = draw_static(gpu, session.scene, first, session.settings);
   if (!images) {
     return Failure(images.error());
@@ -75,8 +75,8 @@ tl::expected<InvariancePairRow, std::string> run_invariance_pair(Gpu& gpu, const
     return Failure(others.error());
   }
   return InvariancePairRow{
-      pairs.name, compare_images(shrunk(others->visibility, pairs.scale), images->visibility,
-                                 common_surfaces(pairs, *images, *others))};
+      pair.name, compare_images(shrunk(others->visibility, pair.scale), images->visibility,
+                                common_surfaces(pair, *images, *others))};
 }
 
 std::string table_of(const std::vector<VariantErrors>& rows) {
@@ -142,12 +142,12 @@ Done run_ablate(const Options& options) {
   std::cout << table_of(variants->rows) << std::flush;
   std::vector<InvariancePairRow> invariance_pair_rows;
   const std::uint32_t largest = session->gpu->device().properties().limits.maxImageDimension2D;
-  for (const InvariancePair& pairs : invariance_pairs_of(session->camera, options.view.height)) {
-    if (pairs.scale * std::max(options.view.width, options.view.height) > largest) {
-      std::cout << "Left out: " << pairs.name << ", which the device has no image for\n";
+  for (const InvariancePair& pair : invariance_pairs_of(session->camera, options.view.height)) {
+    if (pair.scale * std::max(options.view.width, options.view.height) > largest) {
+      std::cout << "Left out: " << pair.name << ", which the device has no image for\n";
       continue;
     }
-    auto row = run_invariance_pair(*session->gpu, *session, options, pairs);
+    auto row = run_invariance_pair(*session->gpu, *session, options, pair);
     if (!row) {
       return Failure(std::move(row.error()));
     }

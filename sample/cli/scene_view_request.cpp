@@ -1,7 +1,5 @@
 #include "cli/scene_view_request.h"
 
-#include <memory>
-
 #include "cli/open_session.h"
 #include "cli/render_command.h"
 
@@ -19,29 +17,11 @@ SceneViewRequest scene_view_request(const Options& options) {
   }
   request.environment = options.environment;
   request.screenshots = options.out;
-  // The options of the scene that is shown.
-  const auto shown = std::make_shared<Options>(options);
   request.open_session = [options](const std::vector<const char*>& surface_extensions) {
     return open_session(options, surface_extensions);
   };
-  request.load_session = [shown](const std::string& scene) {
-    Options other = *shown;
-    other.scene = scene;
-    other.view.camera.clear();
-    other.view.eye.reset();
-    other.view.target.reset();
-    other.view.up_ws.reset();
-    other.view.near_plane.reset();
-    other.view.far_plane.reset();
-    other.occlusion.radius.reset();
-    auto session = load_session(other);
-    if (session) {
-      *shown = std::move(other);
-    }
-    return session;
-  };
-  request.command = [shown](const Shot& shot) {
-    return shell_line(render_arguments(*shown, shot));
+  request.command = [options](const Shot& shot) {
+    return shell_line(render_arguments(options, shot));
   };
   return request;
 }

@@ -126,11 +126,11 @@ void add_reconstruction(VariantList& list, const OcclusionSettings& base) {
 // How often as far away a narrow perspective stands for an orthographic view.
 constexpr float kFarAway = 300.0f;
 
-InvariancePair orthographic_pairs(const Camera& camera, std::uint32_t height) {
+InvariancePair orthographic_pair(const Camera& camera, std::uint32_t height) {
   const glm::vec3 back = camera.eye_ws - camera.target_ws;
   const float distance = glm::length(back);
-  InvariancePair pairs{"orthographic, and from far away", camera, camera};
-  Camera& flat = pairs.first;
+  InvariancePair pair{"orthographic, and from far away", camera, camera};
+  Camera& flat = pair.first;
   if (!flat.orthographic) {
     flat.orthographic = true;
     flat.ortho_height = 2.0f * distance * std::tan(0.5f * camera.fov_y);
@@ -138,16 +138,16 @@ InvariancePair orthographic_pairs(const Camera& camera, std::uint32_t height) {
   if (std::isinf(flat.far_plane)) {
     flat.far_plane = 1000.0f * flat.ortho_height;
   }
-  Camera& away = pairs.second;
+  Camera& away = pair.second;
   away.orthographic = false;
   away.eye_ws = camera.target_ws + back * kFarAway;
   away.fov_y = 2.0f * std::atan(0.5f * flat.ortho_height / (kFarAway * distance));
-  pairs.further = (kFarAway - 1.0f) * distance;
-  away.near_plane = flat.near_plane + pairs.further;
-  away.far_plane = flat.far_plane + pairs.further;
+  pair.further = (kFarAway - 1.0f) * distance;
+  away.near_plane = flat.near_plane + pair.further;
+  away.far_plane = flat.far_plane + pair.further;
   // The images part by some pixels before and behind the target, and towards their borders.
-  pairs.tolerance = flat.ortho_height / static_cast<float>(height);
-  return pairs;
+  pair.tolerance = flat.ortho_height / static_cast<float>(height);
+  return pair;
 }
 
 }  // namespace
@@ -171,7 +171,7 @@ std::vector<InvariancePair> invariance_pairs_of(const Camera& camera, std::uint3
     all.back().second.far_plane = INFINITY;
   }
   all.push_back({"this size, and twice as large", camera, camera, 2});
-  all.push_back(orthographic_pairs(camera, height));
+  all.push_back(orthographic_pair(camera, height));
   return all;
 }
 

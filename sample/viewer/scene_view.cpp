@@ -75,44 +75,6 @@ SceneView::~SceneView() {
   }
 }
 
-tl::expected<void, std::string> SceneView::replace_scene(const std::string& scene) {
-  auto loaded = request_.load_session(scene);
-  if (!loaded) {
-    return Failure(std::move(loaded.error()));
-  }
-  const auto environment = load_environment(request_.environment);
-  if (!environment) {
-    return Failure(environment.error());
-  }
-  presenter_->wait();  // nothing that is in flight may use what is replaced
-  auto frame = SceneFrame::create(*session_.gpu, loaded->scene, *environment, request_.normals,
-                                  presenter_->format());
-  if (!frame) {
-    return Failure(std::move(frame.error()));
-  }
-  retired_.push_back(std::exchange(frame_, std::move(*frame)));
-  session_.scene = std::move(loaded->scene);
-  session_.camera = loaded->camera;
-  session_.settings = loaded->settings;
-  return {};
-}
-
-void SceneView::open(const std::string& scene) {
-  if (auto replaced = replace_scene(scene); !replaced) {
-    facts_.message = std::move(replaced.error());
-    return;
-  }
-  state_.camera = session_.camera;
-  state_.settings.radius = session_.settings.radius;
-  state_.kept.radius = session_.settings.radius;
-  good_ = {state_.settings, state_.roughness};
-  refused_.reset();
-  facts_.first_settings = session_.settings;
-  facts_.refusal.clear();
-  facts_.message = scene + " is shown.";
-  window_->set_title("alcove: " + scene);
-}
-
 Camera SceneView::camera_around_scene() const {
   Camera camera = state_.camera;
   constexpr float kFarthest = 1e12f;  // distances beyond have no squares of floats to compare

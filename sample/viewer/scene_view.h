@@ -33,8 +33,6 @@ struct SceneViewRequest {
   std::filesystem::path screenshots;  // folder for them; empty: the current one
   // Loads the scene and opens a device with these instance extensions.
   std::function<tl::expected<Session, std::string>(const std::vector<const char*>&)> open_session;
-  // Loads another scene, with its own first view, and opens no device.
-  std::function<tl::expected<Session, std::string>(const std::string& scene)> load_session;
   // The shell command that draws a shot without a window.
   std::function<std::string(const Shot&)> command;
 };
@@ -59,10 +57,6 @@ class SceneView {
   // Whether anything but the picture is shown.
   void show_panel(bool shown) { panel_shown_ = shown; }
 
-  // Shows another scene, from its own first view, with the settings that are chosen; their radius
-  // is that of the scene. Where the file cannot be read, the scene stays and the panel says why.
-  void open(const std::string& scene);
-
   ViewState& state() { return state_; }
   const PanelFacts& facts() const { return facts_; }
   Window& window() { return *window_; }
@@ -78,7 +72,6 @@ class SceneView {
   };
 
   explicit SceneView(SceneViewRequest request) : request_(std::move(request)) {}
-  tl::expected<void, std::string> replace_scene(const std::string& scene);
   // The camera with a far plane behind the scene, wherever the user has moved it.
   Camera camera_around_scene() const;
   void take_keys();
@@ -95,8 +88,6 @@ class SceneView {
   Session session_;
   std::unique_ptr<Presenter> presenter_;
   std::unique_ptr<SceneFrame> frame_;
-  // Those of earlier scenes: command buffers that have recorded them are reused later only.
-  std::vector<std::unique_ptr<SceneFrame>> retired_;
   std::unique_ptr<Gui> gui_;
   ViewState state_;
   Choice good_;                    // the last that could be drawn

@@ -103,8 +103,8 @@ inline dmat4 without_rounding(dmat4 m) {
   // depth_ndc = (m22 z + m32) / w. It grows with distance unless depth is reversed.
   const bool reversed = m[2][2] * m[3][3] > m[3][2] * m[2][3];
   dvec4 unproject(m[3][3], -m[3][2], m[2][3], -m[2][2]);
-  const double tile_size = 0.5 * unproject.z + unproject.w;
-  if (tile_size < 0.0) unproject = -unproject;
+  const double divisor = 0.5 * unproject.z + unproject.w;
+  if (divisor < 0.0) unproject = -unproject;
   p.depth_unproject = vec4(unproject);
   p.sky = reversed ? vec2(-1.0f, 0.0f) : vec2(1.0f, 1.0f);
   const auto depth_at = [&](double ndc) {

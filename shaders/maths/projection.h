@@ -19,7 +19,7 @@ struct Projection {
   vec4 uv_to_slope;   // xy scale, zw offset: view-space xy per unit of depth along a pixel's ray
   vec4 uv_to_origin;  // xy scale, zw offset: view-space xy where a pixel's ray meets depth 0
   // uv of a view-space position: (position_to_uv.xy * xy + depth_to_uv.xy * depth +
-  // position_to_uv.zw) / (depth_to_uv.z * depth + depth_to_uv.w), the tile_size over 0.
+  // position_to_uv.zw) / (depth_to_uv.z * depth + depth_to_uv.w), the divisor over 0.
   vec4 position_to_uv;
   vec4 depth_to_uv;
   vec4 depth_unproject;  // depth = (x * depth_ndc + y) / (z * depth_ndc + w)
@@ -44,8 +44,8 @@ ALCOVE_INLINE bool is_sky_depth(float depth) { return !(depth < kSkyDepth); }
 ALCOVE_INLINE float linear_depth(Projection p, float depth_ndc) {
   if (is_sky_ndc(p, depth_ndc)) return kSkyDepth;
   float d = min(max(depth_ndc, 0.0f), 1.0f);
-  float tile_size = p.depth_unproject.z * d + p.depth_unproject.w;
-  return min((p.depth_unproject.x * d + p.depth_unproject.y) / max(tile_size, 1e-30f), kSkyDepth);
+  float divisor = p.depth_unproject.z * d + p.depth_unproject.w;
+  return min((p.depth_unproject.x * d + p.depth_unproject.y) / max(divisor, 1e-30f), kSkyDepth);
 }
 
 ALCOVE_INLINE vec2 pixel_centre_uv(Projection p, uvec2 pixel) {

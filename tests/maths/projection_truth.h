@@ -5,7 +5,7 @@
 
 namespace alcove::maths_test {
 
-// Of a view-space position that its tile_size is over 0 for.
+// The uv of a view-space position whose perspective divisor is above 0.
 inline glm::vec2 uv_of_position(const maths::Projection& p, glm::vec3 position) {
   const float depth = -position.z;
   const glm::vec2 sum = glm::vec2(p.position_to_uv) * glm::vec2(position) +
