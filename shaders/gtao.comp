@@ -57,9 +57,9 @@ layout(set = 0, binding = 0) uniform Parameters { GtaoParameters parameters; };
 layout(set = 0, binding = 1,
        r32f) uniform readonly image2D inverse_depth_image;    // SliceSample::inverse_depth
 layout(set = 0, binding = 2) uniform texture2D normal_image;  // xyz, turned by view_from_normal
-// RawOcclusion and line; with SPECULAR also its raw_occlusion and the surface that it belongs to.
+// Packed RawOcclusion and inverse depth; with SPECULAR also those of the GGX lobe and its surface.
 layout(set = 0, binding = 3) uniform writeonly uimage2D raw_image;
-// Bound to the raw_occlusion and never written where no bent normal is wanted.
+// Bound to the raw occlusion and never written where no bent normal is wanted.
 layout(set = 0, binding = 4) uniform writeonly uimage2D bent_image;
 // SliceSample::inverse_depth of the back faces; bound to the front's and never read without
 // kBackFaces.

@@ -40,7 +40,7 @@ struct NamedInput {
   return {};
 }
 
-// What a search may be of, and so the raw_occlusion that it leaves.
+// What a search may be of, and so the raw occlusion that it leaves.
 [[nodiscard]] inline tl::expected<void, Error> check_search(std::uint32_t tile_size,
                                                             std::uint32_t slices) {
   if (tile_size != 1 && tile_size != 2 && tile_size != 4) {

@@ -73,7 +73,7 @@ tl::expected<void, Error> check_textures(const Frame& frame, const ReconstructIn
   return check_inputs(frame.graph, "reconstruct", needed);
 }
 
-// What the shader takes for granted of a texture of the raw_occlusion, which may be of the caller's
+// What the shader takes for granted of a texture of the raw occlusion, which may be of the caller's
 // making.
 tl::expected<void, Error> check_blocks(const Frame& frame, Texture depth, std::uint32_t tile_size,
                                        Texture texture, VkFormat format, const char* name) {

@@ -11,7 +11,7 @@ struct InterleaveOffset {
   std::uint32_t y = 0;
 };
 
-// Every pixel of a block of tile_size x tile_size (1, 2 or 4) once in tile_size^2 frames, those
+// Every pixel of a tile of tile_size x tile_size (1, 2 or 4) once in tile_size^2 frames, those
 // that follow each other far apart: (0,0), (1,1), (1,0), (0,1), and the same within each quarter of
 // 4x4.
 [[nodiscard]] constexpr InterleaveOffset interleave_offset_of(std::uint32_t tile_size,

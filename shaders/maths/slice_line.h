@@ -2,7 +2,7 @@
 //
 // A sample snapped to a texel's centre lies beside the line. If it is of the surface's own tangent
 // plane its depth is moved onto the line along that plane (lies_on_tangent_plane), so it stays
-// exactly open at any tilt and any snap_to_texels; the further it stands off the plane, the less of
+// exactly open at any tilt and any snapping; the further it stands off the plane, the less of
 // that. (The paper projects nothing; others use the sample as it is, and see a tilted plane occlude
 // itself.)
 //

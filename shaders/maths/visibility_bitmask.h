@@ -3,7 +3,7 @@
 //
 // Angles are measured on a square instead of a circle, as diamond_angles: 0 along the view vector,
 // 1 across it, 2 against it, for one division and no root or arc cosine. A side's sectors are equal
-// steps of diamond_angle from the view vector (sector 0) to the tangent plane. What weighs them
+// steps of diamond angle from the view vector (sector 0) to the tangent plane. What weighs them
 // comes last: any weight with an antiderivative is integrated exactly at the ends of the runs of
 // occluded sectors, of which a side has one or two. So one search serves visibility, bent normal
 // and any lobe.
@@ -25,7 +25,7 @@ ALCOVE_INLINE float diamond_angle(vec2 point) {
   return 1.0f - point.y / max(point.x + abs(point.y), 1e-30f);
 }
 
-// Sine and cosine of the angle to the view vector at a diamond_angle in [0,2].
+// Sine and cosine of the angle to the view vector at a diamond angle in [0,2].
 ALCOVE_INLINE vec2 diamond_angle_light(float at) {
   float y = 1.0f - at;
   float x = 1.0f - abs(y);
@@ -41,7 +41,7 @@ ALCOVE_INLINE float tangent_diamond_angle(Slice s, float side) {
   return max(diamond_angle(tangent_light(s, side)), 1e-4f);
 }
 
-// Sectors of a side for each unit of diamond_angle, at least 16.
+// Sectors of a side for each unit of diamond angle, at least 16.
 ALCOVE_INLINE float sectors_per_diamond_angle(Slice s, float side) {
   return float(kSectorCount) / tangent_diamond_angle(s, side);
 }

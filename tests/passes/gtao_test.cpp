@@ -58,7 +58,7 @@ TEST_F(GtaoPass, OpenPlaneIsFullyVisibleAtAnyTilt) {
   }
 }
 
-// What snap_to_texels buys: the same planes, tilted, without it.
+// The same tilted planes without snapping to texel centres: they occlude themselves.
 TEST_F(GtaoPass, WhereSnappingIsNotReckonedWithATiltedPlaneOccludesItself) {
   const TestView view = test_views()[2];
   for (const Estimator estimator : {Estimator::horizons, Estimator::connected}) {

@@ -34,7 +34,7 @@ class Reconstruct : public PassTest {
   static HostImage no_motion();
 };
 
-// Texels on a side of the raw_occlusion of one search in tile_size x tile_size pixels.
+// Texels on a side of the raw occlusion of one search in tile_size x tile_size pixels.
 [[nodiscard]] constexpr std::uint32_t blocks(std::uint32_t pixels, std::uint32_t tile_size) {
   return (pixels + tile_size - 1) / tile_size;
 }
