@@ -136,7 +136,7 @@ typedef enum AlcoveNormalEncoding {
   ALCOVE_NORMAL_ENCODING_UNSIGNED_XYZ = 1,
   // The octahedral map (Cigolle et al. 2014) in xy of a signed or float format.
   ALCOVE_NORMAL_ENCODING_OCTAHEDRAL = 2,
-  // The same packed into [0,1], in any format of at least 2 channels.
+  // The octahedral map packed into [0,1], in any format of at least 2 channels.
   ALCOVE_NORMAL_ENCODING_UNSIGNED_OCTAHEDRAL = 3,
   ALCOVE_NORMAL_ENCODING_MAX_ENUM = 0x7fffffff
 } AlcoveNormalEncoding;
@@ -213,7 +213,7 @@ typedef struct AlcoveSettings {
   float roughness;             // perceptual, 0 to 1, for pixels without AlcoveView::roughness [0.5]
   uint32_t roughness_channel;  // the channel of AlcoveView::roughness, 0 to 3 [0]
   AlcovePrecision precision;   // [UNORM8]
-  // What is written as visibility is 1 - intensity * (1 - visibility^power), cut to [0,1]. 1 and 1
+  // The visibility that is written is 1 - intensity * (1 - visibility^power), cut to [0,1]. 1 and 1
   // change nothing and cost nothing. Multi-bounce, and the specular models but SLICES, read what is
   // written.
   float power;      // above 0 to 16 [1]
@@ -322,7 +322,7 @@ typedef struct AlcoveCamera {
   float view_from_world[16];
 } AlcoveCamera;
 
-// What an engine's matrices have otherwise than AlcoveCamera: for alcoveConvertCamera, to be
+// How an engine's matrices differ from those of AlcoveCamera, for alcoveConvertCamera. Bits to be
 // combined.
 typedef enum AlcoveCameraConvention {
   // Clip space has y up: the viewport has a negative height, or the API's y points up.

@@ -43,7 +43,7 @@ struct OcclusionSettings : SearchSettings, FilterSettings {
   float roughness = 0.5f;               // perceptual, [0,1], of every pixel where no texture has it
   std::uint32_t roughness_channel = 0;  // of the roughness texture, 0 to 3
   Precision precision = Precision::unorm8;
-  // What is written as visibility is 1 - intensity * (1 - visibility^power), cut to [0,1]: 1 and 1
+  // The visibility that is written is 1 - intensity * (1 - visibility^power), cut to [0,1]: 1 and 1
   // change nothing and cost nothing. Above 0 to 16, and 0 to 16. Specular models and multi-bounce
   // read the visibility that is written.
   float power = 1.0f;
