@@ -38,10 +38,10 @@ struct ReconstructSettings : FilterSettings {
   float intensity = 1.0f;  // the same
 };
 
-// The convention of motion vectors: uv in this frame's image minus uv in the last frame's, y down, is
-// scale * vector + offset. Vectors in pixels have a scale of 1 / size, those in normalised device
-// coordinates 0.5 (y of Vulkan down), those from this frame to the last -1. Vectors that were drawn
-// without jitter have an offset: this frame's jitter minus the last frame's, in uv.
+// The convention of motion vectors: uv in this frame's image minus uv in the last frame's, y down,
+// is scale * vector + offset. Vectors in pixels have a scale of 1 / size, those in normalised
+// device coordinates 0.5 (y of Vulkan down), those from this frame to the last -1. Vectors that
+// were drawn without jitter have an offset: this frame's jitter minus the last frame's, in uv.
 struct MotionConvention {
   std::array<float, 2> scale{1.0f, 1.0f};
   std::array<float, 2> offset{0.0f, 0.0f};
