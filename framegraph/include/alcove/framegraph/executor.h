@@ -38,6 +38,7 @@ struct DeviceHandles {
   QueueHandle queues[kQueueClasses];
   bool debug_utils = false;          // VK_EXT_debug_utils is enabled on the instance
   bool storage_multisample = false;  // the feature shaderStorageImageMultisample is enabled
+  bool separate_depth_stencil = false;  // the feature separateDepthStencilLayouts is enabled
 };
 
 // Checks a plan against the declaration and the limits that it was made for.
