@@ -326,8 +326,9 @@ bool Recorder::check_view(std::uint32_t pass, std::uint32_t resource, const Rang
   const auto is_declared = [&](std::uint32_t mip, std::uint32_t layer) {
     for (const AccessRecord& access : graph.pass_accesses(pass)) {
       const Range& own = access.range;
-      if (access.resource == resource && (own.aspects == 0 || own.aspects == seen) && mip >= own.base_mip && mip < own.base_mip + own.mips &&
-          layer >= own.base_layer && layer < own.base_layer + own.layers)
+      if (access.resource == resource && (own.aspects == 0 || own.aspects == seen) &&
+          mip >= own.base_mip && mip < own.base_mip + own.mips && layer >= own.base_layer &&
+          layer < own.base_layer + own.layers)
         return true;
     }
     return false;

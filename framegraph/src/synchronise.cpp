@@ -310,8 +310,8 @@ void Synchroniser::write_again(std::uint32_t position, const AccessRecord& acces
   note(state, access, pass_time(position));
 }
 
-// Makes `last` cover the mips, layers or aspect of `next` too, if the two are neighbours that change alike:
-// both are of one resource.
+// Makes `last` cover the mips, layers or aspect of `next` too, if the two are neighbours that
+// change alike: both are of one resource.
 bool Synchroniser::extend(Transition& last, const Transition& next) {
   const Range& a = last.range;
   const Range& b = next.range;
@@ -320,10 +320,10 @@ bool Synchroniser::extend(Transition& last, const Transition& next) {
                      last.old_layout == next.old_layout && last.new_layout == next.new_layout &&
                      last.src_queue == next.src_queue && last.dst_queue == next.dst_queue;
   const bool same_aspects = a.aspects == b.aspects;
-  const bool next_mips =
-      same_aspects && a.base_layer == b.base_layer && a.layers == b.layers && a.base_mip + a.mips == b.base_mip;
-  const bool next_layers =
-      same_aspects && a.base_mip == b.base_mip && a.mips == b.mips && a.base_layer + a.layers == b.base_layer;
+  const bool next_mips = same_aspects && a.base_layer == b.base_layer && a.layers == b.layers &&
+                         a.base_mip + a.mips == b.base_mip;
+  const bool next_layers = same_aspects && a.base_mip == b.base_mip && a.mips == b.mips &&
+                           a.base_layer + a.layers == b.base_layer;
   const bool next_aspect = !same_aspects && a.base_mip == b.base_mip && a.mips == b.mips &&
                            a.base_layer == b.base_layer && a.layers == b.layers;
   if (!alike || !(next_mips || next_layers || next_aspect)) return false;

@@ -110,7 +110,7 @@ struct AccessRecord {
   VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
   VkFlags usage = 0;
   std::uint32_t resource = kNone;
-  std::uint32_t flags = 0;    // AccessFlags
+  std::uint32_t flags = 0;  // AccessFlags
   // Resolved: kAll only where the base is out of range, aspects only where it is one of two.
   Range range;
   std::uint32_t version = 0;  // that the access names: a write makes the next one

@@ -150,8 +150,7 @@ constexpr bool Graph::access_fits(const Access& access, ResourceKind kind, bool 
 // Whether the resource is as kPlain has it.
 inline bool Graph::is_plain(const ResourceRecord& resource, ResourceKind kind) {
   return resource.mips == 1 && resource.layers == 1 && resource.planes == 1 &&
-         resource.kind == kind &&
-         resource.origin == Origin::transient;
+         resource.kind == kind && resource.origin == Origin::transient;
 }
 
 // The version that the access leaves.

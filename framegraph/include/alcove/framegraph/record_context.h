@@ -44,7 +44,8 @@ class RecordContext {
   // A view of the range that the pass declared for this texture (the first access that names it),
   // or of `range`, which must lie within what is declared. 2D, 2D array when more than one layer is
   // covered, or 3D, unless a type is given. A texture with depth and stencil gives the depth,
-  // unless the range names the stencil. Another format than the texture's needs TextureDesc::flags with MUTABLE_FORMAT, a cube CUBE_COMPATIBLE.
+  // unless the range names the stencil. Another format than the texture's needs TextureDesc::flags
+  // with MUTABLE_FORMAT, a cube CUBE_COMPATIBLE.
   VkImageView view(Texture texture) const;
   VkImageView view(Texture texture, Range range, VkImageViewType type = kViewTypeByRange,
                    VkFormat format = VK_FORMAT_UNDEFINED) const;
