@@ -289,30 +289,30 @@ tl::expected<CutReport, std::string> run_cut(Gpu& gpu, const Scene& scene, const
   if (!renderer) {
     return Failure(std::move(renderer.error()));
   }
-  auto kept = after_cut(*renderer, false);
-  if (!kept) {
-    return Failure(std::move(kept.error()));
+  auto kept_frames = after_cut(*renderer, false);
+  if (!kept_frames) {
+    return Failure(std::move(kept_frames.error()));
   }
-  auto restart = after_cut(*renderer, true);
-  if (!restart) {
-    return Failure(std::move(restart.error()));
+  auto restarted_frames = after_cut(*renderer, true);
+  if (!restarted_frames) {
+    return Failure(std::move(restarted_frames.error()));
   }
   const std::uint32_t cut = path.cut().value_or(0);
-  const auto truth = renderer->truth(cut, kept->front());
+  const auto truth = renderer->truth(cut, kept_frames->front());
   if (!truth) {
     return Failure(truth.error());
   }
   CutReport report;
-  const Mask surfaces = surfaces_of(kept->front());
-  for (std::size_t i = 0; i < kept->size(); ++i) {
-    RenderedFrame& kept = (*kept)[i];
-    RenderedFrame& begun = (*restart)[i];
+  const Mask surfaces = surfaces_of(kept_frames->front());
+  for (std::size_t i = 0; i < kept_frames->size(); ++i) {
+    RenderedFrame& kept = (*kept_frames)[i];
+    RenderedFrame& restarted = (*restarted_frames)[i];
     const std::uint32_t frames = 1u << i;
     const SplitTruth<float>& visibility = truth->visibility;
     report.after.push_back({frames, root(squared_error(kept.visibility, visibility, surfaces)),
-                            root(squared_error(begun.visibility, visibility, surfaces))});
+                            root(squared_error(restarted.visibility, visibility, surfaces))});
     report.pictures.push_back({cut + frames - 1, std::move(kept.visibility),
-                               std::move(begun.visibility), mean_of(visibility)});
+                               std::move(restarted.visibility), mean_of(visibility)});
   }
   return report;
 }
