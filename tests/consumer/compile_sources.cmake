@@ -4,7 +4,9 @@
 # BUILD_DIR has the shaders and tables that the build makes for the passes. INCLUDES lists directories
 # with the headers of Vulkan, tl::expected and GLM. A cross compiler must not see the other headers of the
 # host, so only these subfolders are linked to.
-set(headers ${CMAKE_CURRENT_BINARY_DIR}/compile_sources_include)
+# Several of these may run at the same time, so each compiler has a directory.
+get_filename_component(compiler ${COMPILER} NAME)
+set(headers ${CMAKE_CURRENT_BINARY_DIR}/compile_sources_include_${compiler})
 file(MAKE_DIRECTORY ${headers})
 foreach(include IN LISTS INCLUDES)
   foreach(folder vulkan vk_video tl glm)
