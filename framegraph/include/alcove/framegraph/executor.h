@@ -18,6 +18,7 @@
 #include "alcove/framegraph/compile.h"
 #include "alcove/framegraph/error.h"
 #include "alcove/framegraph/graph.h"
+#include "alcove/framegraph/host_services.h"
 #include "alcove/framegraph/plan.h"
 #include "alcove/framegraph/vulkan_functions.h"
 
@@ -38,6 +39,7 @@ struct DeviceHandles {
   QueueHandle queues[kQueueClasses];
   bool debug_utils = false;          // VK_EXT_debug_utils is enabled on the instance
   bool storage_multisample = false;  // the feature shaderStorageImageMultisample is enabled
+  HostServices host;                 // the caller's allocators and log
 };
 
 // Checks a plan against the declaration and the limits that it was made for.
