@@ -12,7 +12,7 @@
 #include "alcove/passes/apply.h"
 #include "alcove/passes/multi_bounce.h"
 #include "render/frame_read_back.h"
-#include "render/gpu_image.h"
+#include "gpu/gpu_image.h"
 #include "render/probe.h"
 #include "render/read_back.h"
 #include "render/surfaces.h"

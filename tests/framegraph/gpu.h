@@ -12,7 +12,7 @@
 
 #include "alcove/framegraph/framegraph.h"
 #include "alcove/framegraph/verify.h"
-#include "render/vulkan_device.h"
+#include "gpu/vulkan_device.h"
 
 namespace alcove::framegraph {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "render/vulkan_device.h"
+#include "gpu/vulkan_device.h"
 
 namespace alcove::maths_test {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "alcove/alcove.h"
-#include "render/vulkan_device.h"
+#include "gpu/vulkan_device.h"
 
 namespace alcove::passes {
 

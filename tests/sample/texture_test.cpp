@@ -11,7 +11,7 @@
 
 #include "quad_test.h"
 #include "reference/truth.h"
-#include "render/gpu_image.h"
+#include "gpu/gpu_image.h"
 
 namespace alcove::sample {
 namespace {

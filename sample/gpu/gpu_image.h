@@ -5,7 +5,7 @@
 #include <tl/expected.hpp>
 
 #include "alcove/framegraph/types.h"
-#include "render/vulkan_device.h"
+#include "gpu/vulkan_device.h"
 
 namespace alcove::sample {
 

@@ -1,4 +1,4 @@
-#include "render/gpu_image.h"
+#include "gpu/gpu_image.h"
 
 namespace alcove::sample {
 
