@@ -108,7 +108,7 @@ typedef enum AlcoveThicknessUnit {
 
 // How slice directions are distributed over pixels and frames.
 typedef enum AlcovePattern {
-  ALCOVE_PATTERN_GOLDEN = 0,   // 4x4 pixels, rotated by the golden ratio in each frame
+  ALCOVE_PATTERN_GOLDEN = 0,   // lattices without a period, rotated by the golden ratio
   ALCOVE_PATTERN_HILBERT = 1,  // the R2 sequence along a Hilbert curve
   ALCOVE_PATTERN_PAPER = 2,    // the 4x4 pixels and six rotations of [Jimenez 2016]
   ALCOVE_PATTERN_MAX_ENUM = 0x7fffffff
