@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "compute_run.h"
+#include "gpu/vulkan_device.h"
 #include "maths/make_projection.h"
 #include "parity_cases.h"
 #include "parity_spirv.h"
 #include "random_input.h"
-#include "gpu/vulkan_device.h"
 
 namespace alcove::maths_test {
 namespace {
@@ -107,7 +107,7 @@ class Parity : public ::testing::TestWithParam<std::uint32_t> {
   static inline std::unique_ptr<ComputeRun> shared_run;
 };
 
-TEST_P(Parity, DeviceComputesWhatTheCpuComputes) {
+TEST_P(Parity, DeviceAndProcessorComputeTheSameValues) {
   ASSERT_NE(shared_run, nullptr);
   RandomInput random;
   std::vector<vec4> inputs(2 * kInputs);
