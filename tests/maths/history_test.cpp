@@ -1,4 +1,4 @@
-// What the history stores, and how frames accumulate.
+// The texels of the history, and the accumulation of frames.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// The same functions on the device and on the CPU.
+// Compares the functions of shaders/maths on the device and on the processor.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,8 +25,8 @@ struct Bound {
   double absolute, relative;  // their sum is allowed
 };
 
-// What the two may differ by where the function is well conditioned: rounding, and the device's own
-// sine, arc tangent, power and root.
+// Largest allowed differences of well-conditioned functions. They come from rounding and from the
+// device's own sine, arc tangent, power and square root.
 constexpr Bound kBounds[] = {
     {"slice", 1e-4, 1e-5},
     {"visibility", 1e-4, 1e-5},

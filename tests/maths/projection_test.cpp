@@ -92,7 +92,7 @@ struct Imaged {
   double depth_ndc;
 };
 
-// What the matrix itself does to a view-space point.
+// The image of a view-space point, computed with the matrix itself.
 Imaged image_of(const mat4& matrix, glm::dvec3 position) {
   const glm::dvec4 clip = glm::dmat4(matrix) * glm::dvec4(position, 1.0);
   return {glm::dvec2(clip.x, clip.y) / clip.w * 0.5 + 0.5, clip.z / clip.w};

@@ -106,7 +106,8 @@ TEST(SliceLine, BackFaceEndsAnOccluderOnlyBehindItsFrontFace) {
   }
 }
 
-// So that the sectors of an occluder are those between its two ends, whatever lies between them.
+// The sectors of an occluder are then those between its two ends, independent of the points
+// between.
 TEST(SliceLine, BackOfAnOccluderIsOnTheViewRayOfItsFront) {
   RandomInput random;
   for (int i = 0; i < 5000; ++i) {

@@ -1,4 +1,4 @@
-// What is stored between passes: octahedral vectors, packed visibility, the depth pyramid.
+// Values that are stored between passes: octahedral vectors, packed visibility, the depth pyramid.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -120,8 +120,8 @@ TEST(VisibilityBitmask, TheHighestBitRepeatsTheLastOf31Sectors) {
   EXPECT_EQ(maths::repeat_last_sector(1u << 29), 1u << 29);
 }
 
-// What `occluded` leaves visible, sector by sector in double; behind the first occluder only the
-// part 1 - hidden_occlusion of it.
+// The visible integral of a mask, summed over sectors in double precision. Behind the first
+// occluder, only the fraction 1 - hidden_occlusion counts.
 struct Expected {
   double arc = 0.0;
   glm::dvec2 bent{0.0};
@@ -222,7 +222,7 @@ TEST(VisibilityBitmask, HiddenOcclusionGrowsWithTheRunWidthAndItsMeanIsTheSettin
       sum += part;
       last = part;
     }
-    // What the mid-point rule errs by where the part rises steeply from 0.
+    // The tolerance is the error of the mid-point rule where the integrand rises steeply from 0.
     EXPECT_NEAR(sum / kSteps, hidden_occlusion, 2e-3) << hidden_occlusion;
     EXPECT_EQ(maths::hidden_occlusion_behind(1.0f, exponent), 1.0f);
   }
