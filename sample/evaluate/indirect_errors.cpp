@@ -29,17 +29,14 @@ Image<glm::vec3> grey(const Image<float>& values) {
   return result;
 }
 
-// What a model makes of visibility and bent normal; slices know more, and are told by the table.
+// Specular occlusion of a model from visibility and bent normal. For `slices`, which read more than
+// that, it is the table's.
 float specular_of(passes::Specular model, float visibility, const glm::vec3& bent,
                   const glm::vec3& normal, const glm::vec3& view, float roughness) {
   const float alpha = roughness * roughness;
   const glm::vec3 mirror = maths::mirror_direction(normal, view);
   const glm::vec3 raised = maths::raised_bent_normal(bent, normal, visibility);
   switch (model) {
-    case passes::Specular::lagarde:
-      return maths::lagarde_specular_occlusion(glm::dot(normal, view), visibility, alpha);
-    case passes::Specular::smooth_cone:
-      return maths::smooth_specular_occlusion(visibility, raised, normal, mirror, alpha);
     case passes::Specular::cone:
       return maths::specular_occlusion(visibility, raised, normal, mirror, alpha);
     default:

@@ -54,7 +54,7 @@ FrameRequest MotionWalk::request(const Step& step) const {
     request.occlusion.history_frames = 0;
   }
   if (step.gathered == Gathered::nothing) {
-    request.occlusion.filter_radius = 0;
+    request.occlusion.advanced.filter_radius = 0;
   }
   return request;
 }
