@@ -90,11 +90,22 @@ void Synchroniser::find_last_uses() {
   for (std::uint32_t r = 0; r < graph_.resources.size() && !graph_.externals.empty(); ++r) {
     if (graph_.resources[r].origin == Origin::history) want(r);
   }
+  std::fill(std::begin(last_position_), std::end(last_position_), kNone);
+  for (std::uint32_t position = 0; position < plan_.passes.size(); ++position)
+    last_position_[static_cast<std::size_t>(plan_.passes[position].queue)] = position;
   for (std::uint32_t position = from; position < plan_.passes.size(); ++position) {
+    const QueueClass queue = plan_.passes[position].queue;
+    const std::uint16_t frame_before = queues_that_wait(position);
     for_each_live(graph_, plan_, plan_.passes[position].pass, [&](const AccessRecord& access) {
       if (!s_.is_last[access.resource]) return;
-      for_each_sub(graph_, workspace_, access,
-                   [&](std::uint32_t sub) { note(s_.last_uses[sub], access, kBeforeFrame); });
+      for_each_sub(graph_, workspace_, access, [&](std::uint32_t sub) {
+        UseState& last = s_.last_uses[sub];
+        // Uses on another queue came before this one, by a semaphore.
+        if (last.queue != queue) last = {};
+        note(last, access, kBeforeFrame);
+        last.queue = queue;
+        last.frame_before = frame_before;
+      });
     });
   }
 }
@@ -124,8 +135,8 @@ inline void Synchroniser::take_over_memory(std::uint32_t resource) {
     const UseState* const theirs = segment.before ? s_.last_uses.data() : states;
     for (std::uint32_t sub = subs[segment.resource]; sub < subs[segment.resource + 1]; ++sub) {
       const UseState& state = theirs[sub];
-      // With several queues a frame begins when the frame before is done.
-      if (workspace_.several_queues && (segment.before || state.queue != queue_)) {
+      merged.frame_before |= segment.before ? state.frame_before : std::uint16_t{0};
+      if (state.queue != queue_) {
         merged.by_wait = 1;
         continue;
       }
@@ -144,7 +155,41 @@ inline void Synchroniser::take_over_memory(std::uint32_t resource) {
             merge);
   merged.handed_over = 1;
   merged.queue = queue_;
+  if (merged.frame_before != 0)
+    wait_for_frame_before(plan_.placements[resource].first, merged.frame_before);
   for (std::uint32_t sub = subs[resource]; sub < subs[resource + 1]; ++sub) states[sub] = merged;
+}
+
+// UseState::frame_before of a use at this position in the frame before: a queue has to wait for it
+// that is another one and does not know by the end of that frame that the use is done.
+std::uint16_t Synchroniser::queues_that_wait(std::uint32_t position) const {
+  if (!workspace_.several_queues) return 0;
+  const auto used_on = static_cast<std::size_t>(plan_.passes[position].queue);
+  unsigned bits = 0;
+  for (std::size_t queue = 0; queue < kQueueClasses; ++queue) {
+    const std::uint32_t last = last_position_[queue];
+    if (queue == used_on || last == kNone) continue;
+    const std::int32_t known = workspace_.queues.known[last * kQueueClasses + used_on];
+    if (known < static_cast<std::int32_t>(position))
+      bits |= 1u << (queue * kQueueClasses + used_on);
+  }
+  return static_cast<std::uint16_t>(bits);
+}
+
+// The pass takes over memory from the frame before: its submission waits for these queues. Where it
+// knows a pass of this frame on such a queue to be done, the frame before is done there too.
+void Synchroniser::wait_for_frame_before(std::uint32_t position, std::uint16_t frame_before) {
+  const auto own = static_cast<std::size_t>(queue_);
+  unsigned queues = frame_before >> (own * kQueueClasses) & ((1u << kQueueClasses) - 1);
+  for (std::size_t queue = 0; queue < kQueueClasses; ++queue) {
+    if ((queues & (1u << queue)) != 0 &&
+        workspace_.queues.known[position * kQueueClasses + queue] >= 0)
+      queues &= ~(1u << queue);
+  }
+  queues &= ~static_cast<unsigned>(frame_before_[own]);
+  frame_before_[own] |= static_cast<std::uint8_t>(queues);
+  plan_.submissions[plan_.passes[position].submission].frame_before |=
+      static_cast<std::uint8_t>(queues);
 }
 
 void Synchroniser::use(std::uint32_t position, const AccessRecord& access) {

@@ -108,13 +108,16 @@ struct Checker {
   void usage() {
     const ResourceRecord& r = v.graph.resources[access.resource];
     const auto names = [&](VkFlags usage) { return usage_names(r.kind, usage); };
-    if (r.origin == Origin::imported) {
-      const VkFlags has = v.graph.externals[r.external].usage;
+    const bool imported = r.origin == Origin::imported;
+    if (imported || (r.origin == Origin::history && r.kind == ResourceKind::buffer)) {
+      const VkFlags has =
+          imported ? v.graph.externals[r.external].usage : history_usage(v.limits, r);
       const VkFlags missing = access.usage & ~has;
       if (missing != 0)
-        bad(ErrorCode::missing_usage, subject() + " with usage " + names(access.usage) +
-                                          ", but it was imported with " + names(has) +
-                                          ": create it with " + names(missing) + " too");
+        bad(ErrorCode::missing_usage,
+            subject() + " with usage " + names(access.usage) + ", but it was " +
+                (imported ? "imported" : "created") + " with " + names(has) + ": create it with " +
+                names(missing) + (imported ? " too" : " in BufferDesc::usage too"));
     }
     if (r.kind != ResourceKind::texture || v.limits.formats.query == nullptr) return;
     const VkFlags missing =

@@ -28,6 +28,10 @@ struct UseState {
   VkAccessFlags2 unordered_access = 0;  // of the last write, where that is unordered
   std::int32_t write_time = kNever;
   std::int32_t read_time = kNever;
+  // Of the last use of memory in the frame before, and of memory that was handed over from it:
+  // three bits for each queue class, which queues it has to wait for before it takes the memory
+  // over.
+  std::uint16_t frame_before = 0;
   VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
   std::uint32_t transition = kNone;  // the image barrier that made this layout
   // Memory that others had before: its reads do not stand for its writes.

@@ -262,6 +262,19 @@ TEST_F(Validate, ImportWithoutTheNeededUsageIsRefused) {
          "with usage STORAGE, but it was imported with SAMPLED: create it with STORAGE too");
 }
 
+TEST_F(Validate, HistoryWithoutTheNeededUsageIsRefused) {
+  Access addressed = buffer_access::storage_write_compute;
+  addressed.usage |= VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT;
+  BufferHistory history = graph_.create_buffer_history("particles", {64});
+  (void)pass("simulate").write(history.current, addressed);
+  expect(ErrorCode::missing_usage, "create it with SHADER_DEVICE_ADDRESS in BufferDesc::usage too");
+  graph_.reset();
+  history =
+      graph_.create_buffer_history("particles", {64, VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT});
+  (void)pass("simulate").write(history.current, addressed);
+  EXPECT_TRUE(compile(graph_));
+}
+
 TEST_F(Validate, ImportWithoutAVulkanHandleIsRefused) {
   ImportedTexture import;
   import.desc = kDesc;

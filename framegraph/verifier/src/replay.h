@@ -63,7 +63,13 @@ class Replay {
   };
   using Memory = std::map<VkDeviceSize, Bytes>;
 
-  static HappensBefore order_of(const GraphDescription& graph, const Plan& plan);
+  static std::uint32_t queue_count(const GraphDescription& graph, const Plan& plan);
+  static HappensBefore order_of(const GraphDescription& graph, const Plan& plan,
+                                std::uint32_t queues);
+  // The signal of all that a queue did in the frame, beside those of the submissions.
+  std::uint32_t end_signal(std::uint8_t queue) const {
+    return static_cast<std::uint32_t>(plan_.submissions.size()) + queue;
+  }
   void find_expected();
   void begin_frame(bool first);
   void arrive(Sub& sub, std::uint8_t queue, const State& initial_state);
@@ -89,6 +95,7 @@ class Replay {
   void end_frame();
   void check_final_state(std::uint32_t resource);
   void check_final(const FinalState& final);
+  void check_final_order(const FinalState& final, const Operation& operation);
   void check_final_writes(const FinalState& final, const Sub& sub);
 
   template <typename Function>
@@ -112,6 +119,7 @@ class Replay {
   const Limits& limits_;
   const Plan& plan_;
   Errors& errors_;
+  std::uint32_t queue_count_;
   HappensBefore order_;
   std::vector<Resource> resources_;
   std::vector<Memory> memory_;  // by heap
@@ -120,7 +128,7 @@ class Replay {
   std::vector<std::uint32_t> expected_;
   std::vector<std::size_t> first_expected_;
   std::vector<std::vector<std::uint32_t>> last_;  // by resource: the contents at the end
-  bool several_queues_ = false;
+  bool first_frame_ = true;
   std::vector<Barrier> barriers_;  // of the batch in hand
   std::string where_;
 };

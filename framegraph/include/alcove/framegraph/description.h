@@ -29,10 +29,10 @@ struct ResourceRecord {
   std::uint32_t external = kNone;  // index into externals, of an import or a history slot
   ResourceKind kind = ResourceKind::texture;
   Origin origin = Origin::transient;
-  std::uint8_t slot = 0;    // of a history: 0 is this frame's, k is that of k frames ago
-  std::uint8_t slots = 1;   // of a history
-  std::uint32_t flags = 0;  // ResourceFlags
-  VkImageCreateFlags create_flags = 0;
+  std::uint8_t slot = 0;     // of a history: 0 is this frame's, k is that of k frames ago
+  std::uint8_t slots = 1;    // of a history
+  std::uint32_t flags = 0;   // ResourceFlags
+  VkFlags create_flags = 0;  // of a texture, TextureDesc::flags; of a buffer, BufferDesc::usage
   std::uint32_t reserved = 0;
 };
 static_assert(std::has_unique_object_representations_v<ResourceRecord>);

@@ -149,6 +149,12 @@ class Executor {
   // Empty where there is nothing or timestamps are off. Valid until the next call.
   [[nodiscard]] std::span<const PassTiming> timings(std::uint32_t slot = 0);
 
+  // A persistent texture or buffer as the frames recorded so far leave it, for another graph to
+  // import. The other graph's frame comes between two frames of this one, and leaves it in the same
+  // state, which is the import's final state too. Handles are null before a frame has used it.
+  [[nodiscard]] ImportedTexture exported(const Graph& graph, const TextureHistory& texture) const;
+  [[nodiscard]] ImportedBuffer exported(const Graph& graph, const BufferHistory& buffer) const;
+
   // To be called before the caller destroys an image that it imported, if passes asked for views of
   // it other than the one imported: a new image may have the same handle.
   void forget(VkImage image);

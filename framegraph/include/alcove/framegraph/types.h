@@ -64,6 +64,10 @@ struct TextureDesc {
 
 struct BufferDesc {
   VkDeviceSize size = 0;  // bytes
+  // Usage besides what the accesses of the live passes ask for. A history needs it for every usage
+  // that is not of Vulkan 1.0, for example SHADER_DEVICE_ADDRESS_BIT: histories are made once, for
+  // all frames.
+  VkBufferUsageFlags usage = 0;
 };
 
 // How a pass touches a resource. `layout` is for textures only. `usage` is VkImageUsageFlags for a

@@ -1,4 +1,4 @@
-#include "render/vulkan_device.h"
+#include "gpu/vulkan_device.h"
 
 #include <algorithm>
 #include <cstdlib>
