@@ -119,7 +119,7 @@ TEST(Settings, StatedRangeIsTheEnforcedRange) {
       EXPECT_THAT(said, HasSubstr(names_text<Value>()));
     }
   });
-  EXPECT_EQ(numbers, 18);
+  EXPECT_EQ(numbers, 17);
 }
 
 TEST(Settings, SlidersOfferOnlyWhatIsAccepted) {
