@@ -4,6 +4,8 @@
 #include <atomic>
 #include <cstring>
 
+#include "aspects.h"
+
 namespace alcove::framegraph {
 namespace {
 
@@ -162,6 +164,7 @@ std::uint32_t Graph::add_any_access(std::uint32_t pass, std::uint32_t index, std
 }
 
 Range Graph::resolved_range(Range range, const ResourceRecord& resource) {
+  if (range.aspects == aspects(resource.format)) range.aspects = 0;
   if (range.mips == kAll && range.base_mip < resource.mips)
     range.mips = static_cast<std::uint16_t>(resource.mips - range.base_mip);
   if (range.layers == kAll && range.base_layer < resource.layers)

@@ -202,8 +202,10 @@ VkImageView Pool::view(Physical& physical, const Range& range, VkImageViewType t
   info.image = physical.image;
   info.viewType = type;
   info.format = format;
-  info.subresourceRange = {view_aspect(physical.record.format), range.base_mip, range.mips,
-                           physical.layer + range.base_layer, range.layers};
+  const VkImageAspectFlags aspect =
+      range.aspects != 0 ? range.aspects : view_aspect(physical.record.format);
+  info.subresourceRange = {aspect, range.base_mip, range.mips, physical.layer + range.base_layer,
+                           range.layers};
   VkImageView view = VK_NULL_HANDLE;
   if (device_.vk.vkCreateImageView(device_.handles.device, &info, nullptr, &view) != VK_SUCCESS)
     return VK_NULL_HANDLE;

@@ -204,8 +204,9 @@ void Synchroniser::use_several(std::uint32_t position, const AccessRecord& acces
   const ResourceRecord& resource = graph_.resources[access.resource];
   const std::uint32_t first = workspace_.first_sub[access.resource];
   UseState* const states = s_.states.data() + first;
-  UseState* const lead =
-      states + std::size_t{access.range.base_layer} * resource.mips + access.range.base_mip;
+  const std::size_t lead_layer =
+      std::size_t{first_plane(access.range)} * resource.layers + access.range.base_layer;
+  UseState* const lead = states + lead_layer * resource.mips + access.range.base_mip;
   bool alike = true;
   for_each_sub(graph_, workspace_, access,
                [&](std::uint32_t sub) { alike = alike && s_.states[sub] == *lead; });
@@ -215,9 +216,12 @@ void Synchroniser::use_several(std::uint32_t position, const AccessRecord& acces
     return;
   }
   for_each_sub(graph_, workspace_, access, [&](std::uint32_t sub) {
-    const std::uint32_t index = sub - first;
-    const Range range{static_cast<std::uint16_t>(index % resource.mips), 1,
-                      static_cast<std::uint16_t>(index / resource.mips), 1};
+    const std::uint32_t mip = (sub - first) % resource.mips;
+    const std::uint32_t layer = (sub - first) / resource.mips % resource.layers;
+    Range range{static_cast<std::uint16_t>(mip), 1, static_cast<std::uint16_t>(layer), 1};
+    if (resource.planes == 2)
+      range.aspects = sub - first < resource.mips * resource.layers ? VK_IMAGE_ASPECT_DEPTH_BIT
+                                                                    : VK_IMAGE_ASPECT_STENCIL_BIT;
     use_range(position, access, s_.states[sub], range);
   });
 }
@@ -306,8 +310,8 @@ void Synchroniser::write_again(std::uint32_t position, const AccessRecord& acces
   note(state, access, pass_time(position));
 }
 
-// Makes `last` cover the mips or layers of `next` too, if the two are neighbours that change alike:
-// both are of one resource.
+// Makes `last` cover the mips, layers or aspect of `next` too, if the two are neighbours that
+// change alike: both are of one resource.
 bool Synchroniser::extend(Transition& last, const Transition& next) {
   const Range& a = last.range;
   const Range& b = next.range;
@@ -315,12 +319,17 @@ bool Synchroniser::extend(Transition& last, const Transition& next) {
                      last.dst_stages == next.dst_stages && last.dst_access == next.dst_access &&
                      last.old_layout == next.old_layout && last.new_layout == next.new_layout &&
                      last.src_queue == next.src_queue && last.dst_queue == next.dst_queue;
-  const bool next_mips =
-      a.base_layer == b.base_layer && a.layers == b.layers && a.base_mip + a.mips == b.base_mip;
-  const bool next_layers =
-      a.base_mip == b.base_mip && a.mips == b.mips && a.base_layer + a.layers == b.base_layer;
-  if (!alike || !(next_mips || next_layers)) return false;
-  if (next_mips)
+  const bool same_aspects = a.aspects == b.aspects;
+  const bool next_mips = same_aspects && a.base_layer == b.base_layer && a.layers == b.layers &&
+                         a.base_mip + a.mips == b.base_mip;
+  const bool next_layers = same_aspects && a.base_mip == b.base_mip && a.mips == b.mips &&
+                           a.base_layer + a.layers == b.base_layer;
+  const bool next_aspect = !same_aspects && a.base_mip == b.base_mip && a.mips == b.mips &&
+                           a.base_layer == b.base_layer && a.layers == b.layers;
+  if (!alike || !(next_mips || next_layers || next_aspect)) return false;
+  if (next_aspect)
+    last.range.aspects = 0;
+  else if (next_mips)
     last.range.mips = static_cast<std::uint16_t>(a.mips + b.mips);
   else
     last.range.layers = static_cast<std::uint16_t>(a.layers + b.layers);

@@ -1,3 +1,4 @@
+#include "aspects.h"
 #include "print_names.h"
 #include "validate.h"
 
@@ -75,6 +76,13 @@ struct Checker {
     const ResourceRecord& r = v.graph.resources[access.resource];
     if (r.kind == ResourceKind::buffer) return true;
     const Range& range = access.range;
+    if (range.aspects & ~aspects(r.format))
+      return bad(ErrorCode::bad_range, subject() + " in an aspect that its format does not have");
+    if (range.aspects != 0 && !v.limits.separate_depth_stencil)
+      return bad(ErrorCode::bad_range,
+                 subject() +
+                     " in one of its aspects, but the device does not do that: enable "
+                     "separateDepthStencilLayouts and set DeviceHandles::separate_depth_stencil");
     if (range.mips != 0 && range.layers != 0 && range.base_mip + range.mips <= r.mips &&
         range.base_layer + range.layers <= r.layers)
       return true;

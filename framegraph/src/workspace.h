@@ -56,7 +56,7 @@ struct PlaceItem {
 
 struct Workspace {
   // Subresources of all resources are numbered, those of resource r from first_sub[r] on, mips
-  // within layers. A resource whose description is wrong has none.
+  // within layers within planes. A resource whose description is wrong has none.
   std::vector<std::uint32_t> first_sub;
 
   // order -> queues -> all: live passes in execution order.
@@ -166,9 +166,13 @@ inline void for_each_sub(const GraphDescription& graph, const Workspace& workspa
   }
   const ResourceRecord& resource = graph.resources[access.resource];
   const Range& range = access.range;
-  for (std::uint32_t layer = range.base_layer; layer < range.base_layer + range.layers; ++layer) {
-    for (std::uint32_t mip = range.base_mip; mip < range.base_mip + range.mips; ++mip)
-      f(first + layer * resource.mips + mip);
+  const std::uint32_t planes = first_plane(range) + plane_count(resource, range);
+  for (std::uint32_t plane = first_plane(range); plane < planes; ++plane) {
+    for (std::uint32_t i = range.base_layer; i < range.base_layer + range.layers; ++i) {
+      const std::uint32_t layer = plane * resource.layers + i;
+      for (std::uint32_t mip = range.base_mip; mip < range.base_mip + range.mips; ++mip)
+        f(first + layer * resource.mips + mip);
+    }
   }
 }
 

@@ -297,6 +297,20 @@ TEST_F(Validate, RangeBeyondTheMipsIsRefused) {
   expect(ErrorCode::bad_range, "but it has 1 mips and 1 layers");
 }
 
+TEST_F(Validate, AspectsThatTheFormatOrTheDeviceLacksAreRefused) {
+  const Texture color = written("t");
+  pass("reader").read(color, access::sampled_compute, Range::stencil());
+  expect(ErrorCode::bad_range, "in an aspect that its format does not have");
+  graph_.reset();
+  Texture depth = graph_.create_texture("d", {VK_FORMAT_D24_UNORM_S8_UINT, Extent::absolute(8, 8)});
+  depth = pass("draw").write(depth, access::depth_attachment);
+  pass("reader").read(depth, access::sampled_fragment, Range::depth());
+  EXPECT_TRUE(compile(graph_));
+  Limits limits;
+  limits.separate_depth_stencil = false;
+  expect(ErrorCode::bad_range, "set DeviceHandles::separate_depth_stencil", limits);
+}
+
 TEST_F(Validate, ZeroSizesAndSizesOverTheLimitsAreRefused) {
   (void)graph_.create_texture("none", {VK_FORMAT_R8_UNORM, Extent::absolute(0, 4)});
   (void)graph_.create_texture("huge", {VK_FORMAT_R8_UNORM, Extent::absolute(1 << 20, 4)});

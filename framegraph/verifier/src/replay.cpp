@@ -50,8 +50,8 @@ void Replay::run() {
   resources_.resize(graph_.resources.size());
   for (std::uint32_t r = 0; r < graph_.resources.size(); ++r) {
     const ResourceRecord& record = graph_.resources[r];
-    resources_[r].subs.resize(record.kind == ResourceKind::texture ? record.mips * record.layers
-                                                                   : 1);
+    resources_[r].subs.resize(
+        record.kind == ResourceKind::texture ? record.mips * record.layers * record.planes : 1);
   }
   memory_.resize(plan_.heaps.size());
   find_expected();

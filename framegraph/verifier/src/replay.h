@@ -52,7 +52,7 @@ class Replay {
     bool operator==(const Former&) const = default;
   };
   struct Resource {
-    std::vector<Sub> subs;  // mips within layers
+    std::vector<Sub> subs;  // mips within layers within planes
     bool has_memory = false;
     std::vector<Former> former;
   };
@@ -106,9 +106,13 @@ class Replay {
       f(subs[0]);
       return;
     }
-    for (std::uint32_t layer = 0; layer < range.layers; ++layer) {
-      for (std::uint32_t mip = 0; mip < range.mips; ++mip)
-        f(subs[(range.base_layer + layer) * record.mips + range.base_mip + mip]);
+    const bool both = record.planes == 2 && range.aspects == 0;
+    const std::uint32_t from = range.aspects == VK_IMAGE_ASPECT_STENCIL_BIT ? 1 : 0;
+    for (std::uint32_t plane = from; plane < from + (both ? 2 : 1); ++plane) {
+      for (std::uint32_t i = range.base_layer; i < range.base_layer + range.layers; ++i) {
+        for (std::uint32_t mip = 0; mip < range.mips; ++mip)
+          f(subs[(plane * record.layers + i) * record.mips + range.base_mip + mip]);
+      }
     }
   }
   void fail(const std::string& what);

@@ -43,7 +43,7 @@ typedef enum AlcoveThicknessUnit {
 
 // How slice directions are distributed over pixels and frames.
 typedef enum AlcovePattern {
-  ALCOVE_PATTERN_GOLDEN = 0,   // 4x4 pixels, rotated by the golden ratio in each frame
+  ALCOVE_PATTERN_GOLDEN = 0,   // lattices without a period, rotated by the golden ratio
   ALCOVE_PATTERN_HILBERT = 1,  // the R2 sequence along a Hilbert curve
   ALCOVE_PATTERN_PAPER = 2,    // the 4x4 pixels and six rotations of [Jimenez 2016]
   ALCOVE_PATTERN_MAX_ENUM = 0x7fffffff
@@ -52,7 +52,8 @@ typedef enum AlcovePattern {
 // Which pixels a workgroup traces. It changes the cost and not the image.
 typedef enum AlcoveGrouping {
   ALCOVE_GROUPING_NEIGHBOURS = 0,  // 8x8 adjacent tiles
-  ALCOVE_GROUPING_PATTERN = 1,     // every fourth tile in x and y: they have one slice direction
+  // Every fourth tile in x and y. With ALCOVE_PATTERN_PAPER these have one slice direction.
+  ALCOVE_GROUPING_PATTERN = 1,
   ALCOVE_GROUPING_MAX_ENUM = 0x7fffffff
 } AlcoveGrouping;
 

@@ -36,8 +36,9 @@ struct DeviceHandles {
   VkDevice device = VK_NULL_HANDLE;
   PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr;
   QueueHandle queues[kQueueClasses];
-  bool debug_utils = false;          // VK_EXT_debug_utils is enabled on the instance
-  bool storage_multisample = false;  // the feature shaderStorageImageMultisample is enabled
+  bool debug_utils = false;             // VK_EXT_debug_utils is enabled on the instance
+  bool storage_multisample = false;     // the feature shaderStorageImageMultisample is enabled
+  bool separate_depth_stencil = false;  // the feature separateDepthStencilLayouts is enabled
 };
 
 // Checks a plan against the declaration and the limits that it was made for.
