@@ -348,7 +348,7 @@ AlcoveMemory CResize::rest() {
   for (const Specular specular : {Specular::table, Specular::slices}) {
     OcclusionSettings settings = quality_settings(Quality::medium, 0.5f);
     settings.specular = specular;
-    resting_[0].settings = from_settings(settings, shown.advanced);
+    resting_[0].settings = from_settings(settings, resting_[0].advanced);
     for (std::uint32_t i = 0; i < 2 * Engine::kSlots; ++i) {
       draw_frame(resting_, false);
     }
