@@ -2,8 +2,8 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
-// The visible share of each pixel's GGX lobe from its visibility and bent normal (Jimenez et al.
-// 2016, section 6), by one of the models of maths/gtso.h or, with TABLE, by the paper's table.
+// The visible fraction of each pixel's GGX lobe from its visibility and bent normal ([Jimenez 2016],
+// section 6): by the intersection of two cones (maths/gtso.h) or, with TABLE, by the paper's table.
 
 #include "gtso_parameters.h"
 #include "maths/gtso.h"
@@ -13,15 +13,13 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(constant_id = 0) const int kModel = 0;  // SpecularModel
-layout(constant_id = 1) const bool kRoughnessTexture = false;
-layout(constant_id = 2) const int kRoughnessChannel = 0;
-layout(constant_id = 3) const uint kNormalEncoding =
-    0;  // of normal_image, as NormalEncoding has them
+layout(constant_id = 0) const bool kRoughnessTexture = false;
+layout(constant_id = 1) const int kRoughnessChannel = 0;
+layout(constant_id = 2) const uint kNormalEncoding = 0;  // NormalEncoding of normal_image
 
 layout(set = 0, binding = 0) uniform Parameters { GtsoParameters parameters; };
 layout(set = 0, binding = 1) uniform texture2D visibility_image;
-layout(set = 0, binding = 2) uniform texture2D bent_normal_image;  // unread by kLagarde
+layout(set = 0, binding = 2) uniform texture2D bent_normal_image;
 layout(set = 0, binding = 3) uniform texture2D normal_image;
 layout(set = 0, binding = 4) uniform texture2D depth_image;      // linear
 layout(set = 0, binding = 5) uniform texture2D roughness_image;  // unread where there is none
@@ -32,9 +30,6 @@ layout(set = 0, binding = 6) uniform writeonly image2D result_image;
 
 layout(set = 0, binding = 7) readonly buffer Table { uint gtso_table[]; };
 #endif
-
-const int kSmoothCone = 1;
-const int kLagarde = 2;
 
 vec3 fetch_direction(texture2D image, ivec2 pixel, uint encoding, vec3 instead) {
   vec3 given = decode_normal(texelFetch(image, pixel, 0).xyz, encoding);
@@ -73,19 +68,13 @@ float occlusion_by_table(float visibility, vec3 bent, vec3 normal, vec3 reflecti
 float occlusion_of(ivec2 pixel, vec3 normal, vec3 view) {
   float visibility = converged_visibility(texelFetch(visibility_image, pixel, 0).r);
   float roughness = fetch_roughness(pixel);
-  float alpha = roughness * roughness;
-  if (kModel == kLagarde) {
-    return lagarde_specular_occlusion(dot(normal, view), visibility, alpha);
-  }
   vec3 bent =
       raised_bent_normal(fetch_direction(bent_normal_image, pixel, 0u, normal), normal, visibility);
   vec3 reflection = mirror_direction(normal, view);
 #ifdef TABLE
   return occlusion_by_table(visibility, bent, normal, reflection, roughness);
 #else
-  return kModel == kSmoothCone
-             ? smooth_specular_occlusion(visibility, bent, normal, reflection, alpha)
-             : specular_occlusion(visibility, bent, normal, reflection, alpha);
+  return specular_occlusion(visibility, bent, normal, reflection, roughness * roughness);
 #endif
 }
 

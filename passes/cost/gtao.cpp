@@ -12,7 +12,7 @@ constexpr double kOccluderRuns = 2.5;
 
 std::optional<double> gtao_iterations(const PassWork& work, const CompiledLoop& loop) {
   const OcclusionSettings& settings = work.settings;
-  const bool sectors = has_thickness(settings.estimator);
+  const bool sectors = has_thickness(settings.advanced.estimator);
   // Over the slices of a pixel, where there are several; within it over the two half-slices.
   if (settings.slices > 1 && loop.depth == 1) {
     return settings.slices;

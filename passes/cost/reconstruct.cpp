@@ -10,7 +10,7 @@ std::optional<double> reconstruct_iterations(const PassWork& work, const Compile
   if (work.settings.history_frames > 0 && work.state != FrameState::first) {
     return 0.0;
   }
-  const double radius = work.settings.filter_radius;
+  const double radius = work.settings.advanced.filter_radius;
   const double across = work.settings.tile_size > 1 ? 2 * radius : 2 * radius + 1;
   const double corners = radius > 1 ? 4 : 0;
   return loop.depth == 1 ? across : (across * across - corners) / across;

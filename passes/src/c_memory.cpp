@@ -1,4 +1,4 @@
-// What a view takes of memory, from its settings alone.
+// Estimates the memory of a view from its settings.
 #include "alcove/alcove.h"
 #include "alcove/passes/occlusion.h"
 #include "c_settings.h"
@@ -10,7 +10,7 @@ namespace {
 constexpr std::uint32_t kKnownOutputs = ALCOVE_OUTPUT_VISIBILITY | ALCOVE_OUTPUT_BENT_NORMAL |
                                         ALCOVE_OUTPUT_SPECULAR | ALCOVE_OUTPUT_MULTI_BOUNCE;
 
-// Of a texel of the formats that the passes use.
+// Bytes per texel of the formats that the passes use.
 std::uint64_t bytes_of(VkFormat format) {
   switch (format) {
     case VK_FORMAT_R8_UNORM:
@@ -29,40 +29,35 @@ std::uint64_t bytes_of(VkFormat format) {
   }
 }
 
-struct Wanted {
-  bool visibility;
-  bool bent_normal;
-  bool specular;
-  bool multi_bounce;
-  bool by_model;  // specular occlusion from visibility and bent normals
-
-  bool searches_bent(Specular specular_model) const {
-    return bent_normal || (by_model && specular_model != Specular::lagarde);
-  }
-};
-
-Wanted wanted_of(std::uint32_t outputs, Specular model) {
-  const auto has = [outputs](AlcoveOutput output) {
-    return (outputs & static_cast<std::uint32_t>(output)) != 0;
-  };
-  return {has(ALCOVE_OUTPUT_VISIBILITY), has(ALCOVE_OUTPUT_BENT_NORMAL),
-          has(ALCOVE_OUTPUT_SPECULAR), has(ALCOVE_OUTPUT_MULTI_BOUNCE),
-          has(ALCOVE_OUTPUT_SPECULAR) && model != Specular::slices};
+bool has(std::uint32_t outputs, AlcoveOutput output) {
+  return (outputs & static_cast<std::uint32_t>(output)) != 0;
 }
 
-// Bytes of a pixel, and of a tile.
-std::uint64_t pixel_bytes(const Wanted& wanted, const GivenSettings& given, bool normals_given) {
-  const OcclusionSettings& settings = given.settings;
+// Settings with the outputs that are asked for.
+OcclusionSettings with_outputs(const OcclusionSettings& settings, std::uint32_t outputs) {
+  OcclusionSettings result = settings;
+  result.visibility = has(outputs, ALCOVE_OUTPUT_VISIBILITY);
+  result.bent_normal = has(outputs, ALCOVE_OUTPUT_BENT_NORMAL);
+  if (!has(outputs, ALCOVE_OUTPUT_SPECULAR)) {
+    result.specular = Specular::none;
+  }
+  return result;
+}
+
+// Bytes per pixel of the transients, without the raw occlusion.
+std::uint64_t pixel_bytes(const OcclusionSettings& settings, bool multi_bounce,
+                          bool normals_given) {
+  const bool by_cone = specular_reads_bent_normal(settings);
   const std::uint64_t depth = bytes_of(VK_FORMAT_R32_SFLOAT);
   std::uint64_t sum = depth;
-  sum += wanted.by_model || !normals_given ? depth : 0;
+  sum += by_cone || !normals_given ? depth : 0;
   sum += normals_given ? 0 : bytes_of(VK_FORMAT_R16G16B16A16_SFLOAT);
-  sum += needs_back_depth(settings.estimator, settings.thickness_unit) ? depth : 0;
-  sum += needs_second_depth(settings.estimator, settings.depth_layers) ? depth : 0;
-  const bool visibility = wanted.multi_bounce || wanted.by_model;
-  sum += visibility && !wanted.visibility ? bytes_of(scalar_format(settings.precision)) : 0;
-  const bool bent = wanted.searches_bent(given.specular);
-  sum += bent && !wanted.bent_normal ? bytes_of(direction_format(settings.precision)) : 0;
+  sum += needs_back_depth(settings) ? depth : 0;
+  sum += needs_second_depth(settings) ? depth : 0;
+  const bool visibility = multi_bounce || by_cone;
+  sum += visibility && !settings.visibility ? bytes_of(scalar_format(settings.precision)) : 0;
+  const bool bent = needs_bent_normal(settings);
+  sum += bent && !settings.bent_normal ? bytes_of(direction_format(settings.precision)) : 0;
   return sum;
 }
 
@@ -79,22 +74,22 @@ AlcoveResult alcoveEstimateMemory(const AlcoveSettings* settings, uint32_t width
     return ALCOVE_ERROR_INVALID_INPUT;
   }
   const auto given = to_settings(settings);
-  if (!given || given->settings.tile_size < 1) {
+  if (!given) {
     return ALCOVE_ERROR_INVALID_INPUT;
   }
-  const Wanted wanted = wanted_of(outputs, given->specular);
-  const bool lobe = wanted.specular && !wanted.by_model;
-  const bool bent = wanted.searches_bent(given->specular);
+  const OcclusionSettings wanted = with_outputs(*given, outputs);
+  const bool lobe = wanted.specular == Specular::slices;
+  const bool bent = needs_bent_normal(wanted);
   const std::uint64_t tile_bytes =
       bytes_of(raw_format(lobe)) + (bent ? bytes_of(kBentRawFormat) : 0);
   const std::uint64_t pixels = std::uint64_t{width} * height;
-  const std::uint32_t tile = given->settings.tile_size;
+  const std::uint32_t tile = wanted.tile_size;
   const std::uint64_t tiles =
       std::uint64_t{(width + tile - 1) / tile} * ((height + tile - 1) / tile);
+  const bool multi_bounce = has(outputs, ALCOVE_OUTPUT_MULTI_BOUNCE);
   const std::uint64_t transients =
-      pixels * pixel_bytes(wanted, *given, normals_given != VK_FALSE) + tiles * tile_bytes;
-  const std::uint64_t history =
-      given->settings.history_frames > 0 ? pixels * history_bytes(lobe, bent) : 0;
+      pixels * pixel_bytes(wanted, multi_bounce, normals_given != VK_FALSE) + tiles * tile_bytes;
+  const std::uint64_t history = wanted.history_frames > 0 ? pixels * history_bytes(lobe, bent) : 0;
   *memory = {.struct_size = sizeof *memory,
              .transients = transients,
              .transients_unshared = transients,

@@ -1,20 +1,19 @@
 #include "c_settings.h"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <cstdio>
-#include <cstring>
-#include <optional>
+#include <limits>
 #include <type_traits>
 #include <utility>
 
-#include "alcove/passes/setting_names.h"
+#include "alcove/passes/setting_table.h"
 #include "number_text.h"
 
 namespace alcove::passes {
 namespace {
 
-// The two sets of enums have the same numbers.
+// Enums of C++ and of C have the same numbers.
 template <typename Ours, typename Theirs>
 constexpr bool same(Ours ours, Theirs theirs) {
   return static_cast<int>(ours) == static_cast<int>(theirs);
@@ -36,131 +35,134 @@ static_assert(same(ThicknessUnit::radius, ALCOVE_THICKNESS_UNIT_RADIUS) &&
 static_assert(same(Pattern::golden, ALCOVE_PATTERN_GOLDEN) &&
               same(Pattern::hilbert, ALCOVE_PATTERN_HILBERT) &&
               same(Pattern::paper, ALCOVE_PATTERN_PAPER));
+static_assert(same(Grouping::neighbours, ALCOVE_GROUPING_NEIGHBOURS) &&
+              same(Grouping::pattern, ALCOVE_GROUPING_PATTERN));
 static_assert(same(Specular::slices, ALCOVE_SPECULAR_SLICES) &&
               same(Specular::table, ALCOVE_SPECULAR_TABLE) &&
-              same(Specular::cone, ALCOVE_SPECULAR_CONE) &&
-              same(Specular::smooth_cone, ALCOVE_SPECULAR_SMOOTH_CONE) &&
-              same(Specular::lagarde, ALCOVE_SPECULAR_LAGARDE));
+              same(Specular::cone, ALCOVE_SPECULAR_CONE));
 static_assert(same(Precision::unorm8, ALCOVE_PRECISION_UNORM8) &&
               same(Precision::float16, ALCOVE_PRECISION_FLOAT16) &&
               same(Precision::float32, ALCOVE_PRECISION_FLOAT32));
 
-// Calls `visit(name, value in C, value in C++)` for every setting that both have.
+// Calls `visit(field in C, field in C++)` for each setting that both have.
 template <typename Theirs, typename Ours, typename Visit>
-void for_each_setting(Theirs& theirs, Ours& ours, const Visit& visit) {
-  visit("radius", theirs.radius, ours.radius);
-  visit("slices", theirs.slices, ours.slices);
-  visit("steps", theirs.steps, ours.steps);
-  visit("estimator", theirs.estimator, ours.estimator);
-  visit("weighting", theirs.weighting, ours.weighting);
-  visit("thickness", theirs.thickness, ours.thickness);
-  visit("thickness_unit", theirs.thickness_unit, ours.thickness_unit);
-  visit("hidden_occlusion", theirs.hidden_occlusion, ours.hidden_occlusion);
-  visit("depth_layers", theirs.depth_layers, ours.depth_layers);
-  visit("blend", theirs.blend, ours.blend);
-  visit("falloff", theirs.falloff, ours.falloff);
-  visit("tile_size", theirs.tile_size, ours.tile_size);
-  visit("pattern", theirs.pattern, ours.pattern);
-  visit("filter_radius", theirs.filter_radius, ours.filter_radius);
-  visit("filter_tolerance_px", theirs.filter_tolerance_px, ours.filter_tolerance_px);
-  visit("history_frames", theirs.history_frames, ours.history_frames);
-  visit("clamp_width", theirs.clamp_width, ours.clamp_width);
-  visit("specular", theirs.specular, ours.specular);
-  visit("roughness", theirs.roughness, ours.roughness);
-  visit("roughness_channel", theirs.roughness_channel, ours.roughness_channel);
-  visit("precision", theirs.precision, ours.precision);
-  visit("power", theirs.power, ours.power);
-  visit("intensity", theirs.intensity, ours.intensity);
+void for_each_pair(Theirs& theirs, Ours& ours, const Visit& visit) {
+  visit(theirs.radius, ours.radius);
+  visit(theirs.tile_size, ours.tile_size);
+  visit(theirs.slices, ours.slices);
+  visit(theirs.steps, ours.steps);
+  visit(theirs.thickness, ours.thickness);
+  visit(theirs.hidden_occlusion, ours.hidden_occlusion);
+  visit(theirs.depth_layers, ours.depth_layers);
+  visit(theirs.history_frames, ours.history_frames);
+  visit(theirs.specular, ours.specular);
+  visit(theirs.roughness, ours.roughness);
+  visit(theirs.roughness_channel, ours.roughness_channel);
+  visit(theirs.precision, ours.precision);
+  visit(theirs.power, ours.power);
+  visit(theirs.intensity, ours.intensity);
 }
 
-// An enum that has no such value.
-struct Unknown {
-  const char* setting;
-  std::uint32_t number;
-};
-
-// Copies from C, and says where it cannot.
-struct ReadSetting {
-  std::optional<Unknown>& unknown;
-
-  template <typename Theirs, typename Ours>
-  void operator()(const char* name, const Theirs& theirs, Ours& ours) const {
-    if constexpr (std::is_enum_v<Ours>) {
-      const std::uint32_t number = number_of(theirs);
-      // In C an output that nobody wants has no image; there is no value for it.
-      const bool none = std::is_same_v<Ours, Specular> && number == 0;
-      if (number < kNames<Ours>.size() && !none) {
-        ours = static_cast<Ours>(number);
-      } else if (!unknown) {
-        unknown = {name, number};
-      }
-    } else {
-      ours = theirs;
-    }
-  }
-};
-
-tl::expected<OcclusionSettings, Unknown> read(const AlcoveSettings& given) {
-  OcclusionSettings settings;
-  std::optional<Unknown> unknown;
-  for_each_setting(given, settings, ReadSetting{unknown});
-  if (unknown) {
-    return tl::unexpected(*unknown);
-  }
-  return settings;
+template <typename Theirs, typename Ours, typename Visit>
+void for_each_advanced_pair(Theirs& theirs, Ours& ours, const Visit& visit) {
+  visit(theirs.estimator, ours.estimator);
+  visit(theirs.weighting, ours.weighting);
+  visit(theirs.thickness_unit, ours.thickness_unit);
+  visit(theirs.blend, ours.blend);
+  visit(theirs.falloff, ours.falloff);
+  visit(theirs.pattern, ours.pattern);
+  visit(theirs.filter_radius, ours.filter_radius);
+  visit(theirs.filter_tolerance_px, ours.filter_tolerance_px);
+  visit(theirs.clamp_width, ours.clamp_width);
+  visit(theirs.snap_to_texels, ours.snap_to_texels);
+  visit(theirs.extrapolation, ours.extrapolation);
+  visit(theirs.unobserved, ours.unobserved);
+  visit(theirs.grouping, ours.grouping);
 }
 
-// Lines of `name = value`, as far as there is room.
-struct Print {
-  char* text;
-  std::size_t size;
-  std::size_t& length;
-
-  void line(const char* name, const char* value) const {
-    const bool room = length < size;
-    const int more = std::snprintf(room ? text + length : nullptr, room ? size - length : 0,
-                                   "%s = %s\n", name, value);
-    length += static_cast<std::size_t>(std::max(more, 0));
-  }
-  template <typename Theirs, typename Ours>
-  void operator()(const char* name, const Theirs& /*theirs*/, const Ours& ours) const {
-    if constexpr (std::is_enum_v<Ours>) {
-      line(name, name_of(ours).data());
-    } else if constexpr (std::is_same_v<Ours, float>) {
-      line(name, number_text(ours).c_str());
-    } else {
-      line(name, std::to_string(ours).c_str());
-    }
+constexpr auto kToCpp = [](const auto& theirs, auto& ours) {
+  using Ours = std::remove_reference_t<decltype(ours)>;
+  if constexpr (std::is_enum_v<Ours>) {
+    // A number that the enum does not have stays one, for validate() to refuse.
+    const std::uint32_t most = std::numeric_limits<std::underlying_type_t<Ours>>::max();
+    ours = static_cast<Ours>(std::min(number_of(theirs), most));
+  } else if constexpr (std::is_same_v<Ours, bool>) {
+    ours = theirs != VK_FALSE;
+  } else {
+    ours = theirs;
   }
 };
+
+constexpr auto kToC = [](auto& theirs, const auto& ours) {
+  theirs = static_cast<std::remove_reference_t<decltype(theirs)>>(ours);
+};
+
+AlcoveAdvancedSettings from_advanced(const AdvancedSettings& settings) {
+  AlcoveAdvancedSettings result{.struct_size = sizeof(AlcoveAdvancedSettings)};
+  for_each_advanced_pair(result, settings, kToC);
+  return result;
+}
+
+// What AlcoveSettings::advanced of the preset REFERENCE points to.
+const AlcoveAdvancedSettings* reference_advanced() {
+  static const AlcoveAdvancedSettings settings =
+      from_advanced(quality_settings(Quality::reference, 1.0f).advanced);
+  return &settings;
+}
+
+bool is_quality(std::uint32_t number) { return number < kNames<Quality>.size(); }
+
+template <typename Value>
+std::string value_text(const Value& value) {
+  if constexpr (std::is_enum_v<Value>) {
+    return std::string(name_of(value));
+  } else if constexpr (std::is_same_v<Value, float>) {
+    return number_text(value);
+  } else if constexpr (std::is_same_v<Value, bool>) {
+    return value ? "true" : "false";
+  } else {
+    return std::to_string(value);
+  }
+}
 
 }  // namespace
 
-tl::expected<GivenSettings, Failure> to_settings(const AlcoveSettings* given) {
+tl::expected<OcclusionSettings, Failure> to_settings(const AlcoveSettings* given) {
   if (given == nullptr) {
     return invalid("There are no settings: alcoveGetSettings gives some.");
   }
   if (auto right = check_size(given->struct_size, sizeof *given, "AlcoveSettings"); !right) {
     return tl::unexpected(std::move(right.error()));
   }
-  auto settings = read(*given);
-  if (!settings) {
-    const auto [setting, number] = settings.error();
-    return invalid("AlcoveSettings::" + std::string(setting) + " is " + std::to_string(number) +
-                   ", which is none of its values.");
+  OcclusionSettings settings;
+  for_each_pair(*given, settings, kToCpp);
+  if (settings.specular == Specular::none) {
+    return invalid(
+        "The setting 'specular' is 0; it must be a value of AlcoveSpecular. Without an image "
+        "AlcoveView::specular nothing is computed for it.");
   }
-  const Specular specular = std::exchange(settings->specular, Specular::none);
-  return GivenSettings{*settings, specular};
+  if (given->advanced != nullptr) {
+    if (auto right = check_size(given->advanced->struct_size, sizeof *given->advanced,
+                                "AlcoveAdvancedSettings");
+        !right) {
+      return tl::unexpected(std::move(right.error()));
+    }
+    for_each_advanced_pair(*given->advanced, settings.advanced, kToCpp);
+  }
+  if (auto good = validate(settings); !good) {
+    return invalid(std::move(good.error().message));
+  }
+  return settings;
 }
 
-AlcoveSettings from_settings(const OcclusionSettings& settings) {
+AlcoveSettings from_settings(const OcclusionSettings& settings, AlcoveAdvancedSettings& advanced) {
+  advanced = from_advanced(settings.advanced);
   AlcoveSettings result{.struct_size = sizeof(AlcoveSettings)};
-  for_each_setting(result, settings, [](const char* /*name*/, auto& theirs, const auto& ours) {
-    theirs = static_cast<std::remove_reference_t<decltype(theirs)>>(ours);
-  });
+  for_each_pair(result, settings, kToC);
   if (settings.specular == Specular::none) {
     result.specular = ALCOVE_SPECULAR_SLICES;
   }
+  result.advanced = &advanced;
   return result;
 }
 
@@ -170,12 +172,25 @@ using namespace alcove::passes;
 
 AlcoveResult alcoveGetSettings(AlcoveQuality quality, float radius, AlcoveSettings* settings) {
   const std::uint32_t number = number_of(quality);
-  if (settings == nullptr || settings->struct_size != sizeof *settings ||
-      number > static_cast<std::uint32_t>(Quality::reference) || !std::isfinite(radius) ||
-      radius <= 0.0f) {
+  if (settings == nullptr || settings->struct_size != sizeof *settings || !is_quality(number)) {
     return ALCOVE_ERROR_INVALID_INPUT;
   }
-  *settings = from_settings(quality_settings(static_cast<Quality>(number), radius));
+  const OcclusionSettings preset = quality_settings(static_cast<Quality>(number), radius);
+  if (!validate(preset)) {
+    return ALCOVE_ERROR_INVALID_INPUT;
+  }
+  AlcoveAdvancedSettings unused;
+  *settings = from_settings(preset, unused);
+  settings->advanced = preset.advanced == AdvancedSettings{} ? nullptr : reference_advanced();
+  return ALCOVE_SUCCESS;
+}
+
+AlcoveResult alcoveGetAdvancedSettings(AlcoveQuality quality, AlcoveAdvancedSettings* settings) {
+  const std::uint32_t number = number_of(quality);
+  if (settings == nullptr || settings->struct_size != sizeof *settings || !is_quality(number)) {
+    return ALCOVE_ERROR_INVALID_INPUT;
+  }
+  *settings = from_advanced(quality_settings(static_cast<Quality>(number), 1.0f).advanced);
   return ALCOVE_SUCCESS;
 }
 
@@ -186,14 +201,19 @@ size_t alcovePrintSettings(const AlcoveSettings* settings, char* text, size_t si
   if (text == nullptr && size > 0) {
     return 0;
   }
-  if (settings == nullptr || settings->struct_size != sizeof *settings) {
-    return 0;
-  }
-  const auto known = read(*settings);
+  const auto known = to_settings(settings);
   if (!known) {
     return 0;
   }
   std::size_t length = 0;
-  for_each_setting(*settings, *known, Print{text, size, length});
+  for_each_setting(*known, [&](const SettingInfo& info, const auto& value) {
+    if (info.group == SettingGroup::output) {
+      return;
+    }
+    const bool room = length < size;
+    const int more = std::snprintf(room ? text + length : nullptr, room ? size - length : 0,
+                                   "%s = %s\n", info.name, value_text(value).c_str());
+    length += static_cast<std::size_t>(std::max(more, 0));
+  });
   return length;
 }

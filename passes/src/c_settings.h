@@ -1,16 +1,18 @@
-// The settings of the C interface and those of the passes.
+// Converts the settings of the C interface to those of the passes and back.
 #pragma once
 
 #include <cstdint>
 #include <cstring>
 
 #include "alcove/alcove.h"
-#include "alcove/passes/occlusion.h"
+#include "alcove/alcove_advanced.h"
+#include "alcove/passes/settings.h"
 #include "c_failure.h"
 
 namespace alcove::passes {
 
-// The bits of an enum that C wrote: reading one that is no value is undefined in C++.
+// The bits of an enum that C wrote: reading a value that the enum does not have is undefined in
+// C++.
 template <typename Theirs>
 [[nodiscard]] std::uint32_t number_of(const Theirs& value) {
   std::uint32_t number = 0;
@@ -19,14 +21,13 @@ template <typename Theirs>
   return number;
 }
 
-// Settings without the outputs, which an engine asks for by giving images. The enums are checked;
-// numbers are checked by the passes. Null is a failure.
-struct GivenSettings {
-  OcclusionSettings settings;          // with `specular` none
-  Specular specular = Specular::none;  // the model, where one is asked for
-};
-[[nodiscard]] tl::expected<GivenSettings, Failure> to_settings(const AlcoveSettings* given);
+// Settings that validate() accepts. `visibility` and `bent_normal` have their defaults, and
+// `specular` is the model, as if an image of it were given. `given` may be null, which is a
+// failure.
+[[nodiscard]] tl::expected<OcclusionSettings, Failure> to_settings(const AlcoveSettings* given);
 
-[[nodiscard]] AlcoveSettings from_settings(const OcclusionSettings& settings);
+// The result's `advanced` points to `advanced`.
+[[nodiscard]] AlcoveSettings from_settings(const OcclusionSettings& settings,
+                                           AlcoveAdvancedSettings& advanced);
 
 }  // namespace alcove::passes

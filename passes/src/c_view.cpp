@@ -62,13 +62,11 @@ tl::expected<void, Failure> check_given(const AlcoveView& view) {
 // Checks the images that only some settings need.
 tl::expected<void, Failure> check_hidden(const AlcoveView& view,
                                          const OcclusionSettings& settings) {
-  if (needs_back_depth(settings.estimator, settings.thickness_unit) &&
-      view.back_depth.image == VK_NULL_HANDLE) {
+  if (needs_back_depth(settings) && view.back_depth.image == VK_NULL_HANDLE) {
     return invalid(sentence_begin(view) +
                    " has no image of back_depth, which its settings' thickness_unit needs.");
   }
-  if (needs_second_depth(settings.estimator, settings.depth_layers) &&
-      view.second_depth.image == VK_NULL_HANDLE) {
+  if (needs_second_depth(settings) && view.second_depth.image == VK_NULL_HANDLE) {
     return invalid(sentence_begin(view) +
                    " has no image of second_depth, which its settings' depth_layers need.");
   }
@@ -175,7 +173,7 @@ tl::expected<void, Failure> add_view(framegraph::Graph& graph, Kernels& kernels,
   if (!given) {
     return tl::unexpected(std::move(given.error()));
   }
-  OcclusionSettings& settings = given->settings;
+  OcclusionSettings& settings = *given;
   const bool reset = view.reset_history != VK_FALSE;
   auto right = check_given(view).and_then([&] { return check_hidden(view, settings); });
   if (!right) {
@@ -188,7 +186,9 @@ tl::expected<void, Failure> add_view(framegraph::Graph& graph, Kernels& kernels,
   const Occlusion& into = textures->inputs.into;
   settings.visibility = into.visibility || textures->multi_bounce;
   settings.bent_normal = bool(into.bent_normal);
-  settings.specular = into.specular ? given->specular : Specular::none;
+  if (!into.specular) {
+    settings.specular = Specular::none;
+  }
   if (reset) {
     graph.reset_history(ViewName(view.id));
   }

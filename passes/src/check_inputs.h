@@ -1,4 +1,4 @@
-// What a pass asks of the textures that it is given.
+// Checks of the textures that a pass is given.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,6 @@
 #include <string_view>
 
 #include "alcove/passes/frame.h"
-#include "number_text.h"
 
 namespace alcove::passes {
 
@@ -36,33 +35,6 @@ struct NamedInput {
                                   " pixels and " + std::string(inputs.front().name) + " of " +
                                   size_text(wanted) + "; make them equal."});
     }
-  }
-  return {};
-}
-
-// What a search may be of, and so the raw occlusion that it leaves.
-[[nodiscard]] inline tl::expected<void, Error> check_search(std::uint32_t tile_size,
-                                                            std::uint32_t slices) {
-  if (tile_size != 1 && tile_size != 2 && tile_size != 4) {
-    return tl::unexpected(Error{"The resolution is divided by " + std::to_string(tile_size) +
-                                "; it must be 1, 2 or 4."});
-  }
-  if (slices < 1 || slices > 64) {
-    return tl::unexpected(
-        Error{"There are " + std::to_string(slices) + " slices; there must be 1 to 64."});
-  }
-  return {};
-}
-
-[[nodiscard]] inline tl::expected<void, Error> check_roughness(float roughness,
-                                                               std::uint32_t channel) {
-  if (!(roughness >= 0.0f && roughness <= 1.0f)) {
-    return tl::unexpected(
-        Error{"The roughness is " + number_text(roughness) + "; it must be 0 to 1."});
-  }
-  if (channel > 3) {
-    return tl::unexpected(Error{"The channel of the roughness is " + std::to_string(channel) +
-                                "; channels are 0 to 3."});
   }
   return {};
 }

@@ -6,7 +6,6 @@
 
 #include "check_inputs.h"
 #include "format_name.h"
-#include "maths/history.h"
 #include "number_text.h"
 #include "output_format.h"
 
@@ -14,39 +13,6 @@ namespace alcove::passes {
 namespace {
 
 using framegraph::Texture;
-
-constexpr std::uint32_t kMaxReach = 3;
-constexpr float kMaxShape = 16.0f;  // of power and intensity
-
-tl::expected<void, Error> check_settings(const ReconstructSettings& settings) {
-  if (!(settings.filter_tolerance_px > 0.0f) || !std::isfinite(settings.filter_tolerance_px)) {
-    return tl::unexpected(Error{"The filter's tolerance is " +
-                                number_text(settings.filter_tolerance_px) +
-                                " pixels; it must be over 0 and finite."});
-  }
-  if (settings.filter_radius > kMaxReach) {
-    return tl::unexpected(Error{"The filter's reach is " + std::to_string(settings.filter_radius) +
-                                "; it must be 0 to 3 blocks."});
-  }
-  if (settings.history_frames > maths::kMaxHistoryFrames) {
-    return tl::unexpected(Error{"The history is " + std::to_string(settings.history_frames) +
-                                " frames long; it must be 0 to " +
-                                std::to_string(maths::kMaxHistoryFrames) + "."});
-  }
-  if (!(settings.clamp_width >= 0.0f) || !std::isfinite(settings.clamp_width)) {
-    return tl::unexpected(Error{"The history's clamp is " + number_text(settings.clamp_width) +
-                                " deviations wide; it must be at least 0 and finite."});
-  }
-  if (!(settings.power > 0.0f && settings.power <= kMaxShape)) {
-    return tl::unexpected(Error{"The power is " + number_text(settings.power) +
-                                "; it must be above 0 and at most 16."});
-  }
-  if (!(settings.intensity >= 0.0f && settings.intensity <= kMaxShape)) {
-    return tl::unexpected(
-        Error{"The intensity is " + number_text(settings.intensity) + "; it must be 0 to 16."});
-  }
-  return check_roughness(settings.roughness, settings.roughness_channel);
-}
 
 tl::expected<void, Error> check_motion(const MotionConvention& motion) {
   for (std::size_t i = 0; i < 2; ++i) {
@@ -73,8 +39,7 @@ tl::expected<void, Error> check_textures(const Frame& frame, const ReconstructIn
   return check_inputs(frame.graph, "reconstruct", needed);
 }
 
-// What the shader takes for granted of a texture of the raw occlusion, which may be of the caller's
-// making.
+// Checks size and format of a texture of the raw occlusion, which the caller may have made.
 tl::expected<void, Error> check_blocks(const Frame& frame, Texture depth, std::uint32_t tile_size,
                                        Texture texture, VkFormat format, const char* name) {
   const VkExtent3D pixels = frame.graph.extent(depth);
@@ -92,13 +57,21 @@ tl::expected<void, Error> check_blocks(const Frame& frame, Texture depth, std::u
                               ", one for each tile, and " + format_name(format) + "."});
 }
 
+// Tile size and slices that a search can have had.
+tl::expected<void, Error> check_tracing(const RawOcclusionTextures& raw_occlusion) {
+  OcclusionSettings settings;
+  settings.tile_size = raw_occlusion.tile_size;
+  settings.slices = raw_occlusion.slices;
+  return validate(settings);
+}
+
 tl::expected<void, Error> check_raw_occlusion(const Frame& frame, const ReconstructInputs& inputs) {
   const RawOcclusionTextures& raw_occlusion = inputs.raw_occlusion;
   const auto check = [&](Texture texture, VkFormat format, const char* name) {
     return check_blocks(frame, inputs.inverse_depth, raw_occlusion.tile_size, texture, format,
                         name);
   };
-  return check_search(raw_occlusion.tile_size, raw_occlusion.slices)
+  return check_tracing(raw_occlusion)
       .and_then([&] {
         return check(raw_occlusion.raw_occlusion, raw_format(raw_occlusion.lobe), "raw occlusion");
       })
@@ -112,14 +85,13 @@ tl::expected<void, Error> check_raw_occlusion(const Frame& frame, const Reconstr
 }  // namespace
 
 tl::expected<void, Error> check_reconstruct(const Frame& frame, const ReconstructInputs& inputs,
-                                            const ReconstructSettings& settings) {
-  if (!settings.visibility && !inputs.raw_occlusion.bent && !inputs.raw_occlusion.lobe) {
+                                            const OcclusionSettings& settings) {
+  if (!needs_visibility(settings) && !inputs.raw_occlusion.bent && !inputs.raw_occlusion.lobe) {
     return tl::unexpected(
-        Error{"The filter is asked for no visibility, and its raw_occlusion has neither bent "
-              "normals nor a "
-              "lobe; ask for one of the three."});
+        Error{"The pass reconstruct has nothing to write: visibility is off, and the raw occlusion "
+              "has neither bent normals nor a lobe; ask for one of the three."});
   }
-  return check_settings(settings)
+  return validate(settings)
       .and_then([&] { return check_motion(inputs.motion_convention); })
       .and_then([&] { return check_textures(frame, inputs); })
       .and_then([&] { return check_raw_occlusion(frame, inputs); });

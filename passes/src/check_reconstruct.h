@@ -1,4 +1,4 @@
-// What add_reconstruct() asks of what it is given.
+// Checks of what add_reconstruct() is given.
 #pragma once
 
 #include <cstdint>
@@ -7,19 +7,20 @@
 
 namespace alcove::passes {
 
-// What is wrong with settings or textures.
+// Checks settings and textures.
 [[nodiscard]] tl::expected<void, Error> check_reconstruct(const Frame& frame,
                                                           const ReconstructInputs& inputs,
-                                                          const ReconstructSettings& settings);
+                                                          const OcclusionSettings& settings);
 
-// Pixels, each within the last.
+// Sizes in pixels. `now` and `previous` are within `largest`.
 struct ReconstructSizes {
   VkExtent2D now;
   VkExtent2D previous;
   VkExtent2D largest;
 };
 
-// Of `depth`, in this frame and as the frame has the others.
+// The size of `depth` in this frame, and the sizes that the frame states for the last one and at
+// most.
 [[nodiscard]] tl::expected<ReconstructSizes, Error> reconstruct_sizes(const Frame& frame,
                                                                       framegraph::Texture depth);
 

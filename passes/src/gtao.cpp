@@ -1,9 +1,7 @@
 #include "alcove/passes/gtao.h"
 
 #include <array>
-#include <cmath>
 #include <span>
-#include <string>
 #include <utility>
 
 #include "bindings.h"
@@ -12,7 +10,6 @@
 #include "interleave_offset.h"
 #include "maths/slice_line.h"
 #include "maths/visibility_bitmask.h"
-#include "number_text.h"
 #include "output_format.h"
 #include "view_parameters.h"
 
@@ -23,61 +20,17 @@ using framegraph::Texture;
 
 namespace {
 
-tl::expected<void, Error> check_share(const char* name, float value) {
-  if (value >= 0.0f && value <= 1.0f) {
-    return {};
-  }
-  return tl::unexpected(
-      Error{std::string("The ") + name + " is " + number_text(value) + "; it must be 0 to 1."});
-}
-
-tl::expected<void, Error> check_occluders(const GtaoSettings& settings) {
-  if (!(settings.thickness >= 0.0f) || !std::isfinite(settings.thickness)) {
-    return tl::unexpected(Error{"The thickness is " + number_text(settings.thickness) +
-                                "; it must be at least 0 and finite."});
-  }
-  return check_share("hidden_occlusion", settings.hidden_occlusion)
-      .and_then([&] { return check_share("blend", settings.blend); })
-      .and_then([&] { return check_share("falloff", settings.falloff); });
-}
-
-tl::expected<void, Error> check_falloff(const GtaoSettings& settings) {
-  if (settings.falloff > 0.0f && has_thickness(settings.estimator)) {
-    return tl::unexpected(Error{
-        "The falloff is " + number_text(settings.falloff) +
-        ", but only horizons and the heuristic have one: a sector is occluded or it is not."});
-  }
-  return {};
-}
-
-tl::expected<void, Error> check(const GtaoSettings& settings) {
-  if (!(settings.radius > 0.0f) || !std::isfinite(settings.radius)) {
-    return tl::unexpected(Error{"The occlusion radius is " + number_text(settings.radius) +
-                                "; it must be a length over 0 in the scene's units."});
-  }
-  if (settings.steps < 2 || settings.steps > 64) {
-    return tl::unexpected(
-        Error{"There are " + std::to_string(settings.steps) + " steps; there must be 2 to 64."});
-  }
-  if (settings.depth_layers < 1 || settings.depth_layers > 2) {
-    return tl::unexpected(Error{"There are " + std::to_string(settings.depth_layers) +
-                                " layers of depth; there must be 1 or 2."});
-  }
-  return check_search(settings.tile_size, settings.slices)
-      .and_then([&] { return check_roughness(settings.roughness, settings.roughness_channel); })
-      .and_then([&] { return check_occluders(settings); })
-      .and_then([&] { return check_falloff(settings); });
-}
+bool has_lobe(const OcclusionSettings& settings) { return settings.specular == Specular::slices; }
 
 // The textures that the pass writes, made for the graph but not yet written.
 RawOcclusionTextures create_raw_occlusion(const Frame& frame, Texture depth,
-                                          const GtaoSettings& settings) {
+                                          const OcclusionSettings& settings) {
   const auto size = framegraph::Extent::relative(depth, settings.tile_size);
   RawOcclusionTextures result{
-      .tile_size = settings.tile_size, .slices = settings.slices, .lobe = settings.lobe};
+      .tile_size = settings.tile_size, .slices = settings.slices, .lobe = has_lobe(settings)};
   result.raw_occlusion =
-      frame.graph.create_texture("raw occlusion", {raw_format(settings.lobe), size});
-  if (settings.bent_normal) {
+      frame.graph.create_texture("raw occlusion", {raw_format(result.lobe), size});
+  if (needs_bent_normal(settings)) {
     result.bent = frame.graph.create_texture("bent raw_occlusion", {kBentRawFormat, size});
   }
   return result;
@@ -97,10 +50,9 @@ struct Reads {
   bool second_layer = false;
 };
 
-Reads reads_of(const GtaoInputs& inputs, const GtaoSettings& settings) {
-  return {settings.lobe && inputs.roughness,
-          needs_back_depth(settings.estimator, settings.thickness_unit),
-          needs_second_depth(settings.estimator, settings.depth_layers)};
+Reads reads_of(const GtaoInputs& inputs, const OcclusionSettings& settings) {
+  return {has_lobe(settings) && inputs.roughness, needs_back_depth(settings),
+          needs_second_depth(settings)};
 }
 
 tl::expected<void, Error> check_textures(const Frame& frame, const GtaoInputs& inputs,
@@ -114,36 +66,38 @@ tl::expected<void, Error> check_textures(const Frame& frame, const GtaoInputs& i
   return check_inputs(frame.graph, "gtao", needed);
 }
 
-bool by_pattern(const GtaoSettings& settings) {
-  return settings.parts.grouping == Grouping::pattern;
+bool by_pattern(const OcclusionSettings& settings) {
+  return settings.advanced.grouping == Grouping::pattern;
 }
 
 // Whether thickness is a part of distance; else of the radius, or there is none.
-bool of_distance(const GtaoSettings& settings) {
-  return has_thickness(settings.estimator) && settings.thickness_unit == ThicknessUnit::distance;
+bool of_distance(const OcclusionSettings& settings) {
+  return has_thickness(settings.advanced.estimator) &&
+         settings.advanced.thickness_unit == ThicknessUnit::distance;
 }
 
 // Of the shader, in its order.
-std::array<std::uint32_t, 19> constants_of(const GtaoInputs& inputs, const GtaoSettings& settings,
-                                           const Reads& reads, bool perspective) {
+std::array<std::uint32_t, 19> constants_of(const GtaoInputs& inputs,
+                                           const OcclusionSettings& settings, const Reads& reads,
+                                           bool perspective) {
   return {settings.slices,
           settings.steps,
-          flag(settings.bent_normal),
-          static_cast<std::uint32_t>(settings.estimator),
+          flag(needs_bent_normal(settings)),
+          static_cast<std::uint32_t>(settings.advanced.estimator),
           settings.tile_size,
-          static_cast<std::uint32_t>(settings.pattern),
+          static_cast<std::uint32_t>(settings.advanced.pattern),
           flag(perspective),
           flag(reads.roughness),
           channel_if(reads.roughness, settings.roughness_channel),
-          flag(settings.weighting == Weighting::uniform),
-          flag(settings.falloff > 0.0f),
+          flag(settings.advanced.weighting == Weighting::uniform),
+          flag(settings.advanced.falloff > 0.0f),
           flag(of_distance(settings)),
           flag(reads.back_faces),
-          flag(settings.parts.snap_to_texels),
+          flag(settings.advanced.snap_to_texels),
           flag(by_pattern(settings)),
           flag(reads.second_layer),
-          flag(settings.parts.extrapolation),
-          flag(settings.parts.unobserved),
+          flag(settings.advanced.extrapolation),
+          flag(settings.advanced.unobserved),
           static_cast<std::uint32_t>(inputs.normal_encoding)};
 }
 
@@ -171,7 +125,7 @@ void declare_accesses(framegraph::PassBuilder& pass, const GtaoInputs& inputs, c
 }
 
 maths::GtaoParameters parameters_of(const Frame& frame, const GtaoInputs& inputs,
-                                    const GtaoSettings& settings,
+                                    const OcclusionSettings& settings,
                                     const maths::Projection& projection) {
   const InterleaveOffset interleave_offset = interleave_offset_of(settings.tile_size, frame.index);
   const maths::DepthStep step = depth_step(projection, inputs.depth_format);
@@ -184,8 +138,8 @@ maths::GtaoParameters parameters_of(const Frame& frame, const GtaoInputs& inputs
       frame.index,
       settings.thickness * (of_distance(settings) ? 1.0f : settings.radius),
       maths::hidden_exponent(settings.hidden_occlusion),
-      settings.blend,
-      settings.falloff,
+      settings.advanced.blend,
+      settings.advanced.falloff,
       settings.roughness,
       step.constant,
       step.per_inverse_depth};
@@ -208,18 +162,10 @@ std::array<VkImageView, 7> views_of(RecordContext& context, const GtaoInputs& in
 
 }  // namespace
 
-bool needs_back_depth(Estimator estimator, ThicknessUnit unit) {
-  return has_thickness(estimator) && unit == ThicknessUnit::back_faces;
-}
-
-bool needs_second_depth(Estimator estimator, std::uint32_t depth_layers) {
-  return has_thickness(estimator) && depth_layers > 1;
-}
-
 tl::expected<RawOcclusionTextures, Error> add_gtao(const Frame& frame, const GtaoInputs& inputs,
-                                                   const GtaoSettings& settings) {
+                                                   const OcclusionSettings& settings) {
   const Reads reads = reads_of(inputs, settings);
-  auto good = check(settings).and_then([&] { return check_textures(frame, inputs, reads); });
+  auto good = validate(settings).and_then([&] { return check_textures(frame, inputs, reads); });
   if (!good) {
     return tl::unexpected(std::move(good.error()));
   }
@@ -228,7 +174,7 @@ tl::expected<RawOcclusionTextures, Error> add_gtao(const Frame& frame, const Gta
     return tl::unexpected(projection.error());
   }
   const auto kernel =
-      frame.kernels.get(settings.lobe ? Shader::gtao_specular : Shader::gtao,
+      frame.kernels.get(has_lobe(settings) ? Shader::gtao_specular : Shader::gtao,
                         constants_of(inputs, settings, reads, is_perspective(*projection)));
   if (!kernel) {
     return tl::unexpected(kernel.error());

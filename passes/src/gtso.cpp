@@ -1,8 +1,10 @@
 #include "alcove/passes/gtso.h"
 
 #include <array>
+#include <string>
 #include <utility>
 
+#include "alcove/passes/setting_names.h"
 #include "bindings.h"
 #include "check_inputs.h"
 #include "gtso_parameters.h"
@@ -19,9 +21,14 @@ using framegraph::Texture;
 namespace {
 
 tl::expected<void, Error> check(const Frame& frame, const GtsoInputs& inputs,
-                                const GtsoSettings& settings) {
-  if (auto good = check_roughness(settings.roughness, settings.roughness_channel); !good) {
+                                const OcclusionSettings& settings) {
+  if (auto good = validate(settings); !good) {
     return good;
+  }
+  if (!specular_reads_bent_normal(settings)) {
+    return tl::unexpected(Error{"The pass specular occlusion has the setting 'specular' " +
+                                std::string(name_of(settings.specular)) +
+                                "; it must be table or cone."});
   }
   const auto or_visibility = [&](bool needed, Texture texture) {
     return needed ? texture : inputs.visibility;
@@ -30,8 +37,7 @@ tl::expected<void, Error> check(const Frame& frame, const GtsoInputs& inputs,
       {{"visibility", inputs.visibility},
        {"normals", inputs.normals},
        {"linear depth", inputs.depth},
-       {"bent normals",
-        or_visibility(settings.model != SpecularModel::lagarde, inputs.bent_normal)},
+       {"bent normals", inputs.bent_normal},
        {"roughness", or_visibility(bool(inputs.roughness), inputs.roughness)},
        {"a texture for specular occlusion", or_visibility(bool(inputs.into), inputs.into)}}};
   return check_inputs(frame.graph, "specular occlusion", named);
@@ -49,25 +55,20 @@ void declare_reads(framegraph::PassBuilder& pass, const GtsoInputs& inputs) {
 
 }  // namespace
 
-tl::expected<Texture, Error> add_gtso(const Frame& frame, const GtsoInputs& given,
-                                      const GtsoSettings& settings) {
-  if (auto good = check(frame, given, settings); !good) {
+tl::expected<Texture, Error> add_gtso(const Frame& frame, const GtsoInputs& inputs,
+                                      const OcclusionSettings& settings) {
+  if (auto good = check(frame, inputs, settings); !good) {
     return tl::unexpected(std::move(good.error()));
-  }
-  GtsoInputs inputs = given;
-  if (settings.model == SpecularModel::lagarde) {
-    inputs.bent_normal = {};
   }
   const auto projection = projection_of(frame, frame.view, inputs.depth);
   if (!projection) {
     return tl::unexpected(projection.error());
   }
-  const std::array constants{static_cast<std::uint32_t>(settings.model),
-                             flag(bool(inputs.roughness)),
+  const std::array constants{flag(bool(inputs.roughness)),
                              channel_if(bool(inputs.roughness), settings.roughness_channel),
                              static_cast<std::uint32_t>(inputs.normal_encoding)};
   const auto kernel = frame.kernels.get(
-      settings.model == SpecularModel::table ? Shader::gtso_by_table : Shader::gtso, constants);
+      settings.specular == Specular::table ? Shader::gtso_by_table : Shader::gtso, constants);
   if (!kernel) {
     return tl::unexpected(kernel.error());
   }
@@ -83,7 +84,7 @@ tl::expected<Texture, Error> add_gtso(const Frame& frame, const GtsoInputs& give
   pass.record([&kernels = frame.kernels, kernel = *kernel, inputs, result,
                parameters](RecordContext& context) {
     const std::array views{context.view(inputs.visibility),
-                           view_or(context, inputs.bent_normal, inputs.normals),
+                           context.view(inputs.bent_normal),
                            context.view(inputs.normals),
                            context.view(inputs.depth),
                            view_or(context, inputs.roughness, inputs.visibility),

@@ -7,35 +7,18 @@
 namespace alcove::passes {
 namespace {
 
-// The model of a Specular; not for none or slices.
-SpecularModel model_of(Specular specular) {
-  switch (specular) {
-    case Specular::cone:
-      return SpecularModel::cone;
-    case Specular::smooth_cone:
-      return SpecularModel::smooth_cone;
-    case Specular::lagarde:
-      return SpecularModel::lagarde;
-    default:
-      return SpecularModel::table;
-  }
-}
-
-bool by_model(Specular specular) {
-  return specular != Specular::none && specular != Specular::slices;
-}
-
-// Linear depth, which neither searches nor filters read.
+// Adds linear depth where an output, specular occlusion or normals from depth need it.
 tl::expected<framegraph::Texture, Error> add_linear(const Frame& frame,
                                                     const OcclusionInputs& inputs,
                                                     const OcclusionSettings& settings) {
-  const bool read = settings.linear_depth || by_model(settings.specular) || !inputs.normals;
+  const bool read =
+      settings.linear_depth || specular_reads_bent_normal(settings) || !inputs.normals;
   return read ? add_linear_depth(frame, inputs.depth_ndc, 1, 0.0f)
               : tl::expected<framegraph::Texture, Error>(framegraph::Texture{});
 }
 
-// Line depth of what the first surface hides (back faces, a second layer); null where `read` says
-// that the settings do not read it, or it was not given.
+// Inverse depth of back faces or of the second layer. Null where the settings do not read it, or
+// where it was not given.
 tl::expected<framegraph::Texture, Error> add_hidden_inverse_depth(const Frame& frame,
                                                                   framegraph::Texture depth_ndc,
                                                                   bool read,
@@ -44,28 +27,7 @@ tl::expected<framegraph::Texture, Error> add_hidden_inverse_depth(const Frame& f
                            : tl::expected<framegraph::Texture, Error>(framegraph::Texture{});
 }
 
-GtaoSettings gtao_settings(const OcclusionSettings& settings) {
-  GtaoSettings result{static_cast<const SearchSettings&>(settings)};
-  result.bent_normal = settings.bent_normal ||
-                       (by_model(settings.specular) && settings.specular != Specular::lagarde);
-  result.lobe = settings.specular == Specular::slices;
-  result.roughness = settings.roughness;
-  result.roughness_channel = settings.roughness_channel;
-  return result;
-}
-
-ReconstructSettings reconstruct_settings(const OcclusionSettings& settings) {
-  ReconstructSettings result{static_cast<const FilterSettings&>(settings)};
-  result.visibility = settings.visibility || by_model(settings.specular);
-  result.roughness = settings.roughness;
-  result.roughness_channel = settings.roughness_channel;
-  result.precision = settings.precision;
-  result.power = settings.power;
-  result.intensity = settings.intensity;
-  return result;
-}
-
-// Specular occlusion from what was found, into `outputs`.
+// Adds specular occlusion from visibility and bent normals to `outputs`.
 tl::expected<OcclusionOutputs, Error> add_model(const Frame& frame, OcclusionOutputs outputs,
                                                 const OcclusionInputs& inputs, bool in_view_space,
                                                 const OcclusionSettings& settings) {
@@ -80,10 +42,7 @@ tl::expected<OcclusionOutputs, Error> add_model(const Frame& frame, OcclusionOut
                        inputs.normals ? inputs.normal_encoding : NormalEncoding::signed_xyz,
                    .normals_forward_z = inputs.normals && inputs.normals_forward_z,
                    .into = inputs.into.specular},
-                  {.model = model_of(settings.specular),
-                   .roughness = settings.roughness,
-                   .roughness_channel = settings.roughness_channel,
-                   .precision = settings.precision})
+                  settings)
       .map([&](framegraph::Texture specular) {
         outputs.specular = specular;
         return outputs;
@@ -92,54 +51,20 @@ tl::expected<OcclusionOutputs, Error> add_model(const Frame& frame, OcclusionOut
 
 }  // namespace
 
-OcclusionSettings quality_settings(Quality quality, float radius) {
-  OcclusionSettings settings;
-  settings.radius = radius;
-  switch (quality) {
-    case Quality::low:
-      settings.tile_size = 4;
-      settings.steps = 8;
-      settings.history_frames = 32;
-      break;
-    case Quality::medium:
-      settings.tile_size = 2;
-      settings.steps = 10;
-      settings.history_frames = 32;
-      break;
-    case Quality::high:
-      settings.tile_size = 2;
-      settings.slices = 3;
-      settings.steps = 16;
-      settings.history_frames = 32;
-      break;
-    case Quality::ultra:
-      settings.tile_size = 2;
-      settings.slices = 4;
-      settings.steps = 24;
-      settings.history_frames = 32;
-      break;
-    case Quality::reference:
-      settings.estimator = Estimator::horizons;
-      settings.slices = 32;
-      settings.steps = 64;
-      settings.filter_radius = 0;
-      settings.precision = Precision::float32;
-      break;
-  }
-  return settings;
-}
-
 tl::expected<OcclusionOutputs, Error> add_occlusion(const Frame& frame,
                                                     const OcclusionInputs& inputs,
                                                     const OcclusionSettings& settings,
                                                     std::string_view history_name) {
+  if (auto good = validate(settings); !good) {
+    return tl::unexpected(std::move(good.error()));
+  }
   const auto depth = add_linear(frame, inputs, settings);
   if (!depth) {
     return tl::unexpected(depth.error());
   }
   framegraph::Texture normals = inputs.normals;
   const bool in_view_space = inputs.normals_in_view_space || !normals;
-  // Those that are made from depth are plain vectors with the camera along -Z.
+  // Normals that are made from depth are signed vectors with the camera along -Z.
   const NormalEncoding encoding = normals ? inputs.normal_encoding : NormalEncoding::signed_xyz;
   const bool forward_z = normals && inputs.normals_forward_z;
   if (!normals) {
@@ -153,12 +78,10 @@ tl::expected<OcclusionOutputs, Error> add_occlusion(const Frame& frame,
   if (!line) {
     return tl::unexpected(line.error());
   }
-  const auto back_line = add_hidden_inverse_depth(
-      frame, inputs.back_depth_ndc, needs_back_depth(settings.estimator, settings.thickness_unit),
-      "back inverse depth");
+  const auto back_line = add_hidden_inverse_depth(frame, inputs.back_depth_ndc,
+                                                  needs_back_depth(settings), "back inverse depth");
   const auto second_line = add_hidden_inverse_depth(
-      frame, inputs.second_depth_ndc, needs_second_depth(settings.estimator, settings.depth_layers),
-      "second inverse depth");
+      frame, inputs.second_depth_ndc, needs_second_depth(settings), "second inverse depth");
   if (!back_line || !second_line) {
     return tl::unexpected(back_line ? second_line.error() : back_line.error());
   }
@@ -172,7 +95,7 @@ tl::expected<OcclusionOutputs, Error> add_occlusion(const Frame& frame,
                                        .depth_format = frame.graph.format(inputs.depth_ndc),
                                        .normal_encoding = encoding,
                                        .normals_forward_z = forward_z},
-                                      gtao_settings(settings));
+                                      settings);
   if (!raw_occlusion) {
     return tl::unexpected(raw_occlusion.error());
   }
@@ -187,14 +110,15 @@ tl::expected<OcclusionOutputs, Error> add_occlusion(const Frame& frame,
                                          .normal_encoding = encoding,
                                          .normals_forward_z = forward_z,
                                          .motion_convention = inputs.motion_convention},
-                                        reconstruct_settings(settings), history_name);
+                                        settings, history_name);
   if (!filtered) {
     return tl::unexpected(filtered.error());
   }
   const OcclusionOutputs outputs{filtered->visibility, filtered->bent_normal, filtered->specular,
                                  *depth, normals};
-  return by_model(settings.specular) ? add_model(frame, outputs, inputs, in_view_space, settings)
-                                     : tl::expected<OcclusionOutputs, Error>(outputs);
+  return specular_reads_bent_normal(settings)
+             ? add_model(frame, outputs, inputs, in_view_space, settings)
+             : tl::expected<OcclusionOutputs, Error>(outputs);
 }
 
 }  // namespace alcove::passes

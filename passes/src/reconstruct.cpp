@@ -87,7 +87,7 @@ HistoryTextures create_history(Graph& graph, bool wanted, std::string_view name,
 }
 
 // Declares the histories; `valid` is whether those of the previous frame can be read.
-void create_histories(Graph& graph, const ReconstructSettings& settings,
+void create_histories(Graph& graph, const OcclusionSettings& settings,
                       std::string_view history_name, framegraph::Extent largest, Textures& textures,
                       bool& valid) {
   const bool wanted = settings.history_frames > 0;
@@ -104,13 +104,13 @@ void create_histories(Graph& graph, const ReconstructSettings& settings,
 
 // Declares the textures that the pass writes. `valid` is whether last frame's history can be read.
 Textures create_textures(const Frame& frame, const ReconstructInputs& inputs,
-                         const ReconstructSettings& settings, const ReconstructSizes& sizes,
+                         const OcclusionSettings& settings, const ReconstructSizes& sizes,
                          std::string_view history_name, bool& valid) {
   Graph& graph = frame.graph;
   const auto size = framegraph::Extent::absolute(sizes.now.width, sizes.now.height);
   const auto largest = framegraph::Extent::absolute(sizes.largest.width, sizes.largest.height);
   Textures textures{.inputs = inputs};
-  if (settings.visibility) {
+  if (needs_visibility(settings)) {
     textures.result.visibility = given_or_created(graph, inputs.into.visibility, "visibility",
                                                   {scalar_format(settings.precision), size});
   }
@@ -223,25 +223,25 @@ Past past_of(const Frame& frame, const ReconstructSizes& sizes, bool history_val
 
 // The shader's specialisation constants, in its order.
 std::array<std::uint32_t, 13> constants_of(const ReconstructInputs& inputs,
-                                           const ReconstructSettings& settings, bool perspective,
+                                           const OcclusionSettings& settings, bool perspective,
                                            Past past) {
   return {inputs.raw_occlusion.tile_size,
-          settings.filter_radius,
+          settings.advanced.filter_radius,
           flag(bool(inputs.raw_occlusion.bent)),
           flag(inputs.motion && past == Past::moving),
           flag(perspective),
-          flag(settings.clamp_width > 0.0f),
+          flag(settings.advanced.clamp_width > 0.0f),
           flag(past == Past::unchanged),
           flag(bool(inputs.roughness)),
           channel_if(bool(inputs.roughness), settings.roughness_channel),
           flag(past == Past::none),
-          flag(settings.visibility),
+          flag(needs_visibility(settings)),
           static_cast<std::uint32_t>(inputs.normal_encoding),
           flag(settings.power != 1.0f || settings.intensity != 1.0f)};
 }
 
 tl::expected<Kernel, Error> get_kernel(const Frame& frame, const ReconstructInputs& inputs,
-                                       const ReconstructSettings& settings, bool perspective,
+                                       const OcclusionSettings& settings, bool perspective,
                                        Past past) {
   const bool history = settings.history_frames > 0;
   const auto get = [&](Past of) {
@@ -338,7 +338,7 @@ float window_px(const RawOcclusionTextures& raw_occlusion) {
 maths::ReconstructParameters parameters_of(const Frame& frame, const maths::Projection& projection,
                                            const maths::Projection& previous,
                                            const ReconstructInputs& inputs,
-                                           const ReconstructSettings& settings) {
+                                           const OcclusionSettings& settings) {
   const maths::mat4 from_pixel = view_from_pixel(projection);
   // In double: far from the world's origin the two all but cancel.
   const maths::dmat4 to_previous = to_rigid(frame.previous_view.view_from_world) *
@@ -356,9 +356,9 @@ maths::ReconstructParameters parameters_of(const Frame& frame, const maths::Proj
   parameters.slope = maths::vec4(maths::ray_per_px(projection), projection.uv_to_slope.z,
                                  projection.uv_to_slope.w);
   parameters.tolerance =
-      1.0f / (settings.filter_tolerance_px * std::abs(maths::ray_per_px(projection).y));
+      1.0f / (settings.advanced.filter_tolerance_px * std::abs(maths::ray_per_px(projection).y));
   parameters.largest_weight = static_cast<float>(settings.history_frames) - 1.0f;
-  parameters.clamp_width = settings.clamp_width;
+  parameters.clamp_width = settings.advanced.clamp_width;
   parameters.previous_size = maths::vec4(previous.size_px, previous.size_px / projection.size_px);
   parameters.history_depth_scale =
       maths::vec4(history_depth_scale(projection), history_depth_scale(previous));
@@ -389,7 +389,7 @@ Frame without_past(const Frame& frame) {
 
 tl::expected<Occlusion, Error> add_reconstruct(const Frame& given_frame,
                                                const ReconstructInputs& given,
-                                               const ReconstructSettings& settings,
+                                               const OcclusionSettings& settings,
                                                std::string_view history_name) {
   const bool history = settings.history_frames > 0;
   Frame frame = history ? given_frame : without_past(given_frame);

@@ -5,9 +5,9 @@
 #include <cstdlib>
 #include <utility>
 
+#include "alcove/passes/setting_table.h"
 #include "cli/option_value.h"
 #include "cli/settings.h"
-#include "render/setting_table.h"
 
 namespace alcove::sample {
 namespace {
@@ -42,13 +42,13 @@ std::string degrees_text(float radians) {
 std::vector<std::string> changes(Quality quality, const OcclusionSettings& settings) {
   const OcclusionSettings preset = passes::quality_settings(quality, settings.radius);
   std::vector<std::string> before, result;
-  for_each_setting(preset, [&](const SettingInfo& info, const auto& value) {
+  passes::for_each_setting(preset, [&](const passes::SettingInfo& info, const auto& value) {
     before.push_back(fmt::format("{}={}", info.name, text_of(value)));
   });
   std::size_t i = 0;
-  for_each_setting(settings, [&](const SettingInfo& info, const auto& value) {
+  passes::for_each_setting(settings, [&](const passes::SettingInfo& info, const auto& value) {
     std::string now = fmt::format("{}={}", info.name, text_of(value));
-    if (now != before[i++]) {
+    if (now != before[i++] && info.group != passes::SettingGroup::surface) {
       result.push_back(std::move(now));
     }
   });

@@ -1,73 +1,89 @@
 #include "cli/settings.h"
 
+#include <algorithm>
 #include <charconv>
 #include <iomanip>
 #include <sstream>
 #include <string_view>
 #include <utility>
 
-#include "render/setting_table.h"
+#include "alcove/passes/setting_table.h"
+#include "cli/option_value.h"
 
 namespace alcove::sample {
 namespace {
 
 using passes::OcclusionSettings;
+using passes::SettingGroup;
+using passes::SettingInfo;
 using Failure = tl::unexpected<std::string>;
 
-// Each overload reads `text` into a setting; what it takes, when that fails.
-std::string parse(const std::string& text, const SettingInfo& /*info*/, float& value) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool whole = error == std::errc() && end == text.data() + text.size();
-  return whole ? "" : "a number";
-}
-
-std::string parse(const std::string& text, const SettingInfo& info, std::uint32_t& value) {
-  const auto least = static_cast<std::uint32_t>(info.low);
-  const auto most = static_cast<std::uint32_t>(info.high);
-  std::uint32_t read = 0;
+// Each overload reads `text` into a setting. Returns what to give instead where that fails.
+template <typename Number>
+std::string parse_number(const std::string& text, const SettingInfo& info, const char* kind,
+                         Number& value) {
+  Number read = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), read);
   const bool whole = error == std::errc() && end == text.data() + text.size();
-  if (!whole || read < least || read > most) {
-    return "a whole number from " + std::to_string(least) + " to " + std::to_string(most);
+  if (!whole || !info.range.contains(read)) {
+    return kind + info.range.text();
   }
   value = read;
   return "";
 }
 
+std::string parse(const std::string& text, const SettingInfo& info, float& value) {
+  return parse_number(text, info, "a number, ", value);
+}
+
+std::string parse(const std::string& text, const SettingInfo& info, std::uint32_t& value) {
+  return parse_number(text, info, "a whole number, ", value);
+}
+
 template <typename Choice>
 std::string parse(const std::string& text, const SettingInfo& /*info*/, Choice& value) {
-  std::string all;
-  for (std::size_t i = 0; i < passes::kNames<Choice>.size(); ++i) {
-    const std::string_view name = passes::kNames<Choice>[i];
-    if (text == name) {
-      value = static_cast<Choice>(i);
-      return "";
-    }
-    all += (all.empty() ? "" : ", ") + std::string(name);
-  }
-  return "one of " + all;
-}
-
-// What a setting can be, where it is one of some names.
-std::string choices(float /*value*/) { return ""; }
-std::string choices(std::uint32_t /*value*/) { return ""; }
-template <typename Choice>
-std::string choices(Choice /*value*/) {
   const auto& names = passes::kNames<Choice>;
-  std::string all(names.front());
-  for (std::size_t i = 1; i < names.size(); ++i) {
-    all += (i + 1 < names.size() ? ", " : " or ") + std::string(names[i]);
+  const auto found = std::ranges::find(names, text);
+  if (found == names.end()) {
+    return passes::names_text<Choice>();
   }
-  return (names.size() == 2 ? " Either " : " One of ") + all + ".";
+  value = static_cast<Choice>(found - names.begin());
+  return "";
 }
 
-// Sets one by its name; what to give instead, where that fails.
+// What a setting can be, for the help.
+std::string allowed(const SettingInfo& info, float /*value*/) { return info.range.text(); }
+std::string allowed(const SettingInfo& info, std::uint32_t /*value*/) { return info.range.text(); }
+template <typename Choice>
+std::string allowed(const SettingInfo& /*info*/, Choice /*value*/) {
+  return passes::names_text<Choice>();
+}
+
+std::string value_text(float value) { return shown(value); }
+std::string value_text(std::uint32_t value) { return std::to_string(value); }
+template <typename Choice>
+std::string value_text(Choice value) {
+  return std::string(passes::name_of(value));
+}
+
+// Calls `visit(info, field)` for each setting that --set takes: all but those of the surfaces,
+// which have options of their own.
+template <typename Settings, typename Visit>
+void for_each_option(Settings& settings, const Visit& visit) {
+  passes::for_each_setting(settings, [&](const SettingInfo& info, auto& field) {
+    if (info.group != SettingGroup::surface) {
+      visit(info, field);
+    }
+  });
+}
+
+// Changes one setting by its name. Returns what to give instead where that fails.
 std::optional<std::string> set(OcclusionSettings& settings, const std::string& name,
                                const std::string& value) {
   bool known = false;
   std::string wanted;
   std::string names;
-  for_each_setting(settings, [&](const SettingInfo& info, auto& field) {
+  for_each_option(settings, [&](const SettingInfo& info, auto& field) {
     names += (names.empty() ? "" : ", ") + std::string(info.name);
     if (name == info.name) {
       known = true;
@@ -88,12 +104,18 @@ std::optional<std::string> wanted_instead(const std::string& name, const std::st
 }
 
 std::string settings_help() {
-  constexpr int kColumn = 28;
+  constexpr int kColumn = 22;
   std::ostringstream text;
-  text << "Settings, for --set NAME=VALUE:";
+  text << "Settings, for --set NAME=VALUE. Brackets hold what it may be, and the default:";
   const OcclusionSettings settings;
-  for_each_setting(settings, [&](const SettingInfo& info, const auto& field) {
-    text << "\n  " << std::left << std::setw(kColumn) << info.name << info.help << choices(field);
+  bool advanced = false;
+  for_each_option(settings, [&](const SettingInfo& info, const auto& field) {
+    if (info.group == SettingGroup::advanced && !advanced) {
+      advanced = true;
+      text << "\n\nAdvanced settings, which most users never change:";
+    }
+    text << "\n  " << std::left << std::setw(kColumn) << info.name << info.help << " ["
+         << allowed(info, field) << "; " << value_text(field) << "]";
   });
   return text.str();
 }
@@ -106,6 +128,9 @@ tl::expected<OcclusionSettings, std::string> occlusion_settings(const OcclusionO
     if (const auto wanted = set(settings, name, value)) {
       return Failure("--set " + name + "=" + value + ": give " + *wanted);
     }
+  }
+  if (const auto good = passes::validate(settings); !good) {
+    return Failure("--set: " + good.error().message);
   }
   return settings;
 }

@@ -11,16 +11,16 @@
 namespace alcove::sample {
 
 // The occlusion settings that the options ask for: a quality, a radius (the scene's own where none
-// is given), and whatever --set changes. Errors name the setting and what it takes.
+// is given), and whatever --set changes. Errors name the setting and what it may be.
 [[nodiscard]] tl::expected<passes::OcclusionSettings, std::string> occlusion_settings(
     const OcclusionOptions& options, const Scene& scene);
 
-// What to give in place of a --set NAME=VALUE that cannot be read; nothing: it can be. Whether the
-// value goes with the others is the pass's to say.
+// What to give in place of a --set NAME=VALUE whose name is unknown or whose value is out of range;
+// nothing if it is right. Combinations are checked by occlusion_settings().
 [[nodiscard]] std::optional<std::string> wanted_instead(const std::string& name,
                                                         const std::string& value);
 
-// All settings with what they mean, a line each.
+// All settings, a line each: name, meaning, range, default.
 [[nodiscard]] std::string settings_help();
 
 }  // namespace alcove::sample

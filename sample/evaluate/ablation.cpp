@@ -33,9 +33,9 @@ class VariantList {
 
 // Selects an estimator, without the falloff that only horizons and the heuristic have.
 void use(OcclusionSettings& settings, Estimator estimator) {
-  settings.estimator = estimator;
+  settings.advanced.estimator = estimator;
   if (passes::has_thickness(estimator)) {
-    settings.falloff = 0.0f;
+    settings.advanced.falloff = 0.0f;
   }
 }
 
@@ -55,7 +55,7 @@ void add_estimators(VariantList& list) {
 }
 
 void add_occluders(VariantList& list, const OcclusionSettings& base) {
-  if (!passes::has_thickness(base.estimator)) {
+  if (!passes::has_thickness(base.advanced.estimator)) {
     return;
   }
   const char* part = "occluders";
@@ -63,8 +63,9 @@ void add_occluders(VariantList& list, const OcclusionSettings& base) {
   list.add(part, "hidden occlusion 1", [](OcclusionSettings& s) { s.hidden_occlusion = 1.0f; });
   list.add(part, "a third as thick", [](OcclusionSettings& s) { s.thickness /= 3.0f; });
   list.add(part, "three times as thick", [](OcclusionSettings& s) { s.thickness *= 3.0f; });
-  list.add(part, "thickness from back faces",
-           [](OcclusionSettings& s) { s.thickness_unit = passes::ThicknessUnit::back_faces; });
+  list.add(part, "thickness from back faces", [](OcclusionSettings& s) {
+    s.advanced.thickness_unit = passes::ThicknessUnit::back_faces;
+  });
   list.add(part, "two depth layers", [](OcclusionSettings& s) { s.depth_layers = 2; });
 }
 
@@ -86,43 +87,44 @@ void add_sampling(VariantList& list) {
   list.add(part, "twice the slices",
            [](OcclusionSettings& s) { s.slices = std::min(s.slices * 2, 64u); });
   part = "pattern";
-  list.add(part, "golden", [](OcclusionSettings& s) { s.pattern = Pattern::golden; });
-  list.add(part, "Hilbert and R2", [](OcclusionSettings& s) { s.pattern = Pattern::hilbert; });
+  list.add(part, "golden", [](OcclusionSettings& s) { s.advanced.pattern = Pattern::golden; });
+  list.add(part, "Hilbert and R2",
+           [](OcclusionSettings& s) { s.advanced.pattern = Pattern::hilbert; });
   list.add(part, "the paper's, six rotations",
-           [](OcclusionSettings& s) { s.pattern = Pattern::paper; });
+           [](OcclusionSettings& s) { s.advanced.pattern = Pattern::paper; });
   part = "snap_to_texels";
   list.add(part, "samples at texel centres",
-           [](OcclusionSettings& s) { s.parts.snap_to_texels = true; });
+           [](OcclusionSettings& s) { s.advanced.snap_to_texels = true; });
   list.add(part, "samples between texels",
-           [](OcclusionSettings& s) { s.parts.snap_to_texels = false; });
+           [](OcclusionSettings& s) { s.advanced.snap_to_texels = false; });
   part = "border";
   list.add(part, "surfaces are extrapolated",
-           [](OcclusionSettings& s) { s.parts.extrapolation = true; });
-  list.add(part, "surfaces end", [](OcclusionSettings& s) { s.parts.extrapolation = false; });
+           [](OcclusionSettings& s) { s.advanced.extrapolation = true; });
+  list.add(part, "surfaces end", [](OcclusionSettings& s) { s.advanced.extrapolation = false; });
   part = "unobserved";
-  list.add(part, "excluded", [](OcclusionSettings& s) { s.parts.unobserved = true; });
-  list.add(part, "open", [](OcclusionSettings& s) { s.parts.unobserved = false; });
+  list.add(part, "excluded", [](OcclusionSettings& s) { s.advanced.unobserved = true; });
+  list.add(part, "open", [](OcclusionSettings& s) { s.advanced.unobserved = false; });
   part = "grouping";
   list.add(part, "neighbouring pixels",
-           [](OcclusionSettings& s) { s.parts.grouping = Grouping::neighbours; });
+           [](OcclusionSettings& s) { s.advanced.grouping = Grouping::neighbours; });
   list.add(part, "one direction (deinterleaved)",
-           [](OcclusionSettings& s) { s.parts.grouping = Grouping::pattern; });
+           [](OcclusionSettings& s) { s.advanced.grouping = Grouping::pattern; });
 }
 
 void add_reconstruction(VariantList& list, const OcclusionSettings& base) {
   const char* part = "filter";
-  list.add(part, "none", [](OcclusionSettings& s) { s.filter_radius = 0; });
+  list.add(part, "none", [](OcclusionSettings& s) { s.advanced.filter_radius = 0; });
   // With a history only the first two frames use a filter radius above 1.
   if (base.history_frames == 0) {
-    list.add(part, "radius of 1 tile", [](OcclusionSettings& s) { s.filter_radius = 1; });
-    list.add(part, "radius of 3 tiles", [](OcclusionSettings& s) { s.filter_radius = 3; });
+    list.add(part, "radius of 1 tile", [](OcclusionSettings& s) { s.advanced.filter_radius = 1; });
+    list.add(part, "radius of 3 tiles", [](OcclusionSettings& s) { s.advanced.filter_radius = 3; });
   }
   part = "history";
   list.add(part, "none", [](OcclusionSettings& s) { s.history_frames = 0; });
   list.add(part, "8 frames", [](OcclusionSettings& s) { s.history_frames = 8; });
   list.add(part, "none, and no filter", [](OcclusionSettings& s) {
     s.history_frames = 0;
-    s.filter_radius = 0;
+    s.advanced.filter_radius = 0;
   });
 }
 

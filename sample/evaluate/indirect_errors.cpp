@@ -36,10 +36,6 @@ float specular_of(passes::Specular model, float visibility, const glm::vec3& ben
   const glm::vec3 mirror = maths::mirror_direction(normal, view);
   const glm::vec3 raised = maths::raised_bent_normal(bent, normal, visibility);
   switch (model) {
-    case passes::Specular::lagarde:
-      return maths::lagarde_specular_occlusion(glm::dot(normal, view), visibility, alpha);
-    case passes::Specular::smooth_cone:
-      return maths::smooth_specular_occlusion(visibility, raised, normal, mirror, alpha);
     case passes::Specular::cone:
       return maths::specular_occlusion(visibility, raised, normal, mirror, alpha);
     default:

@@ -55,7 +55,7 @@ FrameRequest MotionRenderer::request(const Step& step) const {
     request.occlusion.history_frames = 0;
   }
   if (step.filtering == Filtering::none) {
-    request.occlusion.filter_radius = 0;
+    request.occlusion.advanced.filter_radius = 0;
   }
   return request;
 }

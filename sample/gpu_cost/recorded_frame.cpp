@@ -158,10 +158,10 @@ tl::expected<void, std::string> FrameRecorder::declare(FrameState state) {
   if (inputs_.motion) {
     inputs.motion = import("motion", VK_FORMAT_R16G16_SFLOAT);
   }
-  if (passes::needs_back_depth(settings.estimator, settings.thickness_unit)) {
+  if (passes::needs_back_depth(settings)) {
     inputs.back_depth_ndc = import("back-face depth", VK_FORMAT_D32_SFLOAT);
   }
-  if (passes::needs_second_depth(settings.estimator, settings.depth_layers)) {
+  if (passes::needs_second_depth(settings)) {
     inputs.second_depth_ndc = import("second depth", VK_FORMAT_D32_SFLOAT);
   }
   const auto outputs = passes::add_occlusion(frame, inputs, settings);

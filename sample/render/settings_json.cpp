@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "render/setting_table.h"
+#include "alcove/passes/setting_table.h"
 
 namespace alcove::sample {
 namespace {
@@ -21,8 +21,11 @@ Json show(Choice value) {
 
 Json to_json(const passes::OcclusionSettings& settings) {
   Json json;
-  for_each_setting(
-      settings, [&](const SettingInfo& info, const auto& field) { json[info.name] = show(field); });
+  passes::for_each_setting(settings, [&](const passes::SettingInfo& info, const auto& field) {
+    if (info.group != passes::SettingGroup::surface) {
+      json[info.name] = show(field);
+    }
+  });
   return json;
 }
 

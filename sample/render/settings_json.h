@@ -6,7 +6,7 @@
 
 namespace alcove::sample {
 
-// Every occlusion setting by the name that --set accepts.
+// Every occlusion setting that --set accepts, by its name.
 [[nodiscard]] nlohmann::ordered_json to_json(const passes::OcclusionSettings& settings);
 
 }  // namespace alcove::sample

@@ -19,8 +19,7 @@ bool HiddenDepths::covers(const HiddenDepths& other) const {
 }
 
 HiddenDepths hidden_depths_of(const passes::OcclusionSettings& settings) {
-  return {passes::needs_back_depth(settings.estimator, settings.thickness_unit),
-          passes::needs_second_depth(settings.estimator, settings.depth_layers)};
+  return {passes::needs_back_depth(settings), passes::needs_second_depth(settings)};
 }
 
 passes::OcclusionInputs occlusion_inputs(const Surfaces& surfaces) {

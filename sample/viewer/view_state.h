@@ -48,7 +48,7 @@ struct ViewState {
   passes::OcclusionSettings settings = state.settings;
   switch (state.comparison) {
     case Comparison::kHorizons:
-      settings.estimator = passes::Estimator::horizons;
+      settings.advanced.estimator = passes::Estimator::horizons;
       return settings;
     case Comparison::kReference:
       settings = passes::quality_settings(passes::Quality::reference, settings.radius);

@@ -88,23 +88,6 @@ ALCOVE_INLINE float specular_occlusion(float visibility, vec3 bent_normal, vec3 
                                  reflection);
 }
 
-// The same with both intersections by a smooth step: cheaper, and as open where nothing is hidden.
-ALCOVE_INLINE float smooth_specular_occlusion(float visibility, vec3 bent_normal, vec3 normal,
-                                              vec3 reflection, float alpha) {
-  float lobe = lobe_cone(max(alpha, 1e-3f));
-  float above = cap_intersection_smooth(kHalfPi, lobe, angle_between(normal, reflection));
-  float seen = cap_intersection_smooth(visibility_cone(visibility), lobe,
-                                       angle_between(bent_normal, reflection));
-  return clamp(seen / max(above, 1e-12f), 0.0f, 1.0f);
-}
-
-// Lagarde and de Rousiers 2014: from visibility and the cosine of the view alone. Open stays open.
-ALCOVE_INLINE float lagarde_specular_occlusion(float n_dot_v, float visibility, float alpha) {
-  float v = clamp(visibility, 0.0f, 1.0f);
-  float base = clamp(n_dot_v, 0.0f, 1.0f) + v;
-  return clamp(pow(max(base, 1e-6f), exp2(-16.0f * alpha - 1.0f)) - 1.0f + v, 0.0f, 1.0f);
-}
-
 ALCOVE_MATHS_END
 
 #endif

@@ -42,14 +42,6 @@ ALCOVE_INLINE float cap_intersection(float a, float b, float d) {
   return clamp(area, 0.0f, cap_area(small));
 }
 
-// The common approximation (Oat and Sander 2007): the smaller cap's area times a smooth step of the
-// angle between the axes. Off by up to 0.16 of the smaller cap.
-ALCOVE_INLINE float cap_intersection_smooth(float a, float b, float d) {
-  float inside = abs(a - b);
-  float t = clamp((d - inside) / max(a + b - inside, 1e-6f), 0.0f, 1.0f);
-  return cap_area(min(a, b)) * (1.0f - t * t * (3.0f - 2.0f * t));
-}
-
 ALCOVE_MATHS_END
 
 #endif

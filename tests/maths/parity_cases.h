@@ -125,13 +125,11 @@ ALCOVE_INLINE vec4 parity_of_light(uint which, vec4 a, vec4 b) {
       return vec4(ggx_reflection_density(normal, view, light, alpha), ggx_masking(view.z, alpha),
                   ggx_distribution(light.z, alpha), 0.0f);
     case 11u:
-      return vec4(cap_intersection(b.x * kHalfPi, b.y * kHalfPi, b.z * kPi),
-                  cap_intersection_smooth(b.x * kHalfPi, b.y * kHalfPi, b.z * kPi),
-                  visibility_cone(b.w), lobe_cone(b.x));
+      return vec4(cap_intersection(b.x * kHalfPi, b.y * kHalfPi, b.z * kPi), visibility_cone(b.w),
+                  lobe_cone(b.x), 0.0f);
     case 12u:
       return vec4(specular_occlusion(b.y, view, normal, light, alpha),
-                  lagarde_specular_occlusion(view.z, b.y, alpha), multi_bounce_channel(b.y, b.z),
-                  0.0f);
+                  multi_bounce_channel(b.y, b.z), 0.0f, 0.0f);
   }
   return vec4(0.0f);
 }

@@ -14,12 +14,12 @@ class BackFaces : public HiddenDepthTest {};
 
 OcclusionSettings exact(Estimator estimator, float radius) {
   OcclusionSettings settings = without_fill(estimator, radius);
-  settings.thickness_unit = ThicknessUnit::back_faces;
+  settings.advanced.thickness_unit = ThicknessUnit::back_faces;
   return settings;
 }
 
 OcclusionSettings of_thickness(OcclusionSettings settings, float thickness) {
-  settings.thickness_unit = ThicknessUnit::radius;
+  settings.advanced.thickness_unit = ThicknessUnit::radius;
   settings.thickness = thickness;
   return settings;
 }
@@ -105,7 +105,7 @@ TEST_F(BackFaces, ASolidThickerThanTheRadiusOccludesAsHorizonsDo) {
       OcclusionSettings settings = exact(estimator, radius);
       const HostImage image = visibility(view, drawing, backs, settings);
       const HostImage thick = visibility(view, drawing, backs, of_thickness(settings, 1e4f));
-      settings.estimator = Estimator::horizons;
+      settings.advanced.estimator = Estimator::horizons;
       const HostImage horizons = visibility(view, drawing, backs, settings);
       for (std::size_t i = 0; i < image.texels.size(); ++i) {
         if (estimator == Estimator::bitmask) {

@@ -69,44 +69,51 @@ TEST_F(BadInput, EverySettingOutOfRangeIsNamed) {
     Spoil spoil;
   };
   const std::vector<Case> cases{
-      {"radius", [](View&, OcclusionSettings& s) { s.radius = 0.0f; }},
-      {"radius", [](View&, OcclusionSettings& s) { s.radius = -1.0f; }},
-      {"radius", [](View&, OcclusionSettings& s) { s.radius = kNaN; }},
-      {"radius", [](View&, OcclusionSettings& s) { s.radius = kInfinity; }},
-      {"steps", [](View&, OcclusionSettings& s) { s.steps = 0; }},
-      {"steps", [](View&, OcclusionSettings& s) { s.steps = 65; }},
-      {"slices", [](View&, OcclusionSettings& s) { s.slices = 0; }},
-      {"slices", [](View&, OcclusionSettings& s) { s.slices = 4000000000u; }},
-      {"resolution", [](View&, OcclusionSettings& s) { s.tile_size = 3; }},
-      {"resolution", [](View&, OcclusionSettings& s) { s.tile_size = 0; }},
-      {"The thickness is", [](View&, OcclusionSettings& s) { s.thickness = -0.1f; }},
-      {"The thickness is", [](View&, OcclusionSettings& s) { s.thickness = kNaN; }},
-      {"The thickness is", [](View&, OcclusionSettings& s) { s.thickness = kInfinity; }},
-      {"The hidden_occlusion is", [](View&, OcclusionSettings& s) { s.hidden_occlusion = 1.5f; }},
-      {"The blend is", [](View&, OcclusionSettings& s) { s.blend = kNaN; }},
-      {"The falloff is", [](View&, OcclusionSettings& s) { s.falloff = -0.5f; }},
-      {"only horizons and the heuristic", [](View&, OcclusionSettings& s) { s.falloff = 0.5f; }},
-      {"The hidden_occlusion is", [](View&, OcclusionSettings& s) { s.hidden_occlusion = kNaN; }},
-      {"tolerance", [](View&, OcclusionSettings& s) { s.filter_tolerance_px = 0.0f; }},
-      {"tolerance", [](View&, OcclusionSettings& s) { s.filter_tolerance_px = kNaN; }},
-      {"tolerance", [](View&, OcclusionSettings& s) { s.filter_tolerance_px = kInfinity; }},
-      {"reach", [](View&, OcclusionSettings& s) { s.filter_radius = 4; }},
-      {"history", [](View&, OcclusionSettings& s) { s.history_frames = 256; }},
-      {"clamp", [](View&, OcclusionSettings& s) { s.clamp_width = -1.0f; }},
-      {"clamp", [](View&, OcclusionSettings& s) { s.clamp_width = kNaN; }},
-      {"The roughness is", [](View&, OcclusionSettings& s) { s.roughness = 1.1f; }},
-      {"The roughness is", [](View&, OcclusionSettings& s) { s.roughness = kNaN; }},
-      {"The channel of the roughness is",
+      {"'radius' is 0; it must be above 0 and finite.",
+       [](View&, OcclusionSettings& s) { s.radius = 0.0f; }},
+      {"'radius' is", [](View&, OcclusionSettings& s) { s.radius = -1.0f; }},
+      {"'radius' is", [](View&, OcclusionSettings& s) { s.radius = kNaN; }},
+      {"'radius' is", [](View&, OcclusionSettings& s) { s.radius = kInfinity; }},
+      {"'steps' is", [](View&, OcclusionSettings& s) { s.steps = 0; }},
+      {"'steps' is", [](View&, OcclusionSettings& s) { s.steps = 65; }},
+      {"'slices' is", [](View&, OcclusionSettings& s) { s.slices = 0; }},
+      {"'slices' is", [](View&, OcclusionSettings& s) { s.slices = 4000000000u; }},
+      {"'tile_size' is", [](View&, OcclusionSettings& s) { s.tile_size = 3; }},
+      {"'tile_size' is", [](View&, OcclusionSettings& s) { s.tile_size = 0; }},
+      {"'thickness' is", [](View&, OcclusionSettings& s) { s.thickness = -0.1f; }},
+      {"'thickness' is", [](View&, OcclusionSettings& s) { s.thickness = kNaN; }},
+      {"'thickness' is", [](View&, OcclusionSettings& s) { s.thickness = kInfinity; }},
+      {"'hidden_occlusion' is", [](View&, OcclusionSettings& s) { s.hidden_occlusion = 1.5f; }},
+      {"'blend' is", [](View&, OcclusionSettings& s) { s.advanced.blend = kNaN; }},
+      {"'falloff' is", [](View&, OcclusionSettings& s) { s.advanced.falloff = -0.5f; }},
+      {"with the estimator connected",
+       [](View&, OcclusionSettings& s) { s.advanced.falloff = 0.5f; }},
+      {"'hidden_occlusion' is", [](View&, OcclusionSettings& s) { s.hidden_occlusion = kNaN; }},
+      {"'filter_tolerance_px' is",
+       [](View&, OcclusionSettings& s) { s.advanced.filter_tolerance_px = 0.0f; }},
+      {"'filter_tolerance_px' is",
+       [](View&, OcclusionSettings& s) { s.advanced.filter_tolerance_px = kNaN; }},
+      {"'filter_tolerance_px' is",
+       [](View&, OcclusionSettings& s) { s.advanced.filter_tolerance_px = kInfinity; }},
+      {"'filter_radius' is 4; it must be 0 to 3.",
+       [](View&, OcclusionSettings& s) { s.advanced.filter_radius = 4; }},
+      {"'history_frames' is 128; it must be 0 to 127.",
+       [](View&, OcclusionSettings& s) { s.history_frames = 128; }},
+      {"'clamp_width' is", [](View&, OcclusionSettings& s) { s.advanced.clamp_width = -1.0f; }},
+      {"'clamp_width' is", [](View&, OcclusionSettings& s) { s.advanced.clamp_width = kNaN; }},
+      {"'roughness' is", [](View&, OcclusionSettings& s) { s.roughness = 1.1f; }},
+      {"'roughness' is", [](View&, OcclusionSettings& s) { s.roughness = kNaN; }},
+      {"'roughness_channel' is 4; it must be 0 to 3.",
        [](View&, OcclusionSettings& s) { s.roughness_channel = 4; }},
-      {"The power is", [](View&, OcclusionSettings& s) { s.power = 0.0f; }},
-      {"The power is", [](View&, OcclusionSettings& s) { s.power = kNaN; }},
-      {"The intensity is", [](View&, OcclusionSettings& s) { s.intensity = -1.0f; }},
-      {"The intensity is", [](View&, OcclusionSettings& s) { s.intensity = 17.0f; }},
-      {"layers", [](View&, OcclusionSettings& s) { s.depth_layers = 0; }},
-      {"layers", [](View&, OcclusionSettings& s) { s.depth_layers = 3; }},
+      {"'power' is", [](View&, OcclusionSettings& s) { s.power = 0.0f; }},
+      {"'power' is", [](View&, OcclusionSettings& s) { s.power = kNaN; }},
+      {"'intensity' is", [](View&, OcclusionSettings& s) { s.intensity = -1.0f; }},
+      {"'intensity' is", [](View&, OcclusionSettings& s) { s.intensity = 17.0f; }},
+      {"'depth_layers' is", [](View&, OcclusionSettings& s) { s.depth_layers = 0; }},
+      {"'depth_layers' is", [](View&, OcclusionSettings& s) { s.depth_layers = 3; }},
       {"needs a texture of second depth", [](View&, OcclusionSettings& s) { s.depth_layers = 2; }},
       {"needs a texture of back-face depth",
-       [](View&, OcclusionSettings& s) { s.thickness_unit = ThicknessUnit::back_faces; }},
+       [](View&, OcclusionSettings& s) { s.advanced.thickness_unit = ThicknessUnit::back_faces; }},
   };
   for (const Case& bad : cases) {
     const std::string said = error_of(bad.spoil);
@@ -123,16 +130,18 @@ TEST_F(BadInput, NumbersOfSentencesAreShortAndExactInEveryLocale) {
     Spoil spoil;
   };
   const std::vector<Case> cases{
-      {"radius is -1e-07;", [](View&, OcclusionSettings& s) { s.radius = -1e-7f; }},
-      {"thickness is -1.5;", [](View&, OcclusionSettings& s) { s.thickness = -1.5f; }},
-      {"hidden_occlusion is 1.0000001;",
+      {"'radius' is -1e-07;", [](View&, OcclusionSettings& s) { s.radius = -1e-7f; }},
+      {"'thickness' is -1.5;", [](View&, OcclusionSettings& s) { s.thickness = -1.5f; }},
+      {"'hidden_occlusion' is 1.0000001;",
        [](View&, OcclusionSettings& s) { s.hidden_occlusion = 1.0000001f; }},
-      {"falloff is 1e-09,", [](View&, OcclusionSettings& s) { s.falloff = 1e-9f; }},
-      {"tolerance is -0.25 ", [](View&, OcclusionSettings& s) { s.filter_tolerance_px = -0.25f; }},
-      {"clamp is -1e+30 ", [](View&, OcclusionSettings& s) { s.clamp_width = -1e30f; }},
-      {"roughness is 1.1;", [](View&, OcclusionSettings& s) { s.roughness = 1.1f; }},
-      {"256 frames", [](View&, OcclusionSettings& s) { s.history_frames = 256; }},
-      {"1234567 slices", [](View&, OcclusionSettings& s) { s.slices = 1234567; }},
+      {"'falloff' is 1e-09 with", [](View&, OcclusionSettings& s) { s.advanced.falloff = 1e-9f; }},
+      {"'filter_tolerance_px' is -0.25;",
+       [](View&, OcclusionSettings& s) { s.advanced.filter_tolerance_px = -0.25f; }},
+      {"'clamp_width' is -1e+30;",
+       [](View&, OcclusionSettings& s) { s.advanced.clamp_width = -1e30f; }},
+      {"'roughness' is 1.1;", [](View&, OcclusionSettings& s) { s.roughness = 1.1f; }},
+      {"'history_frames' is 256;", [](View&, OcclusionSettings& s) { s.history_frames = 256; }},
+      {"'slices' is 1234567;", [](View&, OcclusionSettings& s) { s.slices = 1234567; }},
   };
   for (const Case& bad : cases) {
     EXPECT_THAT(error_of(bad.spoil), HasSubstr(bad.says));
@@ -188,27 +197,25 @@ TEST_F(BadInput, ATransposedProjectionIsNamed) {
 TEST_F(BadInput, ASignalThatNoSearchLeavesIsNamed) {
   struct Case {
     const char* names;
-    std::function<void(RawOcclusionTextures&, ReconstructSettings&)> spoil;
+    std::function<void(RawOcclusionTextures&, OcclusionSettings&)> spoil;
   };
   const std::vector<Case> cases{
-      {"divided by 0", [](RawOcclusionTextures& s, ReconstructSettings&) { s.tile_size = 0; }},
-      {"divided by 3", [](RawOcclusionTextures& s, ReconstructSettings&) { s.tile_size = 3; }},
-      {"divided by 4294967295",
-       [](RawOcclusionTextures& s, ReconstructSettings&) { s.tile_size = ~0u; }},
-      {"0 slices", [](RawOcclusionTextures& s, ReconstructSettings&) { s.slices = 0; }},
-      {"65 slices", [](RawOcclusionTextures& s, ReconstructSettings&) { s.slices = 65; }},
+      {"'tile_size' is 0;", [](RawOcclusionTextures& s, OcclusionSettings&) { s.tile_size = 0; }},
+      {"'tile_size' is 3;", [](RawOcclusionTextures& s, OcclusionSettings&) { s.tile_size = 3; }},
+      {"'tile_size' is 4294967295;",
+       [](RawOcclusionTextures& s, OcclusionSettings&) { s.tile_size = ~0u; }},
+      {"'slices' is 0;", [](RawOcclusionTextures& s, OcclusionSettings&) { s.slices = 0; }},
+      {"'slices' is 65;", [](RawOcclusionTextures& s, OcclusionSettings&) { s.slices = 65; }},
       {"raw occlusion of 8x6",
-       [](RawOcclusionTextures& s, ReconstructSettings&) { s.tile_size = 1; }},
+       [](RawOcclusionTextures& s, OcclusionSettings&) { s.tile_size = 1; }},
       {"raw occlusion of 0x0",
-       [](RawOcclusionTextures& s, ReconstructSettings&) { s.raw_occlusion = {}; }},
-      {"raw occlusion of 8x6",
-       [](RawOcclusionTextures& s, ReconstructSettings&) { s.lobe = true; }},
+       [](RawOcclusionTextures& s, OcclusionSettings&) { s.raw_occlusion = {}; }},
+      {"raw occlusion of 8x6", [](RawOcclusionTextures& s, OcclusionSettings&) { s.lobe = true; }},
       {"bent-normal residuals of 16x12",
-       [](RawOcclusionTextures& s, ReconstructSettings&) { s.bent.index = 0; }},
-      {"The roughness is",
-       [](RawOcclusionTextures&, ReconstructSettings& s) { s.roughness = kNaN; }},
-      {"The channel of the roughness is",
-       [](RawOcclusionTextures&, ReconstructSettings& s) { s.roughness_channel = 4; }},
+       [](RawOcclusionTextures& s, OcclusionSettings&) { s.bent.index = 0; }},
+      {"'roughness' is", [](RawOcclusionTextures&, OcclusionSettings& s) { s.roughness = kNaN; }},
+      {"'roughness_channel' is 4; it must be 0 to 3.",
+       [](RawOcclusionTextures&, OcclusionSettings& s) { s.roughness_channel = 4; }},
   };
   const Drawing drawing = draw(test_views()[2], 16, 12, groove(0.8));
   for (const Case& bad : cases) {
@@ -218,13 +225,13 @@ TEST_F(BadInput, ASignalThatNoSearchLeavesIsNamed) {
       const framegraph::Texture normals = upload(graph, drawing.normal_vs);
       const auto line = add_inverse_depth(frame, depth);
       ASSERT_TRUE(line);
-      GtaoSettings search;
+      OcclusionSettings search;
       search.tile_size = 2;
       search.bent_normal = true;
       const auto raw_occlusion = add_gtao(frame, {*line, normals, true}, search);
       ASSERT_TRUE(raw_occlusion);
       RawOcclusionTextures spoilt = *raw_occlusion;
-      ReconstructSettings settings;
+      OcclusionSettings settings;
       bad.spoil(spoilt, settings);
       const auto result = add_reconstruct(
           frame, {.raw_occlusion = spoilt, .inverse_depth = *line, .normals = normals}, settings);
@@ -292,7 +299,7 @@ TEST_F(BadInput, ImagesOfUnequalSizesAreNamed) {
     ASSERT_FALSE(motion);
     EXPECT_THAT(motion.error().message, HasSubstr("motion vectors of 16x11"));
     OcclusionSettings by_back_faces;
-    by_back_faces.thickness_unit = ThicknessUnit::back_faces;
+    by_back_faces.advanced.thickness_unit = ThicknessUnit::back_faces;
     const auto back_faces =
         add_occlusion(frame, {.depth_ndc = depth, .back_depth_ndc = upload(graph, small.depth_ndc)},
                       by_back_faces);

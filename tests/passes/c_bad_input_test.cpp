@@ -57,11 +57,14 @@ class CBadInput : public CInterface {
     AlcoveFrame frame;
     std::array<AlcoveView, 9> views;
     AlcoveSettings settings;
+    AlcoveAdvancedSettings advanced;
   };
   // What alcoveRecordFrame says of a frame that `spoil` changed, and alcovePrepareFrame too.
   std::string error_of(const std::function<void(Spoilt&)>& spoil) {
     Spoilt spoilt{};
     spoilt.settings = settings_;
+    spoilt.advanced = *settings_.advanced;
+    spoilt.settings.advanced = &spoilt.advanced;
     spoilt.views.fill(view_);
     for (std::uint32_t i = 0; i < spoilt.views.size(); ++i) {
       spoilt.views.at(i).id = i;
@@ -132,38 +135,43 @@ TEST_F(CBadInput, AFrameThatIsNoneIsNamed) {
 TEST_F(CBadInput, EverySettingOutOfRangeIsNamed) {
   struct Case {
     const char* names;
-    std::function<void(AlcoveSettings&)> spoil;
+    std::function<void(AlcoveSettings&, AlcoveAdvancedSettings&)> spoil;
   };
+  using S = AlcoveSettings;
+  using A = AlcoveAdvancedSettings;
   const Case cases[] = {
-      {"AlcoveSettings::struct_size", [](AlcoveSettings& s) { s.struct_size = 4; }},
-      {"radius", [](AlcoveSettings& s) { s.radius = 0.0f; }},
-      {"radius", [](AlcoveSettings& s) { s.radius = kNaN; }},
-      {"slices", [](AlcoveSettings& s) { s.slices = 65; }},
-      {"steps", [](AlcoveSettings& s) { s.steps = 1; }},
-      {"estimator is 4,", [](AlcoveSettings& s) { set_number(s.estimator, 4); }},
-      {"estimator is 4294967295", [](AlcoveSettings& s) { set_number(s.estimator, ~0u); }},
-      {"weighting is 2", [](AlcoveSettings& s) { set_number(s.weighting, 2); }},
-      {"The thickness is", [](AlcoveSettings& s) { s.thickness = kNaN; }},
-      {"thickness_unit is 3", [](AlcoveSettings& s) { set_number(s.thickness_unit, 3); }},
-      {"The hidden_occlusion is", [](AlcoveSettings& s) { s.hidden_occlusion = 1.5f; }},
-      {"The blend is", [](AlcoveSettings& s) { s.blend = -1.0f; }},
-      {"The falloff is", [](AlcoveSettings& s) { s.falloff = 2.0f; }},
-      {"divided by 3", [](AlcoveSettings& s) { s.tile_size = 3; }},
-      {"pattern is 3", [](AlcoveSettings& s) { set_number(s.pattern, 3); }},
-      {"reach", [](AlcoveSettings& s) { s.filter_radius = 4; }},
-      {"tolerance", [](AlcoveSettings& s) { s.filter_tolerance_px = 0.0f; }},
-      {"history", [](AlcoveSettings& s) { s.history_frames = 256; }},
-      {"clamp", [](AlcoveSettings& s) { s.clamp_width = kNaN; }},
-      {"specular is 0", [](AlcoveSettings& s) { set_number(s.specular, 0); }},
-      {"specular is 6", [](AlcoveSettings& s) { set_number(s.specular, 6); }},
-      {"The roughness is", [](AlcoveSettings& s) { s.roughness = kNaN; }},
-      {"The channel of the roughness is", [](AlcoveSettings& s) { s.roughness_channel = 7; }},
-      {"precision is 3", [](AlcoveSettings& s) { set_number(s.precision, 3); }},
+      {"AlcoveSettings::struct_size", [](S& s, A&) { s.struct_size = 4; }},
+      {"AlcoveAdvancedSettings::struct_size is 4;", [](S&, A& a) { a.struct_size = 4; }},
+      {"'radius' is 0;", [](S& s, A&) { s.radius = 0.0f; }},
+      {"'radius' is nan;", [](S& s, A&) { s.radius = kNaN; }},
+      {"'slices' is 65;", [](S& s, A&) { s.slices = 65; }},
+      {"'steps' is 1;", [](S& s, A&) { s.steps = 1; }},
+      {"'estimator' is 4; it must be horizons,", [](S&, A& a) { set_number(a.estimator, 4); }},
+      {"'estimator' is 255;", [](S&, A& a) { set_number(a.estimator, ~0u); }},
+      {"'weighting' is 2;", [](S&, A& a) { set_number(a.weighting, 2); }},
+      {"'thickness' is nan;", [](S& s, A&) { s.thickness = kNaN; }},
+      {"'thickness_unit' is 3;", [](S&, A& a) { set_number(a.thickness_unit, 3); }},
+      {"'hidden_occlusion' is 1.5;", [](S& s, A&) { s.hidden_occlusion = 1.5f; }},
+      {"'blend' is -1;", [](S&, A& a) { a.blend = -1.0f; }},
+      {"'falloff' is 2;", [](S&, A& a) { a.falloff = 2.0f; }},
+      {"'falloff' is 0.5 with the estimator connected", [](S&, A& a) { a.falloff = 0.5f; }},
+      {"'tile_size' is 3; it must be 1, 2 or 4.", [](S& s, A&) { s.tile_size = 3; }},
+      {"'pattern' is 3;", [](S&, A& a) { set_number(a.pattern, 3); }},
+      {"'filter_radius' is 4;", [](S&, A& a) { a.filter_radius = 4; }},
+      {"'filter_tolerance_px' is 0;", [](S&, A& a) { a.filter_tolerance_px = 0.0f; }},
+      {"'history_frames' is 128; it must be 0 to 127.", [](S& s, A&) { s.history_frames = 128; }},
+      {"'clamp_width' is nan;", [](S&, A& a) { a.clamp_width = kNaN; }},
+      {"'grouping' is 2;", [](S&, A& a) { set_number(a.grouping, 2); }},
+      {"'specular' is 0;", [](S& s, A&) { set_number(s.specular, 0); }},
+      {"'specular' is 4;", [](S& s, A&) { set_number(s.specular, 4); }},
+      {"'roughness' is nan;", [](S& s, A&) { s.roughness = kNaN; }},
+      {"'roughness_channel' is 7;", [](S& s, A&) { s.roughness_channel = 7; }},
+      {"'precision' is 3;", [](S& s, A&) { set_number(s.precision, 3); }},
   };
   for (const Case& bad : cases) {
     const std::string said = error_of([&](Spoilt& s) {
       s.views[0].roughness = {};
-      bad.spoil(s.settings);
+      bad.spoil(s.settings, s.advanced);
     });
     EXPECT_THAT(said, HasSubstr(bad.names));
     EXPECT_PRED1(is_a_sentence, said);
@@ -295,7 +303,7 @@ TEST_F(CBadInput, AnImageThatDoesNotDoIsNamed) {
 
 TEST_F(CBadInput, BackFacesThatAreReadButNotGivenAreNamed) {
   const std::string said = error_of([](Spoilt& s) {
-    s.settings.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES;
+    s.advanced.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES;
     s.views[0].back_depth = {};
   });
   EXPECT_THAT(said, HasSubstr("no image of back_depth"));
@@ -398,16 +406,24 @@ TEST_F(CBadInput, RandomNumbersAreRecordedOrRefused) {
   std::mt19937 random(seed);
   const std::array<float, 8> floats{0.0f, -0.0f, 1.0f, -1.0f, 1e30f, 1e-30f, kNaN, -1e38f};
   constexpr std::size_t kFirst = offsetof(AlcoveSettings, radius);
-  constexpr std::size_t kCount = (sizeof(AlcoveSettings) - kFirst) / 4;
+  constexpr std::size_t kCount = (offsetof(AlcoveSettings, intensity) + 4 - kFirst) / 4;
+  constexpr std::size_t kFirstAdvanced = offsetof(AlcoveAdvancedSettings, estimator);
+  constexpr std::size_t kAdvancedCount = (sizeof(AlcoveAdvancedSettings) - kFirstAdvanced) / 4;
   int refused = 0;
   for (int i = 0; i < 60; ++i) {
     AlcoveSettings settings{.struct_size = sizeof settings};
     ASSERT_EQ(alcoveGetSettings(ALCOVE_QUALITY_LOW, 0.5f, &settings), ALCOVE_SUCCESS);
+    AlcoveAdvancedSettings advanced{.struct_size = sizeof advanced};
+    ASSERT_EQ(alcoveGetAdvancedSettings(ALCOVE_QUALITY_LOW, &advanced), ALCOVE_SUCCESS);
+    settings.advanced = &advanced;
     AlcoveView changed = view();
     changed.settings = &settings;
     const std::uint32_t small = random() % 8;
     const float number = floats.at(random() % floats.size());
-    char* const field = reinterpret_cast<char*>(&settings) + kFirst + 4 * (random() % kCount);
+    char* const field =
+        random() % 2 == 0
+            ? reinterpret_cast<char*>(&settings) + kFirst + 4 * (random() % kCount)
+            : reinterpret_cast<char*>(&advanced) + kFirstAdvanced + 4 * (random() % kAdvancedCount);
     if (random() % 2 == 0) {
       std::memcpy(field, &small, 4);
     } else if (random() % 2 == 0) {

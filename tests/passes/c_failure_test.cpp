@@ -156,7 +156,7 @@ Outcome run_frames(const AlcoveContextInfo& info, const AlcoveView& view, Engine
 
 TEST_F(CFailure, RunningOutOfDeviceMemoryAnywhereIsAnErrorAndLeaksNothing) {
   GivenView given = given_view(test_views()[2], 8, 6, groove(0.8));
-  given.settings.estimator = Estimator::horizons;
+  given.settings.advanced.estimator = Estimator::horizons;
   AlcoveSettings settings;
   const AlcoveView view = view_of(given, settings);
   AlcoveContextInfo info = engine().context_info();

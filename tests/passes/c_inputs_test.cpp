@@ -120,7 +120,7 @@ TEST_F(CInputs, MotionInAnyUnitReadsTheSameHistory) {
   // depth.
   GivenView moving = given_view(test_views()[2], kWidth, kHeight, step(0.31, 0.6));
   moving.settings.bent_normal = true;
-  moving.settings.estimator = Estimator::horizons;
+  moving.settings.advanced.estimator = Estimator::horizons;
   moving.settings.radius = 1.5f;
   moving.motion = {kWidth, kHeight, {}, 2};
   for (std::uint32_t i = 0; i < kWidth * kHeight; ++i) {

@@ -141,7 +141,7 @@ HostImage CInterface::read(const AlcoveImage& image) {
 }
 
 AlcoveView CInterface::view_of(const GivenView& given, AlcoveSettings& settings) {
-  settings = from_settings(given.settings);
+  settings = from_settings(given.settings, advanced_.emplace_back());
   AlcoveView view{.struct_size = sizeof(AlcoveView),
                   .id = given.id,
                   .reset_history = given.reset ? VK_TRUE : VK_FALSE,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <memory>
 #include <span>
@@ -87,6 +88,7 @@ class CInterface : public PassTest {
 
  private:
   std::unique_ptr<Engine> engine_;
+  std::deque<AlcoveAdvancedSettings> advanced_;  // of view_of()'s settings
 };
 
 void expect_equal(const Results& found, const Results& expected);

@@ -60,28 +60,28 @@ TEST_F(CInterface, EverySettingReachesThePasses) {
       {"bytes", [](GivenView& g) { g.settings.precision = Precision::unorm8; }},
       {"horizons with falloff",
        [](GivenView& g) {
-         g.settings.estimator = Estimator::horizons;
-         g.settings.falloff = 0.5f;
+         g.settings.advanced.estimator = Estimator::horizons;
+         g.settings.advanced.falloff = 0.5f;
        }},
       {"heuristic",
        [](GivenView& g) {
-         g.settings.estimator = Estimator::heuristic;
-         g.settings.blend = 0.3f;
+         g.settings.advanced.estimator = Estimator::heuristic;
+         g.settings.advanced.blend = 0.3f;
        }},
       {"bitmask",
        [](GivenView& g) {
-         g.settings.estimator = Estimator::bitmask;
+         g.settings.advanced.estimator = Estimator::bitmask;
          g.settings.thickness = 0.05f;
          g.settings.hidden_occlusion = 0.9f;
        }},
       {"thickness by distance",
-       [](GivenView& g) { g.settings.thickness_unit = ThicknessUnit::distance; }},
+       [](GivenView& g) { g.settings.advanced.thickness_unit = ThicknessUnit::distance; }},
       {"thickness by back faces",
-       [](GivenView& g) { g.settings.thickness_unit = ThicknessUnit::back_faces; }},
+       [](GivenView& g) { g.settings.advanced.thickness_unit = ThicknessUnit::back_faces; }},
       {"two layers", [](GivenView& g) { g.settings.depth_layers = 2; }},
-      {"solid angle", [](GivenView& g) { g.settings.weighting = Weighting::uniform; }},
-      {"hilbert", [](GivenView& g) { g.settings.pattern = Pattern::hilbert; }},
-      {"paper", [](GivenView& g) { g.settings.pattern = Pattern::paper; }},
+      {"solid angle", [](GivenView& g) { g.settings.advanced.weighting = Weighting::uniform; }},
+      {"hilbert", [](GivenView& g) { g.settings.advanced.pattern = Pattern::hilbert; }},
+      {"paper", [](GivenView& g) { g.settings.advanced.pattern = Pattern::paper; }},
       {"slices and steps",
        [](GivenView& g) {
          g.settings.slices = 3;
@@ -89,14 +89,14 @@ TEST_F(CInterface, EverySettingReachesThePasses) {
        }},
       {"filter",
        [](GivenView& g) {
-         g.settings.filter_radius = 1;
-         g.settings.filter_tolerance_px = 0.5f;
+         g.settings.advanced.filter_radius = 1;
+         g.settings.advanced.filter_tolerance_px = 0.5f;
          g.settings.history_frames = 0;
        }},
       {"history",
        [](GivenView& g) {
          g.settings.history_frames = 2;
-         g.settings.clamp_width = 1.0f;
+         g.settings.advanced.clamp_width = 1.0f;
        },
        2},
       {"motion", [](GivenView& g) { g.motion = given_view(test_views()[2], 16, 12, {}).motion; },
@@ -108,13 +108,23 @@ TEST_F(CInterface, EverySettingReachesThePasses) {
          g.settings.specular = Specular::table;
          g.settings.bent_normal = true;
        }},
-      {"cone", [](GivenView& g) { g.settings.specular = Specular::cone; }},
-      {"smooth cone", [](GivenView& g) { g.settings.specular = Specular::smooth_cone; }},
-      {"lagarde, one roughness",
+      {"cone, one roughness",
        [](GivenView& g) {
-         g.settings.specular = Specular::lagarde;
+         g.settings.specular = Specular::cone;
          g.settings.roughness = 0.2f;
          g.roughness = {};
+       }},
+      {"parts of the search",
+       [](GivenView& g) {
+         g.settings.advanced.snap_to_texels = false;
+         g.settings.advanced.extrapolation = false;
+         g.settings.advanced.unobserved = false;
+         g.settings.advanced.grouping = Grouping::pattern;
+       }},
+      {"power and intensity",
+       [](GivenView& g) {
+         g.settings.power = 2.0f;
+         g.settings.intensity = 0.5f;
        }},
       {"roughness of another channel",
        [](GivenView& g) {
@@ -218,7 +228,7 @@ TEST_F(CInterface, EightViewsWithEverythingFitAFrame) {
     if (id % 2 == 1) {
       views.back().normals = {};  // a pass more, an image less
     }
-    views.back().settings.thickness_unit = ThicknessUnit::back_faces;
+    views.back().settings.advanced.thickness_unit = ThicknessUnit::back_faces;
     views.back().settings.depth_layers = 2;
     views.back().settings.bent_normal = true;
     views.back().settings.specular = Specular::table;
@@ -345,7 +355,7 @@ TEST_F(CInterface, AProgramInCRecordsAFrame) {
   const AlcoveContextInfo info = engine().context_info();
   GivenView given = frame_of(0, 16, 12);
   given.settings = quality_settings(Quality::high, 0.5f);
-  given.settings.estimator = Estimator::horizons;
+  given.settings.advanced.estimator = Estimator::horizons;
   given.normals = {};
   given.roughness = {};
   AlcoveSettings unused;

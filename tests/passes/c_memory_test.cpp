@@ -45,7 +45,8 @@ TEST_F(CMemory, EstimatesAreWhatFramesTake) {
     const Context context = create_context();
     (void)run_by_c(*context, {&given, 1}, 0);
     const AlcoveMemory found = memory_of(*context);
-    const AlcoveSettings settings = from_settings(given.settings);
+    AlcoveAdvancedSettings advanced;
+    const AlcoveSettings settings = from_settings(given.settings, advanced);
     AlcoveMemory estimate{.struct_size = sizeof estimate};
     ASSERT_EQ(alcoveEstimateMemory(&settings, kWidth, kHeight, wanted.outputs,
                                    wanted.normals ? VK_TRUE : VK_FALSE, &estimate),

@@ -130,14 +130,14 @@ TEST_F(CPipelines, OfAPreparedViewAreAllMadeBeforeItsFirstFrame) {
        }},
       {"hidden depths and the table",
        [](GivenView& g) {
-         g.settings.thickness_unit = ThicknessUnit::back_faces;
+         g.settings.advanced.thickness_unit = ThicknessUnit::back_faces;
          g.settings.depth_layers = 2;
          g.settings.specular = Specular::table;
        }},
       {"orthographic and clamped",
        [](GivenView& g) {
          g.view = g.previous_view = orthographic_view("", 3.0, 2.0, 0.1, 20.0).view;
-         g.settings.clamp_width = 1.0f;
+         g.settings.advanced.clamp_width = 1.0f;
          g.motion = {};
        }},
       {"without a history", [](GivenView& g) { g.settings.history_frames = 0; }},

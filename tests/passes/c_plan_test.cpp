@@ -25,7 +25,7 @@ class CPlan : public CInterface {
  protected:
   GivenView least() {
     GivenView given = given_view(test_views()[2], 32, 24, groove(0.8));
-    given.settings.estimator = Estimator::horizons;
+    given.settings.advanced.estimator = Estimator::horizons;
     given.settings.steps = 4;
     given.settings.history_frames = 0;
     given.settings.visibility = false;
@@ -233,7 +233,7 @@ TEST(CSettings, AreFilledPrintedAndPassedBack) {
     EXPECT_EQ(alcovePrintSettings(&settings, text.data(), text.size() + 1), text.size());
     EXPECT_THAT(text, HasSubstr("radius = 2.5\n"));
     EXPECT_THAT(text, HasSubstr("specular = slices\n"));
-    EXPECT_EQ(std::ranges::count(text, '\n'), 23);
+    EXPECT_EQ(std::ranges::count(text, '\n'), 27);
     char little[8];
     EXPECT_EQ(alcovePrintSettings(&settings, little, sizeof little), text.size());
     EXPECT_EQ(std::string(little), text.substr(0, 7));
@@ -248,11 +248,13 @@ TEST(CSettings, ArePrintedShortAndExactInEveryLocale) {
   ASSERT_EQ(alcoveGetSettings(ALCOVE_QUALITY_MEDIUM, 0.15f, &settings), ALCOVE_SUCCESS);
   settings.thickness = 0.12345678f;
   settings.hidden_occlusion = 1e-7f;
-  settings.filter_tolerance_px = 1234567.0f;
-  settings.slices = 4096;
+  AlcoveAdvancedSettings advanced{.struct_size = sizeof advanced};
+  ASSERT_EQ(alcoveGetAdvancedSettings(ALCOVE_QUALITY_MEDIUM, &advanced), ALCOVE_SUCCESS);
+  advanced.filter_tolerance_px = 1234567.0f;
+  settings.advanced = &advanced;
   std::string text(alcovePrintSettings(&settings, nullptr, 0), '\0');
   alcovePrintSettings(&settings, text.data(), text.size() + 1);
-  EXPECT_THAT(text, testing::StartsWith("radius = 0.15\nslices = 4096\n"));
+  EXPECT_THAT(text, testing::StartsWith("radius = 0.15\ntile_size = 2\n"));
   EXPECT_THAT(text, HasSubstr("\nthickness = 0.12345678\n"));
   EXPECT_THAT(text, HasSubstr("\nhidden_occlusion = 1e-07\n"));
   EXPECT_THAT(text, HasSubstr("\nfilter_tolerance_px = 1234567\n"));

@@ -48,7 +48,8 @@ struct Shown {
   Scene scene;
   AlcoveView view{};  // with every image
   AlcoveSettings settings{};
-  VkExtent2D largest{};  // of the images
+  AlcoveAdvancedSettings advanced{};  // what `settings` points to
+  VkExtent2D largest{};               // of the images
   Kind kind;
 };
 
@@ -141,17 +142,16 @@ void CResize::TearDown() {
 
 Kind CResize::any_kind() {
   OcclusionSettings settings = quality_settings(static_cast<Quality>(below(3)), 0.5f);
-  settings.estimator = static_cast<Estimator>(below(4));
-  settings.weighting = static_cast<Weighting>(below(2));
-  settings.thickness_unit = static_cast<ThicknessUnit>(below(3));
+  settings.advanced.estimator = static_cast<Estimator>(below(4));
+  settings.advanced.weighting = static_cast<Weighting>(below(2));
+  settings.advanced.thickness_unit = static_cast<ThicknessUnit>(below(3));
   settings.depth_layers = 1 + below(2);
-  const bool fades =
-      settings.estimator == Estimator::horizons || settings.estimator == Estimator::heuristic;
-  settings.falloff = fades ? random_.uniform(0.0f, 1.0f) : 0.0f;
-  settings.pattern = static_cast<Pattern>(below(3));
-  settings.filter_radius = below(4);
-  settings.clamp_width = chance(2) ? 0.0f : 1.5f;
-  settings.specular = static_cast<Specular>(1 + below(5));
+  const bool fades = !has_thickness(settings.advanced.estimator);
+  settings.advanced.falloff = fades ? random_.uniform(0.0f, 1.0f) : 0.0f;
+  settings.advanced.pattern = static_cast<Pattern>(below(3));
+  settings.advanced.filter_radius = below(4);
+  settings.advanced.clamp_width = chance(2) ? 0.0f : 1.5f;
+  settings.specular = static_cast<Specular>(1 + below(3));
   settings.roughness_channel = below(2);
   return {settings, below(128) & kOptionalInputs, below(15)};  // never without all outputs
 }
@@ -220,7 +220,7 @@ void CResize::change_numbers(Shown& shown) {
   settings.history_frames = chance(4) ? 0 : 1 + below(127);
   settings.roughness = random_.uniform(0.0f, 1.0f);
   settings.precision = static_cast<Precision>(below(3));
-  shown.settings = from_settings(settings);
+  shown.settings = from_settings(settings, shown.advanced);
 }
 
 void CResize::show(Shown& shown) {
@@ -348,7 +348,7 @@ AlcoveMemory CResize::rest() {
   for (const Specular specular : {Specular::table, Specular::slices}) {
     OcclusionSettings settings = quality_settings(Quality::medium, 0.5f);
     settings.specular = specular;
-    resting_[0].settings = from_settings(settings);
+    resting_[0].settings = from_settings(settings, resting_[0].advanced);
     for (std::uint32_t i = 0; i < 2 * Engine::kSlots; ++i) {
       draw_frame(resting_, false);
     }

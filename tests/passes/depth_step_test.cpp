@@ -30,15 +30,14 @@ class DepthStep : public PassTest {
         const auto inverse_depth = add_inverse_depth(frame, upload(graph, drawing.depth_ndc));
         ASSERT_TRUE(inverse_depth) << inverse_depth.error().message;
         const framegraph::Texture normals = upload(graph, drawing.normal_vs);
-        GtaoSettings search{static_cast<const SearchSettings&>(settings)};
         const auto raw = add_gtao(frame,
                                   {.inverse_depth = *inverse_depth,
                                    .normals = normals,
                                    .normals_in_view_space = true,
                                    .depth_format = format},
-                                  search);
+                                  settings);
         ASSERT_TRUE(raw) << raw.error().message;
-        ReconstructSettings filter{static_cast<const FilterSettings&>(settings)};
+        OcclusionSettings filter = settings;
         filter.precision = Precision::float32;
         const auto result = add_reconstruct(frame,
                                             {.raw_occlusion = *raw,
@@ -59,7 +58,7 @@ class DepthStep : public PassTest {
         SCOPED_TRACE(testing::Message() << "radius " << radius << ", quality " << int(quality)
                                         << ", estimator " << int(estimator));
         OcclusionSettings settings = quality_settings(quality, radius);
-        settings.estimator = estimator;
+        settings.advanced.estimator = estimator;
         const HostImage image = visibility(view, drawing, format, settings, 3);
         EXPECT_GE(*std::ranges::min_element(image.texels), 0.98f);
       }

@@ -23,7 +23,7 @@ constexpr std::uint32_t kHeight = 39;
 // Visibility, bent normals and specular occlusion, by kernels that compile soon.
 OcclusionSettings everything(Quality quality, float radius) {
   OcclusionSettings settings = quality_settings(quality, radius);
-  settings.estimator = Estimator::horizons;
+  settings.advanced.estimator = Estimator::horizons;
   settings.steps = 6;
   settings.bent_normal = true;
   settings.specular = Specular::slices;
@@ -125,8 +125,8 @@ TEST_F(Extremes, OrthographicDepthMayBeginAnywhere) {
 TEST_F(Extremes, WhatLiesBehindAnOrthographicEyeHasAThicknessToo) {
   for (const Estimator estimator : {Estimator::bitmask, Estimator::connected}) {
     OcclusionSettings settings = everything(Quality::medium, 1.0f);
-    settings.estimator = estimator;
-    settings.thickness_unit = ThicknessUnit::distance;
+    settings.advanced.estimator = estimator;
+    settings.advanced.thickness_unit = ThicknessUnit::distance;
     for (const double distance : {4.0, -4.0}) {
       SCOPED_TRACE(testing::Message() << (estimator == Estimator::bitmask ? "bitmask" : "connected")
                                       << ", a plane at " << distance);
@@ -236,7 +236,7 @@ TEST_F(Extremes, WhatLiesFarBehindWhatWasSearchedKeepsItsShade) {
                   &far.normal_vs.texels[std::size_t{i} * 4]);
     }
     OcclusionSettings settings = everything(Quality::low, static_cast<float>(0.3 * distance));
-    settings.estimator = Estimator::connected;
+    settings.advanced.estimator = Estimator::connected;
     settings.history_frames = 0;
     const Images images = run_occlusion(
         {.view = view.view, .depth_ndc = far.depth_ndc, .normal_vs = &far.normal_vs}, settings);
@@ -258,7 +258,7 @@ TEST_F(Extremes, AnyRadiusIsSound) {
     for (const float radius : {1e-30f, 1e-5f, 1e-3f, 1.0f, 1e6f, 1e12f, 1e30f, 3e38f}) {
       SCOPED_TRACE(testing::Message() << view.name << ", radius " << radius);
       OcclusionSettings settings = everything(Quality::high, radius);
-      settings.estimator = Estimator::connected;
+      settings.advanced.estimator = Estimator::connected;
       settings.history_frames = 0;
       const Images images = run_occlusion(
           {.view = view.view, .depth_ndc = drawing.depth_ndc, .normal_vs = &drawing.normal_vs},

@@ -29,10 +29,12 @@ class GtaoInvariance : public PassTest {
 OcclusionSettings unfiltered(Estimator estimator, float radius) {
   OcclusionSettings settings;
   settings.radius = radius;
+  settings.tile_size = 1;
   settings.slices = 4;
   settings.steps = 8;
-  settings.estimator = estimator;
-  settings.filter_radius = 0;
+  settings.advanced.estimator = estimator;
+  settings.history_frames = 0;
+  settings.advanced.filter_radius = 0;
   settings.precision = Precision::float32;
   return settings;
 }
@@ -129,9 +131,9 @@ TEST_F(GtaoInvariance, EverySizeDivisorAndPatternCoversEveryPixel) {
           settings.slices = 1;
           settings.steps = 6;
           settings.tile_size = tile_size;
-          settings.pattern = pattern;
+          settings.advanced.pattern = pattern;
           settings.history_frames = history;
-          settings.filter_radius = history == 0 ? 0 : 2;
+          settings.advanced.filter_radius = history == 0 ? 0 : 2;
           settings.bent_normal = true;
           poison_memory(width, height);
           // The last traced pixel of a block falls outside of the image.
@@ -176,11 +178,11 @@ TEST_F(GtaoInvariance, GroupsOfOneDirectionDrawWhatNeighboursDo) {
       settings.slices = 1;
       settings.steps = 4;
       settings.tile_size = tile_size;
-      settings.pattern = pattern;
+      settings.advanced.pattern = pattern;
       settings.bent_normal = true;
       settings.specular = Specular::slices;
       const OcclusionImages expected = run_occlusion(frame, settings);
-      settings.parts.grouping = Grouping::pattern;
+      settings.advanced.grouping = Grouping::pattern;
       poison_memory(width, height);
       const OcclusionImages found = run_occlusion(frame, settings);
       // Another kernel, which a device may round otherwise: a unit of 8 bits.
@@ -200,8 +202,8 @@ TEST_F(GtaoInvariance, EveryPatternMeetsTheSameMeanInAGroove) {
       for (const Pattern pattern : {Pattern::golden, Pattern::hilbert, Pattern::paper}) {
         OcclusionSettings settings = unfiltered(estimator, 1.0f);
         settings.tile_size = tile_size;
-        settings.pattern = pattern;
-        settings.filter_radius = 2;
+        settings.advanced.pattern = pattern;
+        settings.advanced.filter_radius = 2;
         const HostImage image = visibility(view, drawing, settings);
         double mean = 0.0;
         for (const float texel : image.texels) {
@@ -220,7 +222,7 @@ TEST_F(GtaoInvariance, WhatIsNoNumberStaysLocalAndFinite) {
   for (const Estimator estimator : kEstimators) {
     OcclusionSettings settings = unfiltered(estimator, 0.5f);
     settings.bent_normal = true;
-    settings.filter_radius = 2;
+    settings.advanced.filter_radius = 2;
     Drawing drawing = draw(view, kWidth, kHeight, groove(0.8));
     const OcclusionFrame frame{view.view, drawing.depth_ndc, &drawing.normal_vs};
     const HostImage clean = run_occlusion(frame, settings).visibility;
@@ -264,9 +266,10 @@ TEST_F(GtaoInvariance, DepthBuffersOfNothingButNonsenseGiveFiniteImages) {
       for (const bool given : {false, true}) {
         OcclusionSettings settings = unfiltered(estimator, 0.5f);
         settings.bent_normal = true;
-        settings.filter_radius = 2;
+        settings.advanced.filter_radius = 2;
         settings.history_frames = 8;
-        settings.thickness_unit = given ? ThicknessUnit::back_faces : ThicknessUnit::radius;
+        settings.advanced.thickness_unit =
+            given ? ThicknessUnit::back_faces : ThicknessUnit::radius;
         settings.depth_layers = given ? 2 : 1;
         for (int frame = 0; frame < 2; ++frame) {
           const OcclusionImages images =
@@ -293,7 +296,7 @@ TEST_F(GtaoInvariance, BothEyesOfAFrameHaveTheSameNoise) {
   const Drawing drawing = draw(view, kWidth, kHeight, gtao_scenes().front().scene);
   for (const Pattern pattern : {Pattern::golden, Pattern::hilbert, Pattern::paper}) {
     OcclusionSettings settings = quality_settings(Quality::medium, 0.5f);
-    settings.pattern = pattern;
+    settings.advanced.pattern = pattern;
     for (std::uint32_t index = 0; index < 4; ++index) {
       run([&](framegraph::Graph& graph) {
         const Frame frame{graph, gpu().kernels(), view.view, index, view.view};

@@ -63,13 +63,13 @@ TEST_F(GtaoPass, WhereSnappingIsNotReckonedWithATiltedPlaneOccludesItself) {
   const TestView view = test_views()[2];
   for (const Estimator estimator : {Estimator::horizons, Estimator::connected}) {
     OcclusionSettings settings = precise(Quality::medium);
-    settings.estimator = estimator;
+    settings.advanced.estimator = estimator;
     for (const float degrees : {60.0f, 75.0f}) {
       SCOPED_TRACE(testing::Message() << "tilted " << degrees << " degrees");
       const PlaneScene plane = plane_scene(view, 96, 64, degrees);
       double lowest[2];
       for (const bool snap_to_texels : {false, true}) {
-        settings.parts.snap_to_texels = snap_to_texels;
+        settings.advanced.snap_to_texels = snap_to_texels;
         const HostImage visibility = run_occlusion({.view = view.view,
                                                     .depth_ndc = plane.depth_ndc,
                                                     .normal_vs = &plane.normal_vs,

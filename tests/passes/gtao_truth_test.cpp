@@ -16,9 +16,9 @@ namespace {
 // What compares with horizons of infinite thickness, whatever the estimator.
 OcclusionSettings exact(Estimator estimator, float radius) {
   OcclusionSettings settings = quality_settings(Quality::reference, radius);
-  settings.estimator = estimator;
+  settings.advanced.estimator = estimator;
   settings.hidden_occlusion = 1.0f;
-  settings.parts.unobserved = false;
+  settings.advanced.unobserved = false;
   return settings;
 }
 
@@ -157,7 +157,7 @@ TEST_F(GtaoTruth, UniformWeightingMeasuresSolidAngle) {
   for (const Estimator estimator : {Estimator::horizons, Estimator::connected}) {
     SCOPED_TRACE(name_of(estimator));
     OcclusionSettings settings = exact(estimator, 8.0f);
-    settings.weighting = Weighting::uniform;
+    settings.advanced.weighting = Weighting::uniform;
     const auto floor =
         run_occlusion({view.view, platform.depth_ndc, &platform.normal_vs}, settings).visibility;
     for (std::uint32_t x = 44; x < 62; ++x) {
@@ -190,7 +190,7 @@ TEST_F(GtaoTruth, FalloffFadesOccludersTowardsTheRadius) {
   OcclusionSettings settings = exact(Estimator::horizons, 1.2f);
   double before = 0.0;
   for (const float falloff : {0.0f, 0.3f, 1.0f}) {
-    settings.falloff = falloff;
+    settings.advanced.falloff = falloff;
     const auto faded =
         run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, settings).visibility;
     const double mean = mean_of(faded);
@@ -205,7 +205,7 @@ TEST_F(GtaoTruth, TheHeuristicWithoutABlendIsTheHorizons) {
   const Drawing drawing = draw(view, 60, 40, step(0.0, 0.5));
   const auto run_with = [&](Estimator estimator, float blend) {
     OcclusionSettings settings = exact(estimator, 1.2f);
-    settings.blend = blend;
+    settings.advanced.blend = blend;
     return run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, settings).visibility;
   };
   const HostImage horizons = run_with(Estimator::horizons, 0.05f);
@@ -248,7 +248,7 @@ TEST_F(GtaoTruth, ThicknessOfDistanceIsThatOfTheRadiusAtOneDistance) {
     settings.thickness = 0.05f;
     const auto of_radius =
         run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, settings).visibility;
-    settings.thickness_unit = ThicknessUnit::distance;
+    settings.advanced.thickness_unit = ThicknessUnit::distance;
     settings.thickness *= radius / distance;
     const auto of_distance =
         run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, settings).visibility;
@@ -351,7 +351,7 @@ TEST_F(GtaoTruth, AWallThatLeavesTheImageOccludesAsIfItWereSeen) {
     const auto seen = [&](const TestView& of, const Drawing& drawing, bool extrapolation) {
       OcclusionSettings settings = exact(Estimator::connected, kRadius);
       settings.steps = 12;
-      settings.parts.extrapolation = extrapolation;
+      settings.advanced.extrapolation = extrapolation;
       return run_occlusion({of.view, drawing.depth_ndc, &drawing.normal_vs}, settings).visibility;
     };
     const HostImage truth = seen(view, whole, true);

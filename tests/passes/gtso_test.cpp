@@ -28,8 +28,16 @@ constexpr std::uint32_t kWidth = 45;
 constexpr std::uint32_t kHeight = 31;
 constexpr float kSky = 1e12f;
 
-constexpr std::array kModels{SpecularModel::cone, SpecularModel::smooth_cone,
-                             SpecularModel::lagarde, SpecularModel::table};
+constexpr std::array kModels{Specular::cone, Specular::table};
+
+OcclusionSettings settings_of(Specular model, float roughness = 0.5f, std::uint32_t channel = 0) {
+  OcclusionSettings settings;
+  settings.specular = model;
+  settings.roughness = roughness;
+  settings.roughness_channel = channel;
+  settings.precision = Precision::float32;
+  return settings;
+}
 
 struct Inputs {
   HostImage visibility{kWidth, kHeight, {}, 1};
@@ -62,7 +70,7 @@ Inputs random_inputs() {
   return inputs;
 }
 
-Texture add(const Frame& frame, const GtsoInputs& inputs, const GtsoSettings& settings) {
+Texture add(const Frame& frame, const GtsoInputs& inputs, const OcclusionSettings& settings) {
   const auto result = add_gtso(frame, inputs, settings);
   EXPECT_TRUE(result) << result.error().message;
   return result.value_or(Texture{});
@@ -70,18 +78,17 @@ Texture add(const Frame& frame, const GtsoInputs& inputs, const GtsoSettings& se
 
 class GtsoPass : public PassTest {
  protected:
-  void run_model(const View& view, const Inputs& inputs, SpecularModel model) {
+  void run_model(const View& view, const Inputs& inputs, Specular model) {
     run([&](Graph& graph) {
       const Frame frame{graph, gpu().kernels(), view, 0};
-      read_back(graph,
-                add(frame,
-                    {.visibility = upload(graph, inputs.visibility),
-                     .bent_normal = upload(graph, inputs.bent),
-                     .normals = upload(graph, inputs.normals),
-                     .depth = upload(graph, inputs.depth),
-                     .roughness = upload(graph, inputs.surface),
-                     .normals_in_view_space = true},
-                    {.model = model, .roughness_channel = 3, .precision = Precision::float32}));
+      read_back(graph, add(frame,
+                           {.visibility = upload(graph, inputs.visibility),
+                            .bent_normal = upload(graph, inputs.bent),
+                            .normals = upload(graph, inputs.normals),
+                            .depth = upload(graph, inputs.depth),
+                            .roughness = upload(graph, inputs.surface),
+                            .normals_in_view_space = true},
+                           settings_of(model, 0.5f, 3)));
     });
   }
 };
@@ -93,7 +100,7 @@ maths::Projection projection_of(const View& view) {
 }
 
 // What the pass should write at a pixel.
-float expected(const Inputs& inputs, const maths::Projection& projection, SpecularModel model,
+float expected(const Inputs& inputs, const maths::Projection& projection, Specular model,
                std::uint32_t x, std::uint32_t y) {
   const float depth = inputs.depth.at(x, y);
   if (depth == kSky) {
@@ -107,25 +114,21 @@ float expected(const Inputs& inputs, const maths::Projection& projection, Specul
   const float alpha = inputs.surface.at(x, y, 3) * inputs.surface.at(x, y, 3);
   const vec3 mirror = maths::mirror_direction(normal, view);
   switch (model) {
-    case SpecularModel::cone:
+    case Specular::cone:
       return maths::specular_occlusion(visibility, bent, normal, mirror, alpha);
-    case SpecularModel::smooth_cone:
-      return maths::smooth_specular_occlusion(visibility, bent, normal, mirror, alpha);
-    case SpecularModel::table: {
+    default: {
       static const std::vector<std::uint32_t> table = gtso_table();
       return look_up_gtso(table, visibility, maths::visibility_cone(visibility),
                           maths::angle_between(bent, mirror), maths::angle_between(normal, mirror),
                           inputs.surface.at(x, y, 3));
     }
-    default:
-      return maths::lagarde_specular_occlusion(glm::dot(normal, view), visibility, alpha);
   }
 }
 
 TEST_F(GtsoPass, AgreesWithTheFormulasInEveryView) {
   const Inputs inputs = random_inputs();
   for (const TestView& view : test_views()) {
-    for (const SpecularModel model : kModels) {
+    for (const Specular model : kModels) {
       SCOPED_TRACE(testing::Message() << view.name << ", model " << static_cast<int>(model));
       run_model(view.view, inputs, model);
       const maths::Projection projection = projection_of(view.view);
@@ -150,7 +153,7 @@ TEST_F(GtsoPass, WhatIsNoNumberOrNoDirectionGivesAShareAllTheSame) {
     std::fill_n(image.texels.begin() + std::ptrdiff_t{i} * image.channels, image.channels,
                 kWrong.at(i / images.size() % kWrong.size()));
   }
-  for (const SpecularModel model : kModels) {
+  for (const Specular model : kModels) {
     run_model(test_views()[2].view, inputs, model);
     EXPECT_THAT(result().texels,
                 testing::Each(testing::AllOf(testing::Ge(0.0f), testing::Le(1.0f))))
@@ -203,11 +206,9 @@ TEST_F(GtsoPass, OpenSurfaceStaysOpenAtAnyRoughness) {
                                 .normals = upload(graph, plane.normal_vs),
                                 .depth = *depth,
                                 .normals_in_view_space = true};
-        for (const SpecularModel model : kModels) {
+        for (const Specular model : kModels) {
           for (const float r : roughness) {
-            read_back(graph,
-                      add(frame, inputs,
-                          {.model = model, .roughness = r, .precision = Precision::float32}));
+            read_back(graph, add(frame, inputs, settings_of(model, r)));
           }
         }
       });
@@ -230,7 +231,7 @@ TEST_F(GtsoPass, TurnsNormalsOfTheWorldIntoTheView) {
                             .normals = upload(graph, inputs.normals),
                             .depth = upload(graph, inputs.depth),
                             .normals_in_view_space = in_view_space},
-                           {.roughness = 0.4f, .precision = Precision::float32}));
+                           settings_of(Specular::table, 0.4f)));
     });
     return result();
   };
@@ -254,7 +255,7 @@ TEST_F(GtsoPass, TakesNoTimeWhenNobodyReadsIt) {
                .bent_normal = upload(graph, inputs.bent),
                .normals = upload(graph, inputs.normals),
                .depth = depth},
-              {});
+              settings_of(Specular::table));
     read_back(graph, depth);
   });
   for (const framegraph::PassTiming& timing : gpu().timings()) {
@@ -264,20 +265,19 @@ TEST_F(GtsoPass, TakesNoTimeWhenNobodyReadsIt) {
 
 TEST_F(GtsoPass, OnlyTheTablesModelHasATable) {
   const Inputs inputs = random_inputs();
-  const auto run_with = [&](SpecularModel model) {
+  const auto run_with = [&](Specular model) {
     run([&](Graph& graph) {
       read_back(graph, add({graph, gpu().kernels(), test_views().front().view, 0},
                            {.visibility = upload(graph, inputs.visibility),
                             .bent_normal = upload(graph, inputs.bent),
                             .normals = upload(graph, inputs.normals),
                             .depth = upload(graph, inputs.depth)},
-                           {.model = model}));
+                           settings_of(model)));
     });
     return gpu().kernels().table_bytes();
   };
-  EXPECT_EQ(run_with(SpecularModel::cone), 0u);
-  EXPECT_EQ(run_with(SpecularModel::lagarde), 0u);
-  EXPECT_EQ(run_with(SpecularModel::table), maths::kGtsoEntries);
+  EXPECT_EQ(run_with(Specular::cone), 0u);
+  EXPECT_EQ(run_with(Specular::table), maths::kGtsoEntries);
 }
 
 TEST_F(GtsoPass, RefusesWhatItCannotUseAndNamesIt) {
@@ -289,7 +289,7 @@ TEST_F(GtsoPass, RefusesWhatItCannotUseAndNamesIt) {
                           .bent_normal = upload(graph, inputs.bent),
                           .normals = upload(graph, inputs.normals),
                           .depth = upload(graph, inputs.depth)};
-    const auto refused = [&](const GtsoInputs& given, const GtsoSettings& settings,
+    const auto refused = [&](const GtsoInputs& given, const OcclusionSettings& settings,
                              const char* name) {
       const auto result = add_gtso(frame, given, settings);
       ASSERT_FALSE(result) << name;
@@ -297,16 +297,16 @@ TEST_F(GtsoPass, RefusesWhatItCannotUseAndNamesIt) {
     };
     GtsoInputs without_bent = good;
     without_bent.bent_normal = {};
-    refused(without_bent, {}, "bent normals");
+    refused(without_bent, settings_of(Specular::cone), "bent normals");
     GtsoInputs unequal = good;
     unequal.depth = upload(graph, small);
-    refused(unequal, {}, "2x2");
-    refused(good, {.roughness = std::numeric_limits<float>::quiet_NaN()}, "0 to 1");
-    refused(good, {.roughness = 1.5f}, "0 to 1");
-    refused(good, {.roughness_channel = 4}, "The channel of the roughness is 4");
-    // Lagarde's model needs no bent normal.
-    read_back(graph, add(frame, without_bent,
-                         {.model = SpecularModel::lagarde, .precision = Precision::float32}));
+    refused(unequal, settings_of(Specular::table), "2x2");
+    refused(good, settings_of(Specular::table, std::numeric_limits<float>::quiet_NaN()), "0 to 1");
+    refused(good, settings_of(Specular::table, 1.5f), "0 to 1");
+    refused(good, settings_of(Specular::table, 0.5f, 4), "'roughness_channel' is 4");
+    refused(good, settings_of(Specular::slices), "slices; it must be table or cone");
+    refused(good, settings_of(Specular::none), "none; it must be table or cone");
+    read_back(graph, add(frame, good, settings_of(Specular::cone)));
   });
 }
 

@@ -14,10 +14,10 @@ inline constexpr std::array kThickEstimators{Estimator::bitmask, Estimator::conn
 // Nothing is hidden but by what the depths show.
 inline OcclusionSettings without_fill(Estimator estimator, float radius) {
   OcclusionSettings settings = quality_settings(Quality::reference, radius);
-  settings.estimator = estimator;
+  settings.advanced.estimator = estimator;
   settings.slices = 16;
   settings.hidden_occlusion = 0.0f;
-  settings.parts.unobserved = false;
+  settings.advanced.unobserved = false;
   return settings;
 }
 

@@ -80,7 +80,8 @@ class OcclusionPlan : public PassTest {
 
 OcclusionSettings least() {
   OcclusionSettings settings;
-  settings.estimator = Estimator::horizons;
+  settings.tile_size = 1;
+  settings.advanced.estimator = Estimator::horizons;
   settings.steps = 4;
   settings.history_frames = 0;
   return settings;
@@ -134,16 +135,16 @@ TEST_F(OcclusionPlan, WithoutAHistoryMotionIsNotRead) {
 TEST_F(OcclusionPlan, BackFacesCostOnlyWhereTheThicknessIsReadFromThem) {
   const Kept horizons = kept(least());
   OcclusionSettings settings = least();
-  settings.thickness_unit = ThicknessUnit::back_faces;
+  settings.advanced.thickness_unit = ThicknessUnit::back_faces;
   const Kept unread = kept(settings);
   EXPECT_EQ(unread.passes, horizons.passes) << "horizons have no thickness";
   EXPECT_EQ(unread.bytes, horizons.bytes);
-  settings.thickness_unit = ThicknessUnit::distance;
+  settings.advanced.thickness_unit = ThicknessUnit::distance;
   (void)kept(settings);
   EXPECT_EQ(gpu().kernels().pipeline_count(), 3u) << "those of the first";
 
-  settings.estimator = Estimator::connected;
-  settings.thickness_unit = ThicknessUnit::radius;
+  settings.advanced.estimator = Estimator::connected;
+  settings.advanced.thickness_unit = ThicknessUnit::radius;
   const Kept constant = kept(settings);
   const std::size_t pipelines = gpu().kernels().pipeline_count();
   const Kept unasked = kept(settings, {}, {.hidden_depths = true});
@@ -152,7 +153,7 @@ TEST_F(OcclusionPlan, BackFacesCostOnlyWhereTheThicknessIsReadFromThem) {
   EXPECT_EQ(unasked.bytes, constant.bytes);
   EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines);
 
-  settings.thickness_unit = ThicknessUnit::back_faces;
+  settings.advanced.thickness_unit = ThicknessUnit::back_faces;
   const Kept read = kept(settings, {}, {.hidden_depths = true});
   EXPECT_THAT(read.passes,
               ElementsAre("inverse depth", "back inverse depth", "gtao", "reconstruct"));
@@ -166,11 +167,15 @@ TEST_F(OcclusionPlan, PartsOfASearchCostNoPassAndNoByteAndAPipelineOnlyWhereThey
   std::size_t pipelines = gpu().kernels().pipeline_count();
   (void)kept(least());
   EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines);
-  for (const SearchParts& parts :
-       {SearchParts{.snap_to_texels = false}, SearchParts{.extrapolation = false},
-        SearchParts{.unobserved = false}, SearchParts{.grouping = Grouping::pattern}}) {
+  const AdvancedSettings base = least().advanced;
+  std::array<AdvancedSettings, 4> parts{base, base, base, base};
+  parts[0].snap_to_texels = false;
+  parts[1].extrapolation = false;
+  parts[2].unobserved = false;
+  parts[3].grouping = Grouping::pattern;
+  for (const AdvancedSettings& each : parts) {
     OcclusionSettings changed = least();
-    changed.parts = parts;
+    changed.advanced = each;
     const Kept found = kept(changed);
     EXPECT_EQ(found.passes, as_it_is.passes);
     EXPECT_EQ(found.transients, as_it_is.transients);
@@ -187,7 +192,7 @@ TEST_F(OcclusionPlan, ASecondLayerCostsOnlyWhereItIsSearched) {
   EXPECT_EQ(unread.passes, horizons.passes) << "what is hidden lies within infinite thickness";
   EXPECT_EQ(unread.bytes, horizons.bytes);
 
-  settings.estimator = Estimator::connected;
+  settings.advanced.estimator = Estimator::connected;
   settings.depth_layers = 1;
   const Kept one = kept(settings);
   const std::size_t pipelines = gpu().kernels().pipeline_count();
@@ -221,8 +226,6 @@ TEST_F(OcclusionPlan, SpecularOcclusionCostsOnlyWhereItIsOn) {
   EXPECT_THAT(kept(settings, {.specular = true}).transients, Contains("bent normal"));
   const Kept unread = kept(settings);
   EXPECT_THAT(unread.passes, Not(Contains("specular occlusion")));
-  settings.specular = Specular::lagarde;
-  EXPECT_THAT(kept(settings, {.specular = true}).transients, Not(Contains("bent normal")));
 }
 
 TEST_F(OcclusionPlan, AChannelOfNoTextureMakesNoPipeline) {
@@ -318,7 +321,7 @@ TEST_F(OcclusionPlan, AFrameThatWasDeclaredBeforeMakesNoPipeline) {
   const std::size_t pipelines = gpu().kernels().pipeline_count();
   OcclusionSettings other = least();
   other.radius = 3.0f;
-  other.filter_tolerance_px = 4.0f;
+  other.advanced.filter_tolerance_px = 4.0f;
   (void)kept(other);
   EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines);
 }

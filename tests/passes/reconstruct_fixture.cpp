@@ -45,7 +45,7 @@ HostImage packed_raw_occlusion(const View& view, const Drawing& drawing,
 
 }  // namespace
 
-HostImage Reconstruct::reconstruct(const Input& input, const ReconstructSettings& settings) {
+HostImage Reconstruct::reconstruct(const Input& input, const OcclusionSettings& settings) {
   run([&](framegraph::Graph& graph) {
     if (input.reset) {
       graph.reset_history("occlusion");
@@ -85,9 +85,9 @@ HostImage Reconstruct::no_motion() {
   return {kWidth, kHeight, std::vector<float>(std::size_t{kWidth} * kHeight * 2), 2};
 }
 
-ReconstructSettings precise(std::uint32_t reach, std::uint32_t history_frames) {
-  ReconstructSettings settings;
-  settings.filter_radius = reach;
+OcclusionSettings precise(std::uint32_t reach, std::uint32_t history_frames) {
+  OcclusionSettings settings;
+  settings.advanced.filter_radius = reach;
   settings.history_frames = history_frames;
   settings.precision = Precision::float32;
   return settings;

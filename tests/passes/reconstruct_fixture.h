@@ -29,7 +29,7 @@ class Reconstruct : public PassTest {
   };
 
   // Visibility.
-  HostImage reconstruct(const Input& input, const ReconstructSettings& settings);
+  HostImage reconstruct(const Input& input, const OcclusionSettings& settings);
   static HostImage noise_raw_occlusion(std::mt19937& random);
   static HostImage no_motion();
 };
@@ -39,7 +39,7 @@ class Reconstruct : public PassTest {
   return (pixels + tile_size - 1) / tile_size;
 }
 
-[[nodiscard]] ReconstructSettings precise(std::uint32_t reach, std::uint32_t history_frames);
+[[nodiscard]] OcclusionSettings precise(std::uint32_t reach, std::uint32_t history_frames);
 
 // The raw_occlusion of slices that are all open by `weight` and visible by `visibility` of it.
 template <typename Visibility>

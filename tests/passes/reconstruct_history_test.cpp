@@ -127,7 +127,7 @@ TEST_F(Reconstruct, ResetForgetsTheHistory) {
   const HostImage dark = constant_raw_occlusion(kWidth, kHeight, 0.1f);
   const HostImage bright = constant_raw_occlusion(kWidth, kHeight, 0.9f);
   const HostImage bright_smaller = constant_raw_occlusion(kWidth - 3, kHeight, 0.9f);
-  const ReconstructSettings settings = precise(1, 32);
+  const OcclusionSettings settings = precise(1, 32);
   const auto gather_dark = [&] {
     for (std::uint32_t frame = 0; frame < 6; ++frame) {
       (void)reconstruct(

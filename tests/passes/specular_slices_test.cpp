@@ -78,7 +78,7 @@ TEST_F(SpecularSlices, MeetTheLobeCastOverTheExactSurfaces) {
                        << scene.name << ", " << view.name << ", roughness " << roughness
                        << (estimator == Estimator::connected ? ", connected" : ", horizons"));
           OcclusionSettings settings = settings_of(Quality::reference, radius, roughness);
-          settings.estimator = estimator;
+          settings.advanced.estimator = estimator;
           settings.hidden_occlusion = 1.0f;
           const auto images =
               run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, settings);

@@ -17,9 +17,9 @@ class UnobservedPass : public PassTest {
   HostImage visibility(const TestView& view, const Drawing& drawing, bool unobserved,
                        Estimator estimator = Estimator::connected, float radius = kRadius) {
     OcclusionSettings settings = quality_settings(Quality::reference, radius);
-    settings.estimator = estimator;
+    settings.advanced.estimator = estimator;
     settings.hidden_occlusion = 1.0f;
-    settings.parts.unobserved = unobserved;
+    settings.advanced.unobserved = unobserved;
     return run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, settings).visibility;
   }
 };
@@ -157,9 +157,9 @@ TEST_F(UnobservedPass, WhatASecondLayerShowsIsSeen) {
   const HostImage second = draw_second_layer(view, kWidth, kHeight, covered);
   const auto seen = [&](bool unobserved, std::uint32_t layers) {
     OcclusionSettings settings = quality_settings(Quality::reference, kRadius);
-    settings.estimator = Estimator::connected;
+    settings.advanced.estimator = Estimator::connected;
     settings.depth_layers = layers;
-    settings.parts.unobserved = unobserved;
+    settings.advanced.unobserved = unobserved;
     return run_occlusion({.view = view.view,
                           .depth_ndc = drawing.depth_ndc,
                           .normal_vs = &drawing.normal_vs,

@@ -38,12 +38,12 @@ TEST(Variants, EachDiffersFromTheBaseAndHasAUniqueName) {
 
 TEST(Variants, OnlyHorizonEstimatorsHaveAFalloff) {
   OcclusionSettings base = passes::quality_settings(Quality::medium, 0.5f);
-  base.estimator = passes::Estimator::horizons;
-  base.falloff = 0.5f;
+  base.advanced.estimator = passes::Estimator::horizons;
+  base.advanced.falloff = 0.5f;
   for (const Variant& variant : variants_of(base)) {
-    const bool has_falloff = variant.settings.estimator == passes::Estimator::horizons ||
-                             variant.settings.estimator == passes::Estimator::heuristic;
-    EXPECT_EQ(variant.settings.falloff, has_falloff ? 0.5f : 0.0f) << variant.name;
+    const bool has_falloff = variant.settings.advanced.estimator == passes::Estimator::horizons ||
+                             variant.settings.advanced.estimator == passes::Estimator::heuristic;
+    EXPECT_EQ(variant.settings.advanced.falloff, has_falloff ? 0.5f : 0.0f) << variant.name;
   }
 }
 
@@ -108,7 +108,7 @@ TEST_F(AblationTest, BackFacesAndSecondLayerDoNotIncreaseTheError) {
   };
   const double base = error_of(ablation->base().visibility);
   Variant back_faces{"occluders", "back faces", base_};
-  back_faces.settings.thickness_unit = passes::ThicknessUnit::back_faces;
+  back_faces.settings.advanced.thickness_unit = passes::ThicknessUnit::back_faces;
   Variant second_layer{"occluders", "second layer", base_};
   second_layer.settings.depth_layers = 2;
   // Back faces may increase the error by 2 % in this scene; the second layer must reduce it by 10
@@ -134,7 +134,7 @@ TEST_F(AblationTest, SnappingKeepsOpenSurfacesOpen) {
     open_surfaces.pixels[i] = open_surfaces.pixels[i] != 0 && truth.pixels[i] >= 1.0f ? 1 : 0;
   }
   Variant variant{"snap_to_texels", "none", base_};
-  variant.settings.parts.snap_to_texels = false;
+  variant.settings.advanced.snap_to_texels = false;
   const auto result = ablation->run(*other, variant);
   ASSERT_TRUE(result) << result.error();
   const double with = compare_images(ablation->base().visibility, truth, open_surfaces).bias;
@@ -151,7 +151,7 @@ TEST_F(AblationTest, GroupingByPatternChangesNeitherImageNorMemory) {
   auto ablation = VariantRunner::create(*gpu, scene_, setup_, base_);
   ASSERT_TRUE(ablation) << ablation.error();
   Variant variant{"grouping", "one direction", base_};
-  variant.settings.parts.grouping = passes::Grouping::pattern;
+  variant.settings.advanced.grouping = passes::Grouping::pattern;
   const auto result = ablation->run(*other, variant);
   ASSERT_TRUE(result) << result.error();
   const Mask all(setup_.width, setup_.height, 1);
@@ -164,7 +164,7 @@ TEST_F(AblationTest, HiddenDepthsAreRenderedWhenRequested) {
   const auto gpu = open_validated();
   ASSERT_TRUE(gpu);
   OcclusionSettings backs = base_;
-  backs.thickness_unit = passes::ThicknessUnit::back_faces;
+  backs.advanced.thickness_unit = passes::ThicknessUnit::back_faces;
   OcclusionSettings layers = base_;
   layers.depth_layers = 2;
   const auto renderer =

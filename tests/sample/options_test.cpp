@@ -208,11 +208,11 @@ TEST(Options, ASettingIsCheckedBeforeAnythingIsLoaded) {
     const char* given;
     const char* wanted;
   } wrong[] = {{"slice=2", "slices"},
-               {"slices=99999999999", "a whole number from 1 to 64"},
-               {"slices=-1", "a whole number from 1 to 64"},
-               {"slices=65", "a whole number from 1 to 64"},
+               {"slices=99999999999", "a whole number, 1 to 64"},
+               {"slices=-1", "a whole number, 1 to 64"},
+               {"slices=65", "a whole number, 1 to 64"},
                {"hidden_occlusion=much", "a number"},
-               {"estimator=guess", "one of horizons, heuristic, bitmask, connected"}};
+               {"estimator=guess", "give horizons, heuristic, bitmask or connected"}};
   for (const auto& [given, wanted] : wrong) {
     const auto options = parse({"render", "--set", given});
     ASSERT_FALSE(options) << given;
@@ -244,7 +244,7 @@ TEST(Options, HelpListsTheSettings) {
        {"render", "compare", "motion", "ablate", "bench", "recommend", "graph", "view"}) {
     const std::string help = parse({command, "--help"}).error().text;
     EXPECT_THAT(help, HasSubstr("clamp_width")) << command;
-    EXPECT_THAT(help, HasSubstr("Searches that run together: neighbours")) << command;
+    EXPECT_THAT(help, HasSubstr("Tiles that a workgroup traces: adjacent ones")) << command;
     EXPECT_THAT(help, HasSubstr("horizons, heuristic, bitmask or connected")) << command;
   }
   EXPECT_THAT(parse({"doctor", "--help"}).error().text, testing::Not(HasSubstr("clamp_width")));

@@ -83,25 +83,25 @@ TEST(CommandLine, EverySettingIsParsedBack) {
   settings.radius = 0.1f;
   settings.slices = 3;
   settings.steps = 7;
-  settings.estimator = passes::Estimator::heuristic;
-  settings.weighting = passes::Weighting::uniform;
+  settings.advanced.estimator = passes::Estimator::heuristic;
+  settings.advanced.weighting = passes::Weighting::uniform;
   settings.thickness = 1.0f / 7.0f;
-  settings.thickness_unit = passes::ThicknessUnit::back_faces;
+  settings.advanced.thickness_unit = passes::ThicknessUnit::back_faces;
   settings.hidden_occlusion = 0.123456789f;
-  settings.blend = 1e-6f;
-  settings.falloff = 0.25f;
+  settings.advanced.blend = 1e-6f;
+  settings.advanced.falloff = 0.25f;
   settings.tile_size = 4;
-  settings.pattern = passes::Pattern::paper;
-  settings.parts = {.snap_to_texels = false,
-                    .extrapolation = false,
-                    .unobserved = false,
-                    .grouping = passes::Grouping::pattern};
-  settings.filter_radius = 0;
-  settings.filter_tolerance_px = 2.5f;
+  settings.advanced.pattern = passes::Pattern::paper;
+  settings.advanced.snap_to_texels = false;
+  settings.advanced.extrapolation = false;
+  settings.advanced.unobserved = false;
+  settings.advanced.grouping = passes::Grouping::pattern;
+  settings.advanced.filter_radius = 0;
+  settings.advanced.filter_tolerance_px = 2.5f;
   settings.history_frames = 17;
-  settings.clamp_width = 1.5f;
+  settings.advanced.clamp_width = 1.5f;
   settings.bent_normal = true;
-  settings.specular = passes::Specular::smooth_cone;
+  settings.specular = passes::Specular::cone;
   settings.precision = passes::Precision::float32;
   expect_round_trip(kDefaults, shot);
 }

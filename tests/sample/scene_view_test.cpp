@@ -149,7 +149,7 @@ TEST_F(SceneViewTest, ASettingThatIsRefusedIsToldAndThePictureStays) {
 TEST_F(SceneViewTest, HiddenDepthsAndAKeptComparisonAreDrawn) {
   ViewState& state = view_->state();
   state.kept = state.settings;
-  state.kept.thickness_unit = passes::ThicknessUnit::back_faces;
+  state.kept.advanced.thickness_unit = passes::ThicknessUnit::back_faces;
   state.comparison = Comparison::kKept;
   state.settings.depth_layers = 2;
   state.settings.specular = passes::Specular::table;

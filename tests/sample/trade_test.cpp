@@ -40,7 +40,7 @@ TEST(PresetSweep, ContainsEachPresetAndNoDuplicates) {
 TEST(PresetSweep, ChangesOnlyTileSizeSlicesAndSteps) {
   OcclusionSettings base = passes::quality_settings(passes::Quality::medium, 2.0f);
   base.history_frames = 0;
-  base.estimator = passes::Estimator::horizons;
+  base.advanced.estimator = passes::Estimator::horizons;
   base.hidden_occlusion = 0.1f;
   for (const Variant& way : preset_sweep(base)) {
     OcclusionSettings settings = way.settings;

@@ -59,7 +59,8 @@ const char* alcoveGetResultName(AlcoveResult result);
 uint32_t alcoveGetVersion(void);
 
 // Presets for alcoveGetSettings. Fields that the table does not have are the defaults that
-// AlcoveSettings states. REFERENCE also has the estimator HORIZONS, no filter and FLOAT32.
+// AlcoveSettings states. REFERENCE also has FLOAT32 and, in its advanced settings, the paper's
+// horizons and no filter.
 //
 //              slices  steps  tile_size  history_frames  depth fetches a pixel and frame
 //   LOW             1      8        4              32                                1
@@ -76,54 +77,13 @@ typedef enum AlcoveQuality {
   ALCOVE_QUALITY_MAX_ENUM = 0x7fffffff
 } AlcoveQuality;
 
-// How thick occluders are taken to be. A depth buffer shows only their front faces.
-typedef enum AlcoveEstimator {
-  // Infinitely thick: the horizons of [Jimenez 2016].
-  ALCOVE_ESTIMATOR_HORIZONS = 0,
-  // The paper's thickness heuristic: lower samples further out lower a horizon.
-  ALCOVE_ESTIMATOR_HEURISTIC = 1,
-  // A visibility bitmask: each sample is an occluder of its own, as thick as `thickness` says.
-  ALCOVE_ESTIMATOR_BITMASK = 2,
-  // A bitmask in which neighbouring samples of one surface are connected to a segment without gaps.
-  // Suits thin objects and walls alike.
-  ALCOVE_ESTIMATOR_CONNECTED = 3,
-  ALCOVE_ESTIMATOR_MAX_ENUM = 0x7fffffff
-} AlcoveEstimator;
-
-// The weight of a visible direction in visibility. Bent normals always have the cosine's.
-typedef enum AlcoveWeighting {
-  ALCOVE_WEIGHTING_COSINE = 0,  // the cosine of its angle to the normal, as diffuse light needs it
-  ALCOVE_WEIGHTING_UNIFORM =
-      1,  // 1: visibility is the visible part of the hemisphere's solid angle
-  ALCOVE_WEIGHTING_MAX_ENUM = 0x7fffffff
-} AlcoveWeighting;
-
-typedef enum AlcoveThicknessUnit {
-  ALCOVE_THICKNESS_UNIT_RADIUS = 0,    // a fraction of the radius: constant in scene units
-  ALCOVE_THICKNESS_UNIT_DISTANCE = 1,  // a fraction of the occluder's distance from the eye
-  // Occluders end at AlcoveView::back_depth; where that has no face, as with RADIUS.
-  ALCOVE_THICKNESS_UNIT_BACK_FACES = 2,
-  ALCOVE_THICKNESS_UNIT_MAX_ENUM = 0x7fffffff
-} AlcoveThicknessUnit;
-
-// How slice directions are distributed over pixels and frames.
-typedef enum AlcovePattern {
-  ALCOVE_PATTERN_GOLDEN = 0,   // lattices without a period, rotated by the golden ratio
-  ALCOVE_PATTERN_HILBERT = 1,  // the R2 sequence along a Hilbert curve
-  ALCOVE_PATTERN_PAPER = 2,    // the 4x4 pixels and six rotations of [Jimenez 2016]
-  ALCOVE_PATTERN_MAX_ENUM = 0x7fffffff
-} AlcovePattern;
-
 // How specular occlusion is computed, where AlcoveView::specular asks for it.
 typedef enum AlcoveSpecular {
   // Integrates the GGX lobe over the slices that visibility is computed from: the most exact.
   ALCOVE_SPECULAR_SLICES = 1,
-  // The next three use visibility and the bent normal, which are then computed too.
-  ALCOVE_SPECULAR_TABLE = 2,        // the GGX lobe within the visibility cone, by a 54 KiB table
-  ALCOVE_SPECULAR_CONE = 3,         // the exact intersection of two cones
-  ALCOVE_SPECULAR_SMOOTH_CONE = 4,  // the same by a smooth step: cheaper, off by up to 0.16
-  // Uses visibility alone: the fit of Lagarde and de Rousiers 2014.
-  ALCOVE_SPECULAR_LAGARDE = 5,
+  // The next two use visibility and the bent normal, which are then computed too.
+  ALCOVE_SPECULAR_TABLE = 2,  // the GGX lobe within the visibility cone, by a 54 KiB table
+  ALCOVE_SPECULAR_CONE = 3,   // the exact intersection of two cones
   ALCOVE_SPECULAR_MAX_ENUM = 0x7fffffff
 } AlcoveSpecular;
 
@@ -149,86 +109,53 @@ typedef enum AlcovePrecision {
   ALCOVE_PRECISION_MAX_ENUM = 0x7fffffff
 } AlcovePrecision;
 
+struct AlcoveAdvancedSettings;  // alcove_advanced.h
+
 // Fill it with alcoveGetSettings, then change what is wanted. Brackets hold the default of every
-// quality but REFERENCE. A field that the estimator or the history does not use is not read, but it
-// has to be in range.
+// quality but REFERENCE. Numbers that are out of range are refused in a sentence.
 typedef struct AlcoveSettings {
   uint32_t struct_size;  // sizeof(AlcoveSettings)
-
-  // The search. A slice is a plane through the view vector; in each slice, depth is sampled in both
-  // directions.
-
   // Scene units, above 0. Occluders further away do not count. A twentieth to a fifth of a room's
   // height is usual.
   float radius;
-  // Slices of a traced pixel, 1 to 64. More slices have less noise and cost proportionally more.
+  // One pixel of a tile of tile_size x tile_size pixels is traced in each frame: 1, 2 or 4. The
+  // traced pixel changes from frame to frame, so that every pixel is traced in time.
+  uint32_t tile_size;
+  // Slices of a traced pixel, 1 to 64. A slice is a plane through the view direction, in which
+  // depth is sampled in both directions. More slices have less noise and cost proportionally more.
   uint32_t slices;
   // Samples in each of the two directions of a slice, 2 to 64. More find thinner occluders.
   uint32_t steps;
-  AlcoveEstimator estimator;  // [CONNECTED]
-  AlcoveWeighting weighting;  // [COSINE]
-  // The thickness of an occluder in thickness_unit, at least 0, for BITMASK and CONNECTED. With
-  // CONNECTED, at its leading edge an occluder is at most as thick as its visible width. [0.15]
+  // The thickness of occluders as a fraction of the radius, at least 0. At its leading edge an
+  // occluder is at most as thick as its visible width. [0.15]
   float thickness;
-  AlcoveThicknessUnit thickness_unit;  // for BITMASK and CONNECTED [RADIUS]
-  // The fraction of the volume hidden behind an occluder that is treated as solid, 0 to 1, for
-  // BITMASK and CONNECTED. Between 0 and 1 it grows with the occluder's width in the image: more
-  // behind a wall than behind a twig. [0.33]
+  // The fraction of the volume hidden behind an occluder that is treated as solid, 0 to 1. It grows
+  // with the occluder's width in the image: more behind a wall than behind a twig. [0.33]
   float hidden_occlusion;
-  // Depth layers that are searched: 1, or 2 with AlcoveView::second_depth. For BITMASK and
-  // CONNECTED. [1]
-  uint32_t depth_layers;
-  // How far each lower sample further out lowers the horizon towards it, 0 (not) to 1 (all the
-  // way), for HEURISTIC. [0.05]
-  float blend;
-  // The last part of the radius, over which occluders fade out, 0 to 1, for HORIZONS and HEURISTIC.
-  // Must be 0 with BITMASK and CONNECTED, whose sectors are either occluded or open. [0]
-  float falloff;
-  // One pixel of a tile of tile_size x tile_size pixels is traced in each frame: 1, 2 or 4. The
-  // interleave offset changes from frame to frame, so that every pixel is traced in time.
-  uint32_t tile_size;
-  AlcovePattern pattern;  // [GOLDEN]
-
-  // The spatial filter: each pixel averages the traced pixels around it that lie on its surface.
-
-  // Filter radius in tiles for pixels with fewer than two frames of history, 0 to 3; later frames
-  // use
-  // 1. 0 turns the filter off. [2]
-  uint32_t filter_radius;
-  // Distance from the tangent plane, in pixels, at which a neighbour's weight falls to 0.25; above
-  // 0. This is the value for one slice and no history. It shrinks as samples accumulate. [1.5]
-  float filter_tolerance_px;
-
-  // The history.
-
-  // Frames that are averaged, 0 to 127. 0 keeps no history and takes no memory for it.
-  uint32_t history_frames;
-  // The history is clamped to the mean of this frame's neighbourhood plus or minus so many standard
-  // deviations, at least 0. 0 does not clamp. [0]
-  float clamp_width;
-
-  // Outputs.
-
+  uint32_t depth_layers;       // that are searched: 1, or 2 with AlcoveView::second_depth [1]
+  uint32_t history_frames;     // that are averaged, 0 to 127. 0 takes no memory for a history
   AlcoveSpecular specular;     // read where AlcoveView::specular is given [SLICES]
   float roughness;             // perceptual, 0 to 1, for pixels without AlcoveView::roughness [0.5]
   uint32_t roughness_channel;  // the channel of AlcoveView::roughness, 0 to 3 [0]
   AlcovePrecision precision;   // [UNORM8]
-  // The visibility that is written is 1 - intensity * (1 - visibility^power), cut to [0,1]. 1 and 1
-  // change nothing and cost nothing. Multi-bounce, and the specular models but SLICES, read what is
-  // written.
-  float power;      // above 0 to 16 [1]
+  // The visibility that is written is 1 - intensity * (1 - visibility^power), clamped to [0,1]. 1
+  // and 1 change nothing and cost nothing. Multi-bounce, and the specular models TABLE and CONE,
+  // read what is written.
+  float power;      // above 0, at most 16 [1]
   float intensity;  // 0 to 16 [1]
+  // What most engines never change. Null: the defaults, which suit every scene. [null]
+  const struct AlcoveAdvancedSettings* advanced;
 } AlcoveSettings;
 
-// Fills `settings`, whose struct_size is set, with those of a quality at a radius (scene units,
-// over 0). ALCOVE_ERROR_INVALID_INPUT if any argument is invalid; there is no context, so no
-// message.
+// Fills `settings`, whose struct_size is set, with a preset at a radius (scene units, above 0). For
+// REFERENCE, `advanced` then points to constants of the library. ALCOVE_ERROR_INVALID_INPUT if any
+// argument is invalid; there is no context, so no message.
 AlcoveResult alcoveGetSettings(AlcoveQuality quality, float radius, AlcoveSettings* settings);
 
-// Writes the settings as lines of `name = value`, at most `size` bytes with the closing zero. A
-// float is the shortest text that reads back as the same, in every locale. Returns the bytes that
-// all of it takes without that zero, 0 if the settings are invalid. `text` may be null where `size`
-// is 0.
+// Writes the settings, those of `advanced` too, as lines of `name = value`: at most `size` bytes
+// with the terminating zero. A float is the shortest text that reads back as the same, in every
+// locale. Returns the bytes that the whole text takes without that zero, 0 if the settings are
+// invalid. `text` may be null where `size` is 0.
 size_t alcovePrintSettings(const AlcoveSettings* settings, char* text, size_t size);
 
 typedef struct AlcoveContext AlcoveContext;
@@ -492,12 +419,11 @@ typedef struct AlcoveView {
   float motion_offset[2];
   AlcoveImage roughness;  // perceptual, [0,1]; without an image, AlcoveSettings::roughness
   // The depth of the nearest back faces: the scene drawn with front faces culled, otherwise as
-  // depth. Required with ALCOVE_THICKNESS_UNIT_BACK_FACES and the estimators BITMASK and CONNECTED,
-  // else not read.
+  // depth. Required with ALCOVE_THICKNESS_UNIT_BACK_FACES (alcove_advanced.h), else not read.
   AlcoveImage back_depth;
   // The second depth layer: the scene drawn with back faces culled, discarding fragments that are
   // not behind `depth` by a thousandth of their distance, otherwise as depth. Required with two
-  // depth_layers and the estimators BITMASK and CONNECTED, else not read.
+  // depth_layers, else not read.
   AlcoveImage second_depth;
   AlcoveImage albedo;  // linear RGB, [0,1], for multi_bounce
 

@@ -9,51 +9,9 @@
 #include "alcove/passes/linear_depth.h"
 #include "alcove/passes/normals.h"
 #include "alcove/passes/reconstruct.h"
+#include "alcove/passes/settings.h"
 
 namespace alcove::passes {
-
-// How specular occlusion is found, the visible share of each surface's GGX lobe.
-enum class Specular : std::uint8_t {
-  none,
-  slices,  // by the slices that visibility is found by: the lobe within their horizons or sectors
-  // From visibility and bent normal, as GtsoSettings::model says.
-  table,
-  cone,
-  smooth_cone,
-  lagarde,
-};
-
-// Slices and steps of a search, how many pixels share one in a frame, and depth fetches a pixel and
-// frame; but for the reference all have a history of 32 frames.
-enum class Quality : std::uint8_t {
-  low,        // 1 slice of 8 steps a side in 4x4 pixels: 1 fetch
-  medium,     // 1 of 10 in 2x2: 5
-  high,       // 3 of 16 in 2x2: 24
-  ultra,      // 4 of 24 in 2x2: 48
-  reference,  // 32 of 64 in each: 4096. By horizons, neither filtered nor averaged: the paper's own
-};
-
-// Everything that can be chosen: what gtao.h and reconstruct.h say of searches and filter, and what
-// follows. quality_settings() gives a start.
-struct OcclusionSettings : SearchSettings, FilterSettings {
-  bool visibility = true;  // off where only others are wanted
-  bool bent_normal = false;
-  bool linear_depth = false;  // also hand on what lighting may want: OcclusionOutputs::linear_depth
-  Specular specular = Specular::none;
-  float roughness = 0.5f;               // perceptual, [0,1], of every pixel where no texture has it
-  std::uint32_t roughness_channel = 0;  // of the roughness texture, 0 to 3
-  Precision precision = Precision::unorm8;
-  // The visibility that is written is 1 - intensity * (1 - visibility^power), cut to [0,1]: 1 and 1
-  // change nothing and cost nothing. Above 0 to 16, and 0 to 16. Specular models and multi-bounce
-  // read the visibility that is written.
-  float power = 1.0f;
-  float intensity = 1.0f;
-
-  friend bool operator==(const OcclusionSettings&, const OcclusionSettings&) = default;
-};
-
-// The settings of a quality at a radius; all of them suit every scene.
-[[nodiscard]] OcclusionSettings quality_settings(Quality quality, float radius);
 
 struct OcclusionInputs {
   framegraph::Texture depth_ndc;       // as the view's projection wrote it

@@ -8,35 +8,9 @@
 
 #include "alcove/passes/frame.h"
 #include "alcove/passes/gtao.h"
+#include "alcove/passes/settings.h"
 
 namespace alcove::passes {
-
-struct FilterSettings {
-  // Filter radius in tiles for pixels with fewer than two frames of history, 0 to 3. Pixels with
-  // more history use 1. 0 turns the spatial filter off.
-  std::uint32_t filter_radius = 2;
-  // Distance from the tangent plane, in pixels, at which a neighbour's weight falls to 0.25. Above
-  // 0. This is the value for one slice and no history; it shrinks as samples accumulate.
-  float filter_tolerance_px = 1.5f;
-  // Frames that are averaged, 0 to 127; from 16 static frames on, 127. 0 keeps no history and
-  // allocates none, for engines with a temporal filter of their own.
-  std::uint32_t history_frames = 0;
-  // The history is clamped to this many standard deviations around the mean of this frame's
-  // neighbourhood. 0 turns clamping off.
-  float clamp_width = 0.0f;
-
-  friend bool operator==(const FilterSettings&, const FilterSettings&) = default;
-};
-
-struct ReconstructSettings : FilterSettings {
-  // Also writes visibility. Turn it off where only bent normals or specular occlusion are wanted.
-  bool visibility = true;
-  float roughness = 0.5f;  // As GtaoSettings::roughness; read where the raw occlusion has a lobe.
-  std::uint32_t roughness_channel = 0;
-  Precision precision = Precision::unorm8;
-  float power = 1.0f;      // as OcclusionSettings has it
-  float intensity = 1.0f;  // the same
-};
 
 // The convention of motion vectors: uv in this frame's image minus uv in the last frame's, y down,
 // is scale * vector + offset. Vectors in pixels have a scale of 1 / size, those in normalised
@@ -67,7 +41,7 @@ struct ReconstructInputs {
   framegraph::Texture motion;
   framegraph::Texture roughness;  // as GtaoInputs::roughness
   // Textures of the depth's size, of the caller's, that results are written to, whole; null: a
-  // transient of ReconstructSettings::precision. Read only where the result is wanted.
+  // transient of OcclusionSettings::precision. Read only where the result is wanted.
   Occlusion into;
   NormalEncoding normal_encoding = NormalEncoding::signed_xyz;
   bool normals_forward_z = false;  // as OcclusionInputs has it
@@ -80,9 +54,9 @@ struct ReconstructInputs {
 //
 // Errors: an input that is missing or whose size differs from the inverse depth's, raw occlusion
 // with another number of tiles, a view or previous view that cannot be used, sizes above the
-// largest, a setting out of range, nothing to write.
+// largest, settings that validate() refuses, nothing to write.
 [[nodiscard]] tl::expected<Occlusion, Error> add_reconstruct(
-    const Frame& frame, const ReconstructInputs& inputs, const ReconstructSettings& settings,
+    const Frame& frame, const ReconstructInputs& inputs, const OcclusionSettings& settings,
     std::string_view history_name = "occlusion");
 
 // Frees the histories of this name that the current or last declared frame does not use, once the

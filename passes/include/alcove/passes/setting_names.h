@@ -1,11 +1,12 @@
-// The names of what settings can be, for files, panels and messages.
+// The names of the values of the settings' enums, for files, sliders and messages.
 #pragma once
 
 #include <array>
 #include <cstddef>
+#include <string>
 #include <string_view>
 
-#include "alcove/passes/occlusion.h"
+#include "alcove/passes/settings.h"
 
 namespace alcove::passes {
 
@@ -31,16 +32,27 @@ inline constexpr auto kNames<Pattern> = std::to_array<std::string_view>({"golden
 template <>
 inline constexpr auto kNames<Grouping> = std::to_array<std::string_view>({"neighbours", "pattern"});
 template <>
-inline constexpr auto kNames<Specular> =
-    std::to_array<std::string_view>({"none", "slices", "table", "cone", "smooth_cone", "lagarde"});
+inline constexpr auto kNames<Specular> = std::to_array<std::string_view>({"none", "slices", "table",
+                                                                          "cone"});
 template <>
 inline constexpr auto kNames<Precision> = std::to_array<std::string_view>({"unorm8", "float16",
                                                                            "float32"});
 
-// Of a value that its enum has.
+// The name of one of the enum's values.
 template <typename Choice>
 constexpr std::string_view name_of(Choice value) {
   return kNames<Choice>[static_cast<std::size_t>(value)];
+}
+
+// All names of an enum: "cosine or uniform", "golden, hilbert or paper".
+template <typename Choice>
+std::string names_text() {
+  const auto& names = kNames<Choice>;
+  std::string all(names.front());
+  for (std::size_t i = 1; i < names.size(); ++i) {
+    all.append(i + 1 < names.size() ? ", " : " or ").append(names[i]);
+  }
+  return all;
 }
 
 }  // namespace alcove::passes

@@ -1,0 +1,99 @@
+// Settings that most users never change: alternatives from the literature to compare with, filter
+// tuning, and parts of the search that can be switched off to measure what they do. The defaults
+// suit every scene.
+#pragma once
+
+#include <cstdint>
+
+namespace alcove::passes {
+
+// How the thickness of occluders is estimated. A depth buffer shows only their fronts.
+enum class Estimator : std::uint8_t {
+  // Occluders are infinitely thick: the horizons of [Jimenez 2016].
+  horizons,
+  // Occluders are infinitely thick, but each lower sample further out pulls the horizon down: the
+  // paper's thickness heuristic.
+  heuristic,
+  // Every sample is a separate occluder of the thickness in the settings: the visibility bitmask of
+  // Therrien et al. 2023, with exact cosine weights.
+  bitmask,
+  // As `bitmask`, but consecutive samples of one surface are connected without gaps
+  // (shaders/maths/connected_samples.h). Suits thin objects and walls alike.
+  connected,
+};
+
+// Whether the estimator reads thickness, hidden_occlusion and depth_layers. The other estimators
+// read AdvancedSettings::falloff instead.
+[[nodiscard]] constexpr bool has_thickness(Estimator estimator) {
+  return estimator == Estimator::bitmask || estimator == Estimator::connected;
+}
+
+// The unit of OcclusionSettings::thickness, for estimators with has_thickness().
+enum class ThicknessUnit : std::uint8_t {
+  radius,    // The occlusion radius: the thickness is constant in the scene.
+  distance,  // The occluder's distance along the view axis: the thickness is constant on the image.
+  // A second depth buffer of back faces gives the thickness: each occluder ends at the nearest back
+  // face on its view ray. For a closed solid that is where the ray leaves it, unless another solid
+  // stands inside. Without a back face behind the front (cards, planes, sky) the unit is `radius`.
+  // A card in front of a solid is taken to reach to the solid's back, because two depths cannot
+  // distinguish that case.
+  back_faces,
+};
+
+// The weight of a visible direction in visibility. Bent normals always have the cosine.
+enum class Weighting : std::uint8_t {
+  cosine,   // The cosine of its angle to the normal, as diffuse reflection needs it.
+  uniform,  // 1: visibility is a fraction of the hemisphere's solid angle (the paper's appendix A).
+};
+
+// How slice directions and step offsets vary over pixels and frames (shaders/maths/sampling.h).
+enum class Pattern : std::uint8_t {
+  golden,   // Lattices without a period, rotated by the golden ratio each frame.
+  hilbert,  // The R2 sequence along a Hilbert curve.
+  paper,    // The 4x4 pixels and six rotations of [Jimenez 2016].
+};
+
+// Which pixels a workgroup traces. It changes the cost and not the image.
+enum class Grouping : std::uint8_t {
+  neighbours,  // 8x8 adjacent tiles.
+  pattern,     // Every fourth tile in x and y: with Pattern::paper these have one slice direction.
+};
+
+// OcclusionSettings::advanced. A setting that the estimator or the history does not use is not
+// read, but it has to be in range. setting_table.h has the ranges.
+struct AdvancedSettings {
+  Estimator estimator = Estimator::connected;
+  Weighting weighting = Weighting::cosine;
+  ThicknessUnit thickness_unit = ThicknessUnit::radius;
+  // How far each lower sample pulls the horizon down, from 0 (not at all) to 1 (all the way).
+  // `heuristic` only.
+  float blend = 0.05f;
+  // Last fraction of the radius over which occluders fade, [0,1]; 0 turns fading off. It must be 0
+  // with the estimators `bitmask` and `connected`, whose sectors are either occluded or open.
+  float falloff = 0.0f;
+  Pattern pattern = Pattern::golden;
+  // Filter radius in tiles for pixels with fewer than two frames of history, 0 to 3. Pixels with
+  // more history use 1. 0 turns the spatial filter off.
+  std::uint32_t filter_radius = 2;
+  // Distance from the tangent plane, in pixels, at which a neighbour's weight falls to 0.25; above
+  // 0. This is the value for one slice and no history. It shrinks as samples accumulate.
+  float filter_tolerance_px = 1.5f;
+  // The history is clamped to this many standard deviations around the mean of this frame's
+  // neighbourhood, at least 0. 0 turns clamping off.
+  float clamp_width = 0.0f;
+
+  // Parts of the search that can be switched off to measure what they do (`alcove ablate`).
+
+  // Snaps samples to texel centres. Without it, tilted planes occlude themselves.
+  bool snap_to_texels = true;
+  // Extrapolates surfaces that leave the image beyond its border (`connected` only).
+  bool extrapolation = true;
+  // Excludes directions that foregrounds or the image's border hide from the average (`connected`
+  // only, shaders/maths/unobserved.h). Without it they count as open.
+  bool unobserved = true;
+  Grouping grouping = Grouping::neighbours;
+
+  friend bool operator==(const AdvancedSettings&, const AdvancedSettings&) = default;
+};
+
+}  // namespace alcove::passes
