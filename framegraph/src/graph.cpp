@@ -150,13 +150,8 @@ std::uint32_t Graph::add_any_access(std::uint32_t pass, std::uint32_t index, std
     record.flags |= index == kNone ? kNull : kForeign;
     record.resource = kNone;
   } else {
-    const bool writes = (flags & kWrite) != 0;
-    const ResourceRecord& resource = description_.resources[index];
-    if (access_fits(access, record.kind(), writes) && range == Range{} &&
-        is_plain(resource, record.kind()))
-      record.flags |= kPlain;
-    record.range = resolved_range(range, resource);
-    left = versions_[index] += writes;
+    record.range = resolved_range(range, description_.resources[index]);
+    left = versions_[index] += (flags & kWrite) != 0;
   }
   add(description_.accesses, record);
   next_access_ = &description_.accesses.next();

@@ -25,22 +25,21 @@ struct UseState {
   VkPipelineStageFlags2 read_stages = 0;   // of the reads since
   VkPipelineStageFlags2 seen_stages = 0;   // by which the write can be seen
   VkAccessFlags2 seen_access = 0;
-  VkAccessFlags2 unordered_access = 0;  // of the last write, where that is unordered
+  VkAccessFlags2 unordered_access = 0;  // of the last write, if it is Contents::accumulate
   std::int32_t write_time = kNever;
   std::int32_t read_time = kNever;
+  VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
+  std::uint32_t transition = kNone;  // the image barrier that made this layout
   // Of the last use of memory in the frame before, and of memory that was handed over from it:
   // three bits for each queue class, which queues it has to wait for before it takes the memory
   // over.
-  std::uint16_t frame_before = 0;
-  VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
-  std::uint32_t transition = kNone;  // the image barrier that made this layout
+  std::uint32_t frame_before = 0;
   // Memory that others had before: its reads do not stand for its writes.
   std::uint8_t handed_over = 0;
   // Comes after work of another queue by a wait that covers all stages.
   std::uint8_t by_wait = 0;
   QueueClass queue = QueueClass::graphics;  // of the last use
   std::uint8_t used = 0;                    // in this frame, or arrived with contents
-  std::uint8_t unordered = 0;               // the last write was with Contents::accumulate
   bool operator==(const UseState&) const = default;
 };
 

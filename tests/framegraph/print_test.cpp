@@ -40,26 +40,6 @@ TEST_F(Print, TextFitsAScreenInWidth) {
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 120u) << line;
 }
 
-TEST_F(Print, JsonIsBalancedAndEscaped) {
-  const std::string json = print_json(graph_.description(), plan_);
-  int depth = 0;
-  bool quoted = false;
-  for (std::size_t i = 0; i < json.size(); ++i) {
-    if (json[i] == '\\' && quoted) {
-      ++i;
-      continue;
-    }
-    if (json[i] == '"') quoted = !quoted;
-    if (quoted) continue;
-    if (json[i] == '{' || json[i] == '[') ++depth;
-    if (json[i] == '}' || json[i] == ']') --depth;
-    ASSERT_GE(depth, 0);
-  }
-  EXPECT_EQ(depth, 0);
-  EXPECT_FALSE(quoted);
-  EXPECT_THAT(json, HasSubstr(R"("name":"nobody \"wants\" this")"));
-}
-
 TEST_F(Print, DotHasANodeForEachPass) {
   const std::string dot = print_dot(graph_.description(), plan_);
   for (std::size_t i = 0; i < graph_.description().passes.size(); ++i)

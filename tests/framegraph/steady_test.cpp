@@ -145,6 +145,18 @@ TEST(Steady, AccessBeyondTheEndOfTheLastFrameIsComparedAgain) {
 
 // A handle made up by counting from another names nothing until that is declared, even where the
 // frame before declared it.
+TEST(Steady, WholeAccessIsNotTakenForTheMipOfTheLastFrame) {
+  Graph graph;
+  for (const Range range : {Range::mip(0), Range{}}) {
+    graph.reset();
+    const Texture texture =
+        graph.create_texture("texture", {VK_FORMAT_R8G8B8A8_UNORM, Extent::absolute(8, 8), 4});
+    PassBuilder pass = graph.add_pass("pass");
+    (void)pass.write(texture, access::storage_write_compute, range);
+    EXPECT_EQ(graph.description().accesses[0].range.mips, range == Range{} ? 4 : 1);
+  }
+}
+
 TEST(Steady, InventedHandleIsRefused) {
   Graph graph;
   for (int frame = 0; frame < 3; ++frame) {

@@ -211,8 +211,6 @@ class Graph {
                             HistoryValidity& validity, const State& final_state = {});
   static ResourceRecord buffer_record(const BufferDesc& desc);
   static Range resolved_range(Range range, const ResourceRecord& resource);
-  static constexpr bool access_fits(const Access& access, ResourceKind kind, bool writes);
-  static bool is_plain(const ResourceRecord& resource, ResourceKind kind);
   template <typename Handle>
   std::uint32_t add_access(std::uint32_t pass, const Handle& handle, const Access& access,
                            Range range, std::uint32_t flags);
