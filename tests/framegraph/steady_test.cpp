@@ -65,14 +65,14 @@ bool same_bytes(const Records<Record>& a, const Records<Record>& b) {
          (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Record)) == 0);
 }
 
-// What same_declaration says, found out by looking at every byte.
+// Computes same_declaration() by looking at every byte.
 bool same_bytes(const GraphDescription& a, const GraphDescription& b) {
   return same_bytes(a.passes, b.passes) && same_bytes(a.accesses, b.accesses) &&
          same_bytes(a.resources, b.resources) && same_bytes(a.externals, b.externals) &&
          same_bytes(a.outputs, b.outputs);
 }
 
-// The same few frames in any order, some of them empty and some wrong.
+// Declares a few frames in random order, some of them empty and some wrong.
 void declare_one_of_few(Graph& graph, Dice& order) {
   graph.reset();
   graph.reset_histories();
@@ -124,7 +124,7 @@ TEST(Steady, ReusedGraphDeclaresAsANewOne) {
   }
 }
 
-// What an older, longer frame left behind was said of a texture that is another one now.
+// A record that an older, longer frame left behind is of a texture that is another one now.
 TEST(Steady, AccessBeyondTheEndOfTheLastFrameIsComparedAgain) {
   const auto declare = [](Graph& graph, std::uint32_t mips, bool reads) {
     graph.reset();

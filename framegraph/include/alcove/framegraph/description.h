@@ -84,9 +84,9 @@ enum AccessFlags : std::uint32_t {
   kOnBuffer = 128,  // the handle was of a buffer
   // Contents::accumulate: the write is not ordered among others of the same access.
   kUnordered = 256,
-  // Of an OutputRecord that stands for a PassBuilder which was used after reset().
+  // Marks an OutputRecord that stands for a PassBuilder which was used after reset().
   kStaleBuilder = 1u << 16,
-  // Of an attachment: from this bit on, the number of the rendering within its pass.
+  // The bits from this one on hold the number of an attachment's rendering within its pass.
   kRendering = 1u << 24,
 };
 

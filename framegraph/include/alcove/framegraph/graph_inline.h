@@ -32,7 +32,7 @@ void PassBuilder::record(Callable&& callable) {
 }
 
 inline void* Graph::allocate(std::size_t size, std::size_t alignment) {
-  // What is free begins at a multiple of kAlignment, which is enough for nearly everything.
+  // Free memory begins at a multiple of kAlignment, which is enough for nearly everything.
   const std::size_t padding =
       alignment <= kAlignment ? 0 : (0 - reinterpret_cast<std::uintptr_t>(next_)) & (alignment - 1);
   size = (size + kAlignment - 1) & ~(kAlignment - 1);
@@ -148,7 +148,7 @@ inline std::uint32_t Graph::add_access(std::uint32_t pass, const Handle& handle,
       std::is_same_v<Handle, Texture> ? ResourceKind::texture : ResourceKind::buffer;
   const bool writes = (flags & kWrite) != 0;
   if (kKind == ResourceKind::buffer) flags |= kOnBuffer;
-  // As a rule the access is a constant, and all but the handle is known to the compiler.
+  // The access is nearly always a constant, so that the compiler knows everything but the handle.
   const auto is_of_whole = [&](std::uint32_t tag) {
     return range == Range{} && handle.graph == tag &&
            handle.index < description_.resources.size() &&
