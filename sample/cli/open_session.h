@@ -13,10 +13,13 @@
 
 namespace alcove::sample {
 
+// Loads the scene and finds camera and settings. Notes about the scene go to stderr, and so does
+// progress where loading takes long. The session has no device.
+[[nodiscard]] tl::expected<Session, std::string> load_session(const Options& options);
+
 // Loads the scene, finds camera and settings and opens the device, in this order, so that the
-// mistake that is found fastest is reported first. Notes about the scene go to stderr, and so does
-// progress where loading takes long. `surface_extensions` are the instance extensions of a window
-// to present to.
+// mistake that is found fastest is reported first. `surface_extensions` are the instance extensions
+// of a window to present to.
 [[nodiscard]] tl::expected<Session, std::string> open_session(
     const Options& options, const std::vector<const char*>& surface_extensions = {});
 

@@ -33,6 +33,8 @@ struct SceneViewRequest {
   std::filesystem::path screenshots;  // folder for them; empty: the current one
   // Loads the scene and opens a device with these instance extensions.
   std::function<tl::expected<Session, std::string>(const std::vector<const char*>&)> open_session;
+  // Loads another scene with a camera and settings of its own, and opens no device.
+  std::function<tl::expected<Session, std::string>(const std::string& file)> load_session;
   // The shell command that draws a shot without a window.
   std::function<std::string(const Shot&)> command;
 };
@@ -57,6 +59,10 @@ class SceneView {
   // Whether anything but the picture is shown.
   void show_panel(bool shown) { panel_shown_ = shown; }
 
+  // Shows another scene from its own first view, with the settings that are chosen and the radius
+  // that suits it. If the file cannot be read, the scene stays and the panel says why.
+  void open(const std::string& file);
+
   ViewState& state() { return state_; }
   const PanelFacts& facts() const { return facts_; }
   Window& window() { return *window_; }
@@ -72,6 +78,7 @@ class SceneView {
   };
 
   explicit SceneView(SceneViewRequest request) : request_(std::move(request)) {}
+  tl::expected<void, std::string> replace_scene(const std::string& file);
   // The camera with a far plane behind the scene, wherever the user has moved it.
   Camera camera_around_scene() const;
   void take_keys();
