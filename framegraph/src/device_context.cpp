@@ -127,6 +127,7 @@ void read_limits(DeviceContext& context) {
   limits.max_samples = std::bit_floor(std::max(samples, VkSampleCountFlags{1}));
   limits.max_buffer_size = max_buffer_size(context);
   limits.buffer_image_granularity = device.bufferImageGranularity;
+  limits.separate_depth_stencil = context.handles.separate_depth_stencil;
   limits.memory = {device_requirements, &context};
   limits.formats = {format_usage, &context};
   limits.images = {image_limits, &context};

@@ -31,6 +31,7 @@ struct Executor::Implementation {
   tl::expected<CachedPlan*, Errors> plan_for(const Graph& graph, Queues queues, bool& compiled);
   tl::expected<void, Errors> find_physical(const Graph& graph, CachedPlan& cached);
   VkResult find_external(const Graph& graph, CachedPlan& cached, std::uint32_t resource);
+  const Physical* find_persistent(const Graph& graph, std::uint32_t resource, State& state);
   tl::expected<FrameReport, Errors> prepare(Graph& graph, const FrameInfo& info, Queues queues,
                                             CachedPlan*& cached);
   tl::expected<void, Errors> check_slot(std::uint32_t slot) const;
@@ -402,6 +403,44 @@ std::span<const PassTiming> Executor::timings(std::uint32_t slot) {
     }
   }
   return self.timings;
+}
+
+const Physical* Executor::Implementation::find_persistent(const Graph& graph,
+                                                          std::uint32_t resource, State& state) {
+  const GraphDescription& description = graph.description();
+  if (resource >= description.resources.size() ||
+      description.resources[resource].origin != Origin::history)
+    return nullptr;
+  const std::uint32_t index = graph.imports_[description.resources[resource].external].history;
+  const HistoryEntry& entry = graph.histories().entries()[index];
+  state = entry.slots[entry.physical(0)].state;
+  return pool->find_history(graph.histories(), index, entry.physical(0));
+}
+
+ImportedTexture Executor::exported(const Graph& graph, const TextureHistory& texture) const {
+  ImportedTexture import;
+  const Physical* found =
+      implementation_->find_persistent(graph, texture.current.index, import.initial_state);
+  if (!found || !found->image) return {};
+  const ResourceRecord& r = found->record;
+  import.image = found->image;
+  import.desc = {r.format, Extent::absolute(r.width, r.height, r.depth),  r.mips,
+                 r.layers, static_cast<VkSampleCountFlagBits>(r.samples), r.create_flags};
+  import.usage = found->usage;
+  import.final_state = import.initial_state;
+  return import;
+}
+
+ImportedBuffer Executor::exported(const Graph& graph, const BufferHistory& buffer) const {
+  ImportedBuffer import;
+  const Physical* found =
+      implementation_->find_persistent(graph, buffer.current.index, import.initial_state);
+  if (!found || !found->buffer) return {};
+  import.buffer = found->buffer;
+  import.desc.size = found->record.size;
+  import.usage = found->usage;
+  import.final_state = import.initial_state;
+  return import;
 }
 
 void Executor::forget(VkImage image) {

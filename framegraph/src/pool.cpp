@@ -115,17 +115,22 @@ VkResult Pool::transient(const ResourceRecord& record, const Plan& plan, const P
   return VK_SUCCESS;
 }
 
-VkResult Pool::history(const HistoryTable& table, std::uint32_t entry, std::uint32_t position,
-                       const ResourceRecord& record, VkFlags usage, std::string_view name,
-                       Physical*& found) {
+Physical* Pool::find_history(const HistoryTable& table, std::uint32_t entry,
+                             std::uint32_t position) const {
   const std::uint32_t generation = table.entries()[entry].generation;
   for (const HistoryImage& there : histories_) {
     if (there.entry == entry && there.position == position && there.generation == generation &&
-        is_of(there.table, table)) {
-      found = there.physical.get();
-      return VK_SUCCESS;
-    }
+        is_of(there.table, table))
+      return there.physical.get();
   }
+  return nullptr;
+}
+
+VkResult Pool::history(const HistoryTable& table, std::uint32_t entry, std::uint32_t position,
+                       const ResourceRecord& record, VkFlags usage, std::string_view name,
+                       Physical*& found) {
+  found = find_history(table, entry, position);
+  if (found) return VK_SUCCESS;
   make_room(histories_);
   auto made = std::make_unique<Physical>();
   made->record = record;
@@ -135,7 +140,8 @@ VkResult Pool::history(const HistoryTable& table, std::uint32_t entry, std::uint
     destroy(*made);
     return result;
   }
-  histories_.push_back({table.life(), entry, generation, position, std::move(made)});
+  histories_.push_back(
+      {table.life(), entry, table.entries()[entry].generation, position, std::move(made)});
   ++generation_;
   found = histories_.back().physical.get();
   return VK_SUCCESS;
@@ -196,8 +202,10 @@ VkImageView Pool::view(Physical& physical, const Range& range, VkImageViewType t
   info.image = physical.image;
   info.viewType = type;
   info.format = format;
-  info.subresourceRange = {view_aspect(physical.record.format), range.base_mip, range.mips,
-                           physical.layer + range.base_layer, range.layers};
+  const VkImageAspectFlags aspect =
+      range.aspects != 0 ? range.aspects : view_aspect(physical.record.format);
+  info.subresourceRange = {aspect, range.base_mip, range.mips, physical.layer + range.base_layer,
+                           range.layers};
   VkImageView view = VK_NULL_HANDLE;
   if (device_.vk.vkCreateImageView(device_.handles.device, &info, nullptr, &view) != VK_SUCCESS)
     return VK_NULL_HANDLE;

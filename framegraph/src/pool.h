@@ -58,6 +58,9 @@ class Pool {
   [[nodiscard]] VkResult history(const HistoryTable& table, std::uint32_t entry,
                                  std::uint32_t position, const ResourceRecord& record,
                                  VkFlags usage, std::string_view name, Physical*& found);
+  // The same slot if it was made already, else null.
+  Physical* find_history(const HistoryTable& table, std::uint32_t entry,
+                         std::uint32_t position) const;
   // Retires what belongs to no entry any more: dropped, made anew in another shape in an earlier
   // frame, or of a graph that is gone. Other graphs' histories stay.
   void retire_histories(const HistoryTable& table, std::uint64_t frame);

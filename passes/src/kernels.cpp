@@ -361,7 +361,10 @@ tl::expected<Kernels, Error> Kernels::create(const framegraph::DeviceHandles& de
   if (const char* missing = framegraph::load(state->vk, device.get_instance_proc_addr,
                                              device.instance, device.device)) {
     return tl::unexpected(
-        Error{std::string("The device has no function ") + missing + ": Vulkan 1.3 is needed."});
+        Error{std::string("The device has no function ") + missing +
+                  "; create instance and device for Vulkan 1.3, or for Vulkan 1.2 with "
+                  "VK_KHR_synchronization2.",
+              VK_ERROR_FEATURE_NOT_PRESENT});
   }
   state->physical_device = device.physical_device;
   state->device = device.device;

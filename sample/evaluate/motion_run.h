@@ -9,7 +9,7 @@
 #include "evaluate/motion_paths.h"
 #include "evaluate/motion_walk.h"
 #include "evaluate/weave.h"
-#include "render/gpu.h"
+#include "gpu/gpu.h"
 #include "scene/scene.h"
 #include "support/image.h"
 

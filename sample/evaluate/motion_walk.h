@@ -11,7 +11,7 @@
 #include "evaluate/motion_errors.h"
 #include "evaluate/motion_paths.h"
 #include "render/frame_renderer.h"
-#include "render/gpu.h"
+#include "gpu/gpu.h"
 #include "render/normal_source.h"
 #include "scene/scene.h"
 

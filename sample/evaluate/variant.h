@@ -9,7 +9,7 @@
 
 #include "alcove/passes/occlusion.h"
 #include "render/frame_renderer.h"
-#include "render/gpu.h"
+#include "gpu/gpu.h"
 #include "render/normal_source.h"
 #include "scene/camera.h"
 #include "scene/scene.h"

@@ -3,7 +3,9 @@
 #
 # INCLUDES: directories with the headers of Vulkan and tl::expected. A cross compiler must not see the
 # host's other headers, so that only these subfolders are linked to.
-set(headers ${CMAKE_CURRENT_BINARY_DIR}/compile_sources_include)
+# Several of these may run at the same time.
+get_filename_component(compiler ${COMPILER} NAME)
+set(headers ${CMAKE_CURRENT_BINARY_DIR}/compile_sources_include_${compiler})
 file(MAKE_DIRECTORY ${headers})
 foreach(include IN LISTS INCLUDES)
   foreach(folder vulkan vk_video tl)

@@ -12,6 +12,7 @@ std::atomic<int> call_count = 0;
 std::atomic<int> alive_count = 0;
 bool is_lost = false;
 int submit_count = 0;
+int wait_count = 0;
 int outside_count = 0;
 int submissions_left = -1;  // until the device is lost; below 0: it is not going to be
 
@@ -79,6 +80,8 @@ VKAPI_ATTR VkResult VKAPI_CALL allocate_sets(VkDevice device,
 VKAPI_ATTR VkResult VKAPI_CALL submit(VkQueue queue, std::uint32_t count, const VkSubmitInfo2* info,
                                       VkFence fence) {
   ++submit_count;
+  for (std::uint32_t i = 0; i < count; ++i)
+    wait_count += static_cast<int>(info[i].waitSemaphoreInfoCount);
   if (submissions_left >= 0 && submissions_left-- == 0) is_lost = true;
   return is_lost ? VK_ERROR_DEVICE_LOST : vkQueueSubmit2(queue, count, info, fence);
 }
@@ -152,6 +155,7 @@ void lose_after(int submissions) { submissions_left = submissions; }
 int calls() { return call_count; }
 int alive() { return alive_count; }
 int submits() { return submit_count; }
+int semaphore_waits() { return wait_count; }
 int outside_transfers() { return outside_count; }
 
 PFN_vkVoidFunction VKAPI_CALL get_instance_proc_addr(VkInstance instance, const char* name) {

@@ -11,7 +11,7 @@
 #include "parity_cases.h"
 #include "parity_spirv.h"
 #include "random_input.h"
-#include "render/vulkan_device.h"
+#include "gpu/vulkan_device.h"
 
 namespace alcove::maths_test {
 namespace {

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <numbers>
 #include <set>
 #include <vector>
 
@@ -70,34 +72,57 @@ TEST(SpatialPattern, RepeatsEveryFourPixelsAndTwentyFourFrames) {
   EXPECT_EQ(a.offset, b.offset);
 }
 
-TEST(GoldenPattern, BlockHoldsSixteenDirectionsAndFourOffsetsInEveryFrame) {
+TEST(GoldenPattern, AnyFourByFourPixelsCoverDirectionsAndOffsetsEvenly) {
   for (unsigned frame : {0u, 1u, 5u, 1000000u}) {
-    std::set<float> directions, offsets;
-    for (unsigned k = 0; k < 16; ++k) {
-      const SliceNoise noise = maths::golden_pattern(uvec2(k & 3u, k >> 2u), frame, frame > 1u);
-      directions.insert(noise.direction);
-      offsets.insert(noise.offset);
-      EXPECT_TRUE(noise.direction >= 0.0f && noise.direction < 1.0f);
-      EXPECT_TRUE(noise.offset >= 0.0f && noise.offset < 1.0f);
+    for (const uvec2 corner : {uvec2(0, 0), uvec2(3, 17), uvec2(1919, 1079)}) {
+      std::vector<float> directions, offsets;
+      for (unsigned k = 0; k < 16; ++k) {
+        const SliceNoise noise =
+            maths::golden_pattern(corner + uvec2(k & 3u, k >> 2u), frame, frame > 1u);
+        directions.push_back(noise.direction);
+        offsets.push_back(noise.offset);
+        EXPECT_TRUE(noise.direction >= 0.0f && noise.direction < 1.0f);
+        EXPECT_TRUE(noise.offset >= 0.0f && noise.offset < 1.0f);
+      }
+      EXPECT_LT(largest_gap(directions), 2.7f / 16);
+      EXPECT_LT(largest_gap(offsets), 2.7f / 16);
     }
-    EXPECT_EQ(directions.size(), 16u);
-    EXPECT_EQ(offsets.size(), 4u);
   }
 }
 
-TEST(BlockByPattern, MeetsEachBlockOnceAndOneDirectionInEachGroup) {
+// Pixels that lie a multiple of `period` apart have no direction or offset in common: the mean of
+// their phases on the unit circle is near the centre, where it would be on the circle if all had
+// one.
+TEST(GoldenPattern, DoesNotRepeatAtAnySmallPeriod) {
+  constexpr unsigned kWindow = 48;
+  for (const unsigned period : {1u, 2u, 3u, 4u, 8u}) {
+    for (unsigned place = 0; place < period * period; ++place) {
+      std::complex<double> directions, offsets;
+      for (unsigned y = place / period; y < kWindow; y += period) {
+        for (unsigned x = place % period; x < kWindow; x += period) {
+          const SliceNoise noise = maths::golden_pattern(uvec2(x, y), 7, true);
+          directions += std::polar(1.0, 2.0 * std::numbers::pi * noise.direction);
+          offsets += std::polar(1.0, 2.0 * std::numbers::pi * noise.offset);
+        }
+      }
+      const double count = double(kWindow * kWindow) / (period * period);
+      EXPECT_LT(std::abs(directions) / count, 0.2) << "period " << period;
+      EXPECT_LT(std::abs(offsets) / count, 0.2) << "period " << period;
+    }
+  }
+}
+
+TEST(TileByPattern, MeetsEachTileOnceAndHasOneDirectionOfThePaperInEachGroup) {
   std::set<unsigned> blocks;
   for (unsigned group = 0; group < 12 * 8; ++group) {
-    std::set<float> directions, six_rotations;
+    std::set<float> six_rotations;
     for (unsigned local = 0; local < 64; ++local) {
       const uvec2 block =
           maths::tile_by_pattern(uvec2(group % 12, group / 12), uvec2(local % 8, local / 8));
       EXPECT_TRUE(block.x < 12 * 8 && block.y < 8 * 8) << block.x << ", " << block.y;
       EXPECT_TRUE(blocks.insert(block.y * 12 * 8 + block.x).second) << block.x << ", " << block.y;
-      directions.insert(maths::golden_pattern(block, 5, false).direction);
       six_rotations.insert(maths::paper_pattern(block, 5).direction);
     }
-    EXPECT_EQ(directions.size(), 1u) << "group " << group;
     EXPECT_EQ(six_rotations.size(), 1u) << "group " << group;
   }
 }

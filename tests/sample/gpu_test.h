@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "alcove/framegraph/verify.h"
-#include "render/gpu.h"
+#include "gpu/gpu.h"
 
 // A device under validation for tests, which fail by what the layers say of it.
 namespace alcove::sample {

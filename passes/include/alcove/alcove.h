@@ -108,7 +108,7 @@ typedef enum AlcoveThicknessUnit {
 
 // How slice directions are distributed over pixels and frames.
 typedef enum AlcovePattern {
-  ALCOVE_PATTERN_GOLDEN = 0,   // 4x4 pixels, rotated by the golden ratio in each frame
+  ALCOVE_PATTERN_GOLDEN = 0,   // lattices without a period, rotated by the golden ratio
   ALCOVE_PATTERN_HILBERT = 1,  // the R2 sequence along a Hilbert curve
   ALCOVE_PATTERN_PAPER = 2,    // the 4x4 pixels and six rotations of [Jimenez 2016]
   ALCOVE_PATTERN_MAX_ENUM = 0x7fffffff
@@ -237,10 +237,13 @@ typedef struct AlcoveContext AlcoveContext;
 // vkAllocateMemory and host memory on the C++ heap: alcoveGetMemory says how much.
 typedef struct AlcoveContextInfo {
   uint32_t struct_size;
-  uint32_t queue_family;             // of the queue that frames are submitted to: one that computes
-  VkInstance instance;               // as the device, made for Vulkan 1.3
-  VkPhysicalDevice physical_device;  // that binds 9 storage images to a shader
-  // With the features synchronization2 and shaderStorageImageWriteWithoutFormat enabled.
+  uint32_t queue_family;  // of the queue that frames are submitted to: one that computes
+  VkInstance instance;    // created for Vulkan 1.2 or newer
+  // Of Vulkan 1.3, or of 1.2 with the extension VK_KHR_synchronization2. A shader must be able to
+  // bind 9 storage images (maxPerStageDescriptorStorageImages).
+  VkPhysicalDevice physical_device;
+  // With the features synchronization2 and shaderStorageImageWriteWithoutFormat enabled. Where the
+  // instance was created for Vulkan 1.2, VK_KHR_synchronization2 is enabled as well.
   VkDevice device;
   PFN_vkGetInstanceProcAddr get_instance_proc_addr;
   // The features that the device was created with, chained as for vkCreateDevice: a feature that

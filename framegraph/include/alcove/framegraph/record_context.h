@@ -43,15 +43,17 @@ class RecordContext {
 
   // A view of the range that the pass declared for this texture (the first access that names it),
   // or of `range`, which must lie within what is declared. 2D, 2D array when more than one layer is
-  // covered, or 3D, unless a type is given. Depth formats give the depth aspect. Another format
-  // than the texture's needs TextureDesc::flags with MUTABLE_FORMAT, a cube CUBE_COMPATIBLE.
+  // covered, or 3D, unless a type is given. A texture with depth and stencil gives the depth,
+  // unless the range names the stencil. Another format than the texture's needs TextureDesc::flags
+  // with MUTABLE_FORMAT, a cube CUBE_COMPATIBLE.
   VkImageView view(Texture texture) const;
   VkImageView view(Texture texture, Range range, VkImageViewType type = kViewTypeByRange,
                    VkFormat format = VK_FORMAT_UNDEFINED) const;
   // The attachment for vkCmdBeginRendering. Earlier contents are loaded where there are any and the
   // access keeps them. What is drawn is stored where a later pass or frame needs it.
   VkRenderingAttachmentInfo attachment(const Attachment& attachment) const;
-  // Begins a rendering over the whole of the attachments' mips and layers. False, and record()
+  // Begins a rendering over the whole of the attachments' mips and layers. `depth` is bound for the
+  // aspects that the pass declared as attachments. False, and record()
   // returns an error, where their sizes or samples differ or the device lacks dynamic rendering.
   bool begin_rendering(std::span<const Attachment> colors, const Attachment& depth = {}) const;
   void end_rendering() const { vk.vkCmdEndRendering(commands); }
@@ -74,6 +76,7 @@ class RecordContext {
 
  private:
   friend class Recorder;
+  VkRenderingAttachmentInfo attachment(const Attachment& attachment, std::uint32_t access) const;
   RecordContext(VkCommandBuffer command_buffer, const VulkanFunctions& functions,
                 const class Recorder& recorder, std::uint32_t pass)
       : commands(command_buffer), vk(functions), recorder_(recorder), pass_(pass) {}

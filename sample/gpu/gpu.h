@@ -12,7 +12,7 @@
 #include "alcove/framegraph/executor.h"
 #include "alcove/framegraph/graph.h"
 #include "alcove/passes/kernels.h"
-#include "render/vulkan_device.h"
+#include "gpu/vulkan_device.h"
 
 namespace alcove::sample {
 
