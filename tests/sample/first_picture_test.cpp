@@ -166,7 +166,7 @@ TEST_P(FirstPicture, ShowsTheModelWithOcclusion) {
   RecordProperty("sky", std::to_string(shares.sky));
   RecordProperty("occluded", std::to_string(shares.occluded));
   EXPECT_LT(shares.sky, 0.97);        // of the screw, which is four times as long as wide
-  EXPECT_GT(shares.occluded, 0.002);  // of the character, whose dome is open surface
+  EXPECT_GT(shares.occluded, 0.0005);  // of the character, whose dome is open surface
   EXPECT_LT(shares.least, 0.9);
   EXPECT_LT(shares.occluded, 0.9);
   EXPECT_GT(drawn->settings.radius, file.size / 100.0f);
