@@ -98,7 +98,7 @@ TEST_F(SceneViewTest, ChoicesMayChangeWhileFramesAreInFlight) {
   }
 }
 
-TEST_F(SceneViewTest, ThePictureIsWhatRenderDraws) {
+TEST_F(SceneViewTest, PictureEqualsThatOfRender) {
   view_->show_panel(false);
   const Image<glm::vec3> seen = draw_and_look();
   const ViewState& state = view_->state();
@@ -121,7 +121,7 @@ TEST_F(SceneViewTest, ThePictureIsWhatRenderDraws) {
   }
 }
 
-TEST_F(SceneViewTest, TheImagesFollowTheWindowsSize) {
+TEST_F(SceneViewTest, ImagesFollowTheSizeOfTheWindow) {
   draw(2);
   for (const VkExtent2D size : {VkExtent2D{320, 200}, {97, 61}, {240, 135}}) {
     view_->window().resize(size);
@@ -134,7 +134,7 @@ TEST_F(SceneViewTest, TheImagesFollowTheWindowsSize) {
   }
 }
 
-TEST_F(SceneViewTest, ASettingThatIsRefusedIsToldAndThePictureStays) {
+TEST_F(SceneViewTest, RefusedSettingIsReportedAndThePictureStays) {
   view_->show_panel(false);
   draw(3);
   view_->state().settings.slices = 900;
@@ -157,7 +157,7 @@ TEST_F(SceneViewTest, HiddenDepthsAndAKeptComparisonAreDrawn) {
   EXPECT_EQ(view_->facts().refusal, "");
 }
 
-TEST_F(SceneViewTest, AMovingCameraAndNormalsFromDepthAreDrawn) {
+TEST_F(SceneViewTest, MovingCameraAndNormalsFromDepthAreDrawn) {
   options_.occlusion.normals = NormalSource::kDepth;
   options_.view.orbit = 0.02f;
   ASSERT_NO_FATAL_FAILURE(open());
@@ -168,13 +168,13 @@ TEST_F(SceneViewTest, AMovingCameraAndNormalsFromDepthAreDrawn) {
   }
 }
 
-TEST_F(SceneViewTest, TimesAndMemoryAreTold) {
+TEST_F(SceneViewTest, TimesAndMemoryAreReported) {
   draw(4);
   EXPECT_GT(view_->facts().times.total_ms(), 0.0);
   EXPECT_GT(view_->facts().memory.aliased, 0u);
 }
 
-TEST_F(SceneViewTest, AClosedWindowDrawsNothing) {
+TEST_F(SceneViewTest, ClosedWindowDrawsNothing) {
   draw(1);
   view_->window().close();
   const auto drawn = view_->draw();

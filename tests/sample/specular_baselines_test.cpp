@@ -78,7 +78,7 @@ TEST(VisibilityPolynomials, OfHalfAHemisphereAreTheClosedForm) {
   }
 }
 
-TEST(VisibilityPolynomials, GiveBackWhatIsAPolynomialItself) {
+TEST(VisibilityPolynomials, ReproducePolynomialsExactly) {
   const auto hidden = [](const glm::vec3& d) {
     return 0.4f + 0.1f * d.x - 0.1f * d.y * d.x + 0.1f * d.x * d.x * d.y +
            0.1f * d.y * d.y * d.y * d.x;
@@ -115,7 +115,7 @@ Limits limits_of(const char* name, float roughness, const TruthSettings& setting
           specular_truth(*rays, points, image, viewer_of(camera), settings), mask};
 }
 
-TEST(SpecularBaselines, AnOpenPlaneIsOpenAtAnyTiltAndRoughness) {
+TEST(SpecularBaselines, OpenPlaneIsOpenAtAnyTiltAndRoughness) {
   for (const char* name : {"plane:0", "plane:45", "plane:75"}) {
     for (const float roughness : {0.05f, 0.3f, 1.0f}) {
       const Limits all = limits_of(name, roughness, {0.5f, 64, 1});
