@@ -21,7 +21,7 @@
 
 namespace alcove::sample {
 
-// What a window shows at first, and what it asks of the program around it.
+// The first view of a window, and the functions of the program that it calls.
 struct SceneViewRequest {
   std::uint32_t width = 960;  // of the window, pixels
   std::uint32_t height = 540;
@@ -53,10 +53,10 @@ class SceneView {
   [[nodiscard]] tl::expected<bool, std::string> draw();
   // Frames that were presented: none while the window is minimised.
   std::uint32_t drawn_frames() const { return drawn_frames_; }
-  // The next frame is also written to a file, with the command that draws its like.
+  // Also writes the next frame to a file and prints the command that draws it without a window.
   void take_screenshot() { wanted_ = true; }
   const Image<glm::vec3>& last_screenshot() const { return screenshot_; }
-  // Whether anything but the picture is shown.
+  // Shows or hides the panel.
   void show_panel(bool shown) { panel_shown_ = shown; }
 
   // Shows another scene from its own first view, with the settings that are chosen and the radius
@@ -70,7 +70,7 @@ class SceneView {
   const Scene& scene() const { return session_.scene; }
 
  private:
-  // What the passes may refuse.
+  // The part of the state that the passes may refuse.
   struct Choice {
     passes::OcclusionSettings settings;
     std::optional<float> roughness;
