@@ -34,6 +34,7 @@ struct Executor::Implementation {
   const Physical* find_persistent(const Graph& graph, std::uint32_t resource, State& state);
   tl::expected<FrameReport, Errors> prepare(Graph& graph, const FrameInfo& info, Queues queues,
                                             CachedPlan*& cached);
+  Errors memory_error(VkResult result, std::string what) const;
   tl::expected<void, Errors> check_slot(std::uint32_t slot) const;
   tl::expected<void, Errors> check_call(const FrameInfo& info) const;
   tl::expected<void, Errors> adopt(Graph& graph) const;
@@ -184,7 +185,7 @@ tl::expected<void, Errors> Executor::Implementation::find_physical(const Graph& 
   const GraphDescription& description = graph.description();
   cached.physical.resize(description.resources.size());
   if (const VkResult result = pool->reserve(description, cached.plan, frame))
-    return tl::unexpected(vulkan_error(result, "the frame's transients cannot be allocated"));
+    return tl::unexpected(memory_error(result, "the frame's transients cannot be allocated"));
   const bool again = cached.generation == pool->generation();
   for (std::uint32_t r = 0; r < description.resources.size(); ++r) {
     const ResourceRecord& record = description.resources[r];
@@ -201,13 +202,18 @@ tl::expected<void, Errors> Executor::Implementation::find_physical(const Graph& 
                                cached.physical[r]);
     if (result != VK_SUCCESS)
       return tl::unexpected(
-          vulkan_error(result, std::string(record.origin == Origin::history ? "the history '" : "'")
+          memory_error(result, std::string(record.origin == Origin::history ? "the history '" : "'")
                                        .append(description.resource_name(r)) +
                                    "' cannot be created"));
     cached.physical[r]->last_frame = frame;
   }
   cached.generation = pool->generation();
   return {};
+}
+
+Errors Executor::Implementation::memory_error(VkResult result, std::string what) const {
+  if (const std::string why = pool->take_shortage(); !why.empty()) what += " " + why;
+  return vulkan_error(result, std::move(what));
 }
 
 void Executor::Implementation::begin_frame(const FrameInfo& info) {

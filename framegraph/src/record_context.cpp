@@ -22,7 +22,10 @@ VkImageView RecordContext::view(Texture texture, Range range, VkImageViewType ty
   if (record.origin == Origin::imported && range.mips == record.mips && range.aspects == 0 &&
       range.layers == record.layers && type == kViewTypeByRange && format == VK_FORMAT_UNDEFINED) {
     const VkImageView given = recorder_.graph_->imports_[record.external].view;
-    if (given != VK_NULL_HANDLE) return given;
+    if (given != VK_NULL_HANDLE) {
+      gave_imported_view_ = true;
+      return given;
+    }
   }
   const VkImageView view = recorder_.pool_.view(*physical, range, type, format);
   if (view == VK_NULL_HANDLE) {

@@ -30,7 +30,7 @@ Submitter::~Submitter() {
     for (SlotQueue& queue : slot.queues) queue.buffers.destroy(device_);
   }
   for (const VkSemaphore semaphore : semaphores_)
-    device_.vk.vkDestroySemaphore(device, semaphore, nullptr);
+    device_.vk.vkDestroySemaphore(device, semaphore, device_.callbacks());
 }
 
 VkResult Submitter::wait(std::uint32_t slot) {
@@ -60,8 +60,8 @@ VkResult Submitter::prepare(std::uint32_t slot) {
       VkSemaphoreCreateInfo info{};
       info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO;
       info.pNext = &type;
-      const VkResult result =
-          device_.vk.vkCreateSemaphore(device_.handles.device, &info, nullptr, &semaphores_[q]);
+      const VkResult result = device_.vk.vkCreateSemaphore(device_.handles.device, &info,
+                                                           device_.callbacks(), &semaphores_[q]);
       if (result != VK_SUCCESS) return result;
     }
     if (const VkResult result = slots_[slot].queues[q].buffers.take_back(device_)) return result;

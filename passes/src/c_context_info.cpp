@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "c_host.h"
+
 namespace alcove::passes {
 
 namespace {
@@ -142,7 +144,7 @@ tl::expected<void, Failure> check(const AlcoveContextInfo* info) {
                    std::to_string(info->frames_in_flight) + "; it must be 1 to " +
                    std::to_string(ALCOVE_MAX_FRAMES_IN_FLIGHT) + ".");
   }
-  return check_device(*info);
+  return check_device(*info).and_then([&] { return check_memory(*info); });
 }
 
 }  // namespace alcove::passes

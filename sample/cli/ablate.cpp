@@ -1,9 +1,8 @@
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
 #include <iostream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "cli/commands.h"
 #include "cli/open_session.h"
@@ -80,35 +79,29 @@ tl::expected<InvariancePairRow, std::string> run_invariance_pair(Gpu& gpu, const
 }
 
 std::string table_of(const std::vector<VariantErrors>& rows) {
-  std::ostringstream out;
-  out << "RMSE of visibility over " << rows.front().scene.count
-      << " pixels, and cost beside the first row's\n"
-      << "  " << std::left << std::setw(43) << "" << std::right
-      << "scene truth   height field    bias   GPU   processor   MiB\n";
+  std::string out = fmt::format(
+      "RMSE of visibility over {} pixels, and cost beside the first row's\n"
+      "  {:43}scene truth   height field    bias   GPU   processor   MiB\n",
+      rows.front().scene.count, "");
   std::string part;
   for (const VariantErrors& row : rows) {
     const bool begins = row.variant.part != part;
     part = row.variant.part;
-    out << "  " << std::left << std::setw(11) << (begins ? part : "") << std::setw(32)
-        << row.variant.name << std::right << std::fixed << std::setprecision(4) << std::setw(10)
-        << row.scene.rmse << std::setw(15) << row.height_field.rmse << std::showpos << std::setw(10)
-        << std::setprecision(3) << row.scene.bias << std::noshowpos << std::setprecision(2)
-        << std::setw(6) << row.cost.gpu << std::setw(10) << row.cost.processor
-        << std::setprecision(1) << std::setw(9) << mib(row.cost.bytes) << "\n";
+    out += fmt::format("  {:11}{:32}{:10.4f}{:15.4f}{:+10.3f}{:6.2f}{:10.2f}{:9.1f}\n",
+                       begins ? part : "", row.variant.name, row.scene.rmse, row.height_field.rmse,
+                       row.scene.bias, row.cost.gpu, row.cost.processor, mib(row.cost.bytes));
   }
-  return out.str();
+  return out;
 }
 
 std::string table_of(const std::vector<InvariancePairRow>& rows) {
-  std::ostringstream out;
-  out << "Difference of visibility where there should be none       RMS   95 % within    pixels\n"
-      << std::fixed << std::setprecision(4);
+  std::string out =
+      "Difference of visibility where there should be none       RMS   95 % within    pixels\n";
   for (const InvariancePairRow& row : rows) {
-    out << "  " << std::left << std::setw(50) << row.name << std::right << std::setw(10)
-        << row.difference.rmse << std::setw(14) << row.difference.percentile_95 << std::setw(10)
-        << row.difference.count << "\n";
+    out += fmt::format("  {:50}{:10.4f}{:14.4f}{:10}\n", row.name, row.difference.rmse,
+                       row.difference.percentile_95, row.difference.count);
   }
-  return out.str();
+  return out;
 }
 
 Json to_json(const VariantErrors& row) {

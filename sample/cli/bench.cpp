@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -18,9 +19,8 @@ using Done = tl::expected<void, std::string>;
 using Json = nlohmann::ordered_json;
 
 std::string title_of(const Options& options, const std::string& scene) {
-  return (scene.empty() ? "builtin" : printable(scene)) + ", " +
-         std::to_string(options.view.width) + "x" + std::to_string(options.view.height) +
-         ", frame " + std::to_string(options.view.frames);
+  return fmt::format("{}, {}x{}, frame {}", scene.empty() ? "builtin" : printable(scene),
+                     options.view.width, options.view.height, options.view.frames);
 }
 
 // That every scene can be read and seen: the last is reached after minutes.
@@ -100,9 +100,8 @@ Done run_bench(const Options& options) {
     return write_text(options.out / "report.json", report.dump(2) + "\n");
   }
   const Trade overall = trade_of(over_scenes(measured));
-  const std::string title = scenes.size() == 1
-                                ? title_of(options, scenes.front())
-                                : "mean of " + std::to_string(scenes.size()) + " scenes";
+  const std::string title = scenes.size() == 1 ? title_of(options, scenes.front())
+                                               : fmt::format("mean of {} scenes", scenes.size());
   if (scenes.size() > 1) {
     tell(overall, title, clock, report);
   }

@@ -1,5 +1,6 @@
 #include "cli/camera_of.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -24,10 +25,10 @@ std::string names_of(const std::vector<Camera>& cameras) {
   const std::size_t listed = std::min(cameras.size(), kMost);
   std::string names;
   for (std::size_t i = 0; i < listed; ++i) {
-    names += (i == 0 ? "\"" : ", \"") + cameras[i].name + "\"";
+    names += fmt::format("{}\"{}\"", i == 0 ? "" : ", ", cameras[i].name);
   }
   if (listed < cameras.size()) {
-    names += " and " + std::to_string(cameras.size() - listed) + " more";
+    names += fmt::format(" and {} more", cameras.size() - listed);
   }
   return names;
 }
@@ -77,9 +78,9 @@ tl::expected<Camera, std::string> camera_of(const ViewOptions& view, const Scene
                           ") of a perspective view must lie before the eye: give --near");
   }
   if (!(camera.near_plane < camera.far_plane)) {
-    return tl::unexpected("the near plane (" + shown(camera.near_plane) +
-                          ") is not before the far plane (" + shown(camera.far_plane) +
-                          "): give --near and --far");
+    return tl::unexpected(
+        fmt::format("the near plane ({}) is not before the far plane ({}): give --near and --far",
+                    shown(camera.near_plane), shown(camera.far_plane)));
   }
   return camera;
 }

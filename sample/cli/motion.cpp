@@ -1,7 +1,6 @@
-#include <iomanip>
+#include <fmt/format.h>
 #include <iostream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "cli/commands.h"
 #include "cli/open_session.h"
@@ -63,7 +62,7 @@ tl::expected<Course, std::string> course_of(const Options& options) {
 Done write_pictures(const std::filesystem::path& folder, MotionKind kind,
                     const std::vector<MotionPicture>& pictures) {
   for (const MotionPicture& picture : pictures) {
-    const std::string name = std::string(name_of(kind)) + "_" + std::to_string(picture.frame);
+    const std::string name = fmt::format("{}_{}", name_of(kind), picture.frame);
     auto written =
         write_png(folder / (name + ".png"), picture.visibility)
             .and_then([&] { return write_png(folder / (name + "_still.png"), picture.still); })
@@ -121,51 +120,42 @@ Json to_json(const CutReport& report) {
   return {{"after", after}};
 }
 
-void print_row(std::ostream& out, const char* name, const ErrorPair& errors, int digits = 4) {
-  out << "  " << std::left << std::setw(34) << name << std::right << std::setprecision(digits);
+std::string error_row(const std::string& name, const ErrorPair& errors, int digits = 4) {
   if (errors.pixels == 0) {
-    out << "none\n";
-    return;
+    return fmt::format("  {:34}none\n", name);
   }
-  out << std::setw(6) << errors.moving << "   " << std::setw(6) << errors.still
-      << std::setprecision(2) << std::setw(8) << errors.ratio() << std::setw(10) << errors.pixels
-      << "\n";
+  return fmt::format("  {:34}{:6.{}f}   {:6.{}f}{:8.2f}{:10}\n", name, errors.moving, digits,
+                     errors.still, digits, errors.ratio(), errors.pixels);
 }
 
 std::string table_of(MotionKind kind, const MotionReport& report) {
-  std::ostringstream out;
-  out << std::fixed << std::setprecision(1) << name_of(kind) << ", " << report.speed.mean
-      << " pixels a frame in the mean, 95 % within " << report.speed.percentile_95 << "\n"
-      << "  RMSE against ray-traced truth     moving   still   ratio    pixels\n";
-  print_row(out, "whole frames", report.all);
-  const std::string ago = std::to_string(kUncoveredFrames) + " frames ago";
-  print_row(out, ("uncovered " + ago).c_str(), report.uncovered);
-  print_row(out, ("entered the image " + ago).c_str(), report.entered);
-  if (report.passed_by.pixels > 0) {
-    print_row(out, "near what moves", report.passed_by);
-  }
-  print_row(out, "bent normals, degrees", degrees(report.bent_normals), 2);
+  const std::string ago = fmt::format("{} frames ago", kUncoveredFrames);
   const Flicker& flicker = report.flicker;
-  out << std::setprecision(4) << "  change of visibility a frame      " << flicker.with_history
-      << " with history; standing still " << flicker.still << "; the truth's own at least "
-      << flicker.truth << "\n"
-      << "    of the searches alone           " << flicker.searches << ": ratio "
-      << std::setprecision(3) << flicker.ratio_to_searches() << "\n"
-      << "    filtered, without history       " << std::setprecision(4) << flicker.without
-      << ": ratio " << std::setprecision(3) << flicker.ratio() << "\n"
-      << "  Moving: " << weave_line(report.weave) << "  Still: " << weave_line(report.static_weave);
-  return out.str();
+  return fmt::format(
+             "{}, {:.1f} pixels a frame in the mean, 95 % within {:.1f}\n"
+             "  RMSE against ray-traced truth     moving   still   ratio    pixels\n",
+             name_of(kind), report.speed.mean, report.speed.percentile_95) +
+         error_row("whole frames", report.all) + error_row("uncovered " + ago, report.uncovered) +
+         error_row("entered the image " + ago, report.entered) +
+         (report.passed_by.pixels > 0 ? error_row("near what moves", report.passed_by) : "") +
+         error_row("bent normals, degrees", degrees(report.bent_normals), 2) +
+         fmt::format(
+             "  change of visibility a frame      {:.4f} with history; standing still {:.4f}; the "
+             "truth's own at least {:.4f}\n"
+             "    of the searches alone           {:.4f}: ratio {:.3f}\n"
+             "    filtered, without history       {:.4f}: ratio {:.3f}\n"
+             "  Moving: {}  Still: {}",
+             flicker.with_history, flicker.still, flicker.truth, flicker.searches,
+             flicker.ratio_to_searches(), flicker.without, flicker.ratio(),
+             weave_line(report.weave), weave_line(report.static_weave));
 }
 
 std::string table_of(const CutReport& report) {
-  std::ostringstream out;
-  out << std::fixed << std::setprecision(4)
-      << "cut, RMSE after so many frames       untold   begun anew\n";
+  std::string out = "cut, RMSE after so many frames       untold   begun anew\n";
   for (const CutErrors& errors : report.after) {
-    out << "  " << std::left << std::setw(34) << errors.frames << std::right << errors.untold
-        << "   " << errors.restart << "\n";
+    out += fmt::format("  {:<34}{:.4f}   {:.4f}\n", errors.frames, errors.untold, errors.restart);
   }
-  return out.str();
+  return out;
 }
 
 // Draws one path and tells of it, on stdout and in `report`.

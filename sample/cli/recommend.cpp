@@ -1,7 +1,6 @@
+#include <fmt/format.h>
 #include <algorithm>
-#include <iomanip>
 #include <iostream>
-#include <sstream>
 
 #include "cli/commands.h"
 #include "cli/open_session.h"
@@ -16,11 +15,8 @@ using Failure = tl::unexpected<std::string>;
 using Done = tl::expected<void, std::string>;
 
 std::string shown(const TradePoint& point) {
-  std::ostringstream out;
-  out << point.name << std::fixed << ": RMSE " << std::setprecision(4) << point.rmse << " in "
-      << std::setprecision(3) << point.time_ms << " ms, " << std::setprecision(1)
-      << mib(point.bytes) << " MiB";
-  return out.str();
+  return fmt::format("{}: RMSE {:.4f} in {:.3f} ms, {:.1f} MiB", point.name, point.rmse,
+                     point.time_ms, mib(point.bytes));
 }
 
 const TradePoint* chosen_of(const Trade& trade, const Options& options) {
@@ -30,16 +26,13 @@ const TradePoint* chosen_of(const Trade& trade, const Options& options) {
 
 // There is no choice: what comes nearest to one.
 std::string nothing_holds(const Trade& trade, const Options& options) {
-  std::ostringstream out;
   if (options.budget_ms) {
-    out << "nothing takes at most " << *options.budget_ms << " ms here; the fastest is "
-        << shown(trade.points.front());
-  } else {
-    const TradePoint& nearest = *std::ranges::min_element(trade.points, {}, &TradePoint::rmse);
-    out << "nothing errs by at most " << *options.tolerance << " here; the nearest is "
-        << shown(nearest);
+    return fmt::format("nothing takes at most {:g} ms here; the fastest is {}", *options.budget_ms,
+                       shown(trade.points.front()));
   }
-  return out.str();
+  const TradePoint& nearest = *std::ranges::min_element(trade.points, {}, &TradePoint::rmse);
+  return fmt::format("nothing errs by at most {:g} here; the nearest is {}", *options.tolerance,
+                     shown(nearest));
 }
 
 // The neighbours of the chosen point on the front.
@@ -78,13 +71,12 @@ Done run_recommend(const Options& options) {
   }
   std::cout << shown(*chosen) << "\n";
   print_neighbours(trade, *chosen);
-  std::cout << "RMSE of visibility against ray-traced truth; " << measured->clock_title << " at "
-            << options.view.width << "x" << options.view.height << " on "
-            << session->gpu->device().properties().deviceName << "\n"
-            << shell_line(render_arguments(
-                   options, {session->camera, chosen->settings, std::nullopt, options.view.width,
-                             options.view.height, options.view.frames}))
-            << "\n";
+  const Shot shot{session->camera,    chosen->settings,    std::nullopt,
+                  options.view.width, options.view.height, options.view.frames};
+  std::cout << fmt::format("RMSE of visibility against ray-traced truth; {} at {}x{} on {}\n{}\n",
+                           measured->clock_title, options.view.width, options.view.height,
+                           session->gpu->device().properties().deviceName,
+                           shell_line(render_arguments(options, shot)));
   return {};
 }
 

@@ -1,8 +1,7 @@
 #include "cli/report.h"
 
-#include <iomanip>
+#include <fmt/format.h>
 #include <limits>
-#include <sstream>
 
 #include "alcove/passes/setting_names.h"
 #include "render/settings_json.h"
@@ -79,11 +78,9 @@ Json report_of(const Rendering& rendering, const Options& options) {
 }
 
 std::string time_table(const Rendering& rendering) {
-  std::ostringstream text;
-  text << rendering.device << ", " << rendering.driver << "\n" << std::fixed;
+  std::string text = fmt::format("{}, {}\n", rendering.device, rendering.driver);
   const auto row = [&](const std::string& name, double milliseconds) {
-    text << "  " << std::left << std::setw(34) << name << std::right << std::setw(9)
-         << std::setprecision(3) << milliseconds << " ms\n";
+    text += fmt::format("  {:34}{:9.3f} ms\n", name, milliseconds);
   };
   for (const PassTime& pass : rendering.costs.passes) {
     row(pass.pass, pass.milliseconds);
@@ -92,9 +89,8 @@ std::string time_table(const Rendering& rendering) {
   row("occlusion, processor time", rendering.costs.cpu_ms);
   row("with specular, by GPU timestamps", rendering.costs_with_specular.occlusion_ms);
   row("with specular, processor time", rendering.costs_with_specular.cpu_ms);
-  text << std::setprecision(2) << "  transients " << mib(rendering.memory.aliased)
-       << " MiB aliased, " << mib(rendering.memory.unaliased) << " MiB each on its own\n";
-  return text.str();
+  return text + fmt::format("  transients {:.2f} MiB aliased, {:.2f} MiB each on its own\n",
+                            mib(rendering.memory.aliased), mib(rendering.memory.unaliased));
 }
 
 }  // namespace alcove::sample

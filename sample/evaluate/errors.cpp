@@ -1,5 +1,6 @@
 #include "evaluate/errors.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
@@ -106,6 +107,10 @@ Image<glm::vec3> error_colours(const Image<float>& result, const Image<float>& t
                                      : glm::vec3(1.0f - less, 1.0f - less, 1.0f);
   }
   return colours;
+}
+
+std::string error_row(std::string_view name, double rmse, double bias) {
+  return fmt::format("  {:44}{:.4f}   bias {:+.4f}\n", name, rmse, bias);
 }
 
 nlohmann::ordered_json to_json(const ErrorSummary& summary) {

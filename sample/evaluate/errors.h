@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <string_view>
 
 #include "support/glm.h"
 #include "support/image.h"
@@ -46,6 +48,9 @@ struct OpenSurfaceSummary {
 // Signed error as colours: white where right, red where too dark, blue where too bright, full
 // colour at an error of a quarter.
 [[nodiscard]] Image<glm::vec3> error_colours(const Image<float>& result, const Image<float>& truth);
+
+// One line of a table of errors.
+[[nodiscard]] std::string error_row(std::string_view name, double rmse, double bias);
 
 // As report.json has them.
 [[nodiscard]] nlohmann::ordered_json to_json(const ErrorSummary& summary);

@@ -1,9 +1,8 @@
 #include "evaluate/indirect_errors.h"
 
+#include <fmt/format.h>
 #include <cmath>
-#include <iomanip>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "maths/gtso.h"
 #include "maths/multi_bounce.h"
@@ -148,21 +147,21 @@ nlohmann::ordered_json to_json(const IndirectErrors& errors) {
 }
 
 std::string indirect_error_table(const IndirectErrors& errors) {
-  std::ostringstream text;
-  text << std::fixed << std::setprecision(4);
-  text << "RMSE of multi-bounce over " << errors.bounced.count << " pixels: " << errors.bounced.rmse
-       << " (the polynomial on the true visibility " << errors.bounced_truth.rmse
-       << ", the best function of it and albedo " << errors.bounced_best
-       << ", the true visibility alone " << errors.unbounced_truth.rmse << ")\n";
+  std::string text = fmt::format(
+      "RMSE of multi-bounce over {} pixels: {:.4f} (the polynomial on the true visibility {:.4f}, "
+      "the best function of it and albedo {:.4f}, the true visibility alone {:.4f})\n",
+      errors.bounced.count, errors.bounced.rmse, errors.bounced_truth.rmse, errors.bounced_best,
+      errors.unbounced_truth.rmse);
   for (const SpecularErrors& one : errors.specular) {
-    text << "RMSE of specular occlusion, " << std::left << std::setw(10) << one.name << std::right
-         << one.pipeline.rmse << " (with true visibility and bent normal " << one.true_inputs.rmse
-         << ", with none " << one.none.rmse << ")\n"
-         << "  fifteen polynomials of the true visibility " << one.polynomials.rmse
-         << ", of the height field's " << one.depth_polynomials.rmse
-         << "; the lobe itself in the height field " << one.depth.rmse << "\n";
+    text += fmt::format(
+        "RMSE of specular occlusion, {:10}{:.4f} (with true visibility and bent normal {:.4f}, "
+        "with none {:.4f})\n"
+        "  fifteen polynomials of the true visibility {:.4f}, of the height field's {:.4f}; the "
+        "lobe itself in the height field {:.4f}\n",
+        one.name, one.pipeline.rmse, one.true_inputs.rmse, one.none.rmse, one.polynomials.rmse,
+        one.depth_polynomials.rmse, one.depth.rmse);
   }
-  return text.str();
+  return text;
 }
 
 }  // namespace alcove::sample

@@ -1,11 +1,11 @@
 #include "evaluate/lit_errors.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iomanip>
 #include <nlohmann/json.hpp>
-#include <sstream>
+#include <vector>
 
 #include "render/display.h"
 #include "support/image_io.h"
@@ -126,21 +126,16 @@ nlohmann::ordered_json to_json(const LitErrors& errors) {
 }
 
 std::string lit_error_table(const LitErrors& errors) {
-  std::ostringstream text;
-  text << std::fixed << std::setprecision(4) << "RMSE of the lit picture over " << errors.pixels
-       << " pixels, in parts of its mean radiance " << errors.mean_radiance
-       << " (noise of the truth, taken out: " << errors.noise << ")\n";
-  const auto row = [&](const LitStep& step) {
-    text << "  " << std::left << std::setw(44) << step.name << std::right << step.rmse << "   bias "
-         << std::showpos << step.bias << std::noshowpos << "\n";
-  };
-  for (const LitStep& step : errors.steps) {
-    row(step);
+  std::string text = fmt::format(
+      "RMSE of the lit picture over {} pixels, in parts of its mean radiance {:.4f} (noise of the "
+      "truth, taken out: {:.4f})\n",
+      errors.pixels, errors.mean_radiance, errors.noise);
+  std::vector<LitStep> steps = errors.steps;
+  steps.insert(steps.end(), {errors.unbent, errors.diffuse, errors.specular});
+  for (const LitStep& step : steps) {
+    text += error_row(step.name, step.rmse, step.bias);
   }
-  row(errors.unbent);
-  row(errors.diffuse);
-  row(errors.specular);
-  return text.str();
+  return text;
 }
 
 tl::expected<void, std::string> write_lit_steps(const Rendering& rendering,

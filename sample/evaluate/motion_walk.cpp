@@ -1,5 +1,6 @@
 #include "evaluate/motion_walk.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -121,7 +122,7 @@ tl::expected<MotionWalk::Truth, std::string> MotionWalk::truth(std::uint32_t fra
     return Failure(rays.error());
   }
   const SurfacePoints points = surface_points(*rays, seen.camera, seen.normal_ws, seen.depth);
-  const Progress whole = progress("truth of frame " + std::to_string(frame));
+  const Progress whole = progress(fmt::format("truth of frame {}", frame));
   for (std::uint32_t i = 0; i < halves.size(); ++i) {
     const TruthSettings settings{.radius = setup_.occlusion.radius, .spp = half, .seed = 1 + i};
     OcclusionTruth traced =

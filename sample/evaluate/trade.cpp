@@ -1,5 +1,6 @@
 #include "evaluate/trade.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -35,9 +36,9 @@ constexpr std::array<SweepPoint, 13> kSweepPoints{{{4, 1, 4},
                                                    {1, 4, 32}}};
 
 std::string name_of(const SweepPoint& s) {
-  const std::string block = std::to_string(s.tile_size) + "x" + std::to_string(s.tile_size);
-  return (s.tile_size == 1 ? "every pixel" : "one in " + block) + ", " + std::to_string(s.slices) +
-         (s.slices == 1 ? " slice of " : " slices of ") + std::to_string(s.steps);
+  return fmt::format("{}, {} {} of {}",
+                     s.tile_size == 1 ? "every pixel" : fmt::format("one in {0}x{0}", s.tile_size),
+                     s.slices, s.slices == 1 ? "slice" : "slices", s.steps);
 }
 
 class WayList {
@@ -84,7 +85,7 @@ std::vector<Variant> sampling_grid(const OcclusionSettings& base) {
       OcclusionSettings settings = base;
       settings.steps = steps;
       settings.slices = slices;
-      grid.push_back({"", std::to_string(slices) + " x " + std::to_string(steps), settings});
+      grid.push_back({"", fmt::format("{} x {}", slices, steps), settings});
     }
   }
   return grid;

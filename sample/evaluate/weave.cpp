@@ -1,11 +1,10 @@
 #include "evaluate/weave.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iomanip>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 namespace alcove::sample {
 namespace {
@@ -172,12 +171,11 @@ Weave weave_of(const Image<float>& result, const Image<float>& truth, const Mask
 }
 
 std::string weave_line(const Weave& weave) {
-  std::ostringstream line;
-  line << "Pattern that repeats every 4 pixels: RMS " << std::fixed << std::setprecision(4)
-       << weave.rms() << " over " << weave.windows << " windows of smooth truth, "
-       << std::setprecision(1) << 100.0 * weave.visible_fraction() << " % of them over "
-       << std::setprecision(3) << Weave::kVisible << "\n";
-  return line.str();
+  return fmt::format(
+      "Pattern that repeats every 4 pixels: RMS {:.4f} over {} windows of smooth truth, {:.1f} % "
+      "of "
+      "them over {:.3f}\n",
+      weave.rms(), weave.windows, 100.0 * weave.visible_fraction(), Weave::kVisible);
 }
 
 nlohmann::ordered_json to_json(const Weave& weave) {

@@ -1,8 +1,8 @@
 #include "gpu_cost/budget.h"
 
+#include <fmt/format.h>
 #include <cmath>
 #include <iterator>
-#include <sstream>
 
 #include "alcove/passes/setting_names.h"
 
@@ -50,10 +50,9 @@ void check(const Json& budget, const ModelledPass& pass, const std::string& wher
     const bool fine = figure.at_least ? limit >= 0 && figure.value >= limit
                                       : figure.value <= limit * (1 + figure.tolerance);
     if (!fine) {
-      std::ostringstream sentence;
-      sentence << where << ": " << figure.key << " is " << figure.value << ", the budget is ";
-      limit < 0 ? sentence << "missing." : sentence << limit << ".";
-      complaints.push_back(sentence.str());
+      complaints.push_back(fmt::format("{}: {} is {:g}, the budget is {}.", where, figure.key,
+                                       figure.value,
+                                       limit < 0 ? "missing" : fmt::format("{:g}", limit)));
     }
   }
 }

@@ -1,5 +1,6 @@
 #include "gpu_cost/wave.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -292,8 +293,8 @@ tl::expected<std::vector<BasicBlock>, std::string> blocks_of(const CompiledShade
   std::vector<BasicBlock> blocks = blocks_of_aco(*aco, !disassembled);
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     if (blocks[i].index != i) {
-      return Failure("The driver's 'ACO IR' is of an unknown form: block " + std::to_string(i) +
-                     " is missing.");
+      return Failure(
+          fmt::format("The driver's 'ACO IR' is of an unknown form: block {} is missing.", i));
     }
   }
   if (disassembled) {

@@ -2,6 +2,7 @@
 
 #if defined(__unix__) || defined(__APPLE__)
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/file.h>
 #include <unistd.h>
 #define ALCOVE_HAS_FILE_LOCKS 1
@@ -29,7 +30,7 @@ constexpr const char* kPart = ".part";
 fs::path temporary_beside(const fs::path& file) {
   std::random_device random;
   fs::path temporary = file;
-  temporary += kPart + std::to_string(random());
+  temporary += fmt::format("{}{}", kPart, random());
   return temporary;
 }
 
@@ -130,13 +131,14 @@ tl::expected<OutputFolder, std::string> OutputFolder::create(const fs::path& fol
   if (error || !fs::is_directory(folder, error)) {
     const std::string reason =
         error ? error.message() : std::make_error_code(std::errc::not_a_directory).message();
-    return Failure("The folder " + folder.string() + " could not be created: " + reason +
-                   "; choose another by --out.");
+    return Failure(fmt::format("The folder {} could not be created: {}; choose another by --out.",
+                               folder.string(), reason));
   }
   const fs::path probe = temporary_beside(folder / "probe");
   if (auto written = fill(probe, "", 0); !written) {
-    return Failure("Nothing can be written to the folder " + folder.string() + ": " +
-                   written.error() + "; choose another by --out.");
+    return Failure(
+        fmt::format("Nothing can be written to the folder {}: {}; choose another by --out.",
+                    folder.string(), written.error()));
   }
   fs::remove(probe, error);
   return out;

@@ -16,6 +16,8 @@ void lose(bool lost);
 void lose_after(int submissions);
 // Objects that were created and not destroyed.
 int alive();
+// Calls of vkUpdateDescriptorSets so far.
+int descriptor_updates();
 // Calls of vkQueueSubmit2 so far, and the semaphores that they wait for.
 int submits();
 int semaphore_waits();

@@ -54,6 +54,28 @@ TEST(TruthCache, DamagedEntriesReadAsAbsent) {
   EXPECT_FALSE(cache.read(key_of(1), values.size()));
 }
 
+TEST(TruthCache, EntryOfAnEarlierVersionReadsAsAbsent) {
+  const TemporaryFolder folder;
+  const TruthCache cache(folder.path);
+  const std::vector<float> values(100, 0.5f);
+  cache.write(key_of(1), values);
+  std::fstream(only_file(folder.path), std::ios::in | std::ios::out | std::ios::binary)
+      << "alcovet1";
+  EXPECT_FALSE(cache.read(key_of(1), values.size()));
+}
+
+TEST(TruthCache, KeyDependsOnOrderAndBoundariesOfItsParts) {
+  const auto key_of_texts = [](const std::vector<std::string>& texts) {
+    CacheKey key;
+    for (const std::string& text : texts) key.add(text);
+    return key.hex();
+  };
+  EXPECT_EQ(key_of_texts({"ab", "c"}), key_of_texts({"ab", "c"}));
+  EXPECT_NE(key_of_texts({"ab", "c"}), key_of_texts({"a", "bc"}));
+  EXPECT_NE(key_of_texts({"ab", "c"}), key_of_texts({"c", "ab"}));
+  EXPECT_NE(key_of_texts({"ab", "c"}), key_of_texts({"ab", "c", ""}));
+}
+
 TEST(TruthCache, NamedPipeInPlaceOfAnEntryReadsAsAbsentAndIsReplaced) {
   const TemporaryFolder folder;
   const TruthCache cache(folder.path);

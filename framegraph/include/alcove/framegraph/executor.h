@@ -18,6 +18,7 @@
 #include "alcove/framegraph/compile.h"
 #include "alcove/framegraph/error.h"
 #include "alcove/framegraph/graph.h"
+#include "alcove/framegraph/host_services.h"
 #include "alcove/framegraph/plan.h"
 #include "alcove/framegraph/vulkan_functions.h"
 
@@ -39,6 +40,7 @@ struct DeviceHandles {
   bool debug_utils = false;             // VK_EXT_debug_utils is enabled on the instance
   bool storage_multisample = false;     // the feature shaderStorageImageMultisample is enabled
   bool separate_depth_stencil = false;  // the feature separateDepthStencilLayouts is enabled
+  HostServices host;                    // the caller's allocators and log
 };
 
 // Checks a plan against the declaration and the limits that it was made for.

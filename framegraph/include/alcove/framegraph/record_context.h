@@ -36,7 +36,8 @@ class RecordContext {
  public:
   VkCommandBuffer commands = VK_NULL_HANDLE;
   const VulkanFunctions& vk;
-  // Changes whenever a transient or history handle that passes can see may have changed.
+  // Changes whenever a handle that passes can see may have become another one, but for imported
+  // views. No two executors have an id in common.
   std::uint64_t resources_id = 0;
   // Frame slot as in FrameInfo: for what a pass keeps per frame in flight.
   std::uint32_t frame_slot = 0;
@@ -49,6 +50,10 @@ class RecordContext {
   VkImageView view(Texture texture) const;
   VkImageView view(Texture texture, Range range, VkImageViewType type = kViewTypeByRange,
                    VkFormat format = VK_FORMAT_UNDEFINED) const;
+  // Whether view() has returned a view that the caller imported (ImportedTexture::view). Such a
+  // view may be destroyed after the frame, and another one get its handle, without a new
+  // resources_id.
+  bool gave_imported_view() const { return gave_imported_view_; }
   // The attachment for vkCmdBeginRendering. Earlier contents are loaded where there are any and the
   // access keeps them. What is drawn is stored where a later pass or frame needs it.
   VkRenderingAttachmentInfo attachment(const Attachment& attachment) const;
@@ -82,6 +87,7 @@ class RecordContext {
       : commands(command_buffer), vk(functions), recorder_(recorder), pass_(pass) {}
   const class Recorder& recorder_;
   std::uint32_t pass_;
+  mutable bool gave_imported_view_ = false;
 };
 
 }  // namespace alcove::framegraph
