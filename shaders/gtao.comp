@@ -75,7 +75,6 @@ const bool kLobe = false;
 
 struct Surface {
   ivec2 pixel;
-  vec2 centre;  // of the pixel, pixels
   float depth;
   float depth_step;  // of the depth buffer there, as SliceSample::inverse_depth
   vec3 normal;       // unit, view space
@@ -97,15 +96,17 @@ float fetch_roughness(ivec2 pixel) {
 
 #include "depth_normal.h"
 
+// In pixels.
+vec2 centre_of(Surface surface) { return vec2(surface.pixel) + 0.5; }
+
 Surface fetch_surface(ivec2 pixel, float inverse_depth) {
   Surface surface;
   surface.pixel = pixel;
-  surface.centre = vec2(pixel) + 0.5;
   surface.depth = kPerspective ? 1.0 / inverse_depth : inverse_depth;
   surface.depth_step = depth_step_at(
       DepthStep(parameters.depth_step, parameters.depth_step_per_inverse_depth), inverse_depth);
-  vec2 slope =
-      parameters.slope.zw + (kPerspective ? surface.centre * parameters.slope.xy : vec2(0.0));
+  vec2 slope = parameters.slope.zw +
+               (kPerspective ? centre_of(surface) * parameters.slope.xy : vec2(0.0));
   surface.view = normalize(vec3(-slope, 1.0));
   vec3 given = decode_normal(texelFetch(normal_image, pixel, 0).xyz, kNormalEncoding);
   surface.normal = seen_normal(pixel, mat3(parameters.view_from_normal) * given, surface.view);
@@ -113,6 +114,7 @@ Surface fetch_surface(ivec2 pixel, float inverse_depth) {
   surface.lobe = LobeSurface(own, fetch_roughness(pixel));
   surface.tangent = make_tangent_plane(parameters.slope.xy, surface.normal, surface.view,
                                        surface.depth, kPerspective);
+  surface.tangent.inverse_depth = inverse_depth;
   return surface;
 }
 
@@ -152,7 +154,7 @@ SliceResult search_slice(Surface surface, vec3 direction, float step_offset) {
   LobeSlice lobe;
   if (kLobe) lobe = make_lobe_slice(slice, surface.lobe.roughness * surface.lobe.roughness);
   float radius_px = slice_radius_px(slice_line, parameters.radius, surface.depth, kPerspective);
-  vec2 border_px = border_distances(surface.centre, slice_line.direction_px);
+  vec2 border_px = border_distances(centre_of(surface), slice_line.direction_px);
   vec2 open_arcs = kUniformWeight ? vec2(uniform_arc(tangent_light(slice, 1.0)),
                                          uniform_arc(tangent_light(slice, -1.0)))
                                   : tangent_arcs(slice);
@@ -163,7 +165,8 @@ SliceResult search_slice(Surface surface, vec3 direction, float step_offset) {
     HalfSlice half_slice = make_half_slice(surface, slice_line, slice, side, radius_px,
                                            i == 0u ? border_px.x : border_px.y, step_offset);
     if (kEstimator == kConnected) {
-      add_connected(sum, half_slice, slice, lobe, i == 0u ? border_px.y : border_px.x);
+      add_connected(sum, half_slice, slice, lobe, i == 0u ? open_arcs.x : open_arcs.y,
+                    i == 0u ? border_px.y : border_px.x);
     } else if (kEstimator == kBitmask) {
       add_bitmask(sum, half_slice, slice, lobe);
     } else {
@@ -233,7 +236,9 @@ SearchResult sky_result() {
                       uvec2(0u));
 }
 
-void add_slice(inout SliceResult sum, Surface surface, ViewBasis basis, SliceNoise noise, uint i) {
+void add_slice(inout SliceResult sum, Surface surface, SliceNoise noise, uint i) {
+  // Computed for each slice: six registers would otherwise be held through all of them.
+  ViewBasis basis = make_view_basis(surface.view);
   WeightedAngle angle = WeightedAngle(slice_angle(i, kSliceCount, noise.direction), 1.0);
   if (kLobe) {
     angle = lobe_angle(angle.phi, lobe_plane(surface.normal, basis), surface.lobe.roughness);
@@ -249,14 +254,13 @@ void add_slice(inout SliceResult sum, Surface surface, ViewBasis basis, SliceNoi
 
 SearchResult search_pixel(ivec2 pixel, float inverse_depth, SliceNoise noise) {
   Surface surface = fetch_surface(pixel, inverse_depth);
-  ViewBasis basis = make_view_basis(surface.view);
   SliceResult sum = SliceResult(RawOcclusion(0.0, 0.0), vec3(0.0), vec3(0.0), no_lobe());
   if (kSliceCount == 1u) {
-    add_slice(sum, surface, basis, noise, 0u);
+    add_slice(sum, surface, noise, 0u);
   } else {
     uint i = 0u;
     do {
-      add_slice(sum, surface, basis, noise, i);
+      add_slice(sum, surface, noise, i);
       ++i;
     } while (i < kSliceCount);
   }

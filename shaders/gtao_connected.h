@@ -9,9 +9,9 @@
 
 // The state of the search between one sample and the next.
 struct SegmentState {
-  float rise;         // change of inverse depth over the last sample interval
+  float rise;         // change of SliceSample::off_plane over the last sample interval
   float interval_px;  // width of the last sample interval
-  float bend;         // depth_discontinuity() at the last sample
+  DepthDiscontinuity discontinuity;  // at the last sample
   float x;            // x (times w) of the last sample
   uint beyond;        // sectors beyond the last sample
   bool inside;        // whether the last sample lies within the radius
@@ -79,20 +79,20 @@ void add_sample(inout SegmentState state, HalfSlice half_slice, float sectors, u
   state.x = here.point.x;
 }
 
-// Adds `here`, a sample after the first, now that the sample `next` after it shows how the line of
+// Adds `here`, a sample after the first, now that the sample `next` after it shows how the inverse
 // depth bends there.
 void pass_sample(inout SegmentState state, inout SliceSample here, HalfSlice half_slice,
                  float sectors, uint layer, uint bit, SliceSample next) {
-  float rise = next.inverse_depth - here.inverse_depth;
+  float rise = next.off_plane - here.off_plane;
   float interval_px = next.offset_px - here.offset_px;
-  float bend =
-      depth_discontinuity(state.rise, state.interval_px, rise, interval_px, half_slice.sharp);
-  bool joined =
-      layer == 0u ? samples_join(state.bend, bend) : hidden_samples_join(state.bend, bend);
+  DepthDiscontinuity discontinuity = depth_discontinuity(
+      state.rise, state.interval_px, rise, interval_px, half_slice.smallest_discontinuity);
+  bool joined = layer == 0u ? samples_join(state.discontinuity, discontinuity)
+                            : hidden_samples_join(state.discontinuity, discontinuity);
   add_sample(state, half_slice, sectors, layer, bit, here, joined, kEdgeShare * state.interval_px);
   state.rise = rise;
   state.interval_px = interval_px;
-  state.bend = bend;
+  state.discontinuity = discontinuity;
   here = next;
 }
 
@@ -101,19 +101,19 @@ void pass_sample(inout SegmentState state, inout SliceSample here, HalfSlice hal
 uint extrapolated_sectors(SegmentState state, float last_step_px, HalfSlice half_slice,
                           float sectors, SliceSample last) {
   float slope = state.rise / max(last_step_px, 1e-3);
-  float way_px =
-      extrapolated_way(last.inverse_depth, slope, half_slice.extrapolated_px, kPerspective);
-  vec2 end = slice_point(half_slice.line, last.point.x + way_px,
-                         last.inverse_depth + slope * way_px, half_slice.depth, kPerspective)
-                 .xy;
-  bool goes_on = way_px > 0.0 && last_step_px > 0.1 && state.bend == 0.0 && state.inside;
+  float way_px = extrapolated_way(last.inverse_depth, half_slice.slope + slope,
+                                  half_slice.extrapolated_px, kPerspective);
+  vec2 end = plane_point(half_slice, last.point.x + way_px, last.off_plane + slope * way_px);
+  bool goes_on = way_px > 0.0 && last_step_px > 0.1 && !is_discontinuous(state.discontinuity) &&
+                 state.inside;
   return goes_on ? state.beyond ^ sectors_beyond(biased_position(sectors, 1.0 - diamond_angle(end)))
                  : 0u;
 }
 
-// Sample intervals in one iteration of the loop over samples: an iteration costs as much as half a
-// sample, and all of them unrolled would be a program of thousands of instructions.
-const uint kUnrolled = 4;
+// Sample intervals in one iteration of the loop over samples. An iteration costs as much as half a
+// sample, but each interval holds the registers of a sample. Several slices hold more registers than
+// one. passes/cost/gtao.cpp counts the iterations.
+const uint kUnrolled = kSliceCount > 1u ? 2u : 4u;
 
 Occluders find_in_layer(HalfSlice half_slice, float sectors, uint layer) {
   SliceSample first = fetch_sample(half_slice, layer, 0u);
@@ -129,11 +129,11 @@ Occluders find_in_layer(HalfSlice half_slice, float sectors, uint layer) {
   bool joined = !stands_above_tangent(first.point.xy, half_slice.height);
   state.interval_px = first.offset_px;
   add_sample(state, half_slice, sectors, layer, 1u, first, joined, kEdgeShare * first.offset_px);
-  state.rise = here.inverse_depth - first.inverse_depth;
+  state.rise = here.off_plane - first.off_plane;
   state.interval_px = here.offset_px - first.offset_px;
-  state.bend =
-      depth_discontinuity(first.inverse_depth - half_slice.tangent.inverse_depth, first.offset_px,
-                          state.rise, state.interval_px, half_slice.sharp);
+  state.discontinuity =
+      depth_discontinuity(first.off_plane, first.offset_px, state.rise, state.interval_px,
+                          half_slice.smallest_discontinuity);
   const uint rest = (kStepCount - 2u) % kUnrolled;
   uint k = 2u;
   [[unroll]] for (uint i = 0u; i < rest; ++i) {
@@ -154,7 +154,7 @@ Occluders find_in_layer(HalfSlice half_slice, float sectors, uint layer) {
   // bend before.
   float last_step_px = here.point.x - state.x;
   add_sample(state, half_slice, sectors, layer, sample_bit(kStepCount - 1u), here,
-             state.bend == 0.0, kEdgeShare * state.interval_px);
+             !is_discontinuous(state.discontinuity), kEdgeShare * state.interval_px);
   uint extrapolated =
       kExtrapolation ? extrapolated_sectors(state, last_step_px, half_slice, sectors, here) : 0u;
   float searched_px = kNearestStep + half_slice.reach_px;
@@ -196,29 +196,33 @@ Occluders find_occluders(HalfSlice half_slice, float sectors) {
 
 UnobservedArc find_unobserved(HalfSlice half_slice, vec2 first_light, float other_outside,
                               Occluders found) {
-  float nearness = kPerspective ? parameters.radius / half_slice.depth : 0.0;
   Unobserved unobserved = add_beyond_border(mean_row(found.unobserved), found.border_px,
                                             half_slice.outside * half_slice.radius_px,
-                                            border_share(other_outside, nearness));
+                                            border_share(other_outside, half_slice.nearness));
   return make_unobserved_arc(first_light, unobserved, half_slice.radius_px);
 }
 
 // Adds the visible part of a half-slice, less a share of its unobserved directions.
-// `other_border_px` is the distance to the image's border in the other half-slice.
+// `open_arc` is the half-slice's part when nothing occludes it, `other_border_px` the distance to
+// the image's border in the other half-slice.
 void add_connected(inout SliceSum sum, HalfSlice half_slice, Slice slice, LobeSlice lobe,
-                   float other_border_px) {
+                   float open_arc, float other_border_px) {
   vec2 tangent = tangent_light(slice, half_slice.side);
   float tangent_angle = tangent_diamond_angle(slice, half_slice.side);
   Occluders found = find_occluders(half_slice, 1.0 / tangent_angle);
+  bool open = found.occluded == 0u;
   float sector = tangent_angle * (1.0 / float(kEvenSectorCount));
   vec2 first_light =
-      found.occluded == 0u ? tangent : diamond_angle_light(float(findLSB(found.occluded)) * sector);
-  float arc = part_arc(slice, half_slice.side, first_light, kUniformWeight);
-  VisiblePart part =
-      visible_part(slice, half_slice.side, 1.0 / sector, repeat_last_sector(found.occluded),
-                   found.hidden_occlusion, PartRequest(kUniformWeight, kBentNormal));
-  sum.visible += part.arc;
-  sum.bent += part.bent;
+      open ? tangent : diamond_angle_light(float(findLSB(found.occluded)) * sector);
+  // Everything is visible up to the first occluder. Beyond it the visible sectors count, less the
+  // hidden occlusion, as a share of the whole arc that is left.
+  float arc = open ? open_arc : part_arc(slice, half_slice.side, first_light, kUniformWeight);
+  float beyond = (1.0 - found.hidden_occlusion) * visible_share_beyond(found.occluded);
+  sum.visible += arc + beyond * (open_arc - arc);
+  if (kBentNormal) {
+    vec2 bent = bent_light_arc(slice, half_slice.side, first_light);
+    sum.bent += bent + beyond * (bent_light_arc(slice, half_slice.side, tangent) - bent);
+  }
   if (kLobe) {
     sum.lobe.visible += visible_lobe(lobe, half_slice.side, 1.0 / sector,
                                      repeat_last_sector(found.occluded), found.hidden_occlusion);

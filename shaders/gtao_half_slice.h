@@ -7,24 +7,25 @@
 // point.
 struct HalfSlice {
   float side;  // +1 along the slice's direction, -1 against it
-  // Outwards, in units of the width of a pixel at the surface's depth (x_per_step is 1). Its
-  // direction_px is zero where there is nothing to search.
-  SliceLine line;
-  float radius;           // in the same unit, as settings_thickness() is
-  float unit;             // from scene units to that unit
-  float slope;            // change of the tangent plane's inverse depth per pixel outwards
-  float tangent_cosine;   // cosine of the tangent plane's horizon
-  float reach_px;         // from the first sample to the last; 0 where there is nothing to search
-  float reach_per_step;   // reach_px over the squared number of steps
-  float step_offset;      // of all samples, in steps, [0,1)
-  float radius_px;        // the radius on the image
-  float extrapolated_px;  // how far surfaces are extrapolated beyond the image's border
-  float outside;          // the part of the radius that lies beyond the image's border, [0,1]
-  ivec2 texel_bias;       // the shaded pixel less the bits of kRoundingBias
-  float depth;            // linear depth of the shaded point
-  vec2 height;       // dot product with a point of the slice's plane: height over the tangent plane
-  float sharp;       // smallest bend of the line of depth that parts two surfaces
-  float depth_step;  // of the depth buffer there, as SliceSample::inverse_depth
+  // Lengths in the slice's plane are in units of the width of a pixel at the surface's depth.
+  vec2 direction_px;  // outwards, unit; zero where there is nothing to search
+  float unit;         // from scene units to that unit
+  float radius;       // in that unit
+  float slope;        // change of the tangent plane's inverse depth per pixel outwards
+  float tangent_rise;        // y (times w) of the tangent plane per pixel outwards
+  float rise_off_plane;      // y (times w) per unit of inverse depth off the tangent plane
+  float tangent_cosine;      // cosine of the tangent plane's horizon
+  float reach_px;            // from the first sample to the last; 0 where there is nothing to search
+  float reach_per_step;      // reach_px over the squared number of steps
+  float step_offset;         // of all samples, in steps, [0,1)
+  float radius_px;           // the radius on the image
+  float extrapolated_px;     // how far surfaces are extrapolated beyond the image's border
+  float outside;             // the part of the radius that lies beyond the image's border, [0,1]
+  ivec2 texel_bias;          // the shaded pixel less the bits of kRoundingBias
+  vec2 height;               // gradient of the height over the tangent plane in the slice's plane
+  float smallest_discontinuity;  // change of slope, in inverse depth per pixel, between two surfaces
+  float depth_step;              // of the depth buffer there, as SliceSample::inverse_depth
+  float nearness;                // radius by distance in perspective, else 0
   TangentPlane tangent;
 };
 
@@ -58,13 +59,9 @@ HalfSlice make_half_slice(Surface surface, SliceLine slice_line, Slice slice, fl
                           float radius_px, float border_px, float step_offset) {
   HalfSlice half_slice;
   half_slice.side = side;
-  half_slice.line = slice_line;
-  half_slice.line.direction_px *= side;
   half_slice.unit = 1.0 / max(slice_line.x_per_step, 1e-30);
-  half_slice.line.x_per_step = 1.0;
-  half_slice.line.y_per_step *= side * half_slice.unit;
-  half_slice.line.y_per_depth *= half_slice.unit;
   half_slice.radius = parameters.radius * half_slice.unit;
+  vec2 direction_px = slice_line.direction_px * side;
   half_slice.tangent_cosine = tangent_horizon(slice, side);
   half_slice.radius_px = radius_px;
   // Where the surface faces away from a half-slice, what stands above its tangent plane within the
@@ -80,16 +77,20 @@ HalfSlice make_half_slice(Surface surface, SliceLine slice_line, Slice slice, fl
   half_slice.outside = outside_share(border_px, radius_px);
   // All samples of an empty half-slice are the shaded pixel: the first step may lie outside the
   // image.
-  half_slice.line.direction_px = empty ? vec2(0.0) : half_slice.line.direction_px;
+  half_slice.direction_px = empty ? vec2(0.0) : direction_px;
   half_slice.step_offset = step_offset;
   half_slice.texel_bias = surface.pixel - kRoundingBits;
-  half_slice.depth = surface.depth;
   half_slice.depth_step = surface.depth_step;
+  half_slice.nearness = kPerspective ? parameters.radius * surface.tangent.inverse_depth : 0.0;
   half_slice.tangent = surface.tangent;
   half_slice.height = vec2(side * slice.along, slice.toward);
-  half_slice.sharp = kDepthDiscontinuity * slice_line.x_per_step *
-                     (kPerspective ? surface.tangent.inverse_depth : 1.0);
-  half_slice.slope = dot(half_slice.line.direction_px, surface.tangent.gradient);
+  half_slice.smallest_discontinuity = kDepthDiscontinuity * slice_line.x_per_step *
+                                      (kPerspective ? surface.tangent.inverse_depth : 1.0);
+  half_slice.slope = dot(direction_px, surface.tangent.gradient);
+  half_slice.rise_off_plane =
+      slice_line.y_per_depth * half_slice.unit * (kPerspective ? surface.depth : -1.0);
+  half_slice.tangent_rise = side * slice_line.y_per_step * half_slice.unit +
+                            half_slice.slope * half_slice.rise_off_plane;
   return half_slice;
 }
 
@@ -99,39 +100,41 @@ float sample_offset_px(HalfSlice half_slice, float k) {
   return steps * steps * half_slice.reach_per_step + kNearestStep;
 }
 
-// Sample `k` of a layer of depth: 0 is the first, 1 what it hides.
+// The point of the slice's plane `along_px` pixels outwards, `off_plane` off the tangent plane in
+// inverse depth, as slice_point() of maths/slice_line.h gives it.
+vec2 plane_point(HalfSlice half_slice, float along_px, float off_plane) {
+  return vec2(along_px,
+              along_px * half_slice.tangent_rise + off_plane * half_slice.rise_off_plane);
+}
+
+// Sample `k` of a layer of depth: 0 is the first, 1 the layer that it hides.
 SliceSample fetch_sample(HalfSlice half_slice, uint layer, uint k) {
   SliceSample found;
   found.offset_px = sample_offset_px(half_slice, float(k));
-  precise vec2 biased = half_slice.line.direction_px * found.offset_px + kRoundingBias;
+  precise vec2 biased = half_slice.direction_px * found.offset_px + kRoundingBias;
   precise vec2 snapped = biased - kRoundingBias;
   ivec2 texel = floatBitsToInt(biased) + half_slice.texel_bias;
-  float inverse_depth =
+  found.inverse_depth =
       layer == 0u ? imageLoad(inverse_depth_image, texel).r : imageLoad(second_image, texel).r;
-  float along_px = kSnapToTexels ? dot(snapped, half_slice.line.direction_px) : found.offset_px;
-  vec2 gradient = half_slice.tangent.gradient;
-  float plane_here =
-      snapped.x * gradient.x + (snapped.y * gradient.y + half_slice.tangent.inverse_depth);
-  float plane_there = along_px * half_slice.slope + half_slice.tangent.inverse_depth;
-  float off_plane = inverse_depth - plane_here;
+  float along_px = kSnapToTexels ? dot(snapped, half_slice.direction_px) : found.offset_px;
+  // Of the tangent plane's inverse depth, from the shaded pixel to the texel and to the line.
+  float to_texel = dot(snapped, half_slice.tangent.gradient);
+  float to_line = along_px * half_slice.slope;
+  float off_plane = (found.inverse_depth - half_slice.tangent.inverse_depth) - to_texel;
   // A difference below the step of the depth buffer is not known to be one.
-  float rounding = clamp(off_plane, -half_slice.depth_step, half_slice.depth_step);
-  off_plane -= rounding;
-  inverse_depth -= rounding;
+  off_plane -= clamp(off_plane, -half_slice.depth_step, half_slice.depth_step);
   bool on_plane = lies_on_tangent_plane(half_slice.tangent, off_plane, found.offset_px);
-  float moved = off_plane + (on_plane ? plane_there : plane_here);
-  // A plane that is seen edge-on runs to any depth within a pixel.
-  moved = kPerspective ? clamp(moved, 0.1 * inverse_depth, 10.0 * inverse_depth) : moved;
-  found.inverse_depth = kSnapToTexels ? moved : inverse_depth;
-  found.point =
-      slice_point(half_slice.line, along_px, found.inverse_depth, half_slice.depth, kPerspective);
+  found.off_plane = off_plane + (kSnapToTexels && on_plane ? 0.0 : to_texel - to_line);
+  found.point = vec3(plane_point(half_slice, along_px, found.off_plane),
+                     kPerspective ? found.inverse_depth : 1.0);
   if (kBackFaces) {
     float back = imageLoad(back_image, texel).r;
     // A back face is not taken to lie before the front face, which may have been moved.
-    vec3 end = slice_point(half_slice.line, along_px,
-                           farther_inverse_depth(found.inverse_depth, back, kPerspective),
-                           half_slice.depth, kPerspective);
-    found.back = ends_occluder(inverse_depth, back, kPerspective) ? end.xy : vec2(0.0, kNoBack);
+    float front = half_slice.tangent.inverse_depth + to_line + found.off_plane;
+    float end = farther_inverse_depth(front, back, kPerspective);
+    found.back = ends_occluder(found.inverse_depth, back, kPerspective)
+                     ? plane_point(half_slice, along_px, found.off_plane + (end - front))
+                     : vec2(0.0, kNoBack);
   }
   return found;
 }

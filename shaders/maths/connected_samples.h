@@ -18,34 +18,47 @@ ALCOVE_MATHS_BEGIN
 // SliceSample::back, y of it, where no back face tells.
 const float kNoBack = 1e30f;
 
-// A sample of a side.
+// A depth sample of a half-slice.
 struct SliceSample {
   float offset_px;      // from the shaded pixel along the line, growing from sample to sample
-  float inverse_depth;  // linear along the image of any plane (slice_line.h)
-  vec3 point;           // slice_point() of it, x outwards
-  vec2 back;            // x w and y w of where the occluder ends, if back faces tell
+  float inverse_depth;  // as the depth buffer has it; linear along the image of any plane
+  float off_plane;      // inverse depth at the sample less that of the tangent plane on the line
+  vec3 point;           // (x w, y w, w) as slice_point() has it, x outwards
+  vec2 back;            // x w and y w of the occluder's end, if back faces tell it
 };
 
-// How sharply `line` bends at a sample: its slope before less its slope after, times both steps; 0
-// where the discontinuity is less than `sharp`. `rise` is the change of the line over a step,
-// `step` the pixels of it, over 0.
-ALCOVE_INLINE float depth_discontinuity(float rise_before, float step_before, float rise_after,
-                                        float step_after, float sharp) {
-  float discontinuity = rise_before * step_after - rise_after * step_before;
-  return abs(discontinuity) < sharp * step_before * step_after ? 0.0f : discontinuity;
+// A change of slope of the inverse depth at a sample that parts two surfaces, if there is one.
+struct DepthDiscontinuity {
+  bool convex;   // the slope before is larger than the slope after
+  bool concave;  // the slope before is smaller
+};
+
+// `rise` is the change of the inverse depth over an interval of `width` pixels, over 0, before and
+// after the sample; `smallest` is the smallest change of slope that counts.
+ALCOVE_INLINE DepthDiscontinuity depth_discontinuity(float rise_before, float width_before,
+                                                     float rise_after, float width_after,
+                                                     float smallest) {
+  float change = rise_before * width_after - rise_after * width_before;
+  float limit = smallest * width_before * width_after;
+  DepthDiscontinuity d;
+  d.convex = change > limit;
+  d.concave = change < -limit;
+  return d;
 }
 
-// Whether two samples, next to each other, continue one surface, from the sharp discontinuity at
-// each. A surface hardly bends at one of its ends, or bends the same way at both where it meets
-// another in a crease; a gap between two surfaces bends sharply one way and then the other.
-ALCOVE_INLINE bool samples_join(float discontinuity_here, float discontinuity_there) {
-  return discontinuity_here * discontinuity_there >= 0.0f;
+ALCOVE_INLINE bool is_discontinuous(DepthDiscontinuity d) { return d.convex || d.concave; }
+
+// Whether two consecutive samples continue one surface, from the discontinuity at each. A surface
+// hardly bends at one of its ends, or bends the same way at both where it meets another in a
+// crease. A gap between two surfaces bends sharply one way and then the other.
+ALCOVE_INLINE bool samples_join(DepthDiscontinuity here, DepthDiscontinuity there) {
+  return !(here.convex && there.concave) && !(here.concave && there.convex);
 }
 
-// The same of samples of what the first layer hides. That is seen in shreds of many surfaces, where
-// two sharp bends in a row are hardly ever a crease.
-ALCOVE_INLINE bool hidden_samples_join(float discontinuity_here, float discontinuity_there) {
-  return discontinuity_here * discontinuity_there == 0.0f;
+// The same for samples of the second layer. That layer shows fragments of many surfaces, where two
+// discontinuities in a row are hardly ever a crease.
+ALCOVE_INLINE bool hidden_samples_join(DepthDiscontinuity here, DepthDiscontinuity there) {
+  return !(is_discontinuous(here) && is_discontinuous(there));
 }
 
 // Where between two samples the edge of the second one's surface is taken to be, if they are on

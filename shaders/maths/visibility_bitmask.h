@@ -89,6 +89,14 @@ ALCOVE_INLINE uint repeat_last_sector(uint occluded) {
   return occluded | ((occluded << 1u) & 0x80000000u);
 }
 
+// The share of the sectors from the first occluded one on that is visible, [0,1), for a mask of
+// kEvenSectorCount sectors.
+ALCOVE_INLINE float visible_share_beyond(uint occluded) {
+  uint sectors = occluded & 0x7fffffffu;
+  float beyond = float(int(kEvenSectorCount) - findLSB(sectors));
+  return sectors == 0u ? 0.0f : 1.0f - float(bitCount(sectors)) / beyond;
+}
+
 // What is asked of a side.
 struct PartRequest {
   bool uniform_weight;  // of part_arc()

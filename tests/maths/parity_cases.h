@@ -75,7 +75,7 @@ ALCOVE_INLINE vec4 parity_of_slices(uint which, vec4 a, vec4 b) {
       // A narrow side has sectors narrower than the digits of its angle.
       return vec4(diamond_angle(point), diamond_angle_light(2.0f * b.w).x,
                   sector_position(per_diamond_angle, point) / per_diamond_angle,
-                  depth_discontinuity(ahead, 0.5f + b.z, behind, 0.5f + b.w, 0.1f));
+                  height_of_back(ahead, b.z, b.w));
     }
     case 4u:
       return vec4(arc_cosine(ahead), arc_cosine(behind), raise_horizon(ahead, behind, b.z),

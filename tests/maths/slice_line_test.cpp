@@ -212,19 +212,22 @@ TEST(SliceLine, RadiusOnTheImageIsTheSilhouetteOfItsSphere) {
   }
 }
 
+const maths::DepthDiscontinuity kNone{false, false}, kConvex{true, false}, kConcave{false, true};
+
 TEST(ConnectedSamples, SamplesAreConnectedAlongPlanesAndAcrossCreasesButNotOverGaps) {
-  EXPECT_TRUE(maths::samples_join(0.0f, 0.0f)) << "a plane";
-  EXPECT_TRUE(maths::samples_join(0.0f, -3.0f)) << "a plane that ends";
-  EXPECT_TRUE(maths::samples_join(2.0f, 1.0f)) << "a crease between the two";
-  EXPECT_FALSE(maths::samples_join(2.0f, -1.0f)) << "one surface in front of another";
+  EXPECT_TRUE(maths::samples_join(kNone, kNone)) << "a plane";
+  EXPECT_TRUE(maths::samples_join(kNone, kConcave)) << "a plane that ends";
+  EXPECT_TRUE(maths::samples_join(kConvex, kConvex)) << "a crease between the two";
+  EXPECT_FALSE(maths::samples_join(kConvex, kConcave)) << "one surface in front of another";
+  EXPECT_FALSE(maths::samples_join(kConcave, kConvex)) << "one surface behind another";
 }
 
 TEST(ConnectedSamples, HiddenSamplesAreConnectedAlongPlanesOnly) {
-  EXPECT_TRUE(maths::hidden_samples_join(0.0f, 0.0f)) << "a plane";
-  EXPECT_TRUE(maths::hidden_samples_join(0.0f, -3.0f)) << "a plane that ends";
-  EXPECT_TRUE(maths::hidden_samples_join(2.0f, 0.0f)) << "and one that begins";
-  EXPECT_FALSE(maths::hidden_samples_join(2.0f, 1.0f)) << "shreds";
-  EXPECT_FALSE(maths::hidden_samples_join(2.0f, -1.0f)) << "one surface in front of another";
+  EXPECT_TRUE(maths::hidden_samples_join(kNone, kNone)) << "a plane";
+  EXPECT_TRUE(maths::hidden_samples_join(kNone, kConcave)) << "a plane that ends";
+  EXPECT_TRUE(maths::hidden_samples_join(kConvex, kNone)) << "and one that begins";
+  EXPECT_FALSE(maths::hidden_samples_join(kConvex, kConvex)) << "fragments of several surfaces";
+  EXPECT_FALSE(maths::hidden_samples_join(kConvex, kConcave)) << "one surface in front of another";
 }
 
 TEST(ConnectedSamples, OccluderBacksMoveAwayFromTheViewDirectionWithThickness) {
@@ -258,18 +261,16 @@ TEST(ConnectedSamples, OnlyPointsWellAboveTheTangentPlaneAreOccluders) {
   }
 }
 
-TEST(ConnectedSamples, OnlyLargeSecondDifferencesAreDiscontinuitiesAndTheirSignIsTheChangeOfSlope) {
+TEST(ConnectedSamples, OnlyLargeChangesOfSlopeAreDiscontinuities) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
     const float before = random.uniform(-1.0f, 1.0f), after = random.uniform(-1.0f, 1.0f);
-    const float step = random.uniform(0.5f, 5.0f), next = random.uniform(0.5f, 5.0f);
-    const float residual =
-        maths::depth_discontinuity(before * step, step, after * next, next, 0.1f);
-    const float turn = before - after;
-    if (std::abs(turn) < 0.0999f) {
-      EXPECT_EQ(residual, 0.0f);
-    } else if (std::abs(turn) > 0.1001f) {
-      EXPECT_NEAR(residual / (step * next), turn, 1e-5f);
+    const float width = random.uniform(0.5f, 5.0f), next = random.uniform(0.5f, 5.0f);
+    const auto found = maths::depth_discontinuity(before * width, width, after * next, next, 0.1f);
+    const float change = before - after;
+    if (std::abs(std::abs(change) - 0.1f) > 1e-4f) {
+      EXPECT_EQ(found.convex, change > 0.1f);
+      EXPECT_EQ(found.concave, change < -0.1f);
     }
   }
 }

@@ -243,5 +243,15 @@ TEST(VisibilityBitmask, SliceWithoutSectorsIsFinite) {
   }
 }
 
+TEST(VisibilityBitmask, VisibleShareBeyondTheFirstOccluderCountsSectors) {
+  EXPECT_EQ(maths::visible_share_beyond(0u), 0.0f) << "nothing lies beyond an occluder";
+  EXPECT_EQ(maths::visible_share_beyond(0xffffffffu), 0.0f) << "everything is occluded";
+  EXPECT_FLOAT_EQ(maths::visible_share_beyond(1u), 30.0f / 31.0f);
+  EXPECT_FLOAT_EQ(maths::visible_share_beyond(1u << 30u), 0.0f) << "the last sector";
+  EXPECT_FLOAT_EQ(maths::visible_share_beyond(0x80000001u), 30.0f / 31.0f)
+      << "the highest bit is no sector";
+  EXPECT_FLOAT_EQ(maths::visible_share_beyond((1u << 27u) | (1u << 29u)), 0.5f);
+}
+
 }  // namespace
 }  // namespace alcove::maths_test
