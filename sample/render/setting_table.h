@@ -75,6 +75,9 @@ void for_each_setting(Settings& settings, const Visit& visit) {
   visit(Info{"filter_radius", "Searches on each side that a first frame looks at; 0: no filter.", 0,
              3},
         settings.filter_radius);
+  visit(Info{"half_resolution",
+             "Filters and accumulates at half resolution, then upsamples; for tiles of 2 or 4."},
+        settings.half_resolution);
   visit(Info{"filter_tolerance_px",
              "How far from the tangent plane a neighbour counts in a first frame, in pixels.", 0.1f,
              8.0f, [](Of s) { return s.filter_radius > 0; }},

@@ -24,6 +24,10 @@ struct FilterSettings {
   // The history is clamped to this many standard deviations around the mean of this frame's
   // neighbourhood. 0 turns clamping off.
   float clamp_width = 0.0f;
+  // Filters and accumulates texels of 2x2 pixels, and makes pixels from them by edge-aware
+  // upsampling. It costs about a third of the time and a quarter of the history's memory. Needs a
+  // tile_size of 2 or 4.
+  bool half_resolution = false;
 
   friend bool operator==(const FilterSettings&, const FilterSettings&) = default;
 };
