@@ -5,7 +5,7 @@
 namespace alcove::framegraph {
 namespace {
 
-constexpr VkBufferUsageFlags kEveryBufferUsage =
+constexpr VkBufferUsageFlags kBufferUsages =
     VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
     VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
     VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT |
@@ -46,10 +46,13 @@ std::string problem_with(const ResourceRecord& record, const ImageLimits& limits
 }  // namespace
 
 VkFlags history_usage(const Limits& limits, const ResourceRecord& record) {
-  if (record.kind == ResourceKind::buffer) return kEveryBufferUsage;
+  if (record.kind == ResourceKind::buffer) return kBufferUsages | record.create_flags;
   VkFlags usage = limits.formats.query ? limits.formats.query(limits.formats.context, record.format)
                                        : ~VkFlags{0};
-  usage &= ~VkFlags{VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSIENT_ATTACHMENT_BIT};
+  usage &= ~VkFlags{VK_IMAGE_USAGE_TRANSIENT_ATTACHMENT_BIT};
+  constexpr VkFlags kDrawn =
+      VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+  if ((usage & kDrawn) == 0) usage &= ~VkFlags{VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT};
   // Few devices store to multisampled images.
   if (record.samples > 1) usage &= ~VkFlags{VK_IMAGE_USAGE_STORAGE_BIT};
   return usage;

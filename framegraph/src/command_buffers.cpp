@@ -3,7 +3,7 @@
 namespace alcove::framegraph {
 
 void CommandBuffers::destroy(const DeviceContext& device) {
-  device.vk.vkDestroyCommandPool(device.handles.device, pool_, nullptr);
+  device.vk.vkDestroyCommandPool(device.handles.device, pool_, device.callbacks());
 }
 
 VkResult CommandBuffers::next(const DeviceContext& device, QueueClass queue,
@@ -13,7 +13,7 @@ VkResult CommandBuffers::next(const DeviceContext& device, QueueClass queue,
     info.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
     info.queueFamilyIndex = device.limits.queue_families[static_cast<std::size_t>(queue)];
     const VkResult result =
-        device.vk.vkCreateCommandPool(device.handles.device, &info, nullptr, &pool_);
+        device.vk.vkCreateCommandPool(device.handles.device, &info, device.callbacks(), &pool_);
     if (result != VK_SUCCESS) return result;
   }
   if (used_ == made_.size()) {

@@ -15,15 +15,17 @@ VkMemoryRequirements made_requirements(const DeviceContext& device, const Resour
   if (record.kind == ResourceKind::texture) {
     const VkImageCreateInfo info = image_info(record, usage);
     VkImage image = VK_NULL_HANDLE;
-    if (device.vk.vkCreateImage(handle, &info, nullptr, &image) != VK_SUCCESS) return found;
+    if (device.vk.vkCreateImage(handle, &info, device.callbacks(), &image) != VK_SUCCESS)
+      return found;
     device.vk.vkGetImageMemoryRequirements(handle, image, &found);
-    device.vk.vkDestroyImage(handle, image, nullptr);
+    device.vk.vkDestroyImage(handle, image, device.callbacks());
   } else {
     const VkBufferCreateInfo info = buffer_info(record, usage);
     VkBuffer buffer = VK_NULL_HANDLE;
-    if (device.vk.vkCreateBuffer(handle, &info, nullptr, &buffer) != VK_SUCCESS) return found;
+    if (device.vk.vkCreateBuffer(handle, &info, device.callbacks(), &buffer) != VK_SUCCESS)
+      return found;
     device.vk.vkGetBufferMemoryRequirements(handle, buffer, &found);
-    device.vk.vkDestroyBuffer(handle, buffer, nullptr);
+    device.vk.vkDestroyBuffer(handle, buffer, device.callbacks());
   }
   return found;
 }
@@ -127,6 +129,7 @@ void read_limits(DeviceContext& context) {
   limits.max_samples = std::bit_floor(std::max(samples, VkSampleCountFlags{1}));
   limits.max_buffer_size = max_buffer_size(context);
   limits.buffer_image_granularity = device.bufferImageGranularity;
+  limits.separate_depth_stencil = context.handles.separate_depth_stencil;
   limits.memory = {device_requirements, &context};
   limits.formats = {format_usage, &context};
   limits.images = {image_limits, &context};

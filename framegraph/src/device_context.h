@@ -17,6 +17,8 @@ struct DeviceContext {
   // By queue class: the bits of a timestamp that count, 0 where the queue has no timestamps.
   std::uint32_t timestamp_bits[kQueueClasses] = {};
   Limits limits;
+
+  const VkAllocationCallbacks* callbacks() const { return handles.host.allocation_callbacks; }
 };
 
 // Functions, properties and limits of a device; the error says what it lacks.

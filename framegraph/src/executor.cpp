@@ -31,8 +31,10 @@ struct Executor::Implementation {
   tl::expected<CachedPlan*, Errors> plan_for(const Graph& graph, Queues queues, bool& compiled);
   tl::expected<void, Errors> find_physical(const Graph& graph, CachedPlan& cached);
   VkResult find_external(const Graph& graph, CachedPlan& cached, std::uint32_t resource);
+  const Physical* find_persistent(const Graph& graph, std::uint32_t resource, State& state);
   tl::expected<FrameReport, Errors> prepare(Graph& graph, const FrameInfo& info, Queues queues,
                                             CachedPlan*& cached);
+  Errors memory_error(VkResult result, std::string what) const;
   tl::expected<void, Errors> check_slot(std::uint32_t slot) const;
   tl::expected<void, Errors> check_call(const FrameInfo& info) const;
   tl::expected<void, Errors> adopt(Graph& graph) const;
@@ -183,7 +185,7 @@ tl::expected<void, Errors> Executor::Implementation::find_physical(const Graph& 
   const GraphDescription& description = graph.description();
   cached.physical.resize(description.resources.size());
   if (const VkResult result = pool->reserve(description, cached.plan, frame))
-    return tl::unexpected(vulkan_error(result, "the frame's transients cannot be allocated"));
+    return tl::unexpected(memory_error(result, "the frame's transients cannot be allocated"));
   const bool again = cached.generation == pool->generation();
   for (std::uint32_t r = 0; r < description.resources.size(); ++r) {
     const ResourceRecord& record = description.resources[r];
@@ -200,13 +202,18 @@ tl::expected<void, Errors> Executor::Implementation::find_physical(const Graph& 
                                cached.physical[r]);
     if (result != VK_SUCCESS)
       return tl::unexpected(
-          vulkan_error(result, std::string(record.origin == Origin::history ? "the history '" : "'")
+          memory_error(result, std::string(record.origin == Origin::history ? "the history '" : "'")
                                        .append(description.resource_name(r)) +
                                    "' cannot be created"));
     cached.physical[r]->last_frame = frame;
   }
   cached.generation = pool->generation();
   return {};
+}
+
+Errors Executor::Implementation::memory_error(VkResult result, std::string what) const {
+  if (const std::string why = pool->take_shortage(); !why.empty()) what += " " + why;
+  return vulkan_error(result, std::move(what));
 }
 
 void Executor::Implementation::begin_frame(const FrameInfo& info) {
@@ -402,6 +409,44 @@ std::span<const PassTiming> Executor::timings(std::uint32_t slot) {
     }
   }
   return self.timings;
+}
+
+const Physical* Executor::Implementation::find_persistent(const Graph& graph,
+                                                          std::uint32_t resource, State& state) {
+  const GraphDescription& description = graph.description();
+  if (resource >= description.resources.size() ||
+      description.resources[resource].origin != Origin::history)
+    return nullptr;
+  const std::uint32_t index = graph.imports_[description.resources[resource].external].history;
+  const HistoryEntry& entry = graph.histories().entries()[index];
+  state = entry.slots[entry.physical(0)].state;
+  return pool->find_history(graph.histories(), index, entry.physical(0));
+}
+
+ImportedTexture Executor::exported(const Graph& graph, const TextureHistory& texture) const {
+  ImportedTexture import;
+  const Physical* found =
+      implementation_->find_persistent(graph, texture.current.index, import.initial_state);
+  if (!found || !found->image) return {};
+  const ResourceRecord& r = found->record;
+  import.image = found->image;
+  import.desc = {r.format, Extent::absolute(r.width, r.height, r.depth),  r.mips,
+                 r.layers, static_cast<VkSampleCountFlagBits>(r.samples), r.create_flags};
+  import.usage = found->usage;
+  import.final_state = import.initial_state;
+  return import;
+}
+
+ImportedBuffer Executor::exported(const Graph& graph, const BufferHistory& buffer) const {
+  ImportedBuffer import;
+  const Physical* found =
+      implementation_->find_persistent(graph, buffer.current.index, import.initial_state);
+  if (!found || !found->buffer) return {};
+  import.buffer = found->buffer;
+  import.desc.size = found->record.size;
+  import.usage = found->usage;
+  import.final_state = import.initial_state;
+  return import;
 }
 
 void Executor::forget(VkImage image) {

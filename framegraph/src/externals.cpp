@@ -61,7 +61,8 @@ void Synchroniser::depart() {
     const ExternalRecord& external = graph_.externals[resource.external];
     const bool used = plan_.placements[r].first != kNone;
     if (external.has_final_state && used) end_reads(r, external.final_state);
-    if (external.has_final_state) use(end, outside_use(r, external.final_state));
+    if (external.has_final_state && (used || resource.origin == Origin::imported))
+      use(end, outside_use(r, external.final_state));
     if (used && resource.origin == Origin::history) leave(r);
   }
   if (batch_time_ == batch_time(end) && !plan_.batches.empty()) {
@@ -130,10 +131,9 @@ void Synchroniser::leave(std::uint32_t resource) {
     final.state.access = reads_in(lead.seen_access);
   final.state.layout = lead.layout;
   if (workspace_.several_queues) {
-    // Uses on other queues are not kept separately. The next frame waits for all of them.
-    const bool pending = written != 0 || (final.state.access & kWriteBits) != 0;
+    // Uses before a change of queue are not kept separately. The next frame waits for all of them.
     final.state.stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-    final.state.access = pending ? VK_ACCESS_2_MEMORY_WRITE_BIT : VK_ACCESS_2_MEMORY_READ_BIT;
+    final.state.access = VK_ACCESS_2_MEMORY_WRITE_BIT;
   }
   final.queue = one_layout ? lead.queue : QueueClass::graphics;
   if (!one_layout) {

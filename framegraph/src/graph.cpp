@@ -4,6 +4,8 @@
 #include <atomic>
 #include <cstring>
 
+#include "aspects.h"
+
 namespace alcove::framegraph {
 namespace {
 
@@ -162,6 +164,7 @@ std::uint32_t Graph::add_any_access(std::uint32_t pass, std::uint32_t index, std
 }
 
 Range Graph::resolved_range(Range range, const ResourceRecord& resource) {
+  if (range.aspects == aspects(resource.format)) range.aspects = 0;
   if (range.mips == kAll && range.base_mip < resource.mips)
     range.mips = static_cast<std::uint16_t>(resource.mips - range.base_mip);
   if (range.layers == kAll && range.base_layer < resource.layers)
@@ -169,11 +172,16 @@ Range Graph::resolved_range(Range range, const ResourceRecord& resource) {
   return range;
 }
 
-Buffer Graph::create_buffer(std::string_view name, const BufferDesc& desc) {
+ResourceRecord Graph::buffer_record(const BufferDesc& desc) {
   ResourceRecord record;
   record.kind = ResourceKind::buffer;
   record.size = desc.size;
-  return {add_resource(name, record), 0, tag_};
+  record.create_flags = desc.usage;
+  return record;
+}
+
+Buffer Graph::create_buffer(std::string_view name, const BufferDesc& desc) {
+  return {add_resource(name, buffer_record(desc)), 0, tag_};
 }
 
 // The external that has the same image, in some of the same layers, or the same buffer.
@@ -211,10 +219,8 @@ Texture Graph::import_texture(std::string_view name, const ImportedTexture& impo
 }
 
 Buffer Graph::import_buffer(std::string_view name, const ImportedBuffer& import) {
-  ResourceRecord record;
-  record.kind = ResourceKind::buffer;
+  ResourceRecord record = buffer_record(import.desc);
   record.origin = Origin::imported;
-  record.size = import.desc.size;
   record.external = static_cast<std::uint32_t>(description_.externals.size());
   ExternalRecord external;
   external.initial_state = import.initial_state;
@@ -250,8 +256,10 @@ bool Graph::refresh_histories() {
     if (record.origin != Origin::history) continue;
     const HistoryEntry& entry = histories_.entry(imports_[record.external].history);
     if (entry.dropped) return false;
-    const ExternalRecord now = external_of(entry, record.slot);
     ExternalRecord& declared = description_.externals[record.external];
+    ExternalRecord now = external_of(entry, record.slot);
+    now.final_state = declared.final_state;
+    now.has_final_state = declared.has_final_state;
     if (std::memcmp(&declared, &now, sizeof now) == 0) continue;
     declared = now;
     changes = true;
@@ -269,14 +277,16 @@ void Graph::add_stale_builder() {
 }
 
 std::uint32_t Graph::add_history(std::string_view name, ResourceRecord record, std::uint32_t slots,
-                                 HistoryValidity& validity) {
+                                 HistoryValidity& validity, const State& final_state) {
   record.origin = Origin::history;
   record.slots = static_cast<std::uint8_t>(std::clamp(slots, 1u, kMaxHistorySlots));
   const std::uint32_t history = histories_.declare(name, record);
   const HistoryEntry& entry = histories_.entries()[history];
   std::uint32_t first = kNone;
   for (std::uint32_t slot = 0; slot < record.slots; ++slot) {
-    const ExternalRecord external = external_of(entry, slot);
+    ExternalRecord external = external_of(entry, slot);
+    external.final_state = final_state;
+    external.has_final_state = has_final_state(final_state);
     record.external = static_cast<std::uint32_t>(description_.externals.size());
     record.slot = static_cast<std::uint8_t>(slot);
     add(description_.externals, external);
@@ -322,31 +332,28 @@ TextureHistory Graph::create_texture_history(std::string_view name, const Textur
 
 BufferHistory Graph::create_buffer_history(std::string_view name, const BufferDesc& desc,
                                            std::uint32_t slots) {
-  ResourceRecord record;
-  record.kind = ResourceKind::buffer;
-  record.size = desc.size;
   BufferHistory history;
-  history.current = {add_history(name, record, slots, history.validity), 0, tag_};
+  history.current = {add_history(name, buffer_record(desc), slots, history.validity), 0, tag_};
   history.slots = std::clamp(slots, 1u, kMaxHistorySlots);
   return history;
 }
 
-TextureHistory Graph::create_persistent_texture(std::string_view name, const TextureDesc& desc) {
+TextureHistory Graph::create_persistent_texture(std::string_view name, const TextureDesc& desc,
+                                                const State& final_state) {
   ResourceRecord record = texture_record(desc);
   record.flags |= kPersistent;
   TextureHistory history;
-  history.current = {add_history(name, record, 1, history.validity), 0, tag_};
+  history.current = {add_history(name, record, 1, history.validity, final_state), 0, tag_};
   history.slots = 1;
   return history;
 }
 
-BufferHistory Graph::create_persistent_buffer(std::string_view name, const BufferDesc& desc) {
-  ResourceRecord record;
-  record.kind = ResourceKind::buffer;
-  record.size = desc.size;
+BufferHistory Graph::create_persistent_buffer(std::string_view name, const BufferDesc& desc,
+                                              const State& final_state) {
+  ResourceRecord record = buffer_record(desc);
   record.flags = kPersistent;
   BufferHistory history;
-  history.current = {add_history(name, record, 1, history.validity), 0, tag_};
+  history.current = {add_history(name, record, 1, history.validity, final_state), 0, tag_};
   history.slots = 1;
   return history;
 }

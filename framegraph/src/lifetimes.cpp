@@ -33,8 +33,9 @@ void lifetimes(const GraphDescription& graph, Workspace& workspace, Plan& plan) 
       placement.last = position;
       if (placement.first != kNone) return;
       placement.first = position;
-      if (graph.resources[access.resource].origin == Origin::transient)
-        workspace.transients.push_back(access.resource);
+      const ResourceRecord& resource = graph.resources[access.resource];
+      if (resource.kind == ResourceKind::buffer) placement.usage |= resource.create_flags;
+      if (resource.origin == Origin::transient) workspace.transients.push_back(access.resource);
     });
     ++position;
   }

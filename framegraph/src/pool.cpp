@@ -1,6 +1,7 @@
 #include "pool.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstring>
 
 #include "aspects.h"
@@ -36,6 +37,15 @@ bool wants_addresses(const GraphDescription& graph, const Plan& plan, std::uint3
   return false;
 }
 
+// A multiple of what every placement in the heap asks for.
+VkDeviceSize alignment_of(const Plan& plan, std::uint32_t heap) {
+  VkDeviceSize alignment = 1;
+  for (const Placement& placement : plan.placements) {
+    if (placement.heap == heap) alignment = std::max(alignment, placement.alignment);
+  }
+  return alignment;
+}
+
 bool same(const ResourceRecord& a, const ResourceRecord& b) {
   // Where a resource came from does not matter to what it is.
   return a.kind == b.kind && a.size == b.size && a.format == b.format && a.width == b.width &&
@@ -45,16 +55,20 @@ bool same(const ResourceRecord& a, const ResourceRecord& b) {
 
 }  // namespace
 
+std::uint64_t Pool::first_generation() {
+  static std::atomic<std::uint64_t> pools = 0;
+  return (++pools << 40) + 1;
+}
+
 Pool::~Pool() {
   for (auto& physical : transients_) destroy(*physical);
   for (auto& history : histories_) destroy(*history.physical);
   for (auto& physical : imports_) destroy(*physical);
   for (auto& retired : retired_) {
     if (retired.physical) destroy(*retired.physical);
-    device_.vk.vkFreeMemory(device_.handles.device, retired.heap, nullptr);
+    memory_.free(retired.heap);
   }
-  for (HeapMemory& heap : heaps_)
-    device_.vk.vkFreeMemory(device_.handles.device, heap.memory, nullptr);
+  for (const HeapMemory& heap : heaps_) memory_.free(heap.memory);
 }
 
 VkResult Pool::reserve(const GraphDescription& graph, const Plan& plan, std::uint64_t frame) {
@@ -71,13 +85,14 @@ VkResult Pool::reserve(const GraphDescription& graph, const Plan& plan, std::uin
     if (heap->size >= wanted.size && heap->has_addresses == has_addresses) continue;
     const VkDeviceSize size = std::max(heap->size, wanted.size);
     make_room(retired_, transients_.size() + 1);
-    VkDeviceMemory memory = VK_NULL_HANDLE;
-    if (const VkResult result = allocate(wanted.memory_types, size, has_addresses, memory))
+    MemoryRange memory;
+    if (const VkResult result =
+            allocate({size, alignment_of(plan, h), wanted.memory_types}, has_addresses, memory))
       return result;
     // Everything in the old memory goes with it; other heaps' transients are cheap to make again.
     for (auto& physical : transients_) retired_.push_back({frame, std::move(physical)});
     transients_.clear();
-    if (heap->memory) retired_.push_back({frame, nullptr, heap->memory, heap->size});
+    if (heap->memory.memory) retired_.push_back({frame, nullptr, heap->memory, heap->size});
     heap->memory = memory;
     heap->size = size;
     heap->has_addresses = has_addresses;
@@ -115,17 +130,22 @@ VkResult Pool::transient(const ResourceRecord& record, const Plan& plan, const P
   return VK_SUCCESS;
 }
 
-VkResult Pool::history(const HistoryTable& table, std::uint32_t entry, std::uint32_t position,
-                       const ResourceRecord& record, VkFlags usage, std::string_view name,
-                       Physical*& found) {
+Physical* Pool::find_history(const HistoryTable& table, std::uint32_t entry,
+                             std::uint32_t position) const {
   const std::uint32_t generation = table.entries()[entry].generation;
   for (const HistoryImage& there : histories_) {
     if (there.entry == entry && there.position == position && there.generation == generation &&
-        is_of(there.table, table)) {
-      found = there.physical.get();
-      return VK_SUCCESS;
-    }
+        is_of(there.table, table))
+      return there.physical.get();
   }
+  return nullptr;
+}
+
+VkResult Pool::history(const HistoryTable& table, std::uint32_t entry, std::uint32_t position,
+                       const ResourceRecord& record, VkFlags usage, std::string_view name,
+                       Physical*& found) {
+  found = find_history(table, entry, position);
+  if (found) return VK_SUCCESS;
   make_room(histories_);
   auto made = std::make_unique<Physical>();
   made->record = record;
@@ -135,7 +155,8 @@ VkResult Pool::history(const HistoryTable& table, std::uint32_t entry, std::uint
     destroy(*made);
     return result;
   }
-  histories_.push_back({table.life(), entry, generation, position, std::move(made)});
+  histories_.push_back(
+      {table.life(), entry, table.entries()[entry].generation, position, std::move(made)});
   ++generation_;
   found = histories_.back().physical.get();
   return VK_SUCCESS;
@@ -196,10 +217,13 @@ VkImageView Pool::view(Physical& physical, const Range& range, VkImageViewType t
   info.image = physical.image;
   info.viewType = type;
   info.format = format;
-  info.subresourceRange = {view_aspect(physical.record.format), range.base_mip, range.mips,
-                           physical.layer + range.base_layer, range.layers};
+  const VkImageAspectFlags aspect =
+      range.aspects != 0 ? range.aspects : view_aspect(physical.record.format);
+  info.subresourceRange = {aspect, range.base_mip, range.mips, physical.layer + range.base_layer,
+                           range.layers};
   VkImageView view = VK_NULL_HANDLE;
-  if (device_.vk.vkCreateImageView(device_.handles.device, &info, nullptr, &view) != VK_SUCCESS)
+  if (device_.vk.vkCreateImageView(device_.handles.device, &info, device_.callbacks(), &view) !=
+      VK_SUCCESS)
     return VK_NULL_HANDLE;
   physical.views.push_back({range, type, format, view});
   return view;
@@ -209,7 +233,7 @@ void Pool::collect(std::uint64_t finished, std::uint64_t frame) {
   std::erase_if(retired_, [&](Retired& retired) {
     if (retired.frame > finished) return false;
     if (retired.physical) destroy(*retired.physical);
-    device_.vk.vkFreeMemory(device_.handles.device, retired.heap, nullptr);
+    memory_.free(retired.heap);
     return true;
   });
   const auto unused = [&](std::unique_ptr<Physical>& physical) {
@@ -241,64 +265,45 @@ VkResult Pool::create(Physical& physical, std::string_view name) {
   VkResult result = VK_SUCCESS;
   if (physical.record.kind == ResourceKind::texture) {
     const VkImageCreateInfo info = image_info(physical.record, physical.usage);
-    result = device_.vk.vkCreateImage(device, &info, nullptr, &physical.image);
+    result = device_.vk.vkCreateImage(device, &info, device_.callbacks(), &physical.image);
     if (result != VK_SUCCESS) return result;
     device_.vk.vkGetImageMemoryRequirements(device, physical.image, &needed);
   } else {
     const VkBufferCreateInfo info = buffer_info(physical.record, physical.usage);
-    result = device_.vk.vkCreateBuffer(device, &info, nullptr, &physical.buffer);
+    result = device_.vk.vkCreateBuffer(device, &info, device_.callbacks(), &physical.buffer);
     if (result != VK_SUCCESS) return result;
     device_.vk.vkGetBufferMemoryRequirements(device, physical.buffer, &needed);
   }
   set_name(physical, name);
-  VkDeviceMemory memory = VK_NULL_HANDLE;
+  MemoryRange memory;
   if (physical.heap != kNone) {
     memory = heaps_[physical.heap].memory;
   } else {
-    result = allocate(needed.memoryTypeBits, needed.size,
-                      has_address(physical.record, physical.usage), physical.own_memory);
+    result = allocate(needed, has_address(physical.record, physical.usage), physical.own_memory);
     if (result != VK_SUCCESS) return result;
     physical.own_size = needed.size;
     memory = physical.own_memory;
   }
+  const VkDeviceSize offset = memory.offset + physical.offset;
   return physical.image
-             ? device_.vk.vkBindImageMemory(device, physical.image, memory, physical.offset)
-             : device_.vk.vkBindBufferMemory(device, physical.buffer, memory, physical.offset);
+             ? device_.vk.vkBindImageMemory(device, physical.image, memory.memory, offset)
+             : device_.vk.vkBindBufferMemory(device, physical.buffer, memory.memory, offset);
 }
 
-VkResult Pool::allocate(std::uint32_t memory_types, VkDeviceSize size, bool has_addresses,
-                        VkDeviceMemory& memory) {
-  // Lazily allocated types are allowed for transient attachments only, and best for those.
-  const auto rank = [this](std::uint32_t type) {
-    const VkMemoryPropertyFlags flags = device_.memory.memoryTypes[type].propertyFlags;
-    if (flags & VK_MEMORY_PROPERTY_LAZILY_ALLOCATED_BIT) return 2;
-    return flags & VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT ? 1 : 0;
-  };
-  std::uint32_t type = kNone;
-  for (std::uint32_t i = device_.memory.memoryTypeCount; i-- > 0;) {
-    if (!(memory_types & (1u << i))) continue;
-    if (type == kNone || rank(i) >= rank(type)) type = i;
-  }
-  if (type == kNone) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
-  VkMemoryAllocateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
-  VkMemoryAllocateFlagsInfo flags{};
-  flags.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO;
-  flags.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
-  if (has_addresses) info.pNext = &flags;
-  info.allocationSize = size;
-  info.memoryTypeIndex = type;
-  return device_.vk.vkAllocateMemory(device_.handles.device, &info, nullptr, &memory);
+VkResult Pool::allocate(const VkMemoryRequirements& requirements, bool has_addresses,
+                        MemoryRange& memory) {
+  return memory_.allocate({requirements, 0, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, has_addresses},
+                          memory);
 }
 
 void Pool::destroy(Physical& physical) {
   const VkDevice device = device_.handles.device;
   for (const CachedView& cached : physical.views)
-    device_.vk.vkDestroyImageView(device, cached.view, nullptr);
+    device_.vk.vkDestroyImageView(device, cached.view, device_.callbacks());
   if (!physical.owned) return;
-  device_.vk.vkDestroyImage(device, physical.image, nullptr);
-  device_.vk.vkDestroyBuffer(device, physical.buffer, nullptr);
-  device_.vk.vkFreeMemory(device, physical.own_memory, nullptr);
+  device_.vk.vkDestroyImage(device, physical.image, device_.callbacks());
+  device_.vk.vkDestroyBuffer(device, physical.buffer, device_.callbacks());
+  memory_.free(physical.own_memory);
 }
 
 void Pool::set_name(const Physical& physical, std::string_view name) {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "alcove/framegraph/record_context.h"
-#include "device_context.h"
+#include "device_allocator.h"
 
 namespace alcove::framegraph {
 
@@ -31,7 +31,7 @@ struct Physical {
   std::uint32_t heap = kNone;  // into the pool's heaps; kNone with memory of its own
   VkImage image = VK_NULL_HANDLE;
   VkBuffer buffer = VK_NULL_HANDLE;
-  VkDeviceMemory own_memory = VK_NULL_HANDLE;
+  MemoryRange own_memory;
   VkDeviceSize own_size = 0;
   bool owned = true;        // false for imports: only the views are the pool's
   std::uint32_t layer = 0;  // of an import: the image's that is the first of the texture
@@ -41,7 +41,7 @@ struct Physical {
 
 class Pool {
  public:
-  explicit Pool(const DeviceContext& device) : device_(device) {}
+  explicit Pool(const DeviceContext& device) : device_(device), memory_(device) {}
   ~Pool();
   Pool(const Pool&) = delete;
   Pool& operator=(const Pool&) = delete;
@@ -58,6 +58,9 @@ class Pool {
   [[nodiscard]] VkResult history(const HistoryTable& table, std::uint32_t entry,
                                  std::uint32_t position, const ResourceRecord& record,
                                  VkFlags usage, std::string_view name, Physical*& found);
+  // The same slot if it was made already, else null.
+  Physical* find_history(const HistoryTable& table, std::uint32_t entry,
+                         std::uint32_t position) const;
   // Retires what belongs to no entry any more: dropped, made anew in another shape in an earlier
   // frame, or of a graph that is gone. Other graphs' histories stay.
   void retire_histories(const HistoryTable& table, std::uint64_t frame);
@@ -75,11 +78,13 @@ class Pool {
   // Bytes of device memory, what is retired and not yet freed among them.
   VkDeviceSize allocated() const;
   VkDeviceSize history_size() const;
+  // Why an allocation of device memory has failed since the last call; may be empty.
+  std::string take_shortage() { return memory_.take_reason(); }
 
  private:
   struct HeapMemory {
     std::uint32_t memory_types = 0;
-    VkDeviceMemory memory = VK_NULL_HANDLE;
+    MemoryRange memory;
     VkDeviceSize size = 0;
     bool has_addresses = false;  // Buffers in it may have a device address.
   };
@@ -93,23 +98,26 @@ class Pool {
   struct Retired {
     std::uint64_t frame = 0;
     std::unique_ptr<Physical> physical;
-    VkDeviceMemory heap = VK_NULL_HANDLE;
+    MemoryRange heap;
     VkDeviceSize heap_size = 0;
   };
 
+  // Far enough apart that no two pools of the process ever have a generation in common.
+  static std::uint64_t first_generation();
   VkResult create(Physical& physical, std::string_view name);
-  VkResult allocate(std::uint32_t memory_types, VkDeviceSize size, bool has_addresses,
-                    VkDeviceMemory& memory);
+  VkResult allocate(const VkMemoryRequirements& requirements, bool has_addresses,
+                    MemoryRange& memory);
   void destroy(Physical& physical);
   void set_name(const Physical& physical, std::string_view name);
 
   const DeviceContext& device_;
+  DeviceAllocator memory_;
   std::vector<HeapMemory> heaps_;
   std::vector<std::unique_ptr<Physical>> transients_;
   std::vector<HistoryImage> histories_;
   std::vector<std::unique_ptr<Physical>> imports_;
   std::vector<Retired> retired_;
-  std::uint64_t generation_ = 1;
+  std::uint64_t generation_ = first_generation();
   std::mutex views_mutex_;  // of all views
 };
 

@@ -83,6 +83,10 @@ constexpr Bit kBufferUsages[] = {
     {VK_BUFFER_USAGE_INDEX_BUFFER_BIT, "INDEX_BUFFER"},
     {VK_BUFFER_USAGE_VERTEX_BUFFER_BIT, "VERTEX_BUFFER"},
     {VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, "INDIRECT_BUFFER"},
+    {VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT, "SHADER_DEVICE_ADDRESS"},
+    {VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR,
+     "ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY"},
+    {VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_STORAGE_BIT_KHR, "ACCELERATION_STRUCTURE_STORAGE"},
 };
 
 template <std::size_t kCount>
@@ -124,6 +128,8 @@ std::string layout_name(VkImageLayout layout) {
       return "depth";
     case VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL:
       return "depth read";
+    case VK_IMAGE_LAYOUT_STENCIL_ATTACHMENT_OPTIMAL:
+      return "stencil";
     case VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL:
       return "shader read";
     case VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL:
@@ -172,6 +178,8 @@ std::string range_name(const Range& range, std::uint32_t mips, std::uint32_t lay
   std::string text;
   if (range.mips != mips) text += part("mip", range.base_mip, range.mips);
   if (range.layers != layers) text += part("layer", range.base_layer, range.layers);
+  if (range.aspects == VK_IMAGE_ASPECT_DEPTH_BIT) text += " depth";
+  if (range.aspects == VK_IMAGE_ASPECT_STENCIL_BIT) text += " stencil";
   return text;
 }
 

@@ -19,7 +19,7 @@ bool Synchroniser::change_queue(std::uint32_t position, const AccessRecord& acce
   const bool keeps = state.used && !(access.flags & kDiscard) &&
                      (!texture || state.layout != VK_IMAGE_LAYOUT_UNDEFINED);
   if (!keeps || same_family) {
-    take_without_giver(state, same_family);
+    take_without_giver(position, state, same_family);
     return false;
   }
   const Transition release = release_of(access, state, range);
@@ -51,7 +51,7 @@ std::uint32_t Synchroniser::giving_submission(const UseState& state) const {
 }
 
 // An image whose contents are not kept needs no release: it is taken from the undefined layout.
-void Synchroniser::take_without_giver(UseState& state, bool same_family) const {
+void Synchroniser::take_without_giver(std::uint32_t position, UseState& state, bool same_family) {
   UseState taken;
   taken.queue = queue_;
   taken.by_wait = 1;
@@ -60,6 +60,8 @@ void Synchroniser::take_without_giver(UseState& state, bool same_family) const {
   if (state.handed_over) {
     // The resource that had the memory before may have been on this queue, with no wait in between.
     taken.handed_over = 1;
+    taken.frame_before = state.frame_before;
+    wait_for_frame_before(position, state.frame_before);
     taken.write_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
     taken.write_access = VK_ACCESS_2_MEMORY_WRITE_BIT;
   } else {

@@ -23,7 +23,7 @@ class QueueAssigner {
     choose_queues();
     const auto count = static_cast<std::uint32_t>(plan_.passes.size());
     if (!workspace_.several_queues) {
-      plan_.submissions.push_back({QueueClass::graphics, 0, count, 0, 0, 0, 0});
+      plan_.submissions.push_back({.pass_count = count});
       return;
     }
     find_waits();
@@ -242,8 +242,8 @@ class QueueAssigner {
       workspace_.order[position] = plan_.passes[position].pass;
   }
 
-  // Imports are left on the graphics queue after their last use. So are histories whose parts may
-  // be in different states.
+  // Graphics waits for the last uses of imports, which the next frame takes over from it, and of
+  // histories whose parts may be in different states.
   void close() {
     if (graph_.externals.empty()) return;
     std::uint32_t last[kQueueClasses] = {kNobody, kNobody, kNobody};
@@ -251,8 +251,8 @@ class QueueAssigner {
       const std::uint32_t external = graph_.resources[r].external;
       if (external == kNone) continue;
       const std::uint32_t subs = workspace_.first_sub[r + 1] - workspace_.first_sub[r];
-      if (!graph_.externals[external].has_final_state &&
-          (graph_.resources[r].origin != Origin::history || subs == 1))
+      if (graph_.resources[r].origin == Origin::history &&
+          !graph_.externals[external].has_final_state && subs == 1)
         continue;
       for (std::uint32_t sub = workspace_.first_sub[r]; sub < workspace_.first_sub[r + 1]; ++sub) {
         const std::uint32_t user = s_.last_user[sub];

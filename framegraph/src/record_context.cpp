@@ -19,10 +19,13 @@ VkImageView RecordContext::view(Texture texture, Range range, VkImageViewType ty
   const ResourceRecord& record = graph.resources[texture.index];
   range = Graph::resolved_range(range, record);
   if (!recorder_.check_view(pass_, texture.index, range)) return VK_NULL_HANDLE;
-  if (record.origin == Origin::imported && range.mips == record.mips &&
+  if (record.origin == Origin::imported && range.mips == record.mips && range.aspects == 0 &&
       range.layers == record.layers && type == kViewTypeByRange && format == VK_FORMAT_UNDEFINED) {
     const VkImageView given = recorder_.graph_->imports_[record.external].view;
-    if (given != VK_NULL_HANDLE) return given;
+    if (given != VK_NULL_HANDLE) {
+      gave_imported_view_ = true;
+      return given;
+    }
   }
   const VkImageView view = recorder_.pool_.view(*physical, range, type, format);
   if (view == VK_NULL_HANDLE) {
@@ -36,9 +39,13 @@ VkImageView RecordContext::view(Texture texture, Range range, VkImageViewType ty
 }
 
 VkRenderingAttachmentInfo RecordContext::attachment(const Attachment& wanted) const {
+  return attachment(wanted, recorder_.attachment_access(pass_, wanted.texture.index));
+}
+
+VkRenderingAttachmentInfo RecordContext::attachment(const Attachment& wanted,
+                                                    std::uint32_t index) const {
   VkRenderingAttachmentInfo info{};
   info.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
-  const std::uint32_t index = recorder_.attachment_access(pass_, wanted.texture.index);
   if (index == kNone) return info;
   const AccessRecord& access = recorder_.graph_->description().accesses[index];
   const std::uint8_t contents = recorder_.plan_->contents[index];
@@ -78,14 +85,15 @@ bool RecordContext::begin_rendering(std::span<const Attachment> colors,
     return refuse(ErrorCode::misuse, "begins a rendering with more than 8 color attachments");
   VkRenderingAttachmentInfo color_infos[kMost];
   VkRenderingAttachmentInfo depth_info{};
+  VkRenderingAttachmentInfo stencil_info{};
   VkRenderingInfo info{};
   info.sType = VK_STRUCTURE_TYPE_RENDERING_INFO;
   const GraphDescription& graph = recorder_.graph_->description();
   std::uint32_t samples = 0;
   bool alike = true;
-  const auto add = [&](const Attachment& wanted, VkRenderingAttachmentInfo& to) {
-    const std::uint32_t index = recorder_.attachment_access(pass_, wanted.texture.index);
-    to = attachment(wanted);
+  const auto add = [&](const Attachment& wanted, std::uint32_t index,
+                       VkRenderingAttachmentInfo& to) {
+    to = attachment(wanted, index);
     if (index == kNone || to.imageView == VK_NULL_HANDLE) return false;
     const ResourceRecord& record = graph.resources[wanted.texture.index];
     const Range& range = graph.accesses[index].range;
@@ -100,15 +108,27 @@ bool RecordContext::begin_rendering(std::span<const Attachment> colors,
     return true;
   };
   for (std::size_t i = 0; i < colors.size(); ++i) {
-    if (!add(colors[i], color_infos[i])) return false;
+    const std::uint32_t index = recorder_.attachment_access(pass_, colors[i].texture.index);
+    if (!add(colors[i], index, color_infos[i])) return false;
   }
   info.colorAttachmentCount = static_cast<std::uint32_t>(colors.size());
   info.pColorAttachments = color_infos;
   if (depth.texture) {
-    if (!add(depth, depth_info)) return false;
+    const std::uint32_t resource = depth.texture.index;
+    if (recorder_.attachment_access(pass_, resource) == kNone) return false;
     const VkImageAspectFlags all = aspects(format(depth.texture));
-    if (all & VK_IMAGE_ASPECT_DEPTH_BIT) info.pDepthAttachment = &depth_info;
-    if (all & VK_IMAGE_ASPECT_STENCIL_BIT) info.pStencilAttachment = &depth_info;
+    const auto bind = [&](VkImageAspectFlags aspect, VkRenderingAttachmentInfo& to,
+                          const VkRenderingAttachmentInfo*& bound) {
+      const std::uint32_t index = recorder_.find_attachment(pass_, resource, aspect);
+      if (!(all & aspect) || index == kNone) return true;
+      bound = &to;
+      return add(depth, index, to);
+    };
+    if (!bind(VK_IMAGE_ASPECT_DEPTH_BIT, depth_info, info.pDepthAttachment) ||
+        !bind(VK_IMAGE_ASPECT_STENCIL_BIT, stencil_info, info.pStencilAttachment))
+      return false;
+    // Both have to be one view, whose aspect does not count.
+    if (info.pDepthAttachment) stencil_info.imageView = depth_info.imageView;
   }
   if (!alike)
     return refuse(

@@ -162,8 +162,9 @@ VkImageMemoryBarrier2 Recorder::image_barrier(const Transition& t) const {
   barrier.srcQueueFamilyIndex = family(t, t.src_queue);
   barrier.dstQueueFamilyIndex = family(t, t.dst_queue);
   barrier.image = physical.image;
-  barrier.subresourceRange = {aspects(physical.record.format), t.range.base_mip, t.range.mips,
-                              physical.layer + t.range.base_layer, t.range.layers};
+  const VkImageAspectFlags all = aspects(physical.record.format);
+  barrier.subresourceRange = {t.range.aspects != 0 ? t.range.aspects : all, t.range.base_mip,
+                              t.range.mips, physical.layer + t.range.base_layer, t.range.layers};
   return barrier;
 }
 
@@ -211,19 +212,29 @@ const AccessRecord* Recorder::declared(std::uint32_t pass, std::uint32_t resourc
   return nullptr;
 }
 
+std::uint32_t Recorder::find_attachment(std::uint32_t pass, std::uint32_t resource,
+                                        VkImageAspectFlags aspect) const {
+  constexpr VkFlags kDrawn =
+      VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+  const GraphDescription& graph = graph_->description();
+  std::uint32_t index = graph.passes[pass].first_access;
+  for (const AccessRecord& access : graph.pass_accesses(pass)) {
+    const VkImageAspectFlags own = access.range.aspects;
+    if (access.resource == resource && (access.usage & kDrawn) != 0 &&
+        (own == 0 || aspect == 0 || own == aspect))
+      return index;
+    ++index;
+  }
+  return kNone;
+}
+
 std::uint32_t Recorder::attachment_access(std::uint32_t pass, std::uint32_t resource) const {
   if (!declared(pass, resource)) {
     if (check_uses_) return kNone;
   }
+  const std::uint32_t found = find_attachment(pass, resource, 0);
+  if (found != kNone) return found;
   const GraphDescription& graph = graph_->description();
-  std::uint32_t index = graph.passes[pass].first_access;
-  for (const AccessRecord& access : graph.pass_accesses(pass)) {
-    if (access.resource == resource &&
-        (access.usage &
-         (VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT)) != 0)
-      return index;
-    ++index;
-  }
   errors_.push_back({ErrorCode::undeclared_use,
                      std::string("pass '").append(graph.pass_name(pass)) +
                          "' draws to a texture that it did not declare as an attachment: write it "
@@ -311,11 +322,13 @@ bool Recorder::check_view(std::uint32_t pass, std::uint32_t resource, const Rang
     return fail(ErrorCode::bad_range, "but the texture has " + std::to_string(record.mips) +
                                           " mips and " + std::to_string(record.layers) + " layers");
   if (!check_uses_) return true;
+  const VkImageAspectFlags seen = range.aspects != 0 ? range.aspects : view_aspect(record.format);
   const auto is_declared = [&](std::uint32_t mip, std::uint32_t layer) {
     for (const AccessRecord& access : graph.pass_accesses(pass)) {
       const Range& own = access.range;
-      if (access.resource == resource && mip >= own.base_mip && mip < own.base_mip + own.mips &&
-          layer >= own.base_layer && layer < own.base_layer + own.layers)
+      if (access.resource == resource && (own.aspects == 0 || own.aspects == seen) &&
+          mip >= own.base_mip && mip < own.base_mip + own.mips && layer >= own.base_layer &&
+          layer < own.base_layer + own.layers)
         return true;
     }
     return false;

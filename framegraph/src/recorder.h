@@ -69,6 +69,9 @@ class Recorder {
   // The index of the access by which the pass draws to a resource; kNone and an error where there
   // is none.
   std::uint32_t attachment_access(std::uint32_t pass, std::uint32_t resource) const;
+  // The same for one aspect of a resource, or 0 for any; kNone and no error where there is none.
+  std::uint32_t find_attachment(std::uint32_t pass, std::uint32_t resource,
+                                VkImageAspectFlags aspect) const;
   // Whether a texture that the pass declared has this range and, where uses are checked, whether
   // the pass declared all of it. An error where not.
   bool check_view(std::uint32_t pass, std::uint32_t resource, const Range& range) const;

@@ -5,6 +5,8 @@
 namespace alcove::framegraph {
 namespace {
 
+constexpr std::uint8_t kEveryQueue = (1u << kQueueClasses) - 1;
+
 // The first (or last) submission of a queue class; of the frame where the class runs nothing.
 std::uint32_t outermost(const Plan& plan, QueueClass queue, bool first) {
   const auto count = static_cast<std::uint32_t>(plan.submissions.size());
@@ -28,7 +30,7 @@ Submitter::~Submitter() {
     for (SlotQueue& queue : slot.queues) queue.buffers.destroy(device_);
   }
   for (const VkSemaphore semaphore : semaphores_)
-    device_.vk.vkDestroySemaphore(device, semaphore, nullptr);
+    device_.vk.vkDestroySemaphore(device, semaphore, device_.callbacks());
 }
 
 VkResult Submitter::wait(std::uint32_t slot) {
@@ -58,8 +60,8 @@ VkResult Submitter::prepare(std::uint32_t slot) {
       VkSemaphoreCreateInfo info{};
       info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO;
       info.pNext = &type;
-      const VkResult result =
-          device_.vk.vkCreateSemaphore(device_.handles.device, &info, nullptr, &semaphores_[q]);
+      const VkResult result = device_.vk.vkCreateSemaphore(device_.handles.device, &info,
+                                                           device_.callbacks(), &semaphores_[q]);
       if (result != VK_SUCCESS) return result;
     }
     if (const VkResult result = slots_[slot].queues[q].buffers.take_back(device_)) return result;
@@ -93,7 +95,9 @@ VkResult Submitter::submit(const Plan& plan, RecordingThreads& recording_threads
     bool& own = begun[static_cast<std::size_t>(submission.queue)];
     described_.push_back({});
     described_.back().first_semaphore = static_cast<std::uint32_t>(semaphore_infos_.size());
-    add_waits(plan, i, !own && (several || several_before_));
+    // A frame of another plan begins when the frame before is done.
+    const bool joins = full_barrier && !own && (several || several_before_);
+    add_waits(plan, i, joins ? kEveryQueue : submission.frame_before);
     describe(plan, i, info);
     own = true;
   }
@@ -134,14 +138,15 @@ VkResult Submitter::record(const Plan& plan, RecordingThreads& recording_threads
   return VK_SUCCESS;
 }
 
-void Submitter::add_waits(const Plan& plan, std::uint32_t index, bool join) {
+void Submitter::add_waits(const Plan& plan, std::uint32_t index, std::uint8_t queues_before) {
   const Submission& submission = plan.submissions[index];
   const auto add = [this](std::size_t queue, std::uint64_t value, VkPipelineStageFlags2 at) {
     semaphore_infos_.push_back(
         {VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO, nullptr, semaphores_[queue], value, at, 0});
   };
-  for (std::size_t q = 0; q < kQueueClasses && join; ++q) {
-    if (before_[q] != 0) add(q, before_[q], VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
+  for (std::size_t q = 0; q < kQueueClasses; ++q) {
+    if ((queues_before & (1u << q)) != 0 && before_[q] != 0)
+      add(q, before_[q], VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
   }
   for (std::uint32_t w = 0; w < submission.wait_count; ++w) {
     const Wait& wait = plan.waits[submission.first_wait + w];

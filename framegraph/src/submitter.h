@@ -39,7 +39,8 @@ class Submitter {
   VkResult prepare(std::uint32_t slot);
   VkResult record(const Plan& plan, RecordingThreads& recording_threads, std::uint32_t slot,
                   Timestamps* const* timestamps, bool full_barrier);
-  void add_waits(const Plan& plan, std::uint32_t index, bool join);
+  // `queues_before`: bits of the queue classes whose work of the frame before is waited for.
+  void add_waits(const Plan& plan, std::uint32_t index, std::uint8_t queues_before);
   // Describes a submission; flush() hands over those of a queue that are described.
   void describe(const Plan& plan, std::uint32_t index, const FrameInfo& info);
   VkResult flush(VkQueue queue);

@@ -90,11 +90,22 @@ void Synchroniser::find_last_uses() {
   for (std::uint32_t r = 0; r < graph_.resources.size() && !graph_.externals.empty(); ++r) {
     if (graph_.resources[r].origin == Origin::history) want(r);
   }
+  std::fill(std::begin(last_position_), std::end(last_position_), kNone);
+  for (std::uint32_t position = 0; position < plan_.passes.size(); ++position)
+    last_position_[static_cast<std::size_t>(plan_.passes[position].queue)] = position;
   for (std::uint32_t position = from; position < plan_.passes.size(); ++position) {
+    const QueueClass queue = plan_.passes[position].queue;
+    const std::uint16_t frame_before = queues_that_wait(position);
     for_each_live(graph_, plan_, plan_.passes[position].pass, [&](const AccessRecord& access) {
       if (!s_.is_last[access.resource]) return;
-      for_each_sub(graph_, workspace_, access,
-                   [&](std::uint32_t sub) { note(s_.last_uses[sub], access, kBeforeFrame); });
+      for_each_sub(graph_, workspace_, access, [&](std::uint32_t sub) {
+        UseState& last = s_.last_uses[sub];
+        // Uses on another queue came before this one, by a semaphore.
+        if (last.queue != queue) last = {};
+        note(last, access, kBeforeFrame);
+        last.queue = queue;
+        last.frame_before = frame_before;
+      });
     });
   }
 }
@@ -124,8 +135,8 @@ inline void Synchroniser::take_over_memory(std::uint32_t resource) {
     const UseState* const theirs = segment.before ? s_.last_uses.data() : states;
     for (std::uint32_t sub = subs[segment.resource]; sub < subs[segment.resource + 1]; ++sub) {
       const UseState& state = theirs[sub];
-      // With several queues a frame begins when the frame before is done.
-      if (workspace_.several_queues && (segment.before || state.queue != queue_)) {
+      merged.frame_before |= segment.before ? state.frame_before : std::uint16_t{0};
+      if (state.queue != queue_) {
         merged.by_wait = 1;
         continue;
       }
@@ -144,7 +155,41 @@ inline void Synchroniser::take_over_memory(std::uint32_t resource) {
             merge);
   merged.handed_over = 1;
   merged.queue = queue_;
+  if (merged.frame_before != 0)
+    wait_for_frame_before(plan_.placements[resource].first, merged.frame_before);
   for (std::uint32_t sub = subs[resource]; sub < subs[resource + 1]; ++sub) states[sub] = merged;
+}
+
+// UseState::frame_before of a use at this position in the frame before: a queue has to wait for it
+// that is another one and does not know by the end of that frame that the use is done.
+std::uint16_t Synchroniser::queues_that_wait(std::uint32_t position) const {
+  if (!workspace_.several_queues) return 0;
+  const auto used_on = static_cast<std::size_t>(plan_.passes[position].queue);
+  unsigned bits = 0;
+  for (std::size_t queue = 0; queue < kQueueClasses; ++queue) {
+    const std::uint32_t last = last_position_[queue];
+    if (queue == used_on || last == kNone) continue;
+    const std::int32_t known = workspace_.queues.known[last * kQueueClasses + used_on];
+    if (known < static_cast<std::int32_t>(position))
+      bits |= 1u << (queue * kQueueClasses + used_on);
+  }
+  return static_cast<std::uint16_t>(bits);
+}
+
+// The pass takes over memory from the frame before: its submission waits for these queues. Where it
+// knows a pass of this frame on such a queue to be done, the frame before is done there too.
+void Synchroniser::wait_for_frame_before(std::uint32_t position, std::uint16_t frame_before) {
+  const auto own = static_cast<std::size_t>(queue_);
+  unsigned queues = frame_before >> (own * kQueueClasses) & ((1u << kQueueClasses) - 1);
+  for (std::size_t queue = 0; queue < kQueueClasses; ++queue) {
+    if ((queues & (1u << queue)) != 0 &&
+        workspace_.queues.known[position * kQueueClasses + queue] >= 0)
+      queues &= ~(1u << queue);
+  }
+  queues &= ~static_cast<unsigned>(frame_before_[own]);
+  frame_before_[own] |= static_cast<std::uint8_t>(queues);
+  plan_.submissions[plan_.passes[position].submission].frame_before |=
+      static_cast<std::uint8_t>(queues);
 }
 
 void Synchroniser::use(std::uint32_t position, const AccessRecord& access) {
@@ -159,8 +204,9 @@ void Synchroniser::use_several(std::uint32_t position, const AccessRecord& acces
   const ResourceRecord& resource = graph_.resources[access.resource];
   const std::uint32_t first = workspace_.first_sub[access.resource];
   UseState* const states = s_.states.data() + first;
-  UseState* const lead =
-      states + std::size_t{access.range.base_layer} * resource.mips + access.range.base_mip;
+  const std::size_t lead_layer =
+      std::size_t{first_plane(access.range)} * resource.layers + access.range.base_layer;
+  UseState* const lead = states + lead_layer * resource.mips + access.range.base_mip;
   bool alike = true;
   for_each_sub(graph_, workspace_, access,
                [&](std::uint32_t sub) { alike = alike && s_.states[sub] == *lead; });
@@ -170,9 +216,12 @@ void Synchroniser::use_several(std::uint32_t position, const AccessRecord& acces
     return;
   }
   for_each_sub(graph_, workspace_, access, [&](std::uint32_t sub) {
-    const std::uint32_t index = sub - first;
-    const Range range{static_cast<std::uint16_t>(index % resource.mips), 1,
-                      static_cast<std::uint16_t>(index / resource.mips), 1};
+    const std::uint32_t mip = (sub - first) % resource.mips;
+    const std::uint32_t layer = (sub - first) / resource.mips % resource.layers;
+    Range range{static_cast<std::uint16_t>(mip), 1, static_cast<std::uint16_t>(layer), 1};
+    if (resource.planes == 2)
+      range.aspects = sub - first < resource.mips * resource.layers ? VK_IMAGE_ASPECT_DEPTH_BIT
+                                                                    : VK_IMAGE_ASPECT_STENCIL_BIT;
     use_range(position, access, s_.states[sub], range);
   });
 }
@@ -261,8 +310,8 @@ void Synchroniser::write_again(std::uint32_t position, const AccessRecord& acces
   note(state, access, pass_time(position));
 }
 
-// Makes `last` cover the mips or layers of `next` too, if the two are neighbours that change alike:
-// both are of one resource.
+// Makes `last` cover the mips, layers or aspect of `next` too, if the two are neighbours that
+// change alike: both are of one resource.
 bool Synchroniser::extend(Transition& last, const Transition& next) {
   const Range& a = last.range;
   const Range& b = next.range;
@@ -270,12 +319,17 @@ bool Synchroniser::extend(Transition& last, const Transition& next) {
                      last.dst_stages == next.dst_stages && last.dst_access == next.dst_access &&
                      last.old_layout == next.old_layout && last.new_layout == next.new_layout &&
                      last.src_queue == next.src_queue && last.dst_queue == next.dst_queue;
-  const bool next_mips =
-      a.base_layer == b.base_layer && a.layers == b.layers && a.base_mip + a.mips == b.base_mip;
-  const bool next_layers =
-      a.base_mip == b.base_mip && a.mips == b.mips && a.base_layer + a.layers == b.base_layer;
-  if (!alike || !(next_mips || next_layers)) return false;
-  if (next_mips)
+  const bool same_aspects = a.aspects == b.aspects;
+  const bool next_mips = same_aspects && a.base_layer == b.base_layer && a.layers == b.layers &&
+                         a.base_mip + a.mips == b.base_mip;
+  const bool next_layers = same_aspects && a.base_mip == b.base_mip && a.mips == b.mips &&
+                           a.base_layer + a.layers == b.base_layer;
+  const bool next_aspect = !same_aspects && a.base_mip == b.base_mip && a.mips == b.mips &&
+                           a.base_layer == b.base_layer && a.layers == b.layers;
+  if (!alike || !(next_mips || next_layers || next_aspect)) return false;
+  if (next_aspect)
+    last.range.aspects = 0;
+  else if (next_mips)
     last.range.mips = static_cast<std::uint16_t>(a.mips + b.mips);
   else
     last.range.layers = static_cast<std::uint16_t>(a.layers + b.layers);

@@ -47,6 +47,8 @@ class Synchroniser {
   void find_last_uses();
   void find_last_owners();
   void take_over_memory(std::uint32_t resource);
+  std::uint16_t queues_that_wait(std::uint32_t position) const;
+  void wait_for_frame_before(std::uint32_t position, std::uint16_t frame_before);
   void use(std::uint32_t position, const AccessRecord& access);
   void use_several(std::uint32_t position, const AccessRecord& access);
   void use_range(std::uint32_t position, const AccessRecord& access, UseState& state,
@@ -67,7 +69,7 @@ class Synchroniser {
   // queue_transfer.cpp
   bool change_queue(std::uint32_t position, const AccessRecord& access, UseState& state,
                     const Range& range);
-  void take_without_giver(UseState& state, bool same_family) const;
+  void take_without_giver(std::uint32_t position, UseState& state, bool same_family);
   std::uint32_t giving_submission(const UseState& state) const;
   Transition release_of(const AccessRecord& access, const UseState& state,
                         const Range& range) const;
@@ -88,6 +90,9 @@ class Synchroniser {
   // The start of the current pass's submission, before which no barrier can be placed.
   std::int32_t earliest_ = kBeforeFrame;
   QueueClass queue_ = QueueClass::graphics;  // of the current pass
+  // By queue: the bits of the queues whose work of the frame before it has waited for.
+  std::uint8_t frame_before_[kQueueClasses] = {};
+  std::uint32_t last_position_[kQueueClasses] = {};  // by queue: of its last pass
 };
 
 // The dependencies go into the last batch if that comes after `time`, else into a new one.

@@ -4,7 +4,9 @@
 
 namespace alcove::framegraph {
 
-Timestamps::~Timestamps() { device_.vk.vkDestroyQueryPool(device_.handles.device, pool_, nullptr); }
+Timestamps::~Timestamps() {
+  device_.vk.vkDestroyQueryPool(device_.handles.device, pool_, device_.callbacks());
+}
 
 VkResult Timestamps::begin_frame(VkCommandBuffer commands, std::uint32_t passes) {
   count_ = 0;
@@ -12,7 +14,7 @@ VkResult Timestamps::begin_frame(VkCommandBuffer commands, std::uint32_t passes)
     passes_.resize(std::max<std::size_t>(passes_.size(), passes));
     ticks_.resize(2 * std::size_t{passes});
     timings_.reserve(passes);
-    device_.vk.vkDestroyQueryPool(device_.handles.device, pool_, nullptr);
+    device_.vk.vkDestroyQueryPool(device_.handles.device, pool_, device_.callbacks());
     pool_ = VK_NULL_HANDLE;
     capacity_ = 0;
     VkQueryPoolCreateInfo info{};
@@ -20,7 +22,7 @@ VkResult Timestamps::begin_frame(VkCommandBuffer commands, std::uint32_t passes)
     info.queryType = VK_QUERY_TYPE_TIMESTAMP;
     info.queryCount = 2 * passes;
     const VkResult result =
-        device_.vk.vkCreateQueryPool(device_.handles.device, &info, nullptr, &pool_);
+        device_.vk.vkCreateQueryPool(device_.handles.device, &info, device_.callbacks(), &pool_);
     if (result != VK_SUCCESS) return result;
     capacity_ = passes;
   }

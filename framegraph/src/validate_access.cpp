@@ -1,3 +1,4 @@
+#include "aspects.h"
 #include "print_names.h"
 #include "validate.h"
 
@@ -75,6 +76,13 @@ struct Checker {
     const ResourceRecord& r = v.graph.resources[access.resource];
     if (r.kind == ResourceKind::buffer) return true;
     const Range& range = access.range;
+    if (range.aspects & ~aspects(r.format))
+      return bad(ErrorCode::bad_range, subject() + " in an aspect that its format does not have");
+    if (range.aspects != 0 && !v.limits.separate_depth_stencil)
+      return bad(ErrorCode::bad_range,
+                 subject() +
+                     " in one of its aspects, but the device does not do that: enable "
+                     "separateDepthStencilLayouts and set DeviceHandles::separate_depth_stencil");
     if (range.mips != 0 && range.layers != 0 && range.base_mip + range.mips <= r.mips &&
         range.base_layer + range.layers <= r.layers)
       return true;
@@ -108,13 +116,16 @@ struct Checker {
   void usage() {
     const ResourceRecord& r = v.graph.resources[access.resource];
     const auto names = [&](VkFlags usage) { return usage_names(r.kind, usage); };
-    if (r.origin == Origin::imported) {
-      const VkFlags has = v.graph.externals[r.external].usage;
+    const bool imported = r.origin == Origin::imported;
+    if (imported || (r.origin == Origin::history && r.kind == ResourceKind::buffer)) {
+      const VkFlags has =
+          imported ? v.graph.externals[r.external].usage : history_usage(v.limits, r);
       const VkFlags missing = access.usage & ~has;
       if (missing != 0)
-        bad(ErrorCode::missing_usage, subject() + " with usage " + names(access.usage) +
-                                          ", but it was imported with " + names(has) +
-                                          ": create it with " + names(missing) + " too");
+        bad(ErrorCode::missing_usage,
+            subject() + " with usage " + names(access.usage) + ", but it was " +
+                (imported ? "imported" : "created") + " with " + names(has) + ": create it with " +
+                names(missing) + (imported ? " too" : " in BufferDesc::usage too"));
     }
     if (r.kind != ResourceKind::texture || v.limits.formats.query == nullptr) return;
     const VkFlags missing =

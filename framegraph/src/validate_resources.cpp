@@ -61,8 +61,9 @@ bool check_texture(Validation& v, std::uint32_t index, const ResourceRecord& r) 
 // The fast path for most resources: whether it is a valid texture of one subresource.
 bool is_plainly_right(const ResourceRecord& r, std::uint32_t limit) {
   return r.kind == ResourceKind::texture && r.external == kNone && r.flags == 0 &&
-         r.create_flags == 0 && r.depth == 1 && r.mips == 1 && r.layers == 1 && r.samples == 1 &&
-         r.width - 1 < limit && r.height - 1 < limit && r.format != VK_FORMAT_UNDEFINED;
+         r.create_flags == 0 && r.depth == 1 && r.mips == 1 && r.layers == 1 && r.planes == 1 &&
+         r.samples == 1 && r.width - 1 < limit && r.height - 1 < limit &&
+         r.format != VK_FORMAT_UNDEFINED;
 }
 
 bool check_buffer(Validation& v, std::uint32_t index, const ResourceRecord& r) {
@@ -112,7 +113,7 @@ std::uint32_t look_closely(Validation& v, std::uint32_t index, const ResourceRec
   const bool right = texture ? check_texture(v, index, r) : check_buffer(v, index, r);
   if (r.external != kNone) check_external(v, index, r);
   if (!right) return 0;
-  return texture ? r.mips * r.layers : 1;
+  return texture ? r.mips * r.layers * r.planes : 1;
 }
 
 }  // namespace

@@ -28,6 +28,10 @@ struct UseState {
   VkAccessFlags2 unordered_access = 0;  // of the last write, where that is unordered
   std::int32_t write_time = kNever;
   std::int32_t read_time = kNever;
+  // Of the last use of memory in the frame before, and of memory that was handed over from it:
+  // three bits for each queue class, which queues it has to wait for before it takes the memory
+  // over.
+  std::uint16_t frame_before = 0;
   VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
   std::uint32_t transition = kNone;  // the image barrier that made this layout
   // Memory that others had before: its reads do not stand for its writes.
@@ -52,7 +56,7 @@ struct PlaceItem {
 
 struct Workspace {
   // Subresources of all resources are numbered, those of resource r from first_sub[r] on, mips
-  // within layers. A resource whose description is wrong has none.
+  // within layers within planes. A resource whose description is wrong has none.
   std::vector<std::uint32_t> first_sub;
 
   // order -> queues -> all: live passes in execution order.
@@ -162,9 +166,13 @@ inline void for_each_sub(const GraphDescription& graph, const Workspace& workspa
   }
   const ResourceRecord& resource = graph.resources[access.resource];
   const Range& range = access.range;
-  for (std::uint32_t layer = range.base_layer; layer < range.base_layer + range.layers; ++layer) {
-    for (std::uint32_t mip = range.base_mip; mip < range.base_mip + range.mips; ++mip)
-      f(first + layer * resource.mips + mip);
+  const std::uint32_t planes = first_plane(range) + plane_count(resource, range);
+  for (std::uint32_t plane = first_plane(range); plane < planes; ++plane) {
+    for (std::uint32_t i = range.base_layer; i < range.base_layer + range.layers; ++i) {
+      const std::uint32_t layer = plane * resource.layers + i;
+      for (std::uint32_t mip = range.base_mip; mip < range.base_mip + range.mips; ++mip)
+        f(first + layer * resource.mips + mip);
+    }
   }
 }
 

@@ -18,6 +18,7 @@
 #include "c_context_info.h"
 #include "c_diagnose.h"
 #include "c_failure.h"
+#include "c_host.h"
 #include "c_images.h"
 #include "c_view.h"
 
@@ -58,12 +59,14 @@ struct ViewPasses {
 }  // namespace
 
 struct AlcoveContext {
-  AlcoveContext(framegraph::Executor made_executor, passes::Kernels made_kernels,
-                const AlcoveContextInfo& info)
-      : frames_in_flight(info.frames_in_flight),
+  AlcoveContext(std::unique_ptr<passes::HostAdapter> made_host, framegraph::Executor made_executor,
+                passes::Kernels made_kernels, std::uint32_t slots)
+      : host(std::move(made_host)),
+        frames_in_flight(slots),
         executor(std::move(made_executor)),
         kernels(std::move(made_kernels)) {}
 
+  std::unique_ptr<passes::HostAdapter> host;  // destroyed last
   std::uint32_t frames_in_flight;
   framegraph::Executor executor;
   passes::Kernels kernels;
@@ -107,10 +110,17 @@ AlcoveResult guarded(Message& message, const Call& call) {
 #endif
 }
 
-// The same for a call on a context, which keeps what was said.
+// Runs a call on a context, which keeps the message. The engine's log gets it too.
 template <typename Call>
 AlcoveResult guarded(AlcoveContext* context, const Call& call) {
-  return context == nullptr ? ALCOVE_ERROR_INVALID_INPUT : guarded(context->message, call);
+  if (context == nullptr) {
+    return ALCOVE_ERROR_INVALID_INPUT;
+  }
+  const AlcoveResult result = guarded(context->message, call);
+  if (result != ALCOVE_SUCCESS) {
+    context->host->log(ALCOVE_SEVERITY_ERROR, context->message.data());
+  }
+  return result;
 }
 
 Result create(const AlcoveContextInfo& info, AlcoveContext*& context) {
@@ -121,6 +131,8 @@ Result create(const AlcoveContextInfo& info, AlcoveContext*& context) {
   handles.get_instance_proc_addr = info.get_instance_proc_addr;
   handles.queues[0].family = info.queue_family;
   handles.debug_utils = info.debug_utils != VK_FALSE;
+  auto host = std::make_unique<passes::HostAdapter>(info);
+  handles.host = host->services();
   framegraph::ExecutorOptions options;
   options.frames_in_flight = info.frames_in_flight;
   options.timestamps = info.timestamps != VK_FALSE;
@@ -132,8 +144,9 @@ Result create(const AlcoveContextInfo& info, AlcoveContext*& context) {
   if (!kernels) {
     return tl::unexpected(passes::failure_of(kernels.error(), "The context"));
   }
-  context =
-      std::make_unique<AlcoveContext>(std::move(*executor), std::move(*kernels), info).release();
+  context = std::make_unique<AlcoveContext>(std::move(host), std::move(*executor),
+                                            std::move(*kernels), info.frames_in_flight)
+                .release();
   return {};
 }
 
@@ -240,9 +253,16 @@ Result record(AlcoveContext& context, VkCommandBuffer commands, const AlcoveFram
   }
   Declaration declaration(context.graph);
   context.kernels.begin_frame(frame->slot);
+  const std::size_t pipelines = context.kernels.pipeline_count();
   const auto passes = add_views(context.graph, context, *frame, false);
   if (!passes) {
     return tl::unexpected(passes.error());
+  }
+  if (context.kernels.pipeline_count() != pipelines) {
+    context.host->log(
+        ALCOVE_SEVERITY_WARNING,
+        "Pipelines were created while a frame was recorded, which may take the driver "
+        "a second; call alcovePrepareFrame while loading.");
   }
   const auto report = context.executor.record(context.graph, commands, {frame->slot});
   if (!report) {
@@ -282,6 +302,10 @@ AlcoveResult alcoveCreateContext(const AlcoveContextInfo* info, AlcoveContext** 
   });
   if (message != nullptr) {
     std::memcpy(message, said.data(), said.size());
+  }
+  if (result != ALCOVE_SUCCESS && info != nullptr && info->struct_size == sizeof *info &&
+      info->log.write != nullptr) {
+    info->log.write(info->log.user, ALCOVE_SEVERITY_ERROR, said.data());
   }
   return result;
 }

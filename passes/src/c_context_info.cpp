@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "c_host.h"
+
 namespace alcove::passes {
 
 namespace {
@@ -13,11 +15,17 @@ tl::unexpected<Failure> unsupported(std::string message) {
   return tl::unexpected(Failure{ALCOVE_ERROR_UNSUPPORTED, std::move(message)});
 }
 
+std::string version_text(std::uint32_t version) {
+  return std::to_string(VK_API_VERSION_MAJOR(version)) + "." +
+         std::to_string(VK_API_VERSION_MINOR(version));
+}
+
 struct Features {
   bool synchronization2 = false;
   bool write_without_format = false;
 };
 
+// The features in a chain as vkCreateDevice or vkGetPhysicalDeviceFeatures2 has it.
 Features features_in(const VkPhysicalDeviceFeatures2& chain) {
   Features found;
   found.write_without_format = chain.features.shaderStorageImageWriteWithoutFormat != VK_FALSE;
@@ -37,7 +45,8 @@ Features features_in(const VkPhysicalDeviceFeatures2& chain) {
 
 tl::expected<void, Failure> check_features(const Features& features, std::string_view who,
                                            const char* remedy) {
-  const char* missing = !features.synchronization2       ? "synchronization2"
+  const char* missing = !features.synchronization2
+                            ? "synchronization2 (of Vulkan 1.3 or VK_KHR_synchronization2)"
                         : !features.write_without_format ? "shaderStorageImageWriteWithoutFormat"
                                                          : nullptr;
   if (missing == nullptr) {
@@ -60,24 +69,25 @@ tl::expected<void, Failure> check_device(const AlcoveContextInfo& info) {
   const auto get_families = instance_function<PFN_vkGetPhysicalDeviceQueueFamilyProperties2>(
       info, "vkGetPhysicalDeviceQueueFamilyProperties2");
   if (get_properties == nullptr || get_features == nullptr || get_families == nullptr) {
-    return unsupported("The instance is older than Vulkan 1.3; create it for that version.");
+    return unsupported(
+        "The instance is older than Vulkan 1.2; create it with a "
+        "VkApplicationInfo::apiVersion of at least VK_API_VERSION_1_2.");
   }
   VkPhysicalDeviceProperties properties{};
   get_properties(info.physical_device, &properties);
   const std::string name = std::string("The device '") + properties.deviceName + "'";
-  if (properties.apiVersion < VK_API_VERSION_1_3) {
-    return unsupported(name + " is below Vulkan 1.3; choose another or update its driver.");
+  if (properties.apiVersion < VK_API_VERSION_1_2) {
+    return unsupported(name + " has Vulkan " + version_text(properties.apiVersion) +
+                       ", and at least 1.2 is needed; choose another or update its driver.");
   }
-  VkPhysicalDeviceVulkan13Features vulkan13{
-      .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
+  // A device that knows neither Vulkan 1.3 nor the extension leaves the structure as it is.
+  VkPhysicalDeviceSynchronization2Features synchronization2{
+      .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES};
   VkPhysicalDeviceFeatures2 has{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
-                                .pNext = &vulkan13};
+                                .pNext = &synchronization2};
   get_features(info.physical_device, &has);
-  // Every device of Vulkan 1.3 has the first feature, but an older instance does not pass it on.
-  const Features features = features_in(has);
-  if (auto right = check_features(
-          features, name,
-          features.synchronization2 ? "choose another" : "create the instance for Vulkan 1.3");
+  if (auto right =
+          check_features(features_in(has), name, "choose another device or update its driver");
       !right) {
     return right;
   }
@@ -134,7 +144,7 @@ tl::expected<void, Failure> check(const AlcoveContextInfo* info) {
                    std::to_string(info->frames_in_flight) + "; it must be 1 to " +
                    std::to_string(ALCOVE_MAX_FRAMES_IN_FLIGHT) + ".");
   }
-  return check_device(*info);
+  return check_device(*info).and_then([&] { return check_memory(*info); });
 }
 
 }  // namespace alcove::passes

@@ -7,16 +7,16 @@
 #include <memory>
 #include <tl/expected.hpp>
 
-#include "alcove/framegraph/vulkan_functions.h"
+#include "alcove/framegraph/executor.h"
 
 namespace alcove::passes {
 
-// A buffer with memory of its own, mapped as long as it lives. The functions and the device outlive
-// it; the device must have finished with it before it goes.
+// A buffer with memory of its own, mapped as long as it lives. The functions, the device and the
+// caller's allocators outlive it. The device must have finished with it before it is destroyed.
 class HostBuffer {
  public:
   [[nodiscard]] static tl::expected<std::unique_ptr<HostBuffer>, VkResult> create(
-      const framegraph::VulkanFunctions& vk, VkPhysicalDevice physical_device, VkDevice device,
+      const framegraph::VulkanFunctions& vk, const framegraph::DeviceHandles& device,
       VkDeviceSize size, VkBufferUsageFlags usage);
   ~HostBuffer();
   HostBuffer(const HostBuffer&) = delete;
@@ -26,13 +26,16 @@ class HostBuffer {
   std::byte* bytes() const { return bytes_; }
 
  private:
-  HostBuffer(const framegraph::VulkanFunctions& vk, VkDevice device) : vk_(vk), device_(device) {}
-  VkResult allocate(VkPhysicalDevice physical_device);
+  HostBuffer(const framegraph::VulkanFunctions& vk, const framegraph::DeviceHandles& device)
+      : vk_(vk), device_(device) {}
+  VkResult allocate();
+  VkResult allocate_from_caller(const VkMemoryRequirements& needs);
+  VkResult allocate_from_vulkan(const VkMemoryRequirements& needs);
 
   const framegraph::VulkanFunctions& vk_;
-  VkDevice device_;
+  const framegraph::DeviceHandles& device_;
   VkBuffer buffer_ = VK_NULL_HANDLE;
-  VkDeviceMemory memory_ = VK_NULL_HANDLE;
+  framegraph::MemoryRange memory_;
   std::byte* bytes_ = nullptr;
 };
 

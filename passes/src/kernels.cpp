@@ -7,6 +7,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -31,11 +32,38 @@ struct Pipeline {
   VkPipeline pipeline = VK_NULL_HANDLE;
 };
 
-// The set that one dispatch of one frame slot wrote last.
+// A descriptor set, and what was written to it last.
 struct Set {
   Shader shader = Shader::count;
   VkDescriptorSet set = VK_NULL_HANDLE;
+  std::uint64_t resources_id = 0;  // RecordContext::resources_id at that time
+  VkDeviceSize parameter_bytes = 0;
+  std::size_t view_count = 0;
+  std::array<VkImageView, kMaxBindings> views{};
 };
+
+// What a dispatch is to bind.
+struct Bound {
+  Shader shader = Shader::count;
+  std::span<const VkImageView> views;
+  VkDeviceSize parameter_bytes = 0;
+};
+
+// The sets of one dispatch of a frame slot. There are two, because histories alternate between two
+// images: with an odd number of frames in flight a slot meets both of them in turn.
+struct DispatchSets {
+  std::array<Set, 2> sets;
+  std::size_t latest = 0;
+};
+
+// Whether the set still holds exactly what the dispatch binds. Equal handles are only the same
+// views as long as no image has been replaced, and views that the caller gave may be others at any
+// time.
+bool holds(const Set& set, const Bound& bound, const framegraph::RecordContext& context) {
+  return set.shader == bound.shader && set.resources_id == context.resources_id &&
+         !context.gave_imported_view() && set.parameter_bytes == bound.parameter_bytes &&
+         std::ranges::equal(std::span(set.views).first(set.view_count), bound.views);
+}
 
 VkDescriptorType descriptor_type(char binding) {
   switch (binding) {
@@ -64,6 +92,7 @@ std::uint32_t most_bound(VkDescriptorType type) {
 struct Claim {
   std::uint32_t number = 0;
   VkDescriptorSet set = VK_NULL_HANDLE;
+  bool is_written = false;  // the set holds what the dispatch binds
 };
 
 // Of all that a shader binds only storage images are more than every device can: 4 is Vulkan's
@@ -86,14 +115,14 @@ tl::expected<void, Error> check_limits(const framegraph::VulkanFunctions& vk,
 
 struct FrameSlot {
   VkDescriptorPool pool = VK_NULL_HANDLE;
-  std::array<Set, Kernels::kMaxDispatches> sets;
+  std::array<DispatchSets, Kernels::kMaxDispatches> dispatches;
 };
 
 }  // namespace
 
 struct Kernels::State {
   framegraph::VulkanFunctions vk;
-  VkPhysicalDevice physical_device = VK_NULL_HANDLE;
+  framegraph::DeviceHandles handles;
   VkDevice device = VK_NULL_HANDLE;
   VkPipelineCache cache = VK_NULL_HANDLE;  // the caller's
   VkSampler sampler = VK_NULL_HANDLE;      // nearest, clamps to the edge: for gathers
@@ -110,6 +139,8 @@ struct Kernels::State {
   std::mutex mutex;
   std::uint32_t dispatches = 0;
 
+  const VkAllocationCallbacks* callbacks() const { return handles.host.allocation_callbacks; }
+
   State() = default;
   State(const State&) = delete;
   State& operator=(const State&) = delete;
@@ -123,8 +154,8 @@ struct Kernels::State {
                                           VkBufferUsageFlags usage, std::string_view what);
   tl::expected<void, Error> create_module(std::size_t shader);
   tl::expected<void, Error> create_table(std::size_t shader);
-  VkResult find_set(Shader shader, VkDescriptorSet& set);
-  std::optional<Claim> claim(framegraph::RecordContext& context, Shader shader);
+  VkResult allocate_set(Set& set, Shader shader);
+  std::optional<Claim> claim(framegraph::RecordContext& context, const Bound& bound);
   VkDeviceSize write_parameters(std::uint32_t dispatch, std::span<const std::byte> bytes);
   void write_set(VkDescriptorSet set, Shader shader, std::span<const VkImageView> views,
                  VkDeviceSize offset, VkDeviceSize size);
@@ -135,17 +166,17 @@ Kernels::State::~State() {
     return;
   }
   for (const Pipeline& pipeline : pipelines) {
-    vk.vkDestroyPipeline(device, pipeline.pipeline, nullptr);
+    vk.vkDestroyPipeline(device, pipeline.pipeline, callbacks());
   }
   for (std::size_t i = 0; i < kShaderCount; ++i) {
-    vk.vkDestroyShaderModule(device, modules[i], nullptr);
-    vk.vkDestroyPipelineLayout(device, pipeline_layouts[i], nullptr);
-    vk.vkDestroyDescriptorSetLayout(device, set_layouts[i], nullptr);
+    vk.vkDestroyShaderModule(device, modules[i], callbacks());
+    vk.vkDestroyPipelineLayout(device, pipeline_layouts[i], callbacks());
+    vk.vkDestroyDescriptorSetLayout(device, set_layouts[i], callbacks());
   }
   for (const FrameSlot& frame : slots) {
-    vk.vkDestroyDescriptorPool(device, frame.pool, nullptr);
+    vk.vkDestroyDescriptorPool(device, frame.pool, callbacks());
   }
-  vk.vkDestroySampler(device, sampler, nullptr);
+  vk.vkDestroySampler(device, sampler, callbacks());
 }
 
 tl::expected<void, Error> Kernels::State::create_sampler() {
@@ -156,7 +187,7 @@ tl::expected<void, Error> Kernels::State::create_sampler() {
                                  .addressModeU = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
                                  .addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
                                  .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE};
-  if (const VkResult result = vk.vkCreateSampler(device, &info, nullptr, &sampler);
+  if (const VkResult result = vk.vkCreateSampler(device, &info, callbacks(), &sampler);
       result != VK_SUCCESS) {
     return failure("a sampler", result);
   }
@@ -177,14 +208,15 @@ tl::expected<void, Error> Kernels::State::create_layouts() {
         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
         .bindingCount = static_cast<std::uint32_t>(bindings.size() + 1),
         .pBindings = described.data()};
-    VkResult result = vk.vkCreateDescriptorSetLayout(device, &set_info, nullptr, &set_layouts[i]);
+    VkResult result =
+        vk.vkCreateDescriptorSetLayout(device, &set_info, callbacks(), &set_layouts[i]);
     if (result != VK_SUCCESS) {
       return failure("a descriptor set layout", result);
     }
     const VkPipelineLayoutCreateInfo info{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
                                           .setLayoutCount = 1,
                                           .pSetLayouts = &set_layouts[i]};
-    result = vk.vkCreatePipelineLayout(device, &info, nullptr, &pipeline_layouts[i]);
+    result = vk.vkCreatePipelineLayout(device, &info, callbacks(), &pipeline_layouts[i]);
     if (result != VK_SUCCESS) {
       return failure("a pipeline layout", result);
     }
@@ -193,23 +225,24 @@ tl::expected<void, Error> Kernels::State::create_layouts() {
 }
 
 tl::expected<void, Error> Kernels::State::create_slots(std::uint32_t count) {
+  constexpr auto kSets =
+      static_cast<std::uint32_t>(kMaxDispatches * std::tuple_size_v<decltype(DispatchSets::sets)>);
   const auto worst = [](VkDescriptorType type) {
-    return VkDescriptorPoolSize{type, kMaxDispatches * most_bound(type)};
+    return VkDescriptorPoolSize{type, kSets * most_bound(type)};
   };
-  const std::array<VkDescriptorPoolSize, 5> sizes{
-      {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, kMaxDispatches},
-       worst(VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
-       worst(VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER),
-       worst(VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE),
-       worst(VK_DESCRIPTOR_TYPE_STORAGE_IMAGE)}};
+  const std::array<VkDescriptorPoolSize, 5> sizes{{{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, kSets},
+                                                   worst(VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
+                                                   worst(VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER),
+                                                   worst(VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE),
+                                                   worst(VK_DESCRIPTOR_TYPE_STORAGE_IMAGE)}};
   const VkDescriptorPoolCreateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
                                         .flags = VK_DESCRIPTOR_POOL_CREATE_FREE_DESCRIPTOR_SET_BIT,
-                                        .maxSets = kMaxDispatches,
+                                        .maxSets = kSets,
                                         .poolSizeCount = static_cast<std::uint32_t>(sizes.size()),
                                         .pPoolSizes = sizes.data()};
   slots.resize(count);
   for (FrameSlot& frame : slots) {
-    if (const VkResult result = vk.vkCreateDescriptorPool(device, &info, nullptr, &frame.pool);
+    if (const VkResult result = vk.vkCreateDescriptorPool(device, &info, callbacks(), &frame.pool);
         result != VK_SUCCESS) {
       return failure("a descriptor pool", result);
     }
@@ -220,7 +253,7 @@ tl::expected<void, Error> Kernels::State::create_slots(std::uint32_t count) {
 tl::expected<void, Error> Kernels::State::create_buffer(std::unique_ptr<HostBuffer>& made,
                                                         VkDeviceSize size, VkBufferUsageFlags usage,
                                                         std::string_view what) {
-  auto created = HostBuffer::create(vk, physical_device, device, size, usage);
+  auto created = HostBuffer::create(vk, handles, size, usage);
   if (!created) {
     return failure("the buffer of " + std::string(what), created.error());
   }
@@ -252,52 +285,66 @@ tl::expected<void, Error> Kernels::State::create_module(std::size_t shader) {
   const VkShaderModuleCreateInfo info{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
                                       .codeSize = code.size_bytes(),
                                       .pCode = code.data()};
-  if (const VkResult result = vk.vkCreateShaderModule(device, &info, nullptr, &modules[shader]);
+  if (const VkResult result = vk.vkCreateShaderModule(device, &info, callbacks(), &modules[shader]);
       result != VK_SUCCESS) {
     return failure("a shader module", result);
   }
   return {};
 }
 
-// The set of the next dispatch: the one it had last time where the shader is the same, else a new
-// one. The pools are sized for the worst frame, so an allocation can fail only for lack of memory.
-VkResult Kernels::State::find_set(Shader shader, VkDescriptorSet& set) {
-  FrameSlot& frame = slots[slot];
-  Set& found = frame.sets[dispatches];
-  if (found.shader == shader) {
-    set = found.set;
+// Gives `set` a descriptor set for the shader, of unknown contents. The pools are sized for the
+// worst frame, so an allocation can fail only for lack of memory.
+VkResult Kernels::State::allocate_set(Set& set, Shader shader) {
+  if (set.shader == shader) {
     return VK_SUCCESS;
   }
-  if (found.set != VK_NULL_HANDLE) {
-    vk.vkFreeDescriptorSets(device, frame.pool, 1, &found.set);
+  const VkDescriptorPool pool = slots[slot].pool;
+  if (set.set != VK_NULL_HANDLE) {
+    vk.vkFreeDescriptorSets(device, pool, 1, &set.set);
   }
+  set = {};
   const VkDescriptorSetAllocateInfo info{
       .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
-      .descriptorPool = frame.pool,
+      .descriptorPool = pool,
       .descriptorSetCount = 1,
       .pSetLayouts = &set_layouts[static_cast<std::size_t>(shader)]};
-  found = {};
-  const VkResult result = vk.vkAllocateDescriptorSets(device, &info, &set);
+  VkDescriptorSet made = VK_NULL_HANDLE;
+  const VkResult result = vk.vkAllocateDescriptorSets(device, &info, &made);
   if (result == VK_SUCCESS) {
-    found = {shader, set};
+    set.shader = shader;
+    set.set = made;
   }
   return result;
 }
 
-// None, and an error of the frame's, where there is no room left for another.
-std::optional<Claim> Kernels::State::claim(framegraph::RecordContext& context, Shader shader) {
+// The next dispatch and its set: one that holds what is bound, or else the one of its two that has
+// not been used for longer. None, and an error of the frame's, where there is no room for another
+// dispatch.
+std::optional<Claim> Kernels::State::claim(framegraph::RecordContext& context, const Bound& bound) {
   const std::lock_guard lock(mutex);
   if (dispatches == kMaxDispatches) {
     context.fail("dispatch after Kernels::kMaxDispatches of them since Kernels::begin_frame",
                  VK_ERROR_OUT_OF_POOL_MEMORY);
     return std::nullopt;
   }
-  VkDescriptorSet set = VK_NULL_HANDLE;
-  if (const VkResult result = find_set(shader, set); result != VK_SUCCESS) {
+  DispatchSets& own = slots[slot].dispatches[dispatches];
+  for (Set& set : own.sets) {
+    if (holds(set, bound, context)) {
+      own.latest = static_cast<std::size_t>(&set - own.sets.data());
+      return Claim{dispatches++, set.set, true};
+    }
+  }
+  own.latest = 1 - own.latest;
+  Set& replaced = own.sets.at(own.latest);
+  if (const VkResult result = allocate_set(replaced, bound.shader); result != VK_SUCCESS) {
     context.fail("descriptor set", result);
     return std::nullopt;
   }
-  return Claim{dispatches++, set};
+  replaced.resources_id = context.resources_id;
+  replaced.parameter_bytes = bound.parameter_bytes;
+  replaced.view_count = bound.views.size();
+  std::ranges::copy(bound.views, replaced.views.begin());
+  return Claim{dispatches++, replaced.set, false};
 }
 
 VkDeviceSize Kernels::State::write_parameters(std::uint32_t dispatch,
@@ -361,9 +408,12 @@ tl::expected<Kernels, Error> Kernels::create(const framegraph::DeviceHandles& de
   if (const char* missing = framegraph::load(state->vk, device.get_instance_proc_addr,
                                              device.instance, device.device)) {
     return tl::unexpected(
-        Error{std::string("The device has no function ") + missing + ": Vulkan 1.3 is needed."});
+        Error{std::string("The device has no function ") + missing +
+                  "; create instance and device for Vulkan 1.3, or for Vulkan 1.2 with "
+                  "VK_KHR_synchronization2.",
+              VK_ERROR_FEATURE_NOT_PRESENT});
   }
-  state->physical_device = device.physical_device;
+  state->handles = device;
   state->device = device.device;
   state->cache = cache;
   auto done = check_limits(state->vk, device.physical_device)
@@ -416,11 +466,14 @@ tl::expected<Kernel, Error> Kernels::get_pipeline(Shader shader,
   }
   Pipeline made{shader, {constants.begin(), constants.end()}, VK_NULL_HANDLE};
   if (const VkResult result =
-          s.vk.vkCreateComputePipelines(s.device, s.cache, 1, &info, nullptr, &made.pipeline);
+          s.vk.vkCreateComputePipelines(s.device, s.cache, 1, &info, s.callbacks(), &made.pipeline);
       result != VK_SUCCESS) {
     return failure("a compute pipeline", result);
   }
   s.pipelines.push_back(std::move(made));
+  if (const framegraph::Log& log = s.handles.host.log; log.write != nullptr) {
+    log.write(log.user, framegraph::Severity::info, "A compute pipeline has been created.");
+  }
   return Kernel{s.pipelines.back().pipeline, shader};
 }
 
@@ -437,12 +490,14 @@ void Kernels::dispatch(framegraph::RecordContext& context, Kernel kernel,
   if (std::ranges::find(views, VkImageView{VK_NULL_HANDLE}) != views.end()) {
     return;
   }
-  const std::optional<Claim> own = s.claim(context, kernel.shader);
+  const std::optional<Claim> own = s.claim(context, {kernel.shader, views, parameters.size()});
   if (!own) {
     return;
   }
   const VkDeviceSize offset = s.write_parameters(own->number, parameters);
-  s.write_set(own->set, kernel.shader, views, offset, parameters.size());
+  if (!own->is_written) {
+    s.write_set(own->set, kernel.shader, views, offset, parameters.size());
+  }
   const VkCommandBuffer commands = context.commands;
   const VkPipelineLayout layout = s.pipeline_layouts[static_cast<std::size_t>(kernel.shader)];
   s.vk.vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline);

@@ -1,6 +1,5 @@
-#include <iomanip>
+#include <fmt/format.h>
 #include <iostream>
-#include <sstream>
 
 #include "cli/commands.h"
 #include "cli/open_session.h"
@@ -19,9 +18,9 @@ namespace {
 struct Errors {
   ErrorSummary scene;
   ErrorSummary height_field;
-  ErrorSummary limit;  // height-field truth against scene truth: what one depth layer cannot know
+  ErrorSummary limit;  // height-field truth against scene truth: the limit of one depth layer
   AngleSummary bent_normal;
-  AngleSummary surface_normal;  // the plain normal in its place
+  AngleSummary surface_normal;  // the surface normal as the bent normal
   OpenSurfaceSummary open;
   Weave weave;  // against scene truth
 };
@@ -49,25 +48,19 @@ nlohmann::ordered_json errors_json(const Errors& errors) {
 }
 
 std::string error_table(const Errors& errors) {
-  std::ostringstream text;
-  text << std::fixed << std::setprecision(4);
-  const auto row = [&](const char* name, const ErrorSummary& error) {
-    text << "  " << std::left << std::setw(44) << name << std::right << error.rmse << "   bias "
-         << std::showpos << error.bias << std::noshowpos << "\n";
-  };
-  text << "RMSE of visibility over " << errors.scene.count << " pixels\n";
-  row("against ray-traced scene truth", errors.scene);
-  row("against height-field truth", errors.height_field);
-  row("height-field truth against scene truth", errors.limit);
-  text << std::setprecision(2) << "Bent normal off the truth by " << errors.bent_normal.mean_degrees
-       << " degrees in the mean, 95 % within " << errors.bent_normal.percentile_95_degrees
-       << " (the surface normal: " << errors.surface_normal.mean_degrees << " and "
-       << errors.surface_normal.percentile_95_degrees << ")\n"
-       << std::setprecision(4) << "Open surfaces: mean visibility " << errors.open.mean_visibility
-       << ", " << std::setprecision(2) << 100.0 * errors.open.fraction_below_95
-       << " % of pixels below 0.95\n"
-       << weave_line(errors.weave);
-  return text.str();
+  return fmt::format("RMSE of visibility over {} pixels\n", errors.scene.count) +
+         error_row("against ray-traced scene truth", errors.scene.rmse, errors.scene.bias) +
+         error_row("against height-field truth", errors.height_field.rmse,
+                   errors.height_field.bias) +
+         error_row("height-field truth against scene truth", errors.limit.rmse, errors.limit.bias) +
+         fmt::format(
+             "Angle between bent normal and truth: mean {:.2f} degrees, 95 % within {:.2f} (of the "
+             "surface normal: {:.2f} and {:.2f})\n"
+             "Open surfaces: mean visibility {:.4f}, {:.2f} % of pixels below 0.95\n",
+             errors.bent_normal.mean_degrees, errors.bent_normal.percentile_95_degrees,
+             errors.surface_normal.mean_degrees, errors.surface_normal.percentile_95_degrees,
+             errors.open.mean_visibility, 100.0 * errors.open.fraction_below_95) +
+         weave_line(errors.weave);
 }
 
 tl::expected<void, std::string> write_truths(const Rendering& rendering, const Truths& truths,
@@ -87,7 +80,7 @@ tl::expected<void, std::string> write_truths(const Rendering& rendering, const T
 }  // namespace
 
 tl::expected<void, std::string> run_compare(const Options& options) {
-  // Before minutes of work, not after.
+  // The folder is created first, because the comparison takes minutes.
   const auto folder = OutputFolder::create(options.out);
   if (!folder) {
     return tl::unexpected(folder.error());
@@ -130,7 +123,7 @@ tl::expected<void, std::string> run_compare(const Options& options) {
         std::cout << time_table(*rendering) << error_table(errors)
                   << indirect_error_table(indirect_errors) << lit_table
                   << "Images and report.json are in " << options.out.string()
-                  << "; error.png is red where too dark, blue where too bright\n";
+                  << "; in error.png red is too dark and blue too bright\n";
       });
 }
 

@@ -1,7 +1,7 @@
 #include <iostream>
 
 #include "cli/commands.h"
-#include "render/vulkan_device.h"
+#include "gpu/vulkan_device.h"
 
 namespace alcove::sample {
 

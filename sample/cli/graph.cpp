@@ -9,7 +9,7 @@
 namespace alcove::sample {
 namespace {
 
-// The occlusion's frame as the sample declares it, with images that stand for the g-buffer's.
+// Declares the frame of the occlusion, with placeholders for the images of the g-buffer.
 tl::expected<void, std::string> declare(framegraph::Graph& graph, Session& session,
                                         const Options& options) {
   const auto extent = framegraph::Extent::absolute(options.view.width, options.view.height);

@@ -15,7 +15,7 @@ namespace {
 
 using Failure = tl::unexpected<std::string>;
 
-// All of the session but its device.
+// Loads the session without its device.
 tl::expected<Session, std::string> load_session(const Options& options) {
   Session session;
   const auto start = std::chrono::steady_clock::now();

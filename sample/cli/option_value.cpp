@@ -1,5 +1,6 @@
 #include "cli/option_value.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -111,21 +112,19 @@ std::pair<std::uint32_t, std::uint32_t> OptionValue::size() const {
 std::size_t OptionValue::one_of(std::span<const std::string_view> names) const {
   const auto found = std::ranges::find(names, text);
   if (found == names.end()) {
-    std::string all;
-    for (const std::string_view name : names) all += (all.empty() ? "" : ", ") + std::string(name);
-    refuse("one of " + all);
+    refuse(fmt::format("one of {}", fmt::join(names, ", ")));
   }
   return static_cast<std::size_t>(found - names.begin());
 }
 
 std::string shown_coordinate(float value, double origin) {
   if (origin == 0.0) return shown(value);
-  std::array<char, 40> text{};
+  std::string text;
   for (int digits = 6; digits <= 17; ++digits) {
-    std::snprintf(text.data(), text.size(), "%.*g", digits, origin + static_cast<double>(value));
-    if (static_cast<float>(std::strtod(text.data(), nullptr) - origin) == value) break;
+    text = fmt::format("{:.{}g}", origin + static_cast<double>(value), digits);
+    if (static_cast<float>(std::strtod(text.c_str(), nullptr) - origin) == value) break;
   }
-  return text.data();
+  return text;
 }
 
 std::string shown(float value) {

@@ -1,7 +1,6 @@
+#include <fmt/format.h>
 #include <algorithm>
-#include <iomanip>
 #include <iostream>
-#include <sstream>
 
 #include "cli/commands.h"
 #include "cli/open_session.h"
@@ -16,44 +15,39 @@ using Failure = tl::unexpected<std::string>;
 using Done = tl::expected<void, std::string>;
 
 std::string shown(const TradePoint& point) {
-  std::ostringstream out;
-  out << point.name << std::fixed << ": RMSE " << std::setprecision(4) << point.rmse << " in "
-      << std::setprecision(3) << point.time_ms << " ms, " << std::setprecision(1)
-      << mib(point.bytes) << " MiB";
-  return out.str();
+  return fmt::format("{}: RMSE {:.4f} in {:.3f} ms, {:.1f} MiB", point.name, point.rmse,
+                     point.time_ms, mib(point.bytes));
 }
 
 const TradePoint* chosen_of(const Trade& trade, const Options& options) {
-  return options.budget_ms ? nearest_within_ms(trade.points, *options.budget_ms)
+  return options.budget_ms ? least_error_within_ms(trade.points, *options.budget_ms)
                            : fastest_within_rmse(trade.points, *options.tolerance);
 }
 
-// There is no choice: what comes nearest to one.
-std::string nothing_holds(const Trade& trade, const Options& options) {
-  std::ostringstream out;
+// The message if no setting is within the budget or tolerance. It names the closest one.
+std::string no_choice_message(const Trade& trade, const Options& options) {
   if (options.budget_ms) {
-    out << "nothing takes at most " << *options.budget_ms << " ms here; the fastest is "
-        << shown(trade.points.front());
-  } else {
-    const TradePoint& nearest = *std::ranges::min_element(trade.points, {}, &TradePoint::rmse);
-    out << "nothing errs by at most " << *options.tolerance << " here; the nearest is "
-        << shown(nearest);
+    return fmt::format("no setting takes at most {:g} ms in this view; the fastest is {}",
+                       *options.budget_ms, shown(trade.points.front()));
   }
-  return out.str();
+  const TradePoint& nearest = *std::ranges::min_element(trade.points, {}, &TradePoint::rmse);
+  return fmt::format(
+      "no setting has an error of at most {:g} in this view; the most accurate is {}",
+      *options.tolerance, shown(nearest));
 }
 
-// The neighbours of the chosen point on the front.
+// Prints the next faster and the next more accurate point of the Pareto front.
 void print_neighbours(const Trade& trade, const TradePoint& chosen) {
   const auto own = static_cast<std::size_t>(&chosen - trade.points.data());
   for (std::size_t i = own; i-- > 0;) {
     if (trade.on_pareto_front[i]) {
-      std::cout << "  faster:  " << shown(trade.points[i]) << "\n";
+      std::cout << "  faster:         " << shown(trade.points[i]) << "\n";
       break;
     }
   }
   for (std::size_t i = own + 1; i < trade.points.size(); ++i) {
     if (trade.on_pareto_front[i]) {
-      std::cout << "  nearer:  " << shown(trade.points[i]) << "\n";
+      std::cout << "  more accurate:  " << shown(trade.points[i]) << "\n";
       break;
     }
   }
@@ -74,17 +68,16 @@ Done run_recommend(const Options& options) {
   const Trade trade = trade_of(std::move(measured->points));
   const TradePoint* chosen = chosen_of(trade, options);
   if (chosen == nullptr) {
-    return Failure(nothing_holds(trade, options));
+    return Failure(no_choice_message(trade, options));
   }
   std::cout << shown(*chosen) << "\n";
   print_neighbours(trade, *chosen);
-  std::cout << "RMSE of visibility against ray-traced truth; " << measured->clock_title << " at "
-            << options.view.width << "x" << options.view.height << " on "
-            << session->gpu->device().properties().deviceName << "\n"
-            << shell_line(render_arguments(
-                   options, {session->camera, chosen->settings, std::nullopt, options.view.width,
-                             options.view.height, options.view.frames}))
-            << "\n";
+  const Shot shot{session->camera,    chosen->settings,    std::nullopt,
+                  options.view.width, options.view.height, options.view.frames};
+  std::cout << fmt::format("RMSE of visibility against ray-traced truth; {} at {}x{} on {}\n{}\n",
+                           measured->clock_title, options.view.width, options.view.height,
+                           session->gpu->device().properties().deviceName,
+                           shell_line(render_arguments(options, shot)));
   return {};
 }
 

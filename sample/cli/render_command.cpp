@@ -1,8 +1,7 @@
 #include "cli/render_command.h"
 
+#include <fmt/format.h>
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <cstdlib>
 #include <utility>
 
@@ -16,40 +15,39 @@ namespace {
 using passes::OcclusionSettings;
 using passes::Quality;
 
-// Each overload gives the text of a value that reads back as the same.
+// Each overload formats a value so that it is parsed as the same value.
 std::string text_of(float value) { return shown(value); }
-std::string text_of(std::uint32_t value) { return std::to_string(value); }
+std::string text_of(std::uint32_t value) { return fmt::to_string(value); }
 std::string text_of(const glm::vec3& v) {
-  return text_of(v.x) + "," + text_of(v.y) + "," + text_of(v.z);
+  return fmt::format("{},{},{}", shown(v.x), shown(v.y), shown(v.z));
 }
 template <typename Choice>
 std::string text_of(Choice value) {
   return std::string(passes::name_of(value));
 }
 
-// The shortest that is read as the same angle.
+// The shortest text that is parsed as the same angle.
 std::string degrees_text(float radians) {
-  std::array<char, 32> text{};
+  std::string text;
   for (int digits = 3; digits <= 9; ++digits) {
-    std::snprintf(text.data(), text.size(), "%.*g", digits,
-                  static_cast<double>(glm::degrees(radians)));
-    if (glm::radians(std::strtof(text.data(), nullptr)) == radians) {
+    text = fmt::format("{:.{}g}", glm::degrees(radians), digits);
+    if (glm::radians(std::strtof(text.c_str(), nullptr)) == radians) {
       break;
     }
   }
-  return text.data();
+  return text;
 }
 
-// The settings that are other than those of a quality, as --set takes them.
+// The settings that differ from those of a quality, in the form of --set.
 std::vector<std::string> changes(Quality quality, const OcclusionSettings& settings) {
   const OcclusionSettings preset = passes::quality_settings(quality, settings.radius);
   std::vector<std::string> before, result;
   for_each_setting(preset, [&](const SettingInfo& info, const auto& value) {
-    before.push_back(std::string(info.name) + "=" + text_of(value));
+    before.push_back(fmt::format("{}={}", info.name, text_of(value)));
   });
   std::size_t i = 0;
   for_each_setting(settings, [&](const SettingInfo& info, const auto& value) {
-    std::string now = std::string(info.name) + "=" + text_of(value);
+    std::string now = fmt::format("{}={}", info.name, text_of(value));
     if (now != before[i++]) {
       result.push_back(std::move(now));
     }
@@ -59,8 +57,9 @@ std::vector<std::string> changes(Quality quality, const OcclusionSettings& setti
 
 void append_camera(const Camera& camera, std::vector<std::string>& to) {
   const auto position = [&](const glm::vec3& p) {
-    return shown_coordinate(p.x, camera.origin.x) + "," + shown_coordinate(p.y, camera.origin.y) +
-           "," + shown_coordinate(p.z, camera.origin.z);
+    return fmt::format("{},{},{}", shown_coordinate(p.x, camera.origin.x),
+                       shown_coordinate(p.y, camera.origin.y),
+                       shown_coordinate(p.z, camera.origin.z));
   };
   to.insert(to.end(), {"--eye", position(camera.eye_ws), "--target", position(camera.target_ws),
                        "--up", text_of(camera.up_ws)});
@@ -75,18 +74,18 @@ void append_camera(const Camera& camera, std::vector<std::string>& to) {
   }
 }
 
-// By the quality that is nearest.
+// Uses the quality that needs the fewest --set options.
 void append_settings(const OcclusionSettings& settings, std::vector<std::string>& to) {
-  Quality nearest = Quality::low;
-  std::vector<std::string> fewest = changes(nearest, settings);
+  Quality closest = Quality::low;
+  std::vector<std::string> fewest = changes(closest, settings);
   for (std::size_t i = 1; i < passes::kNames<Quality>.size(); ++i) {
     std::vector<std::string> more = changes(static_cast<Quality>(i), settings);
     if (more.size() < fewest.size()) {
-      nearest = static_cast<Quality>(i);
+      closest = static_cast<Quality>(i);
       fewest = std::move(more);
     }
   }
-  to.insert(to.end(), {"--quality", std::string(passes::name_of(nearest)), "--radius",
+  to.insert(to.end(), {"--quality", std::string(passes::name_of(closest)), "--radius",
                        text_of(settings.radius)});
   for (const std::string& change : fewest) {
     to.insert(to.end(), {"--set", change});
@@ -110,7 +109,7 @@ std::vector<std::string> render_arguments(const Options& options, const Shot& sh
     arguments.insert(arguments.end(), {"--camera", options.view.camera});
   }
   append_camera(shot.camera, arguments);
-  arguments.insert(arguments.end(), {"--size", text_of(shot.width) + "x" + text_of(shot.height)});
+  arguments.insert(arguments.end(), {"--size", fmt::format("{}x{}", shot.width, shot.height)});
   append_settings(shot.settings, arguments);
   if (options.occlusion.normals != NormalSource::kShading) {
     arguments.insert(arguments.end(),
@@ -127,7 +126,7 @@ std::vector<std::string> render_arguments(const Options& options, const Shot& sh
     arguments.insert(arguments.end(), {"--frames", text_of(frames)});
   }
   if (options.device >= 0) {
-    arguments.insert(arguments.end(), {"--device", std::to_string(options.device)});
+    arguments.insert(arguments.end(), {"--device", fmt::to_string(options.device)});
   }
   return arguments;
 }

@@ -1,8 +1,7 @@
 #include "cli/report.h"
 
-#include <iomanip>
+#include <fmt/format.h>
 #include <limits>
-#include <sstream>
 
 #include "alcove/passes/setting_names.h"
 #include "render/settings_json.h"
@@ -24,7 +23,7 @@ Json position_json(const Camera& camera, glm::vec3 position) {
 
 Json camera_json(const Camera& camera) {
   Json json;
-  // In the space of the scene's file, as --eye and --target take them.
+  // Positions are in the space of the scene's file, like --eye and --target.
   json["eye"] = position_json(camera, camera.eye_ws);
   json["target"] = position_json(camera, camera.target_ws);
   json["up"] = vector_json(camera.up_ws);
@@ -69,7 +68,7 @@ Json report_of(const Rendering& rendering, const Options& options) {
                       {"transient_bytes_lower_bound", rendering.memory.lower_bound},
                       {"history_bytes", rendering.memory.history},
                       {"allocated_bytes", rendering.memory.allocated}};
-  // Of the whole process, with what the driver keeps in main memory.
+  // Includes the main memory that the driver uses.
   if (const auto peak = peak_memory()) {
     report["memory"]["peak_process_bytes"] = *peak;
   }
@@ -79,11 +78,9 @@ Json report_of(const Rendering& rendering, const Options& options) {
 }
 
 std::string time_table(const Rendering& rendering) {
-  std::ostringstream text;
-  text << rendering.device << ", " << rendering.driver << "\n" << std::fixed;
+  std::string text = fmt::format("{}, {}\n", rendering.device, rendering.driver);
   const auto row = [&](const std::string& name, double milliseconds) {
-    text << "  " << std::left << std::setw(34) << name << std::right << std::setw(9)
-         << std::setprecision(3) << milliseconds << " ms\n";
+    text += fmt::format("  {:34}{:9.3f} ms\n", name, milliseconds);
   };
   for (const PassTime& pass : rendering.costs.passes) {
     row(pass.pass, pass.milliseconds);
@@ -92,9 +89,8 @@ std::string time_table(const Rendering& rendering) {
   row("occlusion, processor time", rendering.costs.cpu_ms);
   row("with specular, by GPU timestamps", rendering.costs_with_specular.occlusion_ms);
   row("with specular, processor time", rendering.costs_with_specular.cpu_ms);
-  text << std::setprecision(2) << "  transients " << mib(rendering.memory.aliased)
-       << " MiB aliased, " << mib(rendering.memory.unaliased) << " MiB each on its own\n";
-  return text.str();
+  return text + fmt::format("  transients {:.2f} MiB aliased, {:.2f} MiB without aliasing\n",
+                            mib(rendering.memory.aliased), mib(rendering.memory.unaliased));
 }
 
 }  // namespace alcove::sample

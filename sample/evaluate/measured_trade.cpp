@@ -1,8 +1,8 @@
 #include "evaluate/measured_trade.h"
 
+#include <fmt/format.h>
 #include <algorithm>
-#include <iomanip>
-#include <sstream>
+#include <span>
 #include <utility>
 
 #include "evaluate/variant_errors.h"
@@ -19,7 +19,7 @@ using Failure = tl::unexpected<std::string>;
 
 constexpr const GpuPart& kModelledPart = kGpuParts[1];
 
-// The times of variants by a clock that is chosen once.
+// Gives the times of variants by one clock, which depends on the device.
 class TradeClock {
  public:
   TradeClock(const VkPhysicalDeviceProperties& device, const StaticSetup& setup) : setup_(setup) {
@@ -47,7 +47,7 @@ class TradeClock {
 std::string TradeClock::title() const {
   switch (clock_) {
     case Clock::modelled:
-      return "modelled time of a frame in motion on " + std::string(kModelledPart.title);
+      return "modelled time of a frame with a moving camera on " + std::string(kModelledPart.title);
     case Clock::timestamps:
       return "GPU time";
     default:
@@ -59,7 +59,7 @@ tl::expected<double, std::string> TradeClock::modelled_ms(
     const passes::OcclusionSettings& settings) const {
   CostInputs inputs{setup_.width, setup_.height, setup_.normals != NormalSource::kDepth, false,
                     settings};
-  // As variants are drawn.
+  // Variants are rendered with these settings too.
   inputs.settings.specular = passes::Specular::none;
   inputs.settings.bent_normal = false;
   const auto frames = modelled_frames(kModelledPart, null_device_, inputs);
@@ -96,17 +96,17 @@ tl::expected<TradePoint, std::string> TradeClock::point_of(const VariantErrors& 
 tl::expected<MeasuredTrade, std::string> measure_trade(const Session& session,
                                                        const StaticSetup& setup,
                                                        const TruthOptions& truth_options) {
-  std::vector<Variant> ways = preset_sweep(session.settings);
-  // The session's own settings are drawn as what the others are timed beside.
+  std::vector<Variant> variants = preset_sweep(session.settings);
+  // The session's own settings are rendered as the baseline of the others.
   std::string own_name = "as given";
-  if (const auto own = std::ranges::find(ways, session.settings, &Variant::settings);
-      own != ways.end()) {
+  if (const auto own = std::ranges::find(variants, session.settings, &Variant::settings);
+      own != variants.end()) {
     own_name = own->name;
-    ways.erase(own);
+    variants.erase(own);
   }
   const VkPhysicalDeviceProperties& device = session.gpu->device().properties();
   const TradeClock clock(device, setup);
-  const auto report = run_variants(session, setup, truth_options, ways, "trade");
+  const auto report = run_variants(session, setup, truth_options, variants, "trade");
   if (!report) {
     return tl::unexpected(report.error());
   }
@@ -142,37 +142,29 @@ tl::expected<std::vector<double>, std::string> measure_grid(const Session& sessi
 }
 
 std::string grid_table(const std::vector<double>& rmse) {
-  std::ostringstream out;
-  out << "RMSE of visibility against scene truth\n  slices:         ";
-  for (const std::uint32_t slices : kGridSlices) {
-    out << std::setw(8) << slices;
+  std::string out = fmt::format("RMSE of visibility against scene truth\n  slices:         {:8}\n",
+                                fmt::join(kGridSlices, ""));
+  for (std::size_t i = 0; i < kGridSteps.size(); ++i) {
+    const std::span row = std::span(rmse).subspan(i * kGridSlices.size(), kGridSlices.size());
+    out += fmt::format("  {:2} steps      {:8.4f}\n", kGridSteps[i], fmt::join(row, ""));
   }
-  out << "\n" << std::fixed << std::setprecision(4);
-  for (std::size_t i = 0; i < rmse.size(); ++i) {
-    if (i % kGridSlices.size() == 0) {
-      out << "  " << std::setw(2) << kGridSteps[i / kGridSlices.size()] << " steps a side";
-    }
-    out << std::setw(8) << rmse[i] << ((i + 1) % kGridSlices.size() == 0 ? "\n" : "");
-  }
-  return out.str();
+  return out;
 }
 
 std::string table_of(const Trade& trade, const std::string& clock_title) {
-  std::ostringstream out;
-  out << "Time: " << clock_title << "\n"
-      << std::left << std::setw(34) << "  RMSE of visibility against" << std::right
-      << "scene truth   height field   time ms   spread   processor ms     MiB\n"
-      << std::fixed;
+  std::string out = fmt::format(
+      "Time: {}\n"
+      "{:34}scene truth   height field   time ms   spread   processor ms     MiB\n",
+      clock_title, "  RMSE of visibility against");
   for (std::size_t i = 0; i < trade.points.size(); ++i) {
     const TradePoint& point = trade.points[i];
-    out << (trade.on_pareto_front[i] ? "* " : "  ") << std::left << std::setw(34) << point.name
-        << std::right << std::setprecision(4) << std::setw(9) << point.rmse << std::setw(15)
-        << point.height_field_rmse << std::setprecision(3) << std::setw(10) << point.time_ms
-        << std::setw(9) << point.spread_ms << std::setprecision(1) << std::setw(15)
-        << point.processor_ms << std::setprecision(1) << std::setw(8) << mib(point.bytes) << "\n";
+    out += fmt::format("{} {:34}{:9.4f}{:15.4f}{:10.3f}{:9.3f}{:15.1f}{:8.1f}\n",
+                       trade.on_pareto_front[i] ? '*' : ' ', point.name, point.rmse,
+                       point.height_field_rmse, point.time_ms, point.spread_ms, point.processor_ms,
+                       mib(point.bytes));
   }
-  return out.str() +
-         "* every setting that errs by as little or less is slower by more than the spread\n";
+  return out +
+         "* Pareto front: every setting with an error as low is slower by more than the spread\n";
 }
 
 Json to_json(const Trade& trade) {

@@ -1,11 +1,12 @@
 #include "evaluate/trade_plot.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
-#include <sstream>
 #include <utility>
 #include <vector>
+
+#include "support/svg.h"
 
 namespace alcove::sample {
 namespace {
@@ -19,7 +20,7 @@ constexpr double kBottom = 60;
 constexpr double kPlotWidth = kWidth - kLeft - kRight;
 constexpr double kPlotHeight = kHeight - kTop - kBottom;
 
-// From times and errors to the picture.
+// Maps times and errors to positions in the plot.
 struct Axes {
   double first_ms;
   double last_ms;
@@ -47,44 +48,17 @@ double round_step(double range, double parts) {
   return power * (lead < 1.5 ? 1.0 : lead < 3.5 ? 2.0 : lead < 7.5 ? 5.0 : 10.0);
 }
 
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    if (c == '&') {
-      result += "&amp;";
-    } else if (c == '<') {
-      result += "&lt;";
-    } else {
-      result += c;
-    }
-  }
-  return result;
-}
+constexpr const char* kGridLine = "stroke=\"#ddd\"";
 
-void draw_label(std::ostream& out, double x, double y, const char* anchor,
-                const std::string& text) {
-  out << "<text x=\"" << x << "\" y=\"" << y << "\" text-anchor=\"" << anchor << "\">"
-      << escaped(text) << "</text>\n";
-}
+std::string number(double value) { return fmt::format("{:.3g}", value); }
 
-void draw_line(std::ostream& out, double x0, double y0, double x1, double y1) {
-  out << "<line x1=\"" << x0 << "\" y1=\"" << y0 << "\" x2=\"" << x1 << "\" y2=\"" << y1
-      << "\" stroke=\"#ddd\"/>\n";
-}
-
-std::string number(double value) {
-  std::ostringstream out;
-  out << std::setprecision(3) << value;
-  return out.str();
-}
-
-void draw_axes(std::ostream& out, const Axes& axes, const std::string& clock_title) {
+void draw_axes(Svg& svg, const Axes& axes, const std::string& clock_title) {
   const double step = round_step(axes.most - axes.least, 6);
   const auto last = static_cast<int>(std::floor(axes.most / step));
   for (auto i = static_cast<int>(std::ceil(axes.least / step)); i <= last; ++i) {
     const double y = axes.y(i * step);
-    draw_line(out, kLeft, y, kWidth - kRight, y);
-    draw_label(out, kLeft - 8, y + 4, "end", number(i * step));
+    svg.line({kLeft, y}, {kWidth - kRight, y}, kGridLine);
+    svg.text({kLeft - 8, y + 4}, "end", number(i * step));
   }
   const auto first_power = static_cast<int>(std::floor(std::log10(axes.first_ms)));
   for (int power = first_power; std::pow(10.0, power) <= axes.last_ms; ++power) {
@@ -93,22 +67,22 @@ void draw_axes(std::ostream& out, const Axes& axes, const std::string& clock_tit
       if (ms < axes.first_ms || ms > axes.last_ms) {
         continue;
       }
-      draw_line(out, axes.x(ms), kTop, axes.x(ms), kHeight - kBottom);
-      draw_label(out, axes.x(ms), kHeight - kBottom + 18, "middle", number(ms));
+      svg.line({axes.x(ms), kTop}, {axes.x(ms), kHeight - kBottom}, kGridLine);
+      svg.text({axes.x(ms), kHeight - kBottom + 18}, "middle", number(ms));
     }
   }
-  draw_label(out, kLeft + 0.5 * kPlotWidth, kHeight - 14, "middle", clock_title + ", ms");
-  draw_label(out, kLeft, kTop - 10, "middle", "RMSE");
+  svg.text({kLeft + 0.5 * kPlotWidth, kHeight - 14}, "middle", clock_title + ", ms");
+  svg.text({kLeft, kTop - 10}, "middle", "RMSE");
 }
 
-void draw_front(std::ostream& out, const Trade& trade, const Axes& axes) {
-  out << "<polyline fill=\"none\" stroke=\"#1f6f8b\" stroke-width=\"2\" points=\"";
+void draw_pareto_front(Svg& svg, const Trade& trade, const Axes& axes) {
+  std::vector<glm::vec2> points;
   for (std::size_t i = 0; i < trade.points.size(); ++i) {
     if (trade.on_pareto_front[i]) {
-      out << axes.x(trade.points[i].time_ms) << "," << axes.y(trade.points[i].rmse) << " ";
+      points.emplace_back(axes.x(trade.points[i].time_ms), axes.y(trade.points[i].rmse));
     }
   }
-  out << "\"/>\n";
+  svg.polyline(points, "stroke=\"#1f6f8b\" stroke-width=\"2\"");
 }
 
 struct Box {
@@ -124,21 +98,22 @@ class Labels {
  public:
   explicit Labels(std::vector<Box> points) : taken_(std::move(points)) {}
 
-  // Draws `text` beside the point, as near as there is room, with a line to it from further away.
-  void draw(std::ostream& out, double x, double y, const std::string& text) {
+  // Draws `text` beside the point, as near as there is room, with a line to it if it is not
+  // adjacent.
+  void draw(Svg& svg, double x, double y, const std::string& text) {
     constexpr double kStep = 16;
     constexpr int kRows = 14;
     for (int row = 0; row < kRows; ++row) {
-      // By turns above and below, further away each time, right of the point before left of it.
+      // Alternately above and below, at a growing distance; right of the point first, then left.
       const double distance = kStep * (row / 2);
       const double base = row % 2 == 0 ? y - 7 - distance : y + 16 + distance;
       for (const bool right : {true, false}) {
         if (const Box box = box_of(x, base, right, text); is_free(box)) {
           taken_.push_back(box);
           if (row > 1) {
-            draw_line(out, x, y, x + (right ? 8 : -8), base - 4);
+            svg.line({x, y}, {x + (right ? 8 : -8), base - 4}, kGridLine);
           }
-          draw_label(out, x + (right ? 9 : -9), base, right ? "start" : "end", text);
+          svg.text({x + (right ? 9 : -9), base}, right ? "start" : "end", text);
           return;
         }
       }
@@ -160,7 +135,7 @@ class Labels {
   std::vector<Box> taken_;
 };
 
-void draw_points(std::ostream& out, const Trade& trade, const Axes& axes) {
+void draw_points(Svg& svg, const Trade& trade, const Axes& axes) {
   std::vector<Box> circles;
   for (const TradePoint& point : trade.points) {
     const double x = axes.x(point.time_ms);
@@ -174,17 +149,15 @@ void draw_points(std::ostream& out, const Trade& trade, const Axes& axes) {
     const double y = axes.y(point.rmse);
     const char* colour = trade.on_pareto_front[i] ? "#1f6f8b" : "#bbb";
     if (point.spread_ms > 0 && point.spread_ms < point.time_ms) {
-      out << "<line x1=\"" << axes.x(point.time_ms - point.spread_ms) << "\" y1=\"" << y
-          << "\" x2=\"" << axes.x(point.time_ms + point.spread_ms) << "\" y2=\"" << y
-          << "\" stroke=\"" << colour << "\"/>\n";
+      svg.line({axes.x(point.time_ms - point.spread_ms), y},
+               {axes.x(point.time_ms + point.spread_ms), y}, fmt::format("stroke=\"{}\"", colour));
     }
-    out << "<g><title>" << escaped(point.name) << ", " << number(point.rmse) << ", "
-        << number(point.time_ms) << " ms</title><circle cx=\"" << x << "\" cy=\"" << y
-        << "\" r=\"4\" fill=\"" << colour << "\"/></g>\n";
+    svg.circle({x, y}, 4, fmt::format("fill=\"{}\"", colour),
+               fmt::format("{}, {:.3g}, {:.3g} ms", point.name, point.rmse, point.time_ms));
   }
   for (std::size_t i = 0; i < trade.points.size(); ++i) {
     if (trade.on_pareto_front[i]) {
-      labels.draw(out, axes.x(trade.points[i].time_ms), axes.y(trade.points[i].rmse),
+      labels.draw(svg, axes.x(trade.points[i].time_ms), axes.y(trade.points[i].rmse),
                   trade.points[i].name);
     }
   }
@@ -194,16 +167,12 @@ void draw_points(std::ostream& out, const Trade& trade, const Axes& axes) {
 
 std::string plot_of(const Trade& trade, const std::string& title, const std::string& clock_title) {
   const Axes axes(trade);
-  std::ostringstream out;
-  out << "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" << kWidth << "\" height=\"" << kHeight
-      << "\" font-family=\"sans-serif\" font-size=\"12\">\n"
-      << "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n";
-  draw_label(out, 0.5 * kWidth, 20, "middle", title);
-  draw_axes(out, axes, clock_title);
-  draw_front(out, trade, axes);
-  draw_points(out, trade, axes);
-  out << "</svg>\n";
-  return out.str();
+  Svg svg;
+  svg.text({0.5 * kWidth, 20}, "middle", title);
+  draw_axes(svg, axes, clock_title);
+  draw_pareto_front(svg, trade, axes);
+  draw_points(svg, trade, axes);
+  return svg.document({kWidth, kHeight}, 12);
 }
 
 }  // namespace alcove::sample

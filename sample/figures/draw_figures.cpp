@@ -1,9 +1,9 @@
 // alcove_figures FOLDER: draws the figures of passes/ALGORITHM.md with the functions that the
 // shaders use, so that a figure cannot disagree with the code.
+#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <string>
@@ -29,12 +29,6 @@ constexpr const char* kDashed = "stroke=\"#888\" stroke-width=\"1\" stroke-dasha
 constexpr const char* kOpen = "fill=\"#bfe3f2\" fill-opacity=\"0.8\"";
 constexpr const char* kOccluded = "fill=\"#f0b8a8\" fill-opacity=\"0.9\"";
 constexpr const char* kHidden = "fill=\"#f6e3b0\" fill-opacity=\"0.9\"";
-
-std::string text_of(const char* format, float value) {
-  char text[96];
-  std::snprintf(text, sizeof text, format, static_cast<double>(value));
-  return text;
-}
 
 // The plane of a slice: x along the slice's direction, y along the view direction.
 struct Profile {
@@ -72,8 +66,9 @@ float horizon_of(const Profile& p, float side) {
   return horizon;
 }
 
-// A pie between two directions, given by their signed angles from the view direction, radians.
-std::vector<vec2> pie(vec2 centre, float radius, float from, float to) {
+// A circular sector between two directions, given as signed angles from the view direction in
+// radians.
+std::vector<vec2> circular_sector(vec2 centre, float radius, float from, float to) {
   std::vector<vec2> points{centre};
   for (int i = 0; i <= 32; ++i) {
     const float angle = from + (to - from) * static_cast<float>(i) / 32.0f;
@@ -102,7 +97,7 @@ Drawing slice_and_horizons() {
     cosines[i] = horizon_of(p, side);
     angles[i] = side * std::acos(std::max(cosines[i], maths::tangent_horizon(slice, side)));
   }
-  d.polygon(pie(p.shaded, 1.9f, angles[1], angles[0]), kOpen);
+  d.polygon(circular_sector(p.shaded, 1.9f, angles[1], angles[0]), kOpen);
   draw_profile(d, p);
   for (const float angle : angles) {
     d.line(p.shaded, p.shaded + 3.0f * vec2(std::sin(angle), std::cos(angle)), kDashed);
@@ -114,7 +109,7 @@ Drawing slice_and_horizons() {
   d.text(p.shaded - 3.3f * along + vec2(0, -0.28f), "tangent plane");
   const float visibility = maths::slice_visibility(slice, cosines[0], cosines[1]);
   d.text({0.0f, -1.15f},
-         text_of("visible part of this slice: %.3f", visibility / maths::open_slice(slice)),
+         fmt::format("visible part of this slice: {:.3f}", visibility / maths::open_slice(slice)),
          "middle");
   return d;
 }
@@ -133,7 +128,7 @@ void draw_sectors(Drawing& d, const Profile& p, std::uint32_t occluded, float ra
     const vec2 to = maths::diamond_angle_light(static_cast<float>(i + 1) / per);
     const bool hit = ((occluded >> i) & 1u) != 0;
     d.polygon({p.shaded, p.shaded + radius * from, p.shaded + radius * to},
-              std::string(hit ? kOccluded : kOpen) + " stroke=\"white\" stroke-width=\"1\"");
+              fmt::format("{} stroke=\"white\" stroke-width=\"1\"", hit ? kOccluded : kOpen));
   }
 }
 
@@ -229,7 +224,7 @@ Drawing tile_interleave() {
       d.polygon(
           {low, low + vec2(1, 0), low + vec2(1, 1), low + vec2(0, 1)},
           traced == 0 ? "fill=\"#bfe3f2\" stroke=\"#aaa\"" : "fill=\"white\" stroke=\"#aaa\"");
-      d.text(low + vec2(0.5f, 0.35f), std::to_string(traced), "middle");
+      d.text(low + vec2(0.5f, 0.35f), fmt::to_string(traced), "middle");
     }
   }
   for (int i = 0; i <= size; i += 2) {
@@ -266,7 +261,7 @@ Drawing history_reprojection() {
     }
     d.text({left + 3, 6.4f}, title, "middle");
   };
-  // The four texels around a point of the previous frame, the lower right ones of another surface.
+  // The four texels around a point of the previous frame. The second one shows another surface.
   const vec2 at(2.8f, 3.3f);
   const vec2 first(std::floor(at.x - 0.5f), std::floor(at.y - 0.5f));
   const vec2 part = at - 0.5f - first;
@@ -278,7 +273,7 @@ Drawing history_reprojection() {
               other ? kOccluded : kOpen);
     const vec2 share = glm::mix(1.0f - part, part, offset);
     d.text(low + vec2(0.5f, offset.y > 0 ? 0.78f : 0.15f),
-           other ? "0" : text_of("%.2f", share.x * share.y), "middle");
+           other ? "0" : fmt::format("{:.2f}", share.x * share.y), "middle");
   }
   grid(0, "previous frame");
   grid(10, "this frame");
@@ -310,7 +305,7 @@ constexpr std::array<Figure, 6> kFigures{{{"slice_and_horizons", slice_and_horiz
 tl::expected<void, std::string> draw_all(const std::filesystem::path& folder) {
   for (const Figure& figure : kFigures) {
     const auto written =
-        write_text(folder / (std::string(figure.name) + ".svg"), figure.draw().svg());
+        write_text(folder / fmt::format("{}.svg", figure.name), figure.draw().svg());
     if (!written) {
       return written;
     }

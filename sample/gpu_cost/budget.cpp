@@ -1,8 +1,8 @@
 #include "gpu_cost/budget.h"
 
+#include <fmt/format.h>
 #include <cmath>
 #include <iterator>
-#include <sstream>
 
 #include "alcove/passes/setting_names.h"
 
@@ -13,8 +13,8 @@ using Json = nlohmann::ordered_json;
 using Failure = tl::unexpected<std::string>;
 using passes::Quality;
 
-constexpr double kTolerance = 0.01;  // of instructions per pixel
-constexpr float kRadius = 0.5f;      // no instruction depends on it
+constexpr double kTolerance = 0.01;  // relative, for instructions per pixel
+constexpr float kRadius = 0.5f;      // scene units; the instructions do not depend on it
 
 BudgetedSettings preset(Quality quality) {
   BudgetedSettings settings;
@@ -30,7 +30,7 @@ Json budget_of_pass(const ModelledPass& pass) {
           {"spilled_registers", pass.spills}};
 }
 
-// A figure that must not exceed, or with `at_least` not fall below, that of the budget.
+// A figure that must not exceed its budget or, with `at_least`, not fall below it.
 struct Figure {
   const char* key;
   double value;
@@ -50,15 +50,14 @@ void check(const Json& budget, const ModelledPass& pass, const std::string& wher
     const bool fine = figure.at_least ? limit >= 0 && figure.value >= limit
                                       : figure.value <= limit * (1 + figure.tolerance);
     if (!fine) {
-      std::ostringstream sentence;
-      sentence << where << ": " << figure.key << " is " << figure.value << ", the budget is ";
-      limit < 0 ? sentence << "missing." : sentence << limit << ".";
-      complaints.push_back(sentence.str());
+      complaints.push_back(fmt::format("{}: {} is {:g}, the budget is {}.", where, figure.key,
+                                       figure.value,
+                                       limit < 0 ? "missing" : fmt::format("{:g}", limit)));
     }
   }
 }
 
-// The object under `keys`, or null where there is none.
+// The object at the path `keys`, or null if there is none.
 const Json& at(const Json& json, std::initializer_list<std::string> keys) {
   static const Json kNull;
   const Json* found = &json;

@@ -1,49 +1,31 @@
+#include <fmt/format.h>
 #include <algorithm>
 #include <array>
-#include <iomanip>
-#include <sstream>
 
 #include "gpu_cost/cost_report.h"
+#include "support/svg.h"
 
 namespace alcove::sample {
 namespace {
 
 constexpr double kWidth = 900;
-constexpr double kLeft = 170;   // of the bars
+constexpr double kLeft = 170;   // left edge of the bars
 constexpr double kRight = 130;  // for the totals
 constexpr double kBar = 14;
 constexpr double kRow = 18;
 constexpr double kGap = 6;       // between labels
-constexpr double kHeading = 44;  // of a part
+constexpr double kHeading = 44;  // height of a GPU's heading
 constexpr double kLegend = 34;
 
-// Told apart in print and by people who see no red or green (the palette of Okabe and Ito).
+// The palette of Okabe and Ito, which is distinct in print and to people with colour blindness.
 constexpr std::array<const char*, 7> kColours{"#0072b2", "#e69f00", "#009e73", "#cc79a7",
                                               "#56b4e9", "#d55e00", "#999999"};
 
-// Text on lines: with a white edge, so that it stays readable.
+// A white outline that keeps text readable on lines.
 constexpr const char* kOverLines =
-    " stroke=\"white\" stroke-width=\"4\" paint-order=\"stroke\" stroke-linejoin=\"round\"";
+    "stroke=\"white\" stroke-width=\"4\" paint-order=\"stroke\" stroke-linejoin=\"round\"";
 
-void draw_text(std::ostream& out, double x, double y, const char* anchor, const std::string& text,
-               const char* more = "") {
-  out << "<text x=\"" << x << "\" y=\"" << y << "\" text-anchor=\"" << anchor << "\"" << more << ">"
-      << text << "</text>\n";
-}
-
-void draw_box(std::ostream& out, double x, double y, double width, const char* colour,
-              const std::string& title) {
-  out << "<rect x=\"" << x << "\" y=\"" << y << "\" width=\"" << width << "\" height=\"" << kBar
-      << "\" fill=\"" << colour << "\"><title>" << title << "</title></rect>\n";
-}
-
-std::string number(double value) {
-  std::ostringstream out;
-  out << std::setprecision(3) << value;
-  return out.str();
-}
-
-// The passes in the order in which they appear, which is that of the colours.
+// The passes in order of appearance, which determines their colours.
 std::vector<std::string> pass_names(std::span<const SettingsCost> costs) {
   std::vector<std::string> names;
   for (const SettingsCost& cost : costs) {
@@ -58,11 +40,6 @@ std::vector<std::string> pass_names(std::span<const SettingsCost> costs) {
   return names;
 }
 
-const char* colour_of(const std::vector<std::string>& names, const std::string& pass) {
-  const auto place = static_cast<std::size_t>(std::ranges::find(names, pass) - names.begin());
-  return kColours[std::min(place, kColours.size() - 1)];
-}
-
 class Chart {
  public:
   explicit Chart(std::span<const SettingsCost> costs) : costs_(costs), names_(pass_names(costs)) {}
@@ -72,21 +49,18 @@ class Chart {
       draw_part(part);
     }
     draw_legend();
-    std::ostringstream image;
-    image << "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" << kWidth << "\" height=\"" << y_
-          << "\" font-family=\"sans-serif\" font-size=\"12\">\n"
-          << "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
-          << body_.str() << "</svg>\n";
-    return image.str();
+    return svg_.document({kWidth, y_}, 12);
   }
 
  private:
   void draw_part(const GpuPart& part);
+  void draw_box(double x, double y, double width, const std::string& pass,
+                const std::string& title);
   void draw_legend();
 
   std::span<const SettingsCost> costs_;
   std::vector<std::string> names_;
-  std::ostringstream body_;
+  Svg svg_;
   double y_ = 0;
 };
 
@@ -108,44 +82,50 @@ void Chart::draw_part(const GpuPart& part) {
     return;
   }
   const double scale = (kWidth - kLeft - kRight) / longest;
-  draw_text(body_, 12, y_ + 20, "start", std::string(part.title) + ": modelled milliseconds",
-            " font-weight=\"bold\"");
+  svg_.text({12, y_ + 20}, "start", fmt::format("{}: modelled milliseconds", part.title),
+            "font-weight=\"bold\"");
   const double top = y_ + kHeading;
   const double line = kLeft + peer.milliseconds * scale;
-  draw_text(body_, line, top - 6, "middle",
-            std::string(peer.name) + " " + number(peer.milliseconds));
+  svg_.text({line, top - 6}, "middle", fmt::format("{} {:.3g}", peer.name, peer.milliseconds));
   y_ = top;
-  // Below the bars and their texts.
+  // The line is drawn first, so that the bars and their texts cover it.
   const double height = kRow * static_cast<double>(rows) + kGap * static_cast<double>(labels);
-  body_ << "<line x1=\"" << line << "\" y1=\"" << top - 2 << "\" x2=\"" << line << "\" y2=\""
-        << top + height << "\" stroke=\"black\" stroke-dasharray=\"4 3\"/>\n";
+  svg_.line({line, top - 2}, {line, top + height}, "stroke=\"black\" stroke-dasharray=\"4 3\"");
   for (const SettingsCost& cost : costs_) {
     if (cost.family != part.family) {
       continue;
     }
     for (const ModelledFrame& frame : cost.frames) {
-      draw_text(body_, kLeft - 8, y_ + kBar - 2, "end",
-                cost.label + ", " + std::string(name_of(frame.state)));
+      svg_.text({kLeft - 8, y_ + kBar - 2}, "end",
+                fmt::format("{}, {}", cost.label, name_of(frame.state)));
       double x = kLeft;
       for (const ModelledPass& pass : frame.passes) {
         const double width = pass.milliseconds() * scale;
-        draw_box(body_, x, y_, width, colour_of(names_, pass.pass),
-                 pass.pass + ": " + number(pass.milliseconds()) + " ms, limited by " +
-                     std::string(pass.limit()));
+        draw_box(x, y_, width, pass.pass,
+                 fmt::format("{}: {:.3g} ms, limited by {}", pass.pass, pass.milliseconds(),
+                             pass.limit()));
         x += width;
       }
-      draw_text(body_, x + 6, y_ + kBar - 2, "start", number(frame.milliseconds()), kOverLines);
+      svg_.text({x + 6, y_ + kBar - 2}, "start", fmt::format("{:.3g}", frame.milliseconds()),
+                kOverLines);
       y_ += kRow;
     }
     y_ += kGap;
   }
 }
 
+void Chart::draw_box(double x, double y, double width, const std::string& pass,
+                     const std::string& title) {
+  const auto place = static_cast<std::size_t>(std::ranges::find(names_, pass) - names_.begin());
+  svg_.rectangle({x, y}, {width, kBar},
+                 fmt::format("fill=\"{}\"", kColours[std::min(place, kColours.size() - 1)]), title);
+}
+
 void Chart::draw_legend() {
   double x = kLeft;
   for (const std::string& name : names_) {
-    draw_box(body_, x, y_ + 10, kBar, colour_of(names_, name), name);
-    draw_text(body_, x + kBar + 6, y_ + 10 + kBar - 2, "start", name);
+    draw_box(x, y_ + 10, kBar, name, name);
+    svg_.text({x + kBar + 6, y_ + 10 + kBar - 2}, "start", name);
     x += kBar + 26 + 7.0 * static_cast<double>(name.size());
   }
   y_ += kLegend;

@@ -1,17 +1,16 @@
 #include "gpu_cost/cost_report.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 namespace alcove::sample {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kXeGtaoHigh = 2;  // its place among the peers
+constexpr std::size_t kXeGtaoHigh = 2;  // index in GpuPart::peers
 
 const GpuPart& part_of(const SettingsCost& cost) {
   return *std::ranges::find(kGpuParts, cost.family, &GpuPart::family);
@@ -19,48 +18,47 @@ const GpuPart& part_of(const SettingsCost& cost) {
 
 double reference_ms(const GpuPart& part) { return part.peers[kXeGtaoHigh].milliseconds; }
 
-void print_pass(std::ostream& out, const ModelledPass& pass) {
-  out << "    " << std::left << std::setw(20) << pass.pass << std::right << std::fixed
-      << std::setprecision(3) << std::setw(8) << pass.milliseconds() << "  " << std::left
-      << std::setw(14) << pass.limit() << std::right << std::setprecision(0) << std::setw(8)
-      << pass.instructions_per_pixel << std::setprecision(1) << std::setw(8)
-      << pass.fetches_per_pixel << std::setw(7) << pass.stores_per_pixel << std::setw(7)
-      << pass.bytes_per_pixel << std::setprecision(0) << std::setw(7) << pass.vector_registers
-      << std::setw(7) << pass.waves_per_simd << std::setw(8)
-      << (pass.spills > 0 ? pass.spills : pass.scratch_bytes) << std::setw(8) << pass.code_bytes
-      << std::setw(8) << pass.shared_bytes << "   " << std::setprecision(3) << pass.alu_ms << " "
-      << pass.texture_ms << " " << pass.shared_ms << " " << pass.bandwidth_ms << " "
-      << pass.latency_ms << "\n";
+std::string pass_row(const ModelledPass& pass) {
+  return fmt::format(
+      "    {:20}{:8.3f}  {:14}{:8.0f}{:8.1f}{:7.1f}{:7.1f}{:7.0f}{:7.0f}{:8.0f}{:8.0f}{:8.0f}   "
+      "{:.3f} {:.3f} {:.3f} {:.3f} {:.3f}\n",
+      pass.pass, pass.milliseconds(), pass.limit(), pass.instructions_per_pixel,
+      pass.fetches_per_pixel, pass.stores_per_pixel, pass.bytes_per_pixel, pass.vector_registers,
+      pass.waves_per_simd, pass.spills > 0 ? pass.spills : pass.scratch_bytes, pass.code_bytes,
+      pass.shared_bytes, pass.alu_ms, pass.texture_ms, pass.shared_ms, pass.bandwidth_ms,
+      pass.latency_ms);
 }
 
-void print_wave(std::ostream& out, const ModelledPass& pass) {
-  out << std::setprecision(0) << "      a wave: " << pass.wave.instructions << " instructions, "
-      << pass.wave.vector_instructions << " vector (" << pass.wave.transcendentals
-      << " transcendental, " << pass.wave.selects << " select), " << pass.wave.scalar_instructions
-      << " scalar, " << pass.wave.loads << " fetches, " << pass.wave.stores << " stores, "
-      << pass.wave.shared_operations << " on shared memory\n";
+std::string wave_rows(const ModelledPass& pass) {
+  std::string out = fmt::format(
+      "      one wave: {:.0f} instructions, {:.0f} vector ({:.0f} transcendental, {:.0f} select), "
+      "{:.0f} scalar, {:.0f} fetches, {:.0f} stores, {:.0f} on shared memory\n",
+      pass.wave.instructions, pass.wave.vector_instructions, pass.wave.transcendentals,
+      pass.wave.selects, pass.wave.scalar_instructions, pass.wave.loads, pass.wave.stores,
+      pass.wave.shared_operations);
   for (const CountedLoop& counted : pass.loops) {
     const passes::cost::CompiledLoop& loop = counted.loop;
-    out << "      loop " << loop.index << ", depth " << loop.depth << ": " << loop.instructions
-        << " instructions, " << loop.loads << " fetches, " << loop.stores << " stores, "
-        << loop.shared << " on shared memory; runs " << std::setprecision(1) << counted.iterations
-        << " times\n";
+    out += fmt::format(
+        "      loop {}, depth {}: {} instructions, {} fetches, {} stores, {} on shared memory; "
+        "runs {:.1f} times\n",
+        loop.index, loop.depth, loop.instructions, loop.loads, loop.stores, loop.shared,
+        counted.iterations);
   }
+  return out;
 }
 
-void print_settings(std::ostream& out, const SettingsCost& cost, bool loops) {
+std::string settings_rows(const SettingsCost& cost, bool loops) {
+  std::string out;
   const double reference = reference_ms(part_of(cost));
   for (const ModelledFrame& frame : cost.frames) {
-    out << "  " << cost.label << ", " << name_of(frame.state) << " frame: " << std::fixed
-        << std::setprecision(3) << frame.milliseconds() << " ms, " << std::setprecision(2)
-        << frame.milliseconds() / reference << " of XeGTAO high\n";
+    out +=
+        fmt::format("  {}, {} frame: {:.3f} ms, {:.2f} of XeGTAO high\n", cost.label,
+                    name_of(frame.state), frame.milliseconds(), frame.milliseconds() / reference);
     for (const ModelledPass& pass : frame.passes) {
-      print_pass(out, pass);
-      if (loops) {
-        print_wave(out, pass);
-      }
+      out += pass_row(pass) + (loops ? wave_rows(pass) : "");
     }
   }
+  return out;
 }
 
 Json to_json(const ModelledPass& pass) {
@@ -99,25 +97,27 @@ Json to_json(const ModelledPass& pass) {
 }  // namespace
 
 std::string table_of(std::span<const SettingsCost> costs, bool loops) {
-  std::ostringstream out;
+  std::string out;
   for (const GpuPart& part : kGpuParts) {
     if (std::ranges::find(costs, part.family, &SettingsCost::family) == costs.end()) {
       continue;
     }
-    out << part.family << ": " << part.title << ". Modelled milliseconds;";
+    out += fmt::format("{}: {}. Modelled milliseconds;", part.family, part.title);
     for (const PeerTime& peer : part.peers) {
-      out << (&peer == part.peers.data() ? " " : ", ") << peer.name << " " << peer.milliseconds;
+      out += fmt::format("{} {} {:g}", &peer == part.peers.data() ? "" : ",", peer.name,
+                         peer.milliseconds);
     }
-    out << "; all passes of the paper on a PS4 0.5 (as published)\n"
-        << "    pass                      ms  limit          instr/px fetches stores  bytes  VGPRs"
-           "  waves  spills    code  shared   ALU texture shared bandwidth latency\n";
+    out +=
+        "; all passes of the paper on a PS4 0.5 (as published)\n"
+        "    pass                      ms  limit          instr/px fetches stores  bytes  VGPRs"
+        "  waves  spills    code  shared   ALU texture shared bandwidth latency\n";
     for (const SettingsCost& cost : costs) {
       if (cost.family == part.family) {
-        print_settings(out, cost, loops);
+        out += settings_rows(cost, loops);
       }
     }
   }
-  return out.str();
+  return out;
 }
 
 Json to_json(std::span<const SettingsCost> costs) {

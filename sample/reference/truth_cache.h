@@ -1,5 +1,6 @@
 #pragma once
 
+#include <xxhash.h>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -36,8 +37,7 @@ class CacheKey {
   std::string hex() const;  // 32 digits
 
  private:
-  uint64_t low_ = 0x9e3779b97f4a7c15u;
-  uint64_t high_ = 0xc2b2ae3d27d4eb4fu;
+  XXH128_hash_t hash_{};
 };
 
 // Arrays of floats on disk, found by key. An entry that is damaged, cut short or of another version

@@ -7,7 +7,7 @@
 #include "alcove/passes/apply.h"
 #include "alcove/passes/occlusion.h"
 #include "render/frame_renderer.h"
-#include "render/gpu.h"
+#include "gpu/gpu.h"
 
 // What a frame of the occlusion makes, and how it comes back as images.
 namespace alcove::sample {

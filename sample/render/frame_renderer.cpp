@@ -11,8 +11,8 @@
 #include "alcove/framegraph/access.h"
 #include "alcove/passes/apply.h"
 #include "alcove/passes/multi_bounce.h"
+#include "gpu/gpu_image.h"
 #include "render/frame_read_back.h"
-#include "render/gpu_image.h"
 #include "render/probe.h"
 #include "render/read_back.h"
 #include "render/surfaces.h"
@@ -91,7 +91,8 @@ struct FrameRenderer::State {
 
 tl::expected<void, std::string> FrameRenderer::State::create_target(Target target) {
   auto made = GpuImage::create(
-      gpu.device(), kTargets[target].format, size,
+      gpu.device(),
+      {kTargets[target].format, framegraph::Extent::absolute(size.width, size.height)},
       kTargets[target].attachment | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
   if (!made) {
     return Failure(std::move(made.error()));

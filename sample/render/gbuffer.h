@@ -6,7 +6,7 @@
 #include <tl/expected.hpp>
 
 #include "alcove/framegraph/graph.h"
-#include "render/gpu.h"
+#include "gpu/gpu.h"
 #include "scene/scene.h"
 
 namespace alcove::sample {

@@ -6,7 +6,7 @@
 #include <string>
 #include <tl/expected.hpp>
 
-#include "render/vulkan_device.h"
+#include "gpu/vulkan_device.h"
 
 namespace alcove::sample {
 

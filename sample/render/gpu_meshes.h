@@ -9,7 +9,7 @@
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "render/gpu.h"
+#include "gpu/gpu.h"
 #include "scene/scene.h"
 
 namespace alcove::sample {

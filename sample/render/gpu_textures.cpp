@@ -66,8 +66,11 @@ tl::expected<std::size_t, std::string> GpuTextures::add_texture(const Scene& sce
   }
   // Vulkan has every device blit both formats linearly.
   auto made = GpuImage::create(
-      device_, srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM, size, kUsage,
-      static_cast<std::uint32_t>(std::bit_width(std::max(size.width, size.height))));
+      device_,
+      {srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM,
+       framegraph::Extent::absolute(size.width, size.height),
+       static_cast<std::uint32_t>(std::bit_width(std::max(size.width, size.height)))},
+      kUsage);
   if (!made) {
     return Failure(std::move(made.error()));
   }

@@ -8,8 +8,8 @@
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "render/gpu.h"
-#include "render/gpu_image.h"
+#include "gpu/gpu.h"
+#include "gpu/gpu_image.h"
 #include "render/shaders/gbuffer.h"
 #include "scene/scene.h"
 

@@ -64,9 +64,13 @@ tl::expected<std::unique_ptr<Probe>, std::string> Probe::create(Gpu& gpu,
                                                                 const EnvironmentImage& image) {
   constexpr VkImageUsageFlags kUsage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
   std::unique_ptr<Probe> made(new Probe);
-  auto harmonics = GpuImage::create(gpu.device(), VK_FORMAT_R32G32B32A32_SFLOAT, {9, 1}, kUsage);
-  auto map = GpuImage::create(gpu.device(), VK_FORMAT_R16G16B16A16_SFLOAT,
-                              {kSettings.size, kSettings.size}, kUsage, kSettings.levels);
+  using framegraph::Extent;
+  auto harmonics = GpuImage::create(
+      gpu.device(), {VK_FORMAT_R32G32B32A32_SFLOAT, Extent::absolute(9, 1)}, kUsage);
+  auto map = GpuImage::create(gpu.device(),
+                              {VK_FORMAT_R16G16B16A16_SFLOAT,
+                               Extent::absolute(kSettings.size, kSettings.size), kSettings.levels},
+                              kUsage);
   if (!harmonics || !map) {
     return Failure(std::move(harmonics ? map.error() : harmonics.error()));
   }

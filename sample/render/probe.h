@@ -5,8 +5,8 @@
 #include <tl/expected.hpp>
 
 #include "alcove/passes/environment.h"
-#include "render/gpu.h"
-#include "render/gpu_image.h"
+#include "gpu/gpu.h"
+#include "gpu/gpu_image.h"
 #include "scene/environment.h"
 
 namespace alcove::sample {

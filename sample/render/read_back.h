@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "alcove/passes/frame.h"
-#include "render/gpu.h"
+#include "gpu/gpu.h"
 #include "support/image.h"
 
 // Images from buffers that the device copied textures into.

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "render/frame_renderer.h"
-#include "render/gpu.h"
+#include "gpu/gpu.h"
 #include "render/session.h"
 #include "scene/scene.h"
 

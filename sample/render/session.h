@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "alcove/passes/occlusion.h"
-#include "render/gpu.h"
+#include "gpu/gpu.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
 

@@ -6,6 +6,8 @@
 #include <unistd.h>
 #endif
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <cstdio>
 #include <memory>
@@ -37,16 +39,16 @@ void show(Line& line, double done) {
   const double elapsed = std::chrono::duration<double>(now - line.start).count();
   if (done >= 1.0) {
     if (line.shown) {
-      std::fprintf(stderr, "%s%s done in %.0f s%s\n", line.terminal ? "\r" : "", line.name.c_str(),
-                   elapsed, line.terminal ? "        " : "");
+      fmt::print(stderr, "{}{} done in {:.0f} s{}\n", line.terminal ? "\r" : "", line.name, elapsed,
+                 line.terminal ? "        " : "");
     }
     line.shown = false;
     return;
   }
   const double since = std::chrono::duration<double>(now - line.last).count();
   if (elapsed < 1.0 || done <= 0.0 || since < (line.terminal ? 0.25 : 5.0)) return;
-  std::fprintf(stderr, "%s%s %.0f %%, %.0f s left%s", line.terminal ? "\r" : "", line.name.c_str(),
-               100.0 * done, elapsed * (1.0 - done) / done, line.terminal ? "   " : "\n");
+  fmt::print(stderr, "{}{} {:.0f} %, {:.0f} s left{}", line.terminal ? "\r" : "", line.name,
+             100.0 * done, elapsed * (1.0 - done) / done, line.terminal ? "   " : "\n");
   std::fflush(stderr);
   line.last = now;
   line.shown = true;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "alcove/framegraph/graph.h"
-#include "render/gpu.h"
+#include "gpu/gpu.h"
 #include "viewer/window.h"
 
 namespace alcove::sample {

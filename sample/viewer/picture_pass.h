@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "alcove/framegraph/graph.h"
-#include "render/gpu.h"
+#include "gpu/gpu.h"
 #include "render/shaders/picture.h"
 #include "support/glm.h"
 

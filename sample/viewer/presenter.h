@@ -6,7 +6,7 @@
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "render/gpu.h"
+#include "gpu/gpu.h"
 #include "viewer/swapchain.h"
 #include "viewer/window.h"
 

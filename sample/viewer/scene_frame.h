@@ -6,7 +6,7 @@
 #include <tl/expected.hpp>
 
 #include "render/gbuffer.h"
-#include "render/gpu.h"
+#include "gpu/gpu.h"
 #include "render/normal_source.h"
 #include "render/probe.h"
 #include "render/surfaces.h"

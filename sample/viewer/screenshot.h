@@ -4,7 +4,7 @@
 #include <string>
 #include <tl/expected.hpp>
 
-#include "render/gpu.h"
+#include "gpu/gpu.h"
 #include "support/glm.h"
 #include "support/image.h"
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "render/gpu.h"
+#include "gpu/gpu.h"
 
 namespace alcove::sample {
 

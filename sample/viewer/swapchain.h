@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "alcove/framegraph/types.h"
-#include "render/vulkan_device.h"
+#include "gpu/vulkan_device.h"
 
 namespace alcove::sample {
 

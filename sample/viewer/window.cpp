@@ -7,7 +7,7 @@
 
 #include <cstdint>
 
-#include "render/vulkan_device.h"
+#include "gpu/vulkan_device.h"
 
 namespace alcove::sample {
 namespace {

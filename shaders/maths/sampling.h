@@ -39,35 +39,34 @@ ALCOVE_INLINE SliceNoise paper_pattern(uvec2 pixel, uint frame) {
   return noise;
 }
 
-// A 4x4 block of 16 directions in the order of ordered dithering (Bayer 1973), turned from frame to
-// frame by the golden ratio (directions) and an R2 number (offsets): no frame repeats, and any run
-// of frames covers both evenly. Where searches move through a block of pixels (`moves`), each is
-// back in its place or beside it after four frames: then it is a quarter of such numbers, so that
-// what a pixel itself is searched for is as even. (The paper's six rotations would meet the period
-// of four.) The order keeps what moves over the image even too: the paper's, a lattice, steps in
-// pace with some velocities, and what moves so is searched for few directions.
+// Lattices over the image whose steps from pixel to pixel are irrational, rotated from frame to
+// frame by the golden ratio (directions) and an R2 number (offsets). Any few adjacent pixels cover
+// directions and offsets evenly, and so does any run of frames at one pixel. No pattern repeats:
+// the error of a pattern with a period of 4 pixels can be seen as a weave, although it is small.
+// The directions take the two numbers of the R2 sequence [Roberts 2018], the offsets the golden
+// ratio and the square root of 2.
+//
+// Where searches move through the pixels of a tile (`moves`), each is back in its place after four
+// frames. The rotation is then a quarter of such a number, so that the frames in which a pixel
+// itself is traced cover directions and offsets evenly.
 ALCOVE_INLINE SliceNoise golden_pattern(uvec2 pixel, uint frame, bool moves) {
-  uint x = pixel.x & 3u;
-  uint y = pixel.y & 3u;
-  uint odd = x ^ y;
-  uint cell = ((odd & 1u) << 3u) | ((y & 1u) << 2u) | (odd & 2u) | (y >> 1u);
-  uint offset = (y + 4u - x) & 3u;
   // Fractions of 2^32, exact for every frame: of 1.6180339887 and 0.7548776662, or of a quarter of
   // 1.6180339887 and of 2.5698402910.
   uint turn = moves ? 1737350766u : 2654435769u;
   uint shift = moves ? 2759345001u : 3242174889u;
-  uint direction_bits = (cell << 28u) + (1u << 27u) + frame * turn;
-  uint offset_bits = (offset << 30u) + (1u << 29u) + frame * shift;
+  // Steps to the right and downwards: 0.7548776662 and 0.5698402910, 0.6180339887 and 0.4142135624.
+  uint direction_bits = (1u << 27u) + pixel.x * 3242174889u + pixel.y * 2447445414u + frame * turn;
+  uint offset_bits = (1u << 29u) + pixel.x * 2654435769u + pixel.y * 1779033704u + frame * shift;
   SliceNoise noise;
   noise.direction = float(direction_bits >> 8u) * (1.0f / 16777216.0f);
   noise.offset = float(offset_bits >> 8u) * (1.0f / 16777216.0f);
   return noise;
 }
 
-// Blocks that share their place in a 4x4 pattern, 64 of each 32x32, in a group of 8x8 threads: all
-// of them search one direction (the order of deinterleaved rendering, Bavoil 2014, in place). The
-// block of thread `local` of group `group`; the groups of a whole number of 32x32 blocks meet each
-// block once.
+// Tiles that share their place in a 4x4 pattern, 64 of each 32x32, in a group of 8x8 threads: with
+// paper_pattern() all of them search one direction (the order of deinterleaved rendering, Bavoil
+// 2014, in place). Returns the tile of thread `local` of group `group`. The groups of a whole
+// number of 32x32 tiles meet each tile once.
 ALCOVE_INLINE uvec2 tile_by_pattern(uvec2 group, uvec2 local) {
   return uvec2(((group.x >> 2u) * 8u + local.x) * 4u + (group.x & 3u),
                ((group.y >> 2u) * 8u + local.y) * 4u + (group.y & 3u));

@@ -289,7 +289,7 @@ TEST_F(ExecutorTest, Vulkan12WithSynchronization2Suffices) {
                                  "vkCmdBeginRendering"));
 }
 
-// Of a transient, of a transient in a heap that had none before, and of a history.
+// A transient without an address, then one with an address in the same heap, then a history.
 TEST_F(ExecutorTest, BuffersWithADeviceAddressHaveMemoryForIt) {
   VkPhysicalDeviceVulkan12Features v12{};
   v12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
@@ -305,9 +305,14 @@ TEST_F(ExecutorTest, BuffersWithADeviceAddressHaveMemoryForIt) {
   addressed.usage |= VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT;
   Graph graph;
   std::uint32_t found = 0;
-  for (const bool by_address : {false, true}) {
+  for (std::uint32_t frame = 0; frame < 3; ++frame) {
+    const bool by_address = frame != 0;
     graph.reset();
-    Buffer buffer = graph.create_buffer("b", {64});
+    Buffer buffer =
+        frame < 2
+            ? graph.create_buffer("b", {64})
+            : graph.create_buffer_history("h", {64, VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT})
+                  .current;
     PassBuilder pass = graph.add_pass("store");
     buffer = pass.write(buffer, by_address ? addressed : buffer_access::storage_write_compute);
     pass.side_effect();
@@ -319,7 +324,7 @@ TEST_F(ExecutorTest, BuffersWithADeviceAddressHaveMemoryForIt) {
     const auto report = executor->submit(graph);
     ASSERT_TRUE(report) << to_string(report.error());
   }
-  EXPECT_EQ(found, 1u);
+  EXPECT_EQ(found, 2u);
 }
 
 TEST_F(ExecutorTest, WhatIsReplacedCountsAsAllocatedUntilItIsFreed) {

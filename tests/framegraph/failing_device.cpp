@@ -12,6 +12,8 @@ std::atomic<int> call_count = 0;
 std::atomic<int> alive_count = 0;
 bool is_lost = false;
 int submit_count = 0;
+int update_count = 0;
+int wait_count = 0;
 int outside_count = 0;
 int submissions_left = -1;  // until the device is lost; below 0: it is not going to be
 
@@ -76,9 +78,18 @@ VKAPI_ATTR VkResult VKAPI_CALL allocate_sets(VkDevice device,
   return vkAllocateDescriptorSets(device, info, sets);
 }
 
+VKAPI_ATTR void VKAPI_CALL update_sets(VkDevice device, std::uint32_t write_count,
+                                       const VkWriteDescriptorSet* writes, std::uint32_t copy_count,
+                                       const VkCopyDescriptorSet* copies) {
+  ++update_count;
+  vkUpdateDescriptorSets(device, write_count, writes, copy_count, copies);
+}
+
 VKAPI_ATTR VkResult VKAPI_CALL submit(VkQueue queue, std::uint32_t count, const VkSubmitInfo2* info,
                                       VkFence fence) {
   ++submit_count;
+  for (std::uint32_t i = 0; i < count; ++i)
+    wait_count += static_cast<int>(info[i].waitSemaphoreInfoCount);
   if (submissions_left >= 0 && submissions_left-- == 0) is_lost = true;
   return is_lost ? VK_ERROR_DEVICE_LOST : vkQueueSubmit2(queue, count, info, fence);
 }
@@ -125,6 +136,7 @@ PFN_vkVoidFunction VKAPI_CALL get_device_proc_addr(VkDevice device, const char* 
       {"vkCreateComputePipelines", reinterpret_cast<PFN_vkVoidFunction>(&create_pipelines)},
       {"vkDestroyPipeline", reinterpret_cast<PFN_vkVoidFunction>(&destroy_pipeline)},
       {"vkAllocateDescriptorSets", reinterpret_cast<PFN_vkVoidFunction>(&allocate_sets)},
+      {"vkUpdateDescriptorSets", reinterpret_cast<PFN_vkVoidFunction>(&update_sets)},
       ALCOVE_WRAP(Semaphore, "vkCreateSemaphore", "vkDestroySemaphore"),
       {"vkCmdPipelineBarrier2", reinterpret_cast<PFN_vkVoidFunction>(&barrier)},
       {"vkQueueSubmit2", reinterpret_cast<PFN_vkVoidFunction>(&submit)},
@@ -151,7 +163,9 @@ void lose(bool lost) {
 void lose_after(int submissions) { submissions_left = submissions; }
 int calls() { return call_count; }
 int alive() { return alive_count; }
+int descriptor_updates() { return update_count; }
 int submits() { return submit_count; }
+int semaphore_waits() { return wait_count; }
 int outside_transfers() { return outside_count; }
 
 PFN_vkVoidFunction VKAPI_CALL get_instance_proc_addr(VkInstance instance, const char* name) {

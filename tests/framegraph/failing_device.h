@@ -16,8 +16,11 @@ void lose(bool lost);
 void lose_after(int submissions);
 // Objects that were created and not destroyed.
 int alive();
-// Calls of vkQueueSubmit2 so far.
+// Calls of vkUpdateDescriptorSets so far.
+int descriptor_updates();
+// Calls of vkQueueSubmit2 so far, and the semaphores that they wait for.
 int submits();
+int semaphore_waits();
 // Image barriers recorded so far whose queue family on one side is VK_QUEUE_FAMILY_EXTERNAL.
 int outside_transfers();
 // To be given to the executor in place of vkGetInstanceProcAddr.

@@ -4,22 +4,24 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstring>
+#include <cstddef>
 #include <initializer_list>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "alcove/framegraph/framegraph.h"
 #include "alcove/framegraph/verify.h"
-#include "render/vulkan_device.h"
+#include "gpu/gpu.h"
+#include "gpu/gpu_image.h"
+#include "gpu/vulkan_device.h"
 
 namespace alcove::framegraph {
 
-// A host-visible buffer that passes copy results into.
+// A host-visible buffer that passes copy results into. Gpu owns it.
 struct HostBuffer {
   VkBuffer buffer = VK_NULL_HANDLE;
-  VkDeviceMemory memory = VK_NULL_HANDLE;
   VkDeviceSize size = 0;
   void* mapped = nullptr;
 };
@@ -47,14 +49,8 @@ class Gpu {
   ~Gpu() {
     if (!device_) return;
     vkDeviceWaitIdle(device_->device());
-    for (HostBuffer& host : buffers_) {
-      vkDestroyBuffer(device_->device(), host.buffer, nullptr);
-      vkFreeMemory(device_->device(), host.memory, nullptr);
-    }
-    for (Image& image : images_) {
-      vkDestroyImage(device_->device(), image.image, nullptr);
-      vkFreeMemory(device_->device(), image.memory, nullptr);
-    }
+    buffers_.clear();
+    images_.clear();
     vkDestroyCommandPool(device_->device(), pool_, nullptr);
   }
 
@@ -68,54 +64,24 @@ class Gpu {
     handles.get_instance_proc_addr = vkGetInstanceProcAddr;
     handles.queues[0] = {device_->queue(), device_->queue_family()};
     handles.debug_utils = validation_;
+    handles.separate_depth_stencil = true;
     return handles;
   }
 
   HostBuffer make_host_buffer(VkDeviceSize size) {
-    HostBuffer host;
-    host.size = size;
-    VkBufferCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
-    info.size = size;
-    info.usage = VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
-    vkCreateBuffer(device_->device(), &info, nullptr, &host.buffer);
-    VkMemoryRequirements needed{};
-    vkGetBufferMemoryRequirements(device_->device(), host.buffer, &needed);
-    VkMemoryAllocateInfo allocate{};
-    allocate.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
-    allocate.allocationSize = needed.size;
-    allocate.memoryTypeIndex =
-        device_->memory_type(needed.memoryTypeBits, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |
-                                                        VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
-    vkAllocateMemory(device_->device(), &allocate, nullptr, &host.memory);
-    vkBindBufferMemory(device_->device(), host.buffer, host.memory, 0);
-    vkMapMemory(device_->device(), host.memory, 0, VK_WHOLE_SIZE, 0, &host.mapped);
-    std::memset(host.mapped, 0, size);
-    buffers_.push_back(host);
-    return host;
+    auto made = sample::HostBuffer::create(
+        *device_, size, VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+    EXPECT_TRUE(made) << made.error();
+    const std::span<std::byte> bytes = (*made)->bytes();
+    std::fill(bytes.begin(), bytes.end(), std::byte{});
+    buffers_.push_back(std::move(*made));
+    return {buffers_.back()->buffer(), size, bytes.data()};
   }
   VkImage make_image(const TextureDesc& desc, VkImageUsageFlags usage) {
-    VkImageCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
-    info.imageType = VK_IMAGE_TYPE_2D;
-    info.format = desc.format;
-    info.extent = {desc.extent.width, desc.extent.height, 1};
-    info.mipLevels = desc.mips;
-    info.arrayLayers = desc.layers;
-    info.samples = desc.samples;
-    info.usage = usage;
-    Image image;
-    vkCreateImage(device_->device(), &info, nullptr, &image.image);
-    VkMemoryRequirements needed{};
-    vkGetImageMemoryRequirements(device_->device(), image.image, &needed);
-    VkMemoryAllocateInfo allocate{};
-    allocate.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
-    allocate.allocationSize = needed.size;
-    allocate.memoryTypeIndex = device_->memory_type(needed.memoryTypeBits, 0);
-    vkAllocateMemory(device_->device(), &allocate, nullptr, &image.memory);
-    vkBindImageMemory(device_->device(), image.image, image.memory, 0);
-    images_.push_back(image);
-    return image.image;
+    auto made = sample::GpuImage::create(*device_, desc, usage);
+    EXPECT_TRUE(made) << made.error();
+    images_.push_back(std::move(*made));
+    return images_.back()->image();
   }
   // From the undefined layout, in a submission of its own.
   void change_layout(VkImage image, VkImageLayout layout) {
@@ -198,12 +164,8 @@ class Gpu {
   std::unique_ptr<sample::VulkanDevice> device_;
   VkCommandPool pool_ = VK_NULL_HANDLE;
   VkCommandBuffer commands_ = VK_NULL_HANDLE;
-  struct Image {
-    VkImage image = VK_NULL_HANDLE;
-    VkDeviceMemory memory = VK_NULL_HANDLE;
-  };
-  std::vector<Image> images_;
-  std::vector<HostBuffer> buffers_;
+  std::vector<std::unique_ptr<sample::GpuImage>> images_;
+  std::vector<std::unique_ptr<sample::HostBuffer>> buffers_;
   std::string problem_;
   bool validation_ = true;
 };

@@ -133,6 +133,12 @@ class Mutator {
   }
 
   void drop_waits(std::uint32_t index) {
+    for (std::uint32_t queue = 0; queue < kQueueClasses; ++queue) {
+      if (!(plan_.submissions[index].frame_before & (1u << queue))) continue;
+      Plan mutant = plan_;
+      mutant.submissions[index].frame_before &= static_cast<std::uint8_t>(~(1u << queue));
+      visit_("drop a wait for the frame before", mutant);
+    }
     for (std::uint32_t w = 0; w < plan_.submissions[index].wait_count; ++w) {
       Plan mutant = plan_;
       const std::uint32_t at = mutant.submissions[index].first_wait + w;

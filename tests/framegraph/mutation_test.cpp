@@ -101,7 +101,9 @@ TEST(Mutation, VerifierRefusesHarmfulMutantsOfQueueTransfers) {
   options.queues = true;
   const Counts counts = mutate_graphs(200, options, limits);
   // A dependency may be met twice, by a barrier or by way of a third queue.
-  expect_harmless_only(counts, {"drop a barrier", "drop a semaphore"});
+  expect_harmless_only(counts,
+                       {"drop a barrier", "drop a semaphore", "drop a wait for the frame before"});
+  EXPECT_GT(counts.at("drop a wait for the frame before").killed, 50u);
   EXPECT_GT(counts.at("skip an ownership transfer").killed, 100u);
   EXPECT_GT(counts.at("drop a semaphore").killed, 100u);
   expect_agreement(counts);
@@ -113,7 +115,9 @@ TEST(Mutation, VerifierRefusesHarmfulMutantsOfQueuesOfOneFamily) {
   RandomOptions options;
   options.queues = true;
   const Counts counts = mutate_graphs(200, options, limits);
-  expect_harmless_only(counts, {"drop a barrier", "drop a semaphore"});
+  expect_harmless_only(counts,
+                       {"drop a barrier", "drop a semaphore", "drop a wait for the frame before"});
+  EXPECT_GT(counts.at("drop a wait for the frame before").killed, 50u);
   EXPECT_GT(counts.at("drop a semaphore").killed, 100u);
   expect_agreement(counts);
 }

@@ -141,8 +141,6 @@ class Oracle {
           pass_barriers(step);
         else if (step.kind == Step::Kind::ends)
           pass_end(step);
-        else if (step.kind == Step::Kind::joins)
-          pass_join();
         else
           pass_begin(step);
       }
@@ -208,13 +206,6 @@ class Oracle {
         now_.after[step.queue] |= plain(wait.stages);
         now_.available[step.queue] |= plain(wait.stages);
         sights_.push_back({step.queue, plain(wait.stages), ~VkAccessFlags2{0}});
-      }
-    }
-
-    void pass_join() {
-      for (std::size_t queue = 0; queue < kQueueClasses; ++queue) {
-        now_.after[queue] = now_.available[queue] = ~VkPipelineStageFlags2{0};
-        sights_.push_back({queue, ~VkPipelineStageFlags2{0}, ~VkAccessFlags2{0}});
       }
     }
 

@@ -126,5 +126,40 @@ TEST_F(Queues, PartOfAHistoryIsUpdatedOnTheQueueThatOwnsIt) {
   (void)compiled();
 }
 
+// Particles are simulated on the compute queue beside the drawing of the scene, each with memory of
+// its own: neither queue waits for the other's frame before.
+TEST_F(Queues, FramesOverlapWhereTheyShareNoMemory) {
+  BufferHistory particles = graph_.create_buffer_history("particles", {4096});
+  PassBuilder simulate = graph_.add_pass("simulate", QueueClass::compute);
+  particles.current =
+      simulate.write(particles.current, buffer_access::storage_write_compute, Contents::discard);
+  simulate.side_effect();
+  PassBuilder draw = graph_.add_pass("draw");
+  const Texture scene = draw.write(make("scene"), access::color_attachment, {}, Contents::discard);
+  PassBuilder show = graph_.add_pass("show");
+  show.read(scene, access::sampled_fragment);
+  show.side_effect();
+  const Plan plan = compiled();
+  ASSERT_GE(plan.submissions.size(), 2u);
+  for (const Submission& submission : plan.submissions) EXPECT_EQ(submission.frame_before, 0u);
+}
+
+//   scene (graphics) --> blur (compute) --> effect outside the graph
+// The texture that graphics writes first has the memory that compute read last in the frame before.
+TEST_F(Queues, MemoryThatAnotherQueueUsedLastIsWaitedFor) {
+  PassBuilder draw = graph_.add_pass("scene");
+  const Texture scene = draw.write(make("scene"), access::color_attachment, {}, Contents::discard);
+  PassBuilder blur = graph_.add_pass("blur", QueueClass::compute);
+  blur.read(scene, access::sampled_compute);
+  blur.side_effect();
+  Plan plan = compiled();
+  const auto compute = static_cast<std::uint8_t>(1u << static_cast<unsigned>(QueueClass::compute));
+  ASSERT_EQ(plan.submissions[0].queue, QueueClass::graphics);
+  EXPECT_EQ(plan.submissions[0].frame_before, compute);
+  EXPECT_EQ(plan.submissions[1].frame_before, 0u);
+  plan.submissions[0].frame_before = 0;
+  EXPECT_FALSE(verify(graph_.description(), limits_, plan));
+}
+
 }  // namespace
 }  // namespace alcove::framegraph

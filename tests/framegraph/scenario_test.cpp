@@ -246,6 +246,63 @@ TEST_F(Scenario, DepthIsTestedAndSampledInOneAccess) {
             VkFlags{VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT});
 }
 
+// prepass -> depth and stencil -> mark (reads depth, writes stencil) -> ambient (samples depth)
+// Writing the stencil is no write of the depth: the last pass finds the depth as it was, and its
+// sampling needs no barrier.
+TEST_F(Scenario, WritingTheStencilLeavesTheDepthReadable) {
+  Texture depth =
+      graph_.create_texture("depth", {VK_FORMAT_D24_UNORM_S8_UINT, Extent::absolute(64, 64)});
+  PassBuilder prepass = graph_.add_pass("prepass");
+  depth = prepass.write(depth, access::depth_attachment, {}, Contents::discard);
+  PassBuilder mark = graph_.add_pass("mark");
+  mark.read(depth, access::depth_test | access::sampled_fragment, Range::depth());
+  depth = mark.write(depth, access::stencil_attachment, Range::stencil());
+  mark.side_effect();
+  PassBuilder ambient = graph_.add_pass("ambient");
+  ambient.read(depth, access::depth_test | access::sampled_fragment, Range::depth());
+  ambient.side_effect();
+  const Plan result = plan();
+  EXPECT_EQ(transitions_before(result, 1), 2u) << "one for each aspect";
+  EXPECT_EQ(transitions_before(result, 2), 0u);
+  for (std::uint32_t t = 0; t < result.transitions.size(); ++t) {
+    if (result.transitions[t].range.aspects == 0) continue;
+    Plan wrong = result;
+    wrong.transitions[t].range.aspects ^= VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT;
+    EXPECT_FALSE(verify(graph_.description(), {}, wrong)) << "the other aspect";
+  }
+}
+
+// Both aspects that change alike change in one barrier.
+TEST_F(Scenario, DepthAndStencilThatChangeAlikeShareABarrier) {
+  Texture depth =
+      graph_.create_texture("depth", {VK_FORMAT_D24_UNORM_S8_UINT, Extent::absolute(64, 64), 1, 2});
+  PassBuilder prepass = graph_.add_pass("prepass");
+  depth = prepass.write(depth, access::depth_attachment, {}, Contents::discard);
+  PassBuilder copy = graph_.add_pass("copy");
+  copy.read(depth, access::transfer_source, Range::depth());
+  copy.read(depth, access::transfer_source, Range::stencil());
+  copy.side_effect();
+  const Plan result = plan();
+  EXPECT_EQ(transitions_before(result, 0), 1u);
+  EXPECT_EQ(transitions_before(result, 1), 1u);
+}
+
+// gbuffer -> albedo -> light (reads albedo at its own pixel, as an input attachment)
+TEST_F(Scenario, InputAttachmentIsReadAtItsPixel) {
+  Texture albedo = graph_.create_texture("albedo", kColor);
+  Texture lit = graph_.create_texture("lit", kColor);
+  PassBuilder gbuffer = graph_.add_pass("gbuffer");
+  albedo = gbuffer.write(albedo, access::color_attachment, {}, Contents::discard);
+  PassBuilder light = graph_.add_pass("light");
+  light.read(albedo, access::input_attachment);
+  lit = light.write(lit, access::color_attachment, {}, Contents::discard);
+  graph_.output(lit);
+  const Plan result = plan();
+  EXPECT_EQ(result.placements[albedo.index].usage,
+            VkFlags{VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT});
+  EXPECT_EQ(transitions_before(result, 1), 2u);
+}
+
 // 1,000 passes, each of which reads some of the last textures. A debug build verifies such a plan
 // whenever it compiles it; framegraph_benchmark prints how long that takes.
 TEST_F(Scenario, PlanOfAThousandPassesIsVerified) {

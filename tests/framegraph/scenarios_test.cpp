@@ -158,6 +158,41 @@ TEST_F(Scenario, AttachmentsAreLoadedAndStoredWhereContentsAreNeeded) {
   EXPECT_EQ(ops[3], (Ops{VK_ATTACHMENT_LOAD_OP_LOAD, VK_ATTACHMENT_STORE_OP_NONE}));
 }
 
+// The depth is attached read-only and kept, while the stencil of the same texture is cleared. The
+// depth is sampled by the same pass.
+TEST_F(Scenario, DepthIsSampledWhileItsStencilIsWritten) {
+  begin();
+  static constexpr VkClearValue kCleared{.depthStencil = {0.25f, 3}};
+  static constexpr VkClearValue kMarked{.depthStencil = {0.0f, 7}};
+  Texture depth = texture("depth", VK_FORMAT_D32_SFLOAT_S8_UINT);
+  Texture color = texture("color");
+  PassBuilder opaque = graph_.add_pass("opaque");
+  depth = opaque.write(depth, access::depth_attachment);
+  opaque.record([=](RecordContext& c) {
+    ASSERT_TRUE(c.begin_rendering({}, {depth, &kCleared}));
+    c.end_rendering();
+  });
+  PassBuilder decals = graph_.add_pass("decals");
+  decals.read(depth, access::depth_test | access::sampled_fragment, Range::depth());
+  depth = decals.write(depth, access::stencil_attachment, Range::stencil(), Contents::discard);
+  color = decals.write(color, access::color_attachment);
+  decals.record([=](RecordContext& c) {
+    EXPECT_NE(c.view(depth, Range::depth()), c.view(depth, Range::stencil()));
+    const Attachment target{color, &kClearRed};
+    ASSERT_TRUE(c.begin_rendering({&target, 1}, {depth, &kMarked}));
+    c.end_rendering();
+  });
+  copy_out(color, 0);
+  copy_out(depth, 1, 1, VK_IMAGE_ASPECT_DEPTH_BIT);
+  copy_out(depth, 2, 1, VK_IMAGE_ASPECT_STENCIL_BIT);
+  run();
+  EXPECT_EQ(word(0), kRed);
+  float kept = 0;
+  std::memcpy(&kept, static_cast<const float*>(host_.mapped) + 1, sizeof kept);
+  EXPECT_EQ(kept, 0.25f);
+  EXPECT_EQ(word(2) & 0xff, 7u);
+}
+
 // Written in the first frame, read in the others, and in the last one updated in part.
 TEST_F(Scenario, PersistentTextureKeepsItsContents) {
   for (std::uint32_t frame = 0; frame < 4; ++frame) {
@@ -184,6 +219,48 @@ TEST_F(Scenario, PersistentTextureKeepsItsContents) {
     if (frame == 0 || frame == 2) continue;
     EXPECT_EQ(word(0), 100u);
     EXPECT_EQ(word(1), frame == 1 ? 100u : 102u);
+  }
+}
+
+// The first graph draws a persistent texture and leaves it in a final state. The second graph
+// imports it, copies it out and writes another value, which the first graph then reads.
+TEST_F(Scenario, GraphsHandOverAPersistentTexture) {
+  const State between{VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT,
+                      VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL};
+  const auto add_clear = [](Graph& graph, Texture& texture, std::uint32_t value) {
+    PassBuilder pass = graph.add_pass("clear");
+    texture = pass.write(texture, access::clear, {}, Contents::discard);
+    pass.record([=](RecordContext& c) {
+      VkClearColorValue color{};
+      color.uint32[0] = value;
+      const VkImageSubresourceRange range{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+      c.vk.vkCmdClearColorImage(c.commands, c.image(texture), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                                &color, 1, &range);
+    });
+  };
+  Graph owner;
+  for (std::uint32_t frame = 0; frame < 3; ++frame) {
+    owner.reset();
+    TextureHistory shared = owner.create_persistent_texture(
+        "shared", {VK_FORMAT_R32_UINT, Extent::absolute(8, 8)}, between);
+    if (frame == 0) {
+      EXPECT_EQ(executor().exported(owner, shared).image, VkImage{VK_NULL_HANDLE});
+      add_clear(owner, shared.current, 100);
+    } else {
+      PassBuilder reader = owner.add_pass("reader");
+      reader.read(shared.current, access::sampled_fragment);
+      reader.side_effect();
+      reader.record([](RecordContext&) {});
+    }
+    ASSERT_TRUE(executor().submit(owner));
+    begin();
+    const ImportedTexture import = executor().exported(owner, shared);
+    EXPECT_EQ(import.initial_state.layout, between.layout);
+    Texture taken = graph_.import_texture("taken over", import);
+    copy_out(taken);
+    add_clear(graph_, taken, 101 + frame);
+    run({1});
+    EXPECT_EQ(word(0), 100 + frame);
   }
 }
 
@@ -271,6 +348,41 @@ TEST_F(Scenario, AsyncComputeIsOrderedWithSemaphoresOfTheCaller) {
   EXPECT_EQ(word(1), 8u);
   executor_.reset();
   vkDestroySemaphore(device, semaphore, nullptr);
+}
+
+// Particles on the compute queue, the scene on graphics, nothing in common: from the second frame
+// of a plan on, no queue waits for what the other did in the frame before.
+TEST_F(Scenario, FramesOverTwoQueuesOverlap) {
+  several_queues_ = true;
+  const auto declare = [&](std::uint32_t frame, VkDeviceSize size) {
+    begin();
+    BufferHistory particles = graph_.create_buffer_history("particles", {size});
+    PassBuilder simulate = graph_.add_pass("simulate", QueueClass::compute);
+    particles.current = simulate.write(particles.current, buffer_access::fill, Contents::discard);
+    simulate.side_effect();
+    simulate.record([=, out = particles.current](RecordContext& c) {
+      c.vk.vkCmdFillBuffer(c.commands, c.buffer(out), 0, VK_WHOLE_SIZE, frame);
+    });
+    Texture scene = texture("scene");
+    PassBuilder draw = graph_.add_pass("draw");
+    scene = draw.write(scene, access::color_attachment);
+    draw.side_effect();
+    draw.record([=](RecordContext& c) {
+      const Attachment target{scene, &kClearRed};
+      ASSERT_TRUE(c.begin_rendering({&target, 1}));
+      c.end_rendering();
+    });
+  };
+  for (std::uint32_t frame = 0; frame < 5; ++frame) {
+    // The last frame has another plan, which begins when all before it is done.
+    declare(frame, frame < 4 ? 64 : 128);
+    const int before = failing::semaphore_waits();
+    run({frame % 2});
+    const int waits = failing::semaphore_waits() - before;
+    // In the first frames the histories' slots come into use, each with a plan of its own.
+    if (frame == 3) EXPECT_EQ(waits, 0);
+    if (frame == 4) EXPECT_GT(waits, 0);
+  }
 }
 
 // The image comes from outside of the device's queue families, and goes there again.

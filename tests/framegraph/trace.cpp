@@ -1,6 +1,5 @@
 #include "trace.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace alcove::framegraph {
@@ -19,24 +18,11 @@ class Tracer {
   Tracer(const GraphDescription& graph, const Plan& plan) : graph_(graph), plan_(plan) {}
 
   Trace run() {
-    const bool several =
-        std::any_of(plan_.submissions.begin(), plan_.submissions.end(),
-                    [](const Submission& s) { return s.queue != QueueClass::graphics; });
-    for (std::uint32_t frame = 0; frame < 2; ++frame) {
-      if (frame == 1 && several) join();
-      unroll(frame);
-    }
+    for (std::uint32_t frame = 0; frame < 2; ++frame) unroll(frame);
     return std::move(trace_);
   }
 
  private:
-  // A frame over several queues begins when the one before is done.
-  void join() {
-    Step step;
-    step.kind = Step::Kind::joins;
-    trace_.steps.push_back(step);
-  }
-
   void unroll(std::uint32_t frame) {
     for (std::uint32_t r = 0; r < graph_.resources.size(); ++r) {
       const std::uint32_t external = graph_.resources[r].external;
@@ -62,6 +48,11 @@ class Tracer {
     for (std::uint32_t w = 0; w < submission.wait_count; ++w) {
       step.waits.push_back(plan_.waits[submission.first_wait + w]);
       step.waits.back().submission += first;
+    }
+    for (std::uint32_t other = 0; other < plan_.submissions.size() && frame == 1; ++other) {
+      const auto queue = static_cast<unsigned>(plan_.submissions[other].queue);
+      if (submission.frame_before & (1u << queue))
+        step.waits.push_back({other, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT});
     }
     trace_.steps.push_back(step);
     for (std::uint32_t p = 0; p < submission.pass_count; ++p)

@@ -35,10 +35,10 @@ struct Operation {
   const Transition* change = nullptr;
 };
 
-// The barriers recorded by one command, or where a submission or a frame begins or ends; those of
+// The barriers recorded by one command, or where a submission begins or ends; those of
 // two frames are numbered through.
 struct Step {
-  enum class Kind : std::uint8_t { barriers, begins, ends, joins };
+  enum class Kind : std::uint8_t { barriers, begins, ends };
   Kind kind = Kind::barriers;
   std::size_t queue = 0;
   std::vector<const Transition*> barriers;

@@ -262,6 +262,19 @@ TEST_F(Validate, ImportWithoutTheNeededUsageIsRefused) {
          "with usage STORAGE, but it was imported with SAMPLED: create it with STORAGE too");
 }
 
+TEST_F(Validate, HistoryWithoutTheNeededUsageIsRefused) {
+  Access addressed = buffer_access::storage_write_compute;
+  addressed.usage |= VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT;
+  BufferHistory history = graph_.create_buffer_history("particles", {64});
+  (void)pass("simulate").write(history.current, addressed);
+  expect(ErrorCode::missing_usage, "create it with SHADER_DEVICE_ADDRESS in BufferDesc::usage too");
+  graph_.reset();
+  history =
+      graph_.create_buffer_history("particles", {64, VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT});
+  (void)pass("simulate").write(history.current, addressed);
+  EXPECT_TRUE(compile(graph_));
+}
+
 TEST_F(Validate, ImportWithoutAVulkanHandleIsRefused) {
   ImportedTexture import;
   import.desc = kDesc;
@@ -282,6 +295,20 @@ TEST_F(Validate, RangeBeyondTheMipsIsRefused) {
   const Texture texture = written("t");
   pass("reader").read(texture, access::sampled_compute, Range::mip(3));
   expect(ErrorCode::bad_range, "but it has 1 mips and 1 layers");
+}
+
+TEST_F(Validate, AspectsThatTheFormatOrTheDeviceLacksAreRefused) {
+  const Texture color = written("t");
+  pass("reader").read(color, access::sampled_compute, Range::stencil());
+  expect(ErrorCode::bad_range, "in an aspect that its format does not have");
+  graph_.reset();
+  Texture depth = graph_.create_texture("d", {VK_FORMAT_D24_UNORM_S8_UINT, Extent::absolute(8, 8)});
+  depth = pass("draw").write(depth, access::depth_attachment);
+  pass("reader").read(depth, access::sampled_fragment, Range::depth());
+  EXPECT_TRUE(compile(graph_));
+  Limits limits;
+  limits.separate_depth_stencil = false;
+  expect(ErrorCode::bad_range, "set DeviceHandles::separate_depth_stencil", limits);
 }
 
 TEST_F(Validate, ZeroSizesAndSizesOverTheLimitsAreRefused) {

@@ -16,9 +16,16 @@ VkDescriptorType type_of(std::size_t binding) {
 ComputeRun::ComputeRun(const sample::VulkanDevice& device, std::span<const std::uint32_t> spirv,
                        std::vector<std::uint32_t> buffer_sizes)
     : owner_(device), device_(device.device()) {
-  for (std::size_t k = 0; k < buffer_sizes.size(); ++k)
-    buffers_.push_back(make_buffer(buffer_sizes[k], k == 0 ? VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT
-                                                           : VK_BUFFER_USAGE_STORAGE_BUFFER_BIT));
+  for (std::size_t k = 0; k < buffer_sizes.size(); ++k) {
+    auto made = sample::HostBuffer::create(
+        device, buffer_sizes[k],
+        k == 0 ? VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT : VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+    if (!made) {
+      ADD_FAILURE() << made.error();
+      return;
+    }
+    buffers_.push_back(std::move(*made));
+  }
   make_descriptors(buffer_sizes);
   make_pipeline(spirv);
   make_commands();
@@ -30,29 +37,6 @@ ComputeRun::~ComputeRun() {
   vkDestroyPipelineLayout(device_, layout_, nullptr);
   vkDestroyDescriptorPool(device_, descriptor_pool_, nullptr);
   vkDestroyDescriptorSetLayout(device_, set_layout_, nullptr);
-  for (const Buffer& buffer : buffers_) {
-    vkDestroyBuffer(device_, buffer.buffer, nullptr);
-    vkFreeMemory(device_, buffer.memory, nullptr);
-  }
-}
-
-ComputeRun::Buffer ComputeRun::make_buffer(std::uint32_t size, VkBufferUsageFlags usage) const {
-  Buffer made;
-  VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
-  info.size = size;
-  info.usage = usage;
-  check(vkCreateBuffer(device_, &info, nullptr, &made.buffer));
-  VkMemoryRequirements needs{};
-  vkGetBufferMemoryRequirements(device_, made.buffer, &needs);
-  VkMemoryAllocateInfo allocation{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
-  allocation.allocationSize = needs.size;
-  allocation.memoryTypeIndex =
-      owner_.memory_type(needs.memoryTypeBits, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |
-                                                   VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
-  check(vkAllocateMemory(device_, &allocation, nullptr, &made.memory));
-  check(vkBindBufferMemory(device_, made.buffer, made.memory, 0));
-  check(vkMapMemory(device_, made.memory, 0, VK_WHOLE_SIZE, 0, &made.mapped));
-  return made;
 }
 
 void ComputeRun::make_descriptors(const std::vector<std::uint32_t>& sizes) {
@@ -79,7 +63,7 @@ void ComputeRun::make_descriptors(const std::vector<std::uint32_t>& sizes) {
   check(vkAllocateDescriptorSets(device_, &allocation, &set_));
 
   for (std::size_t k = 0; k < sizes.size(); ++k) {
-    const VkDescriptorBufferInfo range{buffers_[k].buffer, 0, VK_WHOLE_SIZE};
+    const VkDescriptorBufferInfo range{buffers_[k]->buffer(), 0, VK_WHOLE_SIZE};
     VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
     write.dstSet = set_;
     write.dstBinding = std::uint32_t(k);

@@ -1,4 +1,4 @@
-// The least that runs one compute shader over buffers and reads the results back.
+// Runs one compute shader over buffers and reads the results back.
 #pragma once
 
 #include <cstdint>
@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "render/vulkan_device.h"
+#include "gpu/gpu.h"
 
 namespace alcove::maths_test {
 
@@ -22,26 +22,19 @@ class ComputeRun {
   ComputeRun& operator=(const ComputeRun&) = delete;
 
   // The memory of a buffer, mapped; read it after dispatch().
-  void* data(std::size_t buffer) const { return buffers_[buffer].mapped; }
+  void* data(std::size_t buffer) const { return buffers_[buffer]->bytes().data(); }
 
   // Runs `groups` workgroups with two words of push constants and waits for them.
   void dispatch(std::uint32_t groups, std::uint32_t push_0, std::uint32_t push_1);
 
  private:
-  struct Buffer {
-    VkBuffer buffer = VK_NULL_HANDLE;
-    VkDeviceMemory memory = VK_NULL_HANDLE;
-    void* mapped = nullptr;
-  };
-
-  Buffer make_buffer(std::uint32_t size, VkBufferUsageFlags usage) const;
   void make_descriptors(const std::vector<std::uint32_t>& sizes);
   void make_pipeline(std::span<const std::uint32_t> spirv);
   void make_commands();
 
   const sample::VulkanDevice& owner_;
   VkDevice device_;
-  std::vector<Buffer> buffers_;
+  std::vector<std::unique_ptr<sample::HostBuffer>> buffers_;
   VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;
   VkDescriptorPool descriptor_pool_ = VK_NULL_HANDLE;
   VkDescriptorSet set_ = VK_NULL_HANDLE;

@@ -4,7 +4,7 @@
 #include "alcove/passes/apply.h"
 #include "framegraph/allocation_counter.h"
 #include "maths/spherical_harmonics.h"
-#include "render/gpu.h"
+#include "gpu/gpu.h"
 
 namespace alcove::passes {
 namespace {

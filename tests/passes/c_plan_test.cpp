@@ -12,6 +12,7 @@
 #include "c_interface_fixture.h"
 #include "comma_locale.h"
 #include "framegraph/allocation_counter.h"
+#include "framegraph/failing_device.h"
 #include "gtao_scenes.h"
 
 namespace alcove::passes {
@@ -257,12 +258,18 @@ TEST(CSettings, ArePrintedShortAndExactInEveryLocale) {
   EXPECT_THAT(text, HasSubstr("\nfilter_tolerance_px = 1234567\n"));
 }
 
-// On a device without validation, which allocates.
-TEST(CSteadyFrame, AllocatesNothing) {
+// Frames of two views by every output, on a device without validation, which allocates. With an odd
+// number of frames in flight a slot meets both images of a history in turn.
+class CSteadyFrame : public testing::TestWithParam<std::uint32_t> {};
+INSTANTIATE_TEST_SUITE_P(FramesInFlight, CSteadyFrame, testing::Values(1u, 2u, 3u));
+
+TEST_P(CSteadyFrame, AllocatesAndCreatesNothingAndUpdatesNoDescriptor) {
   const auto device = sample::VulkanDevice::create();
   ASSERT_TRUE(device) << device.error();
   Engine engine(**device);
   AlcoveContextInfo info = engine.context_info();
+  info.frames_in_flight = GetParam();
+  info.get_instance_proc_addr = framegraph::failing::get_instance_proc_addr;
   AlcoveContext* made = nullptr;
   ASSERT_EQ(alcoveCreateContext(&info, &made, nullptr), ALCOVE_SUCCESS);
   const Context context(made);
@@ -292,25 +299,35 @@ TEST(CSteadyFrame, AllocatesNothing) {
   }
   AlcoveFrame frame{.struct_size = sizeof frame, .view_count = views.size(), .views = views.data()};
   std::size_t steady = 0;
+  int updates = 0;
   for (frame.index = 0; frame.index < 30; ++frame.index) {
-    frame.slot = frame.index % Engine::kSlots;
+    if (frame.index == 10) {
+      framegraph::failing::fail_at(0);  // counts from here on
+      updates = framegraph::failing::descriptor_updates();
+      EXPECT_GT(updates, 0);
+    }
+    frame.slot = frame.index % GetParam();
     for (AlcoveView& view : views) {
       view.previous_camera = view.camera;
       view.camera.view_from_world[12] = std::sin(static_cast<float>(frame.index));
     }
-    engine.submit(frame.slot, [&](VkCommandBuffer commands) {
+    engine.wait();
+    engine.submit(0, [&](VkCommandBuffer commands) {
       const std::size_t before = framegraph::allocations();
       EXPECT_EQ(alcoveRecordFrame(context.get(), commands, &frame), ALCOVE_SUCCESS)
           << alcoveGetMessage(context.get());
       AlcoveMemory memory{.struct_size = sizeof memory};
       EXPECT_EQ(alcoveGetMemory(context.get(), &memory), ALCOVE_SUCCESS);
       std::uint32_t count = 0;
-      EXPECT_EQ(alcoveGetTimings(context.get(), 1 - frame.slot, &count, nullptr), ALCOVE_SUCCESS);
+      EXPECT_EQ(alcoveGetTimings(context.get(), (frame.index + 1) % GetParam(), &count, nullptr),
+                ALCOVE_SUCCESS);
       steady += frame.index < 10 ? 0 : framegraph::allocations() - before;
     });
   }
   engine.wait();
   EXPECT_EQ(steady, 0u);
+  EXPECT_EQ(framegraph::failing::calls(), 0) << "objects of Vulkan were created";
+  EXPECT_EQ(framegraph::failing::descriptor_updates() - updates, 0);
 }
 
 }  // namespace

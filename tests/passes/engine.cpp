@@ -28,10 +28,6 @@ Engine::~Engine() {
     vkDestroyFence(device_.device(), slot.fence, nullptr);
   }
   vkDestroyCommandPool(device_.device(), pool_, nullptr);
-  for (const Image& image : images_) {
-    vkDestroyImage(device_.device(), image.image, nullptr);
-    vkFreeMemory(device_.device(), image.memory, nullptr);
-  }
 }
 
 AlcoveContextInfo Engine::context_info() const {
@@ -47,44 +43,29 @@ AlcoveContextInfo Engine::context_info() const {
 
 AlcoveImage Engine::make_image(VkFormat format, std::uint32_t width, std::uint32_t height,
                                VkImageUsageFlags usage, std::uint32_t layers) {
-  const VkImageCreateInfo info{.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
-                               .imageType = VK_IMAGE_TYPE_2D,
-                               .format = format,
-                               .extent = {width, height, 1},
-                               .mipLevels = 1,
-                               .arrayLayers = layers,
-                               .samples = VK_SAMPLE_COUNT_1_BIT,
-                               .usage = usage};
-  Image made;
-  EXPECT_EQ(vkCreateImage(device_.device(), &info, nullptr, &made.image), VK_SUCCESS);
-  VkMemoryRequirements needs;
-  vkGetImageMemoryRequirements(device_.device(), made.image, &needs);
-  const VkMemoryAllocateInfo allocation{
-      .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-      .allocationSize = needs.size,
-      .memoryTypeIndex =
-          device_.memory_type(needs.memoryTypeBits, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT)};
-  EXPECT_EQ(vkAllocateMemory(device_.device(), &allocation, nullptr, &made.memory), VK_SUCCESS);
-  EXPECT_EQ(vkBindImageMemory(device_.device(), made.image, made.memory, 0), VK_SUCCESS);
-  images_.push_back(made);
+  auto made = sample::GpuImage::create(
+      device_, {format, framegraph::Extent::absolute(width, height), 1, layers}, usage);
+  EXPECT_TRUE(made) << made.error();
+  if (!made) {
+    return {};
+  }
+  const VkImage image = (*made)->image();
+  images_.push_back(std::move(*made));
   submit(0, [&](VkCommandBuffer commands) {
-    const bool depth = format == VK_FORMAT_D32_SFLOAT;
     const VkImageMemoryBarrier2 barrier{
         .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
         .dstStageMask = kResting.stages,
         .dstAccessMask = kResting.access,
         .newLayout = kResting.layout,
-        .image = made.image,
-        .subresourceRange = {static_cast<VkImageAspectFlags>(depth ? VK_IMAGE_ASPECT_DEPTH_BIT
-                                                                   : VK_IMAGE_ASPECT_COLOR_BIT),
-                             0, 1, 0, layers}};
+        .image = image,
+        .subresourceRange = {sample::aspect_of(format), 0, 1, 0, layers}};
     const VkDependencyInfo dependency{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
                                       .imageMemoryBarrierCount = 1,
                                       .pImageMemoryBarriers = &barrier};
     vkCmdPipelineBarrier2(commands, &dependency);
   });
   wait();
-  return {.image = made.image,
+  return {.image = image,
           .format = format,
           .width = width,
           .height = height,
@@ -94,14 +75,7 @@ AlcoveImage Engine::make_image(VkFormat format, std::uint32_t width, std::uint32
 }
 
 void Engine::destroy_image(const AlcoveImage& image) {
-  std::erase_if(images_, [&](const Image& made) {
-    if (made.image != image.image) {
-      return false;
-    }
-    vkDestroyImage(device_.device(), made.image, nullptr);
-    vkFreeMemory(device_.device(), made.memory, nullptr);
-    return true;
-  });
+  std::erase_if(images_, [&](const auto& made) { return made->image() == image.image; });
 }
 
 void Engine::submit(std::uint32_t slot, const std::function<void(VkCommandBuffer)>& record) {

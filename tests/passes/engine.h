@@ -1,4 +1,4 @@
-// An engine as the C interface meets it: images, a camera and command buffers of its own.
+// A small engine for tests of the C interface. It owns images and command buffers.
 #pragma once
 
 #include <array>
@@ -8,7 +8,8 @@
 #include <vector>
 
 #include "alcove/alcove.h"
-#include "render/vulkan_device.h"
+#include "gpu/gpu_image.h"
+#include "gpu/vulkan_device.h"
 
 namespace alcove::passes {
 
@@ -36,10 +37,6 @@ class Engine {
   void wait();
 
  private:
-  struct Image {
-    VkImage image = VK_NULL_HANDLE;
-    VkDeviceMemory memory = VK_NULL_HANDLE;
-  };
   struct Slot {
     VkCommandBuffer commands = VK_NULL_HANDLE;
     VkFence fence = VK_NULL_HANDLE;
@@ -47,7 +44,7 @@ class Engine {
   const sample::VulkanDevice& device_;
   VkCommandPool pool_ = VK_NULL_HANDLE;
   std::array<Slot, kSlots> slots_;
-  std::vector<Image> images_;
+  std::vector<std::unique_ptr<sample::GpuImage>> images_;
 };
 
 // So that nothing is submitted of what was recorded.

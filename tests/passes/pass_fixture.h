@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "alcove/passes/occlusion.h"
-#include "render/gpu.h"
+#include "gpu/gpu.h"
 
 namespace alcove::passes {
 

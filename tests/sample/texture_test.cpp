@@ -9,9 +9,9 @@
 #include <span>
 #include <vector>
 
+#include "gpu/gpu_image.h"
 #include "quad_test.h"
 #include "reference/truth.h"
-#include "render/gpu_image.h"
 
 namespace alcove::sample {
 namespace {
@@ -61,10 +61,10 @@ class TextureTest : public QuadTest {
 
   // The texels of the last mip, which is one.
   glm::u8vec4 last_mip(const TextureImage& image, VkFormat format, std::uint32_t mips) {
-    auto made = GpuImage::create(gpu().device(), format, {image.width, image.height},
-                                 VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT |
-                                     VK_IMAGE_USAGE_SAMPLED_BIT,
-                                 mips);
+    auto made = GpuImage::create(
+        gpu().device(), {format, framegraph::Extent::absolute(image.width, image.height), mips},
+        VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT |
+            VK_IMAGE_USAGE_SAMPLED_BIT);
     auto source =
         HostBuffer::create(gpu().device(), image.rgba.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
     auto target = HostBuffer::create(gpu().device(), 4, VK_BUFFER_USAGE_TRANSFER_DST_BIT);

@@ -54,6 +54,28 @@ TEST(TruthCache, DamagedEntriesReadAsAbsent) {
   EXPECT_FALSE(cache.read(key_of(1), values.size()));
 }
 
+TEST(TruthCache, EntryOfAnEarlierVersionReadsAsAbsent) {
+  const TemporaryFolder folder;
+  const TruthCache cache(folder.path);
+  const std::vector<float> values(100, 0.5f);
+  cache.write(key_of(1), values);
+  std::fstream(only_file(folder.path), std::ios::in | std::ios::out | std::ios::binary)
+      << "alcovet1";
+  EXPECT_FALSE(cache.read(key_of(1), values.size()));
+}
+
+TEST(TruthCache, KeyDependsOnOrderAndBoundariesOfItsParts) {
+  const auto key_of_texts = [](const std::vector<std::string>& texts) {
+    CacheKey key;
+    for (const std::string& text : texts) key.add(text);
+    return key.hex();
+  };
+  EXPECT_EQ(key_of_texts({"ab", "c"}), key_of_texts({"ab", "c"}));
+  EXPECT_NE(key_of_texts({"ab", "c"}), key_of_texts({"a", "bc"}));
+  EXPECT_NE(key_of_texts({"ab", "c"}), key_of_texts({"c", "ab"}));
+  EXPECT_NE(key_of_texts({"ab", "c"}), key_of_texts({"ab", "c", ""}));
+}
+
 TEST(TruthCache, NamedPipeInPlaceOfAnEntryReadsAsAbsentAndIsReplaced) {
   const TemporaryFolder folder;
   const TruthCache cache(folder.path);
@@ -75,9 +97,7 @@ TEST(TruthCache, WritingLeavesNoTemporaryFiles) {
   const TemporaryFolder folder;
   const TruthCache cache(folder.path);
   for (int i = 0; i < 3; ++i) cache.write(key_of(1), std::vector<float>(5, 1.0f));
-  size_t files = 0;
-  for ([[maybe_unused]] const auto& e : std::filesystem::directory_iterator(folder.path)) ++files;
-  EXPECT_EQ(files, 1u);
+  EXPECT_EQ(folder.files(), 1);
 }
 
 TEST(TruthCache, KeyChangesWithSceneAndCamera) {
@@ -105,7 +125,7 @@ TEST(TruthCache, KeyChangesWithSceneAndCamera) {
   EXPECT_NE(key.hex(), turned.hex());
 }
 
-TEST(TruthCache, WithoutAFolderNothingIsCached) {
+TEST(TruthCache, NothingIsCachedWithoutAFolder) {
   const TruthCache cache("");
   cache.write(key_of(1), std::vector<float>(5, 1.0f));
   EXPECT_FALSE(cache.read(key_of(1), 5));

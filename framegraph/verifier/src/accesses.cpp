@@ -130,7 +130,9 @@ void Replay::end_frame() {
   where_ = "at the end of the frame";
   for (std::uint32_t r = 0; r < resources_.size(); ++r) {
     const ResourceRecord& record = graph_.resources[r];
-    if (record.external != kNone && graph_.externals[record.external].has_final_state)
+    // A history that the frame does not use stays as it is.
+    if (record.external != kNone && graph_.externals[record.external].has_final_state &&
+        (record.origin == Origin::imported || plan_.placements[r].first != kNone))
       check_final_state(r);
   }
   for (const OutputRecord& output : graph_.outputs) {
@@ -143,6 +145,8 @@ void Replay::end_frame() {
     }
   }
   for (const FinalState& final : plan_.finals) check_final(final);
+  for (std::uint8_t queue = 0; queue < queue_count_; ++queue)
+    order_.signal(queue, end_signal(queue));
 }
 
 void Replay::check_final_state(std::uint32_t resource) {
@@ -187,11 +191,21 @@ void Replay::check_final(const FinalState& final) {
       fail(name(final.resource) + " is said to be left in another layout than it is");
     for (const Operation& read : sub.last.reads) {
       if (read.stages & ~stages) fail(name(final.resource) + " is read by a stage not told of");
+      check_final_order(final, read);
     }
+    for (const Operation& write : sub.last.writes) check_final_order(final, write);
     check_final_writes(final, sub);
     if (sub.family != kNone && sub.family != family(static_cast<std::uint8_t>(final.queue)))
       fail(name(final.resource) + " is said to be owned by another queue than it is");
   }
+}
+
+// The next frame waits for the queue that the history is said to be left on.
+void Replay::check_final_order(const FinalState& final, const Operation& operation) {
+  const auto queue = static_cast<std::uint8_t>(final.queue);
+  if (operation.queue != queue &&
+      !order_.is_ordered(operation, queue, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT))
+    fail(name(final.resource) + " is left on a queue that does not wait for its last use");
 }
 
 void Replay::check_final_writes(const FinalState& final, const Sub& sub) {
@@ -204,7 +218,7 @@ void Replay::check_final_writes(const FinalState& final, const Sub& sub) {
                         ((write.stages & ~stages) == 0 && (write.writes & ~accesses) == 0);
       if (sub.last.reads.empty() && !told)
         fail(name(final.resource) + " is written in a way not told of");
-    } else if (!several_queues_ && stages != 0) {
+    } else if (stages != 0) {
       const bool seen = accesses == 0
                             ? order_.is_before_any(write, queue, final.state.stages)
                             : order_.is_available(write, queue, final.state.stages) &&

@@ -197,10 +197,6 @@ void HappensBefore::wait(std::uint8_t queue, std::uint32_t submission, Stages st
   spread({queue, 0, 0, expand_stages(stages), ~Accesses{0}, true}, all);
 }
 
-void HappensBefore::join() {
-  for (auto* times : {&ordered_, &available_, &visible_}) times->assign(times->size(), now_);
-}
-
 bool HappensBefore::is_before(const Operation& operation, const Barrier& barrier) const {
   if (operation.kind == Operation::Kind::release && operation.queue == barrier.queue &&
       barrier.src != 0)

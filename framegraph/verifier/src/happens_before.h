@@ -74,8 +74,6 @@ class HappensBefore {
   // The signal of a submission, numbered from 0, and a wait for it.
   void signal(std::uint8_t queue, std::uint32_t submission);
   void wait(std::uint8_t queue, std::uint32_t submission, Stages stages);
-  // All that was done so far happens before all that follows, and is visible to it.
-  void join();
 
   // Whether the operation comes before the barrier's second scope, and whether its writes are then
   // available, where the barrier's memory dependency covers its resource.

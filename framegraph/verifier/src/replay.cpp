@@ -6,14 +6,28 @@ namespace alcove::framegraph::verifier {
 
 Replay::Replay(const GraphDescription& graph, const Limits& limits, const Plan& plan,
                Errors& errors)
-    : graph_(graph), limits_(limits), plan_(plan), errors_(errors), order_(order_of(graph, plan)) {}
+    : graph_(graph),
+      limits_(limits),
+      plan_(plan),
+      errors_(errors),
+      queue_count_(queue_count(graph, plan)),
+      order_(order_of(graph, plan, queue_count_)) {}
+
+// The number of the queue classes that take part.
+std::uint32_t Replay::queue_count(const GraphDescription& graph, const Plan& plan) {
+  QueueClass last = QueueClass::graphics;
+  for (const ExternalRecord& external : graph.externals) last = std::max(last, external.queue);
+  for (const Transition& t : plan.transitions) last = std::max({last, t.src_queue, t.dst_queue});
+  for (const Submission& submission : plan.submissions) last = std::max(last, submission.queue);
+  return static_cast<std::uint32_t>(last) + 1;
+}
 
 // All that the frame and the plan name. A mask of all commands only stands for stages that are
 // named besides.
-HappensBefore Replay::order_of(const GraphDescription& graph, const Plan& plan) {
+HappensBefore Replay::order_of(const GraphDescription& graph, const Plan& plan,
+                               std::uint32_t queues) {
   Stages stages = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
   Accesses accesses = 0;
-  std::uint32_t queues = 1;
   const auto add = [&](Stages in, Accesses by) {
     stages |= expand_stages(in & ~VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
     constexpr Accesses kAll = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
@@ -23,17 +37,12 @@ HappensBefore Replay::order_of(const GraphDescription& graph, const Plan& plan) 
   for (const ExternalRecord& external : graph.externals) {
     add(external.initial_state.stages, external.initial_state.access);
     add(external.final_state.stages, external.final_state.access);
-    queues = std::max(queues, static_cast<std::uint32_t>(external.queue) + 1);
   }
   for (const Transition& t : plan.transitions) {
     add(t.src_stages, t.src_access);
     add(t.dst_stages, t.dst_access);
-    queues = std::max({queues, static_cast<std::uint32_t>(t.src_queue) + 1,
-                       static_cast<std::uint32_t>(t.dst_queue) + 1});
   }
   for (const FinalState& final : plan.finals) add(final.state.stages, final.state.access);
-  for (const Submission& submission : plan.submissions)
-    queues = std::max(queues, static_cast<std::uint32_t>(submission.queue) + 1);
   return {stages, accesses, queues};
 }
 
@@ -41,8 +50,8 @@ void Replay::run() {
   resources_.resize(graph_.resources.size());
   for (std::uint32_t r = 0; r < graph_.resources.size(); ++r) {
     const ResourceRecord& record = graph_.resources[r];
-    resources_[r].subs.resize(record.kind == ResourceKind::texture ? record.mips * record.layers
-                                                                   : 1);
+    resources_[r].subs.resize(
+        record.kind == ResourceKind::texture ? record.mips * record.layers * record.planes : 1);
   }
   memory_.resize(plan_.heaps.size());
   find_expected();
@@ -74,14 +83,10 @@ void Replay::find_expected() {
   }
 }
 
-// Transients hold nothing, imports come as declared. Where queues other than graphics take part, a
-// frame begins when all of the frame before is done. Else its commands follow those before.
+// Transients hold nothing, imports come as declared.
 void Replay::begin_frame(bool first) {
   where_ = first ? "at the start of the frame" : "at the start of the next frame";
-  several_queues_ =
-      std::any_of(plan_.submissions.begin(), plan_.submissions.end(),
-                  [](const Submission& s) { return s.queue != QueueClass::graphics; });
-  if (several_queues_) order_.join();
+  first_frame_ = first;
   order_.next();
   for (std::uint32_t r = 0; r < resources_.size(); ++r) {
     const ResourceRecord& record = graph_.resources[r];
@@ -126,6 +131,10 @@ void Replay::arrive(Sub& sub, std::uint8_t queue, const State& initial_state) {
 void Replay::submission(std::uint32_t index) {
   const Submission& submission = plan_.submissions[index];
   const auto queue = static_cast<std::uint8_t>(submission.queue);
+  for (std::uint8_t other = 0; other < kQueueClasses && !first_frame_; ++other) {
+    if ((submission.frame_before & (1u << other)) != 0 && other < queue_count_)
+      order_.wait(queue, end_signal(other), VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
+  }
   for (std::uint32_t w = 0; w < submission.wait_count; ++w) {
     const Wait& wait_for = plan_.waits[submission.first_wait + w];
     order_.wait(queue, wait_for.submission, wait_for.stages);

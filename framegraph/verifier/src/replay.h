@@ -52,7 +52,7 @@ class Replay {
     bool operator==(const Former&) const = default;
   };
   struct Resource {
-    std::vector<Sub> subs;  // mips within layers
+    std::vector<Sub> subs;  // mips within layers within planes
     bool has_memory = false;
     std::vector<Former> former;
   };
@@ -63,7 +63,13 @@ class Replay {
   };
   using Memory = std::map<VkDeviceSize, Bytes>;
 
-  static HappensBefore order_of(const GraphDescription& graph, const Plan& plan);
+  static std::uint32_t queue_count(const GraphDescription& graph, const Plan& plan);
+  static HappensBefore order_of(const GraphDescription& graph, const Plan& plan,
+                                std::uint32_t queues);
+  // The signal of all that a queue did in the frame, beside those of the submissions.
+  std::uint32_t end_signal(std::uint8_t queue) const {
+    return static_cast<std::uint32_t>(plan_.submissions.size()) + queue;
+  }
   void find_expected();
   void begin_frame(bool first);
   void arrive(Sub& sub, std::uint8_t queue, const State& initial_state);
@@ -89,6 +95,7 @@ class Replay {
   void end_frame();
   void check_final_state(std::uint32_t resource);
   void check_final(const FinalState& final);
+  void check_final_order(const FinalState& final, const Operation& operation);
   void check_final_writes(const FinalState& final, const Sub& sub);
 
   template <typename Function>
@@ -99,9 +106,13 @@ class Replay {
       f(subs[0]);
       return;
     }
-    for (std::uint32_t layer = 0; layer < range.layers; ++layer) {
-      for (std::uint32_t mip = 0; mip < range.mips; ++mip)
-        f(subs[(range.base_layer + layer) * record.mips + range.base_mip + mip]);
+    const bool both = record.planes == 2 && range.aspects == 0;
+    const std::uint32_t from = range.aspects == VK_IMAGE_ASPECT_STENCIL_BIT ? 1 : 0;
+    for (std::uint32_t plane = from; plane < from + (both ? 2 : 1); ++plane) {
+      for (std::uint32_t i = range.base_layer; i < range.base_layer + range.layers; ++i) {
+        for (std::uint32_t mip = 0; mip < range.mips; ++mip)
+          f(subs[(plane * record.layers + i) * record.mips + range.base_mip + mip]);
+      }
     }
   }
   void fail(const std::string& what);
@@ -112,6 +123,7 @@ class Replay {
   const Limits& limits_;
   const Plan& plan_;
   Errors& errors_;
+  std::uint32_t queue_count_;
   HappensBefore order_;
   std::vector<Resource> resources_;
   std::vector<Memory> memory_;  // by heap
@@ -120,7 +132,7 @@ class Replay {
   std::vector<std::uint32_t> expected_;
   std::vector<std::size_t> first_expected_;
   std::vector<std::vector<std::uint32_t>> last_;  // by resource: the contents at the end
-  bool several_queues_ = false;
+  bool first_frame_ = true;
   std::vector<Barrier> barriers_;  // of the batch in hand
   std::string where_;
 };

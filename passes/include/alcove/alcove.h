@@ -17,7 +17,7 @@
 // Errors. A call on a context that fails records nothing and changes no history, and
 // alcoveGetMessage says in a sentence what was wrong. Where memory runs out or the device is lost
 // in the middle of a frame, throw the command buffer away; the next frame may be tried. No
-// exception leaves the library, and nothing is printed.
+// exception leaves the library, and nothing is printed: AlcoveContextInfo::log gets every sentence.
 //
 // Versions. A struct that may grow begins with struct_size, which the caller sets to sizeof the
 // struct. It tells the library which version of this header the caller was compiled with. From the
@@ -108,7 +108,7 @@ typedef enum AlcoveThicknessUnit {
 
 // How slice directions are distributed over pixels and frames.
 typedef enum AlcovePattern {
-  ALCOVE_PATTERN_GOLDEN = 0,   // 4x4 pixels, rotated by the golden ratio in each frame
+  ALCOVE_PATTERN_GOLDEN = 0,   // lattices without a period, rotated by the golden ratio
   ALCOVE_PATTERN_HILBERT = 1,  // the R2 sequence along a Hilbert curve
   ALCOVE_PATTERN_PAPER = 2,    // the 4x4 pixels and six rotations of [Jimenez 2016]
   ALCOVE_PATTERN_MAX_ENUM = 0x7fffffff
@@ -233,14 +233,68 @@ size_t alcovePrintSettings(const AlcoveSettings* settings, char* text, size_t si
 
 typedef struct AlcoveContext AlcoveContext;
 
-// The engine's device. All of it must outlive the context. The context allocates device memory with
-// vkAllocateMemory and host memory on the C++ heap: alcoveGetMemory says how much.
+// Device memory that a context needs.
+typedef struct AlcoveMemoryRequest {
+  VkMemoryRequirements requirements;  // size, alignment, and the memory types that will do
+  VkMemoryPropertyFlags required;     // properties that the memory type must have
+  VkMemoryPropertyFlags preferred;    // properties that it should have
+} AlcoveMemoryRequest;
+
+// A part of a device memory object.
+typedef struct AlcoveMemoryRange {
+  VkDeviceMemory memory;
+  VkDeviceSize offset;  // of the first byte, a multiple of the alignment
+  // The address of the first byte in host memory. Needed where VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT
+  // was required: the memory then stays mapped until it is freed.
+  void* mapped;
+  void* handle;  // the engine's own, for `free`
+} AlcoveMemoryRange;
+
+// The engine's allocator of device memory: both functions, or neither. They are called by the
+// thread that calls the library, and must not call it. `free` is called only after the device has
+// finished with the memory.
+typedef struct AlcoveMemoryFunctions {
+  // Fills `range`, which is zeroed. Anything but VK_SUCCESS fails the call of the library, with
+  // ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY for VK_ERROR_OUT_OF_DEVICE_MEMORY.
+  VkResult (*allocate)(void* user, const AlcoveMemoryRequest* request, AlcoveMemoryRange* range);
+  void (*free)(void* user, const AlcoveMemoryRange* range);
+  void* user;
+} AlcoveMemoryFunctions;
+
+// Memory that the engine has allocated, for the images of one context: device-local, in any memory
+// type that the images allow (usually every device-local one). alcoveEstimateMemory says how much
+// frames take. A change of size needs room for the old and the new images at the same time.
+typedef struct AlcoveMemoryBlock {
+  VkDeviceMemory memory;
+  VkDeviceSize offset;   // the first byte that may be used
+  VkDeviceSize size;     // bytes from there on
+  uint32_t memory_type;  // its index
+} AlcoveMemoryBlock;
+
+typedef enum AlcoveSeverity {
+  ALCOVE_SEVERITY_INFO = 0,     // device memory was allocated, a pipeline was created
+  ALCOVE_SEVERITY_WARNING = 1,  // it works, but something should be changed
+  ALCOVE_SEVERITY_ERROR = 2,    // a call has failed: the sentence is its message
+  ALCOVE_SEVERITY_MAX_ENUM = 0x7fffffff
+} AlcoveSeverity;
+
+// Receives sentences, each valid during the call only. It must not call the library. Null: nothing
+// is said.
+typedef struct AlcoveLog {
+  void (*write)(void* user, AlcoveSeverity severity, const char* sentence);
+  void* user;
+} AlcoveLog;
+
+// The engine's device. All of it, allocators and log included, must outlive the context.
 typedef struct AlcoveContextInfo {
   uint32_t struct_size;
-  uint32_t queue_family;             // of the queue that frames are submitted to: one that computes
-  VkInstance instance;               // as the device, made for Vulkan 1.3
-  VkPhysicalDevice physical_device;  // that binds 9 storage images to a shader
-  // With the features synchronization2 and shaderStorageImageWriteWithoutFormat enabled.
+  uint32_t queue_family;  // of the queue that frames are submitted to: one that computes
+  VkInstance instance;    // created for Vulkan 1.2 or newer
+  // Of Vulkan 1.3, or of 1.2 with the extension VK_KHR_synchronization2. A shader must be able to
+  // bind 9 storage images (maxPerStageDescriptorStorageImages).
+  VkPhysicalDevice physical_device;
+  // With the features synchronization2 and shaderStorageImageWriteWithoutFormat enabled. Where the
+  // instance was created for Vulkan 1.2, VK_KHR_synchronization2 is enabled as well.
   VkDevice device;
   PFN_vkGetInstanceProcAddr get_instance_proc_addr;
   // The features that the device was created with, chained as for vkCreateDevice: a feature that
@@ -254,6 +308,17 @@ typedef struct AlcoveContextInfo {
   // the same time. If it was created with VK_PIPELINE_CACHE_CREATE_EXTERNALLY_SYNCHRONIZED_BIT,
   // none of them may while a frame of this context is prepared or recorded.
   VkPipelineCache pipeline_cache;
+  // Given to every function of Vulkan that creates or destroys an object; null: the driver's own.
+  // The library's own host memory, a few kilobytes, comes from malloc and operator new.
+  const VkAllocationCallbacks* allocation_callbacks;
+  // Where device memory comes from: for images from `memory_block`, if its `memory` is not null;
+  // else, and where the block is full, from `memory_functions`, if there are any. Without functions
+  // a full block fails the frame with ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY. With neither, and for the
+  // parameters that the host writes (72 KiB per frame in flight) where there is a block alone,
+  // vkAllocateMemory is called.
+  AlcoveMemoryFunctions memory_functions;
+  AlcoveMemoryBlock memory_block;
+  AlcoveLog log;
 } AlcoveContextInfo;
 
 // `message` may be null; else it has room for ALCOVE_MAX_MESSAGE bytes and gets the sentence where

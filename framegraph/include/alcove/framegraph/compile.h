@@ -68,6 +68,8 @@ struct Limits {
   // The device has lazily allocated memory: attachments whose contents no pass loads or needs get
   // it.
   bool has_lazy_memory = false;
+  // The feature separateDepthStencilLayouts, for accesses to one aspect of a texture with two.
+  bool separate_depth_stencil = true;
   // Queue family of each class, kNone where there is none: its passes then run on graphics.
   std::uint32_t queue_families[kQueueClasses] = {0, kNone, kNone};
   MemoryOracle memory;

@@ -29,13 +29,25 @@ struct ResourceRecord {
   std::uint32_t external = kNone;  // index into externals, of an import or a history slot
   ResourceKind kind = ResourceKind::texture;
   Origin origin = Origin::transient;
-  std::uint8_t slot = 0;    // of a history: 0 is this frame's, k is that of k frames ago
-  std::uint8_t slots = 1;   // of a history
-  std::uint32_t flags = 0;  // ResourceFlags
-  VkImageCreateFlags create_flags = 0;
-  std::uint32_t reserved = 0;
+  std::uint8_t slot = 0;     // of a history: 0 is this frame's, k is that of k frames ago
+  std::uint8_t slots = 1;    // of a history
+  std::uint32_t flags = 0;   // ResourceFlags
+  VkFlags create_flags = 0;  // of a texture, TextureDesc::flags; of a buffer, BufferDesc::usage
+  std::uint32_t planes = 1;  // aspects that are followed separately: 2 with depth and stencil
 };
 static_assert(std::has_unique_object_representations_v<ResourceRecord>);
+
+constexpr bool has_depth_and_stencil(VkFormat format) {
+  return format >= VK_FORMAT_D16_UNORM_S8_UINT && format <= VK_FORMAT_D32_SFLOAT_S8_UINT;
+}
+
+// Subresources are numbered mips within layers within planes; depth is the first of two planes.
+constexpr std::uint32_t first_plane(const Range& range) {
+  return range.aspects == VK_IMAGE_ASPECT_STENCIL_BIT ? 1 : 0;
+}
+constexpr std::uint32_t plane_count(const ResourceRecord& record, const Range& range) {
+  return range.aspects != 0 ? 1 : record.planes;
+}
 
 enum ResourceFlags : std::uint32_t {
   kRelativeToNothing = 1,  // a relative extent of a dead handle
@@ -98,10 +110,10 @@ struct AccessRecord {
   VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
   VkFlags usage = 0;
   std::uint32_t resource = kNone;
-  std::uint32_t flags = 0;    // AccessFlags
-  Range range;                // resolved: kAll only where the base is out of range
+  std::uint32_t flags = 0;  // AccessFlags
+  // Resolved: kAll only where the base is out of range, aspects only where it is one of two.
+  Range range;
   std::uint32_t version = 0;  // that the access names: a write makes the next one
-  std::uint32_t reserved = 0;
 
   ResourceKind kind() const {  // of the handle
     return flags & kOnBuffer ? ResourceKind::buffer : ResourceKind::texture;

@@ -18,6 +18,7 @@
 #include "alcove/framegraph/compile.h"
 #include "alcove/framegraph/error.h"
 #include "alcove/framegraph/graph.h"
+#include "alcove/framegraph/host_services.h"
 #include "alcove/framegraph/plan.h"
 #include "alcove/framegraph/vulkan_functions.h"
 
@@ -36,8 +37,10 @@ struct DeviceHandles {
   VkDevice device = VK_NULL_HANDLE;
   PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr;
   QueueHandle queues[kQueueClasses];
-  bool debug_utils = false;          // VK_EXT_debug_utils is enabled on the instance
-  bool storage_multisample = false;  // the feature shaderStorageImageMultisample is enabled
+  bool debug_utils = false;             // VK_EXT_debug_utils is enabled on the instance
+  bool storage_multisample = false;     // the feature shaderStorageImageMultisample is enabled
+  bool separate_depth_stencil = false;  // the feature separateDepthStencilLayouts is enabled
+  HostServices host;                    // the caller's allocators and log
 };
 
 // Checks a plan against the declaration and the limits that it was made for.
@@ -148,6 +151,12 @@ class Executor {
   // queue. Only after the device has finished it: until then they may be those of the frame before.
   // Empty where there is nothing or timestamps are off. Valid until the next call.
   [[nodiscard]] std::span<const PassTiming> timings(std::uint32_t slot = 0);
+
+  // A persistent texture or buffer as the frames recorded so far leave it, for another graph to
+  // import. The other graph's frame comes between two frames of this one, and leaves it in the same
+  // state, which is the import's final state too. Handles are null before a frame has used it.
+  [[nodiscard]] ImportedTexture exported(const Graph& graph, const TextureHistory& texture) const;
+  [[nodiscard]] ImportedBuffer exported(const Graph& graph, const BufferHistory& buffer) const;
 
   // To be called before the caller destroys an image that it imported, if passes asked for views of
   // it other than the one imported: a new image may have the same handle.

@@ -134,9 +134,13 @@ class Graph {
                                       std::uint32_t slots = 2);
   // Histories of one slot: `current` keeps its contents from frame to frame, and a write that keeps
   // them updates it in place. `validity` is that of `current`; it can be read before it is written
-  // where it is valid. Passes that write it are live.
-  TextureHistory create_persistent_texture(std::string_view name, const TextureDesc& desc);
-  BufferHistory create_persistent_buffer(std::string_view name, const BufferDesc& desc);
+  // where it is valid. Passes that write it are live. With a final state, each frame that uses it
+  // leaves it in that state, so that another graph can take it over: it imports what
+  // Executor::exported() returns.
+  TextureHistory create_persistent_texture(std::string_view name, const TextureDesc& desc,
+                                           const State& final_state = {});
+  BufferHistory create_persistent_buffer(std::string_view name, const BufferDesc& desc,
+                                         const State& final_state = {});
   // From the next create_*_history on, nothing of the named history (or of all) is valid.
   void reset_history(std::string_view name);
   void reset_histories();
@@ -204,7 +208,8 @@ class Graph {
   static void fill_texture_record(ResourceRecord& record, const TextureDesc& desc);
   static bool is_texture_record(const ResourceRecord& record, const TextureDesc& desc);
   std::uint32_t add_history(std::string_view name, ResourceRecord record, std::uint32_t slots,
-                            HistoryValidity& validity);
+                            HistoryValidity& validity, const State& final_state = {});
+  static ResourceRecord buffer_record(const BufferDesc& desc);
   static Range resolved_range(Range range, const ResourceRecord& resource);
   static constexpr bool access_fits(const Access& access, ResourceKind kind, bool writes);
   static bool is_plain(const ResourceRecord& resource, ResourceKind kind);

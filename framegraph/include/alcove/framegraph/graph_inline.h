@@ -99,6 +99,7 @@ inline void Graph::fill_texture_record(ResourceRecord& record, const TextureDesc
   record.slots = 1;
   record.flags = 0;
   record.create_flags = desc.flags;
+  record.planes = has_depth_and_stencil(desc.format) ? 2 : 1;
 }
 
 inline Texture Graph::create_texture(std::string_view name, const TextureDesc& desc) {
@@ -148,8 +149,8 @@ constexpr bool Graph::access_fits(const Access& access, ResourceKind kind, bool 
 
 // Whether the resource is as kPlain has it.
 inline bool Graph::is_plain(const ResourceRecord& resource, ResourceKind kind) {
-  return resource.mips == 1 && resource.layers == 1 && resource.kind == kind &&
-         resource.origin == Origin::transient;
+  return resource.mips == 1 && resource.layers == 1 && resource.planes == 1 &&
+         resource.kind == kind && resource.origin == Origin::transient;
 }
 
 // The version that the access leaves.

@@ -60,11 +60,16 @@ struct PlannedPass {
   std::uint32_t batch_count = 0;
 };
 
-// Work that is submitted to one queue at once. A submission waits only for earlier ones. A frame
-// that uses other queues than graphics begins when all of the frame before is done: each of its
-// first submissions waits for the last ones of that frame.
+// Work that is submitted to one queue at once. A submission waits only for earlier ones.
+//
+// Frames of one plan that follow each other overlap. What the frame before did on the same queue is
+// waited for by barriers, as far as the two use the same memory or histories. What it did on other
+// queues is waited for where `frame_before` says so.
 struct Submission {
   QueueClass queue = QueueClass::graphics;
+  // Bits by queue class: all that the frame before did on these queues comes before this
+  // submission, which takes over memory from it.
+  std::uint8_t frame_before = 0;
   std::uint32_t first_pass = 0;  // positions [first_pass, first_pass + pass_count)
   std::uint32_t pass_count = 0;
   std::uint32_t first_wait = 0;  // into Plan::waits

@@ -36,22 +36,29 @@ class RecordContext {
  public:
   VkCommandBuffer commands = VK_NULL_HANDLE;
   const VulkanFunctions& vk;
-  // Changes whenever a transient or history handle that passes can see may have changed.
+  // Changes whenever a handle that passes can see may have become another one, but for imported
+  // views. No two executors have an id in common.
   std::uint64_t resources_id = 0;
   // Frame slot as in FrameInfo: for what a pass keeps per frame in flight.
   std::uint32_t frame_slot = 0;
 
   // A view of the range that the pass declared for this texture (the first access that names it),
   // or of `range`, which must lie within what is declared. 2D, 2D array when more than one layer is
-  // covered, or 3D, unless a type is given. Depth formats give the depth aspect. Another format
-  // than the texture's needs TextureDesc::flags with MUTABLE_FORMAT, a cube CUBE_COMPATIBLE.
+  // covered, or 3D, unless a type is given. A texture with depth and stencil gives the depth,
+  // unless the range names the stencil. Another format than the texture's needs TextureDesc::flags
+  // with MUTABLE_FORMAT, a cube CUBE_COMPATIBLE.
   VkImageView view(Texture texture) const;
   VkImageView view(Texture texture, Range range, VkImageViewType type = kViewTypeByRange,
                    VkFormat format = VK_FORMAT_UNDEFINED) const;
+  // Whether view() has returned a view that the caller imported (ImportedTexture::view). Such a
+  // view may be destroyed after the frame, and another one get its handle, without a new
+  // resources_id.
+  bool gave_imported_view() const { return gave_imported_view_; }
   // The attachment for vkCmdBeginRendering. Earlier contents are loaded where there are any and the
   // access keeps them. What is drawn is stored where a later pass or frame needs it.
   VkRenderingAttachmentInfo attachment(const Attachment& attachment) const;
-  // Begins a rendering over the whole of the attachments' mips and layers. False, and record()
+  // Begins a rendering over the whole of the attachments' mips and layers. `depth` is bound for the
+  // aspects that the pass declared as attachments. False, and record()
   // returns an error, where their sizes or samples differ or the device lacks dynamic rendering.
   bool begin_rendering(std::span<const Attachment> colors, const Attachment& depth = {}) const;
   void end_rendering() const { vk.vkCmdEndRendering(commands); }
@@ -74,11 +81,13 @@ class RecordContext {
 
  private:
   friend class Recorder;
+  VkRenderingAttachmentInfo attachment(const Attachment& attachment, std::uint32_t access) const;
   RecordContext(VkCommandBuffer command_buffer, const VulkanFunctions& functions,
                 const class Recorder& recorder, std::uint32_t pass)
       : commands(command_buffer), vk(functions), recorder_(recorder), pass_(pass) {}
   const class Recorder& recorder_;
   std::uint32_t pass_;
+  mutable bool gave_imported_view_ = false;
 };
 
 }  // namespace alcove::framegraph

@@ -4,7 +4,6 @@
 
 #include <vulkan/vulkan_core.h>
 
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 
@@ -64,6 +63,10 @@ struct TextureDesc {
 
 struct BufferDesc {
   VkDeviceSize size = 0;  // bytes
+  // Usage besides what the accesses of the live passes ask for. A history needs it for every usage
+  // that is not of Vulkan 1.0, for example SHADER_DEVICE_ADDRESS_BIT: histories are made once, for
+  // all frames.
+  VkBufferUsageFlags usage = 0;
 };
 
 // How a pass touches a resource. `layout` is for textures only. `usage` is VkImageUsageFlags for a
@@ -76,18 +79,22 @@ struct Access {
   VkFlags usage = 0;
 };
 
-// The mips and layers of one access; the default is all of them.
+// The mips, layers and aspects of one access; the default is all of them.
 struct Range {
   std::uint16_t base_mip = 0;
   std::uint16_t mips = kAll;
   std::uint16_t base_layer = 0;
   std::uint16_t layers = kAll;
+  // One aspect of a texture with depth and stencil; 0 is every aspect of the format. A pass may
+  // read the depth and write the stencil of one texture. Needs the feature
+  // separateDepthStencilLayouts.
+  VkImageAspectFlags aspects = 0;
 
   static constexpr Range mip(std::uint32_t mip) { return {base(mip), 1, 0, kAll}; }
   static constexpr Range layer(std::uint32_t layer) { return {0, kAll, base(layer), 1}; }
-  constexpr bool operator==(const Range& other) const {
-    return std::bit_cast<std::uint64_t>(*this) == std::bit_cast<std::uint64_t>(other);
-  }
+  static constexpr Range depth() { return {0, kAll, 0, kAll, VK_IMAGE_ASPECT_DEPTH_BIT}; }
+  static constexpr Range stencil() { return {0, kAll, 0, kAll, VK_IMAGE_ASPECT_STENCIL_BIT}; }
+  constexpr bool operator==(const Range&) const = default;
 
  private:
   // An index that does not fit stays out of range: no texture has so many mips or layers.

@@ -55,7 +55,7 @@ enum class Weighting : std::uint8_t {
 
 // How slice directions and step offsets vary over pixels and frames (shaders/maths/sampling.h).
 enum class Pattern : std::uint8_t {
-  golden,   // 4x4 pixels in the order of a Bayer matrix, rotated by the golden ratio each frame.
+  golden,   // Lattices without a period, rotated by the golden ratio each frame.
   hilbert,  // The R2 sequence along a Hilbert curve.
   paper,    // The paper's 4x4 pixels and six rotations.
 };
@@ -63,7 +63,7 @@ enum class Pattern : std::uint8_t {
 // Which pixels a workgroup traces. It changes the cost and not the image.
 enum class Grouping : std::uint8_t {
   neighbours,  // 8x8 adjacent tiles.
-  pattern,     // Every fourth tile in x and y: these have the same slice direction.
+  pattern,     // Every fourth tile in x and y: with Pattern::paper these have one slice direction.
 };
 
 // Parts of the search that exist to be measured (`alcove ablate`). The defaults suit engines.

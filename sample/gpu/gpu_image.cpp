@@ -1,38 +1,47 @@
-#include "render/gpu_image.h"
+#include "gpu/gpu_image.h"
 
 namespace alcove::sample {
 
 VkImageAspectFlags aspect_of(VkFormat format) {
-  return format == VK_FORMAT_D32_SFLOAT ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
+  switch (format) {
+    case VK_FORMAT_D16_UNORM:
+    case VK_FORMAT_X8_D24_UNORM_PACK32:
+    case VK_FORMAT_D32_SFLOAT:
+    case VK_FORMAT_D16_UNORM_S8_UINT:
+    case VK_FORMAT_D24_UNORM_S8_UINT:
+    case VK_FORMAT_D32_SFLOAT_S8_UINT:
+      return VK_IMAGE_ASPECT_DEPTH_BIT;
+    default:
+      return VK_IMAGE_ASPECT_COLOR_BIT;
+  }
 }
 
-tl::expected<std::unique_ptr<GpuImage>, std::string> GpuImage::create(const VulkanDevice& owner,
-                                                                      VkFormat format,
-                                                                      VkExtent2D size,
-                                                                      VkImageUsageFlags usage,
-                                                                      std::uint32_t mips) {
+tl::expected<std::unique_ptr<GpuImage>, std::string> GpuImage::create(
+    const VulkanDevice& owner, const framegraph::TextureDesc& desc, VkImageUsageFlags usage) {
+  constexpr VkImageUsageFlags kUsedByViews =
+      VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT |
+      VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
   std::unique_ptr<GpuImage> made(new GpuImage(owner));
-  made->format_ = format;
-  made->size_ = size;
-  made->mips_ = mips;
+  made->desc_ = desc;
   made->usage_ = usage;
   const VkDevice device = owner.device();
+  const std::string name = "an image of " + std::to_string(desc.extent.width) + "x" +
+                           std::to_string(desc.extent.height) + " pixels";
   const VkImageCreateInfo info{.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+                               .flags = desc.flags,
                                .imageType = VK_IMAGE_TYPE_2D,
-                               .format = format,
-                               .extent = {size.width, size.height, 1},
-                               .mipLevels = mips,
-                               .arrayLayers = 1,
-                               .samples = VK_SAMPLE_COUNT_1_BIT,
+                               .format = desc.format,
+                               .extent = {desc.extent.width, desc.extent.height, 1},
+                               .mipLevels = desc.mips,
+                               .arrayLayers = desc.layers,
+                               .samples = desc.samples,
                                .usage = usage};
   VkResult result = vkCreateImage(device, &info, nullptr, &made->image_);
   if (result == VK_SUCCESS) {
     VkMemoryRequirements needs;
     vkGetImageMemoryRequirements(device, made->image_, &needs);
     if (needs.size > owner.max_allocation()) {
-      return too_large("an image of " + std::to_string(size.width) + "x" +
-                           std::to_string(size.height) + " pixels",
-                       needs.size, owner);
+      return too_large(name, needs.size, owner);
     }
     const VkMemoryAllocateInfo allocation{
         .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
@@ -44,18 +53,17 @@ tl::expected<std::unique_ptr<GpuImage>, std::string> GpuImage::create(const Vulk
   if (result == VK_SUCCESS) {
     result = vkBindImageMemory(device, made->image_, made->memory_, 0);
   }
-  if (result == VK_SUCCESS) {
-    const VkImageViewCreateInfo view{.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
-                                     .image = made->image_,
-                                     .viewType = VK_IMAGE_VIEW_TYPE_2D,
-                                     .format = format,
-                                     .subresourceRange = {aspect_of(format), 0, mips, 0, 1}};
+  if (result == VK_SUCCESS && (usage & kUsedByViews) != 0) {
+    const VkImageViewCreateInfo view{
+        .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
+        .image = made->image_,
+        .viewType = desc.layers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D,
+        .format = desc.format,
+        .subresourceRange = {aspect_of(desc.format), 0, desc.mips, 0, desc.layers}};
     result = vkCreateImageView(device, &view, nullptr, &made->view_);
   }
   if (result != VK_SUCCESS) {
-    return device_failure("give an image of " + std::to_string(size.width) + "x" +
-                              std::to_string(size.height) + " pixels",
-                          result);
+    return device_failure("give " + name, result);
   }
   return made;
 }
@@ -70,7 +78,7 @@ framegraph::ImportedTexture GpuImage::import() const {
   framegraph::ImportedTexture import;
   import.image = image_;
   import.view = view_;
-  import.desc = {format_, framegraph::Extent::absolute(size_.width, size_.height), mips_};
+  import.desc = desc_;
   import.usage = usage_;
   return import;
 }

@@ -1,4 +1,4 @@
-#include "render/vulkan_device.h"
+#include "gpu/vulkan_device.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -288,6 +288,7 @@ tl::expected<void, std::string> VulkanDevice::create_device(bool presentation) {
   enabled.v13.dynamicRendering = VK_TRUE;
   enabled.v12.timelineSemaphore = VK_TRUE;
   enabled.v12.hostQueryReset = VK_TRUE;
+  enabled.v12.separateDepthStencilLayouts = VK_TRUE;  // Every device of Vulkan 1.2 has it.
   enabled.all.features.shaderStorageImageWriteWithoutFormat = VK_TRUE;
   VkPhysicalDeviceFeatures optional;
   vkGetPhysicalDeviceFeatures(physical_device_, &optional);

@@ -1,9 +1,9 @@
-#include "render/gpu.h"
+#include "gpu/gpu.h"
 
 #include <glm/gtc/packing.hpp>
 #include <utility>
 
-#include "render/gpu_image.h"
+#include "gpu/gpu_image.h"
 
 namespace alcove::sample {
 namespace {

@@ -1,0 +1,71 @@
+// What the caller may provide in place of Vulkan's defaults: host memory for the driver, device
+// memory, and a log. Everything here is optional, and must outlive the executor and the kernels
+// that it is given to.
+#pragma once
+
+#include <vulkan/vulkan_core.h>
+
+#include <cstdint>
+
+namespace alcove::framegraph {
+
+// Device memory that is needed.
+struct MemoryRequest {
+  VkMemoryRequirements requirements{};  // size, alignment, and the memory types that will do
+  VkMemoryPropertyFlags required = 0;   // properties that the memory type must have
+  VkMemoryPropertyFlags preferred = 0;  // properties that it should have
+  // A buffer with a device address will be bound: allocate with
+  // VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT.
+  bool device_address = false;
+};
+
+// A part of a device memory object, whose first byte is `offset`, a multiple of the alignment.
+struct MemoryRange {
+  VkDeviceMemory memory = VK_NULL_HANDLE;
+  VkDeviceSize offset = 0;
+  // The address of the first byte in host memory. Needed where VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT
+  // was required: the memory then stays mapped until it is freed.
+  void* mapped = nullptr;
+  // For `free`: anything that finds the allocation again.
+  void* handle = nullptr;
+};
+
+// The caller's allocator of device memory. Both functions are given, or neither: vkAllocateMemory
+// and vkFreeMemory are called then. They are called from the thread that creates, records or
+// destroys; `free` only after the device has finished with the memory.
+struct MemoryFunctions {
+  // Anything but VK_SUCCESS is the error that the caller of the library gets.
+  VkResult (*allocate)(void* user, const MemoryRequest& request, MemoryRange& range) = nullptr;
+  void (*free)(void* user, const MemoryRange& range) = nullptr;
+  void* user = nullptr;
+};
+
+// Memory that the caller has allocated, for the transients and histories of one executor. Where it
+// is full, and where a resource cannot lie in its memory type, MemoryFunctions provide the rest. If
+// there are none, a full block is an error (VK_ERROR_OUT_OF_DEVICE_MEMORY), and what cannot lie in
+// the memory type is allocated with vkAllocateMemory.
+struct MemoryBlock {
+  VkDeviceMemory memory = VK_NULL_HANDLE;  // null: there is no block
+  VkDeviceSize offset = 0;                 // the first byte that may be used
+  VkDeviceSize size = 0;                   // bytes from there on
+  std::uint32_t memory_type = 0;           // its index
+};
+
+enum class Severity : std::uint8_t { info, warning, error };
+
+// Receives one sentence at a time, terminated by zero and valid during the call. It must not call
+// the library.
+struct Log {
+  void (*write)(void* user, Severity severity, const char* sentence) = nullptr;
+  void* user = nullptr;
+};
+
+struct HostServices {
+  // Given to every function of Vulkan that creates or destroys something.
+  const VkAllocationCallbacks* allocation_callbacks = nullptr;
+  MemoryFunctions memory;
+  MemoryBlock block;
+  Log log;
+};
+
+}  // namespace alcove::framegraph

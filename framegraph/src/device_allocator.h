@@ -1,0 +1,42 @@
+// Device memory for transients and histories: from the caller's block, from the caller's functions,
+// or from vkAllocateMemory.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "device_context.h"
+
+namespace alcove::framegraph {
+
+class DeviceAllocator {
+ public:
+  explicit DeviceAllocator(const DeviceContext& device) : device_(device) {}
+  DeviceAllocator(const DeviceAllocator&) = delete;
+  DeviceAllocator& operator=(const DeviceAllocator&) = delete;
+
+  [[nodiscard]] VkResult allocate(const MemoryRequest& request, MemoryRange& range);
+  // A range without memory is allowed.
+  void free(const MemoryRange& range);
+
+  // Why an allocation has failed since the last call, as a clause: "because the block ...". Empty
+  // where Vulkan's result says everything.
+  std::string take_reason() { return std::exchange(reason_, {}); }
+
+ private:
+  struct Used {
+    VkDeviceSize begin = 0;
+    VkDeviceSize end = 0;
+  };
+
+  bool suits_block(const MemoryRequest& request) const;
+  bool allocate_in_block(const MemoryRequest& request, MemoryRange& range);
+  VkResult allocate_from_vulkan(const MemoryRequest& request, MemoryRange& range);
+
+  const DeviceContext& device_;
+  std::vector<Used> used_;  // of the block, in order
+  std::string reason_;
+};
+
+}  // namespace alcove::framegraph

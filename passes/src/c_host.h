@@ -1,0 +1,36 @@
+// The engine's allocators and log, as the C interface has them, for the C++ side.
+#pragma once
+
+#include "alcove/alcove.h"
+#include "alcove/framegraph/host_services.h"
+#include "c_failure.h"
+
+namespace alcove::passes {
+
+// Whether what AlcoveContextInfo says of memory is complete.
+[[nodiscard]] tl::expected<void, Failure> check_memory(const AlcoveContextInfo& info);
+
+// Must stay where it is, and outlive what uses services().
+class HostAdapter {
+ public:
+  explicit HostAdapter(const AlcoveContextInfo& info);
+  HostAdapter(const HostAdapter&) = delete;
+  HostAdapter& operator=(const HostAdapter&) = delete;
+
+  framegraph::HostServices services();
+  // Passes a sentence to the engine's log, if there is one.
+  void log(AlcoveSeverity severity, const char* sentence) const;
+
+ private:
+  static VkResult allocate(void* user, const framegraph::MemoryRequest& request,
+                           framegraph::MemoryRange& range);
+  static void free(void* user, const framegraph::MemoryRange& range);
+  static void write(void* user, framegraph::Severity severity, const char* sentence);
+
+  const VkAllocationCallbacks* callbacks_;
+  AlcoveMemoryFunctions memory_;
+  AlcoveMemoryBlock block_;
+  AlcoveLog log_;
+};
+
+}  // namespace alcove::passes

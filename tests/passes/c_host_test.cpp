@@ -1,0 +1,332 @@
+// The engine's own allocators and log: everything that is allocated through them is freed, what
+// they refuse is an error with a sentence, and results do not depend on them.
+#include <gmock/gmock.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "c_interface_fixture.h"
+#include "gtao_scenes.h"
+
+namespace alcove::passes {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Pair;
+using testing::StartsWith;
+
+// Host memory by malloc, counted.
+struct HostMemory {
+  std::size_t allocated = 0;
+  std::size_t freed = 0;
+  std::map<void*, std::size_t> sizes;
+
+  VkAllocationCallbacks callbacks() {
+    return {
+        .pUserData = this,
+        .pfnAllocation =
+            [](void* user, std::size_t size, std::size_t alignment, VkSystemAllocationScope) {
+              return static_cast<HostMemory*>(user)->allocate(size, alignment);
+            },
+        .pfnReallocation = [](void* user, void* original, std::size_t size, std::size_t alignment,
+                              VkSystemAllocationScope) -> void* {
+          auto& self = *static_cast<HostMemory*>(user);
+          void* const made = size == 0 ? nullptr : self.allocate(size, alignment);
+          if (made != nullptr && original != nullptr) {
+            std::memcpy(made, original, std::min(size, self.sizes.at(original)));
+          }
+          self.free(original);
+          return made;
+        },
+        .pfnFree = [](void* user, void* memory) { static_cast<HostMemory*>(user)->free(memory); }};
+  }
+  void* allocate(std::size_t size, std::size_t alignment) {
+    ++allocated;
+    const std::size_t unit = std::max(alignment, sizeof(void*));
+    void* const made = std::aligned_alloc(unit, (size + unit - 1) / unit * unit);
+    sizes[made] = size;
+    return made;
+  }
+  void free(void* memory) {
+    if (memory != nullptr) {
+      ++freed;
+      EXPECT_EQ(sizes.erase(memory), 1u) << "freed what was not allocated";
+      std::free(memory);
+    }
+  }
+};
+
+// Device memory, each range in a device memory object of its own but not at its beginning.
+struct DeviceMemory {
+  const sample::VulkanDevice& device;
+  int fails_at = 0;  // the allocation, counted from 1, that fails; 0: none
+  int calls = 0;
+  std::set<std::pair<VkDeviceMemory, VkDeviceSize>> alive{};
+  std::vector<VkMemoryPropertyFlags> required{};
+
+  AlcoveMemoryFunctions functions() {
+    return {[](void* user, const AlcoveMemoryRequest* request, AlcoveMemoryRange* range) {
+              return static_cast<DeviceMemory*>(user)->allocate(*request, *range);
+            },
+            [](void* user, const AlcoveMemoryRange* range) {
+              static_cast<DeviceMemory*>(user)->free(*range);
+            },
+            this};
+  }
+  VkResult allocate(const AlcoveMemoryRequest& request, AlcoveMemoryRange& range) {
+    if (++calls == fails_at) {
+      return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+    }
+    required.push_back(request.required);
+    const VkMemoryRequirements& needs = request.requirements;
+    const VkMemoryAllocateInfo info{
+        .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+        .allocationSize = needs.size + needs.alignment,
+        .memoryTypeIndex =
+            device.memory_type(needs.memoryTypeBits, request.required | request.preferred)};
+    EXPECT_EQ(vkAllocateMemory(device.device(), &info, nullptr, &range.memory), VK_SUCCESS);
+    range.offset = needs.alignment;
+    if ((request.required & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT) != 0) {
+      EXPECT_EQ(
+          vkMapMemory(device.device(), range.memory, range.offset, VK_WHOLE_SIZE, 0, &range.mapped),
+          VK_SUCCESS);
+    }
+    range.handle = this;
+    alive.insert({range.memory, range.offset});
+    return VK_SUCCESS;
+  }
+  void free(const AlcoveMemoryRange& range) {
+    EXPECT_EQ(range.handle, this);
+    EXPECT_EQ(alive.erase({range.memory, range.offset}), 1u) << "freed what was not allocated";
+    vkFreeMemory(device.device(), range.memory, nullptr);
+  }
+};
+
+struct Said {
+  std::vector<std::pair<AlcoveSeverity, std::string>> sentences;
+
+  AlcoveLog log() {
+    return {[](void* user, AlcoveSeverity severity, const char* sentence) {
+              static_cast<Said*>(user)->sentences.emplace_back(severity, sentence);
+            },
+            this};
+  }
+};
+
+// A block of device memory as an engine allocates it.
+class Block {
+ public:
+  Block(const sample::VulkanDevice& device, VkDeviceSize size) : device_(device) {
+    block_ = {.offset = 1000,  // a multiple of no alignment
+              .size = size,
+              .memory_type = device.memory_type(~0u, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT)};
+    const VkMemoryAllocateInfo info{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                                    .allocationSize = block_.offset + size,
+                                    .memoryTypeIndex = block_.memory_type};
+    EXPECT_EQ(vkAllocateMemory(device.device(), &info, nullptr, &block_.memory), VK_SUCCESS);
+  }
+  ~Block() { vkFreeMemory(device_.device(), block_.memory, nullptr); }
+  Block(const Block&) = delete;
+  Block& operator=(const Block&) = delete;
+
+  const AlcoveMemoryBlock& block() const { return block_; }
+
+ private:
+  const sample::VulkanDevice& device_;
+  AlcoveMemoryBlock block_{};
+};
+
+class CHost : public CInterface {
+ protected:
+  static Context create(const AlcoveContextInfo& info) {
+    AlcoveContext* made = nullptr;
+    char message[ALCOVE_MAX_MESSAGE];
+    EXPECT_EQ(alcoveCreateContext(&info, &made, message), ALCOVE_SUCCESS) << message;
+    return Context(made);
+  }
+  // A view whose outputs need histories and a table.
+  static GivenView given_of(std::uint32_t width, std::uint32_t height) {
+    GivenView given = given_view(test_views()[2], width, height, ball_on_floor());
+    given.settings.bent_normal = true;
+    given.settings.specular = Specular::table;
+    return given;
+  }
+  AlcoveResult record_alone(AlcoveContext& context, const AlcoveView& view, std::uint32_t index) {
+    const AlcoveFrame frame{.struct_size = sizeof frame,
+                            .index = index,
+                            .slot = index % Engine::kSlots,
+                            .view_count = 1,
+                            .views = &view};
+    AlcoveResult result = ALCOVE_SUCCESS;
+    engine().submit(frame.slot, [&](VkCommandBuffer commands) {
+      result = alcoveRecordFrame(&context, commands, &frame);
+      if (result != ALCOVE_SUCCESS) {
+        throw_away(commands);
+      }
+    });
+    return result;
+  }
+};
+
+TEST_F(CHost, WhatItsAllocatorsGaveIsUsedAndFreed) {
+  HostMemory host;
+  const VkAllocationCallbacks callbacks = host.callbacks();
+  DeviceMemory memory{gpu().device()};
+  {
+    AlcoveContextInfo info = engine().context_info();
+    info.allocation_callbacks = &callbacks;
+    info.memory_functions = memory.functions();
+    const Context context = create(info);
+    const GivenView given = given_of(33, 17);
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      expect_same_both_ways(*context, {&given, 1}, i);
+    }
+    EXPECT_EQ(alcoveDropView(context.get(), 0), ALCOVE_SUCCESS);
+  }
+  EXPECT_GT(host.allocated, 20u);
+  EXPECT_EQ(host.allocated, host.freed);
+  EXPECT_GT(memory.calls, 5);
+  EXPECT_THAT(memory.alive, IsEmpty());
+}
+
+TEST_F(CHost, ItsBlockHoldsEveryImageThroughChangesOfSize) {
+  const Block block(gpu().device(), 1 << 20);
+  DeviceMemory memory{gpu().device()};
+  {
+    AlcoveContextInfo info = engine().context_info();
+    info.memory_block = block.block();
+    info.memory_functions = memory.functions();
+    const Context context = create(info);
+    std::uint32_t index = 0;
+    for (const std::uint32_t width : {40u, 72u, 24u, 96u, 48u, 88u}) {
+      const GivenView given = given_of(width, 32);
+      for (int i = 0; i < 3; ++i) {
+        expect_same_both_ways(*context, {&given, 1}, index++);
+      }
+    }
+    // What the host writes cannot lie in the block.
+    for (const VkMemoryPropertyFlags required : memory.required) {
+      EXPECT_NE(required & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT, 0u);
+    }
+  }
+  EXPECT_THAT(memory.alive, IsEmpty());
+}
+
+TEST_F(CHost, ABlockThatIsTooSmallIsNamedAndSmallerFramesGoOn) {
+  const Block block(gpu().device(), 200000);
+  Said said;
+  AlcoveContextInfo info = engine().context_info();
+  info.memory_block = block.block();
+  info.log = said.log();
+  const Context context = create(info);
+  AlcoveSettings small_settings, large_settings;
+  const GivenView small = given_of(24, 16);
+  const AlcoveView small_view = view_of(small, small_settings);
+  GivenView large = given_of(256, 128);
+  large.id = 1;
+  const AlcoveView large_view = view_of(large, large_settings);
+  EXPECT_EQ(record_alone(*context, small_view, 0), ALCOVE_SUCCESS);
+  for (std::uint32_t i = 1; i < 3; ++i) {
+    EXPECT_EQ(record_alone(*context, large_view, i), ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY);
+    EXPECT_THAT(alcoveGetMessage(context.get()),
+                AllOf(HasSubstr("the caller's block of 200000 bytes"),
+                      HasSubstr("give a larger one"), HasSubstr("the device is out of memory.")));
+  }
+  EXPECT_THAT(said.sentences,
+              Contains(Pair(ALCOVE_SEVERITY_ERROR, std::string(alcoveGetMessage(context.get())))));
+  EXPECT_EQ(record_alone(*context, small_view, 3), ALCOVE_SUCCESS)
+      << alcoveGetMessage(context.get());
+  engine().wait();
+}
+
+TEST_F(CHost, ARefusedAllocationIsAnErrorAndTheNextFrameGoesOn) {
+  AlcoveSettings settings;
+  const AlcoveView view = view_of(given_of(16, 12), settings);
+  DeviceMemory memory{gpu().device()};
+  AlcoveContextInfo info = engine().context_info();
+  info.memory_functions = memory.functions();
+  bool failed = true;
+  for (int call = 1; failed; ++call) {
+    SCOPED_TRACE(call);
+    memory.fails_at = call;
+    memory.calls = 0;
+    AlcoveContext* made = nullptr;
+    char message[ALCOVE_MAX_MESSAGE];
+    const AlcoveResult created = alcoveCreateContext(&info, &made, message);
+    const Context context(made);
+    if (created == ALCOVE_SUCCESS) {
+      const AlcoveResult result = record_alone(*context, view, 0);
+      failed = memory.calls >= call;
+      EXPECT_EQ(result, failed ? ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY : ALCOVE_SUCCESS);
+      EXPECT_EQ(std::strlen(alcoveGetMessage(context.get())) != 0, failed);
+      EXPECT_EQ(record_alone(*context, view, 0), ALCOVE_SUCCESS) << alcoveGetMessage(context.get());
+      engine().wait();
+    } else {
+      EXPECT_EQ(created, ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY);
+      EXPECT_THAT(message, HasSubstr("The device is out of memory."));
+    }
+    ASSERT_LT(call, 100);
+  }
+  EXPECT_THAT(memory.alive, IsEmpty());
+}
+
+TEST_F(CHost, ItsLogGetsEverySentence) {
+  Said said;
+  AlcoveContextInfo info = engine().context_info();
+  info.log = said.log();
+  info.frames_in_flight = 0;
+  AlcoveContext* made = nullptr;
+  EXPECT_EQ(alcoveCreateContext(&info, &made, nullptr), ALCOVE_ERROR_INVALID_INPUT);
+  EXPECT_THAT(said.sentences,
+              testing::ElementsAre(Pair(ALCOVE_SEVERITY_ERROR, HasSubstr("frames_in_flight"))));
+  said.sentences.clear();
+  info.frames_in_flight = Engine::kSlots;
+  const Context context = create(info);
+  AlcoveSettings settings;
+  const AlcoveView view = view_of(given_of(16, 12), settings);
+  EXPECT_EQ(record_alone(*context, view, 0), ALCOVE_SUCCESS);
+  EXPECT_THAT(said.sentences,
+              AllOf(Contains(Pair(ALCOVE_SEVERITY_WARNING, HasSubstr("alcovePrepareFrame"))),
+                    Contains(Pair(ALCOVE_SEVERITY_INFO, StartsWith("The render graph has "))),
+                    Contains(Pair(ALCOVE_SEVERITY_INFO, HasSubstr("pipeline")))));
+  EXPECT_EQ(record_alone(*context, view, 1), ALCOVE_SUCCESS);
+  said.sentences.clear();
+  for (std::uint32_t i = 2; i < 6; ++i) {
+    EXPECT_EQ(record_alone(*context, view, i), ALCOVE_SUCCESS);
+  }
+  EXPECT_THAT(said.sentences, IsEmpty()) << "a steady frame";
+  engine().wait();
+}
+
+TEST_F(CHost, AnIncompleteAllocatorIsNamed) {
+  const auto message_of = [&](const AlcoveContextInfo& info) {
+    AlcoveContext* made = nullptr;
+    char message[ALCOVE_MAX_MESSAGE];
+    EXPECT_EQ(alcoveCreateContext(&info, &made, message), ALCOVE_ERROR_INVALID_INPUT);
+    return std::string(message);
+  };
+  DeviceMemory memory{gpu().device()};
+  AlcoveContextInfo info = engine().context_info();
+  info.memory_functions = memory.functions();
+  info.memory_functions.free = nullptr;
+  EXPECT_THAT(message_of(info), HasSubstr("only one of allocate and free"));
+  const Block block(gpu().device(), 4096);
+  info.memory_functions = {};
+  info.memory_block = block.block();
+  info.memory_block.memory_type = 32;
+  EXPECT_THAT(message_of(info), HasSubstr("memory type 32"));
+  info.memory_block = block.block();
+  info.memory_block.size = 0;
+  EXPECT_THAT(message_of(info), HasSubstr("0 bytes"));
+}
+
+}  // namespace
+}  // namespace alcove::passes

@@ -1,0 +1,55 @@
+// A device as an engine of Vulkan 1.2 makes it: the instance asks for 1.2, and of what Vulkan 1.3
+// made core the device has VK_KHR_synchronization2 alone. Runs under the validation layers.
+#pragma once
+
+#include <vulkan/vulkan.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "alcove/alcove.h"
+
+namespace alcove::passes {
+
+struct Vulkan12Options {
+  bool extension = true;                           // VK_KHR_synchronization2
+  std::uint32_t api_version = VK_API_VERSION_1_2;  // of the instance
+};
+
+class Vulkan12Device {
+ public:
+  explicit Vulkan12Device(bool has_synchronization2 = true);
+  ~Vulkan12Device();
+  Vulkan12Device(const Vulkan12Device&) = delete;
+  Vulkan12Device& operator=(const Vulkan12Device&) = delete;
+
+  // Of one frame in flight, with the functions as vkGetInstanceProcAddr has them.
+  AlcoveContextInfo context_info() const;
+  AlcoveImage make_image(VkFormat format, std::uint32_t width, std::uint32_t height,
+                         VkImageUsageFlags usage);
+  // Records with `record`, submits and waits.
+  void run(const std::function<void(VkCommandBuffer)>& record);
+  // The bytes of a colour image that is in VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL.
+  std::vector<unsigned char> read(const AlcoveImage& image, std::uint32_t bytes_per_pixel);
+
+  VkInstance instance() const { return instance_; }
+  VkDevice device() const { return device_; }
+  // What the validation layers said so far.
+  const std::string& messages() const { return messages_; }
+
+ private:
+  std::uint32_t memory_type(std::uint32_t bits, VkMemoryPropertyFlags flags) const;
+
+  std::string messages_;
+  VkInstance instance_ = VK_NULL_HANDLE;
+  VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
+  VkPhysicalDevice physical_device_ = VK_NULL_HANDLE;
+  VkDevice device_ = VK_NULL_HANDLE;
+  VkQueue queue_ = VK_NULL_HANDLE;
+  VkCommandPool pool_ = VK_NULL_HANDLE;
+  std::vector<VkImage> images_;
+  std::vector<VkDeviceMemory> memories_;
+};
+
+}  // namespace alcove::passes
