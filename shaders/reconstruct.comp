@@ -105,8 +105,8 @@ layout(set = 0, binding = kFirstLobeHistoryBinding) uniform usampler2D lobe_hist
 layout(set = 0,
        binding = kFirstLobeHistoryBinding + 1) uniform writeonly uimage2D next_lobe_history_image;
 #elif defined(HALF)
-layout(set = 0, binding = kFirstLobeHistoryBinding) uniform writeonly uimage2D
-    next_lobe_history_image;
+layout(set = 0,
+       binding = kFirstLobeHistoryBinding) uniform writeonly uimage2D next_lobe_history_image;
 #endif
 #endif
 
@@ -401,8 +401,8 @@ struct Result {
 // A number in [0,1) that is evenly distributed over neighbouring texels and over frames:
 // interleaved gradient noise [Jimenez 2014].
 float dither_of(ivec2 texel) {
-  return fract(52.9829189 * fract(dot(vec2(texel), vec2(0.06711056, 0.00583715)) +
-                                  parameters.dither_offset));
+  return fract(52.9829189 *
+               fract(dot(vec2(texel), vec2(0.06711056, 0.00583715)) + parameters.dither_offset));
 }
 
 #if defined(HISTORY) || defined(HALF)

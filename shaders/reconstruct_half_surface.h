@@ -19,7 +19,8 @@ struct TexelPixel {
 // since the larger may lead to another surface. Where they differ in sign both may, as on a thin
 // object, so a steep one is then not believed. A change of 0 may be the border of the image.
 float gradient_of(float inner_change, float outer_change, float plausible) {
-  bool inner = outer_change == 0.0 || (inner_change != 0.0 && abs(inner_change) < abs(outer_change));
+  bool inner =
+      outer_change == 0.0 || (inner_change != 0.0 && abs(inner_change) < abs(outer_change));
   float smaller = inner ? inner_change : outer_change;
   bool agree = inner_change * outer_change > 0.0;
   return agree || abs(smaller) < plausible ? smaller : 0.0;
@@ -83,8 +84,8 @@ Surface fetch_surface(ivec2 texel) {
   vec2 way = 1.0 - 2.0 * vec2(found.place);  // from the pixel to its inner neighbours
   vec2 inner = (found.inner - found.inverse_depth) * way;
   vec2 outer = (found.inverse_depth - found.outer) * way;
-  surface.gradient = vec2(gradient_of(inner.x, outer.x, plausible.x),
-                          gradient_of(inner.y, outer.y, plausible.y));
+  surface.gradient =
+      vec2(gradient_of(inner.x, outer.x, plausible.x), gradient_of(inner.y, outer.y, plausible.y));
   float inverse_scale = 1.0 / scale;
   surface.tilt = surface.gradient * parameters.pixels_per_slope *
                  (kPerspective ? -inverse_scale : inverse_scale);

@@ -20,8 +20,8 @@ struct ReconstructParameters {
   vec2 history_unit;   // of this and of the previous frame: a power of two near the near plane,
                        // in which depths are held, so that no unit of length changes a bit
   vec2 history_texel;  // 1 over the size of the history's texture
-  vec2 pixel_uv;        // 1 over the size of the image of inverse depth
-  vec2 pixels_per_slope;  // 1 over ray_per_px()
+  vec2 pixel_uv;       // 1 over the size of the image of inverse depth
+  vec2 pixels_per_slope;    // 1 over ray_per_px()
   vec2 interleave_offset;   // pixel of each tile that was traced this frame
   float window_px;          // width of the filter's window in a first frame, pixels
   float tolerance;          // scale of distances from the tangent plane, in depths

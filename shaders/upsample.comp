@@ -120,14 +120,15 @@ vec4 weights_of(Cell cell, int j) {
   vec4 weights = vec4(levels.yx * upper, levels.wz * lower);
   [[unroll]] for (int i = 0; i < 4; ++i) {
     // Bilinear: 3/4 on the pixel's side and 1/4 on the other, times 4 along each axis.
-    weights[i] *= (right_of(i) == right_of(j) ? 3.0 : 1.0) * (below_of(i) == below_of(j) ? 3.0 : 1.0);
+    weights[i] *=
+        (right_of(i) == right_of(j) ? 3.0 : 1.0) * (below_of(i) == below_of(j) ? 3.0 : 1.0);
   }
   return weights;
 }
 
 vec3 unit_normal(ivec2 pixel) {
-  vec2 slope = parameters.slope.zw +
-               (kPerspective ? (vec2(pixel) + 0.5) * parameters.slope.xy : vec2(0.0));
+  vec2 slope =
+      parameters.slope.zw + (kPerspective ? (vec2(pixel) + 0.5) * parameters.slope.xy : vec2(0.0));
   vec3 given = decode_normal(texelFetch(normal_image, pixel, 0).xyz, kNormalEncoding) *
                mat3(parameters.normal_from_view);
   return seen_normal(pixel, given, normalize(vec3(-slope, 1.0)));

@@ -68,8 +68,8 @@ struct HistoryTextures {
 // Every texture that the pass accesses; null where it is not wanted.
 struct Textures {
   ReconstructInputs inputs;
-  Occlusion result;     // at half resolution the upsampling pass writes it
-  Texture half;         // maths::HalfTexel, only at half resolution
+  Occlusion result;  // at half resolution the upsampling pass writes it
+  Texture half;      // maths::HalfTexel, only at half resolution
   HistoryTextures history;
   HistoryTextures bent_history;
   HistoryTextures lobe_history;
@@ -231,8 +231,8 @@ Bindings bindings_of(RecordContext& context, const Textures& textures) {
   if (textures.half) {
     bindings.add({context.view(textures.half)});
   } else {
-    bindings.add({view_or(context, out.visibility, written),
-                  view_or(context, out.bent_normal, written)});
+    bindings.add(
+        {view_or(context, out.visibility, written), view_or(context, out.bent_normal, written)});
   }
   if (textures.history.next) {
     bindings.add({context.view(textures.history.previous), context.view(textures.history.next),
@@ -286,20 +286,20 @@ Past past_of(const Frame& frame, const ReconstructSizes& sizes, bool history_val
 std::array<std::uint32_t, 13> constants_of(const ReconstructInputs& inputs,
                                            const ReconstructSettings& settings, bool perspective,
                                            Past past) {
-  return {inputs.raw_occlusion.tile_size,
-          settings.filter_radius,
-          flag(bool(inputs.raw_occlusion.bent)),
-          flag(inputs.motion && past == Past::moving),
-          flag(perspective),
-          flag(settings.clamp_width > 0.0f),
-          flag(past == Past::unchanged),
-          flag(bool(inputs.roughness)),
-          channel_if(bool(inputs.roughness), settings.roughness_channel),
-          flag(past == Past::none),
-          flag(settings.visibility),
-          static_cast<std::uint32_t>(inputs.normal_encoding),
-          flag(!settings.half_resolution &&
-               (settings.power != 1.0f || settings.intensity != 1.0f))};
+  return {
+      inputs.raw_occlusion.tile_size,
+      settings.filter_radius,
+      flag(bool(inputs.raw_occlusion.bent)),
+      flag(inputs.motion && past == Past::moving),
+      flag(perspective),
+      flag(settings.clamp_width > 0.0f),
+      flag(past == Past::unchanged),
+      flag(bool(inputs.roughness)),
+      channel_if(bool(inputs.roughness), settings.roughness_channel),
+      flag(past == Past::none),
+      flag(settings.visibility),
+      static_cast<std::uint32_t>(inputs.normal_encoding),
+      flag(!settings.half_resolution && (settings.power != 1.0f || settings.intensity != 1.0f))};
 }
 
 tl::expected<Kernel, Error> get_kernel(const Frame& frame, const ReconstructInputs& inputs,
@@ -307,8 +307,9 @@ tl::expected<Kernel, Error> get_kernel(const Frame& frame, const ReconstructInpu
                                        Past past) {
   const bool history = settings.history_frames > 0;
   const auto get = [&](Past of) {
-    return frame.kernels.get(shader_of(history, inputs.raw_occlusion.lobe, settings.half_resolution),
-                             constants_of(inputs, settings, perspective, of));
+    return frame.kernels.get(
+        shader_of(history, inputs.raw_occlusion.lobe, settings.half_resolution),
+        constants_of(inputs, settings, perspective, of));
   };
   if (history && frame.prepare) {
     for (const Past each : {Past::none, Past::moving, Past::unchanged}) {
@@ -429,7 +430,8 @@ maths::ReconstructParameters parameters_of(const Frame& frame, const maths::Proj
   parameters.history_depth_scale =
       maths::vec4(history_depth_scale(projection), history_depth_scale(previous));
   parameters.history_unit = {history_unit(projection), history_unit(previous)};
-  parameters.history_sharpness = history_sharpness(projection, texel, history_depth_scale(previous));
+  parameters.history_sharpness =
+      history_sharpness(projection, texel, history_depth_scale(previous));
   parameters.history_slack = kHistorySlack;
   // The golden ratio's fractions are spread evenly over any run of frames.
   parameters.dither_offset = static_cast<float>(frame.index * 2654435769u) * 0x1p-32f;
@@ -508,19 +510,18 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& given_frame,
   if (past == Past::unchanged && frame.static_frames >= kConvergedFrames) {
     parameters.largest_weight = static_cast<float>(maths::kMaxHistoryFrames) - 1.0f;
   }
-  const VkExtent3D stored = textures.history.next ? frame.graph.extent(textures.history.next)
-                                                  : VkExtent3D{1, 1, 1};
+  const VkExtent3D stored =
+      textures.history.next ? frame.graph.extent(textures.history.next) : VkExtent3D{1, 1, 1};
   parameters.history_texel = 1.0f / maths::vec2(stored.width, stored.height);
   parameters.interleave_offset =
       maths::vec2(static_cast<float>(offset_x), static_cast<float>(offset_y));
-  pass.record(
-      [&kernels = frame.kernels, kernel = *kernel, textures, parameters](RecordContext& context) {
-        const Bindings bindings = bindings_of(context, textures);
-        const std::span<const VkImageView> bound(bindings.views.data(), bindings.count);
-        kernels.dispatch(context, kernel, bound, bytes_of(parameters),
-                         context.extent(textures.half ? textures.half
-                                                      : textures.inputs.inverse_depth));
-      });
+  pass.record([&kernels = frame.kernels, kernel = *kernel, textures,
+               parameters](RecordContext& context) {
+    const Bindings bindings = bindings_of(context, textures);
+    const std::span<const VkImageView> bound(bindings.views.data(), bindings.count);
+    kernels.dispatch(context, kernel, bound, bytes_of(parameters),
+                     context.extent(textures.half ? textures.half : textures.inputs.inverse_depth));
+  });
   if (!textures.half) {
     return textures.result;
   }

@@ -58,8 +58,7 @@ maths::UpsampleParameters parameters_of(const Frame& frame, const UpsampleInputs
   maths::UpsampleParameters parameters{};
   parameters.normal_from_view = maths::transpose(
       view_from_normal(frame, inputs.normals_in_view_space, inputs.normals_forward_z));
-  parameters.slope =
-      maths::vec4(per_px, projection.uv_to_slope.z, projection.uv_to_slope.w);
+  parameters.slope = maths::vec4(per_px, projection.uv_to_slope.z, projection.uv_to_slope.w);
   parameters.pixel_uv = 1.0f / projection.size_px;
   parameters.texel_uv = 1.0f / maths::vec2(half.width, half.height);
   parameters.tolerance = 1.0f / (kTolerancePx * std::abs(per_px.y));

@@ -25,8 +25,8 @@ struct FilterSettings {
   // neighbourhood. 0 turns clamping off.
   float clamp_width = 0.0f;
   // Filters and accumulates texels of 2x2 pixels, and makes pixels from them by edge-aware
-  // upsampling. It costs about a third of the time and a quarter of the history's memory. Needs a
-  // tile_size of 2 or 4.
+  // upsampling: less time, a quarter of the history's memory, and a larger error (passes/README.md
+  // has figures). Needs a tile_size of 2 or 4.
   bool half_resolution = false;
 
   friend bool operator==(const FilterSettings&, const FilterSettings&) = default;
