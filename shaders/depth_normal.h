@@ -1,5 +1,5 @@
 // The normal of the surface that the depth buffer shows at a pixel, for pixels whose given normal
-// is missing. Included by shaders that have inverse_depth_image, parameters.slope, kPerspective and
+// is missing. Included by shaders that have load_inverse_depth(), parameters.slope, kPerspective and
 // size_px().
 #ifndef ALCOVE_DEPTH_NORMAL_H
 #define ALCOVE_DEPTH_NORMAL_H
@@ -8,7 +8,7 @@
 const float kNoSurface = 1e30;
 
 float inverse_depth_rise(ivec2 pixel, float here) {
-  float there = imageLoad(inverse_depth_image, pixel).r;
+  float there = load_inverse_depth(pixel);
   return there == sky_inverse_depth(kPerspective) ? kNoSurface : there - here;
 }
 
@@ -27,7 +27,7 @@ float inverse_depth_gradient(ivec2 pixel, ivec2 axis, float here) {
 
 // Unit, towards the eye, view space.
 vec3 depth_normal(ivec2 pixel) {
-  float here = imageLoad(inverse_depth_image, pixel).r;
+  float here = load_inverse_depth(pixel);
   if (here == sky_inverse_depth(kPerspective)) {
     return vec3(0.0, 0.0, 1.0);
   }

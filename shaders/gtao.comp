@@ -94,6 +94,8 @@ float fetch_roughness(ivec2 pixel) {
   return parameters.roughness;
 }
 
+float load_inverse_depth(ivec2 pixel) { return imageLoad(inverse_depth_image, pixel).r; }
+
 #include "depth_normal.h"
 
 // In pixels.

@@ -20,6 +20,7 @@
 // visibility is exactly 1 after any number of frames.
 
 #include "maths/bent_normal.h"
+#include "maths/half_texel.h"
 #include "maths/history.h"
 #include "maths/lobe_slice.h"
 #include "maths/normal_encoding.h"
@@ -57,33 +58,63 @@ layout(set = 0, binding = 0) uniform Parameters { ReconstructParameters paramete
 layout(set = 0, binding = 1, RAW_FORMAT) uniform readonly uimage2D raw_image;  // one texel a tile
 // Another image where there are no bent normals.
 layout(set = 0, binding = 2, rg32ui) uniform readonly uimage2D bent_image;
-layout(set = 0, binding = 3,
-       r32f) uniform readonly image2D inverse_depth_image;    // SliceSample::inverse_depth
 layout(set = 0, binding = 4) uniform texture2D normal_image;  // xyz
+#ifdef HALF
+// SliceSample::inverse_depth. With a nearest sampler that clamps to the edge.
+layout(set = 0, binding = 3) uniform sampler2D inverse_depth_image;
+layout(set = 0, binding = 5) uniform writeonly uimage2D half_image;  // HalfTexel
+const int kFirstHistoryBinding = 6;
+#else
+layout(set = 0, binding = 3,
+       r32f) uniform readonly image2D inverse_depth_image;  // SliceSample::inverse_depth
 // Another image where it is not written; so is the next.
 layout(set = 0, binding = 5) uniform writeonly image2D visibility_image;
 // In the space of the normals.
 layout(set = 0, binding = 6) uniform writeonly image2D bent_normal_image;
+const int kFirstHistoryBinding = 7;
+#endif
 #ifdef HISTORY
 // HistoryTexel. With a nearest sampler that clamps to the edge.
-layout(set = 0, binding = 7) uniform usampler2D history_image;
-layout(set = 0, binding = 8) uniform writeonly uimage2D next_history_image;
-layout(set = 0, binding = 9) uniform texture2D motion_image;  // another one without kMotion
+layout(set = 0, binding = kFirstHistoryBinding) uniform usampler2D history_image;
+layout(set = 0, binding = kFirstHistoryBinding + 1) uniform writeonly uimage2D next_history_image;
+// Another image without kMotion.
+layout(set = 0, binding = kFirstHistoryBinding + 2) uniform texture2D motion_image;
 // Bent-normal residuals of pack_residual(); other images where there are no bent normals.
-layout(set = 0, binding = 10) uniform usampler2D bent_history_image;
-layout(set = 0, binding = 11) uniform writeonly uimage2D next_bent_history_image;
-const int kFirstLobeBinding = 12;
+layout(set = 0, binding = kFirstHistoryBinding + 3) uniform usampler2D bent_history_image;
+layout(set = 0,
+       binding = kFirstHistoryBinding + 4) uniform writeonly uimage2D next_bent_history_image;
+const int kFirstLobeBinding = kFirstHistoryBinding + 5;
+#elif defined(HALF)
+// The upsampling pass reads residuals and lobes in the formats of the history.
+layout(set = 0, binding = kFirstHistoryBinding) uniform writeonly uimage2D next_bent_history_image;
+const int kFirstLobeBinding = kFirstHistoryBinding + 1;
 #else
-const int kFirstLobeBinding = 7;
+const int kFirstLobeBinding = kFirstHistoryBinding;
 #endif
 #ifdef SPECULAR
 layout(set = 0, binding = kFirstLobeBinding) uniform texture2D roughness_image;  // perceptual
+#ifdef HALF
+const int kFirstLobeHistoryBinding = kFirstLobeBinding + 1;
+#else
 layout(set = 0, binding = kFirstLobeBinding + 1) uniform writeonly image2D specular_image;
+const int kFirstLobeHistoryBinding = kFirstLobeBinding + 2;
+#endif
 #ifdef HISTORY
 // LobeTexel.
-layout(set = 0, binding = kFirstLobeBinding + 2) uniform usampler2D lobe_history_image;
-layout(set = 0, binding = kFirstLobeBinding + 3) uniform writeonly uimage2D next_lobe_history_image;
+layout(set = 0, binding = kFirstLobeHistoryBinding) uniform usampler2D lobe_history_image;
+layout(set = 0,
+       binding = kFirstLobeHistoryBinding + 1) uniform writeonly uimage2D next_lobe_history_image;
+#elif defined(HALF)
+layout(set = 0,
+       binding = kFirstLobeHistoryBinding) uniform writeonly uimage2D next_lobe_history_image;
 #endif
+#endif
+
+// Width in pixels of the texels that are reconstructed.
+#ifdef HALF
+const int kTexelSize = 2;
+#else
+const int kTexelSize = 1;
 #endif
 
 // Whether pixels lie between traced ones; else each was traced, or takes its tile's value.
@@ -91,7 +122,7 @@ const bool kBetween = kTileSize > 1 && kFilterRadius > 0;
 // Traced pixels on each side that a pixel with a history averages.
 const int kNearRadius = kFilterRadius == 0 ? 0 : 1;
 // Traced tiles that the pixels of a group average, in each direction.
-const int kSpan = 8 / kTileSize + 2 * kFilterRadius;
+const int kSpan = 8 * kTexelSize / kTileSize + 2 * kFilterRadius;
 const int kShift = kTileSize == 4 ? 2 : kTileSize == 2 ? 1 : 0;
 
 // What a traced tile holds, unpacked.
@@ -117,25 +148,35 @@ shared vec2 traced_lobe[kLobeSpan];  // occluded, open
 shared uint traced_lobe_surface[kLobeSpan];
 
 struct Surface {
-  ivec2 pixel;
-  vec2 corner;          // of the pixel, in pixels
+  bool sky;
+  ivec2 texel;          // where its results are stored
+  ivec2 pixel;          // where its inputs are read
+  vec2 centre;          // of the texel, in pixels
   float inverse_depth;  // 1/depth in perspective, depth otherwise: linear along any plane's image
   vec2 gradient;        // of inverse_depth on the tangent plane, per pixel
   float plane_weight;   // tolerances per unit of inverse_depth off the tangent plane
   float n_dot_v;        // cosine between normal and view direction, on the camera's axis
-  vec3 normal;          // unit, towards the eye, view space
   QuantisedNormal quantised;
   LobeSurface lobe;   // normal as it was given
+  vec2 tilt;          // HalfTexel::tilt; only with HALF
   int first_tile;     // index in `traced` of the tile to the upper left
   vec2 offset;        // to the pixel that was traced there, pixels, before clamping to the image
   vec4 traced_range;  // smallest and largest offset of a traced pixel in the image
 };
 
+#ifdef HALF
+ivec2 size_px() { return textureSize(inverse_depth_image, 0); }
+#else
 ivec2 size_px() { return imageSize(inverse_depth_image); }
+#endif
 
 ivec2 last_tile() { return (size_px() + (kTileSize - 1)) / kTileSize - 1; }
 
+#ifndef HALF
+float load_inverse_depth(ivec2 pixel) { return imageLoad(inverse_depth_image, pixel).r; }
+
 #include "depth_normal.h"
+#endif
 
 // Not unit, in the space of the normals. The direction to the eye where the texture has none, which
 // is enough for the filter's weights; a NaN would stay in the history.
@@ -161,7 +202,7 @@ ivec2 cell_of(ivec2 pixel) {
 
 // The first tile of the group.
 ivec2 first_tile_of_group() {
-  ivec2 cell = cell_of(ivec2(gl_WorkGroupID.xy) * 8);
+  ivec2 cell = cell_of(ivec2(gl_WorkGroupID.xy) * (8 * kTexelSize));
   return cell - (kBetween ? kFilterRadius - 1 : kFilterRadius);
 }
 
@@ -200,39 +241,53 @@ void load_tiles() {
   barrier();
 }
 
-Surface fetch_surface(ivec2 pixel, float inverse_depth) {
+// Sets which traced pixels lie around the surface's centre.
+void find_traced(inout Surface surface) {
+  ivec2 cell = cell_of(surface.texel * kTexelSize);
+  ivec2 place = cell - first_tile_of_group();
+  surface.first_tile = place.y * kSpan + place.x;
+  vec2 first = surface.centre - 0.5;
+  surface.offset = vec2(cell * kTileSize) + parameters.interleave_offset - first;
+  vec2 largest =
+      min(vec2(last_tile() * kTileSize) + parameters.interleave_offset, vec2(size_px() - 1));
+  surface.traced_range = vec4(min(parameters.interleave_offset, largest), largest) - first.xyxy;
+}
+
+// Bound of the cosine between normal and view direction: a plane seen edge-on would reach any
+// depth.
+const float kLeastNDotV = 0.02;
+
+#ifdef HALF
+#include "reconstruct_half_surface.h"
+#else
+
+Surface fetch_surface(ivec2 pixel) {
   Surface surface;
-  surface.pixel = pixel;
-  surface.corner = vec2(pixel);
-  surface.inverse_depth = inverse_depth;
+  surface.texel = surface.pixel = pixel;
+  surface.centre = vec2(pixel) + 0.5;
+  surface.inverse_depth = imageLoad(inverse_depth_image, pixel).r;
+  surface.sky = surface.inverse_depth == sky_inverse_depth(kPerspective);
   vec3 given = fetch_normal(pixel);
   vec3 normal = normalize(given * mat3(parameters.normal_from_view));
   // dot((x s, y s, depth), plane) is constant on the tangent plane, where x and y are in pixels and
   // s is the depth in perspective and 1 otherwise.
   vec3 plane =
       vec3(normal.xy * parameters.slope.xy, dot(normal.xy, parameters.slope.zw) - normal.z);
-  // How the distance from the plane grows with depth along the pixel's ray. Bounded below, because
-  // a plane seen edge-on would reach any depth.
-  float along = plane.z + (kPerspective ? dot(surface.corner + 0.5, plane.xy) : 0.0);
-  surface.n_dot_v = max(abs(along), 0.02);
+  // How the distance from the plane grows with depth along the pixel's ray.
+  float along = plane.z + (kPerspective ? dot(surface.centre, plane.xy) : 0.0);
+  surface.n_dot_v = max(abs(along), kLeastNDotV);
   float facing = along < 0.0 ? 1.0 : -1.0;
   float per_unit = facing / surface.n_dot_v;
-  surface.gradient = plane.xy * (kPerspective ? -inverse_depth * per_unit : per_unit);
+  surface.gradient = plane.xy * (kPerspective ? -surface.inverse_depth * per_unit : per_unit);
   surface.plane_weight =
-      surface.n_dot_v * parameters.tolerance * (kPerspective ? 1.0 / inverse_depth : 1.0);
-  surface.normal = normal * facing;
-  surface.quantised = make_quantised_normal(surface.normal);
+      surface.n_dot_v * parameters.tolerance * (kPerspective ? 1.0 / surface.inverse_depth : 1.0);
+  surface.quantised = make_quantised_normal(normal * facing);
   surface.lobe = fetch_lobe_surface(pixel, given);
-  ivec2 cell = cell_of(pixel);
-  ivec2 place = cell - first_tile_of_group();
-  surface.first_tile = place.y * kSpan + place.x;
-  surface.offset = vec2(cell * kTileSize) + parameters.interleave_offset - surface.corner;
-  vec2 largest =
-      min(vec2(last_tile() * kTileSize) + parameters.interleave_offset, vec2(size_px() - 1));
-  surface.traced_range =
-      vec4(min(parameters.interleave_offset, largest), largest) - surface.corner.xyxy;
+  find_traced(surface);
   return surface;
 }
+
+#endif
 
 // Weighted sums over traced pixels.
 struct Sums {
@@ -323,45 +378,91 @@ void add_ring(inout Sums sums, Surface surface, float inverse_squared_width, int
   }
 }
 
+#ifndef HALF
+
 // The normal in view space, as the search of the pixel uses it.
 vec3 traced_normal(Surface surface) {
-  vec2 slope = parameters.slope.zw +
-               (kPerspective ? (surface.corner + 0.5) * parameters.slope.xy : vec2(0.0));
+  vec2 slope =
+      parameters.slope.zw + (kPerspective ? surface.centre * parameters.slope.xy : vec2(0.0));
   vec3 given = decode_normal(texelFetch(normal_image, surface.pixel, 0).xyz, kNormalEncoding) *
                mat3(parameters.normal_from_view);
   return seen_normal(surface.pixel, given, normalize(vec3(-slope, 1.0)));
 }
 
-// Results of a pixel.
+#endif
+
+// Results of a texel.
 struct Result {
   float occlusion;
   vec3 residual;
   vec2 lobe;  // occluded, open
 };
 
-void store(Surface surface, bool sky, Result result) {
-  float visibility = sky ? 1.0 : 1.0 - result.occlusion;
+// A number in [0,1) that is evenly distributed over neighbouring texels and over frames:
+// interleaved gradient noise [Jimenez 2014].
+float dither_of(ivec2 texel) {
+  return fract(52.9829189 *
+               fract(dot(vec2(texel), vec2(0.06711056, 0.00583715)) + parameters.dither_offset));
+}
+
+#if defined(HISTORY) || defined(HALF)
+
+// Stores residual and lobe as history and upsampling read them.
+void store_kept(Surface surface, Result result, float dither) {
+  if (kBentNormal) {
+    uint residual = pack_residual_dithered(surface.sky ? vec3(0.0) : result.residual, dither);
+    imageStore(next_bent_history_image, surface.texel, uvec4(residual));
+  }
+#ifdef SPECULAR
+  // Written so that a NaN becomes nothing, for it would stay in the history.
+  bool valid = !surface.sky && result.lobe.x >= 0.0 && result.lobe.y < 1e30;
+  LobeTexel lobe = LobeTexel(valid ? result.lobe.x / max(result.lobe.y, 1e-30) : 0.0,
+                             valid ? result.lobe.y : 0.0);
+  imageStore(next_lobe_history_image, surface.texel, uvec4(pack_lobe_texel(lobe, dither)));
+#endif
+}
+
+#endif
+#ifdef HALF
+
+void store(Surface surface, Result result) {
+  HalfTexel texel;
+  texel.inverse_depth = surface.sky ? sky_inverse_depth(kPerspective) : surface.inverse_depth;
+  texel.occlusion = surface.sky ? 0.0 : result.occlusion;
+  texel.tilt = surface.sky ? vec2(0.0) : surface.tilt;
+  imageStore(half_image, surface.texel, uvec4(pack_half_texel(texel), 0u, 0u));
+#ifndef HISTORY
+  store_kept(surface, result, 0.5);
+#endif
+}
+
+#else
+
+void store(Surface surface, Result result) {
+  float visibility = surface.sky ? 1.0 : 1.0 - result.occlusion;
   if (kVisibility) {
     float shaped = shaped_visibility(visibility, parameters.power, parameters.intensity);
-    imageStore(visibility_image, surface.pixel, vec4(kShaped ? shaped : visibility));
+    imageStore(visibility_image, surface.texel, vec4(kShaped ? shaped : visibility));
   }
   if (kBentNormal) {
-    vec3 residual = sky ? vec3(0.0) : result.residual;
+    vec3 residual = surface.sky ? vec3(0.0) : result.residual;
     vec3 bent = finish_bent_normal(residual, visibility, traced_normal(surface));
-    imageStore(bent_normal_image, surface.pixel,
+    imageStore(bent_normal_image, surface.texel,
                vec4(mat3(parameters.normal_from_view) * bent, 0.0));
   }
 #ifdef SPECULAR
-  float occlusion = sky ? 0.0 : saturate(result.lobe.x / max(result.lobe.y, 1e-30));
-  imageStore(specular_image, surface.pixel, vec4(1.0 - occlusion));
+  float occlusion = surface.sky ? 0.0 : saturate(result.lobe.x / max(result.lobe.y, 1e-30));
+  imageStore(specular_image, surface.texel, vec4(1.0 - occlusion));
 #endif
 }
+
+#endif
 
 #ifdef HISTORY
 #include "reconstruct_history.h"
 #else
 
-void reconstruct(Surface surface, bool sky) {
+void reconstruct(Surface surface) {
   Sums sums = no_sums();
   add_ring(sums, surface, inverse_squared_width_of(parameters.window_px * parameters.window_px), 0);
   float scale = 1.0 / max(sums.open, 1e-37);
@@ -370,18 +471,16 @@ void reconstruct(Surface surface, bool sky) {
     result.residual =
         converged_residual(sums.residual, sums.expected_residual, 1.0 - result.occlusion) * scale;
   }
-  store(surface, sky, result);
+  store(surface, result);
 }
 
 #endif
 
 void main() {
   load_tiles();
-  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, size_px()))) {
+  ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(texel * kTexelSize, size_px()))) {
     return;
   }
-  float inverse_depth = imageLoad(inverse_depth_image, pixel).r;
-  reconstruct(fetch_surface(pixel, inverse_depth),
-              inverse_depth == sky_inverse_depth(kPerspective));
+  reconstruct(fetch_surface(texel));
 }

@@ -25,14 +25,14 @@ float log_inverse_depth(float inverse_depth, float unit) {
 
 // Where a surface was on the image of the previous frame.
 struct Previous {
-  vec2 position;  // pixels, clamped to the centres of the outermost texels
+  vec2 position;  // texels, clamped to the centres of the outermost ones
   float depth;    // linear, over the depth now in perspective; positive
   bool seen;      // it was on the image
   bool moves;     // the surface moved, not only the camera
 };
 
 Previous reproject(Surface surface) {
-  vec2 centre = surface.corner + 0.5;
+  vec2 centre = surface.centre;
   vec4 from = kPerspective ? vec4(centre, 1.0, surface.inverse_depth)
                            : vec4(centre, surface.inverse_depth, 1.0);
   vec4 to = from * parameters.previous_from_pixel;
@@ -41,7 +41,7 @@ Previous reproject(Surface surface) {
   previous.depth = to.w;
   previous.moves = false;
   if (kMotion) {
-    vec2 here = centre * parameters.previous_size.zw;
+    vec2 here = centre * parameters.previous_extent.zw;
     vec2 motion =
         texelFetch(motion_image, surface.pixel, 0).rg * parameters.motion.xy + parameters.motion.zw;
     // More than the rounding of motion vectors, which is 2^-11 in half precision.
@@ -49,7 +49,8 @@ Previous reproject(Surface surface) {
     previous.moves = apart > 0.1 + length(motion) * (1.0 / 512.0);
     position = here - motion;
   }
-  vec2 within = clamp(position, vec2(0.5), parameters.previous_size.xy - 0.5);
+  position *= 1.0 / float(kTexelSize);
+  vec2 within = clamp(position, vec2(0.5), parameters.previous_extent.xy);
   // A NaN fails the comparison.
   vec2 outside = abs(position - within);
   previous.seen = to.z > 0.0 && max(outside.x, outside.y) <= 0.5;
@@ -77,7 +78,7 @@ vec4 depth_differences(uvec4 texels, Surface surface, Previous previous, vec2 pa
   [[unroll]] for (int i = 0; i < 4; ++i) { found[i] = texel_depth(texels[i]); }
   vec2 scale = parameters.history_depth_scale.zw;
   // The gradient of the stored depth to first order; it hardly changes from frame to frame.
-  vec2 gradient = surface.gradient * scale.x;
+  vec2 gradient = surface.gradient * (scale.x * float(kTexelSize));
   float at_position = scale.y;
   if (kPerspective) {
     gradient *= 1.442695 / surface.inverse_depth;
@@ -171,7 +172,7 @@ History read_moving(Surface surface) {
 // The pixel's own texel. Its depth is checked too, for something may have moved although no motion
 // vectors say so.
 History read_static(Surface surface) {
-  uint bits = texelFetch(history_image, surface.pixel, 0).r;
+  uint bits = texelFetch(history_image, surface.texel, 0).r;
   float difference =
       texel_depth(bits) -
       history_depth(parameters.history_depth_scale.xy,
@@ -184,32 +185,36 @@ History read_static(Surface surface) {
   float weight = min(weight_of_log(texel_log_weight(bits)), parameters.largest_weight);
   history.weight = agreement >= 0.05 ? weight : 0.0;
   if (kBentNormal) {
-    history.residual = residual_of_texel(texelFetch(bent_history_image, surface.pixel, 0).r);
+    history.residual = residual_of_texel(texelFetch(bent_history_image, surface.texel, 0).r);
   }
 #ifdef SPECULAR
-  LobeTexel lobe = unpack_lobe_texel(texelFetch(lobe_history_image, surface.pixel, 0).r);
+  LobeTexel lobe = unpack_lobe_texel(texelFetch(lobe_history_image, surface.texel, 0).r);
   history.lobe = lobe.open * vec2(lobe.occlusion, 1.0);
 #endif
   return history;
 }
 
-// With tiles of 4 pixels few samples are a pixel's own even in time, so the window stays wider.
-const float kWidth = kTileSize > 2 ? 2.5 : 1.0;
+// Width of a tile in texels.
+const int kTileTexels = kTileSize > kTexelSize ? kTileSize / kTexelSize : 1;
 
-// 0.125 / w^2 for a window of w pixels: wide while a pixel has few samples of its own, then hardly
-// wider than the pixel, or as wide as interpolation blurs anyway.
+// With tiles of 4 texels few samples are a texel's own even in time, so the window stays wider.
+const float kWidth = kTileTexels > 2 ? 2.5 : 1.0;
+
+// 0.125 / w^2 for a window of w pixels: wide while a texel has few samples of its own, then hardly
+// wider than the texel, or as wide as interpolation blurs anyway.
 float window_of(History history) {
   const float own = 0.58 * kWidth;
+  const float per_squared_texel = 1.0 / float(kTexelSize * kTexelSize);
   float first = 1.0 / (parameters.window_px * parameters.window_px);
-  return 0.125 *
-         min(1.0 / (own * own + 2.6 * history.between), first * (3.0 * history.weight + 1.0));
+  return 0.125 * min(per_squared_texel / (own * own + 2.6 * history.between),
+                     first * (3.0 * history.weight + 1.0));
 }
 
 // How much nearer to the tangent plane a neighbour has to be than in a first frame: the more
 // samples of its own a pixel has, the less it needs those of other surfaces. Fitted to the error
 // after 4 and 32 frames at each tile size (`alcove compare --frames`).
 float plane_weight_growth(float weight) {
-  const float own = 1.0 / float(kTileSize * kTileSize);  // traced frames per frame
+  const float own = 1.0 / float(kTileTexels * kTileTexels);  // traced frames per frame
   return min(1.0 + 12.0 * own * weight, 5.0);
 }
 
@@ -234,15 +239,8 @@ void clamp_history(inout History history, Sums now) {
   }
 }
 
-// A number in [0,1) that is evenly distributed over neighbouring pixels and over frames:
-// interleaved gradient noise [Jimenez 2014].
-float dither_of(vec2 corner) {
-  return fract(52.9829189 *
-               fract(dot(corner, vec2(0.06711056, 0.00583715)) + parameters.dither_offset));
-}
-
-void store_history(Surface surface, bool sky, Result result, float weight, float recent) {
-  float dither = dither_of(surface.corner);
+void store_history(Surface surface, Result result, float weight, float recent) {
+  float dither = dither_of(surface.texel);
   HistoryTexel texel;
   texel.depth = history_depth(parameters.history_depth_scale.xy,
                               log_inverse_depth(surface.inverse_depth, parameters.history_unit.x));
@@ -250,18 +248,8 @@ void store_history(Surface surface, bool sky, Result result, float weight, float
   texel.recent = recent;
   texel.log_weight = log_weight_of(weight);
   uint bits = pack_history_texel(texel, dither);
-  imageStore(next_history_image, surface.pixel, uvec4(sky ? 0u : bits));
-  if (kBentNormal) {
-    uint residual = pack_residual_dithered(sky ? vec3(0.0) : result.residual, dither);
-    imageStore(next_bent_history_image, surface.pixel, uvec4(residual));
-  }
-#ifdef SPECULAR
-  // Written so that a NaN becomes nothing, for it would stay in the history.
-  bool valid = !sky && result.lobe.x >= 0.0 && result.lobe.y < 1e30;
-  LobeTexel lobe = LobeTexel(valid ? result.lobe.x / max(result.lobe.y, 1e-30) : 0.0,
-                             valid ? result.lobe.y : 0.0);
-  imageStore(next_lobe_history_image, surface.pixel, uvec4(pack_lobe_texel(lobe, dither)));
-#endif
+  imageStore(next_history_image, surface.texel, uvec4(surface.sky ? 0u : bits));
+  store_kept(surface, result, dither);
 }
 
 // The neighbourhood of this frame, with a wider one where a pixel has hardly any history.
@@ -278,7 +266,7 @@ Sums sum_neighbourhood(Surface surface, History history, float window) {
   return sums;
 }
 
-void reconstruct(Surface surface, bool sky) {
+void reconstruct(Surface surface) {
   History history = no_history();
   if (!kFresh) {
     history = kStatic ? read_static(surface) : read_moving(surface);
@@ -310,8 +298,8 @@ void reconstruct(Surface surface, bool sky) {
   result.lobe =
       kLobe ? (history.weight * history.lobe + scale * now.lobe) * inverse_total : vec2(0.0);
   float recent = kMotion ? history.recent : result.occlusion;
-  store_history(surface, sky, result, total, recent);
-  store(surface, sky, result);
+  store_history(surface, result, total, recent);
+  store(surface, result);
 }
 
 #endif

@@ -13,13 +13,15 @@ struct ReconstructParameters {
   mat4 normal_from_view;     // rotation from view space to the space of the normals
   mat4 previous_from_view;   // rotation from view space to that of the previous frame
   vec4 slope;                // xy: ray_per_px(); zw: of the ray at the image's corner; view space
-  vec4 previous_size;        // of the previous frame: xy its size in pixels, zw as parts of this
-                             // frame's
+  vec4 previous_extent;      // of the previous frame: xy the centre of its last texel, in texels,
+                             // zw its size in pixels as parts of this frame's
   vec4 history_depth_scale;  // of history_depth(): xy of this frame, zw of the previous frame
   vec4 motion;         // from motion vectors to pixels of the previous frame: xy scale, zw offset
   vec2 history_unit;   // of this and of the previous frame: a power of two near the near plane,
                        // in which depths are held, so that no unit of length changes a bit
   vec2 history_texel;  // 1 over the size of the history's texture
+  vec2 pixel_uv;       // 1 over the size of the image of inverse depth
+  vec2 pixels_per_slope;    // 1 over ray_per_px()
   vec2 interleave_offset;   // pixel of each tile that was traced this frame
   float window_px;          // width of the filter's window in a first frame, pixels
   float tolerance;          // scale of distances from the tangent plane, in depths

@@ -55,6 +55,7 @@ void for_each_pair(Theirs& theirs, Ours& ours, const Visit& visit) {
   visit(theirs.hidden_occlusion, ours.hidden_occlusion);
   visit(theirs.depth_layers, ours.depth_layers);
   visit(theirs.history_frames, ours.history_frames);
+  visit(theirs.half_resolution, ours.half_resolution);
   visit(theirs.specular, ours.specular);
   visit(theirs.roughness, ours.roughness);
   visit(theirs.roughness_channel, ours.roughness_channel);

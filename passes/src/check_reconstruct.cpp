@@ -65,13 +65,21 @@ tl::expected<void, Error> check_tracing(const RawOcclusionTextures& raw_occlusio
   return validate(settings);
 }
 
-tl::expected<void, Error> check_raw_occlusion(const Frame& frame, const ReconstructInputs& inputs) {
+tl::expected<void, Error> check_raw_occlusion(const Frame& frame, const ReconstructInputs& inputs,
+                                              bool half_resolution) {
   const RawOcclusionTextures& raw_occlusion = inputs.raw_occlusion;
   const auto check = [&](Texture texture, VkFormat format, const char* name) {
     return check_blocks(frame, inputs.inverse_depth, raw_occlusion.tile_size, texture, format,
                         name);
   };
   return check_tracing(raw_occlusion)
+      .and_then([&]() -> tl::expected<void, Error> {
+        if (half_resolution && raw_occlusion.tile_size < 2) {
+          return tl::unexpected(
+              Error{"Half resolution needs tiles of 2 or 4 pixels; the tile_size is 1."});
+        }
+        return {};
+      })
       .and_then([&] {
         return check(raw_occlusion.raw_occlusion, raw_format(raw_occlusion.lobe), "raw occlusion");
       })
@@ -94,7 +102,7 @@ tl::expected<void, Error> check_reconstruct(const Frame& frame, const Reconstruc
   return validate(settings)
       .and_then([&] { return check_motion(inputs.motion_convention); })
       .and_then([&] { return check_textures(frame, inputs); })
-      .and_then([&] { return check_raw_occlusion(frame, inputs); });
+      .and_then([&] { return check_raw_occlusion(frame, inputs, settings.half_resolution); });
 }
 
 tl::expected<ReconstructSizes, Error> reconstruct_sizes(const Frame& frame, Texture depth) {

@@ -16,6 +16,7 @@
 #include "maths/slice_line.h"
 #include "output_format.h"
 #include "reconstruct_parameters.h"
+#include "upsample.h"
 #include "view_parameters.h"
 #include "write_result.h"
 
@@ -67,7 +68,8 @@ struct HistoryTextures {
 // Every texture that the pass accesses; null where it is not wanted.
 struct Textures {
   ReconstructInputs inputs;
-  Occlusion result;
+  Occlusion result;  // at half resolution the upsampling pass writes it
+  Texture half;      // maths::HalfTexel, only at half resolution
   HistoryTextures history;
   HistoryTextures bent_history;
   HistoryTextures lobe_history;
@@ -102,13 +104,39 @@ void create_histories(Graph& graph, const OcclusionSettings& settings,
                                          kLobeHistoryFormat, largest, valid);
 }
 
+// Pixels per texel of what is reconstructed, in each direction.
+std::uint32_t texel_size(const OcclusionSettings& settings) {
+  return settings.half_resolution ? 2 : 1;
+}
+
+framegraph::Extent texels(VkExtent2D pixels, const OcclusionSettings& settings) {
+  const std::uint32_t size = texel_size(settings);
+  return framegraph::Extent::absolute((pixels.width + size - 1) / size,
+                                      (pixels.height + size - 1) / size);
+}
+
+// Declares what the pass writes for the upsampling pass. Histories are written for it too.
+void create_half(Graph& graph, const OcclusionSettings& settings, const ReconstructSizes& sizes,
+                 Textures& textures) {
+  const auto size = texels(sizes.now, settings);
+  textures.half = graph.create_texture("half resolution", {VK_FORMAT_R32G32_UINT, size});
+  if (textures.inputs.raw_occlusion.bent && !textures.bent_history.next) {
+    textures.bent_history.next =
+        graph.create_texture("half-resolution residual", {kBentHistoryFormat, size});
+  }
+  if (textures.inputs.raw_occlusion.lobe && !textures.lobe_history.next) {
+    textures.lobe_history.next =
+        graph.create_texture("half-resolution lobe", {kLobeHistoryFormat, size});
+  }
+}
+
 // Declares the textures that the pass writes. `valid` is whether last frame's history can be read.
 Textures create_textures(const Frame& frame, const ReconstructInputs& inputs,
                          const OcclusionSettings& settings, const ReconstructSizes& sizes,
                          std::string_view history_name, bool& valid) {
   Graph& graph = frame.graph;
   const auto size = framegraph::Extent::absolute(sizes.now.width, sizes.now.height);
-  const auto largest = framegraph::Extent::absolute(sizes.largest.width, sizes.largest.height);
+  const auto largest = texels(sizes.largest, settings);
   Textures textures{.inputs = inputs};
   if (needs_visibility(settings)) {
     textures.result.visibility = given_or_created(graph, inputs.into.visibility, "visibility",
@@ -123,7 +151,17 @@ Textures create_textures(const Frame& frame, const ReconstructInputs& inputs,
                                                 {scalar_format(settings.precision), size});
   }
   create_histories(graph, settings, history_name, largest, textures, valid);
+  if (settings.half_resolution) {
+    create_half(graph, settings, sizes, textures);
+  }
   return textures;
+}
+
+// The normals, or null where the pass does not read them: at half resolution only the weights of
+// GGX lobes need them.
+Texture read_normals(const Textures& textures) {
+  const bool read = !textures.half || textures.inputs.raw_occlusion.lobe;
+  return read ? textures.inputs.normals : Texture{};
 }
 
 void declare_accesses(const Graph& graph, framegraph::PassBuilder& pass, Textures& textures) {
@@ -141,13 +179,17 @@ void declare_accesses(const Graph& graph, framegraph::PassBuilder& pass, Texture
   const auto& stored = framegraph::access::storage_read_compute;
   read(textures.inputs.raw_occlusion.raw_occlusion, stored);
   read(textures.inputs.raw_occlusion.bent, stored);
-  read(textures.inputs.inverse_depth, stored);
-  read(textures.inputs.normals, sampled);
+  read(textures.inputs.inverse_depth, textures.half ? sampled : stored);
+  read(read_normals(textures), sampled);
   read(textures.inputs.motion, sampled);
   read(textures.inputs.roughness, sampled);
-  write(textures.result.visibility);
-  write(textures.result.bent_normal);
-  write(textures.result.specular);
+  if (textures.half) {
+    write(textures.half);
+  } else {
+    write(textures.result.visibility);
+    write(textures.result.bent_normal);
+    write(textures.result.specular);
+  }
   for (HistoryTextures* const history :
        {&textures.history, &textures.bent_history, &textures.lobe_history}) {
     read(history->previous, sampled);
@@ -180,29 +222,48 @@ Bindings bindings_of(RecordContext& context, const Textures& textures) {
   const ReconstructInputs& in = textures.inputs;
   const Occlusion& out = textures.result;
   const Texture written = any_of(out);
+  // Half resolution samples the inverse depth.
+  const Texture sampled = textures.half ? in.inverse_depth : in.normals;
   Bindings bindings;
   bindings.add({context.view(in.raw_occlusion.raw_occlusion),
                 view_or(context, in.raw_occlusion.bent, in.raw_occlusion.raw_occlusion),
-                context.view(in.inverse_depth), context.view(in.normals),
-                view_or(context, out.visibility, written),
-                view_or(context, out.bent_normal, written)});
+                context.view(in.inverse_depth), view_or(context, read_normals(textures), sampled)});
+  if (textures.half) {
+    bindings.add({context.view(textures.half)});
+  } else {
+    bindings.add(
+        {view_or(context, out.visibility, written), view_or(context, out.bent_normal, written)});
+  }
   if (textures.history.next) {
     bindings.add({context.view(textures.history.previous), context.view(textures.history.next),
-                  view_or(context, in.motion, in.normals),
+                  view_or(context, in.motion, sampled),
                   view_or(context, textures.bent_history.previous, textures.history.previous),
                   view_or(context, textures.bent_history.next, textures.history.next)});
+  } else if (textures.half) {
+    bindings.add({view_or(context, textures.bent_history.next, textures.half)});
   }
   if (in.raw_occlusion.lobe) {
-    bindings.add({view_or(context, in.roughness, in.normals), context.view(out.specular)});
+    bindings.add({view_or(context, in.roughness, sampled)});
+    if (!textures.half) {
+      bindings.add({context.view(out.specular)});
+    }
+  }
+  if (textures.lobe_history.previous) {
+    bindings.add({context.view(textures.lobe_history.previous)});
   }
   if (textures.lobe_history.next) {
-    bindings.add(
-        {context.view(textures.lobe_history.previous), context.view(textures.lobe_history.next)});
+    bindings.add({context.view(textures.lobe_history.next)});
   }
   return bindings;
 }
 
-Shader shader_of(bool history, bool lobe) {
+Shader shader_of(bool history, bool lobe, bool half) {
+  if (half && lobe) {
+    return history ? Shader::reconstruct_half_specular_history : Shader::reconstruct_half_specular;
+  }
+  if (half) {
+    return history ? Shader::reconstruct_half_history : Shader::reconstruct_half;
+  }
   if (lobe) {
     return history ? Shader::reconstruct_specular_history : Shader::reconstruct_specular;
   }
@@ -225,19 +286,20 @@ Past past_of(const Frame& frame, const ReconstructSizes& sizes, bool history_val
 std::array<std::uint32_t, 13> constants_of(const ReconstructInputs& inputs,
                                            const OcclusionSettings& settings, bool perspective,
                                            Past past) {
-  return {inputs.raw_occlusion.tile_size,
-          settings.advanced.filter_radius,
-          flag(bool(inputs.raw_occlusion.bent)),
-          flag(inputs.motion && past == Past::moving),
-          flag(perspective),
-          flag(settings.advanced.clamp_width > 0.0f),
-          flag(past == Past::unchanged),
-          flag(bool(inputs.roughness)),
-          channel_if(bool(inputs.roughness), settings.roughness_channel),
-          flag(past == Past::none),
-          flag(needs_visibility(settings)),
-          static_cast<std::uint32_t>(inputs.normal_encoding),
-          flag(settings.power != 1.0f || settings.intensity != 1.0f)};
+  return {
+      inputs.raw_occlusion.tile_size,
+      settings.advanced.filter_radius,
+      flag(bool(inputs.raw_occlusion.bent)),
+      flag(inputs.motion && past == Past::moving),
+      flag(perspective),
+      flag(settings.advanced.clamp_width > 0.0f),
+      flag(past == Past::unchanged),
+      flag(bool(inputs.roughness)),
+      channel_if(bool(inputs.roughness), settings.roughness_channel),
+      flag(past == Past::none),
+      flag(needs_visibility(settings)),
+      static_cast<std::uint32_t>(inputs.normal_encoding),
+      flag(!settings.half_resolution && (settings.power != 1.0f || settings.intensity != 1.0f))};
 }
 
 tl::expected<Kernel, Error> get_kernel(const Frame& frame, const ReconstructInputs& inputs,
@@ -245,8 +307,9 @@ tl::expected<Kernel, Error> get_kernel(const Frame& frame, const ReconstructInpu
                                        Past past) {
   const bool history = settings.history_frames > 0;
   const auto get = [&](Past of) {
-    return frame.kernels.get(shader_of(history, inputs.raw_occlusion.lobe),
-                             constants_of(inputs, settings, perspective, of));
+    return frame.kernels.get(
+        shader_of(history, inputs.raw_occlusion.lobe, settings.half_resolution),
+        constants_of(inputs, settings, perspective, of));
   };
   if (history && frame.prepare) {
     for (const Past each : {Past::none, Past::moving, Past::unchanged}) {
@@ -315,10 +378,10 @@ maths::vec2 history_depth_scale(const maths::Projection& p) {
 constexpr float kHistorySlack = 0.75f / 16383.0f;
 
 // ReconstructParameters::history_sharpness. A texel counts less the further it lies off the tangent
-// plane, and not at all from 1.5 pixels on, or from 0.3 % of the depth in perspective where pixels
+// plane, and not at all from 1.5 texels on, or from 0.3 % of the depth in perspective where texels
 // are larger. It must at least be 0.12 % there, about the step of a stored depth.
-float history_sharpness(const maths::Projection& p, maths::vec2 scale) {
-  const float pixel = std::abs(maths::ray_per_px(p).y);
+float history_sharpness(const maths::Projection& p, float texel_size, maths::vec2 scale) {
+  const float pixel = texel_size * std::abs(maths::ray_per_px(p).y);
   if (is_perspective(p)) {
     // The stored depth changes by scale / ln 2 times a relative change of depth.
     constexpr float kLn2 = 0.69314718f;
@@ -359,11 +422,16 @@ maths::ReconstructParameters parameters_of(const Frame& frame, const maths::Proj
       1.0f / (settings.advanced.filter_tolerance_px * std::abs(maths::ray_per_px(projection).y));
   parameters.largest_weight = static_cast<float>(settings.history_frames) - 1.0f;
   parameters.clamp_width = settings.advanced.clamp_width;
-  parameters.previous_size = maths::vec4(previous.size_px, previous.size_px / projection.size_px);
+  const auto texel = static_cast<float>(texel_size(settings));
+  parameters.previous_extent = maths::vec4(maths::ceil(previous.size_px / texel) - 0.5f,
+                                           previous.size_px / projection.size_px);
+  parameters.pixel_uv = 1.0f / projection.size_px;
+  parameters.pixels_per_slope = 1.0f / maths::ray_per_px(projection);
   parameters.history_depth_scale =
       maths::vec4(history_depth_scale(projection), history_depth_scale(previous));
   parameters.history_unit = {history_unit(projection), history_unit(previous)};
-  parameters.history_sharpness = history_sharpness(projection, history_depth_scale(previous));
+  parameters.history_sharpness =
+      history_sharpness(projection, texel, history_depth_scale(previous));
   parameters.history_slack = kHistorySlack;
   // The golden ratio's fractions are spread evenly over any run of frames.
   parameters.dither_offset = static_cast<float>(frame.index * 2654435769u) * 0x1p-32f;
@@ -442,17 +510,31 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& given_frame,
   if (past == Past::unchanged && frame.static_frames >= kConvergedFrames) {
     parameters.largest_weight = static_cast<float>(maths::kMaxHistoryFrames) - 1.0f;
   }
-  parameters.history_texel = 1.0f / maths::vec2(sizes->largest.width, sizes->largest.height);
+  const VkExtent3D stored =
+      textures.history.next ? frame.graph.extent(textures.history.next) : VkExtent3D{1, 1, 1};
+  parameters.history_texel = 1.0f / maths::vec2(stored.width, stored.height);
   parameters.interleave_offset =
       maths::vec2(static_cast<float>(offset_x), static_cast<float>(offset_y));
-  pass.record(
-      [&kernels = frame.kernels, kernel = *kernel, textures, parameters](RecordContext& context) {
-        const Bindings bindings = bindings_of(context, textures);
-        const std::span<const VkImageView> bound(bindings.views.data(), bindings.count);
-        kernels.dispatch(context, kernel, bound, bytes_of(parameters),
-                         context.extent(textures.inputs.inverse_depth));
-      });
-  return textures.result;
+  pass.record([&kernels = frame.kernels, kernel = *kernel, textures,
+               parameters](RecordContext& context) {
+    const Bindings bindings = bindings_of(context, textures);
+    const std::span<const VkImageView> bound(bindings.views.data(), bindings.count);
+    kernels.dispatch(context, kernel, bound, bytes_of(parameters),
+                     context.extent(textures.half ? textures.half : textures.inputs.inverse_depth));
+  });
+  if (!textures.half) {
+    return textures.result;
+  }
+  return add_upsample(frame,
+                      {.half = textures.half,
+                       .residuals = textures.bent_history.next,
+                       .lobes = textures.lobe_history.next,
+                       .inverse_depth = inputs.inverse_depth,
+                       .normals = inputs.normals,
+                       .normals_in_view_space = inputs.normals_in_view_space,
+                       .normal_encoding = inputs.normal_encoding,
+                       .normals_forward_z = inputs.normals_forward_z},
+                      textures.result, settings);
 }
 
 void drop_reconstruct_history(Graph& graph, std::string_view history_name) {

@@ -107,6 +107,11 @@ tl::expected<void, Error> validate(const OcclusionSettings& settings) {
   if (auto good = check_ranges(settings); !good) {
     return good;
   }
+  if (settings.half_resolution && settings.tile_size < 2) {
+    return tl::unexpected(Error{
+        "The setting 'half_resolution' is true with a tile_size of 1; choose a tile_size of 2 "
+        "or 4."});
+  }
   const AdvancedSettings& advanced = settings.advanced;
   if (advanced.falloff > 0.0f && has_thickness(advanced.estimator)) {
     return tl::unexpected(

@@ -18,9 +18,15 @@
 #include "spirv/multi_bounce.h"
 #include "spirv/normals.h"
 #include "spirv/reconstruct.h"
+#include "spirv/reconstruct_half.h"
+#include "spirv/reconstruct_half_history.h"
+#include "spirv/reconstruct_half_specular.h"
+#include "spirv/reconstruct_half_specular_history.h"
 #include "spirv/reconstruct_history.h"
 #include "spirv/reconstruct_specular.h"
 #include "spirv/reconstruct_specular_history.h"
+#include "spirv/upsample.h"
+#include "spirv/upsample_specular.h"
 #include "tables/gtso.h"
 #include "tables/reflectance.h"
 
@@ -46,6 +52,24 @@ const ShaderSource& shader_source(Shader shader) {
        "tttstt"
        "gtsgt"
        "stgt"},
+      {kReconstructHalf,
+       "ttgst"
+       "t"},
+      {kReconstructHalfHistory,
+       "ttgst"
+       "gtsgt"},
+      {kReconstructHalfSpecular,
+       "ttgst"
+       "t"
+       "st"},
+      {kReconstructHalfSpecularHistory,
+       "ttgst"
+       "gtsgt"
+       "sgt"},
+      {kUpsample, "ggsgtt"},
+      {kUpsampleSpecular,
+       "ggsgtt"
+       "gt"},
       {kMultiBounce, "sst"},
       {kGtso, "ssssst"},
       {kGtsoByTable, "ssssstb", kGtsoTable},

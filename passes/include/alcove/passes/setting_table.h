@@ -86,6 +86,11 @@ void for_each_setting(Settings& settings, const Visit& visit) {
                     .help = "Frames that are averaged. 0 keeps no history.",
                     .range = {.maximum = 127}},
         settings.history_frames);
+  visit(SettingInfo{.name = "half_resolution",
+                    .help = "Filters and accumulates at half resolution, then upsamples. For tiles "
+                            "of 2 or 4 pixels.",
+                    .matters = [](S s) { return s.tile_size > 1; }},
+        settings.half_resolution);
   visit(SettingInfo{.name = "specular",
                     .help = "How specular occlusion is computed: from the slices (most exact), or "
                             "from visibility and the bent normal by a table or by cones."},

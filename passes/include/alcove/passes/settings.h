@@ -56,6 +56,10 @@ struct OcclusionSettings {
   // Frames that are averaged, 0 to 127; from 16 static frames on, 127. 0 keeps no history and
   // allocates none, for engines with a temporal filter of their own.
   std::uint32_t history_frames = 32;
+  // Filters and accumulates texels of 2x2 pixels, and makes pixels from them by edge-aware
+  // upsampling: less time, a quarter of the history's memory, and a larger error (passes/README.md
+  // has figures). Needs a tile_size of 2 or 4.
+  bool half_resolution = false;
 
   // Outputs. One that is off costs neither a pass nor memory.
   bool visibility = true;

@@ -1,0 +1,110 @@
+#include "upsample.h"
+
+#include <array>
+#include <cmath>
+#include <span>
+
+#include "bindings.h"
+#include "upsample_parameters.h"
+#include "view_parameters.h"
+#include "write_result.h"
+
+namespace alcove::passes {
+
+using framegraph::RecordContext;
+using framegraph::Texture;
+
+namespace {
+
+// Distance from a texel's tangent plane, in pixels, at which its weight falls to 0.25. Fitted with
+// `alcove compare --set half_resolution=true` over the development views.
+constexpr float kTolerancePx = 1.0f;
+
+tl::expected<Kernel, Error> get_kernel(const Frame& frame, const UpsampleInputs& inputs,
+                                       const Occlusion& result, const OcclusionSettings& settings,
+                                       bool perspective) {
+  const std::array constants{
+      flag(perspective), flag(bool(result.visibility)),
+      flag(settings.power != 1.0f || settings.intensity != 1.0f), flag(bool(result.bent_normal)),
+      result.bent_normal ? static_cast<std::uint32_t>(inputs.normal_encoding) : 0u};
+  return frame.kernels.get(result.specular ? Shader::upsample_specular : Shader::upsample,
+                           constants);
+}
+
+void declare_accesses(const Frame& frame, framegraph::PassBuilder& pass,
+                      const UpsampleInputs& inputs, Occlusion& result) {
+  const auto& sampled = framegraph::access::sampled_compute;
+  pass.read(inputs.half, sampled);
+  pass.read(inputs.inverse_depth, sampled);
+  if (result.bent_normal) {
+    pass.read(inputs.normals, sampled);
+    pass.read(inputs.residuals, sampled);
+  }
+  if (result.specular) {
+    pass.read(inputs.lobes, sampled);
+  }
+  for (Texture* const written : {&result.visibility, &result.bent_normal, &result.specular}) {
+    if (*written) {
+      *written = write_result(frame.graph, pass, *written);
+    }
+  }
+}
+
+maths::UpsampleParameters parameters_of(const Frame& frame, const UpsampleInputs& inputs,
+                                        const OcclusionSettings& settings,
+                                        const maths::Projection& projection) {
+  const VkExtent3D half = frame.graph.extent(inputs.half);
+  const maths::vec2 per_px = maths::ray_per_px(projection);
+  maths::UpsampleParameters parameters{};
+  parameters.normal_from_view = maths::transpose(
+      view_from_normal(frame, inputs.normals_in_view_space, inputs.normals_forward_z));
+  parameters.slope = maths::vec4(per_px, projection.uv_to_slope.z, projection.uv_to_slope.w);
+  parameters.pixel_uv = 1.0f / projection.size_px;
+  parameters.texel_uv = 1.0f / maths::vec2(half.width, half.height);
+  parameters.tolerance = 1.0f / (kTolerancePx * std::abs(per_px.y));
+  parameters.power = settings.power;
+  parameters.intensity = settings.intensity;
+  return parameters;
+}
+
+}  // namespace
+
+tl::expected<Occlusion, Error> add_upsample(const Frame& frame, const UpsampleInputs& inputs,
+                                            const Occlusion& result,
+                                            const OcclusionSettings& settings) {
+  const auto projection = projection_of(frame, frame.view, inputs.inverse_depth);
+  if (!projection) {
+    return tl::unexpected(projection.error());
+  }
+  const auto kernel = get_kernel(frame, inputs, result, settings, is_perspective(*projection));
+  if (!kernel) {
+    return tl::unexpected(kernel.error());
+  }
+  Occlusion out = result;
+  auto pass = frame.graph.add_pass("upsample");
+  declare_accesses(frame, pass, inputs, out);
+  const VkExtent3D half = frame.graph.extent(inputs.half);
+  pass.record([&kernels = frame.kernels, kernel = *kernel, inputs, out, half,
+               parameters =
+                   parameters_of(frame, inputs, settings, *projection)](RecordContext& context) {
+    const Texture written = out.visibility    ? out.visibility
+                            : out.bent_normal ? out.bent_normal
+                                              : out.specular;
+    const std::array<VkImageView, 8> views{
+        context.view(inputs.half),
+        context.view(inputs.inverse_depth),
+        view_or(context, out.bent_normal ? inputs.normals : Texture{}, inputs.inverse_depth),
+        view_or(context, out.bent_normal ? inputs.residuals : Texture{}, inputs.half),
+        view_or(context, out.visibility, written),
+        view_or(context, out.bent_normal, written),
+        view_or(context, inputs.lobes, inputs.half),
+        view_or(context, out.specular, written)};
+    const std::span<const VkImageView> bound(views.data(), views.size() - (out.specular ? 0 : 2));
+    // Invocations stand between texels, and begin and end outside of the image.
+    kernels.dispatch(context, kernel, bound, bytes_of(parameters),
+                     {half.width + 1, half.height + 1, 1});
+  });
+  return out;
+}
+
+}  // namespace alcove::passes

@@ -1,0 +1,28 @@
+// Makes pixels from what is reconstructed at half resolution.
+#pragma once
+
+#include "alcove/passes/reconstruct.h"
+
+namespace alcove::passes {
+
+struct UpsampleInputs {
+  framegraph::Texture half;           // maths::HalfTexel
+  framegraph::Texture residuals;      // maths::pack_residual(); null where there is no bent normal
+  framegraph::Texture lobes;          // maths::LobeTexel; null where there is no lobe
+  framegraph::Texture inverse_depth;  // from add_inverse_depth
+  framegraph::Texture normals;        // as ReconstructInputs has it, as are the next two
+  bool normals_in_view_space = false;
+  NormalEncoding normal_encoding = NormalEncoding::signed_xyz;
+  bool normals_forward_z = false;
+};
+
+// Adds the pass that writes `result`, whose textures of the depth's size were made but not yet
+// written. A result that is null is not written.
+//
+// Errors: a view that cannot be used, a pipeline that cannot be made.
+[[nodiscard]] tl::expected<Occlusion, Error> add_upsample(const Frame& frame,
+                                                          const UpsampleInputs& inputs,
+                                                          const Occlusion& result,
+                                                          const OcclusionSettings& settings);
+
+}  // namespace alcove::passes

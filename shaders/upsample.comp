@@ -1,0 +1,185 @@
+#version 460
+#extension GL_EXT_control_flow_attributes : require
+#extension GL_EXT_samplerless_texture_functions : require
+#extension GL_GOOGLE_include_directive : require
+
+// Makes pixels from reconstructed texels of 2x2 pixels, so that depth edges stay where they are.
+//
+// A pixel is the weighted mean of the four texels whose centres lie around it. A texel's weight is
+// its bilinear weight times a function of the pixel's distance from the texel's tangent plane. The
+// plane comes with the texel (HalfTexel), so a pixel reads nothing but its own depth.
+//
+// The four pixels amid the same four texels are one invocation: texels are unpacked once for them.
+// These pixels straddle the pixels of four texels, so invocations begin one pixel before the image.
+
+#include "maths/bent_normal.h"
+#include "maths/half_texel.h"
+#include "maths/history.h"
+#include "maths/normal_encoding.h"
+#include "maths/raw_occlusion.h"
+#include "maths/slice_line.h"
+#include "upsample_parameters.h"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(constant_id = 0) const bool kPerspective = true;
+layout(constant_id = 1) const bool kVisibility = true;  // whether visibility_image is written
+layout(constant_id = 2) const bool kShaped = false;     // power or intensity is not 1
+layout(constant_id = 3) const bool kBentNormal = false;
+layout(constant_id = 4) const uint kNormalEncoding = 0;  // as NormalEncoding has them
+
+layout(set = 0, binding = 0) uniform Parameters { UpsampleParameters parameters; };
+// The samplers are nearest and clamp to the edge.
+layout(set = 0, binding = 1) uniform usampler2D half_image;          // HalfTexel
+layout(set = 0, binding = 2) uniform sampler2D inverse_depth_image;  // SliceSample::inverse_depth
+layout(set = 0, binding = 3) uniform texture2D normal_image;         // xyz
+// pack_residual(); another image without bent normals.
+layout(set = 0, binding = 4) uniform usampler2D residual_image;
+// Another image where it is not written; so is the next.
+layout(set = 0, binding = 5) uniform writeonly image2D visibility_image;
+// In the space of the normals.
+layout(set = 0, binding = 6) uniform writeonly image2D bent_normal_image;
+#ifdef SPECULAR
+layout(set = 0, binding = 7) uniform usampler2D lobe_image;  // LobeTexel
+layout(set = 0, binding = 8) uniform writeonly image2D specular_image;
+#endif
+
+ivec2 size_px() { return textureSize(inverse_depth_image, 0); }
+
+float load_inverse_depth(ivec2 pixel) { return texelFetch(inverse_depth_image, pixel, 0).r; }
+
+#include "depth_normal.h"
+
+// Texels and pixels are in the order of textureGather: lower left, lower right, upper right, upper
+// left. Whether the i-th is to the right or below; y points down.
+float right_of(int i) { return i == 1 || i == 2 ? 1.0 : -1.0; }
+float below_of(int i) { return i < 2 ? 1.0 : -1.0; }
+
+struct Cell {
+  ivec2 first;      // the pixel to the upper left
+  vec4 depths;      // inverse depths of the pixels
+  vec4 occlusions;  // of the texels, in units of kHalfTexelOcclusionUnit
+  // Of each texel: distance from its plane per distance along the view ray, and the inverse depth
+  // of its plane at the cell's centre and the change of it over half a pixel to the right and
+  // below, times that.
+  vec4 steepness;
+  vec4 planes;
+  vec4 right;
+  vec4 below;
+};
+
+Cell fetch_cell(ivec2 index) {
+  Cell cell;
+  cell.first = index * 2 - 1;
+  cell.depths = textureGather(inverse_depth_image, vec2(index * 2) * parameters.pixel_uv);
+  vec2 uv = vec2(index) * parameters.texel_uv;
+  uvec4 texels = textureGather(half_image, uv, 0);
+  uvec4 tilts = textureGather(half_image, uv, 1);
+  vec2 ray =
+      parameters.slope.zw + (kPerspective ? vec2(index * 2) * parameters.slope.xy : vec2(0.0));
+  vec2 half_pixel = (kPerspective ? -0.5 : 0.5) * parameters.slope.xy;
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    float inverse_depth = half_texel_inverse_depth(texels[i]);
+    vec2 tilt = unpackHalf2x16(tilts[i]);
+    // The normal over its component along the ray (ray.x, ray.y, -1) has -tilt as its x and y and
+    // -1 - dot(tilt, ray) as its z.
+    float z = 1.0 + dot(tilt, ray);
+    float steepness = inversesqrt(dot(tilt, tilt) + z * z);
+    float scaled = inverse_depth * steepness;
+    vec2 change = tilt * (half_pixel * (kPerspective ? scaled : steepness));
+    // The texel's centre lies two half pixels from that of the cell.
+    cell.planes[i] = scaled - 2.0 * right_of(i) * change.x - 2.0 * below_of(i) * change.y;
+    cell.right[i] = change.x;
+    cell.below[i] = change.y;
+    cell.steepness[i] = steepness * parameters.tolerance;
+    cell.occlusions[i] = half_texel_occlusion(texels[i]);
+  }
+  return cell;
+}
+
+// Distance from a plane, in tolerances, from which on a weight no longer falls, squared. The
+// product of three weights' denominators is then still a float.
+const float kFarthest = 1e6;
+
+// The weights of the four texels for pixel `j`, up to a common factor:
+// share / (1 + distance^2)^2, where the distance from the plane is in tolerances.
+vec4 weights_of(Cell cell, int j) {
+  float depth = cell.depths[j];
+  float along = kPerspective ? 1.0 : depth;
+  float scale = kPerspective ? -parameters.tolerance / depth : -parameters.tolerance;
+  vec4 levels;
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    float expected = cell.planes[i] + right_of(j) * cell.right[i] + below_of(j) * cell.below[i];
+    float off_plane = cell.steepness[i] * along + expected * scale;
+    float level = 1.0 + min(off_plane * off_plane, kFarthest);
+    levels[i] = level * level;
+  }
+  // Over the product of all denominators, which costs no division.
+  float lower = levels.x * levels.y;
+  float upper = levels.z * levels.w;
+  vec4 weights = vec4(levels.yx * upper, levels.wz * lower);
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    // Bilinear: 3/4 on the pixel's side and 1/4 on the other, times 4 along each axis.
+    weights[i] *=
+        (right_of(i) == right_of(j) ? 3.0 : 1.0) * (below_of(i) == below_of(j) ? 3.0 : 1.0);
+  }
+  return weights;
+}
+
+vec3 unit_normal(ivec2 pixel) {
+  vec2 slope =
+      parameters.slope.zw + (kPerspective ? (vec2(pixel) + 0.5) * parameters.slope.xy : vec2(0.0));
+  vec3 given = decode_normal(texelFetch(normal_image, pixel, 0).xyz, kNormalEncoding) *
+               mat3(parameters.normal_from_view);
+  return seen_normal(pixel, given, normalize(vec3(-slope, 1.0)));
+}
+
+void main() {
+  ivec2 index = ivec2(gl_GlobalInvocationID.xy);
+  ivec2 size = size_px();
+  if (any(greaterThan(index * 2, size))) {
+    return;
+  }
+  Cell cell = fetch_cell(index);
+  vec2 uv = vec2(index) * parameters.texel_uv;
+  uvec4 residuals = uvec4(0u);
+  if (kBentNormal) {
+    residuals = textureGather(residual_image, uv);
+  }
+#ifdef SPECULAR
+  uvec4 lobes = textureGather(lobe_image, uv);
+#endif
+  [[unroll]] for (int j = 0; j < 4; ++j) {
+    ivec2 pixel = cell.first + ivec2(right_of(j) > 0.0 ? 1 : 0, below_of(j) > 0.0 ? 1 : 0);
+    bool inside = all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, size));
+    vec4 weights = weights_of(cell, j);
+    float inverse_sum = 1.0 / (weights.x + weights.y + weights.z + weights.w);
+    bool sky = cell.depths[j] == sky_inverse_depth(kPerspective);
+    float occlusion = dot(weights, cell.occlusions) * (inverse_sum * kHalfTexelOcclusionUnit);
+    float visibility = sky ? 1.0 : saturate(1.0 - occlusion);
+    if (kVisibility && inside) {
+      float shaped = shaped_visibility(visibility, parameters.power, parameters.intensity);
+      imageStore(visibility_image, pixel, vec4(kShaped ? shaped : visibility));
+    }
+    if (kBentNormal && inside) {
+      vec3 residual = vec3(0.0);
+      [[unroll]] for (int i = 0; i < 4; ++i) {
+        residual += weights[i] * unpack_residual(residuals[i]);
+      }
+      residual *= sky ? 0.0 : inverse_sum;
+      vec3 bent = finish_bent_normal(residual, visibility, unit_normal(pixel));
+      imageStore(bent_normal_image, pixel, vec4(mat3(parameters.normal_from_view) * bent, 0.0));
+    }
+#ifdef SPECULAR
+    if (inside) {
+      vec2 sum = vec2(0.0);
+      [[unroll]] for (int i = 0; i < 4; ++i) {
+        LobeTexel lobe = unpack_lobe_texel(lobes[i]);
+        sum += weights[i] * lobe.open * vec2(lobe.occlusion, 1.0);
+      }
+      float lobe_occlusion = sky ? 0.0 : saturate(sum.x / max(sum.y, 1e-37));
+      imageStore(specular_image, pixel, vec4(1.0 - lobe_occlusion));
+    }
+#endif
+  }
+}

@@ -1,0 +1,20 @@
+#ifndef ALCOVE_UPSAMPLE_PARAMETERS_H
+#define ALCOVE_UPSAMPLE_PARAMETERS_H
+
+#include "maths/language.h"
+
+ALCOVE_MATHS_BEGIN
+
+struct UpsampleParameters {
+  mat4 normal_from_view;  // rotation from view space to the space of the normals
+  vec4 slope;             // xy: ray_per_px(); zw: of the ray at the image's corner; view space
+  vec2 pixel_uv;          // 1 over the size of the image of inverse depth
+  vec2 texel_uv;          // 1 over the size of the half-resolution images
+  float tolerance;        // scale of distances from the tangent plane, in depths
+  float power;            // of shaped_visibility()
+  float intensity;        // of shaped_visibility()
+};
+
+ALCOVE_MATHS_END
+
+#endif

@@ -1,0 +1,164 @@
+// Filter and history at half resolution, and the upsampling that makes pixels of them.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "gtao_scenes.h"
+#include "interleave_offset.h"
+#include "maths/half_texel.h"
+#include "reconstruct_fixture.h"
+
+namespace alcove::passes {
+namespace {
+
+// Occlusion is stored in 11 bits.
+constexpr double kOcclusionStep = 1.0 / 2047.0;
+
+OcclusionSettings half_resolution(std::uint32_t history_frames) {
+  OcclusionSettings settings = precise(2, history_frames);
+  settings.half_resolution = true;
+  return settings;
+}
+
+TEST(HalfTexelPacking, KeepsDepthOcclusionAndTilt) {
+  for (const float inverse_depth : {1e-12f, 0.013f, 0.7f, 20.0f, 1e12f}) {
+    for (const float occlusion : {0.0f, 0.37f, 1.0f}) {
+      maths::HalfTexel texel;
+      texel.inverse_depth = inverse_depth;
+      texel.occlusion = occlusion;
+      texel.tilt = maths::vec2(0.25f, -3.0f);
+      const maths::HalfTexel found = maths::unpack_half_texel(maths::pack_half_texel(texel));
+      EXPECT_NEAR(found.inverse_depth / inverse_depth, 1.0, 6.2e-5);
+      EXPECT_NEAR(found.occlusion, occlusion, occlusion == 0.37f ? kOcclusionStep : 0.0);
+      EXPECT_EQ(found.tilt.x, 0.25f);
+      EXPECT_EQ(found.tilt.y, -3.0f);
+    }
+  }
+}
+
+class HalfResolution : public Reconstruct {};
+
+TEST_F(HalfResolution, ConstantOcclusionStaysConstantAtOddSizes) {
+  const TestView view = test_views()[2];
+  std::vector<NamedScene> scenes = gtao_scenes();
+  scenes.push_back({"grazing", {tilted_plane(75.0, 4.0)}});
+  for (const NamedScene& scene : scenes) {
+    const Drawing drawing = draw(view, 33, 23, scene.scene);
+    for (const std::uint32_t tile_size : {2u, 4u}) {
+      for (const float visibility : {0.37f, 1.0f}) {
+        const HostImage raw_occlusion =
+            constant_raw_occlusion(blocks(33, tile_size), blocks(23, tile_size), visibility);
+        for (const std::uint32_t history : {0u, 16u}) {
+          SCOPED_TRACE(testing::Message()
+                       << scene.name << ", tiles of " << tile_size << ", visibility " << visibility
+                       << ", history " << history);
+          const HostImage found = reconstruct({.view = view.view,
+                                               .drawing = drawing,
+                                               .raw_occlusion = raw_occlusion,
+                                               .tile_size = tile_size,
+                                               .index = 1,
+                                               .reset = true},
+                                              half_resolution(history));
+          for (std::uint32_t y = 0; y < 23; ++y) {
+            for (std::uint32_t x = 0; x < 33; ++x) {
+              const float ndc = drawing.depth_ndc.at(x, y);
+              const double expected = ndc == 0.0f || ndc == 1.0f ? 1.0 : visibility;  // the sky
+              ASSERT_NEAR(found.at(x, y), expected,
+                          visibility == 1.0f ? 1e-6 : 2.0 * kOcclusionStep)
+                  << "at " << x << ", " << y;
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
+// A near wall covers the left half of a far one; each has a visibility of its own. An odd column of
+// the edge lies within the texels of 2x2 pixels.
+TEST_F(HalfResolution, VisibilityDoesNotBleedAcrossADepthEdge) {
+  const TestView view = test_views()[2];
+  Surface near_wall = plane({0.0, 0.0, -3.0}, {0.0, 0.0, 1.0});
+  near_wall.keep = [](const glm::dvec3& p) { return p.x < 0.05; };
+  const Drawing drawing = draw(view, kWidth, kHeight, {near_wall, tilted_plane(0.0, 12.0)});
+  const float near_ndc = drawing.depth_ndc.at(0, 0);
+  const auto expected = [&](std::uint32_t x, std::uint32_t y) {
+    return drawing.depth_ndc.at(x, y) == near_ndc ? 0.2f : 0.9f;
+  };
+  for (const std::uint32_t index : {0u, 1u, 2u, 3u}) {
+    const InterleaveOffset offset = interleave_offset_of(2, index);
+    const HostImage raw_occlusion =
+        raw_occlusion_of(kWidth / 2, kHeight / 2, [&](std::uint32_t x, std::uint32_t y) {
+          return expected(2 * x + offset.x, 2 * y + offset.y);
+        });
+    const HostImage found = reconstruct({.view = view.view,
+                                         .drawing = drawing,
+                                         .raw_occlusion = raw_occlusion,
+                                         .tile_size = 2,
+                                         .index = index,
+                                         .reset = true},
+                                        half_resolution(16));
+    for (std::uint32_t y = 0; y < kHeight; ++y) {
+      for (std::uint32_t x = 0; x < kWidth; ++x) {
+        ASSERT_NEAR(found.at(x, y), expected(x, y), 0.02)
+            << "frame " << index << ", at " << x << ", " << y;
+      }
+    }
+  }
+}
+
+TEST_F(HalfResolution, BentNormalsAndSpecularOcclusionFollowFullResolutionOnAPlane) {
+  const TestView view = test_views()[2];
+  const Drawing drawing = draw(view, 33, 23, {tilted_plane(40.0, 4.0)});
+  OcclusionSettings settings = quality_settings(Quality::medium, 0.5f);
+  settings.precision = Precision::float32;
+  settings.bent_normal = true;
+  settings.specular = Specular::slices;
+  settings.half_resolution = true;
+  for (const std::uint32_t history : {0u, 16u}) {
+    settings.history_frames = history;
+    for (std::uint32_t frame = 0; frame < 3; ++frame) {
+      SCOPED_TRACE(testing::Message() << "history " << history << ", frame " << frame);
+      const OcclusionImages found = run_occlusion({.view = view.view,
+                                                   .depth_ndc = drawing.depth_ndc,
+                                                   .normal_vs = &drawing.normal_vs,
+                                                   .index = frame,
+                                                   .reset = frame == 0},
+                                                  settings);
+      for (std::uint32_t y = 0; y < 23; ++y) {
+        for (std::uint32_t x = 0; x < 33; ++x) {
+          ASSERT_NEAR(found.visibility.at(x, y), 1.0, 1e-5) << "at " << x << ", " << y;
+          ASSERT_NEAR(found.specular.at(x, y), 1.0, 1e-3) << "at " << x << ", " << y;
+          double cosine = 0.0;
+          for (std::uint32_t c = 0; c < 3; ++c) {
+            cosine += double{found.bent_normal.at(x, y, c)} * drawing.normal_vs.at(x, y, c);
+          }
+          ASSERT_GT(cosine, 0.999) << "at " << x << ", " << y;
+        }
+      }
+    }
+  }
+}
+
+TEST_F(HalfResolution, TilesOfOnePixelAreRefused) {
+  const TestView view = test_views()[2];
+  const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(0.0, 4.0)});
+  framegraph::Graph graph;
+  const Frame frame{graph, gpu().kernels(), view.view, 0};
+  const auto depth = graph.create_texture(
+      "inverse depth", {VK_FORMAT_R32_SFLOAT, framegraph::Extent::absolute(kWidth, kHeight)});
+  const auto normals = graph.create_texture(
+      "normals", {VK_FORMAT_R32G32B32A32_SFLOAT, framegraph::Extent::absolute(kWidth, kHeight)});
+  const auto raw = graph.create_texture(
+      "raw", {VK_FORMAT_R32G32_UINT, framegraph::Extent::absolute(kWidth, kHeight)});
+  const auto made = add_reconstruct(
+      frame, {.raw_occlusion = {.raw_occlusion = raw}, .inverse_depth = depth, .normals = normals},
+      half_resolution(0));
+  ASSERT_FALSE(made);
+  EXPECT_THAT(made.error().message, testing::HasSubstr("tile_size is 1"));
+}
+
+}  // namespace
+}  // namespace alcove::passes
