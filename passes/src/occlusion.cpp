@@ -108,7 +108,7 @@ OcclusionSettings quality_settings(Quality quality, float radius) {
       break;
     case Quality::high:
       settings.tile_size = 2;
-      settings.slices = 3;
+      settings.slices = 2;
       settings.steps = 16;
       settings.history_frames = 32;
       break;
