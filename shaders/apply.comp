@@ -23,7 +23,7 @@ layout(set = 0, binding = 0) uniform Parameters { ApplyParameters parameters; };
 layout(set = 0, binding = 1) uniform texture2D depth_image;  // linear
 layout(set = 0, binding = 2) uniform texture2D normal_image;
 layout(set = 0, binding = 3) uniform texture2D albedo_image;
-// What is not there is bound to something else and not read.
+// Images that the settings do not use are bound to another image and not read.
 layout(set = 0, binding = 4) uniform texture2D bent_normal_image;
 layout(set = 0, binding = 5) uniform texture2D visibility_image;
 layout(set = 0, binding = 6) uniform texture2D light_image;
@@ -58,8 +58,8 @@ vec3 fetch_direction(texture2D image, ivec2 pixel, vec3 instead) {
   return has_direction(given) ? normalize(mat3(parameters.world_from_normal) * given) : instead;
 }
 
-// As far from the normal as the visibility lets it be, so that its noise does not show where a
-// surface is open.
+// The bent normal, limited to the angle from the normal that its visibility allows, so that noise of the
+// bent normal does not show on unoccluded surfaces.
 vec3 fetch_bent_normal(ivec2 pixel, vec3 normal, float visibility) {
   vec3 bent = fetch_direction(bent_normal_image, pixel, normal);
   return kVisibility ? raised_bent_normal(bent, normal, converged_visibility(visibility)) : bent;
@@ -101,8 +101,8 @@ vec3 environment_light(vec3 normal, vec3 view, float roughness) {
   return fetch_map(map_image, parameters.map.x, level, direction);
 }
 
-// What the lobe sees: the environment and, as multi-bounce has it, occluders that are coloured and
-// lit as the surface is.
+// Light that reaches the lobe: the environment and, as in multi-bounce, occluders with the colour and
+// the lighting of the surface itself.
 vec3 specular_light(ivec2 pixel, vec3 environment, vec3 occluder) {
   if (!kSpecularOcclusion) {
     return environment;

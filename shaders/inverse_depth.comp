@@ -17,7 +17,7 @@ layout(set = 0, binding = 0) uniform Parameters { InverseDepthParameters paramet
 layout(set = 0, binding = 1) uniform texture2D depth_image;  // as the projection wrote it
 layout(set = 0, binding = 2, r32f) uniform writeonly image2D inverse_depth_image;
 
-// As is_sky_ndc() has it.
+// The test of is_sky_ndc() for a depth buffer of known direction.
 bool is_sky(float ndc) { return kReversed ? !(ndc > 0.0) : !(ndc < 1.0); }
 
 void main() {

@@ -22,13 +22,13 @@ using Failure = tl::unexpected<std::string>;
 using Done = tl::expected<void, std::string>;
 using Json = nlohmann::ordered_json;
 
-// How far two images are apart that should look the same.
+// The difference between two images that should be equal.
 struct InvariancePairRow {
   std::string name;
   ErrorSummary difference;
 };
 
-// The mean of each block of `scale` pixels a side.
+// The image with each block of `scale` x `scale` pixels replaced by its mean.
 Image<float> shrunk(const Image<float>& image, std::uint32_t scale) {
   Image<float> small(image.width / scale, image.height / scale);
   for (std::uint32_t y = 0; y < small.height * scale; ++y) {
@@ -40,7 +40,8 @@ Image<float> shrunk(const Image<float>& image, std::uint32_t scale) {
   return small;
 }
 
-// Where both images show a surface; a block of pixels does where all of them do.
+// The pixels at which both images show the same surface. A block of pixels of the second image must
+// show it in all of them.
 Mask common_surfaces(const InvariancePair& pair, const FrameImages& images,
                      const FrameImages& others) {
   const std::uint32_t scale = pair.scale;
@@ -80,14 +81,14 @@ tl::expected<InvariancePairRow, std::string> run_invariance_pair(Gpu& gpu, const
 
 std::string table_of(const std::vector<VariantErrors>& rows) {
   std::string out = fmt::format(
-      "RMSE of visibility over {} pixels, and cost beside the first row's\n"
-      "  {:43}scene truth   height field    bias   GPU   processor   MiB\n",
+      "RMSE of visibility over {} pixels, and cost relative to the first row\n"
+      "  {:47}scene truth   height field    bias   GPU   processor   MiB\n",
       rows.front().scene.count, "");
   std::string part;
   for (const VariantErrors& row : rows) {
     const bool begins = row.variant.part != part;
     part = row.variant.part;
-    out += fmt::format("  {:11}{:32}{:10.4f}{:15.4f}{:+10.3f}{:6.2f}{:10.2f}{:9.1f}\n",
+    out += fmt::format("  {:15}{:32}{:10.4f}{:15.4f}{:+10.3f}{:6.2f}{:10.2f}{:9.1f}\n",
                        begins ? part : "", row.variant.name, row.scene.rmse, row.height_field.rmse,
                        row.scene.bias, row.cost.gpu, row.cost.processor, mib(row.cost.bytes));
   }
@@ -96,7 +97,7 @@ std::string table_of(const std::vector<VariantErrors>& rows) {
 
 std::string table_of(const std::vector<InvariancePairRow>& rows) {
   std::string out =
-      "Difference of visibility where there should be none       RMS   95 % within    pixels\n";
+      "Difference of visibility between equal views              RMS   95 % within    pixels\n";
   for (const InvariancePairRow& row : rows) {
     out += fmt::format("  {:50}{:10.4f}{:14.4f}{:10}\n", row.name, row.difference.rmse,
                        row.difference.percentile_95, row.difference.count);
@@ -121,7 +122,7 @@ Done run_ablate(const Options& options) {
   if (!session) {
     return Failure(std::move(session.error()));
   }
-  // Before minutes of work, not after.
+  // The folder is created first, because the measurement takes minutes.
   const auto folder = OutputFolder::create(options.out);
   if (!folder) {
     return tl::unexpected(folder.error());
@@ -137,7 +138,8 @@ Done run_ablate(const Options& options) {
   const std::uint32_t largest = session->gpu->device().properties().limits.maxImageDimension2D;
   for (const InvariancePair& pair : invariance_pairs_of(session->camera, options.view.height)) {
     if (pair.scale * std::max(options.view.width, options.view.height) > largest) {
-      std::cout << "Left out: " << pair.name << ", which the device has no image for\n";
+      std::cout << "Skipped: " << pair.name
+                << ": the device does not support images of that size\n";
       continue;
     }
     auto row = run_invariance_pair(*session->gpu, *session, options, pair);

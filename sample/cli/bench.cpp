@@ -23,7 +23,8 @@ std::string title_of(const Options& options, const std::string& scene) {
                      options.view.width, options.view.height, options.view.frames);
 }
 
-// That every scene can be read and seen: the last is reached after minutes.
+// Checks that every scene can be loaded and viewed before the first is measured, which takes
+// minutes.
 Done check_scenes(const std::vector<std::string>& scenes, const ViewOptions& view) {
   for (const std::string& name : scenes) {
     const auto scene = load_scene(name);
@@ -37,15 +38,16 @@ Done check_scenes(const std::vector<std::string>& scenes, const ViewOptions& vie
   return {};
 }
 
-// Tells of a trade on stdout and in `report`.
-void tell(const Trade& trade, const std::string& title, const std::string& clock, Json& report) {
+// Prints a trade and adds it to `report`.
+void print_trade(const Trade& trade, const std::string& title, const std::string& clock,
+                 Json& report) {
   std::cout << title << "\n" << table_of(trade, clock) << std::flush;
   report["trades"].push_back({{"of", title}, {"points", to_json(trade)}});
 }
 
-// The errors of more and more samples, on stdout and in `report`.
-Done tell_grid(const Session& session, const StaticSetup& setup, const Options& options,
-               Json& report) {
+// Measures the grid of steps and slices, prints it and adds it to `report`.
+Done print_grid(const Session& session, const StaticSetup& setup, const Options& options,
+                Json& report) {
   const auto rmse = measure_grid(session, setup, truth_options(options));
   if (!rmse) {
     return Failure(rmse.error());
@@ -66,8 +68,8 @@ Done run_bench(const Options& options) {
   }
   const std::vector<std::string> scenes =
       options.scenes.empty() ? std::vector<std::string>{""} : options.scenes;
-  if (auto fine = check_scenes(scenes, options.view); !fine) {
-    return fine;
+  if (auto valid = check_scenes(scenes, options.view); !valid) {
+    return valid;
   }
   Json report;
   report["frames"] = options.view.frames;
@@ -83,7 +85,7 @@ Done run_bench(const Options& options) {
     report["device"] = session->gpu->device().properties().deviceName;
     const StaticSetup setup = static_setup(one, session->camera);
     if (options.grid) {
-      if (auto done = tell_grid(*session, setup, one, report); !done) {
+      if (auto done = print_grid(*session, setup, one, report); !done) {
         return done;
       }
       continue;
@@ -93,7 +95,7 @@ Done run_bench(const Options& options) {
       return Failure(std::move(trade.error()));
     }
     report["time"] = clock = trade->clock_title;
-    tell(trade_of(trade->points), title_of(options, scene), clock, report);
+    print_trade(trade_of(trade->points), title_of(options, scene), clock, report);
     measured.push_back(std::move(trade->points));
   }
   if (options.grid) {
@@ -103,7 +105,7 @@ Done run_bench(const Options& options) {
   const std::string title = scenes.size() == 1 ? title_of(options, scenes.front())
                                                : fmt::format("mean of {} scenes", scenes.size());
   if (scenes.size() > 1) {
-    tell(overall, title, clock, report);
+    print_trade(overall, title, clock, report);
   }
   if (auto written = write_text(options.out / "trade.svg", plot_of(overall, title, clock));
       !written) {

@@ -11,7 +11,7 @@
 namespace alcove::sample {
 namespace {
 
-// Whether the squares of the lengths that make a view are numbers above 0.
+// Whether view axes can be computed: the squared lengths are normal floats.
 bool has_axes(const Camera& camera) {
   const glm::vec3 back = camera.eye_ws - camera.target_ws;
   return std::isnormal(glm::dot(back, back)) &&
@@ -19,7 +19,7 @@ bool has_axes(const Camera& camera) {
          std::isfinite(glm::dot(camera.eye_ws, camera.eye_ws));
 }
 
-// The first names, and how many there are besides: a file may have thousands.
+// The first names, and the number of the others, because a file may have thousands.
 std::string names_of(const std::vector<Camera>& cameras) {
   constexpr std::size_t kMost = 10;
   const std::size_t listed = std::min(cameras.size(), kMost);
@@ -46,7 +46,7 @@ tl::expected<Camera, std::string> camera_of(const ViewOptions& view, const Scene
   camera.origin = scene.origin;
   if (view.eye) camera.eye_ws = *view.eye - scene.origin;
   if (view.target) camera.target_ws = *view.target - scene.origin;
-  // A typed view stands upright: the up vector of the scene's camera belongs to the camera's view.
+  // The up vector of the scene's camera only applies to that camera's own view.
   if (view.eye || view.target) camera.up_ws = Camera().up_ws;
   camera.up_ws = view.up_ws.value_or(camera.up_ws);
   if (view.fov_y) {

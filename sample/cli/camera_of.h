@@ -9,11 +9,11 @@
 
 namespace alcove::sample {
 
-// The camera that the options ask of this scene. Near and far planes that are not typed are fitted
-// to the geometry in view where the view is typed or frames the scene; otherwise they are those of
-// the scene's camera. Depth is reversed in perspective views unless the options say otherwise.
-// Errors: a camera the scene does not have (its
-// names are listed), an eye at the target, near not before far or in perspective not above 0.
+// The camera that the options choose in this scene. Near and far planes that are not given are
+// those of the scene's camera, or are fitted to the geometry in view if the view is given or frames
+// the whole scene. Depth is reversed in perspective views unless the options say otherwise. Errors:
+// the scene has no camera of that name (its cameras are listed), the eye is at the target, the near
+// plane is not in front of the far plane or, in perspective, not in front of the eye.
 [[nodiscard]] tl::expected<Camera, std::string> camera_of(const ViewOptions& view,
                                                           const Scene& scene);
 

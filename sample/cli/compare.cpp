@@ -18,9 +18,9 @@ namespace {
 struct Errors {
   ErrorSummary scene;
   ErrorSummary height_field;
-  ErrorSummary limit;  // height-field truth against scene truth: what one depth layer cannot know
+  ErrorSummary limit;  // height-field truth against scene truth: the limit of one depth layer
   AngleSummary bent_normal;
-  AngleSummary surface_normal;  // the plain normal in its place
+  AngleSummary surface_normal;  // the surface normal as the bent normal
   OpenSurfaceSummary open;
   Weave weave;  // against scene truth
 };
@@ -54,7 +54,7 @@ std::string error_table(const Errors& errors) {
                    errors.height_field.bias) +
          error_row("height-field truth against scene truth", errors.limit.rmse, errors.limit.bias) +
          fmt::format(
-             "Bent normal off the truth by {:.2f} degrees in the mean, 95 % within {:.2f} (the "
+             "Angle between bent normal and truth: mean {:.2f} degrees, 95 % within {:.2f} (of the "
              "surface normal: {:.2f} and {:.2f})\n"
              "Open surfaces: mean visibility {:.4f}, {:.2f} % of pixels below 0.95\n",
              errors.bent_normal.mean_degrees, errors.bent_normal.percentile_95_degrees,
@@ -80,7 +80,7 @@ tl::expected<void, std::string> write_truths(const Rendering& rendering, const T
 }  // namespace
 
 tl::expected<void, std::string> run_compare(const Options& options) {
-  // Before minutes of work, not after.
+  // The folder is created first, because the comparison takes minutes.
   const auto folder = OutputFolder::create(options.out);
   if (!folder) {
     return tl::unexpected(folder.error());
@@ -123,7 +123,7 @@ tl::expected<void, std::string> run_compare(const Options& options) {
         std::cout << time_table(*rendering) << error_table(errors)
                   << indirect_error_table(indirect_errors) << lit_table
                   << "Images and report.json are in " << options.out.string()
-                  << "; error.png is red where too dark, blue where too bright\n";
+                  << "; in error.png red is too dark and blue too bright\n";
       });
 }
 

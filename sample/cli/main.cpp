@@ -1,4 +1,4 @@
-// `alcove`, the scene runner.
+// The program `alcove`.
 
 #include <cerrno>
 #include <csignal>
@@ -43,7 +43,7 @@ tl::expected<void, std::string> run(const Options& options) {
   }
 }
 
-// Sentences repeat arguments and names of files, which may hold anything.
+// Messages repeat arguments and file names, which may contain any bytes.
 int fail(const std::string& sentence) {
   constexpr std::size_t kLongest = 600;  // bytes
   std::cerr << "alcove: " << alcove::sample::shortened(sentence, kLongest) << "\n";
@@ -58,7 +58,7 @@ int flush_output() {
   return fail("The output cannot be written" + reason + ".");
 }
 
-// Help goes to stdout as other output does; a mistake is a failure of its own kind.
+// Prints the help on stdout, or a mistake on stderr.
 int stop(const Stop& stop) {
   if (stop.status != 0) {
     fail(stop.text);
@@ -71,9 +71,9 @@ int stop(const Stop& stop) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  alcove::sample::take_closed_streams();
+  alcove::sample::reserve_closed_streams();
 #ifdef SIGXFSZ
-  // Writing past a limit on the size of files fails, as on a full disk, and does not kill.
+  // Writing past the limit on file sizes fails, as on a full disk, and does not kill the process.
   std::signal(SIGXFSZ, SIG_IGN);
 #endif
   try {
@@ -84,7 +84,7 @@ int main(int argc, char** argv) {
     const auto done = run(*options);
     return done ? flush_output() : fail(done.error());
   } catch (const std::bad_alloc&) {
-    return fail("There is not enough memory for this; try a smaller image or scene.");
+    return fail("There is not enough memory; try a smaller image or scene.");
   } catch (const std::exception& error) {
     return fail(error.what());
   }

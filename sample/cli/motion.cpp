@@ -19,61 +19,62 @@ using Failure = tl::unexpected<std::string>;
 using Done = tl::expected<void, std::string>;
 using Json = nlohmann::ordered_json;
 
-// What all paths of a run share.
-struct Course {
+// The inputs that all paths of a run share.
+struct MotionInputs {
   Session session;
   MotionStart start;
   MotionSetup setup;
 };
 
-tl::expected<Course, std::string> course_of(const Options& options) {
+tl::expected<MotionInputs, std::string> motion_inputs(const Options& options) {
   auto session = open_session(options);
   if (!session) {
     return Failure(std::move(session.error()));
   }
-  Course course{std::move(*session), {}, {}};
-  const passes::OcclusionSettings& settings = course.session.settings;
+  MotionInputs inputs{std::move(*session), {}, {}};
+  const passes::OcclusionSettings& settings = inputs.session.settings;
   if (settings.history_frames == 0) {
     return Failure(
         "The occlusion keeps no history, so there is nothing to follow in motion: give another "
         "--quality, or --set history_frames=32.");
   }
-  const auto rays = RayScene::create(course.session.scene);
+  const auto rays = RayScene::create(inputs.session.scene);
   if (!rays) {
     return Failure(rays.error());
   }
   const float aspect =
       static_cast<float>(options.view.width) / static_cast<float>(options.view.height);
-  auto start = motion_start(*rays, course.session.camera, aspect, settings.radius);
+  auto start = motion_start(*rays, inputs.session.camera, aspect, settings.radius);
   if (!start) {
     return Failure(std::move(start.error()));
   }
-  course.start = std::move(*start);
-  course.setup = {settings,
+  inputs.start = std::move(*start);
+  inputs.setup = {settings,
                   options.occlusion.normals,
                   options.view.width,
                   options.view.height,
                   options.occlusion.spp,
                   options.use_cache ? TruthCache::default_folder() : std::filesystem::path(),
                   print_progress};
-  return course;
+  return inputs;
 }
 
 Done write_pictures(const std::filesystem::path& folder, MotionKind kind,
                     const std::vector<MotionPicture>& pictures) {
   for (const MotionPicture& picture : pictures) {
     const std::string name = fmt::format("{}_{}", name_of(kind), picture.frame);
-    auto written =
-        write_png(folder / (name + ".png"), picture.visibility)
-            .and_then([&] { return write_png(folder / (name + "_still.png"), picture.still); })
-            .and_then([&] {
-              return write_png(folder / (name + "_error.png"),
-                               error_colours(picture.visibility, picture.truth));
-            })
-            .and_then([&] {
-              return write_png(folder / (name + "_trails.png"),
-                               error_colours(picture.visibility, picture.still));
-            });
+    auto written = write_png(folder / (name + ".png"), picture.visibility)
+                       .and_then([&] {
+                         return write_png(folder / (name + "_static.png"), picture.static_camera);
+                       })
+                       .and_then([&] {
+                         return write_png(folder / (name + "_error.png"),
+                                          error_colours(picture.visibility, picture.truth));
+                       })
+                       .and_then([&] {
+                         return write_png(folder / (name + "_trails.png"),
+                                          error_colours(picture.visibility, picture.static_camera));
+                       });
     if (!written) {
       return written;
     }
@@ -84,12 +85,12 @@ Done write_pictures(const std::filesystem::path& folder, MotionKind kind,
 Json to_json(const ErrorPair& errors) {
   return {{"pixels", errors.pixels},
           {"moving", errors.moving},
-          {"still", errors.still},
+          {"static", errors.static_camera},
           {"ratio", errors.ratio()}};
 }
 
 ErrorPair degrees(const ErrorPair& radians) {
-  return {radians.pixels, glm::degrees(radians.moving), glm::degrees(radians.still)};
+  return {radians.pixels, glm::degrees(radians.moving), glm::degrees(radians.static_camera)};
 }
 
 Json to_json(const MotionReport& report) {
@@ -98,24 +99,24 @@ Json to_json(const MotionReport& report) {
           {"all", to_json(report.all)},
           {"uncovered", to_json(report.uncovered)},
           {"entered", to_json(report.entered)},
-          {"passed_by", to_json(report.passed_by)},
+          {"near_object", to_json(report.near_object)},
           {"bent_normals_degrees", to_json(degrees(report.bent_normals))},
           {"flicker",
            {{"with_history", report.flicker.with_history},
-            {"without", report.flicker.without},
-            {"searches", report.flicker.searches},
-            {"still", report.flicker.still},
+            {"without_history", report.flicker.without_history},
+            {"raw", report.flicker.raw},
+            {"static", report.flicker.static_camera},
             {"truth", report.flicker.truth},
             {"ratio", report.flicker.ratio()},
-            {"ratio_to_searches", report.flicker.ratio_to_searches()}}},
-          {"weave", {{"moving", to_json(report.weave)}, {"still", to_json(report.static_weave)}}}};
+            {"ratio_to_raw", report.flicker.ratio_to_raw()}}},
+          {"weave", {{"moving", to_json(report.weave)}, {"static", to_json(report.static_weave)}}}};
 }
 
 Json to_json(const CutReport& report) {
   Json after = Json::array();
   for (const CutErrors& errors : report.after) {
     after.push_back(
-        {{"frames", errors.frames}, {"untold", errors.untold}, {"restart", errors.restart}});
+        {{"frames", errors.frames}, {"kept", errors.kept}, {"restarted", errors.restarted}});
   }
   return {{"after", after}};
 }
@@ -125,46 +126,47 @@ std::string error_row(const std::string& name, const ErrorPair& errors, int digi
     return fmt::format("  {:34}none\n", name);
   }
   return fmt::format("  {:34}{:6.{}f}   {:6.{}f}{:8.2f}{:10}\n", name, errors.moving, digits,
-                     errors.still, digits, errors.ratio(), errors.pixels);
+                     errors.static_camera, digits, errors.ratio(), errors.pixels);
 }
 
 std::string table_of(MotionKind kind, const MotionReport& report) {
   const std::string ago = fmt::format("{} frames ago", kUncoveredFrames);
   const Flicker& flicker = report.flicker;
   return fmt::format(
-             "{}, {:.1f} pixels a frame in the mean, 95 % within {:.1f}\n"
-             "  RMSE against ray-traced truth     moving   still   ratio    pixels\n",
+             "{}: surfaces move by {:.1f} pixels per frame on average, 95 % by at most {:.1f}\n"
+             "  RMSE against ray-traced truth     moving   static  ratio    pixels\n",
              name_of(kind), report.speed.mean, report.speed.percentile_95) +
          error_row("whole frames", report.all) + error_row("uncovered " + ago, report.uncovered) +
          error_row("entered the image " + ago, report.entered) +
-         (report.passed_by.pixels > 0 ? error_row("near what moves", report.passed_by) : "") +
+         (report.near_object.pixels > 0 ? error_row("near the moving object", report.near_object)
+                                        : "") +
          error_row("bent normals, degrees", degrees(report.bent_normals), 2) +
          fmt::format(
-             "  change of visibility a frame      {:.4f} with history; standing still {:.4f}; the "
-             "truth's own at least {:.4f}\n"
-             "    of the searches alone           {:.4f}: ratio {:.3f}\n"
+             "  change of visibility per frame    {:.4f} with history; {:.4f} without motion; the "
+             "truth changes by at least {:.4f}\n"
+             "    raw occlusion                   {:.4f}: ratio {:.3f}\n"
              "    filtered, without history       {:.4f}: ratio {:.3f}\n"
-             "  Moving: {}  Still: {}",
-             flicker.with_history, flicker.still, flicker.truth, flicker.searches,
-             flicker.ratio_to_searches(), flicker.without, flicker.ratio(),
+             "  Moving: {}  Static: {}",
+             flicker.with_history, flicker.static_camera, flicker.truth, flicker.raw,
+             flicker.ratio_to_raw(), flicker.without_history, flicker.ratio(),
              weave_line(report.weave), weave_line(report.static_weave));
 }
 
 std::string table_of(const CutReport& report) {
-  std::string out = "cut, RMSE after so many frames       untold   begun anew\n";
+  std::string out = "cut: RMSE by frames since the cut   kept     restarted history\n";
   for (const CutErrors& errors : report.after) {
-    out += fmt::format("  {:<34}{:.4f}   {:.4f}\n", errors.frames, errors.untold, errors.restart);
+    out += fmt::format("  {:<34}{:.4f}   {:.4f}\n", errors.frames, errors.kept, errors.restarted);
   }
   return out;
 }
 
-// Draws one path and tells of it, on stdout and in `report`.
-Done run_path(Course& course, MotionKind kind, const Options& options, Json& report) {
-  const MotionPath path(kind, course.start, options.view.frames);
+// Measures one path; prints the result and adds it to `report`.
+Done run_path(MotionInputs& inputs, MotionKind kind, const Options& options, Json& report) {
+  const MotionPath path(kind, inputs.start, options.view.frames);
   std::vector<MotionPicture> pictures;
   std::string table;
   if (kind == MotionKind::kCut) {
-    auto made = run_cut(*course.session.gpu, course.session.scene, path, course.setup);
+    auto made = run_cut(*inputs.session.gpu, inputs.session.scene, path, inputs.setup);
     if (!made) {
       return Failure(std::move(made.error()));
     }
@@ -172,7 +174,7 @@ Done run_path(Course& course, MotionKind kind, const Options& options, Json& rep
     table = table_of(*made);
     pictures = std::move(made->pictures);
   } else {
-    auto made = run_motion(*course.session.gpu, course.session.scene, path, course.setup);
+    auto made = run_motion(*inputs.session.gpu, inputs.session.scene, path, inputs.setup);
     if (!made) {
       return Failure(std::move(made.error()));
     }
@@ -180,7 +182,7 @@ Done run_path(Course& course, MotionKind kind, const Options& options, Json& rep
     table = table_of(kind, *made);
     pictures = std::move(made->pictures);
   }
-  if (auto valid = check_validation(*course.session.gpu); !valid) {
+  if (auto valid = check_validation(*inputs.session.gpu); !valid) {
     return valid;
   }
   std::cout << table << std::flush;
@@ -190,31 +192,31 @@ Done run_path(Course& course, MotionKind kind, const Options& options, Json& rep
 }  // namespace
 
 Done run_motion(const Options& options) {
-  auto course = course_of(options);
-  if (!course) {
-    return Failure(std::move(course.error()));
+  auto inputs = motion_inputs(options);
+  if (!inputs) {
+    return Failure(std::move(inputs.error()));
   }
   const auto folder = OutputFolder::create(options.out);
   if (!folder) {
     return tl::unexpected(folder.error());
   }
   Json report;
-  report["device"] = course->session.gpu->device().properties().deviceName;
-  report["settings"] = to_json(course->setup.occlusion);
+  report["device"] = inputs->session.gpu->device().properties().deviceName;
+  report["settings"] = to_json(inputs->setup.occlusion);
   report["frames"] = options.view.frames;
   for (const MotionKind kind : kMotionKinds) {
     if (options.path && *options.path != kind) {
       continue;
     }
-    if (auto done = run_path(*course, kind, options, report["paths"]); !done) {
+    if (auto done = run_path(*inputs, kind, options, report["paths"]); !done) {
       return done;
     }
   }
   return write_text(options.out / "report.json", report.dump(2) + "\n").map([&] {
-    std::cout << "Images and report.json are in " << options.out.string()
-              << ": NAME_FRAME.png and, the camera standing there, _still.png; as colours, red too "
-                 "dark and blue too bright, _error.png against the truth and _trails.png against "
-                 "_still.png\n";
+    std::cout
+        << "Images and report.json are in " << options.out.string()
+        << ": NAME_FRAME.png, and _static.png without motion; red is too dark and blue too "
+           "bright in _error.png, against the truth, and in _trails.png, against _static.png\n";
   });
 }
 

@@ -1,4 +1,4 @@
-// From command-line options to what the other folders of the sample take.
+// Converts command-line options into the inputs of the other folders of the sample.
 #pragma once
 
 #include <string>
@@ -13,17 +13,20 @@
 
 namespace alcove::sample {
 
-// Loads the scene, finds camera and settings and opens the device, in this order, so that the
-// mistake that is found fastest is reported first. Notes about the scene go to stderr, and so does
-// progress where loading takes long. `surface_extensions` are the instance extensions of a window
-// to present to.
+// Loads the scene and chooses camera and settings; the session has no device. Prints notes about
+// the scene, and progress if loading takes long, on stderr.
+[[nodiscard]] tl::expected<Session, std::string> load_session(const Options& options);
+
+// Loads the scene, chooses camera and settings and opens the device, in this order, so that errors
+// that are quick to find are reported first. `surface_extensions` are the instance extensions for
+// presenting to a window.
 [[nodiscard]] tl::expected<Session, std::string> open_session(
     const Options& options, const std::vector<const char*>& surface_extensions = {});
 
-// The session that the options describe, drawn and read back.
+// Opens the session that the options describe, renders it and reads the images back.
 [[nodiscard]] tl::expected<Rendering, std::string> render(const Options& options);
 
-// The static view that the options describe, seen from `camera`.
+// The static view of `camera` with the options' size, frames and normals.
 [[nodiscard]] StaticSetup static_setup(const Options& options, const Camera& camera);
 
 [[nodiscard]] TruthOptions truth_options(const Options& options);

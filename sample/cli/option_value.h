@@ -31,7 +31,7 @@ struct OptionValue {
   std::int64_t whole_number(std::int64_t low, std::int64_t high, const std::string& wanted) const;
   // Finite and above 0.
   double positive(const std::string& wanted) const;
-  // The same, in the scene's units.
+  // A finite length above 0, in the scene's units.
   float length() const;
   glm::dvec3 vector() const;  // finite as floats too
   // Numbers between commas, at least one and at most `most`, each within [low, high].
@@ -43,11 +43,11 @@ struct OptionValue {
   std::size_t one_of(std::span<const std::string_view> names) const;
 };
 
-// A number for people: as few digits as tell it from every other.
+// The shortest text that is parsed as the same float.
 [[nodiscard]] std::string shown(float value);
 
-// A coordinate in the space of the scene's file, of which `origin` was taken: the shortest text
-// that gives the same float again.
+// A coordinate in the space of the scene's file, from which `origin` was subtracted: the shortest
+// text that gives the same float again.
 [[nodiscard]] std::string shown_coordinate(float value, double origin);
 
 }  // namespace alcove::sample

@@ -20,33 +20,34 @@ std::string shown(const TradePoint& point) {
 }
 
 const TradePoint* chosen_of(const Trade& trade, const Options& options) {
-  return options.budget_ms ? nearest_within_ms(trade.points, *options.budget_ms)
+  return options.budget_ms ? least_error_within_ms(trade.points, *options.budget_ms)
                            : fastest_within_rmse(trade.points, *options.tolerance);
 }
 
-// There is no choice: what comes nearest to one.
-std::string nothing_holds(const Trade& trade, const Options& options) {
+// The message if no setting is within the budget or tolerance. It names the closest one.
+std::string no_choice_message(const Trade& trade, const Options& options) {
   if (options.budget_ms) {
-    return fmt::format("nothing takes at most {:g} ms here; the fastest is {}", *options.budget_ms,
-                       shown(trade.points.front()));
+    return fmt::format("no setting takes at most {:g} ms in this view; the fastest is {}",
+                       *options.budget_ms, shown(trade.points.front()));
   }
   const TradePoint& nearest = *std::ranges::min_element(trade.points, {}, &TradePoint::rmse);
-  return fmt::format("nothing errs by at most {:g} here; the nearest is {}", *options.tolerance,
-                     shown(nearest));
+  return fmt::format(
+      "no setting has an error of at most {:g} in this view; the most accurate is {}",
+      *options.tolerance, shown(nearest));
 }
 
-// The neighbours of the chosen point on the front.
+// Prints the next faster and the next more accurate point of the Pareto front.
 void print_neighbours(const Trade& trade, const TradePoint& chosen) {
   const auto own = static_cast<std::size_t>(&chosen - trade.points.data());
   for (std::size_t i = own; i-- > 0;) {
     if (trade.on_pareto_front[i]) {
-      std::cout << "  faster:  " << shown(trade.points[i]) << "\n";
+      std::cout << "  faster:         " << shown(trade.points[i]) << "\n";
       break;
     }
   }
   for (std::size_t i = own + 1; i < trade.points.size(); ++i) {
     if (trade.on_pareto_front[i]) {
-      std::cout << "  nearer:  " << shown(trade.points[i]) << "\n";
+      std::cout << "  more accurate:  " << shown(trade.points[i]) << "\n";
       break;
     }
   }
@@ -67,7 +68,7 @@ Done run_recommend(const Options& options) {
   const Trade trade = trade_of(std::move(measured->points));
   const TradePoint* chosen = chosen_of(trade, options);
   if (chosen == nullptr) {
-    return Failure(nothing_holds(trade, options));
+    return Failure(no_choice_message(trade, options));
   }
   std::cout << shown(*chosen) << "\n";
   print_neighbours(trade, *chosen);

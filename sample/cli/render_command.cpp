@@ -15,7 +15,7 @@ namespace {
 using passes::OcclusionSettings;
 using passes::Quality;
 
-// Each overload gives the text of a value that reads back as the same.
+// Each overload formats a value so that it is parsed as the same value.
 std::string text_of(float value) { return shown(value); }
 std::string text_of(std::uint32_t value) { return fmt::to_string(value); }
 std::string text_of(const glm::vec3& v) {
@@ -26,7 +26,7 @@ std::string text_of(Choice value) {
   return std::string(passes::name_of(value));
 }
 
-// The shortest that is read as the same angle.
+// The shortest text that is parsed as the same angle.
 std::string degrees_text(float radians) {
   std::string text;
   for (int digits = 3; digits <= 9; ++digits) {
@@ -38,7 +38,7 @@ std::string degrees_text(float radians) {
   return text;
 }
 
-// The settings that are other than those of a quality, as --set takes them.
+// The settings that differ from those of a quality, in the form of --set.
 std::vector<std::string> changes(Quality quality, const OcclusionSettings& settings) {
   const OcclusionSettings preset = passes::quality_settings(quality, settings.radius);
   std::vector<std::string> before, result;
@@ -74,18 +74,18 @@ void append_camera(const Camera& camera, std::vector<std::string>& to) {
   }
 }
 
-// By the quality that is nearest.
+// Uses the quality that needs the fewest --set options.
 void append_settings(const OcclusionSettings& settings, std::vector<std::string>& to) {
-  Quality nearest = Quality::low;
-  std::vector<std::string> fewest = changes(nearest, settings);
+  Quality closest = Quality::low;
+  std::vector<std::string> fewest = changes(closest, settings);
   for (std::size_t i = 1; i < passes::kNames<Quality>.size(); ++i) {
     std::vector<std::string> more = changes(static_cast<Quality>(i), settings);
     if (more.size() < fewest.size()) {
-      nearest = static_cast<Quality>(i);
+      closest = static_cast<Quality>(i);
       fewest = std::move(more);
     }
   }
-  to.insert(to.end(), {"--quality", std::string(passes::name_of(nearest)), "--radius",
+  to.insert(to.end(), {"--quality", std::string(passes::name_of(closest)), "--radius",
                        text_of(settings.radius)});
   for (const std::string& change : fewest) {
     to.insert(to.end(), {"--set", change});

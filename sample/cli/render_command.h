@@ -8,12 +8,12 @@
 
 namespace alcove::sample {
 
-// What `alcove render` has to be called with to draw the shot: the program's name, then arguments
-// that parse_options reads back. Scene, whether blends are cut out, environment, normals, device
-// and the name of the camera are those of `options`.
+// The command line of `alcove render` that renders the shot: the program's name, then arguments
+// that parse_options() reads back. Scene, treatment of materials, environment, normals, device and
+// the name of the camera are those of `options`.
 [[nodiscard]] std::vector<std::string> render_arguments(const Options& options, const Shot& shot);
 
-// The arguments as a line for a POSIX shell, quoted where need be.
+// The arguments as a line for a POSIX shell, quoted where necessary.
 [[nodiscard]] std::string shell_line(const std::vector<std::string>& arguments);
 
 }  // namespace alcove::sample

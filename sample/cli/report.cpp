@@ -23,7 +23,7 @@ Json position_json(const Camera& camera, glm::vec3 position) {
 
 Json camera_json(const Camera& camera) {
   Json json;
-  // In the space of the scene's file, as --eye and --target take them.
+  // Positions are in the space of the scene's file, like --eye and --target.
   json["eye"] = position_json(camera, camera.eye_ws);
   json["target"] = position_json(camera, camera.target_ws);
   json["up"] = vector_json(camera.up_ws);
@@ -68,7 +68,7 @@ Json report_of(const Rendering& rendering, const Options& options) {
                       {"transient_bytes_lower_bound", rendering.memory.lower_bound},
                       {"history_bytes", rendering.memory.history},
                       {"allocated_bytes", rendering.memory.allocated}};
-  // Of the whole process, with what the driver keeps in main memory.
+  // Includes the main memory that the driver uses.
   if (const auto peak = peak_memory()) {
     report["memory"]["peak_process_bytes"] = *peak;
   }
@@ -89,7 +89,7 @@ std::string time_table(const Rendering& rendering) {
   row("occlusion, processor time", rendering.costs.cpu_ms);
   row("with specular, by GPU timestamps", rendering.costs_with_specular.occlusion_ms);
   row("with specular, processor time", rendering.costs_with_specular.cpu_ms);
-  return text + fmt::format("  transients {:.2f} MiB aliased, {:.2f} MiB each on its own\n",
+  return text + fmt::format("  transients {:.2f} MiB aliased, {:.2f} MiB without aliasing\n",
                             mib(rendering.memory.aliased), mib(rendering.memory.unaliased));
 }
 

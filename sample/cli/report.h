@@ -7,11 +7,11 @@
 
 namespace alcove::sample {
 
-// What `report.json` says of a rendering: device, settings, view, timings, memory. `errors` is
-// added by those that know a truth.
+// The contents of `report.json` for a rendering: device, settings, view, timings, memory. Commands
+// that compute a truth add `errors`.
 [[nodiscard]] nlohmann::ordered_json report_of(const Rendering& rendering, const Options& options);
 
-// The times of a rendering as a table for people.
+// The times of a rendering as a table.
 [[nodiscard]] std::string time_table(const Rendering& rendering);
 
 }  // namespace alcove::sample

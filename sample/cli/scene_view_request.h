@@ -5,7 +5,7 @@
 
 namespace alcove::sample {
 
-// The window that the options describe.
+// The request for the window that the options describe.
 [[nodiscard]] SceneViewRequest scene_view_request(const Options& options);
 
 }  // namespace alcove::sample

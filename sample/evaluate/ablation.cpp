@@ -31,7 +31,7 @@ class VariantList {
   std::vector<Variant> variants_;
 };
 
-// Only horizons and the heuristic have a falloff.
+// Selects an estimator, without the falloff that only horizons and the heuristic have.
 void use(OcclusionSettings& settings, Estimator estimator) {
   settings.estimator = estimator;
   if (passes::has_thickness(estimator)) {
@@ -49,7 +49,8 @@ void add_estimators(VariantList& list) {
     use(s, Estimator::bitmask);
     s.hidden_occlusion = 0.0f;
   });
-  list.add(part, "plain bitmask, filled", [](OcclusionSettings& s) { use(s, Estimator::bitmask); });
+  list.add(part, "bitmask with hidden occlusion",
+           [](OcclusionSettings& s) { use(s, Estimator::bitmask); });
   list.add(part, "connected samples", [](OcclusionSettings& s) { use(s, Estimator::connected); });
 }
 
@@ -58,22 +59,21 @@ void add_occluders(VariantList& list, const OcclusionSettings& base) {
     return;
   }
   const char* part = "occluders";
-  list.add(part, "nothing behind a front", [](OcclusionSettings& s) { s.hidden_occlusion = 0.0f; });
-  list.add(part, "everything behind it", [](OcclusionSettings& s) { s.hidden_occlusion = 1.0f; });
+  list.add(part, "hidden occlusion 0", [](OcclusionSettings& s) { s.hidden_occlusion = 0.0f; });
+  list.add(part, "hidden occlusion 1", [](OcclusionSettings& s) { s.hidden_occlusion = 1.0f; });
   list.add(part, "a third as thick", [](OcclusionSettings& s) { s.thickness /= 3.0f; });
   list.add(part, "three times as thick", [](OcclusionSettings& s) { s.thickness *= 3.0f; });
-  list.add(part, "as thick as back faces show",
+  list.add(part, "thickness from back faces",
            [](OcclusionSettings& s) { s.thickness_unit = passes::ThicknessUnit::back_faces; });
-  list.add(part, "and what the first layer hides",
-           [](OcclusionSettings& s) { s.depth_layers = 2; });
+  list.add(part, "two depth layers", [](OcclusionSettings& s) { s.depth_layers = 2; });
 }
 
-void add_searches(VariantList& list) {
+void add_sampling(VariantList& list) {
   const char* part = "resolution";
-  list.add(part, "every pixel searched", [](OcclusionSettings& s) { s.tile_size = 1; });
+  list.add(part, "every pixel traced", [](OcclusionSettings& s) { s.tile_size = 1; });
   list.add(part, "one in 2x2", [](OcclusionSettings& s) { s.tile_size = 2; });
   list.add(part, "one in 4x4", [](OcclusionSettings& s) { s.tile_size = 4; });
-  // As many searches as every pixel has above.
+  // This has the same number of slices per pixel as tracing every pixel.
   list.add(part, "one in 2x2, 4 times the slices", [](OcclusionSettings& s) {
     s.tile_size = 2;
     s.slices = std::min(s.slices * 4, 64u);
@@ -91,16 +91,19 @@ void add_searches(VariantList& list) {
   list.add(part, "the paper's, six rotations",
            [](OcclusionSettings& s) { s.pattern = Pattern::paper; });
   part = "snap_to_texels";
-  list.add(part, "to texels", [](OcclusionSettings& s) { s.parts.snap_to_texels = true; });
-  list.add(part, "none", [](OcclusionSettings& s) { s.parts.snap_to_texels = false; });
+  list.add(part, "samples at texel centres",
+           [](OcclusionSettings& s) { s.parts.snap_to_texels = true; });
+  list.add(part, "samples between texels",
+           [](OcclusionSettings& s) { s.parts.snap_to_texels = false; });
   part = "border";
-  list.add(part, "surfaces go on", [](OcclusionSettings& s) { s.parts.extrapolation = true; });
+  list.add(part, "surfaces are extrapolated",
+           [](OcclusionSettings& s) { s.parts.extrapolation = true; });
   list.add(part, "surfaces end", [](OcclusionSettings& s) { s.parts.extrapolation = false; });
   part = "unobserved";
-  list.add(part, "left out", [](OcclusionSettings& s) { s.parts.unobserved = true; });
+  list.add(part, "excluded", [](OcclusionSettings& s) { s.parts.unobserved = true; });
   list.add(part, "open", [](OcclusionSettings& s) { s.parts.unobserved = false; });
   part = "grouping";
-  list.add(part, "neighbours",
+  list.add(part, "neighbouring pixels",
            [](OcclusionSettings& s) { s.parts.grouping = Grouping::neighbours; });
   list.add(part, "one direction (deinterleaved)",
            [](OcclusionSettings& s) { s.parts.grouping = Grouping::pattern; });
@@ -109,21 +112,22 @@ void add_searches(VariantList& list) {
 void add_reconstruction(VariantList& list, const OcclusionSettings& base) {
   const char* part = "filter";
   list.add(part, "none", [](OcclusionSettings& s) { s.filter_radius = 0; });
-  // With a history only its first frame looks further than one traced pixel.
+  // With a history only the first two frames use a filter radius above 1.
   if (base.history_frames == 0) {
-    list.add(part, "1 search on each side", [](OcclusionSettings& s) { s.filter_radius = 1; });
-    list.add(part, "3 searches on each side", [](OcclusionSettings& s) { s.filter_radius = 3; });
+    list.add(part, "radius of 1 tile", [](OcclusionSettings& s) { s.filter_radius = 1; });
+    list.add(part, "radius of 3 tiles", [](OcclusionSettings& s) { s.filter_radius = 3; });
   }
   part = "history";
-  list.add(part, "none, noise advances", [](OcclusionSettings& s) { s.history_frames = 0; });
+  list.add(part, "none", [](OcclusionSettings& s) { s.history_frames = 0; });
   list.add(part, "8 frames", [](OcclusionSettings& s) { s.history_frames = 8; });
-  list.add(part, "none, no filter", [](OcclusionSettings& s) {
+  list.add(part, "none, and no filter", [](OcclusionSettings& s) {
     s.history_frames = 0;
     s.filter_radius = 0;
   });
 }
 
-// How often as far away a narrow perspective stands for an orthographic view.
+// The distance of a narrow perspective that approximates an orthographic view, in distances of the
+// camera.
 constexpr float kFarAway = 300.0f;
 
 InvariancePair orthographic_pair(const Camera& camera, std::uint32_t height) {
@@ -145,7 +149,7 @@ InvariancePair orthographic_pair(const Camera& camera, std::uint32_t height) {
   pair.further = (kFarAway - 1.0f) * distance;
   away.near_plane = flat.near_plane + pair.further;
   away.far_plane = flat.far_plane + pair.further;
-  // The images part by some pixels before and behind the target, and towards their borders.
+  // The images differ by some pixels in front of and behind the target, and near their borders.
   pair.tolerance = flat.ortho_height / static_cast<float>(height);
   return pair;
 }
@@ -156,21 +160,21 @@ std::vector<Variant> variants_of(const OcclusionSettings& base) {
   VariantList list(base);
   add_estimators(list);
   add_occluders(list, base);
-  add_searches(list);
+  add_sampling(list);
   add_reconstruction(list, base);
   return list.take();
 }
 
 std::vector<InvariancePair> invariance_pairs_of(const Camera& camera, std::uint32_t height) {
   std::vector<InvariancePair> all;
-  all.push_back({"depth from 1 to 0, and from 0 to 1", camera, camera});
+  all.push_back({"reversed depth, and standard depth", camera, camera});
   all.back().first.reversed_z = true;
   all.back().second.reversed_z = false;
   if (!camera.orthographic && !std::isinf(camera.far_plane)) {
-    all.push_back({"far plane at a distance, and at infinity", camera, camera});
+    all.push_back({"finite far plane, and infinite far plane", camera, camera});
     all.back().second.far_plane = INFINITY;
   }
-  all.push_back({"this size, and twice as large", camera, camera, 2});
+  all.push_back({"this size, and twice the size", camera, camera, 2});
   all.push_back(orthographic_pair(camera, height));
   return all;
 }

@@ -1,4 +1,4 @@
-// What each part of the occlusion costs and buys: the same view drawn with one thing changed.
+// The cost and the error of each part of the occlusion: one view rendered with one part changed.
 #pragma once
 
 #include <cmath>
@@ -12,22 +12,21 @@
 
 namespace alcove::sample {
 
-// Every part of `base` exchanged or left out, none of them equal to it.
+// `base` with each part replaced or disabled, one at a time. No variant equals `base`.
 [[nodiscard]] std::vector<Variant> variants_of(const passes::OcclusionSettings& base);
 
-// Two ways to draw one view, which should look the same.
+// Two descriptions of one view, which should give the same image.
 struct InvariancePair {
   std::string name;
   Camera first;
   Camera second;
-  std::uint32_t scale = 1;  // of the second image's sides
-  // Lengths, scene units: how much further away the second stands, and by how much more or less
-  // the depths of a pixel may differ if it is to show one surface.
-  float further = 0.0f;
+  std::uint32_t scale = 1;  // width and height of the second image over those of the first
+  float further = 0.0f;     // how much further away the second camera is, scene units
+  // Pixels are compared if their depths, less `further`, differ by at most this; scene units.
   float tolerance = INFINITY;
 };
 
-// `height` of the image in pixels.
+// `height`: height of the image in pixels.
 [[nodiscard]] std::vector<InvariancePair> invariance_pairs_of(const Camera& camera,
                                                               std::uint32_t height);
 

@@ -5,20 +5,16 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <nlohmann/json.hpp>
+#include <utility>
 #include <vector>
+
+#include "support/median.h"
 
 namespace alcove::sample {
 namespace {
 
-// The value that a share of the values does not exceed.
-double percentile(std::vector<float>& values, double share) {
-  if (values.empty()) return 0.0;
-  const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + rank, values.end());
-  return values[static_cast<size_t>(rank)];
-}
-
-// `get(image, pixel, channel)` for all pixels of the mask.
+// Summarises the differences in all channels of all pixels of the mask. `get(image, pixel,
+// channel)` reads a value.
 template <class T, class Get>
 ErrorSummary compare(const Image<T>& result, const Image<T>& truth, const Mask& mask, int channels,
                      const Get& get) {
@@ -43,7 +39,7 @@ ErrorSummary compare(const Image<T>& result, const Image<T>& truth, const Mask& 
   out.rmse = std::sqrt(squares / values);
   out.mean_absolute /= values;
   out.bias /= values;
-  out.percentile_95 = percentile(sizes, 0.95);
+  out.percentile_95 = percentile(std::move(sizes), 0.95);
   return out;
 }
 
@@ -69,7 +65,7 @@ AngleSummary compare_directions(const Image<glm::vec3>& result, const Image<glm:
   for (size_t i = 0; i < mask.pixels.size(); ++i) {
     const glm::dvec3 a(result.pixels[i]), b(truth.pixels[i]);
     if (!mask.pixels[i] || b == glm::dvec3(0.0)) continue;
-    // Of sine and cosine, which keeps its digits at small angles.
+    // The arc tangent of sine and cosine is precise at small angles, unlike the arc cosine.
     double angle = std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
     if (a == glm::dvec3(0.0) || !std::isfinite(angle)) angle = glm::half_pi<double>();
     sum += angle;
@@ -78,7 +74,7 @@ AngleSummary compare_directions(const Image<glm::vec3>& result, const Image<glm:
   out.count = angles.size();
   if (angles.empty()) return out;
   out.mean_degrees = glm::degrees(sum / static_cast<double>(angles.size()));
-  out.percentile_95_degrees = glm::degrees(percentile(angles, 0.95));
+  out.percentile_95_degrees = glm::degrees<double>(percentile(std::move(angles), 0.95));
   return out;
 }
 

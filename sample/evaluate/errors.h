@@ -10,7 +10,7 @@
 
 namespace alcove::sample {
 
-// All images of a call have one size.
+// All images of a call have the same size.
 struct ErrorSummary {
   uint64_t count = 0;  // pixels compared; everything is zero when there are none
   double rmse = 0;
@@ -19,10 +19,11 @@ struct ErrorSummary {
   double max_absolute = 0;
   double percentile_95 = 0;  // of the absolute error
 };
-// Of a channel image against its truth; pixels where either is not finite count as an error of 1.
+// Compares an image of one channel with its truth. A pixel that is not finite in either counts as
+// an error of 1.
 [[nodiscard]] ErrorSummary compare_images(const Image<float>& result, const Image<float>& truth,
                                           const Mask& mask);
-// The same over all three channels at once.
+// Compares images of three channels with each other; each channel counts as a value.
 [[nodiscard]] ErrorSummary compare_images(const Image<glm::vec3>& result,
                                           const Image<glm::vec3>& truth, const Mask& mask);
 
@@ -31,28 +32,28 @@ struct AngleSummary {
   double mean_degrees = 0;
   double percentile_95_degrees = 0;
 };
-// Between directions of any positive length; pixels where the truth is zero are left out, a zero
-// result counts as 90 degrees.
+// Angles between directions of any positive length. Pixels without a true direction (zero) are
+// excluded; a result of zero counts as 90 degrees.
 [[nodiscard]] AngleSummary compare_directions(const Image<glm::vec3>& result,
                                               const Image<glm::vec3>& truth, const Mask& mask);
 
-// How well open surfaces stay open: over the pixels whose truth is at least 0.999.
+// The result at open surfaces, which are the pixels with a true visibility of at least 0.999.
 struct OpenSurfaceSummary {
   uint64_t count = 0;
   double mean_visibility = 1;
-  double fraction_below_95 = 0;  // of those pixels, whose result is under 0.95
+  double fraction_below_95 = 0;  // fraction of those pixels with a result below 0.95
 };
 [[nodiscard]] OpenSurfaceSummary open_surfaces(const Image<float>& result,
                                                const Image<float>& truth, const Mask& mask);
 
-// Signed error as colours: white where right, red where too dark, blue where too bright, full
-// colour at an error of a quarter.
+// Signed error as colours: white for none, red for too dark, blue for too bright; saturated at an
+// error of 0.25.
 [[nodiscard]] Image<glm::vec3> error_colours(const Image<float>& result, const Image<float>& truth);
 
 // One line of a table of errors.
 [[nodiscard]] std::string error_row(std::string_view name, double rmse, double bias);
 
-// As report.json has them.
+// The summaries in the form of report.json.
 [[nodiscard]] nlohmann::ordered_json to_json(const ErrorSummary& summary);
 [[nodiscard]] nlohmann::ordered_json to_json(const AngleSummary& summary);
 [[nodiscard]] nlohmann::ordered_json to_json(const OpenSurfaceSummary& summary);

@@ -28,7 +28,8 @@ Image<glm::vec3> grey(const Image<float>& values) {
   return result;
 }
 
-// What a model makes of visibility and bent normal; slices know more, and are told by the table.
+// Specular occlusion that a model derives from visibility and bent normal. The slices use more than
+// these two, so the table stands in for them.
 float specular_of(passes::Specular model, float visibility, const glm::vec3& bent,
                   const glm::vec3& normal, const glm::vec3& view, float roughness) {
   const float alpha = roughness * roughness;
@@ -48,7 +49,7 @@ float specular_of(passes::Specular model, float visibility, const glm::vec3& ben
   }
 }
 
-// The rendering's model where it is given the truth.
+// The rendering's model applied to the true visibility and bent normal.
 Image<float> specular_of_truth(const Rendering& rendering, const OcclusionTruth& truth,
                                const IndirectTruths& light, const Image<float>& roughness) {
   const Viewer viewer = viewer_of(rendering.camera);
@@ -64,8 +65,8 @@ Image<float> specular_of_truth(const Rendering& rendering, const OcclusionTruth&
   return result;
 }
 
-// What no function of visibility and albedo can better: the spread of the truth among pixels and
-// channels that have the same of both, to within a cell.
+// The smallest RMSE that a function of visibility and albedo can have: the spread of the truth
+// among pixels and channels with equal visibility and albedo, up to a quantisation step.
 double spread_of(const Image<float>& visibility, const Image<glm::vec3>& albedo,
                  const Image<glm::vec3>& truth, const Mask& mask) {
   constexpr int kVisibilities = 64;
@@ -87,8 +88,7 @@ double spread_of(const Image<float>& visibility, const Image<glm::vec3>& albedo,
   }
   double squares = 0, count = 0;
   for (const Cell& cell : cells) {
-    // A cell of one value has no spread to tell; the mean of few is nearer to them than to the
-    // rest.
+    // One value has no spread. Bessel's correction makes up for the mean of few values.
     if (cell.count > 1) {
       const double own = cell.squares - cell.sum * cell.sum / cell.count;
       squares += own * cell.count / (cell.count - 1);
@@ -114,16 +114,16 @@ IndirectErrors indirect_errors_of(const Rendering& rendering, const Truths& trut
   const Image<float> open(visibility.width, visibility.height, 1.0f);
   for (std::size_t i = 0; i < roughness.size(); ++i) {
     const Image<float>& truth = light.specular[i];
-    const SpecularBaselines& limits = light.specular_baselines[i];
+    const SpecularBaselines& baselines = light.specular_baselines[i];
     errors.specular.push_back(
         {roughness_name(rendering.light, i),
          compare_images(images.specular_occlusion[i], truth, light.sampled),
          compare_images(specular_of_truth(rendering, truths.scene, light, roughness[i]), truth,
                         light.sampled),
          compare_images(open, truth, light.sampled),
-         compare_images(limits.polynomials, truth, light.sampled),
-         compare_images(limits.depth, truth, light.sampled),
-         compare_images(limits.depth_polynomials, truth, light.sampled)});
+         compare_images(baselines.polynomials, truth, light.sampled),
+         compare_images(baselines.depth, truth, light.sampled),
+         compare_images(baselines.depth_polynomials, truth, light.sampled)});
   }
   return errors;
 }
@@ -148,14 +148,14 @@ nlohmann::ordered_json to_json(const IndirectErrors& errors) {
 
 std::string indirect_error_table(const IndirectErrors& errors) {
   std::string text = fmt::format(
-      "RMSE of multi-bounce over {} pixels: {:.4f} (the polynomial on the true visibility {:.4f}, "
-      "the best function of it and albedo {:.4f}, the true visibility alone {:.4f})\n",
+      "RMSE of multi-bounce over {} pixels: {:.4f} (the polynomial of the true visibility {:.4f}, "
+      "the best function of visibility and albedo {:.4f}, the true visibility itself {:.4f})\n",
       errors.bounced.count, errors.bounced.rmse, errors.bounced_truth.rmse, errors.bounced_best,
       errors.unbounced_truth.rmse);
   for (const SpecularErrors& one : errors.specular) {
     text += fmt::format(
         "RMSE of specular occlusion, {:10}{:.4f} (with true visibility and bent normal {:.4f}, "
-        "with none {:.4f})\n"
+        "without occlusion {:.4f})\n"
         "  fifteen polynomials of the true visibility {:.4f}, of the height field's {:.4f}; the "
         "lobe itself in the height field {:.4f}\n",
         one.name, one.pipeline.rmse, one.true_inputs.rmse, one.none.rmse, one.polynomials.rmse,

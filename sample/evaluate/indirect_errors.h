@@ -10,30 +10,30 @@
 
 namespace alcove::sample {
 
-// How far specular occlusion of one roughness is off.
+// Errors of specular occlusion for one roughness.
 struct SpecularErrors {
-  std::string name;          // materials, or r30 and the like
-  ErrorSummary pipeline;     // as it was rendered
-  ErrorSummary true_inputs;  // the same model given the true visibility and bent normal
-  ErrorSummary none;         // with everything open
-  // What the numbers of SpecularBaselines err by.
+  std::string name;          // "materials", or "r30" for a roughness of 0.30
+  ErrorSummary pipeline;     // rendered specular occlusion
+  ErrorSummary true_inputs;  // the rendering's model with the true visibility and bent normal
+  ErrorSummary none;         // specular occlusion of 1 everywhere
+  // Errors of the members of SpecularBaselines.
   ErrorSummary polynomials;
   ErrorSummary depth;
   ErrorSummary depth_polynomials;
 };
 
-// How far the light of a rendering is from the truth.
+// Errors of the multi-bounce and the specular occlusion of a rendering.
 struct IndirectErrors {
-  ErrorSummary bounced;          // multi-bounce as it was rendered
-  ErrorSummary bounced_truth;    // the polynomial on the true visibility
-  ErrorSummary unbounced_truth;  // the true visibility as it is
-  double bounced_best = 0;       // RMSE of the best that is a function of visibility and albedo
+  ErrorSummary bounced;          // rendered multi-bounce
+  ErrorSummary bounced_truth;    // the polynomial of the true visibility
+  ErrorSummary unbounced_truth;  // the true visibility without multi-bounce
+  double bounced_best = 0;       // RMSE of the best function of visibility and albedo
   std::vector<SpecularErrors> specular;
 };
 
 [[nodiscard]] IndirectErrors indirect_errors_of(const Rendering& rendering, const Truths& truths,
                                                 const IndirectTruths& light);
-// For `errors` of report.json: the members `multi_bounce` and `specular_occlusion`.
+// The members of `errors` in report.json: `multi_bounce` and `specular_occlusion`.
 [[nodiscard]] nlohmann::ordered_json to_json(const IndirectErrors& errors);
 [[nodiscard]] std::string indirect_error_table(const IndirectErrors& errors);
 

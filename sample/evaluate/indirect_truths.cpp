@@ -14,7 +14,7 @@
 namespace alcove::sample {
 namespace {
 
-// Raised when a truth is computed otherwise, so that old entries of the cache are not taken.
+// Increment when the computation of a truth changes, so that old cache entries are not used.
 constexpr std::uint32_t kLightTruthVersion = 1;
 
 std::uint32_t block_size(const Image<float>& depth, std::uint32_t points) {
@@ -22,7 +22,8 @@ std::uint32_t block_size(const Image<float>& depth, std::uint32_t points) {
   return static_cast<std::uint32_t>(std::max(1.0, std::round(std::sqrt(pixels / points))));
 }
 
-// One pixel of each block, where it is no sky. The same for every picture of one size.
+// Chooses one pixel of each block, unless it shows the sky. The choice depends on the image size
+// only.
 Mask choose_pixels(const Image<float>& depth, std::uint32_t side) {
   Mask chosen(depth.width, depth.height);
   std::minstd_rand random;
@@ -38,10 +39,10 @@ Mask choose_pixels(const Image<float>& depth, std::uint32_t side) {
   return chosen;
 }
 
-class Tracer {
+class CachedTracer {
  public:
-  Tracer(const Rendering& rendering, const TruthOptions& options, const RayScene& rays,
-         const SurfacePoints& points)
+  CachedTracer(const Rendering& rendering, const TruthOptions& options, const RayScene& rays,
+               const SurfacePoints& points)
       : rendering_(rendering),
         rays_(rays),
         points_(points),
@@ -91,31 +92,31 @@ class Tracer {
       key.add(depth);
       return key;
     };
-    // Calls `part(key, image)` for every image until one says no.
-    const auto all_parts = [&](std::vector<SpecularBaselines>& limits, const auto& part) {
-      for (std::size_t i = 0; i < limits.size(); ++i) {
-        if (!part(key_of(roughness[i], "polynomials"), limits[i].polynomials) ||
-            !part(key_of(roughness[i], "depth"), limits[i].depth) ||
-            !part(key_of(roughness[i], "depth polynomials"), limits[i].depth_polynomials)) {
+    // Calls `part(key, image)` for every image until one call returns false.
+    const auto all_parts = [&](std::vector<SpecularBaselines>& baselines, const auto& part) {
+      for (std::size_t i = 0; i < baselines.size(); ++i) {
+        if (!part(key_of(roughness[i], "polynomials"), baselines[i].polynomials) ||
+            !part(key_of(roughness[i], "depth"), baselines[i].depth) ||
+            !part(key_of(roughness[i], "depth polynomials"), baselines[i].depth_polynomials)) {
           return false;
         }
       }
       return true;
     };
     const Image<float> empty(depth.width, depth.height);
-    std::vector<SpecularBaselines> limits(roughness.size(), {empty, empty, empty});
-    if (!all_parts(limits, [&](const CacheKey& key, Image<float>& image) {
+    std::vector<SpecularBaselines> baselines(roughness.size(), {empty, empty, empty});
+    if (!all_parts(baselines, [&](const CacheKey& key, Image<float>& image) {
           return cache_.read(key, image);
         })) {
-      limits =
+      baselines =
           sample::specular_baselines(rays_, points_, depth, rendering_.camera, roughness, settings_,
-                                     print_progress("limits of specular occlusion"));
-      all_parts(limits, [&](const CacheKey& key, const Image<float>& image) {
+                                     print_progress("baselines of specular occlusion"));
+      all_parts(baselines, [&](const CacheKey& key, const Image<float>& image) {
         cache_.write(key, image);
         return true;
       });
     }
-    return limits;
+    return baselines;
   }
 
   LitTruth lit(const Image<float>& roughness) const {
@@ -191,7 +192,7 @@ tl::expected<IndirectTruths, std::string> indirect_truths_of(const Rendering& re
       truths.points.normal_ws.pixels[i] = glm::vec3(0.0f);
     }
   }
-  const Tracer tracer(rendering, options, *rays, truths.points);
+  const CachedTracer tracer(rendering, options, *rays, truths.points);
   truths.interreflection = tracer.interreflection();
   for (const Image<float>& roughness : roughness_images(rendering)) {
     truths.specular.push_back(tracer.specular(roughness));

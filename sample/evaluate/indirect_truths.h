@@ -14,20 +14,19 @@
 
 namespace alcove::sample {
 
-// What multi-bounce and specular occlusion should have been, ray traced. A path costs many times
-// what a ray of visibility does, so these are taken at some 30,000 pixels, one at random in each
-// block of the picture; elsewhere they mean nothing.
+// Ray-traced truths of multi-bounce and specular occlusion. They are expensive, so they are traced
+// at about 30,000 pixels, one at random in each block of the image. The other pixels are undefined.
 struct IndirectTruths {
-  std::uint32_t block = 1;  // pixels on a side of a block
-  Mask sampled;             // not sky
+  std::uint32_t block = 1;  // width and height of a block in pixels
+  Mask sampled;             // the traced pixels
   SurfacePoints points;
   Image<glm::vec3> interreflection;
   std::vector<Image<float>> specular;                 // for each of roughness_images()
-  std::vector<SpecularBaselines> specular_baselines;  // likewise
-  std::optional<LitTruth> lit;  // where RenderRequest::light asks for it, for the first
+  std::vector<SpecularBaselines> specular_baselines;  // for each of roughness_images()
+  std::optional<LitTruth> lit;  // for the first roughness, if IndirectRequest::lit_steps is set
 };
 
-// The perceptual roughness that each specular occlusion of a rendering was made for.
+// The perceptual roughness for each specular occlusion of a rendering.
 [[nodiscard]] std::vector<Image<float>> roughness_images(const Rendering& rendering);
 
 // Computes them, or takes them from the cache on disk. Progress on stderr.

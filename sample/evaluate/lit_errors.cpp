@@ -37,7 +37,7 @@ double mean_over(const Mask& mask, const Image<glm::vec3>& image, const Value& v
   return count == 0 ? 0.0 : total / static_cast<double>(count);
 }
 
-// A picture with a pixel for each block: the one that was traced, or else one of the sky.
+// An image with one pixel for each block: the traced one, or a sky pixel if none was traced.
 Image<glm::vec3> of_blocks(const Image<glm::vec3>& picture, const IndirectTruths& light,
                            const Image<float>& depth) {
   const std::uint32_t block = light.block;
@@ -55,15 +55,15 @@ Image<glm::vec3> of_blocks(const Image<glm::vec3>& picture, const IndirectTruths
 }
 
 void paste(const Image<glm::vec3>& tile, std::uint32_t left, std::uint32_t top,
-           Image<glm::vec3>& sheet) {
+           Image<glm::vec3>& canvas) {
   for (std::uint32_t y = 0; y < tile.height; ++y) {
     for (std::uint32_t x = 0; x < tile.width; ++x) {
-      sheet.at(left + x, top + y) = tile.at(x, y);
+      canvas.at(left + x, top + y) = tile.at(x, y);
     }
   }
 }
 
-// As large as the truth where it is wrong by as much as the truth's mean: grey is right.
+// The signed error relative to `mean`, added to grey.
 Image<glm::vec3> error_colours(const Image<glm::vec3>& result, const Image<glm::vec3>& truth,
                                double mean) {
   Image<glm::vec3> colours = result;
@@ -98,13 +98,13 @@ LitErrors lit_errors_of(const Rendering& rendering, const IndirectTruths& light)
   };
   errors.steps = {step("without occlusion", images.unoccluded, truth, variance),
                   step("visibility, light along the bent normal", images.occluded, truth, variance),
-                  step("and multi-bounce, on specular light too", images.bounced, truth, variance),
-                  step("and specular light by its own occlusion", images.all, truth, variance)};
-  errors.unbent = step("visibility alone", images.unbent, truth, variance);
+                  step("and multi-bounce, also on specular light", images.bounced, truth, variance),
+                  step("and specular occlusion on specular light", images.all, truth, variance)};
+  errors.visibility_only = step("visibility alone", images.unbent, truth, variance);
   errors.diffuse =
-      step("diffuse part of the last", images.diffuse, light.lit->diffuse, diffuse_variance);
-  errors.specular =
-      step("specular part of the last", images.specular, light.lit->specular, specular_variance);
+      step("diffuse part of the last step", images.diffuse, light.lit->diffuse, diffuse_variance);
+  errors.specular = step("specular part of the last step", images.specular, light.lit->specular,
+                         specular_variance);
   return errors;
 }
 
@@ -119,7 +119,7 @@ nlohmann::ordered_json to_json(const LitErrors& errors) {
   for (const LitStep& step : errors.steps) {
     json["steps"][step.name] = add(step);
   }
-  json["visibility_alone"] = add(errors.unbent);
+  json["visibility_alone"] = add(errors.visibility_only);
   json["diffuse"] = add(errors.diffuse);
   json["specular"] = add(errors.specular);
   return {{"lit", json}};
@@ -127,11 +127,11 @@ nlohmann::ordered_json to_json(const LitErrors& errors) {
 
 std::string lit_error_table(const LitErrors& errors) {
   std::string text = fmt::format(
-      "RMSE of the lit picture over {} pixels, in parts of its mean radiance {:.4f} (noise of the "
-      "truth, taken out: {:.4f})\n",
+      "RMSE of the lit image over {} pixels, relative to its mean radiance {:.4f} (noise of the "
+      "truth, subtracted: {:.4f})\n",
       errors.pixels, errors.mean_radiance, errors.noise);
   std::vector<LitStep> steps = errors.steps;
-  steps.insert(steps.end(), {errors.unbent, errors.diffuse, errors.specular});
+  steps.insert(steps.end(), {errors.visibility_only, errors.diffuse, errors.specular});
   for (const LitStep& step : steps) {
     text += error_row(step.name, step.rmse, step.bias);
   }
@@ -161,11 +161,11 @@ tl::expected<void, std::string> write_lit_steps(const Rendering& rendering,
   constexpr std::uint32_t kColumns = 4;
   const std::uint32_t width = tiles[0].width + 2;
   const std::uint32_t height = tiles[0].height + 2;
-  Image<glm::vec3> sheet(width * kColumns, height * 2, glm::vec3(1.0f));
+  Image<glm::vec3> canvas(width * kColumns, height * 2, glm::vec3(1.0f));
   for (std::uint32_t i = 0; i < tiles.size(); ++i) {
-    paste(tiles[i], i % kColumns * width, i / kColumns * height, sheet);
+    paste(tiles[i], i % kColumns * width, i / kColumns * height, canvas);
   }
-  return write_png(folder / "lit_steps.png", sheet)
+  return write_png(folder / "lit_steps.png", canvas)
       .and_then([&] { return write_png(folder / "truth_lit.png", tiles[kTruth]); })
       .and_then([&] {
         Image<glm::vec3> comparison(width * 3 - 2, tiles[0].height, glm::vec3(1.0f));

@@ -12,8 +12,8 @@
 
 namespace alcove::sample {
 
-// How far the lit picture is off with one more part of the occlusion each time. In parts of the
-// truth's mean radiance; the noise of the truth is taken out.
+// Error of the lit image with some parts of the occlusion applied, relative to the mean radiance of
+// the truth. The noise of the truth is subtracted.
 struct LitStep {
   std::string name;
   double rmse = 0;
@@ -21,21 +21,22 @@ struct LitStep {
 };
 struct LitErrors {
   std::uint64_t pixels = 0;
-  double mean_radiance = 0;  // of the truth
-  double noise = 0;          // of the truth, RMS, in parts of its mean
-  std::vector<LitStep> steps;
-  LitStep unbent;   // visibility as a first step by itself, light along the normal
-  LitStep diffuse;  // the parts of the last step against those of the truth
-  LitStep specular;
+  double mean_radiance = 0;    // of the truth
+  double noise = 0;            // RMS noise of the truth over its mean radiance
+  std::vector<LitStep> steps;  // each step applies one more part of the occlusion
+  LitStep visibility_only;     // visibility alone, with light along the normal
+  LitStep diffuse;             // diffuse part of the last step against that of the truth
+  LitStep specular;            // specular part of the last step against that of the truth
 };
 
-// Of a rendering with IndirectRequest::lit_steps; `light.lit` must be there.
+// The rendering was made with IndirectRequest::lit_steps, and `light.lit` has a value.
 [[nodiscard]] LitErrors lit_errors_of(const Rendering& rendering, const IndirectTruths& light);
 [[nodiscard]] nlohmann::ordered_json to_json(const LitErrors& errors);
 [[nodiscard]] std::string lit_error_table(const LitErrors& errors);
 
-// lit_steps.png: the four steps; then visibility alone, the truth and the error of the last step,
-// grey where it is right; a pixel for each that was traced. truth_lit.png: the truth alone.
+// Writes lit_steps.png: the four steps, then visibility alone, the truth and the error of the last
+// step (grey for none). Also writes truth_lit.png, the truth alone, and lit_comparison.png: without
+// occlusion, the last step and the truth. The images have one pixel for each block.
 [[nodiscard]] tl::expected<void, std::string> write_lit_steps(const Rendering& rendering,
                                                               const IndirectTruths& light,
                                                               const std::filesystem::path& folder);

@@ -19,7 +19,7 @@ using Failure = tl::unexpected<std::string>;
 
 constexpr const GpuPart& kModelledPart = kGpuParts[1];
 
-// The times of variants by a clock that is chosen once.
+// Gives the times of variants by one clock, which depends on the device.
 class TradeClock {
  public:
   TradeClock(const VkPhysicalDeviceProperties& device, const StaticSetup& setup) : setup_(setup) {
@@ -47,7 +47,7 @@ class TradeClock {
 std::string TradeClock::title() const {
   switch (clock_) {
     case Clock::modelled:
-      return "modelled time of a frame in motion on " + std::string(kModelledPart.title);
+      return "modelled time of a frame with a moving camera on " + std::string(kModelledPart.title);
     case Clock::timestamps:
       return "GPU time";
     default:
@@ -59,7 +59,7 @@ tl::expected<double, std::string> TradeClock::modelled_ms(
     const passes::OcclusionSettings& settings) const {
   CostInputs inputs{setup_.width, setup_.height, setup_.normals != NormalSource::kDepth, false,
                     settings};
-  // As variants are drawn.
+  // Variants are rendered with these settings too.
   inputs.settings.specular = passes::Specular::none;
   inputs.settings.bent_normal = false;
   const auto frames = modelled_frames(kModelledPart, null_device_, inputs);
@@ -96,17 +96,17 @@ tl::expected<TradePoint, std::string> TradeClock::point_of(const VariantErrors& 
 tl::expected<MeasuredTrade, std::string> measure_trade(const Session& session,
                                                        const StaticSetup& setup,
                                                        const TruthOptions& truth_options) {
-  std::vector<Variant> ways = preset_sweep(session.settings);
-  // The session's own settings are drawn as what the others are timed beside.
+  std::vector<Variant> variants = preset_sweep(session.settings);
+  // The session's own settings are rendered as the baseline of the others.
   std::string own_name = "as given";
-  if (const auto own = std::ranges::find(ways, session.settings, &Variant::settings);
-      own != ways.end()) {
+  if (const auto own = std::ranges::find(variants, session.settings, &Variant::settings);
+      own != variants.end()) {
     own_name = own->name;
-    ways.erase(own);
+    variants.erase(own);
   }
   const VkPhysicalDeviceProperties& device = session.gpu->device().properties();
   const TradeClock clock(device, setup);
-  const auto report = run_variants(session, setup, truth_options, ways, "trade");
+  const auto report = run_variants(session, setup, truth_options, variants, "trade");
   if (!report) {
     return tl::unexpected(report.error());
   }
@@ -146,7 +146,7 @@ std::string grid_table(const std::vector<double>& rmse) {
                                 fmt::join(kGridSlices, ""));
   for (std::size_t i = 0; i < kGridSteps.size(); ++i) {
     const std::span row = std::span(rmse).subspan(i * kGridSlices.size(), kGridSlices.size());
-    out += fmt::format("  {:2} steps a side{:8.4f}\n", kGridSteps[i], fmt::join(row, ""));
+    out += fmt::format("  {:2} steps      {:8.4f}\n", kGridSteps[i], fmt::join(row, ""));
   }
   return out;
 }
@@ -163,7 +163,8 @@ std::string table_of(const Trade& trade, const std::string& clock_title) {
                        point.height_field_rmse, point.time_ms, point.spread_ms, point.processor_ms,
                        mib(point.bytes));
   }
-  return out + "* every setting that errs by as little or less is slower by more than the spread\n";
+  return out +
+         "* Pareto front: every setting with an error as low is slower by more than the spread\n";
 }
 
 Json to_json(const Trade& trade) {

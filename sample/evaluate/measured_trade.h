@@ -12,16 +12,16 @@
 
 namespace alcove::sample {
 
-// The points of a trade, and what their times are.
+// The points of a trade, and the clock that measured their times.
 struct MeasuredTrade {
   std::vector<TradePoint> points;
   Clock clock = Clock::processor;
-  std::string clock_title;  // for headings: "modelled time on ...", say
+  std::string clock_title;  // for headings, such as "modelled time on ..."
 };
 
-// Draws the session's view in every way of preset_sweep() and compares each with the truths. The
-// clock is the timestamps of a GPU. A software device's timestamps are noise: in their place stands
-// the modelled time of an RDNA2 part, or processor time where Mesa's AMD driver is not installed.
+// Renders the session's view with every variant of preset_sweep() and compares each with the
+// truths. Times are GPU timestamps. On a software device, whose timestamps are noise, they are the
+// modelled times of an RDNA2 part, or processor times if Mesa's AMD driver is not installed.
 [[nodiscard]] tl::expected<MeasuredTrade, std::string> measure_trade(
     const Session& session, const StaticSetup& setup, const TruthOptions& truth_options);
 

@@ -3,17 +3,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
+#include "support/median.h"
 #include "support/parallel.h"
 
 namespace alcove::sample {
 namespace {
 
-constexpr float kOffPlane = 0.005f;  // of the depth
-constexpr float kMoving = 0.02f;     // pixels a frame
+constexpr float kOffPlane = 0.005f;  // distance from the tangent plane over depth
+constexpr float kMoving = 0.02f;     // pixels per frame
 
-// A frame's camera at work.
+// The camera of a frame, for projecting in both directions.
 struct Eye {
   CameraMatrices matrices;
   bool orthographic;
@@ -21,7 +23,7 @@ struct Eye {
   std::uint32_t width;
   std::uint32_t height;
 
-  explicit Eye(const SeenFrame& frame)
+  explicit Eye(const RenderedFrame& frame)
       : matrices(camera_matrices(frame.camera, frame.depth.width, frame.depth.height)),
         orthographic(frame.camera.orthographic),
         forward(-glm::vec3(matrices.world_from_view[2])),
@@ -36,7 +38,7 @@ struct Eye {
   }
 };
 
-// The four texels around a point of an image, as bilinear filtering takes them.
+// The four texels around a point of an image that bilinear filtering reads.
 struct Texels {
   std::array<std::int64_t, 2> first;
   glm::vec2 part;
@@ -73,12 +75,12 @@ glm::vec2 project(const Eye& eye, const glm::vec3& position_ws) {
   }
   const glm::vec2 px = (glm::vec2(clip) / clip.w * 0.5f + 0.5f) *
                        glm::vec2(static_cast<float>(eye.width), static_cast<float>(eye.height));
-  // Far outside is outside, and a number of pixels again.
+  // Positions far outside the image are unified, so that they fit an integer.
   return glm::all(glm::lessThan(glm::abs(px), glm::vec2(1e6f))) ? px : kNowhere;
 }
 
-// Which of the texels around `px` show the surface through `position_ws`.
-std::uint8_t same_surface(const Eye& eye, const SeenFrame& before, glm::vec2 px,
+// The mask of the texels around `px` that show the surface through `position_ws`.
+std::uint8_t same_surface(const Eye& eye, const RenderedFrame& before, glm::vec2 px,
                           const glm::vec3& position_ws, const glm::vec3& normal_ws) {
   const Texels texels(px);
   std::uint8_t found = 0;
@@ -98,13 +100,14 @@ std::uint8_t same_surface(const Eye& eye, const SeenFrame& before, glm::vec2 px,
   return found;
 }
 
-// Of a surface whose texels are known: the one that counts most.
-std::size_t nearest_texel(const Retraced& retraced, std::size_t pixel, const Image<Age>& before) {
-  const Texels texels(retraced.position_px.pixels[pixel]);
+// The texel of the same surface with the largest bilinear weight.
+std::size_t nearest_texel(const Reprojection& reprojection, std::size_t pixel,
+                          const Image<Age>& before) {
+  const Texels texels(reprojection.position_px.pixels[pixel]);
   std::size_t nearest = 0;
   float most = -1.0f;
   for (int i = 0; i < 4; ++i) {
-    if ((retraced.texels.pixels[pixel] >> i & 1) != 0 && texels.weight(i) > most) {
+    if ((reprojection.texels.pixels[pixel] >> i & 1) != 0 && texels.weight(i) > most) {
       most = texels.weight(i);
       nearest = static_cast<std::size_t>(texels.index(i, before));
     }
@@ -112,10 +115,10 @@ std::size_t nearest_texel(const Retraced& retraced, std::size_t pixel, const Ima
   return nearest;
 }
 
-// Since the frame before, of a pixel whose surface all four texels there show.
+// The change since the previous frame at a pixel whose four previous texels show its surface.
 double change_at(std::size_t pixel, const Image<float>& now, const Image<float>& before,
-                 const Retraced& retraced) {
-  const Texels texels(retraced.position_px.pixels[pixel]);
+                 const Reprojection& reprojection) {
+  const Texels texels(reprojection.position_px.pixels[pixel]);
   float then = 0.0f;
   for (int i = 0; i < 4; ++i) {
     then += texels.weight(i) * before.pixels[static_cast<std::size_t>(texels.index(i, before))];
@@ -125,12 +128,12 @@ double change_at(std::size_t pixel, const Image<float>& now, const Image<float>&
 
 }  // namespace
 
-Retraced retrace(const SeenFrame& now, const SeenFrame& before,
-                 const PositionBefore& position_before) {
+Reprojection reproject(const RenderedFrame& now, const RenderedFrame& before,
+                       const PositionBefore& position_before) {
   const Eye eye(now);
   const Eye eye_before(before);
-  Retraced retraced{{now.depth.width, now.depth.height, kNowhere},
-                    {now.depth.width, now.depth.height}};
+  Reprojection reprojection{{now.depth.width, now.depth.height, kNowhere},
+                            {now.depth.width, now.depth.height}};
   parallel_rows(now.depth.height, [&](std::uint32_t y) {
     for (std::uint32_t x = 0; x < now.depth.width; ++x) {
       const float depth = now.depth.at(x, y);
@@ -138,20 +141,20 @@ Retraced retrace(const SeenFrame& now, const SeenFrame& before,
         continue;
       }
       const glm::vec3 position = eye.position(x, y, depth);
-      // The normal's tip goes the way of its foot. It is short, so that both are of one thing.
+      // The normal is moved as two points. They are close, so that both belong to one object.
       const float length = 1e-3f * depth;
       const glm::vec3 was = position_before(position);
       const glm::vec3 tip = position_before(position - now.normal_ws.at(x, y) * length);
       const glm::vec3 normal = glm::normalize(was - tip);
       const glm::vec2 px = project(eye_before, was);
-      retraced.position_px.at(x, y) = px;
-      retraced.texels.at(x, y) = same_surface(eye_before, before, px, was, normal);
+      reprojection.position_px.at(x, y) = px;
+      reprojection.texels.at(x, y) = same_surface(eye_before, before, px, was, normal);
     }
   });
-  return retraced;
+  return reprojection;
 }
 
-Image<Age> first_ages(const SeenFrame& now) {
+Image<Age> first_ages(const RenderedFrame& now) {
   Image<Age> ages(now.depth.width, now.depth.height);
   for (std::size_t i = 0; i < ages.pixels.size(); ++i) {
     ages.pixels[i].frames = std::isfinite(now.depth.pixels[i]) ? 1 : 0;
@@ -159,15 +162,16 @@ Image<Age> first_ages(const SeenFrame& now) {
   return ages;
 }
 
-Image<Age> next_ages(const SeenFrame& now, const Retraced& retraced, const Image<Age>& before) {
+Image<Age> next_ages(const RenderedFrame& now, const Reprojection& reprojection,
+                     const Image<Age>& before) {
   Image<Age> ages = first_ages(now);
   for (std::size_t i = 0; i < ages.pixels.size(); ++i) {
-    if (retraced.texels.pixels[i] != 0) {
-      const Age& age = before.pixels[nearest_texel(retraced, i, before)];
+    if (reprojection.texels.pixels[i] != 0) {
+      const Age& age = before.pixels[nearest_texel(reprojection, i, before)];
       ages.pixels[i] = {age.frames + 1, age.uncovered};
     } else if (ages.pixels[i].frames > 0) {
       ages.pixels[i].uncovered =
-          in_image(retraced.position_px.pixels[i], before.width, before.height);
+          in_image(reprojection.position_px.pixels[i], before.width, before.height);
     }
   }
   return ages;
@@ -180,33 +184,33 @@ RunningMean& RunningMean::operator+=(const RunningMean& more) {
 }
 
 RunningMean visibility_change(const Image<float>& now, const Image<float>& before,
-                              const Retraced& retraced) {
+                              const Reprojection& reprojection) {
   RunningMean change;
   for (std::size_t pixel = 0; pixel < now.pixels.size(); ++pixel) {
-    if (retraced.texels.pixels[pixel] == kAllTexels) {
-      change += {std::abs(change_at(pixel, now, before, retraced)), 1};
+    if (reprojection.texels.pixels[pixel] == kAllTexels) {
+      change += {std::abs(change_at(pixel, now, before, reprojection)), 1};
     }
   }
   return change;
 }
 
-RunningMean least_change(const Halves<float>& now, const Halves<float>& before,
-                         const Retraced& retraced) {
+RunningMean change_lower_bound(const SplitTruth<float>& now, const SplitTruth<float>& before,
+                               const Reprojection& reprojection) {
   const auto in_direction = [](double change, double other) {
     return other == 0.0 ? 0.0 : std::copysign(change, change * other);
   };
   RunningMean least;
   for (std::size_t pixel = 0; pixel < now.first.pixels.size(); ++pixel) {
-    if (retraced.texels.pixels[pixel] == kAllTexels) {
-      const double first = change_at(pixel, now.first, before.first, retraced);
-      const double second = change_at(pixel, now.second, before.second, retraced);
+    if (reprojection.texels.pixels[pixel] == kAllTexels) {
+      const double first = change_at(pixel, now.first, before.first, reprojection);
+      const double second = change_at(pixel, now.second, before.second, reprojection);
       least += {0.5 * (in_direction(first, second) + in_direction(second, first)), 1};
     }
   }
   return least;
 }
 
-Mask surfaces_where(const SeenFrame& seen,
+Mask surfaces_where(const RenderedFrame& seen,
                     const std::function<bool(const glm::vec3& position_ws)>& choose) {
   const Eye eye(seen);
   Mask mask(seen.depth.width, seen.depth.height);
@@ -219,32 +223,27 @@ Mask surfaces_where(const SeenFrame& seen,
   return mask;
 }
 
-Speed speed_of(const Retraced& retraced) {
+Speed speed_of(const Reprojection& reprojection) {
   std::vector<float> speeds;
   RunningMean mean;
-  for (std::size_t i = 0; i < retraced.texels.pixels.size(); ++i) {
-    if (retraced.texels.pixels[i] == 0) {
+  for (std::size_t i = 0; i < reprojection.texels.pixels.size(); ++i) {
+    if (reprojection.texels.pixels[i] == 0) {
       continue;
     }
-    const auto width = static_cast<std::size_t>(retraced.texels.width);
+    const auto width = static_cast<std::size_t>(reprojection.texels.width);
     const std::size_t row = i / width;
     const glm::vec2 here(static_cast<float>(i - row * width) + 0.5f,
                          static_cast<float>(row) + 0.5f);
-    const float speed = glm::distance(here, retraced.position_px.pixels[i]);
+    const float speed = glm::distance(here, reprojection.position_px.pixels[i]);
     if (speed > kMoving) {
       speeds.push_back(speed);
       mean += {speed, 1};
     }
   }
-  if (speeds.empty()) {
-    return {};
-  }
-  const auto rank = static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(speeds.size() - 1));
-  std::ranges::nth_element(speeds, speeds.begin() + rank);
-  return {mean.mean(), speeds[static_cast<std::size_t>(rank)]};
+  return {mean.mean(), percentile(std::move(speeds), 0.95)};
 }
 
-Image<float> mean_of(const Halves<float>& truth) {
+Image<float> mean_of(const SplitTruth<float>& truth) {
   Image<float> mean = truth.first;
   for (std::size_t i = 0; i < mean.pixels.size(); ++i) {
     mean.pixels[i] = 0.5f * (truth.first.pixels[i] + truth.second.pixels[i]);
@@ -252,7 +251,7 @@ Image<float> mean_of(const Halves<float>& truth) {
   return mean;
 }
 
-RunningMean squared_error(const Image<float>& result, const Halves<float>& truth,
+RunningMean squared_error(const Image<float>& result, const SplitTruth<float>& truth,
                           const Mask& mask) {
   RunningMean squares;
   for (std::size_t i = 0; i < mask.pixels.size(); ++i) {
@@ -270,7 +269,7 @@ RunningMean squared_error(const Image<float>& result, const Halves<float>& truth
   return squares;
 }
 
-RunningMean squared_error(const Image<glm::vec3>& result, const Halves<glm::vec3>& truth,
+RunningMean squared_error(const Image<glm::vec3>& result, const SplitTruth<glm::vec3>& truth,
                           const Mask& mask) {
   RunningMean squares;
   for (std::size_t i = 0; i < mask.pixels.size(); ++i) {
@@ -281,7 +280,7 @@ RunningMean squared_error(const Image<glm::vec3>& result, const Halves<glm::vec3
     const double length = glm::length(given);
     const glm::dvec3 first(truth.first.pixels[i]);
     const glm::dvec3 second(truth.second.pixels[i]);
-    // The noise of the halves is not each other's, so of its product nothing is left in the mean.
+    // The noise of the halves is independent, so its product vanishes in the mean.
     squares.sum += length > 0.0 && std::isfinite(length)
                        ? glm::dot(given / length - first, given / length - second)
                        : 2.0;

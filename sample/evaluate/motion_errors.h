@@ -10,8 +10,8 @@
 
 namespace alcove::sample {
 
-// A frame of a path as the next one is told from: all images of one size.
-struct SeenFrame {
+// A rendered frame of a path; all images have the same size.
+struct RenderedFrame {
   Camera camera;
   Image<float> depth;  // linear; infinity: sky
   Image<glm::vec3> normal_ws;
@@ -19,31 +19,31 @@ struct SeenFrame {
   Image<glm::vec3> bent_normal_ws;
 };
 
-// Where the surfaces of a frame were on the image of the frame before.
-struct Retraced {
-  Image<glm::vec2> position_px;  // there, from the top left corner; not confined to the image
-  // Bit i is set where texel i of the four around it (x first, then y) shows the same surface: lies
-  // within half a hundredth of the depth of its tangent plane. 0 in the sky.
+// Where the surfaces of a frame were on the image of the previous frame.
+struct Reprojection {
+  Image<glm::vec2> position_px;  // from the top left corner; may lie outside the image
+  // Bit i is set if texel i of the four around that position (x first, then y) shows the same
+  // surface: it lies within 0.5 % of the depth from the tangent plane. 0 in the sky.
   Image<std::uint8_t> texels;
 };
 inline constexpr std::uint8_t kAllTexels = 0xf;
 
-// `position_before` says where a point of this frame was, in world space.
+// `position_before` gives the world-space position, one frame earlier, of a point of this frame.
 using PositionBefore = std::function<glm::vec3(const glm::vec3& position_ws)>;
-[[nodiscard]] Retraced retrace(const SeenFrame& now, const SeenFrame& before,
-                               const PositionBefore& position_before);
+[[nodiscard]] Reprojection reproject(const RenderedFrame& now, const RenderedFrame& before,
+                                     const PositionBefore& position_before);
 
-// How long a pixel's surface has been seen.
+// For how long the surface of a pixel has been visible.
 struct Age {
-  std::uint32_t frames = 0;  // in a row, this one included; 0 in the sky
-  bool uncovered = false;    // it came from behind something, not from beyond the image
+  std::uint32_t frames = 0;  // consecutive frames, this one included; 0 in the sky
+  bool uncovered = false;    // it was hidden by another surface before, not outside the image
 };
-// Of the first frame, and of the next by that of the frame before.
-[[nodiscard]] Image<Age> first_ages(const SeenFrame& now);
-[[nodiscard]] Image<Age> next_ages(const SeenFrame& now, const Retraced& retraced,
+// The ages in the first frame, and in a later frame from those of the frame before.
+[[nodiscard]] Image<Age> first_ages(const RenderedFrame& now);
+[[nodiscard]] Image<Age> next_ages(const RenderedFrame& now, const Reprojection& reprojection,
                                    const Image<Age>& before);
 
-// A mean over pixels of many frames.
+// A mean over the pixels of many frames.
 struct RunningMean {
   double sum = 0;
   std::uint64_t count = 0;
@@ -52,44 +52,45 @@ struct RunningMean {
   RunningMean& operator+=(const RunningMean& more);
 };
 
-// Absolute change of an image of visibility since the frame before, where all four texels are the
-// surface's, read there bilinearly.
+// Absolute change of visibility since the previous frame, which is read bilinearly, over the pixels
+// whose four previous texels all show the same surface.
 [[nodiscard]] RunningMean visibility_change(const Image<float>& now, const Image<float>& before,
-                                            const Retraced& retraced);
+                                            const Reprojection& reprojection);
 
-// Where surfaces are of which `choose` says so.
-[[nodiscard]] Mask surfaces_where(const SeenFrame& seen,
+// The pixels with a surface for which `choose` returns true.
+[[nodiscard]] Mask surfaces_where(const RenderedFrame& seen,
                                   const std::function<bool(const glm::vec3& position_ws)>& choose);
 
-// Of the surfaces that move on the image, in pixels of a frame; zero where none does.
+// Speed of the surfaces that move on the image, in pixels per frame; zero if none moves.
 struct Speed {
   double mean = 0;
   double percentile_95 = 0;
 };
-[[nodiscard]] Speed speed_of(const Retraced& retraced);
+[[nodiscard]] Speed speed_of(const Reprojection& reprojection);
 
-// A ray-traced image in two halves of other rays, whose difference tells its noise.
+// A ray-traced image in two halves with independent rays, whose difference gives its noise.
 template <class T>
-struct Halves {
+struct SplitTruth {
   Image<T> first;
   Image<T> second;
 };
-[[nodiscard]] Image<float> mean_of(const Halves<float>& truth);
+[[nodiscard]] Image<float> mean_of(const SplitTruth<float>& truth);
 
-// The same change of a truth, at least: each half is counted in the direction that the other tells,
-// so that noise adds nothing in the mean.
-[[nodiscard]] RunningMean least_change(const Halves<float>& now, const Halves<float>& before,
-                                       const Retraced& retraced);
+// A lower bound of visibility_change() for a truth: each half is counted with the sign of the
+// change in the other half, so that noise adds nothing to the mean.
+[[nodiscard]] RunningMean change_lower_bound(const SplitTruth<float>& now,
+                                             const SplitTruth<float>& before,
+                                             const Reprojection& reprojection);
 
-// Squared error against the mean of the halves, less what its noise adds. The mean may come out
-// below 0 by chance where there is no error.
-[[nodiscard]] RunningMean squared_error(const Image<float>& result, const Halves<float>& truth,
+// Squared error against the mean of the halves, less the variance of that mean. It may be slightly
+// negative by chance if there is no error.
+[[nodiscard]] RunningMean squared_error(const Image<float>& result, const SplitTruth<float>& truth,
                                         const Mask& mask);
-// The same of unit directions: the squared chord between them, which of small angles is the angle's
-// square. No direction counts as one across.
+// Squared error of directions: the squared length of the difference of the unit vectors, which is
+// the squared angle for small angles. A missing direction counts as 90 degrees.
 [[nodiscard]] RunningMean squared_error(const Image<glm::vec3>& result,
-                                        const Halves<glm::vec3>& truth, const Mask& mask);
-// The root of a mean of squared errors; 0 of one below 0.
+                                        const SplitTruth<glm::vec3>& truth, const Mask& mask);
+// The root of a mean of squared errors; 0 if the mean is negative.
 [[nodiscard]] double root(const RunningMean& squares);
 
 }  // namespace alcove::sample

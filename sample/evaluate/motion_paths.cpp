@@ -5,28 +5,30 @@
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "scene/shapes.h"
+#include "support/median.h"
 
 namespace alcove::sample {
 namespace {
 
-// Steps of one frame; heights are those of the image.
+// Steps per frame. A height is the length that the image's height spans at a depth.
 const float kOrbitAngle = glm::radians(0.4f);
-constexpr float kDollyStep = 0.006f;    // of the depth
-constexpr float kStrafeStep = 0.004f;   // of a height at that depth: 2.2 pixels at 540
-constexpr float kObjectStep = 0.0075f;  // of a height on the ground: 4 pixels at 540
-const float kObjectTurn = glm::radians(1.5f);
+constexpr float kDollyStep = 0.006f;    // depths
+constexpr float kStrafeStep = 0.004f;   // heights at that depth: 2.2 pixels at 540
+constexpr float kObjectStep = 0.0075f;  // heights at the ground: 4 pixels at 540
+const float kObjectRotation = glm::radians(1.5f);
 
-// The column that is strafed past: its depth in parts of that depth, so that it crosses the
-// image faster by as much; its radius in heights.
+// The column beside the strafing camera: its depth as a fraction of the median depth, and its
+// radius in heights.
 constexpr float kColumnDepth = 0.3f;
 constexpr float kColumnRadius = 0.05f;
-// What moves: half its width in heights, and how far it hovers in radii of the occlusion.
+// The moving object: half its width in heights, and its gap to the ground in occlusion radii.
 constexpr float kObjectSize = 0.06f;
 constexpr float kObjectGap = 0.2f;
-// Where the camera is cut to: forwards in parts of the depth, and turned.
+// The camera after the cut: distance forwards as a fraction of the median depth, and rotation.
 constexpr float kCutStep = 0.4f;
 const float kCutAngle = glm::radians(40.0f);
 
@@ -53,12 +55,12 @@ Camera moved(Camera camera, const glm::vec3& by) {
   return camera;
 }
 
-// From the middle of the path, in frames.
+// The distance from the middle of the path, in frames.
 float from_middle(std::uint32_t frame, std::uint32_t frames) {
   return static_cast<float>(frame) - 0.5f * static_cast<float>(frames - 1);
 }
 
-// A block with a smaller one on it, about the origin, half as wide as `half` is twice.
+// A block with a smaller one on it, centred on the origin, 2 `half` wide.
 Mesh block_mesh(float half) {
   SceneBuilder builder;
   builder.use(builder.add_material("moving", glm::vec3(0.6f, 0.5f, 0.4f), 0.6f));
@@ -80,7 +82,7 @@ Mesh column_mesh(const MotionStart& start, std::uint32_t frames) {
   const glm::vec3 foot = start.camera.eye_ws + axes.forward * depth +
                          axes.right * (step * 0.5f * static_cast<float>(frames - 1));
   builder.world_from_shape = glm::translate(glm::mat4(1.0f), foot);
-  // A lathe stands on Y, the column on the camera's own up.
+  // The axis of a lathe is Y; the column is aligned with the up direction of the camera.
   builder.world_from_shape[0] = glm::vec4(axes.right, 0.0f);
   builder.world_from_shape[1] = glm::vec4(axes.up, 0.0f);
   builder.world_from_shape[2] = glm::vec4(-axes.forward, 0.0f);
@@ -105,9 +107,7 @@ float median_depth(const GBuffer& view) {
       depths.push_back(view.depth_vs.pixels[i]);
     }
   }
-  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-  std::ranges::nth_element(depths, middle);
-  return *middle;
+  return median(std::move(depths));
 }
 
 }  // namespace
@@ -118,7 +118,7 @@ tl::expected<MotionStart, std::string> motion_start(const RayScene& rays, const 
   const auto width = static_cast<std::uint32_t>(
       std::clamp(std::round(aspect * static_cast<float>(kHeight)), 1.0f, 1000.0f));
   const GBuffer view = cast_gbuffer(rays, camera, width, kHeight);
-  // The surface nearest on the image to a point of it.
+  // The pixel with a surface that is nearest to a point of the image.
   const auto nearest = [&](glm::vec2 uv) {
     std::optional<std::size_t> found;
     float least = std::numeric_limits<float>::infinity();
@@ -137,7 +137,7 @@ tl::expected<MotionStart, std::string> motion_start(const RayScene& rays, const 
   const auto ground = nearest({0.5f, 0.72f});
   if (!ground) {
     return tl::unexpected<std::string>(
-        "There is nothing in the view that could be seen in motion: turn it with --eye and "
+        "The view shows no surface that could be measured in motion: choose another with --eye and "
         "--target.");
   }
   return MotionStart{camera, median_depth(view), view.position_ws.pixels[*ground],
@@ -170,8 +170,8 @@ Camera MotionPath::camera(std::uint32_t frame) const {
     return start_.camera;
   }
   Camera elsewhere = moved(start_.camera, axes.forward * (kCutStep * start_.depth));
-  const glm::mat3 turn(glm::rotate(glm::mat4(1.0f), kCutAngle, axes.up));
-  elsewhere.target_ws = elsewhere.eye_ws + turn * axes.forward;
+  const glm::mat3 rotation(glm::rotate(glm::mat4(1.0f), kCutAngle, axes.up));
+  elsewhere.target_ws = elsewhere.eye_ws + rotation * axes.forward;
   return elsewhere;
 }
 
@@ -181,16 +181,16 @@ glm::mat4 MotionPath::world_from_moving(std::uint32_t frame) const {
   }
   const Axes axes = axes_of(start_.camera);
   const glm::vec3& up = start_.ground_normal_ws;
-  // The way to the right over the ground, or upwards where it faces that way.
+  // Rightwards along the ground, or upwards if the ground faces right or left.
   const glm::vec3 sideways = axes.right - up * glm::dot(axes.right, up);
-  const glm::vec3 way = glm::length(sideways) > 0.1f ? glm::normalize(sideways) : axes.up;
+  const glm::vec3 direction = glm::length(sideways) > 0.1f ? glm::normalize(sideways) : axes.up;
   const float half = object_half_width(start_);
   const float step = kObjectStep / kObjectSize * half;
-  glm::mat4 placed(glm::mat3(way, up, glm::cross(way, up)));
+  glm::mat4 placed(glm::mat3(direction, up, glm::cross(direction, up)));
   placed[3] = glm::vec4(start_.ground_ws + up * (half + kObjectGap * start_.radius) +
-                            way * (step * from_middle(frame, frames_)),
+                            direction * (step * from_middle(frame, frames_)),
                         1.0f);
-  return glm::rotate(placed, kObjectTurn * static_cast<float>(frame), glm::vec3(0, 1, 0));
+  return glm::rotate(placed, kObjectRotation * static_cast<float>(frame), glm::vec3(0, 1, 0));
 }
 
 std::optional<std::uint32_t> MotionPath::cut() const {
@@ -222,15 +222,15 @@ void MotionPath::pose(Scene& scene, std::uint32_t frame) const {
   }
 }
 
-bool MotionPath::passes_by(const glm::vec3& position_ws, std::uint32_t frame,
-                           std::uint32_t frames) const {
+bool MotionPath::is_near_object(const glm::vec3& position_ws, std::uint32_t frame,
+                                std::uint32_t frames) const {
   if (kind_ != MotionKind::kObject) {
     return false;
   }
   const float half = object_half_width(start_);
   for (std::uint32_t i = 0; i <= std::min(frames, frame); ++i) {
     const glm::mat4 placed = world_from_moving(frame - i);
-    // Placed without scale: its inverse turns back.
+    // There is no scale, so the transpose is the inverse.
     const glm::vec3 offset =
         glm::transpose(glm::mat3(placed)) * (position_ws - glm::vec3(placed[3]));
     const glm::vec3 beyond = glm::max(glm::abs(offset) - half, glm::vec3(0.0f));
@@ -248,9 +248,9 @@ glm::vec3 MotionPath::position_before(const glm::vec3& position_ws, std::uint32_
   const glm::vec4 position(position_ws, 1.0f);
   const glm::vec4 at_rest = glm::inverse(world_from_moving(frame)) * position;
   const float half = 1.02f * object_half_width(start_);
-  const bool on_it =
+  const bool on_object =
       std::abs(at_rest.x) < half && std::abs(at_rest.y) < half && std::abs(at_rest.z) < half;
-  return on_it ? glm::vec3(world_from_moving(frame - 1) * at_rest) : position_ws;
+  return on_object ? glm::vec3(world_from_moving(frame - 1) * at_rest) : position_ws;
 }
 
 }  // namespace alcove::sample

@@ -13,43 +13,44 @@
 
 namespace alcove::sample {
 
-// What the length of a path's steps is taken from.
+// The view that a path starts from, and the lengths that its steps are proportional to.
 struct MotionStart {
-  Camera camera;              // of the first frame
-  float depth = 1;            // along the view axis, median of the surfaces in view, > 0
-  glm::vec3 ground_ws{0.0f};  // a surface in the lower half of the view
+  Camera camera;                                 // camera of the first frame
+  float depth = 1;                               // median depth of the surfaces in view, > 0
+  glm::vec3 ground_ws{0.0f};                     // a surface in the lower half of the view
   glm::vec3 ground_normal_ws{0.0f, 1.0f, 0.0f};  // unit, towards the eye
-  float radius = 1;                              // of the occlusion
+  float radius = 1;                              // radius of the occlusion
 };
-// Looks where the surfaces of a view are. `aspect` is width over height. Error: the view is of
-// nothing but sky.
+// Measures the surfaces in view. `aspect` is width over height. Error: the view shows nothing but
+// sky.
 [[nodiscard]] tl::expected<MotionStart, std::string> motion_start(const RayScene& rays,
                                                                   const Camera& camera,
                                                                   float aspect, float radius);
 
-// Where everything is in each frame. A pure function of the frame: steps are parts of the depth and
-// of the image's height, whatever its size in pixels. Immutable.
+// The camera and the moving object in each frame. Steps are proportional to the depth and to the
+// height of the view, and do not depend on the size of the image in pixels. Immutable.
 class MotionPath {
  public:
-  // `frames` of at least 2 from the start's view on.
+  // `frames`: at least 2. The first frame shows the view of `start`.
   MotionPath(MotionKind kind, const MotionStart& start, std::uint32_t frames);
 
   MotionKind kind() const { return kind_; }
   std::uint32_t frames() const { return frames_; }
   Camera camera(std::uint32_t frame) const;
-  // Of the mesh that moves, if there is one: rotation and translation.
+  // Rotation and translation of the moving object; identity if the path has none.
   glm::mat4 world_from_moving(std::uint32_t frame) const;
-  // The first frame that has nothing to do with the one before.
+  // The first frame after the cut, if the path has one.
   std::optional<std::uint32_t> cut() const;
 
-  // Puts what the path needs into a scene.
+  // Adds the column or the moving object of the path to a scene.
   void add_to(Scene& scene) const;
-  // The scene of add_to() with what moves put where it is in a frame.
+  // Moves the object that add_to() added to its place in a frame.
   void pose(Scene& scene, std::uint32_t frame) const;
-  // Whether what moves is within the occlusion's radius of a point in a frame, or was in one of as
-  // many before it as `frames` says: where it is seen to move, and might leave a trail.
-  bool passes_by(const glm::vec3& position_ws, std::uint32_t frame, std::uint32_t frames) const;
-  // Where a point on a surface of a frame, which counts from 1, was one frame earlier.
+  // Whether the moving object is within the occlusion radius of a point in this frame or was in one
+  // of the last `frames` frames, so that it may have left a trail there.
+  bool is_near_object(const glm::vec3& position_ws, std::uint32_t frame,
+                      std::uint32_t frames) const;
+  // Where a surface point of a frame was one frame earlier; `frame` is at least 1.
   glm::vec3 position_before(const glm::vec3& position_ws, std::uint32_t frame) const;
 
  private:

@@ -13,11 +13,11 @@ using Done = tl::expected<void, std::string>;
 
 constexpr std::uint32_t kCompared = 3;  // frames of a path
 
-Mask surfaces_of(const SeenFrame& seen) {
+Mask surfaces_of(const RenderedFrame& seen) {
   return surfaces_where(seen, [](const glm::vec3&) { return true; });
 }
 
-Mask aged(const Image<Age>& ages, bool uncovered) {
+Mask pixels_of_age(const Image<Age>& ages, bool uncovered) {
   Mask mask(ages.width, ages.height);
   for (std::size_t i = 0; i < mask.pixels.size(); ++i) {
     const Age& age = ages.pixels[i];
@@ -26,24 +26,24 @@ Mask aged(const Image<Age>& ages, bool uncovered) {
   return mask;
 }
 
-// A frame to compare, as it was seen in passing.
+// A rendered frame that will be compared with the truth.
 struct Compared {
   std::uint32_t frame = 0;
-  SeenFrame seen;
+  RenderedFrame seen;
   Image<Age> ages;
-  SeenFrame before;
-  Retraced retraced;
+  RenderedFrame before;
+  Reprojection reprojection;
 };
 
-// The path as it is walked.
-struct Passed {
+// Sums over the frames of a path.
+struct PathResult {
   RunningMean change;
   RunningMean speed;
   RunningMean fast;
   std::vector<Compared> compared;
 };
 
-std::uint32_t first_settled(const MotionPath& path) { return path.frames() / kCompared; }
+std::uint32_t first_converged(const MotionPath& path) { return path.frames() / kCompared; }
 
 bool is_compared(const MotionPath& path, std::uint32_t frame) {
   for (std::uint32_t i = 1; i <= kCompared; ++i) {
@@ -54,52 +54,53 @@ bool is_compared(const MotionPath& path, std::uint32_t frame) {
   return false;
 }
 
-// Of what is drawn along a path, after the path's own.
-std::string_view name_of(MotionWalk::Gathered gathered) {
-  switch (gathered) {
-    case MotionWalk::Gathered::nothing:
+// The suffix of a path's name in progress messages.
+std::string_view name_of(MotionRenderer::Filtering filtering) {
+  switch (filtering) {
+    case MotionRenderer::Filtering::none:
       return " without history and filter";
-    case MotionWalk::Gathered::neighbours:
+    case MotionRenderer::Filtering::spatial:
       return " without history";
-    case MotionWalk::Gathered::neighbours_and_history:
+    case MotionRenderer::Filtering::spatial_and_temporal:
       break;
   }
   return "";
 }
 
-tl::expected<Passed, std::string> pass_along(MotionWalk& walk, MotionWalk::Gathered gathered) {
-  const bool history = gathered == MotionWalk::Gathered::neighbours_and_history;
-  Passed passed;
-  const MotionPath& path = walk.path();
+tl::expected<PathResult, std::string> render_path(MotionRenderer& renderer,
+                                                  MotionRenderer::Filtering filtering) {
+  const bool history = filtering == MotionRenderer::Filtering::spatial_and_temporal;
+  PathResult passed;
+  const MotionPath& path = renderer.path();
   const Progress progress =
-      walk.progress(std::string(name_of(path.kind())) + std::string(name_of(gathered)));
-  // Nothing is kept without a history, so that the way to where it counts is not walked.
-  const std::uint32_t first = history ? 0 : first_settled(path) - 1;
-  SeenFrame before;
+      renderer.progress(std::string(name_of(path.kind())) + std::string(name_of(filtering)));
+  // Frames before the first measured one only matter to a history.
+  const std::uint32_t first = history ? 0 : first_converged(path) - 1;
+  RenderedFrame before;
   Image<Age> ages;
   for (std::uint32_t frame = first; frame < path.frames(); ++frame) {
-    auto seen = walk.draw_and_read({.frame = frame,
-                                    .before = frame - (frame > first ? 1 : 0),
-                                    .index = frame,
-                                    .gathered = gathered});
+    auto seen = renderer.draw_and_read({.frame = frame,
+                                        .before = frame - (frame > first ? 1 : 0),
+                                        .index = frame,
+                                        .filtering = filtering});
     if (!seen) {
       return Failure(std::move(seen.error()));
     }
     if (frame == first) {
       ages = first_ages(*seen);
     } else {
-      const Retraced retraced = retrace(*seen, before, [&](const glm::vec3& position) {
+      const Reprojection reprojection = reproject(*seen, before, [&](const glm::vec3& position) {
         return path.position_before(position, frame);
       });
-      ages = next_ages(*seen, retraced, ages);
-      if (frame >= first_settled(path)) {
-        passed.change += visibility_change(seen->visibility, before.visibility, retraced);
+      ages = next_ages(*seen, reprojection, ages);
+      if (frame >= first_converged(path)) {
+        passed.change += visibility_change(seen->visibility, before.visibility, reprojection);
       }
-      const Speed speed = speed_of(retraced);
+      const Speed speed = speed_of(reprojection);
       passed.speed += {speed.mean, 1};
       passed.fast += {speed.percentile_95, 1};
       if (history && is_compared(path, frame)) {
-        passed.compared.push_back({frame, *seen, ages, std::move(before), retraced});
+        passed.compared.push_back({frame, *seen, ages, std::move(before), reprojection});
       }
     }
     before = std::move(*seen);
@@ -108,22 +109,25 @@ tl::expected<Passed, std::string> pass_along(MotionWalk& walk, MotionWalk::Gathe
   return passed;
 }
 
-// The last of as many frames under a camera that stands, and its change since the one before.
-struct Standing {
+// The last of a number of frames without motion, and its change since the frame before.
+struct StaticResult {
   Image<float> visibility;
   Image<glm::vec3> bent_normal_ws;
   RunningMean change;
 };
 
-tl::expected<Standing, std::string> stand_at(MotionWalk& walk, std::uint32_t frame) {
+tl::expected<StaticResult, std::string> render_static(MotionRenderer& renderer,
+                                                      std::uint32_t frame) {
   for (std::uint32_t index = 0; index + 1 < frame; ++index) {
-    if (auto drawn = walk.draw({.frame = frame, .before = frame, .index = index, .moving = false});
+    if (auto drawn =
+            renderer.draw({.frame = frame, .before = frame, .index = index, .moving = false});
         !drawn) {
       return Failure(std::move(drawn.error()));
     }
   }
   const auto read = [&](std::uint32_t index) {
-    return walk.draw_and_read({.frame = frame, .before = frame, .index = index, .moving = false});
+    return renderer.draw_and_read(
+        {.frame = frame, .before = frame, .index = index, .moving = false});
   };
   const auto before = read(frame - 1);
   if (!before) {
@@ -133,7 +137,7 @@ tl::expected<Standing, std::string> stand_at(MotionWalk& walk, std::uint32_t fra
   if (!last) {
     return Failure(std::move(last.error()));
   }
-  Standing standing;
+  StaticResult standing;
   for (std::size_t i = 0; i < last->depth.pixels.size(); ++i) {
     if (std::isfinite(last->depth.pixels[i])) {
       standing.change += {std::abs(last->visibility.pixels[i] - before->visibility.pixels[i]), 1};
@@ -144,25 +148,26 @@ tl::expected<Standing, std::string> stand_at(MotionWalk& walk, std::uint32_t fra
   return standing;
 }
 
-// Squared errors of a run and of its still counterpart over the same pixels.
+// Squared errors with and without motion over the same pixels.
 struct SquaresPair {
   RunningMean moving;
-  RunningMean still;
+  RunningMean static_camera;
 
   template <class T>
-  void add(const Image<T>& moved, const Image<T>& stood, const Halves<T>& truth, const Mask& mask) {
+  void add(const Image<T>& moved, const Image<T>& fixed, const SplitTruth<T>& truth,
+           const Mask& mask) {
     moving += squared_error(moved, truth, mask);
-    still += squared_error(stood, truth, mask);
+    static_camera += squared_error(fixed, truth, mask);
   }
-  ErrorPair errors() const { return {moving.count, root(moving), root(still)}; }
+  ErrorPair errors() const { return {moving.count, root(moving), root(static_camera)}; }
 };
 
-// What the compared frames come to.
+// Sums over the compared frames.
 struct Comparison {
   SquaresPair all;
   SquaresPair uncovered;
   SquaresPair entered;
-  SquaresPair passed_by;
+  SquaresPair near_object;
   SquaresPair bent_normals;
   RunningMean static_change;
   RunningMean truth_change;
@@ -171,35 +176,36 @@ struct Comparison {
   std::vector<MotionPicture> pictures;
 };
 
-Done compare(MotionWalk& walk, const Compared& compared, Comparison& sums) {
-  auto standing = stand_at(walk, compared.frame);
+Done compare(MotionRenderer& renderer, const Compared& compared, Comparison& sums) {
+  auto standing = render_static(renderer, compared.frame);
   if (!standing) {
     return Failure(std::move(standing.error()));
   }
-  const auto truth = walk.truth(compared.frame, compared.seen);
+  const auto truth = renderer.truth(compared.frame, compared.seen);
   if (!truth) {
     return Failure(truth.error());
   }
-  const auto truth_before = walk.truth(compared.frame - 1, compared.before);
+  const auto truth_before = renderer.truth(compared.frame - 1, compared.before);
   if (!truth_before) {
     return Failure(truth_before.error());
   }
-  const auto passes_by = [&](const glm::vec3& position) {
-    return walk.path().passes_by(position, compared.frame, kTrailFrames);
+  const auto is_near_object = [&](const glm::vec3& position) {
+    return renderer.path().is_near_object(position, compared.frame, kTrailFrames);
   };
-  const SeenFrame& seen = compared.seen;
+  const RenderedFrame& seen = compared.seen;
   const Mask surfaces = surfaces_of(seen);
   const auto add = [&](SquaresPair& squares, const Mask& mask) {
     squares.add(seen.visibility, standing->visibility, truth->visibility, mask);
   };
   add(sums.all, surfaces);
-  add(sums.uncovered, aged(compared.ages, true));
-  add(sums.entered, aged(compared.ages, false));
-  add(sums.passed_by, surfaces_where(seen, passes_by));
+  add(sums.uncovered, pixels_of_age(compared.ages, true));
+  add(sums.entered, pixels_of_age(compared.ages, false));
+  add(sums.near_object, surfaces_where(seen, is_near_object));
   sums.bent_normals.add(seen.bent_normal_ws, standing->bent_normal_ws, truth->bent_normal_ws,
                         surfaces);
   sums.static_change += standing->change;
-  sums.truth_change += least_change(truth->visibility, truth_before->visibility, compared.retraced);
+  sums.truth_change +=
+      change_lower_bound(truth->visibility, truth_before->visibility, compared.reprojection);
   Image<float> mean_truth = mean_of(truth->visibility);
   sums.weave += weave_of(seen.visibility, mean_truth, surfaces);
   sums.static_weave += weave_of(standing->visibility, mean_truth, surfaces);
@@ -208,26 +214,27 @@ Done compare(MotionWalk& walk, const Compared& compared, Comparison& sums) {
   return {};
 }
 
-// The frames from `first` on as they are seen after 1, 2, 4 ... of them, the camera standing.
-tl::expected<std::vector<SeenFrame>, std::string> after_cut(MotionWalk& walk, bool restart) {
-  const MotionPath& path = walk.path();
+// The frames 1, 2, 4, ... after the cut; with `restart` the history is discarded at the cut.
+tl::expected<std::vector<RenderedFrame>, std::string> after_cut(MotionRenderer& renderer,
+                                                                bool restart) {
+  const MotionPath& path = renderer.path();
   const std::uint32_t cut = path.cut().value_or(0);
-  std::vector<SeenFrame> seen;
+  std::vector<RenderedFrame> seen;
   for (std::uint32_t frame = restart ? cut : 0; frame < path.frames(); ++frame) {
     const std::uint32_t since = frame + 1 - std::min(cut, frame + 1);
-    const MotionWalk::Step step{
+    const MotionRenderer::Step step{
         .frame = frame,
         .before = frame == 0 || (restart && frame == cut) ? frame : frame - 1,
         .index = frame,
         .restart = restart && frame == cut};
     // 1, 2, 4, ...
     if (since > 0 && (since & (since - 1)) == 0) {
-      auto images = walk.draw_and_read(step);
+      auto images = renderer.draw_and_read(step);
       if (!images) {
         return Failure(std::move(images.error()));
       }
       seen.push_back(std::move(*images));
-    } else if (auto drawn = walk.draw(step); !drawn) {
+    } else if (auto drawn = renderer.draw(step); !drawn) {
       return Failure(std::move(drawn.error()));
     }
   }
@@ -239,26 +246,26 @@ tl::expected<std::vector<SeenFrame>, std::string> after_cut(MotionWalk& walk, bo
 tl::expected<MotionReport, std::string> run_motion(Gpu& gpu, const Scene& scene,
                                                    const MotionPath& path,
                                                    const MotionSetup& setup) {
-  auto walk = MotionWalk::create(gpu, scene, path, setup);
-  if (!walk) {
-    return Failure(std::move(walk.error()));
+  auto renderer = MotionRenderer::create(gpu, scene, path, setup);
+  if (!renderer) {
+    return Failure(std::move(renderer.error()));
   }
-  using Gathered = MotionWalk::Gathered;
-  const auto passed = pass_along(*walk, Gathered::neighbours_and_history);
+  using Filtering = MotionRenderer::Filtering;
+  const auto passed = render_path(*renderer, Filtering::spatial_and_temporal);
   if (!passed) {
     return Failure(passed.error());
   }
-  const auto unkept = pass_along(*walk, Gathered::neighbours);
+  const auto unkept = render_path(*renderer, Filtering::spatial);
   if (!unkept) {
     return Failure(unkept.error());
   }
-  const auto unfiltered = pass_along(*walk, Gathered::nothing);
+  const auto unfiltered = render_path(*renderer, Filtering::none);
   if (!unfiltered) {
     return Failure(unfiltered.error());
   }
   Comparison sums;
   for (const Compared& compared : passed->compared) {
-    if (auto done = compare(*walk, compared, sums); !done) {
+    if (auto done = compare(*renderer, compared, sums); !done) {
       return Failure(std::move(done.error()));
     }
   }
@@ -267,7 +274,7 @@ tl::expected<MotionReport, std::string> run_motion(Gpu& gpu, const Scene& scene,
       .all = sums.all.errors(),
       .uncovered = sums.uncovered.errors(),
       .entered = sums.entered.errors(),
-      .passed_by = sums.passed_by.errors(),
+      .near_object = sums.near_object.errors(),
       .bent_normals = sums.bent_normals.errors(),
       .flicker = {passed->change.mean(), unkept->change.mean(), unfiltered->change.mean(),
                   sums.static_change.mean(), sums.truth_change.mean()},
@@ -278,34 +285,34 @@ tl::expected<MotionReport, std::string> run_motion(Gpu& gpu, const Scene& scene,
 
 tl::expected<CutReport, std::string> run_cut(Gpu& gpu, const Scene& scene, const MotionPath& path,
                                              const MotionSetup& setup) {
-  auto walk = MotionWalk::create(gpu, scene, path, setup);
-  if (!walk) {
-    return Failure(std::move(walk.error()));
+  auto renderer = MotionRenderer::create(gpu, scene, path, setup);
+  if (!renderer) {
+    return Failure(std::move(renderer.error()));
   }
-  auto untold = after_cut(*walk, false);
-  if (!untold) {
-    return Failure(std::move(untold.error()));
+  auto kept_frames = after_cut(*renderer, false);
+  if (!kept_frames) {
+    return Failure(std::move(kept_frames.error()));
   }
-  auto restart = after_cut(*walk, true);
-  if (!restart) {
-    return Failure(std::move(restart.error()));
+  auto restarted_frames = after_cut(*renderer, true);
+  if (!restarted_frames) {
+    return Failure(std::move(restarted_frames.error()));
   }
   const std::uint32_t cut = path.cut().value_or(0);
-  const auto truth = walk->truth(cut, untold->front());
+  const auto truth = renderer->truth(cut, kept_frames->front());
   if (!truth) {
     return Failure(truth.error());
   }
   CutReport report;
-  const Mask surfaces = surfaces_of(untold->front());
-  for (std::size_t i = 0; i < untold->size(); ++i) {
-    SeenFrame& kept = (*untold)[i];
-    SeenFrame& begun = (*restart)[i];
+  const Mask surfaces = surfaces_of(kept_frames->front());
+  for (std::size_t i = 0; i < kept_frames->size(); ++i) {
+    RenderedFrame& kept = (*kept_frames)[i];
+    RenderedFrame& restarted = (*restarted_frames)[i];
     const std::uint32_t frames = 1u << i;
-    const Halves<float>& visibility = truth->visibility;
+    const SplitTruth<float>& visibility = truth->visibility;
     report.after.push_back({frames, root(squared_error(kept.visibility, visibility, surfaces)),
-                            root(squared_error(begun.visibility, visibility, surfaces))});
+                            root(squared_error(restarted.visibility, visibility, surfaces))});
     report.pictures.push_back({cut + frames - 1, std::move(kept.visibility),
-                               std::move(begun.visibility), mean_of(visibility)});
+                               std::move(restarted.visibility), mean_of(visibility)});
   }
   return report;
 }

@@ -7,7 +7,7 @@
 
 #include "evaluate/motion_errors.h"
 #include "evaluate/motion_paths.h"
-#include "evaluate/motion_walk.h"
+#include "evaluate/motion_renderer.h"
 #include "evaluate/weave.h"
 #include "gpu/gpu.h"
 #include "scene/scene.h"
@@ -15,69 +15,69 @@
 
 namespace alcove::sample {
 
-// After so many frames an uncovered surface must be near as good as any.
+// Frames after which an uncovered surface should have nearly the error of any other.
 inline constexpr std::uint32_t kUncoveredFrames = 4;
 
-// A trail would be seen for about so long.
+// Frames for which a trail behind a moving object would be visible.
 inline constexpr std::uint32_t kTrailFrames = 32;
 
-// RMSE against the ray-traced truth, without its noise.
+// RMSE of visibility against the ray-traced truth; the noise of the truth is subtracted.
 struct ErrorPair {
   std::uint64_t pixels = 0;
   double moving = 0;
-  double still = 0;  // the same frames under a camera that always stood there, as many frames on
+  double static_camera = 0;  // for the same view after as many frames without motion
 
-  double ratio() const { return still > 0.0 ? moving / still : 0.0; }
+  double ratio() const { return static_camera > 0.0 ? moving / static_camera : 0.0; }
 };
 
-// Mean absolute change of visibility from frame to frame on a surface.
+// Mean absolute change of visibility between two frames at the same surface point.
 struct Flicker {
   double with_history = 0;
-  double without = 0;   // of the same searches, filtered in space only
-  double searches = 0;  // of the same searches, nor filtered either
-  double still = 0;     // with history, when nothing moves
-  double truth = 0;     // of the compared frames' truth, at least
+  double without_history = 0;  // after the spatial filter alone
+  double raw = 0;              // raw occlusion, without either filter
+  double static_camera = 0;    // with history, when nothing moves
+  double truth = 0;            // lower bound of the change of the truth in the compared frames
 
-  double ratio() const { return without > 0.0 ? with_history / without : 0.0; }
-  double ratio_to_searches() const { return searches > 0.0 ? with_history / searches : 0.0; }
+  double ratio() const { return without_history > 0.0 ? with_history / without_history : 0.0; }
+  double ratio_to_raw() const { return raw > 0.0 ? with_history / raw : 0.0; }
 };
 
-// A frame that was compared.
+// The images of a compared frame.
 struct MotionPicture {
   std::uint32_t frame = 0;
   Image<float> visibility;
-  Image<float> still;
+  Image<float> static_camera;
   Image<float> truth;
 };
 
 struct MotionReport {
-  Speed speed;  // of surfaces, mean over frames
+  Speed speed;  // of surfaces on the image; mean over the frames
   ErrorPair all;
-  ErrorPair uncovered;     // pixels whose surface came from behind another kUncoveredFrames ago
-  ErrorPair entered;       // and from beyond the border of the image
-  ErrorPair passed_by;     // surfaces by which something moves, or did in the last kTrailFrames
+  ErrorPair uncovered;     // surfaces that another one stopped hiding kUncoveredFrames ago
+  ErrorPair entered;       // surfaces that entered the image kUncoveredFrames ago
+  ErrorPair near_object;   // surfaces that a moving object passed in the last kTrailFrames
   ErrorPair bent_normals;  // radians, on all surfaces
   Flicker flicker;
-  Weave weave;         // of the moving frames
-  Weave static_weave;  // of the same frames under a camera that always stood there
+  Weave weave;         // in the frames with motion
+  Weave static_weave;  // in the same views without motion
   std::vector<MotionPicture> pictures;
 };
 
-// Draws a path other than a cut and compares three of its frames, at a third, at two thirds and at
-// the end. Flicker is taken from the first third's end on.
+// Renders a path other than a cut and compares three of its frames with the truth: at a third, at
+// two thirds and at the end. Flicker is measured over the last two thirds.
 [[nodiscard]] tl::expected<MotionReport, std::string> run_motion(Gpu& gpu, const Scene& scene,
                                                                  const MotionPath& path,
                                                                  const MotionSetup& setup);
 
-// The frames after a cut, 1, 2, 4 and so on of them.
+// RMSE of visibility a number of frames after a cut.
 struct CutErrors {
   std::uint32_t frames = 0;
-  double untold = 0;   // the history must tell for itself what is another surface
-  double restart = 0;  // as a first frame begins
+  double kept = 0;       // the history is kept, and rejects what does not match by itself
+  double restarted = 0;  // the history is discarded at the cut
 };
 struct CutReport {
-  std::vector<CutErrors> after;
-  std::vector<MotionPicture> pictures;  // `still` is begun anew
+  std::vector<CutErrors> after;         // after 1, 2, 4, ... frames
+  std::vector<MotionPicture> pictures;  // `static_camera` holds the image of the restarted history
 };
 [[nodiscard]] tl::expected<CutReport, std::string> run_cut(Gpu& gpu, const Scene& scene,
                                                            const MotionPath& path,

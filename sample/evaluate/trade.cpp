@@ -14,7 +14,7 @@ namespace {
 using passes::OcclusionSettings;
 using passes::Quality;
 
-// What a way to spend differs by.
+// The settings that differ between the points of a sweep.
 struct SweepPoint {
   std::uint32_t tile_size;
   std::uint32_t slices;
@@ -41,32 +41,44 @@ std::string name_of(const SweepPoint& s) {
                      s.slices, s.slices == 1 ? "slice" : "slices", s.steps);
 }
 
-class WayList {
+class SweepList {
  public:
-  explicit WayList(const OcclusionSettings& base) : base_(base) {}
+  explicit SweepList(const OcclusionSettings& base) : base_(base) {}
 
   void add(const std::string& name, const SweepPoint& point) {
     OcclusionSettings settings = base_;
     settings.tile_size = point.tile_size;
     settings.slices = point.slices;
     settings.steps = point.steps;
-    const bool known =
-        std::ranges::any_of(ways_, [&](const Variant& way) { return way.settings == settings; });
+    const bool known = std::ranges::any_of(
+        variants_, [&](const Variant& variant) { return variant.settings == settings; });
     if (!known) {
-      ways_.push_back({"", name, settings});
+      variants_.push_back({"", name, settings});
     }
   }
-  std::vector<Variant> take() { return std::move(ways_); }
+  std::vector<Variant> take() { return std::move(variants_); }
 
  private:
   OcclusionSettings base_;
-  std::vector<Variant> ways_;
+  std::vector<Variant> variants_;
 };
+
+// The point with the smallest `minimised` among those with `limited` of at most `limit`.
+const TradePoint* smallest_within(std::span<const TradePoint> points, double TradePoint::*minimised,
+                                  double TradePoint::*limited, double limit) {
+  const TradePoint* best = nullptr;
+  for (const TradePoint& point : points) {
+    if (point.*limited <= limit && (best == nullptr || point.*minimised < best->*minimised)) {
+      best = &point;
+    }
+  }
+  return best;
+}
 
 }  // namespace
 
 std::vector<Variant> preset_sweep(const OcclusionSettings& base) {
-  WayList list(base);
+  SweepList list(base);
   for (const Quality quality : {Quality::low, Quality::medium, Quality::high, Quality::ultra}) {
     const OcclusionSettings preset = passes::quality_settings(quality, base.radius);
     list.add(std::string(passes::name_of(quality)),
@@ -92,21 +104,21 @@ std::vector<Variant> sampling_grid(const OcclusionSettings& base) {
 }
 
 Trade trade_of(std::vector<TradePoint> points) {
-  // Of equal times the least error comes first.
+  // Points of equal time are ordered by error.
   std::ranges::stable_sort(points, [](const TradePoint& a, const TradePoint& b) {
     return std::pair(a.time_ms, a.rmse) < std::pair(b.time_ms, b.rmse);
   });
   Trade trade{std::move(points), {}};
   for (std::size_t i = 0; i < trade.points.size(); ++i) {
     const TradePoint& point = trade.points[i];
-    bool ahead = true;
-    for (std::size_t j = 0; j < trade.points.size() && ahead; ++j) {
+    bool on_front = true;
+    for (std::size_t j = 0; j < trade.points.size() && on_front; ++j) {
       const TradePoint& other = trade.points[j];
-      const bool errs_less = other.rmse < point.rmse || (other.rmse == point.rmse && j < i);
-      ahead =
-          j == i || !errs_less || other.time_ms > point.time_ms + point.spread_ms + other.spread_ms;
+      const bool has_less_error = other.rmse < point.rmse || (other.rmse == point.rmse && j < i);
+      on_front = j == i || !has_less_error ||
+                 other.time_ms > point.time_ms + point.spread_ms + other.spread_ms;
     }
-    trade.on_pareto_front.push_back(ahead);
+    trade.on_pareto_front.push_back(on_front);
   }
   return trade;
 }
@@ -135,24 +147,12 @@ std::vector<TradePoint> over_scenes(std::span<const std::vector<TradePoint>> sce
   return all;
 }
 
-const TradePoint* nearest_within_ms(std::span<const TradePoint> points, double ms) {
-  const TradePoint* best = nullptr;
-  for (const TradePoint& point : points) {
-    if (point.time_ms <= ms && (best == nullptr || point.rmse < best->rmse)) {
-      best = &point;
-    }
-  }
-  return best;
+const TradePoint* least_error_within_ms(std::span<const TradePoint> points, double ms) {
+  return smallest_within(points, &TradePoint::rmse, &TradePoint::time_ms, ms);
 }
 
 const TradePoint* fastest_within_rmse(std::span<const TradePoint> points, double rmse) {
-  const TradePoint* best = nullptr;
-  for (const TradePoint& point : points) {
-    if (point.rmse <= rmse && (best == nullptr || point.time_ms < best->time_ms)) {
-      best = &point;
-    }
-  }
-  return best;
+  return smallest_within(points, &TradePoint::time_ms, &TradePoint::rmse, rmse);
 }
 
 }  // namespace alcove::sample

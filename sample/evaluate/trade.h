@@ -18,13 +18,13 @@ namespace alcove::sample {
 // them.
 [[nodiscard]] std::vector<Variant> preset_sweep(const passes::OcclusionSettings& base);
 
-// `base` with 8, 16, 32 and 64 steps and 1, 2, 4 and 8 slices, by steps first: whether the
-// estimator converges, so that more samples never err by more.
+// `base` with 8, 16, 32 and 64 steps and 1, 2, 4 and 8 slices, ordered by steps. Shows whether the
+// error falls as samples are added.
 inline constexpr std::array<std::uint32_t, 4> kGridSteps{8, 16, 32, 64};
 inline constexpr std::array<std::uint32_t, 4> kGridSlices{1, 2, 4, 8};
 [[nodiscard]] std::vector<Variant> sampling_grid(const passes::OcclusionSettings& base);
 
-// What a trade's times are.
+// The clock of a trade's times.
 enum class Clock : std::uint8_t {
   modelled,    // GPU time of a frame with a moving camera by the cost model (gpu_cost)
   timestamps,  // GPU time by the device's timestamps
@@ -43,8 +43,9 @@ struct TradePoint {
   std::uint64_t bytes = 0;       // of transients at their peak, and histories
 };
 
-// In order of time. `on_pareto_front[i]` says that every point that errs by as little as point i or
-// less is slower by more than the spread of both: a lead within the spread may be chance.
+// Points in order of time. `on_pareto_front[i]` is true if every point with an error no larger than
+// that of point i is slower by more than the spreads of both, because a smaller difference may be
+// chance.
 struct Trade {
   std::vector<TradePoint> points;
   std::vector<bool> on_pareto_front;
@@ -58,7 +59,8 @@ struct Trade {
 
 // The point with the least error among those that take at most `ms`, and the fastest among those
 // with an error of at most `rmse`; null where there is none.
-[[nodiscard]] const TradePoint* nearest_within_ms(std::span<const TradePoint> points, double ms);
+[[nodiscard]] const TradePoint* least_error_within_ms(std::span<const TradePoint> points,
+                                                      double ms);
 [[nodiscard]] const TradePoint* fastest_within_rmse(std::span<const TradePoint> points,
                                                     double rmse);
 

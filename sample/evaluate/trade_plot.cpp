@@ -20,7 +20,7 @@ constexpr double kBottom = 60;
 constexpr double kPlotWidth = kWidth - kLeft - kRight;
 constexpr double kPlotHeight = kHeight - kTop - kBottom;
 
-// From times and errors to the picture.
+// Maps times and errors to positions in the plot.
 struct Axes {
   double first_ms;
   double last_ms;
@@ -75,7 +75,7 @@ void draw_axes(Svg& svg, const Axes& axes, const std::string& clock_title) {
   svg.text({kLeft, kTop - 10}, "middle", "RMSE");
 }
 
-void draw_front(Svg& svg, const Trade& trade, const Axes& axes) {
+void draw_pareto_front(Svg& svg, const Trade& trade, const Axes& axes) {
   std::vector<glm::vec2> points;
   for (std::size_t i = 0; i < trade.points.size(); ++i) {
     if (trade.on_pareto_front[i]) {
@@ -98,12 +98,13 @@ class Labels {
  public:
   explicit Labels(std::vector<Box> points) : taken_(std::move(points)) {}
 
-  // Draws `text` beside the point, as near as there is room, with a line to it from further away.
+  // Draws `text` beside the point, as near as there is room, with a line to it if it is not
+  // adjacent.
   void draw(Svg& svg, double x, double y, const std::string& text) {
     constexpr double kStep = 16;
     constexpr int kRows = 14;
     for (int row = 0; row < kRows; ++row) {
-      // By turns above and below, further away each time, right of the point before left of it.
+      // Alternately above and below, at a growing distance; right of the point first, then left.
       const double distance = kStep * (row / 2);
       const double base = row % 2 == 0 ? y - 7 - distance : y + 16 + distance;
       for (const bool right : {true, false}) {
@@ -169,7 +170,7 @@ std::string plot_of(const Trade& trade, const std::string& title, const std::str
   Svg svg;
   svg.text({0.5 * kWidth, 20}, "middle", title);
   draw_axes(svg, axes, clock_title);
-  draw_front(svg, trade, axes);
+  draw_pareto_front(svg, trade, axes);
   draw_points(svg, trade, axes);
   return svg.document({kWidth, kHeight}, 12);
 }

@@ -12,11 +12,11 @@
 namespace alcove::sample {
 namespace {
 
-// Raised when a truth is computed otherwise, so that old entries of the cache are not taken.
+// Increment when the computation of a truth changes, so that old cache entries are not used.
 constexpr std::uint32_t kTruthVersion = 1;
 constexpr std::uint32_t kHeightFieldSlices = 24;
 
-// A truth by its key from the cache, else as `compute` gives it, which is kept there.
+// Reads a truth from the cache, or computes it and writes it to the cache.
 template <typename Truth, typename Compute>
 tl::expected<Truth, std::string> cached(const TruthOptions& options, const Image<float>& depth,
                                         const CacheKey& key, const Compute& compute) {
@@ -73,7 +73,7 @@ HeightFieldTruth depth_truth(const TruthFrame& frame, const TruthOptions& option
     return height_field_truth(depth, frame.normal_ws, frame.camera, settings,
                               print_progress("height-field truth"));
   };
-  return cached<HeightFieldTruth>(options, depth, key, compute).value();  // nothing of it can fail
+  return cached<HeightFieldTruth>(options, depth, key, compute).value();  // it cannot fail
 }
 
 }  // namespace

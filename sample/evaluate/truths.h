@@ -10,33 +10,34 @@
 
 namespace alcove::sample {
 
-// How exactly truths are computed.
+// Precision and extent of the truths.
 struct TruthOptions {
   std::uint32_t spp = 256;  // rays per pixel
-  // Pixels at which multi-bounce, specular occlusion and the lit picture are traced, about.
+  // Approximate number of pixels at which multi-bounce, specular occlusion and the lit image are
+  // traced.
   std::uint32_t indirect_points = 32'000;
-  bool use_cache = true;  // Reads and writes the cache on disk.
+  bool use_cache = true;  // whether the cache on disk is read and written
 };
 
-// A frame that truths are wanted of: borrowed.
+// A frame whose truths are computed. Borrows everything.
 struct TruthFrame {
   const Scene& scene;
   const Camera& camera;
-  float radius;  // of occlusion, scene units
+  float radius;  // radius of the occlusion, scene units
   const Image<float>& depth_ndc;
-  const Image<glm::vec3>& normal_ws;  // that the occlusion was given
+  const Image<glm::vec3>& normal_ws;  // the normals that the occlusion pass was given
 };
 
-// Both truths of a frame, and where they can be compared.
+// Both truths of a frame, and the pixels at which they are defined.
 struct Truths {
   OcclusionTruth scene;           // ray traced
-  HeightFieldTruth height_field;  // by brute force on the same depth buffer
+  HeightFieldTruth height_field;  // brute force on the same depth buffer
   Mask surfaces;                  // pixels that are not sky
 };
 
-// Computes them, or takes them from the cache on disk; a view of sky alone has none. Points are
-// where primary rays through the pixel centres meet the scene, normals those that the occlusion was
-// given. Progress on stderr.
+// Computes the truths, or reads them from the cache on disk. The points are where primary rays
+// through the pixel centres hit the scene, and the normals are those that the occlusion pass was
+// given. Prints progress on stderr. Error: the view shows nothing but sky.
 [[nodiscard]] tl::expected<Truths, std::string> truths_of(const TruthFrame& frame,
                                                           const TruthOptions& options);
 

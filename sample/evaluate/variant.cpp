@@ -10,7 +10,7 @@ namespace {
 using Failure = tl::unexpected<std::string>;
 using passes::OcclusionSettings;
 
-// Pairs of frames whose times make the median; one more, the first, also compiles shaders.
+// Timed pairs of frames. One pair before them is not timed, because it compiles shaders.
 constexpr std::uint32_t kTimedPairs = 11;
 
 FrameRequest request_of(const StaticSetup& setup, const OcclusionSettings& settings,

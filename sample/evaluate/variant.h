@@ -1,4 +1,4 @@
-// A standing view drawn under changed settings, side by side with the settings as they were.
+// A static view rendered with changed settings, alternately with the base settings.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "alcove/passes/occlusion.h"
-#include "render/frame_renderer.h"
 #include "gpu/gpu.h"
+#include "render/frame_renderer.h"
 #include "render/normal_source.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
@@ -17,33 +17,33 @@
 
 namespace alcove::sample {
 
-// Settings to draw with beside others.
+// Settings that are compared with the base settings.
 struct Variant {
-  std::string part;  // of the occlusion, that the change is to
+  std::string part;  // the part of the occlusion that was changed
   std::string name;
   passes::OcclusionSettings settings;
 };
 
-// A standing view and how it is drawn.
+// A static view and how it is rendered.
 struct StaticSetup {
   Camera camera;
   std::uint32_t width = 960;
   std::uint32_t height = 540;
-  std::uint32_t frames = 32;  // the last of which counts, at least 1
+  std::uint32_t frames = 32;  // at least 1; the last one is evaluated
   NormalSource normals = NormalSource::kShading;
 };
 
-// Draws the frames of a standing view and reads the last one back.
+// Renders the frames of a static view and reads the last one back.
 [[nodiscard]] tl::expected<FrameImages, std::string> draw_static(
     Gpu& gpu, const Scene& scene, const StaticSetup& setup,
     const passes::OcclusionSettings& settings);
 
-// What a variant costs beside the base: medians over pairs of frames, drawn one after the other.
-// The spreads are half of the distance between the quartiles of the same ratios.
+// The cost of a variant relative to the base: medians over pairs of consecutive frames. A spread is
+// half the distance between the quartiles of the same ratios.
 struct VariantCost {
-  double gpu = 1;           // GPU time of the occlusion over that of the base
-  double processor = 1;     // processor time of all threads for it, alike
-  std::uint64_t bytes = 0;  // of transients at their peak, and histories
+  double gpu = 1;           // ratio of the GPU times of the occlusion
+  double processor = 1;     // ratio of the processor times of all threads
+  std::uint64_t bytes = 0;  // transient images at their peak, and histories
   double gpu_spread = 0;
   double processor_spread = 0;
 };
@@ -53,13 +53,13 @@ struct VariantResult {
   VariantCost cost;
 };
 
-// Milliseconds of the occlusion, medians over the frames that were timed.
+// Median times of the base's occlusion over the timed frames.
 struct BaseTimes {
   double gpu_ms = 0;
   double processor_ms = 0;
 };
 
-// Draws variants of one view beside its base. Borrows the scene and the base's device.
+// Renders variants of a view alternately with its base. Borrows the scene and the base's device.
 class VariantRunner {
  public:
   [[nodiscard]] static tl::expected<VariantRunner, std::string> create(
@@ -68,11 +68,10 @@ class VariantRunner {
 
   const FrameImages& base() const { return base_; }
   std::uint64_t base_bytes() const;
-  // Over all variants so far; nothing before the first.
+  // Medians over all variants so far; zero before the first.
   BaseTimes base_times() const;
-  // `gpu` is another device on which nothing was drawn: its histories are the variant's own.
-  // Without `timed` only the image is drawn, and the cost is left at its defaults but for the
-  // bytes.
+  // `gpu` is another device on which nothing was rendered yet, so that the histories are the
+  // variant's own. Without `timed`, only the image and the bytes are measured.
   [[nodiscard]] tl::expected<VariantResult, std::string> run(Gpu& gpu, const Variant& variant,
                                                              bool timed = true);
 
@@ -85,7 +84,7 @@ class VariantRunner {
   passes::OcclusionSettings settings_;
   FrameImages base_;
   std::unique_ptr<FrameRenderer> renderer_;
-  std::uint32_t next_frame_ = 0;  // of the base
+  std::uint32_t next_frame_ = 0;  // the next frame index of the base
   std::vector<double> base_gpu_ms_;
   std::vector<double> base_processor_ms_;
 };

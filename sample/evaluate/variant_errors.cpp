@@ -16,7 +16,7 @@ VariantErrors errors_of(const Variant& variant, const VariantResult& result, con
           result.cost};
 }
 
-// On a device of its own: the variant's histories begin anew.
+// Runs a variant on a device of its own, so that its histories start empty.
 tl::expected<VariantResult, std::string> run_variant(VariantRunner& runner,
                                                      const DeviceRequest& device,
                                                      const Variant& variant, bool timed) {
@@ -53,7 +53,7 @@ tl::expected<VariantReport, std::string> run_variants(const Session& session,
     return Failure(truths.error());
   }
   VariantReport report;
-  report.rows.push_back(errors_of({"", "as it is", session.settings},
+  report.rows.push_back(errors_of({"", "base settings", session.settings},
                                   {base.visibility, {.bytes = runner->base_bytes()}}, *truths));
   const Progress print = print_progress(progress);
   for (const Variant& variant : variants) {

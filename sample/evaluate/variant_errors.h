@@ -11,7 +11,7 @@
 
 namespace alcove::sample {
 
-// How far a variant's visibility is from both truths, and what it costs.
+// The errors of a variant's visibility against both truths, and its cost.
 struct VariantErrors {
   Variant variant;
   ErrorSummary scene;
@@ -24,8 +24,8 @@ struct VariantReport {
   BaseTimes base_times;
 };
 
-// Draws the session's own settings and the variants beside them. `progress` names what is under
-// way; without `timed` nothing is timed, which is quicker.
+// Measures the session's own settings and the variants. `progress` is the name in progress
+// messages; without `timed` no times are measured, which is faster.
 [[nodiscard]] tl::expected<VariantReport, std::string> run_variants(
     const Session& session, const StaticSetup& setup, const TruthOptions& truth_options,
     const std::vector<Variant>& variants, const std::string& progress, bool timed = true);

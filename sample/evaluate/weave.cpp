@@ -12,10 +12,10 @@ namespace {
 constexpr std::uint32_t kWindow = 32;
 constexpr std::uint32_t kPeriod = 4;
 constexpr std::size_t kClasses = std::size_t{kPeriod} * kPeriod;
-constexpr std::uint32_t kMeanRadius = 4;  // of the 9x9 mean
-// The truth of a window is smooth where the means of its 4x4 blocks, less a plane through them,
-// have an RMS of at most this. Contact shadows and silhouettes have more; the noise of 256 rays a
-// pixel has a quarter of it.
+constexpr std::uint32_t kMeanRadius = 4;  // radius of the 9x9 mean
+// The truth of a window is smooth if the means of its 4x4 blocks, less a plane fitted to them, have
+// at most this RMS. Contact shadows and silhouettes have more; the noise of 256 rays per pixel has
+// a quarter of it.
 constexpr double kSmooth = 0.02;
 
 // Sums over rectangles in constant time (a summed-area table).
@@ -31,7 +31,7 @@ class RectangleSums {
       }
     }
   }
-  // Of x0 <= x < x1, y0 <= y < y1.
+  // The sum over x0 <= x < x1, y0 <= y < y1.
   double operator()(std::uint32_t x0, std::uint32_t y0, std::uint32_t x1, std::uint32_t y1) const {
     const auto at = [this](std::uint32_t x, std::uint32_t y) {
       return sums_[std::size_t{y} * width_ + x];
@@ -44,7 +44,7 @@ class RectangleSums {
   std::vector<double> sums_;
 };
 
-// The error on surfaces, less its mean over the surfaces among the 9x9 pixels around.
+// The error at surfaces, less its mean over the surface pixels in the surrounding 9x9.
 Image<double> high_pass(const Image<float>& result, const Image<float>& truth,
                         const Mask& surfaces) {
   Image<double> error(truth.width, truth.height);
@@ -113,7 +113,7 @@ bool is_smooth(const Image<float>& truth, std::uint32_t left, std::uint32_t top)
   return std::sqrt(squares / (kBlocks * kBlocks)) <= kSmooth;
 }
 
-// Variance of the pattern in a window, less the share of white noise: it may come out below 0.
+// The variance of the pattern in a window, less that of white noise. It may be negative by chance.
 double pattern_variance(const Image<double>& error, std::uint32_t left, std::uint32_t top) {
   constexpr double kPixels = kWindow * kWindow;
   constexpr double kPixelsOfClass = kPixels / kClasses;
@@ -172,9 +172,8 @@ Weave weave_of(const Image<float>& result, const Image<float>& truth, const Mask
 
 std::string weave_line(const Weave& weave) {
   return fmt::format(
-      "Pattern that repeats every 4 pixels: RMS {:.4f} over {} windows of smooth truth, {:.1f} % "
-      "of "
-      "them over {:.3f}\n",
+      "Pattern that repeats every 4 pixels: RMS {:.4f} over {} windows in which the truth is "
+      "smooth; {:.1f} % of them exceed {:.3f}\n",
       weave.rms(), weave.windows, 100.0 * weave.visible_fraction(), Weave::kVisible);
 }
 

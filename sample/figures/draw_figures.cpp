@@ -66,8 +66,9 @@ float horizon_of(const Profile& p, float side) {
   return horizon;
 }
 
-// A pie between two directions, given by their signed angles from the view direction, radians.
-std::vector<vec2> pie(vec2 centre, float radius, float from, float to) {
+// A circular sector between two directions, given as signed angles from the view direction in
+// radians.
+std::vector<vec2> circular_sector(vec2 centre, float radius, float from, float to) {
   std::vector<vec2> points{centre};
   for (int i = 0; i <= 32; ++i) {
     const float angle = from + (to - from) * static_cast<float>(i) / 32.0f;
@@ -96,7 +97,7 @@ Drawing slice_and_horizons() {
     cosines[i] = horizon_of(p, side);
     angles[i] = side * std::acos(std::max(cosines[i], maths::tangent_horizon(slice, side)));
   }
-  d.polygon(pie(p.shaded, 1.9f, angles[1], angles[0]), kOpen);
+  d.polygon(circular_sector(p.shaded, 1.9f, angles[1], angles[0]), kOpen);
   draw_profile(d, p);
   for (const float angle : angles) {
     d.line(p.shaded, p.shaded + 3.0f * vec2(std::sin(angle), std::cos(angle)), kDashed);
@@ -260,7 +261,7 @@ Drawing history_reprojection() {
     }
     d.text({left + 3, 6.4f}, title, "middle");
   };
-  // The four texels around a point of the previous frame, the lower right ones of another surface.
+  // The four texels around a point of the previous frame. The second one shows another surface.
   const vec2 at(2.8f, 3.3f);
   const vec2 first(std::floor(at.x - 0.5f), std::floor(at.y - 0.5f));
   const vec2 part = at - 0.5f - first;

@@ -8,7 +8,8 @@
 
 namespace alcove::sample {
 
-// An SVG image in units of its own, which grow to the right and upwards. `style` is as Svg has it.
+// An SVG image in drawing units, with x to the right and y upwards. `style` has the same meaning as
+// in Svg.
 class Drawing {
  public:
   // `low` and `high` are the corners of the visible area; `px_per_unit` scales it to the SVG's

@@ -16,8 +16,8 @@
 
 namespace alcove::sample {
 
-// A buffer that the host sees: what is uploaded from and read back into. Owned; the device must
-// have finished with it before it goes.
+// A host-visible buffer for uploads and read-back. The device must have finished with it before it
+// is destroyed.
 class HostBuffer {
  public:
   [[nodiscard]] static tl::expected<std::unique_ptr<HostBuffer>, std::string> create(
@@ -28,7 +28,7 @@ class HostBuffer {
 
   VkBuffer buffer() const { return buffer_; }
   std::span<std::byte> bytes() const { return {mapped_, size_}; }
-  // The buffer as a graph imports it: with contents that the host wrote, left for the host to read.
+  // Import of the buffer into a graph: the host has written its contents and reads them afterwards.
   framegraph::ImportedBuffer import() const;
 
  private:
@@ -47,7 +47,7 @@ struct PassTime {
   double milliseconds;
 };
 
-// What the sample and the tests run frames with: one graph, its executor and the kernels.
+// One graph with its executor and kernels, which runs frames of the sample and of the tests.
 class Gpu {
  public:
   [[nodiscard]] static tl::expected<std::unique_ptr<Gpu>, std::string> create(
@@ -64,16 +64,16 @@ class Gpu {
   // graph comes back as one sentence (several lines where several things are wrong).
   using Declare = std::function<tl::expected<void, std::string>(framegraph::Graph&)>;
   [[nodiscard]] tl::expected<framegraph::FrameReport, std::string> run(const Declare& declare);
-  // The same for a caller with frames in flight, who submits `commands` himself (they are in the
-  // recording state, of the device's family). `slot` takes turns from 0 to frames_in_flight() - 1;
-  // the device must have finished what was last recorded with it, and after an error all that was
-  // recorded before: the kernels have counted a frame that there is none of.
+  // Records a frame that `declare` declares, for callers with frames in flight who submit
+  // `commands` themselves. `commands` is in the recording state and of the device's queue family.
+  // `slot` cycles from 0 to frames_in_flight() - 1. The device must have finished the last frame of
+  // the slot, and after an error all frames recorded before.
   [[nodiscard]] tl::expected<framegraph::FrameReport, std::string> record(const Declare& declare,
                                                                           VkCommandBuffer commands,
                                                                           std::uint32_t slot);
   std::uint32_t frames_in_flight() const { return frames_in_flight_; }
 
-  // Of the frame that ran last.
+  // Timings of the passes of the last frame.
   std::span<const framegraph::PassTiming> timings() { return executor_->timings(); }
 
  private:

@@ -10,15 +10,16 @@
 
 namespace alcove::sample {
 
-// How a device is to be made.
+// Options for creating a device.
 struct DeviceOptions {
   // Khronos validation with synchronisation validation, across queue submits too. Fails where the
   // layer is not installed.
   bool validation = false;
-  // Which physical device, in the loader's order; -1 takes the first discrete GPU, then the first
-  // integrated one, then whatever is there (lavapipe).
+  // Index of the physical device in the loader's order. -1 chooses the first discrete GPU, else the
+  // first integrated GPU, else any device, such as lavapipe.
   int index = -1;
-  // Instance extensions a window system asks for; the swapchain extension comes with them.
+  // Instance extensions of the window system. If there are any, the swapchain extension is enabled
+  // too.
   std::vector<const char*> surface_extensions;
 };
 
@@ -28,14 +29,14 @@ struct DeviceSummary {
   std::string driver;    // name and version, as the driver gives them
   uint32_t api_version;  // VK_MAKE_API_VERSION
   VkPhysicalDeviceType type;
-  std::string missing;  // what Alcove needs and this device lacks; empty when it will do
+  std::string missing;  // requirements of Alcove that the device lacks; empty when it has all
 };
 
-// The instance, the device and one queue that does graphics and compute, all owned. The library
-// never makes a device: this is the sample's and the tests' own.
+// Owns an instance, a device and one queue for graphics and compute. The sample and the tests use
+// it; the libraries never create a device.
 class VulkanDevice {
  public:
-  // Errors say in one sentence what is missing and what to do about it.
+  // Errors say in one sentence what is missing and how to get it.
   [[nodiscard]] static tl::expected<std::unique_ptr<VulkanDevice>, std::string> create(
       const DeviceOptions& options = {});
   ~VulkanDevice();
@@ -49,13 +50,13 @@ class VulkanDevice {
   uint32_t queue_family() const { return queue_family_; }
   const VkPhysicalDeviceProperties& properties() const { return properties_; }
   const std::string& driver() const { return driver_; }
-  // What samplers may ask for; 1 where the device has no anisotropic filter or is a processor.
+  // The largest anisotropy for samplers; 1 on software devices and without an anisotropic filter.
   float max_anisotropy() const { return max_anisotropy_; }
 
-  // The most bytes that one allocation, and so one buffer or image, may have.
+  // The largest allocation in bytes, which also limits buffers and images.
   VkDeviceSize max_allocation() const { return max_allocation_; }
 
-  // What the validation layers said so far, errors and warnings, each message once as it came.
+  // The errors and warnings of the validation layers so far, in order.
   const std::vector<std::string>& validation_messages() const { return messages_; }
 
   // The first memory type allowed by `type_bits` with all of `flags`; UINT32_MAX when there is

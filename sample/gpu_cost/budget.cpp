@@ -13,8 +13,8 @@ using Json = nlohmann::ordered_json;
 using Failure = tl::unexpected<std::string>;
 using passes::Quality;
 
-constexpr double kTolerance = 0.01;  // of instructions per pixel
-constexpr float kRadius = 0.5f;      // no instruction depends on it
+constexpr double kTolerance = 0.01;  // relative, for instructions per pixel
+constexpr float kRadius = 0.5f;      // scene units; the instructions do not depend on it
 
 BudgetedSettings preset(Quality quality) {
   BudgetedSettings settings;
@@ -30,7 +30,7 @@ Json budget_of_pass(const ModelledPass& pass) {
           {"spilled_registers", pass.spills}};
 }
 
-// A figure that must not exceed, or with `at_least` not fall below, that of the budget.
+// A figure that must not exceed its budget or, with `at_least`, not fall below it.
 struct Figure {
   const char* key;
   double value;
@@ -57,7 +57,7 @@ void check(const Json& budget, const ModelledPass& pass, const std::string& wher
   }
 }
 
-// The object under `keys`, or null where there is none.
+// The object at the path `keys`, or null if there is none.
 const Json& at(const Json& json, std::initializer_list<std::string> keys) {
   static const Json kNull;
   const Json* found = &json;

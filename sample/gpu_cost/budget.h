@@ -1,8 +1,8 @@
-// The most that the shipped presets may cost: a file that the tests hold the shaders to.
+// The GPU budget: upper limits for the cost of the presets, which the tests check.
 //
 //   alcove cost --write-budget tests/sample/gpu_budget.json
 //
-// rewrites it. A change that makes a pass slower fails a test until it does so in the same commit.
+// rewrites the file of limits. A change that makes a pass slower must do so in the same commit.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -18,22 +18,22 @@ struct BudgetedSettings {
   std::string label;
   CostInputs inputs;
 };
-// What a budget covers: every preset but the reference, and medium with bent normals and with
-// specular occlusion.
+// The settings that a budget covers: every preset except `reference`, and `medium` with bent
+// normals and with specular occlusion.
 [[nodiscard]] std::vector<BudgetedSettings> budgeted_settings();
 
-// The costs of these on all parts. Errors: as create_null_device() and modelled_frames() have them.
+// The costs of these settings on all GPUs. Errors: those of create_null_device() and
+// modelled_frames().
 [[nodiscard]] tl::expected<std::vector<SettingsCost>, std::string> budgeted_costs();
 
-// The driver whose compiler made the pipelines. Another one makes others.
+// The name and version of the driver, whose compiler determines the costs.
 [[nodiscard]] std::string compiler_name(const NullDevice& device);
 
 [[nodiscard]] nlohmann::ordered_json budget_of(const std::vector<SettingsCost>& costs,
                                                const std::string& compiler);
 
-// A sentence for each figure over its budget: instructions per pixel by more than 1 %, vector
-// registers or spilled registers by any, fewer waves per SIMD, or a pass without a budget. What
-// costs less than its budget is fine.
+// A sentence for each figure that exceeds its budget: more than 1 % more instructions per pixel,
+// more vector registers or spilled registers, fewer waves per SIMD, or a pass without a budget.
 [[nodiscard]] std::vector<std::string> over_budget(const nlohmann::ordered_json& budget,
                                                    const std::vector<SettingsCost>& costs);
 

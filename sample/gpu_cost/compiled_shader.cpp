@@ -39,7 +39,7 @@ tl::expected<CompiledShader, std::string> read_compiled_shader(VkDevice device,
   VkPipelineExecutablePropertiesKHR properties{
       .sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_PROPERTIES_KHR};
   if (get_properties(device, &info, &count, &properties) < VK_SUCCESS || count == 0) {
-    return Failure("The driver says nothing of a pipeline that it compiled.");
+    return Failure("The driver reports no executable for a pipeline that it compiled.");
   }
   CompiledShader shader;
   shader.wave = properties.subgroupSize;

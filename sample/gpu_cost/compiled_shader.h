@@ -1,4 +1,5 @@
-// What a driver's compiler says of a compute pipeline (VK_KHR_pipeline_executable_properties).
+// Statistics and code that a driver's compiler reports for a compute pipeline
+// (VK_KHR_pipeline_executable_properties).
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -13,7 +14,7 @@ namespace alcove::sample {
 struct CompiledShader {
   std::uint32_t wave = 64;                   // invocations in a wave
   std::uint32_t group = 64;                  // invocations in a workgroup
-  std::map<std::string, double> statistics;  // by the driver's names
+  std::map<std::string, double> statistics;  // by the names that the driver gives
   std::map<std::string, std::string> texts;  // the compiler's representations, by name
 };
 

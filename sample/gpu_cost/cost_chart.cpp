@@ -9,23 +9,23 @@ namespace alcove::sample {
 namespace {
 
 constexpr double kWidth = 900;
-constexpr double kLeft = 170;   // of the bars
+constexpr double kLeft = 170;   // left edge of the bars
 constexpr double kRight = 130;  // for the totals
 constexpr double kBar = 14;
 constexpr double kRow = 18;
 constexpr double kGap = 6;       // between labels
-constexpr double kHeading = 44;  // of a part
+constexpr double kHeading = 44;  // height of a GPU's heading
 constexpr double kLegend = 34;
 
-// Told apart in print and by people who see no red or green (the palette of Okabe and Ito).
+// The palette of Okabe and Ito, which is distinct in print and to people with colour blindness.
 constexpr std::array<const char*, 7> kColours{"#0072b2", "#e69f00", "#009e73", "#cc79a7",
                                               "#56b4e9", "#d55e00", "#999999"};
 
-// Text on lines: with a white edge, so that it stays readable.
+// A white outline that keeps text readable on lines.
 constexpr const char* kOverLines =
     "stroke=\"white\" stroke-width=\"4\" paint-order=\"stroke\" stroke-linejoin=\"round\"";
 
-// The passes in the order in which they appear, which is that of the colours.
+// The passes in order of appearance, which determines their colours.
 std::vector<std::string> pass_names(std::span<const SettingsCost> costs) {
   std::vector<std::string> names;
   for (const SettingsCost& cost : costs) {
@@ -88,7 +88,7 @@ void Chart::draw_part(const GpuPart& part) {
   const double line = kLeft + peer.milliseconds * scale;
   svg_.text({line, top - 6}, "middle", fmt::format("{} {:.3g}", peer.name, peer.milliseconds));
   y_ = top;
-  // Below the bars and their texts.
+  // The line is drawn first, so that the bars and their texts cover it.
   const double height = kRow * static_cast<double>(rows) + kGap * static_cast<double>(labels);
   svg_.line({line, top - 2}, {line, top + height}, "stroke=\"black\" stroke-dasharray=\"4 3\"");
   for (const SettingsCost& cost : costs_) {

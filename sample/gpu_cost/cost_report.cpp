@@ -10,7 +10,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kXeGtaoHigh = 2;  // its place among the peers
+constexpr std::size_t kXeGtaoHigh = 2;  // index in GpuPart::peers
 
 const GpuPart& part_of(const SettingsCost& cost) {
   return *std::ranges::find(kGpuParts, cost.family, &GpuPart::family);
@@ -31,7 +31,7 @@ std::string pass_row(const ModelledPass& pass) {
 
 std::string wave_rows(const ModelledPass& pass) {
   std::string out = fmt::format(
-      "      a wave: {:.0f} instructions, {:.0f} vector ({:.0f} transcendental, {:.0f} select), "
+      "      one wave: {:.0f} instructions, {:.0f} vector ({:.0f} transcendental, {:.0f} select), "
       "{:.0f} scalar, {:.0f} fetches, {:.0f} stores, {:.0f} on shared memory\n",
       pass.wave.instructions, pass.wave.vector_instructions, pass.wave.transcendentals,
       pass.wave.selects, pass.wave.scalar_instructions, pass.wave.loads, pass.wave.stores,

@@ -1,4 +1,4 @@
-// The GPUs that the cost model knows.
+// The GPUs of the cost model.
 #pragma once
 
 #include <array>
@@ -7,7 +7,7 @@
 
 namespace alcove::sample {
 
-// Modelled milliseconds of a frame of another program, from the same model.
+// The modelled time of a frame of another program.
 struct PeerTime {
   std::string_view name;
   double milliseconds;
@@ -16,7 +16,7 @@ struct PeerTime {
 struct GpuPart {
   std::string_view family;  // as RADV_FORCE_FAMILY names it
   std::string_view title;
-  bool rdna;  // RDNA2, else GCN
+  bool rdna;  // true: RDNA2; false: GCN
   double compute_units;
   double simds;
   double hertz;

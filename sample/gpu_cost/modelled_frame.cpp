@@ -12,7 +12,7 @@ using passes::cost::FrameState;
 using passes::cost::PassWork;
 using Failure = tl::unexpected<std::string>;
 
-// The statistics that RADV gives of a shader.
+// The statistics that RADV reports for a shader.
 struct Statistics {
   double vector_registers, scalar_registers, spills, scratch_bytes, code_bytes, shared_bytes;
   double subgroups_per_simd, latency, inverse_throughput;
@@ -40,20 +40,20 @@ tl::expected<Statistics, std::string> statistics_of(const CompiledShader& shader
       .inverse_throughput = get("Inverse Throughput"),
   };
   if (!missing.empty()) {
-    return Failure("The driver gives no statistic '" + missing +
-                   "' of its pipelines; the model knows RADV of Mesa 22.3.");
+    return Failure("The driver reports no statistic '" + missing +
+                   "' for its pipelines; the model supports RADV of Mesa 22.3.");
   }
   return statistics;
 }
 
-// The latency of one wave, in cycles: the compiler's, which takes each loop to run 8 times, scaled
-// by how much more or less work the true counts make.
+// The latency of one wave in cycles. The compiler assumes that each loop runs 8 times, so its
+// latency is scaled by the ratio of the work with the true counts.
 double wave_latency(const Statistics& statistics, const WaveWork& work, double held,
                     std::uint32_t wave, bool loops) {
   if (!loops) {
     return statistics.latency;
   }
-  // "Inverse throughput" is in cycles of 64 lanes; where one wave alone is limited by latency the
+  // "Inverse throughput" is in cycles for 64 lanes. If a single wave is limited by latency, the
   // compiler reports the latency instead.
   const double throughput = statistics.inverse_throughput * wave / 64;
   const double usage =

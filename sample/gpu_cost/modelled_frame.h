@@ -6,9 +6,8 @@
 //   shared     words that lanes move to and from shared memory, at 32 a cycle of a compute unit
 //   bandwidth  every image read or written once, over the memory's bandwidth
 //   latency    the compiler's latency of one wave, over the waves that a SIMD holds
-// This is a lower bound: cache misses beyond one transfer of each image are not counted, and
-// neither is a fixed cost of each dispatch. The figures are the same on every run and on every
-// machine.
+// This is a lower bound: it ignores cache misses beyond one transfer of each image and the fixed
+// cost of a dispatch. The figures are the same on every run and on every machine.
 #pragma once
 
 #include <string>
@@ -50,7 +49,7 @@ struct ModelledPass {
   double latency_ms = 0;
 
   double milliseconds() const;
-  std::string_view limit() const;  // which of the five it is
+  std::string_view limit() const;  // the name of the longest of the five times
 };
 
 struct ModelledFrame {
@@ -59,8 +58,8 @@ struct ModelledFrame {
   double milliseconds() const;
 };
 
-// A frame of each state on one part. Errors: as record_frames() has them, the driver's text is not
-// understood, or a loop's iterations are not declared.
+// A frame of each state on one GPU. Errors: those of record_frames(), the driver's text cannot be
+// parsed, or the iterations of a loop are not declared.
 [[nodiscard]] tl::expected<std::vector<ModelledFrame>, std::string> modelled_frames(
     const GpuPart& part, const NullDevice& device, const CostInputs& inputs);
 

@@ -34,7 +34,7 @@ std::optional<std::string> radv_manifest() {
   return std::nullopt;
 }
 
-// A variable of the environment that has another value during the object's lifetime.
+// Sets an environment variable during the object's lifetime.
 class ScopedVariable {
  public:
   ScopedVariable(const char* name, const std::string& value) : name_(name) {
@@ -98,7 +98,7 @@ tl::expected<NullDevice, std::string> create_null_device(std::string_view family
         "Mesa's AMD driver (RADV) is not installed; on Debian, install the package "
         "mesa-vulkan-drivers.");
   }
-  // Both names of the same variable: loaders before 1.3.207 know only the second.
+  // Two names of one variable: loaders before 1.3.207 only read the second.
   const ScopedVariable files("VK_DRIVER_FILES", *manifest);
   const ScopedVariable old_files("VK_ICD_FILENAMES", *manifest);
   const ScopedVariable forced("RADV_FORCE_FAMILY", std::string(family));
@@ -114,7 +114,7 @@ tl::expected<NullDevice, std::string> create_null_device(std::string_view family
       vkEnumeratePhysicalDevices(made.instance, &count, &made.physical_device) < VK_SUCCESS ||
       count == 0 || !has_executable_properties(made.physical_device) ||
       create_device(made) != VK_SUCCESS) {
-    return Failure("Mesa's AMD driver (RADV, " + *manifest + ") gives no device of the family " +
+    return Failure("Mesa's AMD driver (RADV, " + *manifest + ") has no device of the family " +
                    std::string(family) + ".");
   }
   VkPhysicalDeviceProperties properties;

@@ -1,5 +1,4 @@
-// A Vulkan device of a GPU that is not there: Mesa's RADV driver compiles pipelines for any AMD
-// GPU.
+// A Vulkan device without a GPU: Mesa's RADV driver compiles pipelines for any AMD GPU.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -20,8 +19,8 @@ struct NullDevice {
 };
 
 // `family` is a GPU family as RADV_FORCE_FAMILY names it. Sets environment variables of this
-// process for as long as the device is made, which no other thread may read meanwhile. Errors:
-// the driver is not installed, or does not know the family.
+// process while the device is created, which no other thread may read meanwhile. Errors: the driver
+// is not installed, or does not support the family.
 [[nodiscard]] tl::expected<NullDevice, std::string> create_null_device(std::string_view family);
 
 }  // namespace alcove::sample

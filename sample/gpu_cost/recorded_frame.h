@@ -1,4 +1,4 @@
-// The frames of the occlusion passes as a device would get them, without a device that runs them.
+// The commands of the occlusion passes' frames, recorded without a device that executes them.
 #pragma once
 
 #include <string>
@@ -10,11 +10,11 @@
 
 namespace alcove::sample {
 
-// What an engine gives to the passes and what size its images have.
+// The inputs that an engine gives to the passes, and the size of its images.
 struct CostInputs {
   std::uint32_t width = 1920;
   std::uint32_t height = 1080;
-  bool normals = true;  // a texture of normals (RGBA16F); else they are made from depth
+  bool normals = true;  // true: a texture of normals (RGBA16F); false: normals from depth
   bool motion = false;  // motion vectors (RG16F)
   passes::OcclusionSettings settings;
 };
@@ -37,8 +37,8 @@ struct RecordedFrame {
   std::vector<RecordedPass> passes;
 };
 
-// A frame of each state, in their order, with what `settings` ask for as outputs. Errors: settings
-// that the passes refuse, pipelines that the driver refuses.
+// A frame of each state, in their order, with the outputs that `settings` enable. Errors: the
+// passes reject the settings, or the driver rejects a pipeline.
 [[nodiscard]] tl::expected<std::vector<RecordedFrame>, std::string> record_frames(
     RecordingDevice& device, const CostInputs& inputs);
 

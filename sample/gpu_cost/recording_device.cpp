@@ -62,7 +62,7 @@ struct RecordingFunctions {
     return 1;
   }
 
-  // What is forwarded to the driver.
+  // Functions that forward to the driver.
   static VKAPI_ATTR VkResult VKAPI_CALL create_module(VkDevice device,
                                                       const VkShaderModuleCreateInfo* info,
                                                       const VkAllocationCallbacks* callbacks,
@@ -100,7 +100,8 @@ struct RecordingFunctions {
                                                          const VkAllocationCallbacks* callbacks,
                                                          VkPipeline* pipelines) {
     RecordingDevice& recording = self(device);
-    const SilentStandardError silent;  // ACO looks for a disassembler of old GPUs
+    const SilentStandardError
+        silent;  // ACO prints a warning if it finds no disassembler for old GPUs
     for (std::uint32_t i = 0; i < count; ++i) {
       VkComputePipelineCreateInfo info = infos[i];
       info.flags |= VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR |
@@ -255,7 +256,7 @@ framegraph::DeviceHandles RecordingDevice::handles() {
   handles.device = reinterpret_cast<VkDevice>(this);
   handles.get_instance_proc_addr = RecordingFunctions::instance_function;
   handles.queues[0].family = 0;
-  handles.debug_utils = true;  // labels tell which pass a dispatch belongs to
+  handles.debug_utils = true;  // labels name the pass of a dispatch
   return handles;
 }
 

@@ -1,6 +1,6 @@
-// A Vulkan device as the passes see it, that creates real pipelines and records everything else:
-// images, memory and command buffers are handles without anything behind them. With it a frame is
-// declared, compiled and recorded as an engine would, on a driver that can only compile.
+// A stand-in for a Vulkan device. It creates real pipelines and records all other commands; its
+// images, memory and command buffers are handles without contents. With it, a frame is declared,
+// compiled and recorded as in an engine, on a driver that can only compile.
 #pragma once
 
 #include <cstddef>
@@ -29,18 +29,19 @@ class RecordingDevice {
   RecordingDevice(const RecordingDevice&) = delete;
   RecordingDevice& operator=(const RecordingDevice&) = delete;
 
-  // For Executor::create and Kernels::create. All that they create must go before this object.
+  // For Executor::create and Kernels::create. Whatever they create must be destroyed before this
+  // object.
   framegraph::DeviceHandles handles();
   // A primary command buffer in the recording state.
   VkCommandBuffer commands();
-  // A new handle of an image that nothing ever touches, for imports.
+  // A new handle of an image without contents, for imports.
   VkImage next_image();
 
   // The dispatches since the last call, in order.
   std::vector<RecordedDispatch> take_dispatches();
-  // Null for a pipeline that is not of this device.
+  // Null if the pipeline was not created by this device.
   const CompiledShader* compiled(VkPipeline pipeline) const;
-  // What went wrong while pipelines were created; empty where nothing did.
+  // The error of pipeline creation; empty if there was none.
   const std::string& error() const { return error_; }
 
  private:

@@ -5,7 +5,7 @@
 
 namespace alcove::sample {
 
-// Standard error goes nowhere during the object's lifetime: for drivers that print to it.
+// Discards the output on standard error during the object's lifetime, for drivers that print to it.
 class SilentStandardError {
  public:
   SilentStandardError() : before_(dup(STDERR_FILENO)) {

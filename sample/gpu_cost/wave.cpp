@@ -26,7 +26,7 @@ bool ends_with_any(std::string_view text, std::initializer_list<std::string_view
                              [text](std::string_view ending) { return text.ends_with(ending); });
 }
 
-// The encoding suffixes of the disassembly say nothing of the cost.
+// The encoding suffixes of the disassembly do not affect the cost.
 std::string_view without_encoding(std::string_view operation) {
   for (const std::string_view suffix : {"_e32", "_e64", "_sdwa", "_dpp"}) {
     if (operation.ends_with(suffix)) {
@@ -53,7 +53,7 @@ bool is_64_bit(std::string_view operation) {
   });
 }
 
-// Conversions of GCN run at a quarter of the rate, as LLVM's tables say; unpacking bytes does not.
+// Conversions on GCN run at a quarter of the rate, by LLVM's tables; unpacking bytes does not.
 bool is_conversion(std::string_view operation) {
   return operation.starts_with("v_cvt_") &&
          !starts_with_any(operation, {"v_cvt_f32_ubyte", "v_cvt_pk"});
@@ -103,8 +103,8 @@ Instruction instruction_of_aco(std::string_view line) {
       first_word(equals == std::string_view::npos ? line : line.substr(equals + 3)));
   const std::string_view result = first_word(results);
   if (operation == "p_parallelcopy") {
-    // A vector copy mostly stays. A scalar one does where it loads a constant; others become the
-    // same register.
+    // A vector copy mostly remains. A scalar copy remains if it loads a constant; register
+    // allocation removes the others.
     const std::size_t from = line.find("p_parallelcopy ") + 15;
     const bool constant = from < line.size() && (line.substr(from, 2) == "0x" ||
                                                  line[from] == '-' || std::isdigit(line[from]));
@@ -116,7 +116,8 @@ Instruction instruction_of_aco(std::string_view line) {
   return {std::move(operation), words_of(results.empty() ? line : results), 1};
 }
 
-// What LLVM's disassembler does not know: mostly images whose address lies in scattered registers.
+// Decodes an instruction that LLVM's disassembler does not support: mostly image instructions with
+// their address in nonconsecutive registers.
 Instruction instruction_of_word(std::uint32_t word) {
   constexpr std::uint32_t kImage = 0x3c;
   constexpr std::uint32_t kScalarMemory = 0x3d;
@@ -128,7 +129,7 @@ Instruction instruction_of_word(std::uint32_t word) {
   return {word >> 26u == kScalarMemory ? "s_buffer_load" : "", 1, 1};
 }
 
-// The number of a line "BB12" or "BB12:"; none for any other line.
+// The block number of a line "BB12" or "BB12:"; none for any other line.
 std::optional<std::uint32_t> block_of_line(std::string_view line) {
   if (!line.starts_with("BB")) {
     return std::nullopt;
@@ -207,7 +208,7 @@ const std::string* text_of(const CompiledShader& shader, std::string_view name) 
   return nullptr;
 }
 
-// Cycles as ACO's own statistics have them (aco_statistics.cpp).
+// Adds the cycles of a vector instruction by the rules of ACO's statistics (aco_statistics.cpp).
 void add_vector(std::string_view operation, bool rdna, double half_waves, double times,
                 WaveWork& work) {
   const bool transcendental = is_transcendental(operation);
@@ -255,7 +256,7 @@ void add(const Instruction& instruction, bool rdna, std::uint32_t wave, double t
          WaveWork& work) {
   const std::string_view operation = instruction.operation;
   if (operation.empty() || operation.starts_with("p_")) {
-    return;  // no instruction of the machine
+    return;  // a pseudo instruction
   }
   work.instructions += times;
   work.scalar_instructions += operation.starts_with("s_") ? times : 0.0;
@@ -285,7 +286,7 @@ double WaveWork::busiest() const {
 tl::expected<std::vector<BasicBlock>, std::string> blocks_of(const CompiledShader& shader) {
   const std::string* aco = text_of(shader, "ACO IR");
   if (aco == nullptr) {
-    return Failure("The driver gives no 'ACO IR' of its pipelines; Mesa's AMD driver is needed.");
+    return Failure("The driver gives no 'ACO IR' for its pipelines; Mesa's AMD driver is needed.");
   }
   // LLVM disassembles GFX8 and later; for older GPUs ACO's own text has the instructions.
   const std::string* assembly = text_of(shader, "Assembly");
@@ -294,14 +295,14 @@ tl::expected<std::vector<BasicBlock>, std::string> blocks_of(const CompiledShade
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     if (blocks[i].index != i) {
       return Failure(
-          fmt::format("The driver's 'ACO IR' is of an unknown form: block {} is missing.", i));
+          fmt::format("The driver's 'ACO IR' has an unknown format: block {} is missing.", i));
     }
   }
   if (disassembled) {
     add_disassembly(*assembly, blocks);
   }
   if (blocks.empty()) {
-    return Failure("The driver's 'ACO IR' is of an unknown form: it has no blocks.");
+    return Failure("The driver's 'ACO IR' has an unknown format: it has no blocks.");
   }
   return blocks;
 }

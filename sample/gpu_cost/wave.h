@@ -1,9 +1,9 @@
-// The instructions that one wave executes, from the compiler's text: its basic blocks, times how
-// often each of them runs.
+// The instructions that one wave executes: the basic blocks of the compiled shader, times the
+// number of times that each of them runs.
 //
-// The compiler's own figures assume that every loop runs 8 times and that branches are taken half
-// or three quarters of the time. Here each loop runs as often as its pass declares, and every
-// branch is taken, so divergent branches count in full.
+// The compiler's own figures assume that every loop runs 8 times and that branches are taken 50 %
+// or 75 % of the time. Here each loop runs as often as its pass declares, and every branch is
+// taken, so divergent branches count in full.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@ struct WaveWork {
   double loads = 0;              // image loads, samples and gathers
   double stores = 0;             // image stores
   double shared_operations = 0;  // on shared memory (LDS)
-  double shared_words = 0;       // 32-bit words that each lane moves by them
+  double shared_words = 0;       // 32-bit words that each lane moves by shared_operations
   // Cycles of a SIMD's execution units, and of its compute unit's texture unit.
   double vector_cycles = 0;
   double complex_cycles = 0;  // of the unit for transcendentals (RDNA)
@@ -34,7 +34,7 @@ struct WaveWork {
   double branch_cycles = 0;
   double memory_cycles = 0;
   double texture_cycles = 0;
-  // The busiest of the execution units.
+  // The cycles of the busiest execution unit.
   double busiest() const;
 };
 
@@ -50,12 +50,12 @@ struct BasicBlock {
   std::vector<Instruction> instructions;
 };
 
-// The blocks of a shader in the order of the code. Errors: the driver gave no text, or text that is
-// not the format of Mesa's AMD compiler (ACO).
+// The blocks of a shader in the order of the code. Errors: the driver gave no text, or the text
+// does not have the format of Mesa's AMD compiler (ACO).
 [[nodiscard]] tl::expected<std::vector<BasicBlock>, std::string> blocks_of(
     const CompiledShader& shader);
 
-// A loop, and the blocks from `first` to `last` that it consists of.
+// A loop, which consists of the blocks from `first` to `last`.
 struct Loop {
   passes::cost::CompiledLoop summary;
   std::uint32_t first = 0;
@@ -63,7 +63,7 @@ struct Loop {
 };
 [[nodiscard]] std::vector<Loop> loops_of(const std::vector<BasicBlock>& blocks);
 
-// `iterations[i]` is how often loop i runs each time that it is entered.
+// `iterations[i]` is the number of iterations of loop i each time that it is entered.
 [[nodiscard]] WaveWork wave_work(const std::vector<BasicBlock>& blocks,
                                  const std::vector<Loop>& loops,
                                  const std::vector<double>& iterations, bool rdna,

@@ -11,22 +11,22 @@ namespace {
 
 constexpr float kHalfPi = glm::half_pi<float>();
 
-// Deeper than any radius reaches, and still finite, so that it can be multiplied by 0.
+// A depth beyond every radius that is still finite, so that it can be multiplied by 0.
 constexpr float kFarAway = 1e15f;
 
 bool is_open(const HeightField& field, float value) {
   return field.orthographic ? value >= kFarAway : value <= 0.0f;
 }
 
-// Two texels are joined where the step between them is no more than three times the gentler of the
-// steps on either side, or is too small to matter: a crease bends, an edge jumps.
-bool joined(float before, float a, float b, float after) {
+// Two texels are connected if the step between them is at most three times the smaller of the steps
+// on either side, or negligibly small. At a crease the step changes; at a discontinuity it jumps.
+bool connected(float before, float a, float b, float after) {
   const float step = std::abs(b - a);
   const float around = std::min(std::abs(a - before), std::abs(after - b));
   return step <= 3.0f * around + 1e-4f * std::max(std::abs(a), std::abs(b));
 }
 
-void find_joins(HeightField& field) {
+void find_connections(HeightField& field) {
   const auto w = static_cast<int64_t>(field.width), h = static_cast<int64_t>(field.height);
   const auto at = [&](int64_t x, int64_t y) {
     return field.value[static_cast<size_t>(std::clamp<int64_t>(y, 0, h - 1) * w +
@@ -35,34 +35,34 @@ void find_joins(HeightField& field) {
   const auto test = [&](int64_t x, int64_t y, int64_t dx, int64_t dy) {
     const float a = at(x, y), b = at(x + dx, y + dy);
     if (is_open(field, a) || is_open(field, b)) return false;
-    // Past the border of the image the surface is taken to go on as it does inside.
+    // The surface is extrapolated linearly beyond the border of the image.
     const bool starts = x - dx < 0 || y - dy < 0, ends = x + 2 * dx >= w || y + 2 * dy >= h;
     const float after = ends ? 2.0f * b - a : at(x + 2 * dx, y + 2 * dy);
     const float before = starts ? a - (after - b) : at(x - dx, y - dy);
-    return joined(before, a, b, after);
+    return connected(before, a, b, after);
   };
   for (int64_t y = 0; y < h; ++y) {
     for (int64_t x = 0; x < w; ++x) {
       const auto i = static_cast<size_t>(y * w + x);
-      if (x + 1 < w && test(x, y, 1, 0)) field.join_right[i] = 1.0f;
-      if (y + 1 < h && test(x, y, 0, 1)) field.join_below[i] = 1.0f;
+      if (x + 1 < w && test(x, y, 1, 0)) field.connected_right[i] = 1.0f;
+      if (y + 1 < h && test(x, y, 0, 1)) field.connected_below[i] = 1.0f;
     }
   }
 }
 
-// Of a point of the image (pixels; a texel's centre is at .5) with the field's value there.
+// The view-space position of a point of the image. `pixel` is in pixels, with texel centres at .5.
 glm::vec3 view_position(const HeightField& field, glm::vec2 pixel, float value) {
   const glm::vec2 xy = field.scale * pixel + field.origin;
   if (field.orthographic) return {xy, -value};
   return glm::vec3(xy, -1.0f) / value;
 }
 
-// One direction in the image: a line from a pixel's centre that moves one texel a step along its
-// longer axis.
+// A direction in the image: a line from a pixel's centre that advances one texel per step along its
+// major axis.
 struct Walk {
   bool along_x;
-  int step;     // +1 or -1 along the longer axis
-  float slope;  // texels across per step
+  int step;     // +1 or -1 along the major axis
+  float slope;  // texels along the minor axis per step
 };
 
 Walk walk_of(glm::vec2 direction) {
@@ -72,21 +72,22 @@ Walk walk_of(glm::vec2 direction) {
   return {along_x, major >= 0.0f ? 1 : -1, minor / std::abs(major)};
 }
 
-// A walk laid out as arithmetic: step k stands at `minor + slope k` across row or column k of the
-// longer axis, and sees the point (ray + k ray_step + value * column), times value in perspective.
+// A walk prepared for vectorised arithmetic. Step k is at `minor + slope k` on the minor axis, and
+// the offset of its surface point is (ray + k ray_step + value * per_value), in perspective times
+// value.
 struct March {
-  int steps;  // all of them within the image
+  int steps;  // number of steps, all within the image
   float minor, slope;
-  int first, major_stride, minor_stride;  // of texels in the field's arrays
+  int first, major_stride, minor_stride;  // indices and strides in the field's arrays
   const float* value;
-  const float* join;
-  glm::vec3 ray, ray_step, column;  // relative to the pixel's own point
+  const float* connected;
+  glm::vec3 ray, ray_step, per_value;  // offset from the pixel's own surface point
   glm::vec3 view;
   float radius2;
-  float radius2_value2;  // what value^2 times this adds to radius2
+  float radius2_value2;  // value^2 times this is added to radius2
 };
 
-// Steps until the walk leaves the image.
+// The number of steps until the walk leaves the image.
 int steps_inside(float start, float slope, int major, int step, int major_size, int minor_size) {
   const int along = step > 0 ? major_size - 1 - major : major;
   if (slope == 0.0f) return along;
@@ -109,7 +110,7 @@ March march_of(const HeightField& field, uint32_t x, uint32_t y, const Walk& wal
   m.minor_stride = walk.along_x ? width : 1;
   m.first = major * (walk.along_x ? 1 : width);
   m.value = field.value.data();
-  m.join = walk.along_x ? field.join_below.data() : field.join_right.data();
+  m.connected = walk.along_x ? field.connected_below.data() : field.connected_right.data();
   const glm::vec2 texel(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
   const auto along = static_cast<float>(walk.step);
   const glm::vec2 move = walk.along_x ? glm::vec2(along, walk.slope) : glm::vec2(walk.slope, along);
@@ -120,10 +121,10 @@ March march_of(const HeightField& field, uint32_t x, uint32_t y, const Walk& wal
   m.radius2_value2 = 0.0f;
   if (field.orthographic) {
     m.ray = glm::vec3(ray, 0.0f) - centre;
-    m.column = {0, 0, -1};
+    m.per_value = {0, 0, -1};
   } else {
     m.ray = glm::vec3(ray, -1.0f);
-    m.column = -centre;
+    m.per_value = -centre;
     std::swap(m.radius2, m.radius2_value2);
   }
   return m;
@@ -135,39 +136,39 @@ March march_of(const HeightField& field, uint32_t x, uint32_t y, const Walk& wal
 #define ALCOVE_WIDE
 #endif
 
-constexpr int kBlock = 64;  // steps taken together
+constexpr int kBlock = 64;  // steps processed together
 
-// The field's value at `count` steps from step `first` on. Loads only: what follows is arithmetic
-// on whole registers.
+// Loads the field's values at `count` steps from step `first` on. The loads are separate from the
+// arithmetic, so that the compiler vectorises the latter.
 void load_values(const March m, int first, int count, float* values) {
   auto step = static_cast<float>(first);
   int texel = m.first + first * m.major_stride;
   for (int i = 0; i < count; ++i) {
-    // Rounding leaves the image by less than a texel, where nothing is joined, at no weight.
+    // Rounding may step outside the image by less than a texel, where the weight is zero.
     const float minor = m.minor + m.slope * step;
     const int low = static_cast<int>(minor);
     const float t = minor - static_cast<float>(low);
     const int at = texel + low * m.minor_stride;
     const float a = m.value[at];
     const float b = m.value[at + m.minor_stride];
-    // No branches: which way they go is as good as random.
+    // There are no branches, because they would be unpredictable.
     const float nearest = t >= 0.5f ? 1.0f : 0.0f;
-    values[i] = a + (b - a) * (nearest + m.join[at] * (t - nearest));
+    values[i] = a + (b - a) * (nearest + m.connected[at] * (t - nearest));
     step += 1.0f;
     texel += m.major_stride;
   }
 }
 
-// For `count` steps from `first` on: the cosine between the view vector and the direction to the
-// surface, times its size, and by how much the radius (squared) exceeds the distance.
+// For `count` steps from `first` on: the signed square of the cosine between the view direction and
+// the direction to the surface, and the squared radius less the squared distance.
 ALCOVE_WIDE void squared_cosines(const March m, int first, int count, const float* values,
                                  float* __restrict cosines, float* __restrict slack) {
   for (int i = 0; i < count; ++i) {
     const auto at = static_cast<float>(first + i);
     const float value = values[i];
-    const float qx = m.ray.x + at * m.ray_step.x + value * m.column.x;
-    const float qy = m.ray.y + at * m.ray_step.y + value * m.column.y;
-    const float qz = m.ray.z + value * m.column.z;
+    const float qx = m.ray.x + at * m.ray_step.x + value * m.per_value.x;
+    const float qy = m.ray.y + at * m.ray_step.y + value * m.per_value.y;
+    const float qz = m.ray.z + value * m.per_value.z;
     const float distance2 = qx * qx + qy * qy + qz * qz + 1e-30f;
     const float towards = qx * m.view.x + qy * m.view.y + qz * m.view.z;
     const float within = m.radius2 + m.radius2_value2 * value * value;
@@ -176,8 +177,8 @@ ALCOVE_WIDE void squared_cosines(const March m, int first, int count, const floa
   }
 }
 
-// The largest cosine between the view vector and the direction to a point of the surface within the
-// radius, times its size (which keeps the order and needs no root); -1 where there is none.
+// The signed square of the largest cosine between the view direction and the direction to a surface
+// point within the radius; -1 if there is no such point. Squaring keeps the order and avoids roots.
 float squared_horizon(const March& m) {
   std::array<float, kBlock> values, cosines, slack;
   float best = -1.0f;
@@ -192,12 +193,12 @@ float squared_horizon(const March& m) {
   return best;
 }
 
-// How many steps along an axis of the image reach as far as a point of the radius's sphere can
-// appear.
+// The number of steps along an axis of the image within which every point of the sphere of the
+// radius is seen.
 int steps_within(const HeightField& field, bool along_x, const glm::vec3& centre, float radius) {
   const float texel = std::abs(along_x ? field.scale.x : field.scale.y);
   const int most = static_cast<int>(along_x ? field.width : field.height);
-  float reach = radius / texel;
+  float extent = radius / texel;
   if (!field.orthographic) {
     // The silhouette of the sphere in the plane of this axis and the view axis.
     const float depth = -centre.z;
@@ -209,19 +210,19 @@ int steps_within(const HeightField& field, bool along_x, const glm::vec3& centre
     if (middle + half >= kHalfPi) return most;
     const float out = std::tan(middle + half) - std::tan(middle);
     const float in = std::tan(middle) - std::tan(middle - half);
-    reach = std::max(out, in) / texel;
+    extent = std::max(out, in) / texel;
   }
-  return static_cast<int>(std::min(std::ceil(reach), static_cast<float>(most)));
+  return static_cast<int>(std::min(std::ceil(extent), static_cast<float>(most)));
 }
 
-// Two directions that with unit `v` make a right-handed frame.
+// Two directions that form a right-handed basis with the unit vector `v`.
 std::array<glm::vec3, 2> across(const glm::vec3& v) {
   const glm::vec3 helper = std::abs(v.x) < 0.6f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
   const glm::vec3 a = glm::normalize(glm::cross(helper, v));
   return {a, glm::cross(v, a)};
 }
 
-// Where a view-space direction at a point goes in the image, in pixels, not normalised.
+// The image-space direction, in pixels and not normalised, of a view-space direction at a point.
 glm::vec2 image_direction(const HeightField& field, const glm::vec3& centre,
                           const glm::vec3& direction) {
   if (field.orthographic) return glm::vec2(direction) / field.scale;
@@ -243,8 +244,8 @@ HeightField make_height_field(const Image<float>& depth_vs, const Camera& camera
   field.scale = 2.0f / (glm::vec2(field.width, field.height) * focal);
   field.origin = (-1.0f - shift) / focal;
   field.value.resize(depth_vs.pixels.size());
-  field.join_right.assign(depth_vs.pixels.size(), 0.0f);
-  field.join_below.assign(depth_vs.pixels.size(), 0.0f);
+  field.connected_right.assign(depth_vs.pixels.size(), 0.0f);
+  field.connected_below.assign(depth_vs.pixels.size(), 0.0f);
   for (size_t i = 0; i < depth_vs.pixels.size(); ++i) {
     const float depth = depth_vs.pixels[i];
     const bool surface = std::isfinite(depth) && (field.orthographic || depth > 0.0f);
@@ -254,8 +255,8 @@ HeightField make_height_field(const Image<float>& depth_vs, const Camera& camera
       field.value[i] = surface ? 1.0f / depth : 0.0f;
     }
   }
-  find_joins(field);
-  // What a walk along the last row or column reads beyond it.
+  find_connections(field);
+  // A walk along the last row or column reads beyond it, with a weight of zero.
   field.value.resize(field.value.size() + field.width + 1, 0.0f);
   return field;
 }

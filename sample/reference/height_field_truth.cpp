@@ -30,9 +30,9 @@ Nodes nodes_over(float a, float b) {
   for (size_t i = 1; i < kPlaces.size(); ++i) {
     const float ds = std::sin(half * kPlaces[i]), dc = std::cos(half * kPlaces[i]);
     for (size_t side = 0; side < 2; ++side) {
-      const float turn = side == 0 ? ds : -ds;
-      nodes.sine[2 * i - 1 + side] = s * dc + c * turn;
-      nodes.cosine[2 * i - 1 + side] = c * dc - s * turn;
+      const float signed_sine = side == 0 ? ds : -ds;
+      nodes.sine[2 * i - 1 + side] = s * dc + c * signed_sine;
+      nodes.cosine[2 * i - 1 + side] = c * dc - s * signed_sine;
       nodes.weight[2 * i - 1 + side] = half * kWeights[i];
     }
   }
@@ -41,12 +41,13 @@ Nodes nodes_over(float a, float b) {
 
 struct Slice {
   float visible = 0.0f;
-  float open = 0.0f;                 // what `visible` is with nothing in the way
-  glm::vec2 bent = glm::vec2(0.0f);  // along the slice's direction and the view vector
+  float open = 0.0f;                 // value of `visible` without occluders
+  glm::vec2 bent = glm::vec2(0.0f);  // along the slice's direction and the view direction
 };
 
-// Angles from the view vector, positive along the slice's direction: the lit part of the slice lies
-// from `low` to `high`, the hemisphere of the normal within a quarter turn of `tilt`.
+// Integrates a slice that is visible from angle `low` to `high`. The hemisphere of the normal is
+// within 90 degrees of `tilt`. Angles are from the view direction, positive along the slice's
+// direction.
 Slice integrate_slice(float low, float high, float tilt) {
   const float first = tilt - kHalfPi, last = tilt + kHalfPi;
   const float tilt_sine = std::sin(tilt), tilt_cosine = std::cos(tilt);
@@ -76,7 +77,7 @@ Slice integrate_slice(float low, float high, float tilt) {
   return slice;
 }
 
-// What one pixel sees.
+// The result for one pixel.
 struct Pixel {
   float visibility = 1.0f;
   glm::vec3 bent_vs{0.0f};
@@ -85,18 +86,19 @@ struct Pixel {
 Pixel see(const HeightField& field, uint32_t x, uint32_t y, const glm::vec3& normal,
           const HeightFieldSettings& settings) {
   const FieldPoint point = field_point(field, x, y, settings.radius);
-  // Every pixel turns its slices a little, so that no direction of the image is favoured.
-  const float turn = static_cast<float>((x * 5u + y * 3u) % 8u) / 8.0f;
+  // The slices are rotated differently in each pixel, so that no direction of the image is
+  // favoured.
+  const float rotation = static_cast<float>((x * 5u + y * 3u) % 8u) / 8.0f;
   float visible = 0.0f, open = 0.0f;
   glm::vec3 bent(0.0f);
   for (uint32_t s = 0; s < settings.slices; ++s) {
     const float phi =
-        glm::pi<float>() * (static_cast<float>(s) + turn) / static_cast<float>(settings.slices);
+        glm::pi<float>() * (static_cast<float>(s) + rotation) / static_cast<float>(settings.slices);
     const glm::vec3 direction = across_view(point, phi);
     const glm::vec2 projected(glm::dot(normal, direction), glm::dot(normal, point.view));
     const float length = glm::length(projected);
     if (length < 1e-6f) continue;
-    // A normal that faces away (an interpolated one may) is taken at the horizon.
+    // A normal that faces away, as an interpolated one may, is clamped to 90 degrees.
     const float tilt = std::atan2(projected.x, std::max(projected.y, 0.0f));
     const Slice slice = integrate_slice(-horizon_angle(field, point, -direction),
                                         horizon_angle(field, point, direction), tilt);

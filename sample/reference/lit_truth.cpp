@@ -17,7 +17,7 @@ float schlick(float cosine) {
   return rest * rest * rest * rest * rest;
 }
 
-// What GGX reflects of white light: scale * f0 + offset, over view and roughness.
+// The directional albedo of GGX, scale * f0 + offset, tabulated over N.V and roughness.
 class Reflectance {
  public:
   Reflectance() {
@@ -64,21 +64,22 @@ class Reflectance {
   std::array<std::array<glm::vec2, kSide>, kSide> entries_;
 };
 
-// A surface as light meets it: local frame, z along the normal.
-struct Surface {
-  Frame frame;
+// A surface point and its material. Directions are local, with z along the normal.
+struct ShadingPoint {
+  Basis basis;
   glm::vec3 view;  // local, z > 0
   glm::vec3 f0;
   float alpha;
-  glm::vec3 diffuse;   // of the Lambertian part, the specular part's share taken off
-  glm::vec3 specular;  // what the specular part reflects of white light
+  glm::vec3 diffuse;   // albedo of the Lambertian part, scaled by what the specular part leaves
+  glm::vec3 specular;  // directional albedo of the specular part
 };
 
-Surface make_surface(const Reflectance& reflectance, const glm::vec3& normal, const glm::vec3& view,
-                     const glm::vec3& base, float roughness, float metallic) {
-  Surface surface;
-  surface.frame = frame_of(normal);
-  surface.view = surface.frame.to_local(view);
+ShadingPoint make_surface(const Reflectance& reflectance, const glm::vec3& normal,
+                          const glm::vec3& view, const glm::vec3& base, float roughness,
+                          float metallic) {
+  ShadingPoint surface;
+  surface.basis = basis_of(normal);
+  surface.view = surface.basis.to_local(view);
   surface.view.z = std::max(surface.view.z, 1e-3f);
   surface.view = glm::normalize(surface.view);
   surface.f0 = glm::mix(glm::vec3(0.04f), base, metallic);
@@ -88,17 +89,17 @@ Surface make_surface(const Reflectance& reflectance, const glm::vec3& normal, co
   return surface;
 }
 
-// A direction and what its light counts: BRDF times cosine over density.
+// A sampled direction and its weight: BRDF times cosine over density.
 struct Scattered {
   glm::vec3 direction_ws;
   glm::vec3 weight;
 };
 
-Scattered scatter_diffuse(const Surface& surface, const glm::vec2& u) {
-  return {surface.frame.to_world(cosine_direction(u)), surface.diffuse};
+Scattered scatter_diffuse(const ShadingPoint& surface, const glm::vec2& u) {
+  return {surface.basis.to_world(cosine_direction(u)), surface.diffuse};
 }
 
-std::optional<Scattered> scatter_specular(const Surface& surface, const glm::vec2& u) {
+std::optional<Scattered> scatter_specular(const ShadingPoint& surface, const glm::vec2& u) {
   const glm::vec3& v = surface.view;
   const glm::vec3 h = visible_normal(v, surface.alpha, u);
   const glm::vec3 l = 2.0f * glm::dot(v, h) * h - v;
@@ -106,7 +107,7 @@ std::optional<Scattered> scatter_specular(const Surface& surface, const glm::vec
   const float masked = 1.0f + ggx_lambda(v.z, surface.alpha);
   const float share = masked / (masked + ggx_lambda(l.z, surface.alpha));
   const glm::vec3 fresnel = surface.f0 + (1.0f - surface.f0) * schlick(glm::dot(v, h));
-  return Scattered{surface.frame.to_world(l), fresnel * share};
+  return Scattered{surface.basis.to_world(l), fresnel * share};
 }
 
 float largest(const glm::vec3& v) { return std::max({v.x, v.y, v.z}); }
@@ -118,7 +119,7 @@ class Tracer {
 
   const Reflectance& reflectance() const { return reflectance_; }
 
-  // The light that comes back along a ray.
+  // The radiance that arrives from a direction.
   glm::vec3 trace(glm::vec3 origin, glm::vec3 direction, uint64_t seed) const {
     constexpr uint32_t kLongest = 256;
     glm::vec3 weight(1.0f);
@@ -141,7 +142,7 @@ class Tracer {
   }
 
  private:
-  Surface surface_at(const Hit& hit, const glm::vec3& direction) const {
+  ShadingPoint surface_at(const Hit& hit, const glm::vec3& direction) const {
     const Scene& scene = *scene_.scene;
     const Material& material = scene.materials[hit.material];
     const glm::vec4 texel = sample_texture(scene, material.metal_roughness_texture, hit.uvs);
@@ -149,8 +150,8 @@ class Tracer {
                         material.roughness * texel.g, material.metallic * texel.b);
   }
 
-  // Along one of the two parts, chosen by what each sends back. Nothing where the light is lost.
-  static std::optional<Scattered> scatter(const Surface& surface, uint64_t bits) {
+  // Samples one of the two parts, chosen by their albedos. Empty if the path ends.
+  static std::optional<Scattered> scatter(const ShadingPoint& surface, uint64_t bits) {
     const float diffuse = largest(surface.diffuse), specular = largest(surface.specular);
     const float chance = specular / std::max(diffuse + specular, 1e-6f);
     const glm::vec2 u(unit_float(bits), unit_float(hash(bits, 3)));
@@ -170,8 +171,8 @@ class Tracer {
   Reflectance reflectance_;
 };
 
-// Means of two halves of the samples that know nothing of each other.
-struct Halves {
+// Means of two independent halves of the samples.
+struct HalfMeans {
   std::array<glm::dvec3, 2> means{glm::dvec3(0.0), glm::dvec3(0.0)};
   glm::vec3 mean() const { return 0.5 * (means[0] + means[1]); }
   glm::vec3 half_difference() const { return 0.5 * (means[0] - means[1]); }
@@ -189,20 +190,20 @@ LitTruth lit_truth(const RayScene& scene, const SurfacePoints& points,
   const auto shade = [&](size_t pixel) {
     const glm::vec3& position = points.position_ws.pixels[pixel];
     const glm::vec3 view = view_from(viewer, position);
-    const Surface surface = make_surface(
+    const ShadingPoint surface = make_surface(
         tracer.reflectance(), points.normal_ws.pixels[pixel], view, materials.albedo.pixels[pixel],
         materials.roughness.pixels[pixel], materials.metallic.pixels[pixel]);
     const glm::vec3 origin =
         scene.impl().off_surface(position, points.geometric_normal_ws.pixels[pixel]);
-    Halves diffuse, specular;
+    HalfMeans diffuse, specular;
     const uint32_t samples = std::max(settings.spp / 2, 1u);
     for (uint32_t half = 0; half < 2; ++half) {
       const uint64_t seed = hash(hash(settings.seed, pixel), half);
       for (uint32_t i = 0; i < samples; ++i) {
         const glm::vec2 u = r2_point(i, seed);
-        const Scattered spread = scatter_diffuse(surface, u);
-        diffuse.means[half] +=
-            spread.weight * tracer.trace(origin, spread.direction_ws, hash(seed, uint64_t{2} * i));
+        const Scattered diffused = scatter_diffuse(surface, u);
+        diffuse.means[half] += diffused.weight * tracer.trace(origin, diffused.direction_ws,
+                                                              hash(seed, uint64_t{2} * i));
         if (const auto mirrored = scatter_specular(surface, u)) {
           specular.means[half] += mirrored->weight * tracer.trace(origin, mirrored->direction_ws,
                                                                   hash(seed, uint64_t{2} * i + 1));

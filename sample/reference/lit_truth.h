@@ -5,29 +5,29 @@
 
 namespace alcove::sample {
 
-// The materials that the pass was given, a pixel each.
+// The materials that the pass was given, per pixel.
 struct SurfaceMaterials {
   Image<glm::vec3> albedo;  // base colour, linear
   Image<float> roughness;   // perceptual
   Image<float> metallic;
 };
 
-// Light that the environment sends to the eye.
+// Radiance towards the eye, lit by the environment.
 struct LitTruth {
   Image<glm::vec3> diffuse;
   Image<glm::vec3> specular;
-  // What their noise is: half of the difference of two halves of the samples.
+  // Noise of each: half the difference between the means of two halves of the samples.
   Image<glm::vec3> diffuse_noise;
   Image<glm::vec3> specular_noise;
 };
 
-// Path traced, infinite bounces, light of the environment alone. A path's segment that meets
-// nothing within the radius sees the environment, as in interreflection_truth: it is the light that
-// occlusion of this radius models, and what lies farther casts no shadow.
+// Path tracing with unlimited bounces and the environment as the only light. A path segment that
+// hits nothing within the radius receives the environment's light, as in interreflection_truth(),
+// because this is the light that occlusion of this radius models: farther surfaces cast no shadow.
 //
-// Materials, at every bounce: GGX with Smith's correlated masking and Schlick's Fresnel over a
-// Lambertian part that gets what the first leaves, 1 - E(view), with E what it reflects of white
-// light; at bounces about the triangles' own normals. Zero where points are skipped.
+// The material at every bounce is GGX with Smith's height-correlated masking and Schlick's Fresnel,
+// over a Lambertian part that is scaled by 1 - E(view), where E is the directional albedo of the
+// GGX part. Bounces after the first use the normals of the triangles. Skipped points are zero.
 [[nodiscard]] LitTruth lit_truth(const RayScene& scene, const SurfacePoints& points,
                                  const SurfaceMaterials& materials, const Viewer& viewer,
                                  const EnvironmentImage& environment, const TruthSettings& settings,

@@ -97,7 +97,7 @@ void attach_instances(RTCDevice device, RTCScene tree, RTCGeometry triangles, ui
   rtcReleaseScene(shared);
 }
 
-// Beyond this, products of three lengths overflow in Embree, which then finds nothing.
+// Products of three larger lengths overflow in Embree, which then finds no hits.
 constexpr float kFarthest = 1e12f;
 
 bool is_too_large(const Bounds& bounds_ws) {
@@ -112,7 +112,7 @@ bool is_traceable(const glm::vec3& origin, const glm::vec3& direction) {
          std::abs(origin.z) < kFarthestStart && std::isfinite(glm::dot(direction, direction));
 }
 
-// Takes normals from mesh to world space.
+// Transforms normals from mesh space to world space.
 class NormalTransform {
  public:
   explicit NormalTransform(const glm::mat4x3& world_from_mesh) {
@@ -213,8 +213,8 @@ std::optional<Hit> RayScene::Impl::nearest(const glm::vec3& origin, const glm::v
     const glm::vec3 smooth =
         w * mesh.normals_ws[i[0]] + u * mesh.normals_ws[i[1]] + v * mesh.normals_ws[i[2]];
     const glm::vec3 smooth_ws(direction_of(placed(glm::dvec3(smooth))));
-    // On a back face the vertex normals turn round with the triangle's, whichever side of the ray
-    // they are on.
+    // On a back face the vertex normal is flipped with the triangle's normal, even if it faces the
+    // ray already.
     const float side = glm::dot(normal, direction) > 0.0f ? -1.0f : 1.0f;
     if (glm::length(smooth) > 1e-6f && smooth_ws != glm::vec3(0.0f)) {
       hit.shading_normal_ws = side * smooth_ws;

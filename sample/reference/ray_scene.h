@@ -11,7 +11,7 @@
 
 namespace alcove::sample {
 
-// Where a ray met the scene. Normals are unit and face the ray's origin.
+// A hit of a ray with the scene. Normals are unit and face the ray's origin.
 struct Hit {
   float distance;
   uint32_t material;
@@ -26,7 +26,7 @@ struct RayScene::Impl {
   const Scene* scene = nullptr;
   RTCDevice device = nullptr;
   RTCScene tree = nullptr;
-  // Which mesh and instance each geometry of the tree is, by its number.
+  // The mesh and the instance of each geometry of the tree, by geometry index.
   struct Attached {
     uint32_t mesh;
     uint32_t instance;
@@ -36,16 +36,16 @@ struct RayScene::Impl {
     const Scene* scene;
     const Mesh* mesh;
   };
-  std::vector<FilteredMesh> filtered;  // what Embree's filters are given
+  std::vector<FilteredMesh> filtered;  // user data of Embree's filter functions
 
   ~Impl();
   [[nodiscard]] std::optional<Hit> nearest(const glm::vec3& origin, const glm::vec3& direction,
                                            float far) const;
-  // Whether each of up to 16 rays from one origin meets anything nearer than `far`; bit i is ray i.
+  // Whether each of up to 16 rays from one origin hits anything nearer than `far`. Bit i is ray i.
   [[nodiscard]] uint32_t blocked(const glm::vec3& origin, std::span<const glm::vec3> directions,
                                  float far) const;
-  // The origin of rays that leave a surface: moved along the normal by sixteen times the rounding
-  // of positions in a scene of this size, so that a flat surface does not occlude itself.
+  // The origin of rays that leave a surface: offset along the normal by sixteen times the rounding
+  // error of positions in a scene of this size, so that a flat surface does not occlude itself.
   [[nodiscard]] glm::vec3 off_surface(const glm::vec3& position_ws,
                                       const glm::vec3& normal_ws) const;
 };

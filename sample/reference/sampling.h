@@ -27,8 +27,8 @@ namespace alcove::sample {
   return static_cast<float>(bits >> 40) * 0x1p-24f;
 }
 
-// Point i of Roberts' R2 sequence, moved by a shift (Cranley-Patterson): evenly spread for any
-// number of points. Fixed point, so no digits are lost however large i.
+// Point i of Roberts' R2 sequence with a Cranley-Patterson shift: evenly distributed for any number
+// of points. It is computed in fixed point, so that large i lose no precision.
 [[nodiscard]] inline glm::vec2 r2_point(uint32_t i, uint64_t shift) {
   constexpr uint64_t kA = 0xc13fa9a902a6328fu;  // 2^64 / 1.32471795724...
   constexpr uint64_t kB = 0x91e10da5c79e7b1du;  // 2^64 / 1.32471795724...^2
@@ -36,28 +36,28 @@ namespace alcove::sample {
   return {unit_float(shift + i * kA), unit_float(second + i * kB)};
 }
 
-// Two unit vectors that with unit `n` make a right-handed frame (x, y, n).
-struct Frame {
+// A right-handed orthonormal basis (x, y, n).
+struct Basis {
   glm::vec3 x, y, n;
   glm::vec3 to_world(const glm::vec3& v) const { return v.x * x + v.y * y + v.z * n; }
   glm::vec3 to_local(const glm::vec3& v) const {
     return {glm::dot(v, x), glm::dot(v, y), glm::dot(v, n)};
   }
 };
-[[nodiscard]] inline Frame frame_of(const glm::vec3& n) {
+[[nodiscard]] inline Basis basis_of(const glm::vec3& n) {
   const glm::vec3 helper = std::abs(n.x) < 0.6f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
   const glm::vec3 x = glm::normalize(glm::cross(helper, n));
   return {x, glm::cross(n, x), n};
 }
 
-// Density cos / pi about +z.
+// A cosine-weighted direction about +z: density cos / pi.
 [[nodiscard]] inline glm::vec3 cosine_direction(const glm::vec2& u) {
   const float r = std::sqrt(u.x), phi = glm::two_pi<float>() * u.y;
   return {r * std::cos(phi), r * std::sin(phi), std::sqrt(std::max(0.0f, 1.0f - u.x))};
 }
 
-// A microfacet normal of the GGX distribution among those that `v` sees (local frame, v.z > 0;
-// Heitz 2018, "Sampling the GGX Distribution of Visible Normals", section 3).
+// A normal sampled from the GGX distribution of normals visible from `v` (local, v.z > 0; Heitz
+// 2018, "Sampling the GGX Distribution of Visible Normals", section 3).
 [[nodiscard]] inline glm::vec3 visible_normal(const glm::vec3& v, float alpha, const glm::vec2& u) {
   const glm::vec3 vh = glm::normalize(glm::vec3(alpha * v.x, alpha * v.y, v.z));
   const float across = vh.x * vh.x + vh.y * vh.y;
@@ -78,27 +78,28 @@ struct Frame {
   return 0.5f * (std::sqrt(1.0f + alpha * alpha * (1.0f - z2) / z2) - 1.0f);
 }
 
-// A light of a GGX lobe, and what it counts there.
-struct LobeLight {
-  glm::vec3 direction;  // local frame
-  float weight;         // 0 under the surface
+// A sampled direction of a GGX lobe and its weight.
+struct LobeSample {
+  glm::vec3 direction;  // local
+  float weight;         // 0 below the surface
 };
 
-// The GGX lobe that a view sees, with Smith's correlated masking and without Fresnel, by sampling
-// visible normals: weighted means over its lights are means over BRDF times cosine.
+// Samples the GGX lobe of a view direction, with Smith's height-correlated masking and without
+// Fresnel, by visible normals. Weighted means over its samples are means with weight BRDF times
+// cosine.
 class LobeSampler {
  public:
-  // `view`: unit, local frame; below the horizon by interpolation, it is taken along it.
+  // `view`: unit, local. A direction below the horizon, caused by interpolation, is clamped to it.
   LobeSampler(glm::vec3 view, float roughness) : alpha_(std::max(roughness * roughness, 1e-4f)) {
     view.z = std::max(view.z, 1e-3f);
     view_ = glm::normalize(view);
     view_lambda_ = ggx_lambda(view_.z, alpha_);
   }
-  [[nodiscard]] LobeLight at(const glm::vec2& u) const {
+  [[nodiscard]] LobeSample at(const glm::vec2& u) const {
     const glm::vec3 h = visible_normal(view_, alpha_, u);
     const glm::vec3 l = 2.0f * glm::dot(view_, h) * h - view_;
     if (l.z <= 0.0f) return {l, 0.0f};
-    // f cos / pdf of visible normals: the masking of l given that of the view.
+    // BRDF times cosine over density: the masking of l given that of the view.
     return {l, (1.0f + view_lambda_) / (1.0f + view_lambda_ + ggx_lambda(l.z, alpha_))};
   }
 

@@ -15,16 +15,16 @@
 namespace alcove::sample {
 namespace {
 
-constexpr std::size_t kPacket = 16;  // directions asked together
+constexpr std::size_t kPacket = 16;  // directions traced together
 using Packet = std::array<glm::vec3, kPacket>;
 
-// What the depth image shows around a pixel, by the horizons of evenly spread azimuths.
+// The horizons of the height field around a pixel, at evenly spaced azimuths.
 class DepthHorizons {
  public:
   // `normal_vs`: unit.
   DepthHorizons(const HeightField& field, const FieldPoint& point, const glm::vec3& normal_vs)
       : point_(point) {
-    // A plane's own horizon is the tangent plane to within rounding, and takes nothing from what is
+    // The horizon of a plane is its tangent plane up to rounding, and must not occlude directions
     // above it.
     constexpr float kTangentSlack = 0.01f;
     for (std::size_t i = 0; i < kAzimuths; ++i) {
@@ -37,7 +37,7 @@ class DepthHorizons {
     }
   }
 
-  // For a unit direction above the surface, view space.
+  // Whether a unit view-space direction above the surface is occluded.
   [[nodiscard]] bool block(const glm::vec3& direction_vs) const {
     const float phi =
         std::atan2(glm::dot(direction_vs, point_.up), glm::dot(direction_vs, point_.right));
@@ -51,36 +51,36 @@ class DepthHorizons {
   static constexpr float kPerRadian = static_cast<float>(kAzimuths) / glm::two_pi<float>();
 
   FieldPoint point_;
-  std::array<float, kAzimuths> cosines_{};  // under which directions are blocked
+  std::array<float, kAzimuths> cosines_{};  // directions with a smaller cosine are occluded
 };
 
-// One point and both of the things that may block its directions.
+// A point, and the scene and the height field that may occlude its directions.
 class Surroundings {
  public:
-  Surroundings(const RayScene& rays, const glm::vec3& origin_ws, const Frame& frame,
+  Surroundings(const RayScene& rays, const glm::vec3& origin_ws, const Basis& basis,
                const glm::mat3& view_from_world, const DepthHorizons& horizons, float radius)
       : rays_(rays),
         origin_ws_(origin_ws),
-        frame_(frame),
+        basis_(basis),
         view_from_world_(view_from_world),
         horizons_(horizons),
         radius_(radius) {}
 
-  // Bit i: direction i of up to 16, local frame, meets the scene.
+  // Bit i is set if direction i, of up to 16 local directions, hits the scene.
   [[nodiscard]] uint32_t blocked_by_scene(std::span<const glm::vec3> directions) const {
     Packet packet;
     std::ranges::transform(directions, packet.begin(),
-                           [&](const glm::vec3& d) { return frame_.to_world(d); });
+                           [&](const glm::vec3& d) { return basis_.to_world(d); });
     return rays_.impl().blocked(origin_ws_, std::span(packet).first(directions.size()), radius_);
   }
   [[nodiscard]] bool blocked_by_depth(const glm::vec3& direction) const {
-    return horizons_.block(view_from_world_ * frame_.to_world(direction));
+    return horizons_.block(view_from_world_ * basis_.to_world(direction));
   }
 
  private:
   const RayScene& rays_;
   glm::vec3 origin_ws_;
-  Frame frame_;
+  Basis basis_;
   glm::mat3 view_from_world_;
   const DepthHorizons& horizons_;
   float radius_;
@@ -109,7 +109,7 @@ Hidden hidden_around(const Surroundings& around, uint32_t spp, uint64_t seed) {
   return hidden;
 }
 
-// What a lobe is to the polynomials, and what the depth image leaves of it.
+// The projection of a lobe on the polynomials, and its visible fraction in the height field.
 struct LobeView {
   VisibilityPolynomials polynomials{};
   float open_in_depth = 1.0f;
@@ -120,7 +120,7 @@ LobeView look_along(const LobeSampler& lobe, const Surroundings& around, uint32_
   VisibilityPolynomials sum{};
   double all = 0.0, open = 0.0;
   for (uint32_t i = 0; i < spp; ++i) {
-    const LobeLight light = lobe.at(r2_point(i, seed));
+    const LobeSample light = lobe.at(r2_point(i, seed));
     if (light.weight <= 0.0f) continue;
     add_weighted(sum, visibility_polynomials(light.direction), light.weight);
     all += light.weight;
@@ -147,27 +147,28 @@ std::vector<SpecularBaselines> specular_baselines(const RayScene& rays, const Su
   const glm::mat3 view_from_world(camera_matrices(camera, width, height).view_from_world);
   const Viewer viewer = viewer_of(camera);
   const Image<float> open(width, height, 1.0f);
-  std::vector<SpecularBaselines> limits(roughness.size(), {open, open, open});
+  std::vector<SpecularBaselines> baselines(roughness.size(), {open, open, open});
   const auto at_pixel = [&](uint32_t x, uint32_t y) {
     const std::size_t pixel = std::size_t{y} * width + x;
     const glm::vec3& normal = points.normal_ws.pixels[pixel];
     if (normal == glm::vec3(0.0f) || is_sky(field, x, y)) return;
     const glm::vec3& position = points.position_ws.pixels[pixel];
-    const Frame frame = frame_of(normal);
+    const Basis basis = basis_of(normal);
     const DepthHorizons horizons(field, field_point(field, x, y, settings.radius),
                                  view_from_world * normal);
     const glm::vec3 origin =
         rays.impl().off_surface(position, points.geometric_normal_ws.pixels[pixel]);
-    const Surroundings around(rays, origin, frame, view_from_world, horizons, settings.radius);
+    const Surroundings around(rays, origin, basis, view_from_world, horizons, settings.radius);
     const uint64_t seed = hash(settings.seed, pixel);
     const Hidden hidden = hidden_around(around, settings.spp, seed);
-    const glm::vec3 view = frame.to_local(view_from(viewer, position));
+    const glm::vec3 view = basis.to_local(view_from(viewer, position));
     for (std::size_t i = 0; i < roughness.size(); ++i) {
       const LobeView lobe =
           look_along(LobeSampler(view, roughness[i].pixels[pixel]), around, settings.spp, seed);
-      limits[i].polynomials.pixels[pixel] = visible_share(hidden.in_scene, lobe.polynomials);
-      limits[i].depth.pixels[pixel] = lobe.open_in_depth;
-      limits[i].depth_polynomials.pixels[pixel] = visible_share(hidden.in_depth, lobe.polynomials);
+      baselines[i].polynomials.pixels[pixel] = visible_share(hidden.in_scene, lobe.polynomials);
+      baselines[i].depth.pixels[pixel] = lobe.open_in_depth;
+      baselines[i].depth_polynomials.pixels[pixel] =
+          visible_share(hidden.in_depth, lobe.polynomials);
     }
   };
   parallel_rows(
@@ -176,7 +177,7 @@ std::vector<SpecularBaselines> specular_baselines(const RayScene& rays, const Su
         for (uint32_t x = 0; x < width; ++x) at_pixel(x, y);
       },
       progress);
-  return limits;
+  return baselines;
 }
 
 }  // namespace alcove::sample

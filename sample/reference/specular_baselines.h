@@ -8,19 +8,19 @@
 
 namespace alcove::sample {
 
-// Specular occlusion, 1 open, of which only one step on the way to it is not the truth.
+// Baselines of specular occlusion, 1 is open: ground truth but for one approximation each.
 struct SpecularBaselines {
-  // The true visibility, kept as fifteen numbers that any lobe can be asked of.
+  // The true visibility, approximated by fifteen polynomials (visibility_polynomials.h).
   Image<float> polynomials;
-  // The lobe itself, within what the depth image leaves open as height_field_truth() takes it.
+  // The lobe itself, occluded by the height field of the depth image as in height_field_truth().
   Image<float> depth;
-  // Both: what the depth image leaves open, kept as the numbers.
+  // Both: the visibility of the height field, approximated by the polynomials.
   Image<float> depth_polynomials;
 };
 
-// One for each of `roughness`, perceptual, per pixel. `depth_vs` as height_field_truth() takes it;
-// `points` are of the camera's image. Takes settings.spp directions for visibility and as many for
-// each lobe; skipped points are open.
+// Baselines for each image of perceptual roughness. `depth_vs` is as in height_field_truth();
+// `points` belong to the camera's image. Samples settings.spp directions for the visibility and as
+// many for each lobe. Skipped points are open.
 [[nodiscard]] std::vector<SpecularBaselines> specular_baselines(
     const RayScene& rays, const SurfacePoints& points, const Image<float>& depth_vs,
     const Camera& camera, const std::vector<Image<float>>& roughness, const TruthSettings& settings,

@@ -39,7 +39,7 @@ glm::vec3 ray_start(const RayScene& scene, const SurfacePoints& points, size_t p
                                   points.geometric_normal_ws.pixels[pixel]);
 }
 
-// What fits one pixel of the g-buffer.
+// Stores a hit in one pixel of the g-buffer.
 void store_hit(const Scene& scene, const Hit& hit, const Ray& ray, const glm::vec3& forward,
                size_t pixel, GBuffer& out) {
   const glm::vec3 offset = ray.direction_ws * hit.distance;
@@ -61,14 +61,14 @@ struct OpenRays {
   glm::vec3 sum{0.0f};
 };
 
-OpenRays trace_hemisphere(const RayScene::Impl& scene, const glm::vec3& origin, const Frame& frame,
+OpenRays trace_hemisphere(const RayScene::Impl& scene, const glm::vec3& origin, const Basis& basis,
                           const TruthSettings& settings, uint64_t seed) {
   OpenRays open;
   std::array<glm::vec3, kPacket> directions;
   for (uint32_t first = 0; first < settings.spp; first += kPacket) {
     const uint32_t count = std::min(kPacket, settings.spp - first);
     for (uint32_t i = 0; i < count; ++i) {
-      directions[i] = frame.to_world(cosine_direction(r2_point(first + i, seed)));
+      directions[i] = basis.to_world(cosine_direction(r2_point(first + i, seed)));
     }
     const uint32_t blocked =
         scene.blocked(origin, std::span(directions).first(count), settings.radius);
@@ -81,8 +81,8 @@ OpenRays trace_hemisphere(const RayScene::Impl& scene, const glm::vec3& origin, 
   return open;
 }
 
-// The open share of a GGX lobe.
-float trace_lobe(const RayScene::Impl& scene, const glm::vec3& origin, const Frame& frame,
+// The visible fraction of a GGX lobe.
+float trace_lobe(const RayScene::Impl& scene, const glm::vec3& origin, const Basis& basis,
                  const LobeSampler& lobe, const TruthSettings& settings, uint64_t seed) {
   double open = 0.0, all = 0.0;
   std::array<glm::vec3, kPacket> directions;
@@ -91,10 +91,10 @@ float trace_lobe(const RayScene::Impl& scene, const glm::vec3& origin, const Fra
     const uint32_t most = std::min(kPacket, settings.spp - first);
     uint32_t count = 0;
     for (uint32_t i = 0; i < most; ++i) {
-      const LobeLight light = lobe.at(r2_point(first + i, seed));
+      const LobeSample light = lobe.at(r2_point(first + i, seed));
       if (light.weight <= 0.0f) continue;
       weights[count] = light.weight;
-      directions[count++] = frame.to_world(light.direction);
+      directions[count++] = basis.to_world(light.direction);
     }
     if (count == 0) continue;
     const uint32_t blocked =
@@ -107,11 +107,11 @@ float trace_lobe(const RayScene::Impl& scene, const glm::vec3& origin, const Fra
   return all > 0.0 ? static_cast<float>(open / all) : 1.0f;
 }
 
-// Radiance that comes back along one path: the product of the albedos on its way to the open.
+// Radiance that arrives along one path: the product of the albedos until it leaves the scene.
 glm::vec3 trace_path(const RayScene::Impl& scene, glm::vec3 origin, glm::vec3 direction,
                      float radius, uint64_t seed) {
-  constexpr uint32_t kLongest = 256;  // survival below 1e-8 even at an albedo of 0.93
-  constexpr uint32_t kSure = 3;       // bounces before paths may be ended by chance
+  constexpr uint32_t kLongest = 256;  // the weight is below 1e-8 even at an albedo of 0.93
+  constexpr uint32_t kSure = 3;       // bounces before Russian roulette
   glm::vec3 weight(1.0f);
   for (uint32_t bounce = 0; bounce < kLongest; ++bounce) {
     const std::optional<Hit> hit = scene.nearest(origin, direction, radius);
@@ -126,7 +126,7 @@ glm::vec3 trace_path(const RayScene::Impl& scene, glm::vec3 origin, glm::vec3 di
     }
     origin = scene.off_surface(origin + direction * hit->distance, hit->geometric_normal_ws);
     const glm::vec2 u(unit_float(bits), unit_float(hash(bits, 3)));
-    direction = frame_of(hit->geometric_normal_ws).to_world(cosine_direction(u));
+    direction = basis_of(hit->geometric_normal_ws).to_world(cosine_direction(u));
   }
   return glm::vec3(0.0f);
 }
@@ -149,10 +149,10 @@ GBuffer cast_gbuffer(const RayScene& scene, const Camera& camera, uint32_t width
     for (uint32_t x = 0; x < width; ++x) {
       const glm::vec2 centre(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
       Ray ray = camera_ray(matrices, camera.orthographic, centre, width, height);
-      // Nothing nearer than the near plane is drawn, nor beyond the far one.
-      const float slant = glm::dot(ray.direction_ws, forward);
-      ray.origin_ws += ray.direction_ws * (camera.near_plane / slant);
-      const float far = (camera.far_plane - camera.near_plane) / slant;
+      // Only surfaces between the near and the far plane are rendered.
+      const float cosine = glm::dot(ray.direction_ws, forward);
+      ray.origin_ws += ray.direction_ws * (camera.near_plane / cosine);
+      const float far = (camera.far_plane - camera.near_plane) / cosine;
       const auto hit = scene.impl().nearest(ray.origin_ws, ray.direction_ws, far);
       if (!hit) continue;
       const size_t pixel = size_t{y} * width + x;
@@ -170,7 +170,7 @@ OcclusionTruth occlusion_truth(const RayScene& scene, const SurfacePoints& point
   for_each_surface(points, settings.seed, progress, [&](size_t pixel, uint64_t seed) {
     const glm::vec3& normal = points.normal_ws.pixels[pixel];
     const OpenRays open = trace_hemisphere(scene.impl(), ray_start(scene, points, pixel),
-                                           frame_of(normal), settings, seed);
+                                           basis_of(normal), settings, seed);
     const float length = glm::length(open.sum);
     out.visibility.pixels[pixel] =
         static_cast<float>(open.count) / static_cast<float>(settings.spp);
@@ -184,7 +184,7 @@ Viewer viewer_of(const Camera& camera) {
 }
 
 glm::vec3 view_from(const Viewer& viewer, const glm::vec3& position_ws) {
-  // In double, as what is very near has no squares of floats.
+  // In double, because the square of a tiny distance underflows in float.
   const glm::dvec3 to_eye = glm::dvec3(viewer.eye_ws) - glm::dvec3(position_ws);
   const double length = glm::length(to_eye);
   return viewer.orthographic || !(length > 0.0) ? viewer.view_ws : glm::vec3(to_eye / length);
@@ -195,11 +195,11 @@ Image<float> specular_truth(const RayScene& scene, const SurfacePoints& points,
                             const TruthSettings& settings, const Progress& progress) {
   Image<float> out(points.normal_ws.width, points.normal_ws.height, 1.0f);
   for_each_surface(points, settings.seed, progress, [&](size_t pixel, uint64_t seed) {
-    const Frame frame = frame_of(points.normal_ws.pixels[pixel]);
+    const Basis basis = basis_of(points.normal_ws.pixels[pixel]);
     const glm::vec3 view = view_from(viewer, points.position_ws.pixels[pixel]);
     out.pixels[pixel] =
-        trace_lobe(scene.impl(), ray_start(scene, points, pixel), frame,
-                   LobeSampler(frame.to_local(view), roughness.pixels[pixel]), settings, seed);
+        trace_lobe(scene.impl(), ray_start(scene, points, pixel), basis,
+                   LobeSampler(basis.to_local(view), roughness.pixels[pixel]), settings, seed);
   });
   return out;
 }
@@ -208,11 +208,11 @@ Image<glm::vec3> interreflection_truth(const RayScene& scene, const SurfacePoint
                                        const TruthSettings& settings, const Progress& progress) {
   Image<glm::vec3> out(points.normal_ws.width, points.normal_ws.height, glm::vec3(1.0f));
   for_each_surface(points, settings.seed, progress, [&](size_t pixel, uint64_t seed) {
-    const Frame frame = frame_of(points.normal_ws.pixels[pixel]);
+    const Basis basis = basis_of(points.normal_ws.pixels[pixel]);
     const glm::vec3 origin = ray_start(scene, points, pixel);
     glm::dvec3 sum(0.0);
     for (uint32_t i = 0; i < settings.spp; ++i) {
-      const glm::vec3 direction = frame.to_world(cosine_direction(r2_point(i, seed)));
+      const glm::vec3 direction = basis.to_world(cosine_direction(r2_point(i, seed)));
       sum += trace_path(scene.impl(), origin, direction, settings.radius, hash(seed, i + 1));
     }
     out.pixels[pixel] = sum / static_cast<double>(settings.spp);

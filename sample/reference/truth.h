@@ -17,8 +17,9 @@ namespace alcove::sample {
 
 inline constexpr uint32_t kNoMaterial = UINT32_MAX;
 
-// What primary rays through the pixel centres see; the check of the rasteriser and the points at
-// which the truths are taken. Normals are unit, face the viewer and are zero in the sky.
+// The surfaces that primary rays through the pixel centres hit. They serve as a check of the
+// rasteriser and as the points at which truths are computed. Normals are unit, face the viewer and
+// are zero in the sky.
 struct GBuffer {
   Image<float> depth_vs;                 // positive distance along the view axis; infinity: sky
   Image<glm::vec3> position_ws;          // zero in the sky
@@ -30,24 +31,25 @@ struct GBuffer {
   Image<uint32_t> material;  // kNoMaterial: sky
 };
 
-// Where a truth is wanted: one entry per pixel. A zero normal marks a pixel to skip (sky), which
-// gets the value of an open surface.
+// The points at which a truth is computed, one per pixel. A zero normal marks a pixel to skip, such
+// as the sky, which gets the value of an open surface.
 struct SurfacePoints {
-  // Exact to a few roundings, as cast_gbuffer's are; positions from a depth buffer of the usual
-  // direction can be off by more than rays start off the surface, and then meet it.
+  // Precise to a few rounding errors, like those of cast_gbuffer(). Positions from a depth buffer
+  // that is not reversed may have larger errors than the offset of the ray origins, and then
+  // occlude themselves.
   Image<glm::vec3> position_ws;
   Image<glm::vec3> normal_ws;            // the normal that the occlusion pass was given; unit
-  Image<glm::vec3> geometric_normal_ws;  // faces the viewer; rays start off the surface along it
+  Image<glm::vec3> geometric_normal_ws;  // faces the viewer; ray origins are offset along it
 };
 
 struct TruthSettings {
-  float radius = 0.5f;  // scene units, > 0; a hit beyond it does not block. Infinity is allowed
+  float radius = 0.5f;  // scene units, > 0, may be infinite; farther hits do not occlude
   uint32_t spp = 512;   // rays per pixel (and per roughness), >= 1
   uint32_t seed = 1;
 };
 
-// Cosine-weighted visibility, paper eq. 2: the share of spp rays that meet nothing within the
-// radius.
+// Cosine-weighted visibility, equation 2 of the paper: the fraction of spp rays that hit nothing
+// within the radius.
 struct OcclusionTruth {
   Image<float> visibility;  // 0..1, 1 is open
   // Unit, along the cosine-weighted mean of visible directions; the normal where nothing is
@@ -55,11 +57,11 @@ struct OcclusionTruth {
   Image<glm::vec3> bent_normal_ws;
 };
 
-// The triangles of a scene in Embree's tree. Alpha-masked texels do not block. Immutable once made;
-// any thread may trace. Borrows the scene, which must outlive it.
+// The triangles of a scene in an Embree acceleration structure. Alpha-masked texels do not occlude.
+// Immutable; any thread may trace. Borrows the scene, which must outlive it.
 class RayScene {
  public:
-  // Errors: Embree has no device or no memory; the scene reaches further than 1e12 from its origin.
+  // Errors: Embree has no device or no memory; the scene extends further than 1e12 from its origin.
   [[nodiscard]] static tl::expected<RayScene, std::string> create(const Scene& scene);
   RayScene(RayScene&&) noexcept;
   RayScene& operator=(RayScene&&) noexcept;
@@ -80,27 +82,29 @@ class RayScene {
                                              const TruthSettings& settings,
                                              const Progress& progress = {});
 
-// S = integral V f <n,w> / integral f <n,w> over the hemisphere of n, f the GGX lobe (Smith
-// height-correlated masking, Fresnel left out), by sampling visible normals. `roughness` is
-// perceptual, per pixel; `eye_ws` unused where orthographic, then `view_ws` (unit, towards the eye)
-// holds everywhere.
+// The direction from a surface point towards the eye: `view_ws` (unit) everywhere in an
+// orthographic view, and towards `eye_ws` in perspective.
 struct Viewer {
   bool orthographic = false;
   glm::vec3 eye_ws{0.0f};
   glm::vec3 view_ws{0.0f, 0.0f, 1.0f};
 };
 [[nodiscard]] Viewer viewer_of(const Camera& camera);
-// From a point towards the eye, unit.
+// The unit direction from a point towards the eye.
 [[nodiscard]] glm::vec3 view_from(const Viewer& viewer, const glm::vec3& position_ws);
+// Specular occlusion S = integral V f <n,w> / integral f <n,w> over the hemisphere of n, with f the
+// GGX BRDF (Smith's height-correlated masking, without Fresnel), by sampling visible normals.
+// `roughness` is perceptual, per pixel.
 [[nodiscard]] Image<float> specular_truth(const RayScene& scene, const SurfacePoints& points,
                                           const Image<float>& roughness, const Viewer& viewer,
                                           const TruthSettings& settings,
                                           const Progress& progress = {});
 
-// Interreflection: the irradiance over pi that reaches a point in a white environment of radiance
-// 1, surfaces Lambertian with their own albedo, infinite bounces. The radius is that of the
-// occlusion: a path segment that meets nothing within it sees the environment. 0..1 for albedos up
-// to 1; not multiplied by the point's own albedo, so with black surfaces it equals the visibility.
+// Interreflection: the irradiance over pi that arrives at a point in a white environment of
+// radiance 1, with Lambertian surfaces and unlimited bounces. A path segment that hits nothing
+// within the radius of the occlusion receives the environment's light. The result is 0..1 for
+// albedos up to 1. It is not multiplied by the point's own albedo, so it equals the visibility if
+// all surfaces are black.
 [[nodiscard]] Image<glm::vec3> interreflection_truth(const RayScene& scene,
                                                      const SurfacePoints& points,
                                                      const TruthSettings& settings,

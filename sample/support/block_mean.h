@@ -8,13 +8,13 @@
 
 namespace alcove::sample {
 
-// Shrinks an image while it is read row by row: every block of `factor` x `factor` pixels becomes
-// its mean, blocks at the right and lower edge that of the pixels they have. A pixel has
-// `kComponents` interleaved components of type `In`, which are added up as `Sum`.
+// Reduces an image while it is read row by row: each block of `factor` x `factor` pixels becomes
+// its mean, at the right and lower edge the mean of the pixels that exist. A pixel has
+// `kComponents` interleaved components of type `In`, which are summed as `Sum`.
 template <class In, class Sum, uint32_t kComponents>
 class BlockMean {
  public:
-  // All at least 1.
+  // All arguments are at least 1.
   BlockMean(uint32_t width, uint32_t height, uint32_t factor)
       : width_(width), factor_(factor), rows_left_(height) {
     sums_.resize(size_t{reduced(width)} * kComponents);

@@ -9,7 +9,7 @@
 
 namespace alcove::sample {
 
-// Takes an image of 32-bit floats row by row, so that a reader never holds all of it.
+// Receives an image of 32-bit floats row by row, so that its reader never holds the whole image.
 struct FloatRows {
   // Called once, before the first row, with a size of at least 1 and at most kLargestFloatSide.
   std::function<void(uint32_t width, uint32_t height)> begin;
@@ -17,7 +17,7 @@ struct FloatRows {
   std::function<void(std::span<const float> row)> row;
 };
 
-// Pixels. The largest side that the readers of float images take.
+// The largest width and height in pixels that the readers of float images accept.
 constexpr uint32_t kLargestFloatSide = 16384;
 
 }  // namespace alcove::sample

@@ -23,7 +23,7 @@ struct Image {
   bool empty() const { return pixels.empty(); }
 };
 
-// Which pixels count: those that are not 0.
+// A selection of pixels: those that are not 0.
 using Mask = Image<uint8_t>;
 
 }  // namespace alcove::sample

@@ -35,8 +35,8 @@ Outcome check_writable_image(uint32_t width, uint32_t height, size_t pixels) {
   return {};
 }
 
-// OpenEXR's file closes in a destructor that swallows errors, so a disk that fills up at the very
-// end shows only in reading back.
+// The destructor of OpenEXR's file ignores errors, so a disk that becomes full at the end is only
+// detected by reading the file back.
 Outcome check_complete_exr(const std::filesystem::path& file) {
   try {
     Imf::InputFile input(file.string().c_str());
@@ -47,7 +47,7 @@ Outcome check_complete_exr(const std::filesystem::path& file) {
   return {};
 }
 
-// `channels`: their names in the order in which the floats of a pixel lie.
+// `channels`: the names of the channels, in the order of the floats of a pixel.
 Outcome write_exr_channels(const std::filesystem::path& file, uint32_t width, uint32_t height,
                            const float* values, std::span<const char* const> channels) {
   return write_whole(file, [&](const std::filesystem::path& temporary) -> Outcome {
@@ -71,7 +71,7 @@ Outcome write_exr_channels(const std::filesystem::path& file, uint32_t width, ui
   });
 }
 
-// The chosen channels of an EXR, all with the same names for every file, interleaved.
+// The chosen channels of an EXR file, interleaved.
 struct FloatImage {
   uint32_t width = 0;
   uint32_t height = 0;

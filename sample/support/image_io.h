@@ -9,8 +9,8 @@
 
 namespace alcove::sample {
 
-// Image files of the sample. A file appears completely or not at all (whole_file.h). Errors are one
-// sentence with the file's name and the reason.
+// Readers and writers of image files. A file is written completely or not at all (whole_file.h).
+// Errors are one sentence with the file's name and the reason.
 
 // OpenEXR, scanlines, 32-bit float, top row first: one channel `Y`, or three `R` `G` `B`.
 [[nodiscard]] tl::expected<void, std::string> write_exr(const std::filesystem::path& file,
@@ -18,15 +18,15 @@ namespace alcove::sample {
 [[nodiscard]] tl::expected<void, std::string> write_exr(const std::filesystem::path& file,
                                                         const Image<glm::vec3>& image);
 
-// Reads the channel `Y`, or `R` where there is no `Y`. At most 16384 pixels a side.
+// Reads the channel `Y`, or `R` if there is no `Y`. At most 16384 pixels a side.
 [[nodiscard]] tl::expected<Image<float>, std::string> read_exr_grey(
     const std::filesystem::path& file);
 // Reads the channels `R`, `G` and `B`. At most 16384 pixels a side.
 [[nodiscard]] tl::expected<Image<glm::vec3>, std::string> read_exr_rgb(
     const std::filesystem::path& file);
 
-// 8-bit PNG. Values are clamped to 0..1 and stored without a transfer function, so a caller that
-// wants sRGB encodes first; NaN becomes 0.
+// Writes an 8-bit PNG. Values are clamped to 0..1 and stored without a transfer function; callers
+// encode sRGB themselves. NaN becomes 0.
 [[nodiscard]] tl::expected<void, std::string> write_png(const std::filesystem::path& file,
                                                         const Image<float>& image);
 [[nodiscard]] tl::expected<void, std::string> write_png(const std::filesystem::path& file,

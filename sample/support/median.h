@@ -6,25 +6,33 @@
 
 namespace alcove::sample {
 
-// The upper one of the two in the middle where there are two; 0 of nothing.
-inline double median(std::vector<double> values) {
+// The median; of an even number of values the upper of the two in the middle. 0 if there are none.
+template <class T>
+[[nodiscard]] T median(std::vector<T> values) {
   if (values.empty()) {
-    return 0;
+    return T{};
   }
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::ranges::nth_element(values, middle);
   return *middle;
 }
 
-// Half the distance between the first and the third quartile: how far apart values are, whatever a
-// few of them are. 0 of nothing.
-inline double quartile_spread(std::vector<double> values) {
+// The value at the fraction `share`, [0, 1], of the sorted values, rounded down to one of them. 0
+// if there are none.
+template <class T>
+[[nodiscard]] T percentile(std::vector<T> values, double share) {
   if (values.empty()) {
-    return 0;
+    return T{};
   }
-  std::ranges::sort(values);
-  const std::size_t last = values.size() - 1;
-  return 0.5 * (values[3 * last / 4] - values[last / 4]);
+  const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::ranges::nth_element(values, values.begin() + rank);
+  return values[static_cast<std::size_t>(rank)];
+}
+
+// Half the distance between the first and the third quartile, a spread that ignores outliers. 0 if
+// there are no values.
+[[nodiscard]] inline double quartile_spread(const std::vector<double>& values) {
+  return 0.5 * (percentile(values, 0.75) - percentile(values, 0.25));
 }
 
 }  // namespace alcove::sample

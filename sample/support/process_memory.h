@@ -5,8 +5,7 @@
 
 namespace alcove::sample {
 
-// The most memory in bytes that this process has had at once (its resident set); none where the
-// system does not tell.
+// The peak resident set size of this process in bytes; none if the system does not report it.
 [[nodiscard]] std::optional<std::uint64_t> peak_memory();
 
 }  // namespace alcove::sample

@@ -5,7 +5,7 @@
 
 namespace alcove::sample {
 
-// Called from time to time with a fraction of the work done, 0..1, by one thread at a time.
+// Called repeatedly with the completed fraction of the work, 0..1, by one thread at a time.
 using Progress = std::function<void(double)>;
 
 // A Progress that prints `name 42 %, 12 s left` to stderr: nothing in the first second, then at

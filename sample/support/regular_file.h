@@ -13,9 +13,9 @@ struct FileCloser {
 };
 using FilePointer = std::unique_ptr<std::FILE, FileCloser>;
 
-// Opens a regular file for reading. Opening a named pipe or a device could wait for ever, so
-// anything but a regular file is refused, and the check is made on the opened file: nobody can swap
-// it in between. The error is the end of a sentence that begins with the file's name.
+// Opens a regular file for reading. Other files are refused, because opening a named pipe or a
+// device could wait forever. The opened file is checked, so that it cannot be replaced in between.
+// The error completes a sentence that begins with the file's name.
 [[nodiscard]] tl::expected<FilePointer, std::string> open_regular_file(
     const std::filesystem::path& file);
 

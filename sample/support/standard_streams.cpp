@@ -10,12 +10,12 @@
 
 namespace alcove::sample {
 
-void take_closed_streams() {
+void reserve_closed_streams() {
 #ifndef _WIN32
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(stream, F_GETFD) != -1 || errno != EBADF) continue;
-    // It gets the lowest number that is free, which is this one. The wrong way round, so that the
-    // stream is of no more use than it was.
+    // open() returns the lowest free descriptor, which is this one. The access mode is the wrong
+    // one, so that using the stream still fails.
     if (open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY) < 0) return;
   }
 #endif

@@ -2,9 +2,9 @@
 
 namespace alcove::sample {
 
-// Takes the standard streams that were closed when the program was started, so that no file and no
-// connection opened later gets their numbers and what is printed ends up in it. Reading and writing
-// them fails as before. To be called before anything is opened.
-void take_closed_streams();
+// Reserves the descriptors of standard streams that were closed when the program started. Otherwise
+// a file or connection opened later would get such a descriptor and receive the program's output.
+// Reading and writing the streams still fails. Call this before anything is opened.
+void reserve_closed_streams();
 
 }  // namespace alcove::sample

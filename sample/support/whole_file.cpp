@@ -25,8 +25,8 @@ using Failure = tl::unexpected<std::string>;
 
 constexpr const char* kPart = ".part";
 
-// Beside the target, so that the rename stays on one file system; random, so that two processes
-// that write the same file do not meet.
+// A temporary name beside the target, so that the rename stays on one file system. It is random, so
+// that two processes that write the same file do not collide.
 fs::path temporary_beside(const fs::path& file) {
   std::random_device random;
   fs::path temporary = file;
@@ -34,7 +34,7 @@ fs::path temporary_beside(const fs::path& file) {
   return temporary;
 }
 
-// Whether the name is one of temporary_beside(), of any file or of the one of that name.
+// Whether temporary_beside() made the name, for the file named `of` or, if that is empty, any file.
 bool is_temporary(const std::string& name, const std::string& of) {
   const size_t part = name.rfind(kPart);
   if (part == std::string::npos || (!of.empty() && name.compare(0, part, of) != 0)) return false;
@@ -49,7 +49,7 @@ bool is_old(const fs::path& file) {
   return !error && fs::file_time_type::clock::now() - written > kAge;
 }
 
-// A lock that other processes see, held until the object or its process ends.
+// A lock on a file that other processes respect, held until the object or its process ends.
 class FileLock {
  public:
   FileLock() = default;
@@ -60,14 +60,14 @@ class FileLock {
     if (descriptor_ >= 0) ::close(descriptor_);
   }
 
-  // Makes the file and locks it. Failure is left to the writing that follows.
+  // Creates the file and locks it. A failure is detected when the file is written.
   void create(const fs::path& file) {
     descriptor_ = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor_ >= 0) (void)::flock(descriptor_, LOCK_EX | LOCK_NB);
   }
 
   enum class State { kHeld, kFree, kUnknown };
-  // Takes the lock where it is free.
+  // Takes the lock if it is free.
   State take(const fs::path& file) {
     descriptor_ = ::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_NOFOLLOW | O_CLOEXEC);
     if (descriptor_ < 0) return State::kUnknown;
@@ -93,7 +93,7 @@ void remove_if_abandoned(const fs::path& file) {
   if (abandoned) fs::remove(file, ignored);
 }
 
-// The temporary files in `folder` of the file named `of`, or of all for an empty name.
+// Removes the abandoned temporary files in `folder` of the file named `of`; empty: of all files.
 void remove_abandoned_of(const fs::path& folder, const std::string& of) {
   std::error_code error;
   fs::directory_iterator entry(folder, error);
@@ -105,7 +105,7 @@ void remove_abandoned_of(const fs::path& folder, const std::string& of) {
   }
 }
 
-// All bytes reach the file or the caller hears of it: a full disk may show only at the flush.
+// Writes all bytes or returns an error. A full disk may only be detected by the flush.
 Outcome fill(const fs::path& file, const void* bytes, size_t size) {
   std::FILE* stream = std::fopen(file.string().c_str(), "wb");
   if (!stream) return Failure(std::strerror(errno));
@@ -147,7 +147,7 @@ tl::expected<OutputFolder, std::string> OutputFolder::create(const fs::path& fol
 OutputFolder::~OutputFolder() {
   std::error_code ignored;
   for (auto folder = made_.rbegin(); folder != made_.rend(); ++folder) {
-    fs::remove(*folder, ignored);  // fails where it is not empty
+    fs::remove(*folder, ignored);  // fails if it is not empty
   }
 }
 

@@ -8,16 +8,16 @@
 
 namespace alcove::sample {
 
-// Files appear completely or not at all: each is written under a temporary name in its folder and
-// then renamed. Errors are one sentence with the file's name and the system's reason, such as a
+// Files are written completely or not at all: each is written under a temporary name in its folder
+// and then renamed. Errors are one sentence with the file's name and the system's reason, such as a
 // full disk or a folder without write permission.
 
-// A folder for output, made with those above it, before the work that fills it. Unless anything was
-// written to it, the destructor removes what it has made, so that a run that is refused leaves
-// nothing behind.
+// An output folder that is created, with its parents, before the work that fills it. The destructor
+// removes the folders that it created and that are still empty, so that a failed run leaves nothing
+// behind.
 class OutputFolder {
  public:
-  // An error also where the folder exists and no file can be made in it.
+  // Returns an error also if the folder exists and no file can be created in it.
   [[nodiscard]] static tl::expected<OutputFolder, std::string> create(
       const std::filesystem::path& folder);
   OutputFolder(OutputFolder&&) = default;
@@ -29,7 +29,7 @@ class OutputFolder {
   std::vector<std::filesystem::path> made_;  // the outermost first
 };
 
-// `write` fills the temporary file whose name it gets, and says whether that worked.
+// `write` fills the temporary file of the given name, and returns whether it succeeded.
 [[nodiscard]] tl::expected<void, std::string> write_whole(
     const std::filesystem::path& file,
     const std::function<tl::expected<void, std::string>(const std::filesystem::path&)>& write);

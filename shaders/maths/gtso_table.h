@@ -113,8 +113,8 @@ ALCOVE_INLINE float gtso_corner_weight(vec4 t, uint corner) {
          ((corner & 4u) != 0u ? t.z : 1.0f - t.z) * ((corner & 8u) != 0u ? t.w : 1.0f - t.w);
 }
 
-// What needs no table: nothing or everything is visible, or the surface is a mirror. Below 0 where
-// the table is needed.
+// Specular visibility in the cases that need no table: nothing or everything is visible, or the
+// surface is a mirror. A negative value means that the table is needed.
 ALCOVE_INLINE float gtso_exact(float visibility, float cone, float bent_from_mirror,
                                float roughness) {
   if (visibility <= 0.0f) return 0.0f;

@@ -1,6 +1,6 @@
-// What lets one text be both GLSL (460, GL_GOOGLE_include_directive) and C++20 over GLM.
+// Macros that let one header be both GLSL (460, GL_GOOGLE_include_directive) and C++20 with GLM.
 //
-// In C++ everything stands in namespace alcove::maths and GLSL's types and functions come from GLM.
+// In C++ everything is in namespace alcove::maths, and GLM has the types and functions of GLSL.
 // The text itself keeps to what both languages read alike: `f` on literals, no swizzles, structs
 // filled field by field and returned. Every function is pure and may be called from any thread.
 #ifndef ALCOVE_MATHS_LANGUAGE_H

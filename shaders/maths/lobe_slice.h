@@ -1,22 +1,22 @@
 // The part of a GGX lobe that a slice leaves visible, in closed form.
 //
-// One cone cannot hold what a surface sees; its slices can. For a light at angle t from the view
-// vector within a slice, the half vector lies in the same slice at t/2, so with p and g the length
-// and angle of the projected normal
+// A single cone is a poor model of the visible directions; slices describe them better. For a light
+// at angle t from the view direction within a slice, the half vector lies in the same slice at t/2,
+// so with p and g the length and angle of the projected normal
 //     n.h = p cos(t/2 - g)     and     D = alpha^2 / (pi (1 - k cos^2(t/2 - g))^2),
 // k = (1 - alpha^2) p^2. Times the |sin t| of the slice's measure, D then has an antiderivative in
 // x = t - 2g, the angle from the lobe's centre in this slice: with m = 1 - k, B = k/2, A = 1 - B
 // and N = m + B (1 - cos x),
 //     alpha^2 / (pi m) ( cos 2g (1 - cos x) / N
 //                        + sin 2g (A sin x / N + 2 B / sqrt(m) atan(tan(x/2) / sqrt(m))) ).
-// Shadowing and masking vary slowly: on each side they are a constant up to three quarters of the
-// way to the tangent plane and another beyond. The BRDF times the cosine of the light has no other
-// factor but Fresnel, which is left to the caller, and 1 / (4 n.v), which all slices of a pixel
-// share.
+// Shadowing and masking vary slowly. In each half-slice they are approximated by one constant up to
+// three quarters of the angle to the tangent plane and another one beyond. The remaining factors of
+// the BRDF times the cosine of the light are Fresnel, which is left to the caller, and 1 / (4 n.v),
+// which all slices of a pixel share.
 //
-// Specular visibility is the sum over slices of what is visible over the sum of `open`: against
-// quadrature of the whole BRDF, RMS error 0.010 in one slice, 0.006 in the sum of sixteen, at most
-// 0.06. After no paper that we know.
+// Specular visibility is the sum of the visible parts over slices, divided by the sum of `open`.
+// Compared with quadrature of the whole BRDF, the RMS error is 0.010 for one slice and 0.006 for
+// the sum of sixteen; the largest error is 0.06. We know of no publication of this method.
 #ifndef ALCOVE_MATHS_LOBE_SLICE_H
 #define ALCOVE_MATHS_LOBE_SLICE_H
 
@@ -28,8 +28,8 @@
 
 ALCOVE_MATHS_BEGIN
 
-// Narrower lobes than this (perceptual roughness 0.07) are taken as it: floats cannot tell the
-// cosines within them apart.
+// The smallest GGX width that is evaluated (perceptual roughness 0.07). Floats cannot resolve the
+// cosines within narrower lobes.
 const float kSmallestLobe = 0.005f;
 
 // D times |sin t| along a slice, integrated in closed form.
@@ -41,11 +41,11 @@ struct LobeDensity {
   float strength;  // alpha^2 / (pi m)
 };
 
-// The lobe on one side of the view vector.
+// The lobe in one half-slice.
 struct LobeSide {
-  float knee;   // integral of the density up to three quarters of the side
-  float inner;  // shadowing and masking up to there
-  float outer;  // and beyond
+  float knee;   // integral of the density up to three quarters of the half-slice
+  float inner;  // shadowing and masking up to the knee
+  float outer;  // shadowing and masking beyond the knee
   float whole;  // the lobe up to the tangent plane
 };
 
@@ -54,7 +54,7 @@ struct LobeSlice {
   float at_view;  // antiderivative of the density at the view vector
   LobeSide ahead;
   LobeSide behind;
-  float open;  // the lobe with nothing in the slice
+  float open;  // the lobe without occluders
 };
 
 // `alpha` at least kSmallestLobe.
@@ -70,8 +70,8 @@ ALCOVE_INLINE LobeDensity make_lobe_density(Slice s, float alpha) {
   return density;
 }
 
-// The antiderivative at a light (sine, cosine) of the signed angle to the view vector, which a
-// slice's normal sees: no farther than a right angle from gamma.
+// The antiderivative at a light, given by the sine and cosine of its signed angle to the view
+// direction. The angle is at most a right angle from gamma.
 ALCOVE_INLINE float lobe_antiderivative(LobeDensity d, vec2 light) {
   float sin_x = light.x * d.cos_twice - light.y * d.sin_twice;
   float cos_x = clamp(light.y * d.cos_twice + light.x * d.sin_twice, -1.0f, 1.0f);
@@ -92,14 +92,14 @@ ALCOVE_INLINE float lobe_antiderivative(LobeDensity d, vec2 light) {
   return d.strength * (d.cos_twice * rise / n + d.sin_twice * around);
 }
 
-// Shadowing and masking of a light within the slice; of any length.
+// Shadowing and masking of a light within the slice. The vector may have any length.
 ALCOVE_INLINE float lobe_shadowing(Slice s, vec2 light, float alpha) {
   float n_dot_l = (s.along * light.x + s.toward * light.y) *
                   inversesqrt(max(light.x * light.x + light.y * light.y, 1e-12f));
   return ggx_shadowing(max(s.toward, 1e-3f), max(n_dot_l, 1e-4f), alpha);
 }
 
-// Half the way from the view vector to a light on a side.
+// The direction halfway between the view direction and a light in a half-slice.
 ALCOVE_INLINE vec2 halfway_to_view(vec2 light, float side) {
   return vec2(side * sqrt(max(0.5f - 0.5f * light.y, 0.0f)),
               sqrt(max(0.5f + 0.5f * light.y, 0.0f)));
@@ -132,8 +132,9 @@ ALCOVE_INLINE LobeSlice make_lobe_slice(Slice s, float alpha) {
   return lobe;
 }
 
-// The lobe on a side between the view vector and a light above the tangent plane: from 0 to the
-// side's `whole`. `light` is the sine (at least 0) and cosine of its angle.
+// The integral of the lobe in a half-slice between the view direction and a light above the tangent
+// plane, from 0 to the half-slice's `whole`. `light` is the sine (at least 0) and cosine of its
+// angle.
 ALCOVE_INLINE float lobe_light_arc(LobeSlice lobe, float side, vec2 light) {
   float integral =
       abs(lobe_antiderivative(lobe.density, vec2(side * light.x, light.y)) - lobe.at_view);
@@ -144,7 +145,7 @@ ALCOVE_INLINE float lobe_light_arc(LobeSlice lobe, float side, vec2 light) {
   return min(inner * min(integral, knee) + outer * max(integral - knee, 0.0f), whole);
 }
 
-// The same up to a horizon, as horizon_light() takes it.
+// lobe_light_arc() up to a horizon, given as to horizon_light().
 ALCOVE_INLINE float lobe_arc(Slice s, LobeSlice lobe, float side, float horizon) {
   return lobe_light_arc(lobe, side, horizon_light(s, side, horizon));
 }
@@ -154,7 +155,8 @@ ALCOVE_INLINE float horizon_lobe(Slice s, LobeSlice lobe, float ahead, float beh
   return lobe_arc(s, lobe, 1.0f, ahead) + lobe_arc(s, lobe, -1.0f, behind);
 }
 
-// What the sectors of a side leave visible of the lobe, as visible_part() has it of the cosine.
+// The part of the lobe in a half-slice that its occluded sectors leave visible. visible_part() is
+// the same for the cosine.
 ALCOVE_INLINE float visible_lobe(LobeSlice lobe, float side, float per_diamond_angle, uint occluded,
                                  float hidden_occlusion) {
   float keep = 1.0f - hidden_occlusion;
@@ -173,21 +175,21 @@ ALCOVE_INLINE float visible_lobe(LobeSlice lobe, float side, float per_diamond_a
   return max(sum, 0.0f);
 }
 
-// The angle of the slice that holds the lobe's centre, the plane of view and normal. Where they
-// fall together every slice does.
+// The angle of the slice that contains the centre of the lobe: the plane of view direction and
+// normal. Where these are equal, every slice contains it.
 ALCOVE_INLINE float lobe_plane(vec3 normal, ViewBasis basis) {
   return atan(dot(normal, basis.y), dot(normal, basis.x) + 1e-12f);
 }
 
-// An angle of a slice and what the slice weighs beside others.
+// The angle of a slice and its weight relative to other slices.
 struct WeightedAngle {
   float phi;
   float weight;
 };
 
-// Turns a slice's angle towards the lobe's plane, the more the narrower the lobe, up to 6 times as
-// dense there. Weights make up for it, exactly: they are the derivative of the turned angle, so
-// sums over evenly spread angles keep their mean. They lie within [0.16,1.84].
+// Rotates a slice's angle towards the plane of the lobe, more for narrower lobes, so that slices
+// are up to 6 times as dense there. The weight is the derivative of the rotated angle, so that
+// means over evenly distributed angles do not change. It is within [0.16,1.84].
 ALCOVE_INLINE WeightedAngle lobe_angle(float phi, float plane, float roughness) {
   float smooth_part = 1.0f - roughness;
   float focus = min(0.5f * smooth_part * smooth_part, 0.42f);

@@ -21,7 +21,7 @@ ALCOVE_INLINE float multi_bounce_channel(float visibility, float albedo) {
   return min(max(v, ((v * a + b) * v + c) * v), 1.0f);
 }
 
-// The same for the three channels of a colour.
+// multi_bounce_channel() of the three channels of a colour.
 ALCOVE_INLINE vec3 multi_bounce(float visibility, vec3 albedo) {
   return vec3(multi_bounce_channel(visibility, albedo.x),
               multi_bounce_channel(visibility, albedo.y),

@@ -30,17 +30,17 @@ struct Projection {
   vec2 near_far;         // linear; far is kSkyDepth when infinite
 };
 
-// Whether raw depth is the far plane's or beyond it, or not a number. Ask it of raw depth only: a
-// filtered depth mixes the sky with what stands before it.
+// Whether raw depth is at or beyond the far plane, or not a number. It must not be asked of
+// filtered depth, which mixes the sky with the foreground.
 ALCOVE_INLINE bool is_sky_ndc(Projection p, float depth_ndc) {
   return !(p.sky.x * depth_ndc < p.sky.y);
 }
 
-// The same question of a linear depth that linear_depth() returned and nothing averaged.
+// Whether a depth that linear_depth() returned is the sky. It must not be asked of averaged depths.
 ALCOVE_INLINE bool is_sky_depth(float depth) { return !(depth < kSkyDepth); }
 
-// Linear depth of a raw one. The sky, infinity and what is not a number come out as kSkyDepth; a
-// value on the wrong side of the near plane as the near plane's.
+// The linear depth of a raw depth. The sky, infinity and NaN give kSkyDepth. A value in front of
+// the near plane gives the depth of the near plane.
 ALCOVE_INLINE float linear_depth(Projection p, float depth_ndc) {
   if (is_sky_ndc(p, depth_ndc)) return kSkyDepth;
   float d = min(max(depth_ndc, 0.0f), 1.0f);
@@ -61,8 +61,8 @@ ALCOVE_INLINE vec3 position_vs(Projection p, vec2 uv, float depth) {
   return vec3(slope_x * depth + origin_x, slope_y * depth + origin_y, -depth);
 }
 
-// Unit vector from a view-space position towards the eye, against the ray that sees it. Its z is
-// positive for whatever lies before the eye.
+// The view direction: the unit vector from a view-space position towards the eye. Its z is positive
+// for positions in front of the eye.
 ALCOVE_INLINE vec3 view_vector(Projection p, vec3 position) {
   return normalize(vec3(p.eye.x - p.eye.w * position.x, p.eye.y - p.eye.w * position.y,
                         p.eye.z - p.eye.w * position.z));

@@ -22,8 +22,9 @@ ALCOVE_INLINE vec2 stereographic_of_bits(uint bits) {
               (float((bits >> 4u) & 15u) - 7.0f) * (1.0f / 7.0f));
 }
 
-// Of a unit normal in view space; what leans further than a right angle along either axis is taken
-// to stereographic so far. Each coordinate is one of 15: off by 12 degrees at most.
+// Quantises a unit normal in view space. Stereographic coordinates are clamped to those of
+// directions a right angle from the view axis. Each coordinate has 15 values, so the error is at
+// most 12 degrees.
 ALCOVE_INLINE QuantisedNormal make_quantised_normal(vec3 normal) {
   vec2 stereographic = vec2(normal.x, normal.y) * (1.0f / max(1.0f + normal.z, 0.1f));
   QuantisedNormal coarse;

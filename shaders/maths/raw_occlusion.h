@@ -1,8 +1,8 @@
-// The two numbers that a search leaves at a pixel, and its normal, in 4 bytes; its depth takes 4
-// more.
+// The raw occlusion of a traced pixel: the visible and the unoccluded part of its slices, packed
+// into 4 bytes with its normal. Another 4 bytes hold its depth.
 //
-// Filters and history add up visible parts and open parts and divide last. What is stored is their
-// ratio, so that an open surface stays open to the last bit, and the open part.
+// Filters and history sum visible parts and unoccluded parts, and divide at the end. The stored
+// values are the unoccluded part and the ratio of the two, so that a ratio of exactly 1 stays 1.
 #ifndef ALCOVE_MATHS_RAW_OCCLUSION_H
 #define ALCOVE_MATHS_RAW_OCCLUSION_H
 
@@ -12,26 +12,27 @@ ALCOVE_MATHS_BEGIN
 
 struct RawOcclusion {
   float visible;  // visible part of the slices, [0,open]
-  float open;     // all of them, [0,kLargestOpen]
+  float open;     // the same integral without occluders, which is the weight, [0,kLargestOpen]
 };
 
-// Of a mean over slices, and of one weighted by a filter's window.
+// The largest weight of a mean over slices, also after weighting by a filter kernel.
 const float kLargestOpen = 4.0f;
 
-// Sum of visible parts over sum of open ones, in [0,1]. Nothing weighed means nothing known: open.
+// The ratio of the visible to the unoccluded part, in [0,1]. A weight of zero gives 1.
 ALCOVE_INLINE float mean_visibility(RawOcclusion sum) {
   return sum.open > 0.0f ? saturate(sum.visible / sum.open) : 1.0f;
 }
 
-// The open part in 11 bits, within a 120th of itself, as it only weighs: a half without its sign
-// and its last four digits. Out of range comes out as the nearest in range.
+// The unoccluded part in 11 bits: a half-precision float without its sign and its last four bits.
+// The relative error is at most 1/120, which is enough for a weight. Values out of range are
+// clamped.
 ALCOVE_INLINE uint pack_open(float open) {
   return (packHalf2x16(vec2(clamp(open, 0.0f, kLargestOpen), 0.0f)) + 8u) >> 4u;
 }
 
 ALCOVE_INLINE float unpack_open(uint bits) { return unpackHalf2x16((bits & 0x7ffu) << 4u).x; }
 
-// The ratio to 2^-14, and the searched surface's normal of QuantisedNormal.
+// The ratio with an error of at most 2^-14, the weight, and the traced pixel's QuantisedNormal.
 ALCOVE_INLINE uint pack_raw_occlusion(RawOcclusion raw_occlusion, uint quantised_normal) {
   return pack_unorm(mean_visibility(raw_occlusion), 13u) | (pack_open(raw_occlusion.open) << 13u) |
          (quantised_normal << 24u);
@@ -46,11 +47,11 @@ ALCOVE_INLINE RawOcclusion unpack_raw_occlusion(uint bits) {
 
 ALCOVE_INLINE uint raw_occlusion_normal(uint bits) { return bits >> 24u; }
 
-// Components of a residual (bent_normal.h) are no larger.
+// Upper bound of the components of a residual (bent_normal.h).
 const float kLargestResidual = 4.0f / 3.0f;
 
-// A residual in 10 bits a component, each clamped to kLargestResidual in size and within 0.0014
-// after unpack_residual(); 0 comes back as it is.
+// A residual in 10 bits per component. Components are clamped to +-kLargestResidual. The error
+// after unpack_residual() is at most 0.0014, and 0 for a component of 0.
 ALCOVE_INLINE uint pack_residual_dithered(vec3 residual, float dither) {
   vec3 scaled =
       clamp(residual * (1.0f / kLargestResidual), -1.0f, 1.0f) * 511.0f + (512.0f + dither);
@@ -65,8 +66,9 @@ ALCOVE_INLINE vec3 unpack_residual(uint bits) {
   return (scaled - 512.0f) * (kLargestResidual / 511.0f);
 }
 
-// The same of a GGX lobe, whose open part differs by orders of magnitude from slice to slice: the
-// ratio to 2^-17, the open part, at least 0 and finite, to 2^-8 of itself.
+// The raw occlusion of a GGX lobe. Its unoccluded part differs by orders of magnitude from slice to
+// slice, so it is stored with a relative error of 2^-8; it must be at least 0 and finite. The error
+// of the ratio is at most 2^-17.
 ALCOVE_INLINE uint pack_lobe(RawOcclusion lobe) {
   float ratio = lobe.open > 0.0f ? clamp(lobe.visible / lobe.open, 0.0f, 1.0f) : 1.0f;
   uint open = (floatBitsToUint(lobe.open) + 0x8000u) & 0xffff0000u;
@@ -99,8 +101,8 @@ ALCOVE_INLINE float sixteenth_power(float x) {
   return eighth * eighth;
 }
 
-// What the lobe of a neighbour, packed, weighs beside a surface's own, [0,1]: a half where normals
-// part by some 12 degrees or roughness by a tenth.
+// The filter weight, [0,1], of a neighbour's packed surface: a half where the normals differ by
+// about 12 degrees or the roughness by 0.1.
 ALCOVE_INLINE float lobe_weight(LobeSurface own, uint neighbour) {
   // dot(own.normal, bytes * 2 / 255 - 1), the scale on the own side, where it is done once.
   vec3 scaled = own.normal * (2.0f / 255.0f);
@@ -114,8 +116,8 @@ ALCOVE_INLINE float lobe_weight(LobeSurface own, uint neighbour) {
   return sixteenth * sixteenth * max(1.0f - abs(apart), 0.0f);
 }
 
-// The visibility that an artist wants of `visibility`: 1 - intensity * (1 - visibility^power), cut
-// to [0,1]. Open stays open; a power or an intensity over 1 darkens, one below 1 brightens.
+// Visibility after the artist's controls: 1 - intensity * (1 - visibility^power), clamped to [0,1].
+// A visibility of 1 stays 1. A power or an intensity above 1 darkens, one below 1 brightens.
 ALCOVE_INLINE float shaped_visibility(float visibility, float power, float intensity) {
   return saturate(1.0f - intensity * (1.0f - pow(max(visibility, 0.0f), power)));
 }

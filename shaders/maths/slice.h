@@ -1,8 +1,10 @@
-// Slices: planes through the view vector, in which occlusion is searched and integrated.
+// Slices: planes through the view direction, in which occluders are searched and visibility is
+// integrated.
 //
-// A slice is spanned by the view vector v (unit, from the surface to the eye) and a unit direction
-// d perpendicular to it. Angles in it are measured from v, positive towards d. Its `side` is +1
-// towards d and -1 away from it. A horizon is held as the cosine of its angle to v, on either side.
+// A slice is spanned by the view direction v (unit, from the surface to the eye) and a unit
+// direction d perpendicular to it. Angles in the slice are measured from v, positive towards d.
+// `side` selects a half-slice: +1 towards d and -1 away from it. A horizon is given by the cosine
+// of its angle to v, in either half-slice.
 #ifndef ALCOVE_MATHS_SLICE_H
 #define ALCOVE_MATHS_SLICE_H
 
@@ -29,8 +31,8 @@ ALCOVE_INLINE ViewBasis make_view_basis(vec3 view) {
   return basis;
 }
 
-// The direction of the slice at angle phi around the view vector: phi in [0,pi) passes each slice
-// once, [0,2pi) each side of each once.
+// The direction of the slice at angle phi around the view direction. The interval [0,pi) has every
+// slice once, [0,2pi) every half-slice once.
 ALCOVE_INLINE vec3 slice_direction(ViewBasis basis, float phi) {
   float c = cos(phi);
   float s = sin(phi);
@@ -63,8 +65,8 @@ ALCOVE_INLINE Slice make_slice(vec3 normal, vec3 direction, vec3 view) {
   return s;
 }
 
-// The signed angle from the view vector to the projected normal, in [-pi/2,pi/2]. Taken from the
-// smaller of sine and cosine, where the angle does not hang on the last digit.
+// The signed angle from the view direction to the projected normal, in [-pi/2,pi/2]. It is computed
+// from the smaller of sine and cosine, where rounding changes it least.
 ALCOVE_INLINE float slice_gamma(Slice s) {
   bool steep = abs(s.sine) > s.cosine;
   float angle = arc_cosine(steep ? s.cosine : s.sine);
@@ -86,11 +88,11 @@ ALCOVE_INLINE vec3 facing_normal(vec3 normal, vec3 view) {
   return squared > 1e-8f ? bent * inversesqrt(squared) : view;
 }
 
-// Cosine of the horizon that the surface's own tangent plane makes on a side: no horizon is lower.
+// Cosine of the angle of the tangent plane in a half-slice. It is the lowest possible horizon.
 ALCOVE_INLINE float tangent_horizon(Slice s, float side) { return -side * s.sine; }
 
-// Sine (at least 0) and cosine of the angle of a horizon, given by its cosine; one below the
-// tangent plane, or out of [-1,1], is raised or cut to it.
+// Sine (at least 0) and cosine of the angle of a horizon that is given by its cosine. The cosine is
+// clamped to [tangent plane, 1].
 ALCOVE_INLINE vec2 horizon_light(Slice s, float side, float horizon) {
   float c = clamp(horizon, tangent_horizon(s, side), 1.0f);
   return vec2(sqrt((1.0f - c) * (1.0f + c)), c);

@@ -48,7 +48,7 @@ ALCOVE_INLINE bool ends_occluder(float front, float back, bool perspective) {
   return behind > 1e-4f * abs(front) && back != sky_inverse_depth(perspective);
 }
 
-// That of two SliceSample::inverse_depth which is further from the eye.
+// The one of two values of SliceSample::inverse_depth that is further from the eye.
 ALCOVE_INLINE float farther_inverse_depth(float a, float b, bool perspective) {
   return perspective ? min(a, b) : max(a, b);
 }

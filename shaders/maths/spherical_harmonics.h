@@ -36,7 +36,7 @@ ALCOVE_INLINE float harmonic(uint index, vec3 d) {
   return 0.546274215f * (d.x * d.x - d.y * d.y);
 }
 
-// What a coefficient of radiance counts in irradiance over pi: 1, 2/3 and 1/4 by band.
+// The factor from a coefficient of radiance to one of irradiance over pi: 1, 2/3 and 1/4 by band.
 ALCOVE_INLINE float harmonic_irradiance(uint index) {
   return index == 0u ? 1.0f : (index < 4u ? 2.0f / 3.0f : 0.25f);
 }

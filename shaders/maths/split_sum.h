@@ -30,7 +30,7 @@ ALCOVE_INLINE vec2 reflectance_entry(uint x, uint y) {
   return vec2(root * root, float(y) / last);
 }
 
-// What goes out of white light all around by the specular part, per channel.
+// The specular reflectance under uniform white light, per channel.
 ALCOVE_INLINE vec3 specular_reflectance(vec3 f0, vec2 table_value) {
   return vec3(min(f0.x * table_value.x + table_value.y, 1.0f),
               min(f0.y * table_value.x + table_value.y, 1.0f),

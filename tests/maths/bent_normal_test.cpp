@@ -30,7 +30,7 @@ TEST(BentNormal, ArcAgreesWithQuadratureForEveryNormalAndHorizon) {
   EXPECT_LT(worst, 1e-6);
 }
 
-TEST(BentNormal, IsTheMemosFormInAngles) {
+TEST(BentNormal, EqualsTheFormulaOfThePaperInAngles) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
     const double g = random.uniform(-1.5f, 1.5f);
@@ -68,7 +68,7 @@ std::vector<float> even_angles(int count) {
   return angles;
 }
 
-TEST(BentNormal, OfAnOpenSurfaceIsItsNormalFromAnyOneSlice) {
+TEST(BentNormal, UnoccludedSurfaceGetsItsNormalFromASingleSlice) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
     const vec3 view = random.facing(vec3(0, 0, 1)), normal = random.facing(view);
@@ -84,7 +84,7 @@ TEST(BentNormal, OfAnOpenSurfaceIsItsNormalFromAnyOneSlice) {
   }
 }
 
-TEST(BentNormal, OpenBendsCancelOverAllSlices) {
+TEST(BentNormal, UnoccludedResidualsCancelOverAllSlices) {
   RandomInput random;
   for (int i = 0; i < 200; ++i) {
     const vec3 view = random.facing(vec3(0, 0, 1)), normal = random.facing(view);
@@ -105,7 +105,7 @@ TEST(BentNormal, OpenBendsCancelOverAllSlices) {
 
 // A wall along a random direction that hides up to most of its side, from 3 slices at random:
 // filters and histories weigh directions unevenly. By the root-mean-square angle to what 256 say.
-TEST(BentNormal, OfFewSlicesErrsLessOnceSettled) {
+TEST(BentNormal, SubtractingTheExpectedResidualHelpsFewSlices) {
   RandomInput random;
   double raw = 0.0;
   double settled = 0.0;

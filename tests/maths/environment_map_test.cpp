@@ -12,7 +12,7 @@ using glm::ivec2;
 using glm::vec2;
 using glm::vec3;
 
-TEST(EnvironmentMap, DirectionsComeBackFromBothLayouts) {
+TEST(EnvironmentMap, DirectionsSurviveBothLayouts) {
   RandomInput random;
   for (int i = 0; i < 20000; ++i) {
     const vec3 d = random.unit_vector();
@@ -25,7 +25,7 @@ TEST(EnvironmentMap, DirectionsComeBackFromBothLayouts) {
   }
 }
 
-TEST(EnvironmentMap, AxesLieWhereTheHeaderSays) {
+TEST(EnvironmentMap, AxesAreAtTheDocumentedTexels) {
   EXPECT_NEAR(maths::equirectangular_uv({0, 0, -1}).x, 0.0f, 1e-6f);
   EXPECT_NEAR(maths::equirectangular_uv({1, 0, 0}).x, 0.25f, 1e-6f);
   EXPECT_NEAR(maths::equirectangular_uv({0, 0, 1}).x, 0.5f, 1e-6f);
@@ -34,7 +34,7 @@ TEST(EnvironmentMap, AxesLieWhereTheHeaderSays) {
 }
 
 // A step across an edge of the map is as short as one within it.
-TEST(EnvironmentMap, TexelsBeyondAnEdgeContinueIt) {
+TEST(EnvironmentMap, TexelsBeyondAnEdgeContinueTheMap) {
   constexpr int kSize = 16;
   const auto direction = [](ivec2 texel) {
     const ivec2 there = maths::map_texel(texel, kSize);
@@ -64,7 +64,7 @@ TEST(EnvironmentMap, TexelsCoverTheWholeSphere) {
   }
 }
 
-TEST(EnvironmentMap, LevelsRunFromSmoothToRough) {
+TEST(EnvironmentMap, LevelsGoFromSmoothToRough) {
   EXPECT_EQ(maths::level_of_roughness(0.0f, 6), 0.0f);
   EXPECT_EQ(maths::level_of_roughness(2.0f, 6), 5.0f);
   EXPECT_EQ(maths::level_of_roughness(0.7f, 1), 0.0f);

@@ -42,7 +42,7 @@ double over_hemisphere(Function f, int panels = 60) {
       0.0, 2 * kPi, panels);
 }
 
-TEST(Ggx, ProjectedAreaOfTheMicrofacetsIsOne) {
+TEST(Ggx, ProjectedMicrofacetAreaIsOne) {
   for (const float alpha : {1e-3f, 0.01f, 0.1f, 0.5f, 1.0f}) {
     // tan as the variable: the density is spread over many powers of it.
     const double sum = integrate(
@@ -73,7 +73,7 @@ TEST(Ggx, MaskingIsOneFromAboveAndFallsTowardsGrazing) {
   }
 }
 
-TEST(Ggx, WhiteFurnaceNeverGainsEnergy) {
+TEST(Ggx, WhiteFurnaceGainsNoEnergy) {
   for (const float alpha : {0.2f, 0.5f, 1.0f}) {
     for (double angle : {0.0, 0.7, 1.2, 1.5}) {
       const double sum = over_hemisphere(
@@ -134,7 +134,7 @@ TEST(Ggx, MirrorSamplesReflectTheView) {
   EXPECT_LT(distance(light, at_angle(-1.0)), 0.01f);
 }
 
-TEST(Ggx, ExtremesStayFinite) {
+TEST(Ggx, ExtremeInputsGiveFiniteResults) {
   for (const float alpha : {0.0f, 1e-30f, 1.0f}) {
     for (double angle : {0.0, kPi / 2 - 1e-4, kPi / 2}) {
       const vec3 view = at_angle(angle);

@@ -25,13 +25,13 @@ TEST(ArcCosine, StaysWithinItsStatedErrorEverywhere) {
   EXPECT_LT(worst, 4.6e-5);
 }
 
-TEST(ArcCosine, CutsItsArgumentToTheDomain) {
+TEST(ArcCosine, ClampsItsArgumentToMinusOneToOne) {
   EXPECT_EQ(maths::arc_cosine(1.0f), 0.0f);
   EXPECT_EQ(maths::arc_cosine(7.0f), 0.0f);
   EXPECT_FLOAT_EQ(maths::arc_cosine(-7.0f), float(kPi));
 }
 
-TEST(ViewBasis, IsOrthonormalForEveryViewVectorBeforeTheEye) {
+TEST(ViewBasis, IsOrthonormalForEveryViewDirection) {
   RandomInput random;
   for (int i = 0; i < 10000; ++i) {
     const vec3 view = random.facing(vec3(0, 0, 1));
@@ -44,12 +44,12 @@ TEST(ViewBasis, IsOrthonormalForEveryViewVectorBeforeTheEye) {
   }
 }
 
-TEST(Slice, GammaIsTheSignedAngleFromTheViewVectorToTheProjectedNormal) {
+TEST(Slice, GammaIsTheSignedAngleFromTheViewDirectionToTheProjectedNormal) {
   for (double gamma = -kPi / 2; gamma <= kPi / 2; gamma += 0.01)
     EXPECT_NEAR(maths::slice_gamma(slice_of(0.7, gamma)), gamma, 4.8e-5);
 }
 
-TEST(Slice, NormalPerpendicularToThePlaneWeighsNothingAndStaysFinite) {
+TEST(Slice, NormalPerpendicularToTheSlicePlaneHasZeroWeightAndIsFinite) {
   const Slice s = maths::make_slice(vec3(0, 1, 0), vec3(1, 0, 0), vec3(0, 0, 1));
   EXPECT_EQ(s.scale, 0.0f);
   EXPECT_EQ(s.cosine, 1.0f);
@@ -57,7 +57,7 @@ TEST(Slice, NormalPerpendicularToThePlaneWeighsNothingAndStaysFinite) {
   EXPECT_EQ(maths::slice_visibility(s, -1.0f, -1.0f), 0.0f);
 }
 
-TEST(Slice, NormalOfLengthZeroOrDenormalStaysFinite) {
+TEST(Slice, ZeroAndDenormalNormalsGiveFiniteResults) {
   for (const float size : {0.0f, 1e-42f, 1e-20f}) {
     const Slice s = maths::make_slice(vec3(size, 0, size), vec3(1, 0, 0), vec3(0, 0, 1));
     EXPECT_TRUE(std::isfinite(maths::open_slice(s)));
@@ -65,7 +65,7 @@ TEST(Slice, NormalOfLengthZeroOrDenormalStaysFinite) {
   }
 }
 
-TEST(Slice, FacingNormalFlipsBeyondTheThresholdAndBendsBeforeIt) {
+TEST(Slice, NormalsThatFaceAwayAreFlippedBeyondTheThresholdAndBentBelowIt) {
   RandomInput random;
   for (int i = 0; i < 1000; ++i) {
     const vec3 view = random.unit_vector(), normal = random.unit_vector();
@@ -95,7 +95,7 @@ TEST(Gtao, ArcAgreesWithQuadratureForEveryNormalAndHorizon) {
   EXPECT_LT(worst, 2.4e-5);
 }
 
-TEST(Gtao, ArcIsTheMemosJ) {
+TEST(Gtao, ArcEqualsTheIntegralOfThePaper) {
   RandomInput random;
   for (int i = 0; i < 10000; ++i) {
     const double g = random.uniform(-1.57f, 1.57f), h = random.uniform(0.0f, float(g + kPi / 2));
@@ -104,7 +104,7 @@ TEST(Gtao, ArcIsTheMemosJ) {
   }
 }
 
-TEST(Gtao, ArcGrowsAsTheHorizonFallsAndStopsAtTheTangentPlane) {
+TEST(Gtao, ArcIncreasesAsTheHorizonFallsUntilTheTangentPlane) {
   for (double gamma = -1.5; gamma <= 1.5; gamma += 0.1) {
     const Slice s = slice_of(1.0, gamma);
     float before = -1e-6f;
@@ -118,13 +118,13 @@ TEST(Gtao, ArcGrowsAsTheHorizonFallsAndStopsAtTheTangentPlane) {
   }
 }
 
-TEST(Gtao, HorizonOutOfRangeIsCutNotTrusted) {
+TEST(Gtao, HorizonsOutOfRangeAreClamped) {
   const Slice s = slice_of(1.0, 0.3);
   EXPECT_EQ(maths::slice_visibility(s, 9.0f, 9.0f), 0.0f);
   EXPECT_EQ(maths::slice_visibility(s, -9.0f, -9.0f), maths::slice_visibility(s, -1.0f, -1.0f));
 }
 
-TEST(Gtao, OpenSliceIsTheVisibilityWithNothingInIt) {
+TEST(Gtao, UnoccludedArcEqualsVisibilityWithoutOccluders) {
   for (double gamma = -kPi / 2; gamma <= kPi / 2; gamma += 0.01) {
     const Slice s = slice_of(0.8, gamma);
     EXPECT_NEAR(maths::open_slice(s), SliceTruth(s).open(), 5e-5);
@@ -147,7 +147,7 @@ float visibility_over_slices(vec3 normal, vec3 view, int slices, double turn, Ho
   return maths::mean_visibility({sum, weight});
 }
 
-TEST(Gtao, OpenPlaneIsFullyVisibleAtAnyTilt) {
+TEST(Gtao, UnoccludedPlaneHasVisibilityOneAtAnyTilt) {
   RandomInput random;
   for (double tilt : {0.0, 30.0, 60.0, 75.0, 85.0, 89.0, 89.9}) {
     for (int slices : {1, 2, 3, 16}) {
@@ -165,7 +165,7 @@ TEST(Gtao, OpenPlaneIsFullyVisibleAtAnyTilt) {
   }
 }
 
-TEST(Gtao, OpenWeightsAverageToOneOverManySlices) {
+TEST(Gtao, UnoccludedWeightsAverageToOneOverManySlices) {
   const vec3 view(0, 0, 1);
   for (double tilt = 0.0; tilt < 1.57; tilt += 0.1) {
     const vec3 normal(float(std::sin(tilt)), 0, float(std::cos(tilt)));
@@ -188,7 +188,7 @@ double sphere_elevation(double x, glm::dvec2 direction) {
   return std::atan2(1.0, toward) + std::asin(radius / std::hypot(toward, 1.0));
 }
 
-TEST(Gtao, SphereOnAPlaneHidesAllBelowItsSilhouette) {
+TEST(Gtao, SphereOnAPlaneOccludesEverythingBelowItsSilhouette) {
   const vec3 up(0, 0, 1);
   for (double x : {1.2, 1.5, 2.0, 3.0, 6.0}) {
     const auto open_sector = [x](double phi) {
@@ -208,7 +208,7 @@ TEST(Gtao, SphereOnAPlaneHidesAllBelowItsSilhouette) {
   }
 }
 
-TEST(Gtao, GrooveLeavesTheSineOfItsHalfAngle) {
+TEST(Gtao, BottomOfAGrooveHasVisibilityOfTheSineOfItsHalfAngle) {
   // From the bottom line of an endless V the open sky is a wedge, whose view factor is the sine.
   const vec3 up(0, 0, 1);
   for (double half : {0.2, 0.5, 1.0, 1.4}) {
@@ -232,7 +232,7 @@ TEST(Gtao, VisibilityStaysInRangeForAnyHorizons) {
   }
 }
 
-TEST(Gtao, UniformVisibilityIsTheSolidAngleAboveTheHorizonsAndTheTangentPlane) {
+TEST(Gtao, UniformVisibilityIsTheSolidAngleAboveHorizonsAndTangentPlane) {
   for (double gamma = -1.5; gamma <= 1.5; gamma += 0.25) {
     const Slice s = slice_of(0.7, gamma);
     for (double h1 = 0.0; h1 <= kPi; h1 += 0.1) {
@@ -250,7 +250,7 @@ TEST(Gtao, UniformVisibilityIsTheSolidAngleAboveTheHorizonsAndTheTangentPlane) {
   }
 }
 
-TEST(Gtao, RadiusWeightFallsToNothingAtTheRadius) {
+TEST(Gtao, FalloffIsZeroAtTheRadius) {
   EXPECT_EQ(maths::radius_weight(1.0f, 2.0f, 0.5f), 1.0f);
   EXPECT_FLOAT_EQ(maths::radius_weight(1.5f, 2.0f, 0.5f), 0.5f);
   EXPECT_EQ(maths::radius_weight(2.0f, 2.0f, 0.5f), 0.0f);
@@ -260,13 +260,13 @@ TEST(Gtao, RadiusWeightFallsToNothingAtTheRadius) {
   EXPECT_EQ(maths::radius_weight(0.0f, 2.0f, 1.0f), 1.0f);
 }
 
-TEST(Gtao, ThicknessHeuristicRaisesAtOnceAndFallsByTheBlend) {
+TEST(Gtao, ThicknessHeuristicRaisesTheHorizonAtOnceAndLowersItByTheBlend) {
   EXPECT_EQ(maths::raise_horizon(0.2f, 0.5f, 0.05f), 0.5f);
   EXPECT_FLOAT_EQ(maths::raise_horizon(0.5f, 0.1f, 0.05f), 0.48f);
   EXPECT_EQ(maths::raise_horizon(0.5f, 0.1f, 0.0f), 0.5f);
 }
 
-TEST(Gtao, TangentArcsAreTheTwoPartsOfAnOpenSlice) {
+TEST(Gtao, TangentArcsSumToTheUnoccludedSlice) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
     const maths::Slice s = slice_of(random.uniform(0.01f, 1.0f), random.uniform(-1.57f, 1.57f));

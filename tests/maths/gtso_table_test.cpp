@@ -100,7 +100,7 @@ TEST(GtsoTable, EntriesOfRoughnessOneAreTheIntegralItself) {
   }
 }
 
-TEST(GtsoTable, SqueezedAnglesComeBack) {
+TEST(GtsoTable, CompressedAnglesCanBeExpanded) {
   RandomInput random;
   for (int i = 0; i < 5000; ++i) {
     const float cone = random.uniform(0.01f, maths::kHalfPi);
@@ -115,7 +115,7 @@ TEST(GtsoTable, SqueezedAnglesComeBack) {
 }
 
 // Beside the cones: against the lobe's own share for a bent normal on any possible side.
-TEST(GtsoTable, ErrsLessThanHalfAsMuchAsTheConeOnAnySide) {
+TEST(GtsoTable, HasLessThanHalfTheErrorOfTheCone) {
   RandomInput random;
   double by_table = 0.0, by_cone = 0.0;
   for (int i = 0; i < 600; ++i) {

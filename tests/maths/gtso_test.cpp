@@ -34,7 +34,7 @@ double shared_area(double a, double b, double d) {
          integrate(ring, k2, a, 200);
 }
 
-TEST(SphericalCap, SharedAreaAgreesWithQuadrature) {
+TEST(SphericalCap, IntersectionAreaAgreesWithQuadrature) {
   RandomInput random;
   for (int i = 0; i < 1500; ++i) {
     const double a = random.log_uniform(1e-3f, 1.5707f), b = random.log_uniform(1e-3f, 1.5707f);
@@ -48,7 +48,7 @@ TEST(SphericalCap, SharedAreaAgreesWithQuadrature) {
   }
 }
 
-TEST(SphericalCap, SharedAreaIsContinuousAtItsEnds) {
+TEST(SphericalCap, IntersectionAreaIsContinuousAtItsLimits) {
   for (const float a : {0.01f, 0.3f, 1.2f, 1.5707f}) {
     for (const float b : {0.02f, 0.5f, 1.5707f}) {
       const float whole = maths::cap_area(std::min(a, b));
@@ -72,7 +72,7 @@ TEST(SphericalCap, SmoothApproximationStaysWithinItsStatedError) {
   EXPECT_LT(worst, 0.16);
 }
 
-TEST(Gtso, VisibilityConeHoldsAsMuchAsTheVisibilitySays) {
+TEST(Gtso, VisibilityConeHasTheSolidAngleOfTheVisibility) {
   for (float v = 0.0f; v <= 1.0f; v += 0.01f) {
     const double angle = maths::visibility_cone(v);
     const double cosine_weighted =
@@ -81,14 +81,14 @@ TEST(Gtso, VisibilityConeHoldsAsMuchAsTheVisibilitySays) {
   }
 }
 
-TEST(Gtso, LobeConeFollowsItsCosine) {
+TEST(Gtso, LobeConeHasTheDocumentedHalfAngle) {
   for (float alpha = 0.0f; alpha <= 1.0f; alpha += 0.001f) {
     const double expected = std::acos(std::pow(10.0, -double(alpha) * alpha));
     EXPECT_NEAR(maths::lobe_cone(alpha), expected, 1e-5 + 2e-5 * expected);
   }
 }
 
-TEST(Gtso, OpenSurfaceStaysOpenForEveryLobeAndView) {
+TEST(Gtso, UnoccludedSurfaceHasSpecularVisibilityOneForEveryLobeAndView) {
   for (float alpha : {0.0f, 1e-3f, 0.01f, 0.1f, 0.3f, 1.0f})
     for (double angle = 0.0; angle <= 89.9; angle += 0.7) {
       const double t = angle * kPi / 180;
@@ -101,7 +101,7 @@ TEST(Gtso, OpenSurfaceStaysOpenForEveryLobeAndView) {
     }
 }
 
-TEST(Gtso, FullyOccludedIsBlack) {
+TEST(Gtso, FullOcclusionGivesZero) {
   RandomInput random;
   for (int i = 0; i < 1000; ++i) {
     const vec3 bent = random.facing(kNormal), reflection = random.facing(kNormal);
@@ -111,13 +111,13 @@ TEST(Gtso, FullyOccludedIsBlack) {
   }
 }
 
-TEST(Gtso, MirrorSeesWhatTheConeHolds) {
+TEST(Gtso, MirrorIsVisibleExactlyInsideTheCone) {
   const vec3 inside(0.3f, 0, std::sqrt(1 - 0.09f)), outside(0.9f, 0, std::sqrt(1 - 0.81f));
   EXPECT_EQ(maths::specular_occlusion(0.5f, kNormal, kNormal, inside, 0.0f), 1.0f);
   EXPECT_EQ(maths::specular_occlusion(0.5f, kNormal, kNormal, outside, 0.0f), 0.0f);
 }
 
-TEST(Gtso, GrowsWithVisibilityAndStaysInRange) {
+TEST(Gtso, IncreasesWithVisibilityAndIsInRange) {
   RandomInput random;
   for (int i = 0; i < 500; ++i) {
     const vec3 bent = random.facing(kNormal), reflection = random.facing(kNormal);
@@ -132,7 +132,7 @@ TEST(Gtso, GrowsWithVisibilityAndStaysInRange) {
   }
 }
 
-TEST(Gtso, VisibilityIsSettledOnlyNearItsEnds) {
+TEST(Gtso, ConvergedVisibilityIsRoundedOnlyNearZeroAndOne) {
   EXPECT_EQ(maths::converged_visibility(0.0f), 0.0f);
   EXPECT_EQ(maths::converged_visibility(127.5f / 128.0f), 1.0f);
   for (float v = 0.0f; v <= 1.0f; v += 0.01f) {
@@ -140,7 +140,7 @@ TEST(Gtso, VisibilityIsSettledOnlyNearItsEnds) {
   }
 }
 
-TEST(Gtso, RaisedConeLiesAboveTheSurface) {
+TEST(Gtso, RaisedConeIsAboveTheSurface) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
     const vec3 normal = random.unit_vector(), bent = random.facing(normal);
@@ -156,7 +156,7 @@ TEST(Gtso, RaisedConeLiesAboveTheSurface) {
   }
 }
 
-TEST(Gtso, MirrorDirectionIsUnitAndNeverUnderTheSurface) {
+TEST(Gtso, MirrorDirectionIsAUnitVectorAboveTheSurface) {
   RandomInput random;
   for (int i = 0; i < 1000; ++i) {
     const vec3 normal = random.unit_vector(), view = random.unit_vector();

@@ -1,4 +1,4 @@
-// What the history stores, and how frames accumulate.
+// The texels of the history, and the accumulation of frames.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,7 +22,7 @@ maths::HistoryTexel stored(const maths::HistoryTexel& texel, float dither) {
   return maths::unpack_history_texel(maths::pack_history_texel(texel, dither));
 }
 
-TEST(History, TexelKeepsItsValuesWithinTheirSteps) {
+TEST(History, TexelKeepsItsValuesWithinTheirQuantisationSteps) {
   RandomInput random;
   for (int i = 0; i < 20000; ++i) {
     const maths::HistoryTexel texel = texel_of(random.uniform(0, 1), random.uniform(0, 1),
@@ -35,7 +35,7 @@ TEST(History, TexelKeepsItsValuesWithinTheirSteps) {
   }
 }
 
-TEST(History, TexelKeepsItsBoundsExactlyAtAnyDither) {
+TEST(History, TexelKeepsZeroAndOneExactlyAtAnyDither) {
   for (const float dither : {0.0f, 0.3f, 0.9999f}) {
     const maths::HistoryTexel least = stored(texel_of(0, 0, 0, 0), dither);
     EXPECT_EQ(least.depth, 0.0f);
@@ -72,7 +72,7 @@ TEST(History, DitherKeepsTheMean) {
   }
 }
 
-TEST(History, LogarithmOfAWeightIsInvertible) {
+TEST(History, WeightSurvivesItsLogarithmicEncoding) {
   EXPECT_EQ(maths::log_weight_of(0.0f), 0.0f);
   EXPECT_EQ(maths::weight_of_log(0.0f), 0.0f);
   for (float weight = 0.1f; weight <= float(maths::kMaxHistoryFrames); weight *= 1.3f) {
@@ -81,7 +81,7 @@ TEST(History, LogarithmOfAWeightIsInvertible) {
   }
 }
 
-TEST(History, MantissaBitsAreUnpackedAtAnyPlace) {
+TEST(History, MantissaBitsAreUnpackedAtAnyPosition) {
   for (unsigned bits = 1; bits <= 16; ++bits) {
     for (unsigned first = 0; first + bits <= 32; ++first) {
       const unsigned last = (1u << bits) - 1u;
@@ -95,7 +95,7 @@ TEST(History, MantissaBitsAreUnpackedAtAnyPlace) {
   }
 }
 
-TEST(History, LobeTexelKeepsItsValuesWithinTheirSteps) {
+TEST(History, LobeTexelKeepsItsValuesWithinTheirQuantisationSteps) {
   RandomInput random;
   for (int i = 0; i < 20000; ++i) {
     maths::LobeTexel texel;
@@ -123,7 +123,7 @@ TEST(History, DepthThatDiffersIsRejected) {
   EXPECT_EQ(maths::history_agreement(-1e30f, 0.001f, 100.0f), 0.0f);
 }
 
-TEST(History, SpreadIsMeanAndDeviation) {
+TEST(History, SpreadIsTheMeanAndTheStandardDeviation) {
   const maths::Spread s = maths::spread_of_sums(1.0f + 2.0f + 3.0f, 1.0f + 4.0f + 9.0f, 3.0f);
   EXPECT_FLOAT_EQ(s.mean, 2.0f);
   EXPECT_NEAR(s.deviation, std::sqrt(2.0f / 3.0f), 1e-6f);
@@ -131,7 +131,7 @@ TEST(History, SpreadIsMeanAndDeviation) {
   EXPECT_GE(maths::spread_of_sums(9 * 0.1f, 9 * 0.01f - 1e-6f, 9.0f).deviation, 0.0f);
 }
 
-TEST(History, ClampKeepsWhatAgreesAndReducesTheWeightOfWhatMoved) {
+TEST(History, ClampKeepsValuesInRangeAndReducesTheWeightOfOthers) {
   maths::Spread now;
   now.mean = 0.5f;
   now.deviation = 0.1f;
@@ -142,7 +142,7 @@ TEST(History, ClampKeepsWhatAgreesAndReducesTheWeightOfWhatMoved) {
   EXPECT_FLOAT_EQ(maths::weight_after_clamp(21.0f, 0.7f, 0.6f, 0.2f), 11.0f);
 }
 
-TEST(History, BlurCountsAsNoiseOfItsVariance) {
+TEST(History, BlurAddsItsVarianceToTheNoise) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
     const float weight = random.uniform(1.0f, 127.0f);
@@ -157,7 +157,7 @@ TEST(History, BlurCountsAsNoiseOfItsVariance) {
   EXPECT_EQ(maths::weight_after_blur(0.0f, 0.2f, 1.0f), 0.0f);
 }
 
-TEST(History, ChangeIsToldFromTheNoiseOfAFewSamples) {
+TEST(History, ChangesAreDistinguishedFromNoiseByAFewSamples) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
     const float a = random.uniform(0.0f, 1.0f);
@@ -175,7 +175,7 @@ TEST(History, ChangeIsToldFromTheNoiseOfAFewSamples) {
   EXPECT_EQ(maths::visibility_changed(0.2f, 0.8f), 1.0f);
 }
 
-TEST(History, RecentOcclusionForgetsInAFewFrames) {
+TEST(History, RecentOcclusionAveragesOnlyAFewFrames) {
   EXPECT_EQ(maths::update_recent(0.3f, 0.0f, 0.9f, 1.0f), 0.9f);
   EXPECT_FLOAT_EQ(maths::update_recent(0.2f, 1.0f, 0.4f, 1.0f), 0.3f);
   const auto after_a_dozen = [](float open) {

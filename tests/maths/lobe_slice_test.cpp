@@ -99,7 +99,7 @@ struct Surface {
   }
 };
 
-TEST(LobeSlice, DistributionHasThisAntiderivative) {
+TEST(LobeSlice, AntiderivativeMatchesTheDistribution) {
   RandomInput random;
   double worst = 0.0;
   for (const float roughness : kRoughnesses) {
@@ -181,7 +181,7 @@ TEST(LobeSlice, SumOfSlicesStaysWithinItsStatedErrorOfTheWholeBrdf) {
   }
 }
 
-TEST(LobeSlice, OpenSlicesOverAllTurnsHoldTheLobeOfTheBrdf) {
+TEST(LobeSlice, UnoccludedSlicesOverAllRotationsSumToTheLobeOfTheBrdf) {
   for (const float roughness : {0.3f, 0.6f, 1.0f}) {
     for (const double tilt : {0.2, 0.8, 1.3}) {
       const Surface surface(tilt);
@@ -202,7 +202,7 @@ TEST(LobeSlice, OpenSlicesOverAllTurnsHoldTheLobeOfTheBrdf) {
   }
 }
 
-TEST(LobeSlice, OpenAndClosedAreExactForAnyRoughnessAndView) {
+TEST(LobeSlice, FullAndZeroVisibilityAreExactForAnyRoughnessAndView) {
   RandomInput random;
   for (int i = 0; i < 5000; ++i) {
     const Slice s = Surface(random.uniform(0.0f, 1.5707f)).slice(random.uniform(0.0f, 3.14f));
@@ -214,7 +214,7 @@ TEST(LobeSlice, OpenAndClosedAreExactForAnyRoughnessAndView) {
   }
 }
 
-TEST(LobeSlice, ArcGrowsAsTheHorizonFalls) {
+TEST(LobeSlice, ArcIncreasesAsTheHorizonFalls) {
   RandomInput random;
   for (int i = 0; i < 300; ++i) {
     const Slice s = Surface(random.uniform(0.0f, 1.57f)).slice(random.uniform(0.0f, 3.14f));
@@ -230,7 +230,7 @@ TEST(LobeSlice, ArcGrowsAsTheHorizonFalls) {
   }
 }
 
-TEST(LobeSlice, MirrorSeesWhatLiesAtItsAngle) {
+TEST(LobeSlice, MirrorIsVisibleExactlyAtItsAngle) {
   const double tilt = 0.4;
   const Slice s = Surface(tilt).slice(0.0);
   const LobeSlice lobe = maths::make_lobe_slice(s, 0.0f);
@@ -243,7 +243,7 @@ TEST(LobeSlice, MirrorSeesWhatLiesAtItsAngle) {
 }
 
 // The sectors beyond a horizon are occluded, to the nearest boundary.
-TEST(LobeSlice, SectorsHoldTheLobeOfTheHorizonAtTheirBoundary) {
+TEST(LobeSlice, SectorsBelowAHorizonHaveTheLobeOfThatHorizon) {
   RandomInput random;
   for (const float roughness : kRoughnesses) {
     Error error;
@@ -268,7 +268,7 @@ TEST(LobeSlice, SectorsHoldTheLobeOfTheHorizonAtTheirBoundary) {
   }
 }
 
-TEST(LobeSlice, SliceOfViewAndNormalHoldsTheMirrorDirection) {
+TEST(LobeSlice, SliceThroughViewAndNormalContainsTheMirrorDirection) {
   RandomInput random;
   for (int i = 0; i < 1000; ++i) {
     const vec3 view = random.facing(vec3(0, 0, 1)), normal = random.facing(view);
@@ -280,7 +280,7 @@ TEST(LobeSlice, SliceOfViewAndNormalHoldsTheMirrorDirection) {
   }
 }
 
-TEST(LobeSlice, TurnedAnglesKeepTheMeanOverAllTurns) {
+TEST(LobeSlice, RotatedAnglesKeepTheMeanOverAllRotations) {
   for (const float roughness : kRoughnesses) {
     double plain = 0.0, turned = 0.0, weights = 0.0;
     const auto f = [](double phi) {

@@ -7,14 +7,14 @@
 namespace alcove::maths_test {
 namespace {
 
-TEST(MultiBounce, OpenStaysOpenAndClosedStaysClosed) {
+TEST(MultiBounce, KeepsVisibilityZeroAndOne) {
   for (float albedo = 0.0f; albedo <= 1.0f; albedo += 0.01f) {
     EXPECT_EQ(maths::multi_bounce_channel(1.0f, albedo), 1.0f);
     EXPECT_EQ(maths::multi_bounce_channel(0.0f, albedo), 0.0f);
   }
 }
 
-TEST(MultiBounce, OnlyBrightensAndGrowsWithVisibilityAndAlbedo) {
+TEST(MultiBounce, NeverDarkensAndIncreasesWithVisibilityAndAlbedo) {
   for (float albedo = 0.0f; albedo <= 1.0f; albedo += 0.02f) {
     float before = 0.0f;
     for (float v = 0.0f; v <= 1.0f; v += 0.005f) {
@@ -28,19 +28,19 @@ TEST(MultiBounce, OnlyBrightensAndGrowsWithVisibilityAndAlbedo) {
   }
 }
 
-TEST(MultiBounce, IsTheMemosCubicBetweenItsBounds) {
+TEST(MultiBounce, EqualsTheCubicOfThePaperBetweenItsBounds) {
   // Section 5 at visibility 0.5 and albedo 0.5: a = 0.6878, b = -1.75585, c = 2.0679.
   EXPECT_NEAR(maths::multi_bounce_channel(0.5f, 0.5f),
               ((0.5 * 0.6878 - 1.75585) * 0.5 + 2.0679) * 0.5, 1e-6);
 }
 
-TEST(MultiBounce, WhatIsNoNumberIsBlackAndOccluded) {
+TEST(MultiBounce, NaNInputsGiveZero) {
   const float none = std::numeric_limits<float>::quiet_NaN();
   EXPECT_EQ(maths::multi_bounce_channel(none, 0.5f), 0.0f);
   EXPECT_EQ(maths::multi_bounce_channel(0.4f, none), maths::multi_bounce_channel(0.4f, 0.0f));
 }
 
-TEST(MultiBounce, ChannelsDoNotMix) {
+TEST(MultiBounce, ChannelsAreIndependent) {
   const glm::vec3 bounced = maths::multi_bounce(0.4f, glm::vec3(0.9f, 0.5f, 0.1f));
   EXPECT_EQ(bounced.x, maths::multi_bounce_channel(0.4f, 0.9f));
   EXPECT_EQ(bounced.y, maths::multi_bounce_channel(0.4f, 0.5f));

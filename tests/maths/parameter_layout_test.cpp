@@ -82,7 +82,7 @@ const std::map<std::string, Offsets> kExpected = {
       ALCOVE_OFFSET(ReconstructParameters, dither_offset)}},
 };
 
-TEST(ParameterStructs, LieInUniformBlocksWhereTheyLieInCpp) {
+TEST(ParameterStructs, HaveTheSameLayoutInUniformBlocksAndInCpp) {
   std::map<std::string, int> seen;
   for (const StructLayout& layout : struct_layouts(kParameterLayouts)) {
     const auto match = kExpected.find(layout.name);
@@ -93,7 +93,7 @@ TEST(ParameterStructs, LieInUniformBlocksWhereTheyLieInCpp) {
   for (const auto& [name, offsets] : kExpected) EXPECT_EQ(seen[name], 1) << name;
 }
 
-TEST(ParameterStructs, CanFollowOneAnotherInABlock) {
+TEST(ParameterStructs, CanBeConsecutiveMembersOfABlock) {
   EXPECT_EQ(sizeof(maths::Projection) % 16, 0u);
 }
 

@@ -1,4 +1,4 @@
-// The same functions on the device and on the CPU.
+// Compares the functions of shaders/maths on the device and on the processor.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "compute_run.h"
+#include "gpu/vulkan_device.h"
 #include "maths/make_projection.h"
 #include "parity_cases.h"
 #include "parity_spirv.h"
 #include "random_input.h"
-#include "gpu/vulkan_device.h"
 
 namespace alcove::maths_test {
 namespace {
@@ -25,8 +25,8 @@ struct Bound {
   double absolute, relative;  // their sum is allowed
 };
 
-// What the two may differ by where the function is well conditioned: rounding, and the device's own
-// sine, arc tangent, power and root.
+// Largest allowed differences of well-conditioned functions. They come from rounding and from the
+// device's own sine, arc tangent, power and square root.
 constexpr Bound kBounds[] = {
     {"slice", 1e-4, 1e-5},
     {"visibility", 1e-4, 1e-5},
@@ -107,7 +107,7 @@ class Parity : public ::testing::TestWithParam<std::uint32_t> {
   static inline std::unique_ptr<ComputeRun> shared_run;
 };
 
-TEST_P(Parity, DeviceComputesWhatTheCpuComputes) {
+TEST_P(Parity, DeviceAndProcessorComputeTheSameValues) {
   ASSERT_NE(shared_run, nullptr);
   RandomInput random;
   std::vector<vec4> inputs(2 * kInputs);

@@ -92,13 +92,13 @@ struct Imaged {
   double depth_ndc;
 };
 
-// What the matrix itself does to a view-space point.
+// The image of a view-space point, computed with the matrix itself.
 Imaged image_of(const mat4& matrix, glm::dvec3 position) {
   const glm::dvec4 clip = glm::dmat4(matrix) * glm::dvec4(position, 1.0);
   return {glm::dvec2(clip.x, clip.y) / clip.w * 0.5 + 0.5, clip.z / clip.w};
 }
 
-TEST(Projection, PositionsLandWhereTheMatrixPutsThem) {
+TEST(Projection, PositionsAgreeWithTheMatrix) {
   RandomInput random;
   for (int i = 0; i < 20000; ++i) {
     const Frustum f = random_frustum(random);
@@ -118,7 +118,7 @@ TEST(Projection, PositionsLandWhereTheMatrixPutsThem) {
   }
 }
 
-TEST(Projection, RawDepthComesBackAsTheDistanceItWasMadeFrom) {
+TEST(Projection, RawDepthConvertsBackToItsDistance) {
   RandomInput random;
   for (int i = 0; i < 20000; ++i) {
     const Frustum f = random_frustum(random);
@@ -142,7 +142,7 @@ TEST(Projection, RawDepthComesBackAsTheDistanceItWasMadeFrom) {
   }
 }
 
-TEST(Projection, ReversedInfiniteDepthKeepsItsDigitsFarAway) {
+TEST(Projection, ReversedInfiniteDepthIsPreciseFarAway) {
   Frustum f;
   f.infinite = f.reversed = true;
   const Projection p = projection_of(f);
@@ -151,7 +151,7 @@ TEST(Projection, ReversedInfiniteDepthKeepsItsDigitsFarAway) {
   }
 }
 
-TEST(Projection, NearAndFarPlanesAreThoseOfTheFrustum) {
+TEST(Projection, NearAndFarPlanesEqualThoseOfTheFrustum) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
     const Frustum f = random_frustum(random);
@@ -167,7 +167,7 @@ TEST(Projection, NearAndFarPlanesAreThoseOfTheFrustum) {
   }
 }
 
-TEST(Projection, SkyAndBrokenDepthsAreTheSky) {
+TEST(Projection, SkyAndInvalidDepthsAreTheSky) {
   for (const bool infinite : {false, true}) {
     for (const bool perspective : {false, true}) {
       Frustum f;
@@ -206,7 +206,7 @@ TEST(Projection, EveryOtherDepthIsFiniteAndNoNearerThanTheNearPlane) {
   }
 }
 
-TEST(Projection, ViewVectorPointsAgainstTheRayThatSeesThePoint) {
+TEST(Projection, ViewDirectionPointsFromTheSurfaceToTheEye) {
   RandomInput random;
   for (int i = 0; i < 5000; ++i) {
     const Frustum f = random_frustum(random);
@@ -220,7 +220,7 @@ TEST(Projection, ViewVectorPointsAgainstTheRayThatSeesThePoint) {
   }
 }
 
-TEST(Projection, ViewVectorIsConstantOnlyWhereRaysAreParallel) {
+TEST(Projection, ViewDirectionIsConstantOnlyInOrthographicViews) {
   Frustum f;
   f.perspective = false;
   const Projection orthographic = projection_of(f);
@@ -231,7 +231,7 @@ TEST(Projection, ViewVectorIsConstantOnlyWhereRaysAreParallel) {
       1e-6f);
 }
 
-TEST(Projection, FarNarrowPerspectiveNearsTheOrthographic) {
+TEST(Projection, NarrowPerspectiveFromAfarApproachesTheOrthographic) {
   Frustum narrow;
   const double distance_away = 1e4;
   narrow.left = narrow.bottom = -1 / distance_away;
@@ -249,13 +249,13 @@ TEST(Projection, FarNarrowPerspectiveNearsTheOrthographic) {
   EXPECT_LT(distance(maths::view_vector(a, from_a), maths::view_vector(b, from_b)), 2e-4f);
 }
 
-TEST(Projection, PixelCentresLieHalfATexelIn) {
+TEST(Projection, PixelCentresAreHalfATexelFromTheEdge) {
   const Projection p = projection_of(Frustum{}, 5, 3);
   EXPECT_FLOAT_EQ(maths::pixel_centre_uv(p, glm::uvec2(0, 0)).x, 0.1f);
   EXPECT_FLOAT_EQ(maths::pixel_centre_uv(p, glm::uvec2(4, 2)).y, 2.5f / 3.0f);
 }
 
-TEST(Projection, TopOfTheImageIsTheTopOfTheView) {
+TEST(Projection, FirstRowIsTheTopOfTheView) {
   const Projection p = projection_of(Frustum{});
   EXPECT_GT(maths::position_vs(p, vec2(0.5f, 0.0f), 1.0f).y, 0.9f);
   Frustum upside_down;
@@ -293,7 +293,7 @@ TEST(MakeProjection, AcceptsRoundingErrorsAndRemovesThem) {
   }
 }
 
-TEST(MakeProjection, RefusesWhatIsNoProjectionAndSaysWhy) {
+TEST(MakeProjection, RefusesInvalidProjectionsAndSaysWhy) {
   const mat4 good = matrix_of(Frustum{});
   const auto fault = [](const mat4& m) {
     const auto p = maths::make_projection(m, 16, 16);

@@ -23,7 +23,7 @@ float largest_gap(std::vector<float> values) {
   return gap;
 }
 
-TEST(SpatialPattern, BlockHoldsSixteenDirectionsAndFourOffsets) {
+TEST(SpatialPattern, BlockOfFourByFourHasSixteenDirectionsAndFourOffsets) {
   for (unsigned frame = 0; frame < 24; ++frame) {
     std::set<float> directions, offsets;
     for (unsigned y = 0; y < 4; ++y) {
@@ -42,7 +42,7 @@ TEST(SpatialPattern, BlockHoldsSixteenDirectionsAndFourOffsets) {
   }
 }
 
-TEST(SpatialPattern, SixFramesTurnTheBlockThroughNinetySixDirections) {
+TEST(SpatialPattern, SixFramesGiveTheBlockNinetySixDirections) {
   std::set<int> directions;
   for (unsigned frame = 0; frame < 6; ++frame)
     for (unsigned y = 0; y < 4; ++y)
@@ -52,7 +52,7 @@ TEST(SpatialPattern, SixFramesTurnTheBlockThroughNinetySixDirections) {
   EXPECT_EQ(directions.size(), 96u);
 }
 
-TEST(SpatialPattern, APixelsOwnSixDirectionsSpreadOverHalfATurn) {
+TEST(SpatialPattern, SixDirectionsOfAPixelAreSpreadOverHalfATurn) {
   for (unsigned pixel = 0; pixel < 16; ++pixel) {
     std::vector<float> directions;
     for (unsigned frame = 0; frame < 6; ++frame)
@@ -72,7 +72,7 @@ TEST(SpatialPattern, RepeatsEveryFourPixelsAndTwentyFourFrames) {
   EXPECT_EQ(a.offset, b.offset);
 }
 
-TEST(GoldenPattern, AnyFourByFourPixelsCoverDirectionsAndOffsetsEvenly) {
+TEST(GoldenPattern, FourByFourPixelsAnywhereCoverDirectionsAndOffsetsEvenly) {
   for (unsigned frame : {0u, 1u, 5u, 1000000u}) {
     for (const uvec2 corner : {uvec2(0, 0), uvec2(3, 17), uvec2(1919, 1079)}) {
       std::vector<float> directions, offsets;
@@ -112,7 +112,7 @@ TEST(GoldenPattern, DoesNotRepeatAtAnySmallPeriod) {
   }
 }
 
-TEST(TileByPattern, MeetsEachTileOnceAndHasOneDirectionOfThePaperInEachGroup) {
+TEST(TileByPattern, VisitsEachTileOnceAndEachGroupHasOneDirectionOfThePaper) {
   std::set<unsigned> blocks;
   for (unsigned group = 0; group < 12 * 8; ++group) {
     std::set<float> six_rotations;
@@ -127,7 +127,7 @@ TEST(TileByPattern, MeetsEachTileOnceAndHasOneDirectionOfThePaperInEachGroup) {
   }
 }
 
-TEST(GoldenPattern, AnyRunOfFramesCoversDirectionsAndOffsetsEvenly) {
+TEST(GoldenPattern, ConsecutiveFramesCoverDirectionsAndOffsetsEvenly) {
   for (unsigned start : {0u, 123u, 4000000000u}) {
     std::vector<float> directions, offsets;
     for (unsigned frame = 0; frame < 32; ++frame) {
@@ -140,7 +140,7 @@ TEST(GoldenPattern, AnyRunOfFramesCoversDirectionsAndOffsetsEvenly) {
   }
 }
 
-TEST(GoldenPattern, WhereSearchesMoveEveryFourthFrameCoversThemEvenlyToo) {
+TEST(GoldenPattern, EveryFourthFrameCoversThemEvenlyToo) {
   for (unsigned start : {0u, 123u, 4000000000u}) {
     for (const unsigned apart : {1u, 4u}) {
       std::vector<float> directions, offsets;
@@ -180,7 +180,7 @@ TEST(HilbertNoise, IsTheR2SequenceInExactArithmetic) {
   }
 }
 
-TEST(HilbertNoise, IsSpreadEvenlyOverABlockAndOverFrames) {
+TEST(HilbertNoise, IsEvenlyDistributedOverABlockAndOverFrames) {
   std::vector<float> block, frames;
   for (unsigned k = 0; k < 16; ++k)
     block.push_back(maths::hilbert_pattern(uvec2(8 + (k & 3u), 12 + (k >> 2u)), 0).direction);
@@ -190,7 +190,7 @@ TEST(HilbertNoise, IsSpreadEvenlyOverABlockAndOverFrames) {
   EXPECT_LT(largest_gap(frames), 4.0f / 64);
 }
 
-TEST(Slices, OfAllPixelsTileHalfATurn) {
+TEST(Slices, SlicesOfAllPixelsCoverHalfATurn) {
   EXPECT_FLOAT_EQ(maths::slice_angle(0, 3, 0.0f), 0.0f);
   EXPECT_FLOAT_EQ(maths::slice_angle(2, 4, 0.0f), maths::kHalfPi);
   EXPECT_LT(maths::slice_angle(2, 3, 0.99f), maths::kPi);

@@ -70,7 +70,7 @@ struct Setting {
   }
 };
 
-TEST(SliceLine, ASampleOnTheLineKeepsItsCoordinates) {
+TEST(SliceLine, SampleOnTheLineKeepsItsCoordinates) {
   RandomInput random;
   for (int i = 0; i < 5000; ++i) {
     const Setting s(random);
@@ -86,7 +86,7 @@ TEST(SliceLine, ASampleOnTheLineKeepsItsCoordinates) {
 
 float inverse_depth_of(float depth, bool perspective) { return perspective ? 1.0f / depth : depth; }
 
-TEST(SliceLine, ABackFaceEndsAnOccluderOnlyBehindItsFront) {
+TEST(SliceLine, BackFaceEndsAnOccluderOnlyBehindItsFrontFace) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
     const bool perspective = random.bits() % 2 == 0;
@@ -106,8 +106,9 @@ TEST(SliceLine, ABackFaceEndsAnOccluderOnlyBehindItsFront) {
   }
 }
 
-// So that the sectors of an occluder are those between its two ends, whatever lies between them.
-TEST(SliceLine, AnOccludersBackLiesOnTheViewRayOfItsFront) {
+// The sectors of an occluder are then those between its two ends, independent of the points
+// between.
+TEST(SliceLine, BackOfAnOccluderIsOnTheViewRayOfItsFront) {
   RandomInput random;
   for (int i = 0; i < 5000; ++i) {
     const Setting s(random);
@@ -123,7 +124,7 @@ TEST(SliceLine, AnOccludersBackLiesOnTheViewRayOfItsFront) {
   }
 }
 
-TEST(SliceLine, SamplesOfTheTangentPlaneMoveAlongItAndStayOnIt) {
+TEST(SliceLine, SamplesOfTheTangentPlaneStayOnItWhenSnapped) {
   RandomInput random;
   for (int i = 0; i < 5000; ++i) {
     const Setting s(random);
@@ -144,7 +145,7 @@ TEST(SliceLine, SamplesOfTheTangentPlaneMoveAlongItAndStayOnIt) {
   }
 }
 
-TEST(SliceLine, RawDepthOfAnyKindIsBetweenTheNearPlaneAndTheSky) {
+TEST(SliceLine, AnyRawDepthIsClampedBetweenTheNearPlaneAndTheSky) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   // Reversed and infinite with a near plane at 0.1; that of rounded matrices, whose far plane lies
   // behind infinity; orthographic.
@@ -162,7 +163,7 @@ TEST(SliceLine, RawDepthOfAnyKindIsBetweenTheNearPlaneAndTheSky) {
   }
 }
 
-TEST(SliceLine, SamplesFarOffTheTangentPlaneDoNotLieOnIt) {
+TEST(SliceLine, SamplesFarFromTheTangentPlaneAreNotSnappedToIt) {
   RandomInput random;
   for (int i = 0; i < 1000; ++i) {
     const Setting s(random);
@@ -176,7 +177,7 @@ TEST(SliceLine, SamplesFarOffTheTangentPlaneDoNotLieOnIt) {
   }
 }
 
-TEST(SliceLine, RunsTheWayOfTheSlicesDirection) {
+TEST(SliceLine, GoesInTheDirectionOfTheSlice) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
     const Setting s(random);
@@ -190,7 +191,7 @@ TEST(SliceLine, RunsTheWayOfTheSlicesDirection) {
   }
 }
 
-TEST(SliceLine, RadiusSpansTheSilhouetteOfItsSphere) {
+TEST(SliceLine, RadiusOnTheImageIsTheSilhouetteOfItsSphere) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
     Setting s(random);
@@ -213,7 +214,7 @@ TEST(SliceLine, RadiusSpansTheSilhouetteOfItsSphere) {
 
 const maths::DepthDiscontinuity kNone{false, false}, kConvex{true, false}, kConcave{false, true};
 
-TEST(ConnectedSamples, SamplesJoinAlongPlanesAndAcrossCreasesButNotOverGaps) {
+TEST(ConnectedSamples, SamplesAreConnectedAlongPlanesAndAcrossCreasesButNotOverGaps) {
   EXPECT_TRUE(maths::samples_join(kNone, kNone)) << "a plane";
   EXPECT_TRUE(maths::samples_join(kNone, kConcave)) << "a plane that ends";
   EXPECT_TRUE(maths::samples_join(kConvex, kConvex)) << "a crease between the two";
@@ -221,7 +222,7 @@ TEST(ConnectedSamples, SamplesJoinAlongPlanesAndAcrossCreasesButNotOverGaps) {
   EXPECT_FALSE(maths::samples_join(kConcave, kConvex)) << "one surface behind another";
 }
 
-TEST(ConnectedSamples, HiddenSamplesJoinAlongPlanesOnly) {
+TEST(ConnectedSamples, HiddenSamplesAreConnectedAlongPlanesOnly) {
   EXPECT_TRUE(maths::hidden_samples_join(kNone, kNone)) << "a plane";
   EXPECT_TRUE(maths::hidden_samples_join(kNone, kConcave)) << "a plane that ends";
   EXPECT_TRUE(maths::hidden_samples_join(kConvex, kNone)) << "and one that begins";
@@ -244,7 +245,7 @@ TEST(ConnectedSamples, OccluderBacksMoveAwayFromTheViewDirectionWithThickness) {
   }
 }
 
-TEST(ConnectedSamples, OnlyPointsWellAboveTheTangentPlaneStandOnIt) {
+TEST(ConnectedSamples, OnlyPointsWellAboveTheTangentPlaneAreOccluders) {
   for (const double gamma : {-0.8, 0.0, 0.8}) {
     const vec2 gradient(std::sin(gamma), std::cos(gamma));
     for (const double length : {0.1, 10.0}) {
@@ -274,14 +275,14 @@ TEST(ConnectedSamples, OnlyLargeChangesOfSlopeAreDiscontinuities) {
   }
 }
 
-TEST(ConnectedSamples, ExtrapolatedPlanesStayBeforeTheEye) {
+TEST(ConnectedSamples, ExtrapolatedPlanesStayInFrontOfTheEye) {
   EXPECT_EQ(maths::extrapolated_way(0.5f, 0.25f, 8.0f, true), 8.0f) << "it comes nearer";
   EXPECT_EQ(maths::extrapolated_way(0.5f, -0.03125f, 8.0f, true), 8.0f);
   EXPECT_FLOAT_EQ(maths::extrapolated_way(0.5f, -0.25f, 8.0f, true), 1.8f);
   EXPECT_EQ(maths::extrapolated_way(0.5f, -0.25f, 8.0f, false), 8.0f) << "orthographic";
 }
 
-TEST(TangentPlane, ItsGradientGivesTheNormalBack) {
+TEST(TangentPlane, NormalIsRecoveredFromTheGradient) {
   RandomInput random;
   for (int i = 0; i < 5000; ++i) {
     const bool perspective = i % 2 == 0;

@@ -14,7 +14,7 @@ struct SliceTruth {
   double scale;  // length of the projected normal
   double gamma;  // signed angle from the view vector to it
 
-  // Of a shader's slice, from the components that it was made of.
+  // Copies the components of a shader's slice.
   explicit SliceTruth(const maths::Slice& s)
       : scale(std::hypot(double(s.along), double(s.toward))),
         gamma(scale > 0.0 ? std::atan2(double(s.along), double(s.toward)) : 0.0) {}
@@ -36,7 +36,7 @@ struct SliceTruth {
     return integrate(f, a, split) + integrate(f, split, b);
   }
 
-  // The same with the direction as a vector: x along the slice, y along the view vector.
+  // The mean direction as a vector: x along the slice, y along the view direction.
   glm::dvec2 bent(double from, double to) const {
     const double a = std::max(from, lowest()), b = std::min(to, highest());
     if (a >= b) return glm::dvec2(0.0);

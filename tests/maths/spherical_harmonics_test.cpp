@@ -37,7 +37,7 @@ TEST(SphericalHarmonics, BasisIsOrthonormal) {
 }
 
 // The clamped cosine times each element of the basis gives the element back, by its factor.
-TEST(SphericalHarmonics, IrradianceOfEachElementIsItsOwnByABand) {
+TEST(SphericalHarmonics, IrradianceScalesEachElementByTheFactorOfItsBand) {
   const vec3 normal = normalize(vec3(0.3f, 0.8f, -0.5f));
   for (unsigned i = 0; i < maths::kHarmonics; ++i) {
     const double irradiance = over_sphere([&](vec3 d) {

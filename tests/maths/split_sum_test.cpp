@@ -59,7 +59,7 @@ vec2 quadrature(float n_dot_v, float roughness) {
   return vec2(float(sum.x), float(sum.y)) / float(kSide * kSide);
 }
 
-TEST(SplitSum, TableIsCloseToTheIntegralBetweenItsEntriesToo) {
+TEST(SplitSum, TableIsCloseToTheIntegralAlsoBetweenItsEntries) {
   const auto table = alcove::passes::reflectance_table();
   RandomInput random(1);  // always the same set: the README states its figures
   double worst = 0.0, squares = 0.0;
@@ -80,7 +80,7 @@ TEST(SplitSum, TableIsCloseToTheIntegralBetweenItsEntriesToo) {
   EXPECT_LT(rmse, 0.001);
 }
 
-TEST(SplitSum, NothingReflectsMoreThanItGets) {
+TEST(SplitSum, ReflectanceIsAtMostOne) {
   const auto table = alcove::passes::reflectance_table();
   for (int x = 0; x <= 100; ++x) {
     for (int y = 0; y <= 100; ++y) {
@@ -120,7 +120,7 @@ double lobe_light(vec3 normal, vec3 view, float alpha) {
   return sum / weights;
 }
 
-TEST(SplitSum, TheDominantDirectionHalvesTheErrorOfRoughLobes) {
+TEST(SplitSum, DominantDirectionHalvesTheErrorOfRoughLobes) {
   RandomInput random;
   for (const float roughness : {0.6f, 0.8f, 1.0f}) {
     double mirror_squares = 0.0, squares = 0.0;
@@ -142,7 +142,7 @@ TEST(SplitSum, TheDominantDirectionHalvesTheErrorOfRoughLobes) {
       << "mirrors keep their direction";
 }
 
-TEST(SplitSum, MetalsScatterNothingAndDielectricsReflectTheirShare) {
+TEST(SplitSum, MetalsHaveNoDiffuseAndDielectricsReflectFourPercent) {
   const vec3 base(0.9f, 0.5f, 0.1f);
   EXPECT_EQ(maths::diffuse_albedo(base, 1.0f), vec3(0));
   EXPECT_EQ(maths::diffuse_albedo(base, 0.0f), base);

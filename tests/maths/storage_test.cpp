@@ -1,4 +1,4 @@
-// What is stored between passes: octahedral vectors, packed visibility, the depth pyramid.
+// Values that are stored between passes: octahedral vectors, packed visibility, the depth pyramid.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,13 +26,13 @@ maths::RawOcclusion raw_occlusion_of(float visible, float open) {
   return raw_occlusion;
 }
 
-TEST(RawOcclusion, NothingWeighedIsOpen) {
+TEST(RawOcclusion, ZeroWeightMeansUnoccluded) {
   EXPECT_EQ(maths::mean_visibility(raw_occlusion_of(0.0f, 0.0f)), 1.0f);
   const float nan = std::numeric_limits<float>::quiet_NaN();
   EXPECT_EQ(maths::mean_visibility(raw_occlusion_of(0.0f, nan)), 1.0f);
 }
 
-TEST(RawOcclusion, RatiosComeBackAndOpenStaysOpen) {
+TEST(RawOcclusion, UnpackedRatiosAreThePackedOnesAndOneIsExact) {
   RandomInput random;
   for (int i = 0; i < 20000; ++i) {
     const float open = random.uniform(1e-3f, maths::kLargestOpen);
@@ -47,7 +47,7 @@ TEST(RawOcclusion, RatiosComeBackAndOpenStaysOpen) {
   }
 }
 
-TEST(RawOcclusion, LobesOfAnySizeComeBack) {
+TEST(RawOcclusion, LobesOfAnySizeSurvivePacking) {
   RandomInput random;
   for (int i = 0; i < 20000; ++i) {
     const float open = random.log_uniform(1e-20f, 1e20f);
@@ -63,7 +63,7 @@ TEST(RawOcclusion, LobesOfAnySizeComeBack) {
   EXPECT_EQ(maths::unpack_lobe(maths::pack_lobe(raw_occlusion_of(0, 0))).open, 0.0f);
 }
 
-TEST(RawOcclusion, LobesWeighByNormalAndRoughness) {
+TEST(RawOcclusion, LobeWeightsDependOnNormalAndRoughness) {
   RandomInput random;
   const auto surface = [](vec3 normal, float roughness) {
     maths::LobeSurface made;
@@ -89,7 +89,7 @@ TEST(RawOcclusion, LobesWeighByNormalAndRoughness) {
   }
 }
 
-TEST(RawOcclusion, BendsComeBackToAStepOfTenBits) {
+TEST(RawOcclusion, BentNormalResidualsSurvivePackingWithinTenBits) {
   RandomInput random;
   const auto round_trip = [](const vec3& residual) {
     return maths::unpack_residual(maths::pack_residual(residual));
@@ -107,7 +107,7 @@ TEST(RawOcclusion, BendsComeBackToAStepOfTenBits) {
   EXPECT_EQ(round_trip(vec3(-9)), -vec3(largest));
 }
 
-TEST(Octahedral, RoundTripsEveryDirection) {
+TEST(Octahedral, EncodingThenDecodingKeepsEveryDirection) {
   RandomInput random;
   for (int i = 0; i < 100000; ++i) {
     const vec3 direction = random.unit_vector();
@@ -123,7 +123,7 @@ TEST(Octahedral, AxesAndFoldsAreExact) {
     EXPECT_EQ(maths::octahedral_decode(maths::octahedral_encode(axis)), axis);
 }
 
-TEST(Octahedral, LengthDoesNotMatterAndZeroIsSafe) {
+TEST(Octahedral, EncodingIgnoresLengthAndAcceptsZero) {
   EXPECT_LT(distance(maths::octahedral_encode(vec3(3, -4, 5)),
                      maths::octahedral_encode(vec3(3, -4, 5) * 1e-20f)),
             1e-6f);
@@ -151,7 +151,7 @@ vec3 facing_normal(RandomInput& random) {
   return normal;
 }
 
-TEST(QuantisedNormal, ComesBackNear) {
+TEST(QuantisedNormal, DecodesCloseToTheOriginal) {
   RandomInput random;
   for (int i = 0; i < 100000; ++i) {
     const vec3 normal = facing_normal(random);
@@ -167,7 +167,7 @@ TEST(QuantisedNormal, ComesBackNear) {
   EXPECT_EQ(maths::make_quantised_normal(vec3(0, -1, 0)).stereographic, vec2(0, -1));
 }
 
-TEST(QuantisedNormal, ATurnIsTheSquareOfSmallAngles) {
+TEST(QuantisedNormal, DifferenceIsTheSquareOfSmallAngles) {
   RandomInput random;
   for (int i = 0; i < 100000; ++i) {
     const maths::QuantisedNormal own = maths::make_quantised_normal(facing_normal(random));
@@ -184,7 +184,7 @@ TEST(QuantisedNormal, ATurnIsTheSquareOfSmallAngles) {
   }
 }
 
-TEST(Packing, UnormRoundsToNearestAndKeepsItsEnds) {
+TEST(Packing, UnormRoundsToNearestAndKeepsZeroAndOne) {
   for (const unsigned bits : {1u, 8u, 12u, 16u}) {
     const float step = 1.0f / float((1u << bits) - 1u);
     for (float x = 0.0f; x <= 1.0f; x += 0.001f)
@@ -196,12 +196,12 @@ TEST(Packing, UnormRoundsToNearestAndKeepsItsEnds) {
   }
 }
 
-TEST(Pyramid, FlatDepthStaysWhatItIs) {
+TEST(Pyramid, AveragingConstantDepthChangesNothing) {
   for (const float depth : {-50.0f, 1e-6f, 1.0f, 1e7f, 1e11f})
     EXPECT_EQ(maths::average_depth(vec4(depth), 0.1f), depth);
 }
 
-TEST(Pyramid, AveragesOneSurfaceAndKeepsTwoApart) {
+TEST(Pyramid, AveragesWithinASurfaceAndNotAcrossTwo) {
   RandomInput random;
   for (int i = 0; i < 10000; ++i) {
     const float base = random.log_uniform(0.1f, 100.0f), range = 0.2f;
@@ -217,7 +217,7 @@ TEST(Pyramid, AveragesOneSurfaceAndKeepsTwoApart) {
   }
 }
 
-TEST(Pyramid, SkyIsNeitherAveragedInNorInvented) {
+TEST(Pyramid, SkyTexelsAreNotAveragedAndNotCreated) {
   const float sky = maths::kSkyDepth;
   EXPECT_EQ(maths::average_depth(vec4(sky), 0.1f), sky);
   EXPECT_EQ(maths::average_depth(vec4(sky, sky, 3, sky), 0.1f), sky);

@@ -75,7 +75,7 @@ struct Case {
   }
 };
 
-TEST(Unobserved, ThePartLeftOutIsTheShareOfTheIntegral) {
+TEST(Unobserved, ExcludedPartIsItsFractionOfTheIntegral) {
   constexpr int kCases = 20000;
   RandomInput random;
   double worst = 0.0, sum = 0.0, sum_uniform = 0.0, largest = 0.0;
@@ -100,7 +100,7 @@ TEST(Unobserved, ThePartLeftOutIsTheShareOfTheIntegral) {
   EXPECT_LT(sum_uniform / kCases, 2e-8);
 }
 
-TEST(Unobserved, ALobeLosesTheShareOfWhatItHasThere) {
+TEST(Unobserved, LobeLosesItsFractionInTheExcludedDirections) {
   RandomInput random;
   for (int i = 0; i < 5000; ++i) {
     const Case c(random);
@@ -114,7 +114,7 @@ TEST(Unobserved, ALobeLosesTheShareOfWhatItHasThere) {
   }
 }
 
-TEST(Unobserved, WhatASideShowsCountsWhole) {
+TEST(Unobserved, FullyObservedHalfSliceCountsCompletely) {
   RandomInput random;
   for (int i = 0; i < 1000; ++i) {
     Case c(random);
@@ -127,7 +127,7 @@ TEST(Unobserved, WhatASideShowsCountsWhole) {
   }
 }
 
-TEST(Unobserved, ManyNarrowRowsHideNoMoreThanOne) {
+TEST(Unobserved, ManyNarrowRunsHideNoMoreThanOne) {
   Unobserved row = maths::add_column(maths::nothing_unobserved(), true, 4.0f, 1.0f);
   row = maths::add_column(row, true, 6.0f, 3.0f);
   EXPECT_EQ(maths::mean_row(row).width_px, 4.0f) << "columns side by side are one row";
@@ -141,7 +141,7 @@ TEST(Unobserved, ManyNarrowRowsHideNoMoreThanOne) {
   EXPECT_EQ(maths::mean_row(maths::nothing_unobserved()).width_px, 0.0f);
 }
 
-TEST(Unobserved, OfWhatLiesBeyondTheBorderAShareIsLeftOut) {
+TEST(Unobserved, FractionOfTheDirectionsBeyondTheBorderIsExcluded) {
   const Unobserved some = maths::add_column(maths::nothing_unobserved(), true, 7.0f, 2.0f);
   const Unobserved border = maths::add_beyond_border(some, 9.0f, 12.0f, 0.5f);
   EXPECT_EQ(border.first_px, 7.0f);
@@ -154,7 +154,7 @@ TEST(Unobserved, OfWhatLiesBeyondTheBorderAShareIsLeftOut) {
   EXPECT_NEAR(maths::make_unobserved_arc(tangent, all, kRadiusPx).share, 0.3f, 1e-6f);
 }
 
-TEST(Unobserved, AnImageThatShowsLittleOfTheRadiusTellsNothingOfTheRest) {
+TEST(Unobserved, BorderShareFallsWithTheObservedPartOfTheRadius) {
   EXPECT_EQ(maths::border_share(0.0f, 0.0f), 0.5f);
   EXPECT_EQ(maths::border_share(0.25f, 0.0f), 0.375f);
   EXPECT_EQ(maths::border_share(1.0f, 0.0f), 0.0f);
@@ -164,13 +164,13 @@ TEST(Unobserved, AnImageThatShowsLittleOfTheRadiusTellsNothingOfTheRest) {
   }
 }
 
-TEST(Unobserved, NothingBeyondTheBorderHidesNothing) {
+TEST(Unobserved, FullRadiusInsideTheImageExcludesNothing) {
   const Unobserved none = maths::nothing_unobserved();
   EXPECT_EQ(maths::add_beyond_border(none, 9.0f, 0.0f, 1.0f).first_px, none.first_px);
   EXPECT_EQ(maths::add_beyond_border(none, maths::kNowherePx, 10.0f, 1.0f).width_px, 0.0f);
 }
 
-TEST(Unobserved, NeverAllOfASideIsLeftOut) {
+TEST(Unobserved, HalfSliceIsNeverExcludedCompletely) {
   RandomInput random;
   for (int i = 0; i < 1000; ++i) {
     Case c(random);

@@ -48,7 +48,7 @@ VisiblePart part_of(const Slice& s, float side, std::uint32_t occluded, float hi
                              hidden_occlusion, {.uniform_weight = uniform_weight, .bent = true});
 }
 
-TEST(VisibilityBitmask, DiamondAnglesGrowWithTheAngleAndConvertBack) {
+TEST(VisibilityBitmask, DiamondAnglesIncreaseWithTheAngleAndConvertBack) {
   float before = -1.0f;
   for (double angle = 0.0; angle <= kPi; angle += 0.001) {
     const vec2 light = light_at(angle);
@@ -63,7 +63,7 @@ TEST(VisibilityBitmask, DiamondAnglesGrowWithTheAngleAndConvertBack) {
   EXPECT_TRUE(std::isfinite(maths::diamond_angle(vec2(0, 0))));
 }
 
-TEST(VisibilityBitmask, PositionsRunFromTheViewVectorToTheTangentPlane) {
+TEST(VisibilityBitmask, SectorPositionsGoFromTheViewDirectionToTheTangentPlane) {
   RandomInput random;
   for (int i = 0; i < 5000; ++i) {
     const Slice s = random_slice(random);
@@ -79,7 +79,7 @@ TEST(VisibilityBitmask, PositionsRunFromTheViewVectorToTheTangentPlane) {
   }
 }
 
-TEST(VisibilityBitmask, SectorsBetweenPositionsAreThoseWithinThem) {
+TEST(VisibilityBitmask, MaskBetweenTwoPositionsHasTheSectorsBetweenThem) {
   for (int from = 0; from <= 32; ++from) {
     for (int to = 0; to <= 32; ++to) {
       std::uint32_t expected = 0;
@@ -91,7 +91,7 @@ TEST(VisibilityBitmask, SectorsBetweenPositionsAreThoseWithinThem) {
   }
 }
 
-TEST(VisibilityBitmask, ExclusiveOrOfTwoMasksHoldsTheSectorsBetweenThem) {
+TEST(VisibilityBitmask, ExclusiveOrOfTwoMasksHasTheSectorsBetweenThem) {
   RandomInput random;
   for (int i = 0; i < 5000; ++i) {
     const Slice s = random_slice(random);
@@ -120,8 +120,8 @@ TEST(VisibilityBitmask, TheHighestBitRepeatsTheLastOf31Sectors) {
   EXPECT_EQ(maths::repeat_last_sector(1u << 29), 1u << 29);
 }
 
-// What `occluded` leaves visible, sector by sector in double; behind the first occluder only the
-// part 1 - hidden_occlusion of it.
+// The visible integral of a mask, summed over sectors in double precision. Behind the first
+// occluder, only the fraction 1 - hidden_occlusion counts.
 struct Expected {
   double arc = 0.0;
   glm::dvec2 bent{0.0};
@@ -147,7 +147,7 @@ Expected expected_part(const Slice& s, float side, std::uint32_t occluded,
   return sum;
 }
 
-TEST(VisibilityBitmask, PartsAgreeWithTheIntegralOverTheVisibleSectors) {
+TEST(VisibilityBitmask, VisiblePartsEqualTheIntegralOverTheVisibleSectors) {
   RandomInput random;
   double worst_arc = 0.0, worst_bent = 0.0;
   for (int i = 0; i < 1500; ++i) {
@@ -166,7 +166,7 @@ TEST(VisibilityBitmask, PartsAgreeWithTheIntegralOverTheVisibleSectors) {
   EXPECT_LT(worst_bent, 1e-5);
 }
 
-TEST(VisibilityBitmask, UniformPartsAreTheVisibleSectorsSolidAngle) {
+TEST(VisibilityBitmask, UniformPartsEqualTheSolidAngleOfTheVisibleSectors) {
   RandomInput random;
   for (int i = 0; i < 1500; ++i) {
     const Slice s = random_slice(random);
@@ -184,7 +184,7 @@ TEST(VisibilityBitmask, UniformPartsAreTheVisibleSectorsSolidAngle) {
   }
 }
 
-TEST(VisibilityBitmask, OpenAndFullAreExact) {
+TEST(VisibilityBitmask, EmptyAndFullMasksAreExact) {
   for (double gamma = -kPi / 2; gamma <= kPi / 2; gamma += 0.1) {
     const Slice s = slice_of(0.7, gamma);
     for (const float side : {-1.0f, 1.0f}) {
@@ -222,20 +222,20 @@ TEST(VisibilityBitmask, HiddenOcclusionGrowsWithTheRunWidthAndItsMeanIsTheSettin
       sum += part;
       last = part;
     }
-    // What the mid-point rule errs by where the part rises steeply from 0.
+    // The tolerance is the error of the mid-point rule where the integrand rises steeply from 0.
     EXPECT_NEAR(sum / kSteps, hidden_occlusion, 2e-3) << hidden_occlusion;
     EXPECT_EQ(maths::hidden_occlusion_behind(1.0f, exponent), 1.0f);
   }
 }
 
-TEST(VisibilityBitmask, HiddenOcclusionOfZeroAndOneAreNothingAndAll) {
+TEST(VisibilityBitmask, HiddenOcclusionZeroOccludesNothingAndOneOccludesAll) {
   for (const float front : {0.0f, 1e-4f, 0.5f, 1.0f, 1.0001f}) {
     EXPECT_EQ(maths::hidden_occlusion_behind(front, maths::hidden_exponent(0.0f)), 0.0f);
     EXPECT_EQ(maths::hidden_occlusion_behind(front, maths::hidden_exponent(1.0f)), 1.0f);
   }
 }
 
-TEST(VisibilityBitmask, SliceThatHoldsNothingStaysFinite) {
+TEST(VisibilityBitmask, SliceWithoutSectorsIsFinite) {
   const Slice s = maths::make_slice(vec3(0, 1, 0), vec3(1, 0, 0), vec3(0, 0, 1));
   for (const float side : {-1.0f, 1.0f}) {
     EXPECT_EQ(part_of(s, side, 0x0ff0u, 0.4f).arc, 0.0f);

@@ -5,7 +5,7 @@
 #include "reference/surface_points.h"
 #include "scene/analytic_scenes.h"
 
-// The points of an analytic scene as a truth takes them: a row of pixels.
+// The reference points of an analytic scene as one row of pixels.
 namespace alcove::sample {
 
 inline SurfacePoints points_of(const AnalyticScene& analytic) {

@@ -1,5 +1,6 @@
-# `alcove view` whose output was closed draws its frame, then fails in a sentence: what it prints
-# does not end up in the display's connection. ALCOVE: the program; FOLDER: where to.
+# Runs `alcove view` with closed standard output. It renders its frame and then fails with one sentence;
+# its output must not be sent to the connection with the display. ALCOVE: the program; FOLDER: the output
+# folder.
 file(REMOVE_RECURSE ${FOLDER})
 execute_process(
   COMMAND sh -c "exec \"$@\" >&-" sh ${ALCOVE} view --frames 1 --size 320x180 --out ${FOLDER}

@@ -7,7 +7,7 @@
 namespace alcove::sample {
 namespace {
 
-TEST(Errors, SummaryOfKnownDifferences) {
+TEST(Errors, SummaryMatchesKnownDifferences) {
   Image<float> truth(4, 1, 0.5f), result = truth;
   result.pixels = {0.6f, 0.4f, 0.5f, 9.0f};
   Mask mask(4, 1, 1);
@@ -19,20 +19,20 @@ TEST(Errors, SummaryOfKnownDifferences) {
   EXPECT_NEAR(error.max_absolute, 0.1, 1e-6);
 }
 
-TEST(Errors, NotANumberCountsAsOne) {
+TEST(Errors, NotANumberCountsAsAnErrorOfOne) {
   const ErrorSummary error =
       compare_images(Image<float>(1, 1, NAN), Image<float>(1, 1, 0.5f), Mask(1, 1, 1));
   EXPECT_EQ(error.rmse, 1.0);
 }
 
-TEST(Errors, AnglesIgnoreLengthAndTakeNothingAsARightAngle) {
+TEST(Errors, AnglesIgnoreLengthAndZeroCountsAsARightAngle) {
   Image<glm::vec3> truth(2, 1, glm::vec3(0, 1, 0)), result(2, 1);
   result.pixels = {glm::vec3(0, 3, 3), glm::vec3(0)};
   const AngleSummary angles = compare_directions(result, truth, Mask(2, 1, 1));
   EXPECT_NEAR(angles.mean_degrees, 0.5 * (45.0 + 90.0), 1e-4);
 }
 
-TEST(Errors, OpenSurfacesLooksOnlyWhereTheTruthIsOpen) {
+TEST(Errors, OpenSurfacesAreThosePixelsWithAnOpenTruth) {
   Image<float> truth(3, 1), result(3, 1);
   truth.pixels = {1.0f, 1.0f, 0.9f};
   result.pixels = {0.9f, 1.0f, 0.0f};
@@ -42,7 +42,7 @@ TEST(Errors, OpenSurfacesLooksOnlyWhereTheTruthIsOpen) {
   EXPECT_EQ(open.fraction_below_95, 0.5);
 }
 
-TEST(Errors, EmptyMaskIsAllZero) {
+TEST(Errors, EmptyMaskGivesZeroErrors) {
   EXPECT_EQ(compare_images(Image<float>(1, 1), Image<float>(1, 1), Mask(1, 1)).count, 0u);
 }
 

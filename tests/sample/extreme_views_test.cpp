@@ -1,5 +1,6 @@
-// Views that no one would choose, generated: eyes in walls and far away, the narrowest and widest
-// angles, planes millions apart, tiny and huge radii. Every output stays finite and in its range.
+// Randomly generated extreme views: eyes in walls and far away, the narrowest and widest angles,
+// near and far planes millions of units apart, tiny and huge radii. Every output must be finite and
+// in range.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,7 +35,7 @@ class Generator {
     const glm::vec3 size = scene.bounds_ws.high - scene.bounds_ws.low;
     ExtremeView view;
     Camera& camera = view.camera;
-    // From the middle of the scene, in it, on its edge, or up to 10^4 of its sizes away.
+    // The eye is in the scene, on its edge, or up to 10^4 times its size away.
     const float away = pick({0.0f, 0.3f, 1.0f, 30.0f, 1e4f});
     camera.target_ws = scene.bounds_ws.low + size * vector(0.0f, 1.0f);
     camera.eye_ws = camera.target_ws + away * size * vector(-1.0f, 1.0f) + vector(-1e-3f, 1e-3f);

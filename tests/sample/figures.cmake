@@ -1,4 +1,4 @@
-# Draws the figures and checks that every figure which the document shows is among them, and no other.
+# Draws the figures and checks that they are exactly those that the document shows.
 file(REMOVE_RECURSE ${FOLDER})
 file(MAKE_DIRECTORY ${FOLDER})
 execute_process(COMMAND ${FIGURES} ${FOLDER} RESULT_VARIABLE status ERROR_VARIABLE output)

@@ -1,4 +1,4 @@
-# `alcove ARGUMENTS` on a disk that is full fails and says so. ALCOVE: the program.
+# Checks that `alcove ARGUMENTS` fails with a message if the disk is full. ALCOVE: the program.
 separate_arguments(ARGUMENTS)
 execute_process(COMMAND ${ALCOVE} ${ARGUMENTS} RESULT_VARIABLE status OUTPUT_FILE /dev/full
   ERROR_VARIABLE error)

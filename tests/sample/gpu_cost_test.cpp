@@ -1,4 +1,4 @@
-// The GPU cost model, and the budget that the shipped presets are held to.
+// Tests of the GPU cost model, and the check of the presets against their budget.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -69,11 +69,11 @@ TEST(GpuCost, InstructionsAreMultipliedByTheIterationsOfAllLoopsAroundThem) {
   EXPECT_EQ(work.vector_instructions, 1 + 3);
   EXPECT_EQ(work.instructions, 1 + 3 * (1 + 5 + 1) + 2);
   EXPECT_EQ(work.vector_cycles, 4 + 3 * 16);
-  // Four words for each lane take twice as long as one or two.
+  // Loads of four words per lane take twice as long as loads of one or two.
   EXPECT_EQ(work.texture_cycles, 15 * 16 * 2 + 16);
 }
 
-TEST(GpuCost, DisassemblyIsPreferredToTheCompilersOwnText) {
+TEST(GpuCost, DisassemblyIsPreferredToTheIntermediateRepresentation) {
   const auto blocks = blocks_of(shader_of(kNestedLoops,
                                           "BB0:\n"
                                           "\tv_cndmask_b32_e32 v0, v1, v2, vcc ; 02000300\n"
@@ -120,7 +120,7 @@ SettingsCost one_pass(double instructions, double registers, double waves, doubl
   return {"medium", "navi21", {{FrameState::moving, {pass}}}};
 }
 
-TEST(GpuBudget, AnyFigureThatIsWorseThanItsBudgetIsReported) {
+TEST(GpuBudget, EachFigureThatExceedsItsBudgetIsReported) {
   const auto budget = budget_of({one_pass(100, 64, 8, 0)}, "compiler");
   EXPECT_THAT(over_budget(budget, {one_pass(100.9, 64, 8, 0)}), IsEmpty());
   EXPECT_THAT(over_budget(budget, {one_pass(80, 48, 10, 0)}), IsEmpty());
@@ -161,7 +161,7 @@ std::string name_of_test(const testing::TestParamInfo<Budgeted>& info) {
 
 class ShippedPresets : public testing::TestWithParam<Budgeted> {};
 
-TEST_P(ShippedPresets, KeepToTheirGpuBudget) {
+TEST_P(ShippedPresets, StayWithinTheirGpuBudget) {
   const auto device = create_null_device(GetParam().part->family);
   if (!device) {
     GTEST_SKIP() << device.error();
@@ -171,8 +171,8 @@ TEST_P(ShippedPresets, KeepToTheirGpuBudget) {
   ASSERT_TRUE(budget.is_object()) << ALCOVE_GPU_BUDGET << " is not a JSON object.";
   const std::string compiler = compiler_name(*device);
   if (budget.value("compiler", "") != compiler) {
-    GTEST_SKIP() << "The budget is of " << budget["compiler"] << "; the compiler here is "
-                 << compiler << ", which makes other code.";
+    GTEST_SKIP() << "The budget was written with " << budget["compiler"]
+                 << "; the compiler here is " << compiler << ", which makes other code.";
   }
   auto frames = modelled_frames(*GetParam().part, *device, GetParam().settings.inputs);
   ASSERT_TRUE(frames) << frames.error();

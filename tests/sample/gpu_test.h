@@ -9,7 +9,7 @@
 #include "alcove/framegraph/verify.h"
 #include "gpu/gpu.h"
 
-// A device under validation for tests, which fail by what the layers say of it.
+// A device with validation layers for tests, which fail on any message of the layers.
 namespace alcove::sample {
 
 struct ReportAndClose {
@@ -22,14 +22,14 @@ struct ReportAndClose {
 };
 using ValidatedGpu = std::unique_ptr<Gpu, ReportAndClose>;
 
-// Null, and the test fails, where there is no device.
+// Null if there is no device; the test then fails.
 inline ValidatedGpu open_validated() {
   auto made = Gpu::create({.validation = true}, {.verify = framegraph::verify, .check_uses = true});
   EXPECT_TRUE(made) << made.error();
   return ValidatedGpu(made ? made->release() : nullptr);
 }
 
-// For tests that need one of them.
+// For tests that need one device.
 class GpuTest : public testing::Test {
  protected:
   void SetUp() override { ASSERT_TRUE(gpu_); }

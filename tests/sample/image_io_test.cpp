@@ -15,12 +15,6 @@
 namespace alcove::sample {
 namespace {
 
-size_t files_in(const std::filesystem::path& folder) {
-  size_t count = 0;
-  for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder)) ++count;
-  return count;
-}
-
 TEST(ImageIo, GreyExrIsReadBackExactly) {
   const TemporaryFolder folder;
   Image<float> image(7, 3);
@@ -33,7 +27,7 @@ TEST(ImageIo, GreyExrIsReadBackExactly) {
   ASSERT_TRUE(read) << read.error();
   EXPECT_EQ(read->width, 7u);
   EXPECT_EQ(read->pixels, image.pixels);
-  EXPECT_EQ(files_in(folder.path), 1u);
+  EXPECT_EQ(folder.files(), 1);
 }
 
 TEST(ImageIo, ColourExrKeepsChannelsAndRows) {
@@ -87,7 +81,7 @@ TEST(ImageIo, FolderInPlaceOfAnOutputIsAnErrorThatNamesIt) {
   const auto written = write_png(folder.path / "a.png", Image<float>(2, 2));
   ASSERT_FALSE(written);
   EXPECT_THAT(written.error(), testing::HasSubstr("a.png"));
-  EXPECT_EQ(files_in(folder.path), 1u);
+  EXPECT_EQ(folder.files(), 1);
 }
 
 TEST(ImageIo, PngIsWrittenAsEightBitsAndReadBack) {

@@ -16,7 +16,7 @@ SurfaceMaterials materials_of(const SurfacePoints& points, const glm::vec3& albe
   return {{width, 1, albedo}, {width, 1, roughness}, {width, 1, metallic}};
 }
 
-// A view at some 50 degrees from every normal.
+// A view direction at about 50 degrees from every normal.
 Viewer viewer_of(const SurfacePoints& points) {
   const glm::vec3& n = points.normal_ws.at(0, 0);
   const glm::vec3 across = glm::normalize(glm::cross(n, glm::vec3(0.3f, 0.5f, -0.8f)));
@@ -39,28 +39,28 @@ LitTruth light(const char* name, const glm::vec3& albedo, float roughness, float
                    {static_cast<float>(analytic.closed_form_radius), 2048, 1});
 }
 
-TEST(LitTruth, WhiteDielectricIsWhiteInAWhiteEnvironmentHoweverHollow) {
+TEST(LitTruth, WhiteDielectricConservesEnergyInAnyShape) {
   for (const char* name : {"plane:30", "groove:90", "pit"}) {
     for (const float roughness : {0.1f, 0.5f, 1.0f}) {
       const LitTruth lit = light(name, glm::vec3(1.0f), roughness, 0.0f);
       for (size_t i = 0; i < lit.diffuse.pixels.size(); ++i) {
         const float out = lit.diffuse.pixels[i].x + lit.specular.pixels[i].x;
-        // Light that microfacets lose is the diffuse part's, so that all of it comes back.
+        // The diffuse part receives the energy that single scattering of microfacets loses.
         EXPECT_NEAR(out, 1.0f, 0.03f) << name << " roughness " << roughness;
       }
     }
   }
 }
 
-TEST(LitTruth, BlackSurfacesSendBackOnlyFresnelsShare) {
+TEST(LitTruth, BlackSurfacesOnlyReflectBySpecularFresnel) {
   const LitTruth lit = light("groove:90", glm::vec3(0.0f), 0.5f, 1.0f);
   for (size_t i = 0; i < lit.diffuse.pixels.size(); ++i) {
     EXPECT_EQ(lit.diffuse.pixels[i].x, 0.0f);
-    EXPECT_LT(lit.specular.pixels[i].x, 0.1f) << "Fresnel's share at grazing angles";
+    EXPECT_LT(lit.specular.pixels[i].x, 0.1f) << "Fresnel reflection at grazing angles";
   }
 }
 
-TEST(LitTruth, NoiseIsAboutWhatItSays) {
+TEST(LitTruth, ReportedNoiseMatchesTheSpreadOfTheResult) {
   const LitTruth a = light("groove:90", glm::vec3(0.5f), 0.5f, 0.0f);
   for (size_t i = 0; i < a.diffuse.pixels.size(); ++i) {
     EXPECT_LT(std::abs(a.diffuse_noise.pixels[i].x), 0.02f);
@@ -68,7 +68,7 @@ TEST(LitTruth, NoiseIsAboutWhatItSays) {
   }
 }
 
-TEST(LitTruth, PointsToSkipAreBlack) {
+TEST(LitTruth, SkippedPointsAreBlack) {
   const auto analytic = analytic_scene("plane:30").value();
   const auto rays = RayScene::create(analytic.scene);
   SurfacePoints points = points_of(analytic);

@@ -1,5 +1,5 @@
-# Runs the two programs that readers copy, under the validation layers where they are installed, and
-# checks that both write the same picture and that nothing is printed: a validation message would be.
+# Runs the two minimal programs, under the validation layers if they are installed. Checks that both
+# write the same image and that nothing is printed, such as a validation message.
 foreach(program C CPP)
   set(picture ${FOLDER}/${program}.pgm)
   file(MAKE_DIRECTORY ${FOLDER})

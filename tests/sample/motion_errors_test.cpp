@@ -13,10 +13,10 @@ namespace {
 constexpr std::uint32_t kWidth = 40;
 constexpr std::uint32_t kHeight = 30;
 
-// A wall at z = -10 and before it, where x is below `edge`, another at z = -4, both facing the eye,
-// and a visibility that is fixed to the wall.
-SeenFrame walls(const Camera& camera, float edge) {
-  SeenFrame frame{
+// A wall at z = -10 and, where x is below `edge`, a nearer wall at z = -4, both facing the eye. The
+// visibility is a function of the position on the wall.
+RenderedFrame walls(const Camera& camera, float edge) {
+  RenderedFrame frame{
       camera, {kWidth, kHeight}, {kWidth, kHeight, glm::vec3(0, 0, 1)}, {kWidth, kHeight}, {}};
   const CameraMatrices matrices = camera_matrices(camera, kWidth, kHeight);
   const glm::vec3 forward = -glm::vec3(matrices.world_from_view[2]);
@@ -44,9 +44,9 @@ Camera camera_at(float x) {
   return camera;
 }
 
-glm::vec3 stands(const glm::vec3& position) { return position; }
+glm::vec3 unmoved(const glm::vec3& position) { return position; }
 
-TEST(MotionErrors, AStandingSurfaceIsFollowedThroughAnyStepOfTheCamera) {
+TEST(MotionErrors, StaticSurfaceIsReprojectedAfterAnyCameraStep) {
   const auto seed = static_cast<std::uint32_t>(std::random_device{}());
   SCOPED_TRACE(testing::Message() << "seed " << seed);
   std::mt19937 random(seed);
@@ -54,27 +54,30 @@ TEST(MotionErrors, AStandingSurfaceIsFollowedThroughAnyStepOfTheCamera) {
   for (int i = 0; i < 20; ++i) {
     Camera moved = camera_at(step(random));
     moved.target_ws += glm::vec3(0.2f * step(random), 0.2f * step(random), 0.0f);
-    const SeenFrame before = walls(camera_at(0.0f), -100.0f);
-    const SeenFrame now = walls(moved, -100.0f);
-    const Retraced retraced = retrace(now, before, stands);
-    const RunningMean change = visibility_change(now.visibility, before.visibility, retraced);
+    const RenderedFrame before = walls(camera_at(0.0f), -100.0f);
+    const RenderedFrame now = walls(moved, -100.0f);
+    const Reprojection reprojection = reproject(now, before, unmoved);
+    const RunningMean change = visibility_change(now.visibility, before.visibility, reprojection);
     EXPECT_GT(change.count, 0.5 * kWidth * kHeight);
-    EXPECT_LT(change.mean(), 1e-4) << "linear on a plane: bilinear reading is exact up to slant";
+    EXPECT_LT(change.mean(), 1e-4)
+        << "bilinear reading of a linear function is exact up to perspective";
   }
 }
 
-TEST(MotionErrors, AgesTellWhatIsUncoveredFromWhatEntersTheImage) {
-  // The camera goes to the right: the near wall leaves to the left and uncovers the far one.
-  SeenFrame before = walls(camera_at(0.0f), 0.0f);
+TEST(MotionErrors, AgesDistinguishUncoveredSurfacesFromEnteringOnes) {
+  // The camera moves to the right, so that the near wall leaves to the left and uncovers the far
+  // one.
+  RenderedFrame before = walls(camera_at(0.0f), 0.0f);
   Image<Age> ages = first_ages(before);
   EXPECT_EQ(ages.at(3, 3).frames, 1u);
   const float step = 0.8f;
   for (std::uint32_t frame = 1; frame <= 3; ++frame) {
-    SeenFrame now = walls(camera_at(step * static_cast<float>(frame)), 0.0f);
-    ages = next_ages(now, retrace(now, before, stands), ages);
+    RenderedFrame now = walls(camera_at(step * static_cast<float>(frame)), 0.0f);
+    ages = next_ages(now, reproject(now, before, unmoved), ages);
     before = std::move(now);
   }
-  // Pixels a unit spans at each depth, and the steps of the two walls.
+  // `unit` is the number of pixels per unit at depth 1; `each` is the relative step of the two
+  // walls.
   const float unit = 0.5f * kHeight / std::tan(0.5f * before.camera.fov_y);
   const float near_edge = 0.5f * kWidth - 3.0f * step * unit / 4.0f;
   const float each = step * unit * (1.0f / 4.0f - 1.0f / 10.0f);
@@ -87,52 +90,52 @@ TEST(MotionErrors, AgesTellWhatIsUncoveredFromWhatEntersTheImage) {
     EXPECT_TRUE(found.uncovered);
   }
   EXPECT_EQ(ages.at(kWidth - 1, y).frames, 1u);
-  EXPECT_FALSE(ages.at(kWidth - 1, y).uncovered) << "it came from beyond the border";
-  EXPECT_EQ(ages.at(kWidth / 2 + 5, y).frames, 4u) << "seen all the time";
+  EXPECT_FALSE(ages.at(kWidth - 1, y).uncovered) << "it was outside the image before";
+  EXPECT_EQ(ages.at(kWidth / 2 + 5, y).frames, 4u) << "it was always visible";
   EXPECT_EQ(ages.at(1, y).frames, 4u);
 }
 
-TEST(MotionErrors, WhatMovesIsFollowedByWhereItWas) {
-  const SeenFrame before = walls(camera_at(0.0f), -100.0f);
-  SeenFrame now = before;
-  // The wall slid to the right by a unit and took its visibility with it.
+TEST(MotionErrors, MovingSurfaceIsReprojectedByItsPreviousPosition) {
+  const RenderedFrame before = walls(camera_at(0.0f), -100.0f);
+  RenderedFrame now = before;
+  // The wall moved to the right by a unit, and its visibility with it.
   for (float& visibility : now.visibility.pixels) {
     visibility -= 0.03f;
   }
-  const auto slid = [](const glm::vec3& position) { return position - glm::vec3(1, 0, 0); };
+  const auto wall_before = [](const glm::vec3& position) { return position - glm::vec3(1, 0, 0); };
   const auto change = [&](const PositionBefore& position_before) {
-    const Retraced retraced = retrace(now, before, position_before);
-    return visibility_change(now.visibility, before.visibility, retraced).mean();
+    const Reprojection reprojection = reproject(now, before, position_before);
+    return visibility_change(now.visibility, before.visibility, reprojection).mean();
   };
-  EXPECT_LT(change(slid), 1e-5);
-  EXPECT_NEAR(change(stands), 0.03, 1e-5);
+  EXPECT_LT(change(wall_before), 1e-5);
+  EXPECT_NEAR(change(unmoved), 0.03, 1e-5);
 }
 
-TEST(MotionErrors, SkyHasNoAgeNoWayAndNoSpeed) {
-  SeenFrame sky = walls(camera_at(0.0f), -100.0f);
+TEST(MotionErrors, SkyHasNeitherAgeNorChangeNorSpeed) {
+  RenderedFrame sky = walls(camera_at(0.0f), -100.0f);
   std::ranges::fill(sky.depth.pixels, std::numeric_limits<float>::infinity());
-  const Retraced retraced = retrace(sky, sky, stands);
-  EXPECT_EQ(next_ages(sky, retraced, first_ages(sky)).at(2, 2).frames, 0u);
-  EXPECT_EQ(visibility_change(sky.visibility, sky.visibility, retraced).count, 0u);
-  EXPECT_EQ(speed_of(retraced).mean, 0.0);
+  const Reprojection reprojection = reproject(sky, sky, unmoved);
+  EXPECT_EQ(next_ages(sky, reprojection, first_ages(sky)).at(2, 2).frames, 0u);
+  EXPECT_EQ(visibility_change(sky.visibility, sky.visibility, reprojection).count, 0u);
+  EXPECT_EQ(speed_of(reprojection).mean, 0.0);
 }
 
-TEST(MotionErrors, SpeedIsThatOfTheSurfacesInPixels) {
-  const SeenFrame before = walls(camera_at(0.0f), -100.0f);
-  const SeenFrame now = walls(camera_at(0.5f), -100.0f);
+TEST(MotionErrors, SpeedIsMeasuredInPixelsPerFrame) {
+  const RenderedFrame before = walls(camera_at(0.0f), -100.0f);
+  const RenderedFrame now = walls(camera_at(0.5f), -100.0f);
   const float expected = 0.5f * 0.5f * kHeight / std::tan(0.5f * now.camera.fov_y) / 10.0f;
-  const Speed speed = speed_of(retrace(now, before, stands));
+  const Speed speed = speed_of(reproject(now, before, unmoved));
   EXPECT_NEAR(speed.mean, expected, 1e-3);
   EXPECT_NEAR(speed.percentile_95, expected, 1e-3);
 }
 
-// Truths of much noise: with it the error would come out several times too large.
-TEST(MotionErrors, TheNoiseOfATruthIsTakenFromItsError) {
+// The noise of this truth would increase the error several times if it were not subtracted.
+TEST(MotionErrors, NoiseOfTheTruthIsSubtractedFromTheError) {
   const auto seed = static_cast<std::uint32_t>(std::random_device{}());
   SCOPED_TRACE(testing::Message() << "seed " << seed);
   std::mt19937 random(seed);
   std::normal_distribution<float> noise(0.0f, 0.1f);
-  Halves<float> truth{{200, 200}, {200, 200}};
+  SplitTruth<float> truth{{200, 200}, {200, 200}};
   Image<float> result(200, 200);
   for (std::size_t i = 0; i < result.pixels.size(); ++i) {
     truth.first.pixels[i] = 0.5f + noise(random);
@@ -140,20 +143,20 @@ TEST(MotionErrors, TheNoiseOfATruthIsTakenFromItsError) {
     result.pixels[i] = i % 2 == 0 ? 0.53f : 0.47f;
   }
   const Mask all(200, 200, 1);
-  // The mean of 40,000 squares, 0.0009, is known to about 0.00005: six of those.
+  // The standard error of the mean of 40,000 squares of about 0.0009 is 0.00005; six of them pass.
   EXPECT_NEAR(squared_error(result, truth, all).mean(), 0.0009, 0.0003);
   EXPECT_EQ(squared_error(result, truth, Mask(200, 200)).count, 0u);
   EXPECT_EQ(root({-1.0, 5}), 0.0);
 }
 
-// Directions, some four degrees off a truth whose halves are each a dozen off it.
-TEST(MotionErrors, TheNoiseOfATruthsDirectionsIsTakenFromTheirError) {
+// The directions are about 4 degrees off the truth, whose halves have a noise of 12 degrees each.
+TEST(MotionErrors, NoiseOfTrueDirectionsIsSubtractedFromTheError) {
   const auto seed = static_cast<std::uint32_t>(std::random_device{}());
   SCOPED_TRACE(testing::Message() << "seed " << seed);
   std::mt19937 random(seed);
   std::normal_distribution<float> noise(0.0f, 0.1f);
   const auto near_up = [](float x, float y) { return glm::normalize(glm::vec3(x, y, 1.0f)); };
-  Halves<glm::vec3> truth{{200, 200}, {200, 200}};
+  SplitTruth<glm::vec3> truth{{200, 200}, {200, 200}};
   Image<glm::vec3> result(200, 200);
   for (std::size_t i = 0; i < result.pixels.size(); ++i) {
     truth.first.pixels[i] = near_up(noise(random), noise(random));
@@ -161,24 +164,24 @@ TEST(MotionErrors, TheNoiseOfATruthsDirectionsIsTakenFromTheirError) {
     result.pixels[i] = 2.0f * near_up(i % 2 == 0 ? 0.07f : -0.07f, 0.0f);
   }
   const Mask all(200, 200, 1);
-  // A square of 0.0049. The mean of 40,000 products of 0.015 is known to about 0.0001: six of
-  // those.
+  // The squared error is 0.0049. The standard error of the mean is about 0.0001; six of them pass.
   EXPECT_NEAR(squared_error(result, truth, all).mean(), 0.0049, 0.0006);
   const Image<glm::vec3> nothing(200, 200);
-  EXPECT_EQ(squared_error(nothing, truth, all).mean(), 2.0) << "no direction is one across";
+  EXPECT_EQ(squared_error(nothing, truth, all).mean(), 2.0)
+      << "a missing direction counts as 90 degrees";
 }
 
-// A truth that stands still or changes by 0.03 either way, its halves as noisy as that: nothing is
-// found of the one, and of the other most and never more.
-TEST(MotionErrors, TheNoiseOfATruthIsNoChangeOfIt) {
+// One truth is constant and the other changes by 0.03, with halves as noisy as that. The lower
+// bound of the change is about 0 for the first, and most of 0.03 but not more for the second.
+TEST(MotionErrors, NoiseOfTheTruthDoesNotCountAsChange) {
   const auto seed = static_cast<std::uint32_t>(std::random_device{}());
   SCOPED_TRACE(testing::Message() << "seed " << seed);
   std::mt19937 random(seed);
   std::normal_distribution<float> noise(0.0f, 0.02f);
-  const SeenFrame seen = walls(camera_at(0.0f), -100.0f);
-  const Retraced retraced = retrace(seen, seen, stands);
+  const RenderedFrame seen = walls(camera_at(0.0f), -100.0f);
+  const Reprojection reprojection = reproject(seen, seen, unmoved);
   const auto truth_of = [&](float change) {
-    Halves<float> truth{{kWidth, kHeight}, {kWidth, kHeight}};
+    SplitTruth<float> truth{{kWidth, kHeight}, {kWidth, kHeight}};
     for (std::size_t i = 0; i < truth.first.pixels.size(); ++i) {
       const float visibility = 0.5f + (i % 2 == 0 ? change : -change);
       truth.first.pixels[i] = visibility + noise(random);
@@ -186,9 +189,9 @@ TEST(MotionErrors, TheNoiseOfATruthIsNoChangeOfIt) {
     }
     return truth;
   };
-  const RunningMean none = least_change(truth_of(0.0f), truth_of(0.0f), retraced);
-  const RunningMean some = least_change(truth_of(0.03f), truth_of(0.0f), retraced);
-  // Each change has a deviation of 0.028, so that the other half misleads in 14 of 100.
+  const RunningMean none = change_lower_bound(truth_of(0.0f), truth_of(0.0f), reprojection);
+  const RunningMean some = change_lower_bound(truth_of(0.03f), truth_of(0.0f), reprojection);
+  // A change in one half has a deviation of 0.028, so its sign is wrong in 14.44 % of the pixels.
   const double deviation = 0.03 / std::sqrt(static_cast<double>(none.count));
   EXPECT_NEAR(none.mean(), 0.0, 6.0 * deviation);
   EXPECT_NEAR(some.mean(), 0.03 * (1.0 - 2.0 * 0.1444), 6.0 * deviation);

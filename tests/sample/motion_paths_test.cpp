@@ -19,7 +19,7 @@ MotionStart builtin_start() {
   return start;
 }
 
-// Where a point of the world is on the image, in heights from its middle.
+// The image position of a world-space point, in image heights from the middle.
 glm::vec2 on_image(const Camera& camera, const glm::vec3& position) {
   const CameraMatrices matrices = camera_matrices(camera, 100, 100);
   const glm::vec4 clip = matrices.clip_from_world * glm::vec4(position, 1.0f);
@@ -37,7 +37,7 @@ TEST(MotionPaths, EveryPathBeginsWithTheGivenView) {
   }
 }
 
-TEST(MotionPaths, WhatIsPutIntoASmallSceneIsWhole) {
+TEST(MotionPaths, AddedMeshesAreCompleteInTinyScenes) {
   const auto triangles_at = [](float scale) {
     MotionStart start = builtin_start();
     for (glm::vec3* position : {&start.camera.eye_ws, &start.camera.target_ws, &start.ground_ws}) {
@@ -55,11 +55,11 @@ TEST(MotionPaths, WhatIsPutIntoASmallSceneIsWhole) {
   };
   const auto expected = triangles_at(1.0f);
   EXPECT_THAT(expected, testing::Each(testing::Gt(0u)));
-  // As a model of a grain of sand in metres.
+  // This is the size of a model of a grain of sand in metres.
   EXPECT_EQ(triangles_at(1e-5f), expected);
 }
 
-TEST(MotionPaths, StepsAreEqualAndSmallSaveForTheCut) {
+TEST(MotionPaths, StepsAreEqualAndSmallExceptAtTheCut) {
   const MotionStart start = builtin_start();
   for (const MotionKind kind : kMotionKinds) {
     SCOPED_TRACE(name_of(kind));
@@ -77,7 +77,7 @@ TEST(MotionPaths, StepsAreEqualAndSmallSaveForTheCut) {
   }
 }
 
-TEST(MotionPaths, AnOrbitKeepsItsDistanceFromTheMiddleOfTheView) {
+TEST(MotionPaths, OrbitKeepsTheDistanceToTheMiddleOfTheView) {
   const MotionStart start = builtin_start();
   const MotionPath path(MotionKind::kOrbit, start, kFrames);
   const Camera first = path.camera(0);
@@ -87,7 +87,7 @@ TEST(MotionPaths, AnOrbitKeepsItsDistanceFromTheMiddleOfTheView) {
   EXPECT_GT(glm::distance(first.eye_ws, last.eye_ws), 0.1f * start.depth);
 }
 
-TEST(MotionPaths, TheColumnCrossesTheImageAsTheCameraStrafes) {
+TEST(MotionPaths, ColumnCrossesTheImageOfTheStrafingCamera) {
   const MotionStart start = builtin_start();
   const MotionPath path(MotionKind::kStrafe, start, kFrames);
   Scene scene = builtin_scene();
@@ -103,7 +103,7 @@ TEST(MotionPaths, TheColumnCrossesTheImageAsTheCameraStrafes) {
   EXPECT_LT(on_image(path.camera(kFrames - 1), middle).x, -0.2f);
 }
 
-TEST(MotionPaths, TheBlockSlidesOverTheGroundWithoutTouchingIt) {
+TEST(MotionPaths, BlockMovesOverTheGroundWithoutTouchingIt) {
   const MotionStart start = builtin_start();
   const MotionPath path(MotionKind::kObject, start, kFrames);
   Scene scene = builtin_scene();
@@ -126,7 +126,7 @@ TEST(MotionPaths, TheBlockSlidesOverTheGroundWithoutTouchingIt) {
   }
 }
 
-TEST(MotionPaths, APointOfTheBlockIsFollowedBackAndNothingElseIs) {
+TEST(MotionPaths, OnlyPointsOfTheBlockHaveAnotherPreviousPosition) {
   const MotionPath path(MotionKind::kObject, builtin_start(), kFrames);
   Scene then = builtin_scene();
   path.add_to(then);
@@ -136,17 +136,17 @@ TEST(MotionPaths, APointOfTheBlockIsFollowedBackAndNothingElseIs) {
   for (std::size_t i = 0; i < now.meshes.back().positions_ws.size(); ++i) {
     const glm::vec3 found = path.position_before(now.meshes.back().positions_ws[i], 7);
     EXPECT_LT(glm::distance(found, then.meshes.back().positions_ws[i]), 1e-4f);
-    EXPECT_TRUE(path.passes_by(now.meshes.back().positions_ws[i], 7, 0));
+    EXPECT_TRUE(path.is_near_object(now.meshes.back().positions_ws[i], 7, 0));
   }
   const glm::vec3 far = builtin_start().camera.eye_ws;
   EXPECT_EQ(path.position_before(far, 7), far);
-  EXPECT_FALSE(path.passes_by(far, 7, 6));
+  EXPECT_FALSE(path.is_near_object(far, 7, 6));
   // A place that it left stays one that it has passed by.
   const glm::vec3 left(path.world_from_moving(0)[3]);
-  EXPECT_TRUE(path.passes_by(left, kFrames - 1, kFrames - 1));
+  EXPECT_TRUE(path.is_near_object(left, kFrames - 1, kFrames - 1));
 }
 
-TEST(MotionPaths, AViewOfNothingIsRefused) {
+TEST(MotionPaths, ViewWithoutSurfacesIsRefused) {
   const Scene scene = builtin_scene();
   const auto rays = RayScene::create(scene);
   ASSERT_TRUE(rays);

@@ -1,5 +1,5 @@
-# `alcove view` draws some frames without a validation message, writes the last one and says how to
-# draw it again. ALCOVE: the program; FOLDER: one that may be removed.
+# Checks that `alcove view` renders some frames without a validation message, writes the last one and
+# prints the command that renders it again. ALCOVE: the program; FOLDER: a folder that may be removed.
 file(REMOVE_RECURSE ${FOLDER})
 execute_process(
   COMMAND ${ALCOVE} view --frames 4 --orbit 1 --size 320x180 --validation --out ${FOLDER}

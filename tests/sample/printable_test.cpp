@@ -8,24 +8,24 @@
 namespace alcove::sample {
 namespace {
 
-TEST(Printable, WhatCanBeReadStays) {
+TEST(Printable, ValidTextIsUnchanged) {
   for (const std::string text :
        {"", "hall.glb", "caf\xc3\xa9", "\xe2\x82\xac", "\xf0\x9f\x98\x80", "\xed\x9f\xbf"}) {
     EXPECT_EQ(printable(text), text);
   }
 }
 
-TEST(Printable, ControlCharactersAreSpaces) {
+TEST(Printable, ControlCharactersBecomeSpaces) {
   EXPECT_EQ(printable(std::string("a\nb\x1b[31m\x7f\0c", 11)), "a b [31m  c");
 }
 
-TEST(Printable, EachByteThatIsNoPartOfACharacterIsReplaced) {
+TEST(Printable, EachByteOutsideACharacterIsReplaced) {
   const std::string stand_in = "\xef\xbf\xbd";
   EXPECT_EQ(printable("caf\xe9.gltf"), "caf" + stand_in + ".gltf");
   EXPECT_EQ(printable("\xe2\x82"), stand_in + stand_in);                 // cut short
-  EXPECT_EQ(printable("\xc0\xaf"), stand_in + stand_in);                 // longer than need be
-  EXPECT_EQ(printable("\xed\xa0\x80"), stand_in + stand_in + stand_in);  // half of a pair
-  EXPECT_EQ(printable("\xf4\x90\x80\x80").size(), 4 * stand_in.size());  // past the last
+  EXPECT_EQ(printable("\xc0\xaf"), stand_in + stand_in);                 // overlong form
+  EXPECT_EQ(printable("\xed\xa0\x80"), stand_in + stand_in + stand_in);  // half of a surrogate pair
+  EXPECT_EQ(printable("\xf4\x90\x80\x80").size(), 4 * stand_in.size());  // above U+10FFFF
 }
 
 TEST(Printable, AnyBytesCanBeWrittenAsJson) {
@@ -34,7 +34,7 @@ TEST(Printable, AnyBytesCanBeWrittenAsJson) {
   std::mt19937 random(seed);
   for (int i = 0; i < 20000; ++i) {
     std::string bytes(random() % 6, '\0');
-    // Mostly of the upper half, where characters of several bytes are.
+    // Most bytes are 0x80 or above, which only multi-byte characters contain.
     for (char& byte : bytes)
       byte = static_cast<char>(random() % 8 == 0 ? random() : random() | 128);
     const std::string text = printable(bytes);

@@ -1,5 +1,5 @@
-# `alcove ARGUMENTS` ends with status 0, output that has PATTERN, and NOTE alone on stderr, else
-# nothing. ALCOVE: the program.
+# Checks that `alcove ARGUMENTS` ends with status 0, that its output matches PATTERN, and that it prints
+# only NOTE, or nothing if there is no NOTE, on stderr. ALCOVE: the program.
 separate_arguments(ARGUMENTS)
 execute_process(COMMAND ${ALCOVE} ${ARGUMENTS} RESULT_VARIABLE status OUTPUT_VARIABLE output
   ERROR_VARIABLE error)

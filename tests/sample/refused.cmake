@@ -1,6 +1,6 @@
-# `alcove ARGUMENTS` ends with status STATUS, else 1, and one sentence on stderr, which begins with
-# SENTENCE. ALCOVE: the program; LAUNCHER: what starts it, if anything; ABSENT: a path that must not
-# exist afterwards.
+# Checks that `alcove ARGUMENTS` ends with status STATUS (default 1) and prints one sentence on stderr that
+# begins with SENTENCE. ALCOVE: the program; LAUNCHER: an optional command that starts it; ABSENT: an
+# optional path that must not exist afterwards.
 if(NOT DEFINED STATUS)
   set(STATUS 1)
 endif()

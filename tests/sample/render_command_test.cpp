@@ -39,7 +39,7 @@ Shot some_shot() {
   return shot;
 }
 
-// That what is read back draws the same.
+// Checks that the parsed options render the same shot.
 void expect_round_trip(const Options& options, const Shot& shot) {
   const std::vector<std::string> arguments = render_arguments(options, shot);
   SCOPED_TRACE(shell_line(arguments));
@@ -74,9 +74,9 @@ void expect_round_trip(const Options& options, const Shot& shot) {
   EXPECT_EQ(read->occlusion.roughness, roughness);
 }
 
-TEST(CommandLine, AShotIsReadBackAsItIs) { expect_round_trip(kDefaults, some_shot()); }
+TEST(CommandLine, ShotIsParsedBackUnchanged) { expect_round_trip(kDefaults, some_shot()); }
 
-TEST(CommandLine, EverySettingIsReadBack) {
+TEST(CommandLine, EverySettingIsParsedBack) {
   Shot shot = some_shot();
   shot.roughness = 0.3f;
   passes::OcclusionSettings& settings = shot.settings;
@@ -106,7 +106,7 @@ TEST(CommandLine, EverySettingIsReadBack) {
   expect_round_trip(kDefaults, shot);
 }
 
-TEST(CommandLine, SceneLightAndNormalsAreThoseOfTheOptions) {
+TEST(CommandLine, SceneLightAndNormalsComeFromTheOptions) {
   Options options;
   options.scene = "a scene's file.glb";
   options.environment = "sky.hdr";
@@ -114,7 +114,7 @@ TEST(CommandLine, SceneLightAndNormalsAreThoseOfTheOptions) {
   expect_round_trip(options, some_shot());
 }
 
-TEST(CommandLine, AnOrthographicViewHasAHeight) {
+TEST(CommandLine, OrthographicViewIsGivenByItsHeight) {
   Shot shot = some_shot();
   shot.camera.orthographic = true;
   shot.camera.ortho_height = 3.3f;
@@ -122,7 +122,7 @@ TEST(CommandLine, AnOrthographicViewHasAHeight) {
   expect_round_trip(kDefaults, shot);
 }
 
-TEST(CommandLine, AnOrthographicViewMayBeginAtItsEyeOrBehindIt) {
+TEST(CommandLine, OrthographicNearPlaneMayBeAtOrBehindTheEye) {
   Shot shot = some_shot();
   shot.camera.orthographic = true;
   shot.camera.ortho_height = 3.3f;
@@ -135,7 +135,7 @@ TEST(CommandLine, AnOrthographicViewMayBeginAtItsEyeOrBehindIt) {
   expect_round_trip(kDefaults, shot);
 }
 
-TEST(CommandLine, AsManyFramesAsWereDrawnElseAsTheHistoryAverages) {
+TEST(CommandLine, FramesAreThoseRenderedOrElseTheHistoryLength) {
   Shot shot = some_shot();
   shot.settings.history_frames = 17;
   EXPECT_EQ(parse(render_arguments(kDefaults, shot))->view.frames, 17u);
@@ -145,14 +145,14 @@ TEST(CommandLine, AsManyFramesAsWereDrawnElseAsTheHistoryAverages) {
   EXPECT_EQ(parse(render_arguments(kDefaults, shot))->view.frames, 1u);
 }
 
-TEST(CommandLine, TheDeviceIsThatOfTheOptions) {
+TEST(CommandLine, DeviceComesFromTheOptions) {
   Options options;
   EXPECT_EQ(parse(render_arguments(options, some_shot()))->device, options.device);
   options.device = 3;
   EXPECT_EQ(parse(render_arguments(options, some_shot()))->device, 3);
 }
 
-TEST(CommandLine, TreatmentOfMaterialsIsReadBack) {
+TEST(CommandLine, TreatmentOfMaterialsIsParsedBack) {
   for (const MaterialTreatment treatment :
        {MaterialTreatment{}, MaterialTreatment{.cut_blends = true},
         MaterialTreatment{.both_sides = true}}) {
@@ -165,7 +165,7 @@ TEST(CommandLine, TreatmentOfMaterialsIsReadBack) {
   }
 }
 
-TEST(CommandLine, DepthDirectionIsReadBack) {
+TEST(CommandLine, DepthDirectionIsParsedBack) {
   Shot shot = some_shot();
   for (const bool reversed : {false, true}) {
     shot.camera.reversed_z = reversed;
@@ -173,21 +173,21 @@ TEST(CommandLine, DepthDirectionIsReadBack) {
   }
 }
 
-TEST(CommandLine, PositionsFarFromTheOriginAreReadBackExactly) {
+TEST(CommandLine, PositionsFarFromTheOriginAreParsedBackExactly) {
   const glm::dvec3 origin(100000.0, -3.0, 2e7);
   for (const float value : {2.3f, -0.1f, 1e-7f, 12345.678f}) {
     for (int c = 0; c < 3; ++c) {
       const double typed = std::stod(shown_coordinate(value, origin[c]));
-      // The text gives the same float, except for what a double rounds at that distance.
+      // The text gives the same float up to the rounding of a double at that distance.
       EXPECT_NEAR(typed - origin[c], value, 4e-9 + 6e-8 * std::abs(value));
     }
   }
   EXPECT_EQ(shown_coordinate(2.3f, 100000.0), "100002.3");
 }
 
-TEST(CommandLine, AnyAngleOfViewIsReadBack) {
+TEST(CommandLine, AnyAngleOfViewIsParsedBack) {
   Shot shot = some_shot();
-  // The narrowest and the widest that a file's camera has.
+  // The range of angles that a file's camera may have.
   for (const float fov_y : {2e-5f, 0.01f, 3.05f, 3.1f}) {
     shot.camera.fov_y = fov_y;
     const auto read = parse(render_arguments(kDefaults, shot));
@@ -198,19 +198,19 @@ TEST(CommandLine, AnyAngleOfViewIsReadBack) {
     shot.camera.fov_y = fov_y;
     const auto read = parse(render_arguments(kDefaults, shot));
     ASSERT_TRUE(read);
-    // Not every float is some angle in degrees.
+    // Some floats have no exact angle in degrees.
     EXPECT_FLOAT_EQ(*read->view.fov_y, fov_y);
   }
 }
 
-TEST(CommandLine, APresetNeedsNoOtherSetting) {
+TEST(CommandLine, PresetNeedsNoSetOption) {
   const std::string line = shell_line(render_arguments(kDefaults, some_shot()));
   EXPECT_NE(line.find("--quality high --radius 0.7"), std::string::npos) << line;
   EXPECT_EQ(line.find("--set"), std::string::npos) << line;
   EXPECT_NE(line.find("--fov-y 60 "), std::string::npos) << line;
 }
 
-TEST(CommandLine, TheShellReadsWhatIsQuoted) {
+TEST(CommandLine, QuotedArgumentsAreReadByTheShell) {
   EXPECT_EQ(shell_line({"alcove", "it's a file.glb", "", "$x"}),
             R"(alcove 'it'\''s a file.glb' '' '$x')");
 }

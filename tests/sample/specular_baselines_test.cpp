@@ -30,7 +30,7 @@ VisibilityPolynomials project(const std::function<float(const glm::vec3&)>& func
   return sum;
 }
 
-// A thousand directions, spread over the hemisphere.
+// A thousand evenly distributed directions of the hemisphere.
 constexpr uint32_t kDirections = 1000;
 glm::vec3 spread_direction(uint32_t i) { return cosine_direction(r2_point(i, 1)); }
 
@@ -44,7 +44,7 @@ TEST(VisibilityPolynomials, AreOrthonormalOverACosineWeightedHemisphere) {
   }
 }
 
-TEST(VisibilityPolynomials, OpenIsOpenHiddenIsHiddenAndNothingLeavesTheRange) {
+TEST(VisibilityPolynomials, VisibleFractionIsWithinZeroAndOneAndExactAtBothEnds) {
   VisibilityPolynomials all{};
   all[0] = 1.0f;
   for (uint32_t i = 0; i < kDirections; ++i) {
@@ -58,13 +58,13 @@ TEST(VisibilityPolynomials, OpenIsOpenHiddenIsHiddenAndNothingLeavesTheRange) {
   }
 }
 
-TEST(VisibilityPolynomials, OfHalfAHemisphereAreTheClosedForm) {
+TEST(VisibilityPolynomials, HalfAHemisphereMatchesTheClosedForm) {
   const VisibilityPolynomials half =
       project([](const glm::vec3& d) { return d.x > 0.0f ? 1.0f : 0.0f; });
   EXPECT_NEAR(half[0], 0.5f, 1e-4f);
   EXPECT_NEAR(half[1], 4.0f / (3.0f * glm::pi<float>()), 1e-3f);
   EXPECT_NEAR(half[2], 0.0f, 1e-4f);
-  // A lobe that is even around the normal sees half, however wide.
+  // Half of any lobe that is symmetric about the normal is visible.
   for (const float squared : {0.0f, 0.2f, 0.7f}) {
     VisibilityPolynomials ring{};
     for (int j = 0; j < 64; ++j) {
@@ -78,7 +78,7 @@ TEST(VisibilityPolynomials, OfHalfAHemisphereAreTheClosedForm) {
   }
 }
 
-TEST(VisibilityPolynomials, GiveBackWhatIsAPolynomialItself) {
+TEST(VisibilityPolynomials, PolynomialVisibilityIsReproducedExactly) {
   const auto hidden = [](const glm::vec3& d) {
     return 0.4f + 0.1f * d.x - 0.1f * d.y * d.x + 0.1f * d.x * d.x * d.y +
            0.1f * d.y * d.y * d.y * d.x;
@@ -90,9 +90,9 @@ TEST(VisibilityPolynomials, GiveBackWhatIsAPolynomialItself) {
   }
 }
 
-// The middle of a view of a scene: its limits and the truth.
+// The baselines and the truth of the middle of a view of a scene.
 struct Limits {
-  SpecularBaselines limits;
+  SpecularBaselines baselines;
   Image<float> truth;
   Mask mask;
 };
@@ -115,13 +115,13 @@ Limits limits_of(const char* name, float roughness, const TruthSettings& setting
           specular_truth(*rays, points, image, viewer_of(camera), settings), mask};
 }
 
-TEST(SpecularBaselines, AnOpenPlaneIsOpenAtAnyTiltAndRoughness) {
+TEST(SpecularBaselines, OpenPlaneIsOpenAtAnyTiltAndRoughness) {
   for (const char* name : {"plane:0", "plane:45", "plane:75"}) {
     for (const float roughness : {0.05f, 0.3f, 1.0f}) {
       const Limits all = limits_of(name, roughness, {0.5f, 64, 1});
       const Image<float> open(all.mask.width, all.mask.height, 1.0f);
       for (const Image<float>* one :
-           {&all.limits.polynomials, &all.limits.depth, &all.limits.depth_polynomials}) {
+           {&all.baselines.polynomials, &all.baselines.depth, &all.baselines.depth_polynomials}) {
         const ErrorSummary error = compare_images(*one, open, all.mask);
         EXPECT_GT(error.count, 900u);
         EXPECT_EQ(error.max_absolute, 0.0) << name << " " << roughness;
@@ -130,14 +130,15 @@ TEST(SpecularBaselines, AnOpenPlaneIsOpenAtAnyTiltAndRoughness) {
   }
 }
 
-TEST(SpecularBaselines, AreNearTheTruthWhereTheImageHoldsAllOfItAndLobesAreWide) {
+TEST(SpecularBaselines, AgreeWithTheTruthForWideLobesIfTheImageShowsAllOccluders) {
   for (const char* name : {"groove:90", "groove:120", "step"}) {
     const Limits all = limits_of(name, 0.8f, {0.4f, 256, 1});
     const Image<float> open(all.mask.width, all.mask.height, 1.0f);
     EXPECT_GT(compare_images(open, all.truth, all.mask).rmse, 0.05) << name;
-    EXPECT_LT(compare_images(all.limits.polynomials, all.truth, all.mask).rmse, 0.02) << name;
-    EXPECT_LT(compare_images(all.limits.depth, all.truth, all.mask).rmse, 0.03) << name;
-    EXPECT_LT(compare_images(all.limits.depth_polynomials, all.truth, all.mask).rmse, 0.03) << name;
+    EXPECT_LT(compare_images(all.baselines.polynomials, all.truth, all.mask).rmse, 0.02) << name;
+    EXPECT_LT(compare_images(all.baselines.depth, all.truth, all.mask).rmse, 0.03) << name;
+    EXPECT_LT(compare_images(all.baselines.depth_polynomials, all.truth, all.mask).rmse, 0.03)
+        << name;
   }
 }
 

@@ -1,12 +1,14 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <iterator>
 #include <random>
 #include <string>
 
 namespace alcove::sample {
 
-// A folder of the test's own, removed with all that is in it.
+// A folder that is removed with its contents at the end of the test.
 struct TemporaryFolder {
   std::filesystem::path path = std::filesystem::temp_directory_path() /
                                ("alcove-test-" + std::to_string(std::random_device{}()));
@@ -16,6 +18,10 @@ struct TemporaryFolder {
   ~TemporaryFolder() {
     std::error_code ignored;
     std::filesystem::remove_all(path, ignored);
+  }
+  // The number of files and folders in it.
+  std::ptrdiff_t files() const {
+    return std::distance(std::filesystem::directory_iterator(path), {});
   }
 };
 

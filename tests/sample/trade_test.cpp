@@ -20,7 +20,7 @@ TradePoint point(const std::string& name, double time_ms, double rmse, double sp
   return {name, {}, rmse, 0.5 * rmse, time_ms, spread_ms, 2.0 * time_ms, 1000};
 }
 
-TEST(PresetSweep, AreEachThereOnceWithTheQualitiesAmongThem) {
+TEST(PresetSweep, ContainsEachPresetAndNoDuplicates) {
   for (const passes::Quality quality : {passes::Quality::low, passes::Quality::medium,
                                         passes::Quality::high, passes::Quality::ultra}) {
     const OcclusionSettings base = passes::quality_settings(quality, 0.5f);
@@ -37,7 +37,7 @@ TEST(PresetSweep, AreEachThereOnceWithTheQualitiesAmongThem) {
   }
 }
 
-TEST(PresetSweep, KeepWhatWasChosen) {
+TEST(PresetSweep, ChangesOnlyTileSizeSlicesAndSteps) {
   OcclusionSettings base = passes::quality_settings(passes::Quality::medium, 2.0f);
   base.history_frames = 0;
   base.estimator = passes::Estimator::horizons;
@@ -51,7 +51,7 @@ TEST(PresetSweep, KeepWhatWasChosen) {
   }
 }
 
-TEST(Trade, TheFrontIsWhatNothingIsBothFasterAndNearerThan) {
+TEST(Trade, ParetoFrontExcludesDominatedPoints) {
   const Trade trade =
       trade_of({point("slow", 9, 0.01), point("fast", 1, 0.1), point("worse", 4, 0.2),
                 point("fair", 3, 0.05), point("equal", 5, 0.05)});
@@ -63,14 +63,14 @@ TEST(Trade, TheFrontIsWhatNothingIsBothFasterAndNearerThan) {
   EXPECT_EQ(trade.on_pareto_front, (std::vector<bool>{true, true, false, false, true}));
 }
 
-TEST(Trade, ALeadWithinTheSpreadIsNone) {
+TEST(Trade, DifferenceWithinTheSpreadDoesNotDominate) {
   const Trade trade =
       trade_of({point("no faster", 10.0, 0.06, 0.3), point("nearer", 10.4, 0.05, 0.2),
                 point("surely faster", 9.0, 0.08, 0.3)});
   EXPECT_EQ(trade.on_pareto_front, (std::vector<bool>{true, false, true}));
 }
 
-TEST(Trade, TheFrontDoesNotDependOnNoiseWithinTheSpread) {
+TEST(Trade, ParetoFrontDoesNotDependOnNoiseWithinTheSpread) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> noise(-0.07, 0.07);
   for (int run = 0; run < 100; ++run) {
@@ -83,12 +83,12 @@ TEST(Trade, TheFrontDoesNotDependOnNoiseWithinTheSpread) {
   }
 }
 
-TEST(Trade, OfPointsThatAreEqualOneIsOnTheFront) {
+TEST(Trade, OneOfSeveralEqualPointsIsOnTheParetoFront) {
   const Trade trade = trade_of({point("a", 1, 0.1), point("b", 1, 0.1)});
   EXPECT_EQ(trade.on_pareto_front, (std::vector<bool>{true, false}));
 }
 
-TEST(SamplingGrid, HasEveryPairOfStepsAndSlicesByStepsFirst) {
+TEST(SamplingGrid, HasEveryPairOrderedBySteps) {
   const OcclusionSettings base = passes::quality_settings(passes::Quality::high, 0.5f);
   const std::vector<Variant> grid = sampling_grid(base);
   ASSERT_EQ(grid.size(), kGridSteps.size() * kGridSlices.size());
@@ -100,18 +100,18 @@ TEST(SamplingGrid, HasEveryPairOfStepsAndSlicesByStepsFirst) {
   }
 }
 
-TEST(Trade, ChoosesTheLeastThatHolds) {
+TEST(Trade, ChoosesTheBestPointWithinTheLimit) {
   const std::vector<TradePoint> points{point("fast", 1, 0.1), point("fair", 3, 0.05),
                                        point("slow", 9, 0.01)};
-  EXPECT_EQ(nearest_within_ms(points, 3.0)->name, "fair");
-  EXPECT_EQ(nearest_within_ms(points, 100.0)->name, "slow");
-  EXPECT_EQ(nearest_within_ms(points, 0.5), nullptr);
+  EXPECT_EQ(least_error_within_ms(points, 3.0)->name, "fair");
+  EXPECT_EQ(least_error_within_ms(points, 100.0)->name, "slow");
+  EXPECT_EQ(least_error_within_ms(points, 0.5), nullptr);
   EXPECT_EQ(fastest_within_rmse(points, 0.05)->name, "fair");
   EXPECT_EQ(fastest_within_rmse(points, 1.0)->name, "fast");
   EXPECT_EQ(fastest_within_rmse(points, 0.005), nullptr);
 }
 
-TEST(Trade, OverScenesTimesAreMeansAndErrorsRootMeanSquares) {
+TEST(Trade, ScenesAreCombinedByMeanTimesAndRootMeanSquareErrors) {
   const std::vector<std::vector<TradePoint>> scenes{{point("a", 1, 0.3)}, {point("a", 3, 0.4)}};
   const std::vector<TradePoint> all = over_scenes(scenes);
   ASSERT_EQ(all.size(), 1u);
@@ -121,7 +121,7 @@ TEST(Trade, OverScenesTimesAreMeansAndErrorsRootMeanSquares) {
   EXPECT_EQ(all[0].bytes, 1000u);
 }
 
-TEST(TradePlot, NamesTheFrontAndEscapesText) {
+TEST(TradePlot, NamesTheParetoFrontAndEscapesText) {
   const std::string plot =
       plot_of(trade_of({point("fast", 1, 0.1), point("a < b", 30, 0.05), point("off", 40, 0.06)}),
               "scene & size", "modelled time");
@@ -151,7 +151,7 @@ std::vector<PlacedName> placed_names(const std::string& plot, const std::string&
   return names;
 }
 
-TEST(TradePlot, NamesOfPointsThatLieCloseTogetherDoNotOverlap) {
+TEST(TradePlot, NamesOfAdjacentPointsDoNotOverlap) {
   std::vector<TradePoint> points;
   for (int i = 0; i < 9; ++i) {
     points.push_back(
@@ -170,7 +170,7 @@ TEST(TradePlot, NamesOfPointsThatLieCloseTogetherDoNotOverlap) {
   }
 }
 
-TEST(TradePlot, OnePointHasAPlotToo) {
+TEST(TradePlot, SinglePointIsPlotted) {
   const std::string plot = plot_of(trade_of({point("only", 1, 0.0)}), "one", "time");
   EXPECT_NE(plot.find("<circle"), std::string::npos);
   EXPECT_EQ(plot.find("nan"), std::string::npos);

@@ -26,7 +26,7 @@ TEST_P(ClosedForm, RayTracedVisibilityAgreesWithinThreeStandardErrors) {
                                      {static_cast<float>(analytic->closed_form_radius), kRays, 1});
   for (uint32_t i = 0; i < analytic->points.size(); ++i) {
     const double expected = analytic->points[i].visibility;
-    // The error of as many independent rays; ours are better spread.
+    // The standard error of independent rays; the R2 sequence has less.
     const double standard_error = std::sqrt(expected * (1.0 - expected) / kRays);
     EXPECT_NEAR(truth.visibility.at(i, 0), expected, 3.0 * standard_error + 1e-6)
         << GetParam() << " point " << i;
@@ -36,7 +36,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, ClosedForm,
                          testing::Values("plane:0", "plane:85", "groove:30", "groove:90",
                                          "groove:150", "corner", "sphere", "pit", "step"));
 
-// Everything of one view of a scene that the truths need.
+// The inputs of the truths for one view of a scene.
 struct View {
   GBuffer g;
   SurfacePoints points;
@@ -61,7 +61,7 @@ TEST(Truth, OpenPlaneIsExactlyOpenAtAnyTilt) {
   }
 }
 
-// A scene, and the view of it, as many times as large.
+// A scene and its view, scaled.
 Scene scaled(Scene scene, float scale) {
   for (Mesh& mesh : scene.meshes) {
     for (glm::vec3& position : mesh.positions_ws) position *= scale;
@@ -76,7 +76,7 @@ Scene scaled(Scene scene, float scale) {
   return scene;
 }
 
-TEST(Truth, ASceneMayBeVerySmallAndVeryLarge) {
+TEST(Truth, VisibilityDoesNotDependOnTheScaleOfTheScene) {
   const Scene scene = analytic_scene("corner")->scene;
   const auto visibility = [&](float scale) {
     const Scene other = scaled(scene, scale);
@@ -88,7 +88,7 @@ TEST(Truth, ASceneMayBeVerySmallAndVeryLarge) {
     }
     return occlusion_truth(*rays, view.points, settings).visibility.pixels;
   };
-  // Powers of two, which round nothing.
+  // Powers of two do not round.
   const auto expected = visibility(1.0f);
   EXPECT_NE(expected, Image<float>(32, 18, 1.0f).pixels);
   for (const float scale : {0x1p-45f, 0x1p-30f, 0x1p30f, 0x1p34f}) {
@@ -99,14 +99,14 @@ TEST(Truth, ASceneMayBeVerySmallAndVeryLarge) {
   EXPECT_THAT(too_large.error(), testing::HasSubstr("further than 1e12"));
 }
 
-TEST(Truth, AMeshWithoutTrianglesIsNoObstacle) {
+TEST(Truth, MeshWithoutTrianglesIsIgnored) {
   Scene scene = analytic_scene("corner")->scene;
   scene.meshes.emplace_back();
   const auto rays = RayScene::create(scene);
   EXPECT_TRUE(rays) << rays.error();
 }
 
-TEST(Truth, NothingIsSeenFromBeyondWhatCanBeTraced) {
+TEST(Truth, RaysFromBeyondTheTraceableRangeHitNothing) {
   const Scene scene = analytic_scene("corner")->scene;
   const auto rays = RayScene::create(scene);
   for (const float near_plane : {1e19f, 3e38f}) {
@@ -126,14 +126,14 @@ TEST(Truth, BentNormalOfAnOpenPlaneIsItsNormal) {
   EXPECT_GT(glm::dot(truth.bent_normal_ws.at(0, 0), points.normal_ws.at(0, 0)), 0.99999f);
 }
 
-TEST(Truth, HitsBeyondTheRadiusDoNotBlock) {
+TEST(Truth, HitsBeyondTheRadiusDoNotOcclude) {
   const auto analytic = analytic_scene("groove:90");
   const auto rays = RayScene::create(analytic->scene);
   const auto truth = occlusion_truth(*rays, points_of(*analytic), {0.05f, 256, 1});
   EXPECT_EQ(truth.visibility.at(0, 0), 1.0f);
 }
 
-TEST(Truth, BlackWallsMakeInterreflectionTheVisibilityAndWhiteOnesHideNothing) {
+TEST(Truth, InterreflectionIsTheVisibilityForBlackWallsAndOneForWhiteWalls) {
   for (const float albedo : {0.0f, 1.0f}) {
     auto analytic = analytic_scene("groove:90");
     analytic->scene.materials[0].base_color = glm::vec4(glm::vec3(albedo), 1.0f);
@@ -145,8 +145,8 @@ TEST(Truth, BlackWallsMakeInterreflectionTheVisibilityAndWhiteOnesHideNothing) {
   }
 }
 
-TEST(Truth, MirrorLooksAlongTheReflectedView) {
-  // From a floor, a shallow view towards the wall reflects into it, one away from it does not.
+TEST(Truth, MirrorIsOccludedAlongTheReflectedViewDirection) {
+  // On the floor, a shallow ray towards the wall is reflected into it; one away from it is not.
   const auto analytic = analytic_scene("step");
   const auto rays = RayScene::create(analytic->scene);
   SurfacePoints points{{1, 1, glm::vec3(-0.3f, 0, 0)}, {1, 1, glm::vec3(0, 1, 0)}, {}};
@@ -196,7 +196,7 @@ TEST(HeightFieldTruth, OpenPlaneIsOpenWithin255thInEveryProjection) {
       const auto truth =
           height_field_truth(view.g.depth_vs, view.g.geometric_normal_ws, camera, {0.5f, 64});
       for (size_t i = 0; i < view.mask.pixels.size(); ++i) {
-        // At the far plane the scene ends, and with it the plane.
+        // The plane is cut off at the far plane.
         if (view.g.depth_vs.pixels[i] < 0.5f * camera.far_plane) {
           ASSERT_NEAR(truth.visibility.pixels[i], 1.0f, 1.0f / 255.0f) << name << " " << i;
         }
@@ -205,8 +205,8 @@ TEST(HeightFieldTruth, OpenPlaneIsOpenWithin255thInEveryProjection) {
   }
 }
 
-// Where all that blocks is in the image, the height field of a groove or a step is its scene.
-TEST(HeightFieldTruth, AgreesWithTheSceneWhereTheImageHoldsAllOfIt) {
+// If the image shows all occluders, the height field of a groove or a step equals the scene.
+TEST(HeightFieldTruth, AgreesWithTheSceneTruthIfTheImageShowsAllOccluders) {
   for (const char* name : {"groove:90", "groove:120", "step"}) {
     const auto analytic = analytic_scene(name);
     const auto rays = RayScene::create(analytic->scene);
@@ -225,7 +225,7 @@ TEST(HeightFieldTruth, AgreesWithTheSceneWhereTheImageHoldsAllOfIt) {
   }
 }
 
-TEST(BuiltinScene, HoldsWhatItPromises) {
+TEST(BuiltinScene, HasTheDocumentedContents) {
   const Scene scene = builtin_scene();
   EXPECT_LT(triangle_count(scene), 50000u);
   EXPECT_GE(scene.cameras.size(), 2u);

@@ -36,16 +36,16 @@ Weave weave_of_error(const std::function<float(std::uint32_t x, std::uint32_t y)
                   smooth_truth(), kEverywhere);
 }
 
-// +a and -a in turn, on diagonals: a herringbone of RMS a.
+// Alternating +a and -a on diagonals: a herringbone pattern with an RMS of a.
 float diagonal(std::uint32_t x, std::uint32_t y, float amplitude) {
   return ((x + y) % 4 < 2) ? amplitude : -amplitude;
 }
 
-TEST(Weave, PatternOfFourPixelsIsMeasuredByItsRms) {
+TEST(Weave, PatternWithAPeriodOfFourPixelsIsMeasuredByItsRms) {
   const Weave weave =
       weave_of_error([](std::uint32_t x, std::uint32_t y) { return diagonal(x, y, 0.004f); });
   EXPECT_EQ(weave.windows, kSize * kSize / (32u * 32u));
-  // The variance of 16 averages is taken over 15 of them, and the 9x9 mean keeps a little of the
+  // The sample variance of 16 averages divides by 15, and the 9x9 mean contains some of the
   // pattern.
   EXPECT_NEAR(weave.rms(), 0.004 * std::sqrt(16.0 / 15.0), 0.0002);
   EXPECT_EQ(weave.visible_windows, 0u);
@@ -58,11 +58,11 @@ TEST(Weave, WindowsWithAVisiblePatternAreCounted) {
   EXPECT_NEAR(weave.visible_fraction(), 0.25, 1e-9);
 }
 
-TEST(Weave, WhiteNoiseIsNoPattern) {
+TEST(Weave, WhiteNoiseHasNoPattern) {
   std::mt19937 random(7);
   std::normal_distribution<float> noise(0.0f, 0.03f);
   const Weave weave = weave_of_error([&](std::uint32_t, std::uint32_t) { return noise(random); });
-  // A share that was not taken off would leave 0.03 / 8.
+  // Without the subtraction of white noise the RMS would be 0.03 / 8.
   EXPECT_LT(weave.rms(), 0.0012);
   EXPECT_EQ(weave.visible_windows, 0u);
 }
@@ -75,7 +75,7 @@ TEST(Weave, PatternIsFoundBelowNoise) {
   EXPECT_NEAR(weave.rms(), 0.0041, 0.0008);
 }
 
-TEST(Weave, SmoothErrorAndOtherPeriodsAreNoPattern) {
+TEST(Weave, SmoothErrorsAndOtherPeriodsAreIgnored) {
   EXPECT_LT(weave_of_error([](std::uint32_t x, std::uint32_t) {
               return 0.05f * std::sin(0.05f * static_cast<float>(x));
             }).rms(),
@@ -98,7 +98,7 @@ TEST(Weave, WindowsWithSkyOrWithDetailInTheTruthDoNotCount) {
   EXPECT_EQ(weave_of(truth, truth, surfaces).windows, kSize * kSize / (32u * 32u) - 2);
 }
 
-TEST(Weave, AnImageSmallerThanAWindowHasNone) {
+TEST(Weave, ImageSmallerThanAWindowHasNoWindows) {
   const Image<float> small(31, 31, 0.5f);
   const Weave weave = weave_of(small, small, Mask(31, 31, 1));
   EXPECT_EQ(weave.windows, 0u);
@@ -106,7 +106,7 @@ TEST(Weave, AnImageSmallerThanAWindowHasNone) {
   EXPECT_EQ(weave.visible_fraction(), 0.0);
 }
 
-TEST(Weave, ValuesThatAreNotNumbersDoNotSpread) {
+TEST(Weave, NotANumberDoesNotAffectOtherPixels) {
   Image<float> result = smooth_truth();
   result.at(5, 5) = NAN;
   EXPECT_TRUE(std::isfinite(weave_of(result, smooth_truth(), kEverywhere).rms()));

@@ -13,12 +13,6 @@
 namespace alcove::sample {
 namespace {
 
-size_t files_in(const std::filesystem::path& folder) {
-  size_t count = 0;
-  for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder)) ++count;
-  return count;
-}
-
 TEST(WholeFile, FullDiskIsReportedAndNothingIsLeft) {
   if (!std::filesystem::exists("/dev/full")) return;  // not Linux
   const TemporaryFolder folder;
@@ -29,7 +23,7 @@ TEST(WholeFile, FullDiskIsReportedAndNothingIsLeft) {
                 : tl::unexpected<std::string>("No space left on device");
   });
   EXPECT_FALSE(written);
-  EXPECT_EQ(files_in(folder.path), 0u);
+  EXPECT_EQ(folder.files(), 0);
 }
 
 TEST(WholeFile, AbandonedTemporaryFilesAreRemovedByTheNextWriteOfTheFile) {
@@ -39,14 +33,15 @@ TEST(WholeFile, AbandonedTemporaryFilesAreRemovedByTheNextWriteOfTheFile) {
   }
   ASSERT_TRUE(write_text(folder.path / "a.txt", "whole"));
   EXPECT_FALSE(std::filesystem::exists(folder.path / "a.txt.part123"));
-  EXPECT_EQ(files_in(folder.path), 3u);  // another's file and that of another target stay
+  EXPECT_EQ(folder.files(),
+            3u);  // a file of another kind and one of another target are kept
   remove_abandoned(folder.path);
   EXPECT_FALSE(std::filesystem::exists(folder.path / "b.a.txt.part5"));
-  EXPECT_EQ(files_in(folder.path), 2u);
+  EXPECT_EQ(folder.files(), 2);
 }
 
-// The writer is a process of its own that is killed while it writes.
-TEST(WholeFile, TemporaryFileStaysWhileItsWriterLives) {
+// The writer is a separate process that is killed while it writes.
+TEST(WholeFile, TemporaryFileOfARunningWriterIsKept) {
   const TemporaryFolder folder;
   int pipe_ends[2];
   ASSERT_EQ(pipe(pipe_ends), 0);
@@ -64,11 +59,11 @@ TEST(WholeFile, TemporaryFileStaysWhileItsWriterLives) {
   char byte = 0;
   ASSERT_EQ(read(pipe_ends[0], &byte, 1), 1);
   remove_abandoned(folder.path);
-  EXPECT_EQ(files_in(folder.path), 1u);
+  EXPECT_EQ(folder.files(), 1);
   kill(writer, SIGKILL);
   waitpid(writer, nullptr, 0);
   remove_abandoned(folder.path);
-  EXPECT_EQ(files_in(folder.path), 0u);
+  EXPECT_EQ(folder.files(), 0);
   close(pipe_ends[0]);
   close(pipe_ends[1]);
 }
@@ -90,7 +85,7 @@ TEST(OutputFolder, FileInPlaceOfTheFolderIsRefused) {
   }
 }
 
-TEST(OutputFolder, FoldersThatStayedEmptyAreRemoved) {
+TEST(OutputFolder, EmptyFoldersAreRemoved) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder.path / "old");
   {
@@ -102,7 +97,7 @@ TEST(OutputFolder, FoldersThatStayedEmptyAreRemoved) {
   EXPECT_FALSE(std::filesystem::exists(folder.path / "old" / "new"));
 }
 
-TEST(OutputFolder, FoldersThatHoldAFileAndFoldersOfOthersStay) {
+TEST(OutputFolder, FoldersWithFilesAndExistingFoldersAreKept) {
   const TemporaryFolder folder;
   {
     const auto made = OutputFolder::create(folder.path / "new" / "deep");

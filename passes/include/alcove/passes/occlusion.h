@@ -28,7 +28,7 @@ enum class Specular : std::uint8_t {
 enum class Quality : std::uint8_t {
   low,        // 1 slice of 8 steps a side in 4x4 pixels: 1 fetch
   medium,     // 1 of 10 in 2x2: 5
-  high,       // 3 of 16 in 2x2: 24
+  high,       // 2 of 16 in 2x2: 16
   ultra,      // 4 of 24 in 2x2: 48
   reference,  // 32 of 64 in each: 4096. By horizons, neither filtered nor averaged: the paper's own
 };

@@ -1,4 +1,4 @@
-#include "evaluate/motion_walk.h"
+#include "evaluate/motion_renderer.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -13,27 +13,27 @@ namespace {
 
 using Failure = tl::unexpected<std::string>;
 
-// Raised when a truth is computed otherwise, so that old entries of the cache are not taken.
+// Increment when the computation of a truth changes, so that old cache entries are not used.
 constexpr std::uint32_t kMotionTruthVersion = 2;
 
 }  // namespace
 
-tl::expected<MotionWalk, std::string> MotionWalk::create(Gpu& gpu, const Scene& scene,
-                                                         const MotionPath& path,
-                                                         const MotionSetup& setup) {
-  MotionWalk walk(path, setup);
-  walk.scene_ = std::make_unique<Scene>(scene);
-  path.add_to(*walk.scene_);
+tl::expected<MotionRenderer, std::string> MotionRenderer::create(Gpu& gpu, const Scene& scene,
+                                                                 const MotionPath& path,
+                                                                 const MotionSetup& setup) {
+  MotionRenderer made(path, setup);
+  made.scene_ = std::make_unique<Scene>(scene);
+  path.add_to(*made.scene_);
   auto renderer =
-      FrameRenderer::create(gpu, *walk.scene_, {setup.width, setup.height}, setup.normals);
+      FrameRenderer::create(gpu, *made.scene_, {setup.width, setup.height}, setup.normals);
   if (!renderer) {
     return Failure(std::move(renderer.error()));
   }
-  walk.renderer_ = std::move(*renderer);
-  return walk;
+  made.renderer_ = std::move(*renderer);
+  return made;
 }
 
-FrameRequest MotionWalk::request(const Step& step) const {
+FrameRequest MotionRenderer::request(const Step& step) const {
   const CameraMatrices now = camera_matrices(path_.camera(step.frame), setup_.width, setup_.height);
   const CameraMatrices before =
       camera_matrices(path_.camera(step.before), setup_.width, setup_.height);
@@ -51,35 +51,36 @@ FrameRequest MotionWalk::request(const Step& step) const {
   request.occlusion = setup_.occlusion;
   request.occlusion.specular = passes::Specular::none;
   request.occlusion.bent_normal = true;
-  if (step.gathered != Gathered::neighbours_and_history) {
+  if (step.filtering != Filtering::spatial_and_temporal) {
     request.occlusion.history_frames = 0;
   }
-  if (step.gathered == Gathered::nothing) {
+  if (step.filtering == Filtering::none) {
     request.occlusion.filter_radius = 0;
   }
   return request;
 }
 
-tl::expected<SeenFrame, std::string> MotionWalk::draw_and_read(const Step& step) {
+tl::expected<RenderedFrame, std::string> MotionRenderer::draw_and_read(const Step& step) {
   auto images = renderer_->draw_and_read(request(step));
   if (!images) {
     return Failure(std::move(images.error()));
   }
   const Camera camera = path_.camera(step.frame);
-  return SeenFrame{camera, linear_depth(camera, images->depth_ndc), std::move(images->normal_ws),
-                   std::move(images->visibility), std::move(images->bent_normal_ws)};
+  return RenderedFrame{camera, linear_depth(camera, images->depth_ndc),
+                       std::move(images->normal_ws), std::move(images->visibility),
+                       std::move(images->bent_normal_ws)};
 }
 
-tl::expected<void, std::string> MotionWalk::draw(const Step& step) {
+tl::expected<void, std::string> MotionRenderer::draw(const Step& step) {
   return renderer_->draw(request(step)).map([](const FrameCost&) {});
 }
 
-Progress MotionWalk::progress(const std::string& name) const {
+Progress MotionRenderer::progress(const std::string& name) const {
   return setup_.progress ? setup_.progress(name) : Progress([](double) {});
 }
 
-tl::expected<MotionWalk::Truth, std::string> MotionWalk::truth(std::uint32_t frame,
-                                                               const SeenFrame& seen) {
+tl::expected<MotionRenderer::Truth, std::string> MotionRenderer::truth(std::uint32_t frame,
+                                                                       const RenderedFrame& seen) {
   path_.pose(*scene_, frame);
   const TruthCache cache(setup_.cache);
   const std::uint32_t half = std::max(setup_.spp / 2, 1u);
