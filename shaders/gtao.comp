@@ -107,8 +107,8 @@ Surface fetch_surface(ivec2 pixel, float inverse_depth) {
   surface.depth = kPerspective ? 1.0 / inverse_depth : inverse_depth;
   surface.depth_step = depth_step_at(
       DepthStep(parameters.depth_step, parameters.depth_step_per_inverse_depth), inverse_depth);
-  vec2 slope = parameters.slope.zw +
-               (kPerspective ? centre_of(surface) * parameters.slope.xy : vec2(0.0));
+  vec2 slope =
+      parameters.slope.zw + (kPerspective ? centre_of(surface) * parameters.slope.xy : vec2(0.0));
   surface.view = normalize(vec3(-slope, 1.0));
   vec3 given = decode_normal(texelFetch(normal_image, pixel, 0).xyz, kNormalEncoding);
   surface.normal = seen_normal(pixel, mat3(parameters.view_from_normal) * given, surface.view);
@@ -261,10 +261,12 @@ SearchResult search_pixel(ivec2 pixel, float inverse_depth, SliceNoise noise) {
     add_slice(sum, surface, noise, 0u);
   } else {
     uint i = 0u;
-    do {
+    [[dont_unroll]] do {
       add_slice(sum, surface, noise, i);
       ++i;
-    } while (i < kSliceCount);
+    }
+    while (i < kSliceCount)
+      ;
   }
   float step_length = depth_step_length(surface.depth_step, inverse_depth, kPerspective);
   sum = fade_unresolved(sum, unresolved_occlusion(step_length, parameters.radius));

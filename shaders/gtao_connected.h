@@ -12,13 +12,13 @@ struct SegmentState {
   float rise;         // change of SliceSample::off_plane over the last sample interval
   float interval_px;  // width of the last sample interval
   DepthDiscontinuity discontinuity;  // at the last sample
-  float x;            // x (times w) of the last sample
-  uint beyond;        // sectors beyond the last sample
-  bool inside;        // whether the last sample lies within the radius
-  uint occluded;      // sectors, so far
-  uint runs;          // one bit per sample: part of an occluder run
-  float run_px;       // width of all occluder runs together
-  uint unobserved;    // one bit per sample: hides what lies within the radius behind it
+  float x;                           // x (times w) of the last sample
+  uint beyond;                       // sectors beyond the last sample
+  bool inside;                       // whether the last sample lies within the radius
+  uint occluded;                     // sectors, so far
+  uint runs;                         // one bit per sample: part of an occluder run
+  float run_px;                      // width of all occluder runs together
+  uint unobserved;  // one bit per sample: hides what lies within the radius behind it
 };
 
 // What was found in a half-slice.
@@ -104,15 +104,15 @@ uint extrapolated_sectors(SegmentState state, float last_step_px, HalfSlice half
   float way_px = extrapolated_way(last.inverse_depth, half_slice.slope + slope,
                                   half_slice.extrapolated_px, kPerspective);
   vec2 end = plane_point(half_slice, last.point.x + way_px, last.off_plane + slope * way_px);
-  bool goes_on = way_px > 0.0 && last_step_px > 0.1 && !is_discontinuous(state.discontinuity) &&
-                 state.inside;
+  bool goes_on =
+      way_px > 0.0 && last_step_px > 0.1 && !is_discontinuous(state.discontinuity) && state.inside;
   return goes_on ? state.beyond ^ sectors_beyond(biased_position(sectors, 1.0 - diamond_angle(end)))
                  : 0u;
 }
 
 // Sample intervals in one iteration of the loop over samples. An iteration costs as much as half a
-// sample, but each interval holds the registers of a sample. Several slices hold more registers than
-// one. passes/cost/gtao.cpp counts the iterations.
+// sample, but each interval holds the registers of a sample. Several slices hold more registers
+// than one. passes/cost/gtao.cpp counts the iterations.
 const uint kUnrolled = kSliceCount > 1u ? 2u : 4u;
 
 Occluders find_in_layer(HalfSlice half_slice, float sectors, uint layer) {
@@ -131,9 +131,8 @@ Occluders find_in_layer(HalfSlice half_slice, float sectors, uint layer) {
   add_sample(state, half_slice, sectors, layer, 1u, first, joined, kEdgeShare * first.offset_px);
   state.rise = here.off_plane - first.off_plane;
   state.interval_px = here.offset_px - first.offset_px;
-  state.discontinuity =
-      depth_discontinuity(first.off_plane, first.offset_px, state.rise, state.interval_px,
-                          half_slice.smallest_discontinuity);
+  state.discontinuity = depth_discontinuity(first.off_plane, first.offset_px, state.rise,
+                                            state.interval_px, half_slice.smallest_discontinuity);
   const uint rest = (kStepCount - 2u) % kUnrolled;
   uint k = 2u;
   [[unroll]] for (uint i = 0u; i < rest; ++i) {
@@ -212,16 +211,24 @@ void add_connected(inout SliceSum sum, HalfSlice half_slice, Slice slice, LobeSl
   Occluders found = find_occluders(half_slice, 1.0 / tangent_angle);
   bool open = found.occluded == 0u;
   float sector = tangent_angle * (1.0 / float(kEvenSectorCount));
-  vec2 first_light =
-      open ? tangent : diamond_angle_light(float(findLSB(found.occluded)) * sector);
-  // Everything is visible up to the first occluder. Beyond it the visible sectors count, less the
-  // hidden occlusion, as a share of the whole arc that is left.
+  vec2 first_light = open ? tangent : diamond_angle_light(float(findLSB(found.occluded)) * sector);
   float arc = open ? open_arc : part_arc(slice, half_slice.side, first_light, kUniformWeight);
-  float beyond = (1.0 - found.hidden_occlusion) * visible_share_beyond(found.occluded);
-  sum.visible += arc + beyond * (open_arc - arc);
-  if (kBentNormal) {
-    vec2 bent = bent_light_arc(slice, half_slice.side, first_light);
-    sum.bent += bent + beyond * (bent_light_arc(slice, half_slice.side, tangent) - bent);
+  if (kBackFaces) {
+    // What back faces show to be visible behind an occluder is known, and integrated exactly.
+    VisiblePart part =
+        visible_part(slice, half_slice.side, 1.0 / sector, repeat_last_sector(found.occluded),
+                     found.hidden_occlusion, PartRequest(kUniformWeight, kBentNormal));
+    sum.visible += part.arc;
+    sum.bent += part.bent;
+  } else {
+    // Everything is visible up to the first occluder. Beyond it the visible sectors count, less the
+    // hidden occlusion, as a share of the whole arc that is left.
+    float beyond = (1.0 - found.hidden_occlusion) * visible_share_beyond(found.occluded);
+    sum.visible += arc + beyond * (open_arc - arc);
+    if (kBentNormal) {
+      vec2 bent = bent_light_arc(slice, half_slice.side, first_light);
+      sum.bent += bent + beyond * (bent_light_arc(slice, half_slice.side, tangent) - bent);
+    }
   }
   if (kLobe) {
     sum.lobe.visible += visible_lobe(lobe, half_slice.side, 1.0 / sector,

@@ -8,24 +8,25 @@
 struct HalfSlice {
   float side;  // +1 along the slice's direction, -1 against it
   // Lengths in the slice's plane are in units of the width of a pixel at the surface's depth.
-  vec2 direction_px;  // outwards, unit; zero where there is nothing to search
-  float unit;         // from scene units to that unit
-  float radius;       // in that unit
-  float slope;        // change of the tangent plane's inverse depth per pixel outwards
-  float tangent_rise;        // y (times w) of the tangent plane per pixel outwards
-  float rise_off_plane;      // y (times w) per unit of inverse depth off the tangent plane
-  float tangent_cosine;      // cosine of the tangent plane's horizon
-  float reach_px;            // from the first sample to the last; 0 where there is nothing to search
-  float reach_per_step;      // reach_px over the squared number of steps
-  float step_offset;         // of all samples, in steps, [0,1)
-  float radius_px;           // the radius on the image
-  float extrapolated_px;     // how far surfaces are extrapolated beyond the image's border
-  float outside;             // the part of the radius that lies beyond the image's border, [0,1]
-  ivec2 texel_bias;          // the shaded pixel less the bits of kRoundingBias
-  vec2 height;               // gradient of the height over the tangent plane in the slice's plane
-  float smallest_discontinuity;  // change of slope, in inverse depth per pixel, between two surfaces
-  float depth_step;              // of the depth buffer there, as SliceSample::inverse_depth
-  float nearness;                // radius by distance in perspective, else 0
+  vec2 direction_px;      // outwards, unit; zero where there is nothing to search
+  float unit;             // from scene units to that unit
+  float radius;           // in that unit
+  float slope;            // change of the tangent plane's inverse depth per pixel outwards
+  float tangent_rise;     // y (times w) of the tangent plane per pixel outwards
+  float rise_off_plane;   // y (times w) per unit of inverse depth off the tangent plane
+  float tangent_cosine;   // cosine of the tangent plane's horizon
+  float reach_px;         // from the first sample to the last; 0 where there is nothing to search
+  float reach_per_step;   // reach_px over the squared number of steps
+  float step_offset;      // of all samples, in steps, [0,1)
+  float radius_px;        // the radius on the image
+  float extrapolated_px;  // how far surfaces are extrapolated beyond the image's border
+  float outside;          // the part of the radius that lies beyond the image's border, [0,1]
+  ivec2 texel_bias;       // the shaded pixel less the bits of kRoundingBias
+  vec2 height;            // gradient of the height over the tangent plane in the slice's plane
+  float
+      smallest_discontinuity;  // change of slope, in inverse depth per pixel, between two surfaces
+  float depth_step;            // of the depth buffer there, as SliceSample::inverse_depth
+  float nearness;              // radius by distance in perspective, else 0
   TangentPlane tangent;
 };
 
@@ -89,8 +90,8 @@ HalfSlice make_half_slice(Surface surface, SliceLine slice_line, Slice slice, fl
   half_slice.slope = dot(direction_px, surface.tangent.gradient);
   half_slice.rise_off_plane =
       slice_line.y_per_depth * half_slice.unit * (kPerspective ? surface.depth : -1.0);
-  half_slice.tangent_rise = side * slice_line.y_per_step * half_slice.unit +
-                            half_slice.slope * half_slice.rise_off_plane;
+  half_slice.tangent_rise =
+      side * slice_line.y_per_step * half_slice.unit + half_slice.slope * half_slice.rise_off_plane;
   return half_slice;
 }
 
@@ -103,8 +104,7 @@ float sample_offset_px(HalfSlice half_slice, float k) {
 // The point of the slice's plane `along_px` pixels outwards, `off_plane` off the tangent plane in
 // inverse depth, as slice_point() of maths/slice_line.h gives it.
 vec2 plane_point(HalfSlice half_slice, float along_px, float off_plane) {
-  return vec2(along_px,
-              along_px * half_slice.tangent_rise + off_plane * half_slice.rise_off_plane);
+  return vec2(along_px, along_px * half_slice.tangent_rise + off_plane * half_slice.rise_off_plane);
 }
 
 // Sample `k` of a layer of depth: 0 is the first, 1 the layer that it hides.

@@ -83,7 +83,7 @@ OcclusionSettings quality_settings(Quality quality, float radius) {
     case Quality::medium:
       break;
     case Quality::high:
-      settings.slices = 3;
+      settings.slices = 2;
       settings.steps = 16;
       break;
     case Quality::ultra:
