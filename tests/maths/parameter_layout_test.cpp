@@ -17,6 +17,7 @@
 #include "parameter_layouts_spirv.h"
 #include "reconstruct_parameters.h"
 #include "spirv_layout.h"
+#include "upsample_parameters.h"
 
 namespace alcove::maths_test {
 namespace {
@@ -82,6 +83,11 @@ const std::map<std::string, Offsets> kExpected = {
       ALCOVE_OFFSET(ReconstructParameters, power),
       ALCOVE_OFFSET(ReconstructParameters, intensity),
       ALCOVE_OFFSET(ReconstructParameters, dither_offset)}},
+    {"UpsampleParameters",
+     {ALCOVE_OFFSET(UpsampleParameters, normal_from_view), ALCOVE_OFFSET(UpsampleParameters, slope),
+      ALCOVE_OFFSET(UpsampleParameters, pixel_uv), ALCOVE_OFFSET(UpsampleParameters, texel_uv),
+      ALCOVE_OFFSET(UpsampleParameters, tolerance), ALCOVE_OFFSET(UpsampleParameters, power),
+      ALCOVE_OFFSET(UpsampleParameters, intensity)}},
 };
 
 TEST(ParameterStructs, HaveTheSameLayoutInUniformBlocksAndInCpp) {

@@ -13,6 +13,7 @@
 #include "multi_bounce_parameters.h"
 #include "normals_parameters.h"
 #include "reconstruct_parameters.h"
+#include "upsample_parameters.h"
 
 layout(set = 0, binding = 0) uniform A { Projection projection; };
 layout(set = 0, binding = 1) uniform B { LinearDepthParameters linear_depth; };
@@ -24,10 +25,12 @@ layout(set = 0, binding = 6) uniform G { MultiBounceParameters multi_bounce; };
 layout(set = 0, binding = 7) uniform H { ApplyParameters apply; };
 layout(set = 0, binding = 8) uniform I { EnvironmentParameters environment; };
 layout(set = 0, binding = 9) uniform J { InverseDepthParameters inverse_depth; };
+layout(set = 0, binding = 11) uniform K { UpsampleParameters upsample; };
 layout(std430, set = 0, binding = 10) buffer Sum { float sum; };
 
 void main() {
   sum = projection.size_px.x + linear_depth.reach + gtao.radius + normals.projection.size_px.x +
         reconstruct.largest_weight + gtso.roughness + multi_bounce.size_px.x + apply.roughness +
-        environment.size + inverse_depth.inverse_depth_from_ndc.scale + gtao.depth_step;
+        environment.size + inverse_depth.inverse_depth_from_ndc.scale + gtao.depth_step +
+        upsample.tolerance;
 }
