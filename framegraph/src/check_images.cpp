@@ -1,4 +1,4 @@
-// What the device can make: textures by format, usage and sample count, once their usage is known.
+// Checks that the device can make the textures of a plan, once their usage is known.
 #include "print_names.h"
 #include "workspace.h"
 

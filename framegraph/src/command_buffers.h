@@ -8,7 +8,7 @@
 
 namespace alcove::framegraph {
 
-// Of one device, queue class, frame slot and thread. They are made on first use and kept.
+// Command buffers of one device, queue class, frame slot and thread, made on first use and kept.
 class CommandBuffers {
  public:
   void destroy(const DeviceContext& device);

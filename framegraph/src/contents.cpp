@@ -11,13 +11,21 @@ constexpr VkFlags kAttachmentUsage =
     VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT |
     VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSIENT_ATTACHMENT_BIT;
 
+bool draws(const GraphDescription& graph, const Plan& plan) {
+  for (std::uint32_t r = 0; r < graph.resources.size(); ++r) {
+    if (graph.resources[r].kind == ResourceKind::texture &&
+        (plan.placements[r].usage & kAttachmentUsage) != 0)
+      return true;
+  }
+  return false;
+}
+
 class ContentsFinder {
  public:
   ContentsFinder(const GraphDescription& graph, Workspace& workspace, Plan& plan)
       : graph_(graph), workspace_(workspace), plan_(plan), subs_(workspace.contents) {}
 
   void run() {
-    plan_.contents.assign(graph_.accesses.size(), 0);
     subs_.assign(workspace_.first_sub.back(), 0);
     for_each_external([](const ExternalRecord& external) { return external.has_contents != 0; });
     for (const PlannedPass& planned : plan_.passes) {
@@ -100,6 +108,9 @@ class ContentsFinder {
 
 void find_contents(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
                    Plan& plan) {
+  plan.contents.assign(graph.accesses.size(), 0);
+  // Only attachments are loaded and stored.
+  if (!draws(graph, plan)) return;
   ContentsFinder finder(graph, workspace, plan);
   finder.run();
   if (limits.has_lazy_memory) finder.find_transient_attachments();

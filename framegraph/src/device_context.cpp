@@ -121,7 +121,7 @@ void read_limits(DeviceContext& context) {
   limits.max_extent_2d = device.maxImageDimension2D;
   limits.max_extent_3d = device.maxImageDimension3D;
   limits.max_layers = device.maxImageArrayLayers;
-  // The largest count of any format. What a single texture may have, image_limits() knows.
+  // The largest count of any format. image_limits() gives the counts for a single texture.
   const VkSampleCountFlags samples =
       device.framebufferColorSampleCounts | device.framebufferDepthSampleCounts |
       device.sampledImageColorSampleCounts | device.sampledImageIntegerSampleCounts |

@@ -1,4 +1,4 @@
-// What resources take without a device that says so.
+// Estimates of the memory that resources take, for plans without a device.
 #include <algorithm>
 #include <array>
 #include <cstddef>

@@ -20,7 +20,7 @@ tl::unexpected<Errors> failure(ErrorCode code, std::string message) {
   return tl::unexpected(std::move(errors));
 }
 
-// What a frame may run on: record() has one queue, submit() all that the device gives.
+// The queues of a frame: record() has one, submit() all of the device.
 enum class Queues : std::uint8_t { one, all };
 
 }  // namespace
@@ -59,7 +59,7 @@ struct Executor::Implementation {
   std::unique_ptr<Pool> pool;
   std::unique_ptr<RecordingThreads> recording_threads;
   std::vector<std::unique_ptr<Timestamps>> timestamps;  // by slot and queue class; may be null
-  std::vector<PassTiming> timings;                      // what timings() returned last
+  std::vector<PassTiming> timings;                      // the last result of timings()
   std::vector<std::uint64_t> slot_frames;               // last frame recorded with each slot
   std::uint64_t frame = 0;
   std::uint64_t finished = 0;
@@ -314,7 +314,7 @@ void Executor::Implementation::forget_timestamps(std::uint32_t slot) {
   }
 }
 
-// What was begun with this slot does not run. Frames before it may still do.
+// The frame that was begun with this slot does not run. Frames before it may still run.
 void Executor::Implementation::give_up(std::uint32_t slot) {
   slot_frames[slot] = finished;
   before = nullptr;

@@ -41,7 +41,7 @@ Graph::~Graph() { destroy_callables(); }
 void Graph::reset() {
   destroy_callables();
   description_.passes.clear();
-  // What lies further on was said of resources that may not be there any more.
+  // The records after this one describe resources that may not be there any more.
   description_.accesses.next() = {};
   description_.accesses.clear();
   next_access_ = &description_.accesses.next();
@@ -95,7 +95,7 @@ void Graph::add(Records<Record>& records, const Record& record) {
   changed();
 }
 
-// What has the room of the records grows before them: where memory gives out nothing has less.
+// Arrays that run parallel to the records grow first: if memory gives out, none is too small.
 void Graph::grow_resources() {
   const std::size_t capacity = description_.resources.next_capacity();
   description_.resource_names.resize(capacity);
@@ -150,13 +150,8 @@ std::uint32_t Graph::add_any_access(std::uint32_t pass, std::uint32_t index, std
     record.flags |= index == kNone ? kNull : kForeign;
     record.resource = kNone;
   } else {
-    const bool writes = (flags & kWrite) != 0;
-    const ResourceRecord& resource = description_.resources[index];
-    if (access_fits(access, record.kind(), writes) && range == Range{} &&
-        is_plain(resource, record.kind()))
-      record.flags |= kPlain;
-    record.range = resolved_range(range, resource);
-    left = versions_[index] += writes;
+    record.range = resolved_range(range, description_.resources[index]);
+    left = versions_[index] += (flags & kWrite) != 0;
   }
   add(description_.accesses, record);
   next_access_ = &description_.accesses.next();
@@ -307,7 +302,7 @@ void Graph::leave_histories(std::span<const FinalState> finals) {
     slot.state = final.state;
     slot.queue = final.queue;
     if (record.slot == 0 && final.written != Written::nothing) {
-      // What is valid and persistent stays so when a part of it is written anew.
+      // A valid persistent resource stays valid when a part of it is written anew.
       const bool whole =
           final.written == Written::whole ||
           ((record.flags & kPersistent) != 0 && slot.validity == HistoryValidity::valid);

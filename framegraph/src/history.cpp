@@ -73,7 +73,7 @@ void HistoryTable::invalidate_all() {
 
 void HistoryTable::invalidate(std::uint32_t index) {
   for (HistorySlot& slot : entries_[index].slots) {
-    // What never held anything keeps the first reason.
+    // A slot that never held anything keeps the first reason.
     if (slot.validity != HistoryValidity::valid) continue;
     remember(index);
     slot.validity = HistoryValidity::reset;

@@ -1,4 +1,4 @@
-// Which resource last used which bytes of a heap.
+// The resources that last used the bytes of a heap.
 #pragma once
 
 #include <algorithm>
@@ -39,12 +39,12 @@ inline void take_over(MemoryMap& map, const Segment& owner, Function&& f) {
   Segment* const end = map.data() + map.size();
   Segment* last = first;
   for (; last != end && last->begin < owner.end; ++last) f(*last);
-  // As a rule one owner's bytes go to another whole.
+  // In the common case one owner's bytes go to another whole.
   if (last == first + 1 && first->begin >= owner.begin && first->end <= owner.end) {
     *first = owner;
     return;
   }
-  // What is left of the first and the last of those on either side.
+  // The parts of the first and the last owner that remain on either side.
   Segment kept[3];
   std::ptrdiff_t keep = 0;
   if (last != first && first->begin < owner.begin) {

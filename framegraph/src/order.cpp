@@ -174,7 +174,7 @@ class Orderer {
     return peak;
   }
 
-  // Of the ready passes, the one after which the fewest bytes are live. Passes that stay below the
+  // Chooses the ready pass after which the fewest bytes are live. Passes that stay below the
   // peak so far are preferred to those that raise it.
   std::size_t choose(std::int64_t live, std::int64_t peak) {
     std::size_t best = 0;

@@ -3,8 +3,8 @@
 //
 // Transients of every plan lie in the same heaps, one for each set of memory types, which only
 // grow. A transient is found again by description, usage and offset, so that a plan that comes back
-// finds its very images. What no frame used for a while is destroyed once the device is done with
-// it.
+// finds its very images. Objects that no frame used for a while are destroyed once the device is
+// done with them.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +34,7 @@ struct Physical {
   MemoryRange own_memory;
   VkDeviceSize own_size = 0;
   bool owned = true;        // false for imports: only the views are the pool's
-  std::uint32_t layer = 0;  // of an import: the image's that is the first of the texture
+  std::uint32_t layer = 0;  // the image's layer at which an imported texture begins
   std::vector<CachedView> views;
   std::uint64_t last_frame = 0;
 };
@@ -58,7 +58,7 @@ class Pool {
   [[nodiscard]] VkResult history(const HistoryTable& table, std::uint32_t entry,
                                  std::uint32_t position, const ResourceRecord& record,
                                  VkFlags usage, std::string_view name, Physical*& found);
-  // The same slot if it was made already, else null.
+  // The slot of a history if it was made already, else null.
   Physical* find_history(const HistoryTable& table, std::uint32_t entry,
                          std::uint32_t position) const;
   // Retires what belongs to no entry any more: dropped, made anew in another shape in an earlier
@@ -118,7 +118,7 @@ class Pool {
   std::vector<std::unique_ptr<Physical>> imports_;
   std::vector<Retired> retired_;
   std::uint64_t generation_ = first_generation();
-  std::mutex views_mutex_;  // of all views
+  std::mutex views_mutex_;  // guards the views
 };
 
 }  // namespace alcove::framegraph

@@ -63,7 +63,7 @@ class DotPrinter {
     out_.append(" ").append(style).append("];\n");
   }
 
-  // From the last writers of what a pass uses, in program order: one edge for each of those.
+  // Draws one edge from each pass that last wrote something which a pass uses.
   void edges() {
     std::vector<std::uint32_t> writer(graph_.resources.size(), kNone);
     for (std::uint32_t pass = 0; pass < graph_.passes.size(); ++pass) {

@@ -61,7 +61,7 @@ constexpr Bit kAccesses[] = {
     {VK_ACCESS_2_MEMORY_WRITE_BIT, "memory write"},
 };
 
-// As Vulkan names them, without what all have in common.
+// Vulkan's names without their common prefix and suffix.
 constexpr Bit kImageUsages[] = {
     {VK_IMAGE_USAGE_TRANSFER_SRC_BIT, "TRANSFER_SRC"},
     {VK_IMAGE_USAGE_TRANSFER_DST_BIT, "TRANSFER_DST"},

@@ -150,9 +150,9 @@ VkImageMemoryBarrier2 Recorder::image_barrier(const Transition& t) const {
   // and else take what another plan wrote last for a hazard: told so, at no cost.
   if (starts_anew_ && t.old_layout == VK_IMAGE_LAYOUT_UNDEFINED)
     barrier.srcAccessMask |= VK_ACCESS_2_MEMORY_WRITE_BIT;
-  // Nor do they follow an image's last write to the next image on its bytes by way of a buffer that
-  // had them in between, unless the barrier names the access by which that was read. Reads have
-  // nothing to make available, so that naming them costs nothing.
+  // The layers also lose an image's last write on the way to the next image on its bytes if a
+  // buffer had the bytes in between, unless the barrier names the access by which the buffer was
+  // read. Reads have nothing to make available, so that naming them costs nothing.
   if (t.old_layout == VK_IMAGE_LAYOUT_UNDEFINED && t.src_stages != 0)
     barrier.srcAccessMask |= VK_ACCESS_2_MEMORY_READ_BIT;
   barrier.dstStageMask = t.dst_stages;

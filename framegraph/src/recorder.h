@@ -18,7 +18,7 @@ struct RecordedFrame {
   const Plan* plan = nullptr;
   const std::vector<Physical*>* physical = nullptr;
   bool check_uses = false;
-  bool starts_anew = false;  // what came before was of another plan: it begins with full_barrier()
+  bool starts_anew = false;  // follows another plan: begins with full_barrier()
   std::uint32_t slot = 0;
 };
 
@@ -34,7 +34,7 @@ class Recorder {
  public:
   Recorder(const DeviceContext& device, Pool& pool) : device_(device), pool_(pool) {}
 
-  // What the next calls record.
+  // Sets the frame that the next calls record.
   void begin(const RecordedFrame& frame);
   // Orders everything after all that the queue did before.
   void full_barrier(VkCommandBuffer commands);
@@ -47,7 +47,7 @@ class Recorder {
   bool is_last(const Submission& submission) const {
     return &submission == &plan_->submissions.back();
   }
-  // What callbacks touched undeclared, and what ran out while recording.
+  // Uses that callbacks had not declared, and objects that could not be made while recording.
   Errors& errors() { return errors_; }
 
  private:
@@ -69,7 +69,8 @@ class Recorder {
   // The index of the access by which the pass draws to a resource; kNone and an error where there
   // is none.
   std::uint32_t attachment_access(std::uint32_t pass, std::uint32_t resource) const;
-  // The same for one aspect of a resource, or 0 for any; kNone and no error where there is none.
+  // The access by which the pass draws to one aspect of a resource, or to any if `aspect` is 0;
+  // kNone without an error where there is none.
   std::uint32_t find_attachment(std::uint32_t pass, std::uint32_t resource,
                                 VkImageAspectFlags aspect) const;
   // Whether a texture that the pass declared has this range and, where uses are checked, whether

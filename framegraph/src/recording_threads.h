@@ -24,14 +24,14 @@ class RecordingThreads {
   RecordingThreads(const RecordingThreads&) = delete;
   RecordingThreads& operator=(const RecordingThreads&) = delete;
 
-  // What the next calls record; the device has finished what was recorded with this slot.
+  // Sets the frame that the next calls record. The device has finished the last frame of its slot.
   [[nodiscard]] VkResult begin(const RecordedFrame& frame);
   void full_barrier(VkCommandBuffer commands) { recorders_[0]->full_barrier(commands); }
-  // On an error nothing is recorded. What any thread throws is thrown here, after all have
+  // On an error nothing is recorded. An exception of any thread is thrown here, after all have
   // finished.
   [[nodiscard]] VkResult submission(const Submission& submission, VkCommandBuffer commands,
                                     Timestamps* timestamps);
-  // What callbacks did wrong since begin; empty afterwards.
+  // The errors of callbacks since begin(), which are forgotten then.
   Errors take_errors();
 
  private:

@@ -64,7 +64,7 @@ class Submitter {
   std::vector<Slot> slots_;
   VkSemaphore semaphores_[kQueueClasses] = {};
   std::uint64_t values_[kQueueClasses] = {};  // last value that will be signalled
-  std::uint64_t before_[kQueueClasses] = {};  // the same at the end of the frame before
+  std::uint64_t before_[kQueueClasses] = {};  // values_ at the end of the frame before
   std::vector<VkCommandBuffer> recorded_;     // by submission of this frame
   std::uint32_t submitted_ = 0;               // submissions of this frame handed over
   std::vector<Described> described_;          // by submission of this frame

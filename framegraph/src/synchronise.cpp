@@ -23,8 +23,7 @@ void note(UseState& state, const AccessRecord& access, std::int32_t time) {
     state.transition = kNone;
     state.handed_over = 0;
     state.by_wait = 0;
-    state.unordered = (access.flags & kUnordered) != 0;
-    state.unordered_access = access.access;
+    state.unordered_access = access.flags & kUnordered ? access.access : 0;
   } else {
     state.read_stages |= access.stages;
     state.read_time = time;
@@ -36,7 +35,7 @@ void note(UseState& state, const AccessRecord& access, std::int32_t time) {
 // Whether the access is one more of a series of writes whose order does not matter: all of them
 // come after what the first came after.
 bool goes_on(const UseState& state, const AccessRecord& access) {
-  return (access.flags & kUnordered) && state.unordered && state.read_stages == 0 &&
+  return (access.flags & kUnordered) && state.read_stages == 0 &&
          state.write_stages == access.stages && state.unordered_access == access.access;
 }
 
@@ -95,7 +94,7 @@ void Synchroniser::find_last_uses() {
     last_position_[static_cast<std::size_t>(plan_.passes[position].queue)] = position;
   for (std::uint32_t position = from; position < plan_.passes.size(); ++position) {
     const QueueClass queue = plan_.passes[position].queue;
-    const std::uint16_t frame_before = queues_that_wait(position);
+    const std::uint32_t frame_before = queues_that_wait(position);
     for_each_live(graph_, plan_, plan_.passes[position].pass, [&](const AccessRecord& access) {
       if (!s_.is_last[access.resource]) return;
       for_each_sub(graph_, workspace_, access, [&](std::uint32_t sub) {
@@ -130,12 +129,14 @@ inline void Synchroniser::take_over_memory(std::uint32_t resource) {
   const Placement& placed = plan_.placements[resource];
   const std::uint32_t* const subs = workspace_.first_sub.data();
   UseState* const states = s_.states.data();
-  UseState merged;
+  // Made in place, and then copied to the other subresources.
+  UseState& merged = states[subs[resource]];
+  merged = {};
   const auto merge = [&](const Segment& segment) {
     const UseState* const theirs = segment.before ? s_.last_uses.data() : states;
     for (std::uint32_t sub = subs[segment.resource]; sub < subs[segment.resource + 1]; ++sub) {
       const UseState& state = theirs[sub];
-      merged.frame_before |= segment.before ? state.frame_before : std::uint16_t{0};
+      merged.frame_before |= segment.before ? state.frame_before : 0u;
       if (state.queue != queue_) {
         merged.by_wait = 1;
         continue;
@@ -157,15 +158,15 @@ inline void Synchroniser::take_over_memory(std::uint32_t resource) {
   merged.queue = queue_;
   if (merged.frame_before != 0)
     wait_for_frame_before(plan_.placements[resource].first, merged.frame_before);
-  for (std::uint32_t sub = subs[resource]; sub < subs[resource + 1]; ++sub) states[sub] = merged;
+  std::fill(states + subs[resource] + 1, states + subs[resource + 1], merged);
 }
 
 // UseState::frame_before of a use at this position in the frame before: a queue has to wait for it
 // that is another one and does not know by the end of that frame that the use is done.
-std::uint16_t Synchroniser::queues_that_wait(std::uint32_t position) const {
+std::uint32_t Synchroniser::queues_that_wait(std::uint32_t position) const {
   if (!workspace_.several_queues) return 0;
   const auto used_on = static_cast<std::size_t>(plan_.passes[position].queue);
-  unsigned bits = 0;
+  std::uint32_t bits = 0;
   for (std::size_t queue = 0; queue < kQueueClasses; ++queue) {
     const std::uint32_t last = last_position_[queue];
     if (queue == used_on || last == kNone) continue;
@@ -173,12 +174,12 @@ std::uint16_t Synchroniser::queues_that_wait(std::uint32_t position) const {
     if (known < static_cast<std::int32_t>(position))
       bits |= 1u << (queue * kQueueClasses + used_on);
   }
-  return static_cast<std::uint16_t>(bits);
+  return bits;
 }
 
 // The pass takes over memory from the frame before: its submission waits for these queues. Where it
 // knows a pass of this frame on such a queue to be done, the frame before is done there too.
-void Synchroniser::wait_for_frame_before(std::uint32_t position, std::uint16_t frame_before) {
+void Synchroniser::wait_for_frame_before(std::uint32_t position, std::uint32_t frame_before) {
   const auto own = static_cast<std::size_t>(queue_);
   unsigned queues = frame_before >> (own * kQueueClasses) & ((1u << kQueueClasses) - 1);
   for (std::size_t queue = 0; queue < kQueueClasses; ++queue) {

@@ -47,8 +47,8 @@ class Synchroniser {
   void find_last_uses();
   void find_last_owners();
   void take_over_memory(std::uint32_t resource);
-  std::uint16_t queues_that_wait(std::uint32_t position) const;
-  void wait_for_frame_before(std::uint32_t position, std::uint16_t frame_before);
+  std::uint32_t queues_that_wait(std::uint32_t position) const;
+  void wait_for_frame_before(std::uint32_t position, std::uint32_t frame_before);
   void use(std::uint32_t position, const AccessRecord& access);
   void use_several(std::uint32_t position, const AccessRecord& access);
   void use_range(std::uint32_t position, const AccessRecord& access, UseState& state,
@@ -139,8 +139,7 @@ inline void Synchroniser::note_change(std::uint32_t position, const AccessRecord
   if (access.flags & kWrite) {
     state.write_access = access.access & kWriteBits;
     state.write_time = pass_time(position);
-    state.unordered = (access.flags & kUnordered) != 0;
-    state.unordered_access = access.access;
+    state.unordered_access = access.flags & kUnordered ? access.access : 0;
     return;
   }
   state.write_time = batch_time_;

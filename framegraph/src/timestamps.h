@@ -11,7 +11,7 @@ namespace alcove::framegraph {
 
 class Timestamps {
  public:
-  // Of a queue whose timestamps have so many bits that count, 1 to 64.
+  // `valid_bits`: how many bits of the queue's timestamps count, 1 to 64.
   Timestamps(const DeviceContext& device, std::uint32_t valid_bits)
       : device_(device), mask_(~std::uint64_t{0} >> (64 - valid_bits)) {}
   ~Timestamps();
@@ -32,8 +32,8 @@ class Timestamps {
   void begin_pass(VkCommandBuffer commands, std::uint32_t number, std::uint32_t pass,
                   std::string_view name);
   void end_pass(VkCommandBuffer commands, std::uint32_t number);
-  // Of the frame that began last, once the device has finished it. Until then empty, or of the
-  // frame before it with these queries; nothing is kept, so a later call is right.
+  // The times of the frame that began last, once the device has finished it. Until then empty, or
+  // of the frame before it with these queries; nothing is kept, so a later call is right.
   std::span<const PassTiming> read();
 
  private:

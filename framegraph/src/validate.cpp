@@ -23,13 +23,9 @@ class Replay {
 
   void run() {
     begin();
-    const bool all_right_so_far = v_.errors.empty() && v_.limits.formats.query == nullptr;
     for (std::uint32_t pass = 0; pass < v_.graph.passes.size(); ++pass) {
       attachment_ = kNone;
-      const bool plain = all_right_so_far && v_.graph.passes[pass].queue == QueueClass::graphics;
-      for (const AccessRecord& access : v_.graph.pass_accesses(pass)) {
-        if (!plain || !is_plainly_right(pass, access)) visit(pass, access);
-      }
+      for (const AccessRecord& access : v_.graph.pass_accesses(pass)) visit(pass, access);
     }
     for (const OutputRecord& output : v_.graph.outputs) check_output(output);
   }
@@ -45,21 +41,6 @@ class Replay {
       if (external == kNone || !v_.graph.externals[external].has_contents) continue;
       for (std::uint32_t sub = first[r]; sub < first[r + 1]; ++sub) s_.touches[sub].written = true;
     }
-  }
-
-  // The fast path for most accesses, which are valid. False, with nothing done, for any other
-  // access.
-  bool is_plainly_right(std::uint32_t pass, const AccessRecord& access) {
-    if ((access.flags & (kPlain | kClosed)) != kPlain || (access.access & kAttachmentBits) != 0)
-      return false;
-    std::uint32_t& version = s_.versions[access.resource];
-    Workspace::Touch& touched = s_.touches[v_.workspace.first_sub[access.resource]];
-    const bool writes = (access.flags & kWrite) != 0;
-    const bool has_contents = touched.written || !reads_contents(access);
-    if (access.version != version || touched.stamp == pass + 1 || !has_contents) return false;
-    version += writes;
-    touched = {pass + 1, access.layout, !writes, writes, true};
-    return true;
   }
 
   void visit(std::uint32_t pass, const AccessRecord& access) {

@@ -43,98 +43,108 @@ struct Checker {
   std::uint32_t pass;
   const AccessRecord& access;
 
-  bool bad(ErrorCode code, const std::string& what) {
-    v.fail(code, v.pass_text(pass) + " " + what, pass, access.resource, access.version);
+  // Sentences are put together in functions of their own, because nearly all accesses are right.
+  bool refuse(ErrorCode code, const std::string& sentence) {
+    v.fail(code, v.pass_text(pass) + " " + sentence, pass, access.resource, access.version);
     return false;
   }
-  std::string verb() const { return access.flags & kWrite ? "writes " : "reads "; }
+  bool refuse_use(ErrorCode code, const char* how) { return refuse(code, subject() + how); }
+  const char* verb() const { return access.flags & kWrite ? "writes " : "reads "; }
   std::string subject() const { return verb() + v.resource_text(access.resource); }
 
   bool handle() {
-    const char* kind = access.kind() == ResourceKind::texture ? "texture" : "buffer";
+    if ((access.flags & (kNull | kForeign | kClosed)) == 0 &&
+        access.kind() == v.graph.resources[access.resource].kind)
+      return true;
+    return refuse_handle();
+  }
+  bool refuse_handle() {
+    const std::string kind = std::string(verb()).append("a ").append(
+        access.kind() == ResourceKind::texture ? "texture" : "buffer");
     if (access.flags & kNull)
-      return bad(ErrorCode::null_handle, verb() + "a " + kind +
-                                             " through a null handle: pass one that "
-                                             "the graph gave in this frame");
+      return refuse(ErrorCode::null_handle,
+                    kind + " through a null handle: pass one that the graph gave in this frame");
     if (access.flags & kForeign)
-      return bad(ErrorCode::foreign_handle,
-                 verb() + "a " + kind +
-                     " through a handle of another graph, or of a frame before reset: "
-                     "declare or import it in this frame");
+      return refuse(ErrorCode::foreign_handle,
+                    kind +
+                        " through a handle of another graph, or of a frame before reset: declare "
+                        "or import it in this frame");
     if (access.kind() != v.graph.resources[access.resource].kind)
-      return bad(ErrorCode::foreign_handle, verb() + "a " + kind + " through a handle that is of " +
-                                                v.resource_text(access.resource));
-    if (access.flags & kClosed)
-      return bad(ErrorCode::closed_pass,
-                 subject() +
-                     " after the next pass was added: declare all accesses of a pass "
-                     "before the next add_pass");
-    return true;
+      return refuse(ErrorCode::foreign_handle,
+                    kind + " through a handle that is of " + v.resource_text(access.resource));
+    return refuse_use(ErrorCode::closed_pass,
+                      " after the next pass was added: declare all accesses of a pass before the "
+                      "next add_pass");
   }
 
   bool range() {
     const ResourceRecord& r = v.graph.resources[access.resource];
-    if (r.kind == ResourceKind::buffer) return true;
     const Range& range = access.range;
+    if (r.kind == ResourceKind::buffer) return true;
     if (range.aspects & ~aspects(r.format))
-      return bad(ErrorCode::bad_range, subject() + " in an aspect that its format does not have");
+      return refuse_use(ErrorCode::bad_range, " in an aspect that its format does not have");
     if (range.aspects != 0 && !v.limits.separate_depth_stencil)
-      return bad(ErrorCode::bad_range,
-                 subject() +
-                     " in one of its aspects, but the device does not do that: enable "
-                     "separateDepthStencilLayouts and set DeviceHandles::separate_depth_stencil");
+      return refuse_use(
+          ErrorCode::bad_range,
+          " in one of its aspects, but the device does not do that: enable "
+          "separateDepthStencilLayouts and set DeviceHandles::separate_depth_stencil");
     if (range.mips != 0 && range.layers != 0 && range.base_mip + range.mips <= r.mips &&
         range.base_layer + range.layers <= r.layers)
       return true;
-    return bad(ErrorCode::bad_range,
-               subject() + " from mip " + std::to_string(range.base_mip) + " and layer " +
-                   std::to_string(range.base_layer) + " on (" + std::to_string(range.mips) + "x" +
-                   std::to_string(range.layers) + "), but it has " + std::to_string(r.mips) +
-                   " mips and " + std::to_string(r.layers) + " layers");
+    return refuse_range(r);
+  }
+  bool refuse_range(const ResourceRecord& r) {
+    const Range& range = access.range;
+    return refuse(ErrorCode::bad_range,
+                  subject() + " from mip " + std::to_string(range.base_mip) + " and layer " +
+                      std::to_string(range.base_layer) + " on (" + std::to_string(range.mips) +
+                      "x" + std::to_string(range.layers) + "), but it has " +
+                      std::to_string(r.mips) + " mips and " + std::to_string(r.layers) + " layers");
   }
 
   void masks() {
     const ResourceRecord& r = v.graph.resources[access.resource];
     if (access.stages == 0 || access.access == 0)
-      bad(ErrorCode::bad_access,
-          subject() + " in no stage or with no access bit: use one of access.h");
+      refuse_use(ErrorCode::bad_access, " in no stage or with no access bit: use one of access.h");
     const bool writes = (access.access & kWriteBits) != 0;
     if (writes != ((access.flags & kWrite) != 0))
-      bad(ErrorCode::bad_access,
-          subject() + (writes ? " with an access that writes: declare it with write()"
-                              : " with an access that only reads: declare it with read()"));
+      refuse_use(ErrorCode::bad_access,
+                 writes ? " with an access that writes: declare it with write()"
+                        : " with an access that only reads: declare it with read()");
     if (r.kind == ResourceKind::texture && !layout_is_usable(access.layout))
-      bad(ErrorCode::bad_access, subject() +
-                                     " in layout undefined or preinitialised, in which nothing "
-                                     "can be used: give the layout of the use");
+      refuse_use(ErrorCode::bad_access,
+                 " in layout undefined or preinitialised, in which nothing can be used: give the "
+                 "layout of the use");
     if (access.stages & forbidden(v.graph.passes[pass].queue))
-      bad(ErrorCode::bad_access, subject() +
-                                     " in a stage that its queue class cannot run: put "
-                                     "the pass on QueueClass::graphics");
+      refuse_use(ErrorCode::bad_access,
+                 " in a stage that its queue class cannot run: put the pass on "
+                 "QueueClass::graphics");
   }
 
   void usage() {
     const ResourceRecord& r = v.graph.resources[access.resource];
-    const auto names = [&](VkFlags usage) { return usage_names(r.kind, usage); };
-    const bool imported = r.origin == Origin::imported;
-    if (imported || (r.origin == Origin::history && r.kind == ResourceKind::buffer)) {
-      const VkFlags has =
-          imported ? v.graph.externals[r.external].usage : history_usage(v.limits, r);
-      const VkFlags missing = access.usage & ~has;
-      if (missing != 0)
-        bad(ErrorCode::missing_usage,
-            subject() + " with usage " + names(access.usage) + ", but it was " +
-                (imported ? "imported" : "created") + " with " + names(has) + ": create it with " +
-                names(missing) + (imported ? " too" : " in BufferDesc::usage too"));
-    }
-    if (r.kind != ResourceKind::texture || v.limits.formats.query == nullptr) return;
+    if (r.origin == Origin::imported)
+      check_usage(v.graph.externals[r.external].usage, "imported", " too");
+    else if (r.origin == Origin::history && r.kind == ResourceKind::buffer)
+      check_usage(history_usage(v.limits, r), "created", " in BufferDesc::usage too");
+    if (r.kind == ResourceKind::texture && v.limits.formats.query != nullptr) check_format(r);
+  }
+  void check_usage(VkFlags has, const char* made, const char* end) {
+    const VkFlags missing = access.usage & ~has;
+    if (missing == 0) return;
+    const auto names = [&](VkFlags usage) { return usage_names(access.kind(), usage); };
+    refuse(ErrorCode::missing_usage, subject() + " with usage " + names(access.usage) +
+                                         ", but it was " + made + " with " + names(has) +
+                                         ": create it with " + names(missing) + end);
+  }
+  void check_format(const ResourceRecord& r) {
     const VkFlags missing =
         access.usage & ~v.limits.formats.query(v.limits.formats.context, r.format);
-    if (missing != 0)
-      bad(ErrorCode::unsupported_format,
-          subject() + " with usage " + names(missing) + ", which format " +
-              std::to_string(static_cast<int>(r.format)) +
-              " does not support on this device: choose another format");
+    if (missing == 0) return;
+    refuse(ErrorCode::unsupported_format,
+           subject() + " with usage " + usage_names(r.kind, missing) + ", which format " +
+               std::to_string(static_cast<int>(r.format)) +
+               " does not support on this device: choose another format");
   }
 };
 

@@ -58,14 +58,6 @@ bool check_texture(Validation& v, std::uint32_t index, const ResourceRecord& r) 
   return true;
 }
 
-// The fast path for most resources: whether it is a valid texture of one subresource.
-bool is_plainly_right(const ResourceRecord& r, std::uint32_t limit) {
-  return r.kind == ResourceKind::texture && r.external == kNone && r.flags == 0 &&
-         r.create_flags == 0 && r.depth == 1 && r.mips == 1 && r.layers == 1 && r.planes == 1 &&
-         r.samples == 1 && r.width - 1 < limit && r.height - 1 < limit &&
-         r.format != VK_FORMAT_UNDEFINED;
-}
-
 bool check_buffer(Validation& v, std::uint32_t index, const ResourceRecord& r) {
   if (r.size != 0 && r.size <= v.limits.max_buffer_size) return true;
   v.fail(ErrorCode::bad_description,
@@ -108,7 +100,7 @@ void check_external(Validation& v, std::uint32_t index, const ResourceRecord& r)
 }
 
 // Checks any resource. Returns the number of its subresources, 0 if its description is invalid.
-std::uint32_t look_closely(Validation& v, std::uint32_t index, const ResourceRecord& r) {
+std::uint32_t subresources_of(Validation& v, std::uint32_t index, const ResourceRecord& r) {
   const bool texture = r.kind == ResourceKind::texture;
   const bool right = texture ? check_texture(v, index, r) : check_buffer(v, index, r);
   if (r.external != kNone) check_external(v, index, r);
@@ -122,12 +114,11 @@ void validate_resources(Validation& v) {
   const auto& resources = v.graph.resources;
   v.workspace.first_sub.resize(resources.size() + 1);
   std::uint32_t* first = v.workspace.first_sub.data();
-  const std::uint32_t limit = v.limits.max_extent_2d;
   std::uint32_t next = 0;
   std::uint32_t index = 0;
   for (const ResourceRecord& r : resources) {
     *first++ = next;
-    next += is_plainly_right(r, limit) ? 1 : look_closely(v, index, r);
+    next += subresources_of(v, index, r);
     ++index;
   }
   *first = next;

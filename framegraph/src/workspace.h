@@ -18,29 +18,27 @@ namespace alcove::framegraph {
 inline constexpr std::int32_t kBeforeFrame = -1;
 inline constexpr std::int32_t kNever = -2;
 
-// What was last done to a subresource, or to bytes of memory.
+// The last uses of a subresource, or of bytes of memory.
 struct UseState {
   VkPipelineStageFlags2 write_stages = 0;  // of the last write or layout change
   VkAccessFlags2 write_access = 0;         // 0 after a layout change: it is available by itself
   VkPipelineStageFlags2 read_stages = 0;   // of the reads since
   VkPipelineStageFlags2 seen_stages = 0;   // by which the write can be seen
   VkAccessFlags2 seen_access = 0;
-  VkAccessFlags2 unordered_access = 0;  // of the last write, where that is unordered
+  VkAccessFlags2 unordered_access = 0;  // of the last write, if it is Contents::accumulate
   std::int32_t write_time = kNever;
   std::int32_t read_time = kNever;
-  // Of the last use of memory in the frame before, and of memory that was handed over from it:
-  // three bits for each queue class, which queues it has to wait for before it takes the memory
-  // over.
-  std::uint16_t frame_before = 0;
   VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
   std::uint32_t transition = kNone;  // the image barrier that made this layout
+  // Queues of the frame before that have to be waited for before memory is taken over from them:
+  // three bits for each queue class that takes it over.
+  std::uint32_t frame_before = 0;
   // Memory that others had before: its reads do not stand for its writes.
   std::uint8_t handed_over = 0;
   // Comes after work of another queue by a wait that covers all stages.
   std::uint8_t by_wait = 0;
   QueueClass queue = QueueClass::graphics;  // of the last use
   std::uint8_t used = 0;                    // in this frame, or arrived with contents
-  std::uint8_t unordered = 0;               // the last write was with Contents::accumulate
   bool operator==(const UseState&) const = default;
 };
 
@@ -130,7 +128,7 @@ struct Workspace {
   struct Place {
     std::vector<PlaceItem> items;  // in order of first use
     std::vector<PlaceItem> live;   // in order of offset
-    std::vector<Taken> taken;      // likewise
+    std::vector<Taken> taken;      // in order of offset
     std::vector<std::int64_t> change;
     std::vector<std::uint32_t> order;
     std::vector<VkDeviceSize> offsets;
@@ -191,7 +189,7 @@ inline void for_each_live(const GraphDescription& graph, const Plan& plan, std::
 // Numbers the subresources and finds every error of the declaration. False when there are any.
 bool validate(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
               Errors& errors);
-// Which passes and accesses are needed; fills cull_reasons and live_accesses.
+// Finds the passes and accesses that are needed; fills cull_reasons and live_accesses.
 void cull(const GraphDescription& graph, Workspace& workspace, Plan& plan);
 // The live passes in order of declaration, as the order of execution.
 void order_as_declared(Workspace& workspace, const Plan& plan);
@@ -200,22 +198,22 @@ void order_as_declared(Workspace& workspace, const Plan& plan);
 // workspace.reorder.declared.
 bool find_lower_order(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
                       const Plan& plan);
-// Which queue runs what, in which submissions.
+// Assigns passes to queues and submissions.
 void assign_queues(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
                    Plan& plan);
 // The last position at which another queue may still run beside this pass.
 std::uint32_t taken_until(const Workspace& workspace, const Plan& plan, std::uint32_t position);
 // First and last position of each resource, and its usage.
 void lifetimes(const GraphDescription& graph, Workspace& workspace, Plan& plan);
-// Which accesses find contents and which leave some that are needed; what needs no memory of its
-// own.
+// Finds the accesses that find contents and those that leave some that are needed, and attachments
+// that need no memory of their own.
 void find_contents(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
                    Plan& plan);
 // Whether the device can make the textures that live passes use. Errors where not.
 bool check_images(const GraphDescription& graph, const Limits& limits, const Plan& plan,
                   Errors& errors);
-// What a history is made for: all that it could be used for, so that it need never be made again,
-// contents lost, when a later frame uses it otherwise.
+// The usage that a history is created with: every usage that it can have, so that it need never be
+// made again, with its contents lost, when a later frame uses it in another way.
 VkFlags history_usage(const Limits& limits, const ResourceRecord& record);
 // Offsets in heaps.
 void place(const GraphDescription& graph, const Limits& limits, Workspace& workspace, Plan& plan);

@@ -20,6 +20,7 @@
 #include "c_failure.h"
 #include "c_host.h"
 #include "c_images.h"
+#include "c_inspect.h"
 #include "c_view.h"
 
 using namespace alcove;
@@ -40,7 +41,8 @@ void write(Message& message, std::string_view text) {
 // The passes of a view need no more dispatches than their share of a frame.
 constexpr std::uint32_t kPassesOfAView = 9;
 static_assert(ALCOVE_MAX_FRAMES_IN_FLIGHT == passes::Kernels::kMaxFramesInFlight);
-static_assert(ALCOVE_MAX_VIEWS * kPassesOfAView <= passes::Kernels::kMaxDispatches);
+static_assert(ALCOVE_MAX_VIEWS * kPassesOfAView + 1 <= passes::Kernels::kMaxDispatches,
+              "and one that samples pixels");
 
 // The views of a frame, by the number of the first pass that comes after each.
 struct ViewPasses {
@@ -60,11 +62,13 @@ struct ViewPasses {
 
 struct AlcoveContext {
   AlcoveContext(std::unique_ptr<passes::HostAdapter> made_host, framegraph::Executor made_executor,
-                passes::Kernels made_kernels, std::uint32_t slots)
+                passes::Kernels made_kernels, const framegraph::DeviceHandles& device,
+                std::uint32_t slots)
       : host(std::move(made_host)),
         frames_in_flight(slots),
         executor(std::move(made_executor)),
-        kernels(std::move(made_kernels)) {}
+        kernels(std::move(made_kernels)),
+        pixels(device, executor.functions()) {}
 
   std::unique_ptr<passes::HostAdapter> host;  // destroyed last
   std::uint32_t frames_in_flight;
@@ -73,6 +77,7 @@ struct AlcoveContext {
   framegraph::Graph graph;
   passes::ImageTable images;
   passes::CallObserver observer;
+  passes::PixelObserver pixels;
   framegraph::FrameReport report;  // of the frame recorded last; its plan null before there is one
   std::uint32_t slot = 0;          // of that frame
   bool may_discard = false;        // it was recorded by the last alcoveRecordFrame
@@ -145,7 +150,7 @@ Result create(const AlcoveContextInfo& info, AlcoveContext*& context) {
     return tl::unexpected(passes::failure_of(kernels.error(), "The context"));
   }
   context = std::make_unique<AlcoveContext>(std::move(host), std::move(*executor),
-                                            std::move(*kernels), info.frames_in_flight)
+                                            std::move(*kernels), handles, info.frames_in_flight)
                 .release();
   return {};
 }
@@ -215,8 +220,9 @@ tl::expected<ViewPasses, Failure> add_views(framegraph::Graph& graph, AlcoveCont
   ViewPasses passes;
   context.images.reset();
   for (const AlcoveView& view : std::span(frame.views, frame.view_count)) {
-    if (auto added =
-            passes::add_view(graph, context.kernels, context.images, view, frame.index, prepare);
+    const bool inspects = frame.diagnose_pixels != VK_FALSE && passes.count == 0;
+    if (auto added = passes::add_view(graph, context.kernels, context.images, view, frame, prepare,
+                                      inspects ? &context.pixels : nullptr);
         !added) {
       return tl::unexpected(std::move(added.error()));
     }
@@ -253,6 +259,7 @@ Result record(AlcoveContext& context, VkCommandBuffer commands, const AlcoveFram
   }
   Declaration declaration(context.graph);
   context.kernels.begin_frame(frame->slot);
+  context.pixels.collect(frame->slot);
   const std::size_t pipelines = context.kernels.pipeline_count();
   const auto passes = add_views(context.graph, context, *frame, false);
   if (!passes) {
@@ -273,6 +280,7 @@ Result record(AlcoveContext& context, VkCommandBuffer commands, const AlcoveFram
   context.may_discard = declaration.recorded = true;
   context.passes_of_views[frame->slot] = *passes;
   context.observer.observe(*frame);
+  context.pixels.recorded(frame->slot);
   return {};
 }
 
@@ -329,6 +337,7 @@ AlcoveResult alcoveDiscardFrame(AlcoveContext* context) {
   return guarded(context, [&]() -> Result {
     if (context->may_discard) {
       context->executor.discard(context->graph, {context->slot});
+      context->pixels.discarded(context->slot);
       context->report = {};
     }
     context->may_discard = false;
@@ -396,7 +405,7 @@ size_t alcoveDiagnose(AlcoveContext* context, char* text, size_t size) {
   copy_text("", text, size);
   std::size_t length = 0;
   guarded(context, [&]() -> Result {
-    length = copy_text(context->observer.describe(), text, size);
+    length = copy_text(context->observer.describe() + context->pixels.describe(), text, size);
     return {};
   });
   return length;

@@ -6,6 +6,7 @@
 
 #include "alcove/passes/multi_bounce.h"
 #include "alcove/passes/occlusion.h"
+#include "c_inspect.h"
 #include "c_settings.h"
 #include "view_parameters.h"
 
@@ -169,8 +170,8 @@ ViewName::ViewName(std::uint32_t id) {
 }
 
 tl::expected<void, Failure> add_view(framegraph::Graph& graph, Kernels& kernels, ImageTable& images,
-                                     const AlcoveView& view, std::uint32_t frame_index,
-                                     bool prepare) {
+                                     const AlcoveView& view, const AlcoveFrame& described,
+                                     bool prepare, PixelObserver* observer) {
   auto given = to_settings(view.settings);
   if (!given) {
     return tl::unexpected(std::move(given.error()));
@@ -195,7 +196,7 @@ tl::expected<void, Failure> add_view(framegraph::Graph& graph, Kernels& kernels,
   Frame frame{graph,
               kernels,
               to_view(view.camera),
-              frame_index,
+              described.index,
               to_view(view.previous_camera),
               reset ? 0 : view.static_frames};
   frame.prepare = prepare;
@@ -203,7 +204,12 @@ tl::expected<void, Failure> add_view(framegraph::Graph& graph, Kernels& kernels,
   if (!reset) {
     frame.previous_size = {view.previous_width, view.previous_height};
   }
-  return add_passes(frame, *textures, view, settings);
+  auto added = add_passes(frame, *textures, view, settings);
+  if (added && observer != nullptr) {
+    added = observer->add(frame, view, textures->inputs.depth_ndc, textures->inputs.normals,
+                          described.slot);
+  }
+  return added;
 }
 
 }  // namespace alcove::passes

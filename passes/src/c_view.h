@@ -18,9 +18,13 @@ class ViewName {
   std::array<char, 16> text_{};  // "view 4294967295"
 };
 
-// Adds the passes of `view` to the graph; `prepare` as Frame has it.
+class PixelObserver;
+
+// Adds the passes of `view` to the graph; `prepare` as Frame has it. Where there is an observer, it
+// samples the view's pixels for frame slot `slot`.
 [[nodiscard]] tl::expected<void, Failure> add_view(framegraph::Graph& graph, Kernels& kernels,
                                                    ImageTable& images, const AlcoveView& view,
-                                                   std::uint32_t frame_index, bool prepare);
+                                                   const AlcoveFrame& frame, bool prepare,
+                                                   PixelObserver* observer);
 
 }  // namespace alcove::passes

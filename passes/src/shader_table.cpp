@@ -12,6 +12,7 @@
 #include "spirv/gtao_specular.h"
 #include "spirv/gtso.h"
 #include "spirv/gtso_by_table.h"
+#include "spirv/inspect.h"
 #include "spirv/inverse_depth.h"
 #include "spirv/linear_depth.h"
 #include "spirv/multi_bounce.h"
@@ -57,6 +58,7 @@ const ShaderSource& shader_source(Shader shader) {
       {kEnvironmentHalf, "st"},
       {kEnvironmentPrefilter, "st"},
       {kEnvironmentHarmonics, "st"},
+      {kInspect, "sst"},
   }};
   return sources[static_cast<std::size_t>(shader)];
 }

@@ -72,16 +72,9 @@ tl::expected<void, std::string> run_graph(const Options& options) {
   if (!plan) {
     return tl::unexpected(framegraph::to_string(plan.error()));
   }
-  switch (options.graph_format) {
-    case GraphFormat::kJson:
-      std::cout << framegraph::print_json(description, *plan);
-      break;
-    case GraphFormat::kDot:
-      std::cout << framegraph::print_dot(description, *plan);
-      break;
-    default:
-      std::cout << framegraph::print_text(description, *plan);
-  }
+  const bool dot = options.graph_format == GraphFormat::kDot;
+  std::cout << (dot ? framegraph::print_dot(description, *plan)
+                    : framegraph::print_text(description, *plan));
   return {};
 }
 

@@ -11,11 +11,8 @@
 
 namespace alcove::sample {
 
-namespace {
-
 using Failure = tl::unexpected<std::string>;
 
-// Loads the session without its device.
 tl::expected<Session, std::string> load_session(const Options& options) {
   Session session;
   const auto start = std::chrono::steady_clock::now();
@@ -41,8 +38,6 @@ tl::expected<Session, std::string> load_session(const Options& options) {
   session.settings = *settings;
   return session;
 }
-
-}  // namespace
 
 tl::expected<Session, std::string> open_session(
     const Options& options, const std::vector<const char*>& surface_extensions) {

@@ -13,10 +13,13 @@
 
 namespace alcove::sample {
 
+// Loads the scene and chooses camera and settings; the session has no device. Prints notes about
+// the scene, and progress if loading takes long, on stderr.
+[[nodiscard]] tl::expected<Session, std::string> load_session(const Options& options);
+
 // Loads the scene, chooses camera and settings and opens the device, in this order, so that errors
-// that are quick to find are reported first. Prints notes about the scene, and progress if loading
-// takes long, on stderr. `surface_extensions` are the instance extensions for presenting to a
-// window.
+// that are quick to find are reported first. `surface_extensions` are the instance extensions for
+// presenting to a window.
 [[nodiscard]] tl::expected<Session, std::string> open_session(
     const Options& options, const std::vector<const char*>& surface_extensions = {});
 

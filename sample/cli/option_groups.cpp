@@ -335,7 +335,7 @@ void add_lit(CLI::App& app, bool& lit, std::uint32_t& points) {
 }
 
 void add_format(CLI::App& app, GraphFormat& format) {
-  Group(app).add("--format", "NAME", "text, json or dot (Graphviz); text",
+  Group(app).add("--format", "NAME", "text or dot (Graphviz); text",
                  [&](const OptionValue& given) {
                    format = static_cast<GraphFormat>(given.one_of(kGraphFormatNames));
                  });

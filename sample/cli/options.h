@@ -32,8 +32,8 @@ enum class Command {
   kDoctor
 };
 // Names are in the order of the enumerators.
-enum class GraphFormat { kText, kJson, kDot };
-inline constexpr std::array<std::string_view, 3> kGraphFormatNames{"text", "json", "dot"};
+enum class GraphFormat { kText, kDot };
+inline constexpr std::array<std::string_view, 2> kGraphFormatNames{"text", "dot"};
 
 // Only what was typed; the camera of the scene fills the rest. Angles already in radians.
 struct ViewOptions {

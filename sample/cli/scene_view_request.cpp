@@ -1,5 +1,8 @@
 #include "cli/scene_view_request.h"
 
+#include <memory>
+#include <utility>
+
 #include "cli/open_session.h"
 #include "cli/render_command.h"
 
@@ -20,8 +23,27 @@ SceneViewRequest scene_view_request(const Options& options) {
   request.open_session = [options](const std::vector<const char*>& surface_extensions) {
     return open_session(options, surface_extensions);
   };
-  request.command = [options](const Shot& shot) {
-    return shell_line(render_arguments(options, shot));
+  // The options of the scene that is shown now, which a dropped file changes.
+  const auto shown = std::make_shared<Options>(options);
+  request.load_session = [shown](const std::string& file) {
+    Options other = *shown;
+    other.scene = file;
+    // A view, depth range or radius that was typed for one scene does not suit another.
+    other.view.camera.clear();
+    other.view.eye.reset();
+    other.view.target.reset();
+    other.view.up_ws.reset();
+    other.view.near_plane.reset();
+    other.view.far_plane.reset();
+    other.occlusion.radius.reset();
+    auto session = load_session(other);
+    if (session) {
+      *shown = std::move(other);
+    }
+    return session;
+  };
+  request.command = [shown](const Shot& shot) {
+    return shell_line(render_arguments(*shown, shot));
   };
   return request;
 }

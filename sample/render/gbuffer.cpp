@@ -352,6 +352,11 @@ Texture GbufferRenderer::add_back_faces(Graph& graph, const GbufferView& view, T
   return depth;
 }
 
+// Culls back faces of double-sided materials too. Exporters often mark closed solids as
+// double-sided, and with their back faces the second layer of a pixel would be the back of the
+// first solid, which tells nothing of the surfaces behind it. The price: a thin double-sided
+// surface, such as a leaf, that is seen from behind is missing from the second layer, where it
+// hides nothing.
 Texture GbufferRenderer::add_second_layer(Graph& graph, const GbufferView& view, Texture first,
                                           Texture depth) {
   const std::uint32_t at = state_->write_parameters(view);

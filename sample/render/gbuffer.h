@@ -11,8 +11,8 @@
 
 namespace alcove::sample {
 
-// The camera of a frame, as matrices: from world to view space and on to Vulkan clip space; and
-// where the meshes stand that move.
+// The camera of a frame as matrices, from world to view space and to Vulkan clip space, and the
+// placement of the meshes that move.
 struct GbufferView {
   glm::mat4 view_from_world{1.0f};
   glm::mat4 clip_from_view{1.0f};
@@ -25,8 +25,8 @@ struct GbufferView {
   bool operator==(const GbufferView&) const = default;
 };
 
-// What a frame's rasterisation writes: of `size`, each with the format that is named. A null
-// texture is not drawn (depth must be there).
+// The textures that the rasterisation of a frame writes, with the formats named here. A null
+// texture is not drawn; depth must be given.
 struct Gbuffer {
   framegraph::Texture depth;     // D32_SFLOAT, as the projection has it; sky at the far plane
   framegraph::Texture normal;    // RGBA16_SFLOAT, xyz unit, world space, towards the eye

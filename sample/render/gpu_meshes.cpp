@@ -336,9 +336,11 @@ tl::expected<void, std::string> GpuMeshes::Builder::add_instances(
 
 tl::expected<void, std::string> GpuMeshes::Builder::add(const Mesh& mesh,
                                                         const Material& material) {
-  // A page may hold the largest stream of a part whose triangles share no vertex, and pages stay
-  // well below the limit.
-  const std::size_t most_triangles = std::min(most_bytes_, kLargestPage) / (3 * sizeof(glm::vec3));
+  // A page may hold the largest stream of a part whose triangles share no vertex. Parts are small
+  // beside the mesh, because each is in memory twice while it is uploaded.
+  constexpr std::size_t kMostTriangles = std::size_t{1} << 17;
+  const std::size_t most_triangles = std::min<std::size_t>(
+      std::min(most_bytes_, kLargestPage) / (3 * sizeof(glm::vec3)), kMostTriangles);
   PartBuilder builder(mesh, material);
   std::vector<MeshDraw> parts;
   for (Part part = builder.next(most_triangles); !part.indices.empty();

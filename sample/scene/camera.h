@@ -21,15 +21,15 @@ struct Camera {
   float near_plane = 0.1f;     // > 0 in perspective; any value below far_plane in orthographic
   float far_plane = 100.0f;    // > near_plane; infinity is allowed in perspective
   bool reversed_z = false;     // near at depth 1, far at depth 0
-  glm::vec2 offset_ndc{0.0f};  // off-centre: where the axis of the view lands, in -1..1, y down
-  glm::vec2 jitter_px{0.0f};   // moves the image by so many pixels, x right, y down
-  // Scene::origin: what is added to a position that people read, and taken from one that they type.
+  glm::vec2 offset_ndc{0.0f};  // off-centre: where the view axis meets the image, -1..1, y down
+  glm::vec2 jitter_px{0.0f};   // offset of the image in pixels, x right, y down
+  // Scene::origin. It is added to positions that are printed and subtracted from typed ones.
   glm::dvec3 origin{0.0};
   bool fit_planes = false;  // near and far are provisional: camera_of() fits them to the view
 };
 
-// What shaders and ray casting need of a camera. `prev` matrices are the caller's business: take
-// the matrices of the frame before.
+// A camera as shaders and ray casting use it. For the previous frame's matrices the caller keeps
+// those of the frame before.
 struct CameraMatrices {
   glm::mat4 view_from_world;
   glm::mat4 world_from_view;
@@ -58,7 +58,7 @@ struct Ray {
 // Distance along the view axis of each value of a depth buffer; infinity in the sky.
 [[nodiscard]] Image<float> linear_depth(const Camera& camera, const Image<float>& depth_ndc);
 
-// Turned about the target by `angle` radians around `up_ws`, as `--orbit` does between frames.
+// The camera orbited about its target by `angle` radians around `up_ws`, as by `--orbit`.
 [[nodiscard]] Camera orbited(const Camera& camera, float angle);
 
 }  // namespace alcove::sample

@@ -16,7 +16,7 @@ using Failure = tl::unexpected<std::string>;
 // A node that is drawn, with the instances that it adds to its own transform.
 struct DrawnNode {
   size_t node;
-  std::vector<glm::dmat4> instances;  // relative to the node; empty: the node itself
+  NodeInstances instances;  // empty: the node itself
 };
 
 // Where everything of a file stands.
@@ -134,7 +134,7 @@ tl::expected<Layout, std::string> place_nodes(const tinygltf::Model& model, Mesh
   for (DrawnNode& drawn : layout.drawn) {
     const tinygltf::Node& node = model.nodes[drawn.node];
     if (node.mesh < 0 || node.skin >= 0) continue;
-    auto instances = instances_of(model, node, budget.instances);
+    auto instances = NodeInstances::read(model, node, budget.instances);
     if (!instances) return Failure("node \"" + node.name + "\" " + instances.error());
     budget.instances -= instances->size();
     drawn.instances = std::move(*instances);
@@ -186,7 +186,7 @@ glm::dvec3 chosen_origin(const tinygltf::Model& model, const Layout& layout,
     const tinygltf::Node& node = model.nodes[drawn.node];
     if (node.mesh < 0 || static_cast<size_t>(node.mesh) >= model.meshes.size()) continue;
     glm::dmat4 placed = layout.world_from_node[drawn.node];
-    if (!drawn.instances.empty()) placed *= drawn.instances[drawn.instances.size() / 2];
+    if (drawn.instances.size() > 0) placed *= drawn.instances.at(drawn.instances.size() / 2);
     if (node.skin >= 0 && static_cast<size_t>(node.skin) < model.skins.size() &&
         !model.skins[static_cast<size_t>(node.skin)].joints.empty()) {
       const int joint = model.skins[static_cast<size_t>(node.skin)].joints.front();
@@ -241,15 +241,12 @@ class NodeReader {
  public:
   NodeReader(const tinygltf::Model& model, const Layout& layout, MeshBudget& budget, Scene& scene)
       : model_(model), layout_(layout), budget_(budget), scene_(scene) {
-    instances_.resize(model.meshes.size());
+    nodes_of_.resize(model.meshes.size());
     for (const DrawnNode& drawn : layout.drawn) {
       const tinygltf::Node& node = model.nodes[drawn.node];
       if (node.skin >= 0 || node.mesh < 0) continue;
       if (static_cast<size_t>(node.mesh) >= model.meshes.size()) continue;
-      auto& placed = instances_[static_cast<size_t>(node.mesh)];
-      const glm::dmat4 world = world_of(drawn.node);
-      if (drawn.instances.empty()) placed.push_back(world);
-      for (const glm::dmat4& instance : drawn.instances) placed.push_back(world * instance);
+      nodes_of_[static_cast<size_t>(node.mesh)].push_back(&drawn);
     }
   }
 
@@ -261,16 +258,23 @@ class NodeReader {
     }
     if (node.skin >= 0) return add_skinned(node);
     // The first node of a mesh adds all of its instances.
-    const auto placed = std::move(instances_[static_cast<size_t>(node.mesh)]);
-    instances_[static_cast<size_t>(node.mesh)].clear();
+    const auto nodes = std::exchange(nodes_of_[static_cast<size_t>(node.mesh)], {});
+    size_t count = 0;
+    for (const DrawnNode* drawn : nodes) count += std::max<size_t>(drawn->instances.size(), 1);
     std::vector<glm::mat4x3> shared;
     std::vector<glm::dmat4> apart;
-    for (const glm::dmat4& world : placed) {
-      if (placed.size() > 1 && can_be_instance(world)) {
+    if (count > 1) shared.reserve(count);
+    const auto place = [&](const glm::dmat4& world) {
+      if (count > 1 && can_be_instance(world)) {
         shared.emplace_back(world);
       } else {
         apart.push_back(world);
       }
+    };
+    for (const DrawnNode* drawn : nodes) {
+      const glm::dmat4 world = world_of(drawn->node);
+      if (drawn->instances.size() == 0) place(world);
+      for (size_t i = 0; i < drawn->instances.size(); ++i) place(world * drawn->instances.at(i));
     }
     for (const glm::dmat4& world : apart) {
       if (auto added = add_mesh(node, PrimitivePlacement{world}); !added) return added;
@@ -315,7 +319,7 @@ class NodeReader {
   const Layout& layout_;
   MeshBudget& budget_;
   Scene& scene_;
-  std::vector<std::vector<glm::dmat4>> instances_;  // by mesh; those not added yet
+  std::vector<std::vector<const DrawnNode*>> nodes_of_;  // by mesh; those not added yet
 };
 
 }  // namespace

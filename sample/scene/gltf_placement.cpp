@@ -140,19 +140,21 @@ glm::dmat4 local_transform(const tinygltf::Node& node) {
   return transform_of(translation, rotation, scale);
 }
 
-tl::expected<std::vector<glm::dmat4>, std::string> instances_of(const tinygltf::Model& model,
-                                                                const tinygltf::Node& node,
-                                                                uint64_t most) {
+tl::expected<NodeInstances, std::string> NodeInstances::read(const tinygltf::Model& model,
+                                                             const tinygltf::Node& node,
+                                                             uint64_t most) {
+  NodeInstances out;
   const auto found = node.extensions.find("EXT_mesh_gpu_instancing");
-  if (found == node.extensions.end()) return {};
+  if (found == node.extensions.end()) return out;
   struct Attribute {
     const char* name;
     int components;
-    std::vector<float> values;
+    std::vector<float>& values;
   };
-  Attribute attributes[] = {{"TRANSLATION", 3, {}}, {"ROTATION", 4, {}}, {"SCALE", 3, {}}};
   std::optional<size_t> count;
-  for (Attribute& attribute : attributes) {
+  for (const Attribute& attribute :
+       {Attribute{"TRANSLATION", 3, out.translations_}, Attribute{"ROTATION", 4, out.rotations_},
+        Attribute{"SCALE", 3, out.scales_}}) {
     const int accessor = instance_attribute(found->second, attribute.name);
     if (accessor < 0) continue;
     auto values = read_floats(model, accessor, attribute.components, most);
@@ -164,25 +166,23 @@ tl::expected<std::vector<glm::dmat4>, std::string> instances_of(const tinygltf::
     count = elements;
     attribute.values = std::move(*values);
   }
-  if (!count) return {};
-  std::vector<glm::dmat4> out;
-  out.reserve(*count);
-  const auto& [t, r, s] = attributes;
-  for (size_t i = 0; i < *count; ++i) {
-    glm::dvec3 translation(0.0), scale(1.0);
-    glm::dquat rotation(1.0, 0.0, 0.0, 0.0);
-    for (int c = 0; c < 3; ++c) {
-      const size_t at = 3 * i + static_cast<size_t>(c);
-      if (!t.values.empty()) translation[c] = t.values[at];
-      if (!s.values.empty()) scale[c] = s.values[at];
-    }
-    if (!r.values.empty()) {
-      const float* q = &r.values[4 * i];
-      rotation = {q[3], q[0], q[1], q[2]};
-    }
-    out.push_back(transform_of(translation, rotation, scale));
-  }
+  out.count_ = count.value_or(0);
   return out;
+}
+
+glm::dmat4 NodeInstances::at(size_t instance) const {
+  glm::dvec3 translation(0.0), scale(1.0);
+  glm::dquat rotation(1.0, 0.0, 0.0, 0.0);
+  for (int c = 0; c < 3; ++c) {
+    const size_t at = 3 * instance + static_cast<size_t>(c);
+    if (!translations_.empty()) translation[c] = translations_[at];
+    if (!scales_.empty()) scale[c] = scales_[at];
+  }
+  if (!rotations_.empty()) {
+    const float* q = &rotations_[4 * instance];
+    rotation = {q[3], q[0], q[1], q[2]};
+  }
+  return transform_of(translation, rotation, scale);
 }
 
 }  // namespace alcove::sample

@@ -43,9 +43,23 @@ class VertexPlacement {
 // A node's own transform from its matrix, or from translation, rotation and scale.
 [[nodiscard]] glm::dmat4 local_transform(const tinygltf::Node& node);
 
-// The transforms that EXT_mesh_gpu_instancing gives a node, relative to it; empty where the node
-// does not have the extension. At most `most`. Errors are the end of a sentence.
-[[nodiscard]] tl::expected<std::vector<glm::dmat4>, std::string> instances_of(
-    const tinygltf::Model& model, const tinygltf::Node& node, uint64_t most);
+// The instances that EXT_mesh_gpu_instancing gives a node, as the file stores them.
+class NodeInstances {
+ public:
+  // Empty where the node does not have the extension. At most `most`. Errors are the end of a
+  // sentence.
+  [[nodiscard]] static tl::expected<NodeInstances, std::string> read(const tinygltf::Model& model,
+                                                                     const tinygltf::Node& node,
+                                                                     uint64_t most);
+
+  [[nodiscard]] size_t size() const { return count_; }
+  // The transform of an instance relative to the node. `instance` is below size().
+  [[nodiscard]] glm::dmat4 at(size_t instance) const;
+
+ private:
+  size_t count_ = 0;
+  // 3, 4 and 3 numbers for each instance; an attribute that the file does not have is empty.
+  std::vector<float> translations_, rotations_, scales_;
+};
 
 }  // namespace alcove::sample

@@ -42,8 +42,8 @@ struct TextureUse {
   glm::mat3x2 texture_from_mesh_uv{1.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f};  // finite
 };
 
-// A g-buffer holds one surface a pixel, and an occluder either blocks or does not: what is blended
-// counts as opaque, in the rasteriser and in the ray tracer alike.
+// A g-buffer holds one surface a pixel, and an occluder either blocks or does not: alpha-blended
+// materials are opaque, in the rasteriser and in the ray tracer alike.
 enum class AlphaMode : uint8_t {
   kOpaque,
   kMask,   // cut out below alpha_cutoff
@@ -69,8 +69,8 @@ struct Material {
   bool double_sided = true;
 };
 
-// Triangles of one material, counter-clockwise seen from the front. They stand once, in world
-// space, or several times, in a space of their own, as `instances` says. Every array of vertices
+// Triangles of one material, counter-clockwise seen from the front. Without `instances` the arrays
+// are in world space and the mesh stands once; with them they are in mesh space. Every vertex array
 // has the length of `positions_ws` or is empty; every index is below that length.
 struct Mesh {
   std::string name;
@@ -111,7 +111,7 @@ struct Scene {
   Bounds bounds_ws;               // of all triangles
   Bounds core_bounds_ws;          // of what the scene is about, see scene_core(); empty: bounds_ws
   float suggested_radius = 0.0f;  // 0: a twentieth of the diagonal of the core's bounds
-  std::vector<std::string> warnings;  // one sentence each: what the picture does not show as stored
+  std::vector<std::string> warnings;  // one sentence for each part that is not drawn as stored
 };
 
 [[nodiscard]] std::array<glm::vec3, 8> corners_of(const Bounds& bounds);

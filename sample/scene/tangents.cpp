@@ -138,11 +138,12 @@ void TangentBuilder::group_corners() {
   for (size_t i = 0; i < edges.size(); ++i) {
     edges[i] = {key(i, next_corner(i)), static_cast<uint32_t>(i)};
   }
-  std::ranges::sort(edges, {}, &Edge::key);
+  const auto by_key = [](const Edge& a, const Edge& b) { return a.key < b.key; };
+  std::sort(edges.begin(), edges.end(), by_key);
   for (const bool known : {true, false}) {
     for (size_t i = 0; i < vertex_of_.size(); ++i) {
       const auto [first, last] =
-          std::ranges::equal_range(edges, key(next_corner(i), i), {}, &Edge::key);
+          std::equal_range(edges.begin(), edges.end(), Edge{key(next_corner(i), i), 0}, by_key);
       for (auto edge = first; edge != last; ++edge) {
         const Orientation here = faces_[i / 3].orientation;
         const Orientation there = faces_[edge->corner / 3].orientation;

@@ -2,20 +2,20 @@
 
 #include "scene/camera.h"
 
-// How a mouse moves a camera about its target. Each gives the moved camera; the eye never reaches
-// the target.
+// How a mouse moves a camera about its target. Each function returns the moved camera; the eye
+// never reaches the target.
 namespace alcove::sample {
 
-// Turns the eye by `angles` (radians) as if the scene were turned by hand: x about what is up, y
-// over it, but never past looking straight up or down.
+// Orbits the eye by `angles` in radians, x around the up vector and y over it, in the direction in
+// which a hand would turn the scene. Stops before looking straight up or down.
 [[nodiscard]] Camera turned(const Camera& camera, glm::vec2 angles);
 
-// Moves eye and target so that what lies at the target follows a mouse that moves by `share` of the
-// image's height (x right, y down).
+// Moves eye and target so that the surface at the target follows a mouse that moves by `share` of
+// the image's height (x right, y down).
 [[nodiscard]] Camera panned(const Camera& camera, glm::vec2 share);
 
-// Moves the eye so that its distance from the target is `factor` (over 0) times what it was; an
-// orthographic view shows so much more or less.
+// Multiplies the distance of the eye from the target by `factor` (over 0); in an orthographic view
+// the height that it shows.
 [[nodiscard]] Camera dollied(const Camera& camera, float factor);
 
 }  // namespace alcove::sample

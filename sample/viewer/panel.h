@@ -8,23 +8,23 @@
 
 namespace alcove::sample {
 
-// What the panel tells.
+// Everything that the panel shows.
 struct PanelFacts {
   std::string device;
   std::uint32_t width = 0;
   std::uint32_t height = 0;
   SmoothedTimes times;
   framegraph::MemoryStatistics memory;
-  std::string refusal;  // why the settings are not those that are drawn; empty: they are
-  std::string message;  // what was done last
-  passes::OcclusionSettings first_settings;  // that a reset goes back to
+  std::string refusal;  // why the chosen settings are not drawn; empty if they are
+  std::string message;  // of the last action: a screenshot, or a dropped file
+  passes::OcclusionSettings first_settings;  // restored by a reset
 };
 
-// Lays the panel out between Gui::begin() and Gui::end(), changes `state` as its widgets are moved,
-// and says whether a screenshot is asked for.
+// Lays the panel out between Gui::begin() and Gui::end() and changes `state` as its widgets are
+// moved. Returns true if the user asks for a screenshot.
 [[nodiscard]] bool lay_out_panel(ViewState& state, const PanelFacts& facts);
 
-// What the mouse does where it is not over the panel.
+// Moves the camera by the mouse, unless the mouse is over the panel.
 void move_camera_by_mouse(Camera& camera);
 
 }  // namespace alcove::sample

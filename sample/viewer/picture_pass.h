@@ -12,7 +12,7 @@
 
 namespace alcove::sample {
 
-// What is shown. All textures are as large as the window.
+// The textures that are shown. All are as large as the window.
 struct Shown {
   std::uint32_t show = maths::kShowGrey;
   framegraph::Texture texture;

@@ -75,6 +75,44 @@ SceneView::~SceneView() {
   }
 }
 
+tl::expected<void, std::string> SceneView::replace_scene(const std::string& file) {
+  auto loaded = request_.load_session(file);
+  if (!loaded) {
+    return Failure(std::move(loaded.error()));
+  }
+  const auto environment = load_environment(request_.environment);
+  if (!environment) {
+    return Failure(environment.error());
+  }
+  presenter_->wait();
+  auto frame = SceneFrame::create(*session_.gpu, loaded->scene, *environment, request_.normals,
+                                  presenter_->format());
+  if (!frame) {
+    return Failure(std::move(frame.error()));
+  }
+  frame_ = std::move(*frame);
+  session_.scene = std::move(loaded->scene);
+  session_.camera = loaded->camera;
+  session_.settings = loaded->settings;
+  return {};
+}
+
+void SceneView::open(const std::string& file) {
+  if (auto replaced = replace_scene(file); !replaced) {
+    facts_.message = std::move(replaced.error());
+    return;
+  }
+  state_.camera = session_.camera;
+  state_.settings.radius = session_.settings.radius;
+  state_.kept.radius = session_.settings.radius;
+  good_ = {state_.settings, state_.roughness};
+  refused_.reset();
+  facts_.first_settings = session_.settings;
+  facts_.refusal.clear();
+  facts_.message = file + " is shown.";
+  window_->set_title("alcove: " + file);
+}
+
 Camera SceneView::camera_around_scene() const {
   Camera camera = state_.camera;
   constexpr float kFarthest = 1e12f;  // distances beyond have no squares of floats to compare
@@ -204,15 +242,17 @@ tl::expected<bool, std::string> SceneView::draw() {
   if (window_->is_closed()) {
     return false;
   }
+  // Before the frame has an image of the window: version 1.3.239 of the validation layers crashes
+  // where a program waits for the device between acquiring an image and submitting its use.
+  if (const auto dropped = window_->take_dropped_files(); !dropped.empty()) {
+    open(dropped.back());
+  }
   const auto prepared = presenter_->prepare();
   if (!prepared) {
     return Failure(prepared.error());
   }
   if (!*prepared) {
     return true;
-  }
-  if (const auto dropped = window_->take_dropped_files(); !dropped.empty()) {
-    facts_.message = "To see the dropped file, start: alcove view " + dropped.back();
   }
   lay_out();
   auto drawn = std::exchange(wanted_, false) ? draw_and_read().and_then([&] { return write(); })

@@ -21,7 +21,7 @@
 
 namespace alcove::sample {
 
-// What a window shows at first, and what it asks of the program around it.
+// The first view of a window, and the functions of the program that it calls.
 struct SceneViewRequest {
   std::uint32_t width = 960;  // of the window, pixels
   std::uint32_t height = 540;
@@ -33,6 +33,8 @@ struct SceneViewRequest {
   std::filesystem::path screenshots;  // folder for them; empty: the current one
   // Loads the scene and opens a device with these instance extensions.
   std::function<tl::expected<Session, std::string>(const std::vector<const char*>&)> open_session;
+  // Loads another scene with a camera and settings of its own, and opens no device.
+  std::function<tl::expected<Session, std::string>(const std::string& file)> load_session;
   // The shell command that draws a shot without a window.
   std::function<std::string(const Shot&)> command;
 };
@@ -51,11 +53,15 @@ class SceneView {
   [[nodiscard]] tl::expected<bool, std::string> draw();
   // Frames that were presented: none while the window is minimised.
   std::uint32_t drawn_frames() const { return drawn_frames_; }
-  // The next frame is also written to a file, with the command that draws its like.
+  // Also writes the next frame to a file and prints the command that draws it without a window.
   void take_screenshot() { wanted_ = true; }
   const Image<glm::vec3>& last_screenshot() const { return screenshot_; }
-  // Whether anything but the picture is shown.
+  // Shows or hides the panel.
   void show_panel(bool shown) { panel_shown_ = shown; }
+
+  // Shows another scene from its own first view, with the settings that are chosen and the radius
+  // that suits it. If the file cannot be read, the scene stays and the panel says why.
+  void open(const std::string& file);
 
   ViewState& state() { return state_; }
   const PanelFacts& facts() const { return facts_; }
@@ -64,7 +70,7 @@ class SceneView {
   const Scene& scene() const { return session_.scene; }
 
  private:
-  // What the passes may refuse.
+  // The part of the state that the passes may refuse.
   struct Choice {
     passes::OcclusionSettings settings;
     std::optional<float> roughness;
@@ -72,6 +78,7 @@ class SceneView {
   };
 
   explicit SceneView(SceneViewRequest request) : request_(std::move(request)) {}
+  tl::expected<void, std::string> replace_scene(const std::string& file);
   // The camera with a far plane behind the scene, wherever the user has moved it.
   Camera camera_around_scene() const;
   void take_keys();

@@ -10,7 +10,7 @@
 
 namespace alcove::sample {
 
-// What of a frame the window shows.
+// The image of a frame that the window shows.
 enum class Picture : std::uint8_t {
   kVisibility,
   kLit,
@@ -26,12 +26,12 @@ inline constexpr std::array<std::string_view, 9> kPictureNames{
     "visibility", "lit",   "multi-bounce", "bent normal", "specular occlusion",
     "normals",    "depth", "albedo",       "motion"};
 
-// What the right of the window is drawn with.
+// The settings that the right part of the window is drawn with.
 enum class Comparison : std::uint8_t { kNone, kHorizons, kReference, kKept };
 inline constexpr std::array<std::string_view, 4> kComparisonNames{
     "nothing", "infinite thickness", "reference quality", "settings kept"};
 
-// All that can be chosen in the window.
+// Everything that the user can choose in the window.
 struct ViewState {
   Camera camera;
   passes::OcclusionSettings settings;
@@ -42,7 +42,7 @@ struct ViewState {
   float split = 0.5f;              // where the right begins, in parts of the width
 };
 
-// The settings of the right; none where nothing is compared.
+// The settings of the right part; none if nothing is compared.
 [[nodiscard]] inline std::optional<passes::OcclusionSettings> compared_settings(
     const ViewState& state) {
   passes::OcclusionSettings settings = state.settings;

@@ -117,6 +117,8 @@ float Window::content_scale() const {
   return x;
 }
 
+void Window::set_title(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
+
 void Window::copy_to_clipboard(const std::string& text) {
   glfwSetClipboardString(window_, text.c_str());
 }

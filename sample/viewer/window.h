@@ -40,6 +40,7 @@ class Window {
   const std::vector<int>& pressed_keys() const { return pressed_keys_; }
   // The files that were dropped on the window since the last call, in order.
   std::vector<std::string> take_dropped_files() { return std::exchange(dropped_files_, {}); }
+  void set_title(const std::string& title);
   void copy_to_clipboard(const std::string& text);
   GLFWwindow* handle() const { return window_; }
 

@@ -8,7 +8,7 @@
 
 namespace alcove::framegraph {
 
-// What the kernels compute of two words; the tests' own model of the frame uses it too.
+// The function of two words that the kernels compute; the tests' model of the frame uses it too.
 inline std::uint32_t mix_in(std::uint32_t a, std::uint32_t b) {
   const std::uint32_t x = (a ^ b) * 0x9e3779b1u;
   return x ^ (x >> 15);
@@ -37,7 +37,7 @@ class ChecksumKernels {
     VkPipelineLayout layout = VK_NULL_HANDLE;
     VkPipeline pipeline = VK_NULL_HANDLE;
   };
-  // What a binding is, an image or a buffer.
+  // The resource of a binding: an image or a buffer.
   struct Resource {
     VkDescriptorImageInfo image{};
     VkDescriptorBufferInfo buffer{};

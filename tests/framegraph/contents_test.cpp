@@ -197,7 +197,7 @@ class FrameMaker {
     all_.push_back(std::move(made));
   }
 
-  // What the kernel that mixes textures leaves in `result`.
+  // Computes the result of the kernel that mixes textures.
   static void mix(Modelled& result, std::uint32_t seed, const Modelled& sampled,
                   const Modelled& storage, bool keep) {
     for (std::uint32_t y = 0; y < result.height; ++y) {

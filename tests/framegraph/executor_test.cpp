@@ -94,7 +94,7 @@ TEST_F(ExecutorTest, TransientsThatShareMemoryKeepTheirContents) {
   }
 }
 
-TEST_F(ExecutorTest, AnUndeclaredUseIsNamedWhereUsesAreChecked) {
+TEST_F(ExecutorTest, UndeclaredUseIsReportedWhereUsesAreChecked) {
   ExecutorOptions options;
   options.check_uses = true;
   Executor executor = make(options);
@@ -150,7 +150,7 @@ TEST_F(ExecutorTest, ViewsOutsideOfTheDeclaredRangeAreRefused) {
   }
 }
 
-TEST_F(ExecutorTest, ACallbackCannotRecordWithItsOwnExecutor) {
+TEST_F(ExecutorTest, CallbackCannotRecordWithItsOwnExecutor) {
   Executor executor = make();
   Graph graph;
   Graph other;
@@ -183,7 +183,7 @@ TEST_F(ExecutorTest, LimitsAreThoseOfTheDevice) {
   EXPECT_LE(executor.limits().max_samples, 64u);
 }
 
-// What the device does not make is an error with a sentence; what it makes runs without a message.
+// A texture that the device cannot make is refused with a sentence; others run without a message.
 TEST_F(ExecutorTest, MultisampledTexturesThatTheDeviceCannotMakeAreRefused) {
   struct Case {
     VkFormat format;
@@ -225,7 +225,8 @@ TEST_F(ExecutorTest, MultisampledTexturesThatTheDeviceCannotMakeAreRefused) {
   }
 }
 
-// What Vulkan 1.3 made core is missing, but for VK_KHR_synchronization2 under its own names.
+// The device has no functions of Vulkan 1.3 but those of VK_KHR_synchronization2, by their own
+// names.
 PFN_vkVoidFunction VKAPI_CALL get_device_proc_addr_1_2(VkDevice device, const char* name) {
   for (const char* core :
        {"vkCmdPipelineBarrier2", "vkQueueSubmit2", "vkCmdWriteTimestamp2", "vkCmdBeginRendering",
@@ -327,7 +328,7 @@ TEST_F(ExecutorTest, BuffersWithADeviceAddressHaveMemoryForIt) {
   EXPECT_EQ(found, 2u);
 }
 
-TEST_F(ExecutorTest, WhatIsReplacedCountsAsAllocatedUntilItIsFreed) {
+TEST_F(ExecutorTest, ReplacedResourcesCountAsAllocatedUntilTheyAreFreed) {
   struct Made {
     Executor executor;
     Graph graph;

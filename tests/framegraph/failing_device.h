@@ -23,7 +23,7 @@ int submits();
 int semaphore_waits();
 // Image barriers recorded so far whose queue family on one side is VK_QUEUE_FAMILY_EXTERNAL.
 int outside_transfers();
-// To be given to the executor in place of vkGetInstanceProcAddr.
+// The function that the executor gets in place of vkGetInstanceProcAddr.
 PFN_vkVoidFunction VKAPI_CALL get_instance_proc_addr(VkInstance instance, const char* name);
 
 }  // namespace alcove::framegraph::failing

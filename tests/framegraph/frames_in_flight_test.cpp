@@ -1,4 +1,4 @@
-// What frames that follow each other without a wait owe one another.
+// Frames that follow each other without a wait of the host.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -107,7 +107,7 @@ void declare(Graph& graph, std::uint32_t size) {
 
 // One plan writes the texture last and the other reads it last, so that each finds it otherwise
 // than it would leave it itself. Validation looks across the submissions.
-TEST_F(FramesInFlight, OfDifferentPlansNeedNoWait) {
+TEST_F(FramesInFlight, FramesOfDifferentPlansNeedNoWait) {
   Executor executor = make();
   const HostBuffer host = gpu_.make_host_buffer(4);
   Graph graph;
@@ -131,7 +131,7 @@ TEST_F(FramesInFlight, OfDifferentPlansNeedNoWait) {
 
 // An image is read by one stage of the frame and then, in the same layout, by another of the
 // caller's, for which alone the next frame waits.
-TEST_F(FramesInFlight, WhatComesAfterADepartureComesAfterTheFramesReads) {
+TEST_F(FramesInFlight, FinalStateComesAfterTheReadsOfTheFrame) {
   Executor executor = make();
   const HostBuffer host = gpu_.make_host_buffer(4);
   const TextureDesc desc{VK_FORMAT_R32_UINT, Extent::absolute(16, 16)};
@@ -157,7 +157,7 @@ TEST_F(FramesInFlight, WhatComesAfterADepartureComesAfterTheFramesReads) {
 }
 
 // A frame that never runs says nothing of those that were recorded before it.
-TEST_F(FramesInFlight, ARefusedOrDiscardedFrameFreesNothingThatMayBeInUse) {
+TEST_F(FramesInFlight, RefusedOrDiscardedFrameFreesNothingThatMayBeInUse) {
   Executor executor = make();
   Graph graph;
   declare(graph, 4);
@@ -179,7 +179,7 @@ TEST_F(FramesInFlight, ARefusedOrDiscardedFrameFreesNothingThatMayBeInUse) {
   wait();
 }
 
-TEST_F(FramesInFlight, APassThatCannotBeRecordedFailsTheFrame) {
+TEST_F(FramesInFlight, PassThatCannotBeRecordedFailsTheFrame) {
   Executor executor = make();
   Graph graph;
   PassBuilder pass = graph.add_pass("poor");

@@ -83,7 +83,7 @@ class Gpu {
     images_.push_back(std::move(*made));
     return images_.back()->image();
   }
-  // From the undefined layout, in a submission of its own.
+  // Changes the layout from undefined, in a submission of its own.
   void change_layout(VkImage image, VkImageLayout layout) {
     VkImageMemoryBarrier2 barrier{};
     barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
@@ -136,7 +136,7 @@ class Gpu {
                                   VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT, nullptr};
     vkBeginCommandBuffer(commands_, &info);
   }
-  // So that nothing runs of what was recorded.
+  // Ends the commands without running them.
   void throw_away() { vkEndCommandBuffer(commands_); }
   void end_and_wait() {
     vkEndCommandBuffer(commands_);
@@ -148,7 +148,7 @@ class Gpu {
     vkQueueWaitIdle(device_->queue());
   }
 
-  // What the validation layers said, one line each, without messages that contain one of `except`.
+  // The messages of the validation layers, one a line, without those that contain one of `except`.
   std::string messages(std::initializer_list<const char*> except = {}) const {
     std::string text;
     for (const std::string& message : device_->validation_messages()) {

@@ -1,4 +1,4 @@
-// What declaring and compiling cost, by number of passes: a program, not a test.
+// Measures declaring and compiling, by number of passes: a program, not a test.
 //
 // chain: each pass reads what the one before wrote and writes a texture of its own.
 // random: each pass reads two of the last 32 textures.

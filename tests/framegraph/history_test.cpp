@@ -98,7 +98,7 @@ class GraphHistory : public testing::Test {
     return out;
   }
 
-  // The same slot through other accesses, usages and layouts: into a texture, and that to the host.
+  // Copies a slot by other accesses, usages and layouts to a texture, and the texture to the host.
   Buffer read_by_kernel(Texture texture, Buffer out, std::uint32_t age) {
     Texture zero = graph_->create_texture("zero", {VK_FORMAT_R32_UINT, Extent::absolute(1, 1)});
     zero = write(zero, 0);
@@ -142,7 +142,7 @@ class GraphHistory : public testing::Test {
 
 constexpr std::uint32_t kNothing = 0xffff;
 
-TEST_F(GraphHistory, SlotsHoldTheFramesBefore) {
+TEST_F(GraphHistory, SlotsHoldThePreviousFrames) {
   for (std::uint32_t frame = 1; frame <= 6; ++frame) {
     run({frame});
     EXPECT_EQ(validity_, frame == 1 ? HistoryValidity::first_frame : HistoryValidity::valid);
@@ -151,7 +151,7 @@ TEST_F(GraphHistory, SlotsHoldTheFramesBefore) {
   }
 }
 
-TEST_F(GraphHistory, AFrameThatDoesNotWriteLeavesTheSlotsWhereTheyAre) {
+TEST_F(GraphHistory, FrameThatDoesNotWriteLeavesTheSlotsInPlace) {
   run({1});
   run({2});
   run({0, false});
@@ -162,7 +162,7 @@ TEST_F(GraphHistory, AFrameThatDoesNotWriteLeavesTheSlotsWhereTheyAre) {
   EXPECT_EQ(slot(2), 1u);
 }
 
-TEST_F(GraphHistory, AFrameThatCullsTheWriterLeavesTheSlotsWhereTheyAre) {
+TEST_F(GraphHistory, FrameThatCullsTheWriterLeavesTheSlotsInPlace) {
   run({1});
   run({2});
   run({9, true, false});
@@ -171,7 +171,7 @@ TEST_F(GraphHistory, AFrameThatCullsTheWriterLeavesTheSlotsWhereTheyAre) {
   EXPECT_EQ(slot(2), 1u);
 }
 
-TEST_F(GraphHistory, AnUpdateInPlaceLeavesTheSlotsWhereTheyAre) {
+TEST_F(GraphHistory, UpdateOfAnOlderSlotLeavesTheSlotsInPlace) {
   run({1});
   run({2});
   run({.value = 5, .in_place = true});
@@ -187,7 +187,7 @@ TEST_F(GraphHistory, AnUpdateInPlaceLeavesTheSlotsWhereTheyAre) {
   EXPECT_EQ(slot(2), 6u);
 }
 
-TEST_F(GraphHistory, AFrameWithoutTheHistoryLeavesItAlone) {
+TEST_F(GraphHistory, FrameWithoutTheHistoryKeepsIt) {
   run({1});
   graph_->reset();
   ASSERT_TRUE(gpu_.run(*executor_, *graph_));
@@ -196,7 +196,7 @@ TEST_F(GraphHistory, AFrameWithoutTheHistoryLeavesItAlone) {
   EXPECT_EQ(slot(1), 1u);
 }
 
-TEST_F(GraphHistory, AResizeMakesItInvalidAndSaysWhy) {
+TEST_F(GraphHistory, ResizeInvalidatesTheHistoryWithAReason) {
   run({1});
   run({2});
   run({3, true, true, false, 16});
@@ -208,7 +208,7 @@ TEST_F(GraphHistory, AResizeMakesItInvalidAndSaysWhy) {
   EXPECT_EQ(slot(2), kNothing);
 }
 
-TEST_F(GraphHistory, AResetMakesItInvalidAndSaysWhy) {
+TEST_F(GraphHistory, ResetInvalidatesTheHistoryWithAReason) {
   run({1});
   run({2});
   graph_->reset_history("history");
@@ -220,7 +220,7 @@ TEST_F(GraphHistory, AResetMakesItInvalidAndSaysWhy) {
   EXPECT_EQ(slot(2), kNothing);
 }
 
-TEST_F(GraphHistory, AFrameThatIsDiscardedNeverWas) {
+TEST_F(GraphHistory, DiscardedFrameLeavesNoTrace) {
   run({.value = 1});
   run({.value = 99, .discarded = true});
   run({.value = 2});
@@ -236,7 +236,7 @@ TEST_F(GraphHistory, AFrameThatIsDiscardedNeverWas) {
   EXPECT_EQ(slot(1), 3u);
 }
 
-TEST_F(GraphHistory, ADiscardedFrameOfAnotherSizeOrAfterAResetNeverWas) {
+TEST_F(GraphHistory, DiscardedFrameOfAnotherSizeOrAfterAResetLeavesNoTrace) {
   run({.value = 1});
   run({.value = 2});
   const VkDeviceSize bytes = history_bytes_;
@@ -260,7 +260,7 @@ TEST_F(GraphHistory, ADiscardedFrameOfAnotherSizeOrAfterAResetNeverWas) {
   EXPECT_EQ(slot(2), kNothing);
 }
 
-TEST_F(GraphHistory, ADiscardedFrameOfAnotherSizeIsNotRecordedAgain) {
+TEST_F(GraphHistory, DiscardedFrameOfAnotherSizeIsNotRecordedAgain) {
   run({.value = 1});
   run({.value = 2, .discarded = true});
   EXPECT_TRUE(gpu_.run(*executor_, *graph_)) << "all is as it was declared";
@@ -272,10 +272,10 @@ TEST_F(GraphHistory, ADiscardedFrameOfAnotherSizeIsNotRecordedAgain) {
   EXPECT_EQ(slot(1), 2u);
 }
 
-TEST_F(GraphHistory, GraphsOfOneExecutorHaveTheirOwn) {
+TEST_F(GraphHistory, GraphsOfOneExecutorHaveSeparateHistories) {
   run({.value = 1});
   const VkDeviceSize bytes = history_bytes_;
-  // The same name and place, but another size.
+  // A history of the same name, but of another size.
   auto other = std::make_unique<Graph>();
   std::swap(graph_, other);
   run({.value = 10, .size = 16});
@@ -343,7 +343,7 @@ TEST_F(GraphHistory, OneDeclarationCanBeRecordedSeveralTimesIntoOneCommandBuffer
 }
 
 // The first executor takes the contents of the histories with it.
-TEST_F(GraphHistory, AGraphWhoseExecutorIsGoneBeginsWithoutHistories) {
+TEST_F(GraphHistory, GraphWhoseExecutorIsGoneBeginsWithoutHistories) {
   run({1});
   run({2});
   EXPECT_EQ(slot(1), 1u);

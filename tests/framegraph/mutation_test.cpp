@@ -54,7 +54,7 @@ Counts mutate_graphs(std::uint64_t graphs, const RandomOptions& options, const L
     for_each_mutant(description, *plan, [&](const std::string& kind, const Plan& mutant) {
       if (!verify(description, limits, mutant)) {
         ++counts[kind].killed;
-        // Of what the other kinds spoil the oracle knows nothing.
+        // The oracle knows nothing of what the other kinds spoil.
         if (!kind.starts_with("narrow") && !kind.starts_with("drop")) return;
         if (!find_unordered_pair(description, mutant).empty()) ++counts[kind].killed_by_both;
         return;
@@ -163,7 +163,7 @@ TEST(Mutation, TexturesThatLiveTogetherInADiamondShareNoMemory) {
     Plan wrong = *plan;
     wrong.placements[one.index].offset = wrong.placements[other.index].offset;
     EXPECT_FALSE(verify(description, {}, wrong));
-    // Nor does it help to tell lies about the lifetimes.
+    // Plans that give false lifetimes are refused too.
     wrong.placements[one.index].last = wrong.placements[one.index].first;
     EXPECT_FALSE(verify(description, {}, wrong));
   }

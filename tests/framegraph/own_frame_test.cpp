@@ -8,7 +8,7 @@
 namespace alcove::framegraph {
 namespace {
 
-// As an engine has it: depth comes from the engine, visibility (and bent normals) are read by it.
+// Declares the frame of an engine, which gives depth and reads visibility and bent normals.
 void declare(Graph& graph, passes::Kernels& kernels, VkImage image, passes::Quality quality) {
   ImportedTexture engine_depth;
   engine_depth.image = image;

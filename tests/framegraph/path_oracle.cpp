@@ -9,7 +9,7 @@
 namespace alcove::framegraph {
 namespace {
 
-// What is known of where an operation's effects have got to.
+// The stages that an operation's effects have reached.
 struct Spread {
   // By queue: stages that come after it, and those after which it is available besides.
   VkPipelineStageFlags2 after[kQueueClasses] = {};
@@ -108,7 +108,7 @@ class Oracle {
     const Operation& x = trace_.operations[x_index];
     const Operation& y = trace_.operations[y_index];
     const bool same = x.resource == y.resource && x.sub == y.sub;
-    // What y must see of x, beyond coming after it.
+    // The accesses by which y must see x, beyond coming after it.
     VkAccessFlags2 sees = 0;
     if (x.writes && same && y.change == nullptr && !superseded(x_index, y_index)) sees = y.access;
     if (x.change) return Walk(*this, x_index, 0).reaches(y, sees);
@@ -118,7 +118,7 @@ class Oracle {
     return true;
   }
 
-  // From one stage of an operation, or from a layout change, along the steps after it.
+  // Follows the steps after one stage of an operation, or after a layout change.
   class Walk {
    public:
     Walk(const Oracle& oracle, std::size_t from, VkPipelineStageFlags2 stage)

@@ -84,7 +84,7 @@ void declare_sizes(Graph& graph, Dice& dice, std::uint32_t fewest = 20) {
           {VK_FORMAT_R8_UNORM, Extent::absolute(1 + dice.roll(2048), 1 + dice.roll(1080))});
       textures.push_back(pass.write(texture, access::storage_write_compute));
     }
-    // What keeps the pass: an import of its own, so that no two passes are ordered by it.
+    // Each pass is kept by an import of its own, so that no two passes are ordered by it.
     const Buffer kept = graph.import_buffer("kept", {.buffer = fake_handle<VkBuffer>(i),
                                                      .desc = {4},
                                                      .usage = ~VkBufferUsageFlags{0},

@@ -87,7 +87,7 @@ TEST_F(Queues, ResourcesThatGraphicsUsedBeforeTheFrameAreWaitedForOnce) {
   EXPECT_EQ(plan.passes[0].submission, plan.passes[1].submission);
 }
 
-// What another queue left comes by its release, in a frame without passes there too.
+// A history that another queue left is released by it, in a frame without passes there too.
 TEST_F(Queues, HistoryOfAnotherQueueCanBeUsedInAFrameWithGraphicsOnly) {
   const auto declare = [&](QueueClass queue) {
     graph_.reset();

@@ -154,7 +154,7 @@ class Declarer {
   }
 
   void add_history() {
-    // Of one size, so that what a frame leaves is there in the next that has it.
+    // All have one size, so that the next frame finds what this one leaves.
     TextureDesc desc{VK_FORMAT_R32_SFLOAT, Extent::absolute(16, 16), 1 + dice_.roll(2)};
     const TextureHistory history = graph_.create_texture_history("h", desc, 2 + dice_.roll(2));
     Known current;
@@ -221,7 +221,7 @@ class Declarer {
     if (known_.empty() || dice_.chance(150)) add_transient();
     const std::size_t chosen = choose();
     Known& known = known_[chosen];
-    // Of an older slot what is there is updated in place.
+    // An older slot is updated in place.
     if ((known.old && !known.written[0]) || known.last_pass == index) return;
     known.last_pass = index;
     Contents contents = !known.old && dice_.chance(80) ? Contents::discard : Contents::keep;

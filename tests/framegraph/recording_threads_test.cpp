@@ -30,7 +30,8 @@ class RecordingThreads : public testing::Test {
   }
   void TearDown() override { EXPECT_EQ(gpu_.messages(), ""); }
 
-  // As many passes as the host buffer has words; each calls during_ and writes `value` to its word.
+  // Adds a pass for each word of the host buffer, which calls during_ and writes `value` to the
+  // word.
   void declare(std::uint32_t value) {
     graph_.reset();
     Buffer out = graph_.import_buffer("host", Gpu::imported(host_));
@@ -69,7 +70,7 @@ class RecordingThreads : public testing::Test {
   std::function<void()> during_;
 };
 
-TEST_F(RecordingThreads, WhatACallbackThrowsInAnyThreadReachesTheCaller) {
+TEST_F(RecordingThreads, ExceptionOfACallbackInAnyThreadReachesTheCaller) {
   auto executor = Executor::create(gpu_.handles(), options_);
   ASSERT_TRUE(executor) << to_string(executor.error());
   const std::thread::id caller = std::this_thread::get_id();
@@ -85,7 +86,7 @@ TEST_F(RecordingThreads, WhatACallbackThrowsInAnyThreadReachesTheCaller) {
   expect_right(*executor, 2);
 }
 
-TEST_F(RecordingThreads, WhatTheCallersOwnPassThrowsWaitsForTheOthers) {
+TEST_F(RecordingThreads, ExceptionInTheCallersThreadIsThrownAfterAllThreadsFinished) {
   auto executor = Executor::create(gpu_.handles(), options_);
   ASSERT_TRUE(executor) << to_string(executor.error());
   const std::thread::id caller = std::this_thread::get_id();
@@ -108,7 +109,7 @@ TEST_F(RecordingThreads, WhatTheCallersOwnPassThrowsWaitsForTheOthers) {
 }
 
 // An executor and its first frame, each allocation of the calling thread failing in turn.
-TEST_F(RecordingThreads, AfterHostMemoryGaveOutAnywhereTheNextFrameIsRight) {
+TEST_F(RecordingThreads, NextFrameIsRightAfterHostMemoryRanOutAnywhere) {
   options_.recording_threads = 4;
   bool failed = true;
   std::size_t which = 1;

@@ -379,7 +379,7 @@ TEST_F(Scenario, FramesOverTwoQueuesOverlap) {
     const int before = failing::semaphore_waits();
     run({frame % 2});
     const int waits = failing::semaphore_waits() - before;
-    // In the first frames the histories' slots come into use, each with a plan of its own.
+    // The first frames have plans of their own, in which the slots of the history come into use.
     if (frame == 3) EXPECT_EQ(waits, 0);
     if (frame == 4) EXPECT_GT(waits, 0);
   }

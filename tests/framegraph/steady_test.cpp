@@ -65,14 +65,14 @@ bool same_bytes(const Records<Record>& a, const Records<Record>& b) {
          (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Record)) == 0);
 }
 
-// What same_declaration says, found out by looking at every byte.
+// Computes same_declaration() by looking at every byte.
 bool same_bytes(const GraphDescription& a, const GraphDescription& b) {
   return same_bytes(a.passes, b.passes) && same_bytes(a.accesses, b.accesses) &&
          same_bytes(a.resources, b.resources) && same_bytes(a.externals, b.externals) &&
          same_bytes(a.outputs, b.outputs);
 }
 
-// The same few frames in any order, some of them empty and some wrong.
+// Declares a few frames in random order, some of them empty and some wrong.
 void declare_one_of_few(Graph& graph, Dice& order) {
   graph.reset();
   graph.reset_histories();
@@ -124,7 +124,7 @@ TEST(Steady, ReusedGraphDeclaresAsANewOne) {
   }
 }
 
-// What an older, longer frame left behind was said of a texture that is another one now.
+// A record that an older, longer frame left behind is of a texture that is another one now.
 TEST(Steady, AccessBeyondTheEndOfTheLastFrameIsComparedAgain) {
   const auto declare = [](Graph& graph, std::uint32_t mips, bool reads) {
     graph.reset();
@@ -139,12 +139,23 @@ TEST(Steady, AccessBeyondTheEndOfTheLastFrameIsComparedAgain) {
   declare(graph, 2, false);
   declare(graph, 2, true);
   const AccessRecord& read = graph.description().accesses[1];
-  EXPECT_EQ(read.flags & kPlain, 0u);
   EXPECT_EQ(read.range, (Range{0, 2, 0, 1}));
 }
 
 // A handle made up by counting from another names nothing until that is declared, even where the
 // frame before declared it.
+TEST(Steady, WholeAccessIsNotTakenForTheMipOfTheLastFrame) {
+  Graph graph;
+  for (const Range range : {Range::mip(0), Range{}}) {
+    graph.reset();
+    const Texture texture =
+        graph.create_texture("texture", {VK_FORMAT_R8G8B8A8_UNORM, Extent::absolute(8, 8), 4});
+    PassBuilder pass = graph.add_pass("pass");
+    (void)pass.write(texture, access::storage_write_compute, range);
+    EXPECT_EQ(graph.description().accesses[0].range.mips, range == Range{} ? 4 : 1);
+  }
+}
+
 TEST(Steady, InventedHandleIsRefused) {
   Graph graph;
   for (int frame = 0; frame < 3; ++frame) {

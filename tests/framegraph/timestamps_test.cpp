@@ -1,4 +1,4 @@
-// What timings() makes of a device's ticks; the device is one that says what the test tells it.
+// Tests how timings() converts the ticks of a device, which a stand-in gives as the test says.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -89,7 +89,7 @@ class TimestampsTest : public testing::Test {
   Graph graph_;
 };
 
-TEST_F(TimestampsTest, ACounterThatStartsAgainMidwayIsFollowed) {
+TEST_F(TimestampsTest, CounterThatWrapsAroundIsFollowed) {
   for (const std::uint32_t bits : {36u, 63u, 64u}) {
     Executor executor = make(bits);
     const std::uint64_t all = ~std::uint64_t{0} >> (64 - bits);
@@ -100,7 +100,7 @@ TEST_F(TimestampsTest, ACounterThatStartsAgainMidwayIsFollowed) {
   }
 }
 
-TEST_F(TimestampsTest, AQueueWithoutAnyGetsNone) {
+TEST_F(TimestampsTest, QueueWithoutTimestampsGetsNoTimings) {
   Executor executor = make(0);
   ASSERT_TRUE(gpu_.run(executor, declare()));
   EXPECT_TRUE(executor.timings().empty());
@@ -110,7 +110,7 @@ TEST_F(TimestampsTest, AQueueWithoutAnyGetsNone) {
   EXPECT_EQ(written, 0);
 }
 
-TEST_F(TimestampsTest, WhatIsAskedForTooEarlyIsRightLater) {
+TEST_F(TimestampsTest, TimingsAskedForTooEarlyAreRightLater) {
   Executor executor = make(64);
   gpu_.begin();
   ASSERT_TRUE(executor.record(declare(), gpu_.commands()));

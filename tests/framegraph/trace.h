@@ -42,7 +42,7 @@ struct Step {
   Kind kind = Kind::barriers;
   std::size_t queue = 0;
   std::vector<const Transition*> barriers;
-  // What comes before the barriers: operations below the one and steps below the other.
+  // The numbers of the operations and steps that come before the barriers.
   std::size_t operations_before = 0;
   std::uint32_t steps_before = 0;
   std::vector<Wait> waits;       // of a submission that begins

@@ -125,7 +125,7 @@ TEST_F(Validate, AttachmentsWithoutContentsAreTransientOnDevicesWithLazyMemory) 
   }
 }
 
-TEST_F(Validate, ALayerOrMipThatDoesNotFitIsNotTakenForAnother) {
+TEST_F(Validate, LayerOrMipBeyond16BitsIsNotTakenForAnother) {
   const Texture texture = written("t");
   pass("reader").read(texture, access::sampled_compute, Range::layer(65536));
   expect(ErrorCode::bad_range, "pass 'reader' reads texture 't'");
@@ -135,7 +135,7 @@ TEST_F(Validate, ALayerOrMipThatDoesNotFitIsNotTakenForAnother) {
   expect(ErrorCode::bad_range, "pass 'reader' reads texture 't'");
 }
 
-TEST_F(Validate, APassBuilderUsedAfterResetIsAnError) {
+TEST_F(Validate, PassBuilderUsedAfterResetIsRefused) {
   using Use = void (*)(PassBuilder&, Texture, Buffer);
   const Use uses[] = {
       [](PassBuilder& old, Texture t, Buffer) { old.read(t, access::sampled_compute); },

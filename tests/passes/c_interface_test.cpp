@@ -257,7 +257,7 @@ TEST_F(CInterface, FramesOfTheSameImagesNeedNoWait) {
 }
 
 // As where the window is gone once all has been recorded: what was recorded is never submitted.
-TEST_F(CInterface, AFrameThatIsDiscardedNeverWas) {
+TEST_F(CInterface, DiscardedFrameLeavesNoTrace) {
   const Context context = create_context();
   EXPECT_EQ(alcoveDiscardFrame(context.get()), ALCOVE_SUCCESS) << "before there is one";
   std::uint32_t index = 0;

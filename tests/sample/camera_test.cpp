@@ -105,7 +105,7 @@ TEST(Camera, AnOrbitByNothingIsTheSameView) {
   EXPECT_EQ(orbited(camera, 0.0f).eye_ws, camera.eye_ws);
 }
 
-TEST(Camera, AFullOrbitComesBack) {
+TEST(Camera, FullOrbitReturnsToTheStart) {
   Camera camera;
   camera.eye_ws = {3, 1, 2};
   camera.target_ws = {0, 0.5f, 0};

@@ -48,7 +48,7 @@ Scene seen_at(double scale, double offset) {
   return parsed(maker.gltf());
 }
 
-TEST(GltfCamera, ACameraLooksTheSameWayAtAnyScaleAndAnywhere) {
+TEST(GltfCamera, CameraDirectionDoesNotDependOnScaleAndPosition) {
   const Scene plain = seen_at(1, 0);
   ASSERT_EQ(plain.cameras.size(), 1u);
   const auto direction = [](const Camera& camera) {
@@ -64,7 +64,7 @@ TEST(GltfCamera, ACameraLooksTheSameWayAtAnyScaleAndAnywhere) {
   }
 }
 
-TEST(GltfCamera, ACameraTurnsAboutWhatItLooksAt) {
+TEST(GltfCamera, TargetIsAsFarAheadAsTheCentreOfTheScene) {
   for (const double scale : {1.0, 1e10, 1e-9}) {
     const Scene scene = seen_at(scale, 0);
     ASSERT_EQ(scene.cameras.size(), 1u);
@@ -76,7 +76,7 @@ TEST(GltfCamera, ACameraTurnsAboutWhatItLooksAt) {
   }
 }
 
-TEST(GltfCamera, ACameraWithItsBackToTheSceneStillLooksAhead) {
+TEST(GltfCamera, CameraThatFacesAwayFromTheSceneKeepsItsDirection) {
   GltfMaker maker = GltfMaker::triangle();
   maker.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}}};
   maker.json["nodes"].push_back({{"camera", 0}, {"translation", {0, 0, -7}}});

@@ -43,7 +43,7 @@ TEST(OrbitCamera, TurningKeepsTheTargetAndTheDistance) {
   }
 }
 
-TEST(OrbitCamera, TheSceneTurnsWithTheMouse) {
+TEST(OrbitCamera, SceneTurnsWithTheMouse) {
   const Camera camera = some_camera();
   const glm::vec3 towards_eye =
       camera.target_ws + 0.1f * glm::normalize(camera.eye_ws - camera.target_ws);

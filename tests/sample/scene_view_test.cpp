@@ -98,7 +98,7 @@ TEST_F(SceneViewTest, ChoicesMayChangeWhileFramesAreInFlight) {
   }
 }
 
-TEST_F(SceneViewTest, ThePictureIsWhatRenderDraws) {
+TEST_F(SceneViewTest, PictureEqualsThatOfRender) {
   view_->show_panel(false);
   const Image<glm::vec3> seen = draw_and_look();
   const ViewState& state = view_->state();
@@ -121,7 +121,7 @@ TEST_F(SceneViewTest, ThePictureIsWhatRenderDraws) {
   }
 }
 
-TEST_F(SceneViewTest, TheImagesFollowTheWindowsSize) {
+TEST_F(SceneViewTest, ImagesFollowTheSizeOfTheWindow) {
   draw(2);
   for (const VkExtent2D size : {VkExtent2D{320, 200}, {97, 61}, {240, 135}}) {
     view_->window().resize(size);
@@ -134,7 +134,7 @@ TEST_F(SceneViewTest, TheImagesFollowTheWindowsSize) {
   }
 }
 
-TEST_F(SceneViewTest, ASettingThatIsRefusedIsToldAndThePictureStays) {
+TEST_F(SceneViewTest, RefusedSettingIsReportedAndThePictureStays) {
   view_->show_panel(false);
   draw(3);
   view_->state().settings.slices = 900;
@@ -157,7 +157,7 @@ TEST_F(SceneViewTest, HiddenDepthsAndAKeptComparisonAreDrawn) {
   EXPECT_EQ(view_->facts().refusal, "");
 }
 
-TEST_F(SceneViewTest, AMovingCameraAndNormalsFromDepthAreDrawn) {
+TEST_F(SceneViewTest, MovingCameraAndNormalsFromDepthAreDrawn) {
   options_.occlusion.normals = NormalSource::kDepth;
   options_.view.orbit = 0.02f;
   ASSERT_NO_FATAL_FAILURE(open());
@@ -168,13 +168,13 @@ TEST_F(SceneViewTest, AMovingCameraAndNormalsFromDepthAreDrawn) {
   }
 }
 
-TEST_F(SceneViewTest, TimesAndMemoryAreTold) {
+TEST_F(SceneViewTest, TimesAndMemoryAreReported) {
   draw(4);
   EXPECT_GT(view_->facts().times.total_ms(), 0.0);
   EXPECT_GT(view_->facts().memory.aliased, 0u);
 }
 
-TEST_F(SceneViewTest, AClosedWindowDrawsNothing) {
+TEST_F(SceneViewTest, ClosedWindowDrawsNothing) {
   draw(1);
   view_->window().close();
   const auto drawn = view_->draw();
@@ -191,11 +191,55 @@ void drop(Window& window, const std::string& file) {
   callback(window.handle(), 1, paths);
 }
 
-TEST_F(SceneViewTest, DroppedFileIsNamedInTheCommandThatShowsIt) {
+// Writes a triangle of 100 units around a point far from the origin.
+std::string write_large_triangle(const std::filesystem::path& folder) {
+  GltfMaker maker = GltfMaker::triangle();
+  maker.json["materials"] = {{{"doubleSided", true}}};
+  maker.primitive()["material"] = 0;
+  maker.json["nodes"][0]["scale"] = {100, 100, 100};
+  maker.json["nodes"][0]["translation"] = {4000, 0, 0};
+  const std::vector<uint8_t> bytes = maker.glb();
+  const std::string file = (folder / "dropped.glb").string();
+  std::ofstream(file, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()),
+             static_cast<std::streamsize>(bytes.size()));
+  return file;
+}
+
+TEST_F(SceneViewTest, DroppedFileReplacesTheSceneAndItsFirstView) {
+  draw(2);
+  const float radius = view_->state().settings.radius;
+  drop(view_->window(), write_large_triangle(folder_.path));
+  view_->show_panel(false);
   draw(1);
-  drop(view_->window(), "some.glb");
+  EXPECT_EQ(view_->scene().name, "dropped");
+  EXPECT_GT(view_->state().settings.radius, 4.0f * radius);
+  view_->state().picture = Picture::kNormals;
+  EXPECT_FALSE(is_plain(draw_and_look()));
+}
+
+TEST_F(SceneViewTest, ScenesAreReplacedWhileFramesAreInFlight) {
+  const std::string triangle = write_large_triangle(folder_.path);
+  for (int i = 0; i < 6; ++i) {
+    view_->state().picture = i % 2 == 0 ? Picture::kLit : Picture::kVisibility;
+    draw(static_cast<std::uint32_t>(i));
+    drop(view_->window(), triangle);
+    draw(1);
+    ASSERT_EQ(view_->scene().name, "dropped");
+    const auto valid = check_validation(view_->gpu());
+    ASSERT_TRUE(valid) << "drop " << i << ": " << valid.error().substr(0, 600);
+  }
+}
+
+TEST_F(SceneViewTest, DroppedFileThatCannotBeReadLeavesTheSceneAndSaysWhy) {
   draw(1);
-  EXPECT_THAT(view_->facts().message, HasSubstr("alcove view some.glb"));
+  const std::string name = view_->scene().name;
+  const Camera camera = view_->state().camera;
+  drop(view_->window(), (folder_.path / "missing.glb").string());
+  draw(2);
+  EXPECT_EQ(view_->scene().name, name);
+  EXPECT_EQ(view_->state().camera.eye_ws, camera.eye_ws);
+  EXPECT_THAT(view_->facts().message, HasSubstr("missing.glb"));
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 namespace alcove::sample {
 namespace {
 
-TEST(SmoothedTimes, TheFirstFrameIsTakenAsItIs) {
+TEST(SmoothedTimes, FirstFrameIsNotSmoothed) {
   SmoothedTimes times;
   times.add({{"gtao", 2.0}, {"picture", 1.0}});
   EXPECT_DOUBLE_EQ(times.total_ms(), 3.0);

@@ -102,7 +102,7 @@ TEST_F(TextureTest, MipsOfOneRowHalveItAlone) {
   EXPECT_EQ(texel.a, 255);
 }
 
-TEST_F(TextureTest, ACheckerboardFinerThanPixelsIsGrey) {
+TEST_F(TextureTest, CheckerboardFinerThanPixelsIsGrey) {
   for (const glm::vec3& albedo : drawn(quad_of(checkerboard(8 * kSize))).albedo.pixels) {
     ASSERT_NEAR(albedo.g, 0.5f, 0.02f);
   }
@@ -184,7 +184,7 @@ TEST_F(TextureTest, EachTextureIsReadByItsOwnSetOfCoordinates) {
   }
 }
 
-TEST_F(TextureTest, ASetThatTheMeshHasNotReadsAsZero) {
+TEST_F(TextureTest, MissingSetOfCoordinatesReadsAsZero) {
   Scene scene = quad_of(image_of(2, 1, [](auto x, auto) { return x == 0 ? kRed : kGreen; }),
                         {.magnify = Filter::kNearest});
   scene.materials[0].base_color_texture.uv_set = 1;

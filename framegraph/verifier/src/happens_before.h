@@ -1,4 +1,5 @@
-// Which accesses of a replayed plan are ordered, available and visible, by Vulkan's memory model
+// Tells which accesses of a replayed plan are ordered, available and visible, by Vulkan's memory
+// model
 // ("Execution and Memory Dependencies" of the specification). Knows nothing of how plans are made.
 //
 // Time counts the commands of the replay. The model keeps, for each source (a queue, a stage and an
@@ -58,7 +59,8 @@ Barrier barrier_of(const Transition& transition, QueueClass queue);
 
 class HappensBefore {
  public:
-  // What the plan's accesses and barriers name, expanded, and how many queue classes it uses.
+  // The stages and accesses that the plan's accesses and barriers name, expanded, and the number of
+  // queue classes.
   HappensBefore(Stages stages, Accesses accesses, std::uint32_t queues);
 
   // The stages of the first argument of the constructor.

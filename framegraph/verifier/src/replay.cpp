@@ -62,7 +62,8 @@ void Replay::run() {
   }
 }
 
-// What each access must find, from the declaration alone: the last write declared before it.
+// Finds the contents that each access must find, from the declaration alone: the last write
+// declared before it.
 void Replay::find_expected() {
   last_.resize(graph_.resources.size());
   for (std::uint32_t r = 0; r < graph_.resources.size(); ++r) {
@@ -107,7 +108,7 @@ void Replay::begin_frame(bool first) {
   }
 }
 
-// What was written before is seen by the reads of the initial state, and by nothing else yet. An
+// Earlier writes are seen by the reads of the initial state, and by nothing else yet. An
 // initial state without access bits has seen nothing: it came before some of the stages only, and
 // all of them must be waited for.
 void Replay::arrive(Sub& sub, std::uint8_t queue, const State& initial_state) {

@@ -15,7 +15,7 @@ inline constexpr std::uint32_t kGarbage = kNone;      // nothing, or another res
 inline constexpr std::uint32_t kInitial = kNone - 1;  // what an import came with
 inline constexpr std::uint32_t kMissing = kNone - 2;  // where an expected writer does not run
 
-// What was last done to a subresource.
+// The last operations on a subresource.
 struct History {
   std::vector<Operation> writes;  // the last write or layout change; several if unordered
   std::vector<Operation> reads;   // since
@@ -23,7 +23,7 @@ struct History {
 
 struct Sub {
   History last;
-  // Of a series of unordered writes (Contents::accumulate): its last access, and what was done
+  // The last access of a series of unordered writes (Contents::accumulate), and what was done
   // before.
   std::uint32_t series = kNone;
   History before_series;
@@ -43,7 +43,7 @@ class Replay {
   void run();
 
  private:
-  // What was last done to bytes by the resources that had them before.
+  // The last operations on bytes by the resources that had them before.
   struct Former {
     std::uint32_t resource = kNone;
     Operation operation;

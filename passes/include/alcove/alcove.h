@@ -314,7 +314,7 @@ typedef struct AlcoveContextInfo {
   // Where device memory comes from: for images from `memory_block`, if its `memory` is not null;
   // else, and where the block is full, from `memory_functions`, if there are any. Without functions
   // a full block fails the frame with ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY. With neither, and for the
-  // parameters that the host writes (72 KiB per frame in flight) where there is a block alone,
+  // parameters that the host writes (80 KiB per frame in flight) where there is a block alone,
   // vkAllocateMemory is called.
   AlcoveMemoryFunctions memory_functions;
   AlcoveMemoryBlock memory_block;
@@ -521,6 +521,9 @@ typedef struct AlcoveFrame {
   uint32_t slot;
   uint32_t view_count;  // 1 to ALCOVE_MAX_VIEWS
   const AlcoveView* views;
+  // For alcoveDiagnose: also samples depth and normals of the first view, in a small pass of its
+  // own, and reads them when the slot is recorded again. Takes 0.1 MB per frame in flight.
+  VkBool32 diagnose_pixels;
 } AlcoveFrame;
 
 // Creates the pipelines of this frame and of all frames with the same settings, the same images
@@ -612,11 +615,22 @@ AlcoveResult alcoveGetTimings(AlcoveContext* context, uint32_t slot, uint32_t* c
 // are as with alcovePrintSettings. 0 where there is no such frame, or no memory for the text.
 size_t alcovePrintPlan(AlcoveContext* context, char* text, size_t size);
 
-// Mistakes that show in what the frames recorded so far were given: a line with a sentence for
-// each, nothing where there is none. Ask after some dozens of frames in which the camera moved. It
-// looks at the calls alone, not at pixels: an index that stands still, a previous_camera that is
-// always this frame's or never the last one's, jitter in only one of the two, static_frames in
-// motion, reset_history in every frame. Buffer and result are as with alcovePrintSettings.
+// Mistakes that show in the frames recorded so far: a line with a sentence for each, nothing where
+// there is none. Ask after some dozens of frames in which the camera moved.
+//
+// Of the calls: an index that stands still, a previous_camera that is always this frame's or never
+// the last one's, jitter in only one of the two, static_frames in motion, reset_history in every
+// frame.
+//
+// Of the pixels, with AlcoveFrame::diagnose_pixels in at least three frames, all of which must show
+// it: depth that runs the other way than the projection, a projection with depth from -1 to 1,
+// normals that fit the depth only with another angle of view, in the other space, unpacked the
+// other way, with the other sign of z or with y of the projection the other way round, a radius far
+// out of proportion to the image, an image smaller than it is said to be, and a slot that is
+// recorded again before its frame has finished. A wrong near plane alone scales the whole scene and
+// cannot be seen.
+//
+// Buffer and result are as with alcovePrintSettings.
 size_t alcoveDiagnose(AlcoveContext* context, char* text, size_t size);
 
 // Removes a view and its history. The memory is freed while the next frames are recorded, after the

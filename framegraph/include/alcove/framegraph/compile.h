@@ -29,13 +29,13 @@ struct MemoryOracle {
 // gives, for plans without a device.
 MemoryRequirements estimate_requirements(const ResourceRecord& record);
 
-// What a format can be used for: 0 refuses the format. Must be pure.
+// The usages that a format supports; 0 refuses the format. The query must be a pure function.
 struct FormatOracle {
   VkImageUsageFlags (*query)(const void* context, VkFormat format) = nullptr;  // null: anything
   const void* context = nullptr;
 };
 
-// What the device allows for a texture of a format, dimension, usage and flags.
+// The device's limits for a texture of a format, dimension, usage and flags.
 struct ImageLimits {
   VkExtent3D extent{};             // the largest; 0 where the combination is not supported at all
   std::uint32_t mips = 0;          // the most
@@ -56,7 +56,7 @@ enum class Ordering : std::uint8_t {
   lower_peak,
 };
 
-// What the device allows and what the caller wants. The defaults are those of any desktop device.
+// Limits of the device and wishes of the caller. The defaults suit any desktop device.
 struct Limits {
   std::uint32_t max_extent_2d = 16384;
   std::uint32_t max_extent_3d = 2048;

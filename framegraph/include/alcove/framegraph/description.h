@@ -49,6 +49,10 @@ constexpr std::uint32_t plane_count(const ResourceRecord& record, const Range& r
   return range.aspects != 0 ? 1 : record.planes;
 }
 
+inline bool has_one_subresource(const ResourceRecord& record) {
+  return record.mips == 1 && record.layers == 1 && record.planes == 1;
+}
+
 enum ResourceFlags : std::uint32_t {
   kRelativeToNothing = 1,  // a relative extent of a dead handle
   kPersistent = 2,         // a history of one slot, which keeps its contents
@@ -74,18 +78,15 @@ enum AccessFlags : std::uint32_t {
   kWrite = 1,
   kDiscard = 2,
   kOptional = 4,
-  kForeign = 8,  // the handle was of another graph or frame
-  kNull = 16,    // the handle was never made
-  kClosed = 32,  // declared on a pass that is not the last
-  // An access to a whole transient of one subresource, with valid stages, access bits and layout.
-  // It needs no further validation on the graphics queue.
-  kPlain = 64,
+  kForeign = 8,     // the handle was of another graph or frame
+  kNull = 16,       // the handle was never made
+  kClosed = 32,     // declared on a pass that is not the last
   kOnBuffer = 128,  // the handle was of a buffer
   // Contents::accumulate: the write is not ordered among others of the same access.
   kUnordered = 256,
-  // Of an OutputRecord that stands for a PassBuilder which was used after reset().
+  // Marks an OutputRecord that stands for a PassBuilder which was used after reset().
   kStaleBuilder = 1u << 16,
-  // Of an attachment: from this bit on, the number of the rendering within its pass.
+  // The bits from this one on hold the number of an attachment's rendering within its pass.
   kRendering = 1u << 24,
 };
 

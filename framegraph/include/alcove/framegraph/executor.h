@@ -61,7 +61,7 @@ struct ExecutorOptions {
   // Threads that record passes, the caller's among them, 1 to 64; fewer where the system gives no
   // more. With more than one the callbacks of different passes run at the same time, into secondary
   // command buffers; a caller's query must not be active then in the command buffer that record()
-  // is given. What a callback throws reaches the caller from whichever thread it ran in.
+  // is given. An exception of a callback reaches the caller from whichever thread it ran in.
   std::uint32_t recording_threads = 1;
   // Checks every new plan where it is not null, at the time of compiling: framegraph::verify() of
   // verify.h, in the library alcove::framegraph_verifier. Debug builds of this library check with
@@ -86,7 +86,7 @@ struct QueueSemaphore {
 };
 
 struct FrameInfo {
-  // Which frame in flight: the device must have finished what was last recorded with this slot.
+  // The number of the frame in flight. The device must have finished the last frame with this slot.
   std::uint32_t slot = 0;
   // For submit(): record() leaves synchronisation with others to the caller. A swapchain image is
   // waited for where it is first used, and graphics, on which imports are left in their final
@@ -163,7 +163,7 @@ class Executor {
   void forget(VkImage image);
 
   const VulkanFunctions& functions() const;
-  // What compile is given.
+  // The limits that plans are compiled with.
   const Limits& limits() const;
 
  private:

@@ -62,10 +62,10 @@ class PassBuilder {
   // The pass does something that the graph does not see: it is never culled.
   void side_effect();
 
-  // What records the pass: called with a RecordContext& once a frame if the pass is live. It is
-  // moved into the graph's own memory and lives until reset. It must not throw where the library is
-  // built without exceptions; with them, what it throws leaves Executor::record or submit once all
-  // recording threads have finished, and the frame is given up.
+  // The function that records the pass: called with a RecordContext& once a frame if the pass is
+  // live. It is moved into the graph's own memory and lives until reset. It must not throw where
+  // the library is built without exceptions; with them, what it throws leaves Executor::record or
+  // submit once all recording threads have finished, and the frame is given up.
   template <typename Callable>
   void record(Callable&& callable);
 
@@ -164,7 +164,7 @@ class Graph {
 
   const GraphDescription& description() const { return description_; }
 
-  // What a caller needs that compiles without an executor, or declares a frame and does not record
+  // For a caller that compiles without an executor, or declares a frame and does not record
   // it: what is remembered of the histories, and moving them on as a frame leaves them that runs by
   // a plan with these finals.
   HistoryTable& histories() { return histories_; }
@@ -211,8 +211,6 @@ class Graph {
                             HistoryValidity& validity, const State& final_state = {});
   static ResourceRecord buffer_record(const BufferDesc& desc);
   static Range resolved_range(Range range, const ResourceRecord& resource);
-  static constexpr bool access_fits(const Access& access, ResourceKind kind, bool writes);
-  static bool is_plain(const ResourceRecord& resource, ResourceKind kind);
   template <typename Handle>
   std::uint32_t add_access(std::uint32_t pass, const Handle& handle, const Access& access,
                            Range range, std::uint32_t flags);
@@ -239,7 +237,7 @@ class Graph {
   std::byte* end_ = nullptr;
   std::uint64_t frame_ = 0;  // its number
   std::uint32_t tag_ = 0;    // of the handles of this frame of this graph: half of its number
-  std::uint32_t repeating_tag_ = 0;  // the same until something changed(), 0 from then on
+  std::uint32_t repeating_tag_ = 0;  // equals tag_ until changed(), then 0
   HistoryTable histories_;
   std::weak_ptr<const char> executor_;  // Tells which executor the graph was last recorded by.
 };

@@ -32,7 +32,7 @@ void PassBuilder::record(Callable&& callable) {
 }
 
 inline void* Graph::allocate(std::size_t size, std::size_t alignment) {
-  // What is free begins at a multiple of kAlignment, which is enough for nearly everything.
+  // Free memory begins at a multiple of kAlignment, which is enough for nearly everything.
   const std::size_t padding =
       alignment <= kAlignment ? 0 : (0 - reinterpret_cast<std::uintptr_t>(next_)) & (alignment - 1);
   size = (size + kAlignment - 1) & ~(kAlignment - 1);
@@ -140,19 +140,6 @@ inline bool PassBuilder::is_current() {
   return false;
 }
 
-// Whether stages, access bits and layout are as kPlain has them.
-constexpr bool Graph::access_fits(const Access& access, ResourceKind kind, bool writes) {
-  return access.stages != 0 && access.access != 0 &&
-         ((access.access & kWriteBits) != 0) == writes &&
-         (kind == ResourceKind::buffer || layout_is_usable(access.layout));
-}
-
-// Whether the resource is as kPlain has it.
-inline bool Graph::is_plain(const ResourceRecord& resource, ResourceKind kind) {
-  return resource.mips == 1 && resource.layers == 1 && resource.planes == 1 &&
-         resource.kind == kind && resource.origin == Origin::transient;
-}
-
 // The version that the access leaves.
 template <typename Handle>
 inline std::uint32_t Graph::add_access(std::uint32_t pass, const Handle& handle,
@@ -161,26 +148,27 @@ inline std::uint32_t Graph::add_access(std::uint32_t pass, const Handle& handle,
       std::is_same_v<Handle, Texture> ? ResourceKind::texture : ResourceKind::buffer;
   const bool writes = (flags & kWrite) != 0;
   if (kKind == ResourceKind::buffer) flags |= kOnBuffer;
-  // As a rule the access is a constant, and all but the handle is known to the compiler.
+  // The access is nearly always a constant, so that the compiler knows everything but the handle.
   const auto is_of_whole = [&](std::uint32_t tag) {
-    return access_fits(access, kKind, writes) && range == Range{} && handle.graph == tag &&
-           handle.index < description_.resources.size() && pass + 1 == description_.passes.size();
+    return range == Range{} && handle.graph == tag &&
+           handle.index < description_.resources.size() &&
+           has_one_subresource(description_.resources[handle.index]) &&
+           pass + 1 == description_.passes.size();
   };
   AccessRecord& next = *next_access_;
   if (!(is_of_whole(repeating_tag_) && next.stages == access.stages &&
         next.access == access.access && next.layout == access.layout &&
         next.usage == access.usage && next.resource == handle.index &&
-        next.version == handle.version && next.range == Range{0, 1, 0, 1} &&
-        next.flags == (flags | kPlain))) [[unlikely]] {
-    if (!(is_of_whole(tag_) && is_plain(description_.resources[handle.index], kKind) &&
-          !description_.accesses.is_full())) [[unlikely]]
+        next.version == handle.version && next.range == Range{0, 1, 0, 1} && next.flags == flags))
+      [[unlikely]] {
+    if (!is_of_whole(tag_) || description_.accesses.is_full()) [[unlikely]]
       return add_any_access(pass, handle.index, handle.version, handle.graph, access, range, flags);
     next.stages = access.stages;
     next.access = access.access;
     next.layout = access.layout;
     next.usage = access.usage;
     next.resource = handle.index;
-    next.flags = flags | kPlain;
+    next.flags = flags;
     next.range = {0, 1, 0, 1};
     next.version = handle.version;
     changed();

@@ -1,4 +1,4 @@
-// What a graph remembers of its history resources from frame to frame.
+// The state of a graph's history resources from frame to frame.
 //
 // A history has N slots. Each frame slot 0 ("current") may be written and slots 1..N-1 hold what
 // was current 1..N-1 frames ago. Slots rotate at the end of a frame in which a live pass wrote slot
@@ -78,7 +78,7 @@ class HistoryTable {
   std::weak_ptr<const char> life() const { return life_; }
 
  private:
-  // What an entry was before the frame changed it.
+  // An entry as it was before the frame changed it.
   struct Before {
     std::uint32_t index = 0;
     std::uint32_t head = 0;

@@ -102,7 +102,7 @@ struct Heap {
   VkDeviceSize unaliased = 0;      // sum of the sizes
 };
 
-// Of an access: what becomes of the contents of its range.
+// Whether an access finds contents in its range and whether it leaves some that are needed.
 enum ContentFlags : std::uint8_t {
   kHasContents = 1,  // the access keeps earlier contents, and there are some
   kIsNeeded = 2,     // a later pass, or whoever comes after the frame, needs what the access leaves

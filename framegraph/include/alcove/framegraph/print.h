@@ -1,4 +1,4 @@
-// Prints plans as text, as JSON and for Graphviz.
+// Prints plans as text and for Graphviz.
 #pragma once
 
 #include <string>
@@ -11,8 +11,6 @@ namespace alcove::framegraph {
 // The passes in order with their barriers and the reasons why they run, the culled passes with
 // theirs, and a chart of the transients' lifetimes by their offsets in memory.
 std::string print_text(const GraphDescription& graph, const Plan& plan);
-// Everything in the plan as one JSON object.
-std::string print_json(const GraphDescription& graph, const Plan& plan);
 // Graphviz: a box for each pass, coloured by queue, with its number of barriers, and an edge for
 // the resource versions that one pass writes and another uses. Culled passes are dashed.
 std::string print_dot(const GraphDescription& graph, const Plan& plan);

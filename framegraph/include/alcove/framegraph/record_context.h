@@ -1,4 +1,4 @@
-// What a recording callback is given: the command buffer and the physical side of its handles.
+// The argument of a recording callback: the command buffer and the Vulkan objects of its handles.
 #pragma once
 
 #include <cstdint>
@@ -17,9 +17,10 @@ inline constexpr VkImageViewType kViewTypeByRange = VK_IMAGE_VIEW_TYPE_MAX_ENUM;
 // A texture as an attachment of a rendering: the pass has to have declared it as one.
 struct Attachment {
   Texture texture = {};
-  // What it is cleared to where no earlier contents are loaded. Null: they are then undefined.
+  // The value that the texture is cleared to if no earlier contents are loaded. If null, the
+  // contents are then undefined.
   const VkClearValue* clear = nullptr;
-  // Of a multisampled texture: the texture with one sample that it is resolved to, if any.
+  // The texture with one sample that a multisampled texture is resolved to, if any.
   Texture resolve = {};
   VkResolveModeFlagBits resolve_mode = VK_RESOLVE_MODE_AVERAGE_BIT;
 };
@@ -71,12 +72,12 @@ class RecordContext {
   // Whether an optional write takes place; false also for what was culled altogether.
   bool is_used(Texture texture) const;
   bool is_used(Buffer buffer) const;
-  // Of a slot of a history resource.
+  // Whether a slot of a history resource has contents, and if not, why.
   HistoryValidity validity(Texture texture) const;
   HistoryValidity validity(Buffer buffer) const;
   std::string_view pass_name() const;
-  // What the pass needs could not be made: record() returns an error with this, and nothing of the
-  // frame is to run. `what` is named in its sentence.
+  // Reports that an object which the pass needs could not be made: record() returns an error with
+  // this, and nothing of the frame is to run. `what` is named in its sentence.
   void fail(std::string_view what, VkResult result) const;
 
  private:

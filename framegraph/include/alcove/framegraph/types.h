@@ -1,5 +1,5 @@
-// What a frame is declared with: handles, descriptions, accesses and ranges. Plain data, no device:
-// Vulkan's own enums are used as they are, and nothing of Vulkan is called.
+// Handles, descriptions, accesses and ranges, with which a frame is declared. Plain data, no
+// device: Vulkan's own enums are used as they are, and nothing of Vulkan is called.
 #pragma once
 
 #include <vulkan/vulkan_core.h>
@@ -23,7 +23,7 @@ struct Texture {
   bool operator==(const Texture&) const = default;
 };
 
-// The same for a buffer.
+// One version of a buffer, as Texture is of a texture.
 struct Buffer {
   std::uint32_t index = kNone;
   std::uint32_t version = 0;
@@ -122,8 +122,8 @@ struct ImportedTexture {
   VkImageView view = VK_NULL_HANDLE;  // of the whole image
   TextureDesc desc;                   // the extent must be absolute
   VkImageUsageFlags usage = 0;
-  // Of an array, of which desc.layers are imported, and in `view`. Barriers and views count from
-  // it; a callback that takes the image itself has to.
+  // The first layer of the image's array that is imported; desc.layers follow from it. Barriers and
+  // views count from it; a callback that takes the image itself has to.
   std::uint32_t first_layer = 0;
   State initial_state;
   // The queue family, or VK_QUEUE_FAMILY_EXTERNAL, that has released the image to the family of the
@@ -150,7 +150,7 @@ struct ImportedBuffer {
   std::uint32_t final_family = kNone;
 };
 
-// What a write does to the earlier contents of its range.
+// The effect of a write on the earlier contents of its range.
 enum class Contents : std::uint8_t {
   // The write may be partial: the earlier contents stay. The passes that made them run if the
   // result
@@ -159,7 +159,8 @@ enum class Contents : std::uint8_t {
   keep,
   // The pass writes every texel and reads none: the earlier contents may be thrown away.
   discard,
-  // As `keep`, and the order among writes of this kind does not matter, as with atomic additions:
+  // Keeps as `keep` does. The order among writes of this kind does not matter, as with atomic
+  // additions:
   // writes that follow each other with the same access on one queue get no barrier between them.
   // All of them come after what was before, and before the next read or other write.
   accumulate,

@@ -6,8 +6,8 @@
 
 namespace alcove::framegraph {
 
-// X(name) for each function of the instance. What a newer version than 1.0 made core is also found
-// under its name with the suffix KHR or EXT.
+// X(name) for each function of the instance. Functions that a version above 1.0 made core are also
+// found under their names with the suffix KHR or EXT.
 #define ALCOVE_FRAMEGRAPH_INSTANCE_FUNCTIONS(X) \
   X(vkGetDeviceProcAddr)                        \
   X(vkGetPhysicalDeviceProperties)              \

@@ -41,6 +41,7 @@ enum class Shader : std::uint8_t {
   environment_half,
   environment_prefilter,
   environment_harmonics,
+  inspect,
   count,
 };
 
@@ -57,7 +58,7 @@ struct Kernel {
 // time.
 class Kernels {
  public:
-  static constexpr std::uint32_t kMaxDispatches = 72;        // of a frame
+  static constexpr std::uint32_t kMaxDispatches = 80;        // of a frame
   static constexpr std::uint32_t kMaxParameterBytes = 1024;  // of a dispatch
   static constexpr std::size_t kMaxConstants = 24;           // of a pipeline
   static constexpr std::uint32_t kMaxFramesInFlight = 8;

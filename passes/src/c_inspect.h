@@ -1,0 +1,61 @@
+// Reads samples of a view's pixels back for the host, some frames after they were recorded, and
+// keeps count of the mistakes that they show.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "alcove/alcove.h"
+#include "c_failure.h"
+#include "host_buffer.h"
+#include "inspect.h"
+
+namespace alcove::passes {
+
+class PixelObserver {
+ public:
+  PixelObserver(const framegraph::DeviceHandles& device, const framegraph::VulkanFunctions& vk)
+      : device_(device), vk_(vk) {}
+  PixelObserver(const PixelObserver&) = delete;
+  PixelObserver& operator=(const PixelObserver&) = delete;
+
+  // The frame before with this slot has finished on the device: reads what it left.
+  void collect(std::uint32_t slot);
+  // Adds the pass that samples a view. Its frame counts from recorded() on.
+  [[nodiscard]] tl::expected<void, Failure> add(const Frame& frame, const AlcoveView& view,
+                                                framegraph::Texture depth,
+                                                framegraph::Texture normals, std::uint32_t slot);
+  void recorded(std::uint32_t slot) { pending_.at(slot).recorded = pending_.at(slot).declared; }
+  void discarded(std::uint32_t slot) { pending_.at(slot).recorded = false; }
+
+  // A line for each mistake that all inspected frames show, at least three; empty where there is
+  // none.
+  [[nodiscard]] std::string describe() const;
+
+ private:
+  struct Pending {
+    bool declared = false;
+    bool recorded = false;
+    std::uint32_t serial = 0;
+    std::uint32_t id = 0;
+    InspectedView view;
+    std::unique_ptr<HostBuffer> buffer;
+  };
+  struct Counts {
+    std::uint32_t id = 0;
+    std::uint32_t frames = 0;
+    std::array<std::uint32_t, static_cast<std::size_t>(Mistake::count)> seen{};
+  };
+
+  framegraph::DeviceHandles device_;
+  const framegraph::VulkanFunctions& vk_;
+  std::array<Pending, ALCOVE_MAX_FRAMES_IN_FLIGHT> pending_;
+  std::vector<Counts> counts_;  // by view
+  std::uint32_t serial_ = 0;
+  std::uint32_t early_ = 0;  // slots that were recorded again before their frame had finished
+};
+
+}  // namespace alcove::passes

@@ -1,0 +1,339 @@
+#include "inspect.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "maths/normal_encoding.h"
+#include "view_parameters.h"
+
+namespace alcove::passes {
+namespace {
+
+using maths::dmat4;
+using maths::dvec3;
+using maths::dvec4;
+
+constexpr double kDegrees = 180.0 / 3.14159265358979323846;
+// Fewer samples say nothing.
+constexpr std::size_t kEnoughSamples = 100;
+
+// A sample where the surface is smooth: its position's neighbours, and the normal that is stored.
+struct SmoothSample {
+  dvec3 position;
+  dvec3 along_x;
+  dvec3 along_y;
+  maths::vec3 stored;
+};
+
+// How the given normals are read, and how the projection is.
+struct Reading {
+  bool in_view_space = false;
+  bool packed = false;
+  bool forward_z = false;
+  bool flip_y = false;
+  double tangent_scale = 1.0;  // of the tangents of half the angles of view
+};
+
+// Three quarters of the values are at most this. The median would not do: walls and floors that are
+// seen along the axes of the view have the same normals with any angle of view.
+double upper_quartile(std::vector<double> values) {
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() * 3 / 4);
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+// Whether a number has at most so many significant digits, as people write near planes.
+bool is_round(double value, double digits) {
+  if (!(value > 0.0) || !std::isfinite(value)) {
+    return false;
+  }
+  const double unit = std::pow(10.0, std::floor(std::log10(value)) - (digits - 1.0));
+  const double whole = value / unit;
+  return std::abs(whole - std::round(whole)) <= 3e-7 * whole;
+}
+
+class Inspector {
+ public:
+  Inspector(const InspectedView& view, std::span<const PixelSample> samples)
+      : view_(view),
+        samples_(samples),
+        clip_from_view_(to_mat4(view.view.clip_from_view)),
+        view_from_clip_(maths::inverse(clip_from_view_)),
+        perspective_(view.view.clip_from_view[15] == 0.0f) {
+    const double near = position(0.5, 0.5, 0.0).z;
+    const double far = position(0.5, 0.5, 1.0 - 1e-7).z;
+    reversed_ = std::abs(near) > std::abs(far);
+  }
+
+  Mistakes run() {
+    Mistakes found{};
+    const auto set = [&](Mistake mistake, bool is) {
+      found.at(static_cast<std::size_t>(mistake)) = is;
+    };
+    set(Mistake::image_too_small, is_too_small());
+    const bool reversed = is_depth_reversed();
+    set(Mistake::depth_reversed, reversed);
+    if (reversed) {
+      return found;  // everything else would follow from it
+    }
+    set(Mistake::depth_from_minus_one, is_depth_from_minus_one());
+    inspect_radius(set);
+    if (view_.has_normals) {
+      inspect_normals(set);
+    }
+    return found;
+  }
+
+ private:
+  static bool is_smaller(VkExtent2D size, VkExtent2D than) {
+    return size.width < than.width || size.height < than.height;
+  }
+
+  bool is_too_small() const {
+    return is_smaller(view_.depth_size, view_.size) ||
+           (view_.has_normals && is_smaller(view_.normals_size, view_.size));
+  }
+
+  // In view space; x and y are uv.
+  dvec3 position(double u, double v, double depth) const {
+    const dvec4 p = view_from_clip_ * dvec4(2.0 * u - 1.0, 2.0 * v - 1.0, depth, 1.0);
+    return dvec3(p) / p.w;
+  }
+
+  bool is_sky(float depth) const { return !(depth > 0.0f && depth < 1.0f); }
+
+  // The sky lies at the near plane, or all that there is lies just behind it.
+  bool is_depth_reversed() const {
+    const float near_depth = reversed_ ? 1.0f : 0.0f;
+    std::size_t at_near = 0, at_far = 0, close = 0, surfaces = 0;
+    const double near = -position(0.5, 0.5, near_depth).z;
+    for (const PixelSample& sample : samples_) {
+      at_near += sample.depth == near_depth;
+      at_far += sample.depth == 1.0f - near_depth;
+      if (!is_sky(sample.depth)) {
+        ++surfaces;
+        close += -position(0.5, 0.5, sample.depth).z < 1.3 * near;
+      }
+    }
+    if (at_far == 0 && at_near * 50 > samples_.size()) {
+      return true;
+    }
+    return perspective_ && at_far == 0 && surfaces >= kEnoughSamples &&
+           static_cast<double>(close) > 0.95 * static_cast<double>(surfaces);
+  }
+
+  // The two conventions give matrices of the same form. They differ in the near plane that a matrix
+  // stands for, which is a round number in the convention that it was made for.
+  bool is_depth_from_minus_one() const {
+    if (!perspective_ || reversed_) {
+      return false;
+    }
+    const double a = clip_from_view_[2][2] / clip_from_view_[2][3];
+    const double b = clip_from_view_[3][2] / clip_from_view_[2][3];
+    // clip z / w = a + b / z, where z is negative and -1 stands for clip_from_view_[2][3].
+    const double near_of_vulkan = b / a;
+    const double near_of_opengl = b / (a + 1.0);
+    return is_round(std::abs(near_of_opengl), 2.0) && !is_round(std::abs(near_of_vulkan), 4.0);
+  }
+
+  template <typename Set>
+  void inspect_radius(const Set& set) const {
+    std::vector<double> pixels;
+    const double scale = 0.5 * view_.size.height * std::abs(clip_from_view_[1][1]);
+    for (const PixelSample& sample : samples_) {
+      if (!is_sky(sample.depth)) {
+        const double distance = perspective_ ? -position(0.5, 0.5, sample.depth).z : 1.0;
+        pixels.push_back(view_.radius * scale / distance);
+      }
+    }
+    if (pixels.size() < kEnoughSamples) {
+      return;
+    }
+    std::sort(pixels.begin(), pixels.end());
+    // The radius is below half a pixel almost everywhere, or above three images everywhere.
+    set(Mistake::radius_too_small, pixels[pixels.size() * 9 / 10] < 0.5);
+    set(Mistake::radius_too_large, pixels[pixels.size() / 10] > 3.0 * view_.size.height);
+  }
+
+  // The largest step between depths that the format stores, around this one.
+  double depth_step(float depth) const {
+    switch (view_.depth_format) {
+      case VK_FORMAT_D16_UNORM:
+      case VK_FORMAT_D16_UNORM_S8_UINT:
+        return 1.0 / 65535.0;
+      case VK_FORMAT_X8_D24_UNORM_PACK32:
+      case VK_FORMAT_D24_UNORM_S8_UINT:
+        return 1.0 / 16777215.0;
+      default:
+        return depth * 0x1p-23;
+    }
+  }
+
+  // Depth as it is stored is linear along the image of a plane. The pixel is left out where it is
+  // not, and where the step of the format would tilt the normal.
+  std::optional<SmoothSample> smooth(const PixelSample& s) const {
+    const double step = depth_step(s.depth);
+    const auto is_line = [&](float before, float after) {
+      const double second = double{before} + after - 2.0 * double{s.depth};
+      return !is_sky(before) && !is_sky(after) &&
+             std::abs(second) <= 0.02 * std::abs(double{after} - before) + 2.0 * step;
+    };
+    const bool inside =
+        s.x > 0 && s.y > 0 && s.x + 1 < view_.size.width && s.y + 1 < view_.size.height;
+    if (!inside || is_sky(s.depth) || !is_line(s.left, s.right) || !is_line(s.up, s.down)) {
+      return std::nullopt;
+    }
+    const auto at = [&](double dx, double dy, double depth) {
+      return position((s.x + 0.5 + dx) / view_.size.width, (s.y + 0.5 + dy) / view_.size.height,
+                      depth);
+    };
+    SmoothSample result;
+    result.position = at(0, 0, s.depth);
+    result.along_x = at(1, 0, s.right) - at(-1, 0, s.left);
+    result.along_y = at(0, 1, s.down) - at(0, -1, s.up);
+    result.stored = {s.normal[0], s.normal[1], s.normal[2]};
+    const double error = maths::distance(at(0, 0, s.depth + step), result.position);
+    const double width = maths::distance(at(1, 0, s.depth), at(-1, 0, s.depth));
+    if (!(error <= 0.02 * width) || !maths::has_direction(result.stored)) {
+      return std::nullopt;
+    }
+    return result;
+  }
+
+  // The angle between normals of depth and given ones, in degrees, that three quarters of them keep
+  // to. Either normal may face away.
+  double error_of(const Reading& reading) const {
+    auto encoding = static_cast<std::uint32_t>(view_.normal_encoding) & ~1u;
+    encoding |= reading.packed ? 1u : 0u;
+    const dmat4 rotation = to_rigid(view_.view.view_from_world);
+    std::vector<double> angles;
+    angles.reserve(smooth_.size());
+    for (const SmoothSample& s : smooth_) {
+      dvec3 given(maths::decode_normal(s.stored, encoding));
+      if (!reading.in_view_space) {
+        given = dvec3(rotation * dvec4(given, 0.0));
+      } else if (reading.forward_z) {
+        given.z = -given.z;
+      }
+      const double k = reading.tangent_scale;
+      const dvec3 scale(k, reading.flip_y ? -k : k, 1.0);
+      const dvec3 own = maths::cross(s.along_x * scale, s.along_y * scale);
+      const double length = maths::length(own) * maths::length(given);
+      const double cosine = length > 0.0 ? std::abs(maths::dot(own, given)) / length : 0.0;
+      angles.push_back(std::acos(std::min(cosine, 1.0)) * kDegrees);
+    }
+    return upper_quartile(std::move(angles));
+  }
+
+  template <typename Set>
+  void inspect_normals(const Set& set) {
+    for (const PixelSample& sample : samples_) {
+      if (const auto found = smooth(sample)) {
+        smooth_.push_back(*found);
+      }
+    }
+    if (smooth_.size() < kEnoughSamples) {
+      return;
+    }
+    const Reading given{view_.normals_in_view_space,
+                        view_.normal_encoding == NormalEncoding::unsigned_xyz ||
+                            view_.normal_encoding == NormalEncoding::unsigned_octahedral,
+                        view_.normals_forward_z};
+    const double now = error_of(given);
+    // Normal maps tilt normals by some degrees from the surface.
+    if (now < 4.0) {
+      return;
+    }
+    struct Candidate {
+      Mistake mistake;
+      Reading reading;
+    };
+    std::vector<Candidate> candidates;
+    const auto add = [&](Mistake mistake, auto&& change) {
+      candidates.push_back({mistake, given});
+      change(candidates.back().reading);
+    };
+    add(Mistake::normal_space, [](Reading& r) { r.in_view_space = !r.in_view_space; });
+    add(Mistake::normal_packing, [](Reading& r) { r.packed = !r.packed; });
+    add(Mistake::normal_packing, [](Reading& r) {
+      r.packed = !r.packed;
+      r.in_view_space = !r.in_view_space;
+    });
+    if (given.in_view_space) {
+      add(Mistake::normal_forward_z, [](Reading& r) { r.forward_z = !r.forward_z; });
+    }
+    add(Mistake::flipped_y, [](Reading& r) { r.flip_y = true; });
+    for (double scale = 0.25; perspective_ && scale < 4.2; scale *= 1.05) {
+      if (scale < 0.87 || scale > 1.15) {
+        add(Mistake::field_of_view, [scale](Reading& r) { r.tangent_scale = scale; });
+      }
+    }
+    double least = std::numeric_limits<double>::infinity();
+    Mistake best = Mistake::count;
+    for (const Candidate& candidate : candidates) {
+      const double error = error_of(candidate.reading);
+      const double most = candidate.mistake == Mistake::field_of_view ? 3.0 : 15.0;
+      if (error < most && error < 0.4 * now && error < least - 0.1) {
+        least = error;
+        best = candidate.mistake;
+      }
+    }
+    if (best != Mistake::count) {
+      set(best, true);
+    }
+  }
+
+  const InspectedView& view_;
+  std::span<const PixelSample> samples_;
+  dmat4 clip_from_view_;
+  dmat4 view_from_clip_;
+  bool perspective_;
+  bool reversed_ = false;
+  std::vector<SmoothSample> smooth_;
+};
+
+}  // namespace
+
+const char* sentence(Mistake mistake) {
+  switch (mistake) {
+    case Mistake::depth_reversed:
+      return "depth runs the other way than camera.clip_from_view says: the sky, or all that is "
+             "seen, lies at its near plane; give the matrix that depth was drawn with.";
+    case Mistake::depth_from_minus_one:
+      return "camera.clip_from_view looks like OpenGL's, with depth from -1 to 1: its near plane "
+             "is "
+             "a round number only then; convert it with "
+             "ALCOVE_CAMERA_CONVENTION_DEPTH_FROM_MINUS_ONE.";
+    case Mistake::field_of_view:
+      return "normals fit the depth with another angle of view than that of camera.clip_from_view; "
+             "give the matrix that depth was drawn with.";
+    case Mistake::normal_space:
+      return "normals fit the depth in the other space; change normals_in_view_space.";
+    case Mistake::normal_packing:
+      return "normals fit the depth when they are unpacked the other way; change normal_encoding.";
+    case Mistake::normal_forward_z:
+      return "normals fit the depth with the other sign of z; change normals_forward_z.";
+    case Mistake::flipped_y:
+      return "normals fit the depth with y of camera.clip_from_view the other way round; see "
+             "ALCOVE_CAMERA_CONVENTION_CLIP_Y_UP.";
+    case Mistake::radius_too_small:
+      return "the radius is less than half a pixel almost everywhere; give it in the units of the "
+             "scene.";
+    case Mistake::radius_too_large:
+      return "the radius is more than three times the height of the image everywhere; give it in "
+             "the units of the scene.";
+    case Mistake::image_too_small:
+      return "an image is smaller than AlcoveImage::width and height say.";
+    default:
+      return "";
+  }
+}
+
+Mistakes inspect(const InspectedView& view, std::span<const PixelSample> samples) {
+  return Inspector(view, samples).run();
+}
+
+}  // namespace alcove::passes

@@ -1,0 +1,47 @@
+#version 460
+#extension GL_EXT_samplerless_texture_functions : require
+#extension GL_GOOGLE_include_directive : require
+
+// Copies samples of a view's inputs for the host, which looks for mistakes in them (alcoveDiagnose).
+//
+// The samples lie on a grid over the image. Each takes two texels, one above the other: the depths of
+// the pixel and of its left, right and upper neighbours; then the depth of the lower neighbour and the
+// normal as it is stored. A last row has the sizes of the two images and the serial number.
+
+#include "inspect_parameters.h"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(set = 0, binding = 0) uniform Parameters { InspectParameters parameters; };
+layout(set = 0, binding = 1) uniform texture2D depth_image;  // as it is stored
+layout(set = 0, binding = 2) uniform texture2D normal_image;
+layout(set = 0, binding = 3) uniform writeonly image2D sample_image;
+
+float fetch_depth(ivec2 pixel) {
+  // An image that is smaller than it is said to be is not read beyond its edge.
+  ivec2 last = min(ivec2(parameters.size_px), textureSize(depth_image, 0)) - 1;
+  return texelFetch(depth_image, clamp(pixel, ivec2(0), last), 0).r;
+}
+
+void main() {
+  ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
+  if (cell.y == int(kInspectRows) && cell.x < 2) {
+    imageStore(sample_image, ivec2(cell.x, 2 * int(kInspectRows)),
+               cell.x == 0 ? vec4(textureSize(depth_image, 0), textureSize(normal_image, 0))
+                           : vec4(float(parameters.serial)));
+  }
+  if (cell.x >= int(kInspectColumns) || cell.y >= int(kInspectRows)) {
+    return;
+  }
+  vec2 position = (vec2(cell) + 0.5) / vec2(kInspectColumns, kInspectRows);
+  ivec2 pixel = ivec2(position * vec2(parameters.size_px));
+  vec3 normal = vec3(0.0);
+  if (parameters.has_normals != 0u) {
+    normal = texelFetch(normal_image, min(pixel, textureSize(normal_image, 0) - 1), 0).xyz;
+  }
+  imageStore(sample_image, ivec2(cell.x, 2 * cell.y),
+             vec4(fetch_depth(pixel), fetch_depth(pixel - ivec2(1, 0)),
+                  fetch_depth(pixel + ivec2(1, 0)), fetch_depth(pixel - ivec2(0, 1))));
+  imageStore(sample_image, ivec2(cell.x, 2 * cell.y + 1),
+             vec4(fetch_depth(pixel + ivec2(0, 1)), normal));
+}

@@ -1,0 +1,21 @@
+// What inspect.comp is given. For the shader and for C++.
+#ifndef ALCOVE_INSPECT_PARAMETERS_H_
+#define ALCOVE_INSPECT_PARAMETERS_H_
+
+#include "maths/language.h"
+
+ALCOVE_MATHS_BEGIN
+
+// The grid of sampled pixels. Two texels of the result for each, and one row for the whole image.
+const uint kInspectColumns = 64;
+const uint kInspectRows = 48;
+
+struct InspectParameters {
+  uvec2 size_px;  // of the part of the image that is in use
+  uint serial;    // tells this frame's samples from older ones, below 2^24
+  uint has_normals;
+};
+
+ALCOVE_MATHS_END
+
+#endif  // ALCOVE_INSPECT_PARAMETERS_H_

@@ -1,0 +1,3 @@
+// tinygltf, compiled with coverage and sanitisers.
+#define TINYGLTF_IMPLEMENTATION
+#include <tiny_gltf.h>

@@ -1,0 +1,127 @@
+// Prints how long the host takes to record a steady frame with the C interface.
+//
+//   c_record_benchmark
+//
+// Medians over many frames of one view. "The library alone" replaces the driver's recording
+// functions by empty ones, because a software device spends more time in them than the library
+// does.
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "engine.h"
+#include "views.h"
+
+namespace alcove::passes {
+namespace {
+
+template <typename... Arguments>
+VKAPI_ATTR void VKAPI_CALL nothing(Arguments...) {}
+
+template <typename... Arguments>
+PFN_vkVoidFunction empty(void(VKAPI_PTR*)(Arguments...)) {
+  return reinterpret_cast<PFN_vkVoidFunction>(&nothing<Arguments...>);
+}
+
+VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_device_proc_addr(VkDevice device, const char* name) {
+  struct Entry {
+    const char* name;
+    PFN_vkVoidFunction function;
+  };
+  const Entry entries[] = {{"vkCmdPipelineBarrier2", empty(PFN_vkCmdPipelineBarrier2{})},
+                           {"vkCmdBindPipeline", empty(PFN_vkCmdBindPipeline{})},
+                           {"vkCmdBindDescriptorSets", empty(PFN_vkCmdBindDescriptorSets{})},
+                           {"vkCmdDispatch", empty(PFN_vkCmdDispatch{})}};
+  for (const Entry& entry : entries) {
+    if (std::strcmp(entry.name, name) == 0) {
+      return entry.function;
+    }
+  }
+  return vkGetDeviceProcAddr(device, name);
+}
+
+VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_instance_proc_addr(VkInstance instance,
+                                                                const char* name) {
+  return std::strcmp(name, "vkGetDeviceProcAddr") == 0
+             ? reinterpret_cast<PFN_vkVoidFunction>(&get_device_proc_addr)
+             : vkGetInstanceProcAddr(instance, name);
+}
+
+// Microseconds of alcoveRecordFrame; negative where it fails.
+double median_microseconds(const sample::VulkanDevice& device, bool library_alone,
+                           bool all_outputs) {
+  Engine engine(device);
+  AlcoveContextInfo info = engine.context_info();
+  info.timestamps = VK_FALSE;
+  if (library_alone) {
+    info.get_instance_proc_addr = get_instance_proc_addr;
+  }
+  AlcoveContext* made = nullptr;
+  if (alcoveCreateContext(&info, &made, nullptr) != ALCOVE_SUCCESS) {
+    return -1.0;
+  }
+  const Context context(made);
+  AlcoveSettings settings{.struct_size = sizeof settings};
+  if (alcoveGetSettings(ALCOVE_QUALITY_MEDIUM, 0.5f, &settings) != ALCOVE_SUCCESS) {
+    return -1.0;
+  }
+  const auto make = [&](VkFormat format) {
+    return engine.make_image(format, 16, 16,
+                             VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT);
+  };
+  AlcoveView view{.struct_size = sizeof view,
+                  .settings = &settings,
+                  .depth = make(VK_FORMAT_R32_SFLOAT),
+                  .normals = make(VK_FORMAT_R16G16B16A16_SFLOAT),
+                  .visibility = make(VK_FORMAT_R8_UNORM)};
+  if (all_outputs) {
+    view.bent_normal = make(VK_FORMAT_R8G8B8A8_SNORM);
+    view.specular = make(VK_FORMAT_R8_UNORM);
+  }
+  std::ranges::copy(test_views()[2].view.clip_from_view, view.camera.clip_from_view);
+  std::ranges::copy(kIdentity, view.camera.view_from_world);
+  AlcoveFrame frame{.struct_size = sizeof frame, .view_count = 1, .views = &view};
+  std::vector<double> times;
+  bool good = true;
+  for (frame.index = 0; good && frame.index < 2000; ++frame.index) {
+    frame.slot = frame.index % Engine::kSlots;
+    view.previous_camera = view.camera;
+    view.camera.view_from_world[12] = 0.01f * static_cast<float>(frame.index % 100);
+    engine.submit(frame.slot, [&](VkCommandBuffer commands) {
+      const auto begin = std::chrono::steady_clock::now();
+      good = alcoveRecordFrame(context.get(), commands, &frame) == ALCOVE_SUCCESS;
+      const std::chrono::duration<double, std::micro> time =
+          std::chrono::steady_clock::now() - begin;
+      if (frame.index >= 100) {
+        times.push_back(time.count());
+      }
+    });
+  }
+  engine.wait();
+  std::ranges::nth_element(times, times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2));
+  return good ? times[times.size() / 2] : -1.0;
+}
+
+}  // namespace
+}  // namespace alcove::passes
+
+int main() {
+  using namespace alcove;
+  const auto device = sample::VulkanDevice::create();
+  if (!device) {
+    std::fprintf(stderr, "%s\n", device.error().c_str());
+    return 1;
+  }
+  std::printf("Median microseconds of alcoveRecordFrame, one view, steady frames, on %s.\n",
+              (*device)->properties().deviceName);
+  for (const bool all_outputs : {false, true}) {
+    std::printf("%-48s with the driver %7.2f, the library alone %7.2f\n",
+                all_outputs ? "visibility, bent normals, specular" : "visibility",
+                passes::median_microseconds(**device, false, all_outputs),
+                passes::median_microseconds(**device, true, all_outputs));
+  }
+  return 0;
+}

@@ -1,0 +1,243 @@
+// Small files that once drew a wrong picture without a word, drawn as `alcove render` draws them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "image_maker.h"
+#include "model_maker.h"
+
+namespace alcove::sample {
+namespace {
+
+// A floor, three walls and a box, within 6 m.
+Triangles room() {
+  Triangles room;
+  room.add_box({-3, -0.1f, -3}, {3, 0, 3});
+  room.add_box({-3, 0, -3.1f}, {3, 3, -3});
+  room.add_box({-3, 0, -3}, {-2.9f, 3, 3});
+  room.add_box({-0.5f, 0, -1.5f}, {0.5f, 1, -0.5f});
+  return room;
+}
+
+Options view_from(glm::dvec3 eye, glm::dvec3 target) {
+  Options options;
+  options.view.eye = eye;
+  options.view.target = target;
+  return options;
+}
+
+float greatest_difference(const Image<float>& a, const Image<float>& b) {
+  float greatest = 0.0f;
+  for (size_t i = 0; i < a.pixels.size(); ++i) {
+    greatest = std::max(greatest, std::abs(a.pixels[i] - b.pixels[i]));
+  }
+  return greatest;
+}
+
+double root_mean_square(const Image<float>& a, const Image<float>& b) {
+  double sum = 0.0;
+  for (size_t i = 0; i < a.pixels.size(); ++i) {
+    sum += std::pow(double{a.pixels[i]} - double{b.pixels[i]}, 2);
+  }
+  return std::sqrt(sum / static_cast<double>(a.pixels.size()));
+}
+
+class Cases : public testing::Test {
+ protected:
+  TemporaryFolder folder_;
+};
+
+TEST_F(Cases, SkinnedMeshIsDrawnWhereItsJointsAreAndNotByItsNode) {
+  Triangles cube, floor;
+  cube.add_box({-0.5f, 0, -0.5f}, {0.5f, 1, 0.5f});
+  floor.add_box({-4, -0.1f, -4}, {4, 0, 4});
+  ModelMaker expected;
+  expected.add(floor);
+  expected.node({{"mesh", expected.mesh(cube)}, {"translation", {0.5f, 0, 0}}});
+
+  ModelMaker skinned;
+  skinned.add(floor);
+  const int mesh = skinned.mesh(cube);
+  const size_t vertices = cube.positions.size();
+  std::vector<float> weights;
+  for (size_t i = 0; i < vertices; ++i) weights.insert(weights.end(), {1, 0, 0, 0});
+  GltfMaker& gltf = skinned.gltf;
+  auto& attributes = gltf.json["meshes"][static_cast<size_t>(mesh)]["primitives"][0]["attributes"];
+  attributes["JOINTS_0"] =
+      gltf.accessor(gltf.view(std::vector<uint8_t>(4 * vertices, 0)), 5121, "VEC4", vertices);
+  attributes["WEIGHTS_0"] = gltf.accessor(gltf.view(weights), 5126, "VEC4", vertices);
+  const int joint = skinned.node({{"translation", {0.5f, 0, 0}}});
+  gltf.json["skins"] = {{{"joints", {joint}}}};
+  skinned.node({{"mesh", mesh}, {"skin", 0}, {"scale", {100, 100, 100}}});
+
+  const Options view = view_from({4, 3, 5}, {0, 0.5, 0});
+  const auto drawn = draw_file(skinned.write(folder_, "skinned"), view);
+  const auto right = draw_file(expected.write(folder_, "expected"), view);
+  ASSERT_TRUE(drawn && right);
+  EXPECT_LT(shares_of(*right).least, 0.8);
+  EXPECT_LT(root_mean_square(drawn->images.visibility, right->images.visibility), 1e-3);
+  EXPECT_FLOAT_EQ(drawn->settings.radius, right->settings.radius);
+}
+
+TEST_F(Cases, SliverFarAwayChangesNeitherFramingNorPlanesNorRadius) {
+  Triangles sliver;
+  sliver.positions = {{2000, 0, 0}, {2000, 0.01f, 0}, {2000, 0, 0.01f}};
+  sliver.indices = {0, 1, 2};
+  ModelMaker alone, with_sliver;
+  alone.add(room());
+  with_sliver.add(room());
+  with_sliver.add(sliver);
+  const std::string right_file = alone.write(folder_, "room");
+  const std::string file = with_sliver.write(folder_, "stray");
+  const Options framed, typed = view_from({2, 2, 4.5}, {0, 0.5, -1});
+  for (const Options* view : {&framed, &typed}) {
+    const auto drawn = draw_file(file, *view);
+    const auto right = draw_file(right_file, *view);
+    ASSERT_TRUE(drawn && right);
+    EXPECT_LT(shares_of(*drawn).sky, shares_of(*right).sky + 0.02);
+    EXPECT_NEAR(drawn->settings.radius, right->settings.radius, 0.05f);
+    EXPECT_NEAR(drawn->camera.near_plane, right->camera.near_plane, 0.05f);
+    EXPECT_LT(drawn->camera.far_plane, 3000.0f);
+    EXPECT_GT(shares_of(*drawn).occluded, 0.02);
+  }
+}
+
+TEST_F(Cases, SceneFarFromTheOriginIsDrawnAsAtTheOrigin) {
+  const auto drawn_at = [&](const glm::dvec3& offset) {
+    ModelMaker maker;
+    maker.node({{"mesh", maker.mesh(room())}, {"translation", {offset.x, offset.y, offset.z}}});
+    Options options = view_from(offset + glm::dvec3(2, 2, 4.5), offset + glm::dvec3(0, 0.5, -1));
+    options.occlusion.radius = 0.5f;
+    options.view.frames = 8;
+    return draw_file(maker.write(folder_, "room"), options);
+  };
+  const auto right = drawn_at(glm::dvec3(0.0));
+  const auto drawn = drawn_at({1e5, 0, 1e5});
+  ASSERT_TRUE(right && drawn);
+  EXPECT_LT(root_mean_square(drawn->images.visibility, right->images.visibility), 1e-3);
+  constexpr float kStep = 1.0f / 255.0f;  // visibility is stored in 8 bits
+  EXPECT_LE(greatest_difference(drawn->images.visibility, right->images.visibility), 1.01f * kStep);
+}
+
+TEST_F(Cases, OpenGroundIsOpenInANarrowViewOverALargeDepthRange) {
+  Triangles ground;
+  constexpr int kCells = 40;
+  for (int z = 0; z < kCells; ++z) {
+    for (int x = 0; x < kCells; ++x) {
+      const glm::vec3 at(100.0f * static_cast<float>(x) - 2000.0f, 0,
+                         100.0f * static_cast<float>(z) - 2000.0f);
+      ground.add_quad(at, at + glm::vec3(0, 0, 100), at + glm::vec3(100, 0, 100),
+                      at + glm::vec3(100, 0, 0));
+    }
+  }
+  ModelMaker maker;
+  maker.add(ground);
+  const std::string file = maker.write(folder_, "ground");
+  Options options = view_from({0, 60, 0}, {0, 0, -500});
+  options.view.fov_y = glm::radians(3.0f);
+  options.view.near_plane = 0.01f;
+  options.view.far_plane = 5000.0f;
+  options.occlusion.radius = 1.0f;
+  for (const bool reversed : {true, false}) {
+    options.view.reversed_z = reversed;
+    const auto drawn = draw_file(file, options);
+    ASSERT_TRUE(drawn);
+    EXPECT_EQ(shares_of(*drawn).sky, 0.0);
+    EXPECT_GT(shares_of(*drawn).least, 0.99) << (reversed ? "reversed" : "standard");
+  }
+}
+
+TEST_F(Cases, RoomOfInwardFacesIsOpenFromOutsideUnlessItIsDoubleSided) {
+  const auto least = [&](bool double_sided, bool both_sides) {
+    Triangles walls;
+    walls.add_box({-3, 0, -2}, {3, 2.5f, 2}, true);
+    walls.add_box({-0.5f, 0, -0.5f}, {0.5f, 1, 0.5f});
+    ModelMaker maker;
+    maker.add(walls, {{"doubleSided", double_sided}});
+    Options options = view_from({5, 6, 7}, {0, 0, 0});
+    options.occlusion.radius = 0.5f;
+    options.materials.both_sides = both_sides;
+    const auto drawn = draw_file(maker.write(folder_, "inward"), options);
+    return drawn ? shares_of(*drawn).least : -1.0;
+  };
+  EXPECT_LT(least(false, false), 0.8);  // the inside, with its corners and the box
+  EXPECT_GT(least(true, false), 0.95);  // a closed box, seen from outside
+  EXPECT_GT(least(false, true), 0.95);
+}
+
+TEST_F(Cases, SpecularGlossinessCutsOutAndColours) {
+  // A card whose texture is red and opaque on the left, and transparent on the right.
+  PngRecipe recipe{2, 1, PNG_COLOR_TYPE_RGB_ALPHA, 8, false};
+  recipe.samples = {255, 0, 0, 255, 0, 255, 0, 0};
+  Triangles card;
+  card.add_quad({-1, 0, 0}, {1, 0, 0}, {1, 2, 0}, {-1, 2, 0});
+  ModelMaker maker;
+  GltfMaker& gltf = maker.gltf;
+  maker.add(card,
+            {{"alphaMode", "MASK"},
+             {"extensions",
+              {{"KHR_materials_pbrSpecularGlossiness", {{"diffuseTexture", {{"index", 0}}}}}}}});
+  gltf.json["images"] = {{{"bufferView", gltf.view(make_png(recipe))}, {"mimeType", "image/png"}}};
+  gltf.json["samplers"] = {{{"magFilter", 9728}, {"minFilter", 9728}}};
+  gltf.json["textures"] = {{{"source", 0}, {"sampler", 0}}};
+  gltf.json["extensionsUsed"] = {"KHR_materials_pbrSpecularGlossiness"};
+  gltf.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] =
+      gltf.accessor(gltf.view<float>({0, 1, 1, 1, 1, 0, 0, 0}), 5126, "VEC2", 4);
+  const auto drawn = draw_file(maker.write(folder_, "card"), view_from({0, 1, 4}, {0, 1, 0}));
+  ASSERT_TRUE(drawn);
+  const Image<float> depth = linear_depth(*drawn);
+  const auto at = [&](uint32_t x) { return std::isfinite(depth.at(x, 45)); };
+  EXPECT_TRUE(at(70));
+  EXPECT_FALSE(at(90));
+  EXPECT_LT(glm::distance(drawn->images.albedo.at(70, 45), glm::vec3(1, 0, 0)), 0.02f);
+}
+
+TEST_F(Cases, RequiredLightsAreNoReasonToRefuseAFile) {
+  ModelMaker maker;
+  maker.add(room());
+  maker.gltf.json["extensionsUsed"] = {"KHR_lights_punctual"};
+  maker.gltf.json["extensionsRequired"] = {"KHR_lights_punctual"};
+  maker.gltf.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}}};
+  const auto drawn = draw_file(maker.write(folder_, "lights"));
+  ASSERT_TRUE(drawn);
+  EXPECT_LT(shares_of(*drawn).sky, 0.9);
+}
+
+TEST_F(Cases, EveryInstanceOfAnInstancedNodeIsDrawn) {
+  Triangles post;
+  post.add_box({-0.2f, 0, -0.2f}, {0.2f, 1, 0.2f});
+  ModelMaker maker;
+  std::vector<float> places;
+  for (int i = 0; i < 49; ++i) {
+    places.insert(places.end(),
+                  {static_cast<float>(i % 7) - 3.0f, 0.0f, static_cast<float>(i / 7) - 3.0f});
+  }
+  GltfMaker& gltf = maker.gltf;
+  const int translations = gltf.accessor(gltf.view(places), 5126, "VEC3", 49);
+  maker.node({{"mesh", maker.mesh(post)},
+              {"extensions",
+               {{"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", translations}}}}}}}});
+  gltf.json["extensionsUsed"] = {"EXT_mesh_gpu_instancing"};
+  // From straight above: runs of surface along a row of the image are posts.
+  Options options = view_from({0, 20, 0}, {0, 0, 0});
+  options.view.up_ws = glm::vec3(0, 0, -1);
+  options.view.ortho_height = 8.0f;
+  const auto drawn = draw_file(maker.write(folder_, "posts"), options);
+  ASSERT_TRUE(drawn);
+  EXPECT_EQ(triangle_count(drawn->scene), 49u * 12u);
+  const Image<float> depth = linear_depth(*drawn);
+  const auto is_post = [&](int column, int row) {
+    const auto pixel = [](int cell, float middle) {
+      return static_cast<uint32_t>(middle + 90.0f / 8.0f * static_cast<float>(cell));
+    };
+    return std::isfinite(depth.at(pixel(column, 80.0f), pixel(row, 45.0f)));
+  };
+  for (int i = 0; i < 49; ++i) {
+    EXPECT_TRUE(is_post(i % 7 - 3, i / 7 - 3)) << "post " << i;
+  }
+}
+
+}  // namespace
+}  // namespace alcove::sample
