@@ -48,19 +48,13 @@ class CachedTracer {
         points_(points),
         settings_{.radius = rendering.settings.radius, .spp = options.spp},
         cache_(options.use_cache ? TruthCache::default_folder() : std::filesystem::path()) {
-    key_.add(std::string("light truth"));
-    key_.add(kLightTruthVersion);
-    key_.add(rendering.scene);
-    key_.add(rendering.camera);
-    key_.add(settings_.radius);
-    key_.add(settings_.spp);
-    key_.add(points.position_ws);
-    key_.add(points.normal_ws);
+    key_.add("light truth", kLightTruthVersion, rendering.scene, rendering.camera, settings_.radius,
+             settings_.spp, points.position_ws, points.normal_ws);
   }
 
   Image<glm::vec3> interreflection() const {
     CacheKey key = key_;
-    key.add(std::string("interreflection"));
+    key.add("interreflection");
     Image<glm::vec3> truth(points_.normal_ws.width, points_.normal_ws.height);
     if (!cache_.read(key, truth)) {
       truth =
@@ -72,8 +66,7 @@ class CachedTracer {
 
   Image<float> specular(const Image<float>& roughness) const {
     CacheKey key = key_;
-    key.add(std::string("specular"));
-    key.add(roughness);
+    key.add("specular", roughness);
     Image<float> truth(points_.normal_ws.width, points_.normal_ws.height);
     if (!cache_.read(key, truth)) {
       truth = specular_truth(rays_, points_, roughness, viewer_of(rendering_.camera), settings_,
@@ -87,9 +80,7 @@ class CachedTracer {
                                                     const Image<float>& depth) const {
     const auto key_of = [&](const Image<float>& one, const char* part) {
       CacheKey key = key_;
-      key.add(std::string(part));
-      key.add(one);
-      key.add(depth);
+      key.add(part, one, depth);
       return key;
     };
     // Calls `part(key, image)` for every image until one call returns false.
@@ -123,11 +114,8 @@ class CachedTracer {
     const SurfaceMaterials materials{rendering_.images.albedo, roughness,
                                      rendering_.images.metallic};
     CacheKey key = key_;
-    key.add(std::string("lit"));
-    key.add(materials.albedo);
-    key.add(materials.roughness);
-    key.add(materials.metallic);
-    key.add(rendering_.light.environment);
+    key.add("lit", materials.albedo, materials.roughness, materials.metallic,
+            rendering_.light.environment);
     const std::uint32_t width = points_.normal_ws.width;
     const std::uint32_t height = points_.normal_ws.height;
     LitTruth truth{{width, height}, {width, height}, {width, height}, {width, height}};
@@ -138,7 +126,7 @@ class CachedTracer {
          {"specular noise", &truth.specular_noise}}};
     const auto key_of = [&](const char* part) {
       CacheKey own = key;
-      own.add(std::string(part));
+      own.add(part);
       return own;
     };
     if (!std::ranges::all_of(parts, [&](const auto& part) {

@@ -86,16 +86,8 @@ tl::expected<MotionRenderer::Truth, std::string> MotionRenderer::truth(std::uint
   const std::uint32_t half = std::max(setup_.spp / 2, 1u);
   const auto key_of = [&](std::uint32_t index, const char* image) {
     CacheKey key;
-    key.add(std::string("motion truth"));
-    key.add(kMotionTruthVersion);
-    key.add(*scene_);
-    key.add(seen.camera);
-    key.add(setup_.occlusion.radius);
-    key.add(half);
-    key.add(index);
-    key.add(seen.depth);
-    key.add(seen.normal_ws);
-    key.add(std::string(image));
+    key.add("motion truth", kMotionTruthVersion, *scene_, seen.camera, setup_.occlusion.radius,
+            half, index, seen.depth, seen.normal_ws, image);
     return key;
   };
   struct Half {

@@ -21,7 +21,7 @@ template <typename Truth, typename Compute>
 tl::expected<Truth, std::string> cached(const TruthOptions& options, const Image<float>& depth,
                                         const CacheKey& key, const Compute& compute) {
   CacheKey bent_key = key;
-  bent_key.add(std::string("bent"));
+  bent_key.add("bent");
   const TruthCache cache(options.use_cache ? TruthCache::default_folder()
                                            : std::filesystem::path());
   tl::expected<Truth, std::string> truth =
@@ -42,14 +42,8 @@ tl::expected<OcclusionTruth, std::string> scene_truth(const TruthFrame& frame,
                                                       const Image<float>& depth) {
   const TruthSettings settings{.radius = frame.radius, .spp = options.spp};
   CacheKey key;
-  key.add(std::string("scene truth"));
-  key.add(kTruthVersion);
-  key.add(frame.scene);
-  key.add(frame.camera);
-  key.add(settings.radius);
-  key.add(settings.spp);
-  key.add(depth);
-  key.add(frame.normal_ws);
+  key.add("scene truth", kTruthVersion, frame.scene, frame.camera, settings.radius, settings.spp,
+          depth, frame.normal_ws);
   return cached<OcclusionTruth>(options, depth, key, [&] {
     return RayScene::create(frame.scene).map([&](const RayScene& rays) {
       return occlusion_truth(rays, surface_points(rays, frame.camera, frame.normal_ws, depth),
@@ -62,13 +56,8 @@ HeightFieldTruth depth_truth(const TruthFrame& frame, const TruthOptions& option
                              const Image<float>& depth) {
   const HeightFieldSettings settings{frame.radius, kHeightFieldSlices};
   CacheKey key;
-  key.add(std::string("height-field truth"));
-  key.add(kTruthVersion);
-  key.add(frame.camera);
-  key.add(settings.radius);
-  key.add(settings.slices);
-  key.add(depth);
-  key.add(frame.normal_ws);
+  key.add("height-field truth", kTruthVersion, frame.camera, settings.radius, settings.slices,
+          depth, frame.normal_ws);
   const auto compute = [&] {
     return height_field_truth(depth, frame.normal_ws, frame.camera, settings,
                               print_progress("height-field truth"));

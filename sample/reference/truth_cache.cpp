@@ -39,11 +39,9 @@ void add_components(CacheKey& key, const glm::vec<size, float>& vector) {
 }
 
 void add_use(CacheKey& key, const TextureUse& use) {
-  key.add(use.image);
-  key.add(static_cast<uint8_t>(use.sampler.wrap_u));
-  key.add(static_cast<uint8_t>(use.sampler.wrap_v));
-  key.add(static_cast<uint8_t>(use.sampler.magnify));
-  key.add(use.uv_set);
+  key.add(use.image, static_cast<uint8_t>(use.sampler.wrap_u),
+          static_cast<uint8_t>(use.sampler.wrap_v), static_cast<uint8_t>(use.sampler.magnify),
+          use.uv_set);
   for (int column = 0; column < 3; ++column) {
     add_components(key, use.texture_from_mesh_uv[column]);
   }
@@ -52,12 +50,10 @@ void add_use(CacheKey& key, const TextureUse& use) {
 void add_material(CacheKey& key, const Material& material) {
   add_components(key, material.base_color);
   add_use(key, material.base_color_texture);
-  key.add(material.metallic);
-  key.add(material.roughness);
+  key.add(material.metallic, material.roughness);
   add_use(key, material.metal_roughness_texture);
-  key.add(static_cast<uint8_t>(material.alpha_mode));
-  key.add(material.alpha_cutoff);
-  key.add(static_cast<uint8_t>(material.double_sided));
+  key.add(static_cast<uint8_t>(material.alpha_mode), material.alpha_cutoff,
+          static_cast<uint8_t>(material.double_sided));
 }
 
 std::filesystem::path from_environment(const char* name) {
@@ -72,7 +68,7 @@ void CacheKey::add(std::span<const std::byte> bytes) {
   hash_ = XXH3_128bits(chain.data(), sizeof(chain));
 }
 
-void CacheKey::add(const std::string& text) { add(std::as_bytes(std::span(text))); }
+void CacheKey::add(std::string_view text) { add(std::as_bytes(std::span(text))); }
 
 void CacheKey::add(const Scene& scene) {
   for (const Mesh& mesh : scene.meshes) {
@@ -89,8 +85,7 @@ void CacheKey::add(const Scene& scene) {
     add_material(*this, material);
   }
   for (const TextureImage& image : scene.images) {
-    add(image.width);
-    add(image.height);
+    add(image.width, image.height);
     add_vector(*this, image.rgba);
   }
 }
@@ -99,12 +94,8 @@ void CacheKey::add(const Camera& camera) {
   add_components(*this, camera.eye_ws);
   add_components(*this, camera.target_ws);
   add_components(*this, camera.up_ws);
-  add(static_cast<uint8_t>(camera.orthographic));
-  add(camera.fov_y);
-  add(camera.ortho_height);
-  add(camera.near_plane);
-  add(camera.far_plane);
-  add(static_cast<uint8_t>(camera.reversed_z));
+  add(static_cast<uint8_t>(camera.orthographic), camera.fov_y, camera.ortho_height,
+      camera.near_plane, camera.far_plane, static_cast<uint8_t>(camera.reversed_z));
   add_components(*this, camera.offset_ndc);
   add_components(*this, camera.jitter_px);
 }

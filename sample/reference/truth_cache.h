@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
@@ -22,7 +23,7 @@ namespace alcove::sample {
 class CacheKey {
  public:
   void add(std::span<const std::byte> bytes);
-  void add(const std::string& text);
+  void add(std::string_view text);
   void add(const Scene& scene);
   void add(const Camera& camera);
   template <class T>
@@ -33,6 +34,12 @@ class CacheKey {
     add(image.width);
     add(image.height);
     add(std::as_bytes(std::span(image.pixels)));
+  }
+  template <class First, class Second, class... Rest>
+  void add(const First& first, const Second& second, const Rest&... rest) {
+    add(first);
+    add(second);
+    (add(rest), ...);
   }
   std::string hex() const;  // 32 digits
 
