@@ -44,7 +44,7 @@ class CInspect : public CInterface {
     given.motion = given.roughness = given.albedo = {};
     given.back_depth_ndc = given.second_depth_ndc = {};
     given.settings.steps = 2;
-    given.settings.filter_radius = 0;
+    given.settings.advanced.filter_radius = 0;
     return given;
   }
 
