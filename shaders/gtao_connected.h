@@ -19,12 +19,14 @@ struct SegmentState {
   uint runs;                         // one bit per sample: part of an occluder run
   float run_px;                      // width of all occluder runs together
   uint unobserved;  // one bit per sample: hides what lies within the radius behind it
+  bool known_back;  // whether a back face told where an occluder ends
 };
 
 // What was found in a half-slice.
 struct Occluders {
   uint occluded;           // sectors
   float hidden_occlusion;  // fraction of the sectors hidden behind the first that is occluded
+  bool known_back;         // whether back faces told where occluders end
   Unobserved unobserved;
   float border_px;  // offset of the last sample, or kNowherePx if what lies beyond the border is
                     // known
@@ -62,6 +64,7 @@ void add_sample(inout SegmentState state, HalfSlice half_slice, float sectors, u
   uint back = biased_position(sectors, height_of_back(height, scale, thickness));
   if (kBackFaces && here.back.y < kNoBack) {
     back = biased_position(sectors, 1.0 - diamond_angle(here.back));
+    state.known_back = true;
   }
   state.occluded |= inside ? beyond ^ sectors_beyond(back) : 0u;
   state.occluded |= joined && state.inside ? beyond ^ state.beyond : 0u;
@@ -123,6 +126,7 @@ Occluders find_in_layer(HalfSlice half_slice, float sectors, uint layer) {
   state.runs = 0u;
   state.run_px = 0.0;
   state.unobserved = 0u;
+  state.known_back = false;
   state.beyond = 0u;
   state.inside = false;
   // The first sample continues the surface itself if it lies on its tangent plane.
@@ -165,6 +169,7 @@ Occluders find_in_layer(HalfSlice half_slice, float sectors, uint layer) {
   float run_share =
       state.run_px / (max(run_count(state.runs), 1.0) * max(searched_px - before_first_px, 1e-3));
   found.hidden_occlusion = hidden_occlusion_behind(run_share, parameters.hidden_exponent);
+  found.known_back = state.known_back;
   found.unobserved = nothing_unobserved();
   if (tells_unobserved(layer)) {
     float first_k = first_sample(state.unobserved);
@@ -179,7 +184,8 @@ Occluders find_in_layer(HalfSlice half_slice, float sectors, uint layer) {
   }
   bool known = extrapolated != 0u || here.inverse_depth == sky_inverse_depth(kPerspective);
   found.border_px = known ? kNowherePx : here.offset_px;
-  if (half_slice.reach_px <= 0.0) found = Occluders(0u, 0.0, nothing_unobserved(), found.border_px);
+  if (half_slice.reach_px <= 0.0)
+    found = Occluders(0u, 0.0, false, nothing_unobserved(), found.border_px);
   return found;
 }
 
@@ -213,7 +219,7 @@ void add_connected(inout SliceSum sum, HalfSlice half_slice, Slice slice, LobeSl
   float sector = tangent_angle * (1.0 / float(kEvenSectorCount));
   vec2 first_light = open ? tangent : diamond_angle_light(float(findLSB(found.occluded)) * sector);
   float arc = open ? open_arc : part_arc(slice, half_slice.side, first_light, kUniformWeight);
-  if (kBackFaces) {
+  if (kBackFaces && found.known_back) {
     // What back faces show to be visible behind an occluder is known, and integrated exactly.
     VisiblePart part =
         visible_part(slice, half_slice.side, 1.0 / sector, repeat_last_sector(found.occluded),
