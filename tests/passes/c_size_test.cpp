@@ -80,7 +80,7 @@ TEST_F(CSize, HistoryGoesOnWhileTheSizeChanges) {
   const Context context = create_context();
   const auto given_of = [](VkExtent2D size) {
     GivenView given = given_view(test_views()[2], size.width, size.height, ball_on_floor());
-    given.settings.radius = 0.5f;
+    given.settings.radius = 1.5f;
     given.motion = {};
     return given;
   };

@@ -35,11 +35,11 @@ Triangles flat(float half, float height = 0.0f) {
 // A body of lathes, 1.8 high.
 Triangles character() {
   Triangles out;
-  out.add_lathe({0, 0.8f, 0}, 1.5f, {0.0f, 0.2f, 0.17f, 0.24f, 0.1f, 0.0f});
-  out.add_lathe({0, 1.5f, 0}, 1.8f, {0.0f, 0.09f, 0.12f, 0.1f, 0.0f});
-  for (const float x : {-0.1f, 0.1f}) {
-    out.add_lathe({x, 0, 0}, 0.85f, {0.0f, 0.07f, 0.06f, 0.1f, 0.0f});
-    out.add_lathe({3.0f * x, 0.75f, 0}, 1.45f, {0.0f, 0.05f, 0.06f, 0.07f, 0.0f});
+  out.add_lathe({0, 0.8f, 0}, 1.5f, {0.0f, 0.3f, 0.26f, 0.36f, 0.15f, 0.0f});
+  out.add_lathe({0, 1.5f, 0}, 1.8f, {0.0f, 0.14f, 0.18f, 0.15f, 0.0f});
+  for (const float x : {-0.15f, 0.15f}) {
+    out.add_lathe({x, 0, 0}, 0.85f, {0.0f, 0.12f, 0.1f, 0.15f, 0.0f});
+    out.add_lathe({2.7f * x, 0.75f, 0}, 1.45f, {0.0f, 0.08f, 0.09f, 0.1f, 0.0f});
   }
   return out;
 }
