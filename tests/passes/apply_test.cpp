@@ -94,7 +94,7 @@ TEST_F(ApplyPass, AgreesWithTheFormulasInEveryView) {
   }
 }
 
-TEST_F(ApplyPass, WhiteFurnaceGivesBackNoMoreThanItGotAndAllOfItToWhiteDielectrics) {
+TEST_F(ApplyPass, WhiteFurnaceGainsNoEnergyAndWhiteDielectricsLoseNone) {
   LitSurfaces inputs = random_surfaces();
   make_white(inputs);
   inputs.albedo.texels.assign(inputs.albedo.texels.size(), 1.0f);
@@ -123,7 +123,7 @@ TEST_F(ApplyPass, WhiteFurnaceGivesBackNoMoreThanItGotAndAllOfItToWhiteDielectri
   }
 }
 
-TEST_F(ApplyPass, WithoutAMapThereIsNoTableAndWithoutPartsNoTextureOfThem) {
+TEST_F(ApplyPass, TableAndTexturesAreCreatedOnlyWhenUsed) {
   const LitSurfaces inputs = random_surfaces();
   const auto transients = [&](bool map, const ApplySettings& settings) {
     Kept kept;
@@ -153,7 +153,7 @@ TEST_F(ApplyPass, WithoutAMapThereIsNoTableAndWithoutPartsNoTextureOfThem) {
 
 // A whole frame from depth to light without specular light: no bent normal, no pass of specular
 // occlusion, no environment map and no table.
-TEST_F(ApplyPass, AFrameWithoutSpecularLightHasNothingOfIt) {
+TEST_F(ApplyPass, FrameWithoutSpecularLightHasNoSpecularResources) {
   const PlaneScene plane = plane_scene(test_views()[2], kWidth, kHeight, 30.0f);
   const LitSurfaces inputs = random_surfaces();
   Kept kept;
@@ -212,7 +212,7 @@ TEST_F(ApplyPass, DiffuseSurfacesNeedNoMap) {
   }
 }
 
-TEST_F(ApplyPass, RefusesWhatItCannotUseAndNamesIt) {
+TEST_F(ApplyPass, InvalidInputsAreReportedByName) {
   const LitSurfaces inputs = random_surfaces();
   const HostImage small{2, 3, std::vector<float>(24), 4};
   run([&](Graph& graph) {

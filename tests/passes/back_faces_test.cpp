@@ -28,7 +28,7 @@ OcclusionSettings of_thickness(OcclusionSettings settings, float thickness) {
 //           |____|   a slab, endless along y: from a point of the floor it covers the angles
 //        .´ .´       between the sight of its near upper and of its far lower edge
 //   ____x_____________
-TEST_F(BackFaces, ASlabAboveAFloorHasTheClosedForm) {
+TEST_F(BackFaces, SlabAboveAFloorMatchesTheClosedForm) {
   const TestView view = orthographic_view("orthographic", 4.0, 4.0, 0.1, 20.0);
   const double near = 0.3, far = 0.7, bottom = 0.8, top = 1.0, floor = 4.0;
   Scene scene = box({near, -100.0, bottom - floor}, {far, 100.0, top - floor});
@@ -58,7 +58,7 @@ TEST_F(BackFaces, ASlabAboveAFloorHasTheClosedForm) {
 
 // A ball of radius r, its centre at a distance d under an angle t to the normal, hides
 // cos t (r / d)^2 of a surface where it stands whole above its tangent plane.
-TEST_F(BackFaces, ABallAboveAFloorHasTheClosedFormInEveryView) {
+TEST_F(BackFaces, BallAboveAFloorMatchesTheClosedFormInEveryView) {
   const glm::dvec3 centre(0.05, -0.1, -3.1);
   const double radius = 0.35, floor = 4.0;
   const Scene scene{plane({0.0, 0.0, -floor}, {0.0, 0.0, 1.0}), sphere(centre, radius)};
@@ -93,7 +93,7 @@ TEST_F(BackFaces, ABallAboveAFloorHasTheClosedFormInEveryView) {
   }
 }
 
-TEST_F(BackFaces, ASolidThickerThanTheRadiusOccludesAsHorizonsDo) {
+TEST_F(BackFaces, SolidThickerThanTheRadiusEqualsHorizons) {
   const float radius = 1.2f;
   Scene scene = box({0.31, -50.0, -20.0}, {50.0, 50.0, -3.5});
   scene.push_back(plane({0.0, 0.0, -4.0}, {0.0, 0.0, 1.0}));
@@ -121,7 +121,7 @@ TEST_F(BackFaces, ASolidThickerThanTheRadiusOccludesAsHorizonsDo) {
 }
 
 // Of the sky, what is not a number, a face that is seen from behind, and one before the front.
-TEST_F(BackFaces, WithoutABackFaceBehindTheFrontTheSettingsThicknessCounts) {
+TEST_F(BackFaces, ThicknessOfTheSettingsIsUsedWithoutABackFaceBehindTheFront) {
   Scene scene = box({0.31, -50.0, -20.0}, {0.6, 50.0, -3.5});
   scene.push_back(plane({0.0, 0.0, -4.0}, {0.3, 0.1, 1.0}));
   for (const TestView& view : test_views()) {

@@ -63,7 +63,7 @@ bool is_a_sentence(const std::string& text) {
   return !text.empty() && text.back() == '.' && std::isupper(static_cast<unsigned char>(text[0]));
 }
 
-TEST_F(BadInput, EverySettingOutOfRangeIsNamed) {
+TEST_F(BadInput, SettingsOutOfRangeAreReportedByName) {
   struct Case {
     const char* names;
     Spoil spoil;
@@ -123,7 +123,7 @@ TEST_F(BadInput, EverySettingOutOfRangeIsNamed) {
   expect_a_good_frame();
 }
 
-TEST_F(BadInput, NumbersOfSentencesAreShortAndExactInEveryLocale) {
+TEST_F(BadInput, NumbersInMessagesAreShortAndExactInEveryLocale) {
   const CommaLocale comma;
   struct Case {
     const char* says;
@@ -148,7 +148,7 @@ TEST_F(BadInput, NumbersOfSentencesAreShortAndExactInEveryLocale) {
   }
 }
 
-TEST_F(BadInput, AProjectionThatIsNoneIsNamed) {
+TEST_F(BadInput, InvalidProjectionIsReported) {
   const std::vector<std::function<void(Matrix&)>> spoils{
       [](Matrix& m) { m.fill(0.0f); },         [](Matrix& m) { m[0] = kNaN; },
       [](Matrix& m) { m[10] = kInfinity; },    [](Matrix& m) { m[5] = 0.0f; },
@@ -166,7 +166,7 @@ TEST_F(BadInput, AProjectionThatIsNoneIsNamed) {
   expect_a_good_frame();
 }
 
-TEST_F(BadInput, AViewThatIsNoRotationAndTranslationIsNamed) {
+TEST_F(BadInput, ViewWithScaleIsReported) {
   for (const float bad : {0.0f, 2.0f, kNaN, kInfinity}) {
     const std::string said =
         error_of([&](View& view, OcclusionSettings&) { view.view_from_world[5] = bad; });
@@ -178,7 +178,7 @@ TEST_F(BadInput, AViewThatIsNoRotationAndTranslationIsNamed) {
   expect_a_good_frame();
 }
 
-TEST_F(BadInput, ATransposedProjectionIsNamed) {
+TEST_F(BadInput, TransposedProjectionIsReported) {
   for (const TestView& test : test_views()) {
     if (test.orthographic) {
       continue;
@@ -194,7 +194,7 @@ TEST_F(BadInput, ATransposedProjectionIsNamed) {
   }
 }
 
-TEST_F(BadInput, ASignalThatNoSearchLeavesIsNamed) {
+TEST_F(BadInput, RawOcclusionOfTheWrongKindIsReported) {
   struct Case {
     const char* names;
     std::function<void(RawOcclusionTextures&, OcclusionSettings&)> spoil;
@@ -244,7 +244,7 @@ TEST_F(BadInput, ASignalThatNoSearchLeavesIsNamed) {
   expect_a_good_frame();
 }
 
-TEST_F(BadInput, ASlotThatTheKernelsDoNotHaveIsNamed) {
+TEST_F(BadInput, FrameSlotOutOfRangeIsReported) {
   const Drawing drawing = draw(test_views()[2], 16, 12, groove(0.8));
   const auto report = gpu().run([&](Graph& graph) -> tl::expected<void, std::string> {
     gpu().kernels().begin_frame(8);
@@ -259,7 +259,7 @@ TEST_F(BadInput, ASlotThatTheKernelsDoNotHaveIsNamed) {
   expect_a_good_frame();
 }
 
-TEST_F(BadInput, AsManyFramesInFlightAsThereCannotBeAreNamed) {
+TEST_F(BadInput, TooManyFramesInFlightAreReported) {
   for (const std::uint32_t frames : {0u, 9u, ~0u}) {
     const auto kernels = Kernels::create(handles(), frames);
     ASSERT_FALSE(kernels) << frames;
@@ -268,7 +268,7 @@ TEST_F(BadInput, AsManyFramesInFlightAsThereCannotBeAreNamed) {
   }
 }
 
-TEST_F(BadInput, AnImageWithoutPixelsIsNamed) {
+TEST_F(BadInput, ImageWithoutPixelsIsReported) {
   std::string said;
   const auto report = gpu().run([&](Graph& graph) -> tl::expected<void, std::string> {
     const Frame frame{graph, gpu().kernels(), test_views()[2].view, 0};
@@ -285,7 +285,7 @@ TEST_F(BadInput, AnImageWithoutPixelsIsNamed) {
   expect_a_good_frame();
 }
 
-TEST_F(BadInput, ImagesOfUnequalSizesAreNamed) {
+TEST_F(BadInput, ImagesOfDifferentSizesAreReported) {
   const Drawing drawing = draw(test_views()[2], 16, 12, groove(0.8));
   const Drawing small = draw(test_views()[2], 16, 11, groove(0.8));
   run([&](Graph& graph) {
@@ -317,7 +317,7 @@ TEST_F(BadInput, ImagesOfUnequalSizesAreNamed) {
   expect_a_good_frame();
 }
 
-TEST_F(BadInput, AnInputThatWasNeverMadeIsNamed) {
+TEST_F(BadInput, NullInputIsReported) {
   std::string said;
   run([&](Graph& graph) {
     const Frame frame{graph, gpu().kernels(), test_views()[2].view, 0};

@@ -102,7 +102,7 @@ class CBadInput : public CInterface {
   AlcoveView view_{};
 };
 
-TEST_F(CBadInput, AFrameThatIsNoneIsNamed) {
+TEST_F(CBadInput, InvalidFrameIsReported) {
   struct Case {
     const char* names;
     std::function<void(Spoilt&)> spoil;
@@ -132,7 +132,7 @@ TEST_F(CBadInput, AFrameThatIsNoneIsNamed) {
   expect_a_good_frame();
 }
 
-TEST_F(CBadInput, EverySettingOutOfRangeIsNamed) {
+TEST_F(CBadInput, SettingsOutOfRangeAreReportedByName) {
   struct Case {
     const char* names;
     std::function<void(AlcoveSettings&, AlcoveAdvancedSettings&)> spoil;
@@ -179,7 +179,7 @@ TEST_F(CBadInput, EverySettingOutOfRangeIsNamed) {
   expect_a_good_frame();
 }
 
-TEST_F(CBadInput, ACameraThatIsNoneIsNamed) {
+TEST_F(CBadInput, InvalidCameraIsReported) {
   struct Case {
     const char* names;
     std::function<void(AlcoveView&)> spoil;
@@ -221,7 +221,7 @@ TEST_F(CBadInput, PreviousCameraIsReadOnlyWhereItsViewHasAHistory) {
   expect_a_good_frame();
 }
 
-TEST_F(CBadInput, WithoutAHistoryNothingOfTheFrameBeforeIsRead) {
+TEST_F(CBadInput, PreviousFrameIsNotReadWithoutAHistory) {
   AlcoveSettings settings = *view().settings;
   settings.history_frames = 0;
   AlcoveView alone = view();
@@ -237,7 +237,7 @@ TEST_F(CBadInput, WithoutAHistoryNothingOfTheFrameBeforeIsRead) {
   expect_equal(results_of(alone), expected);
 }
 
-TEST_F(CBadInput, AnImageThatDoesNotDoIsNamed) {
+TEST_F(CBadInput, UnusableImageIsReported) {
   struct Case {
     const char* names;
     std::function<void(AlcoveView&)> spoil;
@@ -301,7 +301,7 @@ TEST_F(CBadInput, AnImageThatDoesNotDoIsNamed) {
   expect_a_good_frame();
 }
 
-TEST_F(CBadInput, BackFacesThatAreReadButNotGivenAreNamed) {
+TEST_F(CBadInput, MissingBackFacesAreReported) {
   const std::string said = error_of([](Spoilt& s) {
     s.advanced.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES;
     s.views[0].back_depth = {};
@@ -310,7 +310,7 @@ TEST_F(CBadInput, BackFacesThatAreReadButNotGivenAreNamed) {
   EXPECT_PRED1(is_a_sentence, said);
 }
 
-TEST_F(CBadInput, ASecondLayerThatIsReadButNotGivenIsNamed) {
+TEST_F(CBadInput, MissingSecondLayerIsReported) {
   const std::string said = error_of([](Spoilt& s) {
     s.settings.depth_layers = 2;
     s.views[0].second_depth = {};
@@ -348,7 +348,7 @@ TEST_F(CBadInput, NullPointersAreErrors) {
   expect_a_good_frame();
 }
 
-TEST_F(CBadInput, AContextThatCannotBeIsNamed) {
+TEST_F(CBadInput, InvalidContextInfoIsReported) {
   struct Case {
     const char* names;
     std::function<void(AlcoveContextInfo&)> spoil;
@@ -381,7 +381,7 @@ TEST_F(CBadInput, AContextThatCannotBeIsNamed) {
   EXPECT_PRED1(is_a_sentence, message);
 }
 
-TEST_F(CBadInput, SettingsOfNoQualityAreErrors) {
+TEST_F(CBadInput, UnknownQualityIsAnError) {
   AlcoveSettings settings{.struct_size = sizeof settings};
   AlcoveQuality quality = ALCOVE_QUALITY_LOW;
   EXPECT_EQ(alcoveGetSettings(quality, 1.0f, nullptr), ALCOVE_ERROR_INVALID_INPUT);
@@ -400,7 +400,7 @@ TEST_F(CBadInput, SettingsOfNoQualityAreErrors) {
 }
 
 // Whatever the numbers of settings and cameras are, a frame is recorded or refused in a sentence.
-TEST_F(CBadInput, RandomNumbersAreRecordedOrRefused) {
+TEST_F(CBadInput, RandomNumbersAreEitherRecordedOrRefused) {
   const std::uint32_t seed = std::random_device{}();
   SCOPED_TRACE("seed " + std::to_string(seed));
   std::mt19937 random(seed);

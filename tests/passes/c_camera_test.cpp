@@ -46,7 +46,7 @@ void expect_converted(const glm::mat4& clip, const glm::mat4& view, std::uint32_
   expect_near(matrix_of(camera.view_from_world), expected_view());
 }
 
-TEST(CCamera, MatricesWithTheRightConventionStayAsTheyAre) {
+TEST(CCamera, MatricesInTheLibrarysConventionAreNotChanged) {
   expect_converted(expected_clip(), expected_view(), 0);
 }
 
@@ -93,14 +93,14 @@ AlcovePerspective perspective() {
           .height = 200};
 }
 
-TEST(CCamera, APerspectiveInPlainNumbersIsGlms) {
+TEST(CCamera, PerspectiveFromNumbersEqualsGlm) {
   const AlcovePerspective given = perspective();
   float clip[16];
   ASSERT_EQ(alcoveMakePerspective(&given, clip), ALCOVE_SUCCESS);
   expect_near(matrix_of(clip), expected_clip());
 }
 
-TEST(CCamera, NearAndFarPlanesHaveTheDepthsThatTheyShould) {
+TEST(CCamera, NearAndFarPlanesHaveTheirDepths) {
   for (const bool reversed : {false, true}) {
     for (const float far : {kFar, 0.0f, std::numeric_limits<float>::infinity()}) {
       AlcovePerspective given = perspective();

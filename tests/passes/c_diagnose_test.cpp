@@ -45,7 +45,7 @@ std::string said_of(const std::function<void(AlcoveFrame&, AlcoveView&)>& spoil,
   return observer.describe();
 }
 
-TEST(CDiagnose, RightCallsAreNotReported) {
+TEST(CDiagnose, CorrectCallsAreNotReported) {
   for (const float speed : {0.0f, 1e-5f, 0.1f, 1e4f}) {
     EXPECT_EQ(said_of([](AlcoveFrame&, AlcoveView&) {}, speed), "") << speed;
   }
@@ -57,30 +57,30 @@ TEST(CDiagnose, RightCallsAreNotReported) {
             "");
 }
 
-TEST(CDiagnose, AnIndexThatStandsStillIsReported) {
+TEST(CDiagnose, ConstantFrameIndexIsReported) {
   EXPECT_THAT(said_of([](AlcoveFrame& frame, AlcoveView&) { frame.index = 7; }),
               HasSubstr("AlcoveFrame::index has been 7 in 20 frames in a row"));
 }
 
-TEST(CDiagnose, APreviousCameraThatIsAlwaysThisFramesIsReported) {
+TEST(CDiagnose, PreviousCameraEqualToThisCameraIsReported) {
   EXPECT_THAT(said_of([](AlcoveFrame&, AlcoveView& view) { view.previous_camera = view.camera; }),
               HasSubstr("View 3: previous_camera is this frame's camera"));
 }
 
-TEST(CDiagnose, APreviousCameraThatIsNeverTheLastIsReported) {
+TEST(CDiagnose, PreviousCameraThatIsNeverTheLastFramesIsReported) {
   EXPECT_THAT(said_of([](AlcoveFrame&, AlcoveView& view) {
                 view.previous_camera = camera_at(-5.0f, 0.0f);
               }),
               HasSubstr("View 3: previous_camera is never"));
 }
 
-TEST(CDiagnose, JitterThatOnlyOneCameraHasIsReported) {
+TEST(CDiagnose, JitterInOnlyOneOfTheTwoCamerasIsReported) {
   EXPECT_THAT(
       said_of([](AlcoveFrame&, AlcoveView& view) { view.camera.clip_from_view[8] += 0.5f; }),
       HasSubstr("jitter included"));
 }
 
-TEST(CDiagnose, StaticFramesInMotionAndAHistoryThatNeverGathersAreReported) {
+TEST(CDiagnose, StaticFramesInMotionAndConstantResetsAreReported) {
   EXPECT_THAT(said_of([](AlcoveFrame&, AlcoveView& view) { view.static_frames = 1; }),
               HasSubstr("View 3: static_frames"));
   EXPECT_THAT(said_of([](AlcoveFrame&, AlcoveView& view) { view.reset_history = VK_TRUE; }),
@@ -89,7 +89,7 @@ TEST(CDiagnose, StaticFramesInMotionAndAHistoryThatNeverGathersAreReported) {
 
 class CDiagnoseFrames : public CInterface {};
 
-TEST_F(CDiagnoseFrames, TextComesAsOtherTextsDoAndOnlyOfRecordedFrames) {
+TEST_F(CDiagnoseFrames, TextIsTruncatedLikeOtherTextsAndCoversRecordedFramesOnly) {
   const Context context = create_context();
   EXPECT_EQ(alcoveDiagnose(context.get(), nullptr, 0), 0u);
   EXPECT_EQ(alcoveDiagnose(nullptr, nullptr, 0), 0u);

@@ -79,7 +79,7 @@ class CFailure : public CInterface {
   }
 };
 
-TEST_F(CFailure, MissingFeaturesAndFunctionsAreNamed) {
+TEST_F(CFailure, MissingFeaturesAndFunctionsAreReported) {
   AlcoveContextInfo info = engine().context_info();
   info.get_instance_proc_addr = get_instance_proc_addr;
   EXPECT_EQ(error_of_context(info, ALCOVE_SUCCESS), "");
@@ -106,7 +106,7 @@ TEST_F(CFailure, MissingFeaturesAndFunctionsAreNamed) {
   EXPECT_THAT(error_of_context(info, ALCOVE_ERROR_UNSUPPORTED), HasSubstr("instance"));
 }
 
-TEST_F(CFailure, AFeatureThatTheEngineDidNotEnableIsNamed) {
+TEST_F(CFailure, FeatureThatWasNotEnabledIsReported) {
   AlcoveContextInfo info = engine().context_info();
   VkPhysicalDeviceVulkan13Features vulkan13{
       .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
@@ -154,7 +154,7 @@ Outcome run_frames(const AlcoveContextInfo& info, const AlcoveView& view, Engine
   return outcome;
 }
 
-TEST_F(CFailure, RunningOutOfDeviceMemoryAnywhereIsAnErrorAndLeaksNothing) {
+TEST_F(CFailure, OutOfDeviceMemoryAnywhereIsAnErrorWithoutLeaks) {
   GivenView given = given_view(test_views()[2], 8, 6, groove(0.8));
   given.settings.advanced.estimator = Estimator::horizons;
   AlcoveSettings settings;
@@ -175,7 +175,7 @@ TEST_F(CFailure, RunningOutOfDeviceMemoryAnywhereIsAnErrorAndLeaksNothing) {
   }
 }
 
-TEST(CResult, HasTheNameOfItsValue) {
+TEST(CResult, NamesMatchTheEnumerators) {
 #define ALCOVE_NAMED(value) \
   std::pair { value, #value }
   for (const auto& [value, name] :
@@ -201,7 +201,7 @@ bool call_without_memory(std::size_t which, const Call& call) {
   return failed;
 }
 
-TEST_F(CFailure, AContextWithoutHostMemoryIsAnErrorAndLeaksNothing) {
+TEST_F(CFailure, OutOfHostMemoryInCreateContextIsAnErrorWithoutLeaks) {
   AlcoveContextInfo info = engine().context_info();
   info.get_instance_proc_addr = framegraph::failing::get_instance_proc_addr;
   bool failed = true;
@@ -222,7 +222,7 @@ TEST_F(CFailure, AContextWithoutHostMemoryIsAnErrorAndLeaksNothing) {
   EXPECT_GT(which, 20u) << "hardly any of them failed";
 }
 
-TEST_F(CFailure, APreparationWithoutHostMemoryIsAnErrorAndTheNextOneSucceeds) {
+TEST_F(CFailure, PrepareFrameSucceedsAfterRunningOutOfHostMemory) {
   GivenView given = given_view(test_views()[2], 16, 12, groove(0.8));
   AlcoveSettings settings;
   const AlcoveView view = view_of(given, settings);
@@ -244,7 +244,7 @@ TEST_F(CFailure, APreparationWithoutHostMemoryIsAnErrorAndTheNextOneSucceeds) {
 }
 
 // Frames of ever other sizes, so that each is compiled and gets memory anew.
-TEST_F(CFailure, AFrameWithoutHostMemoryIsAnErrorAndTheNextOneIsRecorded) {
+TEST_F(CFailure, RecordFrameSucceedsAfterRunningOutOfHostMemory) {
   GivenView given = given_view(test_views()[2], 64, 48, groove(0.8));
   given.settings.bent_normal = true;
   AlcoveSettings settings;

@@ -176,7 +176,7 @@ class CHost : public CInterface {
   }
 };
 
-TEST_F(CHost, WhatItsAllocatorsGaveIsUsedAndFreed) {
+TEST_F(CHost, HostAllocationsAreUsedAndFreed) {
   HostMemory host;
   const VkAllocationCallbacks callbacks = host.callbacks();
   DeviceMemory memory{gpu().device()};
@@ -197,7 +197,7 @@ TEST_F(CHost, WhatItsAllocatorsGaveIsUsedAndFreed) {
   EXPECT_THAT(memory.alive, IsEmpty());
 }
 
-TEST_F(CHost, ItsBlockHoldsEveryImageThroughChangesOfSize) {
+TEST_F(CHost, HostBlockHoldsEveryImageThroughSizeChanges) {
   const Block block(gpu().device(), 1 << 20);
   DeviceMemory memory{gpu().device()};
   {
@@ -220,7 +220,7 @@ TEST_F(CHost, ItsBlockHoldsEveryImageThroughChangesOfSize) {
   EXPECT_THAT(memory.alive, IsEmpty());
 }
 
-TEST_F(CHost, ABlockThatIsTooSmallIsNamedAndSmallerFramesGoOn) {
+TEST_F(CHost, TooSmallBlockIsReportedAndSmallerFramesStillWork) {
   const Block block(gpu().device(), 200000);
   Said said;
   AlcoveContextInfo info = engine().context_info();
@@ -247,7 +247,7 @@ TEST_F(CHost, ABlockThatIsTooSmallIsNamedAndSmallerFramesGoOn) {
   engine().wait();
 }
 
-TEST_F(CHost, ARefusedAllocationIsAnErrorAndTheNextFrameGoesOn) {
+TEST_F(CHost, RefusedAllocationIsAnErrorAndTheNextFrameWorks) {
   AlcoveSettings settings;
   const AlcoveView view = view_of(given_of(16, 12), settings);
   DeviceMemory memory{gpu().device()};
@@ -278,7 +278,7 @@ TEST_F(CHost, ARefusedAllocationIsAnErrorAndTheNextFrameGoesOn) {
   EXPECT_THAT(memory.alive, IsEmpty());
 }
 
-TEST_F(CHost, ItsLogGetsEverySentence) {
+TEST_F(CHost, LogCallbackGetsEveryMessage) {
   Said said;
   AlcoveContextInfo info = engine().context_info();
   info.log = said.log();
@@ -306,7 +306,7 @@ TEST_F(CHost, ItsLogGetsEverySentence) {
   engine().wait();
 }
 
-TEST_F(CHost, AnIncompleteAllocatorIsNamed) {
+TEST_F(CHost, IncompleteAllocatorIsReported) {
   const auto message_of = [&](const AlcoveContextInfo& info) {
     AlcoveContext* made = nullptr;
     char message[ALCOVE_MAX_MESSAGE];

@@ -35,7 +35,7 @@ void copy(VkCommandBuffer commands, const AlcoveImage& image, const sample::Host
 }
 
 // Both eyes in the layers of one array, each with an image view of the library's.
-TEST_F(CImages, LayersOfAnArrayAreImagesOfTheirOwn) {
+TEST_F(CImages, LayersOfAnArrayAreIndependentImages) {
   const Context context = create_context();
   constexpr VkImageUsageFlags kStored =
       VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
@@ -66,7 +66,7 @@ TEST_F(CImages, LayersOfAnArrayAreImagesOfTheirOwn) {
   }
 }
 
-TEST_F(CImages, DepthMayComeInADepthFormatAndAnyLayout) {
+TEST_F(CImages, DepthFormatsAndAllLayoutsAreAccepted) {
   const Context context = create_context();
   GivenView given = given_view(test_views()[2], 16, 12, ball_on_floor());
   AlcoveSettings settings;
@@ -101,7 +101,7 @@ TEST_F(CImages, OneImageMayBeSeveralInputs) {
   expect_equal(results_of(view), run_by_cpp(given, 0));
 }
 
-TEST_F(CImages, AnImageThatIsForgottenMayBeDestroyed) {
+TEST_F(CImages, ForgottenImageMayBeDestroyed) {
   const Context context = create_context();
   const GivenView given = given_view(test_views()[2], 16, 12, ball_on_floor());
   AlcoveSettings settings;

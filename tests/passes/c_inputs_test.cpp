@@ -97,7 +97,7 @@ TEST_F(CInputs, EveryNormalEncodingGivesTheSameImages) {
   }
 }
 
-TEST_F(CInputs, NormalsOfACameraThatLooksAlongPlusZAreMirroredInAndOut) {
+TEST_F(CInputs, NormalsOfAForwardZCameraAreMirroredInAndOut) {
   const GivenView plain = given();
   const Results expected = results(plain, 2, [](AlcoveView&) {});
   const auto mirrored = [](const HostImage& image) {
@@ -115,7 +115,7 @@ TEST_F(CInputs, NormalsOfACameraThatLooksAlongPlusZAreMirroredInAndOut) {
   EXPECT_LT(rms(found.specular, expected.specular), 1e-5);
 }
 
-TEST_F(CInputs, MotionInAnyUnitReadsTheSameHistory) {
+TEST_F(CInputs, MotionVectorsOfAnyUnitGiveTheSameResult) {
   // Planes that face the eye: a history that is read in the wrong place is not rejected by its
   // depth.
   GivenView moving = given_view(test_views()[2], kWidth, kHeight, step(0.31, 0.6));
@@ -152,7 +152,7 @@ TEST_F(CInputs, MotionInAnyUnitReadsTheSameHistory) {
   EXPECT_GT(rms(wrong.visibility, expected.visibility), 1e-3) << "the sign makes no difference";
 }
 
-TEST_F(CInputs, PowerAndIntensityShapeWhatIsWrittenAndNothingElse) {
+TEST_F(CInputs, PowerAndIntensityChangeOnlyWrittenVisibility) {
   GivenView plain = given();
   plain.settings.specular = Specular::slices;
   const Results open = results(plain, 3, [](AlcoveView&) {});
@@ -167,7 +167,7 @@ TEST_F(CInputs, PowerAndIntensityShapeWhatIsWrittenAndNothingElse) {
   EXPECT_EQ(shaped.specular.texels, open.specular.texels);
 }
 
-TEST_F(CInputs, AnUnknownEncodingAndAMotionScaleOfZeroAreNamed) {
+TEST_F(CInputs, UnknownEncodingAndZeroMotionScaleAreReported) {
   GivenView plain = given();
   plain.motion = {kWidth, kHeight, std::vector<float>(std::size_t{2} * kWidth * kHeight, 0.0f), 2};
   const Context context = create_context();

@@ -26,7 +26,7 @@ GivenView frame_of(std::uint32_t frame, std::uint32_t width, std::uint32_t heigh
   return given;
 }
 
-TEST_F(CInterface, FramesWithHistoryAreTheSameAsByCpp) {
+TEST_F(CInterface, FramesWithHistoryEqualThoseOfTheCppInterface) {
   const Context context = create_context();
   for (std::uint32_t i = 0; i < 5; ++i) {
     GivenView given = frame_of(i, 33, 17, 3);
@@ -37,7 +37,7 @@ TEST_F(CInterface, FramesWithHistoryAreTheSameAsByCpp) {
   }
 }
 
-TEST_F(CInterface, AStillViewIsTheSameAsByCpp) {
+TEST_F(CInterface, StaticViewEqualsThatOfTheCppInterface) {
   const Context context = create_context();
   for (std::uint32_t i = 0; i < 20; ++i) {
     GivenView given = frame_of(0, 33, 17);
@@ -144,7 +144,7 @@ TEST_F(CInterface, EverySettingReachesThePasses) {
   }
 }
 
-TEST_F(CInterface, EachOutputAloneIsTheSameAsByCpp) {
+TEST_F(CInterface, EachOutputAloneEqualsThatOfTheCppInterface) {
   const std::array<void (*)(GivenView&), 4> only{
       [](GivenView& g) { g.settings.visibility = true; },
       [](GivenView& g) { g.settings.bent_normal = true; },
@@ -163,7 +163,7 @@ TEST_F(CInterface, EachOutputAloneIsTheSameAsByCpp) {
   }
 }
 
-TEST_F(CInterface, ImagesOfAnySizeAreTheSameAsByCpp) {
+TEST_F(CInterface, ImagesOfAnySizeEqualThoseOfTheCppInterface) {
   const Context context = create_context();
   const std::pair<std::uint32_t, std::uint32_t> sizes[] = {{1, 1}, {1, 7}, {5, 1}, {3, 2}, {31, 9}};
   std::uint32_t index = 0;
@@ -176,7 +176,7 @@ TEST_F(CInterface, ImagesOfAnySizeAreTheSameAsByCpp) {
   }
 }
 
-TEST_F(CInterface, ViewsOfAFrameAreTheSameAsEachAlone) {
+TEST_F(CInterface, ViewsOfAFrameEqualThoseRecordedAlone) {
   const Context context = create_context();
   for (std::uint32_t i = 0; i < 4; ++i) {
     std::vector<GivenView> views(3, frame_of(i, 16, 12));
@@ -195,7 +195,7 @@ TEST_F(CInterface, ViewsOfAFrameAreTheSameAsEachAlone) {
 }
 
 // Its world looks the same in a mirror, and so do its normals.
-TEST_F(CInterface, ALeftHandedWorldLooksTheSame) {
+TEST_F(CInterface, LeftHandedWorldGivesTheSameImage) {
   const Context context = create_context();
   const auto mirror = [](HostImage& image) {
     for (std::size_t i = 2; i < image.texels.size(); i += image.channels) {
@@ -218,7 +218,7 @@ TEST_F(CInterface, ALeftHandedWorldLooksTheSame) {
   }
 }
 
-TEST_F(CInterface, EightViewsWithEverythingFitAFrame) {
+TEST_F(CInterface, FrameMayHaveEightViewsWithAllOutputs) {
   const Context context = create_context();
   std::vector<GivenView> views;
   for (std::uint32_t id = 0; id < ALCOVE_MAX_VIEWS; ++id) {
@@ -237,7 +237,7 @@ TEST_F(CInterface, EightViewsWithEverythingFitAFrame) {
   expect_same_both_ways(*context, views, 0);
 }
 
-TEST_F(CInterface, EveryImageOfEightViewsIsTaken) {
+TEST_F(CInterface, EveryImageOfEightViewsIsAccepted) {
   const Context context = create_context();
   std::vector<GivenView> views;
   for (std::uint32_t id = 0; id < ALCOVE_MAX_VIEWS; ++id) {
@@ -252,7 +252,7 @@ TEST_F(CInterface, EveryImageOfEightViewsIsTaken) {
 
 // An output that others are made from is read by the library and then by the engine, for which
 // alone the next frame waits.
-TEST_F(CInterface, FramesOfTheSameImagesNeedNoWait) {
+TEST_F(CInterface, FramesInFlightMayUseTheSameImages) {
   const Context context = create_context();
   GivenView given = frame_of(0, 33, 17);
   given.settings.bent_normal = true;
@@ -294,7 +294,7 @@ TEST_F(CInterface, DiscardedFrameLeavesNoTrace) {
 
 // Such a frame differs from those before and after in what a history depends on. Whether it is
 // thrown away or refused, the next one is as by C++, which never hears of it.
-TEST_F(CInterface, AFrameThatNeverRunsChangesNoHistory) {
+TEST_F(CInterface, FrameThatIsNotSubmittedDoesNotChangeTheHistory) {
   struct Case {
     const char* name;
     void (*change)(GivenView&);
@@ -344,14 +344,14 @@ TEST_F(CInterface, AFrameThatNeverRunsChangesNoHistory) {
   }
 }
 
-TEST_F(CInterface, AReferenceIsTheSameAsByCpp) {
+TEST_F(CInterface, ReferenceQualityEqualsThatOfTheCppInterface) {
   const Context context = create_context();
   GivenView given = frame_of(0, 6, 4);
   given.settings = quality_settings(Quality::reference, 0.5f);
   expect_same_both_ways(*context, {&given, 1}, 0);
 }
 
-TEST_F(CInterface, AProgramInCRecordsAFrame) {
+TEST_F(CInterface, CProgramRecordsAFrame) {
   const AlcoveContextInfo info = engine().context_info();
   GivenView given = frame_of(0, 16, 12);
   given.settings = quality_settings(Quality::high, 0.5f);

@@ -12,7 +12,7 @@ namespace {
 
 class CMemory : public CInterface {};
 
-TEST_F(CMemory, EstimatesAreWhatFramesTake) {
+TEST_F(CMemory, EstimatesEqualTheMemoryOfFrames) {
   constexpr std::uint32_t kWidth = 256, kHeight = 128;
   struct Case {
     const char* name;

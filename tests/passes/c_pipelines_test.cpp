@@ -95,7 +95,7 @@ class CPipelines : public CInterface {
   }
 };
 
-TEST_F(CPipelines, ComeFromTheEnginesCacheWhichOutlivesTheContext) {
+TEST_F(CPipelines, PipelinesComeFromTheEnginesCacheWhichOutlivesTheContext) {
   GivenView given = given_view(test_views()[2], 16, 12, groove(0.8));
   (void)run_by_c(*create_counted(), {&given, 1}, 0);
   EXPECT_THAT(caches, testing::ElementsAre(VkPipelineCache{VK_NULL_HANDLE})) << "by default";
@@ -113,7 +113,7 @@ TEST_F(CPipelines, ComeFromTheEnginesCacheWhichOutlivesTheContext) {
 }
 
 // As many as the frames of an unprepared view make: all that they need, and no more.
-TEST_F(CPipelines, OfAPreparedViewAreAllMadeBeforeItsFirstFrame) {
+TEST_F(CPipelines, PrepareFrameCreatesAllPipelinesOfAView) {
   struct Case {
     const char* name;
     void (*change)(GivenView&);
@@ -165,7 +165,7 @@ TEST_F(CPipelines, OfAPreparedViewAreAllMadeBeforeItsFirstFrame) {
   }
 }
 
-TEST_F(CPipelines, OfOtherFramesAreMadeWithoutATraceInThoseRecorded) {
+TEST_F(CPipelines, PrepareFrameDoesNotAffectRecordedFrames) {
   const Context context = create_counted();
   for (std::uint32_t i = 0; i < 4; ++i) {
     GivenView given = given_view(test_views()[2], 33, 17, ball_on_floor());

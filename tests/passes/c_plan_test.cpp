@@ -41,7 +41,7 @@ class CPlan : public CInterface {
   std::uint32_t index_ = 0;
 };
 
-TEST_F(CPlan, AnOutputAloneHasNoPassAndNoMemoryOfTheOthers) {
+TEST_F(CPlan, SingleOutputNeedsNoPassOrMemoryOfTheOthers) {
   const Context context = create_context();
   GivenView visibility = least();
   visibility.settings.visibility = true;
@@ -79,7 +79,7 @@ TEST_F(CPlan, AnOutputAloneHasNoPassAndNoMemoryOfTheOthers) {
 
 // Of an image of which a part is in use the rest is its contents too, and a driver may throw away
 // what changes its layout from undefined.
-TEST_F(CPlan, AnOutputThatArrivesWithContentsKeepsWhatLiesOutsideThePart) {
+TEST_F(CPlan, PixelsOutsideTheWrittenPartKeepTheirContents) {
   const Context context = create_context();
   for (const Specular specular : {Specular::slices, Specular::table}) {
     GivenView given = least();
@@ -110,7 +110,7 @@ TEST_F(CPlan, AnOutputThatArrivesWithContentsKeepsWhatLiesOutsideThePart) {
   }
 }
 
-TEST_F(CPlan, HistoryTakesMemoryOnlyWhereItIsOnAndUntilItIsDropped) {
+TEST_F(CPlan, HistoryTakesMemoryOnlyWhileItIsOn) {
   const Context context = create_context();
   GivenView given = least();
   given.settings.bent_normal = true;
@@ -140,7 +140,7 @@ TEST_F(CPlan, HistoryTakesMemoryOnlyWhereItIsOnAndUntilItIsDropped) {
   }
 }
 
-TEST_F(CPlan, AfterAFrameThatFailedThereIsNeitherMemoryNorAPlan) {
+TEST_F(CPlan, FailedFrameHasNoMemoryReportAndNoPlan) {
   const Context context = create_context();
   GivenView given = least();
   given.settings.visibility = true;
@@ -157,7 +157,7 @@ TEST_F(CPlan, AfterAFrameThatFailedThereIsNeitherMemoryNorAPlan) {
   engine().wait();
 }
 
-TEST_F(CPlan, AViewThatWasDroppedBeginsAnew) {
+TEST_F(CPlan, DroppedViewStartsAnew) {
   const Context context = create_context();
   GivenView given = least();
   given.settings.visibility = true;
@@ -171,7 +171,7 @@ TEST_F(CPlan, AViewThatWasDroppedBeginsAnew) {
   expect_equal(again, run_by_c(*context, {&given, 1}, 3)[0]);
 }
 
-TEST_F(CPlan, TimingsNameThePassesOfAFinishedFrame) {
+TEST_F(CPlan, TimingsListThePassesOfAFinishedFrame) {
   const Context context = create_context();
   std::uint32_t count = 99;
   EXPECT_EQ(alcoveGetTimings(context.get(), 0, &count, nullptr), ALCOVE_SUCCESS);
@@ -196,7 +196,7 @@ TEST_F(CPlan, TimingsNameThePassesOfAFinishedFrame) {
   EXPECT_EQ(count, 1u);
 }
 
-TEST_F(CPlan, TimingsNameTheViewOfEachPass) {
+TEST_F(CPlan, TimingsContainTheViewOfEachPass) {
   const Context context = create_context();
   std::array<GivenView, 3> given;
   for (GivenView& view : given) {
@@ -224,7 +224,7 @@ TEST_F(CPlan, TimingsNameTheViewOfEachPass) {
   EXPECT_EQ(passes[given[2].id], plain);
 }
 
-TEST(CSettings, AreFilledPrintedAndPassedBack) {
+TEST(CSettings, SettingsCanBeFilledPrintedAndPassedBack) {
   for (int quality = ALCOVE_QUALITY_LOW; quality <= ALCOVE_QUALITY_REFERENCE; ++quality) {
     AlcoveSettings settings{.struct_size = sizeof(AlcoveSettings)};
     ASSERT_EQ(alcoveGetSettings(static_cast<AlcoveQuality>(quality), 2.5f, &settings),
@@ -242,7 +242,7 @@ TEST(CSettings, AreFilledPrintedAndPassedBack) {
 }
 
 // A line of them that is written down can be set again.
-TEST(CSettings, ArePrintedShortAndExactInEveryLocale) {
+TEST(CSettings, SettingsArePrintedShortAndExactInEveryLocale) {
   const CommaLocale comma;
   AlcoveSettings settings{.struct_size = sizeof settings};
   ASSERT_EQ(alcoveGetSettings(ALCOVE_QUALITY_MEDIUM, 0.15f, &settings), ALCOVE_SUCCESS);

@@ -376,7 +376,7 @@ void CResize::run_for(std::chrono::seconds time) {
   }
 }
 
-TEST_F(CResize, WhateverChangesResultsAreInRangeAndMemoryStaysBounded) { run_for(wanted_time()); }
+TEST_F(CResize, ResultsAreInRangeAndMemoryIsBoundedAfterAnyChange) { run_for(wanted_time()); }
 
 }  // namespace
 }  // namespace alcove::passes

@@ -23,7 +23,7 @@ class CSize : public CInterface {
   }
 };
 
-TEST_F(CSize, APartOfAnImageIsAsAnImageOfThatSize) {
+TEST_F(CSize, PartOfAnImageGivesTheSameResultAsAnImageOfThatSize) {
   const Context context = create_context();
   GivenView given = given_view(test_views()[2], 21, 14, ball_on_floor());
   given.settings.bent_normal = true;
@@ -48,7 +48,7 @@ TEST_F(CSize, APartOfAnImageIsAsAnImageOfThatSize) {
   }
 }
 
-TEST_F(CSize, RoomForMoreChangesNothing) {
+TEST_F(CSize, LargestSizeDoesNotChangeTheResult) {
   const Context context = create_context();
   for (std::uint32_t i = 0; i < 4; ++i) {
     GivenView given = given_view(test_views()[2], 21, 14, ball_on_floor());
@@ -73,7 +73,7 @@ double rms(const HostImage& a, const HostImage& b) {
 
 // A view whose size is another in each frame gathers as one of a constant size does, by the camera
 // and by motion vectors.
-TEST_F(CSize, HistoryGoesOnWhileTheSizeChanges) {
+TEST_F(CSize, HistoryContinuesWhileTheSizeChanges) {
   constexpr std::array<VkExtent2D, 4> kSizes{{{48, 36}, {40, 30}, {56, 42}, {44, 33}}};
   constexpr VkExtent2D kLargest{56, 42};
   constexpr std::uint32_t kFrames = 17;  // ends with the first size
@@ -117,7 +117,7 @@ TEST_F(CSize, HistoryGoesOnWhileTheSizeChanges) {
   }
 }
 
-TEST_F(CSize, SizesOutsideTheLargestAreRefused) {
+TEST_F(CSize, SizesAboveTheLargestAreRefused) {
   const Context context = create_context();
   GivenView given = given_view(test_views()[2], 21, 14, ball_on_floor());
   AlcoveSettings settings;

@@ -127,7 +127,7 @@ TEST_F(EnvironmentPass, LevelsAgreeWithQuadratureOfTheLobe) {
   }
 }
 
-TEST_F(EnvironmentPass, WhiteStaysWhiteInEveryTexel) {
+TEST_F(EnvironmentPass, WhiteEnvironmentStaysWhiteInEveryTexel) {
   const HostImage source = equirectangular(64, [](vec3) { return vec3(1); });
   run([&](Graph& graph) {
     const auto made = add_environment({graph, gpu().kernels(), {}, 0}, upload(graph, source),
@@ -147,7 +147,7 @@ TEST_F(EnvironmentPass, WhiteStaysWhiteInEveryTexel) {
   }
 }
 
-TEST_F(EnvironmentPass, WhatIsNoLightCountsAsBlackAndInfinityAsTheLargestHalf) {
+TEST_F(EnvironmentPass, InvalidRadianceIsBlackAndInfinityIsTheLargestHalf) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float infinity = std::numeric_limits<float>::infinity();
   const HostImage source = equirectangular(
@@ -167,7 +167,7 @@ TEST_F(EnvironmentPass, WhatIsNoLightCountsAsBlackAndInfinityAsTheLargestHalf) {
   EXPECT_EQ(result(0).at(13, 8, 2), 65504.0f);
 }
 
-TEST_F(EnvironmentPass, TakesNoTimeWhenNobodyReadsIt) {
+TEST_F(EnvironmentPass, IsCulledWhenItsOutputIsNotRead) {
   const HostImage source = equirectangular(32, sky);
   run([&](Graph& graph) {
     const auto light = upload(graph, source);
@@ -179,7 +179,7 @@ TEST_F(EnvironmentPass, TakesNoTimeWhenNobodyReadsIt) {
   }
 }
 
-TEST_F(EnvironmentPass, RefusesWhatItCannotUseAndNamesIt) {
+TEST_F(EnvironmentPass, InvalidInputsAreReportedByName) {
   const HostImage source = equirectangular(32, sky);
   run([&](Graph& graph) {
     const Frame frame{graph, gpu().kernels(), {}, 0};

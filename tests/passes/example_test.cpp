@@ -79,7 +79,7 @@ class Example : public passes::CInterface {
   }
 };
 
-TEST_F(Example, OfTheReadmeDrawsWhatTheCInterfaceDraws) {
+TEST_F(Example, TheReadmeExampleDrawsTheSameImageAsTheCInterface) {
   passes::GivenView given =
       passes::given_view(passes::test_views()[2], 40, 30, passes::ball_on_floor());
   given.settings = passes::quality_settings(passes::Quality::medium, 0.5f);

@@ -77,7 +77,7 @@ class Extremes : public PassTest {
   }
 };
 
-TEST_F(Extremes, HistoryKnowsNoUnitOfLength) {
+TEST_F(Extremes, HistoryIsIndependentOfTheSceneUnit) {
   for (const bool orthographic : {false, true}) {
     std::vector<Images> expected;
     for (const int exponent : {0, -30, 17, 30}) {
@@ -103,7 +103,7 @@ TEST_F(Extremes, HistoryKnowsNoUnitOfLength) {
 }
 
 // Before the eye or behind it, where engines put an orthographic near plane too.
-TEST_F(Extremes, OrthographicDepthMayBeginAnywhere) {
+TEST_F(Extremes, OrthographicNearPlaneMayBeAnywhere) {
   const OcclusionSettings settings = everything(Quality::medium, 1.0f);
   for (const NamedScene& scene : gtao_scenes()) {
     std::vector<Images> expected;
@@ -122,7 +122,7 @@ TEST_F(Extremes, OrthographicDepthMayBeginAnywhere) {
   }
 }
 
-TEST_F(Extremes, WhatLiesBehindAnOrthographicEyeHasAThicknessToo) {
+TEST_F(Extremes, OccludersBehindAnOrthographicEyeHaveThickness) {
   for (const Estimator estimator : {Estimator::bitmask, Estimator::connected}) {
     OcclusionSettings settings = everything(Quality::medium, 1.0f);
     settings.advanced.estimator = estimator;
@@ -143,7 +143,7 @@ TEST_F(Extremes, WhatLiesBehindAnOrthographicEyeHasAThicknessToo) {
 }
 
 // A camera that stands where its floats cannot tell a twentieth, among things that might move.
-TEST_F(Extremes, FarFromTheWorldsOriginHistoryIsKept) {
+TEST_F(Extremes, HistoryIsKeptFarFromTheWorldOrigin) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, kWidth, kHeight, ball_on_floor());
   const HostImage motion{kWidth, kHeight,
@@ -173,7 +173,7 @@ TEST_F(Extremes, FarFromTheWorldsOriginHistoryIsKept) {
   EXPECT_LT(rms(visibility_at(1e6), visibility_at(0.0)), 1e-3);
 }
 
-TEST_F(Extremes, WhatIsNoNormalOrRoughnessIsGoneWithItsFrame) {
+TEST_F(Extremes, InvalidNormalsAndRoughnessDoNotPersistInHistory) {
   constexpr std::array kHoles{0u, 20 * kWidth + 28, 20 * kWidth + 29, 7 * kWidth + 40};
   for (const TestView& view : {test_views()[2], test_views().back()}) {
     const Drawing clean = draw(view, kWidth, kHeight, ball_on_floor());
@@ -223,7 +223,7 @@ TEST_F(Extremes, WhatIsNoNormalOrRoughnessIsGoneWithItsFrame) {
 
 // Where every search of a block meets something ten thousand million times nearer, the others'
 // weights are tiny, and are not nothing.
-TEST_F(Extremes, WhatLiesFarBehindWhatWasSearchedKeepsItsShade) {
+TEST_F(Extremes, SurfacesFarBehindTracedPixelsKeepTheirVisibility) {
   constexpr std::uint32_t kSide = 64;
   const TestView view = perspective_view("", 1.2, 1.2, 0.01, kInfinity, true);
   std::vector<double> means;
@@ -251,7 +251,7 @@ TEST_F(Extremes, WhatLiesFarBehindWhatWasSearchedKeepsItsShade) {
   EXPECT_NEAR(means[1], means[0], 1e-4);
 }
 
-TEST_F(Extremes, AnyRadiusIsSound) {
+TEST_F(Extremes, AnyRadiusGivesFiniteValuesInRange) {
   for (const TestView& view : {test_views()[2], test_views().back()}) {
     const Drawing drawing = draw(view, kWidth, kHeight, ball_on_floor());
     std::vector<HostImage> largest;
@@ -279,7 +279,7 @@ TEST_F(Extremes, AnyRadiusIsSound) {
 }
 
 // Under 170 degrees a pixel of the plane's horizon is seen within half a degree of edge-on.
-TEST_F(Extremes, APlaneIsOpenUnderTheNarrowestAndTheWidestAngle) {
+TEST_F(Extremes, PlaneIsUnoccludedAtTheNarrowestAndWidestFieldOfView) {
   const auto view_of = [](double degrees) {
     const double scale = 1.0 / std::tan(degrees * std::numbers::pi / 360.0);
     return perspective_view("", scale / 1.5, scale, 0.1, kInfinity, true);
@@ -309,7 +309,7 @@ TEST_F(Extremes, APlaneIsOpenUnderTheNarrowestAndTheWidestAngle) {
   }
 }
 
-TEST_F(Extremes, TheSizeMayJumpToAPixelAndBack) {
+TEST_F(Extremes, SizeMayChangeToOnePixelAndBack) {
   constexpr VkExtent2D kLargest{64, 48};
   constexpr std::array<VkExtent2D, 9> kSizes{
       {{1, 1}, {64, 48}, {1, 1}, {1, 48}, {64, 1}, {3, 5}, {2, 2}, {63, 47}, {1, 1}}};

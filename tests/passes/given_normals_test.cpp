@@ -65,7 +65,7 @@ class GivenNormals : public PassTest {
   }
 };
 
-TEST_F(GivenNormals, AnOpenPlaneWithNormalsThatFaceAwayStaysOpen) {
+TEST_F(GivenNormals, UnoccludedPlaneWithNormalsThatFaceAwayStaysUnoccluded) {
   for (const TestView& view : {test_views()[2], test_views().back()}) {
     const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(60.0, 4.0)});
     for (const Quality quality : {Quality::medium, Quality::reference}) {
@@ -81,7 +81,7 @@ TEST_F(GivenNormals, AnOpenPlaneWithNormalsThatFaceAwayStaysOpen) {
   }
 }
 
-TEST_F(GivenNormals, InvertedNormalsGiveTheImagesOfThoseThatFaceTheEye) {
+TEST_F(GivenNormals, InvertedNormalsGiveTheSameImages) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, kWidth, kHeight, ball_on_floor());
   for (const Specular specular : {Specular::slices, Specular::table}) {
@@ -113,7 +113,7 @@ TEST_F(GivenNormals, MissingNormalsAreTakenFromDepth) {
   }
 }
 
-TEST_F(GivenNormals, MissingNormalsBesideTheSkyAndOnAnImageOfOnePixelAreSound) {
+TEST_F(GivenNormals, MissingNormalsBesideTheSkyAndInImagesOfOnePixelAreValid) {
   const TestView view = test_views()[2];
   Surface post = plane({0.0, 0.0, -4.0}, {0.3, 0.0, 1.0});
   post.keep = [](const glm::dvec3& p) { return std::abs(p.x) < 0.8; };

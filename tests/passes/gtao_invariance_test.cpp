@@ -56,7 +56,7 @@ Difference difference(const HostImage& a, const HostImage& b) {
   return found;
 }
 
-TEST_F(GtaoInvariance, TheSceneMayHaveAnyUnit) {
+TEST_F(GtaoInvariance, ResultIsIndependentOfTheSceneUnit) {
   for (const Estimator estimator : kEstimators) {
     for (const NamedScene& scene : gtao_scenes()) {
       const TestView one = perspective_view("one", 1.2, 1.8, 0.1, kInfinity, true);
@@ -97,7 +97,7 @@ TEST_F(GtaoInvariance, StandardReversedAndInfiniteDepthAgree) {
   }
 }
 
-TEST_F(GtaoInvariance, AnOrthographicViewIsANarrowPerspectiveFromAfar) {
+TEST_F(GtaoInvariance, OrthographicViewEqualsANarrowPerspectiveFromAfar) {
   const double away = 2000.0;
   const TestView flat = orthographic_view("orthographic", 3.0, 2.0, 0.1, 20.0);
   const TestView narrow =
@@ -116,7 +116,7 @@ TEST_F(GtaoInvariance, AnOrthographicViewIsANarrowPerspectiveFromAfar) {
 }
 
 // Odd sizes leave blocks that are cut by the border: not a texel may be forgotten there.
-TEST_F(GtaoInvariance, EverySizeDivisorAndPatternCoversEveryPixel) {
+TEST_F(GtaoInvariance, EverySizeTileSizeAndPatternCoversEveryPixel) {
   const TestView view = test_views()[2];
   std::vector<std::pair<std::uint32_t, std::uint32_t>> sizes{{1, 1}, {3, 5}, {17, 9}, {33, 1}};
   for (const auto& [width, height] : sizes) {
@@ -160,7 +160,7 @@ TEST_F(GtaoInvariance, EverySizeDivisorAndPatternCoversEveryPixel) {
 }
 
 // Odd sizes, more than a group's 32 blocks, and blocks that the border cuts.
-TEST_F(GtaoInvariance, GroupsOfOneDirectionDrawWhatNeighboursDo) {
+TEST_F(GtaoInvariance, GroupingDoesNotChangeTheImage) {
   const TestView view = test_views()[2];
   const std::vector<std::pair<std::uint32_t, std::uint32_t>> sizes{{3, 5}, {33, 1}, {139, 131}};
   for (const auto& [width, height] : sizes) {
@@ -193,7 +193,7 @@ TEST_F(GtaoInvariance, GroupsOfOneDirectionDrawWhatNeighboursDo) {
   }
 }
 
-TEST_F(GtaoInvariance, EveryPatternMeetsTheSameMeanInAGroove) {
+TEST_F(GtaoInvariance, EveryPatternHasTheSameMeanInAGroove) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, 64, 48, groove(0.8));
   for (const Estimator estimator : kEstimators) {
@@ -217,7 +217,7 @@ TEST_F(GtaoInvariance, EveryPatternMeetsTheSameMeanInAGroove) {
   }
 }
 
-TEST_F(GtaoInvariance, WhatIsNoNumberStaysLocalAndFinite) {
+TEST_F(GtaoInvariance, NaNDepthHasALocalAndFiniteEffect) {
   const TestView view = test_views()[2];
   for (const Estimator estimator : kEstimators) {
     OcclusionSettings settings = unfiltered(estimator, 0.5f);
@@ -243,7 +243,7 @@ TEST_F(GtaoInvariance, WhatIsNoNumberStaysLocalAndFinite) {
   }
 }
 
-TEST_F(GtaoInvariance, DepthBuffersOfNothingButNonsenseGiveFiniteImages) {
+TEST_F(GtaoInvariance, InvalidDepthBuffersGiveFiniteImages) {
   for (const TestView& view : test_views()) {
     SCOPED_TRACE(view.name);
     Drawing drawing = draw(view, kWidth, kHeight, groove(0.8));
@@ -314,7 +314,7 @@ TEST_F(GtaoInvariance, BothEyesOfAFrameHaveTheSameNoise) {
   }
 }
 
-TEST_F(GtaoInvariance, SkyIsOpenAndOccludesNothing) {
+TEST_F(GtaoInvariance, SkyIsUnoccludedAndDoesNotOcclude) {
   for (const TestView& view : test_views()) {
     SCOPED_TRACE(view.name);
     Surface post = plane({0.0, 0.0, -4.0}, {0.0, 0.0, 1.0});

@@ -31,7 +31,7 @@ OcclusionSettings precise(Quality quality) {
   return settings;
 }
 
-TEST_F(GtaoPass, OpenPlaneIsFullyVisibleAtAnyTilt) {
+TEST_F(GtaoPass, UnoccludedPlaneHasVisibilityOneAtAnyTilt) {
   for (const TestView& view : test_views()) {
     for (const float degrees : {0.0f, 30.0f, 60.0f, 75.0f, 85.0f}) {
       const PlaneScene plane = plane_scene(view, 96, 64, degrees);
@@ -59,7 +59,7 @@ TEST_F(GtaoPass, OpenPlaneIsFullyVisibleAtAnyTilt) {
 }
 
 // The same tilted planes without snapping to texel centres: they occlude themselves.
-TEST_F(GtaoPass, WhereSnappingIsNotReckonedWithATiltedPlaneOccludesItself) {
+TEST_F(GtaoPass, TiltedPlaneOccludesItselfWithoutSnappingCorrection) {
   const TestView view = test_views()[2];
   for (const Estimator estimator : {Estimator::horizons, Estimator::connected}) {
     OcclusionSettings settings = precise(Quality::medium);

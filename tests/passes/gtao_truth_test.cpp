@@ -81,7 +81,7 @@ double mean_bent_error(const HostImage& bent, const Drawing& drawing, double rad
   return sum / count * 180.0 / std::numbers::pi;
 }
 
-TEST_F(GtaoTruth, HorizonsMeetBruteForceInEverySceneAndView) {
+TEST_F(GtaoTruth, HorizonsAgreeWithBruteForceInEverySceneAndView) {
   const float radius = 1.2f;
   for (const TestView& view : test_views()) {
     for (const NamedScene& scene : gtao_scenes()) {
@@ -97,7 +97,7 @@ TEST_F(GtaoTruth, HorizonsMeetBruteForceInEverySceneAndView) {
   }
 }
 
-TEST_F(GtaoTruth, ConnectedSamplesMeetBruteForceWhereAllThatIsHiddenOccludes) {
+TEST_F(GtaoTruth, ConnectedSamplesAgreeWithBruteForceWhenHiddenVolumeIsSolid) {
   const float radius = 1.2f;
   const TestView view = test_views()[2];
   for (const NamedScene& scene : gtao_scenes()) {
@@ -112,7 +112,7 @@ TEST_F(GtaoTruth, ConnectedSamplesMeetBruteForceWhereAllThatIsHiddenOccludes) {
 }
 
 // Visibility of a floor at distance d from a long platform of height h: (1 + cos atan(h / d)) / 2.
-TEST_F(GtaoTruth, AFloorBeforeAPlatformHasTheClosedForm) {
+TEST_F(GtaoTruth, FloorInFrontOfAPlatformMatchesTheClosedForm) {
   const TestView view = orthographic_view("orthographic", 4.0, 4.0, 0.1, 20.0);
   const double height = 0.5;
   const Drawing drawing = draw(view, 128, 128, step(0.0, height));
@@ -132,7 +132,7 @@ TEST_F(GtaoTruth, AFloorBeforeAPlatformHasTheClosedForm) {
 }
 
 // On a wall of a groove whose walls are an angle a apart: (1 - cos a) / 2 near the bottom.
-TEST_F(GtaoTruth, AGrooveHasTheClosedFormNearItsBottom) {
+TEST_F(GtaoTruth, GrooveMatchesTheClosedFormNearItsBottom) {
   const TestView view = orthographic_view("orthographic", 4.0, 4.0, 0.1, 20.0);
   for (const double half_angle : {0.5, std::numbers::pi / 4.0, 1.2}) {
     const Drawing drawing = draw(view, 128, 128, groove(half_angle, 9.0));
@@ -200,7 +200,7 @@ TEST_F(GtaoTruth, FalloffFadesOccludersTowardsTheRadius) {
   }
 }
 
-TEST_F(GtaoTruth, TheHeuristicWithoutABlendIsTheHorizons) {
+TEST_F(GtaoTruth, HeuristicWithBlendZeroEqualsHorizons) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, 60, 40, step(0.0, 0.5));
   const auto run_with = [&](Estimator estimator, float blend) {
@@ -220,7 +220,7 @@ TEST_F(GtaoTruth, TheHeuristicWithoutABlendIsTheHorizons) {
   EXPECT_GT(mean_of(thinner), mean_of(horizons));
 }
 
-TEST_F(GtaoTruth, TheBitmaskOfThickOccludersIsTheHorizons) {
+TEST_F(GtaoTruth, BitmaskOfThickOccludersEqualsHorizons) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, 60, 40, step(0.0, 0.5));
   OcclusionSettings thick = exact(Estimator::bitmask, 1.2f);
@@ -238,7 +238,7 @@ TEST_F(GtaoTruth, TheBitmaskOfThickOccludersIsTheHorizons) {
 }
 
 // Where all that occludes stands at one distance from the eye.
-TEST_F(GtaoTruth, ThicknessOfDistanceIsThatOfTheRadiusAtOneDistance) {
+TEST_F(GtaoTruth, ThicknessUnitsAgreeAtTheDistanceWhereTheyAreEqual) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, 60, 40, step(0.0, 0.5, 4.0));
   const float radius = 1.2f, distance = 3.5f;
@@ -261,7 +261,7 @@ TEST_F(GtaoTruth, ThicknessOfDistanceIsThatOfTheRadiusAtOneDistance) {
 }
 
 // A slat before a wall hides little of a ray behind it, a board much.
-TEST_F(GtaoTruth, MoreIsFilledBehindAWideOccluderThanBehindNarrowOnes) {
+TEST_F(GtaoTruth, HiddenVolumeIsMoreSolidBehindWideOccluders) {
   for (const TestView& view : {test_views()[2], test_views().back()}) {
     SCOPED_TRACE(view.name);
     // Behind slats from x = 0 on, `apart` from each other.
@@ -295,7 +295,7 @@ TEST_F(GtaoTruth, MoreIsFilledBehindAWideOccluderThanBehindNarrowOnes) {
 
 // A strip of one sample's width is no thicker than that, whatever the settings say of occluders; a
 // board, of many samples, is as thick as they say.
-TEST_F(GtaoTruth, WhatIsNarrowIsThin) {
+TEST_F(GtaoTruth, NarrowOccludersAreThin) {
   for (const TestView& view : {test_views()[2], test_views().back()}) {
     SCOPED_TRACE(view.name);
     const auto darkened_by_thickness = [&](double width) {
@@ -315,7 +315,7 @@ TEST_F(GtaoTruth, WhatIsNarrowIsThin) {
   }
 }
 
-TEST_F(GtaoTruth, WhatLiesBeyondTheRadiusDoesNotOcclude) {
+TEST_F(GtaoTruth, OccludersBeyondTheRadiusDoNotOcclude) {
   const TestView view = orthographic_view("orthographic", 4.0, 4.0, 0.1, 20.0);
   const double height = 0.5;
   const Drawing drawing = draw(view, 128, 128, step(0.0, height));
@@ -339,7 +339,7 @@ TEST_F(GtaoTruth, WhatLiesBeyondTheRadiusDoesNotOcclude) {
 }
 
 // A groove whose right wall all but leaves the image, beside the same groove seen whole.
-TEST_F(GtaoTruth, AWallThatLeavesTheImageOccludesAsIfItWereSeen) {
+TEST_F(GtaoTruth, WallThatLeavesTheImageOccludesAsIfVisible) {
   constexpr std::uint32_t kWhole = 192, kPart = 108, kHeight = 40;
   constexpr float kRadius = 1.2f;
   for (const TestView& view : {perspective_view("perspective", 1.2, 5.8, 0.1, 100.0, true),
@@ -371,7 +371,7 @@ TEST_F(GtaoTruth, AWallThatLeavesTheImageOccludesAsIfItWereSeen) {
   }
 }
 
-TEST_F(GtaoTruth, BentNormalsMeetBruteForce) {
+TEST_F(GtaoTruth, BentNormalsAgreeWithBruteForce) {
   const float radius = 1.2f;
   for (const TestView& view : {test_views()[2], test_views()[5]}) {
     for (const NamedScene& scene : gtao_scenes()) {

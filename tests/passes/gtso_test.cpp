@@ -142,7 +142,7 @@ TEST_F(GtsoPass, AgreesWithTheFormulasInEveryView) {
 }
 
 // Each pixel lacks one of its inputs, or some that none.
-TEST_F(GtsoPass, WhatIsNoNumberOrNoDirectionGivesAShareAllTheSame) {
+TEST_F(GtsoPass, InvalidInputsGiveValuesInRange) {
   constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
   constexpr std::array kWrong{kNaN, std::numeric_limits<float>::infinity(), 0.0f, -1e30f};
   Inputs inputs = random_inputs();
@@ -191,7 +191,7 @@ float lowest_of(const HostImage& image, const PlaneScene& plane, const View& vie
   return lowest;
 }
 
-TEST_F(GtsoPass, OpenSurfaceStaysOpenAtAnyRoughness) {
+TEST_F(GtsoPass, UnoccludedSurfaceStaysUnoccludedAtAnyRoughness) {
   const std::array roughness{0.0f, 0.1f, 0.3f, 0.6f, 1.0f};
   for (const TestView& view : test_views()) {
     for (const float degrees : {0.0f, 30.0f, 60.0f, 84.0f}) {
@@ -221,7 +221,7 @@ TEST_F(GtsoPass, OpenSurfaceStaysOpenAtAnyRoughness) {
   }
 }
 
-TEST_F(GtsoPass, TurnsNormalsOfTheWorldIntoTheView) {
+TEST_F(GtsoPass, RotatesWorldSpaceNormalsIntoViewSpace) {
   const Inputs inputs = random_inputs();
   const auto with = [&](View view, bool in_view_space) {
     run([&](Graph& graph) {
@@ -245,7 +245,7 @@ TEST_F(GtsoPass, TurnsNormalsOfTheWorldIntoTheView) {
   EXPECT_EQ(in_view_space.texels, with(view, true).texels);
 }
 
-TEST_F(GtsoPass, TakesNoTimeWhenNobodyReadsIt) {
+TEST_F(GtsoPass, IsCulledWhenItsOutputIsNotRead) {
   const Inputs inputs = random_inputs();
   run([&](Graph& graph) {
     const Frame frame{graph, gpu().kernels(), test_views().front().view, 0};
@@ -263,7 +263,7 @@ TEST_F(GtsoPass, TakesNoTimeWhenNobodyReadsIt) {
   }
 }
 
-TEST_F(GtsoPass, OnlyTheTablesModelHasATable) {
+TEST_F(GtsoPass, OnlyTheModelTableHasATable) {
   const Inputs inputs = random_inputs();
   const auto run_with = [&](Specular model) {
     run([&](Graph& graph) {
@@ -280,7 +280,7 @@ TEST_F(GtsoPass, OnlyTheTablesModelHasATable) {
   EXPECT_EQ(run_with(Specular::table), maths::kGtsoEntries);
 }
 
-TEST_F(GtsoPass, RefusesWhatItCannotUseAndNamesIt) {
+TEST_F(GtsoPass, InvalidInputsAreReportedByName) {
   const Inputs inputs = random_inputs();
   const HostImage small{2, 2, std::vector<float>(4), 1};
   run([&](Graph& graph) {

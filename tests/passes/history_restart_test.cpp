@@ -50,11 +50,11 @@ OcclusionSettings with_history(bool bent_normal) {
   return settings;
 }
 
-TEST_F(HistoryRestart, BentNormalsThatComeBackBeginAnew) {
+TEST_F(HistoryRestart, ReenabledBentNormalsStartANewHistory) {
   expect_a_new_beginning(with_history(true), with_history(false));
 }
 
-TEST_F(HistoryRestart, AHistoryThatComesBackBeginsAnew) {
+TEST_F(HistoryRestart, ReenabledHistoryStartsAnew) {
   for (const bool bent_normal : {false, true}) {
     OcclusionSettings without = with_history(bent_normal);
     without.history_frames = 0;

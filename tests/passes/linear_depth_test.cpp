@@ -54,7 +54,7 @@ class LinearDepth : public PassTest {
   }
 };
 
-TEST_F(LinearDepth, LinearDepthIsTheInverseProjectionsForEveryKindOfProjection) {
+TEST_F(LinearDepth, EqualsTheInverseProjectionForEveryKindOfProjection) {
   for (const TestView& view : test_views()) {
     SCOPED_TRACE(view.name);
     const glm::dmat4 projection = clip_from_view(view);
@@ -79,7 +79,7 @@ TEST_F(LinearDepth, LinearDepthIsTheInverseProjectionsForEveryKindOfProjection) 
   }
 }
 
-TEST_F(LinearDepth, WhatIsNoDepthBecomesSkyOrTheNearPlane) {
+TEST_F(LinearDepth, InvalidDepthsBecomeSkyOrTheNearPlane) {
   for (const TestView& view : test_views()) {
     SCOPED_TRACE(view.name);
     const glm::dmat4 projection = clip_from_view(view);
@@ -166,7 +166,7 @@ TEST_F(LinearDepth, MipsAverageTheMipAboveAtEverySize) {
   }
 }
 
-TEST_F(LinearDepth, MoreMipsThanTheImageHasAreNotMade) {
+TEST_F(LinearDepth, MipCountIsLimitedByTheImageSize) {
   const TestView view = test_views()[0];
   for (const std::uint32_t wanted : {1u, 3u, 5u}) {
     run([&](Graph& graph) {

@@ -52,7 +52,7 @@ TEST_F(MultiBouncePass, AgreesWithTheFormulaInEachChannel) {
   }
 }
 
-TEST_F(MultiBouncePass, TakesNoTimeWhenNobodyReadsIt) {
+TEST_F(MultiBouncePass, IsCulledWhenItsOutputIsNotRead) {
   const Inputs inputs = random_inputs();
   run([&](Graph& graph) {
     const Frame frame{graph, gpu().kernels(), {}, 0};
@@ -65,7 +65,7 @@ TEST_F(MultiBouncePass, TakesNoTimeWhenNobodyReadsIt) {
   }
 }
 
-TEST_F(MultiBouncePass, RefusesInputsThatDoNotFitTogether) {
+TEST_F(MultiBouncePass, InputsOfDifferentSizesAreRefused) {
   const Inputs inputs = random_inputs();
   const HostImage small{2, 2, std::vector<float>(16), 4};
   run([&](Graph& graph) {

@@ -68,7 +68,7 @@ double largest_error(const HostImage& normals, const Drawing& drawing) {
   return largest;
 }
 
-TEST_F(Normals, PlanesGetTheirOwnNormalAtAnyTiltUpToTheBorder) {
+TEST_F(Normals, PlanesGetTheExactNormalAtAnyTiltUpToTheBorder) {
   for (const TestView& view : test_views()) {
     for (const double tilt : {0.0, 30.0, 60.0, 80.0}) {
       SCOPED_TRACE(testing::Message() << view.name << " tilted " << tilt << " degrees");
@@ -79,7 +79,7 @@ TEST_F(Normals, PlanesGetTheirOwnNormalAtAnyTiltUpToTheBorder) {
   }
 }
 
-TEST_F(Normals, DoNotBendAcrossAStep) {
+TEST_F(Normals, AreNotBlurredAcrossADepthStep) {
   for (const TestView& view : test_views()) {
     SCOPED_TRACE(view.name);
     // A box's front before a wall: both face the eye, half a unit and more apart.
@@ -90,7 +90,7 @@ TEST_F(Normals, DoNotBendAcrossAStep) {
   }
 }
 
-TEST_F(Normals, DoNotBendAcrossACrease) {
+TEST_F(Normals, AreNotBlurredAcrossACrease) {
   const TestView view = test_views()[5];
   Surface left = plane({0.0, 0.0, -5.0}, {1.0, 0.0, 1.0});
   left.keep = [](const glm::dvec3& p) { return p.x < 0.0; };
@@ -100,7 +100,7 @@ TEST_F(Normals, DoNotBendAcrossACrease) {
   EXPECT_LT(largest_error(normals(view.view, drawing.depth_ndc), drawing), 0.5);
 }
 
-TEST_F(Normals, SkyLooksAtTheEyeAndLeavesItsNeighboursAlone) {
+TEST_F(Normals, SkyFacesTheEyeAndDoesNotAffectItsNeighbours) {
   for (const TestView& view : test_views()) {
     SCOPED_TRACE(view.name);
     Surface post = plane({0.0, 0.0, -4.0}, {0.3, 0.0, 1.0});
@@ -118,7 +118,7 @@ TEST_F(Normals, SkyLooksAtTheEyeAndLeavesItsNeighboursAlone) {
   }
 }
 
-TEST_F(Normals, AStripTwoPixelsWideKeepsItsOwnNormal) {
+TEST_F(Normals, StripTwoPixelsWideKeepsItsNormal) {
   for (const TestView& view : test_views()) {
     for (const double n_dot_v : {-0.5, 0.5}) {
       SCOPED_TRACE(testing::Message() << view.name << " slanted " << n_dot_v);
@@ -136,7 +136,7 @@ TEST_F(Normals, AStripTwoPixelsWideKeepsItsOwnNormal) {
   }
 }
 
-TEST_F(Normals, WhatIsNoNumberStaysInItsOwnPixel) {
+TEST_F(Normals, NaNDepthAffectsItsPixelOnly) {
   for (const TestView& view : test_views()) {
     SCOPED_TRACE(view.name);
     Drawing drawing = draw(view, 40, 30, {tilted_plane(50.0, 4.0)});
@@ -151,7 +151,7 @@ TEST_F(Normals, WhatIsNoNumberStaysInItsOwnPixel) {
   }
 }
 
-TEST_F(Normals, ImagesOfASingleRowOrColumnGetUnitVectors) {
+TEST_F(Normals, ImagesOfOneRowOrColumnGetUnitVectors) {
   const TestView view = test_views()[2];
   for (const auto& [width, height] : {std::pair{1u, 1u}, {1u, 9u}, {9u, 1u}, {2u, 2u}}) {
     SCOPED_TRACE(testing::Message() << width << " x " << height);

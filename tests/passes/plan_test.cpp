@@ -87,7 +87,7 @@ OcclusionSettings least() {
   return settings;
 }
 
-TEST_F(OcclusionPlan, TheLeastFrameIsThreePassesAndThreeTextures) {
+TEST_F(OcclusionPlan, SmallestFrameHasThreePassesAndThreeTextures) {
   const Kept frame = kept(least());
   EXPECT_THAT(frame.passes, ElementsAre("inverse depth", "gtao", "reconstruct"));
   EXPECT_THAT(frame.transients,
@@ -96,7 +96,7 @@ TEST_F(OcclusionPlan, TheLeastFrameIsThreePassesAndThreeTextures) {
   EXPECT_EQ(gpu().kernels().pipeline_count(), 3u);
 }
 
-TEST_F(OcclusionPlan, NormalsAreMadeOnlyWhereNoneAreGiven) {
+TEST_F(OcclusionPlan, NormalsPassRunsOnlyWithoutGivenNormals) {
   EXPECT_THAT(kept(least()).passes, Not(Contains("normals")));
   const std::size_t pipelines = gpu().kernels().pipeline_count();
   const Kept made = kept(least(), {}, {.normals = false});
@@ -105,7 +105,7 @@ TEST_F(OcclusionPlan, NormalsAreMadeOnlyWhereNoneAreGiven) {
   EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines + 2) << "they and linear depth";
 }
 
-TEST_F(OcclusionPlan, BentNormalsAndHistoryCostOnlyWhereTheyAreOn) {
+TEST_F(OcclusionPlan, BentNormalsAndHistoryCostNothingWhenOff) {
   const Kept without = kept(least());
   OcclusionSettings bent = least();
   bent.bent_normal = true;
@@ -121,7 +121,7 @@ TEST_F(OcclusionPlan, BentNormalsAndHistoryCostOnlyWhereTheyAreOn) {
 }
 
 // Motion leads back to a history.
-TEST_F(OcclusionPlan, WithoutAHistoryMotionIsNotRead) {
+TEST_F(OcclusionPlan, MotionIsNotReadWithoutAHistory) {
   const Given moving{.motion = true};
   OcclusionSettings history = least();
   history.history_frames = 8;
@@ -132,7 +132,7 @@ TEST_F(OcclusionPlan, WithoutAHistoryMotionIsNotRead) {
   EXPECT_EQ(kept(history, {}, moving).uploads, 3u);
 }
 
-TEST_F(OcclusionPlan, BackFacesCostOnlyWhereTheThicknessIsReadFromThem) {
+TEST_F(OcclusionPlan, BackFacesCostNothingWithOtherThicknessUnits) {
   const Kept horizons = kept(least());
   OcclusionSettings settings = least();
   settings.advanced.thickness_unit = ThicknessUnit::back_faces;
@@ -162,7 +162,7 @@ TEST_F(OcclusionPlan, BackFacesCostOnlyWhereTheThicknessIsReadFromThem) {
   EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines + 1);
 }
 
-TEST_F(OcclusionPlan, PartsOfASearchCostNoPassAndNoByteAndAPipelineOnlyWhereTheyAreChanged) {
+TEST_F(OcclusionPlan, SearchPartsCostOnePipelineEachAndNoPassOrMemory) {
   const Kept as_it_is = kept(least());
   std::size_t pipelines = gpu().kernels().pipeline_count();
   (void)kept(least());
@@ -184,7 +184,7 @@ TEST_F(OcclusionPlan, PartsOfASearchCostNoPassAndNoByteAndAPipelineOnlyWhereThey
   }
 }
 
-TEST_F(OcclusionPlan, ASecondLayerCostsOnlyWhereItIsSearched) {
+TEST_F(OcclusionPlan, SecondLayerCostsNothingWhenItIsNotSearched) {
   const Kept horizons = kept(least());
   OcclusionSettings settings = least();
   settings.depth_layers = 2;
@@ -210,7 +210,7 @@ TEST_F(OcclusionPlan, ASecondLayerCostsOnlyWhereItIsSearched) {
   EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines + 1);
 }
 
-TEST_F(OcclusionPlan, SpecularOcclusionCostsOnlyWhereItIsOn) {
+TEST_F(OcclusionPlan, SpecularOcclusionCostsNothingWhenOff) {
   const Kept without = kept(least());
   OcclusionSettings settings = least();
   settings.roughness = 0.2f;  // which nothing reads
@@ -228,7 +228,7 @@ TEST_F(OcclusionPlan, SpecularOcclusionCostsOnlyWhereItIsOn) {
   EXPECT_THAT(unread.passes, Not(Contains("specular occlusion")));
 }
 
-TEST_F(OcclusionPlan, AChannelOfNoTextureMakesNoPipeline) {
+TEST_F(OcclusionPlan, RoughnessChannelWithoutATextureCreatesNoPipeline) {
   for (const Specular specular : {Specular::none, Specular::slices, Specular::cone}) {
     OcclusionSettings settings = least();
     settings.specular = specular;
@@ -246,7 +246,7 @@ TEST_F(OcclusionPlan, AChannelOfNoTextureMakesNoPipeline) {
   }
 }
 
-TEST_F(OcclusionPlan, LinearDepthIsMadeOnlyWhereSomethingReadsIt) {
+TEST_F(OcclusionPlan, LinearDepthRunsOnlyWhenItIsRead) {
   const Kept without = kept(least());
   const std::size_t pipelines = gpu().kernels().pipeline_count();
   OcclusionSettings asked = least();
@@ -259,13 +259,13 @@ TEST_F(OcclusionPlan, LinearDepthIsMadeOnlyWhereSomethingReadsIt) {
   EXPECT_THAT(kept(by_model, {.specular = true}).passes, Contains("depth pyramid"));
 }
 
-TEST_F(OcclusionPlan, ALowerResolutionOfTheSearchTakesLessMemory) {
+TEST_F(OcclusionPlan, LargerTilesTakeLessMemory) {
   OcclusionSettings half = least();
   half.tile_size = 2;
   EXPECT_LT(kept(half).bytes, kept(least()).bytes);
 }
 
-TEST_F(OcclusionPlan, WhatNobodyReadsIsCulledWithAllThatLeadsThere) {
+TEST_F(OcclusionPlan, UnreadOutputsAreCulledWithTheirProducers) {
   const Kept depth_only =
       kept(least(), {.visibility = false, .linear_depth = true}, {.normals = false});
   EXPECT_THAT(depth_only.passes, ElementsAre("depth pyramid"));
@@ -274,7 +274,7 @@ TEST_F(OcclusionPlan, WhatNobodyReadsIsCulledWithAllThatLeadsThere) {
 }
 
 // One that is prepared in a graph of its own, which is never recorded.
-TEST_F(OcclusionPlan, FramesLikeAPreparedOneMakeNoPipelineWhateverLiesBeforeThem) {
+TEST_F(OcclusionPlan, PreparedFramesCreateNoPipelineWhateverTheFrameBefore) {
   const Drawing drawing = draw(test_views()[2], 32, 24, groove(0.8));
   OcclusionSettings settings = least();
   settings.history_frames = 8;
@@ -316,7 +316,7 @@ TEST_F(OcclusionPlan, FramesLikeAPreparedOneMakeNoPipelineWhateverLiesBeforeThem
   }
 }
 
-TEST_F(OcclusionPlan, AFrameThatWasDeclaredBeforeMakesNoPipeline) {
+TEST_F(OcclusionPlan, RepeatedFrameCreatesNoPipeline) {
   (void)kept(least());
   const std::size_t pipelines = gpu().kernels().pipeline_count();
   OcclusionSettings other = least();

@@ -13,7 +13,7 @@ namespace alcove::passes {
 namespace {
 
 // The eye leaps sideways: what it could not see before starts anew, what it could goes on.
-TEST_F(Reconstruct, WhatACameraJumpUncoversStartsAnew) {
+TEST_F(Reconstruct, PixelsUncoveredByACameraJumpStartANewHistory) {
   const TestView view = test_views()[2];
   const double leap = 0.8;
   Scene before = step(0.3, 1.5, 5.0);
@@ -113,7 +113,7 @@ TEST_F(Reconstruct, HistoryDoesNotLeakAcrossACrease) {
 
 // The camera turns before a corner of two walls, which bends what they see of each other: what was
 // gathered of their bent normals turns with it, and is where frames that keep nothing find it.
-TEST_F(Reconstruct, BentNormalsTurnWithTheCamera) {
+TEST_F(Reconstruct, BentNormalsRotateWithTheCamera) {
   OcclusionSettings settings = quality_settings(Quality::high, 4.0f);
   settings.slices = 3;  // two leave too much noise in a frame without history
   settings.bent_normal = true;
@@ -214,7 +214,7 @@ TEST_F(Reconstruct, MotionVectorsFollowAMovingPlane) {
 // A plane slides by a pixel a frame and comes nearer by a hundredth of its distance, which motion
 // vectors do not say: its history goes on. What stands still and lies as far behind the last
 // frame's surface was uncovered: it starts anew.
-TEST_F(Reconstruct, HistoryFollowsWhatComesNearer) {
+TEST_F(Reconstruct, HistoryFollowsApproachingSurfaces) {
   const TestView view = test_views()[2];
   const double nearer = 0.99;
   const std::uint32_t frames = 24;
@@ -268,7 +268,7 @@ TEST_F(Reconstruct, HistoryFollowsWhatComesNearer) {
 }
 
 // What shaded a plane moves away, and then shades it again: the plane itself stands still.
-TEST_F(Reconstruct, WhereThingsMoveAShadeLeavesNoTrail) {
+TEST_F(Reconstruct, MovingOccludersLeaveNoTrail) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(30.0, 4.0)});
   const HostImage motion = no_motion();
@@ -302,7 +302,7 @@ TEST_F(Reconstruct, WhereThingsMoveAShadeLeavesNoTrail) {
 }
 
 // Another surface is where one was, which no motion told.
-TEST_F(Reconstruct, WhatHasNoHistoryLooksAsFarAsAFirstFrame) {
+TEST_F(Reconstruct, PixelsWithoutHistoryUseTheFilterRadiusOfAFirstFrame) {
   const TestView view = test_views()[2];
   const Drawing before = draw(view, kWidth, kHeight, {tilted_plane(30.0, 4.0)});
   const Drawing now = draw(view, kWidth, kHeight, {tilted_plane(30.0, 9.0)});

@@ -61,7 +61,7 @@ double mean_around(const HostImage& raw_occlusion, std::uint32_t x, std::uint32_
 }
 
 // As many on each side as the reach says, at any resolution, up to the last row and column.
-TEST_F(Reconstruct, WithoutAHistoryAPixelLooksAtTheSearchedOnesAroundIt) {
+TEST_F(Reconstruct, PixelsWithoutHistoryAverageTheTracedPixelsAroundThem) {
   constexpr std::uint32_t kOddWidth = 33;
   constexpr std::uint32_t kOddHeight = 23;
   const TestView view = test_views()[2];
@@ -102,7 +102,7 @@ TEST_F(Reconstruct, WithoutAHistoryAPixelLooksAtTheSearchedOnesAroundIt) {
   }
 }
 
-TEST_F(Reconstruct, AConstantSignalStaysConstantInAnySceneAtAnyResolution) {
+TEST_F(Reconstruct, ConstantOcclusionStaysConstantInAnySceneAtAnyResolution) {
   const TestView view = test_views()[2];
   std::vector<NamedScene> scenes = gtao_scenes();
   scenes.push_back({"grazing", {tilted_plane(75.0, 4.0)}});
@@ -141,7 +141,7 @@ TEST_F(Reconstruct, AConstantSignalStaysConstantInAnySceneAtAnyResolution) {
   }
 }
 
-TEST_F(Reconstruct, TheFilterLowersNoiseOnATiltedPlane) {
+TEST_F(Reconstruct, FilterReducesNoiseOnATiltedPlane) {
   const TestView view = test_views()[2];
   const std::uint32_t seed = 5;
   SCOPED_TRACE(testing::Message() << "seed " << seed);
@@ -156,7 +156,7 @@ TEST_F(Reconstruct, TheFilterLowersNoiseOnATiltedPlane) {
 }
 
 // The filter knows how many directions its input holds: stripes of four pixels stay the clearer.
-TEST_F(Reconstruct, TheMoreSlicesTheLessIsFiltered) {
+TEST_F(Reconstruct, FilterNarrowsWithMoreSlices) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(0.0, 4.0)});
   const HostImage raw_occlusion = raw_occlusion_of(
@@ -174,7 +174,7 @@ TEST_F(Reconstruct, TheMoreSlicesTheLessIsFiltered) {
 
 // A neighbour on the other side of a crease, a fraction of a pixel off the tangent plane, helps a
 // pixel that knows nothing else, and is less and less asked once there are slices or frames.
-TEST_F(Reconstruct, TheMoreSearchesTheLessCrossesACrease) {
+TEST_F(Reconstruct, LeakAcrossACreaseFallsWithMoreTracedPixels) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, kWidth, kHeight, groove(0.8, 4.5));
   const HostImage raw_occlusion =
@@ -211,7 +211,7 @@ TEST_F(Reconstruct, TheMoreSearchesTheLessCrossesACrease) {
 }
 
 // Neighbours at the very depth of the tangent plane, but of another normal.
-TEST_F(Reconstruct, AnotherNormalCountsForLess) {
+TEST_F(Reconstruct, NeighboursWithOtherNormalsWeighLess) {
   const TestView view = test_views()[2];
   const Drawing flat = draw(view, kWidth, kHeight, {tilted_plane(0.0, 5.0)});
   const std::uint32_t half = kWidth / 2;

@@ -135,7 +135,7 @@ TEST(RigidTransform, AcceptsErrorsOfAFewUlpsInEveryElement) {
   }
 }
 
-TEST(RigidTransform, RefusesScaleTransposesAndWhatIsNotFinite) {
+TEST(RigidTransform, RefusesScaleTransposesAndNonFiniteElements) {
   RandomInput random;
   for (int i = 0; i < 1000; ++i) {
     const glm::mat4 good(glm::inverse(random_pose(random, random.log_uniform(0.1f, 1e6f))));
@@ -151,14 +151,14 @@ TEST(RigidTransform, RefusesScaleTransposesAndWhatIsNotFinite) {
   }
 }
 
-TEST(RigidTransform, ExactMatricesStayAsTheyAre) {
+TEST(RigidTransform, ExactMatricesAreNotChanged) {
   Matrix exact = kIdentity;
   exact[12] = 1e6f;
   exact[13] = -0.3f;
   EXPECT_EQ(maths::mat4(to_rigid(exact)), to_mat4(exact));
 }
 
-TEST(Transposed, ProjectionsAreTransposedOnlyWithTheirOneInTheWrongPlace) {
+TEST(Transposed, ProjectionIsTransposedOnlyIfItsMinusOneIsInTheTransposedPlace) {
   // A near plane at 1: the offset of the depth is -1 too, and w may come rounded.
   for (const float w_from_z : {-1.0f, -0.9999999f, -1.0000002f}) {
     Matrix m{};

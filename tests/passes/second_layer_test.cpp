@@ -27,7 +27,7 @@ OcclusionSettings of_layers(OcclusionSettings settings, std::uint32_t layers) {
 //
 //                   _______  a step: from a point of the floor it covers all that is lower than
 //   ____x__________|         its edge
-TEST_F(SecondLayer, AStepUnderAPlateHasTheClosedForm) {
+TEST_F(SecondLayer, StepUnderAPlateMatchesTheClosedForm) {
   const TestView view = orthographic_view("orthographic", 4.0, 4.0, 0.1, 20.0);
   const double step = 0.35, height = 0.3, floor = 4.0;
   Scene scene = box({step, -100.0, -2.0 * floor}, {100.0, 100.0, height - floor});
@@ -62,7 +62,7 @@ Scene tilted_and_box() {
 }
 
 // The sky, what is not a number, and the first layer again.
-TEST_F(SecondLayer, WhereNothingIsHiddenOneLayerIsAll) {
+TEST_F(SecondLayer, SecondLayerChangesNothingWhereNothingIsHidden) {
   const Scene scene = tilted_and_box();
   for (const TestView& view : test_views()) {
     SCOPED_TRACE(view.name);
@@ -86,7 +86,7 @@ TEST_F(SecondLayer, WhereNothingIsHiddenOneLayerIsAll) {
 }
 
 // A layer adds sectors and takes none away.
-TEST_F(SecondLayer, WhatIsHiddenOnlyDarkens) {
+TEST_F(SecondLayer, SecondLayerNeverBrightens) {
   Scene scene = tilted_and_box();
   scene.push_back(sphere({0.36, 0.1, -2.2}, 0.35));
   for (const TestView& view : test_views()) {
@@ -107,7 +107,7 @@ TEST_F(SecondLayer, WhatIsHiddenOnlyDarkens) {
   }
 }
 
-TEST_F(SecondLayer, HorizonsDoNotReadIt) {
+TEST_F(SecondLayer, HorizonsDoNotReadTheSecondLayer) {
   const Scene scene = tilted_and_box();
   const TestView view = test_views().front();
   const Drawing drawing = draw(view, 60, 40, scene);

@@ -66,7 +66,7 @@ double mean_error(const HostImage& specular, const Drawing& drawing, double radi
   return sum / count;
 }
 
-TEST_F(SpecularSlices, MeetTheLobeCastOverTheExactSurfaces) {
+TEST_F(SpecularSlices, AgreeWithRayCastLobesOnExactSurfaces) {
   const float radius = 1.2f;
   // Perspective and orthographic. Walls and platforms are as deep as a depth buffer takes them for.
   for (const TestView& view : {test_views().front(), test_views().back()}) {
@@ -89,7 +89,7 @@ TEST_F(SpecularSlices, MeetTheLobeCastOverTheExactSurfaces) {
   }
 }
 
-TEST_F(SpecularSlices, AnOpenSurfaceShowsItsWholeLobe) {
+TEST_F(SpecularSlices, UnoccludedSurfaceHasSpecularVisibilityOne) {
   for (const TestView& view : test_views()) {
     for (const float degrees : {0.0f, 60.0f, 85.0f}) {
       const PlaneScene plane = plane_scene(view, 64, 48, degrees);
@@ -114,7 +114,7 @@ TEST_F(SpecularSlices, AnOpenSurfaceShowsItsWholeLobe) {
 }
 
 // History gathers what one frame cannot hold: a narrow lobe lies in few slices.
-TEST_F(SpecularSlices, FramesBringANarrowLobeCloser) {
+TEST_F(SpecularSlices, ErrorOfNarrowLobesFallsOverFrames) {
   const float radius = 1.2f, roughness = 0.2f;
   const TestView view = test_views().front();
   const Drawing drawing = draw(view, 60, 40, groove(0.8));

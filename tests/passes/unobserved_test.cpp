@@ -62,7 +62,7 @@ double mean_difference(const HostImage& a, const HostImage& b, std::uint32_t fro
 }
 
 // Half a trench is as open as the whole.
-TEST_F(UnobservedPass, HalfATrenchUnderAPlateIsTakenToBeAsTheOther) {
+TEST_F(UnobservedPass, HiddenHalfOfATrenchIsAssumedEqualToTheVisibleHalf) {
   for (const TestView& view : two_views()) {
     SCOPED_TRACE(view.name);
     const HostImage truth = visibility(view, draw(view, kWidth, kHeight, trench()), true);
@@ -78,7 +78,7 @@ TEST_F(UnobservedPass, HalfATrenchUnderAPlateIsTakenToBeAsTheOther) {
   }
 }
 
-TEST_F(UnobservedPass, BeyondTheBorderHalfATrenchIsTakenToGoOn) {
+TEST_F(UnobservedPass, TrenchIsAssumedToContinueBeyondTheBorder) {
   for (const TestView& view : two_views()) {
     SCOPED_TRACE(view.name);
     const HostImage truth = visibility(view, draw(view, kWidth, kHeight, trench()), true);
@@ -95,7 +95,7 @@ TEST_F(UnobservedPass, BeyondTheBorderHalfATrenchIsTakenToGoOn) {
 }
 
 // A ball on a floor, in a radius wider than the image: what is seen occluded is not multiplied.
-TEST_F(UnobservedPass, AWideRadiusLeavesLittleOut) {
+TEST_F(UnobservedPass, WideRadiusExcludesFewDirections) {
   for (const TestView& view : two_views()) {
     SCOPED_TRACE(view.name);
     const Drawing drawing = draw(view, kWidth, kHeight, ball_on_floor());
@@ -111,7 +111,7 @@ TEST_F(UnobservedPass, AWideRadiusLeavesLittleOut) {
   }
 }
 
-TEST_F(UnobservedPass, TheBackgroundGoesOnBeyondTheBorder) {
+TEST_F(UnobservedPass, BackgroundIsAssumedToContinueBeyondTheBorder) {
   for (const TestView& view : two_views()) {
     SCOPED_TRACE(view.name);
     // Half a trench, and beside its floor nothing.
@@ -130,7 +130,7 @@ TEST_F(UnobservedPass, TheBackgroundGoesOnBeyondTheBorder) {
   }
 }
 
-TEST_F(UnobservedPass, AnOpenPlaneStaysOpenBesideAPlateBeforeIt) {
+TEST_F(UnobservedPass, PlaneBesideAForegroundPlateStaysUnoccluded) {
   for (const TestView& view : test_views()) {
     for (const double tilt : {0.0, 30.0, 60.0}) {
       SCOPED_TRACE(testing::Message() << view.name << ", " << tilt);
@@ -149,7 +149,7 @@ TEST_F(UnobservedPass, AnOpenPlaneStaysOpenBesideAPlateBeforeIt) {
   }
 }
 
-TEST_F(UnobservedPass, WhatASecondLayerShowsIsSeen) {
+TEST_F(UnobservedPass, SecondLayerMakesHiddenDirectionsObserved) {
   const TestView view = two_views()[1];
   Scene covered = trench();
   covered.push_back(plate(0.05));
@@ -174,7 +174,7 @@ TEST_F(UnobservedPass, WhatASecondLayerShowsIsSeen) {
   EXPECT_LT(left_out(2), 0.2 * left_out(1));
 }
 
-TEST_F(UnobservedPass, OnlyConnectedSamplesLeaveItOut) {
+TEST_F(UnobservedPass, OnlyTheConnectedEstimatorExcludesDirections) {
   const TestView view = two_views()[0];
   Scene covered = trench();
   covered.push_back(plate(0.05));

@@ -88,7 +88,7 @@ TEST(CVulkan12, FramesAreRecordedWithSynchronization2) {
   EXPECT_EQ(device.messages(), "");
 }
 
-TEST(CVulkan12, AMissingExtensionIsNamed) {
+TEST(CVulkan12, MissingExtensionIsReported) {
   const Vulkan12Device device(false);
   const AlcoveContextInfo info = device.context_info();
   AlcoveContext* made = nullptr;
