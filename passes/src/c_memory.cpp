@@ -61,6 +61,13 @@ std::uint64_t pixel_bytes(const OcclusionSettings& settings, bool multi_bounce,
   return sum;
 }
 
+// Bytes per texel of the transients between the filter and the upsampling pass. With a history, the
+// upsampling pass reads residuals and lobes from the history's textures.
+std::uint64_t half_resolution_bytes(const OcclusionSettings& settings, bool lobe, bool bent) {
+  const std::uint64_t of_history = (history_bytes(lobe, bent) - history_bytes(false, false)) / 2;
+  return bytes_of(VK_FORMAT_R32G32_UINT) + (settings.history_frames > 0 ? 0 : of_history);
+}
+
 }  // namespace
 }  // namespace alcove::passes
 
@@ -87,9 +94,12 @@ AlcoveResult alcoveEstimateMemory(const AlcoveSettings* settings, uint32_t width
   const std::uint64_t tiles =
       std::uint64_t{(width + tile - 1) / tile} * ((height + tile - 1) / tile);
   const bool multi_bounce = has(outputs, ALCOVE_OUTPUT_MULTI_BOUNCE);
+  const std::uint64_t texels =
+      wanted.half_resolution ? std::uint64_t{(width + 1) / 2} * ((height + 1) / 2) : pixels;
   const std::uint64_t transients =
-      pixels * pixel_bytes(wanted, multi_bounce, normals_given != VK_FALSE) + tiles * tile_bytes;
-  const std::uint64_t history = wanted.history_frames > 0 ? pixels * history_bytes(lobe, bent) : 0;
+      pixels * pixel_bytes(wanted, multi_bounce, normals_given != VK_FALSE) + tiles * tile_bytes +
+      (wanted.half_resolution ? texels * half_resolution_bytes(wanted, lobe, bent) : 0);
+  const std::uint64_t history = wanted.history_frames > 0 ? texels * history_bytes(lobe, bent) : 0;
   *memory = {.struct_size = sizeof *memory,
              .transients = transients,
              .transients_unshared = transients,

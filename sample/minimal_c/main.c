@@ -31,7 +31,7 @@ static void check(int ok, const char* what) {
 
 #define CHECK_VK(call) check((call) == VK_SUCCESS, #call " failed")
 
-/* The first device with a compute queue. Alcove needs Vulkan 1.3 and two features. */
+/* The first device with a compute queue. This program uses Vulkan 1.3 and two of its features. */
 static void create_device(void) {
   const VkApplicationInfo application = {.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
                                          .apiVersion = VK_API_VERSION_1_3};

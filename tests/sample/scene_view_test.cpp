@@ -139,7 +139,7 @@ TEST_F(SceneViewTest, RefusedSettingIsReportedAndThePictureStays) {
   draw(3);
   view_->state().settings.slices = 900;
   draw(3);
-  EXPECT_THAT(view_->facts().refusal, HasSubstr("900 slices"));
+  EXPECT_THAT(view_->facts().refusal, HasSubstr("'slices' is 900"));
   EXPECT_FALSE(is_plain(draw_and_look()));
   view_->state().settings.slices = 2;
   draw(3);
