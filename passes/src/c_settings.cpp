@@ -21,7 +21,6 @@ constexpr bool same(Ours ours, Theirs theirs) {
 static_assert(same(Quality::low, ALCOVE_QUALITY_LOW) &&
               same(Quality::medium, ALCOVE_QUALITY_MEDIUM) &&
               same(Quality::high, ALCOVE_QUALITY_HIGH) &&
-              same(Quality::ultra, ALCOVE_QUALITY_ULTRA) &&
               same(Quality::reference, ALCOVE_QUALITY_REFERENCE));
 static_assert(same(Estimator::horizons, ALCOVE_ESTIMATOR_HORIZONS) &&
               same(Estimator::heuristic, ALCOVE_ESTIMATOR_HEURISTIC) &&

@@ -86,10 +86,6 @@ OcclusionSettings quality_settings(Quality quality, float radius) {
       settings.slices = 2;
       settings.steps = 16;
       break;
-    case Quality::ultra:
-      settings.slices = 4;
-      settings.steps = 24;
-      break;
     case Quality::reference:
       settings.tile_size = 1;
       settings.slices = 32;

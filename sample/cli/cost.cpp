@@ -20,8 +20,7 @@ std::vector<passes::Quality> qualities_of(const Options& options) {
   if (options.occlusion.quality_given) {
     return {options.occlusion.quality};
   }
-  return {passes::Quality::low, passes::Quality::medium, passes::Quality::high,
-          passes::Quality::ultra};
+  return {passes::Quality::low, passes::Quality::medium, passes::Quality::high};
 }
 
 tl::expected<CostInputs, std::string> inputs_of(const Options& options, passes::Quality quality) {

@@ -194,7 +194,7 @@ void add_motion(CLI::App& app, Options& options) {
 
 void add_occlusion(CLI::App& app, OcclusionOptions& occlusion) {
   const Group group(app, "Occlusion");
-  group.add("--quality", "NAME", "low, medium, high, ultra or reference; medium",
+  group.add("--quality", "NAME", "low, medium, high or reference; medium",
             [&](const OptionValue& given) {
               occlusion.quality_given = true;
               occlusion.quality =
@@ -335,10 +335,9 @@ void add_lit(CLI::App& app, bool& lit, std::uint32_t& points) {
 }
 
 void add_format(CLI::App& app, GraphFormat& format) {
-  Group(app).add("--format", "NAME", "text or dot (Graphviz); text",
-                 [&](const OptionValue& given) {
-                   format = static_cast<GraphFormat>(given.one_of(kGraphFormatNames));
-                 });
+  Group(app).add("--format", "NAME", "text or dot (Graphviz); text", [&](const OptionValue& given) {
+    format = static_cast<GraphFormat>(given.one_of(kGraphFormatNames));
+  });
 }
 
 void add_device(CLI::App& app, Options& options) {

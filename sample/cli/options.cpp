@@ -181,7 +181,7 @@ tl::expected<Options, Stop> parse_options(int argc, const char* const* argv) {
       "  alcove motion scene.gltf --path strafe\n"
       "  alcove ablate scene.gltf --quality high\n"
       "  alcove recommend scene.gltf --tolerance 0.05\n"
-      "  alcove render --eye -6,0.55,-4.6 --target 0,0.75,-2.9 --quality ultra",
+      "  alcove render --eye -6,0.55,-4.6 --target 0,0.75,-2.9 --quality high",
       "alcove");
   std::array<Options, kCommands.size()> options;
   for (std::size_t i = 0; i < kCommands.size(); ++i) {

@@ -28,7 +28,7 @@ constexpr std::array<SweepPoint, 13> kSweepPoints{{{4, 1, 4},
                                                    {2, 1, 6},
                                                    {2, 1, 16},
                                                    {2, 1, 24},
-                                                   {2, 2, 16},
+                                                   {2, 3, 16},
                                                    {2, 2, 10},
                                                    {1, 1, 12},
                                                    {1, 1, 24},
@@ -79,7 +79,7 @@ const TradePoint* smallest_within(std::span<const TradePoint> points, double Tra
 
 std::vector<Variant> preset_sweep(const OcclusionSettings& base) {
   SweepList list(base);
-  for (const Quality quality : {Quality::low, Quality::medium, Quality::high, Quality::ultra}) {
+  for (const Quality quality : {Quality::low, Quality::medium, Quality::high}) {
     const OcclusionSettings preset = passes::quality_settings(quality, base.radius);
     list.add(std::string(passes::name_of(quality)),
              {preset.tile_size, preset.slices, preset.steps});

@@ -37,7 +37,7 @@ TEST(OwnFrame, HasNoBarrierCommandTooManyAndMeetsItsLowerBound) {
   ASSERT_TRUE(kernels) << kernels.error().message;
   const VkImage image = gpu.make_image({VK_FORMAT_R32_SFLOAT, Extent::absolute(960, 540)},
                                        VK_IMAGE_USAGE_SAMPLED_BIT);
-  for (const auto quality : {passes::Quality::medium, passes::Quality::ultra}) {
+  for (const auto quality : {passes::Quality::medium, passes::Quality::high}) {
     Graph graph;
     declare(graph, *kernels, image, quality);
     const auto plan = compile(graph);

@@ -22,7 +22,6 @@ struct Preset {
 constexpr Preset kPresets[] = {{"low", Quality::low},
                                {"medium", Quality::medium},
                                {"high", Quality::high},
-                               {"ultra", Quality::ultra},
                                {"reference", Quality::reference}};
 
 OcclusionSettings precise(Quality quality) {

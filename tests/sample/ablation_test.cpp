@@ -19,7 +19,7 @@ using passes::OcclusionSettings;
 using passes::Quality;
 
 TEST(Variants, EachDiffersFromTheBaseAndHasAUniqueName) {
-  for (const Quality quality : {Quality::low, Quality::medium, Quality::high, Quality::ultra}) {
+  for (const Quality quality : {Quality::low, Quality::medium, Quality::high}) {
     const OcclusionSettings base = passes::quality_settings(quality, 0.5f);
     std::set<std::string> names, parts;
     for (const Variant& variant : variants_of(base)) {

@@ -42,7 +42,7 @@ TEST(Options, AFullCommandLineIsUnderstood) {
   const auto options =
       parse({"compare",  "scene.glb", "--eye",         "-9,5.5,-0.4", "--target",    "5,3.2,-0.3",
              "--fov-y",  "60",        "--near",        "0.1",         "--far",       "inf",
-             "--radius", "0.75",      "--normals",     "geometric",   "--quality",   "ultra",
+             "--radius", "0.75",      "--normals",     "geometric",   "--quality",   "high",
              "--set",    "slices=2",  "--set",         "steps=5",     "--roughness", "0.1,0.3,0.6",
              "--spp",    "512",       "--reversed-z",  "--size",      "320x200",     "--out",
              "x",        "--lit",     "--environment", "sky.hdr"});
@@ -53,7 +53,7 @@ TEST(Options, AFullCommandLineIsUnderstood) {
   EXPECT_EQ(*options->view.eye, glm::dvec3(-9, 5.5, -0.4));
   EXPECT_EQ(options->view.reversed_z, true);
   EXPECT_TRUE(std::isinf(*options->view.far_plane));
-  EXPECT_EQ(options->occlusion.quality, passes::Quality::ultra);
+  EXPECT_EQ(options->occlusion.quality, passes::Quality::high);
   EXPECT_EQ(options->occlusion.normals, NormalSource::kGeometric);
   EXPECT_EQ(options->occlusion.set.size(), 2u);
   EXPECT_EQ(options->occlusion.set[1].second, "5");

@@ -66,14 +66,12 @@ uint32_t alcoveGetVersion(void);
 //   LOW             1      8        4              32                                1
 //   MEDIUM          1     10        2              32                                5
 //   HIGH            2     16        2              32                               16
-//   ULTRA           4     24        2              32                               48
 //   REFERENCE      32     64        1               0                             4096
 typedef enum AlcoveQuality {
   ALCOVE_QUALITY_LOW = 0,        // traces one of 4x4 pixels in each frame
   ALCOVE_QUALITY_MEDIUM = 1,     // traces one of 2x2; the preset to begin with
   ALCOVE_QUALITY_HIGH = 2,       // MEDIUM with two slices and more steps
-  ALCOVE_QUALITY_ULTRA = 3,      // MEDIUM with four slices and more steps
-  ALCOVE_QUALITY_REFERENCE = 4,  // traces every pixel: a static image to compare with
+  ALCOVE_QUALITY_REFERENCE = 3,  // traces every pixel: a static image to compare with
   ALCOVE_QUALITY_MAX_ENUM = 0x7fffffff
 } AlcoveQuality;
 

@@ -17,7 +17,7 @@ template <>
 inline constexpr auto kNames<bool> = std::to_array<std::string_view>({"false", "true"});
 template <>
 inline constexpr auto kNames<Quality> = std::to_array<std::string_view>({"low", "medium", "high",
-                                                                         "ultra", "reference"});
+                                                                         "reference"});
 template <>
 inline constexpr auto kNames<Estimator> = std::to_array<std::string_view>({"horizons", "heuristic",
                                                                            "bitmask", "connected"});

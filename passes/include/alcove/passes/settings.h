@@ -15,7 +15,6 @@ enum class Quality : std::uint8_t {
   low,     // 1 slice with 8 steps per half-slice, one pixel in 4x4 traced: 1 fetch.
   medium,  // 1 slice with 10 steps, one pixel in 2x2: 5 fetches. The preset to begin with.
   high,    // 2 slices with 16 steps, one pixel in 2x2: 16 fetches.
-  ultra,   // 4 slices with 24 steps, one pixel in 2x2: 48 fetches.
   // 32 slices with 64 steps, every pixel: 4096 fetches. The paper's horizons, without filter and
   // history, in 32-bit floats: a static image to compare with.
   reference,
