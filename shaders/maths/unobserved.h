@@ -1,12 +1,21 @@
-// Directions of a slice of which the depth buffer tells nothing, and what becomes of them.
+// Excludes unobserved directions of a slice from the average.
 //
-// A surface that stands before the whole sphere of the radius hides all that its columns of the
-// image have of it, and beyond the image's border nothing is shown at all: whether anything
-// occludes there is not known. Taken as open, as horizons take it, what is hidden is too bright
-// wherever it was measured, the more so the more of a direction's way is hidden. So a share of
-// these directions is left out of the visible part and of the whole alike: as much of them is taken
-// to be open as of the rest, and an open plane stays exactly open beside anything. A mean direction
-// has no whole to be left out of, and keeps them. After no paper that we know.
+// A direction is unobserved if, within the radius, it passes through columns of the image in which
+// the depth buffer shows nothing of the sphere around the shaded point. Either a foreground nearer
+// to the eye than the sphere hides it in those columns, or the columns lie beyond the image's
+// border. Whether an occluder lies in such a direction is then unknown. If these directions counted
+// as open, as the horizon estimators count them, the result behind foregrounds would be too bright,
+// and the more so the larger the hidden part of a direction's path is.
+//
+// Therefore a share of the directions between the innermost unobserved column and the first
+// occluder is excluded: it is subtracted from both the visible part and the unoccluded part, and
+// visibility is the quotient of the two. Excluded directions are thereby assumed to be as visible
+// as the remaining ones, and an open plane stays exactly open. The share is the square root of the
+// part of the radius that the unobserved columns are wide. Columns beyond the border count less: if
+// they are the whole radius, the share is border_share(), at most 0.5.
+//
+// A bent normal is a mean direction and no such quotient, so nothing is excluded from it. The
+// method is new here; it is not taken from a paper.
 #ifndef ALCOVE_MATHS_UNOBSERVED_H
 #define ALCOVE_MATHS_UNOBSERVED_H
 

@@ -184,8 +184,8 @@ typedef struct AlcoveMemoryRange {
 // thread that calls the library, and must not call it. `free` is called only after the device has
 // finished with the memory.
 typedef struct AlcoveMemoryFunctions {
-  // Fills `range`, which is zeroed. Anything but VK_SUCCESS fails the call of the library, with
-  // ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY for VK_ERROR_OUT_OF_DEVICE_MEMORY.
+  // Fills `range`, which is all zeros when the function is called. Any result but VK_SUCCESS makes
+  // the Alcove call fail; VK_ERROR_OUT_OF_DEVICE_MEMORY becomes ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY.
   VkResult (*allocate)(void* user, const AlcoveMemoryRequest* request, AlcoveMemoryRange* range);
   void (*free)(void* user, const AlcoveMemoryRange* range);
   void* user;
@@ -198,7 +198,7 @@ typedef struct AlcoveMemoryBlock {
   VkDeviceMemory memory;
   VkDeviceSize offset;   // the first byte that may be used
   VkDeviceSize size;     // bytes from there on
-  uint32_t memory_type;  // its index
+  uint32_t memory_type;  // index of the memory type that the block was allocated from
 } AlcoveMemoryBlock;
 
 typedef enum AlcoveSeverity {
@@ -218,8 +218,9 @@ typedef struct AlcoveLog {
 // The engine's device. All of it, allocators and log included, must outlive the context.
 typedef struct AlcoveContextInfo {
   uint32_t struct_size;
-  uint32_t queue_family;  // of the queue that frames are submitted to: one that computes
-  VkInstance instance;    // created for Vulkan 1.2 or newer
+  // The family of the queue that frames are submitted to. It must have VK_QUEUE_COMPUTE_BIT.
+  uint32_t queue_family;
+  VkInstance instance;  // created for Vulkan 1.2 or newer
   // Of Vulkan 1.3, or of 1.2 with the extension VK_KHR_synchronization2. A shader must be able to
   // bind 9 storage images (maxPerStageDescriptorStorageImages).
   VkPhysicalDevice physical_device;
@@ -227,8 +228,9 @@ typedef struct AlcoveContextInfo {
   // instance was created for Vulkan 1.2, VK_KHR_synchronization2 is enabled as well.
   VkDevice device;
   PFN_vkGetInstanceProcAddr get_instance_proc_addr;
-  // The features that the device was created with, chained as for vkCreateDevice: a feature that
-  // the engine forgot to enable is then named. Null: only the physical device is checked.
+  // The features that the device was created with, chained as for vkCreateDevice. If given,
+  // alcoveCreateContext fails with a message that names the first needed feature that is not
+  // enabled. Null: the library only checks that the physical device supports the features.
   const VkPhysicalDeviceFeatures2* enabled_features;
   uint32_t frames_in_flight;  // 1 to ALCOVE_MAX_FRAMES_IN_FLIGHT
   VkBool32 debug_utils;       // VK_EXT_debug_utils is enabled: passes and images get names
@@ -390,7 +392,8 @@ typedef struct AlcoveView {
   AlcoveCamera previous_camera;
   // Dynamic resolution: the history has room for this size, and continues while the size of depth
   // changes within it. Zeros: the size of depth, and a change of size begins a new history. A
-  // change of the largest size always does. Not read without history_frames, as the next two.
+  // change of the largest size always does. largest_width, largest_height, previous_width and
+  // previous_height are not read if history_frames is 0.
   uint32_t largest_width;
   uint32_t largest_height;
   // The size of depth when this id was last recorded. Zeros: the same as now. Not read with

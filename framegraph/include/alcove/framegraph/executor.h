@@ -1,12 +1,13 @@
-// Runs graphs on a Vulkan device of version 1.3, or 1.2 with VK_KHR_synchronization2. Of its
-// features synchronization2 has to be enabled, for submit() timelineSemaphore too, on one queue as
-// on several; dynamicRendering where passes draw with it. Never creates a device.
+// Runs graphs on a Vulkan device that the caller created. The device must have version 1.3, or
+// version 1.2 with VK_KHR_synchronization2. The feature synchronization2 must be enabled. submit()
+// also needs timelineSemaphore, even with a single queue. Passes that call
+// RecordContext::begin_rendering() also need dynamicRendering.
 //
 //   frame:  wait for the fence of slot s;  graph.reset(); declare;  begin commands
 //           executor.record(graph, commands, {s});  end commands, submit with the fence of slot s
 //
-// Plans and physical resources are cached: a frame that was declared before compiles nothing and
-// allocates nothing. One thread at a time.
+// Plans and physical resources are cached. A frame whose declaration is cached compiles and
+// allocates nothing. Only one thread at a time may call an executor.
 #pragma once
 
 #include <cstdint>
@@ -63,9 +64,9 @@ struct ExecutorOptions {
   // command buffers; a caller's query must not be active then in the command buffer that record()
   // is given. An exception of a callback reaches the caller from whichever thread it ran in.
   std::uint32_t recording_threads = 1;
-  // Checks every new plan where it is not null, at the time of compiling: framegraph::verify() of
-  // verify.h, in the library alcove::framegraph_verifier. Debug builds of this library check with
-  // that in any case.
+  // If not null, this function checks each new plan when it is compiled. Pass framegraph::verify()
+  // from verify.h (library alcove::framegraph_verifier). Debug builds of this library use that
+  // function if `verify` is null.
   PlanCheck* verify = nullptr;
 #ifdef NDEBUG
   bool check_uses = false;  // undeclared uses in callbacks are errors
@@ -88,9 +89,10 @@ struct QueueSemaphore {
 struct FrameInfo {
   // The number of the frame in flight. The device must have finished the last frame with this slot.
   std::uint32_t slot = 0;
-  // For submit(): record() leaves synchronisation with others to the caller. A swapchain image is
-  // waited for where it is first used, and graphics, on which imports are left in their final
-  // states, signals that it can be presented.
+  // Used by submit() only; with record() the caller synchronises. For a swapchain image, add the
+  // semaphore of vkAcquireNextImageKHR to `waits`, for the queue that uses the image first, and the
+  // semaphore that vkQueuePresentKHR waits for to `signals`, for the graphics queue, which leaves
+  // imports in their final states.
   std::span<const QueueSemaphore> waits = {};
   std::span<const QueueSemaphore> signals = {};
 };

@@ -37,8 +37,9 @@ class Graph;
 // One pass while it is declared: from add_pass to the next add_pass.
 class PassBuilder {
  public:
-  // The pass reads this version. A pass may read one texture in several ranges; it may not read and
-  // write one subresource in two accesses: for that, write with an access that also reads.
+  // The pass reads the version of the texture or buffer that the handle stands for. It may read one
+  // texture in several ranges. To read and write the same subresource, declare a single write whose
+  // access also reads.
   void read(Texture texture, const Access& access, Range range = {});
   void read(Buffer buffer, const Access& access);
 
@@ -62,10 +63,11 @@ class PassBuilder {
   // The pass does something that the graph does not see: it is never culled.
   void side_effect();
 
-  // The function that records the pass: called with a RecordContext& once a frame if the pass is
-  // live. It is moved into the graph's own memory and lives until reset. It must not throw where
-  // the library is built without exceptions; with them, what it throws leaves Executor::record or
-  // submit once all recording threads have finished, and the frame is given up.
+  // The function that records the pass. It is called with a RecordContext& once a frame if the pass
+  // is live. It is moved into the graph's own memory and lives until reset. It must not throw if
+  // the library is built without exceptions. Otherwise an exception propagates out of
+  // Executor::record or submit after all recording threads have finished, and the frame counts as
+  // failed.
   template <typename Callable>
   void record(Callable&& callable);
 
@@ -120,8 +122,9 @@ class Graph {
   Graph(const Graph&) = delete;
   Graph& operator=(const Graph&) = delete;
 
-  // Transients: made by the executor for the passes that live. Names need not be unique (except
-  // those of histories) and are copied.
+  // Created textures and buffers are transient: the executor provides them for the passes that are
+  // not culled. Imported ones belong to the caller. Names are copied. They need not be unique,
+  // except those of histories.
   Texture create_texture(std::string_view name, const TextureDesc& desc);
   Buffer create_buffer(std::string_view name, const BufferDesc& desc);
   Texture import_texture(std::string_view name, const ImportedTexture& import);

@@ -30,11 +30,12 @@ struct MemoryRange {
   void* handle = nullptr;
 };
 
-// The caller's allocator of device memory. Both functions are given, or neither: vkAllocateMemory
-// and vkFreeMemory are called then. They are called from the thread that creates, records or
-// destroys; `free` only after the device has finished with the memory.
+// The caller's allocator of device memory. Give both functions or neither. Without them the library
+// calls vkAllocateMemory and vkFreeMemory. The functions are called on the thread that creates,
+// records or destroys. `free` is called only after the device has finished with the memory.
 struct MemoryFunctions {
-  // Anything but VK_SUCCESS is the error that the caller of the library gets.
+  // Fills `range`, which is all zeros when the function is called. Any result but VK_SUCCESS makes
+  // the call of the library fail, with that result in its error.
   VkResult (*allocate)(void* user, const MemoryRequest& request, MemoryRange& range) = nullptr;
   void (*free)(void* user, const MemoryRange& range) = nullptr;
   void* user = nullptr;
@@ -48,7 +49,7 @@ struct MemoryBlock {
   VkDeviceMemory memory = VK_NULL_HANDLE;  // null: there is no block
   VkDeviceSize offset = 0;                 // the first byte that may be used
   VkDeviceSize size = 0;                   // bytes from there on
-  std::uint32_t memory_type = 0;           // its index
+  std::uint32_t memory_type = 0;           // index of the type that the block was allocated from
 };
 
 enum class Severity : std::uint8_t { info, warning, error };

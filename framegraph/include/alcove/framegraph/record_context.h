@@ -43,11 +43,12 @@ class RecordContext {
   // Frame slot as in FrameInfo: for what a pass keeps per frame in flight.
   std::uint32_t frame_slot = 0;
 
-  // A view of the range that the pass declared for this texture (the first access that names it),
-  // or of `range`, which must lie within what is declared. 2D, 2D array when more than one layer is
-  // covered, or 3D, unless a type is given. A texture with depth and stencil gives the depth,
-  // unless the range names the stencil. Another format than the texture's needs TextureDesc::flags
-  // with MUTABLE_FORMAT, a cube CUBE_COMPATIBLE.
+  // Returns a view of `range`, which must lie within what the pass declared for this texture.
+  // Without `range`, the view covers the range of the first access that names the texture. Unless
+  // `type` is given, the view is 3D for a 3D texture, a 2D array if it covers several layers, and
+  // 2D otherwise. For a format with depth and stencil it shows depth, unless `range` selects the
+  // stencil aspect. A different `format` needs VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT in
+  // TextureDesc::flags, and a cube view needs VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT.
   VkImageView view(Texture texture) const;
   VkImageView view(Texture texture, Range range, VkImageViewType type = kViewTypeByRange,
                    VkFormat format = VK_FORMAT_UNDEFINED) const;
@@ -59,8 +60,8 @@ class RecordContext {
   // access keeps them. What is drawn is stored where a later pass or frame needs it.
   VkRenderingAttachmentInfo attachment(const Attachment& attachment) const;
   // Begins a rendering over the whole of the attachments' mips and layers. `depth` is bound for the
-  // aspects that the pass declared as attachments. False, and record()
-  // returns an error, where their sizes or samples differ or the device lacks dynamic rendering.
+  // aspects that the pass declared as attachments. Returns false, and record() returns an error, if
+  // the attachments' sizes or samples differ or the device lacks dynamic rendering.
   bool begin_rendering(std::span<const Attachment> colors, const Attachment& depth = {}) const;
   void end_rendering() const { vk.vkCmdEndRendering(commands); }
   VkImage image(Texture texture) const;
