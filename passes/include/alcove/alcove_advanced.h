@@ -36,7 +36,7 @@ typedef enum AlcoveWeighting {
 typedef enum AlcoveThicknessUnit {
   ALCOVE_THICKNESS_UNIT_RADIUS = 0,    // a fraction of the radius: constant in scene units
   ALCOVE_THICKNESS_UNIT_DISTANCE = 1,  // a fraction of the occluder's distance from the eye
-  // Occluders end at AlcoveView::back_depth; where that has no face, as with RADIUS.
+  // Occluders end at AlcoveView::back_depth. At pixels where it has no face, RADIUS applies.
   ALCOVE_THICKNESS_UNIT_BACK_FACES = 2,
   ALCOVE_THICKNESS_UNIT_MAX_ENUM = 0x7fffffff
 } AlcoveThicknessUnit;

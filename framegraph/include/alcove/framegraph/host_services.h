@@ -23,8 +23,8 @@ struct MemoryRequest {
 struct MemoryRange {
   VkDeviceMemory memory = VK_NULL_HANDLE;
   VkDeviceSize offset = 0;
-  // The address of the first byte in host memory. Needed where VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT
-  // was required: the memory then stays mapped until it is freed.
+  // The address of the first byte in host memory. Needed if VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT was
+  // required: the memory then stays mapped until it is freed.
   void* mapped = nullptr;
   // For `free`: anything that finds the allocation again.
   void* handle = nullptr;
@@ -41,10 +41,10 @@ struct MemoryFunctions {
   void* user = nullptr;
 };
 
-// Memory that the caller has allocated, for the transients and histories of one executor. Where it
-// is full, and where a resource cannot lie in its memory type, MemoryFunctions provide the rest. If
-// there are none, a full block is an error (VK_ERROR_OUT_OF_DEVICE_MEMORY), and what cannot lie in
-// the memory type is allocated with vkAllocateMemory.
+// Memory that the caller has allocated, for the transients and histories of one executor. If it is
+// full, or a resource cannot lie in its memory type, MemoryFunctions provide the rest. If there are
+// no functions, a full block is an error (VK_ERROR_OUT_OF_DEVICE_MEMORY), and a resource that
+// cannot lie in the memory type is allocated with vkAllocateMemory.
 struct MemoryBlock {
   VkDeviceMemory memory = VK_NULL_HANDLE;  // null: there is no block
   VkDeviceSize offset = 0;                 // the first byte that may be used
