@@ -58,8 +58,8 @@ vec3 fetch_direction(texture2D image, ivec2 pixel, vec3 instead) {
   return has_direction(given) ? normalize(mat3(parameters.world_from_normal) * given) : instead;
 }
 
-// The bent normal, limited to the angle from the normal that its visibility allows, so that noise of the
-// bent normal does not show on unoccluded surfaces.
+// The bent normal, limited to the angle from the normal that its visibility allows, so that noise
+// of the bent normal does not show on unoccluded surfaces.
 vec3 fetch_bent_normal(ivec2 pixel, vec3 normal, float visibility) {
   vec3 bent = fetch_direction(bent_normal_image, pixel, normal);
   return kVisibility ? raised_bent_normal(bent, normal, converged_visibility(visibility)) : bent;
@@ -101,8 +101,9 @@ vec3 environment_light(vec3 normal, vec3 view, float roughness) {
   return fetch_map(map_image, parameters.map.x, level, direction);
 }
 
-// Light that reaches the lobe: the environment and, as in multi-bounce, occluders with the colour and
-// the lighting of the surface itself.
+// Light that arrives from the directions of the specular lobe. The visible part shows the
+// environment. With multi-bounce, the occluded part shows occluders that are assumed to have the
+// albedo and the lighting of the surface itself (`occluder`).
 vec3 specular_light(ivec2 pixel, vec3 environment, vec3 occluder) {
   if (!kSpecularOcclusion) {
     return environment;

@@ -82,8 +82,9 @@ void add_sample(inout SegmentState state, HalfSlice half_slice, float sectors, u
   state.x = here.point.x;
 }
 
-// Adds `here`, a sample after the first, now that the sample `next` after it shows how the inverse
-// depth bends there.
+// Adds the sample `here` (any but the first). Whether it is connected to the previous sample
+// depends on the change of slope of the inverse depth at `here`, for which the following sample
+// `next` is needed. Then sets `here` to `next`.
 void pass_sample(inout SegmentState state, inout SliceSample here, HalfSlice half_slice,
                  float sectors, uint layer, uint bit, SliceSample next) {
   float rise = next.off_plane - here.off_plane;

@@ -36,7 +36,8 @@ struct HalfSlice {
 const float kRoundingBias = 12582912.0;  // 1.5 * 2^23
 const int kRoundingBits = 0x4B400000;
 
-// Change of the line of depth's slope, in depth per width, that parts two surfaces.
+// Smallest change of slope (depth difference divided by lateral distance) that counts as a
+// discontinuity between two surfaces.
 const float kDepthDiscontinuity = 4.0;
 
 // Distances in pixels from `centre` to the border of the image, along `direction` and against it.

@@ -5,8 +5,9 @@
 namespace alcove::framegraph {
 namespace {
 
-// Queues, lifetimes and memory for the order of execution in the workspace. The bytes of all heaps.
-// Nothing is placed where the device cannot make a texture, which is an error.
+// Assigns queues, computes lifetimes and places memory for the order of execution that the
+// workspace holds. Returns the total size of all heaps in bytes. If the device cannot create one of
+// the images, adds an error, places nothing and returns 0.
 VkDeviceSize schedule(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
                       Plan& plan, Errors& errors) {
   plan.submissions.clear();

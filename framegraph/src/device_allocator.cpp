@@ -59,8 +59,9 @@ void DeviceAllocator::free(const MemoryRange& range) {
     device_.vk.vkFreeMemory(device_.handles.device, range.memory, device_.callbacks());
 }
 
-// Whether the flags with which the block was allocated suffice is not known: memory for device
-// addresses comes from elsewhere.
+// Whether the caller's memory block can serve this request. It never serves buffers with a device
+// address, because it is not known whether the block was allocated with
+// VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT.
 bool DeviceAllocator::suits_block(const MemoryRequest& request) const {
   const std::uint32_t type = device_.handles.host.block.memory_type;
   return type < device_.memory.memoryTypeCount && !request.device_address &&

@@ -73,8 +73,9 @@ class Recorder {
   // kNone without an error where there is none.
   std::uint32_t find_attachment(std::uint32_t pass, std::uint32_t resource,
                                 VkImageAspectFlags aspect) const;
-  // Whether a texture that the pass declared has this range and, where uses are checked, whether
-  // the pass declared all of it. An error where not.
+  // Returns whether `range` lies within the texture `resource` and, if check_uses_ is set, whether
+  // the pass declared accesses to all mips and layers of that range. If not, adds an error and
+  // returns false.
   bool check_view(std::uint32_t pass, std::uint32_t resource, const Range& range) const;
 
   const DeviceContext& device_;

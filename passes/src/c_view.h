@@ -20,8 +20,8 @@ class ViewName {
 
 class PixelObserver;
 
-// Adds the passes of `view` to the graph; `prepare` as Frame has it. Where there is an observer, it
-// samples the view's pixels for frame slot `slot`.
+// Adds the passes of `view` to the graph. `prepare` is stored in Frame::prepare. If `observer` is
+// not null, it adds a pass that samples the view's pixels for the frame slot AlcoveFrame::slot.
 [[nodiscard]] tl::expected<void, Failure> add_view(framegraph::Graph& graph, Kernels& kernels,
                                                    ImageTable& images, const AlcoveView& view,
                                                    const AlcoveFrame& frame, bool prepare,

@@ -14,10 +14,10 @@
 
 ALCOVE_MATHS_BEGIN
 
-// Visibility as the cones take it: [0,1], with the last 1/128 below open counted as open. A
-// filtered visibility is no surer than that, and a cone's angle, whose cosine is sqrt(1 -
-// visibility), turns so little into 5 degrees, which would cost an open surface the whole of a
-// sharp lobe at grazing angles.
+// Visibility as input of the cones, [0,1]. Values above 127/128 become 1; smaller ones are scaled
+// by the same factor. A filtered visibility is not more accurate than that. The half-angle of the
+// visibility cone has the cosine sqrt(1 - visibility), so an error of 1/128 on an open surface
+// narrows the cone by 5 degrees. At grazing angles that would remove all of a narrow specular lobe.
 ALCOVE_INLINE float converged_visibility(float visibility) {
   return saturate(visibility * (128.0f / 127.0f));
 }

@@ -113,10 +113,11 @@ ALCOVE_INLINE float unpack_mantissa(uint word, uint first, uint bits) {
   return uintBitsToFloat((mantissa & (last << (23u - bits))) | 0x3f800000u) * scale - scale;
 }
 
-// A logarithmic weight as an integer of 4 bits, as a float. The probability of rounding up is
-// linear in the weight rather than in its logarithm, so that the mean weight is exact: between two
-// codes, which differ by a factor of 2^(11/15), it is (2^(11/15 f) - 1) / (2^(11/15) - 1), here to
-// 2e-3.
+// A logarithmic weight quantised to a whole number from 0 to 15, returned as a float. `dither`
+// rounds up at random, with a probability that preserves the mean of the weight rather than of its
+// logarithm. The weights of successive codes differ by a factor of 2^(11/15). At a fraction f
+// between two codes the exact probability is (2^(11/15 f) - 1) / (2^(11/15) - 1); the polynomial is
+// within 2.2e-3 of it.
 ALCOVE_INLINE float dithered_log_weight(float log_weight, float dither) {
   float code = clamp(log_weight, 0.0f, 1.0f) * 15.0f;
   float whole = floor(code);

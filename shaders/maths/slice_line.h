@@ -84,8 +84,10 @@ ALCOVE_INLINE SliceLine make_slice_line(vec2 per_px, vec3 direction, vec3 view) 
   return slice_line;
 }
 
-// (x w, y w, w) of the point `offset_px` pixels along the line (negative: against it), where
-// `line` is SliceSample::inverse_depth.
+// Returns (x w, y w, w) of the point that lies `offset_px` pixels along the line (negative: in the
+// opposite direction) and has this SliceSample::inverse_depth. In the slice's plane, relative to
+// the shaded point, x points along the line and y towards the eye; w is the inverse depth in
+// perspective, else 1.
 ALCOVE_INLINE vec3 slice_point(SliceLine slice_line, float offset_px, float inverse_depth,
                                float centre_depth, bool perspective) {
   float rise = perspective ? centre_depth * inverse_depth - 1.0f : centre_depth - inverse_depth;
@@ -144,8 +146,9 @@ ALCOVE_INLINE float depth_step_length(float step, float inverse_depth, bool pers
   return perspective ? step / (inverse_depth * inverse_depth) : step;
 }
 
-// How much of the occlusion at a surface the depth buffer cannot resolve: 0 while its step is below
-// a quarter of the radius, 1 from the whole radius on.
+// The fraction by which occlusion is faded to open because the depth buffer is too coarse: 0 if its
+// step at the surface (`step_length`, scene units) is at most a quarter of the radius, 1 if it is
+// at least the radius, linear in between.
 ALCOVE_INLINE float unresolved_occlusion(float step_length, float radius) {
   return saturate((step_length / radius - 0.25f) * (4.0f / 3.0f));
 }

@@ -35,7 +35,7 @@ TEST_F(Cull, UnreadPassesAndTheirTexturesAreCulled) {
   EXPECT_EQ(result.placements[1].heap, kNone);
 }
 
-TEST_F(Cull, PassIsKeptByTheConsumerThatItNames) {
+TEST_F(Cull, CullReasonNamesTheConsumerThatKeepsThePass) {
   const Texture first = make("first");
   Texture second = graph_.create_texture("second", kDesc);
   PassBuilder pass = graph_.add_pass("reader");

@@ -120,13 +120,13 @@ void expect_close_to_bound(std::uint32_t fewest_passes, std::int64_t effort, dou
 
 constexpr std::int64_t kDefaultEffort = Limits{}.placement_effort;
 
-TEST(Place, GraphsOf20To40PassesAreCloseToTheirLowerBound) {
+TEST(Place, PeakMemoryOf20To40PassesIsCloseToTheLowerBound) {
   expect_close_to_bound(20, kDefaultEffort, 1.0, 1.08);
 }
-TEST(Place, GraphsOf40To80PassesAreCloseToTheirLowerBound) {
+TEST(Place, PeakMemoryOf40To80PassesIsCloseToTheLowerBound) {
   expect_close_to_bound(40, kDefaultEffort, 1.01, 1.10);
 }
-TEST(Place, GraphsOf100To200PassesAreCloseToTheirLowerBound) {
+TEST(Place, PeakMemoryOf100To200PassesIsCloseToTheLowerBound) {
   expect_close_to_bound(100, kDefaultEffort, 1.03, 1.15);
 }
 TEST(Place, MoreEffortComesWithinTwoPercentOfTheLowerBound) {

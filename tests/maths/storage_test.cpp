@@ -32,7 +32,7 @@ TEST(RawOcclusion, ZeroWeightMeansUnoccluded) {
   EXPECT_EQ(maths::mean_visibility(raw_occlusion_of(0.0f, nan)), 1.0f);
 }
 
-TEST(RawOcclusion, UnpackedRatiosAreThePackedOnesAndOneIsExact) {
+TEST(RawOcclusion, RatiosSurvivePackingAndARatioOfOneIsExact) {
   RandomInput random;
   for (int i = 0; i < 20000; ++i) {
     const float open = random.uniform(1e-3f, maths::kLargestOpen);

@@ -154,7 +154,7 @@ TEST(Unobserved, FractionOfTheDirectionsBeyondTheBorderIsExcluded) {
   EXPECT_NEAR(maths::make_unobserved_arc(tangent, all, kRadiusPx).share, 0.3f, 1e-6f);
 }
 
-TEST(Unobserved, BorderShareFallsWithTheObservedPartOfTheRadius) {
+TEST(Unobserved, BorderShareFallsWithTheUnobservedPartOfTheOtherSideAndWithNearness) {
   EXPECT_EQ(maths::border_share(0.0f, 0.0f), 0.5f);
   EXPECT_EQ(maths::border_share(0.25f, 0.0f), 0.375f);
   EXPECT_EQ(maths::border_share(1.0f, 0.0f), 0.0f);

@@ -150,7 +150,7 @@ TEST(MotionErrors, NoiseOfTheTruthIsSubtractedFromTheError) {
 }
 
 // The directions are about 4 degrees off the truth, whose halves have a noise of 12 degrees each.
-TEST(MotionErrors, NoiseOfTrueDirectionsIsSubtractedFromTheError) {
+TEST(MotionErrors, NoiseOfReferenceDirectionsIsSubtractedFromTheError) {
   const auto seed = static_cast<std::uint32_t>(std::random_device{}());
   SCOPED_TRACE(testing::Message() << "seed " << seed);
   std::mt19937 random(seed);

@@ -165,9 +165,9 @@ class Tables {
       fail(name(r) + " lies in a heap whose memory types it does not allow");
   }
 
-  // Resources that live together share no byte, and a buffer and an image no page of the
-  // granularity. In order of first use each is compared with its neighbours in memory of those that
-  // live then.
+  // Resources whose lifetimes overlap must not share a byte, and a buffer and an image must not
+  // share a page of bufferImageGranularity. Visits resources in order of first use and compares
+  // each one with its two neighbours in memory among the resources that are live at that time.
   void check_overlaps() {
     std::vector<std::uint32_t> order;
     for (std::uint32_t r = 0; r < graph_.resources.size(); ++r) {

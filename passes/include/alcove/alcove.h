@@ -52,7 +52,7 @@ typedef enum AlcoveResult {
   ALCOVE_RESULT_MAX_ENUM = 0x7fffffff
 } AlcoveResult;
 
-// The name of a result, such as "ALCOVE_SUCCESS". Static storage, never null.
+// Returns the name of a result, such as "ALCOVE_SUCCESS". It has static storage and is never null.
 const char* alcoveGetResultName(AlcoveResult result);
 
 // ALCOVE_VERSION as it was when the library was compiled.
@@ -75,7 +75,7 @@ typedef enum AlcoveQuality {
   ALCOVE_QUALITY_MAX_ENUM = 0x7fffffff
 } AlcoveQuality;
 
-// How specular occlusion is computed, where AlcoveView::specular asks for it.
+// How specular occlusion is computed, if AlcoveView::specular has an image.
 typedef enum AlcoveSpecular {
   // Integrates the GGX lobe over the slices that visibility is computed from: the most exact.
   ALCOVE_SPECULAR_SLICES = 1,
@@ -135,7 +135,7 @@ typedef struct AlcoveSettings {
   // Filters and accumulates texels of 2x2 pixels, then upsamples along depth edges: less time, a
   // quarter of the history's memory, and a larger error. Needs a tile_size of 2 or 4. [VK_FALSE]
   VkBool32 half_resolution;
-  AlcoveSpecular specular;     // read where AlcoveView::specular is given [SLICES]
+  AlcoveSpecular specular;     // read if AlcoveView::specular is given [SLICES]
   float roughness;             // perceptual, 0 to 1, for pixels without AlcoveView::roughness [0.5]
   uint32_t roughness_channel;  // the channel of AlcoveView::roughness, 0 to 3 [0]
   AlcovePrecision precision;   // [UNORM8]
@@ -156,7 +156,7 @@ AlcoveResult alcoveGetSettings(AlcoveQuality quality, float radius, AlcoveSettin
 // Writes the settings, those of `advanced` too, as lines of `name = value`: at most `size` bytes
 // with the terminating zero. A float is the shortest text that reads back as the same, in every
 // locale. Returns the bytes that the whole text takes without that zero, 0 if the settings are
-// invalid. `text` may be null where `size` is 0.
+// invalid. `text` may be null if `size` is 0.
 size_t alcovePrintSettings(const AlcoveSettings* settings, char* text, size_t size);
 
 typedef struct AlcoveContext AlcoveContext;
@@ -172,8 +172,8 @@ typedef struct AlcoveMemoryRequest {
 typedef struct AlcoveMemoryRange {
   VkDeviceMemory memory;
   VkDeviceSize offset;  // of the first byte, a multiple of the alignment
-  // The address of the first byte in host memory. Needed where VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT
-  // was required: the memory then stays mapped until it is freed.
+  // The address of the first byte in host memory. Needed if VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT was
+  // required: the memory then stays mapped until it is freed.
   void* mapped;
   void* handle;  // the engine's own, for `free`
 } AlcoveMemoryRange;
@@ -182,8 +182,8 @@ typedef struct AlcoveMemoryRange {
 // thread that calls the library, and must not call it. `free` is called only after the device has
 // finished with the memory.
 typedef struct AlcoveMemoryFunctions {
-  // Fills `range`, which is zeroed. Anything but VK_SUCCESS fails the call of the library, with
-  // ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY for VK_ERROR_OUT_OF_DEVICE_MEMORY.
+  // Fills `range`, which is all zeros when the function is called. Any result but VK_SUCCESS makes
+  // the Alcove call fail; VK_ERROR_OUT_OF_DEVICE_MEMORY becomes ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY.
   VkResult (*allocate)(void* user, const AlcoveMemoryRequest* request, AlcoveMemoryRange* range);
   void (*free)(void* user, const AlcoveMemoryRange* range);
   void* user;
@@ -196,7 +196,7 @@ typedef struct AlcoveMemoryBlock {
   VkDeviceMemory memory;
   VkDeviceSize offset;   // the first byte that may be used
   VkDeviceSize size;     // bytes from there on
-  uint32_t memory_type;  // its index
+  uint32_t memory_type;  // index of the memory type that the block was allocated from
 } AlcoveMemoryBlock;
 
 typedef enum AlcoveSeverity {
@@ -216,8 +216,9 @@ typedef struct AlcoveLog {
 // The engine's device. All of it, allocators and log included, must outlive the context.
 typedef struct AlcoveContextInfo {
   uint32_t struct_size;
-  uint32_t queue_family;  // of the queue that frames are submitted to: one that computes
-  VkInstance instance;    // created for Vulkan 1.2 or newer
+  // The family of the queue that frames are submitted to. It must have VK_QUEUE_COMPUTE_BIT.
+  uint32_t queue_family;
+  VkInstance instance;  // created for Vulkan 1.2 or newer
   // Of Vulkan 1.3, or of 1.2 with the extension VK_KHR_synchronization2. A shader must be able to
   // bind 9 storage images (maxPerStageDescriptorStorageImages).
   VkPhysicalDevice physical_device;
@@ -225,8 +226,9 @@ typedef struct AlcoveContextInfo {
   // instance was created for Vulkan 1.2, VK_KHR_synchronization2 is enabled as well.
   VkDevice device;
   PFN_vkGetInstanceProcAddr get_instance_proc_addr;
-  // The features that the device was created with, chained as for vkCreateDevice: a feature that
-  // the engine forgot to enable is then named. Null: only the physical device is checked.
+  // The features that the device was created with, chained as for vkCreateDevice. If given,
+  // alcoveCreateContext fails with a message that names the first needed feature that is not
+  // enabled. Null: the library only checks that the physical device supports the features.
   const VkPhysicalDeviceFeatures2* enabled_features;
   uint32_t frames_in_flight;  // 1 to ALCOVE_MAX_FRAMES_IN_FLIGHT
   VkBool32 debug_utils;       // VK_EXT_debug_utils is enabled: passes and images get names
@@ -239,26 +241,26 @@ typedef struct AlcoveContextInfo {
   // Given to every function of Vulkan that creates or destroys an object; null: the driver's own.
   // The library's own host memory, a few kilobytes, comes from malloc and operator new.
   const VkAllocationCallbacks* allocation_callbacks;
-  // Where device memory comes from: for images from `memory_block`, if its `memory` is not null;
-  // else, and where the block is full, from `memory_functions`, if there are any. Without functions
-  // a full block fails the frame with ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY. With neither, and for the
-  // parameters that the host writes (80 KiB per frame in flight) where there is a block alone,
-  // vkAllocateMemory is called.
+  // Sources of device memory. Images come from `memory_block`, if its `memory` is not null. If
+  // there is no block or it is full, they come from `memory_functions`, if given. Without functions
+  // a full block fails the frame with ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY. vkAllocateMemory is called
+  // if neither is given, and, if only a block is given, for the parameters that the host writes (80
+  // KiB per frame in flight).
   AlcoveMemoryFunctions memory_functions;
   AlcoveMemoryBlock memory_block;
   AlcoveLog log;
 } AlcoveContextInfo;
 
-// `message` may be null; else it has room for ALCOVE_MAX_MESSAGE bytes and gets the sentence where
-// there is an error, and is empty where there is none. On an error *context is null.
+// `message` may be null. Otherwise it has room for ALCOVE_MAX_MESSAGE bytes and receives the
+// sentence of the error, or an empty text if there is none. On an error *context is null.
 AlcoveResult alcoveCreateContext(const AlcoveContextInfo* info, AlcoveContext** context,
                                  char* message);
 
-// The device must have finished all that was recorded. Null is fine.
+// The device must have finished all recorded frames. A null context is allowed.
 void alcoveDestroyContext(AlcoveContext* context);
 
-// The message of the last call on this context that failed; empty if none has. Valid until the next
-// call. Never null.
+// Returns the message of the last call on this context that failed, or an empty text if none has.
+// The result is never null and is valid until the next call.
 const char* alcoveGetMessage(const AlcoveContext* context);
 
 // How an image is used before or after a frame. Work on another queue is ordered by the engine's
@@ -295,7 +297,7 @@ typedef struct AlcoveImage {
   // VK_IMAGE_LAYOUT_UNDEFINED, because all of its pixels are overwritten.
   AlcoveState initial_state;
   // The next use, and its layout: the last barrier changes the layout and makes the image visible
-  // to these stages, even where no pass reads it. Required.
+  // to these stages, even if no pass reads it. Required.
   AlcoveState final_state;
 } AlcoveImage;
 
@@ -340,9 +342,9 @@ typedef enum AlcoveCameraConvention {
 } AlcoveCameraConvention;
 
 // Fills `camera` with an engine's matrices of 16 floats each. `conventions` is any combination of
-// AlcoveCameraConvention, 0 for none. ALCOVE_ERROR_INVALID_INPUT where a pointer is null or a bit
-// is unknown; what the matrices hold is checked when a frame is recorded. Normals in view space of
-// a camera that looks along +Z need AlcoveView::normals_forward_z too.
+// AlcoveCameraConvention, 0 for none. Returns ALCOVE_ERROR_INVALID_INPUT if a pointer is null or a
+// bit is unknown; what the matrices hold is checked when a frame is recorded. Normals in view space
+// of a camera that looks along +Z need AlcoveView::normals_forward_z too.
 AlcoveResult alcoveConvertCamera(const float* clip_from_view, const float* view_from_world,
                                  uint32_t conventions, AlcoveCamera* camera);
 
@@ -358,7 +360,8 @@ typedef struct AlcovePerspective {
   float jitter_px[2];  // by which the image is shifted, in pixels, x right and y down
 } AlcovePerspective;
 
-// Fills AlcoveCamera::clip_from_view. ALCOVE_ERROR_INVALID_INPUT where a number is out of range.
+// Fills AlcoveCamera::clip_from_view. Returns ALCOVE_ERROR_INVALID_INPUT if a number is out of
+// range.
 AlcoveResult alcoveMakePerspective(const AlcovePerspective* perspective, float* clip_from_view);
 
 // One view of a frame, such as an eye or a part of a split screen, with images or layers of its
@@ -388,7 +391,8 @@ typedef struct AlcoveView {
   AlcoveCamera previous_camera;
   // Dynamic resolution: the history has room for this size, and continues while the size of depth
   // changes within it. Zeros: the size of depth, and a change of size begins a new history. A
-  // change of the largest size always does. Not read without history_frames, as the next two.
+  // change of the largest size always does. largest_width, largest_height, previous_width and
+  // previous_height are not read if history_frames is 0.
   uint32_t largest_width;
   uint32_t largest_height;
   // The size of depth when this id was last recorded. Zeros: the same as now. Not read with
@@ -408,7 +412,7 @@ typedef struct AlcoveView {
   AlcoveImage normals;
   // How each surface moved on the image, in xy of a signed format. Without an image only the camera
   // moves. With one, history is held to what the last few frames say, because occluders may move:
-  // leave it out where nothing but the camera does.
+  // leave it out if nothing but the camera moves.
   //
   // motion_scale * vector + motion_offset is uv in this frame's image minus uv in the last frame's,
   // y down, with the jitter of both cameras. A scale of zeros stands for 1 and 1. Vectors in pixels
@@ -463,7 +467,7 @@ typedef struct AlcoveFrame {
 // records meanwhile, prepare with a second context that has the same pipeline_cache, and destroy
 // that context: the first one then finds the pipelines in the cache.
 //
-// Errors: those of alcoveRecordFrame.
+// Returns the same errors as alcoveRecordFrame.
 AlcoveResult alcovePrepareFrame(AlcoveContext* context, const AlcoveFrame* frame);
 
 // Records the passes of all views into `commands`: a primary command buffer in the recording state,
@@ -520,7 +524,7 @@ typedef enum AlcoveOutput {
 // `normals_given` says that AlcoveView::normals has an image. The figures are those of texels:
 // drivers round each image up. `transients` is what the view needs when nothing shares memory, as
 // is `transients_unshared`; a frame that was recorded may need less. `allocated` is the sum of
-// transients and history. ALCOVE_ERROR_INVALID_INPUT where an argument is invalid; there is no
+// transients and history. Returns ALCOVE_ERROR_INVALID_INPUT if an argument is invalid; there is no
 // message.
 AlcoveResult alcoveEstimateMemory(const AlcoveSettings* settings, uint32_t width, uint32_t height,
                                   uint32_t outputs, VkBool32 normals_given, AlcoveMemory* memory);
@@ -539,7 +543,8 @@ AlcoveResult alcoveGetTimings(AlcoveContext* context, uint32_t slot, uint32_t* c
                               AlcoveTiming* timings);
 
 // Writes the plan of the last recorded frame as text: passes, barriers, memory. Buffer and result
-// are as with alcovePrintSettings. 0 where there is no such frame, or no memory for the text.
+// are as with alcovePrintSettings. Returns 0 if no such frame exists or there is no memory for the
+// text.
 size_t alcovePrintPlan(AlcoveContext* context, char* text, size_t size);
 
 // Mistakes that show in the frames recorded so far: a line with a sentence for each, nothing where
@@ -561,7 +566,7 @@ size_t alcovePrintPlan(AlcoveContext* context, char* text, size_t size);
 size_t alcoveDiagnose(AlcoveContext* context, char* text, size_t size);
 
 // Removes a view and its history. The memory is freed while the next frames are recorded, after the
-// device has finished those that used it. An id that was never recorded is allowed.
+// device has finished the frames that used it. An id that was never recorded is allowed.
 AlcoveResult alcoveDropView(AlcoveContext* context, uint32_t id);
 
 // Call this before the engine destroys an image that it gave without a view, because another image

@@ -36,7 +36,7 @@ typedef enum AlcoveWeighting {
 typedef enum AlcoveThicknessUnit {
   ALCOVE_THICKNESS_UNIT_RADIUS = 0,    // a fraction of the radius: constant in scene units
   ALCOVE_THICKNESS_UNIT_DISTANCE = 1,  // a fraction of the occluder's distance from the eye
-  // Occluders end at AlcoveView::back_depth; where that has no face, as with RADIUS.
+  // Occluders end at AlcoveView::back_depth. At pixels where it has no face, RADIUS applies.
   ALCOVE_THICKNESS_UNIT_BACK_FACES = 2,
   ALCOVE_THICKNESS_UNIT_MAX_ENUM = 0x7fffffff
 } AlcoveThicknessUnit;
@@ -64,8 +64,8 @@ typedef struct AlcoveAdvancedSettings {
   AlcoveEstimator estimator;           // [CONNECTED]
   AlcoveWeighting weighting;           // [COSINE]
   AlcoveThicknessUnit thickness_unit;  // for BITMASK and CONNECTED [RADIUS]
-  // How far each lower sample further out lowers the horizon towards it, 0 (not) to 1 (all the
-  // way), for HEURISTIC. [0.05]
+  // How far a sample below the horizon lowers it: 0 not at all, 1 down to the sample. For
+  // HEURISTIC. [0.05]
   float blend;
   // The last fraction of the radius, over which occluders fade out, 0 to 1, for HORIZONS and
   // HEURISTIC. Must be 0 with BITMASK and CONNECTED, whose sectors are either occluded or open. [0]
@@ -74,8 +74,8 @@ typedef struct AlcoveAdvancedSettings {
   // Filter radius in tiles for pixels with fewer than two frames of history, 0 to 3. Pixels with
   // more history use 1. 0 turns the filter off. [2]
   uint32_t filter_radius;
-  // Distance from the tangent plane, in pixels, at which a neighbour's weight falls to 0.25; above
-  // 0. This is the value for one slice and no history. It shrinks as samples accumulate. [1.5]
+  // Distance from the pixel's tangent plane, in pixels, at which a neighbour's weight falls to
+  // 0.25; above 0. It holds for one slice and no history, and shrinks with more samples. [1.5]
   float filter_tolerance_px;
   // The history is clamped to the mean of this frame's neighbourhood plus or minus so many standard
   // deviations, at least 0. 0 does not clamp. [0]
@@ -86,8 +86,8 @@ typedef struct AlcoveAdvancedSettings {
   // Snaps samples to texel centres. Without it, tilted planes occlude themselves. [true]
   VkBool32 snap_to_texels;
   VkBool32 extrapolation;  // extrapolates surfaces beyond the image's border, for CONNECTED [true]
-  // Excludes directions that foregrounds or the border hide from the average, for CONNECTED.
-  // Without it they count as open. [true]
+  // Leaves directions that the depth buffer does not show (behind a foreground, or beyond the
+  // image's border) partly out of the average. If off, they count as open. For CONNECTED. [true]
   VkBool32 unobserved;
   AlcoveGrouping grouping;  // [NEIGHBOURS]
 } AlcoveAdvancedSettings;

@@ -51,7 +51,7 @@ struct ImageOracle {
 
 enum class Ordering : std::uint8_t {
   program,  // as declared
-  // In another order where that lowers the bytes of all heaps, as they are placed: never a higher
+  // In another order if that lowers the bytes of all heaps, as they are placed: never a higher
   // peak. Passes with side effects keep their order among each other.
   lower_peak,
 };
@@ -79,9 +79,10 @@ struct Limits {
   // Graphs of more live passes than this keep program order: looking for another takes time that
   // grows faster than the graph.
   std::uint32_t reorder_passes = 48;
-  // How long placement looks for a lower peak where the first way does not meet the lower bound, in
-  // comparisons of two resources, 0 or more; 0 takes the first way. The time that a changed frame
-  // takes grows with it. For 200 passes with textures of differing sizes (framegraph_benchmark):
+  // How long placement looks for a lower peak if its first attempt does not meet the lower bound,
+  // in comparisons of two resources, 0 or more; 0 keeps the first attempt. The time that a changed
+  // frame takes grows with it. For 200 passes with textures of differing sizes
+  // (framegraph_benchmark):
   // 0 takes .05 ms at a median peak of 1.16 times the lower bound, 2^18 takes .6 ms at 1.002, and
   // 2^24 takes up to 30 ms for the last hundredths of the worst frames.
   std::int64_t placement_effort = 1 << 18;

@@ -177,9 +177,9 @@ struct GraphDescription {
   }
 };
 
-// Whether two frames were declared the same, names aside.
+// Returns whether two frames were declared the same, names aside.
 bool same_declaration(const GraphDescription& a, const GraphDescription& b);
-// A hash of what same_declaration compares.
+// Returns a hash of everything that same_declaration compares.
 std::uint64_t hash(const GraphDescription& description);
 
 }  // namespace alcove::framegraph

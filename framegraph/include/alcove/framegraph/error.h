@@ -46,7 +46,7 @@ struct Error {
 
 using Errors = std::vector<Error>;
 
-// One line for each error.
+// Returns a text with one line for each error.
 std::string to_string(const Errors& errors);
 
 }  // namespace alcove::framegraph

@@ -1,12 +1,13 @@
-// Runs graphs on a Vulkan device of version 1.3, or 1.2 with VK_KHR_synchronization2. Of its
-// features synchronization2 has to be enabled, for submit() timelineSemaphore too, on one queue as
-// on several; dynamicRendering where passes draw with it. Never creates a device.
+// Runs graphs on a Vulkan device that the caller created. The device must have version 1.3, or
+// version 1.2 with VK_KHR_synchronization2. The feature synchronization2 must be enabled. submit()
+// also needs timelineSemaphore, even with a single queue. Passes that call
+// RecordContext::begin_rendering() also need dynamicRendering.
 //
 //   frame:  wait for the fence of slot s;  graph.reset(); declare;  begin commands
 //           executor.record(graph, commands, {s});  end commands, submit with the fence of slot s
 //
-// Plans and physical resources are cached: a frame that was declared before compiles nothing and
-// allocates nothing. One thread at a time.
+// Plans and physical resources are cached. A frame whose declaration is cached compiles and
+// allocates nothing. Only one thread at a time may call an executor.
 #pragma once
 
 #include <cstdint>
@@ -29,8 +30,9 @@ struct QueueHandle {
   std::uint32_t family = kNone;
 };
 
-// The caller's device: outlives the executor. `queues` by QueueClass; graphics must be there (only
-// its family when the executor just records), the others may be null.
+// The caller's device. It must outlive the executor. `queues` is indexed by QueueClass. The
+// graphics queue is required, but its family is enough for an executor that only records; the other
+// queues may be null.
 struct DeviceHandles {
   VkInstance instance = VK_NULL_HANDLE;
   VkPhysicalDevice physical_device = VK_NULL_HANDLE;
@@ -58,14 +60,15 @@ struct ExecutorOptions {
   // that of a kept plan is not compiled again. When all are taken, the plan that was unused for
   // longest is replaced. A plan takes some hundred bytes a pass and resource.
   std::uint32_t cached_plans = 64;
-  // Threads that record passes, the caller's among them, 1 to 64; fewer where the system gives no
-  // more. With more than one the callbacks of different passes run at the same time, into secondary
-  // command buffers; a caller's query must not be active then in the command buffer that record()
-  // is given. An exception of a callback reaches the caller from whichever thread it ran in.
+  // Number of threads that record passes, 1 to 64, including the caller's; fewer are used if the
+  // system cannot create so many. With more than one, the callbacks of different passes run at the
+  // same time, into secondary command buffers. No query of the caller may then be active in the
+  // command buffer that record() is given. An exception of a callback reaches the caller from
+  // whichever thread it ran in.
   std::uint32_t recording_threads = 1;
-  // Checks every new plan where it is not null, at the time of compiling: framegraph::verify() of
-  // verify.h, in the library alcove::framegraph_verifier. Debug builds of this library check with
-  // that in any case.
+  // If not null, this function checks each new plan when it is compiled. Pass framegraph::verify()
+  // from verify.h (library alcove::framegraph_verifier). Debug builds of this library use that
+  // function if `verify` is null.
   PlanCheck* verify = nullptr;
 #ifdef NDEBUG
   bool check_uses = false;  // undeclared uses in callbacks are errors
@@ -75,7 +78,7 @@ struct ExecutorOptions {
 };
 
 // A semaphore of the caller's that submit() waits for or signals. The wait comes before the frame's
-// first work on `queue`, the signal after its last work there. Where the frame runs nothing on that
+// first work on `queue`, the signal after its last work there. If the frame runs nothing on that
 // queue, they go to its first or last submission.
 struct QueueSemaphore {
   VkSemaphore semaphore = VK_NULL_HANDLE;
@@ -88,14 +91,15 @@ struct QueueSemaphore {
 struct FrameInfo {
   // The number of the frame in flight. The device must have finished the last frame with this slot.
   std::uint32_t slot = 0;
-  // For submit(): record() leaves synchronisation with others to the caller. A swapchain image is
-  // waited for where it is first used, and graphics, on which imports are left in their final
-  // states, signals that it can be presented.
+  // Used by submit() only; with record() the caller synchronises. For a swapchain image, add the
+  // semaphore of vkAcquireNextImageKHR to `waits`, for the queue that uses the image first, and the
+  // semaphore that vkQueuePresentKHR waits for to `signals`, for the graphics queue, which leaves
+  // imports in their final states.
   std::span<const QueueSemaphore> waits = {};
   std::span<const QueueSemaphore> signals = {};
 };
 
-// Bytes of the transients of a frame, over all heaps.
+// Memory of a frame's transients in bytes, summed over all heaps.
 struct MemoryStatistics {
   VkDeviceSize aliased = 0;      // as placed
   VkDeviceSize unaliased = 0;    // were each given bytes of its own
@@ -122,7 +126,7 @@ class Executor {
                                                              const ExecutorOptions& options = {});
   Executor(Executor&&) noexcept;
   Executor& operator=(Executor&&) noexcept;
-  // The device must have finished all that was recorded; what was submitted is waited for.
+  // The device must have finished all recorded frames. The destructor waits for submitted ones.
   ~Executor();
 
   // Records the frame into `commands`, a primary command buffer of the graphics family in the
@@ -133,9 +137,10 @@ class Executor {
   // begin anew.
   [[nodiscard]] tl::expected<FrameReport, Errors> record(Graph& graph, VkCommandBuffer commands,
                                                          const FrameInfo& frame = {});
-  // Where commands are not submitted after all: to be called before anything else of this graph or
-  // executor. It is then as if that frame had not been recorded or declared; without, histories are
-  // lost. To be recorded again it has to be declared anew where it changed a history's description.
+  // Takes a recorded frame back whose commands are not submitted after all. Call it before anything
+  // else of this graph or executor. The graph and the executor are then as if that frame had not
+  // been recorded or declared. Without this call its histories are lost. To record the frame again,
+  // declare it anew if it changed the description of a history.
   void discard(Graph& graph, const FrameInfo& frame = {});
 
   // Records and submits on as many queues as there are, with one vkQueueSubmit2 for all that a
@@ -144,17 +149,19 @@ class Executor {
   // the device is lost, this and wait() give an error with VK_ERROR_DEVICE_LOST, each time: what is
   // left is to destroy the executor, which waits for nothing and leaks nothing.
   [[nodiscard]] tl::expected<FrameReport, Errors> submit(Graph& graph, const FrameInfo& frame = {});
-  // Waits for what was submitted with this slot.
+  // Waits for the frame last submitted with this slot.
   [[nodiscard]] tl::expected<void, Errors> wait(std::uint32_t slot = 0);
 
-  // GPU time of each pass of the frame last recorded with this slot, in order of execution on each
-  // queue. Only after the device has finished it: until then they may be those of the frame before.
-  // Empty where there is nothing or timestamps are off. Valid until the next call.
+  // Returns the GPU time of each pass of the frame last recorded with this slot, in order of
+  // execution on each queue. Call it after the device has finished that frame; until then it may
+  // return the times of the frame before. The result is empty if no such frame exists or timestamps
+  // are off. It is valid until the next call.
   [[nodiscard]] std::span<const PassTiming> timings(std::uint32_t slot = 0);
 
-  // A persistent texture or buffer as the frames recorded so far leave it, for another graph to
-  // import. The other graph's frame comes between two frames of this one, and leaves it in the same
-  // state, which is the import's final state too. Handles are null before a frame has used it.
+  // Returns a persistent texture or buffer, as the frames recorded so far leave it, for another
+  // graph to import. The other graph's frame must come between two frames of this one and leaves
+  // the resource in the same state, which is also the import's final state. Handles are null before
+  // a frame has used the resource.
   [[nodiscard]] ImportedTexture exported(const Graph& graph, const TextureHistory& texture) const;
   [[nodiscard]] ImportedBuffer exported(const Graph& graph, const BufferHistory& buffer) const;
 
@@ -163,7 +170,7 @@ class Executor {
   void forget(VkImage image);
 
   const VulkanFunctions& functions() const;
-  // The limits that plans are compiled with.
+  // Returns the limits that plans are compiled with.
   const Limits& limits() const;
 
  private:

@@ -37,8 +37,9 @@ class Graph;
 // One pass while it is declared: from add_pass to the next add_pass.
 class PassBuilder {
  public:
-  // The pass reads this version. A pass may read one texture in several ranges; it may not read and
-  // write one subresource in two accesses: for that, write with an access that also reads.
+  // The pass reads the version of the texture or buffer that the handle stands for. It may read one
+  // texture in several ranges. To read and write the same subresource, declare a single write whose
+  // access also reads.
   void read(Texture texture, const Access& access, Range range = {});
   void read(Buffer buffer, const Access& access);
 
@@ -62,10 +63,11 @@ class PassBuilder {
   // The pass does something that the graph does not see: it is never culled.
   void side_effect();
 
-  // The function that records the pass: called with a RecordContext& once a frame if the pass is
-  // live. It is moved into the graph's own memory and lives until reset. It must not throw where
-  // the library is built without exceptions; with them, what it throws leaves Executor::record or
-  // submit once all recording threads have finished, and the frame is given up.
+  // The function that records the pass. It is called with a RecordContext& once a frame if the pass
+  // is live. It is moved into the graph's own memory and lives until reset. It must not throw if
+  // the library is built without exceptions. Otherwise an exception propagates out of
+  // Executor::record or submit after all recording threads have finished, and the frame counts as
+  // failed.
   template <typename Callable>
   void record(Callable&& callable);
 
@@ -120,8 +122,9 @@ class Graph {
   Graph(const Graph&) = delete;
   Graph& operator=(const Graph&) = delete;
 
-  // Transients: made by the executor for the passes that live. Names need not be unique (except
-  // those of histories) and are copied.
+  // Created textures and buffers are transient: the executor provides them for the passes that are
+  // not culled. Imported ones belong to the caller. Names are copied. They need not be unique,
+  // except those of histories.
   Texture create_texture(std::string_view name, const TextureDesc& desc);
   Buffer create_buffer(std::string_view name, const BufferDesc& desc);
   Texture import_texture(std::string_view name, const ImportedTexture& import);
@@ -133,10 +136,10 @@ class Graph {
   BufferHistory create_buffer_history(std::string_view name, const BufferDesc& desc,
                                       std::uint32_t slots = 2);
   // Histories of one slot: `current` keeps its contents from frame to frame, and a write that keeps
-  // them updates it in place. `validity` is that of `current`; it can be read before it is written
-  // where it is valid. Passes that write it are live. With a final state, each frame that uses it
-  // leaves it in that state, so that another graph can take it over: it imports what
-  // Executor::exported() returns.
+  // them updates it in place. `validity` is that of `current`. If it is valid, `current` can be
+  // read before the frame writes it. Passes that write it are live. With a final state, each frame
+  // that uses it leaves it in that state, so that another graph can take it over by importing the
+  // result of Executor::exported().
   TextureHistory create_persistent_texture(std::string_view name, const TextureDesc& desc,
                                            const State& final_state = {});
   BufferHistory create_persistent_buffer(std::string_view name, const BufferDesc& desc,
@@ -150,15 +153,15 @@ class Graph {
 
   PassBuilder add_pass(std::string_view name, QueueClass queue = QueueClass::graphics);
 
-  // This version is wanted after the frame: what leads to it is not culled. A transient's contents
-  // can be read until its memory is used again in the next frame.
+  // Marks this version as an output of the frame, so that the passes that produce it are not
+  // culled. A transient's contents can be read until its memory is used again in the next frame.
   void output(Texture texture);
   void output(Buffer buffer);
 
-  // Forgets all that was declared but keeps the memory, and histories.
+  // Forgets the declared frame. Keeps allocated memory and histories.
   void reset();
 
-  // Absolute extent of mip 0, as known at declaration.
+  // Returns the absolute extent of mip 0, as known at declaration.
   VkExtent3D extent(Texture texture) const;
   VkFormat format(Texture texture) const;
 
@@ -170,8 +173,9 @@ class Graph {
   HistoryTable& histories() { return histories_; }
   const HistoryTable& histories() const { return histories_; }
   void leave_histories(std::span<const FinalState> finals);
-  // Takes over into the declaration how histories were left since it was made: it can then be
-  // compiled and recorded once more. False where a history that it declares was dropped.
+  // Updates the declaration with the state in which histories were left since it was made, so that
+  // it can be compiled and recorded once more. Returns false if a history that it declares was
+  // dropped.
   [[nodiscard]] bool refresh_histories();
 
  private:

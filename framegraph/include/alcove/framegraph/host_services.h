@@ -23,32 +23,33 @@ struct MemoryRequest {
 struct MemoryRange {
   VkDeviceMemory memory = VK_NULL_HANDLE;
   VkDeviceSize offset = 0;
-  // The address of the first byte in host memory. Needed where VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT
-  // was required: the memory then stays mapped until it is freed.
+  // The address of the first byte in host memory. Needed if VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT was
+  // required: the memory then stays mapped until it is freed.
   void* mapped = nullptr;
   // For `free`: anything that finds the allocation again.
   void* handle = nullptr;
 };
 
-// The caller's allocator of device memory. Both functions are given, or neither: vkAllocateMemory
-// and vkFreeMemory are called then. They are called from the thread that creates, records or
-// destroys; `free` only after the device has finished with the memory.
+// The caller's allocator of device memory. Give both functions or neither. Without them the library
+// calls vkAllocateMemory and vkFreeMemory. The functions are called on the thread that creates,
+// records or destroys. `free` is called only after the device has finished with the memory.
 struct MemoryFunctions {
-  // Anything but VK_SUCCESS is the error that the caller of the library gets.
+  // Fills `range`, which is all zeros when the function is called. Any result but VK_SUCCESS makes
+  // the call of the library fail, with that result in its error.
   VkResult (*allocate)(void* user, const MemoryRequest& request, MemoryRange& range) = nullptr;
   void (*free)(void* user, const MemoryRange& range) = nullptr;
   void* user = nullptr;
 };
 
-// Memory that the caller has allocated, for the transients and histories of one executor. Where it
-// is full, and where a resource cannot lie in its memory type, MemoryFunctions provide the rest. If
-// there are none, a full block is an error (VK_ERROR_OUT_OF_DEVICE_MEMORY), and what cannot lie in
-// the memory type is allocated with vkAllocateMemory.
+// Memory that the caller has allocated, for the transients and histories of one executor. If it is
+// full, or a resource cannot lie in its memory type, MemoryFunctions provide the rest. If there are
+// no functions, a full block is an error (VK_ERROR_OUT_OF_DEVICE_MEMORY), and a resource that
+// cannot lie in the memory type is allocated with vkAllocateMemory.
 struct MemoryBlock {
   VkDeviceMemory memory = VK_NULL_HANDLE;  // null: there is no block
   VkDeviceSize offset = 0;                 // the first byte that may be used
   VkDeviceSize size = 0;                   // bytes from there on
-  std::uint32_t memory_type = 0;           // its index
+  std::uint32_t memory_type = 0;           // index of the type that the block was allocated from
 };
 
 enum class Severity : std::uint8_t { info, warning, error };

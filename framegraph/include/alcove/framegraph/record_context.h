@@ -10,11 +10,11 @@
 
 namespace alcove::framegraph {
 
-// The type of a view that follows from what it covers: 2D, 2D array where that is more than one
-// layer, or 3D.
+// Selects the view type by the covered range: 3D for a 3D texture, a 2D array if the range has more
+// than one layer, and 2D otherwise.
 inline constexpr VkImageViewType kViewTypeByRange = VK_IMAGE_VIEW_TYPE_MAX_ENUM;
 
-// A texture as an attachment of a rendering: the pass has to have declared it as one.
+// A texture as an attachment of a rendering. The pass must have declared it as an attachment.
 struct Attachment {
   Texture texture = {};
   // The value that the texture is cleared to if no earlier contents are loaded. If null, the
@@ -43,36 +43,38 @@ class RecordContext {
   // Frame slot as in FrameInfo: for what a pass keeps per frame in flight.
   std::uint32_t frame_slot = 0;
 
-  // A view of the range that the pass declared for this texture (the first access that names it),
-  // or of `range`, which must lie within what is declared. 2D, 2D array when more than one layer is
-  // covered, or 3D, unless a type is given. A texture with depth and stencil gives the depth,
-  // unless the range names the stencil. Another format than the texture's needs TextureDesc::flags
-  // with MUTABLE_FORMAT, a cube CUBE_COMPATIBLE.
+  // Returns a view of `range`, which must lie within what the pass declared for this texture.
+  // Without `range`, the view covers the range of the first access that names the texture. Unless
+  // `type` is given, the view is 3D for a 3D texture, a 2D array if it covers several layers, and
+  // 2D otherwise. For a format with depth and stencil it shows depth, unless `range` selects the
+  // stencil aspect. A different `format` needs VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT in
+  // TextureDesc::flags, and a cube view needs VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT.
   VkImageView view(Texture texture) const;
   VkImageView view(Texture texture, Range range, VkImageViewType type = kViewTypeByRange,
                    VkFormat format = VK_FORMAT_UNDEFINED) const;
-  // Whether view() has returned a view that the caller imported (ImportedTexture::view). Such a
-  // view may be destroyed after the frame, and another one get its handle, without a new
-  // resources_id.
+  // Returns whether view() has returned a view that the caller imported (ImportedTexture::view).
+  // The caller may destroy such a view after the frame, and another view may get the same handle,
+  // without a new resources_id.
   bool gave_imported_view() const { return gave_imported_view_; }
-  // The attachment for vkCmdBeginRendering. Earlier contents are loaded where there are any and the
-  // access keeps them. What is drawn is stored where a later pass or frame needs it.
+  // Returns the attachment for vkCmdBeginRendering. Earlier contents are loaded if there are any
+  // and the access keeps them. The result is stored if a later pass or frame needs it.
   VkRenderingAttachmentInfo attachment(const Attachment& attachment) const;
   // Begins a rendering over the whole of the attachments' mips and layers. `depth` is bound for the
-  // aspects that the pass declared as attachments. False, and record()
-  // returns an error, where their sizes or samples differ or the device lacks dynamic rendering.
+  // aspects that the pass declared as attachments. Returns false, and record() returns an error, if
+  // the attachments' sizes or samples differ or the device lacks dynamic rendering.
   bool begin_rendering(std::span<const Attachment> colors, const Attachment& depth = {}) const;
   void end_rendering() const { vk.vkCmdEndRendering(commands); }
   VkImage image(Texture texture) const;
   VkBuffer buffer(Buffer buffer) const;
-  // Size of a mip in texels.
+  // Returns the size of a mip in texels.
   VkExtent3D extent(Texture texture, std::uint32_t mip = 0) const;
   VkDeviceSize size(Buffer buffer) const;
   VkFormat format(Texture texture) const;
-  // Whether an optional write takes place; false also for what was culled altogether.
+  // Returns whether an access of this pass to the texture or buffer takes place. Returns false for
+  // an optional write that was culled.
   bool is_used(Texture texture) const;
   bool is_used(Buffer buffer) const;
-  // Whether a slot of a history resource has contents, and if not, why.
+  // Returns whether a slot of a history resource has contents, and if not, why.
   HistoryValidity validity(Texture texture) const;
   HistoryValidity validity(Buffer buffer) const;
   std::string_view pass_name() const;

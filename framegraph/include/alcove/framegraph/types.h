@@ -126,9 +126,10 @@ struct ImportedTexture {
   // views count from it; a callback that takes the image itself has to.
   std::uint32_t first_layer = 0;
   State initial_state;
-  // The queue family, or VK_QUEUE_FAMILY_EXTERNAL, that has released the image to the family of the
-  // queue on which the frame first uses it (graphics where no pass does), in initial_state's
-  // layout: the graph records the acquire. kNone: the image is on the right family.
+  // The queue family (VK_QUEUE_FAMILY_EXTERNAL is allowed) that has released the image to the
+  // family of the queue that uses it first in this frame, or to the graphics family if no pass uses
+  // it. The graph records the matching acquire barrier, with initial_state.layout as old and new
+  // layout. kNone: no ownership transfer is needed.
   std::uint32_t initial_family = kNone;
   // The family that the graph releases the image to from graphics, in final_state's layout.
   std::uint32_t final_family = kNone;
@@ -153,16 +154,14 @@ struct ImportedBuffer {
 // The effect of a write on the earlier contents of its range.
 enum class Contents : std::uint8_t {
   // The write may be partial: the earlier contents stay. The passes that made them run if the
-  // result
-  // is wanted, or if the access reads as well (blending, a depth test, atomics): the pass then
-  // depends on the earlier contents, whatever becomes of the result.
+  // result is wanted, or if the access reads as well (blending, a depth test, atomics): the pass
+  // then depends on the earlier contents, whatever becomes of the result.
   keep,
   // The pass writes every texel and reads none: the earlier contents may be thrown away.
   discard,
   // Keeps as `keep` does. The order among writes of this kind does not matter, as with atomic
-  // additions:
-  // writes that follow each other with the same access on one queue get no barrier between them.
-  // All of them come after what was before, and before the next read or other write.
+  // additions: writes that follow each other with the same access on one queue get no barrier
+  // between them. All of them come after what was before, and before the next read or other write.
   accumulate,
 };
 

@@ -40,7 +40,7 @@ enum class ThicknessUnit : std::uint8_t {
   back_faces,
 };
 
-// The weight of a visible direction in visibility. Bent normals always have the cosine.
+// Weight of a visible direction in visibility. Bent normals always have the cosine.
 enum class Weighting : std::uint8_t {
   cosine,   // The cosine of its angle to the normal, as diffuse reflection needs it.
   uniform,  // 1: visibility is a fraction of the hemisphere's solid angle (the paper's appendix A).
@@ -65,8 +65,8 @@ struct AdvancedSettings {
   Estimator estimator = Estimator::connected;
   Weighting weighting = Weighting::cosine;
   ThicknessUnit thickness_unit = ThicknessUnit::radius;
-  // How far each lower sample pulls the horizon down, from 0 (not at all) to 1 (all the way).
-  // `heuristic` only.
+  // How far a sample below the horizon lowers it: 0 not at all, 1 down to the sample. `heuristic`
+  // only.
   float blend = 0.05f;
   // Last fraction of the radius over which occluders fade, [0,1]; 0 turns fading off. It must be 0
   // with the estimators `bitmask` and `connected`, whose sectors are either occluded or open.
@@ -75,8 +75,8 @@ struct AdvancedSettings {
   // Filter radius in tiles for pixels with fewer than two frames of history, 0 to 3. Pixels with
   // more history use 1. 0 turns the spatial filter off.
   std::uint32_t filter_radius = 2;
-  // Distance from the tangent plane, in pixels, at which a neighbour's weight falls to 0.25; above
-  // 0. This is the value for one slice and no history. It shrinks as samples accumulate.
+  // Distance from the pixel's tangent plane, in pixels, at which a neighbour's weight falls to
+  // 0.25; above 0. It holds for one slice and no history, and shrinks with more samples.
   float filter_tolerance_px = 1.5f;
   // The history is clamped to this many standard deviations around the mean of this frame's
   // neighbourhood, at least 0. 0 turns clamping off.
@@ -88,8 +88,9 @@ struct AdvancedSettings {
   bool snap_to_texels = true;
   // Extrapolates surfaces that leave the image beyond its border (`connected` only).
   bool extrapolation = true;
-  // Excludes directions that foregrounds or the image's border hide from the average (`connected`
-  // only, shaders/maths/unobserved.h). Without it they count as open.
+  // Leaves directions that the depth buffer does not show (behind a foreground, or beyond the
+  // image's border) partly out of the average; see shaders/maths/unobserved.h. If off, they count
+  // as open. `connected` only.
   bool unobserved = true;
   Grouping grouping = Grouping::neighbours;
 

@@ -47,7 +47,7 @@ struct ApplyInputs {
 struct AppliedLight {
   framegraph::Texture lit;       // the sum of the parts and ApplyInputs::light
   framegraph::Texture diffuse;   // null without ApplySettings::parts
-  framegraph::Texture specular;  // the same, and where there is no map
+  framegraph::Texture specular;  // null without ApplySettings::parts or without a map
 };
 
 // Materials are those of glTF 2.0: dielectrics reflect 0.04 at normal incidence, metals their base

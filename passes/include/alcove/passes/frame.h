@@ -47,22 +47,23 @@ enum class NormalEncoding : std::uint8_t {
   unsigned_octahedral,  // the same packed into [0,1]
 };
 
-// Where the passes of one frame go. Borrowed, all of it, until the frame is recorded.
+// The graph, kernels and view that the passes of one frame are added for. Everything referenced
+// must stay alive until the frame is recorded.
 struct Frame {
   framegraph::Graph& graph;
   Kernels& kernels;
   View view;
-  std::uint32_t index = 0;  // counts frames: it turns the noise and moves the traced pixels
+  std::uint32_t index = 0;  // frame number: rotates the noise and selects the traced pixels
   // The view of the frame before, by which history is reprojected. It is not read where there is no
   // history to read: in a first frame, after a reset, and with `prepare`.
   View previous_view = view;
-  // Frames in a row, up to this one, that show the very same as the one before each; 0: this one
-  // differs, or nobody knows. It starts again wherever histories do: after a cut, and where size,
-  // settings or wanted results change. From 1 on motion vectors are not read and history is not
-  // reprojected; from 16 on the history averages up to 127 frames.
+  // Number of frames in a row, this one included, that show exactly the same as the frame before. 0
+  // if this frame differs, or if that is not known. It starts again at 0 whenever histories do:
+  // after a cut, and when size, settings or wanted results change. From 1 on motion vectors are not
+  // read and history is not reprojected; from 16 on the history averages up to 127 frames.
   std::uint32_t static_frames = 0;
-  // Where the size of the depth changes and history is to go on (dynamic resolution). Zero is as
-  // the depth is now.
+  // For dynamic resolution: sizes with which history continues while the size of the depth changes.
+  // Zero means the present size of the depth.
   VkExtent2D largest_size{};   // that histories have room for; another begins them anew
   VkExtent2D previous_size{};  // of the depth in the frame before, within it
   // Also make the pipelines of every frame that differs from this one only in what lies before it:

@@ -15,10 +15,11 @@ struct GtaoInputs {
   framegraph::Texture normals;
   bool normals_in_view_space = false;
   framegraph::Texture roughness;  // perceptual, [0,1]; null: OcclusionSettings::roughness
-  // Of OcclusionInputs::back_depth_ndc, as add_inverse_depth makes it; only where
-  // needs_back_depth().
+  // Inverse depth that add_inverse_depth made from OcclusionInputs::back_depth_ndc. Needed only if
+  // needs_back_depth() returns true.
   framegraph::Texture back_inverse_depth;
-  // The same of OcclusionInputs::second_depth_ndc; only where needs_second_depth().
+  // Inverse depth that add_inverse_depth made from OcclusionInputs::second_depth_ndc. Needed only
+  // if needs_second_depth() returns true.
   framegraph::Texture second_inverse_depth;
   // Of the depth buffer that inverse_depth was made from. Its format and the projection tell the
   // step between the depths that it can hold. Samples within about one step of the surface's
@@ -28,7 +29,7 @@ struct GtaoInputs {
   // reversed floats.
   VkFormat depth_format = VK_FORMAT_D32_SFLOAT;
   NormalEncoding normal_encoding = NormalEncoding::signed_xyz;
-  bool normals_forward_z = false;  // as OcclusionInputs has it
+  bool normals_forward_z = false;  // see OcclusionInputs
 };
 
 // The raw occlusion of a frame, one texel per tile: sums over slices, which reconstruction filters.

@@ -18,7 +18,7 @@ struct GtsoInputs {
   framegraph::Texture roughness;    // perceptual, [0,1]; null: OcclusionSettings::roughness
   bool normals_in_view_space = false;
   NormalEncoding normal_encoding = NormalEncoding::signed_xyz;  // of `normals`
-  bool normals_forward_z = false;                               // as OcclusionInputs has it
+  bool normals_forward_z = false;                               // see OcclusionInputs
   framegraph::Texture
       into;  // to be written, whole; null: a transient of OcclusionSettings::precision
 };

@@ -14,8 +14,8 @@
 
 namespace alcove::passes {
 
-// Why a pass could not be made: a sentence, and Vulkan's result where a call of its failed, or
-// VK_ERROR_FEATURE_NOT_PRESENT where the device lacks something.
+// Why a pass could not be added: a sentence, and the result of the Vulkan call that failed, or
+// VK_ERROR_FEATURE_NOT_PRESENT if the device lacks something.
 struct Error {
   std::string message;
   VkResult result = VK_SUCCESS;
@@ -92,7 +92,7 @@ class Kernels {
   // frame, before it is recorded.
   void begin_frame(std::uint32_t slot);
 
-  // The pipeline of `shader` with specialisation constants 0, 1, 2... of these values.
+  // Returns the pipeline of `shader` with specialisation constants 0, 1, 2... of these values.
   template <std::size_t N>
   requires(N <= kMaxConstants)
       [[nodiscard]] tl::expected<Kernel, Error> get(Shader shader,
@@ -101,10 +101,11 @@ class Kernels {
   }
   [[nodiscard]] tl::expected<Kernel, Error> get(Shader shader) { return get_pipeline(shader, {}); }
 
-  // Bytes of the tables that the shaders in use look up; one that is not used has none.
+  // Returns the size in bytes of the tables that the shaders in use look up. Unused tables do not
+  // count.
   [[nodiscard]] std::size_t table_bytes() const;
 
-  // Bytes of device memory: parameters of all frames in flight, and those tables.
+  // Returns the bytes of device memory: parameters of all frames in flight, and those tables.
   [[nodiscard]] VkDeviceSize memory_bytes() const;
 
   // Records a dispatch that covers `size` pixels (and layers) with 8x8 groups. Binding 0 is a

@@ -42,22 +42,22 @@ struct OcclusionInputs {
 };
 
 struct OcclusionOutputs {
-  // One channel, [0,1], 1 open; null where neither the settings nor their specular model want it.
+  // One channel, [0,1], 1 is open. Null if neither the settings nor their specular model need it.
   framegraph::Texture visibility;
-  // xyz unit, in the space of `normals`; null where none was asked for.
+  // Unit vectors in xyz, in the space of `normals`. Null if no bent normals were requested.
   framegraph::Texture bent_normal;
-  // One channel, multiplies specular probe light, [0,1], 1 open; null where none was asked for.
+  // One channel that multiplies specular probe light, [0,1], 1 is open. Null if not requested.
   framegraph::Texture specular;
-  // As add_linear_depth makes it, of one mip; null where neither the settings nor their specular
-  // model nor the making of normals want it.
+  // Linear depth from add_linear_depth, with one mip. Null if neither the settings, nor their
+  // specular model, nor the computation of normals needs it.
   framegraph::Texture linear_depth;
   framegraph::Texture normals;  // those given, or those made from depth, in view space
 };
 
-// What is not read afterwards is culled by the graph, with all that only leads there. Bent normals
-// are in the space of the given normals, in view space where none are given. Several views of a
-// frame (both eyes, say) take a call each, with histories of their own; noise depends on pixel and
-// frame alone, so it is the same in all.
+// Adds all passes that the settings need. The graph culls those whose results are not read. Bent
+// normals are in the space of the given normals, or in view space if no normals are given. For
+// several views of a frame (both eyes, for example), call this once per view; each has histories of
+// its own. Noise depends on pixel and frame alone, so it is the same in all views.
 //
 // Errors: those of the passes that the settings need.
 [[nodiscard]] tl::expected<OcclusionOutputs, Error> add_occlusion(

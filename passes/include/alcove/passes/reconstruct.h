@@ -22,7 +22,7 @@ struct MotionConvention {
 };
 
 struct Occlusion {
-  // One channel, [0,1], 1 is open, of the depth's size. Null where it is not wanted.
+  // One channel, [0,1], 1 is open, of the depth's size. Null if it is not wanted.
   framegraph::Texture visibility;
   // Unit vectors in xyz, in the space of the normals. Null without bent normals.
   framegraph::Texture bent_normal;
@@ -40,11 +40,11 @@ struct ReconstructInputs {
   // surfaces that stand still: history is held to what the last few frames say.
   framegraph::Texture motion;
   framegraph::Texture roughness;  // as GtaoInputs::roughness
-  // Textures of the depth's size, of the caller's, that results are written to, whole; null: a
-  // transient of OcclusionSettings::precision. Read only where the result is wanted.
+  // Textures of the caller's, of the depth's size, that results are written to completely. If null,
+  // the result is a transient of OcclusionSettings::precision. Read only if the result is wanted.
   Occlusion into;
   NormalEncoding normal_encoding = NormalEncoding::signed_xyz;
-  bool normals_forward_z = false;  // as OcclusionInputs has it
+  bool normals_forward_z = false;  // see OcclusionInputs
   MotionConvention motion_convention;
 };
 

@@ -128,7 +128,8 @@ void for_each_setting(Settings& settings, const Visit& visit) {
                     .group = advanced},
         settings.advanced.estimator);
   visit(SettingInfo{.name = "weighting",
-                    .help = "Weight of a visible direction: its cosine, or 1.",
+                    .help = "Weight of a visible direction in visibility: the cosine of its angle "
+                            "to the normal, or 1.",
                     .group = advanced},
         settings.advanced.weighting);
   visit(SettingInfo{.name = "thickness_unit",
@@ -138,7 +139,8 @@ void for_each_setting(Settings& settings, const Visit& visit) {
                     .matters = has_thickness},
         settings.advanced.thickness_unit);
   visit(SettingInfo{.name = "blend",
-                    .help = "How far each lower sample pulls the horizon down (heuristic).",
+                    .help = "How far a sample below the horizon lowers it: 0 not at all, 1 down to "
+                            "the sample (heuristic only).",
                     .group = advanced,
                     .range = {.maximum = 1.0f},
                     .matters = [](S s) { return s.advanced.estimator == Estimator::heuristic; }},
@@ -161,8 +163,9 @@ void for_each_setting(Settings& settings, const Visit& visit) {
                     .range = {.maximum = 3}},
         settings.advanced.filter_radius);
   visit(SettingInfo{.name = "filter_tolerance_px",
-                    .help = "Distance from the tangent plane in pixels at which a neighbour's "
-                            "weight falls to 0.25, for one slice and no history.",
+                    .help = "Distance from the pixel's tangent plane, in pixels, at which a "
+                            "neighbour's weight falls to 0.25. It holds for one slice and no "
+                            "history, and shrinks with more samples.",
                     .group = advanced,
                     .range = {.above_minimum = true},
                     .slider = {.minimum = 0.1f, .maximum = 8.0f},
@@ -184,8 +187,9 @@ void for_each_setting(Settings& settings, const Visit& visit) {
                     .group = advanced},
         settings.advanced.extrapolation);
   visit(SettingInfo{.name = "unobserved",
-                    .help = "Excludes directions that foregrounds or the border hide from the "
-                            "average; without it they count as open (connected).",
+                    .help = "Leaves directions that the depth buffer does not show (behind a "
+                            "foreground, or beyond the image's border) partly out of the "
+                            "average. If off, they count as open (connected only).",
                     .group = advanced},
         settings.advanced.unobserved);
   visit(SettingInfo{.name = "grouping",
