@@ -141,7 +141,7 @@ Light light_of(ivec2 pixel, vec3 normal, vec3 view) {
 // In world space, towards the eye.
 vec3 view_of(ivec2 pixel, float depth) {
   vec2 uv = pixel_centre_uv(parameters.projection, uvec2(pixel));
-  vec3 view = view_vector(parameters.projection, position_vs(parameters.projection, uv, depth));
+  vec3 view = view_direction(parameters.projection, position_vs(parameters.projection, uv, depth));
   return mat3(parameters.world_from_view) * view;
 }
 

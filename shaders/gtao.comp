@@ -3,7 +3,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
-// Ground-truth ambient occlusion: per pixel a few slices around the view vector, in each what the
+// Ground-truth ambient occlusion: per pixel a few slices around the view direction, in each what the
 // depth buffer leaves open between its two horizons (Jimenez et al. 2016, section 4), or of its
 // sectors (gtao_sectors.h), integrated in closed form.
 //

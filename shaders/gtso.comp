@@ -87,7 +87,7 @@ void main() {
   float result = 1.0;
   if (!is_sky_depth(depth)) {
     vec2 uv = pixel_centre_uv(parameters.projection, uvec2(pixel));
-    vec3 view = view_vector(parameters.projection, position_vs(parameters.projection, uv, depth));
+    vec3 view = view_direction(parameters.projection, position_vs(parameters.projection, uv, depth));
     vec3 normal = facing_normal(fetch_direction(normal_image, pixel, kNormalEncoding, view), view);
     result = occlusion_of(pixel, normal, view);
   }

@@ -66,7 +66,7 @@ void main() {
     return;
   }
   float depth = fetch_depth(pixel);
-  vec3 view = view_vector(parameters.projection, fetch_position(pixel, min(depth, 1e6)));
+  vec3 view = view_direction(parameters.projection, fetch_position(pixel, min(depth, 1e6)));
   if (is_sky_depth(depth)) {
     imageStore(normal_image, pixel, vec4(view, 0.0));
     return;

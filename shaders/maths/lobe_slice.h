@@ -51,7 +51,7 @@ struct LobeSide {
 
 struct LobeSlice {
   LobeDensity density;
-  float at_view;  // antiderivative of the density at the view vector
+  float at_view;  // antiderivative of the density at the view direction
   LobeSide ahead;
   LobeSide behind;
   float open;  // the lobe without occluders

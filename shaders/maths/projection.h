@@ -63,7 +63,7 @@ ALCOVE_INLINE vec3 position_vs(Projection p, vec2 uv, float depth) {
 
 // The view direction: the unit vector from a view-space position towards the eye. Its z is positive
 // for positions in front of the eye.
-ALCOVE_INLINE vec3 view_vector(Projection p, vec3 position) {
+ALCOVE_INLINE vec3 view_direction(Projection p, vec3 position) {
   return normalize(vec3(p.eye.x - p.eye.w * position.x, p.eye.y - p.eye.w * position.y,
                         p.eye.z - p.eye.w * position.z));
 }

@@ -14,8 +14,9 @@
 
 ALCOVE_MATHS_BEGIN
 
-// Two unit vectors that with the view vector form a right-handed orthonormal basis: (x, y, view).
-// Both turn smoothly with the view vector wherever view.z > -1, which is all that an eye can see.
+// Two unit vectors that with the view direction form a right-handed orthonormal basis: (x, y,
+// view). Both turn smoothly with the view direction wherever view.z > -1, which is all that an eye
+// can see.
 struct ViewBasis {
   vec3 x;
   vec3 y;
@@ -51,8 +52,8 @@ struct Slice {
 };
 
 // `normal`, `direction` and `view` are unit and of one space, the last two perpendicular. A normal
-// that points away from the eye is taken as perpendicular to the view vector; facing_normal() gives
-// one that does not.
+// that points away from the eye is taken as perpendicular to the view direction; facing_normal()
+// gives one that does not.
 ALCOVE_INLINE Slice make_slice(vec3 normal, vec3 direction, vec3 view) {
   Slice s;
   s.along = dot(normal, direction);
@@ -73,13 +74,13 @@ ALCOVE_INLINE float slice_gamma(Slice s) {
   return steep ? (s.sine < 0.0f ? -angle : angle) : kHalfPi - angle;
 }
 
-// A normal whose cosine to the view vector is below minus this belongs to the other side of the
+// A normal whose cosine to the view direction is below minus this belongs to the other side of the
 // surface: interpolated and mapped normals seldom lean further away from the eye near silhouettes.
 const float kFlippedNormal = 0.25f;
 
 // The normal of the side that the eye sees: `normal` where it faces the eye, its opposite where it
 // faces away by more than kFlippedNormal (double-sided materials, inverted normals), and in between
-// the nearest direction that is perpendicular to the view vector. Both arguments are unit.
+// the nearest direction that is perpendicular to the view direction. Both arguments are unit.
 ALCOVE_INLINE vec3 facing_normal(vec3 normal, vec3 view) {
   float towards = dot(normal, view);
   vec3 side = towards < -kFlippedNormal ? -normal : normal;

@@ -6,8 +6,8 @@
 // that. (The paper projects nothing; others use the sample as it is, and see a tilted plane occlude
 // itself.)
 //
-// In the plane a point is (x, y): x along the slice's direction, y along the view vector, in scene
-// units from the shaded point. Held as (x w, y w, w), w being 1/depth in perspective and 1 in
+// In the plane a point is (x, y): x along the slice's direction, y along the view direction, in
+// scene units from the shaded point. Held as (x w, y w, w), w being 1/depth in perspective and 1 in
 // orthographic views, it is linear in the distance along the line and in the sample's `line`: it
 // costs three multiply-adds and no division, and no position in space is ever formed.
 #ifndef ALCOVE_MATHS_SLICE_LINE_H

@@ -89,7 +89,7 @@ ALCOVE_INLINE Unobserved add_beyond_border(Unobserved sum, float offset_px, floa
 // An arc of visible directions of which a share is excluded. `from` is nearer to the view direction
 // than `to`.
 struct UnobservedArc {
-  vec2 from;  // sine and cosine of the angle to the view vector
+  vec2 from;  // sine and cosine of the angle to the view direction
   vec2 to;
   float share;  // [0,kMostUnobserved]
 };

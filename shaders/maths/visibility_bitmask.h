@@ -1,12 +1,12 @@
 // Visibility of one side of a slice as 32 sectors, for occluders of finite thickness (after
 // Therrien, Levesque and Gilet 2023).
 //
-// Angles are measured on a square instead of a circle, as diamond_angles: 0 along the view vector,
-// 1 across it, 2 against it, for one division and no root or arc cosine. A side's sectors are equal
-// steps of diamond angle from the view vector (sector 0) to the tangent plane. What weighs them
-// comes last: any weight with an antiderivative is integrated exactly at the ends of the runs of
-// occluded sectors, of which a side has one or two. So one search serves visibility, bent normal
-// and any lobe.
+// Angles are measured on a square instead of a circle, as diamond_angles: 0 along the view
+// direction, 1 across it, 2 against it, for one division and no root or arc cosine. A side's
+// sectors are equal steps of diamond angle from the view direction (sector 0) to the tangent plane.
+// What weighs them comes last: any weight with an antiderivative is integrated exactly at the ends
+// of the runs of occluded sectors, of which a side has one or two. So one search serves visibility,
+// bent normal and any lobe.
 #ifndef ALCOVE_MATHS_VISIBILITY_BITMASK_H
 #define ALCOVE_MATHS_VISIBILITY_BITMASK_H
 
@@ -19,13 +19,13 @@ ALCOVE_MATHS_BEGIN
 
 const uint kSectorCount = 32u;
 
-// Of a point in the slice's plane, x outwards from the view vector (at least 0), y along it; any
+// Of a point in the slice's plane, x outwards from the view direction (at least 0), y along it; any
 // length. In [0,2].
 ALCOVE_INLINE float diamond_angle(vec2 point) {
   return 1.0f - point.y / max(point.x + abs(point.y), 1e-30f);
 }
 
-// Sine and cosine of the angle to the view vector at a diamond angle in [0,2].
+// Sine and cosine of the angle to the view direction at a diamond angle in [0,2].
 ALCOVE_INLINE vec2 diamond_angle_light(float at) {
   float y = 1.0f - at;
   float x = 1.0f - abs(y);
@@ -109,7 +109,7 @@ struct VisiblePart {
   vec2 bent;  // zero where it was not asked for
 };
 
-// A side from the view vector to a light, cosine-weighted or not.
+// A side from the view direction to a light, cosine-weighted or not.
 ALCOVE_INLINE float part_arc(Slice s, float side, vec2 light, bool uniform_weight) {
   return uniform_weight ? uniform_arc(light) : light_arc(s, side, light);
 }
@@ -146,7 +146,7 @@ ALCOVE_INLINE VisiblePart visible_part(Slice s, float side, float per_diamond_an
   VisiblePart sum;
   sum.arc = 0.0f;
   sum.bent = vec2(0.0f, 0.0f);
-  // The ends of runs, from the view vector outwards: visible up to the first, then of what is
+  // The ends of runs, from the view direction outwards: visible up to the first, then of what is
   // visible beyond an occluder only the part that is kept.
   float weight = occluded == 0u ? 1.0f : ((occluded >> 31u) != 0u ? 0.0f : keep);
   sum = add_part(sum, weight, s, side, tangent_light(s, side), request);

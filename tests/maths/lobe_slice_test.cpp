@@ -87,7 +87,7 @@ class LobeTruth {
   double n_dot_v_, alpha_;
 };
 
-// A surface tilted from the view, cut by slices at even turns around the view vector.
+// A surface tilted from the view, cut by slices at even turns around the view direction.
 struct Surface {
   vec3 view{0, 0, 1};
   vec3 normal;

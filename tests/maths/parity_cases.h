@@ -88,7 +88,7 @@ ALCOVE_INLINE vec4 parity_of_cameras(uint which, vec4 a, vec4 b, Projection p) {
   vec2 uv = vec2(a.x, a.y);
   float depth = 0.2f + a.z * 50.0f;
   vec3 position = position_vs(p, uv, depth);
-  vec3 view = view_vector(p, position);
+  vec3 view = view_direction(p, position);
   switch (which) {
     case 5u:
       return vec4(position.x, position.y, position.z, linear_depth(p, b.x));

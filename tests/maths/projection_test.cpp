@@ -215,7 +215,7 @@ TEST(Projection, ViewDirectionPointsFromTheSurfaceToTheEye) {
     const float depth = float(std::abs(f.near)) * random.uniform(2.0f, 50.0f);
     const vec3 near = maths::position_vs(p, uv, depth);
     const vec3 behind = maths::position_vs(p, uv, depth * 3.0f);
-    EXPECT_LT(distance(maths::view_vector(p, near), normalize(near - behind)), 2e-4f)
+    EXPECT_LT(distance(maths::view_direction(p, near), normalize(near - behind)), 2e-4f)
         << describe(f);
   }
 }
@@ -224,10 +224,10 @@ TEST(Projection, ViewDirectionIsConstantOnlyInOrthographicViews) {
   Frustum f;
   f.perspective = false;
   const Projection orthographic = projection_of(f);
-  EXPECT_EQ(maths::view_vector(orthographic, vec3(3, 4, -5)), vec3(0, 0, 1));
+  EXPECT_EQ(maths::view_direction(orthographic, vec3(3, 4, -5)), vec3(0, 0, 1));
   f.perspective = true;
   EXPECT_LT(
-      distance(maths::view_vector(projection_of(f), vec3(3, 4, -5)), normalize(vec3(-3, -4, 5))),
+      distance(maths::view_direction(projection_of(f), vec3(3, 4, -5)), normalize(vec3(-3, -4, 5))),
       1e-6f);
 }
 
@@ -246,7 +246,7 @@ TEST(Projection, NarrowPerspectiveFromAfarApproachesTheOrthographic) {
   const vec3 from_b = maths::position_vs(b, uv, 0.0f);
   EXPECT_NEAR(from_a.x, from_b.x, 1e-3f);
   EXPECT_NEAR(from_a.y, from_b.y, 1e-3f);
-  EXPECT_LT(distance(maths::view_vector(a, from_a), maths::view_vector(b, from_b)), 2e-4f);
+  EXPECT_LT(distance(maths::view_direction(a, from_a), maths::view_direction(b, from_b)), 2e-4f);
 }
 
 TEST(Projection, PixelCentresAreHalfATexelFromTheEdge) {

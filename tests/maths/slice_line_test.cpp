@@ -51,7 +51,7 @@ struct Setting {
         pixel(random.uniform(0, kWidth), random.uniform(0, kHeight)),
         depth(random.uniform(1.0f, 20.0f)),
         position(maths::position_vs(projection, pixel * projection.texel_uv, depth)),
-        view(maths::view_vector(projection, position)),
+        view(maths::view_direction(projection, position)),
         normal(maths::facing_normal(random.unit_vector(), view)),
         direction(maths::slice_direction(maths::make_view_basis(view), random.uniform(0, 6.28f))),
         line(maths::make_slice_line(maths::ray_per_px(projection), direction, view)) {}

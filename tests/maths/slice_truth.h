@@ -12,7 +12,7 @@ namespace alcove::maths_test {
 
 struct SliceTruth {
   double scale;  // length of the projected normal
-  double gamma;  // signed angle from the view vector to it
+  double gamma;  // signed angle from the view direction to it
 
   // Copies the components of a shader's slice.
   explicit SliceTruth(const maths::Slice& s)
@@ -24,10 +24,11 @@ struct SliceTruth {
   double lowest() const { return gamma - kPi / 2; }
   double highest() const { return gamma + kPi / 2; }
 
-  // The integrand of visibility over the angle t from the view vector.
+  // The integrand of visibility over the angle t from the view direction.
   double density(double t) const { return scale * std::cos(t - gamma) * std::abs(std::sin(t)); }
 
-  // Visibility between two angles, cut to the hemisphere of the normal; split at the view vector.
+  // Visibility between two angles, cut to the hemisphere of the normal; split at the view
+  // direction.
   double visibility(double from, double to) const {
     const double a = std::max(from, lowest()), b = std::min(to, highest());
     if (a >= b) return 0.0;

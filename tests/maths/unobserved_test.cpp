@@ -53,7 +53,8 @@ struct Case {
 
   double tangent() const { return std::acos(double(maths::tangent_horizon(slice, side))); }
 
-  // Angle to the view vector at which the unobserved directions begin, and that at which they end.
+  // Angle to the view direction at which the unobserved directions begin, and that at which they
+  // end.
   double begins() const {
     return std::asin(std::min(1.0, double(unobserved.first_px) / kRadiusPx));
   }

@@ -36,7 +36,7 @@ std::uint32_t random_runs(RandomInput& random) {
   return occluded;
 }
 
-// Angle of a sector's boundary to the view vector, in double.
+// Angle of a sector's boundary to the view direction, in double.
 double boundary_angle(float per_diamond_angle, int boundary) {
   const double y = 1.0 - boundary / double(per_diamond_angle);
   return std::atan2(1.0 - std::abs(y), y);
@@ -205,7 +205,7 @@ TEST(VisibilityBitmask, FullHiddenOcclusionGivesTheHorizon) {
     const float per_diamond_angle = maths::sectors_per_diamond_angle(s, side);
     const int first = int(random.bits() % 32);
     const auto horizon = float(std::cos(boundary_angle(per_diamond_angle, first)));
-    // Near the view vector a horizon's cosine holds its angle to sqrt(2^-23) only.
+    // Near the view direction a horizon's cosine holds its angle to sqrt(2^-23) only.
     EXPECT_NEAR(part_of(s, side, 1u << first, 1.0f).arc, maths::slice_arc(s, side, horizon), 5e-4f);
   }
 }

@@ -107,7 +107,7 @@ float expected(const Inputs& inputs, const maths::Projection& projection, Specul
     return 1.0f;
   }
   const maths::vec2 uv = maths::pixel_centre_uv(projection, {x, y});
-  const vec3 view = maths::view_vector(projection, maths::position_vs(projection, uv, depth));
+  const vec3 view = maths::view_direction(projection, maths::position_vs(projection, uv, depth));
   const vec3 normal = maths::facing_normal(direction(inputs.normals, x, y), view);
   const float visibility = maths::converged_visibility(inputs.visibility.at(x, y));
   const vec3 bent = maths::raised_bent_normal(direction(inputs.bent, x, y), normal, visibility);
@@ -182,7 +182,7 @@ float lowest_of(const HostImage& image, const PlaneScene& plane, const View& vie
       const maths::vec2 uv = maths::pixel_centre_uv(projection, {x, y});
       const float depth = maths::linear_depth(projection, plane.depth_ndc.at(x, y));
       const vec3 towards =
-          maths::view_vector(projection, maths::position_vs(projection, uv, depth));
+          maths::view_direction(projection, maths::position_vs(projection, uv, depth));
       if (glm::dot(towards, direction(plane.normal_vs, x, y)) >= std::cos(glm::radians(85.0f))) {
         lowest = std::min(lowest, image.at(x, y));
       }

@@ -94,8 +94,8 @@ Light reference_light(const LitSurfaces& surfaces, const View& view, std::uint32
                               .value();
   const maths::mat3 world_from_view = transpose(maths::mat3(to_mat4(view.view_from_world)));
   const vec2 uv = maths::pixel_centre_uv(projection, {x, y});
-  const vec3 towards =
-      world_from_view * maths::view_vector(projection, maths::position_vs(projection, uv, depth));
+  const vec3 towards = world_from_view *
+                       maths::view_direction(projection, maths::position_vs(projection, uv, depth));
   const vec3 normal = normalize(world_from_view * rgb(surfaces.normals, x, y));
   const vec3 bent =
       maths::raised_bent_normal(normalize(world_from_view * rgb(surfaces.bent, x, y)), normal,

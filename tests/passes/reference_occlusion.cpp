@@ -17,7 +17,7 @@ struct Point {
   glm::dvec3 view;
 };
 
-// The largest cosine to the view vector of what the image shows on one side of a slice; -1 where
+// The largest cosine to the view direction of what the image shows on one side of a slice; -1 where
 // nothing lies within the radius.
 double highest_cosine(const Drawing& drawing, const Point& point, glm::dvec2 direction_px,
                       double radius) {
