@@ -1,6 +1,6 @@
 // The normal of the surface that the depth buffer shows at a pixel, for pixels whose given normal
-// is missing. Included by shaders that have load_inverse_depth(), parameters.slope, kPerspective and
-// size_px().
+// is missing. Included by shaders that have load_inverse_depth(), parameters.slope, kPerspective
+// and size_px().
 #ifndef ALCOVE_DEPTH_NORMAL_H
 #define ALCOVE_DEPTH_NORMAL_H
 

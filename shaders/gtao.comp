@@ -61,10 +61,11 @@ layout(set = 0, binding = 2) uniform texture2D normal_image;  // xyz, turned by 
 layout(set = 0, binding = 3) uniform writeonly uimage2D raw_image;
 // Bound to the raw occlusion and never written where no bent normal is wanted.
 layout(set = 0, binding = 4) uniform writeonly uimage2D bent_image;
-// SliceSample::inverse_depth of the back faces; bound to the front's and never read without
-// kBackFaces.
+// SliceSample::inverse_depth of the back faces. Without kBackFaces it is never read, and another
+// image is bound in its place.
 layout(set = 0, binding = 5, r32f) uniform readonly image2D back_image;
-// The same of what lies behind the first surface; so is it without kSecondLayer.
+// SliceSample::inverse_depth of the second depth layer. Without kSecondLayer it is never read, and
+// another image is bound in its place.
 layout(set = 0, binding = 6, r32f) uniform readonly image2D second_image;
 #ifdef SPECULAR
 layout(set = 0, binding = 7) uniform texture2D roughness_image;  // perceptual

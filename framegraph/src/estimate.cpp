@@ -8,8 +8,8 @@
 namespace alcove::framegraph {
 namespace {
 
-// Bytes of a texel (of a 4x4 block for compressed formats, averaged to 1 byte a texel); 16 for
-// formats that are not listed: an estimate must not be too small.
+// Bytes per texel. Block-compressed formats count as 1, which is their largest. Formats that are
+// not listed count as 16, because an estimate must not be too small.
 constexpr std::uint32_t find_texel_size(VkFormat format) {
   const auto in = [format](VkFormat first, VkFormat last) {
     return format >= first && format <= last;

@@ -20,7 +20,8 @@ class Submitter {
   // Waits until the device has finished what was submitted with this slot.
   [[nodiscard]] VkResult wait(std::uint32_t slot);
   // Records and submits a plan that `recording_threads` was begun with. `timestamps` is by queue
-  // class, null where there are none. `full_barrier`: memory holds what another plan left.
+  // class, null where there are none. `full_barrier`: begin with a barrier over everything, since
+  // another plan used the memory before.
   [[nodiscard]] VkResult submit(const Plan& plan, RecordingThreads& recording_threads,
                                 const FrameInfo& info, Timestamps* const* timestamps,
                                 bool full_barrier);

@@ -193,9 +193,9 @@ bool validate(const GraphDescription& graph, const Limits& limits, Workspace& wo
 void cull(const GraphDescription& graph, Workspace& workspace, Plan& plan);
 // The live passes in order of declaration, as the order of execution.
 void order_as_declared(Workspace& workspace, const Plan& plan);
-// Looks for an order whose peak is lower, by the sizes of a plan in order of declaration. If there
-// is one that looks lower it is in workspace.reorder.order, and the order of declaration is in
-// workspace.reorder.declared.
+// Looks for an order of passes whose peak of transient memory is lower. Resource sizes come from
+// `plan`, which is in order of declaration. If it returns true, workspace.reorder.order holds an
+// order whose estimated peak is lower, and workspace.reorder.declared the order of declaration.
 bool find_lower_order(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
                       const Plan& plan);
 // Assigns passes to queues and submissions.

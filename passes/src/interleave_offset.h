@@ -11,9 +11,9 @@ struct InterleaveOffset {
   std::uint32_t y = 0;
 };
 
-// Every pixel of a tile of tile_size x tile_size (1, 2 or 4) once in tile_size^2 frames, those
-// that follow each other far apart: (0,0), (1,1), (1,0), (0,1), and the same within each quarter of
-// 4x4.
+// The pixel of a tile of tile_size x tile_size (1, 2 or 4) that is traced in a frame. Each pixel is
+// traced once in tile_size^2 frames, and successive pixels are far apart. The order in 2x2 is
+// (0,0), (1,1), (1,0), (0,1); 4x4 uses it for the quarters and within each quarter.
 [[nodiscard]] constexpr InterleaveOffset interleave_offset_of(std::uint32_t tile_size,
                                                               std::uint32_t frame) {
   constexpr std::array<InterleaveOffset, 4> kOrder{{{0, 0}, {1, 1}, {1, 0}, {0, 1}}};

@@ -9,8 +9,8 @@
 
 namespace alcove::passes {
 
-// maths/split_sum.h's pairs over (view, roughness), the view fastest: two 16-bit parts of 1 a word,
-// the factor of f0 in the lower half.
+// The pairs of maths/split_sum.h by view, which varies fastest, and roughness. Each word holds two
+// 16-bit unorms, the factor of f0 in the lower half.
 [[nodiscard]] std::vector<std::uint32_t> reflectance_table();
 
 // A GGX lobe above its surface, by samples spread evenly over the microfacets that its view sees.

@@ -6,8 +6,8 @@
 #include "alcove/framegraph/graph.h"
 #include "alcove/passes/apply.h"
 #include "alcove/passes/occlusion.h"
-#include "render/frame_renderer.h"
 #include "gpu/gpu.h"
+#include "render/frame_renderer.h"
 
 // What a frame of the occlusion makes, and how it comes back as images.
 namespace alcove::sample {

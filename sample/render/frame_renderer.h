@@ -8,8 +8,8 @@
 
 #include "alcove/framegraph/executor.h"
 #include "alcove/passes/occlusion.h"
-#include "render/gbuffer.h"
 #include "gpu/gpu.h"
+#include "render/gbuffer.h"
 #include "render/normal_source.h"
 #include "scene/environment.h"
 #include "support/image.h"

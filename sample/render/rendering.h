@@ -5,8 +5,8 @@
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "render/frame_renderer.h"
 #include "gpu/gpu.h"
+#include "render/frame_renderer.h"
 #include "render/session.h"
 #include "scene/scene.h"
 

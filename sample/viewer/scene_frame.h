@@ -5,8 +5,8 @@
 #include <string>
 #include <tl/expected.hpp>
 
-#include "render/gbuffer.h"
 #include "gpu/gpu.h"
+#include "render/gbuffer.h"
 #include "render/normal_source.h"
 #include "render/probe.h"
 #include "render/surfaces.h"

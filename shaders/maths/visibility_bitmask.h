@@ -79,8 +79,8 @@ ALCOVE_INLINE uint biased_position(float per_tangent, float height) {
   return floatBitsToUint(share * float(kEvenSectorCount) + 8388608.0f);
 }
 
-// The sectors from a position on, and one more: the exclusive or of two such masks holds the
-// sectors between the two positions.
+// A mask of the bits from `position` (0 to 31) up to bit 31, which is one above the last sector.
+// The exclusive or of two such masks holds the sectors between the two positions.
 ALCOVE_INLINE uint sectors_beyond(uint position) { return 0xffffffffu << (position & 31u); }
 
 // Repeats the state of the last of kEvenSectorCount sectors in the highest bit, as visible_part()

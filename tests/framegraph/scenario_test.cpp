@@ -184,7 +184,7 @@ TEST_F(Scenario, TextureHandedFromOneGraphToAnotherNeedsNoSecondBarrier) {
 
 // clear -> sum -> accumulate -> sum (unread)
 //                     +------> picture -> output
-TEST_F(Scenario, AccumulationWithASecondOutputKeepsWhatItAccumulatesOn) {
+TEST_F(Scenario, ClearIsNotCulledIfOnlyTheSecondOutputOfItsAccumulationIsRead) {
   Texture sum = graph_.create_texture("sum", kColor);
   Texture picture = graph_.create_texture("picture", kColor);
   PassBuilder clear = graph_.add_pass("clear");

@@ -101,7 +101,7 @@ TEST(Unobserved, ExcludedPartIsItsFractionOfTheIntegral) {
   EXPECT_LT(sum_uniform / kCases, 2e-8);
 }
 
-TEST(Unobserved, LobeLosesItsFractionInTheExcludedDirections) {
+TEST(Unobserved, UnobservedLobeIsTheExcludedShareOfTheLobeInTheArc) {
   RandomInput random;
   for (int i = 0; i < 5000; ++i) {
     const Case c(random);

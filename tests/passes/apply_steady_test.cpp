@@ -3,8 +3,8 @@
 
 #include "alcove/passes/apply.h"
 #include "framegraph/allocation_counter.h"
-#include "maths/spherical_harmonics.h"
 #include "gpu/gpu.h"
+#include "maths/spherical_harmonics.h"
 
 namespace alcove::passes {
 namespace {

@@ -197,7 +197,7 @@ TEST_F(CHost, HostAllocationsAreUsedAndFreed) {
   EXPECT_THAT(memory.alive, IsEmpty());
 }
 
-TEST_F(CHost, HostBlockHoldsEveryImageThroughSizeChanges) {
+TEST_F(CHost, MemoryBlockOfTheEngineHoldsEveryImageThroughSizeChanges) {
   const Block block(gpu().device(), 1 << 20);
   DeviceMemory memory{gpu().device()};
   {

@@ -101,7 +101,7 @@ TEST(CameraOf, LengthsWhoseSquaresOverflowAreRefused) {
   }
 }
 
-TEST(CameraOf, DepthIsReversedInPerspectiveUnlessTyped) {
+TEST(CameraOf, DepthIsReversedInPerspectiveOnlyUnlessAnOptionSaysOtherwise) {
   const Scene scene = builtin_scene();
   ViewOptions view;
   EXPECT_TRUE(camera_of(view, scene)->reversed_z);

@@ -165,7 +165,7 @@ TEST_P(FirstPicture, ShowsTheModelWithOcclusion) {
   const Shares shares = shares_of(*drawn);
   RecordProperty("sky", std::to_string(shares.sky));
   RecordProperty("occluded", std::to_string(shares.occluded));
-  EXPECT_LT(shares.sky, 0.97);        // of the screw, which is four times as long as wide
+  EXPECT_LT(shares.sky, 0.97);         // of the screw, which is four times as long as wide
   EXPECT_GT(shares.occluded, 0.0005);  // of the character, whose dome is open surface
   EXPECT_LT(shares.least, 0.9);
   EXPECT_LT(shares.occluded, 0.9);

@@ -49,7 +49,7 @@ TEST(GltfTexture, TextureUsesTheSetOfItsReferenceOrTransform) {
   }
 }
 
-TEST(GltfTexture, SecondSetThatNoTextureUsesIsDropped) {
+TEST(GltfTexture, SecondSetOfTextureCoordinatesThatNoTextureUsesIsDropped) {
   const Scene scene = parsed(painted({{"index", 0}}, {{"index", 0}}).gltf());
   EXPECT_TRUE(scene.meshes[0].second_uvs.empty());
 }

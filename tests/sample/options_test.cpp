@@ -84,7 +84,7 @@ TEST(Options, NonsenseIsRefusedInASentenceThatNamesTheOption) {
   }
 }
 
-TEST(Options, MotionTakesAPathAndEnoughFramesToCompare) {
+TEST(Options, MotionTakesAnOptionalCameraPathAndRefusesTooFewFrames) {
   const auto all = parse({"motion"});
   ASSERT_TRUE(all);
   EXPECT_EQ(all->command, Command::kMotion);

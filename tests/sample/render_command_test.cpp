@@ -135,7 +135,7 @@ TEST(CommandLine, OrthographicNearPlaneMayBeAtOrBehindTheEye) {
   expect_round_trip(kDefaults, shot);
 }
 
-TEST(CommandLine, FramesAreThoseRenderedOrElseTheHistoryLength) {
+TEST(CommandLine, FramesOptionIsThatOfTheShotOrElseTheHistoryLength) {
   Shot shot = some_shot();
   shot.settings.history_frames = 17;
   EXPECT_EQ(parse(render_arguments(kDefaults, shot))->view.frames, 17u);

@@ -83,7 +83,7 @@ void for_each_setting(Settings& settings, const Visit& visit) {
                     .matters = has_thickness},
         settings.depth_layers);
   visit(SettingInfo{.name = "history_frames",
-                    .help = "Frames that are averaged. 0 keeps no history.",
+                    .help = "The most frames that the history averages. 0 keeps no history.",
                     .range = {.maximum = 127}},
         settings.history_frames);
   visit(SettingInfo{.name = "half_resolution",
@@ -172,8 +172,8 @@ void for_each_setting(Settings& settings, const Visit& visit) {
                     .matters = [](S s) { return s.advanced.filter_radius > 0; }},
         settings.advanced.filter_tolerance_px);
   visit(SettingInfo{.name = "clamp_width",
-                    .help = "Standard deviations that the history is clamped to. 0 turns clamping "
-                            "off.",
+                    .help = "Standard deviations around the mean of the frame's neighbourhood to "
+                            "which the history is clamped. 0 turns clamping off.",
                     .group = advanced,
                     .slider = {.maximum = 8.0f},
                     .matters = [](S s) { return s.history_frames > 0; }},
@@ -192,11 +192,12 @@ void for_each_setting(Settings& settings, const Visit& visit) {
                             "average. If off, they count as open (connected only).",
                     .group = advanced},
         settings.advanced.unobserved);
-  visit(SettingInfo{.name = "grouping",
-                    .help = "Tiles that a workgroup traces: adjacent ones, or those of one slice "
-                            "direction.",
-                    .group = advanced},
-        settings.advanced.grouping);
+  visit(
+      SettingInfo{.name = "grouping",
+                  .help = "Tiles that a workgroup traces: 8x8 adjacent ones, or every fourth in x "
+                          "and y. It changes the cost and not the image.",
+                  .group = advanced},
+      settings.advanced.grouping);
 }
 
 }  // namespace alcove::passes
