@@ -244,7 +244,7 @@ TEST(Options, HelpListsTheSettings) {
        {"render", "compare", "motion", "ablate", "bench", "recommend", "graph", "view"}) {
     const std::string help = parse({command, "--help"}).error().text;
     EXPECT_THAT(help, HasSubstr("clamp_width")) << command;
-    EXPECT_THAT(help, HasSubstr("Tiles that a workgroup traces: adjacent ones")) << command;
+    EXPECT_THAT(help, HasSubstr("Tiles that a workgroup traces: 8x8 adjacent")) << command;
     EXPECT_THAT(help, HasSubstr("horizons, heuristic, bitmask or connected")) << command;
   }
   EXPECT_THAT(parse({"doctor", "--help"}).error().text, testing::Not(HasSubstr("clamp_width")));
