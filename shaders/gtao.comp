@@ -3,15 +3,14 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
-// Ground-truth ambient occlusion: per pixel a few slices around the view direction, in each what the
-// depth buffer leaves open between its two horizons (Jimenez et al. 2016, section 4), or of its
-// sectors (gtao_sectors.h), integrated in closed form.
+// Ground-truth ambient occlusion. Each traced pixel integrates the visible part of a few slices in
+// closed form: above two horizons (gtao_horizons.h; Jimenez et al. 2016, section 4), or over the
+// sectors that no occluder covers (gtao_bitmask.h, gtao_connected.h).
 //
-// Writes two numbers a pixel, the visible part of its slices and the whole of them when open:
-// filters and history add up each, and only the last divides. The mean of the pixels' own ratios
-// would be biased. The bent normal is written as a sum over slices too, in view space, and never
-// normalised; and so (compiled with SPECULAR) are the visible part and the whole of the surface's
-// GGX lobe, by the same horizons or sectors.
+// Two sums over slices are written per traced pixel: the visible part, and the same without
+// occluders. Filters and history sum both and divide at the end, because the mean of ratios would
+// be biased. The bent-normal residual is a sum over slices too, in view space. With SPECULAR, the
+// two sums of the surface's GGX lobe are also written.
 
 #include "gtao_parameters.h"
 #include "maths/bent_normal.h"
@@ -138,7 +137,7 @@ RawOcclusion no_lobe() { return RawOcclusion(0.0, 0.0); }
 #include "gtao_connected.h"
 #include "gtao_horizons.h"
 
-// What a slice adds to the pixel's sums.
+// The contribution of a slice to the pixel's sums.
 struct SliceResult {
   RawOcclusion raw_occlusion;
   vec3 residual;

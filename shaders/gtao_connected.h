@@ -22,7 +22,7 @@ struct SegmentState {
   bool known_back;  // whether a back face told where an occluder ends
 };
 
-// What was found in a half-slice.
+// The occluders that were found in a half-slice.
 struct Occluders {
   uint occluded;           // sectors
   float hidden_occlusion;  // fraction of the sectors hidden behind the first that is occluded
@@ -221,7 +221,7 @@ void add_connected(inout SliceSum sum, HalfSlice half_slice, Slice slice, LobeSl
   vec2 first_light = open ? tangent : diamond_angle_light(float(findLSB(found.occluded)) * sector);
   float arc = open ? open_arc : part_arc(slice, half_slice.side, first_light, kUniformWeight);
   if (kBackFaces && found.known_back) {
-    // What back faces show to be visible behind an occluder is known, and integrated exactly.
+    // Back faces show which directions behind an occluder are visible: they are integrated exactly.
     VisiblePart part =
         visible_part(slice, half_slice.side, 1.0 / sector, repeat_last_sector(found.occluded),
                      found.hidden_occlusion, PartRequest(kUniformWeight, kBentNormal));

@@ -118,7 +118,8 @@ SliceSample fetch_sample(HalfSlice half_slice, uint layer, uint k) {
   found.inverse_depth =
       layer == 0u ? imageLoad(inverse_depth_image, texel).r : imageLoad(second_image, texel).r;
   float along_px = kSnapToTexels ? dot(snapped, half_slice.direction_px) : found.offset_px;
-  // Of the tangent plane's inverse depth, from the shaded pixel to the texel and to the line.
+  // Changes of the tangent plane's inverse depth from the shaded pixel to the texel and to the
+  // line.
   float to_texel = dot(snapped, half_slice.tangent.gradient);
   float to_line = along_px * half_slice.slope;
   float off_plane = (found.inverse_depth - half_slice.tangent.inverse_depth) - to_texel;

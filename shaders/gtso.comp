@@ -2,8 +2,9 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
-// The visible fraction of each pixel's GGX lobe from its visibility and bent normal ([Jimenez 2016],
-// section 6): by the intersection of two cones (maths/gtso.h) or, with TABLE, by the paper's table.
+// The visible fraction of each pixel's GGX lobe from its visibility and bent normal
+// ([Jimenez 2016], section 6): by the intersection of two cones (maths/gtso.h) or, with TABLE, by
+// the paper's table.
 
 #include "gtso_parameters.h"
 #include "maths/gtso.h"
@@ -87,7 +88,8 @@ void main() {
   float result = 1.0;
   if (!is_sky_depth(depth)) {
     vec2 uv = pixel_centre_uv(parameters.projection, uvec2(pixel));
-    vec3 view = view_direction(parameters.projection, position_vs(parameters.projection, uv, depth));
+    vec3 view =
+        view_direction(parameters.projection, position_vs(parameters.projection, uv, depth));
     vec3 normal = facing_normal(fetch_direction(normal_image, pixel, kNormalEncoding, view), view);
     result = occlusion_of(pixel, normal, view);
   }

@@ -2,11 +2,12 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
-// Copies samples of a view's inputs for the host, which looks for mistakes in them (alcoveDiagnose).
+// Copies samples of a view's inputs for the host, which looks for mistakes in them
+// (alcoveDiagnose).
 //
-// The samples lie on a grid over the image. Each takes two texels, one above the other: the depths of
-// the pixel and of its left, right and upper neighbours; then the depth of the lower neighbour and the
-// normal as it is stored. A last row has the sizes of the two images and the serial number.
+// The samples lie on a grid over the image. Each takes two texels, one above the other: the depths
+// of the pixel and of its left, right and upper neighbours; then the depth of the lower neighbour
+// and the normal as it is stored. A last row has the sizes of the two images and the serial number.
 
 #include "inspect_parameters.h"
 

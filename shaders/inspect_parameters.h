@@ -1,4 +1,4 @@
-// What inspect.comp is given. For the shader and for C++.
+// The uniform block of inspect.comp, shared by GLSL and C++.
 #ifndef ALCOVE_INSPECT_PARAMETERS_H_
 #define ALCOVE_INSPECT_PARAMETERS_H_
 

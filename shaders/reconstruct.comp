@@ -125,7 +125,7 @@ const int kNearRadius = kFilterRadius == 0 ? 0 : 1;
 const int kSpan = 8 * kTexelSize / kTileSize + 2 * kFilterRadius;
 const int kShift = kTileSize == 4 ? 2 : kTileSize == 2 ? 1 : 0;
 
-// What a traced tile holds, unpacked.
+// The unpacked raw occlusion of a tile.
 struct TracedPixel {
   float inverse_depth;
   float occluded;

@@ -59,7 +59,7 @@ struct Cell {
   ivec2 first;      // the pixel to the upper left
   vec4 depths;      // inverse depths of the pixels
   vec4 occlusions;  // of the texels, in units of kHalfTexelOcclusionUnit
-  // Of each texel, where s is the distance from its plane per distance along the view ray:
+  // Four values of each texel. s is the distance from its plane per distance along the view ray:
   // `steepness` is s times parameters.tolerance, `planes` is s times the inverse depth of the plane
   // at the cell's centre, and `right` and `below` are s times the change of that inverse depth over
   // half a pixel.

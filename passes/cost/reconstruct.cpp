@@ -18,7 +18,7 @@ std::optional<double> reconstruct_iterations(const PassWork& work, const Compile
 
 double reconstruct_traffic(const PassWork& work, std::string_view image, Direction direction) {
   // The name of every history begins with the view's; a first frame reads none.
-  const bool history = image.starts_with("occlusion") && image != "occlusion signal";
+  const bool history = image.starts_with("occlusion");
   return history && direction == Direction::read && work.state == FrameState::first ? 0.0 : 1.0;
 }
 

@@ -103,7 +103,7 @@ AlcoveAdvancedSettings from_advanced(const AdvancedSettings& settings) {
   return result;
 }
 
-// What AlcoveSettings::advanced of the preset REFERENCE points to.
+// The target of AlcoveSettings::advanced in the preset REFERENCE.
 const AlcoveAdvancedSettings* reference_advanced() {
   static const AlcoveAdvancedSettings settings =
       from_advanced(quality_settings(Quality::reference, 1.0f).advanced);

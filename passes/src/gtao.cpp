@@ -31,7 +31,7 @@ RawOcclusionTextures create_raw_occlusion(const Frame& frame, Texture depth,
   result.raw_occlusion =
       frame.graph.create_texture("raw occlusion", {raw_format(result.lobe), size});
   if (needs_bent_normal(settings)) {
-    result.bent = frame.graph.create_texture("bent raw_occlusion", {kBentRawFormat, size});
+    result.bent = frame.graph.create_texture("bent-normal residual", {kBentRawFormat, size});
   }
   return result;
 }

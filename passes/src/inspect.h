@@ -22,7 +22,7 @@ struct PixelSample {
   std::array<float, 3> normal{};
 };
 
-// What the view says of the image that the samples are from.
+// The view that the samples are from, as the engine described it.
 struct InspectedView {
   View view;
   VkExtent2D size{};        // of the part in use

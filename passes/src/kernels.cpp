@@ -42,7 +42,7 @@ struct Set {
   std::array<VkImageView, kMaxBindings> views{};
 };
 
-// What a dispatch is to bind.
+// The shader, images and parameters that a dispatch binds.
 struct Bound {
   Shader shader = Shader::count;
   std::span<const VkImageView> views;

@@ -51,7 +51,7 @@ std::string parse(const std::string& text, const SettingInfo& /*info*/, Choice& 
   return "";
 }
 
-// What a setting can be, for the help.
+// The allowed values of a setting, for the help.
 std::string allowed(const SettingInfo& info, float /*value*/) { return info.range.text(); }
 std::string allowed(const SettingInfo& info, std::uint32_t /*value*/) { return info.range.text(); }
 template <typename Choice>

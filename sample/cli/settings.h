@@ -15,8 +15,8 @@ namespace alcove::sample {
 [[nodiscard]] tl::expected<passes::OcclusionSettings, std::string> occlusion_settings(
     const OcclusionOptions& options, const Scene& scene);
 
-// What to give in place of a --set NAME=VALUE whose name is unknown or whose value is out of range;
-// nothing if it is right. Combinations are checked by occlusion_settings().
+// The allowed names or values, if the name of --set NAME=VALUE is unknown or its value is out of
+// range; nothing if it is right. Combinations are checked by occlusion_settings().
 [[nodiscard]] std::optional<std::string> wanted_instead(const std::string& name,
                                                         const std::string& value);
 

@@ -18,7 +18,7 @@ using passes::SettingGroup;
 using passes::SettingInfo;
 using passes::SettingRange;
 
-// What a slider offers: the setting's range, or the useful part of one without a maximum.
+// The range of a slider: the setting's range, or the useful part of one without a maximum.
 SettingRange slider_range(const SettingInfo& info) {
   SettingRange range = std::isinf(info.range.maximum) ? info.slider : info.range;
   if (range.above_minimum) {

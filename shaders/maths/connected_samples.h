@@ -55,8 +55,8 @@ ALCOVE_INLINE bool samples_join(DepthDiscontinuity here, DepthDiscontinuity ther
   return !(here.convex && there.concave) && !(here.concave && there.convex);
 }
 
-// The same for samples of the second layer. That layer shows fragments of many surfaces, where two
-// discontinuities in a row are hardly ever a crease.
+// Whether two successive samples of the second layer are connected. That layer shows fragments of
+// many surfaces, where two discontinuities in a row are hardly ever a crease.
 ALCOVE_INLINE bool hidden_samples_join(DepthDiscontinuity here, DepthDiscontinuity there) {
   return !(is_discontinuous(here) && is_discontinuous(there));
 }

@@ -4,9 +4,9 @@
 // Angles are measured on a square instead of a circle, as diamond_angles: 0 along the view
 // direction, 1 across it, 2 against it, for one division and no root or arc cosine. A side's
 // sectors are equal steps of diamond angle from the view direction (sector 0) to the tangent plane.
-// What weighs them comes last: any weight with an antiderivative is integrated exactly at the ends
-// of the runs of occluded sectors, of which a side has one or two. So one search serves visibility,
-// bent normal and any lobe.
+// Weights are applied last: any weight with an antiderivative is integrated exactly at the ends of
+// the runs of occluded sectors, of which a half-slice has one or two. One search therefore serves
+// visibility, bent normal and any lobe.
 #ifndef ALCOVE_MATHS_VISIBILITY_BITMASK_H
 #define ALCOVE_MATHS_VISIBILITY_BITMASK_H
 
@@ -19,8 +19,8 @@ ALCOVE_MATHS_BEGIN
 
 const uint kSectorCount = 32u;
 
-// Of a point in the slice's plane, x outwards from the view direction (at least 0), y along it; any
-// length. In [0,2].
+// The diamond angle of a point in the slice's plane, x outwards from the view direction (at least
+// 0), y along it; any length. In [0,2].
 ALCOVE_INLINE float diamond_angle(vec2 point) {
   return 1.0f - point.y / max(point.x + abs(point.y), 1e-30f);
 }

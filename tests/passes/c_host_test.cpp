@@ -212,7 +212,7 @@ TEST_F(CHost, MemoryBlockOfTheEngineHoldsEveryImageThroughSizeChanges) {
         expect_same_both_ways(*context, {&given, 1}, index++);
       }
     }
-    // What the host writes cannot lie in the block.
+    // Host-visible memory cannot lie in the block.
     for (const VkMemoryPropertyFlags required : memory.required) {
       EXPECT_NE(required & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT, 0u);
     }

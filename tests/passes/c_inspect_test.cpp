@@ -48,7 +48,7 @@ class CInspect : public CInterface {
     return given;
   }
 
-  // What is said after some frames that are alike.
+  // The text of alcoveDiagnose after some equal frames.
   std::string said_of(
       const GivenView& given, const std::function<void(AlcoveView&)>& change = [](AlcoveView&) {}) {
     const Context context = create_context();

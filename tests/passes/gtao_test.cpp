@@ -57,7 +57,7 @@ TEST_F(GtaoPass, UnoccludedPlaneHasVisibilityOneAtAnyTilt) {
   }
 }
 
-// The same tilted planes without snapping to texel centres: they occlude themselves.
+// Tilted planes occlude themselves if samples are not snapped to texel centres.
 TEST_F(GtaoPass, TiltedPlaneOccludesItselfWithoutSnappingCorrection) {
   const TestView view = test_views()[2];
   for (const Estimator estimator : {Estimator::horizons, Estimator::connected}) {

@@ -206,7 +206,7 @@ TEST_F(Reconstruct, LeakAcrossACreaseFallsWithMoreTracedPixels) {
   const double first = after(1, 1);
   EXPECT_GT(first, 1.0) << "of all pixels";
   EXPECT_LT(after(4, 1), 0.35 * first);
-  // Of these 0.16 are the dither of stored visibilities: 3e-4 in the mean over pixels.
+  // The dither of stored visibilities accounts for 0.16: 3e-4 in the mean over pixels.
   EXPECT_LT(after(1, 48), 0.2 * first);
 }
 

@@ -24,7 +24,7 @@ class Vulkan12Device {
   Vulkan12Device(const Vulkan12Device&) = delete;
   Vulkan12Device& operator=(const Vulkan12Device&) = delete;
 
-  // Of one frame in flight, with the functions as vkGetInstanceProcAddr has them.
+  // For one frame in flight, with the functions of vkGetInstanceProcAddr.
   AlcoveContextInfo context_info() const;
   AlcoveImage make_image(VkFormat format, std::uint32_t width, std::uint32_t height,
                          VkImageUsageFlags usage);
@@ -35,7 +35,7 @@ class Vulkan12Device {
 
   VkInstance instance() const { return instance_; }
   VkDevice device() const { return device_; }
-  // What the validation layers said so far.
+  // The messages of the validation layers so far.
   const std::string& messages() const { return messages_; }
 
  private:

@@ -21,7 +21,7 @@ VKAPI_ATTR void VKAPI_CALL get_properties(VkPhysicalDevice device,
   properties->apiVersion = VK_API_VERSION_1_2;
 }
 
-// As the loader, but the physical device has Vulkan 1.2 where lavapipe has 1.3.
+// The loader's function, except that the physical device reports Vulkan 1.2 instead of 1.3.
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_instance_proc_addr(VkInstance instance,
                                                                 const char* name) {
   return std::strcmp(name, "vkGetPhysicalDeviceProperties") == 0

@@ -144,7 +144,7 @@ inline tl::expected<Rendering, std::string> draw_file(const std::string& file) {
   return draw_file(file, plain);
 }
 
-// What the pixels of a picture show.
+// Fractions of the pixels of a picture, by their contents.
 struct Shares {
   double sky = 0.0;       // pixels without a surface, of all
   double occluded = 0.0;  // pixels of a visibility under .9, of those with a surface

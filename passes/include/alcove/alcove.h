@@ -144,7 +144,7 @@ typedef struct AlcoveSettings {
   // read what is written.
   float power;      // above 0, at most 16 [1]
   float intensity;  // 0 to 16 [1]
-  // What most engines never change. Null: the defaults, which suit every scene. [null]
+  // Settings that most engines never change. Null: the defaults, which suit every scene. [null]
   const struct AlcoveAdvancedSettings* advanced;
 } AlcoveSettings;
 
@@ -219,7 +219,7 @@ typedef struct AlcoveContextInfo {
   // The family of the queue that frames are submitted to. It must have VK_QUEUE_COMPUTE_BIT.
   uint32_t queue_family;
   VkInstance instance;  // created for Vulkan 1.2 or newer
-  // Of Vulkan 1.3, or of 1.2 with the extension VK_KHR_synchronization2. A shader must be able to
+  // It has Vulkan 1.3, or 1.2 with the extension VK_KHR_synchronization2. A shader must be able to
   // bind 9 storage images (maxPerStageDescriptorStorageImages).
   VkPhysicalDevice physical_device;
   // With the features synchronization2 and shaderStorageImageWriteWithoutFormat enabled. Where the
@@ -550,17 +550,17 @@ size_t alcovePrintPlan(AlcoveContext* context, char* text, size_t size);
 // Mistakes that show in the frames recorded so far: a line with a sentence for each, nothing where
 // there is none. Ask after some dozens of frames in which the camera moved.
 //
-// Of the calls: an index that stands still, a previous_camera that is always this frame's or never
-// the last one's, jitter in only one of the two, static_frames in motion, reset_history in every
-// frame.
+// Mistakes in the calls: an index that stands still, a previous_camera that is always this frame's
+// or never the last one's, jitter in only one of the two, static_frames in motion, reset_history in
+// every frame.
 //
-// Of the pixels, with AlcoveFrame::diagnose_pixels in at least three frames, all of which must show
-// it: depth that runs the other way than the projection, a projection with depth from -1 to 1,
-// normals that fit the depth only with another angle of view, in the other space, unpacked the
-// other way, with the other sign of z or with y of the projection the other way round, a radius far
-// out of proportion to the image, an image smaller than it is said to be, and a slot that is
-// recorded again before its frame has finished. A wrong near plane alone scales the whole scene and
-// cannot be seen.
+// Mistakes in the pixels, if at least three frames have AlcoveFrame::diagnose_pixels and all of
+// them show the mistake: depth that runs the other way than the projection, a projection with depth
+// from -1 to 1, normals that fit the depth only with another angle of view, in the other space,
+// unpacked the other way, with the other sign of z or with y of the projection the other way round,
+// a radius far out of proportion to the image, an image smaller than it is said to be, and a slot
+// that is recorded again before its frame has finished. A wrong near plane alone scales the whole
+// scene and cannot be seen.
 //
 // Buffer and result are as with alcovePrintSettings.
 size_t alcoveDiagnose(AlcoveContext* context, char* text, size_t size);

@@ -1,6 +1,6 @@
-// What the caller may provide in place of Vulkan's defaults: host memory for the driver, device
-// memory, and a log. Everything here is optional, and must outlive the executor and the kernels
-// that it is given to.
+// Services that the caller may provide in place of Vulkan's defaults: host memory for the driver,
+// device memory, and a log. Everything here is optional, and must outlive the executor and the
+// kernels that it is given to.
 #pragma once
 
 #include <vulkan/vulkan_core.h>
