@@ -12,8 +12,8 @@ const uint kInspectRows = 48;
 
 struct InspectParameters {
   uvec2 size_px;  // of the part of the image that is in use
-  uint serial;    // tells this frame's samples from older ones, below 2^24
   uint has_normals;
+  uint unused;
 };
 
 ALCOVE_MATHS_END

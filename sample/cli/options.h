@@ -85,7 +85,9 @@ struct Options {
   std::optional<double> budget_ms, tolerance;
   std::optional<MotionKind> path;  // motion: none for all of them
   CostOptions cost;
-  bool grid = false;  // bench: steps and slices in place of the sweep of presets
+  bool mistakes = false;           // doctor: draw the built-in scene with planted mistakes
+  std::filesystem::path pictures;  // doctor: folder for pictures of the mistakes; empty for none
+  bool grid = false;               // bench: steps and slices in place of the sweep of presets
   GraphFormat graph_format = GraphFormat::kText;
   int device = -1;
   bool validation = false;
