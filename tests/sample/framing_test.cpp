@@ -107,7 +107,7 @@ TEST(SceneCore, LargeModelIsNotTakenForTheSurroundingsOfAPartOfIt) {
 TEST(Framing, AllOfTheCoreIsInViewWithItsPlanes) {
   const Scene scene =
       scene_of({sphere(5000.0f, {0, 0, 0}, 16), grid(1000.0f, 1), sphere(1.0f, {0, 1, 0}, 16)});
-  const Camera camera = with_fitted_planes(scene, framing_camera(scene), 16.0 / 9.0);
+  const Camera camera = with_fitted_planes(scene, framing_camera(scene, 16.0 / 9.0), 16.0 / 9.0);
   EXPECT_LT(glm::distance(camera.eye_ws, camera.target_ws), 10.0f);
   EXPECT_LT(camera.near_plane, 0.1f);
   EXPECT_GT(camera.far_plane, 4000.0f);
@@ -118,10 +118,28 @@ TEST(Framing, AllOfTheCoreIsInViewWithItsPlanes) {
   }
 }
 
+TEST(Framing, CoreFillsNineTenthsOfTheImageInOneDirection) {
+  for (const glm::vec3 size : {glm::vec3(1, 1, 1), glm::vec3(20, 1, 1), glm::vec3(1, 30, 1)}) {
+    for (const double aspect : {0.5, 1.0, 16.0 / 9.0}) {
+      Mesh box = sphere(0.5f, {0, 0, 0}, 8);
+      for (glm::vec3& position : box.positions) position = size * position + 7.0f;
+      const Scene scene = scene_of({box});
+      const auto width = static_cast<uint32_t>(100 * aspect);
+      const CameraMatrices matrices = camera_matrices(framing_camera(scene, aspect), width, 100);
+      float most = 0.0f;
+      for (const glm::vec3& corner : corners_of(scene.core_bounds_ws)) {
+        const glm::vec4 clip = matrices.clip_from_world * glm::vec4(corner, 1.0f);
+        most = std::max({most, std::abs(clip.x) / clip.w, std::abs(clip.y) / clip.w});
+      }
+      EXPECT_NEAR(most, 0.9f, 0.01f) << size.x << " " << size.y << " " << aspect;
+    }
+  }
+}
+
 TEST(Framing, EyeStandsInsideOfARoomAroundTheCore) {
   Mesh walls = sphere(10.0f, {-8, 0, -8}, 4);
   const Scene scene = scene_of({walls, sphere(0.5f, {-3, 0, -3}, 16)});
-  const glm::vec3 eye = framing_camera(scene).eye_ws;
+  const glm::vec3 eye = framing_camera(scene, 16.0 / 9.0).eye_ws;
   EXPECT_LT(eye.x, 2.0f);
   EXPECT_LT(eye.z, 2.0f);
 }
