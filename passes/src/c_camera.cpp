@@ -1,4 +1,4 @@
-// Cameras of other conventions, and cameras from plain numbers.
+// Converts cameras of other conventions, and makes cameras from plain numbers.
 #include <algorithm>
 #include <cmath>
 
@@ -13,7 +13,7 @@ constexpr std::uint32_t kKnownConventions =
     ALCOVE_CAMERA_CONVENTION_CLIP_Y_UP | ALCOVE_CAMERA_CONVENTION_DEPTH_FROM_MINUS_ONE |
     ALCOVE_CAMERA_CONVENTION_FORWARD_Z | ALCOVE_CAMERA_CONVENTION_ROW_MAJOR;
 
-// Column by column.
+// Reads a matrix that lies in memory column by column.
 mat4 read(const float* values) {
   mat4 result;
   for (int i = 0; i < 16; ++i) {
@@ -83,13 +83,13 @@ AlcoveResult alcoveMakePerspective(const AlcovePerspective* perspective, float* 
   const double near = p.near_plane;
   const double at_near = p.reversed != VK_FALSE ? 1.0 : 0.0;
   const double at_far = 1.0 - at_near;
-  // depth = (a z + b) / -z is at_near where z is -near and at_far where z is -far.
+  // depth = (a z + b) / -z is at_near at z = -near and at_far at z = -far.
   const double far = p.far_plane;
   const double a = infinite ? -at_far : -(at_far * far - at_near * near) / (far - near);
   mat4 clip(0.0f);
   clip[0][0] = static_cast<float>(scale * p.height / p.width);
   clip[1][1] = static_cast<float>(-scale);
-  // clip x grows by jitter * w, and w is -z.
+  // The jitter adds jitter * w to clip x, and w is -z.
   clip[2][0] = -2.0f * p.jitter_px[0] / static_cast<float>(p.width);
   clip[2][1] = -2.0f * p.jitter_px[1] / static_cast<float>(p.height);
   clip[2][2] = static_cast<float>(a);

@@ -25,7 +25,8 @@ struct Features {
   bool write_without_format = false;
 };
 
-// The features in a chain as vkCreateDevice or vkGetPhysicalDeviceFeatures2 has it.
+// Reads the needed features from a chain as vkCreateDevice and vkGetPhysicalDeviceFeatures2 take
+// it.
 Features features_in(const VkPhysicalDeviceFeatures2& chain) {
   Features found;
   found.write_without_format = chain.features.shaderStorageImageWriteWithoutFormat != VK_FALSE;
@@ -111,7 +112,7 @@ tl::expected<void, Failure> check_device(const AlcoveContextInfo& info) {
   const VkQueueFamilyProperties& family = families[info.queue_family].queueFamilyProperties;
   if ((family.queueFlags & VK_QUEUE_COMPUTE_BIT) == 0) {
     return invalid("Queue family " + std::to_string(info.queue_family) +
-                   " does not compute; give one that does.");
+                   " has no VK_QUEUE_COMPUTE_BIT; give a family that has it.");
   }
   if (info.timestamps != VK_FALSE && family.timestampValidBits == 0) {
     return unsupported("Queue family " + std::to_string(info.queue_family) +

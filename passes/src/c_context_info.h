@@ -1,4 +1,4 @@
-// What the engine gives a context of the C interface to work on.
+// Checks the AlcoveContextInfo from which a context is created.
 #pragma once
 
 #include <tl/expected.hpp>
@@ -8,7 +8,8 @@
 
 namespace alcove::passes {
 
-// Whether all is given, and the device can do what the passes need.
+// Returns an error if a required field is missing or the device lacks something that the passes
+// need.
 [[nodiscard]] tl::expected<void, Failure> check(const AlcoveContextInfo* info);
 
 }  // namespace alcove::passes

@@ -7,7 +7,7 @@
 namespace alcove::passes {
 namespace {
 
-// Engines compute one matrix in several ways: equal up to rounding is equal.
+// Engines compute one matrix in several ways, so matrices that differ by rounding count as equal.
 bool same(std::span<const float, 16> a, std::span<const float, 16> b) {
   float largest = 0.0f;
   for (const float element : a) {
@@ -89,10 +89,11 @@ std::string CallObserver::describe() const {
         "previous_camera has the last frame's view_from_world but another clip_from_view; give the "
         "matrix that depth was drawn with, jitter included.");
     say(view.static_in_motion.always(),
-        "static_frames is not 0 although the camera moves; it counts frames that show the very "
-        "same.");
+        "static_frames is not 0 although the camera moves; it counts frames that show exactly "
+        "the same.");
     say(view.reset.always(),
-        "reset_history is set in every frame, so that no history gathers; set it at cuts only.");
+        "reset_history is set in every frame, so that no history accumulates; set it at cuts "
+        "only.");
   }
   return text;
 }

@@ -1,4 +1,4 @@
-// Mistakes that show in what the frames of a context are given, one frame after the other.
+// Finds mistakes of the engine in the arguments of successive frames of a context.
 #pragma once
 
 #include <array>
@@ -9,17 +9,18 @@
 
 namespace alcove::passes {
 
-// Watches the calls; it looks at no pixel and allocates nothing but the text of describe().
+// Observes the arguments of calls. It reads no pixel, and only describe() allocates memory.
 class CallObserver {
  public:
-  // A frame was recorded.
+  // Call it for each frame that was recorded.
   void observe(const AlcoveFrame& frame);
 
-  // A line for each mistake; empty where there is none.
+  // Returns a line for each mistake, or an empty text if there is none.
   [[nodiscard]] std::string describe() const;
 
  private:
-  // How often something was seen in frames in which it could be seen. Counts stop at a thousand.
+  // Counts the frames in which a mistake was seen, and the frames in which it could be seen. Counts
+  // stop at a thousand.
   struct Share {
     std::uint32_t seen = 0;
     std::uint32_t of = 0;
@@ -29,18 +30,18 @@ class CallObserver {
         seen += now ? 1 : 0;
       }
     }
-    // In all of them, and in enough to be sure.
+    // Returns true if the mistake was seen in all of at least kSureFrames frames.
     bool always() const { return of >= kSureFrames && seen == of; }
     static constexpr std::uint32_t kSureFrames = 8;
   };
   struct View {
     bool used = false;
     std::uint32_t id = 0;
-    AlcoveCamera camera{};        // of the frame recorded last
-    Share previous_is_this;       // previous_camera is this frame's, where the camera moved
+    AlcoveCamera camera{};        // of the last recorded frame
+    Share previous_is_this;       // previous_camera is this frame's although the camera moved
     Share previous_is_another;    // it is neither this frame's nor the last one's
     Share projection_is_another;  // only its projection is not the last frame's
-    Share static_in_motion;       // static_frames is not 0, where the camera moved
+    Share static_in_motion;       // static_frames is not 0 although the camera moved
     Share reset;                  // reset_history is set, after the first frame
   };
   void observe(View& view, const AlcoveView& given);

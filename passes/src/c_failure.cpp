@@ -39,7 +39,7 @@ AlcoveResult result_of(const framegraph::Error& error) {
   }
 }
 
-// The graph's errors are clauses.
+// Makes a sentence of an error of the graph, which begins with a small letter and has no full stop.
 std::string as_sentence(std::string text) {
   if (!text.empty()) {
     text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));

@@ -1,4 +1,4 @@
-// What the C interface says of a call that failed.
+// The result and the message of a call of the C interface that failed.
 #pragma once
 
 #include <string>
@@ -21,11 +21,12 @@ struct Failure {
 }
 
 [[nodiscard]] Failure failure_of(const framegraph::Errors& errors);
-// `where` begins the sentence: "View 3".
+// `where` begins the sentence, such as "View 3".
 [[nodiscard]] Failure failure_of(const Error& error, std::string_view where);
 
-// Whether `given` is the size of a struct of this header; the sentence names `type` where it is
-// not. Sizes of earlier headers come here once there is another.
+// Checks that `given`, the struct_size of a struct of the C interface, is its size in this version
+// of the header. The message names `type`. Sizes of earlier versions are to be accepted here once
+// there are any.
 [[nodiscard]] inline tl::expected<void, Failure> check_size(std::uint32_t given, std::size_t known,
                                                             std::string_view type) {
   if (given == known) {

@@ -1,4 +1,4 @@
-// The engine's allocators and log, as the C interface has them, for the C++ side.
+// Passes the engine's allocators and log, which the C interface takes, to the C++ libraries.
 #pragma once
 
 #include "alcove/alcove.h"
@@ -7,10 +7,10 @@
 
 namespace alcove::passes {
 
-// Whether what AlcoveContextInfo says of memory is complete.
+// Returns an error if the allocators of AlcoveContextInfo are incomplete.
 [[nodiscard]] tl::expected<void, Failure> check_memory(const AlcoveContextInfo& info);
 
-// Must stay where it is, and outlive what uses services().
+// Must not move, and must outlive every user of services().
 class HostAdapter {
  public:
   explicit HostAdapter(const AlcoveContextInfo& info);

@@ -18,7 +18,7 @@ struct KnownFormat {
   bool is_signed;
 };
 
-// What shaders see as floats, and can be asked to store where the device does.
+// The colour formats that shaders read as floats. Some devices cannot store all of them.
 constexpr auto kColourFormats = std::to_array<KnownFormat>({
     {VK_FORMAT_R8_UNORM, 1, false},
     {VK_FORMAT_R8_SNORM, 1, true},
@@ -160,7 +160,7 @@ tl::expected<Texture, Failure> ImageTable::import(framegraph::Graph& graph, cons
     }
     return found->texture;
   }
-  // On the stack, so that a steady frame allocates nothing for it.
+  // The name is on the stack, because a steady frame must not allocate memory.
   std::array<char, 64> name{};
   std::snprintf(name.data(), name.size(), "%s of view %u", role.name, static_cast<unsigned>(view));
   const Texture texture = graph.import_texture(

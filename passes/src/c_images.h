@@ -1,4 +1,4 @@
-// The engine's images in the C interface: what they have to be, and their place in the graph.
+// Checks the engine's images and imports them into the graph.
 #pragma once
 
 #include <array>
@@ -11,23 +11,23 @@
 
 namespace alcove::passes {
 
-// What an image is for, and what its format has to be for that.
+// The purpose of an image, and the formats that suit it.
 struct ImageRole {
   const char* name = "";
   enum class Kind : std::uint8_t { depth, colour, signed_colour } kind = Kind::colour;
-  std::uint32_t channels = 1;  // at least
+  std::uint32_t channels = 1;  // that the format has at least
   bool output = false;
 };
 
-// The images of one frame. One that serves as several inputs is one texture of the graph.
+// The images of one frame. An image that serves as several inputs becomes one texture of the graph.
 class ImageTable {
  public:
   static constexpr std::size_t kImagesOfAView = 11;
 
   void reset() { count_ = 0; }
 
-  // The image of view `view` as a texture of `graph`, null where there is none. Its size must be
-  // that of `depth`.
+  // Imports an image of the view with the id `view`. Returns a null texture if there is no image.
+  // The image must have the size of `depth`.
   [[nodiscard]] tl::expected<framegraph::Texture, Failure> import(framegraph::Graph& graph,
                                                                   const ImageRole& role,
                                                                   const AlcoveImage& image,

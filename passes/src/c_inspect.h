@@ -1,5 +1,5 @@
-// Reads samples of a view's pixels back for the host, some frames after they were recorded, and
-// keeps count of the mistakes that they show.
+// Reads back samples of a view's inputs, some frames after they were recorded, and counts the
+// mistakes that they show.
 #pragma once
 
 #include <array>
@@ -22,17 +22,17 @@ class PixelObserver {
   PixelObserver(const PixelObserver&) = delete;
   PixelObserver& operator=(const PixelObserver&) = delete;
 
-  // The frame before with this slot has finished on the device: reads what it left.
+  // Reads the samples of the last frame with this slot, which should have finished on the device.
   void collect(std::uint32_t slot);
-  // Adds the pass that samples a view. Its frame counts from recorded() on.
+  // Adds the passes that sample a view. Its samples are read only if recorded() is called.
   [[nodiscard]] tl::expected<void, Failure> add(const Frame& frame, const AlcoveView& view,
                                                 framegraph::Texture depth,
                                                 framegraph::Texture normals, std::uint32_t slot);
   void recorded(std::uint32_t slot) { pending_.at(slot).recorded = pending_.at(slot).declared; }
   void discarded(std::uint32_t slot) { pending_.at(slot).recorded = false; }
 
-  // A line for each mistake that all inspected frames show, at least three; empty where there is
-  // none.
+  // Returns a line for each mistake that all inspected frames show, of which there are at least
+  // three, or an empty text if there is none.
   [[nodiscard]] std::string describe() const;
 
  private:

@@ -1,5 +1,5 @@
-// The C library is made of the objects of the two C++ libraries. A target needs a source of its own
-// to tell its users that it is C++, and so what a C program has to be linked with.
+// The C library consists of the objects of the two C++ libraries. CMake derives the linker of its
+// users, the one for C++, from the language of this source.
 #include "alcove/alcove.h"
 
 static_assert(ALCOVE_VERSION != 0);

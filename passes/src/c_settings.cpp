@@ -83,7 +83,7 @@ void for_each_advanced_pair(Theirs& theirs, Ours& ours, const Visit& visit) {
 constexpr auto kToCpp = [](const auto& theirs, auto& ours) {
   using Ours = std::remove_reference_t<decltype(ours)>;
   if constexpr (std::is_enum_v<Ours>) {
-    // A number that the enum does not have stays one, for validate() to refuse.
+    // A number that the enum does not have is kept, so that validate() refuses it.
     const std::uint32_t most = std::numeric_limits<std::underlying_type_t<Ours>>::max();
     ours = static_cast<Ours>(std::min(number_of(theirs), most));
   } else if constexpr (std::is_same_v<Ours, bool>) {

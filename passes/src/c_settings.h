@@ -11,8 +11,8 @@
 
 namespace alcove::passes {
 
-// The bits of an enum that C wrote: reading a value that the enum does not have is undefined in
-// C++.
+// Returns the bits of an enum that C code wrote. Reading a value that the enum does not have would
+// be undefined behaviour in C++.
 template <typename Theirs>
 [[nodiscard]] std::uint32_t number_of(const Theirs& value) {
   std::uint32_t number = 0;

@@ -34,7 +34,7 @@ struct Textures {
 
 std::string sentence_begin(const AlcoveView& view) { return "View " + std::to_string(view.id); }
 
-// The passes check it.
+// Copies the matrices. The passes check them.
 View to_view(const AlcoveCamera& camera) {
   View result;
   std::copy_n(camera.clip_from_view, 16, result.clip_from_view.begin());
@@ -103,7 +103,7 @@ MotionConvention motion_convention(const AlcoveView& view) {
 tl::expected<Textures, Failure> import_images(framegraph::Graph& graph, ImageTable& images,
                                               const AlcoveView& view,
                                               const OcclusionSettings& settings) {
-  // A texture need have no more channels than are read.
+  // The format needs no more channels than are read.
   const ImageRole roughness{"roughness", Kind::colour,
                             std::min(settings.roughness_channel, 3u) + 1};
   const auto encoding = normal_encoding(view);
@@ -121,7 +121,7 @@ tl::expected<Textures, Failure> import_images(framegraph::Graph& graph, ImageTab
     const AlcoveImage& image;
     Texture& texture;
   };
-  // As many as a view has: else it does not compile.
+  // The length of the array makes sure that kImagesOfAView is right.
   const Import imports[ImageTable::kImagesOfAView] = {
       {kDepth, view.depth, textures.inputs.depth_ndc},
       {normals, view.normals, textures.inputs.normals},

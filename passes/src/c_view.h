@@ -1,4 +1,4 @@
-// One view of the C interface, declared in the graph.
+// Declares the passes of one view of the C interface.
 #pragma once
 
 #include "alcove/alcove.h"
@@ -8,7 +8,8 @@
 
 namespace alcove::passes {
 
-// The name of a view's history: on the stack, since a steady frame allocates nothing.
+// The name of a view's history. It is on the stack, because a steady frame must not allocate
+// memory.
 class ViewName {
  public:
   explicit ViewName(std::uint32_t id);

@@ -17,10 +17,11 @@ using maths::dvec3;
 using maths::dvec4;
 
 constexpr double kDegrees = 180.0 / 3.14159265358979323846;
-// Fewer samples say nothing.
+// The least number of samples from which a mistake is concluded.
 constexpr std::size_t kEnoughSamples = 100;
 
-// A sample where the surface is smooth: its position's neighbours, and the normal that is stored.
+// A sample on a smooth surface: its position, the differences of its neighbours' positions, and the
+// stored normal.
 struct SmoothSample {
   dvec3 position;
   dvec3 along_x;
@@ -28,7 +29,7 @@ struct SmoothSample {
   maths::vec3 stored;
 };
 
-// How the given normals are read, and how the projection is.
+// A hypothesis of how the normals are stored and which projection drew the depth.
 struct Reading {
   bool in_view_space = false;
   bool packed = false;
@@ -45,7 +46,7 @@ double quantile(std::vector<double> values, double share) {
   return *at;
 }
 
-// Whether a number has at most so many significant digits, as people write near planes.
+// Returns true if a number has at most so many significant digits, as near planes that people type.
 bool is_round(double value, double digits) {
   if (!(value > 0.0) || !std::isfinite(value)) {
     return false;
@@ -78,7 +79,7 @@ class Inspector {
     const bool reversed = is_depth_reversed();
     set(Mistake::depth_reversed, reversed);
     if (reversed) {
-      return found;  // everything else would follow from it
+      return found;  // the other checks would fail because of it
     }
     const bool from_minus_one = is_depth_from_minus_one();
     set(Mistake::depth_from_minus_one, from_minus_one);
@@ -99,7 +100,7 @@ class Inspector {
            (view_.has_normals && is_smaller(view_.normals_size, view_.size));
   }
 
-  // In view space; x and y are uv.
+  // Returns a position in view space. `u` and `v` are 0 to 1 over the image.
   dvec3 position(double u, double v, double depth) const {
     const dvec4 p = view_from_clip_ * dvec4(2.0 * u - 1.0, 2.0 * v - 1.0, depth, 1.0);
     return dvec3(p) / p.w;
@@ -107,7 +108,7 @@ class Inspector {
 
   bool is_sky(float depth) const { return !(depth > 0.0f && depth < 1.0f); }
 
-  // The sky lies at the near plane, or all that there is lies just behind it.
+  // Returns true if the sky lies at the near plane, or if almost all surfaces lie just behind it.
   bool is_depth_reversed() const {
     const float near_depth = reversed_ ? 1.0f : 0.0f;
     std::size_t at_near = 0, at_far = 0, close = 0, surfaces = 0;
@@ -160,7 +161,7 @@ class Inspector {
     set(Mistake::radius_too_large, pixels[pixels.size() / 10] > 3.0 * view_.size.height);
   }
 
-  // The largest step between depths that the format stores, around this one.
+  // The largest step between neighbouring values of the format near this depth.
   double depth_step(float depth) const {
     switch (view_.depth_format) {
       case VK_FORMAT_D16_UNORM:
@@ -273,11 +274,14 @@ class Inspector {
   // Floors and walls along the axes of the view have the same normals with any angle of view. The
   // samples that are left tell it.
   std::vector<SmoothSample> samples_that_tell_angle_of_view(const Reading& given) const {
-    Reading wide = given;
+    Reading wide = given, narrow = given;
     wide.tangent_scale = 1.5;
+    narrow.tangent_scale = 1.0 / 1.5;
     std::vector<SmoothSample> result;
     std::ranges::copy_if(smooth_, std::back_inserter(result), [&](const SmoothSample& s) {
-      return angle_between(own_normal(s, given), own_normal(s, wide)) > 5.0;
+      const dvec3 own = own_normal(s, given);
+      return angle_between(own, own_normal(s, wide)) > 5.0 ||
+             angle_between(own, own_normal(s, narrow)) > 5.0;
     });
     return result;
   }
@@ -397,8 +401,8 @@ const char* sentence(Mistake mistake) {
              "a round number only then; convert it with "
              "ALCOVE_CAMERA_CONVENTION_DEPTH_FROM_MINUS_ONE.";
     case Mistake::field_of_view:
-      return "normals fit the depth with another angle of view than that of camera.clip_from_view; "
-             "give the matrix that depth was drawn with.";
+      return "normals fit the depth with another angle of view, or other near and far planes, than "
+             "those of camera.clip_from_view; give the matrix that depth was drawn with.";
     case Mistake::normal_space:
       return "normals fit the depth in the other space; change normals_in_view_space.";
     case Mistake::normal_packing:

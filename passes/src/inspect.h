@@ -1,5 +1,5 @@
-// Mistakes that show in the pixels of a view's inputs: what a few thousand samples of depth and
-// normals say about the camera and the formats that the view names.
+// Finds mistakes of the engine in a few thousand samples of depth and normals: cameras and formats
+// that the engine names and that do not fit the samples.
 #pragma once
 
 #include <array>
@@ -10,7 +10,8 @@
 
 namespace alcove::passes {
 
-// A pixel with its four neighbours: depths as they are stored, and the normal as it is stored.
+// A pixel: its depth, the depths of its four neighbours and its normal, all as the images store
+// them.
 struct PixelSample {
   std::uint32_t x = 0;
   std::uint32_t y = 0;
@@ -22,7 +23,7 @@ struct PixelSample {
   std::array<float, 3> normal{};
 };
 
-// The view that the samples are from, as the engine described it.
+// The engine's description of the view that the samples are from.
 struct InspectedView {
   View view;
   VkExtent2D size{};        // of the part in use
@@ -39,7 +40,7 @@ struct InspectedView {
 enum class Mistake : std::uint8_t {
   depth_reversed,        // depth runs the other way than the projection says
   depth_from_minus_one,  // the projection is OpenGL's, with depth from -1 to 1
-  field_of_view,         // normals fit the depth with another angle of view
+  field_of_view,         // normals fit the depth with another angle of view, or other planes
   normal_space,          // world space for view space, or the other way round
   normal_packing,        // packed normals read as signed ones, or the other way round
   normal_forward_z,      // z of the normals has the other sign
@@ -50,12 +51,12 @@ enum class Mistake : std::uint8_t {
   count,
 };
 
-// A sentence for the engine's programmer: what is wrong, and what to do.
+// Returns a sentence for the engine's programmer that says what is wrong and what to do.
 [[nodiscard]] const char* sentence(Mistake mistake);
 
 using Mistakes = std::array<bool, static_cast<std::size_t>(Mistake::count)>;
 
-// The mistakes that the samples show. Where they are too few to tell, there is none.
+// Returns the mistakes that the samples show: none if there are too few samples.
 [[nodiscard]] Mistakes inspect(const InspectedView& view, std::span<const PixelSample> samples);
 
 }  // namespace alcove::passes

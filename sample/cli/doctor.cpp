@@ -144,6 +144,11 @@ tl::expected<void, std::string> run_doctor(const Options& options) {
   Options of_scene = options;
   if (options.mistakes) {
     of_scene.scene.clear();
+    if (options.view.camera.empty() && !options.view.eye && !options.view.target) {
+      // It looks down at surfaces of many directions. A level view of walls and floors along its
+      // axes does not tell its angle of view.
+      of_scene.view.camera = "plant";
+    }
   }
   const auto session = open_session(of_scene);
   if (!session) {

@@ -67,11 +67,11 @@ const std::vector<PlantedMistake>& planted_mistakes() {
        [](EngineFrame& f) {
          of_cameras(f, [](AlcoveCamera& c) { scale_tangents(c, 1.5f, 1.5f); });
        }},
-      {"near plane ten times too far away", "near_plane", "",
+      {"near plane ten times too far away", "near_plane", "other near and far planes",
        [](EngineFrame& f) {
          of_cameras(f, [](AlcoveCamera& c) { set_planes(c, 10.0f * kNear, kFar); });
        }},
-      {"far plane ten times too near", "far_plane", "",
+      {"far plane ten times too near", "far_plane", "other near and far planes",
        [](EngineFrame& f) {
          of_cameras(f, [](AlcoveCamera& c) { set_planes(c, kNear, 0.1f * kFar); });
        }},

@@ -154,6 +154,7 @@ tl::expected<void, std::string> FrameRecorder::declare(FrameState state) {
   inputs.depth_ndc = import("depth", VK_FORMAT_D32_SFLOAT);
   if (inputs_.normals) {
     inputs.normals = import("normals", VK_FORMAT_R16G16B16A16_SFLOAT);
+    inputs.normal_encoding = inputs_.normal_encoding;
   }
   if (inputs_.motion) {
     inputs.motion = import("motion", VK_FORMAT_R16G16_SFLOAT);

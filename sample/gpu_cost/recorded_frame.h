@@ -17,6 +17,7 @@ struct CostInputs {
   bool normals = true;  // true: a texture of normals (RGBA16F); false: normals from depth
   bool motion = false;  // motion vectors (RG16F)
   passes::OcclusionSettings settings;
+  passes::NormalEncoding normal_encoding = passes::NormalEncoding::signed_xyz;
 };
 
 // An image that a pass reads or writes.

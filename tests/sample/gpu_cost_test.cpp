@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <fstream>
 
 #include "gpu_cost/budget.h"
@@ -181,6 +182,57 @@ TEST_P(ShippedPresets, StayWithinTheirGpuBudget) {
       {{GetParam().settings.label, std::string(GetParam().part->family), std::move(*frames)}});
   for (const std::string& complaint : complaints) {
     ADD_FAILURE() << complaint << " If it is meant: alcove cost --write-budget " ALCOVE_GPU_BUDGET;
+  }
+}
+
+// Instructions per pixel of the passes of a moving frame.
+tl::expected<double, std::string> instructions_of(const GpuPart& part, const NullDevice& device,
+                                                  const CostInputs& inputs) {
+  const auto frames = modelled_frames(part, device, inputs);
+  if (!frames) {
+    return tl::unexpected(frames.error());
+  }
+  const auto moving = std::ranges::find(*frames, FrameState::moving, &ModelledFrame::state);
+  double sum = 0.0;
+  for (const ModelledPass& pass : moving->passes) {
+    sum += pass.instructions_per_pixel;
+  }
+  return sum;
+}
+
+TEST(NormalEncodings, DecodingStaysWithinItsInstructionsPerPixel) {
+  using passes::NormalEncoding;
+  struct Named {
+    const char* name;
+    NormalEncoding encoding;
+    double most;  // instructions per pixel, a little above the measured ones
+  };
+  constexpr Named kPacked[] = {{"unsigned xyz", NormalEncoding::unsigned_xyz, 5.0},
+                               {"octahedral", NormalEncoding::octahedral, 22.0},
+                               {"unsigned octahedral", NormalEncoding::unsigned_octahedral, 25.0}};
+  for (const GpuPart& part : kGpuParts) {
+    const auto device = create_null_device(part.family);
+    if (!device) {
+      GTEST_SKIP() << device.error();
+    }
+    for (const bool bent_normal : {false, true}) {
+      CostInputs inputs;
+      inputs.settings = passes::quality_settings(passes::Quality::medium, 0.5f);
+      inputs.settings.bent_normal = bent_normal;
+      const auto plain = instructions_of(part, *device, inputs);
+      ASSERT_TRUE(plain) << plain.error();
+      std::printf("%s, bent normals %s: signed xyz %.1f instructions per pixel", part.family.data(),
+                  bent_normal ? "on" : "off", *plain);
+      for (const Named& packed : kPacked) {
+        inputs.normal_encoding = packed.encoding;
+        const auto found = instructions_of(part, *device, inputs);
+        ASSERT_TRUE(found) << found.error();
+        std::printf(", %s %+.1f", packed.name, *found - *plain);
+        EXPECT_LE(*found - *plain, packed.most) << part.family << ", " << packed.name;
+        EXPECT_GT(*found, *plain) << part.family << ", " << packed.name;
+      }
+      std::printf("\n");
+    }
   }
 }
 

@@ -5,7 +5,8 @@
 //               recording state, end the command buffer and submit it with that fence.
 //   At the end: alcoveDestroyContext, when the device has finished.
 //
-// passes/INTEGRATION.md leads from an engine with a depth buffer to a picture.
+// passes/INTEGRATION.md is a guide from an engine with a depth buffer to a picture. This header
+// includes those of cameras, memory, reports and results, which stand alone too.
 //
 // Space. View space is right-handed with the camera along -Z, clip space is Vulkan's (y down, depth
 // 0 to 1), matrices are column-major: row r of column c at 4 * c + r. Lengths are in the scene's
@@ -94,7 +95,7 @@ struct AlcoveAdvancedSettings;  // alcove_advanced.h
 // quality but REFERENCE. Numbers that are out of range are refused in a sentence.
 typedef struct AlcoveSettings {
   uint32_t struct_size;  // sizeof(AlcoveSettings)
-  // Scene units, above 0. Occluders further away do not count. A twentieth to a fifth of a room's
+  // The largest distance of an occluder in scene units, above 0. A twentieth to a fifth of a room's
   // height is usual.
   float radius;
   // One pixel of a tile of tile_size x tile_size pixels is traced in each frame: 1, 2 or 4. The
@@ -111,15 +112,17 @@ typedef struct AlcoveSettings {
   // The fraction of the volume hidden behind an occluder that is treated as solid, 0 to 1. It grows
   // with the occluder's width in the image: more behind a wall than behind a twig. [0.33]
   float hidden_occlusion;
-  uint32_t depth_layers;    // that are searched: 1, or 2 with AlcoveView::second_depth [1]
-  uint32_t history_frames;  // that are averaged, 0 to 127. 0 takes no memory for a history
+  uint32_t depth_layers;  // the depth layers that are searched: 1, or 2 with second_depth [1]
+  // The number of frames that are averaged, 0 to 127. More have less noise and follow changes more
+  // slowly. 0 keeps no history, and takes no memory for one.
+  uint32_t history_frames;
   // Filters and accumulates texels of 2x2 pixels, then upsamples along depth edges: less time, a
   // quarter of the history's memory, and a larger error. Needs a tile_size of 2 or 4. [VK_FALSE]
   VkBool32 half_resolution;
   AlcoveSpecular specular;     // read if AlcoveView::specular is given [SLICES]
   float roughness;             // perceptual, 0 to 1, for pixels without AlcoveView::roughness [0.5]
   uint32_t roughness_channel;  // the channel of AlcoveView::roughness, 0 to 3 [0]
-  AlcovePrecision precision;   // [UNORM8]
+  AlcovePrecision precision;   // of intermediate results [UNORM8]
   // The visibility that is written is 1 - intensity * (1 - visibility^power), clamped to [0,1]. 1
   // and 1 change nothing and cost nothing. Multi-bounce, and the specular models TABLE and CONE,
   // read what is written.
@@ -129,9 +132,10 @@ typedef struct AlcoveSettings {
   const struct AlcoveAdvancedSettings* advanced;
 } AlcoveSettings;
 
-// Fills `settings`, whose struct_size is set, with a preset at a radius (scene units, above 0). For
-// REFERENCE, `advanced` then points to constants of the library. ALCOVE_ERROR_INVALID_INPUT if any
-// argument is invalid; there is no context, so no message.
+// Fills `settings`, whose struct_size must be set, with a preset. `radius` is in scene units and
+// above 0. For REFERENCE, `advanced` then points to constants of the library. Returns
+// ALCOVE_ERROR_INVALID_INPUT if an argument is invalid; there is no message, because there is no
+// context.
 AlcoveResult alcoveGetSettings(AlcoveQuality quality, float radius, AlcoveSettings* settings);
 
 // Writes the settings, those of `advanced` too, as lines of `name = value`: at most `size` bytes
@@ -147,8 +151,8 @@ typedef enum AlcoveSeverity {
   ALCOVE_SEVERITY_MAX_ENUM = 0x7fffffff
 } AlcoveSeverity;
 
-// Receives sentences, each valid during the call only. It must not call the library. Null: nothing
-// is said.
+// The engine's log. `write` receives sentences, each of which is valid during the call only. It
+// must not call the library. If it is null, nothing is logged.
 typedef struct AlcoveLog {
   void (*write)(void* user, AlcoveSeverity severity, const char* sentence);
   void* user;
@@ -192,12 +196,13 @@ typedef struct AlcoveContextInfo {
   AlcoveLog log;
 } AlcoveContextInfo;
 
-// `message` may be null. Otherwise it has room for ALCOVE_MAX_MESSAGE bytes and receives the
-// sentence of the error, or an empty text if there is none. On an error *context is null.
+// Creates a context on the engine's device. `message` may be null; otherwise it has room for
+// ALCOVE_MAX_MESSAGE bytes and receives the sentence of the error, or an empty text if there is
+// none. On an error *context is null.
 AlcoveResult alcoveCreateContext(const AlcoveContextInfo* info, AlcoveContext** context,
                                  char* message);
 
-// The device must have finished all recorded frames. A null context is allowed.
+// Destroys a context. The device must have finished all of its frames. A null context is allowed.
 void alcoveDestroyContext(AlcoveContext* context);
 
 // Returns the message of the last call on this context that failed, or an empty text if none has.
@@ -213,7 +218,7 @@ typedef struct AlcoveState {
   VkImageLayout layout;
 } AlcoveState;
 
-// An image of the engine's: 2D, optimal tiling, one mip, one sample, of the queue family of the
+// An image of the engine: 2D, optimal tiling, one mip, one sample, of the queue family of the
 // context or shared. Zeroed: there is none.
 typedef struct AlcoveImage {
   VkImage image;

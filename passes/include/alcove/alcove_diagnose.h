@@ -11,6 +11,7 @@
 extern "C" {
 #endif
 
+// The time that the device took for a pass.
 typedef struct AlcoveTiming {
   char pass[ALCOVE_MAX_NAME];
   uint32_t view;  // AlcoveView::id
@@ -29,22 +30,24 @@ AlcoveResult alcoveGetTimings(AlcoveContext* context, uint32_t slot, uint32_t* c
 // text.
 size_t alcovePrintPlan(AlcoveContext* context, char* text, size_t size);
 
-// Mistakes that show in the frames recorded so far: a line with a sentence for each, nothing where
-// there is none. Ask after some dozens of frames in which the camera moved.
+// Writes the mistakes of the engine that show in the frames recorded so far: a line with a sentence
+// for each, and an empty text if there is none. Call it after some dozens of frames in which the
+// camera moved. Buffer and result are as with alcovePrintSettings.
 //
-// Mistakes in the calls: an index that stands still, a previous_camera that is always this frame's
-// or never the last one's, jitter in only one of the two, static_frames in motion, reset_history in
-// every frame.
+// Mistakes that show in the calls: an index that stands still, a previous_camera that is always
+// this frame's or never the last frame's, jitter in only one of the two cameras, static_frames that
+// are not 0 although the camera moves, and reset_history in every frame.
 //
-// Mistakes in the pixels, if at least three frames have AlcoveFrame::diagnose_pixels and all of
-// them show the mistake: depth that runs the other way than the projection, a projection with depth
-// from -1 to 1, normals that fit the depth only with another angle of view, in the other space,
-// unpacked the other way, with the other sign of z or with y of the projection the other way round,
-// a radius far out of proportion to the image, an image smaller than it is said to be, and a slot
-// that is recorded again before its frame has finished. A wrong near plane alone scales the whole
-// scene and cannot be seen.
+// Mistakes that show in the pixels, if at least three frames had AlcoveFrame::diagnose_pixels and
+// all of them show the mistake: depth that runs the other way than the projection; a projection
+// with depth from -1 to 1; normals that fit the depth only with another angle of view or other near
+// and far planes, in the other space, unpacked the other way, with the other sign of z, or with the
+// other sign of y of the projection; a radius that is far too small or too large for the image; an
+// image that is smaller than it is said to be; and a slot that is recorded again before its frame
+// has finished.
 //
-// Buffer and result are as with alcovePrintSettings.
+// Mistakes that do not show: an infinite projection with a wrong near plane, which scales the whole
+// scene; jitter that is in neither camera; and motion vectors of the wrong sign or unit.
 size_t alcoveDiagnose(AlcoveContext* context, char* text, size_t size);
 
 #ifdef __cplusplus

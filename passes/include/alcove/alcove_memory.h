@@ -49,8 +49,9 @@ typedef struct AlcoveMemoryBlock {
   uint32_t memory_type;  // index of the memory type that the block was allocated from
 } AlcoveMemoryBlock;
 
-// Bytes of device memory of the last recorded frame; zeros before the first, and after a frame that
-// failed or was discarded. Memory of transients grows with the largest frame and is kept.
+// Bytes of device memory of the last recorded frame. All are zero before the first frame, and after
+// a frame that failed or was discarded. The memory of transients is that of the largest frame so
+// far: it grows and does not shrink.
 typedef struct AlcoveMemory {
   uint32_t struct_size;
   uint64_t transients;           // intermediate images, which share memory
@@ -59,10 +60,10 @@ typedef struct AlcoveMemory {
   uint64_t allocated;            // everything that the context holds, with parameters and tables
 } AlcoveMemory;
 
-// Fills `memory`, whose struct_size is set.
+// Fills `memory`, whose struct_size must be set.
 AlcoveResult alcoveGetMemory(AlcoveContext* context, AlcoveMemory* memory);
 
-// Outputs, to be combined.
+// The outputs of a view, as bits to be combined.
 typedef enum AlcoveOutput {
   ALCOVE_OUTPUT_VISIBILITY = 1,
   ALCOVE_OUTPUT_BENT_NORMAL = 2,
