@@ -13,7 +13,7 @@ tl::expected<framegraph::Texture, Error> add_linear(const Frame& frame,
                                                     const OcclusionSettings& settings) {
   const bool read =
       settings.linear_depth || specular_reads_bent_normal(settings) || !inputs.normals;
-  return read ? add_linear_depth(frame, inputs.depth_ndc, 1, 0.0f)
+  return read ? add_linear_depth(frame, inputs.depth_ndc)
               : tl::expected<framegraph::Texture, Error>(framegraph::Texture{});
 }
 

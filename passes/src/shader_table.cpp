@@ -34,7 +34,7 @@ namespace alcove::passes {
 
 const ShaderSource& shader_source(Shader shader) {
   static const std::array<ShaderSource, static_cast<std::size_t>(Shader::count)> sources{{
-      {kLinearDepth, "sttttt"},
+      {kLinearDepth, "st"},
       {kNormals, "st"},
       {kInverseDepth, "st"},
       {kGtao, "tstttt"},

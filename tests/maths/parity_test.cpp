@@ -43,7 +43,7 @@ constexpr Bound kBounds[] = {
     {"specular occlusion", 1e-3, 1e-4},
     {"octahedral", 1e-5, 1e-5},
     {"packed numbers", 4.1e-3, 0.0},
-    {"pyramid and counts", 5e-5, 1e-5},
+    {"history weights", 5e-5, 1e-5},
     {"history", 3e-4, 1e-5},
     {"patterns", 0.0, 0.0},
     {"integers", 0.0, 0.0},

@@ -112,21 +112,6 @@ TEST(GoldenPattern, DoesNotRepeatAtAnySmallPeriod) {
   }
 }
 
-TEST(TileByPattern, VisitsEachTileOnceAndEachGroupHasOneDirectionOfThePaper) {
-  std::set<unsigned> blocks;
-  for (unsigned group = 0; group < 12 * 8; ++group) {
-    std::set<float> six_rotations;
-    for (unsigned local = 0; local < 64; ++local) {
-      const uvec2 block =
-          maths::tile_by_pattern(uvec2(group % 12, group / 12), uvec2(local % 8, local / 8));
-      EXPECT_TRUE(block.x < 12 * 8 && block.y < 8 * 8) << block.x << ", " << block.y;
-      EXPECT_TRUE(blocks.insert(block.y * 12 * 8 + block.x).second) << block.x << ", " << block.y;
-      six_rotations.insert(maths::paper_pattern(block, 5).direction);
-    }
-    EXPECT_EQ(six_rotations.size(), 1u) << "group " << group;
-  }
-}
-
 TEST(GoldenPattern, ConsecutiveFramesCoverDirectionsAndOffsetsEvenly) {
   for (unsigned start : {0u, 123u, 4000000000u}) {
     std::vector<float> directions, offsets;

@@ -53,12 +53,6 @@ enum class Pattern : std::uint8_t {
   paper,    // The 4x4 pixels and six rotations of [Jimenez 2016].
 };
 
-// Which pixels a workgroup traces. It changes the cost and not the image.
-enum class Grouping : std::uint8_t {
-  neighbours,  // 8x8 adjacent tiles.
-  pattern,     // Every fourth tile in x and y: with Pattern::paper these have one slice direction.
-};
-
 // OcclusionSettings::advanced. A setting that the estimator or the history does not use is not
 // read, but it has to be in range. setting_table.h has the ranges.
 struct AdvancedSettings {
@@ -92,7 +86,6 @@ struct AdvancedSettings {
   // image's border) partly out of the average; see shaders/maths/unobserved.h. If off, they count
   // as open. `connected` only.
   bool unobserved = true;
-  Grouping grouping = Grouping::neighbours;
 
   friend bool operator==(const AdvancedSettings&, const AdvancedSettings&) = default;
 };

@@ -48,7 +48,7 @@ struct OcclusionOutputs {
   framegraph::Texture bent_normal;
   // One channel that multiplies specular probe light, [0,1], 1 is open. Null if not requested.
   framegraph::Texture specular;
-  // Linear depth from add_linear_depth, with one mip. Null if neither the settings, nor their
+  // Linear depth from add_linear_depth. Null if neither the settings, nor their
   // specular model, nor the computation of normals needs it.
   framegraph::Texture linear_depth;
   framegraph::Texture normals;  // those given, or those made from depth, in view space

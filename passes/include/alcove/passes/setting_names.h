@@ -30,8 +30,6 @@ template <>
 inline constexpr auto kNames<Pattern> = std::to_array<std::string_view>({"golden", "hilbert",
                                                                          "paper"});
 template <>
-inline constexpr auto kNames<Grouping> = std::to_array<std::string_view>({"neighbours", "pattern"});
-template <>
 inline constexpr auto kNames<Specular> = std::to_array<std::string_view>({"none", "slices", "table",
                                                                           "cone"});
 template <>

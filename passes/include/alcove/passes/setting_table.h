@@ -192,12 +192,6 @@ void for_each_setting(Settings& settings, const Visit& visit) {
                             "average. If off, they count as open (connected only).",
                     .group = advanced},
         settings.advanced.unobserved);
-  visit(
-      SettingInfo{.name = "grouping",
-                  .help = "Tiles that a workgroup traces: 8x8 adjacent ones, or every fourth in x "
-                          "and y. It changes the cost and not the image.",
-                  .group = advanced},
-      settings.advanced.grouping);
 }
 
 }  // namespace alcove::passes
