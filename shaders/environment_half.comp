@@ -11,7 +11,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 0, binding = 0) uniform Parameters { EnvironmentParameters parameters; };
 layout(set = 0, binding = 1) uniform texture2D source_image;
-layout(set = 0, binding = 2) uniform writeonly image2D map_image;
+layout(set = 0, binding = 2) uniform writeonly image2D target_image;
 
 void main() {
   ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
@@ -25,5 +25,5 @@ void main() {
     float angle = map_texel_angle((vec2(from) + 0.5) / source_size, source_size);
     sum += vec4(texelFetch(source_image, from, 0).rgb, 1.0) * angle;
   }
-  imageStore(map_image, texel, vec4(sum.rgb / sum.a, 1.0));
+  imageStore(target_image, texel, vec4(sum.rgb / sum.a, 1.0));
 }

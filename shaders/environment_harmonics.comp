@@ -13,7 +13,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 0, binding = 0) uniform Parameters { EnvironmentParameters parameters; };
 layout(set = 0, binding = 1) uniform texture2D source_image;  // of parameters.size texels a side
-layout(set = 0, binding = 2) uniform writeonly image2D harmonics_image;
+layout(set = 0, binding = 2) uniform writeonly image2D target_image;
 
 const uint kThreads = 64u;
 shared vec3 shares[kHarmonics][kThreads];
@@ -48,6 +48,6 @@ void main() {
     for (uint i = 0u; i < kThreads; ++i) {
       sum += shares[thread][i];
     }
-    imageStore(harmonics_image, ivec2(thread, 0), vec4(sum, 1.0));
+    imageStore(target_image, ivec2(thread, 0), vec4(sum, 1.0));
   }
 }

@@ -12,7 +12,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 0, binding = 0) uniform Parameters { EnvironmentParameters parameters; };
 layout(set = 0, binding = 1) uniform texture2D source_image;
-layout(set = 0, binding = 2) uniform writeonly image2D map_image;
+layout(set = 0, binding = 2) uniform writeonly image2D target_image;
 
 const float kLargestHalf = 65504.0;
 
@@ -46,5 +46,5 @@ void main() {
       sum += fetch_bilinear(map_direction((vec2(texel) + within) / parameters.size));
     }
   }
-  imageStore(map_image, texel, vec4(sum / float(samples * samples), 1.0));
+  imageStore(target_image, texel, vec4(sum / float(samples * samples), 1.0));
 }

@@ -14,7 +14,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 0, binding = 0) uniform Parameters { EnvironmentParameters parameters; };
 layout(set = 0, binding = 1) uniform texture2D source_image;
-layout(set = 0, binding = 2) uniform writeonly image2D map_image;
+layout(set = 0, binding = 2) uniform writeonly image2D target_image;
 
 mat3 frame_of(vec3 normal) {
   vec3 helper = abs(normal.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
@@ -56,5 +56,5 @@ void main() {
   vec3 light = parameters.roughness > 0.0
                    ? prefilter(normal, alpha)
                    : fetch_map_level(source_image, parameters.source_px.x, 0, normal);
-  imageStore(map_image, texel, vec4(light, 1.0));
+  imageStore(target_image, texel, vec4(light, 1.0));
 }

@@ -68,8 +68,9 @@ tl::expected<Texture, Error> add_step(const Frame& frame, const Step& step) {
   const Texture written = pass.write(step.target, framegraph::access::storage_write_compute,
                                      step.target_range, framegraph::Contents::discard);
   pass.record([&kernels = frame.kernels, kernel = *kernel, step](RecordContext& context) {
-    const std::array views{context.view(step.source, step.source_range),
-                           context.view(step.target, step.target_range)};
+    const auto views =
+        std::to_array<NamedView>({{"source_image", context.view(step.source, step.source_range)},
+                                  {"target_image", context.view(step.target, step.target_range)}});
     kernels.dispatch(context, kernel, views, bytes_of(step.parameters),
                      {step.threads, step.threads, 1});
   });

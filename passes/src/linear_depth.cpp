@@ -33,7 +33,8 @@ tl::expected<Texture, Error> add_linear_depth(const Frame& frame, Texture depth_
                      framegraph::Contents::discard);
   pass.record([&kernels = frame.kernels, kernel = *kernel, depth_ndc, depth, extent,
                parameters = *projection](RecordContext& context) {
-    const std::array views{context.view(depth_ndc), context.view(depth)};
+    const auto views = std::to_array<NamedView>({{"depth_ndc_image", context.view(depth_ndc)},
+                                                 {"linear_depth_image", context.view(depth)}});
     kernels.dispatch(context, kernel, views, bytes_of(parameters), extent);
   });
   return depth;
