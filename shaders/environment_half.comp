@@ -2,7 +2,8 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
-// An environment map at half the size: the mean of four texels by the angles that they cover.
+// Halves the size of an environment map: each texel is the mean of four, weighted by the solid
+// angles that they cover.
 
 #include "environment_parameters.h"
 #include "maths/environment_map.h"

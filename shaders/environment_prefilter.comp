@@ -2,9 +2,9 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
-// One level of a prefiltered map: the light of a GGX lobe seen along its normal (Karis 2013), by
-// samples that each read the level of the source whose texels are as large as the sample stands for
-// (Colbert and Krivanek 2007).
+// Computes one mip of a prefiltered map: the environment's light through a GGX lobe whose view is
+// along its normal (Karis 2013). Each sample reads the mip of the source whose texels cover the
+// solid angle that the sample stands for (Colbert and Krivanek 2007).
 
 #include "environment_fetch.h"
 #include "environment_parameters.h"
@@ -22,7 +22,8 @@ mat3 frame_of(vec3 normal) {
   return mat3(x, cross(normal, x), normal);
 }
 
-// The level whose texels cover about twice as much as one of the samples at this density.
+// Returns the source mip whose texels cover about twice the solid angle of one sample at this
+// density.
 float source_level(float density) {
   float sample_angle = 1.0 / (parameters.samples * density);
   float texel_angle = 4.0 * kPi / (parameters.source_px.x * parameters.source_px.x);

@@ -67,7 +67,7 @@ tl::expected<void, Error> check_probe(const Frame& frame, const ApplyInputs& inp
   return {};
 }
 
-// On the stack, so that a steady frame allocates nothing for it.
+// A list of inputs on the stack, so that a steady frame allocates no memory for it.
 class NamedInputs {
  public:
   void add(const NamedInput& input) { inputs_.at(count_++) = input; }
@@ -78,7 +78,8 @@ class NamedInputs {
   std::size_t count_ = 0;
 };
 
-// The inputs that are as large as the depth, by name; those that are null and may be are left out.
+// Returns the inputs that must have the size of the depth, with their names. Optional inputs that
+// are null are left out.
 NamedInputs named_inputs(const ApplyInputs& inputs) {
   NamedInputs named;
   named.add({"linear depth", inputs.depth});
@@ -133,7 +134,7 @@ void declare_reads(framegraph::PassBuilder& pass, const ApplyInputs& inputs) {
   }
 }
 
-// What a purely diffuse surface does not use.
+// Returns the inputs without those that a purely diffuse surface does not use.
 ApplyInputs without_specular(ApplyInputs inputs) {
   inputs.roughness = inputs.metallic = inputs.specular_occlusion = {};
   return inputs;

@@ -7,7 +7,7 @@
 namespace alcove::passes {
 namespace {
 
-// Adds linear depth where an output, specular occlusion or normals from depth need it.
+// Adds linear depth if an output, specular occlusion or normals from depth need it.
 tl::expected<framegraph::Texture, Error> add_linear(const Frame& frame,
                                                     const OcclusionInputs& inputs,
                                                     const OcclusionSettings& settings) {
@@ -17,8 +17,8 @@ tl::expected<framegraph::Texture, Error> add_linear(const Frame& frame,
               : tl::expected<framegraph::Texture, Error>(framegraph::Texture{});
 }
 
-// Inverse depth of back faces or of the second layer. Null where the settings do not read it, or
-// where it was not given.
+// Adds the inverse depth of back faces or of the second layer. Returns null if the settings do not
+// read it, or if it was not given.
 tl::expected<framegraph::Texture, Error> add_hidden_inverse_depth(const Frame& frame,
                                                                   framegraph::Texture depth_ndc,
                                                                   bool read,
@@ -64,7 +64,7 @@ tl::expected<OcclusionOutputs, Error> add_occlusion(const Frame& frame,
   }
   framegraph::Texture normals = inputs.normals;
   const bool in_view_space = inputs.normals_in_view_space || !normals;
-  // Normals that are made from depth are signed vectors with the camera along -Z.
+  // Normals from depth are signed vectors in a view space with the camera along -Z.
   const NormalEncoding encoding = normals ? inputs.normal_encoding : NormalEncoding::signed_xyz;
   const bool forward_z = normals && inputs.normals_forward_z;
   if (!normals) {

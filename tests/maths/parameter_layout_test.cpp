@@ -1,4 +1,5 @@
-// Parameter structs are written once for both sides: they must lie in a uniform block as in C++.
+// Tests that parameter structs, which GLSL and C++ share, have the same layout in a uniform block
+// as in C++.
 #include <gtest/gtest.h>
 
 #include <cstddef>

@@ -77,13 +77,13 @@ TEST(RawOcclusion, LobeWeightsDependOnNormalAndRoughness) {
     const auto weight = [&](vec3 other, float other_roughness) {
       return maths::lobe_weight(own, maths::pack_lobe_surface(surface(other, other_roughness)));
     };
-    // 32 times the error of a byte.
+    // The tolerance is 32 times the quantisation error of a byte.
     EXPECT_NEAR(weight(normal, roughness), 1.0f, 0.3f);
     EXPECT_EQ(weight(-normal, roughness), 0.0f);
     EXPECT_EQ(weight(normal, roughness < 0.5f ? roughness + 0.25f : roughness - 0.25f), 0.0f);
     const vec3 across = normalize(cross(normal, vec3(0.3f, 0.5f, 0.8f)));
     EXPECT_NEAR(weight(normalize(normal + across * 0.21f), roughness), 0.5f, 0.2f);
-    // Too long a normal counts for no more than a good one.
+    // A normal that is too long does not get a larger weight than a unit normal.
     EXPECT_LT(weight(normal * 1e3f, roughness), 1.5f);
   }
 }
@@ -137,13 +137,13 @@ TEST(Octahedral, DecodesAnyPointToAUnitVector) {
   }
 }
 
-// The unit normal of these stereographic coordinates.
+// Returns the unit normal with these stereographic coordinates.
 vec3 normal_of(vec2 stereographic) {
   const float squared = dot(stereographic, stereographic);
   return vec3(2.0f * stereographic, 1.0f - squared) / (1.0f + squared);
 }
 
-// Towards the eye, in view space.
+// Returns a random unit normal in view space that faces the eye.
 vec3 facing_normal(RandomInput& random) {
   vec3 normal = random.unit_vector();
   normal.z = std::abs(normal.z);

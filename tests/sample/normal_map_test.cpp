@@ -51,9 +51,9 @@ class NormalMap : public QuadTest {
   }
 };
 
-TEST_F(NormalMap, TiltsRightAlongUAndUpAgainstV) { expect_normal(draw(quad()), kTilt); }
+TEST_F(NormalMap, RedTiltsNormalsAlongUAndGreenAgainstV) { expect_normal(draw(quad()), kTilt); }
 
-TEST_F(NormalMap, ScaleIsOfXAndY) {
+TEST_F(NormalMap, ScaleMultipliesXAndYOnly) {
   for (const float scale : {-1.0f, 0.0f, 0.5f, 1e6f}) {
     Scene scene = quad();
     scene.materials[0].normal_scale = scale;
@@ -61,7 +61,7 @@ TEST_F(NormalMap, ScaleIsOfXAndY) {
   }
 }
 
-TEST_F(NormalMap, TangentsOfTheFileAgreeWithThoseThatAreMade) {
+TEST_F(NormalMap, TangentsOfTheFileAgreeWithGeneratedOnes) {
   Scene scene = quad();
   scene.meshes[0].tangents_ws.assign(6, glm::vec4(1.0f, 0.0f, 0.0f, 1.0f));
   expect_normal(draw(scene), kTilt);
@@ -69,7 +69,7 @@ TEST_F(NormalMap, TangentsOfTheFileAgreeWithThoseThatAreMade) {
   expect_normal(draw(scene), kTilt * glm::vec3(-1.0f, 1.0f, 1.0f));
 }
 
-TEST_F(NormalMap, MirroredHalvesTiltAgainstEachOtherThoughTheyShareVertices) {
+TEST_F(NormalMap, MirroredHalvesWithSharedVerticesTiltInOppositeDirections) {
   Scene scene = quad();
   for (glm::vec2& uv : scene.meshes[0].uvs) uv.x = std::abs(uv.x - 0.5f);
   const FrameImages images = draw(scene);
@@ -81,18 +81,18 @@ TEST_F(NormalMap, MirroredHalvesTiltAgainstEachOtherThoughTheyShareVertices) {
   }
 }
 
-TEST_F(NormalMap, TurnsWithTheTransformOfItsTexture) {
+TEST_F(NormalMap, TextureTransformRotatesTheNormals) {
   Scene scene = quad();
   // u of the map is v of the mesh, v of the map is -u.
   scene.materials[0].normal_texture.texture_from_mesh_uv = {0.0f, -1.0f, 1.0f, 0.0f, 0.0f, 1.0f};
   expect_normal(draw(scene), {kTilt.y, -kTilt.x, kTilt.z});
 }
 
-TEST_F(NormalMap, SeenFromBehindTurnsWithTheSurface) {
+TEST_F(NormalMap, NormalsAreFlippedOnBackFaces) {
   expect_normal(draw(quad(), camera_at(-3.0f)), -kTilt);
 }
 
-TEST_F(NormalMap, LeavesTheVerticesNormalWhereThereIsNothingToLayItAlong) {
+TEST_F(NormalMap, VertexNormalIsKeptWhereTextureCoordinatesHaveNoArea) {
   Scene scene = quad();
   for (glm::vec2& uv : scene.meshes[0].uvs) uv = glm::vec2(0.25f);
   expect_normal(draw(scene), {0.0f, 0.0f, 1.0f});
@@ -103,7 +103,7 @@ TEST_F(NormalMap, LeavesTheVerticesNormalWhereThereIsNothingToLayItAlong) {
   expect_normal(draw(scene), {0.0f, 0.0f, 1.0f});
 }
 
-TEST_F(NormalMap, BendsNoFurtherThanIntoTheFace) {
+TEST_F(NormalMap, NormalsAreLimitedToTheSideOfTheFace) {
   expect_normal(draw(quad({0.6f, 0.0f, -0.8f})), {1.0f, 0.0f, 0.0f});
   // Straight in: which way it then lies is the map's rounding.
   for (const glm::vec3& n : draw(quad({0.0f, 0.0f, -1.0f})).normal_ws.pixels) {
@@ -112,7 +112,7 @@ TEST_F(NormalMap, BendsNoFurtherThanIntoTheFace) {
   }
 }
 
-TEST_F(NormalMap, TiltsAgainstEachOtherCancelWhereTexelsAreSmallerThanPixels) {
+TEST_F(NormalMap, OppositeTiltsCancelWhereTexelsAreSmallerThanPixels) {
   Scene scene = quad();
   TextureImage& map = scene.images[0];
   const TextureImage right = map_of(kTilt), left = map_of(kTilt * glm::vec3(-1.0f, -1.0f, 1.0f));
@@ -124,11 +124,11 @@ TEST_F(NormalMap, TiltsAgainstEachOtherCancelWhereTexelsAreSmallerThanPixels) {
   expect_normal(draw(scene), {0.0f, 0.0f, 1.0f});
 }
 
-TEST_F(NormalMap, IsOfShadingNormalsAlone) {
+TEST_F(NormalMap, NormalMapAffectsShadingNormalsOnly) {
   expect_normal(draw(quad(), camera_at(3.0f), NormalSource::kGeometric), {0.0f, 0.0f, 1.0f});
 }
 
-TEST_F(NormalMap, TruthIsOfTheNormalsThatTheOcclusionWasGiven) {
+TEST_F(NormalMap, TruthUsesTheNormalsThatThePassWasGiven) {
   const Scene scene = quad();
   const Camera camera = camera_at(3.0f);
   const FrameImages images = draw(scene, camera);
@@ -141,7 +141,7 @@ TEST_F(NormalMap, TruthIsOfTheNormalsThatTheOcclusionWasGiven) {
   EXPECT_NEAR(truth.visibility.at(kSize / 2, kSize / 2), 0.5f * (1.0f + kTilt.z), 0.01f);
 }
 
-TEST_F(NormalMap, CutOutsFollowTheirTransformInRasteriserAndRayTracerAlike) {
+TEST_F(NormalMap, AlphaMasksFollowTheirTransformInRasteriserAndRayTracer) {
   Scene scene = quad();
   Material& material = scene.materials[0];
   material.normal_texture = {};
