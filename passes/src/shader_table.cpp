@@ -11,7 +11,6 @@
 #include "spirv/gtso.h"
 #include "spirv/gtso_by_table.h"
 #include "spirv/inspect.h"
-#include "spirv/inverse_depth.h"
 #include "spirv/linear_depth.h"
 #include "spirv/multi_bounce.h"
 #include "spirv/normals.h"
@@ -36,8 +35,6 @@ ShaderSource shader_source(Shader shader) {
       return {"linear_depth", kLinearDepth};
     case Shader::normals:
       return {"normals", kNormals};
-    case Shader::inverse_depth:
-      return {"inverse_depth", kInverseDepth};
     case Shader::gtao:
       return {"gtao", kGtao};
     case Shader::gtao_specular:

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "cli/option_value.h"
+#include "scene/depth_range.h"
 #include "scene/framing.h"
 
 namespace alcove::sample {
@@ -43,7 +44,8 @@ tl::expected<Camera, std::string> camera_of(const ViewOptions& view, const Scene
         "the scene has no camera \"" + view.camera + "\"; it has " +
         (scene.cameras.empty() ? "none: use --eye and --target" : names_of(scene.cameras)));
   }
-  Camera camera = named ? *named : framing_camera(scene);
+  const double aspect = static_cast<double>(view.width) / view.height;
+  Camera camera = named ? *named : framing_camera(scene, aspect);
   camera.origin = scene.origin;
   if (view.eye) camera.eye_ws = *view.eye - scene.origin;
   if (view.target) camera.target_ws = *view.target - scene.origin;
@@ -70,7 +72,7 @@ tl::expected<Camera, std::string> camera_of(const ViewOptions& view, const Scene
         "lengths from 1e-15 to 1e15");
   }
   if (std::exchange(camera.fit_planes, false) && !(view.near_plane && view.far_plane)) {
-    camera = with_fitted_planes(scene, camera, static_cast<double>(view.width) / view.height);
+    camera = with_fitted_planes(scene, camera, aspect);
   }
   camera.near_plane = view.near_plane.value_or(camera.near_plane);
   camera.far_plane = view.far_plane.value_or(camera.far_plane);

@@ -63,9 +63,9 @@ TEST_F(NormalMap, ScaleMultipliesXAndYOnly) {
 
 TEST_F(NormalMap, TangentsOfTheFileAgreeWithGeneratedOnes) {
   Scene scene = quad();
-  scene.meshes[0].tangents_ws.assign(6, glm::vec4(1.0f, 0.0f, 0.0f, 1.0f));
+  scene.meshes[0].tangents.assign(6, glm::vec4(1.0f, 0.0f, 0.0f, 1.0f));
   expect_normal(draw(scene), kTilt);
-  scene.meshes[0].tangents_ws.assign(6, glm::vec4(-1.0f, 0.0f, 0.0f, -1.0f));
+  scene.meshes[0].tangents.assign(6, glm::vec4(-1.0f, 0.0f, 0.0f, -1.0f));
   expect_normal(draw(scene), kTilt * glm::vec3(-1.0f, 1.0f, 1.0f));
 }
 
@@ -97,9 +97,9 @@ TEST_F(NormalMap, VertexNormalIsKeptWhereTextureCoordinatesHaveNoArea) {
   for (glm::vec2& uv : scene.meshes[0].uvs) uv = glm::vec2(0.25f);
   expect_normal(draw(scene), {0.0f, 0.0f, 1.0f});
   scene = quad();
-  scene.meshes[0].tangents_ws.assign(6, glm::vec4(0.0f));
+  scene.meshes[0].tangents.assign(6, glm::vec4(0.0f));
   expect_normal(draw(scene), {0.0f, 0.0f, 1.0f});
-  scene.meshes[0].tangents_ws.assign(6, glm::vec4(0.0f, 0.0f, 1.0f, 1.0f));
+  scene.meshes[0].tangents.assign(6, glm::vec4(0.0f, 0.0f, 1.0f, 1.0f));
   expect_normal(draw(scene), {0.0f, 0.0f, 1.0f});
 }
 
@@ -167,15 +167,15 @@ TEST_F(NormalMap, AlphaMasksFollowTheirTransformInRasteriserAndRayTracer) {
 TEST(Tangents, AreUnitOrZeroAndPerpendicularToNormalsOfACurvedMesh) {
   Scene scene = quad();
   Mesh& mesh = scene.meshes[0];
-  for (std::size_t v = 0; v < mesh.positions_ws.size(); ++v) {
-    const float angle = 0.5f * std::numbers::pi_v<float> * mesh.positions_ws[v].x;
-    mesh.normals_ws[v] = {std::sin(angle), 0.0f, std::cos(angle)};
-    mesh.positions_ws[v] = {std::sin(angle), mesh.positions_ws[v].y, std::cos(angle)};
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    const float angle = 0.5f * std::numbers::pi_v<float> * mesh.positions[v].x;
+    mesh.normals[v] = {std::sin(angle), 0.0f, std::cos(angle)};
+    mesh.positions[v] = {std::sin(angle), mesh.positions[v].y, std::cos(angle)};
   }
   const std::vector<glm::vec4> tangents = corner_tangents(mesh, {});
   ASSERT_EQ(tangents.size(), mesh.indices.size());
   for (std::size_t i = 0; i < tangents.size(); ++i) {
-    const glm::vec3 normal = mesh.normals_ws[mesh.indices[i]];
+    const glm::vec3 normal = mesh.normals[mesh.indices[i]];
     const glm::vec3 along(normal.z, 0.0f, -normal.x);
     EXPECT_LT(glm::distance(glm::vec3(tangents[i]), along), 1e-5f) << i;
     EXPECT_EQ(tangents[i].w, 1.0f);
@@ -187,14 +187,14 @@ TEST(Tangents, UnsharedVerticesHaveThoseOfSharedOnes) {
   Scene scene = quad();
   const Mesh shared = scene.meshes[0];
   Mesh apart = shared;
-  apart.positions_ws.clear();
-  apart.normals_ws.clear();
+  apart.positions.clear();
+  apart.normals.clear();
   apart.uvs.clear();
   apart.indices.clear();
   for (const std::uint32_t v : shared.indices) {
-    apart.indices.push_back(static_cast<std::uint32_t>(apart.positions_ws.size()));
-    apart.positions_ws.push_back(shared.positions_ws[v]);
-    apart.normals_ws.push_back(shared.normals_ws[v]);
+    apart.indices.push_back(static_cast<std::uint32_t>(apart.positions.size()));
+    apart.positions.push_back(shared.positions[v]);
+    apart.normals.push_back(shared.normals[v]);
     apart.uvs.push_back(shared.uvs[v]);
   }
   const auto one = corner_tangents(shared, {}), other = corner_tangents(apart, {});
@@ -204,8 +204,8 @@ TEST(Tangents, UnsharedVerticesHaveThoseOfSharedOnes) {
 
 TEST(Tangents, TrianglesThatMeetInAVertexAloneDoNotShareItsTangent) {
   Mesh mesh;
-  mesh.positions_ws = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {-1, 0, 0}, {-1, -1, 0}};
-  mesh.normals_ws.assign(5, glm::vec3(0, 0, 1));
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {-1, 0, 0}, {-1, -1, 0}};
+  mesh.normals.assign(5, glm::vec3(0, 0, 1));
   // The second triangle's u runs along y, and it is as little mirrored as the first.
   mesh.uvs = {{0, 0}, {1, 0}, {1, -1}, {0, -1}, {-1, -1}};
   mesh.indices = {0, 1, 2, 0, 3, 4};
@@ -217,8 +217,8 @@ TEST(Tangents, TrianglesThatMeetInAVertexAloneDoNotShareItsTangent) {
 // A triangle without area in the texture takes the tangents of the one beside it.
 TEST(Tangents, TriangleWithoutAreaInTheTextureFollowsItsNeighbour) {
   Mesh mesh;
-  mesh.positions_ws = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
-  mesh.normals_ws.assign(4, glm::vec3(0, 0, 1));
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  mesh.normals.assign(4, glm::vec3(0, 0, 1));
   mesh.uvs = {{0, 0}, {1, 0}, {1, -1}, {0, 0}};
   mesh.indices = {0, 1, 2, 0, 2, 3};
   const auto tangents = corner_tangents(mesh, {});

@@ -211,7 +211,7 @@ TEST_F(TextureTest, EachMaterialHasTexturesOfItsOwnHoweverManyThereAre) {
     Mesh cell = whole;
     cell.material = i;
     const glm::vec2 centre(static_cast<float>(i % kCells), static_cast<float>(i / kCells));
-    for (glm::vec3& position : cell.positions_ws) {
+    for (glm::vec3& position : cell.positions) {
       position.x = (2.0f * centre.x + 1.0f + position.x) / kCells - 1.0f;
       position.y = 1.0f - (2.0f * centre.y + 1.0f - position.y) / kCells;
     }

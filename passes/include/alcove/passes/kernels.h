@@ -26,7 +26,6 @@ struct Error {
 enum class Shader : std::uint8_t {
   linear_depth,
   normals,
-  inverse_depth,
   gtao,
   gtao_specular,
   reconstruct,

@@ -1,6 +1,5 @@
 // Linear depth: the distance of each pixel along the view direction. Normals from depth, the
-// specular models and lighting read it. The search and the filters read inverse depth instead
-// (inverse_depth.h).
+// specular models and lighting read it. The search and the filter read the depth buffer itself.
 #pragma once
 
 #include "alcove/passes/frame.h"
