@@ -7,7 +7,7 @@
 //
 // The samples lie on a grid over the image. Each takes two texels, one above the other: the depths
 // of the pixel and of its left, right and upper neighbours; then the depth of the lower neighbour
-// and the normal as it is stored. A last row has the sizes of the two images and the serial number.
+// and the normal as it is stored. The last row begins with the sizes of the two images.
 
 #include "inspect_parameters.h"
 
@@ -26,10 +26,9 @@ float fetch_depth(ivec2 pixel) {
 
 void main() {
   ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
-  if (cell.y == int(kInspectRows) && cell.x < 2) {
-    imageStore(sample_image, ivec2(cell.x, 2 * int(kInspectRows)),
-               cell.x == 0 ? vec4(textureSize(depth_image, 0), textureSize(normal_image, 0))
-                           : vec4(float(parameters.serial)));
+  if (cell == ivec2(0, kInspectRows)) {
+    imageStore(sample_image, ivec2(0, 2 * int(kInspectRows)),
+               vec4(textureSize(depth_image, 0), textureSize(normal_image, 0)));
   }
   if (cell.x >= int(kInspectColumns) || cell.y >= int(kInspectRows)) {
     return;

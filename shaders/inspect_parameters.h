@@ -13,8 +13,8 @@ const uint kInspectRows = 48;
 
 struct InspectParameters {
   uvec2 size_px;  // size of the part of the image that is in use
-  uint serial;    // number of the frame, below 2^24, to recognise older samples
   uint has_normals;
+  uint unused;
 };
 
 ALCOVE_MATHS_END

@@ -303,6 +303,20 @@ void add_cost(CLI::App& app, Options& options) {
             [&](const OptionValue& given) { options.cost.chart = given.text; });
 }
 
+void add_doctor(CLI::App& app, Options& options) {
+  const Group group(app);
+  group.add_flag(
+      "--mistakes",
+      "plant each mistake of integration in frames of the built-in scene, and print what "
+      "alcoveDiagnose says of it",
+      options.mistakes);
+  group.add("--pictures", "FOLDER", "write a picture without and with each mistake; as --mistakes",
+            [&](const OptionValue& given) {
+              options.pictures = given.text;
+              options.mistakes = true;
+            });
+}
+
 void add_light(CLI::App& app, Options& options) {
   Group(app, "Light")
       .add("--environment", "FILE",

@@ -37,6 +37,8 @@ void add_limits(CLI::App& app, Options& options);
 void add_cost(CLI::App& app, Options& options);
 // Adds the option of `bench` that measures the grid of steps and slices.
 void add_grid(CLI::App& app, bool& grid);
+// For `doctor`: planted mistakes and their pictures.
+void add_doctor(CLI::App& app, Options& options);
 void add_light(CLI::App& app, Options& options);
 void add_materials(CLI::App& app, MaterialTreatment& materials);
 void add_lit(CLI::App& app, bool& lit, std::uint32_t& points);

@@ -112,7 +112,15 @@ void add_window(CLI::App& app, Options& options) {
   add_device(app, options);
 }
 
-void add_nothing(CLI::App& /*app*/, Options& /*options*/) {}
+void add_doctor_command(CLI::App& app, Options& options) {
+  options.view.width = 320;
+  options.view.height = 180;
+  add_scene(app, options.scene);
+  add_materials(app, options.materials);
+  add_doctor(app, options);
+  add_view(app, options.view);
+  add_device(app, options);
+}
 
 struct Entry {
   Command command;
@@ -142,7 +150,10 @@ constexpr std::array<Entry, 10> kCommands{{
     {Command::kGraph, "graph", "the compiled plan of a frame: passes, barriers, memory", add_graph},
     {Command::kView, "view",
      "a window to orbit a scene in and see what each setting does and costs", add_window},
-    {Command::kDoctor, "doctor", "the Vulkan devices here and what they lack", add_nothing},
+    {Command::kDoctor, "doctor",
+     "the Vulkan devices here and what they lack; what alcoveDiagnose says of a scene or of "
+     "mistakes",
+     add_doctor_command},
 }};
 
 // Joins the lines of a message of CLI11.

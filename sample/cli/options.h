@@ -87,6 +87,8 @@ struct Options {
   std::optional<double> budget_ms, tolerance;
   std::optional<MotionKind> path;  // motion: empty for all paths
   CostOptions cost;
+  bool mistakes = false;           // doctor: draws the built-in scene with planted mistakes
+  std::filesystem::path pictures;  // doctor: folder for pictures of the mistakes; empty for none
   bool grid = false;  // bench: measures the grid of steps and slices instead of the presets
   GraphFormat graph_format = GraphFormat::kText;
   int device = -1;
