@@ -45,6 +45,7 @@ layout(constant_id = 9) const bool kFresh = true;         // there is no history
 layout(constant_id = 10) const bool kVisibility = true;   // whether visibility_image is written
 layout(constant_id = 11) const uint kNormalEncoding = 0;  // as NormalEncoding has them
 layout(constant_id = 12) const bool kShaped = false;      // power or intensity is not 1
+layout(constant_id = 13) const bool kReversed = false;    // raw depth is 1 at the near plane
 
 #ifdef SPECULAR
 const bool kLobe = true;
@@ -60,13 +61,12 @@ layout(set = 0, binding = 1, RAW_FORMAT) uniform readonly uimage2D raw_image;  /
 layout(set = 0, binding = 2, rg32ui) uniform readonly uimage2D bent_image;
 layout(set = 0, binding = 4) uniform texture2D normal_image;  // xyz
 #ifdef HALF
-// SliceSample::inverse_depth. With a nearest sampler that clamps to the edge.
-layout(set = 0, binding = 3) uniform sampler2D inverse_depth_image;
+// As the projection wrote it. With a nearest sampler that clamps to the edge.
+layout(set = 0, binding = 3) uniform sampler2D depth_image;
 layout(set = 0, binding = 5) uniform writeonly uimage2D half_image;  // HalfTexel
 const int kFirstHistoryBinding = 6;
 #else
-layout(set = 0, binding = 3,
-       r32f) uniform readonly image2D inverse_depth_image;  // SliceSample::inverse_depth
+layout(set = 0, binding = 3) uniform texture2D depth_image;  // as the projection wrote it
 // Another image where it is not written; so is the next.
 layout(set = 0, binding = 5) uniform writeonly image2D visibility_image;
 // In the space of the normals.
@@ -164,16 +164,16 @@ struct Surface {
   vec4 traced_range;  // smallest and largest offset of a traced pixel in the image
 };
 
-#ifdef HALF
-ivec2 size_px() { return textureSize(inverse_depth_image, 0); }
-#else
-ivec2 size_px() { return imageSize(inverse_depth_image); }
-#endif
+ivec2 size_px() { return textureSize(depth_image, 0); }
 
 ivec2 last_tile() { return (size_px() + (kTileSize - 1)) / kTileSize - 1; }
 
+#include "load_depth.h"
+
 #ifndef HALF
-float load_inverse_depth(ivec2 pixel) { return imageLoad(inverse_depth_image, pixel).r; }
+float load_inverse_depth(ivec2 pixel) {
+  return inverse_depth_of(texelFetch(depth_image, pixel, 0).r);
+}
 
 #include "depth_normal.h"
 #endif
@@ -265,7 +265,7 @@ Surface fetch_surface(ivec2 pixel) {
   Surface surface;
   surface.texel = surface.pixel = pixel;
   surface.centre = vec2(pixel) + 0.5;
-  surface.inverse_depth = imageLoad(inverse_depth_image, pixel).r;
+  surface.inverse_depth = load_inverse_depth(pixel);
   surface.sky = surface.inverse_depth == sky_inverse_depth(kPerspective);
   vec3 given = fetch_normal(pixel);
   vec3 normal = normalize(given * mat3(parameters.normal_from_view));

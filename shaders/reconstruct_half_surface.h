@@ -33,10 +33,10 @@ TexelPixel representative(ivec2 texel) {
   vec2 uv = vec2(texel * 2) * parameters.pixel_uv;
   vec2 step = 2.0 * parameters.pixel_uv;
   // Blocks of 2x2 pixels around the corners of the texel: each has one of its pixels.
-  vec4 upper_left = textureGather(inverse_depth_image, uv);
-  vec4 upper_right = textureGather(inverse_depth_image, uv + vec2(step.x, 0.0));
-  vec4 lower_left = textureGather(inverse_depth_image, uv + vec2(0.0, step.y));
-  vec4 lower_right = textureGather(inverse_depth_image, uv + step);
+  vec4 upper_left = inverse_depths_of(textureGather(depth_image, uv));
+  vec4 upper_right = inverse_depths_of(textureGather(depth_image, uv + vec2(step.x, 0.0)));
+  vec4 lower_left = inverse_depths_of(textureGather(depth_image, uv + vec2(0.0, step.y)));
+  vec4 lower_right = inverse_depths_of(textureGather(depth_image, uv + step));
   // In the order of textureGather: lower left, lower right, upper right, upper left.
   vec4 inside = vec4(lower_left.z, lower_right.w, upper_right.x, upper_left.y);
   vec4 outer_x = vec4(lower_left.w, lower_right.z, upper_right.y, upper_left.x);

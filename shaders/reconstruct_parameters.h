@@ -20,19 +20,20 @@ struct ReconstructParameters {
   vec2 history_unit;   // of this and of the previous frame: a power of two near the near plane,
                        // in which depths are held, so that no unit of length changes a bit
   vec2 history_texel;  // 1 over the size of the history's texture
-  vec2 pixel_uv;       // 1 over the size of the image of inverse depth
-  vec2 pixels_per_slope;    // 1 over ray_per_px()
-  vec2 interleave_offset;   // pixel of each tile that was traced this frame
-  float window_px;          // width of the filter's window in a first frame, pixels
-  float tolerance;          // scale of distances from the tangent plane, in depths
-  float history_sharpness;  // of history_agreement(), for a surface seen head-on
-  float history_slack;      // of history_agreement()
-  float largest_weight;     // of the history, frames
-  float clamp_width;        // of clamp_to_spread()
-  float roughness;          // perceptual, of every surface where no texture has it
-  float power;              // of shaped_visibility()
-  float intensity;          // of shaped_visibility()
-  float dither_offset;      // [0,1), another one each frame
+  vec2 pixel_uv;       // 1 over the size of the depth buffer
+  vec2 inverse_depth_from_ndc;  // of inverse_depth_of_ndc()
+  vec2 pixels_per_slope;        // 1 over ray_per_px()
+  vec2 interleave_offset;       // pixel of each tile that was traced this frame
+  float window_px;              // width of the filter's window in a first frame, pixels
+  float tolerance;              // scale of distances from the tangent plane, in depths
+  float history_sharpness;      // of history_agreement(), for a surface seen head-on
+  float history_slack;          // of history_agreement()
+  float largest_weight;         // of the history, frames
+  float clamp_width;            // of clamp_to_spread()
+  float roughness;              // perceptual, of every surface where no texture has it
+  float power;                  // of shaped_visibility()
+  float intensity;              // of shaped_visibility()
+  float dither_offset;          // [0,1), another one each frame
 };
 
 ALCOVE_MATHS_END

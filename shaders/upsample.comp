@@ -27,12 +27,13 @@ layout(constant_id = 1) const bool kVisibility = true;  // whether visibility_im
 layout(constant_id = 2) const bool kShaped = false;     // power or intensity is not 1
 layout(constant_id = 3) const bool kBentNormal = false;
 layout(constant_id = 4) const uint kNormalEncoding = 0;  // as NormalEncoding has them
+layout(constant_id = 5) const bool kReversed = false;    // raw depth is 1 at the near plane
 
 layout(set = 0, binding = 0) uniform Parameters { UpsampleParameters parameters; };
 // The samplers are nearest and clamp to the edge.
-layout(set = 0, binding = 1) uniform usampler2D half_image;          // HalfTexel
-layout(set = 0, binding = 2) uniform sampler2D inverse_depth_image;  // SliceSample::inverse_depth
-layout(set = 0, binding = 3) uniform texture2D normal_image;         // xyz
+layout(set = 0, binding = 1) uniform usampler2D half_image;   // HalfTexel
+layout(set = 0, binding = 2) uniform sampler2D depth_image;   // as the projection wrote it
+layout(set = 0, binding = 3) uniform texture2D normal_image;  // xyz
 // pack_residual(); another image without bent normals.
 layout(set = 0, binding = 4) uniform usampler2D residual_image;
 // Another image where it is not written; so is the next.
@@ -44,9 +45,13 @@ layout(set = 0, binding = 7) uniform usampler2D lobe_image;  // LobeTexel
 layout(set = 0, binding = 8) uniform writeonly image2D specular_image;
 #endif
 
-ivec2 size_px() { return textureSize(inverse_depth_image, 0); }
+ivec2 size_px() { return textureSize(depth_image, 0); }
 
-float load_inverse_depth(ivec2 pixel) { return texelFetch(inverse_depth_image, pixel, 0).r; }
+#include "load_depth.h"
+
+float load_inverse_depth(ivec2 pixel) {
+  return inverse_depth_of(texelFetch(depth_image, pixel, 0).r);
+}
 
 #include "depth_normal.h"
 
@@ -72,7 +77,8 @@ struct Cell {
 Cell fetch_cell(ivec2 index) {
   Cell cell;
   cell.first = index * 2 - 1;
-  cell.depths = textureGather(inverse_depth_image, vec2(index * 2) * parameters.pixel_uv);
+  cell.depths =
+      inverse_depths_of(textureGather(depth_image, vec2(index * 2) * parameters.pixel_uv));
   vec2 uv = vec2(index) * parameters.texel_uv;
   uvec4 texels = textureGather(half_image, uv, 0);
   uvec4 tilts = textureGather(half_image, uv, 1);
