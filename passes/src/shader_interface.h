@@ -13,7 +13,9 @@
 namespace alcove::passes {
 
 struct ShaderBinding {
-  std::string_view name;     // of the GLSL variable; it points into the module
+  // Name of the GLSL variable; it points into the module. Empty for a block without an instance
+  // name.
+  std::string_view name;
   std::uint32_t number = 0;  // layout(binding = number)
   // VK_DESCRIPTOR_TYPE_MAX_ENUM if read_shader_interface() does not know the variable's type.
   VkDescriptorType type = VK_DESCRIPTOR_TYPE_MAX_ENUM;

@@ -37,9 +37,10 @@ TEST(ShaderInterface, NamesNumbersAndTypesAreThoseOfTheGlslFile) {
   for (const ShaderConstant& constant : found.constants) {
     constants.push_back(std::to_string(constant.id) + " " + std::string(constant.name));
   }
+  // The blocks have no instance name.
   const std::string sampled = std::to_string(VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE);
   EXPECT_THAT(bindings,
-              ElementsAre("0 parameters " + std::to_string(VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER),
+              ElementsAre("0  " + std::to_string(VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER),
                           "1 visibility_image " + sampled, "2 bent_normal_image " + sampled,
                           "3 normal_image " + sampled, "4 depth_image " + sampled,
                           "5 roughness_image " + sampled,
