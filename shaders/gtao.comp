@@ -45,13 +45,12 @@ layout(constant_id = 9) const bool kUniformWeight = false;  // no cosine of the 
 layout(constant_id = 10) const bool kFalloff = false;       // occluders fade towards the radius
 layout(constant_id = 11) const bool kThicknessOfDistance = false;  // else a part of the radius
 layout(constant_id = 12) const bool kBackFaces = false;            // back_image tells the thickness
-layout(constant_id = 13) const bool kSnapToTexels = true;  // samples lie at centres of texels
-layout(constant_id = 14) const bool kByPattern = false;    // groups trace as tile_by_pattern() says
-layout(constant_id = 15) const bool kSecondLayer = false;  // second_image occludes too
-layout(constant_id = 16) const bool kExtrapolation = true;  // surfaces continue beyond the image
-layout(constant_id = 17) const bool kUnobserved = true;     // excludes unobserved directions
-layout(constant_id = 18) const uint kNormalEncoding = 0;    // a value of the enum NormalEncoding
-layout(constant_id = 19) const bool kReversed = false;      // raw depth is 1 at the near plane
+layout(constant_id = 13) const bool kSnapToTexels = true;   // samples lie at centres of texels
+layout(constant_id = 14) const bool kSecondLayer = false;   // second_image occludes too
+layout(constant_id = 15) const bool kExtrapolation = true;  // surfaces continue beyond the image
+layout(constant_id = 16) const bool kUnobserved = true;     // excludes unobserved directions
+layout(constant_id = 17) const uint kNormalEncoding = 0;    // a value of the enum NormalEncoding
+layout(constant_id = 18) const bool kReversed = false;      // raw depth is 1 at the near plane
 
 const uint kHeuristic = 1;
 const uint kBitmask = 2;
@@ -715,13 +714,8 @@ SearchResult search_pixel(ivec2 pixel, float inverse_depth, SliceNoise noise) {
           : uvec2(0u));
 }
 
-uvec2 traced_tile() {
-  return kByPattern ? tile_by_pattern(gl_WorkGroupID.xy, gl_LocalInvocationID.xy)
-                    : gl_GlobalInvocationID.xy;
-}
-
 void main() {
-  ivec2 tile = ivec2(traced_tile());
+  ivec2 tile = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(tile * kTileSize, size_px()))) {
     return;
   }

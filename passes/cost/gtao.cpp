@@ -1,6 +1,4 @@
 // Loops and traffic of shaders/gtao.comp.
-#include <cstddef>
-
 #include "pass_work.h"
 
 namespace alcove::passes::cost {
@@ -32,13 +30,14 @@ Samples samples_of(const OcclusionSettings& settings) {
   return samples;
 }
 
-std::optional<double> sampling_iterations(const PassWork& work, std::size_t index);
+std::optional<double> sampling_iterations(const PassWork& work, std::uint32_t index);
 
 // Image loads in one iteration of a loop, those of its inner loops as often as they run.
-std::optional<double> loads_per_iteration(const PassWork& work, std::size_t index) {
+std::optional<double> loads_per_iteration(const PassWork& work, std::uint32_t index) {
   const CompiledLoop& loop = work.loops[index];
   double loads = loop.loads;
-  for (std::size_t i = index + 1; i < work.loops.size() && work.loops[i].depth > loop.depth; ++i) {
+  for (std::uint32_t i = index + 1; i < work.loops.size() && work.loops[i].depth > loop.depth;
+       ++i) {
     const CompiledLoop& inner = work.loops[i];
     if (inner.depth != loop.depth + 1 || inner.loads == 0) {
       continue;
@@ -55,7 +54,7 @@ std::optional<double> loads_per_iteration(const PassWork& work, std::size_t inde
 
 // How often a loop with image loads runs: over the steps of a half-slice, the two half-slices of a
 // slice or the slices of a pixel, whichever its loads agree with.
-std::optional<double> sampling_iterations(const PassWork& work, std::size_t index) {
+std::optional<double> sampling_iterations(const PassWork& work, std::uint32_t index) {
   const Samples samples = samples_of(work.settings);
   const auto loads = loads_per_iteration(work, index);
   if (!loads) {

@@ -1,4 +1,4 @@
-// Which pixel of a block is searched in a frame.
+// The pixel of each tile that is traced in a frame.
 #pragma once
 
 #include <array>
@@ -11,9 +11,10 @@ struct InterleaveOffset {
   std::uint32_t y = 0;
 };
 
-// The pixel of a tile of tile_size x tile_size (1, 2 or 4) that is traced in a frame. Each pixel is
-// traced once in tile_size^2 frames, and successive pixels are far apart. The order in 2x2 is
-// (0,0), (1,1), (1,0), (0,1); 4x4 uses it for the quarters and within each quarter.
+// Returns the pixel of a tile of tile_size x tile_size pixels (1, 2 or 4) that is traced in a
+// frame. Each pixel is traced once in tile_size^2 frames, and successive pixels are far apart. The
+// order in 2x2 is (0,0), (1,1), (1,0), (0,1). In 4x4, that order selects the quarter of the tile
+// and then the pixel of the quarter.
 [[nodiscard]] constexpr InterleaveOffset interleave_offset_of(std::uint32_t tile_size,
                                                               std::uint32_t frame) {
   constexpr std::array<InterleaveOffset, 4> kOrder{{{0, 0}, {1, 1}, {1, 0}, {0, 1}}};

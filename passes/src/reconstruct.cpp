@@ -4,9 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <initializer_list>
 #include <memory_resource>
-#include <span>
 #include <string>
 
 #include "bindings.h"
@@ -197,18 +195,6 @@ void declare_accesses(const Graph& graph, framegraph::PassBuilder& pass, Texture
   }
 }
 
-// The views of a dispatch; the array has room for all bindings of the shader.
-struct Bindings {
-  std::array<VkImageView, 15> views{};
-  std::size_t count = 0;
-
-  void add(std::initializer_list<VkImageView> more) {
-    for (const VkImageView view : more) {
-      views.at(count++) = view;
-    }
-  }
-};
-
 // One of the results that are wanted.
 Texture any_of(const Occlusion& results) {
   if (results.visibility) {
@@ -217,44 +203,36 @@ Texture any_of(const Occlusion& results) {
   return results.bent_normal ? results.bent_normal : results.specular;
 }
 
-// In the order of the shader's bindings.
-Bindings bindings_of(RecordContext& context, const Textures& textures) {
+// Images that this variant of the shader does not use are replaced by others of their kind, because
+// every binding needs a view. Bindings that the variant does not have may get a null view.
+std::array<NamedView, 16> views_of(RecordContext& context, const Textures& textures) {
+  const auto view = [&](Texture texture, Texture instead = {}) -> VkImageView {
+    const Texture bound = texture ? texture : instead;
+    return bound ? context.view(bound) : VkImageView{VK_NULL_HANDLE};
+  };
   const ReconstructInputs& in = textures.inputs;
-  const Occlusion& out = textures.result;
+  // At half resolution the upsampling pass writes the results.
+  const Occlusion out = textures.half ? Occlusion{} : textures.result;
   const Texture written = any_of(out);
   // Half resolution may read no normals.
   const Texture sampled = textures.half ? in.depth_ndc : in.normals;
-  Bindings bindings;
-  bindings.add({context.view(in.raw_occlusion.raw_occlusion),
-                view_or(context, in.raw_occlusion.bent, in.raw_occlusion.raw_occlusion),
-                context.view(in.depth_ndc), view_or(context, read_normals(textures), sampled)});
-  if (textures.half) {
-    bindings.add({context.view(textures.half)});
-  } else {
-    bindings.add(
-        {view_or(context, out.visibility, written), view_or(context, out.bent_normal, written)});
-  }
-  if (textures.history.next) {
-    bindings.add({context.view(textures.history.previous), context.view(textures.history.next),
-                  view_or(context, in.motion, sampled),
-                  view_or(context, textures.bent_history.previous, textures.history.previous),
-                  view_or(context, textures.bent_history.next, textures.history.next)});
-  } else if (textures.half) {
-    bindings.add({view_or(context, textures.bent_history.next, textures.half)});
-  }
-  if (in.raw_occlusion.lobe) {
-    bindings.add({view_or(context, in.roughness, sampled)});
-    if (!textures.half) {
-      bindings.add({context.view(out.specular)});
-    }
-  }
-  if (textures.lobe_history.previous) {
-    bindings.add({context.view(textures.lobe_history.previous)});
-  }
-  if (textures.lobe_history.next) {
-    bindings.add({context.view(textures.lobe_history.next)});
-  }
-  return bindings;
+  const Texture stored = textures.history.next ? textures.history.next : textures.half;
+  return {{{"raw_image", view(in.raw_occlusion.raw_occlusion)},
+           {"bent_image", view(in.raw_occlusion.bent, in.raw_occlusion.raw_occlusion)},
+           {"depth_image", view(in.depth_ndc)},
+           {"normal_image", view(read_normals(textures), sampled)},
+           {"half_image", view(textures.half)},
+           {"visibility_image", view(out.visibility, written)},
+           {"bent_normal_image", view(out.bent_normal, written)},
+           {"history_image", view(textures.history.previous)},
+           {"next_history_image", view(textures.history.next)},
+           {"motion_image", view(in.motion, sampled)},
+           {"bent_history_image", view(textures.bent_history.previous, textures.history.previous)},
+           {"next_bent_history_image", view(textures.bent_history.next, stored)},
+           {"roughness_image", view(in.roughness, sampled)},
+           {"specular_image", view(out.specular)},
+           {"lobe_history_image", view(textures.lobe_history.previous)},
+           {"next_lobe_history_image", view(textures.lobe_history.next)}}};
 }
 
 Shader shader_of(bool history, bool lobe, bool half) {
@@ -282,24 +260,24 @@ Past past_of(const Frame& frame, const ReconstructSizes& sizes, bool history_val
   return Past::unchanged;
 }
 
-// The shader's specialisation constants, in its order.
-std::array<std::uint32_t, 14> constants_of(const ReconstructInputs& inputs,
+std::array<NamedConstant, 14> constants_of(const ReconstructInputs& inputs,
                                            const OcclusionSettings& settings,
                                            const maths::Projection& projection, Past past) {
-  return {inputs.raw_occlusion.tile_size,
-          settings.advanced.filter_radius,
-          flag(bool(inputs.raw_occlusion.bent)),
-          flag(inputs.motion && past == Past::moving),
-          flag(is_perspective(projection)),
-          flag(settings.advanced.clamp_width > 0.0f),
-          flag(past == Past::unchanged),
-          flag(bool(inputs.roughness)),
-          channel_if(bool(inputs.roughness), settings.roughness_channel),
-          flag(past == Past::none),
-          flag(needs_visibility(settings)),
-          static_cast<std::uint32_t>(inputs.normal_encoding),
-          flag(!settings.half_resolution && (settings.power != 1.0f || settings.intensity != 1.0f)),
-          flag(is_reversed(projection))};
+  const bool shaped = settings.power != 1.0f || settings.intensity != 1.0f;
+  return {{{"kTileSize", inputs.raw_occlusion.tile_size},
+           {"kFilterRadius", settings.advanced.filter_radius},
+           {"kBentNormal", flag(bool(inputs.raw_occlusion.bent))},
+           {"kMotion", flag(inputs.motion && past == Past::moving)},
+           {"kPerspective", flag(is_perspective(projection))},
+           {"kClamp", flag(settings.advanced.clamp_width > 0.0f)},
+           {"kStatic", flag(past == Past::unchanged)},
+           {"kRoughnessTexture", flag(bool(inputs.roughness))},
+           {"kRoughnessChannel", channel_if(bool(inputs.roughness), settings.roughness_channel)},
+           {"kFresh", flag(past == Past::none)},
+           {"kVisibility", flag(needs_visibility(settings))},
+           {"kNormalEncoding", static_cast<std::uint32_t>(inputs.normal_encoding)},
+           {"kShaped", flag(!settings.half_resolution && shaped)},
+           {"kReversed", flag(is_reversed(projection))}}};
 }
 
 tl::expected<Kernel, Error> get_kernel(const Frame& frame, const ReconstructInputs& inputs,
@@ -518,9 +496,7 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& given_frame,
       maths::vec2(static_cast<float>(offset_x), static_cast<float>(offset_y));
   pass.record(
       [&kernels = frame.kernels, kernel = *kernel, textures, parameters](RecordContext& context) {
-        const Bindings bindings = bindings_of(context, textures);
-        const std::span<const VkImageView> bound(bindings.views.data(), bindings.count);
-        kernels.dispatch(context, kernel, bound, bytes_of(parameters),
+        kernels.dispatch(context, kernel, views_of(context, textures), bytes_of(parameters),
                          context.extent(textures.half ? textures.half : textures.inputs.depth_ndc));
       });
   if (!textures.half) {
