@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <vector>
 
 #include "gpu_cost/budget.h"
 
@@ -98,6 +99,43 @@ TEST(GpuCost, TextOfAnotherCompilerIsReported) {
   ASSERT_FALSE(none);
   EXPECT_THAT(none.error(), HasSubstr("Mesa's AMD driver is needed"));
   EXPECT_FALSE(blocks_of(shader_of("no blocks here")));
+}
+
+// The number of times that each loop of the search runs; -1 for one that is not known.
+std::vector<double> search_iterations(const passes::OcclusionSettings& settings,
+                                      std::vector<CompiledLoop> loops) {
+  std::vector<double> found;
+  for (std::uint32_t i = 0; i < loops.size(); ++i) {
+    loops[i].index = i;
+  }
+  const PassWork work{"gtao", settings, FrameState::moving, loops};
+  for (const CompiledLoop& loop : loops) {
+    found.push_back(passes::cost::iterations(work, loop).value_or(-1.0));
+  }
+  return found;
+}
+
+TEST(GpuCost, LoopsOfTheSearchAreToldApartByTheirFetches) {
+  passes::OcclusionSettings settings;
+  settings.slices = 2;
+  settings.steps = 16;
+  const auto loop = [](std::uint32_t depth, std::uint32_t loads) {
+    return CompiledLoop{.depth = depth, .loads = loads};
+  };
+  EXPECT_THAT(search_iterations(settings, {loop(1, 4), loop(2, 4), loop(3, 2)}),
+              ElementsAre(2, 2, 7))
+      << "slices, half-slices, steps";
+  EXPECT_THAT(search_iterations(settings, {loop(1, 16), loop(2, 16)}), ElementsAre(2, 2))
+      << "the loop over steps is unrolled";
+  EXPECT_THAT(search_iterations(settings, {loop(1, 8), loop(2, 2), loop(2, 2)}),
+              ElementsAre(2, 7, 7))
+      << "the loop over half-slices is unrolled";
+  EXPECT_THAT(search_iterations(settings, {loop(1, 16), loop(1, 16)}), ElementsAre(2, 2))
+      << "the loop over slices is unrolled";
+  EXPECT_THAT(search_iterations(settings, {loop(1, 5), loop(2, 5)}), ElementsAre(-1, -1))
+      << "no number of steps has five fetches";
+  EXPECT_THAT(search_iterations(settings, {loop(1, 0)}), ElementsAre(-1))
+      << "visibility has no loop over occluder runs";
 }
 
 TEST(GpuCost, LoopWithoutDeclaredIterationsIsReported) {
