@@ -62,8 +62,9 @@ layout(set = 0, binding = 4) uniform texture2D normal_image;  // xyz
 #ifdef HALF
 // SliceSample::inverse_depth. With a nearest sampler that clamps to the edge.
 layout(set = 0, binding = 3) uniform sampler2D inverse_depth_image;
-layout(set = 0, binding = 5) uniform writeonly uimage2D half_image;  // HalfTexel
-const int kFirstHistoryBinding = 6;
+layout(set = 0, binding = 5) uniform writeonly image2D half_image;        // pack_half_texel()
+layout(set = 0, binding = 6) uniform writeonly image2D half_depth_image;  // half_texel_depth()
+const int kFirstHistoryBinding = 7;
 #else
 layout(set = 0, binding = 3,
        r32f) uniform readonly image2D inverse_depth_image;  // SliceSample::inverse_depth
@@ -74,9 +75,15 @@ layout(set = 0, binding = 6) uniform writeonly image2D bent_normal_image;
 const int kFirstHistoryBinding = 7;
 #endif
 #ifdef HISTORY
-// HistoryTexel. With a nearest sampler that clamps to the edge.
-layout(set = 0, binding = kFirstHistoryBinding) uniform usampler2D history_image;
+// The samplers are nearest and clamp to the edge.
+#ifdef HALF
+// half_image and half_depth_image of the previous frame.
+layout(set = 0, binding = kFirstHistoryBinding) uniform sampler2D history_image;
+layout(set = 0, binding = kFirstHistoryBinding + 1) uniform sampler2D history_depth_image;
+#else
+layout(set = 0, binding = kFirstHistoryBinding) uniform usampler2D history_image;  // HistoryTexel
 layout(set = 0, binding = kFirstHistoryBinding + 1) uniform writeonly uimage2D next_history_image;
+#endif
 // Another image without kMotion.
 layout(set = 0, binding = kFirstHistoryBinding + 2) uniform texture2D motion_image;
 // Bent-normal residuals of pack_residual(); other images where there are no bent normals.
@@ -123,7 +130,8 @@ const bool kBetween = kTileSize > 1 && kFilterRadius > 0;
 const int kNearRadius = kFilterRadius == 0 ? 0 : 1;
 // Traced tiles that the pixels of a group average, in each direction.
 const int kSpan = 8 * kTexelSize / kTileSize + 2 * kFilterRadius;
-const int kShift = kTileSize == 4 ? 2 : kTileSize == 2 ? 1 : 0;
+// Base-2 logarithm of kTileSize.
+const int kShift = kTileSize == 8 ? 3 : kTileSize == 4 ? 2 : kTileSize == 2 ? 1 : 0;
 
 // The unpacked raw occlusion of a tile.
 struct TracedPixel {
@@ -425,15 +433,13 @@ void store_kept(Surface surface, Result result, float dither) {
 #endif
 #ifdef HALF
 
-void store(Surface surface, Result result) {
-  HalfTexel texel;
-  texel.inverse_depth = surface.sky ? sky_inverse_depth(kPerspective) : surface.inverse_depth;
-  texel.occlusion = surface.sky ? 0.0 : result.occlusion;
-  texel.tilt = surface.sky ? vec2(0.0) : surface.tilt;
-  imageStore(half_image, surface.texel, uvec4(pack_half_texel(texel), 0u, 0u));
-#ifndef HISTORY
-  store_kept(surface, result, 0.5);
-#endif
+// `recent` is an occlusion, or negative where it is not known.
+void store_half(Surface surface, Result result, float weight, float recent) {
+  HalfTexel texel = HalfTexel(result.occlusion, weight, surface.tilt);
+  imageStore(half_image, surface.texel, surface.sky ? vec4(0.0) : pack_half_texel(texel));
+  float depth = surface.sky ? sky_inverse_depth(kPerspective)
+                            : half_texel_depth(surface.inverse_depth, recent, kMotion);
+  imageStore(half_depth_image, surface.texel, vec4(depth));
 }
 
 #else
@@ -471,7 +477,12 @@ void reconstruct(Surface surface) {
     result.residual =
         converged_residual(sums.residual, sums.expected_residual, 1.0 - result.occlusion) * scale;
   }
+#ifdef HALF
+  store_half(surface, result, 0.0, 0.0);
+  store_kept(surface, result, 0.5);
+#else
   store(surface, result);
+#endif
 }
 
 #endif
@@ -479,7 +490,8 @@ void reconstruct(Surface surface) {
 void main() {
   load_tiles();
   ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(texel * kTexelSize, size_px()))) {
+  // At half resolution one texel beyond the border too, which upsampling reads.
+  if (any(greaterThan(texel * kTexelSize, size_px() + (2 * kTexelSize - 3)))) {
     return;
   }
   reconstruct(fetch_surface(texel));

@@ -89,6 +89,8 @@ Surface fetch_surface(ivec2 texel) {
   float inverse_scale = 1.0 / scale;
   surface.tilt = surface.gradient * parameters.pixels_per_slope *
                  (kPerspective ? -inverse_scale : inverse_scale);
+  // Steeper planes cannot be stored, and none of them is more than 90 degrees.
+  surface.tilt = clamp(surface.tilt, -kLargestTilt, kLargestTilt);
   vec2 ray =
       parameters.slope.zw + (kPerspective ? surface.centre * parameters.slope.xy : vec2(0.0));
   float z = 1.0 + dot(surface.tilt, ray);

@@ -10,6 +10,7 @@ struct UpsampleParameters {
   vec4 slope;             // xy: ray_per_px(); zw: of the ray at the image's corner; view space
   vec2 pixel_uv;          // 1 over the size of the image of inverse depth
   vec2 texel_uv;          // 1 over the size of the half-resolution images
+  vec2 half_pixel_per_tilt;  // change of inverse depth over half a pixel, per stored tilt
   float tolerance;        // scale of distances from the tangent plane, in depths
   float power;            // of shaped_visibility()
   float intensity;        // of shaped_visibility()

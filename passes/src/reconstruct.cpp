@@ -56,6 +56,7 @@ class DerivedHistoryName {
   std::pmr::string text_{&memory_};
 };
 
+constexpr std::string_view kDepthSuffix = " depth";
 constexpr std::string_view kBentSuffix = " bent normal";
 constexpr std::string_view kLobeSuffix = " specular";
 
@@ -69,8 +70,8 @@ struct HistoryTextures {
 struct Textures {
   ReconstructInputs inputs;
   Occlusion result;  // at half resolution the upsampling pass writes it
-  Texture half;      // maths::HalfTexel, only at half resolution
-  HistoryTextures history;
+  HistoryTextures history;        // at half resolution maths::pack_half_texel()
+  HistoryTextures depth_history;  // maths::half_texel_depth(), only at half resolution
   HistoryTextures bent_history;
   HistoryTextures lobe_history;
 };
@@ -95,7 +96,12 @@ void create_histories(Graph& graph, const OcclusionSettings& settings,
   const bool wanted = settings.history_frames > 0;
   const RawOcclusionTextures& raw_occlusion = textures.inputs.raw_occlusion;
   valid = wanted;
-  textures.history = create_history(graph, wanted, history_name, kHistoryFormat, largest, valid);
+  const bool half = settings.half_resolution;
+  textures.history = create_history(graph, wanted, history_name,
+                                    half ? kHalfFormat : kHistoryFormat, largest, valid);
+  textures.depth_history =
+      create_history(graph, wanted && half, DerivedHistoryName(history_name, kDepthSuffix),
+                     kHalfDepthFormat, largest, valid);
   textures.bent_history = create_history(graph, wanted && raw_occlusion.bent,
                                          DerivedHistoryName(history_name, kBentSuffix),
                                          kBentHistoryFormat, largest, valid);
@@ -119,7 +125,11 @@ framegraph::Extent texels(VkExtent2D pixels, const OcclusionSettings& settings) 
 void create_half(Graph& graph, const OcclusionSettings& settings, const ReconstructSizes& sizes,
                  Textures& textures) {
   const auto size = texels(sizes.now, settings);
-  textures.half = graph.create_texture("half resolution", {VK_FORMAT_R32G32_UINT, size});
+  if (!textures.history.next) {
+    textures.history.next = graph.create_texture("half resolution", {kHalfFormat, size});
+    textures.depth_history.next =
+        graph.create_texture("half-resolution depth", {kHalfDepthFormat, size});
+  }
   if (textures.inputs.raw_occlusion.bent && !textures.bent_history.next) {
     textures.bent_history.next =
         graph.create_texture("half-resolution residual", {kBentHistoryFormat, size});
@@ -157,10 +167,12 @@ Textures create_textures(const Frame& frame, const ReconstructInputs& inputs,
   return textures;
 }
 
+bool is_half(const Textures& textures) { return bool(textures.depth_history.next); }
+
 // The normals, or null where the pass does not read them: at half resolution only the weights of
 // GGX lobes need them.
 Texture read_normals(const Textures& textures) {
-  const bool read = !textures.half || textures.inputs.raw_occlusion.lobe;
+  const bool read = !is_half(textures) || textures.inputs.raw_occlusion.lobe;
   return read ? textures.inputs.normals : Texture{};
 }
 
@@ -179,19 +191,17 @@ void declare_accesses(const Graph& graph, framegraph::PassBuilder& pass, Texture
   const auto& stored = framegraph::access::storage_read_compute;
   read(textures.inputs.raw_occlusion.raw_occlusion, stored);
   read(textures.inputs.raw_occlusion.bent, stored);
-  read(textures.inputs.inverse_depth, textures.half ? sampled : stored);
+  read(textures.inputs.inverse_depth, is_half(textures) ? sampled : stored);
   read(read_normals(textures), sampled);
   read(textures.inputs.motion, sampled);
   read(textures.inputs.roughness, sampled);
-  if (textures.half) {
-    write(textures.half);
-  } else {
+  if (!is_half(textures)) {
     write(textures.result.visibility);
     write(textures.result.bent_normal);
     write(textures.result.specular);
   }
-  for (HistoryTextures* const history :
-       {&textures.history, &textures.bent_history, &textures.lobe_history}) {
+  for (HistoryTextures* const history : {&textures.history, &textures.depth_history,
+                                         &textures.bent_history, &textures.lobe_history}) {
     read(history->previous, sampled);
     write(history->next);
   }
@@ -223,28 +233,34 @@ Bindings bindings_of(RecordContext& context, const Textures& textures) {
   const Occlusion& out = textures.result;
   const Texture written = any_of(out);
   // Half resolution samples the inverse depth.
-  const Texture sampled = textures.half ? in.inverse_depth : in.normals;
+  const bool half = is_half(textures);
+  const Texture sampled = half ? in.inverse_depth : in.normals;
   Bindings bindings;
   bindings.add({context.view(in.raw_occlusion.raw_occlusion),
                 view_or(context, in.raw_occlusion.bent, in.raw_occlusion.raw_occlusion),
                 context.view(in.inverse_depth), view_or(context, read_normals(textures), sampled)});
-  if (textures.half) {
-    bindings.add({context.view(textures.half)});
+  if (half) {
+    bindings.add({context.view(textures.history.next), context.view(textures.depth_history.next)});
   } else {
     bindings.add(
         {view_or(context, out.visibility, written), view_or(context, out.bent_normal, written)});
   }
-  if (textures.history.next) {
-    bindings.add({context.view(textures.history.previous), context.view(textures.history.next),
-                  view_or(context, in.motion, sampled),
-                  view_or(context, textures.bent_history.previous, textures.history.previous),
-                  view_or(context, textures.bent_history.next, textures.history.next)});
-  } else if (textures.half) {
-    bindings.add({view_or(context, textures.bent_history.next, textures.half)});
+  // Stands in for unsigned integers that are not read.
+  const Texture unsigned_read = half ? in.raw_occlusion.raw_occlusion : textures.history.previous;
+  const Texture unsigned_written = textures.history.next;
+  if (textures.history.previous) {
+    bindings.add(
+        {context.view(textures.history.previous),
+         context.view(half ? textures.depth_history.previous : textures.history.next),
+         view_or(context, in.motion, sampled),
+         view_or(context, textures.bent_history.previous, unsigned_read),
+         view_or(context, textures.bent_history.next, unsigned_written)});
+  } else if (half) {
+    bindings.add({view_or(context, textures.bent_history.next, unsigned_written)});
   }
   if (in.raw_occlusion.lobe) {
     bindings.add({view_or(context, in.roughness, sampled)});
-    if (!textures.half) {
+    if (!half) {
       bindings.add({context.view(out.specular)});
     }
   }
@@ -380,14 +396,29 @@ constexpr float kHistorySlack = 0.75f / 16383.0f;
 // ReconstructParameters::history_sharpness. A texel counts less the further it lies off the tangent
 // plane, and not at all from 1.5 texels on, or from 0.3 % of the depth in perspective where texels
 // are larger. It must at least be 0.12 % there, about the step of a stored depth.
-float history_sharpness(const maths::Projection& p, float texel_size, maths::vec2 scale) {
-  const float pixel = texel_size * std::abs(maths::ray_per_px(p).y);
+float relative_history_distance(float texel) { return std::clamp(1.5f * texel, 0.0012f, 0.003f); }
+
+float history_sharpness(const maths::Projection& p, maths::vec2 scale) {
+  const float pixel = std::abs(maths::ray_per_px(p).y);
   if (is_perspective(p)) {
     // The stored depth changes by scale / ln 2 times a relative change of depth.
     constexpr float kLn2 = 0.69314718f;
-    return kLn2 / (std::clamp(1.5f * pixel, 0.0012f, 0.003f) * scale.x);
+    return kLn2 / (relative_history_distance(pixel) * scale.x);
   }
   return 1.0f / std::max(1.5f * pixel * scale.x, 2.0f * kHistorySlack);
+}
+
+// The depth of a texel at half resolution is stored to 2^-15 of itself, which is a small part of
+// the distance at which a texel no longer counts.
+constexpr float kHalfHistorySlack = 0.03f;
+
+// The same at half resolution, where depths are stored as they are: over relative changes of depth
+// in perspective, over changes of depth in orthographic views.
+float half_history_sharpness(const maths::Projection& p) {
+  const float texel = 2.0f * std::abs(maths::ray_per_px(p).y);
+  const float rounding = 0x1p-14f * std::abs(p.near_far.y);
+  return 1.0f / (is_perspective(p) ? relative_history_distance(texel)
+                                   : std::max(1.5f * texel, rounding));
 }
 
 // The width in pixels of the filter's window in a first frame: wide for few slices, for many hardly
@@ -430,9 +461,13 @@ maths::ReconstructParameters parameters_of(const Frame& frame, const maths::Proj
   parameters.history_depth_scale =
       maths::vec4(history_depth_scale(projection), history_depth_scale(previous));
   parameters.history_unit = {history_unit(projection), history_unit(previous)};
-  parameters.history_sharpness =
-      history_sharpness(projection, texel, history_depth_scale(previous));
-  parameters.history_slack = kHistorySlack;
+  if (settings.half_resolution) {
+    parameters.history_sharpness = half_history_sharpness(projection);
+    parameters.history_slack = kHalfHistorySlack;
+  } else {
+    parameters.history_sharpness = history_sharpness(projection, history_depth_scale(previous));
+    parameters.history_slack = kHistorySlack;
+  }
   // The golden ratio's fractions are spread evenly over any run of frames.
   parameters.dither_offset = static_cast<float>(frame.index * 2654435769u) * 0x1p-32f;
   const MotionConvention& motion = inputs.motion_convention;
@@ -510,23 +545,31 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& given_frame,
   if (past == Past::unchanged && frame.static_frames >= kConvergedFrames) {
     parameters.largest_weight = static_cast<float>(maths::kMaxHistoryFrames) - 1.0f;
   }
+  const VkExtent2D half_size{(sizes->now.width + 1) / 2, (sizes->now.height + 1) / 2};
   const VkExtent3D stored =
       textures.history.next ? frame.graph.extent(textures.history.next) : VkExtent3D{1, 1, 1};
   parameters.history_texel = 1.0f / maths::vec2(stored.width, stored.height);
+  // One more texel at the right and the lower border, if the textures have room for it, since the
+  // upsampling pass reads it.
+  const VkExtent3D half_extent{std::min(half_size.width + 1, stored.width),
+                               std::min(half_size.height + 1, stored.height), 1};
   parameters.interleave_offset =
       maths::vec2(static_cast<float>(offset_x), static_cast<float>(offset_y));
-  pass.record([&kernels = frame.kernels, kernel = *kernel, textures,
-               parameters](RecordContext& context) {
+  pass.record([&kernels = frame.kernels, kernel = *kernel, textures, parameters,
+               half_extent](RecordContext& context) {
     const Bindings bindings = bindings_of(context, textures);
     const std::span<const VkImageView> bound(bindings.views.data(), bindings.count);
     kernels.dispatch(context, kernel, bound, bytes_of(parameters),
-                     context.extent(textures.half ? textures.half : textures.inputs.inverse_depth));
+                     is_half(textures) ? half_extent
+                                       : context.extent(textures.inputs.inverse_depth));
   });
-  if (!textures.half) {
+  if (!is_half(textures)) {
     return textures.result;
   }
   return add_upsample(frame,
-                      {.half = textures.half,
+                      {.half = textures.history.next,
+                       .half_depth = textures.depth_history.next,
+                       .half_size = half_size,
                        .residuals = textures.bent_history.next,
                        .lobes = textures.lobe_history.next,
                        .inverse_depth = inputs.inverse_depth,
@@ -539,6 +582,7 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& given_frame,
 
 void drop_reconstruct_history(Graph& graph, std::string_view history_name) {
   graph.drop_history(history_name);
+  graph.drop_history(DerivedHistoryName(history_name, kDepthSuffix));
   graph.drop_history(DerivedHistoryName(history_name, kBentSuffix));
   graph.drop_history(DerivedHistoryName(history_name, kLobeSuffix));
 }

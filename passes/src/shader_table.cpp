@@ -53,22 +53,22 @@ const ShaderSource& shader_source(Shader shader) {
        "gtsgt"
        "stgt"},
       {kReconstructHalf,
-       "ttgst"
+       "ttgstt"
        "t"},
       {kReconstructHalfHistory,
-       "ttgst"
-       "gtsgt"},
+       "ttgstt"
+       "ggsgt"},
       {kReconstructHalfSpecular,
-       "ttgst"
+       "ttgstt"
        "t"
        "st"},
       {kReconstructHalfSpecularHistory,
-       "ttgst"
-       "gtsgt"
+       "ttgstt"
+       "ggsgt"
        "sgt"},
-      {kUpsample, "ggsgtt"},
+      {kUpsample, "gggsgtt"},
       {kUpsampleSpecular,
-       "ggsgtt"
+       "gggsgtt"
        "gt"},
       {kMultiBounce, "sst"},
       {kGtso, "ssssst"},

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "bindings.h"
+#include "maths/half_texel.h"
 #include "upsample_parameters.h"
 #include "view_parameters.h"
 #include "write_result.h"
@@ -35,6 +36,7 @@ void declare_accesses(const Frame& frame, framegraph::PassBuilder& pass,
                       const UpsampleInputs& inputs, Occlusion& result) {
   const auto& sampled = framegraph::access::sampled_compute;
   pass.read(inputs.half, sampled);
+  pass.read(inputs.half_depth, sampled);
   pass.read(inputs.inverse_depth, sampled);
   if (result.bent_normal) {
     pass.read(inputs.normals, sampled);
@@ -53,14 +55,17 @@ void declare_accesses(const Frame& frame, framegraph::PassBuilder& pass,
 maths::UpsampleParameters parameters_of(const Frame& frame, const UpsampleInputs& inputs,
                                         const OcclusionSettings& settings,
                                         const maths::Projection& projection) {
-  const VkExtent3D half = frame.graph.extent(inputs.half);
+  // The textures are of the largest size.
+  const VkExtent3D stored = frame.graph.extent(inputs.half);
   const maths::vec2 per_px = maths::ray_per_px(projection);
   maths::UpsampleParameters parameters{};
   parameters.normal_from_view = maths::transpose(
       view_from_normal(frame, inputs.normals_in_view_space, inputs.normals_forward_z));
   parameters.slope = maths::vec4(per_px, projection.uv_to_slope.z, projection.uv_to_slope.w);
   parameters.pixel_uv = 1.0f / projection.size_px;
-  parameters.texel_uv = 1.0f / maths::vec2(half.width, half.height);
+  parameters.texel_uv = 1.0f / maths::vec2(stored.width, stored.height);
+  parameters.half_pixel_per_tilt =
+      (is_perspective(projection) ? -0.5f : 0.5f) * maths::kLargestTilt * per_px;
   parameters.tolerance = 1.0f / (kTolerancePx * std::abs(per_px.y));
   parameters.power = settings.power;
   parameters.intensity = settings.intensity;
@@ -83,15 +88,15 @@ tl::expected<Occlusion, Error> add_upsample(const Frame& frame, const UpsampleIn
   Occlusion out = result;
   auto pass = frame.graph.add_pass("upsample");
   declare_accesses(frame, pass, inputs, out);
-  const VkExtent3D half = frame.graph.extent(inputs.half);
-  pass.record([&kernels = frame.kernels, kernel = *kernel, inputs, out, half,
+  pass.record([&kernels = frame.kernels, kernel = *kernel, inputs, out,
                parameters =
                    parameters_of(frame, inputs, settings, *projection)](RecordContext& context) {
     const Texture written = out.visibility    ? out.visibility
                             : out.bent_normal ? out.bent_normal
                                               : out.specular;
-    const std::array<VkImageView, 8> views{
+    const std::array<VkImageView, 9> views{
         context.view(inputs.half),
+        context.view(inputs.half_depth),
         context.view(inputs.inverse_depth),
         view_or(context, out.bent_normal ? inputs.normals : Texture{}, inputs.inverse_depth),
         view_or(context, out.bent_normal ? inputs.residuals : Texture{}, inputs.half),
@@ -102,7 +107,7 @@ tl::expected<Occlusion, Error> add_upsample(const Frame& frame, const UpsampleIn
     const std::span<const VkImageView> bound(views.data(), views.size() - (out.specular ? 0 : 2));
     // Invocations stand between texels, and begin and end outside of the image.
     kernels.dispatch(context, kernel, bound, bytes_of(parameters),
-                     {half.width + 1, half.height + 1, 1});
+                     {inputs.half_size.width + 1, inputs.half_size.height + 1, 1});
   });
   return out;
 }
