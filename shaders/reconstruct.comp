@@ -54,6 +54,14 @@ const bool kLobe = false;
 #define RAW_FORMAT rg32ui
 #endif
 
+#ifdef HALF
+#define BENT_HISTORY_SAMPLER sampler2D
+#define BENT_HISTORY_IMAGE image2D
+#else
+#define BENT_HISTORY_SAMPLER usampler2D
+#define BENT_HISTORY_IMAGE uimage2D
+#endif
+
 layout(set = 0, binding = 0) uniform Parameters { ReconstructParameters parameters; };
 layout(set = 0, binding = 1, RAW_FORMAT) uniform readonly uimage2D raw_image;  // one texel a tile
 // Another image where there are no bent normals.
@@ -86,14 +94,16 @@ layout(set = 0, binding = kFirstHistoryBinding + 1) uniform writeonly uimage2D n
 #endif
 // Another image without kMotion.
 layout(set = 0, binding = kFirstHistoryBinding + 2) uniform texture2D motion_image;
-// Bent-normal residuals of pack_residual(); other images where there are no bent normals.
-layout(set = 0, binding = kFirstHistoryBinding + 3) uniform usampler2D bent_history_image;
-layout(set = 0,
-       binding = kFirstHistoryBinding + 4) uniform writeonly uimage2D next_bent_history_image;
+// Bent-normal residuals: pack_residual(), at half resolution pack_half_residual(). Without bent
+// normals they are never accessed, and other images are bound in their place.
+layout(set = 0, binding = kFirstHistoryBinding + 3) uniform BENT_HISTORY_SAMPLER bent_history_image;
+layout(set = 0, binding = kFirstHistoryBinding +
+                          4) uniform writeonly BENT_HISTORY_IMAGE next_bent_history_image;
 const int kFirstLobeBinding = kFirstHistoryBinding + 5;
 #elif defined(HALF)
 // The upsampling pass reads residuals and lobes in the formats of the history.
-layout(set = 0, binding = kFirstHistoryBinding) uniform writeonly uimage2D next_bent_history_image;
+layout(set = 0,
+       binding = kFirstHistoryBinding) uniform writeonly BENT_HISTORY_IMAGE next_bent_history_image;
 const int kFirstLobeBinding = kFirstHistoryBinding + 1;
 #else
 const int kFirstLobeBinding = kFirstHistoryBinding;
@@ -124,6 +134,14 @@ const int kTexelSize = 2;
 const int kTexelSize = 1;
 #endif
 
+// Whether the angle between normals lowers a neighbour's weight. At half resolution it does not
+// lower the error.
+#ifdef HALF
+const bool kByNormal = false;
+#else
+const bool kByNormal = true;
+#endif
+
 // Whether pixels lie between traced ones; else each was traced, or takes its tile's value.
 const bool kBetween = kTileSize > 1 && kFilterRadius > 0;
 // Traced pixels on each side that a pixel with a history averages.
@@ -146,7 +164,7 @@ struct TracedPixel {
 };
 
 shared vec4 traced[kSpan * kSpan];  // inverse depth, occluded, open, stereographic x
-shared float traced_stereographic_y[kSpan * kSpan];
+shared float traced_stereographic_y[kByNormal ? kSpan * kSpan : 1];
 // The arrays of results that are not computed have one element, which nothing reads.
 const int kBentSpan = kBentNormal ? kSpan * kSpan : 1;
 shared vec4 traced_residual[kBentSpan];           // residual, expected residual x
@@ -205,7 +223,7 @@ LobeSurface fetch_lobe_surface(ivec2 pixel, vec3 normal) {
 
 // The tile of which a pixel's neighbourhood of radius 1 begins, or the pixel's own tile.
 ivec2 cell_of(ivec2 pixel) {
-  return kBetween ? (pixel - ivec2(parameters.interleave_offset)) >> kShift : pixel >> kShift;
+  return kBetween ? (pixel - parameters.interleave_pixel) >> kShift : pixel >> kShift;
 }
 
 // The first tile of the group.
@@ -221,7 +239,9 @@ void load_tile(ivec2 first, ivec2 place) {
   RawOcclusion raw = unpack_raw_occlusion(stored.x);
   vec2 stereographic = stereographic_of_bits(raw_occlusion_normal(stored.x));
   traced[i] = vec4(uintBitsToFloat(stored.y), raw.open - raw.visible, raw.open, stereographic.x);
-  traced_stereographic_y[i] = stereographic.y;
+  if (kByNormal) {
+    traced_stereographic_y[i] = stereographic.y;
+  }
   if (kBentNormal) {
     uvec2 bent = imageLoad(bent_image, tile).xy;
     vec3 expected = unpack_residual(bent.y);
@@ -256,9 +276,7 @@ void find_traced(inout Surface surface) {
   surface.first_tile = place.y * kSpan + place.x;
   vec2 first = surface.centre - 0.5;
   surface.offset = vec2(cell * kTileSize) + parameters.interleave_offset - first;
-  vec2 largest =
-      min(vec2(last_tile() * kTileSize) + parameters.interleave_offset, vec2(size_px() - 1));
-  surface.traced_range = vec4(min(parameters.interleave_offset, largest), largest) - first.xyxy;
+  surface.traced_range = parameters.traced_range - first.xyxy;
 }
 
 // Bound of the cosine between normal and view direction: a plane seen edge-on would reach any
@@ -309,9 +327,6 @@ struct Sums {
 
 Sums no_sums() { return Sums(0.0, 0.0, vec3(0.0), vec3(0.0), vec2(0.0), vec3(0.0)); }
 
-// A neighbour at distance d is weighted by 1 / (1 + inverse_squared_width d^2)^4.
-float inverse_squared_width_of(float squared_width_px) { return 0.125 / squared_width_px; }
-
 // Bound of the squared angle between normals in a neighbour's weight, which is then at least
 // 1 / (1 + 1.23)^2 = 0.2: where a pixel has few other neighbours, one across a crease is better
 // than none. Fitted to the error of first frames (`alcove compare --frames 1`).
@@ -336,8 +351,10 @@ void add_traced(inout Sums sums, Surface surface, float inverse_squared_width, i
   float near = 1.0 + offset.x * offset.x * inverse_squared_width +
                offset.y * offset.y * inverse_squared_width;
   float level = 1.0 + min(off_plane * off_plane, 1e14);  // the weight is no denormal
-  level += min(squared_turn(surface.quantised, vec2(found.w, traced_stereographic_y[index])),
-               kLargestSquaredAngle);
+  if (kByNormal) {
+    level += min(squared_turn(surface.quantised, vec2(found.w, traced_stereographic_y[index])),
+                 kLargestSquaredAngle);
+  }
   float both = near * near * level;
   float weight = 1.0 / (both * both);
   sums.occluded += weight * found.y;
@@ -418,8 +435,13 @@ float dither_of(ivec2 texel) {
 // Stores residual and lobe as history and upsampling read them.
 void store_kept(Surface surface, Result result, float dither) {
   if (kBentNormal) {
-    uint residual = pack_residual_dithered(surface.sky ? vec3(0.0) : result.residual, dither);
-    imageStore(next_bent_history_image, surface.texel, uvec4(residual));
+    vec3 residual = surface.sky ? vec3(0.0) : result.residual;
+#ifdef HALF
+    vec4 packed = pack_half_residual(residual, dither);
+#else
+    uvec4 packed = uvec4(pack_residual_dithered(residual, dither));
+#endif
+    imageStore(next_bent_history_image, surface.texel, packed);
   }
 #ifdef SPECULAR
   // Written so that a NaN becomes nothing, for it would stay in the history.
@@ -470,7 +492,7 @@ void store(Surface surface, Result result) {
 
 void reconstruct(Surface surface) {
   Sums sums = no_sums();
-  add_ring(sums, surface, inverse_squared_width_of(parameters.window_px * parameters.window_px), 0);
+  add_ring(sums, surface, parameters.inverse_squared_window, 0);
   float scale = 1.0 / max(sums.open, 1e-37);
   Result result = Result(saturate(sums.occluded * scale), vec3(0.0), sums.lobe);
   if (kBentNormal) {

@@ -19,9 +19,9 @@ vec4 depth_agreement(vec4 found, Surface surface, Previous previous, vec2 part) 
   vec4 differences = found - (gather_offsets(gradient.x, gradient.y, part) + expected);
   if (kMotion) {
     if (previous.moves) {
-      differences = follow_depth(
-          differences, kPerspective ? kDepthMotion * expected
-                                    : kDepthMotion / parameters.history_depth_scale.z);
+      differences =
+          follow_depth(differences, kPerspective ? kDepthMotion * expected
+                                                 : kDepthMotion / parameters.history_depth_scale.z);
     }
   }
   float sharpness = parameters.history_sharpness * surface.n_dot_v * per_depth;
@@ -57,12 +57,12 @@ History read_moving(Surface surface) {
     }
   }
   if (kBentNormal) {
-    uvec4 residuals = textureGather(bent_history_image, uv);
-    [[unroll]] for (int i = 0; i < 4; ++i) {
-      history.residual += weights[i] * unpack_residual(residuals[i]);
-    }
+    vec3 stored = vec3(dot(weights, textureGather(bent_history_image, uv, 0)),
+                       dot(weights, textureGather(bent_history_image, uv, 1)),
+                       dot(weights, textureGather(bent_history_image, uv, 2)));
+    history.residual = known ? unpack_half_residual(stored * scale) : vec3(0.0);
     // From the view space of the previous frame.
-    history.residual = (history.residual * scale) * mat3(parameters.previous_from_view);
+    history.residual = history.residual * mat3(parameters.previous_from_view);
   }
 #ifdef SPECULAR
   uvec4 lobes = textureGather(lobe_history_image, uv);
@@ -87,7 +87,7 @@ History read_static(Surface surface) {
   history.recent = half_texel_recent(depth, stored.x);
   history.weight = same ? min(stored.y * kHalfTexelWeightUnit, parameters.largest_weight) : 0.0;
   if (kBentNormal) {
-    history.residual = unpack_residual(texelFetch(bent_history_image, surface.texel, 0).r);
+    history.residual = unpack_half_residual(texelFetch(bent_history_image, surface.texel, 0).xyz);
   }
 #ifdef SPECULAR
   LobeTexel lobe = unpack_lobe_texel(texelFetch(lobe_history_image, surface.texel, 0).r);

@@ -96,7 +96,6 @@ Surface fetch_surface(ivec2 texel) {
   float z = 1.0 + dot(surface.tilt, ray);
   float per_length = inversesqrt(dot(surface.tilt, surface.tilt) + z * z);
   surface.n_dot_v = max(per_length, kLeastNDotV);
-  surface.quantised = make_quantised_normal(vec3(surface.tilt, z) * per_length);
   // The plane at the texel's centre, bounded where it is seen edge-on.
   float moved = found.inverse_depth + dot(0.5 * way, surface.gradient);
   surface.inverse_depth =

@@ -104,9 +104,8 @@ const float kWidth = kTileTexels > 2 ? 2.5 : 1.0;
 float window_of(History history) {
   const float own = 0.58 * kWidth;
   const float per_squared_texel = 1.0 / float(kTexelSize * kTexelSize);
-  float first = 1.0 / (parameters.window_px * parameters.window_px);
-  return 0.125 * min(per_squared_texel / (own * own + 2.6 * history.between),
-                     first * (3.0 * history.weight + 1.0));
+  return min(0.125 * per_squared_texel / (own * own + 2.6 * history.between),
+             parameters.inverse_squared_window * (3.0 * history.weight + 1.0));
 }
 
 // How much nearer to the tangent plane a neighbour has to be than in a first frame: the more

@@ -16,14 +16,18 @@ struct ReconstructParameters {
   vec4 previous_extent;      // of the previous frame: xy the centre of its last texel, in texels,
                              // zw its size in pixels as parts of this frame's
   vec4 history_depth_scale;  // of history_depth(): xy of this frame, zw of the previous frame
+  vec4 traced_range;         // smallest and largest xy of a traced pixel, in pixels
   vec4 motion;         // from motion vectors to pixels of the previous frame: xy scale, zw offset
   vec2 history_unit;   // of this and of the previous frame: a power of two near the near plane,
                        // in which depths are held, so that no unit of length changes a bit
   vec2 history_texel;  // 1 over the size of the history's texture
   vec2 pixel_uv;       // 1 over the size of the image of inverse depth
-  vec2 pixels_per_slope;    // 1 over ray_per_px()
-  vec2 interleave_offset;   // pixel of each tile that was traced this frame
-  float window_px;          // width of the filter's window in a first frame, pixels
+  vec2 pixels_per_slope;   // 1 over ray_per_px()
+  vec2 interleave_offset;  // pixel of each tile that was traced this frame
+  ivec2 interleave_pixel;  // the same in whole numbers
+  // 0.125 / w^2 for the filter's window of w pixels in a first frame. A neighbour at a distance of
+  // d pixels is weighted by 1 / (1 + inverse_squared_window d^2)^4.
+  float inverse_squared_window;
   float tolerance;          // scale of distances from the tangent plane, in depths
   float history_sharpness;  // of history_agreement(), for a surface seen head-on
   float history_slack;      // of history_agreement()

@@ -33,9 +33,8 @@ History read_moving(Surface surface) {
   vec4 differences = depth_differences(texels, surface, previous, part);
   if (kMotion) {
     if (previous.moves) {
-      float limit = kPerspective
-                        ? kDepthMotion * 1.442695 * abs(parameters.history_depth_scale.z)
-                        : kDepthMotion;
+      float limit = kPerspective ? kDepthMotion * 1.442695 * abs(parameters.history_depth_scale.z)
+                                 : kDepthMotion;
       differences = follow_depth(differences, limit);
     }
   }

@@ -34,8 +34,8 @@ layout(set = 0, binding = 1) uniform sampler2D half_image;           // pack_hal
 layout(set = 0, binding = 2) uniform sampler2D half_depth_image;     // half_texel_depth()
 layout(set = 0, binding = 3) uniform sampler2D inverse_depth_image;  // SliceSample::inverse_depth
 layout(set = 0, binding = 4) uniform texture2D normal_image;         // xyz
-// pack_residual(). Without bent normals it is never read, and another image is bound in its place.
-layout(set = 0, binding = 5) uniform usampler2D residual_image;
+// pack_half_residual(). Without bent normals it is never read, and another image is bound.
+layout(set = 0, binding = 5) uniform sampler2D residual_image;
 // The next two are each bound to another image if they are not written.
 layout(set = 0, binding = 6) uniform writeonly image2D visibility_image;
 // In the space of the normals.
@@ -79,8 +79,8 @@ Cell fetch_cell(ivec2 index) {
   [[unroll]] for (int i = 0; i < 4; ++i) {
     vec2 tilt = vec2(tilts_x[i], tilts_y[i]);  // in units of kLargestTilt
     // About the cosine between the normal and the view direction.
-    float steepness = parameters.tolerance *
-                      inversesqrt(1.0 + dot(tilt, tilt) * (kLargestTilt * kLargestTilt));
+    float steepness =
+        parameters.tolerance * inversesqrt(1.0 + dot(tilt, tilt) * (kLargestTilt * kLargestTilt));
     float plane = steepness * texel_depths[i];
     // Over half a pixel.
     vec2 change = tilt * parameters.half_pixel_per_tilt * (kPerspective ? plane : steepness);
@@ -89,14 +89,13 @@ Cell fetch_cell(ivec2 index) {
     float left = plane - change.x;
     float right = plane + change.x;
     cell.steepness[i] = steepness;
-    cell.planes[i] =
-        vec4(left + change.y, right + change.y, right - change.y, left - change.y);
+    cell.planes[i] = vec4(left + change.y, right + change.y, right - change.y, left - change.y);
   }
   return cell;
 }
 
-// Distance from a plane, in tolerances, from which on a weight no longer falls. The product of three
-// weights' denominators is then still a float.
+// Distance from a plane, in tolerances, from which on a weight no longer falls. The product of
+// three weights' denominators is then still a float.
 const float kFarthest = 1e5;
 
 // The weights of the four texels for pixel `j`, up to a common factor: share / (1 + distance^2),
@@ -138,9 +137,11 @@ void main() {
   }
   Cell cell = fetch_cell(index);
   vec2 uv = vec2(index) * parameters.texel_uv;
-  uvec4 residuals = uvec4(0u);
+  vec4 residuals_x, residuals_y, residuals_z;
   if (kBentNormal) {
-    residuals = textureGather(residual_image, uv);
+    residuals_x = textureGather(residual_image, uv, 0);
+    residuals_y = textureGather(residual_image, uv, 1);
+    residuals_z = textureGather(residual_image, uv, 2);
   }
 #ifdef SPECULAR
   uvec4 lobes = textureGather(lobe_image, uv);
@@ -158,11 +159,9 @@ void main() {
       imageStore(visibility_image, pixel, vec4(kShaped ? shaped : visibility));
     }
     if (kBentNormal && inside) {
-      vec3 residual = vec3(0.0);
-      [[unroll]] for (int i = 0; i < 4; ++i) {
-        residual += weights[i] * unpack_residual(residuals[i]);
-      }
-      residual *= sky ? 0.0 : inverse_sum;
+      vec3 stored =
+          vec3(dot(weights, residuals_x), dot(weights, residuals_y), dot(weights, residuals_z));
+      vec3 residual = sky ? vec3(0.0) : unpack_half_residual(stored * inverse_sum);
       vec3 bent = finish_bent_normal(residual, visibility, unit_normal(pixel));
       imageStore(bent_normal_image, pixel, vec4(mat3(parameters.normal_from_view) * bent, 0.0));
     }

@@ -69,7 +69,7 @@ struct HistoryTextures {
 // Every texture that the pass accesses; null where it is not wanted.
 struct Textures {
   ReconstructInputs inputs;
-  Occlusion result;  // at half resolution the upsampling pass writes it
+  Occlusion result;               // at half resolution the upsampling pass writes it
   HistoryTextures history;        // at half resolution maths::pack_half_texel()
   HistoryTextures depth_history;  // maths::half_texel_depth(), only at half resolution
   HistoryTextures bent_history;
@@ -102,9 +102,9 @@ void create_histories(Graph& graph, const OcclusionSettings& settings,
   textures.depth_history =
       create_history(graph, wanted && half, DerivedHistoryName(history_name, kDepthSuffix),
                      kHalfDepthFormat, largest, valid);
-  textures.bent_history = create_history(graph, wanted && raw_occlusion.bent,
-                                         DerivedHistoryName(history_name, kBentSuffix),
-                                         kBentHistoryFormat, largest, valid);
+  textures.bent_history = create_history(
+      graph, wanted && raw_occlusion.bent, DerivedHistoryName(history_name, kBentSuffix),
+      half ? kHalfBentFormat : kBentHistoryFormat, largest, valid);
   textures.lobe_history = create_history(graph, wanted && raw_occlusion.lobe,
                                          DerivedHistoryName(history_name, kLobeSuffix),
                                          kLobeHistoryFormat, largest, valid);
@@ -132,7 +132,7 @@ void create_half(Graph& graph, const OcclusionSettings& settings, const Reconstr
   }
   if (textures.inputs.raw_occlusion.bent && !textures.bent_history.next) {
     textures.bent_history.next =
-        graph.create_texture("half-resolution residual", {kBentHistoryFormat, size});
+        graph.create_texture("half-resolution residual", {kHalfBentFormat, size});
   }
   if (textures.inputs.raw_occlusion.lobe && !textures.lobe_history.next) {
     textures.lobe_history.next =
@@ -245,18 +245,14 @@ Bindings bindings_of(RecordContext& context, const Textures& textures) {
     bindings.add(
         {view_or(context, out.visibility, written), view_or(context, out.bent_normal, written)});
   }
-  // Stands in for unsigned integers that are not read.
-  const Texture unsigned_read = half ? in.raw_occlusion.raw_occlusion : textures.history.previous;
-  const Texture unsigned_written = textures.history.next;
   if (textures.history.previous) {
-    bindings.add(
-        {context.view(textures.history.previous),
-         context.view(half ? textures.depth_history.previous : textures.history.next),
-         view_or(context, in.motion, sampled),
-         view_or(context, textures.bent_history.previous, unsigned_read),
-         view_or(context, textures.bent_history.next, unsigned_written)});
+    bindings.add({context.view(textures.history.previous),
+                  context.view(half ? textures.depth_history.previous : textures.history.next),
+                  view_or(context, in.motion, sampled),
+                  view_or(context, textures.bent_history.previous, textures.history.previous),
+                  view_or(context, textures.bent_history.next, textures.history.next)});
   } else if (half) {
-    bindings.add({view_or(context, textures.bent_history.next, unsigned_written)});
+    bindings.add({view_or(context, textures.bent_history.next, textures.history.next)});
   }
   if (in.raw_occlusion.lobe) {
     bindings.add({view_or(context, in.roughness, sampled)});
@@ -417,8 +413,8 @@ constexpr float kHalfHistorySlack = 0.03f;
 float half_history_sharpness(const maths::Projection& p) {
   const float texel = 2.0f * std::abs(maths::ray_per_px(p).y);
   const float rounding = 0x1p-14f * std::abs(p.near_far.y);
-  return 1.0f / (is_perspective(p) ? relative_history_distance(texel)
-                                   : std::max(1.5f * texel, rounding));
+  return 1.0f /
+         (is_perspective(p) ? relative_history_distance(texel) : std::max(1.5f * texel, rounding));
 }
 
 // The width in pixels of the filter's window in a first frame: wide for few slices, for many hardly
@@ -480,6 +476,14 @@ maths::ReconstructParameters parameters_of(const Frame& frame, const maths::Proj
   return parameters;
 }
 
+// ReconstructParameters::traced_range. The tiles at the right and the lower border trace their last
+// pixel where the interleave offset lies beyond the image.
+maths::vec4 traced_range(maths::vec2 size_px, maths::vec2 offset, float tile_size) {
+  const maths::vec2 last = maths::ceil(size_px / tile_size) * tile_size - tile_size + offset;
+  const maths::vec2 largest = maths::min(last, size_px - 1.0f);
+  return maths::vec4(maths::min(offset, largest), largest);
+}
+
 // Without a history nothing of the frame before is read.
 Frame without_past(const Frame& frame) {
   Frame alone = frame;
@@ -538,7 +542,8 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& given_frame,
       interleave_offset_of(inputs.raw_occlusion.tile_size, frame.index);
   maths::ReconstructParameters parameters =
       parameters_of(frame, *projection, *previous, inputs, settings);
-  parameters.window_px = window_px(inputs.raw_occlusion);
+  const float window = window_px(inputs.raw_occlusion);
+  parameters.inverse_squared_window = 0.125f / (window * window);
   // Distances from the plane count for more with the slices, as the window narrows with them.
   parameters.tolerance *= std::sqrt(static_cast<float>(inputs.raw_occlusion.slices));
   // Nothing changes, so all frames count alike.
@@ -553,15 +558,17 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& given_frame,
   // upsampling pass reads it.
   const VkExtent3D half_extent{std::min(half_size.width + 1, stored.width),
                                std::min(half_size.height + 1, stored.height), 1};
-  parameters.interleave_offset =
-      maths::vec2(static_cast<float>(offset_x), static_cast<float>(offset_y));
+  parameters.interleave_pixel = {offset_x, offset_y};
+  parameters.interleave_offset = maths::vec2(parameters.interleave_pixel);
+  parameters.traced_range = traced_range(projection->size_px, parameters.interleave_offset,
+                                         static_cast<float>(inputs.raw_occlusion.tile_size));
   pass.record([&kernels = frame.kernels, kernel = *kernel, textures, parameters,
                half_extent](RecordContext& context) {
     const Bindings bindings = bindings_of(context, textures);
     const std::span<const VkImageView> bound(bindings.views.data(), bindings.count);
-    kernels.dispatch(context, kernel, bound, bytes_of(parameters),
-                     is_half(textures) ? half_extent
-                                       : context.extent(textures.inputs.inverse_depth));
+    kernels.dispatch(
+        context, kernel, bound, bytes_of(parameters),
+        is_half(textures) ? half_extent : context.extent(textures.inputs.inverse_depth));
   });
   if (!is_half(textures)) {
     return textures.result;

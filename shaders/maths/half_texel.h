@@ -5,6 +5,7 @@
 #define ALCOVE_MATHS_HALF_TEXEL_H
 
 #include "language.h"
+#include "raw_occlusion.h"
 
 ALCOVE_MATHS_BEGIN
 
@@ -42,6 +43,19 @@ ALCOVE_INLINE float half_texel_recent(float depth, float otherwise) {
   uint code = floatBitsToUint(depth) & 255u;
   float root = (float(code) - 1.0f) * (1.0f / 254.0f);
   return code == 0u ? otherwise : root * root;
+}
+
+// A bent-normal residual (bent_normal.h) as A2B10G10R10_UNORM, so that 0 is exact. `dither` in
+// [0,1) replaces the 0.5 of rounding to nearest.
+ALCOVE_INLINE vec4 pack_half_residual(vec3 residual, float dither) {
+  float scale = 511.0f / (1023.0f * kLargestResidual);
+  float offset = (511.5f + dither) * (1.0f / 1023.0f);
+  return vec4(residual.x * scale + offset, residual.y * scale + offset, residual.z * scale + offset,
+              0.0f);
+}
+
+ALCOVE_INLINE vec3 unpack_half_residual(vec3 stored) {
+  return (stored - 512.0f / 1023.0f) * (1023.0f / 511.0f * kLargestResidual);
 }
 
 ALCOVE_MATHS_END

@@ -88,7 +88,7 @@ void for_each_setting(Settings& settings, const Visit& visit) {
         settings.history_frames);
   visit(SettingInfo{.name = "half_resolution",
                     .help = "Filters and accumulates at half resolution, then upsamples. For tiles "
-                            "of 2 or 4 pixels.",
+                            "of at least 2 pixels.",
                     .matters = [](S s) { return s.tile_size > 1; }},
         settings.half_resolution);
   visit(SettingInfo{.name = "specular",

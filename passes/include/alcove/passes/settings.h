@@ -12,6 +12,10 @@ namespace alcove::passes {
 // Presets for quality_settings(). All but `reference` keep a history of 32 frames. The depth
 // fetches are those of a pixel and frame.
 enum class Quality : std::uint8_t {
+  // 1 slice with 8 steps per half-slice, one pixel in 8x8 traced, filter and history at half
+  // resolution: a quarter of a fetch. For half a millisecond on a console of the generation of the
+  // paper.
+  console,
   low,     // 1 slice with 8 steps per half-slice, one pixel in 4x4 traced: 1 fetch.
   medium,  // 1 slice with 10 steps, one pixel in 2x2: 5 fetches. The preset to begin with.
   high,    // 2 slices with 16 steps, one pixel in 2x2: 16 fetches.
@@ -34,8 +38,8 @@ struct OcclusionSettings {
   // Occluders beyond this distance do not count. Scene units, above 0. A twentieth to a fifth of a
   // room's height is usual.
   float radius = 0.5f;
-  // Width of a tile in pixels: 1, 2 or 4. One pixel per tile is traced in a frame; the interleave
-  // offset moves it from frame to frame.
+  // Width of a tile in pixels: 1, 2, 4 or 8. One pixel per tile is traced in a frame; the
+  // interleave offset moves it from frame to frame.
   std::uint32_t tile_size = 2;
   // Slices per traced pixel and frame, 1 to 64. More slices reduce noise.
   std::uint32_t slices = 1;
@@ -56,8 +60,8 @@ struct OcclusionSettings {
   // allocates none, for engines with a temporal filter of their own.
   std::uint32_t history_frames = 32;
   // Filters and accumulates texels of 2x2 pixels, and makes pixels from them by edge-aware
-  // upsampling: less time, a quarter of the history's memory, and a larger error (passes/README.md
-  // has figures). Needs a tile_size of 2 or 4.
+  // upsampling: less time, less memory for the history, and a larger error (passes/README.md
+  // has figures). Needs a tile_size of at least 2.
   bool half_resolution = false;
 
   // Outputs. One that is off costs neither a pass nor memory.
