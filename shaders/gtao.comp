@@ -46,6 +46,7 @@ layout(constant_id = 15) const bool kSecondLayer = false;   // second_image occl
 layout(constant_id = 16) const bool kExtrapolation = true;  // surfaces go on beyond the image
 layout(constant_id = 17) const bool kUnobserved = true;     // is left out, with connected samples
 layout(constant_id = 18) const uint kNormalEncoding = 0;    // as NormalEncoding has them
+layout(constant_id = 19) const bool kReversed = false;      // raw depth is 1 at the near plane
 
 const uint kBitmask = 2;
 const uint kConnected = 3;
@@ -53,19 +54,18 @@ const bool kHeuristic = kEstimator == 1;
 const bool kLeaveOutUnobserved = kEstimator == kConnected && kUnobserved;
 
 layout(set = 0, binding = 0) uniform Parameters { GtaoParameters parameters; };
-layout(set = 0, binding = 1,
-       r32f) uniform readonly image2D inverse_depth_image;    // SliceSample::inverse_depth
+layout(set = 0, binding = 1) uniform texture2D depth_image;   // as the projection wrote it
 layout(set = 0, binding = 2) uniform texture2D normal_image;  // xyz, turned by view_from_normal
 // Packed RawOcclusion and inverse depth; with SPECULAR also those of the GGX lobe and its surface.
 layout(set = 0, binding = 3) uniform writeonly uimage2D raw_image;
 // Bound to the raw occlusion and never written where no bent normal is wanted.
 layout(set = 0, binding = 4) uniform writeonly uimage2D bent_image;
-// SliceSample::inverse_depth of the back faces. Without kBackFaces it is never read, and another
-// image is bound in its place.
-layout(set = 0, binding = 5, r32f) uniform readonly image2D back_image;
-// SliceSample::inverse_depth of the second depth layer. Without kSecondLayer it is never read, and
-// another image is bound in its place.
-layout(set = 0, binding = 6, r32f) uniform readonly image2D second_image;
+// Depth of the back faces. Without kBackFaces it is never read, and another image is bound in its
+// place.
+layout(set = 0, binding = 5) uniform texture2D back_image;
+// The second depth layer. Without kSecondLayer it is never read, and another image is bound in its
+// place.
+layout(set = 0, binding = 6) uniform texture2D second_image;
 #ifdef SPECULAR
 layout(set = 0, binding = 7) uniform texture2D roughness_image;  // perceptual
 const bool kLobe = true;
@@ -83,7 +83,7 @@ struct Surface {
   LobeSurface lobe;  // normal as it was given
 };
 
-ivec2 size_px() { return imageSize(inverse_depth_image); }
+ivec2 size_px() { return textureSize(depth_image, 0); }
 
 float fetch_roughness(ivec2 pixel) {
 #ifdef SPECULAR
@@ -94,7 +94,11 @@ float fetch_roughness(ivec2 pixel) {
   return parameters.roughness;
 }
 
-float load_inverse_depth(ivec2 pixel) { return imageLoad(inverse_depth_image, pixel).r; }
+#include "load_depth.h"
+
+float load_inverse_depth(ivec2 pixel) {
+  return inverse_depth_of(texelFetch(depth_image, pixel, 0).r);
+}
 
 #include "depth_normal.h"
 
@@ -295,7 +299,7 @@ void main() {
     return;
   }
   ivec2 pixel = min(block * kTileSize + ivec2(parameters.interleave_offset), size_px() - 1);
-  float inverse_depth = imageLoad(inverse_depth_image, pixel).r;
+  float inverse_depth = load_inverse_depth(pixel);
   SearchResult result = sky_result();
   if (inverse_depth != sky_inverse_depth(kPerspective)) {
     result = search_pixel(pixel, inverse_depth, noise_at(uvec2(block)));

@@ -115,8 +115,8 @@ SliceSample fetch_sample(HalfSlice half_slice, uint layer, uint k) {
   precise vec2 biased = half_slice.direction_px * found.offset_px + kRoundingBias;
   precise vec2 snapped = biased - kRoundingBias;
   ivec2 texel = floatBitsToInt(biased) + half_slice.texel_bias;
-  found.inverse_depth =
-      layer == 0u ? imageLoad(inverse_depth_image, texel).r : imageLoad(second_image, texel).r;
+  found.inverse_depth = layer == 0u ? load_inverse_depth(texel)
+                                    : inverse_depth_of(texelFetch(second_image, texel, 0).r);
   float along_px = kSnapToTexels ? dot(snapped, half_slice.direction_px) : found.offset_px;
   // Changes of the tangent plane's inverse depth from the shaded pixel to the texel and to the
   // line.
@@ -130,7 +130,7 @@ SliceSample fetch_sample(HalfSlice half_slice, uint layer, uint k) {
   found.point = vec3(plane_point(half_slice, along_px, found.off_plane),
                      kPerspective ? found.inverse_depth : 1.0);
   if (kBackFaces) {
-    float back = imageLoad(back_image, texel).r;
+    float back = inverse_depth_of(texelFetch(back_image, texel, 0).r);
     // A back face is not taken to lie before the front face, which may have been moved.
     float front = half_slice.tangent.inverse_depth + to_line + found.off_plane;
     float end = farther_inverse_depth(front, back, kPerspective);

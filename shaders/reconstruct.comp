@@ -45,6 +45,7 @@ layout(constant_id = 9) const bool kFresh = true;         // there is no history
 layout(constant_id = 10) const bool kVisibility = true;   // whether visibility_image is written
 layout(constant_id = 11) const uint kNormalEncoding = 0;  // as NormalEncoding has them
 layout(constant_id = 12) const bool kShaped = false;      // power or intensity is not 1
+layout(constant_id = 13) const bool kReversed = false;    // raw depth is 1 at the near plane
 
 #ifdef SPECULAR
 const bool kLobe = true;
@@ -68,14 +69,13 @@ layout(set = 0, binding = 1, RAW_FORMAT) uniform readonly uimage2D raw_image;  /
 layout(set = 0, binding = 2, rg32ui) uniform readonly uimage2D bent_image;
 layout(set = 0, binding = 4) uniform texture2D normal_image;  // xyz
 #ifdef HALF
-// SliceSample::inverse_depth. With a nearest sampler that clamps to the edge.
-layout(set = 0, binding = 3) uniform sampler2D inverse_depth_image;
+// As the projection wrote it. With a nearest sampler that clamps to the edge.
+layout(set = 0, binding = 3) uniform sampler2D depth_image;
 layout(set = 0, binding = 5) uniform writeonly image2D half_image;        // pack_half_texel()
 layout(set = 0, binding = 6) uniform writeonly image2D half_depth_image;  // half_texel_depth()
 const int kFirstHistoryBinding = 7;
 #else
-layout(set = 0, binding = 3,
-       r32f) uniform readonly image2D inverse_depth_image;  // SliceSample::inverse_depth
+layout(set = 0, binding = 3) uniform texture2D depth_image;  // as the projection wrote it
 // Another image where it is not written; so is the next.
 layout(set = 0, binding = 5) uniform writeonly image2D visibility_image;
 // In the space of the normals.
@@ -185,21 +185,22 @@ struct Surface {
   QuantisedNormal quantised;
   LobeSurface lobe;   // normal as it was given
   vec2 tilt;          // HalfTexel::tilt; only with HALF
+  float depth;        // about 1/inverse_depth in perspective; only with HALF
   int first_tile;     // index in `traced` of the tile to the upper left
   vec2 offset;        // to the pixel that was traced there, pixels, before clamping to the image
   vec4 traced_range;  // smallest and largest offset of a traced pixel in the image
 };
 
-#ifdef HALF
-ivec2 size_px() { return textureSize(inverse_depth_image, 0); }
-#else
-ivec2 size_px() { return imageSize(inverse_depth_image); }
-#endif
+ivec2 size_px() { return textureSize(depth_image, 0); }
 
 ivec2 last_tile() { return (size_px() + (kTileSize - 1)) / kTileSize - 1; }
 
+#include "load_depth.h"
+
 #ifndef HALF
-float load_inverse_depth(ivec2 pixel) { return imageLoad(inverse_depth_image, pixel).r; }
+float load_inverse_depth(ivec2 pixel) {
+  return inverse_depth_of(texelFetch(depth_image, pixel, 0).r);
+}
 
 #include "depth_normal.h"
 #endif
@@ -224,6 +225,12 @@ LobeSurface fetch_lobe_surface(ivec2 pixel, vec3 normal) {
 // The tile of which a pixel's neighbourhood of radius 1 begins, or the pixel's own tile.
 ivec2 cell_of(ivec2 pixel) {
   return kBetween ? (pixel - parameters.interleave_pixel) >> kShift : pixel >> kShift;
+}
+
+// From a pixel to the pixel that was traced in its cell's tile to the upper left.
+vec2 offset_of_traced(ivec2 pixel) {
+  return kBetween ? -vec2((pixel - parameters.interleave_pixel) & (kTileSize - 1))
+                  : parameters.interleave_offset - vec2(pixel & (kTileSize - 1));
 }
 
 // The first tile of the group.
@@ -271,12 +278,11 @@ void load_tiles() {
 
 // Sets which traced pixels lie around the surface's centre.
 void find_traced(inout Surface surface) {
-  ivec2 cell = cell_of(surface.texel * kTexelSize);
-  ivec2 place = cell - first_tile_of_group();
+  ivec2 pixel = surface.texel * kTexelSize;
+  ivec2 place = cell_of(pixel) - first_tile_of_group();
   surface.first_tile = place.y * kSpan + place.x;
-  vec2 first = surface.centre - 0.5;
-  surface.offset = vec2(cell * kTileSize) + parameters.interleave_offset - first;
-  surface.traced_range = parameters.traced_range - first.xyxy;
+  surface.offset = offset_of_traced(pixel) - 0.5 * float(kTexelSize - 1);
+  surface.traced_range = parameters.traced_range - (surface.centre - 0.5).xyxy;
 }
 
 // Bound of the cosine between normal and view direction: a plane seen edge-on would reach any
@@ -291,7 +297,7 @@ Surface fetch_surface(ivec2 pixel) {
   Surface surface;
   surface.texel = surface.pixel = pixel;
   surface.centre = vec2(pixel) + 0.5;
-  surface.inverse_depth = imageLoad(inverse_depth_image, pixel).r;
+  surface.inverse_depth = load_inverse_depth(pixel);
   surface.sky = surface.inverse_depth == sky_inverse_depth(kPerspective);
   vec3 given = fetch_normal(pixel);
   vec3 normal = normalize(given * mat3(parameters.normal_from_view));

@@ -14,7 +14,7 @@ vec4 depth_agreement(vec4 found, Surface surface, Previous previous, vec2 part) 
     float scale = 1.0 / max(previous.depth, 1e-30);
     expected = surface.inverse_depth * scale;
     gradient *= scale;
-    per_depth = 1.0 / expected;
+    per_depth = previous.depth * surface.depth;
   }
   vec4 differences = found - (gather_offsets(gradient.x, gradient.y, part) + expected);
   if (kMotion) {
@@ -79,7 +79,7 @@ History read_moving(Surface surface) {
 History read_static(Surface surface) {
   float depth = texelFetch(history_depth_image, surface.texel, 0).r;
   vec4 stored = texelFetch(history_image, surface.texel, 0);
-  float per_depth = kPerspective ? 1.0 / surface.inverse_depth : 1.0;
+  float per_depth = kPerspective ? surface.depth : 1.0;
   float sharpness = parameters.history_sharpness * surface.n_dot_v * per_depth;
   bool same = abs(depth - surface.inverse_depth) * sharpness <= 0.78 + parameters.history_slack;
   History history = no_history();

@@ -21,10 +21,11 @@ struct ReconstructParameters {
   vec2 history_unit;   // of this and of the previous frame: a power of two near the near plane,
                        // in which depths are held, so that no unit of length changes a bit
   vec2 history_texel;  // 1 over the size of the history's texture
-  vec2 pixel_uv;       // 1 over the size of the image of inverse depth
-  vec2 pixels_per_slope;   // 1 over ray_per_px()
-  vec2 interleave_offset;  // pixel of each tile that was traced this frame
-  ivec2 interleave_pixel;  // the same in whole numbers
+  vec2 pixel_uv;       // 1 over the size of the depth buffer
+  vec2 inverse_depth_from_ndc;  // of inverse_depth_of_ndc()
+  vec2 pixels_per_slope;        // 1 over ray_per_px()
+  vec2 interleave_offset;       // pixel of each tile that was traced this frame
+  ivec2 interleave_pixel;       // the same in whole numbers
   // 0.125 / w^2 for the filter's window of w pixels in a first frame. A neighbour at a distance of
   // d pixels is weighted by 1 / (1 + inverse_squared_window d^2)^4.
   float inverse_squared_window;

@@ -27,13 +27,14 @@ layout(constant_id = 1) const bool kVisibility = true;  // whether visibility_im
 layout(constant_id = 2) const bool kShaped = false;     // power or intensity is not 1
 layout(constant_id = 3) const bool kBentNormal = false;
 layout(constant_id = 4) const uint kNormalEncoding = 0;  // as NormalEncoding has them
+layout(constant_id = 5) const bool kReversed = false;    // raw depth is 1 at the near plane
 
 layout(set = 0, binding = 0) uniform Parameters { UpsampleParameters parameters; };
 // The samplers are nearest and clamp to the edge.
-layout(set = 0, binding = 1) uniform sampler2D half_image;           // pack_half_texel()
-layout(set = 0, binding = 2) uniform sampler2D half_depth_image;     // half_texel_depth()
-layout(set = 0, binding = 3) uniform sampler2D inverse_depth_image;  // SliceSample::inverse_depth
-layout(set = 0, binding = 4) uniform texture2D normal_image;         // xyz
+layout(set = 0, binding = 1) uniform sampler2D half_image;        // pack_half_texel()
+layout(set = 0, binding = 2) uniform sampler2D half_depth_image;  // half_texel_depth()
+layout(set = 0, binding = 3) uniform sampler2D depth_image;       // as the projection wrote it
+layout(set = 0, binding = 4) uniform texture2D normal_image;      // xyz
 // pack_half_residual(). Without bent normals it is never read, and another image is bound.
 layout(set = 0, binding = 5) uniform sampler2D residual_image;
 // The next two are each bound to another image if they are not written.
@@ -45,9 +46,13 @@ layout(set = 0, binding = 8) uniform usampler2D lobe_image;  // LobeTexel
 layout(set = 0, binding = 9) uniform writeonly image2D specular_image;
 #endif
 
-ivec2 size_px() { return textureSize(inverse_depth_image, 0); }
+ivec2 size_px() { return textureSize(depth_image, 0); }
 
-float load_inverse_depth(ivec2 pixel) { return texelFetch(inverse_depth_image, pixel, 0).r; }
+#include "load_depth.h"
+
+float load_inverse_depth(ivec2 pixel) {
+  return inverse_depth_of(texelFetch(depth_image, pixel, 0).r);
+}
 
 #include "depth_normal.h"
 
@@ -58,7 +63,7 @@ float below_of(int i) { return i < 2 ? 1.0 : -1.0; }
 
 struct Cell {
   ivec2 first;      // the pixel to the upper left
-  vec4 depths;      // inverse depths of the pixels
+  vec4 depths_ndc;  // raw depths of the pixels
   vec4 occlusions;  // of the texels
   // For each texel its distance from a pixel, in tolerances, is steepness - plane / depth of the
   // pixel in perspective, and steepness * depth - plane in orthographic views. `planes` holds four
@@ -70,7 +75,7 @@ struct Cell {
 Cell fetch_cell(ivec2 index) {
   Cell cell;
   cell.first = index * 2 - 1;
-  cell.depths = textureGather(inverse_depth_image, vec2(index * 2) * parameters.pixel_uv);
+  cell.depths_ndc = textureGather(depth_image, vec2(index * 2) * parameters.pixel_uv);
   vec2 uv = vec2(index) * parameters.texel_uv;
   vec4 texel_depths = textureGather(half_depth_image, uv);
   cell.occlusions = textureGather(half_image, uv, 0);
@@ -98,10 +103,14 @@ Cell fetch_cell(ivec2 index) {
 // three weights' denominators is then still a float.
 const float kFarthest = 1e5;
 
-// The weights of the four texels for pixel `j`, up to a common factor: share / (1 + distance^2),
-// where the distance from the plane is in tolerances.
+// The weights of the four texels for pixel `j`, which is not of the sky, up to a common factor:
+// share / (1 + distance^2), where the distance from the plane is in tolerances.
 vec4 weights_of(Cell cell, int j) {
-  float depth = cell.depths[j];
+  float from_smallest = grows_with_inverse_depth(kPerspective, kReversed)
+                            ? cell.depths_ndc[j]
+                            : 1.0 - cell.depths_ndc[j];
+  float depth =
+      parameters.inverse_depth_from_ndc.x * from_smallest + parameters.inverse_depth_from_ndc.y;
   float scale = kPerspective ? 1.0 / depth : 1.0;
   vec4 levels;
   [[unroll]] for (int i = 0; i < 4; ++i) {
@@ -151,7 +160,7 @@ void main() {
     bool inside = all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, size));
     vec4 weights = weights_of(cell, j);
     float inverse_sum = 1.0 / (weights.x + weights.y + weights.z + weights.w);
-    bool sky = cell.depths[j] == sky_inverse_depth(kPerspective);
+    bool sky = is_sky(cell.depths_ndc[j]);
     float occlusion = dot(weights, cell.occlusions) * inverse_sum;
     float visibility = sky ? 1.0 : saturate(1.0 - occlusion);
     if (kVisibility && inside) {

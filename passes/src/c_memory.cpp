@@ -49,11 +49,8 @@ std::uint64_t pixel_bytes(const OcclusionSettings& settings, bool multi_bounce,
                           bool normals_given) {
   const bool by_cone = specular_reads_bent_normal(settings);
   const std::uint64_t depth = bytes_of(VK_FORMAT_R32_SFLOAT);
-  std::uint64_t sum = depth;
-  sum += by_cone || !normals_given ? depth : 0;
+  std::uint64_t sum = by_cone || !normals_given ? depth : 0;
   sum += normals_given ? 0 : bytes_of(VK_FORMAT_R16G16B16A16_SFLOAT);
-  sum += needs_back_depth(settings) ? depth : 0;
-  sum += needs_second_depth(settings) ? depth : 0;
   const bool visibility = multi_bounce || by_cone;
   sum += visibility && !settings.visibility ? bytes_of(scalar_format(settings.precision)) : 0;
   const bool bent = needs_bent_normal(settings);

@@ -27,15 +27,15 @@ tl::expected<void, Error> check_motion(const MotionConvention& motion) {
 }
 
 tl::expected<void, Error> check_textures(const Frame& frame, const ReconstructInputs& inputs) {
-  const auto or_line = [&](Texture texture) { return texture ? texture : inputs.inverse_depth; };
+  const auto or_depth = [&](Texture texture) { return texture ? texture : inputs.depth_ndc; };
   const std::array<NamedInput, 7> needed{
-      {{"inverse depth", inputs.inverse_depth},
+      {{"depth", inputs.depth_ndc},
        {"normals", inputs.normals},
-       {"motion vectors", or_line(inputs.motion)},
-       {"roughness", or_line(inputs.roughness)},
-       {"a texture for visibility", or_line(inputs.into.visibility)},
-       {"a texture for bent normals", or_line(inputs.into.bent_normal)},
-       {"a texture for specular occlusion", or_line(inputs.into.specular)}}};
+       {"motion vectors", or_depth(inputs.motion)},
+       {"roughness", or_depth(inputs.roughness)},
+       {"a texture for visibility", or_depth(inputs.into.visibility)},
+       {"a texture for bent normals", or_depth(inputs.into.bent_normal)},
+       {"a texture for specular occlusion", or_depth(inputs.into.specular)}}};
   return check_inputs(frame.graph, "reconstruct", needed);
 }
 
@@ -69,8 +69,7 @@ tl::expected<void, Error> check_raw_occlusion(const Frame& frame, const Reconstr
                                               bool half_resolution) {
   const RawOcclusionTextures& raw_occlusion = inputs.raw_occlusion;
   const auto check = [&](Texture texture, VkFormat format, const char* name) {
-    return check_blocks(frame, inputs.inverse_depth, raw_occlusion.tile_size, texture, format,
-                        name);
+    return check_blocks(frame, inputs.depth_ndc, raw_occlusion.tile_size, texture, format, name);
   };
   return check_tracing(raw_occlusion)
       .and_then([&]() -> tl::expected<void, Error> {

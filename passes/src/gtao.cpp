@@ -43,7 +43,7 @@ VkExtent3D searches(VkExtent3D blocks, bool by_pattern) {
           1};
 }
 
-// What of the inputs the settings read beside inverse depth and normals.
+// What of the inputs the settings read beside depth and normals.
 struct Reads {
   bool roughness = false;
   bool back_faces = false;
@@ -58,11 +58,11 @@ Reads reads_of(const GtaoInputs& inputs, const OcclusionSettings& settings) {
 tl::expected<void, Error> check_textures(const Frame& frame, const GtaoInputs& inputs,
                                          const Reads& reads) {
   const std::array<NamedInput, 5> needed{
-      {{"inverse depth", inputs.inverse_depth},
+      {{"depth", inputs.depth_ndc},
        {"normals", inputs.normals},
        {"roughness", reads.roughness ? inputs.roughness : inputs.normals},
-       {"back-face depth", reads.back_faces ? inputs.back_inverse_depth : inputs.inverse_depth},
-       {"second depth", reads.second_layer ? inputs.second_inverse_depth : inputs.inverse_depth}}};
+       {"back-face depth", reads.back_faces ? inputs.back_depth_ndc : inputs.depth_ndc},
+       {"second depth", reads.second_layer ? inputs.second_depth_ndc : inputs.depth_ndc}}};
   return check_inputs(frame.graph, "gtao", needed);
 }
 
@@ -77,16 +77,16 @@ bool of_distance(const OcclusionSettings& settings) {
 }
 
 // Of the shader, in its order.
-std::array<std::uint32_t, 19> constants_of(const GtaoInputs& inputs,
+std::array<std::uint32_t, 20> constants_of(const GtaoInputs& inputs,
                                            const OcclusionSettings& settings, const Reads& reads,
-                                           bool perspective) {
+                                           const maths::Projection& projection) {
   return {settings.slices,
           settings.steps,
           flag(needs_bent_normal(settings)),
           static_cast<std::uint32_t>(settings.advanced.estimator),
           settings.tile_size,
           static_cast<std::uint32_t>(settings.advanced.pattern),
-          flag(perspective),
+          flag(is_perspective(projection)),
           flag(reads.roughness),
           channel_if(reads.roughness, settings.roughness_channel),
           flag(settings.advanced.weighting == Weighting::uniform),
@@ -98,15 +98,15 @@ std::array<std::uint32_t, 19> constants_of(const GtaoInputs& inputs,
           flag(reads.second_layer),
           flag(settings.advanced.extrapolation),
           flag(settings.advanced.unobserved),
-          static_cast<std::uint32_t>(inputs.normal_encoding)};
+          static_cast<std::uint32_t>(inputs.normal_encoding),
+          flag(is_reversed(projection))};
 }
 
 void declare_accesses(framegraph::PassBuilder& pass, const GtaoInputs& inputs, const Reads& reads,
                       RawOcclusionTextures& result) {
-  const auto& loaded = framegraph::access::storage_read_compute;
   const auto& sampled = framegraph::access::sampled_compute;
   const auto& stored = framegraph::access::storage_write_compute;
-  pass.read(inputs.inverse_depth, loaded);
+  pass.read(inputs.depth_ndc, sampled);
   pass.read(inputs.normals, sampled);
   result.raw_occlusion =
       pass.write(result.raw_occlusion, stored, {}, framegraph::Contents::discard);
@@ -117,10 +117,10 @@ void declare_accesses(framegraph::PassBuilder& pass, const GtaoInputs& inputs, c
     pass.read(inputs.roughness, sampled);
   }
   if (reads.back_faces) {
-    pass.read(inputs.back_inverse_depth, loaded);
+    pass.read(inputs.back_depth_ndc, sampled);
   }
   if (reads.second_layer) {
-    pass.read(inputs.second_inverse_depth, loaded);
+    pass.read(inputs.second_depth_ndc, sampled);
   }
 }
 
@@ -128,11 +128,14 @@ maths::GtaoParameters parameters_of(const Frame& frame, const GtaoInputs& inputs
                                     const OcclusionSettings& settings,
                                     const maths::Projection& projection) {
   const InterleaveOffset interleave_offset = interleave_offset_of(settings.tile_size, frame.index);
-  const maths::DepthStep step = depth_step(projection, inputs.depth_format);
+  const maths::DepthStep step = depth_step(projection, inputs.depth_format != VK_FORMAT_UNDEFINED
+                                                           ? inputs.depth_format
+                                                           : frame.graph.format(inputs.depth_ndc));
   return {
       view_from_normal(frame, inputs.normals_in_view_space, inputs.normals_forward_z),
       maths::vec4(maths::ray_per_px(projection), projection.uv_to_slope.z,
                   projection.uv_to_slope.w),
+      inverse_depth_from_ndc(projection),
       maths::vec2(static_cast<float>(interleave_offset.x), static_cast<float>(interleave_offset.y)),
       settings.radius,
       frame.index,
@@ -148,15 +151,15 @@ maths::GtaoParameters parameters_of(const Frame& frame, const GtaoInputs& inputs
 // In the order of the shader's bindings; what is not read is bound to something of its kind.
 std::array<VkImageView, 7> views_of(RecordContext& context, const GtaoInputs& inputs,
                                     const Reads& reads, const RawOcclusionTextures& result) {
-  const VkImageView line = context.view(inputs.inverse_depth);
+  const VkImageView depth = context.view(inputs.depth_ndc);
   const VkImageView normals = context.view(inputs.normals);
   const VkImageView raw_occlusion = context.view(result.raw_occlusion);
-  return {line,
+  return {depth,
           normals,
           raw_occlusion,
           result.bent ? context.view(result.bent) : raw_occlusion,
-          reads.back_faces ? context.view(inputs.back_inverse_depth) : line,
-          reads.second_layer ? context.view(inputs.second_inverse_depth) : line,
+          reads.back_faces ? context.view(inputs.back_depth_ndc) : depth,
+          reads.second_layer ? context.view(inputs.second_depth_ndc) : depth,
           reads.roughness ? context.view(inputs.roughness) : normals};
 }
 
@@ -169,17 +172,16 @@ tl::expected<RawOcclusionTextures, Error> add_gtao(const Frame& frame, const Gta
   if (!good) {
     return tl::unexpected(std::move(good.error()));
   }
-  const auto projection = projection_of(frame, frame.view, inputs.inverse_depth);
+  const auto projection = projection_of(frame, frame.view, inputs.depth_ndc);
   if (!projection) {
     return tl::unexpected(projection.error());
   }
-  const auto kernel =
-      frame.kernels.get(has_lobe(settings) ? Shader::gtao_specular : Shader::gtao,
-                        constants_of(inputs, settings, reads, is_perspective(*projection)));
+  const auto kernel = frame.kernels.get(has_lobe(settings) ? Shader::gtao_specular : Shader::gtao,
+                                        constants_of(inputs, settings, reads, *projection));
   if (!kernel) {
     return tl::unexpected(kernel.error());
   }
-  RawOcclusionTextures result = create_raw_occlusion(frame, inputs.inverse_depth, settings);
+  RawOcclusionTextures result = create_raw_occlusion(frame, inputs.depth_ndc, settings);
   auto pass = frame.graph.add_pass("gtao");
   declare_accesses(pass, inputs, reads, result);
   pass.record([&kernels = frame.kernels, kernel = *kernel, inputs, result, reads,

@@ -2,8 +2,6 @@
 
 #include <utility>
 
-#include "alcove/passes/inverse_depth.h"
-
 namespace alcove::passes {
 namespace {
 
@@ -15,16 +13,6 @@ tl::expected<framegraph::Texture, Error> add_linear(const Frame& frame,
       settings.linear_depth || specular_reads_bent_normal(settings) || !inputs.normals;
   return read ? add_linear_depth(frame, inputs.depth_ndc, 1, 0.0f)
               : tl::expected<framegraph::Texture, Error>(framegraph::Texture{});
-}
-
-// Inverse depth of back faces or of the second layer. Null where the settings do not read it, or
-// where it was not given.
-tl::expected<framegraph::Texture, Error> add_hidden_inverse_depth(const Frame& frame,
-                                                                  framegraph::Texture depth_ndc,
-                                                                  bool read,
-                                                                  std::string_view name) {
-  return read && depth_ndc ? add_inverse_depth(frame, depth_ndc, name)
-                           : tl::expected<framegraph::Texture, Error>(framegraph::Texture{});
 }
 
 // Adds specular occlusion from visibility and bent normals to `outputs`.
@@ -74,25 +62,13 @@ tl::expected<OcclusionOutputs, Error> add_occlusion(const Frame& frame,
     }
     normals = *made;
   }
-  const auto line = add_inverse_depth(frame, inputs.depth_ndc);
-  if (!line) {
-    return tl::unexpected(line.error());
-  }
-  const auto back_line = add_hidden_inverse_depth(frame, inputs.back_depth_ndc,
-                                                  needs_back_depth(settings), "back inverse depth");
-  const auto second_line = add_hidden_inverse_depth(
-      frame, inputs.second_depth_ndc, needs_second_depth(settings), "second inverse depth");
-  if (!back_line || !second_line) {
-    return tl::unexpected(back_line ? second_line.error() : back_line.error());
-  }
   const auto raw_occlusion = add_gtao(frame,
-                                      {.inverse_depth = *line,
+                                      {.depth_ndc = inputs.depth_ndc,
                                        .normals = normals,
                                        .normals_in_view_space = in_view_space,
                                        .roughness = inputs.roughness,
-                                       .back_inverse_depth = *back_line,
-                                       .second_inverse_depth = *second_line,
-                                       .depth_format = frame.graph.format(inputs.depth_ndc),
+                                       .back_depth_ndc = inputs.back_depth_ndc,
+                                       .second_depth_ndc = inputs.second_depth_ndc,
                                        .normal_encoding = encoding,
                                        .normals_forward_z = forward_z},
                                       settings);
@@ -101,7 +77,7 @@ tl::expected<OcclusionOutputs, Error> add_occlusion(const Frame& frame,
   }
   const auto filtered = add_reconstruct(frame,
                                         {.raw_occlusion = *raw_occlusion,
-                                         .inverse_depth = *line,
+                                         .depth_ndc = inputs.depth_ndc,
                                          .normals = normals,
                                          .normals_in_view_space = in_view_space,
                                          .motion = inputs.motion,

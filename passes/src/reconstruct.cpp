@@ -191,7 +191,7 @@ void declare_accesses(const Graph& graph, framegraph::PassBuilder& pass, Texture
   const auto& stored = framegraph::access::storage_read_compute;
   read(textures.inputs.raw_occlusion.raw_occlusion, stored);
   read(textures.inputs.raw_occlusion.bent, stored);
-  read(textures.inputs.inverse_depth, is_half(textures) ? sampled : stored);
+  read(textures.inputs.depth_ndc, sampled);
   read(read_normals(textures), sampled);
   read(textures.inputs.motion, sampled);
   read(textures.inputs.roughness, sampled);
@@ -232,13 +232,13 @@ Bindings bindings_of(RecordContext& context, const Textures& textures) {
   const ReconstructInputs& in = textures.inputs;
   const Occlusion& out = textures.result;
   const Texture written = any_of(out);
-  // Half resolution samples the inverse depth.
+  // Half resolution may read no normals.
   const bool half = is_half(textures);
-  const Texture sampled = half ? in.inverse_depth : in.normals;
+  const Texture sampled = half ? in.depth_ndc : in.normals;
   Bindings bindings;
   bindings.add({context.view(in.raw_occlusion.raw_occlusion),
                 view_or(context, in.raw_occlusion.bent, in.raw_occlusion.raw_occlusion),
-                context.view(in.inverse_depth), view_or(context, read_normals(textures), sampled)});
+                context.view(in.depth_ndc), view_or(context, read_normals(textures), sampled)});
   if (half) {
     bindings.add({context.view(textures.history.next), context.view(textures.depth_history.next)});
   } else {
@@ -295,33 +295,33 @@ Past past_of(const Frame& frame, const ReconstructSizes& sizes, bool history_val
 }
 
 // The shader's specialisation constants, in its order.
-std::array<std::uint32_t, 13> constants_of(const ReconstructInputs& inputs,
-                                           const OcclusionSettings& settings, bool perspective,
-                                           Past past) {
-  return {
-      inputs.raw_occlusion.tile_size,
-      settings.advanced.filter_radius,
-      flag(bool(inputs.raw_occlusion.bent)),
-      flag(inputs.motion && past == Past::moving),
-      flag(perspective),
-      flag(settings.advanced.clamp_width > 0.0f),
-      flag(past == Past::unchanged),
-      flag(bool(inputs.roughness)),
-      channel_if(bool(inputs.roughness), settings.roughness_channel),
-      flag(past == Past::none),
-      flag(needs_visibility(settings)),
-      static_cast<std::uint32_t>(inputs.normal_encoding),
-      flag(!settings.half_resolution && (settings.power != 1.0f || settings.intensity != 1.0f))};
+std::array<std::uint32_t, 14> constants_of(const ReconstructInputs& inputs,
+                                           const OcclusionSettings& settings,
+                                           const maths::Projection& projection, Past past) {
+  return {inputs.raw_occlusion.tile_size,
+          settings.advanced.filter_radius,
+          flag(bool(inputs.raw_occlusion.bent)),
+          flag(inputs.motion && past == Past::moving),
+          flag(is_perspective(projection)),
+          flag(settings.advanced.clamp_width > 0.0f),
+          flag(past == Past::unchanged),
+          flag(bool(inputs.roughness)),
+          channel_if(bool(inputs.roughness), settings.roughness_channel),
+          flag(past == Past::none),
+          flag(needs_visibility(settings)),
+          static_cast<std::uint32_t>(inputs.normal_encoding),
+          flag(!settings.half_resolution && (settings.power != 1.0f || settings.intensity != 1.0f)),
+          flag(is_reversed(projection))};
 }
 
 tl::expected<Kernel, Error> get_kernel(const Frame& frame, const ReconstructInputs& inputs,
-                                       const OcclusionSettings& settings, bool perspective,
-                                       Past past) {
+                                       const OcclusionSettings& settings,
+                                       const maths::Projection& projection, Past past) {
   const bool history = settings.history_frames > 0;
   const auto get = [&](Past of) {
     return frame.kernels.get(
         shader_of(history, inputs.raw_occlusion.lobe, settings.half_resolution),
-        constants_of(inputs, settings, perspective, of));
+        constants_of(inputs, settings, projection, of));
   };
   if (history && frame.prepare) {
     for (const Past each : {Past::none, Past::moving, Past::unchanged}) {
@@ -453,6 +453,7 @@ maths::ReconstructParameters parameters_of(const Frame& frame, const maths::Proj
   parameters.previous_extent = maths::vec4(maths::ceil(previous.size_px / texel) - 0.5f,
                                            previous.size_px / projection.size_px);
   parameters.pixel_uv = 1.0f / projection.size_px;
+  parameters.inverse_depth_from_ndc = inverse_depth_from_ndc(projection);
   parameters.pixels_per_slope = 1.0f / maths::ray_per_px(projection);
   parameters.history_depth_scale =
       maths::vec4(history_depth_scale(projection), history_depth_scale(previous));
@@ -513,7 +514,7 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& given_frame,
   if (!history) {
     inputs.motion = {};
   }
-  const auto sizes = reconstruct_sizes(frame, inputs.inverse_depth);
+  const auto sizes = reconstruct_sizes(frame, inputs.depth_ndc);
   if (!sizes) {
     return tl::unexpected(sizes.error());
   }
@@ -532,7 +533,7 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& given_frame,
                                 " Where there was none, reset the history (reset_history)."});
   }
   const Past past = past_of(frame, *sizes, history_valid, bool(inputs.motion));
-  const auto kernel = get_kernel(frame, inputs, settings, is_perspective(*projection), past);
+  const auto kernel = get_kernel(frame, inputs, settings, *projection, past);
   if (!kernel) {
     return tl::unexpected(kernel.error());
   }
@@ -566,9 +567,8 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& given_frame,
                half_extent](RecordContext& context) {
     const Bindings bindings = bindings_of(context, textures);
     const std::span<const VkImageView> bound(bindings.views.data(), bindings.count);
-    kernels.dispatch(
-        context, kernel, bound, bytes_of(parameters),
-        is_half(textures) ? half_extent : context.extent(textures.inputs.inverse_depth));
+    kernels.dispatch(context, kernel, bound, bytes_of(parameters),
+                     is_half(textures) ? half_extent : context.extent(textures.inputs.depth_ndc));
   });
   if (!is_half(textures)) {
     return textures.result;
@@ -579,7 +579,7 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& given_frame,
                        .half_size = half_size,
                        .residuals = textures.bent_history.next,
                        .lobes = textures.lobe_history.next,
-                       .inverse_depth = inputs.inverse_depth,
+                       .depth_ndc = inputs.depth_ndc,
                        .normals = inputs.normals,
                        .normals_in_view_space = inputs.normals_in_view_space,
                        .normal_encoding = inputs.normal_encoding,

@@ -13,7 +13,6 @@
 #include "spirv/gtso.h"
 #include "spirv/gtso_by_table.h"
 #include "spirv/inspect.h"
-#include "spirv/inverse_depth.h"
 #include "spirv/linear_depth.h"
 #include "spirv/multi_bounce.h"
 #include "spirv/normals.h"
@@ -36,20 +35,19 @@ const ShaderSource& shader_source(Shader shader) {
   static const std::array<ShaderSource, static_cast<std::size_t>(Shader::count)> sources{{
       {kLinearDepth, "sttttt"},
       {kNormals, "st"},
-      {kInverseDepth, "st"},
-      {kGtao, "tstttt"},
+      {kGtao, "ssttss"},
       {kGtaoSpecular,
-       "tstttt"
+       "ssttss"
        "s"},
-      {kReconstruct, "tttstt"},
+      {kReconstruct, "ttsstt"},
       {kReconstructHistory,
-       "tttstt"
+       "ttsstt"
        "gtsgt"},
       {kReconstructSpecular,
-       "tttstt"
+       "ttsstt"
        "st"},
       {kReconstructSpecularHistory,
-       "tttstt"
+       "ttsstt"
        "gtsgt"
        "stgt"},
       {kReconstructHalf,

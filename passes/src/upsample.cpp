@@ -23,11 +23,14 @@ constexpr float kTolerancePx = 1.0f;
 
 tl::expected<Kernel, Error> get_kernel(const Frame& frame, const UpsampleInputs& inputs,
                                        const Occlusion& result, const OcclusionSettings& settings,
-                                       bool perspective) {
+                                       const maths::Projection& projection) {
   const std::array constants{
-      flag(perspective), flag(bool(result.visibility)),
-      flag(settings.power != 1.0f || settings.intensity != 1.0f), flag(bool(result.bent_normal)),
-      result.bent_normal ? static_cast<std::uint32_t>(inputs.normal_encoding) : 0u};
+      flag(is_perspective(projection)),
+      flag(bool(result.visibility)),
+      flag(settings.power != 1.0f || settings.intensity != 1.0f),
+      flag(bool(result.bent_normal)),
+      result.bent_normal ? static_cast<std::uint32_t>(inputs.normal_encoding) : 0u,
+      flag(is_reversed(projection))};
   return frame.kernels.get(result.specular ? Shader::upsample_specular : Shader::upsample,
                            constants);
 }
@@ -37,7 +40,7 @@ void declare_accesses(const Frame& frame, framegraph::PassBuilder& pass,
   const auto& sampled = framegraph::access::sampled_compute;
   pass.read(inputs.half, sampled);
   pass.read(inputs.half_depth, sampled);
-  pass.read(inputs.inverse_depth, sampled);
+  pass.read(inputs.depth_ndc, sampled);
   if (result.bent_normal) {
     pass.read(inputs.normals, sampled);
     pass.read(inputs.residuals, sampled);
@@ -62,6 +65,7 @@ maths::UpsampleParameters parameters_of(const Frame& frame, const UpsampleInputs
   parameters.normal_from_view = maths::transpose(
       view_from_normal(frame, inputs.normals_in_view_space, inputs.normals_forward_z));
   parameters.slope = maths::vec4(per_px, projection.uv_to_slope.z, projection.uv_to_slope.w);
+  parameters.inverse_depth_from_ndc = inverse_depth_from_ndc(projection);
   parameters.pixel_uv = 1.0f / projection.size_px;
   parameters.texel_uv = 1.0f / maths::vec2(stored.width, stored.height);
   parameters.half_pixel_per_tilt =
@@ -77,11 +81,11 @@ maths::UpsampleParameters parameters_of(const Frame& frame, const UpsampleInputs
 tl::expected<Occlusion, Error> add_upsample(const Frame& frame, const UpsampleInputs& inputs,
                                             const Occlusion& result,
                                             const OcclusionSettings& settings) {
-  const auto projection = projection_of(frame, frame.view, inputs.inverse_depth);
+  const auto projection = projection_of(frame, frame.view, inputs.depth_ndc);
   if (!projection) {
     return tl::unexpected(projection.error());
   }
-  const auto kernel = get_kernel(frame, inputs, result, settings, is_perspective(*projection));
+  const auto kernel = get_kernel(frame, inputs, result, settings, *projection);
   if (!kernel) {
     return tl::unexpected(kernel.error());
   }
@@ -97,8 +101,8 @@ tl::expected<Occlusion, Error> add_upsample(const Frame& frame, const UpsampleIn
     const std::array<VkImageView, 9> views{
         context.view(inputs.half),
         context.view(inputs.half_depth),
-        context.view(inputs.inverse_depth),
-        view_or(context, out.bent_normal ? inputs.normals : Texture{}, inputs.inverse_depth),
+        context.view(inputs.depth_ndc),
+        view_or(context, out.bent_normal ? inputs.normals : Texture{}, inputs.depth_ndc),
         view_or(context, out.bent_normal ? inputs.residuals : Texture{}, inputs.half),
         view_or(context, out.visibility, written),
         view_or(context, out.bent_normal, written),

@@ -6,13 +6,13 @@
 namespace alcove::passes {
 
 struct UpsampleInputs {
-  framegraph::Texture half;           // maths::pack_half_texel()
-  framegraph::Texture half_depth;     // maths::half_texel_depth()
-  VkExtent2D half_size;               // the part of these textures that is used
-  framegraph::Texture residuals;      // maths::pack_residual(); null where there is no bent normal
-  framegraph::Texture lobes;          // maths::LobeTexel; null where there is no lobe
-  framegraph::Texture inverse_depth;  // from add_inverse_depth
-  framegraph::Texture normals;        // as ReconstructInputs has it, as are the next two
+  framegraph::Texture half;        // maths::pack_half_texel()
+  framegraph::Texture half_depth;  // maths::half_texel_depth()
+  VkExtent2D half_size;            // the part of these textures that is used
+  framegraph::Texture residuals;  // maths::pack_half_residual(); null where there is no bent normal
+  framegraph::Texture lobes;      // maths::LobeTexel; null where there is no lobe
+  framegraph::Texture depth_ndc;  // as GtaoInputs has it
+  framegraph::Texture normals;    // as ReconstructInputs has it, as are the next two
   bool normals_in_view_space = false;
   NormalEncoding normal_encoding = NormalEncoding::signed_xyz;
   bool normals_forward_z = false;

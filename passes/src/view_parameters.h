@@ -1,6 +1,7 @@
 // What the passes' C++ needs of a View, in the types that the shaders share.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <span>
@@ -68,25 +69,24 @@ namespace alcove::passes {
   return projection.sky.x < 0.0f;
 }
 
-// From raw depth to a number that is linear along the image of any plane, 1/depth in perspective
-// and depth in orthographic views.
-[[nodiscard]] inline maths::InverseDepthFromNdc inverse_depth_from_ndc(
-    const maths::Projection& projection) {
+// The scale and offset of maths::inverse_depth_of_ndc().
+[[nodiscard]] inline maths::vec2 inverse_depth_from_ndc(const maths::Projection& projection) {
   const maths::dvec4 unproject(projection.depth_unproject);
   const bool perspective = is_perspective(projection);
   const maths::dvec2 linear = perspective ? maths::dvec2(unproject.z, unproject.w) / unproject.y
                                           : maths::dvec2(unproject.x, unproject.y) / unproject.w;
-  // The raw depth of the far plane in perspective, that of the near plane in orthographic views.
-  const double origin = is_reversed(projection) == perspective ? 0.0 : 1.0;
-  return {static_cast<float>(linear.x), static_cast<float>(origin),
-          static_cast<float>(linear.x * origin + linear.y)};
+  const bool grows = maths::grows_with_inverse_depth(perspective, is_reversed(projection));
+  const double offset = grows ? linear.y : linear.x + linear.y;
+  // The far plane of a matrix of rounded numbers can lie behind infinity.
+  return {static_cast<float>(std::abs(linear.x)),
+          static_cast<float>(perspective ? std::max(offset, 0.0) : offset)};
 }
 
 // The step of a depth buffer of this format.
 [[nodiscard]] inline maths::DepthStep depth_step(const maths::Projection& projection,
                                                  VkFormat format) {
-  const maths::InverseDepthFromNdc from = inverse_depth_from_ndc(projection);
-  const double scale = std::abs(double{from.scale});
+  const maths::vec2 from_ndc = inverse_depth_from_ndc(projection);
+  const double scale = from_ndc.x;
   // Half a step more than the step: rasterisers do not round as exactly as they may.
   const auto fixed = [&](double levels) {
     return maths::DepthStep{static_cast<float>(1.5 * scale / levels), 0.0f};
@@ -101,11 +101,13 @@ namespace alcove::passes {
       return fixed(16777215.0);
     default: {
       // Floats: at most 2^-23 of the raw depth, and 2^-24 from a half to 1. The raw depth is
-      // (inverse_depth - offset) / scale + origin.
+      // (inverse_depth - offset) / scale if it grows with the inverse depth, else 1 less that.
       const double step = std::ldexp(1.0, -23);
-      const double sign = from.scale < 0.0f ? -1.0 : 1.0;
-      return {static_cast<float>(step * (scale * from.origin - sign * from.offset)),
-              static_cast<float>(step * sign)};
+      return maths::grows_with_inverse_depth(is_perspective(projection), is_reversed(projection))
+                 ? maths::DepthStep{static_cast<float>(-step * from_ndc.y),
+                                    static_cast<float>(step)}
+                 : maths::DepthStep{static_cast<float>(step * (scale + from_ndc.y)),
+                                    static_cast<float>(-step)};
     }
   }
 }

@@ -24,21 +24,23 @@ ALCOVE_INLINE float sky_inverse_depth(bool perspective) {
   return perspective ? 1.0f / kSkyDepth : kSkyDepth;
 }
 
-// SliceSample::inverse_depth of a raw depth that is not the sky's, which is scale * (depth_ndc -
-// origin) + offset. Before the near plane it is the near plane's, beyond the sky the sky's. The
-// origin, 0 or 1, is the raw depth whose inverse depth is smallest: the difference is then exact,
-// and no digit that the depth buffer holds is lost.
-struct InverseDepthFromNdc {
-  float scale;
-  float origin;
-  float offset;
-};
+// Whether raw depth grows with SliceSample::inverse_depth.
+ALCOVE_INLINE bool grows_with_inverse_depth(bool perspective, bool reversed) {
+  return perspective == reversed;
+}
 
-ALCOVE_INLINE float inverse_depth_of_ndc(InverseDepthFromNdc from, float depth_ndc,
-                                         bool perspective) {
-  float inverse_depth = from.scale * (clamp(depth_ndc, 0.0f, 1.0f) - from.origin) + from.offset;
-  return perspective ? max(inverse_depth, sky_inverse_depth(true))
-                     : min(inverse_depth, sky_inverse_depth(false));
+// SliceSample::inverse_depth of a raw depth: from_ndc.x * d + from_ndc.y, where d is the distance
+// of the raw depth from its value at the plane with the smallest inverse depth (the far plane in
+// perspective, the near plane in orthographic views). This distance is exact, so that no digit that
+// the depth buffer holds is lost. from_ndc.x must be positive, and in perspective from_ndc.y at
+// least 0. The far plane, everything beyond it and NaN are the sky. Depths in front of the near
+// plane give the near plane's.
+ALCOVE_INLINE float inverse_depth_of_ndc(vec2 from_ndc, float depth_ndc, bool perspective,
+                                         bool reversed) {
+  bool grows = grows_with_inverse_depth(perspective, reversed);
+  float from_smallest = clamp(grows ? depth_ndc : 1.0f - depth_ndc, 0.0f, 1.0f);
+  bool sky = reversed ? !(depth_ndc > 0.0f) : !(depth_ndc < 1.0f);
+  return sky ? sky_inverse_depth(perspective) : from_ndc.x * from_smallest + from_ndc.y;
 }
 
 // Whether a pixel's back face is where the occluder ends that begins at its front: it lies behind

@@ -9,7 +9,6 @@
 #include "environment_parameters.h"
 #include "gtao_parameters.h"
 #include "gtso_parameters.h"
-#include "inverse_depth_parameters.h"
 #include "linear_depth_parameters.h"
 #include "maths/projection.h"
 #include "multi_bounce_parameters.h"
@@ -39,6 +38,7 @@ const std::map<std::string, Offsets> kExpected = {
       ALCOVE_OFFSET(LinearDepthParameters, reach)}},
     {"GtaoParameters",
      {ALCOVE_OFFSET(GtaoParameters, view_from_normal), ALCOVE_OFFSET(GtaoParameters, slope),
+      ALCOVE_OFFSET(GtaoParameters, inverse_depth_from_ndc),
       ALCOVE_OFFSET(GtaoParameters, interleave_offset), ALCOVE_OFFSET(GtaoParameters, radius),
       ALCOVE_OFFSET(GtaoParameters, frame), ALCOVE_OFFSET(GtaoParameters, thickness),
       ALCOVE_OFFSET(GtaoParameters, hidden_exponent), ALCOVE_OFFSET(GtaoParameters, blend),
@@ -57,7 +57,6 @@ const std::map<std::string, Offsets> kExpected = {
       ALCOVE_OFFSET(EnvironmentParameters, samples),
       ALCOVE_OFFSET(EnvironmentParameters, roughness),
       ALCOVE_OFFSET(EnvironmentParameters, levels)}},
-    {"InverseDepthParameters", {ALCOVE_OFFSET(InverseDepthParameters, inverse_depth_from_ndc)}},
     {"MultiBounceParameters", {ALCOVE_OFFSET(MultiBounceParameters, size_px)}},
     {"NormalsParameters", {ALCOVE_OFFSET(NormalsParameters, projection)}},
     {"ReconstructParameters",
@@ -67,13 +66,16 @@ const std::map<std::string, Offsets> kExpected = {
       ALCOVE_OFFSET(ReconstructParameters, slope),
       ALCOVE_OFFSET(ReconstructParameters, previous_extent),
       ALCOVE_OFFSET(ReconstructParameters, history_depth_scale),
+      ALCOVE_OFFSET(ReconstructParameters, traced_range),
       ALCOVE_OFFSET(ReconstructParameters, motion),
       ALCOVE_OFFSET(ReconstructParameters, history_unit),
       ALCOVE_OFFSET(ReconstructParameters, history_texel),
       ALCOVE_OFFSET(ReconstructParameters, pixel_uv),
+      ALCOVE_OFFSET(ReconstructParameters, inverse_depth_from_ndc),
       ALCOVE_OFFSET(ReconstructParameters, pixels_per_slope),
       ALCOVE_OFFSET(ReconstructParameters, interleave_offset),
-      ALCOVE_OFFSET(ReconstructParameters, window_px),
+      ALCOVE_OFFSET(ReconstructParameters, interleave_pixel),
+      ALCOVE_OFFSET(ReconstructParameters, inverse_squared_window),
       ALCOVE_OFFSET(ReconstructParameters, tolerance),
       ALCOVE_OFFSET(ReconstructParameters, history_sharpness),
       ALCOVE_OFFSET(ReconstructParameters, history_slack),
@@ -85,7 +87,9 @@ const std::map<std::string, Offsets> kExpected = {
       ALCOVE_OFFSET(ReconstructParameters, dither_offset)}},
     {"UpsampleParameters",
      {ALCOVE_OFFSET(UpsampleParameters, normal_from_view), ALCOVE_OFFSET(UpsampleParameters, slope),
+      ALCOVE_OFFSET(UpsampleParameters, inverse_depth_from_ndc),
       ALCOVE_OFFSET(UpsampleParameters, pixel_uv), ALCOVE_OFFSET(UpsampleParameters, texel_uv),
+      ALCOVE_OFFSET(UpsampleParameters, half_pixel_per_tilt),
       ALCOVE_OFFSET(UpsampleParameters, tolerance), ALCOVE_OFFSET(UpsampleParameters, power),
       ALCOVE_OFFSET(UpsampleParameters, intensity)}},
 };

@@ -7,7 +7,6 @@
 #include "environment_parameters.h"
 #include "gtao_parameters.h"
 #include "gtso_parameters.h"
-#include "inverse_depth_parameters.h"
 #include "linear_depth_parameters.h"
 #include "maths/projection.h"
 #include "multi_bounce_parameters.h"
@@ -24,13 +23,11 @@ layout(set = 0, binding = 5) uniform F { GtsoParameters gtso; };
 layout(set = 0, binding = 6) uniform G { MultiBounceParameters multi_bounce; };
 layout(set = 0, binding = 7) uniform H { ApplyParameters apply; };
 layout(set = 0, binding = 8) uniform I { EnvironmentParameters environment; };
-layout(set = 0, binding = 9) uniform J { InverseDepthParameters inverse_depth; };
 layout(set = 0, binding = 11) uniform K { UpsampleParameters upsample; };
 layout(std430, set = 0, binding = 10) buffer Sum { float sum; };
 
 void main() {
   sum = projection.size_px.x + linear_depth.reach + gtao.radius + normals.projection.size_px.x +
         reconstruct.largest_weight + gtso.roughness + multi_bounce.size_px.x + apply.roughness +
-        environment.size + inverse_depth.inverse_depth_from_ndc.scale + gtao.depth_step +
-        upsample.tolerance;
+        environment.size + gtao.depth_step + upsample.tolerance;
 }

@@ -147,19 +147,22 @@ TEST(SliceLine, SamplesOfTheTangentPlaneStayOnItWhenSnapped) {
 
 TEST(SliceLine, AnyRawDepthIsClampedBetweenTheNearPlaneAndTheSky) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  // Reversed and infinite with a near plane at 0.1; that of rounded matrices, whose far plane lies
-  // behind infinity; orthographic.
+  // With the near plane at 0.1 and none or one at 100 beyond it, reversed and not; orthographic.
   for (const float ndc : {-kInfinity, -1e30f, -1.0f, 0.0f, 1e-45f, 1e-38f, 0.5f, 0.99999994f, 1.0f,
                           2.0f, 1e30f, kInfinity}) {
-    const float reversed = maths::inverse_depth_of_ndc({10.0f, 0.0f, 0.0f}, ndc, true);
-    EXPECT_GE(reversed, maths::sky_inverse_depth(true)) << ndc;
-    EXPECT_LE(reversed, 10.0f) << ndc;
-    const float rounded = maths::inverse_depth_of_ndc({-10.0f, 1.0f, -6e-7f}, ndc, true);
-    EXPECT_GE(rounded, maths::sky_inverse_depth(true)) << ndc;
-    EXPECT_LE(rounded, 10.0f) << ndc;
-    const float orthographic = maths::inverse_depth_of_ndc({20.0f, 0.0f, -10.0f}, ndc, false);
-    EXPECT_GE(orthographic, -10.0f) << ndc;
-    EXPECT_LE(orthographic, 10.0f) << ndc;
+    for (const bool reversed : {false, true}) {
+      const bool sky = reversed ? !(ndc > 0.0f) : !(ndc < 1.0f);
+      for (const float far : {0.0f, 0.01f}) {
+        const float found = maths::inverse_depth_of_ndc({10.0f - far, far}, ndc, true, reversed);
+        EXPECT_EQ(found == maths::sky_inverse_depth(true), sky) << ndc << ' ' << reversed;
+        EXPECT_GE(found, 0.0f) << ndc << ' ' << reversed;
+        EXPECT_LE(found, 10.0f) << ndc << ' ' << reversed;
+      }
+      const float found = maths::inverse_depth_of_ndc({20.0f, -10.0f}, ndc, false, reversed);
+      EXPECT_EQ(found == maths::sky_inverse_depth(false), sky) << ndc << ' ' << reversed;
+      EXPECT_GE(found, -10.0f) << ndc << ' ' << reversed;
+      EXPECT_TRUE(sky || found <= 10.0f) << ndc << ' ' << reversed;
+    }
   }
 }
 

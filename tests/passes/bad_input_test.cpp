@@ -5,7 +5,6 @@
 #include <functional>
 #include <limits>
 
-#include "alcove/passes/inverse_depth.h"
 #include "comma_locale.h"
 #include "gtao_scenes.h"
 #include "pass_fixture.h"
@@ -223,18 +222,16 @@ TEST_F(BadInput, RawOcclusionOfTheWrongKindIsReported) {
       const Frame frame{graph, gpu().kernels(), test_views()[2].view, 0};
       const framegraph::Texture depth = upload(graph, drawing.depth_ndc);  // the first: number 0
       const framegraph::Texture normals = upload(graph, drawing.normal_vs);
-      const auto line = add_inverse_depth(frame, depth);
-      ASSERT_TRUE(line);
       OcclusionSettings search;
       search.tile_size = 2;
       search.bent_normal = true;
-      const auto raw_occlusion = add_gtao(frame, {*line, normals, true}, search);
+      const auto raw_occlusion = add_gtao(frame, {depth, normals, true}, search);
       ASSERT_TRUE(raw_occlusion);
       RawOcclusionTextures spoilt = *raw_occlusion;
       OcclusionSettings settings;
       bad.spoil(spoilt, settings);
       const auto result = add_reconstruct(
-          frame, {.raw_occlusion = spoilt, .inverse_depth = *line, .normals = normals}, settings);
+          frame, {.raw_occlusion = spoilt, .depth_ndc = depth, .normals = normals}, settings);
       ASSERT_FALSE(result);
       EXPECT_THAT(result.error().message, HasSubstr(bad.names));
       EXPECT_PRED1(is_a_sentence, result.error().message);

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "alcove/passes/inverse_depth.h"
+#include "alcove/passes/reconstruct.h"
 #include "drawing.h"
 #include "gtao_scenes.h"
 #include "pass_fixture.h"
@@ -27,11 +27,10 @@ class DepthStep : public PassTest {
           graph.reset_histories();
         }
         const Frame frame{graph, gpu().kernels(), view.view, index};
-        const auto inverse_depth = add_inverse_depth(frame, upload(graph, drawing.depth_ndc));
-        ASSERT_TRUE(inverse_depth) << inverse_depth.error().message;
+        const framegraph::Texture depth = upload(graph, drawing.depth_ndc);
         const framegraph::Texture normals = upload(graph, drawing.normal_vs);
         const auto raw = add_gtao(frame,
-                                  {.inverse_depth = *inverse_depth,
+                                  {.depth_ndc = depth,
                                    .normals = normals,
                                    .normals_in_view_space = true,
                                    .depth_format = format},
@@ -41,7 +40,7 @@ class DepthStep : public PassTest {
         filter.precision = Precision::float32;
         const auto result = add_reconstruct(frame,
                                             {.raw_occlusion = *raw,
-                                             .inverse_depth = *inverse_depth,
+                                             .depth_ndc = depth,
                                              .normals = normals,
                                              .normals_in_view_space = true},
                                             filter);

@@ -158,13 +158,13 @@ TEST_F(HalfResolution, TilesOfOnePixelAreRefused) {
   framegraph::Graph graph;
   const Frame frame{graph, gpu().kernels(), view.view, 0};
   const auto depth = graph.create_texture(
-      "inverse depth", {VK_FORMAT_R32_SFLOAT, framegraph::Extent::absolute(kWidth, kHeight)});
+      "depth", {VK_FORMAT_R32_SFLOAT, framegraph::Extent::absolute(kWidth, kHeight)});
   const auto normals = graph.create_texture(
       "normals", {VK_FORMAT_R32G32B32A32_SFLOAT, framegraph::Extent::absolute(kWidth, kHeight)});
   const auto raw = graph.create_texture(
       "raw", {VK_FORMAT_R32G32_UINT, framegraph::Extent::absolute(kWidth, kHeight)});
   const auto made = add_reconstruct(
-      frame, {.raw_occlusion = {.raw_occlusion = raw}, .inverse_depth = depth, .normals = normals},
+      frame, {.raw_occlusion = {.raw_occlusion = raw}, .depth_ndc = depth, .normals = normals},
       half_resolution(0));
   ASSERT_FALSE(made);
   EXPECT_THAT(made.error().message, testing::HasSubstr("tile_size is 1"));

@@ -4,7 +4,6 @@
 #include <bit>
 #include <cmath>
 
-#include "alcove/passes/inverse_depth.h"
 #include "interleave_offset.h"
 #include "maths/quantised_normal.h"
 #include "maths/raw_occlusion.h"
@@ -21,7 +20,7 @@ HostImage packed_raw_occlusion(const View& view, const Drawing& drawing,
   const HostImage& depth = drawing.depth_ndc;
   const auto projection =
       maths::make_projection(to_mat4(view.clip_from_view), depth.width, depth.height);
-  const maths::InverseDepthFromNdc from_ndc = inverse_depth_from_ndc(projection.value());
+  const maths::vec2 from_ndc = inverse_depth_from_ndc(projection.value());
   const InterleaveOffset interleave_offset = interleave_offset_of(tile_size, index);
   HostImage packed = raw_occlusion;
   for (std::uint32_t y = 0; y < packed.height; ++y) {
@@ -37,7 +36,8 @@ HostImage packed_raw_occlusion(const View& view, const Drawing& drawing,
       sums.open = texel[1];
       texel[0] = std::bit_cast<float>(
           maths::pack_raw_occlusion(sums, maths::make_quantised_normal(normal).bits));
-      texel[1] = from_ndc.scale * (ndc - from_ndc.origin) + from_ndc.offset;
+      texel[1] = maths::inverse_depth_of_ndc(from_ndc, ndc, is_perspective(projection.value()),
+                                             is_reversed(projection.value()));
     }
   }
   return packed;
@@ -52,8 +52,6 @@ HostImage Reconstruct::reconstruct(const Input& input, const OcclusionSettings& 
     }
     const Frame frame{graph,       gpu().kernels(),     input.view,
                       input.index, input.previous_view, input.static_frames};
-    const auto line = add_inverse_depth(frame, upload(graph, input.drawing.depth_ndc));
-    ASSERT_TRUE(line) << line.error().message;
     ReconstructInputs inputs{
         .raw_occlusion = {.raw_occlusion = upload(
                               graph,
@@ -62,7 +60,7 @@ HostImage Reconstruct::reconstruct(const Input& input, const OcclusionSettings& 
                               VK_FORMAT_R32G32_UINT),
                           .tile_size = input.tile_size,
                           .slices = input.slices},
-        .inverse_depth = *line,
+        .depth_ndc = upload(graph, input.drawing.depth_ndc),
         .normals = upload(graph, input.drawing.normal_vs),
         .normals_in_view_space = true};
     if (input.motion != nullptr) {

@@ -103,10 +103,10 @@ TEST(GpuCost, TextOfAnotherCompilerIsReported) {
 TEST(GpuCost, LoopWithoutDeclaredIterationsIsReported) {
   const passes::OcclusionSettings settings;
   const CompiledLoop loop{.index = 0, .depth = 1, .instructions = 7};
-  const PassWork work{"inverse depth", settings, FrameState::moving, {&loop, 1}};
+  const PassWork work{"normals", settings, FrameState::moving, {&loop, 1}};
   const auto iterations = passes::cost::iterations(work, loop);
   ASSERT_FALSE(iterations);
-  EXPECT_THAT(iterations.error(), HasSubstr("'inverse depth' (moving frame)"));
+  EXPECT_THAT(iterations.error(), HasSubstr("'normals' (moving frame)"));
   EXPECT_THAT(iterations.error(), HasSubstr("7 instructions"));
 }
 

@@ -9,25 +9,25 @@
 namespace alcove::passes {
 
 struct GtaoInputs {
-  framegraph::Texture inverse_depth;  // as add_inverse_depth makes it
+  // A depth texture (any depth or R32 float format) as the view's projection wrote it. Its format
+  // and the projection tell the step between the depths that it can hold. Samples within about one
+  // step of the surface's tangent plane do not occlude, and visibility fades to open while the step
+  // grows from a quarter of the radius to the radius. The step at a distance z is z^2 / near *
+  // 2^-24 with 32-bit floats or 24 bits and depth that is not reversed, z^2 / near * 2^-16 with 16
+  // bits, z * 2^-23 with reversed floats.
+  framegraph::Texture depth_ndc;
   // xyz unit, in world space unless `normals_in_view_space`. What AlcoveView::normals says of
   // normals that face away from the eye, or are missing, holds here too.
   framegraph::Texture normals;
   bool normals_in_view_space = false;
   framegraph::Texture roughness;  // perceptual, [0,1]; null: OcclusionSettings::roughness
-  // Inverse depth that add_inverse_depth made from OcclusionInputs::back_depth_ndc. Needed only if
-  // needs_back_depth() returns true.
-  framegraph::Texture back_inverse_depth;
-  // Inverse depth that add_inverse_depth made from OcclusionInputs::second_depth_ndc. Needed only
-  // if needs_second_depth() returns true.
-  framegraph::Texture second_inverse_depth;
-  // Of the depth buffer that inverse_depth was made from. Its format and the projection tell the
-  // step between the depths that it can hold. Samples within about one step of the surface's
-  // tangent plane do not occlude, and visibility fades to open while the step grows from a quarter
-  // of the radius to the radius. The step at a distance z is z^2 / near * 2^-24 with 32-bit floats
-  // or 24 bits and depth that is not reversed, z^2 / near * 2^-16 with 16 bits, z * 2^-23 with
-  // reversed floats.
-  VkFormat depth_format = VK_FORMAT_D32_SFLOAT;
+  // As OcclusionInputs::back_depth_ndc. Needed only if needs_back_depth() returns true.
+  framegraph::Texture back_depth_ndc;
+  // As OcclusionInputs::second_depth_ndc. Needed only if needs_second_depth() returns true.
+  framegraph::Texture second_depth_ndc;
+  // The format whose depths `depth_ndc` holds, if they were copied from another texture. By default
+  // it is that of `depth_ndc` itself.
+  VkFormat depth_format = VK_FORMAT_UNDEFINED;
   NormalEncoding normal_encoding = NormalEncoding::signed_xyz;
   bool normals_forward_z = false;  // see OcclusionInputs
 };
@@ -47,7 +47,7 @@ struct RawOcclusionTextures {
 };
 
 // Adds the search. The raw occlusion has bent normals if needs_bent_normal(settings), and a lobe
-// with Specular::slices. Errors: an input that is missing or whose size differs from the inverse
+// with Specular::slices. Errors: an input that is missing or whose size differs from the
 // depth's, a view that cannot be used, settings that validate() refuses.
 [[nodiscard]] tl::expected<RawOcclusionTextures, Error> add_gtao(const Frame& frame,
                                                                  const GtaoInputs& inputs,

@@ -25,7 +25,6 @@ struct Error {
 enum class Shader : std::uint8_t {
   linear_depth,
   normals,
-  inverse_depth,
   gtao,
   gtao_specular,
   reconstruct,

@@ -1,6 +1,5 @@
 // Linear depth, and a pyramid of it that keeps both sides of an edge apart. Normals from depth,
-// specular models and lighting read it; searches and filters read inverse depth, which is another
-// thing (inverse_depth.h).
+// specular models and lighting read it. The search and the filter read the depth buffer itself.
 #pragma once
 
 #include <cstdint>

@@ -32,7 +32,7 @@ struct Occlusion {
 
 struct ReconstructInputs {
   RawOcclusionTextures raw_occlusion;  // From add_gtao, with the same Frame::index.
-  framegraph::Texture inverse_depth;   // From add_inverse_depth.
+  framegraph::Texture depth_ndc;       // As GtaoInputs::depth_ndc.
   framegraph::Texture normals;         // As GtaoInputs::normals.
   bool normals_in_view_space = false;
   // xy: how each surface moved on the image, in the units of `motion_convention`. Null: only the
@@ -52,7 +52,7 @@ struct ReconstructInputs {
 // anew when the size or the contents of the raw occlusion change, when history or bent normals were
 // off in the previous frame, and after Graph::reset_history(history_name).
 //
-// Errors: an input that is missing or whose size differs from the inverse depth's, raw occlusion
+// Errors: an input that is missing or whose size differs from the depth's, raw occlusion
 // with another number of tiles, a view or previous view that cannot be used, sizes above the
 // largest, settings that validate() refuses, nothing to write.
 [[nodiscard]] tl::expected<Occlusion, Error> add_reconstruct(
