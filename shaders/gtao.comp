@@ -41,12 +41,11 @@ layout(constant_id = 10) const bool kFalloff = false;
 layout(constant_id = 11) const bool kThicknessOfDistance = false;  // else of the radius
 layout(constant_id = 12) const bool kBackFaces = false;  // tell the thickness, where there are any
 layout(constant_id = 13) const bool kSnapToTexels = true;   // samples lie where their texels do
-layout(constant_id = 14) const bool kByPattern = false;     // tile_by_pattern() groups the searches
-layout(constant_id = 15) const bool kSecondLayer = false;   // second_image occludes too
-layout(constant_id = 16) const bool kExtrapolation = true;  // surfaces go on beyond the image
-layout(constant_id = 17) const bool kUnobserved = true;     // is left out, with connected samples
-layout(constant_id = 18) const uint kNormalEncoding = 0;    // as NormalEncoding has them
-layout(constant_id = 19) const bool kReversed = false;      // raw depth is 1 at the near plane
+layout(constant_id = 14) const bool kSecondLayer = false;   // second_image occludes too
+layout(constant_id = 15) const bool kExtrapolation = true;  // surfaces go on beyond the image
+layout(constant_id = 16) const bool kUnobserved = true;     // is left out, with connected samples
+layout(constant_id = 17) const uint kNormalEncoding = 0;    // as NormalEncoding has them
+layout(constant_id = 18) const bool kReversed = false;      // raw depth is 1 at the near plane
 
 const uint kBitmask = 2;
 const uint kConnected = 3;
@@ -288,13 +287,8 @@ SearchResult search_pixel(ivec2 pixel, float inverse_depth, SliceNoise noise) {
           : uvec2(0u));
 }
 
-uvec2 traced_tile() {
-  return kByPattern ? tile_by_pattern(gl_WorkGroupID.xy, gl_LocalInvocationID.xy)
-                    : gl_GlobalInvocationID.xy;
-}
-
 void main() {
-  ivec2 block = ivec2(traced_tile());
+  ivec2 block = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(block * kTileSize, size_px()))) {
     return;
   }

@@ -1,5 +1,5 @@
-// The functions that work.cpp chooses from, one pair for each pass that has loops or partial
-// traffic. `nullopt` is a loop that the function does not know.
+// The functions from which work.cpp chooses: one pair for each pass with loops or partial traffic.
+// A result of `nullopt` means that the function does not know the loop.
 #pragma once
 
 #include <optional>

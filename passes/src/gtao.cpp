@@ -36,13 +36,6 @@ RawOcclusionTextures create_raw_occlusion(const Frame& frame, Texture depth,
   return result;
 }
 
-// Threads for `blocks`: with groups by pattern a whole number of tile_by_pattern()'s.
-VkExtent3D searches(VkExtent3D blocks, bool by_pattern) {
-  const std::uint32_t whole = by_pattern ? 32 : 1;
-  return {(blocks.width + whole - 1) / whole * whole, (blocks.height + whole - 1) / whole * whole,
-          1};
-}
-
 // What of the inputs the settings read beside depth and normals.
 struct Reads {
   bool roughness = false;
@@ -66,10 +59,6 @@ tl::expected<void, Error> check_textures(const Frame& frame, const GtaoInputs& i
   return check_inputs(frame.graph, "gtao", needed);
 }
 
-bool by_pattern(const OcclusionSettings& settings) {
-  return settings.advanced.grouping == Grouping::pattern;
-}
-
 // Whether thickness is a part of distance; else of the radius, or there is none.
 bool of_distance(const OcclusionSettings& settings) {
   return has_thickness(settings.advanced.estimator) &&
@@ -77,7 +66,7 @@ bool of_distance(const OcclusionSettings& settings) {
 }
 
 // Of the shader, in its order.
-std::array<std::uint32_t, 20> constants_of(const GtaoInputs& inputs,
+std::array<std::uint32_t, 19> constants_of(const GtaoInputs& inputs,
                                            const OcclusionSettings& settings, const Reads& reads,
                                            const maths::Projection& projection) {
   return {settings.slices,
@@ -94,7 +83,6 @@ std::array<std::uint32_t, 20> constants_of(const GtaoInputs& inputs,
           flag(of_distance(settings)),
           flag(reads.back_faces),
           flag(settings.advanced.snap_to_texels),
-          flag(by_pattern(settings)),
           flag(reads.second_layer),
           flag(settings.advanced.extrapolation),
           flag(settings.advanced.unobserved),
@@ -185,13 +173,13 @@ tl::expected<RawOcclusionTextures, Error> add_gtao(const Frame& frame, const Gta
   auto pass = frame.graph.add_pass("gtao");
   declare_accesses(pass, inputs, reads, result);
   pass.record([&kernels = frame.kernels, kernel = *kernel, inputs, result, reads,
-               parameters = parameters_of(frame, inputs, settings, *projection),
-               whole = by_pattern(settings)](RecordContext& context) {
+               parameters =
+                   parameters_of(frame, inputs, settings, *projection)](RecordContext& context) {
     const auto views = views_of(context, inputs, reads, result);
     // Without a lobe the last binding does not exist.
     const std::span<const VkImageView> bound(views.data(), views.size() - (result.lobe ? 0 : 1));
     kernels.dispatch(context, kernel, bound, bytes_of(parameters),
-                     searches(context.extent(result.raw_occlusion), whole));
+                     context.extent(result.raw_occlusion));
   });
   return result;
 }

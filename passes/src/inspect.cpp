@@ -17,10 +17,10 @@ using maths::dvec3;
 using maths::dvec4;
 
 constexpr double kDegrees = 180.0 / 3.14159265358979323846;
-// Fewer samples say nothing.
+// With fewer valid samples no mistake is reported.
 constexpr std::size_t kEnoughSamples = 100;
 
-// A sample where the surface is smooth: its position's neighbours, and the normal that is stored.
+// A sample on a smooth surface: the depths of its neighbours, and its stored normal.
 struct SmoothSample {
   dvec3 position;
   dvec3 along_x;
@@ -28,24 +28,25 @@ struct SmoothSample {
   maths::vec3 stored;
 };
 
-// How the given normals are read, and how the projection is.
+// One interpretation of the inputs: how normals are decoded, and which projection is assumed.
 struct Reading {
   bool in_view_space = false;
   bool packed = false;
   bool forward_z = false;
   bool flip_y = false;
-  double tangent_scale = 1.0;  // of the tangents of half the angles of view
+  double tangent_scale = 1.0;  // factor of the tangents of half the field of view
 };
 
-// Three quarters of the values are at most this. The median would not do: walls and floors that are
-// seen along the axes of the view have the same normals with any angle of view.
+// Returns the value that three quarters of the values do not exceed. The median is not enough:
+// walls and floors that are seen along the axes of the view have the same normals for any field of
+// view.
 double upper_quartile(std::vector<double> values) {
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() * 3 / 4);
   std::nth_element(values.begin(), at, values.end());
   return *at;
 }
 
-// Whether a number has at most so many significant digits, as people write near planes.
+// Returns whether a number has at most `digits` significant digits, as people choose near planes.
 bool is_round(double value, double digits) {
   if (!(value > 0.0) || !std::isfinite(value)) {
     return false;
@@ -77,7 +78,7 @@ class Inspector {
     const bool reversed = is_depth_reversed();
     set(Mistake::depth_reversed, reversed);
     if (reversed) {
-      return found;  // everything else would follow from it
+      return found;  // all other mistakes could be consequences of this one
     }
     set(Mistake::depth_from_minus_one, is_depth_from_minus_one());
     inspect_radius(set);
@@ -97,7 +98,7 @@ class Inspector {
            (view_.has_normals && is_smaller(view_.normals_size, view_.size));
   }
 
-  // In view space; x and y are uv.
+  // Returns the position in view space of a point with these uv and raw depth.
   dvec3 position(double u, double v, double depth) const {
     const dvec4 p = view_from_clip_ * dvec4(2.0 * u - 1.0, 2.0 * v - 1.0, depth, 1.0);
     return dvec3(p) / p.w;
@@ -105,7 +106,8 @@ class Inspector {
 
   bool is_sky(float depth) const { return !(depth > 0.0f && depth < 1.0f); }
 
-  // The sky lies at the near plane, or all that there is lies just behind it.
+  // Returns whether depth is reversed against the projection: the sky then lies at the near plane,
+  // or all surfaces lie just behind it.
   bool is_depth_reversed() const {
     const float near_depth = reversed_ ? 1.0f : 0.0f;
     std::size_t at_near = 0, at_far = 0, close = 0, surfaces = 0;
@@ -125,8 +127,9 @@ class Inspector {
            static_cast<double>(close) > 0.95 * static_cast<double>(surfaces);
   }
 
-  // The two conventions give matrices of the same form. They differ in the near plane that a matrix
-  // stands for, which is a round number in the convention that it was made for.
+  // Returns whether the projection has OpenGL's depth from -1 to 1. Both conventions have matrices
+  // of the same form. They differ in the near plane that follows from a matrix, which is a round
+  // number in the convention that the matrix was made for.
   bool is_depth_from_minus_one() const {
     if (!perspective_ || reversed_) {
       return false;
@@ -153,12 +156,13 @@ class Inspector {
       return;
     }
     std::sort(pixels.begin(), pixels.end());
-    // The radius is below half a pixel almost everywhere, or above three images everywhere.
+    // The radius is too small if it is below half a pixel at nine of ten samples, and too large if
+    // it exceeds three image widths everywhere.
     set(Mistake::radius_too_small, pixels[pixels.size() * 9 / 10] < 0.5);
     set(Mistake::radius_too_large, pixels[pixels.size() / 10] > 3.0 * view_.size.height);
   }
 
-  // The largest step between depths that the format stores, around this one.
+  // Returns the largest difference between two consecutive depths of the format near this depth.
   double depth_step(float depth) const {
     switch (view_.depth_format) {
       case VK_FORMAT_D16_UNORM:
@@ -172,8 +176,9 @@ class Inspector {
     }
   }
 
-  // Depth as it is stored is linear along the image of a plane. The pixel is left out where it is
-  // not, and where the step of the format would tilt the normal.
+  // Returns the sample if its surface is smooth. Raw depth is linear on the image of a plane. A
+  // pixel is left out if it is not linear there, or if one step of the format would tilt the
+  // normal.
   std::optional<SmoothSample> smooth(const PixelSample& s) const {
     const double step = depth_step(s.depth);
     const auto is_line = [&](float before, float after) {
@@ -203,8 +208,8 @@ class Inspector {
     return result;
   }
 
-  // The angle between normals of depth and given ones, in degrees, that three quarters of them keep
-  // to. Either normal may face away.
+  // Returns the angle in degrees between normals from depth and given normals that three quarters
+  // of the samples do not exceed. Normals may point to either side.
   double error_of(const Reading& reading) const {
     auto encoding = static_cast<std::uint32_t>(view_.normal_encoding) & ~1u;
     encoding |= reading.packed ? 1u : 0u;
@@ -243,7 +248,7 @@ class Inspector {
                             view_.normal_encoding == NormalEncoding::unsigned_octahedral,
                         view_.normals_forward_z};
     const double now = error_of(given);
-    // Normal maps tilt normals by some degrees from the surface.
+    // Normal maps turn normals by some degrees from the surface.
     if (now < 4.0) {
       return;
     }

@@ -6,12 +6,14 @@
 #include <utility>
 
 #include "cli/option_value.h"
+#include "scene/depth_range.h"
 #include "scene/framing.h"
 
 namespace alcove::sample {
 namespace {
 
-// Whether view axes can be computed: the squared lengths are normal floats.
+// Returns whether the axes of the view can be computed: their squared lengths must be normal
+// floats.
 bool has_axes(const Camera& camera) {
   const glm::vec3 back = camera.eye_ws - camera.target_ws;
   return std::isnormal(glm::dot(back, back)) &&
@@ -19,7 +21,7 @@ bool has_axes(const Camera& camera) {
          std::isfinite(glm::dot(camera.eye_ws, camera.eye_ws));
 }
 
-// The first names, and the number of the others, because a file may have thousands.
+// Returns the first camera names and the number of the others, because a file may have thousands.
 std::string names_of(const std::vector<Camera>& cameras) {
   constexpr std::size_t kMost = 10;
   const std::size_t listed = std::min(cameras.size(), kMost);
@@ -42,7 +44,8 @@ tl::expected<Camera, std::string> camera_of(const ViewOptions& view, const Scene
         "the scene has no camera \"" + view.camera + "\"; it has " +
         (scene.cameras.empty() ? "none: use --eye and --target" : names_of(scene.cameras)));
   }
-  Camera camera = named ? *named : framing_camera(scene);
+  const double aspect = static_cast<double>(view.width) / view.height;
+  Camera camera = named ? *named : framing_camera(scene, aspect);
   camera.origin = scene.origin;
   if (view.eye) camera.eye_ws = *view.eye - scene.origin;
   if (view.target) camera.target_ws = *view.target - scene.origin;
@@ -69,7 +72,7 @@ tl::expected<Camera, std::string> camera_of(const ViewOptions& view, const Scene
         "lengths from 1e-15 to 1e15");
   }
   if (std::exchange(camera.fit_planes, false) && !(view.near_plane && view.far_plane)) {
-    camera = with_fitted_planes(scene, camera, static_cast<double>(view.width) / view.height);
+    camera = with_fitted_planes(scene, camera, aspect);
   }
   camera.near_plane = view.near_plane.value_or(camera.near_plane);
   camera.far_plane = view.far_plane.value_or(camera.far_plane);

@@ -38,7 +38,7 @@ std::string degrees_text(float radians) {
   return text;
 }
 
-// The settings that differ from those of a quality, in the form of --set.
+// Returns the settings that differ from those of a quality, in the form of --set.
 std::vector<std::string> changes(Quality quality, const OcclusionSettings& settings) {
   const OcclusionSettings preset = passes::quality_settings(quality, settings.radius);
   std::vector<std::string> before, result;

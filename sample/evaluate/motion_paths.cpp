@@ -216,9 +216,9 @@ void MotionPath::pose(Scene& scene, std::uint32_t frame) const {
   const glm::mat4 placed = world_from_moving(frame);
   const Mesh at_rest = block_mesh(object_half_width(start_));
   Mesh& mesh = scene.meshes.back();
-  for (std::size_t i = 0; i < at_rest.positions_ws.size(); ++i) {
-    mesh.positions_ws[i] = glm::vec3(placed * glm::vec4(at_rest.positions_ws[i], 1.0f));
-    mesh.normals_ws[i] = glm::mat3(placed) * at_rest.normals_ws[i];
+  for (std::size_t i = 0; i < at_rest.positions.size(); ++i) {
+    mesh.positions[i] = glm::vec3(placed * glm::vec4(at_rest.positions[i], 1.0f));
+    mesh.normals[i] = glm::mat3(placed) * at_rest.normals[i];
   }
 }
 

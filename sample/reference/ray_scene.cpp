@@ -54,14 +54,14 @@ RTCGeometry triangles_of(RTCDevice device, const Material& material, FilteredMes
   const Mesh& mesh = *filtered.mesh;
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                           sizeof(glm::vec3), mesh.positions_ws.size());
+                                           sizeof(glm::vec3), mesh.positions.size());
   void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                           3 * sizeof(uint32_t), mesh.indices.size() / 3);
   if (!vertices || !indices) {
     rtcReleaseGeometry(geometry);
     return nullptr;
   }
-  std::memcpy(vertices, mesh.positions_ws.data(), mesh.positions_ws.size() * sizeof(glm::vec3));
+  std::memcpy(vertices, mesh.positions.data(), mesh.positions.size() * sizeof(glm::vec3));
   std::memcpy(indices, mesh.indices.data(), mesh.indices.size() * sizeof(uint32_t));
   if (needs_filter(material)) {
     rtcSetGeometryUserData(geometry, &filtered);
@@ -209,9 +209,9 @@ std::optional<Hit> RayScene::Impl::nearest(const glm::vec3& origin, const glm::v
   const glm::vec3 normal(area / length_of_area);
   hit.geometric_normal_ws = facing(normal, direction);
   hit.shading_normal_ws = hit.geometric_normal_ws;
-  if (!mesh.normals_ws.empty()) {
+  if (!mesh.normals.empty()) {
     const glm::vec3 smooth =
-        w * mesh.normals_ws[i[0]] + u * mesh.normals_ws[i[1]] + v * mesh.normals_ws[i[2]];
+        w * mesh.normals[i[0]] + u * mesh.normals[i[1]] + v * mesh.normals[i[2]];
     const glm::vec3 smooth_ws(direction_of(placed(glm::dvec3(smooth))));
     // On a back face the vertex normal is flipped with the triangle's normal, even if it faces the
     // ray already.

@@ -73,8 +73,8 @@ void CacheKey::add(std::string_view text) { add(std::as_bytes(std::span(text)));
 void CacheKey::add(const Scene& scene) {
   for (const Mesh& mesh : scene.meshes) {
     add(mesh.material);
-    add_vector(*this, mesh.positions_ws);
-    add_vector(*this, mesh.normals_ws);
+    add_vector(*this, mesh.positions);
+    add_vector(*this, mesh.normals);
     add_vector(*this, mesh.uvs);
     add_vector(*this, mesh.second_uvs);
     add_vector(*this, mesh.colors);

@@ -50,7 +50,7 @@ PackedTangent packed_tangent(const glm::vec4& tangent) {
 class PartBuilder {
  public:
   PartBuilder(const Mesh& mesh, const Material& material) : mesh_(mesh) {
-    if (material.normal_texture.image >= 0 && !mesh.normals_ws.empty()) {
+    if (material.normal_texture.image >= 0 && !mesh.normals.empty()) {
       tangents_ = corner_tangents(mesh, material.normal_texture);
     }
   }
@@ -115,7 +115,7 @@ std::uint32_t PartBuilder::copy_of(std::uint32_t vertex, Part& part) const {
 Part PartBuilder::next(std::size_t most_triangles) {
   Part part;
   if (tangents_.empty()) {
-    of_vertex_.assign(mesh_.positions_ws.size(), kNone);
+    of_vertex_.assign(mesh_.positions.size(), kNone);
   }
   of_corner_.clear();
   is_first_.clear();
@@ -261,13 +261,13 @@ tl::expected<void, std::string> GpuMeshes::Builder::add_part(const Mesh& mesh, c
   draw.index_count = static_cast<std::uint32_t>(part.indices.size());
   draw.instance_count = 1;
   draw.moves = mesh.moves;
-  draw.faceted = mesh.normals_ws.empty();
+  draw.faceted = mesh.normals.empty();
   const std::size_t count = part.sources.size();
   stream(draw, VertexStream::kPosition, count,
-         [&](std::size_t i) { return mesh.positions_ws[part.sources[i]]; });
+         [&](std::size_t i) { return mesh.positions[part.sources[i]]; });
   stream(draw, VertexStream::kNormals, count, [&](std::size_t i) {
     return PackedNormals{
-        draw.faceted ? PackedDirection{} : packed_direction(mesh.normals_ws[part.sources[i]]),
+        draw.faceted ? PackedDirection{} : packed_direction(mesh.normals[part.sources[i]]),
         part.faces[i]};
   });
   if (!mesh.uvs.empty()) {
@@ -336,11 +336,8 @@ tl::expected<void, std::string> GpuMeshes::Builder::add_instances(
 
 tl::expected<void, std::string> GpuMeshes::Builder::add(const Mesh& mesh,
                                                         const Material& material) {
-  // A page may hold the largest stream of a part whose triangles share no vertex. Parts are small
-  // beside the mesh, because each is in memory twice while it is uploaded.
-  constexpr std::size_t kMostTriangles = std::size_t{1} << 17;
-  const std::size_t most_triangles = std::min<std::size_t>(
-      std::min(most_bytes_, kLargestPage) / (3 * sizeof(glm::vec3)), kMostTriangles);
+  // A page holds the largest stream of a part even if its triangles share no vertex.
+  const std::size_t most_triangles = std::min(most_bytes_, kLargestPage) / (3 * sizeof(glm::vec3));
   PartBuilder builder(mesh, material);
   std::vector<MeshDraw> parts;
   for (Part part = builder.next(most_triangles); !part.indices.empty();

@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "scene/framing.h"
 #include "scene/gltf_camera.h"
 #include "scene/gltf_extensions.h"
 #include "scene/gltf_files.h"
@@ -16,6 +15,7 @@
 #include "scene/gltf_mesh.h"
 #include "scene/gltf_model.h"
 #include "scene/gltf_nodes.h"
+#include "scene/scene_core.h"
 #include "support/printable.h"
 
 namespace alcove::sample {

@@ -134,17 +134,17 @@ void make_flat_normals(Mesh& mesh) {
     const glm::vec3 normal(glm::normalize(area_of(mesh, i)));
     for (size_t c = 0; c < 3; ++c) {
       const uint32_t v = mesh.indices[i + c];
-      flat.positions_ws.push_back(mesh.positions_ws[v]);
-      flat.normals_ws.push_back(normal);
+      flat.positions.push_back(mesh.positions[v]);
+      flat.normals.push_back(normal);
       copy(mesh.uvs, flat.uvs, v);
       copy(mesh.second_uvs, flat.second_uvs, v);
       copy(mesh.colors, flat.colors, v);
     }
   }
-  flat.indices.resize(flat.positions_ws.size());
+  flat.indices.resize(flat.positions.size());
   std::iota(flat.indices.begin(), flat.indices.end(), 0u);
-  mesh.positions_ws = std::move(flat.positions_ws);
-  mesh.normals_ws = std::move(flat.normals_ws);
+  mesh.positions = std::move(flat.positions);
+  mesh.normals = std::move(flat.normals);
   mesh.uvs = std::move(flat.uvs);
   mesh.second_uvs = std::move(flat.second_uvs);
   mesh.colors = std::move(flat.colors);
@@ -153,16 +153,16 @@ void make_flat_normals(Mesh& mesh) {
 
 // Vertices whose normal the file left zero or not finite take the mean of their faces.
 void mend_normals(Mesh& mesh) {
-  if (std::ranges::find(mesh.normals_ws, glm::vec3(0.0f)) == mesh.normals_ws.end()) return;
-  std::vector<glm::dvec3> sums(mesh.positions_ws.size(), glm::dvec3(0.0));
+  if (std::ranges::find(mesh.normals, glm::vec3(0.0f)) == mesh.normals.end()) return;
+  std::vector<glm::dvec3> sums(mesh.positions.size(), glm::dvec3(0.0));
   for (size_t i = 0; i < mesh.indices.size(); i += 3) {
     const glm::dvec3 area = area_of(mesh, i);
     for (size_t c = 0; c < 3; ++c) sums[mesh.indices[i + c]] += area;
   }
   for (size_t v = 0; v < sums.size(); ++v) {
-    if (mesh.normals_ws[v] != glm::vec3(0.0f)) continue;
+    if (mesh.normals[v] != glm::vec3(0.0f)) continue;
     const double length = glm::length(sums[v]);
-    mesh.normals_ws[v] = length > 0.0 ? glm::vec3(sums[v] / length) : glm::vec3(0, 1, 0);
+    mesh.normals[v] = length > 0.0 ? glm::vec3(sums[v] / length) : glm::vec3(0, 1, 0);
   }
 }
 
@@ -197,7 +197,7 @@ tl::expected<std::vector<glm::vec2>, std::string> texture_coordinates(
 tl::expected<void, std::string> add_texture_coordinates(const tinygltf::Model& model,
                                                         const tinygltf::Primitive& primitive,
                                                         Mesh& mesh, Scene& scene) {
-  const size_t vertices = mesh.positions_ws.size();
+  const size_t vertices = mesh.positions.size();
   for (const uint32_t set : {0u, 1u}) {
     if (!reads_by(scene.materials[mesh.material], set)) continue;
     auto uvs = texture_coordinates(model, primitive, set, vertices);
@@ -217,7 +217,7 @@ tl::expected<void, std::string> add_colors(const tinygltf::Model& model,
                                            const tinygltf::Primitive& primitive, Mesh& mesh) {
   const int accessor = attribute(primitive, "COLOR_0");
   if (accessor < 0) return {};
-  const size_t vertices = mesh.positions_ws.size();
+  const size_t vertices = mesh.positions.size();
   const bool has_alpha = static_cast<size_t>(accessor) < model.accessors.size() &&
                          model.accessors[static_cast<size_t>(accessor)].type == TINYGLTF_TYPE_VEC4;
   const int components = has_alpha ? 4 : 3;
@@ -254,7 +254,7 @@ tl::expected<void, std::string> add_normals(const tinygltf::Model& model,
   auto normals = world_normals(model, normal, placement, vertices);
   if (!normals) return Failure(normals.error());
   if (normals->size() != vertices) return Failure("has normals for some of its vertices only");
-  mesh.normals_ws = std::move(*normals);
+  mesh.normals = std::move(*normals);
   mend_normals(mesh);
   const int tangent = attribute(primitive, "TANGENT");
   if (tangent < 0) return {};
@@ -266,7 +266,7 @@ tl::expected<void, std::string> add_normals(const tinygltf::Model& model,
   auto tangents = world_tangents(model, tangent, placement, vertices);
   if (!tangents) return Failure(tangents.error());
   if (tangents->size() != vertices) return Failure("has tangents for some of its vertices only");
-  mesh.tangents_ws = std::move(*tangents);
+  mesh.tangents = std::move(*tangents);
   return {};
 }
 
@@ -340,7 +340,7 @@ tl::expected<void, std::string> add_primitive(const tinygltf::Model& model,
   const size_t vertices = positions->size();
   auto order = vertex_order(model, primitive, vertices, budget.indices);
   if (!order) return refuse(order.error());
-  mesh.positions_ws = std::move(*positions);
+  mesh.positions = std::move(*positions);
   if (auto added = add_texture_coordinates(model, primitive, mesh, scene); !added) {
     return refuse(added.error());
   }
@@ -368,7 +368,7 @@ tl::expected<void, std::string> add_primitive(const tinygltf::Model& model,
     return refuse(added.error());
   }
   // The vertices that flat normals have added.
-  charge(budget.vertices, mesh.positions_ws.size() - std::min(vertices, mesh.positions_ws.size()));
+  charge(budget.vertices, mesh.positions.size() - std::min(vertices, mesh.positions.size()));
   scene.meshes.push_back(std::move(mesh));
   return {};
 }

@@ -2,7 +2,6 @@
 
 #include "scene/analytic_scenes.h"
 #include "scene/builtin_scene.h"
-#include "scene/framing.h"
 #include "scene/gltf.h"
 
 namespace alcove::sample {
@@ -37,7 +36,6 @@ tl::expected<Scene, std::string> load_scene(const std::string& what,
   auto scene = load_gltf(what, progress);
   if (!scene) return scene;
   treat_materials(*scene, treatment);
-  if (scene->cameras.empty()) scene->cameras.push_back(framing_camera(*scene));
   return scene;
 }
 

@@ -22,42 +22,7 @@ glm::vec4 texel(const TextureImage& image, uint32_t x, uint32_t y) {
   return glm::vec4(p[0], p[1], p[2], p[3]) / 255.0f;
 }
 
-Bounds no_bounds() { return {glm::vec3(INFINITY), glm::vec3(-INFINITY)}; }
-
-void include(Bounds& bounds, const glm::vec3& position) {
-  bounds.low = glm::min(bounds.low, position);
-  bounds.high = glm::max(bounds.high, position);
-}
-
 }  // namespace
-
-std::array<glm::vec3, 8> corners_of(const Bounds& bounds) {
-  std::array<glm::vec3, 8> corners;
-  for (size_t i = 0; i < corners.size(); ++i) {
-    for (int c = 0; c < 3; ++c) {
-      corners[i][c] = (i >> c & 1u) != 0 ? bounds.high[c] : bounds.low[c];
-    }
-  }
-  return corners;
-}
-
-Bounds bounds_of(const std::vector<Mesh>& meshes) {
-  Bounds bounds = no_bounds();
-  for (const Mesh& mesh : meshes) {
-    Bounds own = no_bounds();
-    for (const uint32_t i : mesh.indices) include(own, mesh.positions_ws[i]);
-    if (mesh.instances.empty()) {
-      if (!mesh.indices.empty()) include(bounds, own.low), include(bounds, own.high);
-      continue;
-    }
-    for (const glm::mat4x3& world_from_mesh : mesh.instances) {
-      for (const glm::vec3& corner : corners_of(own)) {
-        include(bounds, world_from_mesh * glm::vec4(corner, 1.0f));
-      }
-    }
-  }
-  return bounds.low.x <= bounds.high.x ? bounds : Bounds{};
-}
 
 uint64_t triangle_count(const Scene& scene) {
   uint64_t count = 0;

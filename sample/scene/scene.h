@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/bounds.h"
 #include "scene/camera.h"
 #include "support/glm.h"
 
@@ -69,33 +70,27 @@ struct Material {
   bool double_sided = true;
 };
 
-// Triangles of one material, counter-clockwise seen from the front. Without `instances` the arrays
-// are in world space and the mesh stands once; with them they are in mesh space. Every vertex array
-// has the length of `positions_ws` or is empty; every index is below that length.
+// Triangles of one material, counter-clockwise seen from the front. The arrays are in mesh space,
+// which is world space for a mesh without `instances`. Every vertex array is as long as `positions`
+// or empty; every index is below that length.
 struct Mesh {
   std::string name;
   uint32_t material = 0;  // indexes Scene::materials
-  std::vector<glm::vec3> positions_ws;
-  std::vector<glm::vec3> normals_ws;  // unit; empty: each triangle has its geometric normal
-  std::vector<glm::vec2> uvs;         // empty: zero
-  std::vector<glm::vec2> second_uvs;  // empty: zero
-  // The file's tangents, unit or zero; w is the side of the bitangent w * cross(normal, tangent).
-  // Empty: corner_tangents() computes them from texture coordinates.
-  std::vector<glm::vec4> tangents_ws;
-  // Linear RGB and alpha, 8-bit unsigned normalised, that multiply the base colour; empty: white.
+  std::vector<glm::vec3> positions;
+  std::vector<glm::vec3> normals;     // unit; if empty, each triangle has its geometric normal
+  std::vector<glm::vec2> uvs;         // zero if empty
+  std::vector<glm::vec2> second_uvs;  // zero if empty
+  // Tangents that the file has, unit or zero. The bitangent is w * cross(normal, tangent). If
+  // empty, corner_tangents() computes tangents from texture coordinates.
+  std::vector<glm::vec4> tangents;
+  // Factors of the base colour: linear RGB and alpha, 8-bit unsigned normalised. White if empty.
   std::vector<glm::u8vec4> colors;
   std::vector<uint32_t> indices;  // 3 per triangle
-  // World from mesh space, one for each instance, affine. Empty: the mesh stands once and its
-  // arrays are in world space.
+  // The affine transform from mesh to world space of each instance. If empty, the mesh has one
+  // instance with the identity.
   std::vector<glm::mat4x3> instances;
-  // The rasteriser places the mesh by GbufferView::world_from_moving, the ray tracer leaves it
-  // where it is.
+  // The rasteriser transforms the mesh by GbufferView::world_from_moving. The ray tracer does not.
   bool moves = false;
-};
-
-struct Bounds {
-  glm::vec3 low{0.0f};
-  glm::vec3 high{0.0f};
 };
 
 // Everything that is drawn and traced. Materials hold at least one entry wherever there is a mesh.
@@ -114,11 +109,6 @@ struct Scene {
   std::vector<std::string> warnings;  // one sentence for each part that is not drawn as stored
 };
 
-[[nodiscard]] std::array<glm::vec3, 8> corners_of(const Bounds& bounds);
-
-// Axis-aligned bounds of all instances of the triangles; an instance counts with the box around its
-// mesh. Vertices that no triangle uses do not count.
-[[nodiscard]] Bounds bounds_of(const std::vector<Mesh>& meshes);
 // Triangles of all meshes, counted once for each instance.
 [[nodiscard]] uint64_t triangle_count(const Scene& scene);
 

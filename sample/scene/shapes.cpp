@@ -55,21 +55,21 @@ uint32_t SceneBuilder::add_material(const std::string& name, glm::vec3 base_colo
 }
 
 void SceneBuilder::vertex(glm::vec3 position, glm::vec3 normal) {
-  mesh().positions_ws.push_back(glm::vec3(world_from_shape * glm::vec4(position, 1.0f)));
-  mesh().normals_ws.push_back(
+  mesh().positions.push_back(glm::vec3(world_from_shape * glm::vec4(position, 1.0f)));
+  mesh().normals.push_back(
       glm::normalize(glm::transpose(glm::inverse(glm::mat3(world_from_shape))) * normal));
   mesh().uvs.emplace_back(0.0f);
 }
 
 void SceneBuilder::triangle(glm::vec3 a, glm::vec3 b, glm::vec3 c) {
   const glm::vec3 normal = glm::cross(b - a, c - a);
-  const auto first = static_cast<uint32_t>(mesh().positions_ws.size());
+  const auto first = static_cast<uint32_t>(mesh().positions.size());
   for (const glm::vec3& p : {a, b, c}) vertex(p, normal);
   for (uint32_t i = 0; i < 3; ++i) mesh().indices.push_back(first + i);
 }
 
 void SceneBuilder::smooth_quad(const glm::vec3 (&positions)[4], const glm::vec3 (&normals)[4]) {
-  const auto first = static_cast<uint32_t>(mesh().positions_ws.size());
+  const auto first = static_cast<uint32_t>(mesh().positions.size());
   for (int i = 0; i < 4; ++i) vertex(positions[i], normals[i]);
   // At the pole of a lathe one of the halves has no area.
   const auto emit = [&](uint32_t a, uint32_t b, uint32_t c) {

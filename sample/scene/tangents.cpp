@@ -79,7 +79,7 @@ class TangentBuilder {
   void join(size_t corner, size_t other);
   size_t group_of(size_t corner);
   glm::dvec3 position(size_t corner) const {
-    return glm::dvec3(mesh_.positions_ws[mesh_.indices[corner]]);
+    return glm::dvec3(mesh_.positions[mesh_.indices[corner]]);
   }
 
   const Mesh& mesh_;
@@ -100,9 +100,9 @@ void TangentBuilder::weld(const TextureUse& map) {
     for (size_t k = 0; k < 3; ++k) {
       const uint32_t v = mesh_.indices[first + k];
       const glm::vec2 uv = texture_uv(map, uvs_at(mesh_, v));
-      corners[k] = glm::dvec3(mesh_.positions_ws[v]);
+      corners[k] = glm::dvec3(mesh_.positions[v]);
       uvs[k] = uv;
-      const CornerValues values{mesh_.positions_ws[v], mesh_.normals_ws[v], uv};
+      const CornerValues values{mesh_.positions[v], mesh_.normals[v], uv};
       vertex_of_[first + k] =
           known.try_emplace(values, static_cast<uint32_t>(first + k)).first->second;
     }
@@ -165,7 +165,7 @@ std::vector<glm::vec4> TangentBuilder::build() {
   for (size_t i = 0; i < vertex_of_.size(); ++i) {
     const FaceTangent& face = faces_[i / 3];
     if (face.orientation == Orientation::kUnknown) continue;
-    const glm::dvec3 normal(mesh_.normals_ws[mesh_.indices[i]]);
+    const glm::dvec3 normal(mesh_.normals[mesh_.indices[i]]);
     const glm::dvec3 a = in_plane(position(next_corner(i)) - position(i), normal);
     const glm::dvec3 b = in_plane(position(previous_corner(i)) - position(i), normal);
     const double angle = std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0));
@@ -183,14 +183,14 @@ std::vector<glm::vec4> TangentBuilder::build() {
 
 std::vector<glm::vec4> given_tangents(const Mesh& mesh) {
   std::vector<glm::vec4> out(mesh.indices.size());
-  for (size_t i = 0; i < out.size(); ++i) out[i] = mesh.tangents_ws[mesh.indices[i]];
+  for (size_t i = 0; i < out.size(); ++i) out[i] = mesh.tangents[mesh.indices[i]];
   return out;
 }
 
 }  // namespace
 
 std::vector<glm::vec4> corner_tangents(const Mesh& mesh, const TextureUse& map) {
-  if (!mesh.tangents_ws.empty()) return given_tangents(mesh);
+  if (!mesh.tangents.empty()) return given_tangents(mesh);
   return TangentBuilder(mesh, map).build();
 }
 

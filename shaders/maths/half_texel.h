@@ -1,4 +1,4 @@
-// A reconstructed texel of 2x2 pixels, from which upsampling makes pixels: its occlusion and the
+// A reconstructed texel of 2x2 pixels, which upsampling turns into pixels: its occlusion and the
 // tangent plane of its surface. The next frame reads it as history. It is stored in two images of
 // formats that texture units unpack: R16G16B16A16_SNORM and R32_SFLOAT.
 #ifndef ALCOVE_MATHS_HALF_TEXEL_H
@@ -16,37 +16,39 @@ const float kLargestTilt = 16.0f;
 const float kHalfTexelWeightUnit = 128.0f;
 
 struct HalfTexel {
-  float occlusion;  // 1 - visibility, [0,1], to 2^-16; 0 and 1 are exact
+  float occlusion;  // 1 - visibility, [0,1]; error 2^-16; 0 and 1 are exact
   float weight;     // of the history, frames, [0,kMaxHistoryFrames]
-  // The plane's slope: the view-space normal's xy over minus its component along the view ray that
-  // has a depth of 1. Times ray_per_px(), and in perspective times -inverse_depth, it is the change
-  // of inverse depth from one pixel to the next.
+  // The plane's slope: the xy components of the view-space normal, divided by minus its component
+  // along the view ray with depth 1. Multiplied by ray_per_px(), and in perspective by
+  // -inverse_depth, it is the change of inverse depth from one pixel to the next.
   vec2 tilt;
 };
 
+// Returns the texel as it is stored in R16G16B16A16_SNORM, which clamps tilts that are too large.
 ALCOVE_INLINE vec4 pack_half_texel(HalfTexel texel) {
   return vec4(texel.occlusion, texel.weight * (1.0f / kHalfTexelWeightUnit),
               texel.tilt.x * (1.0f / kLargestTilt), texel.tilt.y * (1.0f / kLargestTilt));
 }
 
-// The inverse depth of the plane at the texel's centre, at least 0, as R32_SFLOAT. The last eight
-// bits of its mantissa hold the occlusion of the last few frames where `knows_recent`, so the depth
-// is exact to 2^-15 of itself.
+// Returns the inverse depth of the plane at the texel's centre, which must be at least 0, as it is
+// stored in R32_SFLOAT. If `knows_recent`, the last eight bits of the mantissa hold the occlusion of
+// the last few frames, [0,1]. The relative error of the depth is 2^-15.
 ALCOVE_INLINE float half_texel_depth(float inverse_depth, float recent, bool knows_recent) {
   uint bits = floatBitsToUint(inverse_depth) & 0xffffff00u;
   uint code = knows_recent ? uint(sqrt(clamp(recent, 0.0f, 1.0f)) * 254.0f + 1.5f) : 0u;
   return uintBitsToFloat(bits | code);
 }
 
-// The occlusion of the last few frames, by its root, or `otherwise` where it is not known.
+// Returns the occlusion of the last few frames that a stored depth holds, or `otherwise` if it holds
+// none.
 ALCOVE_INLINE float half_texel_recent(float depth, float otherwise) {
   uint code = floatBitsToUint(depth) & 255u;
   float root = (float(code) - 1.0f) * (1.0f / 254.0f);
   return code == 0u ? otherwise : root * root;
 }
 
-// A bent-normal residual (bent_normal.h) as A2B10G10R10_UNORM, so that 0 is exact. `dither` in
-// [0,1) replaces the 0.5 of rounding to nearest.
+// Returns a bent-normal residual (bent_normal.h) as it is stored in A2B10G10R10_UNORM. A component of
+// 0 is exact. `dither` in [0,1) replaces the 0.5 of rounding to nearest.
 ALCOVE_INLINE vec4 pack_half_residual(vec3 residual, float dither) {
   float scale = 511.0f / (1023.0f * kLargestResidual);
   float offset = (511.5f + dither) * (1.0f / 1023.0f);

@@ -39,37 +39,41 @@ ALCOVE_INLINE SliceNoise paper_pattern(uvec2 pixel, uint frame) {
   return noise;
 }
 
+// A hash of a pixel's position: multiplications and xor-shifts with the primes of xxHash [Collet
+// 2012].
+ALCOVE_INLINE uint hash_of(uvec2 pixel) {
+  uint bits = (pixel.x * 2654435761u) ^ (pixel.y * 2246822519u);
+  bits = (bits ^ (bits >> 15u)) * 3266489917u;
+  return bits ^ (bits >> 16u);
+}
+
 // Lattices over the image whose steps from pixel to pixel are irrational, rotated from frame to
 // frame by the golden ratio (directions) and an R2 number (offsets). Any few adjacent pixels cover
-// directions and offsets evenly, and so does any run of frames at one pixel. No pattern repeats:
-// the error of a pattern with a period of 4 pixels can be seen as a weave, although it is small.
-// The directions take the two numbers of the R2 sequence [Roberts 2018], the offsets the golden
+// directions and offsets evenly, and so does any run of frames at one pixel. The steps of the
+// directions are the two numbers of the R2 sequence [Roberts 2018], those of the offsets the golden
 // ratio and the square root of 2.
 //
-// Where searches move through the pixels of a tile (`moves`), each is back in its place after four
-// frames. The rotation is then a quarter of such a number, so that the frames in which a pixel
-// itself is traced cover directions and offsets evenly.
+// Eight searches of a pixel leave the 5th and the 8th harmonic of the error over directions, and a
+// lattice draws each harmonic as parallel stripes that the eye sees. Every direction is therefore
+// shifted at random by up to an eighth, the same in every frame: this turns the 8th harmonic into
+// noise, halves the stripes of the 5th, and leaves the lower ones to the filter over neighbours.
+//
+// With `moves`, the traced pixel moves through the pixels of a tile, and returns after four frames.
+// The rotation is then a quarter of such a number, so that the frames in which a pixel itself is
+// traced cover directions and offsets evenly.
 ALCOVE_INLINE SliceNoise golden_pattern(uvec2 pixel, uint frame, bool moves) {
   // Fractions of 2^32, exact for every frame: of 1.6180339887 and 0.7548776662, or of a quarter of
   // 1.6180339887 and of 2.5698402910.
   uint turn = moves ? 1737350766u : 2654435769u;
   uint shift = moves ? 2759345001u : 3242174889u;
+  uint random_shift = (hash_of(pixel) >> 16u) << 13u;  // below an eighth
   // Steps to the right and downwards: 0.7548776662 and 0.5698402910, 0.6180339887 and 0.4142135624.
-  uint direction_bits = (1u << 27u) + pixel.x * 3242174889u + pixel.y * 2447445414u + frame * turn;
+  uint direction_bits = random_shift + pixel.x * 3242174889u + pixel.y * 2447445414u + frame * turn;
   uint offset_bits = (1u << 29u) + pixel.x * 2654435769u + pixel.y * 1779033704u + frame * shift;
   SliceNoise noise;
   noise.direction = float(direction_bits >> 8u) * (1.0f / 16777216.0f);
   noise.offset = float(offset_bits >> 8u) * (1.0f / 16777216.0f);
   return noise;
-}
-
-// Tiles that share their place in a 4x4 pattern, 64 of each 32x32, in a group of 8x8 threads: with
-// paper_pattern() all of them search one direction (the order of deinterleaved rendering, Bavoil
-// 2014, in place). Returns the tile of thread `local` of group `group`. The groups of a whole
-// number of 32x32 tiles meet each tile once.
-ALCOVE_INLINE uvec2 tile_by_pattern(uvec2 group, uvec2 local) {
-  return uvec2(((group.x >> 2u) * 8u + local.x) * 4u + (group.x & 3u),
-               ((group.y >> 2u) * 8u + local.y) * 4u + (group.y & 3u));
 }
 
 // Position along a Hilbert curve through a 64x64 block; takes x and y modulo 64. In [0,4096).

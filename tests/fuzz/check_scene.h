@@ -27,14 +27,14 @@ inline void check_scene(std::span<const uint8_t> bytes) {
   }
   for (const Mesh& mesh : scene->meshes) {
     for (const uint32_t i : mesh.indices) {
-      if (i >= mesh.positions_ws.size()) __builtin_trap();
+      if (i >= mesh.positions.size()) __builtin_trap();
     }
     if (mesh.material >= scene->materials.size()) __builtin_trap();
-    for (const size_t count : {mesh.normals_ws.size(), mesh.uvs.size(), mesh.second_uvs.size(),
-                               mesh.tangents_ws.size(), mesh.colors.size()}) {
-      if (count != 0 && count != mesh.positions_ws.size()) __builtin_trap();
+    for (const size_t count : {mesh.normals.size(), mesh.uvs.size(), mesh.second_uvs.size(),
+                               mesh.tangents.size(), mesh.colors.size()}) {
+      if (count != 0 && count != mesh.positions.size()) __builtin_trap();
     }
-    if (mesh.normals_ws.empty()) continue;  // without normals there are no tangents
+    if (mesh.normals.empty()) continue;  // without normals there are no tangents
     const TextureUse& map = scene->materials[mesh.material].normal_texture;
     for (const glm::vec4& tangent : corner_tangents(mesh, map)) {
       // Unit or zero; NaN fails both comparisons.

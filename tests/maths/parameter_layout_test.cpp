@@ -1,4 +1,5 @@
-// Parameter structs are written once for both sides: they must lie in a uniform block as in C++.
+// Tests that parameter structs, which GLSL and C++ share, have the same layout in a uniform block
+// as in C++.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -9,7 +10,6 @@
 #include "environment_parameters.h"
 #include "gtao_parameters.h"
 #include "gtso_parameters.h"
-#include "linear_depth_parameters.h"
 #include "maths/projection.h"
 #include "multi_bounce_parameters.h"
 #include "normals_parameters.h"
@@ -33,9 +33,6 @@ const std::map<std::string, Offsets> kExpected = {
       ALCOVE_OFFSET(Projection, depth_unproject), ALCOVE_OFFSET(Projection, eye),
       ALCOVE_OFFSET(Projection, size_px), ALCOVE_OFFSET(Projection, texel_uv),
       ALCOVE_OFFSET(Projection, sky), ALCOVE_OFFSET(Projection, near_far)}},
-    {"LinearDepthParameters",
-     {ALCOVE_OFFSET(LinearDepthParameters, projection),
-      ALCOVE_OFFSET(LinearDepthParameters, reach)}},
     {"GtaoParameters",
      {ALCOVE_OFFSET(GtaoParameters, view_from_normal), ALCOVE_OFFSET(GtaoParameters, slope),
       ALCOVE_OFFSET(GtaoParameters, inverse_depth_from_ndc),

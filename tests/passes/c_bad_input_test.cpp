@@ -161,7 +161,6 @@ TEST_F(CBadInput, SettingsOutOfRangeAreReportedByName) {
       {"'filter_tolerance_px' is 0;", [](S&, A& a) { a.filter_tolerance_px = 0.0f; }},
       {"'history_frames' is 128; it must be 0 to 127.", [](S& s, A&) { s.history_frames = 128; }},
       {"'clamp_width' is nan;", [](S&, A& a) { a.clamp_width = kNaN; }},
-      {"'grouping' is 2;", [](S&, A& a) { set_number(a.grouping, 2); }},
       {"'specular' is 0;", [](S& s, A&) { set_number(s.specular, 0); }},
       {"'specular' is 4;", [](S& s, A&) { set_number(s.specular, 4); }},
       {"'roughness' is nan;", [](S& s, A&) { s.roughness = kNaN; }},

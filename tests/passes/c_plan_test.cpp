@@ -216,7 +216,7 @@ TEST_F(CPlan, TimingsContainTheViewOfEachPass) {
   }
   const std::multiset<std::string> plain{"gtao", "reconstruct"};
   std::multiset<std::string> with_normals = plain;
-  with_normals.insert({"depth pyramid", "normals"});
+  with_normals.insert({"linear depth", "normals"});
   EXPECT_EQ(passes.size(), given.size());
   EXPECT_EQ(passes[given[0].id], plain);
   EXPECT_EQ(passes[given[1].id], with_normals);

@@ -199,7 +199,7 @@ TEST_F(GtsoPass, UnoccludedSurfaceStaysUnoccludedAtAnyRoughness) {
       const Inputs open = open_inputs(plane);
       run([&](Graph& graph) {
         const Frame frame{graph, gpu().kernels(), view.view, 0};
-        const auto depth = add_linear_depth(frame, upload(graph, plane.depth_ndc), 1, 0.05f);
+        const auto depth = add_linear_depth(frame, upload(graph, plane.depth_ndc));
         ASSERT_TRUE(depth) << depth.error().message;
         const GtsoInputs inputs{.visibility = upload(graph, open.visibility),
                                 .bent_normal = upload(graph, open.bent),

@@ -22,7 +22,7 @@ class Normals : public PassTest {
   HostImage normals(const View& view, const HostImage& depth_ndc) {
     run([&](Graph& graph) {
       const Frame frame{graph, gpu().kernels(), view, 0};
-      const auto depth = add_linear_depth(frame, upload(graph, depth_ndc), 1, 1.0f);
+      const auto depth = add_linear_depth(frame, upload(graph, depth_ndc));
       ASSERT_TRUE(depth) << depth.error().message;
       const auto made = add_normals(frame, *depth);
       ASSERT_TRUE(made) << made.error().message;

@@ -166,11 +166,10 @@ TEST_F(OcclusionPlan, SearchPartsCostOnePipelineEachAndNoPassOrMemory) {
   (void)kept(least());
   EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines);
   const AdvancedSettings base = least().advanced;
-  std::array<AdvancedSettings, 4> parts{base, base, base, base};
+  std::array<AdvancedSettings, 3> parts{base, base, base};
   parts[0].snap_to_texels = false;
   parts[1].extrapolation = false;
   parts[2].unobserved = false;
-  parts[3].grouping = Grouping::pattern;
   for (const AdvancedSettings& each : parts) {
     OcclusionSettings changed = least();
     changed.advanced = each;
@@ -249,11 +248,11 @@ TEST_F(OcclusionPlan, LinearDepthRunsOnlyWhenItIsRead) {
   OcclusionSettings asked = least();
   asked.linear_depth = true;
   EXPECT_EQ(kept(asked).passes, without.passes) << "where nobody reads it";
-  EXPECT_THAT(kept(asked, {.linear_depth = true}).passes, Contains("depth pyramid"));
+  EXPECT_THAT(kept(asked, {.linear_depth = true}).passes, Contains("linear depth"));
   EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines + 1);
   OcclusionSettings by_model = least();
   by_model.specular = Specular::cone;
-  EXPECT_THAT(kept(by_model, {.specular = true}).passes, Contains("depth pyramid"));
+  EXPECT_THAT(kept(by_model, {.specular = true}).passes, Contains("linear depth"));
 }
 
 TEST_F(OcclusionPlan, LargerTilesTakeLessMemory) {
@@ -265,7 +264,7 @@ TEST_F(OcclusionPlan, LargerTilesTakeLessMemory) {
 TEST_F(OcclusionPlan, UnreadOutputsAreCulledWithTheirProducers) {
   const Kept depth_only =
       kept(least(), {.visibility = false, .linear_depth = true}, {.normals = false});
-  EXPECT_THAT(depth_only.passes, ElementsAre("depth pyramid"));
+  EXPECT_THAT(depth_only.passes, ElementsAre("linear depth"));
   EXPECT_THAT(depth_only.transients, ElementsAre("linear depth"));
   EXPECT_THAT(kept(least(), {.visibility = false}, {.normals = false}).passes, testing::IsEmpty());
 }

@@ -160,7 +160,8 @@ TEST_F(Reconstruct, BentNormalsRotateWithTheCamera) {
   };
   const glm::dvec3 kept = mean_bent_normal();
   settings.history_frames = 0;
-  EXPECT_LT(glm::distance(kept, mean_bent_normal()), 0.012);
+  // A history that is not turned with the camera would be off by over 0.1.
+  EXPECT_LT(glm::distance(kept, mean_bent_normal()), 0.02);
 }
 
 // A plane slides by three pixels a frame and carries a pattern: with motion vectors the pattern

@@ -97,7 +97,7 @@ TEST(Camera, LookingAlongUpStillHasAxes) {
   EXPECT_NEAR(glm::determinant(glm::mat3(view)), 1.0f, 1e-5f);
 }
 
-TEST(Camera, AnOrbitByNothingIsTheSameView) {
+TEST(Camera, OrbitByZeroIsTheSameView) {
   // Near a target so large beside it that eye and arm cannot be had from each other again.
   Camera camera;
   camera.eye_ws = {1.1e-9f, 3e-9f, 6e-9f};

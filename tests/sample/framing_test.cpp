@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "scene/builtin_scene.h"
+#include "scene/depth_range.h"
+#include "scene/scene_core.h"
 
 namespace alcove::sample {
 namespace {
@@ -15,7 +17,7 @@ Mesh grid(float half_width, uint32_t n, float height = 0.0f) {
   for (uint32_t z = 0; z <= n; ++z) {
     for (uint32_t x = 0; x <= n; ++x) {
       const glm::vec2 at = 2.0f * half_width * (glm::vec2(x, z) / float(n) - 0.5f);
-      mesh.positions_ws.emplace_back(at.x, height, at.y);
+      mesh.positions.emplace_back(at.x, height, at.y);
       if (x == n || z == n) continue;
       const uint32_t i = z * (n + 1) + x;
       for (const uint32_t v : {i, i + n + 1, i + 1, i + 1, i + n + 1, i + n + 2}) {
@@ -33,9 +35,9 @@ Mesh sphere(float radius, const glm::vec3& centre, uint32_t n) {
     for (uint32_t k = 0; k <= 2 * n; ++k) {
       const float polar = 3.14159265f * float(i) / float(n);
       const float azimuth = 3.14159265f * float(k) / float(n);
-      mesh.positions_ws.push_back(centre + radius * glm::vec3(std::sin(polar) * std::cos(azimuth),
-                                                              std::cos(polar),
-                                                              std::sin(polar) * std::sin(azimuth)));
+      mesh.positions.push_back(centre + radius * glm::vec3(std::sin(polar) * std::cos(azimuth),
+                                                           std::cos(polar),
+                                                           std::sin(polar) * std::sin(azimuth)));
       if (i == n || k == 2 * n) continue;
       const uint32_t v = i * (2 * n + 1) + k;
       for (const uint32_t c : {v, v + 1, v + 2 * n + 1, v + 1, v + 2 * n + 2, v + 2 * n + 1}) {
@@ -67,7 +69,7 @@ TEST(SceneCore, OrdinaryScenesAreTheirBounds) {
 
 TEST(SceneCore, SliverFarAwayDoesNotStretchIt) {
   Mesh sliver;
-  sliver.positions_ws = {{2000, 0, 0}, {2000, 0.01f, 0}, {2000, 0, 0.01f}};
+  sliver.positions = {{2000, 0, 0}, {2000, 0.01f, 0}, {2000, 0, 0.01f}};
   sliver.indices = {0, 1, 2};
   const SceneCore core = scene_core({grid(3.0f, 4), sliver});
   EXPECT_EQ(core.triangles_outside, 1u);
@@ -76,9 +78,9 @@ TEST(SceneCore, SliverFarAwayDoesNotStretchIt) {
 
 TEST(SceneCore, StrayTrianglesOfTheSameMeshDoNotStretchIt) {
   Mesh mesh = grid(3.0f, 30);
-  const auto first = static_cast<uint32_t>(mesh.positions_ws.size());
+  const auto first = static_cast<uint32_t>(mesh.positions.size());
   for (const glm::vec3 stray : {glm::vec3(0, 9e4f, 0), glm::vec3(50, 9e4f, 0), {0, 9e4f, 50}}) {
-    mesh.positions_ws.push_back(stray);
+    mesh.positions.push_back(stray);
   }
   for (const uint32_t i : {0u, 1u, 2u}) mesh.indices.push_back(first + i);
   const SceneCore core = scene_core({mesh});
@@ -95,8 +97,8 @@ TEST(SceneCore, SkyDomeAndGroundPlaneAreLeftOut) {
 
 TEST(SceneCore, LargeModelIsNotTakenForTheSurroundingsOfAPartOfIt) {
   Mesh terrain = grid(500.0f, 100);
-  for (size_t i = 0; i < terrain.positions_ws.size(); ++i) {
-    terrain.positions_ws[i].y = 100.0f * std::sin(0.37f * float(i));
+  for (size_t i = 0; i < terrain.positions.size(); ++i) {
+    terrain.positions[i].y = 100.0f * std::sin(0.37f * float(i));
   }
   const SceneCore core = scene_core({terrain, sphere(1.0f, {0, 0, 0}, 8)});
   EXPECT_EQ(core.triangles_outside, 0u);
@@ -105,7 +107,7 @@ TEST(SceneCore, LargeModelIsNotTakenForTheSurroundingsOfAPartOfIt) {
 TEST(Framing, AllOfTheCoreIsInViewWithItsPlanes) {
   const Scene scene =
       scene_of({sphere(5000.0f, {0, 0, 0}, 16), grid(1000.0f, 1), sphere(1.0f, {0, 1, 0}, 16)});
-  const Camera camera = with_fitted_planes(scene, framing_camera(scene), 16.0 / 9.0);
+  const Camera camera = with_fitted_planes(scene, framing_camera(scene, 16.0 / 9.0), 16.0 / 9.0);
   EXPECT_LT(glm::distance(camera.eye_ws, camera.target_ws), 10.0f);
   EXPECT_LT(camera.near_plane, 0.1f);
   EXPECT_GT(camera.far_plane, 4000.0f);
@@ -116,10 +118,28 @@ TEST(Framing, AllOfTheCoreIsInViewWithItsPlanes) {
   }
 }
 
+TEST(Framing, CoreFillsNineTenthsOfTheImageInOneDirection) {
+  for (const glm::vec3 size : {glm::vec3(1, 1, 1), glm::vec3(20, 1, 1), glm::vec3(1, 30, 1)}) {
+    for (const double aspect : {0.5, 1.0, 16.0 / 9.0}) {
+      Mesh box = sphere(0.5f, {0, 0, 0}, 8);
+      for (glm::vec3& position : box.positions) position = size * position + 7.0f;
+      const Scene scene = scene_of({box});
+      const auto width = static_cast<uint32_t>(100 * aspect);
+      const CameraMatrices matrices = camera_matrices(framing_camera(scene, aspect), width, 100);
+      float most = 0.0f;
+      for (const glm::vec3& corner : corners_of(scene.core_bounds_ws)) {
+        const glm::vec4 clip = matrices.clip_from_world * glm::vec4(corner, 1.0f);
+        most = std::max({most, std::abs(clip.x) / clip.w, std::abs(clip.y) / clip.w});
+      }
+      EXPECT_NEAR(most, 0.9f, 0.01f) << size.x << " " << size.y << " " << aspect;
+    }
+  }
+}
+
 TEST(Framing, EyeStandsInsideOfARoomAroundTheCore) {
   Mesh walls = sphere(10.0f, {-8, 0, -8}, 4);
   const Scene scene = scene_of({walls, sphere(0.5f, {-3, 0, -3}, 16)});
-  const glm::vec3 eye = framing_camera(scene).eye_ws;
+  const glm::vec3 eye = framing_camera(scene, 16.0 / 9.0).eye_ws;
   EXPECT_LT(eye.x, 2.0f);
   EXPECT_LT(eye.z, 2.0f);
 }
@@ -150,6 +170,57 @@ TEST(DepthInView, InstancesCountWhereTheyStand) {
   ASSERT_TRUE(range);
   EXPECT_NEAR(range->nearest, 9.0, 0.05);
   EXPECT_NEAR(range->farthest, 31.0, 0.05);
+}
+
+TEST(DepthInView, LargeTrianglesAreCutByTheSidesOfTheImage) {
+  Mesh mesh;
+  mesh.positions = {{-100, 0, -1}, {100, 0, -1}, {0, 0, -201}};
+  mesh.indices = {0, 1, 2};
+  Camera camera;
+  camera.eye_ws = {0, 1, 0};
+  camera.target_ws = {0, 1, -1};
+  camera.fov_y = glm::radians(90.0f);
+  const auto range = depth_in_view(scene_of({mesh}), camera, 1.0);
+  ASSERT_TRUE(range);
+  EXPECT_NEAR(range->nearest, 1.0, 1e-4);
+  EXPECT_NEAR(range->farthest, 201.0, 1e-2);
+}
+
+// A million instances of 4096 triangles: 4 * 10^9 triangles, of which few can be the nearest.
+TEST(DepthInView, InstancesThatCannotChangeTheRangeAreNotSearched) {
+  Mesh mesh = sphere(0.4f, {0, 0, 0}, 32);
+  for (int z = 0; z < 1000; ++z) {
+    for (int x = -500; x < 500; ++x) {
+      glm::mat4x3 placed(1.0f);
+      placed[3] = {x, 0, -2 - z};
+      mesh.instances.push_back(placed);
+    }
+  }
+  const auto range = depth_in_view(scene_of({mesh}), Camera(), 1.0);
+  ASSERT_TRUE(range);
+  EXPECT_NEAR(range->nearest, 1.6, 1e-3);
+  EXPECT_NEAR(range->farthest, 1001.4, 1e-3);
+}
+
+// The bounds of every instance are in view, but none of its triangles: each lies in two opposite
+// corners of the bounds.
+TEST(DepthInView, BoundsCountBeyondTheLimitOnTriangles) {
+  Mesh mesh;
+  for (const float side : {-1.0f, 1.0f}) {
+    const Mesh corner = sphere(0.1f, {50 * side, 50 * side, 0}, 64);
+    const auto first = static_cast<uint32_t>(mesh.positions.size());
+    mesh.positions.insert(mesh.positions.end(), corner.positions.begin(), corner.positions.end());
+    for (const uint32_t i : corner.indices) mesh.indices.push_back(first + i);
+  }
+  for (int i = 0; i < 2000; ++i) {
+    glm::mat4x3 placed(1.0f);
+    placed[3] = {0, 0, -4 - 0.001f * float(i)};
+    mesh.instances.push_back(placed);
+  }
+  const auto range = depth_in_view(scene_of({mesh}), Camera(), 1.0);
+  ASSERT_TRUE(range);
+  // The limit is 1024 instances.
+  EXPECT_NEAR(range->nearest, 4.0 + 1.024 - 0.1, 0.01);
 }
 
 }  // namespace

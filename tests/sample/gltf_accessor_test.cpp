@@ -49,7 +49,7 @@ TEST(GltfAccessor, InterleavedAttributesReadThroughTheirStride) {
   const Scene scene = parsed(maker.gltf());
   ASSERT_EQ(triangle_count(scene), 1u);
   EXPECT_EQ(corners(scene)[1], glm::vec3(1, 0, 0));
-  EXPECT_EQ(scene.meshes[0].normals_ws[2], glm::vec3(0, 0, 1));
+  EXPECT_EQ(scene.meshes[0].normals[2], glm::vec3(0, 0, 1));
 }
 
 TEST(GltfAccessor, SparseValuesReplaceAndZeroesFillTheRest) {

@@ -166,7 +166,7 @@ inline std::string refusal(const std::vector<uint8_t>& bytes) {
 inline std::vector<glm::vec3> corners(const Scene& scene) {
   std::vector<glm::vec3> out;
   for (const Mesh& mesh : scene.meshes) {
-    for (const uint32_t i : mesh.indices) out.push_back(mesh.positions_ws[i]);
+    for (const uint32_t i : mesh.indices) out.push_back(mesh.positions[i]);
   }
   return out;
 }

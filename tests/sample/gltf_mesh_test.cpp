@@ -17,7 +17,7 @@ glm::vec3 face_normal(const Scene& scene, size_t triangle) {
 TEST(GltfMesh, MeshWithoutNormalsKeepsItsSharedVertices) {
   const Scene scene = parsed(GltfMaker::triangle().gltf());
   ASSERT_EQ(triangle_count(scene), 1u);
-  EXPECT_TRUE(scene.meshes[0].normals_ws.empty());
+  EXPECT_TRUE(scene.meshes[0].normals.empty());
   EXPECT_EQ(face_normal(scene, 0), glm::vec3(0, 0, 1));
   EXPECT_EQ(scene.bounds_ws.high, glm::vec3(1, 1, 0));
 }
@@ -70,10 +70,10 @@ TEST(GltfMesh, TangentsTurnWithTheNodeAndMirrorWithIt) {
   attributes["TANGENT"] = maker.accessor(tangents, 5126, "VEC4", 3);
   maker.json["nodes"][0]["scale"] = {-2, 1, 1};
   const Scene scene = parsed(maker.gltf());
-  ASSERT_EQ(scene.meshes[0].tangents_ws.size(), 3u);
-  EXPECT_EQ(scene.meshes[0].tangents_ws[0], glm::vec4(-1, 0, 0, -1));
-  EXPECT_EQ(scene.meshes[0].tangents_ws[1], glm::vec4(0, 0, 0, -1));
-  EXPECT_EQ(scene.meshes[0].tangents_ws[2], glm::vec4(0, 0, 0, 1));
+  ASSERT_EQ(scene.meshes[0].tangents.size(), 3u);
+  EXPECT_EQ(scene.meshes[0].tangents[0], glm::vec4(-1, 0, 0, -1));
+  EXPECT_EQ(scene.meshes[0].tangents[1], glm::vec4(0, 0, 0, -1));
+  EXPECT_EQ(scene.meshes[0].tangents[2], glm::vec4(0, 0, 0, 1));
 }
 
 TEST(GltfMesh, BoundsAreThoseOfTheTriangles) {

@@ -14,9 +14,9 @@ namespace {
 // A cube of side 1 around the origin whose eight vertices are shared by all of its triangles.
 Mesh cube() {
   Mesh mesh;
-  mesh.positions_ws.resize(8);
+  mesh.positions.resize(8);
   for (std::uint32_t i = 0; i < 8; ++i) {
-    for (int c = 0; c < 3; ++c) mesh.positions_ws[i][c] = (i >> c & 1u) != 0 ? 0.5f : -0.5f;
+    for (int c = 0; c < 3; ++c) mesh.positions[i][c] = (i >> c & 1u) != 0 ? 0.5f : -0.5f;
   }
   mesh.indices = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
                   2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
@@ -54,7 +54,7 @@ Scene separate_cubes() {
   std::vector<Mesh> meshes;
   for (const glm::mat4x3& placed : placements()) {
     Mesh mesh = cube();
-    for (glm::vec3& position : mesh.positions_ws) position = placed * glm::vec4(position, 1.0f);
+    for (glm::vec3& position : mesh.positions) position = placed * glm::vec4(position, 1.0f);
     if (glm::determinant(glm::mat3(placed)) < 0.0f) {
       for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
         std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
@@ -96,8 +96,8 @@ TEST_F(GpuMeshesTest, GridTakesFortyBytesForEachTriangleAndInstancesFortyEightBy
   constexpr std::uint32_t kSide = 300;
   for (std::uint32_t y = 0; y < kSide; ++y) {
     for (std::uint32_t x = 0; x < kSide; ++x) {
-      grid.positions_ws.emplace_back(x, y, 0.0f);
-      grid.normals_ws.emplace_back(0.0f, 0.0f, 1.0f);
+      grid.positions.emplace_back(x, y, 0.0f);
+      grid.normals.emplace_back(0.0f, 0.0f, 1.0f);
       if (x == 0 || y == 0) continue;
       const std::uint32_t i = y * kSide + x;
       for (const std::uint32_t v : {i - kSide - 1, i - kSide, i, i - kSide - 1, i, i - 1}) {

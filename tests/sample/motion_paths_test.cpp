@@ -113,7 +113,7 @@ TEST(MotionPaths, BlockMovesOverTheGroundWithoutTouchingIt) {
   for (std::uint32_t frame = 0; frame < kFrames; ++frame) {
     path.pose(scene, frame);
     float least = 1e9f;
-    for (const glm::vec3& position : scene.meshes.back().positions_ws) {
+    for (const glm::vec3& position : scene.meshes.back().positions) {
       least = std::min(least, glm::dot(position - start.ground_ws, start.ground_normal_ws));
     }
     EXPECT_NEAR(least, 0.2f * start.radius, 1e-4f);
@@ -133,10 +133,10 @@ TEST(MotionPaths, OnlyPointsOfTheBlockHaveAnotherPreviousPosition) {
   Scene now = then;
   path.pose(then, 6);
   path.pose(now, 7);
-  for (std::size_t i = 0; i < now.meshes.back().positions_ws.size(); ++i) {
-    const glm::vec3 found = path.position_before(now.meshes.back().positions_ws[i], 7);
-    EXPECT_LT(glm::distance(found, then.meshes.back().positions_ws[i]), 1e-4f);
-    EXPECT_TRUE(path.is_near_object(now.meshes.back().positions_ws[i], 7, 0));
+  for (std::size_t i = 0; i < now.meshes.back().positions.size(); ++i) {
+    const glm::vec3 found = path.position_before(now.meshes.back().positions[i], 7);
+    EXPECT_LT(glm::distance(found, then.meshes.back().positions[i]), 1e-4f);
+    EXPECT_TRUE(path.is_near_object(now.meshes.back().positions[i], 7, 0));
   }
   const glm::vec3 far = builtin_start().camera.eye_ws;
   EXPECT_EQ(path.position_before(far, 7), far);

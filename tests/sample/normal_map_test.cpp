@@ -51,9 +51,9 @@ class NormalMap : public QuadTest {
   }
 };
 
-TEST_F(NormalMap, TiltsRightAlongUAndUpAgainstV) { expect_normal(draw(quad()), kTilt); }
+TEST_F(NormalMap, RedTiltsNormalsAlongUAndGreenAgainstV) { expect_normal(draw(quad()), kTilt); }
 
-TEST_F(NormalMap, ScaleIsOfXAndY) {
+TEST_F(NormalMap, ScaleMultipliesXAndYOnly) {
   for (const float scale : {-1.0f, 0.0f, 0.5f, 1e6f}) {
     Scene scene = quad();
     scene.materials[0].normal_scale = scale;
@@ -61,15 +61,15 @@ TEST_F(NormalMap, ScaleIsOfXAndY) {
   }
 }
 
-TEST_F(NormalMap, TangentsOfTheFileAgreeWithThoseThatAreMade) {
+TEST_F(NormalMap, TangentsOfTheFileAgreeWithGeneratedOnes) {
   Scene scene = quad();
-  scene.meshes[0].tangents_ws.assign(6, glm::vec4(1.0f, 0.0f, 0.0f, 1.0f));
+  scene.meshes[0].tangents.assign(6, glm::vec4(1.0f, 0.0f, 0.0f, 1.0f));
   expect_normal(draw(scene), kTilt);
-  scene.meshes[0].tangents_ws.assign(6, glm::vec4(-1.0f, 0.0f, 0.0f, -1.0f));
+  scene.meshes[0].tangents.assign(6, glm::vec4(-1.0f, 0.0f, 0.0f, -1.0f));
   expect_normal(draw(scene), kTilt * glm::vec3(-1.0f, 1.0f, 1.0f));
 }
 
-TEST_F(NormalMap, MirroredHalvesTiltAgainstEachOtherThoughTheyShareVertices) {
+TEST_F(NormalMap, MirroredHalvesWithSharedVerticesTiltInOppositeDirections) {
   Scene scene = quad();
   for (glm::vec2& uv : scene.meshes[0].uvs) uv.x = std::abs(uv.x - 0.5f);
   const FrameImages images = draw(scene);
@@ -81,29 +81,29 @@ TEST_F(NormalMap, MirroredHalvesTiltAgainstEachOtherThoughTheyShareVertices) {
   }
 }
 
-TEST_F(NormalMap, TurnsWithTheTransformOfItsTexture) {
+TEST_F(NormalMap, TextureTransformRotatesTheNormals) {
   Scene scene = quad();
   // u of the map is v of the mesh, v of the map is -u.
   scene.materials[0].normal_texture.texture_from_mesh_uv = {0.0f, -1.0f, 1.0f, 0.0f, 0.0f, 1.0f};
   expect_normal(draw(scene), {kTilt.y, -kTilt.x, kTilt.z});
 }
 
-TEST_F(NormalMap, SeenFromBehindTurnsWithTheSurface) {
+TEST_F(NormalMap, NormalsAreFlippedOnBackFaces) {
   expect_normal(draw(quad(), camera_at(-3.0f)), -kTilt);
 }
 
-TEST_F(NormalMap, LeavesTheVerticesNormalWhereThereIsNothingToLayItAlong) {
+TEST_F(NormalMap, VertexNormalIsKeptWhereTextureCoordinatesHaveNoArea) {
   Scene scene = quad();
   for (glm::vec2& uv : scene.meshes[0].uvs) uv = glm::vec2(0.25f);
   expect_normal(draw(scene), {0.0f, 0.0f, 1.0f});
   scene = quad();
-  scene.meshes[0].tangents_ws.assign(6, glm::vec4(0.0f));
+  scene.meshes[0].tangents.assign(6, glm::vec4(0.0f));
   expect_normal(draw(scene), {0.0f, 0.0f, 1.0f});
-  scene.meshes[0].tangents_ws.assign(6, glm::vec4(0.0f, 0.0f, 1.0f, 1.0f));
+  scene.meshes[0].tangents.assign(6, glm::vec4(0.0f, 0.0f, 1.0f, 1.0f));
   expect_normal(draw(scene), {0.0f, 0.0f, 1.0f});
 }
 
-TEST_F(NormalMap, BendsNoFurtherThanIntoTheFace) {
+TEST_F(NormalMap, NormalsAreLimitedToTheSideOfTheFace) {
   expect_normal(draw(quad({0.6f, 0.0f, -0.8f})), {1.0f, 0.0f, 0.0f});
   // Straight in: which way it then lies is the map's rounding.
   for (const glm::vec3& n : draw(quad({0.0f, 0.0f, -1.0f})).normal_ws.pixels) {
@@ -112,7 +112,7 @@ TEST_F(NormalMap, BendsNoFurtherThanIntoTheFace) {
   }
 }
 
-TEST_F(NormalMap, TiltsAgainstEachOtherCancelWhereTexelsAreSmallerThanPixels) {
+TEST_F(NormalMap, OppositeTiltsCancelWhereTexelsAreSmallerThanPixels) {
   Scene scene = quad();
   TextureImage& map = scene.images[0];
   const TextureImage right = map_of(kTilt), left = map_of(kTilt * glm::vec3(-1.0f, -1.0f, 1.0f));
@@ -124,11 +124,11 @@ TEST_F(NormalMap, TiltsAgainstEachOtherCancelWhereTexelsAreSmallerThanPixels) {
   expect_normal(draw(scene), {0.0f, 0.0f, 1.0f});
 }
 
-TEST_F(NormalMap, IsOfShadingNormalsAlone) {
+TEST_F(NormalMap, NormalMapAffectsShadingNormalsOnly) {
   expect_normal(draw(quad(), camera_at(3.0f), NormalSource::kGeometric), {0.0f, 0.0f, 1.0f});
 }
 
-TEST_F(NormalMap, TruthIsOfTheNormalsThatTheOcclusionWasGiven) {
+TEST_F(NormalMap, TruthUsesTheNormalsThatThePassWasGiven) {
   const Scene scene = quad();
   const Camera camera = camera_at(3.0f);
   const FrameImages images = draw(scene, camera);
@@ -141,7 +141,7 @@ TEST_F(NormalMap, TruthIsOfTheNormalsThatTheOcclusionWasGiven) {
   EXPECT_NEAR(truth.visibility.at(kSize / 2, kSize / 2), 0.5f * (1.0f + kTilt.z), 0.01f);
 }
 
-TEST_F(NormalMap, CutOutsFollowTheirTransformInRasteriserAndRayTracerAlike) {
+TEST_F(NormalMap, AlphaMasksFollowTheirTransformInRasteriserAndRayTracer) {
   Scene scene = quad();
   Material& material = scene.materials[0];
   material.normal_texture = {};
@@ -167,15 +167,15 @@ TEST_F(NormalMap, CutOutsFollowTheirTransformInRasteriserAndRayTracerAlike) {
 TEST(Tangents, AreUnitOrZeroAndPerpendicularToNormalsOfACurvedMesh) {
   Scene scene = quad();
   Mesh& mesh = scene.meshes[0];
-  for (std::size_t v = 0; v < mesh.positions_ws.size(); ++v) {
-    const float angle = 0.5f * std::numbers::pi_v<float> * mesh.positions_ws[v].x;
-    mesh.normals_ws[v] = {std::sin(angle), 0.0f, std::cos(angle)};
-    mesh.positions_ws[v] = {std::sin(angle), mesh.positions_ws[v].y, std::cos(angle)};
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    const float angle = 0.5f * std::numbers::pi_v<float> * mesh.positions[v].x;
+    mesh.normals[v] = {std::sin(angle), 0.0f, std::cos(angle)};
+    mesh.positions[v] = {std::sin(angle), mesh.positions[v].y, std::cos(angle)};
   }
   const std::vector<glm::vec4> tangents = corner_tangents(mesh, {});
   ASSERT_EQ(tangents.size(), mesh.indices.size());
   for (std::size_t i = 0; i < tangents.size(); ++i) {
-    const glm::vec3 normal = mesh.normals_ws[mesh.indices[i]];
+    const glm::vec3 normal = mesh.normals[mesh.indices[i]];
     const glm::vec3 along(normal.z, 0.0f, -normal.x);
     EXPECT_LT(glm::distance(glm::vec3(tangents[i]), along), 1e-5f) << i;
     EXPECT_EQ(tangents[i].w, 1.0f);
@@ -187,14 +187,14 @@ TEST(Tangents, UnsharedVerticesHaveThoseOfSharedOnes) {
   Scene scene = quad();
   const Mesh shared = scene.meshes[0];
   Mesh apart = shared;
-  apart.positions_ws.clear();
-  apart.normals_ws.clear();
+  apart.positions.clear();
+  apart.normals.clear();
   apart.uvs.clear();
   apart.indices.clear();
   for (const std::uint32_t v : shared.indices) {
-    apart.indices.push_back(static_cast<std::uint32_t>(apart.positions_ws.size()));
-    apart.positions_ws.push_back(shared.positions_ws[v]);
-    apart.normals_ws.push_back(shared.normals_ws[v]);
+    apart.indices.push_back(static_cast<std::uint32_t>(apart.positions.size()));
+    apart.positions.push_back(shared.positions[v]);
+    apart.normals.push_back(shared.normals[v]);
     apart.uvs.push_back(shared.uvs[v]);
   }
   const auto one = corner_tangents(shared, {}), other = corner_tangents(apart, {});
@@ -204,8 +204,8 @@ TEST(Tangents, UnsharedVerticesHaveThoseOfSharedOnes) {
 
 TEST(Tangents, TrianglesThatMeetInAVertexAloneDoNotShareItsTangent) {
   Mesh mesh;
-  mesh.positions_ws = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {-1, 0, 0}, {-1, -1, 0}};
-  mesh.normals_ws.assign(5, glm::vec3(0, 0, 1));
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {-1, 0, 0}, {-1, -1, 0}};
+  mesh.normals.assign(5, glm::vec3(0, 0, 1));
   // The second triangle's u runs along y, and it is as little mirrored as the first.
   mesh.uvs = {{0, 0}, {1, 0}, {1, -1}, {0, -1}, {-1, -1}};
   mesh.indices = {0, 1, 2, 0, 3, 4};
@@ -217,8 +217,8 @@ TEST(Tangents, TrianglesThatMeetInAVertexAloneDoNotShareItsTangent) {
 // A triangle without area in the texture takes the tangents of the one beside it.
 TEST(Tangents, TriangleWithoutAreaInTheTextureFollowsItsNeighbour) {
   Mesh mesh;
-  mesh.positions_ws = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
-  mesh.normals_ws.assign(4, glm::vec3(0, 0, 1));
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  mesh.normals.assign(4, glm::vec3(0, 0, 1));
   mesh.uvs = {{0, 0}, {1, 0}, {1, -1}, {0, 0}};
   mesh.indices = {0, 1, 2, 0, 2, 3};
   const auto tangents = corner_tangents(mesh, {});

@@ -18,8 +18,8 @@ inline Scene plain_quad() {
   Mesh& mesh = scene.meshes[0];
   for (const float x : {-1.0f, 0.0f, 1.0f}) {
     for (const float y : {-1.0f, 1.0f}) {
-      mesh.positions_ws.emplace_back(x, y, 0.0f);
-      mesh.normals_ws.emplace_back(0.0f, 0.0f, 1.0f);
+      mesh.positions.emplace_back(x, y, 0.0f);
+      mesh.normals.emplace_back(0.0f, 0.0f, 1.0f);
       mesh.uvs.emplace_back(0.5f * (x + 1.0f), 0.5f * (1.0f - y));
     }
   }

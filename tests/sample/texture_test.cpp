@@ -93,7 +93,7 @@ TEST_F(TextureTest, LastMipOfACheckerboardIsItsMeanInLinearLight) {
   EXPECT_NEAR(last_mip(image, VK_FORMAT_R8G8B8A8_UNORM, 5).r, 127.5, 2);
 }
 
-TEST_F(TextureTest, MipsOfOneRowHalveItAlone) {
+TEST_F(TextureTest, MipsOfAOneRowTextureHalveOnlyItsWidth) {
   const TextureImage image = image_of(8, 1, [](auto x, auto) { return x < 4 ? kRed : kGreen; });
   const glm::u8vec4 texel = last_mip(image, VK_FORMAT_R8G8B8A8_UNORM, 4);
   EXPECT_NEAR(texel.r, 127.5, 1);
@@ -108,7 +108,7 @@ TEST_F(TextureTest, CheckerboardFinerThanPixelsIsGrey) {
   }
 }
 
-TEST_F(TextureTest, WithoutMipsACheckerboardIsBlackOrWhite) {
+TEST_F(TextureTest, CheckerboardWithoutMipsIsBlackOrWhite) {
   // Eight texels and a third to the pixel, so that pixels meet both colours.
   const Sampler sampler{.minify = Filter::kNearest, .mips = MipFilter::kNone};
   const FrameImages images = drawn(quad_of(checkerboard(200), sampler));
@@ -121,7 +121,7 @@ TEST_F(TextureTest, WithoutMipsACheckerboardIsBlackOrWhite) {
   EXPECT_LT(white, images.albedo.pixels.size() * 3 / 4);
 }
 
-TEST_F(TextureTest, MagnifiedTexelsAreBlocksOrBlendAsTheSamplerSays) {
+TEST_F(TextureTest, MagnificationFilterOfTheSamplerIsUsed) {
   const TextureImage image = image_of(2, 1, [](auto x, auto) { return x == 0 ? kRed : kGreen; });
   for (const Filter filter : {Filter::kNearest, Filter::kLinear}) {
     const Scene scene = quad_of(image, {.wrap_u = Wrap::kClamp, .magnify = filter});
@@ -138,7 +138,7 @@ TEST_F(TextureTest, MagnifiedTexelsAreBlocksOrBlendAsTheSamplerSays) {
   }
 }
 
-TEST_F(TextureTest, WrapModesAreThoseOfTheSamplerInRasteriserAndRayTracerAlike) {
+TEST_F(TextureTest, WrapModesAgreeBetweenRasteriserAndRayTracer) {
   const TextureImage image = image_of(2, 2, [](auto x, auto y) {
     return x + y == 0 ? kBlack : x == 0 ? kGreen : y == 0 ? kRed : kWhite;
   });
@@ -211,7 +211,7 @@ TEST_F(TextureTest, EachMaterialHasTexturesOfItsOwnHoweverManyThereAre) {
     Mesh cell = whole;
     cell.material = i;
     const glm::vec2 centre(static_cast<float>(i % kCells), static_cast<float>(i / kCells));
-    for (glm::vec3& position : cell.positions_ws) {
+    for (glm::vec3& position : cell.positions) {
       position.x = (2.0f * centre.x + 1.0f + position.x) / kCells - 1.0f;
       position.y = 1.0f - (2.0f * centre.y + 1.0f - position.y) / kCells;
     }
@@ -228,7 +228,7 @@ TEST_F(TextureTest, EachMaterialHasTexturesOfItsOwnHoweverManyThereAre) {
   }
 }
 
-TEST_F(TextureTest, CutOutsOfTheSecondSetAreThoseOfTheRayTracerAndFinerThanPixelsKeepTheirShare) {
+TEST_F(TextureTest, AlphaMasksOfTheSecondSetAgreeWithTheRayTracerAndKeepTheirCoverage) {
   // One texel of four is solid, so that the mean of any mip is a hole; a pixel is 1.618 periods.
   Scene scene = quad_of(
       image_of(256, 256, [](auto x, auto y) { return x % 2 + y % 2 == 0 ? kWhite : kHole; }));

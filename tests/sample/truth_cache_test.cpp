@@ -105,7 +105,7 @@ TEST(TruthCache, KeyChangesWithSceneAndCamera) {
   CacheKey key, moved, recoloured, laid, blocky, turned;
   key.add(scene);
   Scene other = scene;
-  other.meshes[0].positions_ws[0].x += 1e-3f;
+  other.meshes[0].positions[0].x += 1e-3f;
   moved.add(other);
   other = scene;
   other.materials[0].base_color.g *= 0.5f;

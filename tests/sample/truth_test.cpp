@@ -64,7 +64,7 @@ TEST(Truth, OpenPlaneIsExactlyOpenAtAnyTilt) {
 // A scene and its view, scaled.
 Scene scaled(Scene scene, float scale) {
   for (Mesh& mesh : scene.meshes) {
-    for (glm::vec3& position : mesh.positions_ws) position *= scale;
+    for (glm::vec3& position : mesh.positions) position *= scale;
   }
   for (Camera& camera : scene.cameras) {
     camera.eye_ws *= scale;
@@ -176,7 +176,7 @@ TEST(Truth, CutOutTexelsLetRaysThrough) {
   scene.materials[0].base_color_texture = {0, {Wrap::kClamp, Wrap::kClamp}};
   scene.materials[0].alpha_mode = AlphaMode::kMask;
   for (size_t i = 0; i < scene.meshes[0].uvs.size(); ++i) {
-    scene.meshes[0].uvs[i] = {scene.meshes[0].positions_ws[i].x > 0.0f ? 1.0f : 0.0f, 0.5f};
+    scene.meshes[0].uvs[i] = {scene.meshes[0].positions[i].x > 0.0f ? 1.0f : 0.0f, 0.5f};
   }
   const auto rays = RayScene::create(scene);
   const GBuffer g = cast_gbuffer(*rays, scene.cameras[0], 16, 9);
@@ -231,10 +231,10 @@ TEST(BuiltinScene, HasTheDocumentedContents) {
   EXPECT_GE(scene.cameras.size(), 2u);
   for (const Mesh& mesh : scene.meshes) {
     ASSERT_LT(mesh.material, scene.materials.size());
-    ASSERT_EQ(mesh.positions_ws.size(), mesh.normals_ws.size());
-    ASSERT_EQ(mesh.positions_ws.size(), mesh.uvs.size());
-    for (const uint32_t i : mesh.indices) ASSERT_LT(i, mesh.positions_ws.size());
-    for (const glm::vec3& n : mesh.normals_ws) ASSERT_NEAR(glm::length(n), 1.0f, 1e-4f);
+    ASSERT_EQ(mesh.positions.size(), mesh.normals.size());
+    ASSERT_EQ(mesh.positions.size(), mesh.uvs.size());
+    for (const uint32_t i : mesh.indices) ASSERT_LT(i, mesh.positions.size());
+    for (const glm::vec3& n : mesh.normals) ASSERT_NEAR(glm::length(n), 1.0f, 1e-4f);
   }
 }
 

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "support/glm.h"
+
+namespace alcove::sample {
+
+struct Mesh;
+
+// An axis-aligned box. The empty box has low = +infinity and high = -infinity, so that adding a
+// point to it yields the box of that point.
+struct Bounds {
+  glm::vec3 low{0.0f};
+  glm::vec3 high{0.0f};
+};
+
+[[nodiscard]] Bounds empty_bounds();
+// The smallest box that contains both; either may be empty.
+[[nodiscard]] Bounds united(const Bounds& a, const Bounds& b);
+[[nodiscard]] bool contains(const Bounds& bounds, const glm::vec3& point);
+// Length of the diagonal, in double: the square of a large float overflows.
+[[nodiscard]] double diagonal(const Bounds& bounds);
+// Bit c of a corner's index is set if its coordinate c is that of `high`.
+[[nodiscard]] std::array<glm::vec3, 8> corners_of(const Bounds& bounds);
+
+// The box of the triangles whose indices are [first, last), in the space of the mesh's arrays.
+[[nodiscard]] Bounds bounds_of_triangles(const Mesh& mesh, size_t first, size_t last);
+// The box around a transformed box.
+[[nodiscard]] Bounds transformed(const Bounds& bounds, const glm::mat4x3& transform);
+
+// One instance of a mesh with triangles. A mesh without `instances` has one.
+struct MeshInstance {
+  uint32_t mesh;      // indexes the meshes
+  uint32_t instance;  // below instance_count()
+  Bounds bounds_ws;   // around the transformed box of the mesh
+};
+// All instances of all meshes that have triangles, in their order.
+[[nodiscard]] std::vector<MeshInstance> instances_of(const std::vector<Mesh>& meshes);
+
+// The box of all triangles of all instances, each taken as in MeshInstance. Vertices that no
+// triangle uses do not count. Zero without triangles.
+[[nodiscard]] Bounds bounds_of(const std::vector<Mesh>& meshes);
+
+}  // namespace alcove::sample

@@ -1,0 +1,76 @@
+// The part of the host program that public sample renderers keep in a base class: instance, device,
+// queues, images, buffers, pipelines. It knows nothing of Alcove.
+#pragma once
+
+#include <vulkan/vulkan.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace host {
+
+// Ends the program with a message if `condition` is false.
+void require(bool condition, const char* message);
+inline void require(VkResult result, const char* message) {
+  require(result == VK_SUCCESS, message);
+}
+
+struct Image {
+  VkImage image = VK_NULL_HANDLE;
+  VkDeviceMemory memory = VK_NULL_HANDLE;
+  VkImageView view = VK_NULL_HANDLE;  // of all aspects of the format
+  VkFormat format = VK_FORMAT_UNDEFINED;
+  VkImageUsageFlags usage = 0;
+};
+
+struct Buffer {
+  VkBuffer buffer = VK_NULL_HANDLE;
+  VkDeviceMemory memory = VK_NULL_HANDLE;
+  std::byte* mapped = nullptr;
+};
+
+struct ShaderCode {
+  const std::uint32_t* words;
+  std::size_t bytes;
+};
+
+struct PipelineDescription {
+  ShaderCode vertex;
+  ShaderCode fragment;
+  VkPipelineLayout layout;
+  VkRenderPass render_pass;
+  bool has_vertices;  // position and normal, and a depth test; else a triangle without a buffer
+};
+
+class Base {
+ public:
+  // Opens the first device with a graphics queue. With `async`, also a queue of another family
+  // without graphics, if the device has one; else both queues are the same.
+  void open(const VkPhysicalDeviceFeatures2& features, bool async);
+  void close();
+
+  Image create_image(VkFormat format, VkExtent2D size, VkImageUsageFlags usage) const;
+  void destroy(Image& image) const;
+  Buffer create_buffer(VkDeviceSize bytes, VkBufferUsageFlags usage) const;
+  void destroy(Buffer& buffer) const;
+  VkPipeline create_pipeline(const PipelineDescription& description) const;
+  VkCommandBuffer allocate_commands(std::uint32_t family) const;
+
+  VkInstance instance = VK_NULL_HANDLE;
+  VkPhysicalDevice physical_device = VK_NULL_HANDLE;
+  VkDevice device = VK_NULL_HANDLE;
+  std::uint32_t graphics_family = 0;
+  std::uint32_t compute_family = 0;
+  VkQueue graphics_queue = VK_NULL_HANDLE;
+  VkQueue compute_queue = VK_NULL_HANDLE;
+
+ private:
+  VkShaderModule create_module(const ShaderCode& code) const;
+  VkDeviceMemory allocate(const VkMemoryRequirements& requirements,
+                          VkMemoryPropertyFlags properties) const;
+  std::vector<VkCommandPool> pools_;  // by queue family
+};
+
+}  // namespace host
