@@ -65,18 +65,18 @@ const bool kLobe = false;
 
 layout(set = 0, binding = 0) uniform Parameters { ReconstructParameters parameters; };
 layout(set = 0, binding = 1, RAW_FORMAT) uniform readonly uimage2D raw_image;  // one texel a tile
-// Another image where there are no bent normals.
+// Without bent normals it is never read, and another image is bound in its place.
 layout(set = 0, binding = 2, rg32ui) uniform readonly uimage2D bent_image;
 layout(set = 0, binding = 4) uniform texture2D normal_image;  // xyz
 #ifdef HALF
-// As the projection wrote it. With a nearest sampler that clamps to the edge.
+// The depth buffer as the projection wrote it. Its sampler is nearest and clamps to the edge.
 layout(set = 0, binding = 3) uniform sampler2D depth_image;
 layout(set = 0, binding = 5) uniform writeonly image2D half_image;        // pack_half_texel()
 layout(set = 0, binding = 6) uniform writeonly image2D half_depth_image;  // half_texel_depth()
 const int kFirstHistoryBinding = 7;
 #else
-layout(set = 0, binding = 3) uniform texture2D depth_image;  // as the projection wrote it
-// Another image where it is not written; so is the next.
+layout(set = 0, binding = 3) uniform texture2D depth_image;  // the depth buffer
+// If an output is not wanted, it is never written, and another image is bound in its place.
 layout(set = 0, binding = 5) uniform writeonly image2D visibility_image;
 // In the space of the normals.
 layout(set = 0, binding = 6) uniform writeonly image2D bent_normal_image;
@@ -92,7 +92,7 @@ layout(set = 0, binding = kFirstHistoryBinding + 1) uniform sampler2D history_de
 layout(set = 0, binding = kFirstHistoryBinding) uniform usampler2D history_image;  // HistoryTexel
 layout(set = 0, binding = kFirstHistoryBinding + 1) uniform writeonly uimage2D next_history_image;
 #endif
-// Another image without kMotion.
+// Without kMotion it is never read, and another image is bound in its place.
 layout(set = 0, binding = kFirstHistoryBinding + 2) uniform texture2D motion_image;
 // Bent-normal residuals: pack_residual(), at half resolution pack_half_residual(). Without bent
 // normals they are never accessed, and other images are bound in their place.
@@ -134,35 +134,25 @@ const int kTexelSize = 2;
 const int kTexelSize = 1;
 #endif
 
-// Whether the angle between normals lowers a neighbour's weight. At half resolution it does not
-// lower the error.
+// Whether the weight of a traced pixel falls with the angle between its normal and the pixel's. At
+// half resolution such a weight raises the error by 1 %.
 #ifdef HALF
 const bool kByNormal = false;
 #else
 const bool kByNormal = true;
 #endif
 
-// Whether pixels lie between traced ones; else each was traced, or takes its tile's value.
+// Whether a pixel averages the traced pixels around it. If not, every pixel was traced itself, or
+// takes the value of its tile.
 const bool kBetween = kTileSize > 1 && kFilterRadius > 0;
-// Traced pixels on each side that a pixel with a history averages.
+// Number of traced pixels on each side that are averaged for a pixel with a history.
 const int kNearRadius = kFilterRadius == 0 ? 0 : 1;
-// Traced tiles that the pixels of a group average, in each direction.
+// Number of tiles along x and along y whose traced pixels the pixels of a group average.
 const int kSpan = 8 * kTexelSize / kTileSize + 2 * kFilterRadius;
 // Base-2 logarithm of kTileSize.
 const int kShift = kTileSize == 8 ? 3 : kTileSize == 4 ? 2 : kTileSize == 2 ? 1 : 0;
 
-// The unpacked raw occlusion of a tile.
-struct TracedPixel {
-  float inverse_depth;
-  float occluded;
-  float open;
-  vec2 stereographic;  // of QuantisedNormal
-  vec3 residual;
-  vec3 expected_residual;
-  RawOcclusion lobe;
-  uint lobe_surface;
-};
-
+// The unpacked raw occlusion of the tiles around the group.
 shared vec4 traced[kSpan * kSpan];  // inverse depth, occluded, open, stereographic x
 shared float traced_stereographic_y[kByNormal ? kSpan * kSpan : 1];
 // The arrays of results that are not computed have one element, which nothing reads.
@@ -175,9 +165,9 @@ shared uint traced_lobe_surface[kLobeSpan];
 
 struct Surface {
   bool sky;
-  ivec2 texel;          // where its results are stored
-  ivec2 pixel;          // where its inputs are read
-  vec2 centre;          // of the texel, in pixels
+  ivec2 texel;          // texel of the history at which its results are stored
+  ivec2 pixel;          // pixel at which its inputs are read
+  vec2 centre;          // centre of the texel, pixels
   float inverse_depth;  // 1/depth in perspective, depth otherwise: linear along any plane's image
   vec2 gradient;        // of inverse_depth on the tangent plane, per pixel
   float plane_weight;   // tolerances per unit of inverse_depth off the tangent plane
@@ -205,8 +195,9 @@ float load_inverse_depth(ivec2 pixel) {
 #include "depth_normal.h"
 #endif
 
-// Not unit, in the space of the normals. The direction to the eye where the texture has none, which
-// is enough for the filter's weights; a NaN would stay in the history.
+// Returns the pixel's normal in the space of the normals; its length may be any but 0. If the
+// texture has no valid normal, returns the direction to the eye: that is exact enough for the
+// filter's weights, and a NaN would stay in the history.
 vec3 fetch_normal(ivec2 pixel) {
   vec3 normal = decode_normal(texelFetch(normal_image, pixel, 0).xyz, kNormalEncoding);
   return has_direction(normal) ? normal : parameters.normal_from_view[2].xyz;
@@ -222,18 +213,19 @@ LobeSurface fetch_lobe_surface(ivec2 pixel, vec3 normal) {
   return surface;
 }
 
-// The tile of which a pixel's neighbourhood of radius 1 begins, or the pixel's own tile.
+// Returns the tile to the upper left among the 2x2 tiles whose traced pixels surround a pixel. If
+// pixels take the value of their tile, returns the pixel's own tile.
 ivec2 cell_of(ivec2 pixel) {
   return kBetween ? (pixel - parameters.interleave_pixel) >> kShift : pixel >> kShift;
 }
 
-// From a pixel to the pixel that was traced in its cell's tile to the upper left.
+// Returns the offset from a pixel to the traced pixel of the tile cell_of(pixel), in pixels.
 vec2 offset_of_traced(ivec2 pixel) {
   return kBetween ? -vec2((pixel - parameters.interleave_pixel) & (kTileSize - 1))
                   : parameters.interleave_offset - vec2(pixel & (kTileSize - 1));
 }
 
-// The first tile of the group.
+// Returns the tile to the upper left of all tiles that the group averages.
 ivec2 first_tile_of_group() {
   ivec2 cell = cell_of(ivec2(gl_WorkGroupID.xy) * (8 * kTexelSize));
   return cell - (kBetween ? kFilterRadius - 1 : kFilterRadius);
@@ -276,7 +268,7 @@ void load_tiles() {
   barrier();
 }
 
-// Sets which traced pixels lie around the surface's centre.
+// Sets the members of `surface` that locate the traced pixels around its centre.
 void find_traced(inout Surface surface) {
   ivec2 pixel = surface.texel * kTexelSize;
   ivec2 place = cell_of(pixel) - first_tile_of_group();
@@ -338,7 +330,8 @@ Sums no_sums() { return Sums(0.0, 0.0, vec3(0.0), vec3(0.0), vec2(0.0), vec3(0.0
 // than none. Fitted to the error of first frames (`alcove compare --frames 1`).
 const float kLargestSquaredAngle = 1.23;
 
-// The offset in pixels of the traced pixel `i` tiles to the right of (below) the surface's first.
+// Returns the offset from the surface's centre to the traced pixel that lies `i` tiles to the right
+// of (axis 0) or below (axis 1) the surface's first, pixels.
 float traced_offset(Surface surface, int axis, int i) {
   return clamp(surface.offset[axis] + float(i * kTileSize), surface.traced_range[axis],
                surface.traced_range[axis + 2]);
@@ -380,7 +373,7 @@ void add_traced(inout Sums sums, Surface surface, float inverse_squared_width, i
   }
 }
 
-// The traced pixels of radius kNearRadius.
+// Returns the sums over the traced pixels within kNearRadius.
 Sums sum_near(Surface surface, float inverse_squared_width) {
   Sums sums = no_sums();
   const int first = kBetween ? 0 : -kNearRadius;
@@ -411,7 +404,7 @@ void add_ring(inout Sums sums, Surface surface, float inverse_squared_width, int
 
 #ifndef HALF
 
-// The normal in view space, as the search of the pixel uses it.
+// Returns the unit normal in view space, as the search uses it.
 vec3 traced_normal(Surface surface) {
   vec2 slope =
       parameters.slope.zw + (kPerspective ? surface.centre * parameters.slope.xy : vec2(0.0));
@@ -422,7 +415,7 @@ vec3 traced_normal(Surface surface) {
 
 #endif
 
-// Results of a texel.
+// The results of a texel.
 struct Result {
   float occlusion;
   vec3 residual;
@@ -450,7 +443,7 @@ void store_kept(Surface surface, Result result, float dither) {
     imageStore(next_bent_history_image, surface.texel, packed);
   }
 #ifdef SPECULAR
-  // Written so that a NaN becomes nothing, for it would stay in the history.
+  // The comparisons are false for NaN, which would stay in the history.
   bool valid = !surface.sky && result.lobe.x >= 0.0 && result.lobe.y < 1e30;
   LobeTexel lobe = LobeTexel(valid ? result.lobe.x / max(result.lobe.y, 1e-30) : 0.0,
                              valid ? result.lobe.y : 0.0);
@@ -461,7 +454,8 @@ void store_kept(Surface surface, Result result, float dither) {
 #endif
 #ifdef HALF
 
-// `recent` is an occlusion, or negative where it is not known.
+// Stores a texel for upsampling and for the next frame. `recent` is the occlusion of the last few
+// frames, which is read only with kMotion.
 void store_half(Surface surface, Result result, float weight, float recent) {
   HalfTexel texel = HalfTexel(result.occlusion, weight, surface.tilt);
   imageStore(half_image, surface.texel, surface.sky ? vec4(0.0) : pack_half_texel(texel));

@@ -3,8 +3,9 @@
 #ifndef ALCOVE_RECONSTRUCT_HALF_HISTORY_H
 #define ALCOVE_RECONSTRUCT_HALF_HISTORY_H
 
-// The weights, [0,1], that the four texels around a position in the previous frame have by their
-// depths: 1 on the surface's tangent plane, 0 off it.
+// Returns a weight in [0,1] for each of the four texels around the previous position: 1 if the
+// texel's depth lies on the surface's tangent plane, falling to 0 with its distance from it. `part`
+// is the position between the centres of the four texels, [0,1].
 vec4 depth_agreement(vec4 found, Surface surface, Previous previous, vec2 part) {
   float expected = previous.depth;
   vec2 gradient = surface.gradient * float(kTexelSize);
@@ -29,7 +30,7 @@ vec4 depth_agreement(vec4 found, Surface surface, Previous previous, vec2 part) 
   return linear * linear;
 }
 
-// Between four texels.
+// Reads the history between four texels.
 History read_moving(Surface surface) {
   Previous previous = reproject(surface);
   vec2 first = floor(previous.position - 0.5);
@@ -74,8 +75,8 @@ History read_moving(Surface surface) {
   return history;
 }
 
-// The texel's own. Its depth is checked too, for something may have moved although no motion
-// vectors say so.
+// Reads the history at the texel itself, for a camera that stands still. The depth is compared too,
+// because objects may have moved without motion vectors.
 History read_static(Surface surface) {
   float depth = texelFetch(history_depth_image, surface.texel, 0).r;
   vec4 stored = texelFetch(history_image, surface.texel, 0);

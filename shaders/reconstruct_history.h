@@ -3,7 +3,7 @@
 #ifndef ALCOVE_RECONSTRUCT_HISTORY_H
 #define ALCOVE_RECONSTRUCT_HISTORY_H
 
-// The history of a surface.
+// What the history holds of a surface.
 struct History {
   float weight;     // frames; 0 where nothing of this surface is known
   float occlusion;  // [0,1]
@@ -23,7 +23,7 @@ float log_inverse_depth(float inverse_depth, float unit) {
   return kPerspective ? log2(inverse_depth * unit) : inverse_depth;
 }
 
-// Where a surface was on the image of the previous frame.
+// The position of a surface in the image of the previous frame.
 struct Previous {
   vec2 position;  // texels, clamped to the centres of the outermost ones
   float depth;    // linear, over the depth now in perspective; positive
@@ -58,7 +58,7 @@ Previous reproject(Surface surface) {
   return previous;
 }
 
-// Weights of the four texels of a bilinear footprint, in the order of textureGather.
+// Returns the bilinear weights of four texels in the order of textureGather.
 vec4 bilinear_weights(vec2 part) {
   vec2 rest = 1.0 - part;
   return vec4(rest.x * part.y, part.x * part.y, part.x * rest.y, rest.x * rest.y);
@@ -93,14 +93,15 @@ vec4 follow_depth(vec4 differences, float limit) {
 #include "reconstruct_pixel_history.h"
 #endif
 
-// Width of a tile in texels.
+// The width of a tile in texels, at least 1.
 const int kTileTexels = kTileSize > kTexelSize ? kTileSize / kTexelSize : 1;
 
 // With tiles of 4 texels few samples are a texel's own even in time, so the window stays wider.
 const float kWidth = kTileTexels > 2 ? 2.5 : 1.0;
 
-// 0.125 / w^2 for a window of w pixels: wide while a texel has few samples of its own, then hardly
-// wider than the texel, or as wide as interpolation blurs anyway.
+// Returns 0.125 / w^2 for a filter window of w pixels. The window is wide while a texel has few
+// samples of its own. Later it is hardly wider than the texel, or as wide as the interpolation of
+// the history blurs in any case.
 float window_of(History history) {
   const float own = 0.58 * kWidth;
   const float per_squared_texel = 1.0 / float(kTexelSize * kTexelSize);
@@ -108,16 +109,17 @@ float window_of(History history) {
              parameters.inverse_squared_window * (3.0 * history.weight + 1.0));
 }
 
-// How much nearer to the tangent plane a neighbour has to be than in a first frame: the more
-// samples of its own a pixel has, the less it needs those of other surfaces. Fitted to the error
+// Returns the factor, at least 1, on the weight of a neighbour's distance from the tangent plane,
+// compared with a first frame. The more samples of its own a pixel has, the less it needs those of
+// other surfaces. Fitted to the error
 // after 4 and 32 frames at each tile size (`alcove compare --frames`).
 float plane_weight_growth(float weight) {
   const float own = 1.0 / float(kTileTexels * kTileTexels);  // traced frames per frame
   return min(1.0 + 12.0 * own * weight, 5.0);
 }
 
-// Where something moves, visibility changes on surfaces at rest: the mean of the last few frames
-// then replaces that of all.
+// If objects move, visibility also changes on surfaces at rest. Where the mean of the last few
+// frames differs from the mean of all frames by more than noise, it replaces the latter.
 void follow_change(inout History history, float now, float open) {
   history.recent = update_recent(history.recent, history.weight, now, open);
   float changed =
@@ -137,7 +139,8 @@ void clamp_history(inout History history, Sums now) {
   }
 }
 
-// The neighbourhood of this frame, with a wider one where a pixel has hardly any history.
+// Returns the sums over the neighbourhood in this frame. A pixel with hardly any history gets the
+// wider neighbourhood of a first frame.
 Sums sum_neighbourhood(Surface surface, History history, float window) {
   if (kFresh) {
     Sums sums = no_sums();
@@ -165,9 +168,9 @@ void reconstruct(Surface surface) {
   if (kMotion) {
     follow_change(history, now.occluded / max(now.open, 1e-37), now.open);
   }
-  // Not normalised: a frame that traced the pixel itself has more weight than one that traced its
-  // neighbours. Scaled by the traced pixels that the window's area holds, so that the mean weight
-  // of a frame is about 1 for every window and tile size.
+  // The sums are not normalised: a frame that traced the pixel itself has more weight than a frame
+  // that traced its neighbours. They are scaled by the number of traced pixels per area of the
+  // window, so that the mean weight of a frame is about 1 for every window and tile size.
   float scale = 1.3 * float(kTileSize * kTileSize) * window;
   float open = max(scale * now.open, 1e-37);
   float total = history.weight + open;

@@ -2,7 +2,8 @@
 #ifndef ALCOVE_RECONSTRUCT_PIXEL_HISTORY_H
 #define ALCOVE_RECONSTRUCT_PIXEL_HISTORY_H
 
-// Stored depths of the four texels minus those that the surface's tangent plane had there.
+// Returns the stored depths of the four texels minus the depths that the surface's tangent plane
+// had there.
 vec4 depth_differences(uvec4 texels, Surface surface, Previous previous, vec2 part) {
   vec4 found;
   [[unroll]] for (int i = 0; i < 4; ++i) { found[i] = texel_depth(texels[i]); }
@@ -22,7 +23,7 @@ vec4 depth_differences(uvec4 texels, Surface surface, Previous previous, vec2 pa
 
 vec3 residual_of_texel(uint bits) { return unpack_residual(bits); }
 
-// Between four texels.
+// Reads the history between four texels.
 History read_moving(Surface surface) {
   Previous previous = reproject(surface);
   vec2 first = floor(previous.position - 0.5);
@@ -84,8 +85,8 @@ History read_moving(Surface surface) {
   return history;
 }
 
-// The pixel's own texel. Its depth is checked too, for something may have moved although no motion
-// vectors say so.
+// Reads the history at the pixel itself, for a camera that stands still. The depth is compared too,
+// because objects may have moved without motion vectors.
 History read_static(Surface surface) {
   uint bits = texelFetch(history_image, surface.texel, 0).r;
   float difference =

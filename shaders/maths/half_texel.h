@@ -31,24 +31,24 @@ ALCOVE_INLINE vec4 pack_half_texel(HalfTexel texel) {
 }
 
 // Returns the inverse depth of the plane at the texel's centre, which must be at least 0, as it is
-// stored in R32_SFLOAT. If `knows_recent`, the last eight bits of the mantissa hold the occlusion of
-// the last few frames, [0,1]. The relative error of the depth is 2^-15.
+// stored in R32_SFLOAT. If `knows_recent`, the last eight bits of the mantissa hold the occlusion
+// of the last few frames, [0,1]. The relative error of the depth is 2^-15.
 ALCOVE_INLINE float half_texel_depth(float inverse_depth, float recent, bool knows_recent) {
   uint bits = floatBitsToUint(inverse_depth) & 0xffffff00u;
   uint code = knows_recent ? uint(sqrt(clamp(recent, 0.0f, 1.0f)) * 254.0f + 1.5f) : 0u;
   return uintBitsToFloat(bits | code);
 }
 
-// Returns the occlusion of the last few frames that a stored depth holds, or `otherwise` if it holds
-// none.
+// Returns the occlusion of the last few frames that a stored depth holds, or `otherwise` if it
+// holds none.
 ALCOVE_INLINE float half_texel_recent(float depth, float otherwise) {
   uint code = floatBitsToUint(depth) & 255u;
   float root = (float(code) - 1.0f) * (1.0f / 254.0f);
   return code == 0u ? otherwise : root * root;
 }
 
-// Returns a bent-normal residual (bent_normal.h) as it is stored in A2B10G10R10_UNORM. A component of
-// 0 is exact. `dither` in [0,1) replaces the 0.5 of rounding to nearest.
+// Returns a bent-normal residual (bent_normal.h) as it is stored in A2B10G10R10_UNORM. A component
+// of 0 is exact. `dither` in [0,1) replaces the 0.5 of rounding to nearest.
 ALCOVE_INLINE vec4 pack_half_residual(vec3 residual, float dither) {
   float scale = 511.0f / (1023.0f * kLargestResidual);
   float offset = (511.5f + dither) * (1.0f / 1023.0f);
