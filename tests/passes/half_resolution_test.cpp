@@ -15,7 +15,7 @@ namespace alcove::passes {
 namespace {
 
 // Rounding of the stored sums, of a software device's reciprocals and of 16-bit texels.
-constexpr double kRounding = 1e-3;
+constexpr float kRounding = 1e-3f;
 
 OcclusionSettings half_resolution(std::uint32_t history_frames) {
   OcclusionSettings settings = precise(2, history_frames);
@@ -75,8 +75,7 @@ TEST_F(HalfResolution, ConstantOcclusionStaysConstantAtOddSizes) {
             for (std::uint32_t x = 0; x < 33; ++x) {
               const float ndc = drawing.depth_ndc.at(x, y);
               const double expected = ndc == 0.0f || ndc == 1.0f ? 1.0 : visibility;  // the sky
-              ASSERT_NEAR(found.at(x, y), expected,
-                          visibility == 1.0f ? 1e-6 : kRounding)
+              ASSERT_NEAR(found.at(x, y), expected, visibility == 1.0f ? 1e-6 : kRounding)
                   << "at " << x << ", " << y;
             }
           }
@@ -117,6 +116,34 @@ TEST_F(HalfResolution, VisibilityDoesNotBleedAcrossADepthEdge) {
       }
     }
   }
+}
+
+// With dynamic resolution the history's textures are larger than the image. Beyond the image's
+// border they hold results of an earlier, larger image. Averages of one frame show them undiluted.
+TEST_F(HalfResolution, TexelsBeyondASmallerImageAreNotRead) {
+  constexpr VkExtent2D kLargest{kWidth, kHeight};
+  const TestView view = test_views()[2];
+  const Drawing large = draw(view, kWidth, kHeight, {tilted_plane(0.0, 4.0)});
+  const Drawing small = draw(view, kWidth / 2, kHeight / 2, {tilted_plane(0.0, 4.0)});
+  const HostImage dark = constant_raw_occlusion(kWidth / 2, kHeight / 2, 0.1f);
+  const HostImage bright = constant_raw_occlusion(kWidth / 4, kHeight / 4, 0.9f);
+  (void)reconstruct({.view = view.view,
+                     .drawing = large,
+                     .raw_occlusion = dark,
+                     .tile_size = 2,
+                     .reset = true,
+                     .previous_size = kLargest,
+                     .largest_size = kLargest},
+                    half_resolution(1));
+  const HostImage found = reconstruct({.view = view.view,
+                                       .drawing = small,
+                                       .raw_occlusion = bright,
+                                       .tile_size = 2,
+                                       .index = 1,
+                                       .previous_size = kLargest,
+                                       .largest_size = kLargest},
+                                      half_resolution(1));
+  EXPECT_THAT(found.texels, testing::Each(testing::FloatNear(0.9f, kRounding)));
 }
 
 TEST_F(HalfResolution, BentNormalsAndSpecularOcclusionFollowFullResolutionOnAPlane) {
