@@ -369,30 +369,6 @@ void Kernels::dispatch(framegraph::RecordContext& context, Kernel kernel,
                      (size.height + kGroupSize - 1) / kGroupSize, size.depth);
 }
 
-tl::expected<Kernel, Error> Kernels::get(Shader shader, std::span<const std::uint32_t> constants) {
-  const auto& declared = state_->interfaces[static_cast<std::size_t>(shader)].constants;
-  std::array<NamedConstant, kMaxConstants> named;
-  const std::size_t count = std::min(constants.size(), declared.size());
-  for (std::size_t i = 0; i < count; ++i) {
-    named.at(i) = {declared[i].name, constants[i]};
-  }
-  return get(shader, std::span<const NamedConstant>(named).first(count));
-}
-
-void Kernels::dispatch(framegraph::RecordContext& context, Kernel kernel,
-                       std::span<const VkImageView> views, std::span<const std::byte> parameters,
-                       VkExtent3D size) {
-  std::array<NamedView, kMaxBindings> named;
-  std::size_t count = 0;
-  for (const auto& binding : state_->interfaces[static_cast<std::size_t>(kernel.shader)].bindings) {
-    if (is_image(binding) && count < views.size()) {
-      named.at(count) = {binding.name, views[count]};
-      ++count;
-    }
-  }
-  dispatch(context, kernel, std::span<const NamedView>(named).first(count), parameters, size);
-}
-
 std::size_t Kernels::pipeline_count() const { return state_->pipelines.size(); }
 
 VkDeviceSize Kernels::memory_bytes() const {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <span>
 
 #include "bindings.h"
 #include "check_reconstruct.h"
@@ -54,24 +53,24 @@ Past past_of(const Frame& frame, const ReconstructSizes& sizes, bool history_val
   return Past::unchanged;
 }
 
-// The shader's specialisation constants, in its order.
-std::array<std::uint32_t, 14> constants_of(const ReconstructInputs& inputs,
+std::array<NamedConstant, 14> constants_of(const ReconstructInputs& inputs,
                                            const OcclusionSettings& settings,
                                            const maths::Projection& projection, Past past) {
-  return {inputs.raw_occlusion.tile_size,
-          settings.advanced.filter_radius,
-          flag(bool(inputs.raw_occlusion.bent)),
-          flag(inputs.motion && past == Past::moving),
-          flag(is_perspective(projection)),
-          flag(settings.advanced.clamp_width > 0.0f),
-          flag(past == Past::unchanged),
-          flag(bool(inputs.roughness)),
-          channel_if(bool(inputs.roughness), settings.roughness_channel),
-          flag(past == Past::none),
-          flag(needs_visibility(settings)),
-          static_cast<std::uint32_t>(inputs.normal_encoding),
-          flag(!settings.half_resolution && (settings.power != 1.0f || settings.intensity != 1.0f)),
-          flag(is_reversed(projection))};
+  const bool shaped = settings.power != 1.0f || settings.intensity != 1.0f;
+  return {{{"kTileSize", inputs.raw_occlusion.tile_size},
+           {"kFilterRadius", settings.advanced.filter_radius},
+           {"kBentNormal", flag(bool(inputs.raw_occlusion.bent))},
+           {"kMotion", flag(inputs.motion && past == Past::moving)},
+           {"kPerspective", flag(is_perspective(projection))},
+           {"kClamp", flag(settings.advanced.clamp_width > 0.0f)},
+           {"kStatic", flag(past == Past::unchanged)},
+           {"kRoughnessTexture", flag(bool(inputs.roughness))},
+           {"kRoughnessChannel", channel_if(bool(inputs.roughness), settings.roughness_channel)},
+           {"kFresh", flag(past == Past::none)},
+           {"kVisibility", flag(needs_visibility(settings))},
+           {"kNormalEncoding", static_cast<std::uint32_t>(inputs.normal_encoding)},
+           {"kShaped", flag(!settings.half_resolution && shaped)},
+           {"kReversed", flag(is_reversed(projection))}}};
 }
 
 tl::expected<Kernel, Error> get_kernel(const Frame& frame, const ReconstructInputs& inputs,
@@ -164,9 +163,7 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& given_frame,
                                std::min(half_size.height + 1, stored.height), 1};
   pass.record([&kernels = frame.kernels, kernel = *kernel, textures, parameters,
                half_extent](RecordContext& context) {
-    const ReconstructBindings bindings = reconstruct_bindings(context, textures);
-    const std::span<const VkImageView> bound(bindings.views.data(), bindings.count);
-    kernels.dispatch(context, kernel, bound, bytes_of(parameters),
+    kernels.dispatch(context, kernel, reconstruct_views(context, textures), bytes_of(parameters),
                      is_half(textures) ? half_extent : context.extent(textures.inputs.depth_ndc));
   });
   if (!is_half(textures)) {

@@ -3,7 +3,6 @@
 #include <memory_resource>
 #include <string>
 
-#include "bindings.h"
 #include "output_format.h"
 #include "write_result.h"
 
@@ -173,46 +172,37 @@ void declare_reconstruct_accesses(const Graph& graph, framegraph::PassBuilder& p
   }
 }
 
-ReconstructBindings reconstruct_bindings(RecordContext& context,
-                                         const ReconstructTextures& textures) {
+ReconstructViews reconstruct_views(RecordContext& context, const ReconstructTextures& textures) {
+  const auto view = [&](Texture texture, Texture instead = {}) -> VkImageView {
+    const Texture bound = texture ? texture : instead;
+    return bound ? context.view(bound) : VkImageView{VK_NULL_HANDLE};
+  };
+  const bool half = is_half(textures);
   const ReconstructInputs& in = textures.inputs;
-  const Occlusion& out = textures.result;
+  // At half resolution the upsampling pass writes the results.
+  const Occlusion out = half ? Occlusion{} : textures.result;
   const Texture written = any_of(out);
   // Half resolution may read no normals.
-  const bool half = is_half(textures);
   const Texture sampled = half ? in.depth_ndc : in.normals;
-  ReconstructBindings bindings;
-  bindings.add({context.view(in.raw_occlusion.raw_occlusion),
-                view_or(context, in.raw_occlusion.bent, in.raw_occlusion.raw_occlusion),
-                context.view(in.depth_ndc), view_or(context, read_normals(textures), sampled)});
-  if (half) {
-    bindings.add({context.view(textures.history.next), context.view(textures.depth_history.next)});
-  } else {
-    bindings.add(
-        {view_or(context, out.visibility, written), view_or(context, out.bent_normal, written)});
-  }
-  if (textures.history.previous) {
-    bindings.add({context.view(textures.history.previous),
-                  context.view(half ? textures.depth_history.previous : textures.history.next),
-                  view_or(context, in.motion, sampled),
-                  view_or(context, textures.bent_history.previous, textures.history.previous),
-                  view_or(context, textures.bent_history.next, textures.history.next)});
-  } else if (half) {
-    bindings.add({view_or(context, textures.bent_history.next, textures.history.next)});
-  }
-  if (in.raw_occlusion.lobe) {
-    bindings.add({view_or(context, in.roughness, sampled)});
-    if (!half) {
-      bindings.add({context.view(out.specular)});
-    }
-  }
-  if (textures.lobe_history.previous) {
-    bindings.add({context.view(textures.lobe_history.previous)});
-  }
-  if (textures.lobe_history.next) {
-    bindings.add({context.view(textures.lobe_history.next)});
-  }
-  return bindings;
+  const HistoryTextures& history = textures.history;
+  return {{{"raw_image", view(in.raw_occlusion.raw_occlusion)},
+           {"bent_image", view(in.raw_occlusion.bent, in.raw_occlusion.raw_occlusion)},
+           {"depth_image", view(in.depth_ndc)},
+           {"normal_image", view(read_normals(textures), sampled)},
+           {"half_image", view(half ? history.next : Texture{})},
+           {"half_depth_image", view(textures.depth_history.next)},
+           {"visibility_image", view(out.visibility, written)},
+           {"bent_normal_image", view(out.bent_normal, written)},
+           {"history_image", view(history.previous)},
+           {"history_depth_image", view(textures.depth_history.previous)},
+           {"next_history_image", view(history.next)},
+           {"motion_image", view(in.motion, sampled)},
+           {"bent_history_image", view(textures.bent_history.previous, history.previous)},
+           {"next_bent_history_image", view(textures.bent_history.next, history.next)},
+           {"roughness_image", view(in.roughness, sampled)},
+           {"specular_image", view(out.specular)},
+           {"lobe_history_image", view(textures.lobe_history.previous)},
+           {"next_lobe_history_image", view(textures.lobe_history.next)}}};
 }
 
 void drop_reconstruct_history(Graph& graph, std::string_view history_name) {

@@ -3,10 +3,9 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
-#include <initializer_list>
 #include <string_view>
 
+#include "alcove/passes/kernels.h"
 #include "alcove/passes/reconstruct.h"
 #include "check_reconstruct.h"
 
@@ -46,20 +45,13 @@ struct ReconstructTextures {
 void declare_reconstruct_accesses(const framegraph::Graph& graph, framegraph::PassBuilder& pass,
                                   ReconstructTextures& textures);
 
-// The views of a dispatch; the array has room for all bindings of the shader.
-struct ReconstructBindings {
-  std::array<VkImageView, 15> views{};
-  std::size_t count = 0;
+// A view for each image binding that a variant of the shader can have.
+using ReconstructViews = std::array<NamedView, 18>;
 
-  void add(std::initializer_list<VkImageView> more) {
-    for (const VkImageView view : more) {
-      views.at(count++) = view;
-    }
-  }
-};
-
-// The views in the order of the shader's bindings.
-[[nodiscard]] ReconstructBindings reconstruct_bindings(framegraph::RecordContext& context,
-                                                       const ReconstructTextures& textures);
+// Returns the views of a dispatch. Images that this variant of the shader does not use are replaced
+// by others of their kind, because every binding needs a view. Bindings that the variant does not
+// have may get a null view.
+[[nodiscard]] ReconstructViews reconstruct_views(framegraph::RecordContext& context,
+                                                 const ReconstructTextures& textures);
 
 }  // namespace alcove::passes

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cmath>
-#include <span>
 
 #include "bindings.h"
 #include "maths/half_texel.h"
@@ -24,13 +23,15 @@ constexpr float kTolerancePx = 1.0f;
 tl::expected<Kernel, Error> get_kernel(const Frame& frame, const UpsampleInputs& inputs,
                                        const Occlusion& result, const OcclusionSettings& settings,
                                        const maths::Projection& projection) {
-  const std::array constants{
-      flag(is_perspective(projection)),
-      flag(bool(result.visibility)),
-      flag(settings.power != 1.0f || settings.intensity != 1.0f),
-      flag(bool(result.bent_normal)),
-      result.bent_normal ? static_cast<std::uint32_t>(inputs.normal_encoding) : 0u,
-      flag(is_reversed(projection))};
+  const std::uint32_t encoding =
+      result.bent_normal ? static_cast<std::uint32_t>(inputs.normal_encoding) : 0u;
+  const auto constants = std::to_array<NamedConstant>(
+      {{"kPerspective", flag(is_perspective(projection))},
+       {"kVisibility", flag(bool(result.visibility))},
+       {"kShaped", flag(settings.power != 1.0f || settings.intensity != 1.0f)},
+       {"kBentNormal", flag(bool(result.bent_normal))},
+       {"kNormalEncoding", encoding},
+       {"kReversed", flag(is_reversed(projection))}});
   return frame.kernels.get(result.specular ? Shader::upsample_specular : Shader::upsample,
                            constants);
 }
@@ -92,27 +93,28 @@ tl::expected<Occlusion, Error> add_upsample(const Frame& frame, const UpsampleIn
   Occlusion out = result;
   auto pass = frame.graph.add_pass("upsample");
   declare_accesses(frame, pass, inputs, out);
-  pass.record([&kernels = frame.kernels, kernel = *kernel, inputs, out,
-               parameters =
-                   parameters_of(frame, inputs, settings, *projection)](RecordContext& context) {
-    const Texture written = out.visibility    ? out.visibility
-                            : out.bent_normal ? out.bent_normal
-                                              : out.specular;
-    const std::array<VkImageView, 9> views{
-        context.view(inputs.half),
-        context.view(inputs.half_depth),
-        context.view(inputs.depth_ndc),
-        view_or(context, out.bent_normal ? inputs.normals : Texture{}, inputs.depth_ndc),
-        view_or(context, out.bent_normal ? inputs.residuals : Texture{}, inputs.half),
-        view_or(context, out.visibility, written),
-        view_or(context, out.bent_normal, written),
-        view_or(context, inputs.lobes, inputs.half),
-        view_or(context, out.specular, written)};
-    const std::span<const VkImageView> bound(views.data(), views.size() - (out.specular ? 0 : 2));
-    // Invocations stand between texels, and begin and end outside of the image.
-    kernels.dispatch(context, kernel, bound, bytes_of(parameters),
-                     {inputs.half_size.width + 1, inputs.half_size.height + 1, 1});
-  });
+  pass.record(
+      [&kernels = frame.kernels, kernel = *kernel, inputs, out,
+       parameters = parameters_of(frame, inputs, settings, *projection)](RecordContext& context) {
+        const Texture written = out.visibility    ? out.visibility
+                                : out.bent_normal ? out.bent_normal
+                                                  : out.specular;
+        const auto views = std::to_array<NamedView>(
+            {{"half_image", context.view(inputs.half)},
+             {"half_depth_image", context.view(inputs.half_depth)},
+             {"depth_image", context.view(inputs.depth_ndc)},
+             {"normal_image",
+              view_or(context, out.bent_normal ? inputs.normals : Texture{}, inputs.depth_ndc)},
+             {"residual_image",
+              view_or(context, out.bent_normal ? inputs.residuals : Texture{}, inputs.half)},
+             {"visibility_image", view_or(context, out.visibility, written)},
+             {"bent_normal_image", view_or(context, out.bent_normal, written)},
+             {"lobe_image", view_or(context, inputs.lobes, inputs.half)},
+             {"specular_image", view_or(context, out.specular, written)}});
+        // Invocations stand between texels, and begin and end outside of the image.
+        kernels.dispatch(context, kernel, views, bytes_of(parameters),
+                         {inputs.half_size.width + 1, inputs.half_size.height + 1, 1});
+      });
   return out;
 }
 

@@ -223,6 +223,33 @@ TEST_F(Scenario, PersistentTextureKeepsItsContents) {
   }
 }
 
+// The buffer is filled in the first frame and read in the second.
+TEST_F(Scenario, PersistentBufferKeepsItsContents) {
+  for (std::uint32_t frame = 0; frame < 2; ++frame) {
+    begin();
+    const BufferHistory counter = graph_.create_persistent_buffer("counter", {4});
+    EXPECT_EQ(counter.validity, frame == 0 ? HistoryValidity::first_frame : HistoryValidity::valid);
+    if (frame == 0) {
+      PassBuilder pass = graph_.add_pass("fill");
+      const Buffer filled = pass.write(counter.current, buffer_access::fill);
+      pass.record([=](RecordContext& c) {
+        c.vk.vkCmdFillBuffer(c.commands, c.buffer(filled), 0, VK_WHOLE_SIZE, 77);
+      });
+    } else {
+      out_ = graph_.import_buffer("host", Gpu::imported(host_));
+      PassBuilder pass = graph_.add_pass("copy out");
+      pass.read(counter.current, buffer_access::transfer_source);
+      out_ = pass.write(out_, buffer_access::transfer_destination);
+      pass.record([=, out = out_](RecordContext& c) {
+        const VkBufferCopy all{0, 0, 4};
+        c.vk.vkCmdCopyBuffer(c.commands, c.buffer(counter.current), c.buffer(out), 1, &all);
+      });
+    }
+    run({frame});
+  }
+  EXPECT_EQ(word(0), 77u);
+}
+
 // The first graph draws a persistent texture and leaves it in a final state. The second graph
 // imports it, copies it out and writes another value, which the first graph then reads.
 TEST_F(Scenario, GraphsHandOverAPersistentTexture) {

@@ -113,7 +113,7 @@ TEST_F(KernelsByName, OrderAndSuperfluousNamesOfConstantsDoNotMatter) {
 TEST_F(KernelsByName, ABindingWithoutAViewIsNamed) {
   const auto kernel = gpu().kernels().get(Shader::linear_depth);
   ASSERT_TRUE(kernel) << kernel.error().message;
-  const auto done = gpu().run([&](Graph& graph) {
+  const auto done = gpu().run([&](Graph& graph) -> tl::expected<void, std::string> {
     const Texture depth = upload(graph, {8, 8, std::vector<float>(64, 0.5f), 1});
     auto pass = graph.add_pass("linear depth");
     pass.read(depth, framegraph::access::sampled_compute);
@@ -124,6 +124,7 @@ TEST_F(KernelsByName, ABindingWithoutAViewIsNamed) {
       const std::array<std::byte, 64> parameters{};
       gpu().kernels().dispatch(context, kernel, views, parameters, {8, 8, 1});
     });
+    return {};
   });
   ASSERT_FALSE(done);
   EXPECT_THAT(done.error(),

@@ -98,7 +98,8 @@ TEST(Camera, LookingAlongUpStillHasAxes) {
 }
 
 TEST(Camera, OrbitByZeroIsTheSameView) {
-  // Near a target so large beside it that eye and arm cannot be had from each other again.
+  // The target's coordinates are so large that the eye and the offset from the target cannot be
+  // computed from each other in floats.
   Camera camera;
   camera.eye_ws = {1.1e-9f, 3e-9f, 6e-9f};
   camera.target_ws = {-0.5f, -0.4f, -0.8f};

@@ -129,13 +129,6 @@ class Kernels {
   void dispatch(framegraph::RecordContext& context, Kernel kernel, std::span<const NamedView> views,
                 std::span<const std::byte> parameters, VkExtent3D size);
 
-  // The same with lists in the order of the shader's constant and binding numbers.
-  [[nodiscard]] tl::expected<Kernel, Error> get(Shader shader,
-                                                std::span<const std::uint32_t> constants);
-  void dispatch(framegraph::RecordContext& context, Kernel kernel,
-                std::span<const VkImageView> views, std::span<const std::byte> parameters,
-                VkExtent3D size);
-
   // Returns how many pipelines have been created. Passes that are not added create none.
   [[nodiscard]] std::size_t pipeline_count() const;
 
