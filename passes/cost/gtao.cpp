@@ -88,9 +88,11 @@ std::optional<double> gtao_iterations(const PassWork& work, const CompiledLoop& 
 }
 
 double gtao_traffic(const PassWork& work, std::string_view image, Direction direction) {
-  // One pixel in 4x4 reads its normal of 8 bytes: half of the cache lines of 64 bytes.
-  const bool sparse = work.settings.tile_size == 4;
-  return sparse && image == "normals" && direction == Direction::read ? 0.5 : 1.0;
+  // The share of the cache lines of 64 bytes, eight normals, that hold a traced pixel: of every
+  // `tile` rows one, and of its lines all if there are eight traced pixels or fewer between them.
+  const std::uint32_t tile = work.settings.tile_size;
+  const bool normals = image == "normals" && direction == Direction::read;
+  return normals && tile >= 4 ? 1.0 / tile : 1.0;
 }
 
 }  // namespace alcove::passes::cost

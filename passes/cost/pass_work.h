@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "work.h"
 
@@ -14,6 +15,7 @@ namespace alcove::passes::cost {
 
 [[nodiscard]] std::optional<double> reconstruct_iterations(const PassWork& work,
                                                            const CompiledLoop& loop);
+[[nodiscard]] std::vector<LoadPattern> reconstruct_loads(const PassWork& work);
 [[nodiscard]] double reconstruct_traffic(const PassWork& work, std::string_view image,
                                          Direction direction);
 

@@ -58,4 +58,24 @@ enum class Direction : std::uint8_t { read, write };
 [[nodiscard]] double traffic_share(const PassWork& work, std::string_view image,
                                    Direction direction);
 
+// The texels that the 64 invocations of a group of 8x8 load with one instruction.
+struct LoadPattern {
+  std::uint32_t texel_bytes = 4;
+  std::uint32_t pitch = 1;      // texels from one invocation's texel to the next, in x and y
+  std::uint32_t footprint = 1;  // texels of an invocation in x and y: 2 for a gather
+  // Whether the group's first texel may be any, as where a moving camera reads its history.
+  // Otherwise it is a multiple of 8 * pitch, plus `first`.
+  bool anywhere = false;
+  std::int32_t first = 0;
+  std::uint32_t count = 1;  // instructions of this pattern in a wave
+};
+
+// Cache lines of 64 bytes that a load of this pattern touches, where an image is stored row by row
+// and its rows begin with a line; the mean over all positions if the group may be anywhere.
+[[nodiscard]] double cache_lines(const LoadPattern& pattern);
+
+// Cache lines per load of a pass, the mean over its loads. 0 for a pass whose patterns are not
+// declared, which is all but reconstruct.
+[[nodiscard]] double cache_lines_per_load(const PassWork& work);
+
 }  // namespace alcove::passes::cost

@@ -18,7 +18,8 @@ template <typename Ours, typename Theirs>
 constexpr bool same(Ours ours, Theirs theirs) {
   return static_cast<int>(ours) == static_cast<int>(theirs);
 }
-static_assert(same(Quality::low, ALCOVE_QUALITY_LOW) &&
+static_assert(same(Quality::console, ALCOVE_QUALITY_CONSOLE) &&
+              same(Quality::low, ALCOVE_QUALITY_LOW) &&
               same(Quality::medium, ALCOVE_QUALITY_MEDIUM) &&
               same(Quality::high, ALCOVE_QUALITY_HIGH) &&
               same(Quality::reference, ALCOVE_QUALITY_REFERENCE));

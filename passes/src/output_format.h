@@ -46,10 +46,21 @@ inline constexpr VkFormat kHistoryFormat = VK_FORMAT_R32_UINT;
 inline constexpr VkFormat kBentHistoryFormat = VK_FORMAT_R32_UINT;
 inline constexpr VkFormat kLobeHistoryFormat = VK_FORMAT_R16_UINT;
 
+// Histories at half resolution, which the upsampling pass reads too: maths::pack_half_texel(),
+// maths::half_texel_depth() and maths::pack_half_residual().
+inline constexpr VkFormat kHalfFormat = VK_FORMAT_R16G16B16A16_SNORM;
+inline constexpr VkFormat kHalfDepthFormat = VK_FORMAT_R32_SFLOAT;
+inline constexpr VkFormat kHalfBentFormat = VK_FORMAT_A2B10G10R10_UNORM_PACK32;
+
 // Returns the bytes per pixel of all textures of a history as add_reconstruct() declares them: two
 // of each kind.
 [[nodiscard]] inline std::uint64_t history_bytes(bool lobe, bool bent) {
   return 2u * (4u + (lobe ? 2u : 0u) + (bent ? 4u : 0u));
+}
+
+// Returns the bytes per texel of 2x2 pixels of all textures of a history at half resolution.
+[[nodiscard]] inline std::uint64_t half_history_bytes(bool lobe, bool bent) {
+  return history_bytes(lobe, bent) + 2u * 8u;
 }
 
 }  // namespace alcove::passes

@@ -195,7 +195,7 @@ void add_motion(CLI::App& app, Options& options) {
 
 void add_occlusion(CLI::App& app, OcclusionOptions& occlusion) {
   const Group group(app, "Occlusion");
-  group.add("--quality", "NAME", "low, medium, high or reference; medium",
+  group.add("--quality", "NAME", "console, low, medium, high or reference; medium",
             [&](const OptionValue& given) {
               occlusion.quality_given = true;
               occlusion.quality =

@@ -76,7 +76,7 @@ void append_camera(const Camera& camera, std::vector<std::string>& to) {
 
 // Uses the quality that needs the fewest --set options.
 void append_settings(const OcclusionSettings& settings, std::vector<std::string>& to) {
-  Quality closest = Quality::low;
+  Quality closest = Quality::console;
   std::vector<std::string> fewest = changes(closest, settings);
   for (std::size_t i = 1; i < passes::kNames<Quality>.size(); ++i) {
     std::vector<std::string> more = changes(static_cast<Quality>(i), settings);

@@ -155,7 +155,7 @@ TEST_F(CBadInput, SettingsOutOfRangeAreReportedByName) {
       {"'blend' is -1;", [](S&, A& a) { a.blend = -1.0f; }},
       {"'falloff' is 2;", [](S&, A& a) { a.falloff = 2.0f; }},
       {"'falloff' is 0.5 with the estimator connected", [](S&, A& a) { a.falloff = 0.5f; }},
-      {"'tile_size' is 3; it must be 1, 2 or 4.", [](S& s, A&) { s.tile_size = 3; }},
+      {"'tile_size' is 3; it must be 1, 2, 4 or 8.", [](S& s, A&) { s.tile_size = 3; }},
       {"'pattern' is 3;", [](S&, A& a) { set_number(a.pattern, 3); }},
       {"'filter_radius' is 4;", [](S&, A& a) { a.filter_radius = 4; }},
       {"'filter_tolerance_px' is 0;", [](S&, A& a) { a.filter_tolerance_px = 0.0f; }},

@@ -224,7 +224,7 @@ TEST_F(CPlan, TimingsContainTheViewOfEachPass) {
 }
 
 TEST(CSettings, SettingsCanBeFilledPrintedAndPassedBack) {
-  for (int quality = ALCOVE_QUALITY_LOW; quality <= ALCOVE_QUALITY_REFERENCE; ++quality) {
+  for (int quality = ALCOVE_QUALITY_CONSOLE; quality <= ALCOVE_QUALITY_REFERENCE; ++quality) {
     AlcoveSettings settings{.struct_size = sizeof(AlcoveSettings)};
     ASSERT_EQ(alcoveGetSettings(static_cast<AlcoveQuality>(quality), 2.5f, &settings),
               ALCOVE_SUCCESS);

@@ -8,7 +8,9 @@
 #include <limits>
 #include <numbers>
 #include <tuple>
+#include <utility>
 
+#include "alcove/passes/setting_names.h"
 #include "gtao_scenes.h"
 #include "pass_fixture.h"
 
@@ -80,18 +82,22 @@ class Extremes : public PassTest {
 };
 
 TEST_F(Extremes, HistoryIsIndependentOfTheSceneUnit) {
-  for (const bool orthographic : {false, true}) {
+  constexpr std::array<std::pair<Quality, bool>, 4> kCases{{{Quality::medium, false},
+                                                            {Quality::medium, true},
+                                                            {Quality::console, false},
+                                                            {Quality::console, true}}};
+  for (const auto& [quality, orthographic] : kCases) {
     std::vector<Images> expected;
     for (const int exponent : {0, -30, 17, 30}) {
-      SCOPED_TRACE(testing::Message() << (orthographic ? "orthographic, " : "perspective, ")
-                                      << "in units of 2^" << -exponent);
+      SCOPED_TRACE(testing::Message()
+                   << name_of(quality) << (orthographic ? ", orthographic, " : ", perspective, ")
+                   << "in units of 2^" << -exponent);
       const double unit = std::ldexp(1.0, exponent);
       const TestView view =
           orthographic ? orthographic_view("", 3.0 * unit, 2.0 * unit, 0.125 * unit, 16.125 * unit)
                        : perspective_view("", 1.2, 1.8, 0.125 * unit, kInfinity, true);
-      const std::vector<Images> found =
-          strafe(view, scaled(ball_on_floor(), unit), 0.05 * unit,
-                 everything(Quality::medium, static_cast<float>(unit)), 3);
+      const std::vector<Images> found = strafe(view, scaled(ball_on_floor(), unit), 0.05 * unit,
+                                               everything(quality, static_cast<float>(unit)), 3);
       if (exponent == 0) {
         expected = found;
       }
@@ -319,22 +325,25 @@ TEST_F(Extremes, SizeMayChangeToOnePixelAndBack) {
   constexpr std::array<VkExtent2D, 9> kSizes{
       {{1, 1}, {64, 48}, {1, 1}, {1, 48}, {64, 1}, {3, 5}, {2, 2}, {63, 47}, {1, 1}}};
   const TestView view = test_views()[2];
-  const OcclusionSettings settings = everything(Quality::low, 1.0f);
-  // The frame counter wraps around within these frames.
-  std::uint32_t index = std::numeric_limits<std::uint32_t>::max() - 4;
-  VkExtent2D previous = kSizes[0];
-  for (const VkExtent2D size : kSizes) {
-    SCOPED_TRACE(testing::Message() << size.width << " x " << size.height);
-    const Drawing drawing = draw(view, size.width, size.height, ball_on_floor());
-    const Images images = run_occlusion({.view = view.view,
-                                         .depth_ndc = drawing.depth_ndc,
-                                         .normal_vs = &drawing.normal_vs,
-                                         .index = index++,
-                                         .previous_size = previous,
-                                         .largest_size = kLargest},
-                                        settings);
-    expect_sound(images);
-    previous = size;
+  for (const Quality quality : {Quality::low, Quality::console}) {
+    const OcclusionSettings settings = everything(quality, 1.0f);
+    // The frame counter wraps around within these frames.
+    std::uint32_t index = std::numeric_limits<std::uint32_t>::max() - 4;
+    VkExtent2D previous = kSizes[0];
+    for (const VkExtent2D size : kSizes) {
+      SCOPED_TRACE(testing::Message()
+                   << name_of(quality) << ", " << size.width << " x " << size.height);
+      const Drawing drawing = draw(view, size.width, size.height, ball_on_floor());
+      const Images images = run_occlusion({.view = view.view,
+                                           .depth_ndc = drawing.depth_ndc,
+                                           .normal_vs = &drawing.normal_vs,
+                                           .index = index++,
+                                           .previous_size = previous,
+                                           .largest_size = kLargest},
+                                          settings);
+      expect_sound(images);
+      previous = size;
+    }
   }
 }
 

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <vector>
 
+#include "alcove/passes/setting_names.h"
 #include "gpu_cost/budget.h"
 
 namespace alcove::sample {
@@ -146,6 +147,31 @@ TEST(GpuCost, LoopWithoutDeclaredIterationsIsReported) {
   ASSERT_FALSE(iterations);
   EXPECT_THAT(iterations.error(), HasSubstr("'normals' (moving frame)"));
   EXPECT_THAT(iterations.error(), HasSubstr("7 instructions"));
+}
+
+// Rows of 8 texels of 4 or 8 bytes lie in one line each. A gather of adjacent texels reads 9 rows
+// of 9 texels, and one of every second texel 16 rows of 16.
+TEST(GpuCost, CacheLinesOfALoadAreThoseOfItsAddresses) {
+  using passes::cost::cache_lines;
+  EXPECT_EQ(cache_lines({}), 8);
+  EXPECT_EQ(cache_lines({.texel_bytes = 8}), 8);
+  EXPECT_EQ(cache_lines({.pitch = 2}), 8);
+  EXPECT_EQ(cache_lines({.texel_bytes = 8, .pitch = 2}), 16);
+  EXPECT_EQ(cache_lines({.footprint = 2, .anywhere = true}), 9 * 1.5);
+  EXPECT_EQ(cache_lines({.pitch = 2, .footprint = 2, .first = -1}), 16 * 2);
+}
+
+// The limit of 12 holds for pixels that load 4 or 8 bytes each. Texels of 2x2 pixels read 16 rows
+// of depth with every gather.
+TEST(GpuCost, ReconstructionAtFullResolutionTouchesFewCacheLines) {
+  for (const auto quality :
+       {passes::Quality::low, passes::Quality::medium, passes::Quality::high}) {
+    const passes::OcclusionSettings settings = passes::quality_settings(quality, 0.5f);
+    for (const FrameState state : {FrameState::first, FrameState::moving, FrameState::converged}) {
+      const PassWork work{"reconstruct", settings, state, {}};
+      EXPECT_LE(passes::cost::cache_lines_per_load(work), 12) << passes::name_of(quality);
+    }
+  }
 }
 
 SettingsCost one_pass(double instructions, double registers, double waves, double spills) {

@@ -41,18 +41,20 @@ extern "C" {
 
 // Presets for alcoveGetSettings. Fields that the table does not have are the defaults that
 // AlcoveSettings states. REFERENCE also has FLOAT32 and, in its advanced settings, the paper's
-// horizons and no filter.
+// horizons and no filter; CONSOLE also has half_resolution.
 //
 //              slices  steps  tile_size  history_frames  depth fetches a pixel and frame
+//   CONSOLE         1      8        8              32                              0.25
 //   LOW             1      8        4              32                                1
 //   MEDIUM          1     10        2              32                                5
 //   HIGH            2     16        2              32                               16
 //   REFERENCE      32     64        1               0                             4096
 typedef enum AlcoveQuality {
-  ALCOVE_QUALITY_LOW = 0,        // traces one of 4x4 pixels in each frame
-  ALCOVE_QUALITY_MEDIUM = 1,     // traces one of 2x2; the preset to begin with
-  ALCOVE_QUALITY_HIGH = 2,       // MEDIUM with two slices and more steps
-  ALCOVE_QUALITY_REFERENCE = 3,  // traces every pixel: a static image to compare with
+  ALCOVE_QUALITY_CONSOLE = 0,  // traces one of 8x8 pixels in each frame, filters at half resolution
+  ALCOVE_QUALITY_LOW = 1,      // traces one of 4x4 pixels in each frame
+  ALCOVE_QUALITY_MEDIUM = 2,   // traces one of 2x2; the preset to begin with
+  ALCOVE_QUALITY_HIGH = 3,     // MEDIUM with two slices and more steps
+  ALCOVE_QUALITY_REFERENCE = 4,  // traces every pixel: a static image to compare with
   ALCOVE_QUALITY_MAX_ENUM = 0x7fffffff
 } AlcoveQuality;
 
@@ -97,7 +99,7 @@ typedef struct AlcoveSettings {
   // Scene units, above 0. Occluders further away do not count. A twentieth to a fifth of a room's
   // height is usual.
   float radius;
-  // One pixel of a tile of tile_size x tile_size pixels is traced in each frame: 1, 2 or 4. The
+  // One pixel of a tile of tile_size x tile_size pixels is traced in each frame: 1, 2, 4 or 8. The
   // traced pixel changes from frame to frame, so that every pixel is traced in time.
   uint32_t tile_size;
   // Slices of a traced pixel, 1 to 64. A slice is a plane through the view direction, in which
@@ -113,8 +115,9 @@ typedef struct AlcoveSettings {
   float hidden_occlusion;
   uint32_t depth_layers;    // that are searched: 1, or 2 with AlcoveView::second_depth [1]
   uint32_t history_frames;  // that are averaged, 0 to 127. 0 takes no memory for a history
-  // Filters and accumulates texels of 2x2 pixels, then upsamples along depth edges: less time, a
-  // quarter of the history's memory, and a larger error. Needs a tile_size of 2 or 4. [VK_FALSE]
+  // Filters and accumulates texels of 2x2 pixels, then upsamples along depth edges: less time, less
+  // memory for the history, and a larger error. Needs a tile_size of at least 2. [VK_FALSE, but
+  // VK_TRUE for CONSOLE]
   VkBool32 half_resolution;
   AlcoveSpecular specular;     // read if AlcoveView::specular is given [SLICES]
   float roughness;             // perceptual, 0 to 1, for pixels without AlcoveView::roughness [0.5]

@@ -56,7 +56,7 @@ void for_each_setting(Settings& settings, const Visit& visit) {
         settings.radius);
   visit(SettingInfo{.name = "tile_size",
                     .help = "Width of a tile in pixels. One pixel per tile is traced in a frame.",
-                    .range = {.minimum = 1, .maximum = 4, .power_of_two = true}},
+                    .range = {.minimum = 1, .maximum = 8, .power_of_two = true}},
         settings.tile_size);
   visit(
       SettingInfo{.name = "slices",

@@ -12,6 +12,9 @@ namespace alcove::passes {
 // Presets for quality_settings(). All except `reference` keep a history of 32 frames. The number of
 // fetches is that of depth samples per pixel of the image and frame.
 enum class Quality : std::uint8_t {
+  // 1 slice of 8 steps per half-slice; traces one pixel in 8x8; filter and history at half
+  // resolution: a quarter of a fetch. For consoles of the paper's generation.
+  console,
   low,     // 1 slice of 8 steps per half-slice; traces one pixel in 4x4: 1 fetch.
   medium,  // 1 slice of 10 steps; one pixel in 2x2: 5 fetches. The default.
   high,    // 2 slices of 16 steps; one pixel in 2x2: 16 fetches.
@@ -34,8 +37,8 @@ struct OcclusionSettings {
   // Occluders beyond this distance do not count. Scene units, above 0. A twentieth to a fifth of a
   // room's height is usual.
   float radius = 0.5f;
-  // Width of a tile in pixels: 1, 2 or 4. One pixel per tile is traced in a frame; the interleave
-  // offset moves it from frame to frame.
+  // Width of a tile in pixels: 1, 2, 4 or 8. One pixel per tile is traced in a frame; the
+  // interleave offset moves it from frame to frame.
   std::uint32_t tile_size = 2;
   // Slices per traced pixel and frame, 1 to 64. More slices reduce noise.
   std::uint32_t slices = 1;
@@ -57,8 +60,8 @@ struct OcclusionSettings {
   // 127. 0 keeps no history and allocates none, for engines with a temporal filter of their own.
   std::uint32_t history_frames = 32;
   // Filters and accumulates texels of 2x2 pixels, and upsamples them to pixels with regard to
-  // edges. It takes less time and a quarter of the history's memory, and has a larger error
-  // (figures: passes/README.md). It needs a tile_size of 2 or 4.
+  // edges. It takes less time and less memory for the history, and has a larger error (figures:
+  // passes/README.md). It needs a tile_size of at least 2.
   bool half_resolution = false;
 
   // Outputs. An output that is off needs no pass and no memory.
