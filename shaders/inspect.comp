@@ -14,12 +14,12 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 0, binding = 0) uniform Parameters { InspectParameters parameters; };
-layout(set = 0, binding = 1) uniform texture2D depth_image;  // as it is stored
+layout(set = 0, binding = 1) uniform texture2D depth_image;  // raw depth
 layout(set = 0, binding = 2) uniform texture2D normal_image;
 layout(set = 0, binding = 3) uniform writeonly image2D sample_image;
 
 float fetch_depth(ivec2 pixel) {
-  // An image that is smaller than it is said to be is not read beyond its edge.
+  // An image that is smaller than the view says is not read beyond its edge.
   ivec2 last = min(ivec2(parameters.size_px), textureSize(depth_image, 0)) - 1;
   return texelFetch(depth_image, clamp(pixel, ivec2(0), last), 0).r;
 }

@@ -67,8 +67,10 @@ tl::expected<void, Failure> PixelObserver::add(const Frame& frame, const AlcoveV
       {view.depth.width, view.depth.height}, normals ? 1u : 0u, 0};
   sampling.record([&kernels = frame.kernels, kernel = *kernel, depth, normals, samples,
                    parameters](RecordContext& context) {
-    const std::array views{context.view(depth), context.view(normals ? normals : depth),
-                           context.view(samples)};
+    const auto views =
+        std::to_array<NamedView>({{"depth_image", context.view(depth)},
+                                  {"normal_image", context.view(normals ? normals : depth)},
+                                  {"sample_image", context.view(samples)}});
     kernels.dispatch(context, kernel, views, bytes_of(parameters),
                      {kInspectColumns, kInspectRows + 1, 1});
   });

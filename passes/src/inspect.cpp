@@ -38,7 +38,7 @@ struct Reading {
   double tangent_scale = 1.0;  // of the tangents of half the angles of view
 };
 
-// The value that this share of the values, 0 to 1, is at most.
+// Returns the value that a fraction `share`, 0 to 1, of the values does not exceed.
 double quantile(std::vector<double> values, double share) {
   const auto at =
       values.begin() + static_cast<std::ptrdiff_t>(static_cast<double>(values.size()) * share);

@@ -1,5 +1,6 @@
 #include "cli/open_session.h"
 
+#include <algorithm>
 #include <chrono>
 #include <iostream>
 #include <utility>
@@ -13,6 +14,21 @@ namespace alcove::sample {
 
 using Failure = tl::unexpected<std::string>;
 
+namespace {
+
+// Prints the first notes only, because a file may cause any number of them.
+void print_notes(const std::vector<std::string>& notes) {
+  constexpr std::size_t kMost = 20;
+  for (std::size_t i = 0; i < std::min(notes.size(), kMost); ++i) {
+    std::cerr << "note: " << notes[i] << "\n";
+  }
+  if (notes.size() > kMost) {
+    std::cerr << "note: There are " << notes.size() - kMost << " more notes on this scene.\n";
+  }
+}
+
+}  // namespace
+
 tl::expected<Session, std::string> load_session(const Options& options) {
   Session session;
   const auto start = std::chrono::steady_clock::now();
@@ -23,9 +39,7 @@ tl::expected<Session, std::string> load_session(const Options& options) {
     return Failure(std::move(scene.error()));
   }
   session.scene = std::move(*scene);
-  for (const std::string& warning : session.scene.warnings) {
-    std::cerr << "note: " << warning << "\n";
-  }
+  print_notes(session.scene.warnings);
   const auto camera = camera_of(options.view, session.scene);
   if (!camera) {
     return Failure(camera.error());

@@ -75,12 +75,17 @@ tl::expected<Scene, std::string> build_scene(GltfModel read, const GltfLimits& l
   if (auto added = add_materials(model, limits.images, scene); !added) {
     return Failure(added.error());
   }
-  MeshBudget budget{limits.primitives, limits.vertices, limits.indices, limits.instances,
-                    limits.drawn_triangles};
+  MeshBudget budget{limits.primitives, limits.vertices, limits.indices,
+                    limits.instances,  limits.joints,   limits.drawn_triangles};
   std::vector<PlacedCamera> cameras;
   if (auto added = add_nodes(model, budget, cameras, scene, progress); !added)
     return Failure(added.error());
-  if (scene.meshes.empty()) return Failure("it has no triangles");
+  if (scene.meshes.empty()) {
+    return Failure(
+        "it has no triangles to draw; points, lines, triangles without an area and materials with "
+        "an "
+        "alpha of 0 are not drawn");
+  }
   if (!model.animations.empty()) {
     scene.warnings.push_back(
         "Animations are left out: nodes and joints stand as the file places them.");

@@ -36,7 +36,8 @@ struct GltfLimits {
   uint64_t primitives = uint64_t{1} << 20;
   uint64_t vertices = uint64_t{1} << 26;
   uint64_t indices = uint64_t{3} << 25;
-  uint64_t instances = uint64_t{1} << 23;
+  uint64_t instances = uint64_t{1} << 23;        // counted once for each primitive of their mesh
+  uint64_t joints = uint64_t{1} << 22;           // of all skins
   uint64_t drawn_triangles = uint64_t{1} << 28;  // counted once for each instance
   ImageLimits images;
 };

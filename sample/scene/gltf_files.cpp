@@ -127,8 +127,8 @@ tl::expected<Bytes, std::string> read_regular_file(const fs::path& file, uint64_
   if (end < 0 || std::fseek(stream, 0, SEEK_SET) != 0) return Failure("cannot be read");
   const auto size = static_cast<uint64_t>(end);
   if (size > most) {
-    return Failure("has " + std::to_string(size) + " bytes, and only " + std::to_string(most) +
-                   " can be read here");
+    return Failure("has " + std::to_string(size) + " bytes, and at most " + std::to_string(most) +
+                   " more are read for a scene");
   }
   Bytes out(size);
   if (std::fread(out.data(), 1, size, stream) != size) {

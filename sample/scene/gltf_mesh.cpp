@@ -292,7 +292,7 @@ tl::expected<VertexPlacement, std::string> vertex_placement(const tinygltf::Mode
                               ? model.accessors[static_cast<size_t>(position)].count
                               : 0;
   if (vertices > most) return Failure("has too many vertices: " + std::to_string(vertices));
-  return VertexPlacement::skinned(model, primitive, vertices, *placement.joints);
+  return VertexPlacement::skinned(model, primitive, vertices, *placement.joints, most);
 }
 
 bool is_invisible(const Material& material) {
@@ -349,7 +349,13 @@ tl::expected<void, std::string> add_primitive(const tinygltf::Model& model,
   if (mesh.indices.size() > budget.indices || mesh.indices.size() > budget.vertices) {
     return refuse("takes the scene past the number of triangles that is read here");
   }
-  if (placement.instances != nullptr) mesh.instances = *placement.instances;
+  if (placement.instances != nullptr) {
+    if (placement.instances->size() > budget.instances) {
+      return refuse("takes the scene past the number of instances that is read here");
+    }
+    budget.instances -= placement.instances->size();
+    mesh.instances = *placement.instances;
+  }
   const uint64_t drawn = mesh.indices.size() / 3 * instance_count(mesh);
   if (drawn > budget.drawn_triangles) {
     return refuse(

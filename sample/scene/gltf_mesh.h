@@ -10,14 +10,15 @@
 
 namespace alcove::sample {
 
-// What may still be read of a file, so that a small file that names the same data again and again
-// cannot ask for all memory, or for a picture that takes hours. What is read is taken from it,
-// whether or not anything comes of it.
+// What may still be read of a file. It bounds the memory and the time that a small file can ask for
+// by naming the same data many times. Everything that is read is subtracted, even if nothing is
+// drawn of it.
 struct MeshBudget {
   uint64_t primitives;
   uint64_t vertices;
   uint64_t indices;
-  uint64_t instances;
+  uint64_t instances;        // counted once for each primitive of their mesh
+  uint64_t joints;           // of all skins
   uint64_t drawn_triangles;  // counted once for each instance
 };
 

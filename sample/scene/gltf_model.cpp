@@ -21,6 +21,7 @@ using Checked = tl::expected<void, std::string>;
 
 tl::expected<json, std::string> parse(std::span<const uint8_t> text) {
   try {
+    if (text.empty()) return Failure("it is empty");
     json root = json::parse(text.begin(), text.end());
     if (!root.is_object()) return Failure("it is not glTF: its JSON is not an object");
     return root;
@@ -269,11 +270,11 @@ void fill_images(const json& images, const std::vector<char>& used, GltfFiles& f
     const std::string shown = GltfFiles::shown(text);
     auto bytes = files.read(text);
     if (!shown.starts_with("data:")) image.uri = printable(shown);
-    if (bytes) {
-      image.image = std::move(*bytes);
-    } else {
-      leave_out(name + " (" + shown + ")", bytes.error());
+    if (!bytes || bytes->empty()) {
+      leave_out(name + " (" + shown + ")", bytes ? "is empty" : bytes.error());
+      continue;
     }
+    image.image = std::move(*bytes);
   }
 }
 

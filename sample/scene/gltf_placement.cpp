@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
+#include <numeric>
 #include <optional>
+#include <span>
 
 #include "scene/gltf_accessor.h"
 
@@ -11,6 +13,8 @@ namespace alcove::sample {
 namespace {
 
 using Failure = tl::unexpected<std::string>;
+
+constexpr int kJointsPerSet = 4;
 
 glm::dmat4 transform_of(const glm::dvec3& translation, const glm::dquat& rotation,
                         const glm::dvec3& scale) {
@@ -31,51 +35,71 @@ int instance_attribute(const tinygltf::Value& extension, const char* name) {
   return accessor.IsNumber() ? accessor.GetNumberAsInt() : -1;
 }
 
+// The sets JOINTS_0 and WEIGHTS_0 and so on, up to the first that is missing.
+std::vector<JointSet> joint_sets(const tinygltf::Primitive& primitive) {
+  std::vector<JointSet> sets;
+  for (;;) {
+    const std::string number = std::to_string(sets.size());
+    const auto joints = primitive.attributes.find("JOINTS_" + number);
+    const auto weights = primitive.attributes.find("WEIGHTS_" + number);
+    if (joints == primitive.attributes.end() || weights == primitive.attributes.end()) return sets;
+    sets.push_back({joints->second, weights->second});
+  }
+}
+
 }  // namespace
 
 tl::expected<VertexPlacement, std::string> VertexPlacement::skinned(
     const tinygltf::Model& model, const tinygltf::Primitive& primitive, size_t vertices,
-    const std::vector<glm::dmat4>& joints) {
-  constexpr size_t kPerSet = 4;
+    const std::vector<glm::dmat4>& joints, uint64_t most_sets) {
+  const std::vector<JointSet> sets = joint_sets(primitive);
+  if (vertices > 0 && sets.size() > most_sets / vertices) {
+    return Failure("has too many joints and weights: " + std::to_string(sets.size()) +
+                   " sets for " + std::to_string(vertices) + " vertices");
+  }
   VertexPlacement out(glm::dmat4(1.0));
   out.joints_ = &joints;
-  std::vector<std::vector<float>> joint_sets, weight_sets;
-  for (int set = 0;; ++set) {
-    const auto joint = primitive.attributes.find("JOINTS_" + std::to_string(set));
-    const auto weight = primitive.attributes.find("WEIGHTS_" + std::to_string(set));
-    if (joint == primitive.attributes.end() || weight == primitive.attributes.end()) break;
-    auto joint_values = read_floats(model, joint->second, kPerSet, vertices);
-    if (!joint_values) return Failure(joint_values.error());
-    auto weight_values = read_floats(model, weight->second, kPerSet, vertices);
-    if (!weight_values) return Failure(weight_values.error());
-    if (joint_values->size() != kPerSet * vertices || weight_values->size() != kPerSet * vertices) {
-      return Failure("has joints or weights for some of its vertices only");
-    }
-    joint_sets.push_back(std::move(*joint_values));
-    weight_sets.push_back(std::move(*weight_values));
-  }
-  out.influences_ = kPerSet * joint_sets.size();
+  out.influences_ = kJointsPerSet * sets.size();
   out.joint_of_.resize(vertices * out.influences_);
   out.weight_of_.resize(vertices * out.influences_);
-  for (size_t v = 0; v < vertices; ++v) {
-    float* weights = out.weight_of_.data() + v * out.influences_;
-    float sum = 0.0f;
-    for (size_t i = 0; i < out.influences_; ++i) {
-      const float joint = joint_sets[i / kPerSet][v * kPerSet + i % kPerSet];
-      const float weight = weight_sets[i / kPerSet][v * kPerSet + i % kPerSet];
-      weights[i] = std::isfinite(weight) ? std::max(weight, 0.0f) : 0.0f;
-      sum += weights[i];
-      const bool exists = joint >= 0.0f && joint < static_cast<float>(joints.size());
-      if (!exists && weights[i] > 0.0f) {
-        return Failure("has a vertex of joint " + std::to_string(static_cast<int64_t>(joint)) +
-                       ", and its skin has " + std::to_string(joints.size()) + " joints");
-      }
-      out.joint_of_[v * out.influences_ + i] = exists ? static_cast<uint16_t>(joint) : uint16_t{0};
+  for (size_t set = 0; set < sets.size(); ++set) {
+    if (auto read = out.read_set(model, sets[set], vertices, kJointsPerSet * set); !read) {
+      return Failure(read.error());
     }
-    if (out.influences_ > 0 && !(sum > 0.0f)) weights[0] = sum = 1.0f;
-    for (size_t i = 0; i < out.influences_; ++i) weights[i] /= sum;
+  }
+  for (size_t v = 0; v < vertices && out.influences_ > 0; ++v) {
+    const std::span<float> weights(&out.weight_of_[v * out.influences_], out.influences_);
+    float sum = std::accumulate(weights.begin(), weights.end(), 0.0f);
+    if (!(sum > 0.0f)) weights[0] = sum = 1.0f;
+    for (float& weight : weights) weight /= sum;
   }
   return out;
+}
+
+tl::expected<void, std::string> VertexPlacement::read_set(const tinygltf::Model& model,
+                                                          const JointSet& set, size_t vertices,
+                                                          size_t first_influence) {
+  const auto joints = read_floats(model, set.joints, kJointsPerSet, vertices);
+  if (!joints) return Failure(joints.error());
+  const auto weights = read_floats(model, set.weights, kJointsPerSet, vertices);
+  if (!weights) return Failure(weights.error());
+  if (joints->size() != kJointsPerSet * vertices || weights->size() != kJointsPerSet * vertices) {
+    return Failure("has joints or weights for some of its vertices only");
+  }
+  const auto joint_count = static_cast<float>(joints_->size());
+  for (size_t i = 0; i < joints->size(); ++i) {
+    const float joint = (*joints)[i];
+    const float weight = std::isfinite((*weights)[i]) ? std::max((*weights)[i], 0.0f) : 0.0f;
+    const bool exists = joint >= 0.0f && joint < joint_count;
+    if (!exists && weight > 0.0f) {
+      return Failure("has a vertex of joint " + std::to_string(joint) + ", and its skin has " +
+                     std::to_string(joints_->size()) + " joints");
+    }
+    const size_t at = i / kJointsPerSet * influences_ + first_influence + i % kJointsPerSet;
+    joint_of_[at] = exists ? static_cast<uint16_t>(joint) : uint16_t{0};
+    weight_of_[at] = weight;
+  }
+  return {};
 }
 
 glm::dmat4 VertexPlacement::at(size_t vertex) const {
@@ -88,7 +112,7 @@ glm::dmat4 VertexPlacement::at(size_t vertex) const {
 }
 
 tl::expected<std::vector<glm::dmat4>, std::string> joint_matrices(
-    const tinygltf::Model& model, int index, const std::vector<glm::dmat4>& placed) {
+    const tinygltf::Model& model, int index, const std::vector<glm::dmat4>& placed, uint64_t most) {
   if (index < 0 || static_cast<size_t>(index) >= model.skins.size()) {
     return Failure("has no skin " + std::to_string(index));
   }
@@ -97,6 +121,9 @@ tl::expected<std::vector<glm::dmat4>, std::string> joint_matrices(
   constexpr size_t kMost = UINT16_MAX + size_t{1};  // JOINTS_n are 16-bit at most
   if (skin.joints.empty() || skin.joints.size() > kMost) {
     return Failure(name + "has " + std::to_string(skin.joints.size()) + " joints");
+  }
+  if (skin.joints.size() > most) {
+    return Failure(name + "takes the scene past the number of joints that is read here");
   }
   std::optional<std::vector<float>> inverse_bind;
   if (skin.inverseBindMatrices >= 0) {

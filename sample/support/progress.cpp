@@ -34,6 +34,9 @@ struct Line {
   bool shown = false;
 };
 
+// The share that has to be done before the time that is left is shown.
+constexpr double kLeastKnown = 0.01;
+
 void show(Line& line, double done) {
   const auto now = Clock::now();
   const double elapsed = std::chrono::duration<double>(now - line.start).count();
@@ -46,7 +49,7 @@ void show(Line& line, double done) {
     return;
   }
   const double since = std::chrono::duration<double>(now - line.last).count();
-  if (elapsed < 1.0 || done <= 0.0 || since < (line.terminal ? 0.25 : 5.0)) return;
+  if (elapsed < 1.0 || done < kLeastKnown || since < (line.terminal ? 0.25 : 5.0)) return;
   fmt::print(stderr, "{}{} {:.0f} %, {:.0f} s left{}", line.terminal ? "\r" : "", line.name,
              100.0 * done, elapsed * (1.0 - done) / done, line.terminal ? "   " : "\n");
   std::fflush(stderr);

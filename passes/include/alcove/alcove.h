@@ -42,18 +42,20 @@ extern "C" {
 
 // Presets for alcoveGetSettings. Fields that the table does not have are the defaults that
 // AlcoveSettings states. REFERENCE also has FLOAT32 and, in its advanced settings, the paper's
-// horizons and no filter.
+// horizons and no filter; CONSOLE also has half_resolution.
 //
 //              slices  steps  tile_size  history_frames  depth fetches a pixel and frame
+//   CONSOLE         1      8        8              32                              0.25
 //   LOW             1      8        4              32                                1
 //   MEDIUM          1     10        2              32                                5
 //   HIGH            2     16        2              32                               16
 //   REFERENCE      32     64        1               0                             4096
 typedef enum AlcoveQuality {
-  ALCOVE_QUALITY_LOW = 0,        // traces one of 4x4 pixels in each frame
-  ALCOVE_QUALITY_MEDIUM = 1,     // traces one of 2x2; the preset to begin with
-  ALCOVE_QUALITY_HIGH = 2,       // MEDIUM with two slices and more steps
-  ALCOVE_QUALITY_REFERENCE = 3,  // traces every pixel: a static image to compare with
+  ALCOVE_QUALITY_CONSOLE = 0,  // traces one of 8x8 pixels in each frame, filters at half resolution
+  ALCOVE_QUALITY_LOW = 1,      // traces one of 4x4 pixels in each frame
+  ALCOVE_QUALITY_MEDIUM = 2,   // traces one of 2x2; the preset to begin with
+  ALCOVE_QUALITY_HIGH = 3,     // MEDIUM with two slices and more steps
+  ALCOVE_QUALITY_REFERENCE = 4,  // traces every pixel: a static image to compare with
   ALCOVE_QUALITY_MAX_ENUM = 0x7fffffff
 } AlcoveQuality;
 
@@ -98,7 +100,7 @@ typedef struct AlcoveSettings {
   // The largest distance of an occluder in scene units, above 0. A twentieth to a fifth of a room's
   // height is usual.
   float radius;
-  // One pixel of a tile of tile_size x tile_size pixels is traced in each frame: 1, 2 or 4. The
+  // One pixel of a tile of tile_size x tile_size pixels is traced in each frame: 1, 2, 4 or 8. The
   // traced pixel changes from frame to frame, so that every pixel is traced in time.
   uint32_t tile_size;
   // Slices of a traced pixel, 1 to 64. A slice is a plane through the view direction, in which
@@ -116,8 +118,9 @@ typedef struct AlcoveSettings {
   // The number of frames that are averaged, 0 to 127. More have less noise and follow changes more
   // slowly. 0 keeps no history, and takes no memory for one.
   uint32_t history_frames;
-  // Filters and accumulates texels of 2x2 pixels, then upsamples along depth edges: less time, a
-  // quarter of the history's memory, and a larger error. Needs a tile_size of 2 or 4. [VK_FALSE]
+  // Filters and accumulates texels of 2x2 pixels, then upsamples along depth edges: less time, less
+  // memory for the history, and a larger error. Needs a tile_size of at least 2. [VK_FALSE, but
+  // VK_TRUE for CONSOLE]
   VkBool32 half_resolution;
   AlcoveSpecular specular;     // read if AlcoveView::specular is given [SLICES]
   float roughness;             // perceptual, 0 to 1, for pixels without AlcoveView::roughness [0.5]
@@ -165,7 +168,7 @@ typedef struct AlcoveContextInfo {
   uint32_t queue_family;
   VkInstance instance;  // created for Vulkan 1.2 or newer
   // It has Vulkan 1.3, or 1.2 with the extension VK_KHR_synchronization2. A shader must be able to
-  // bind 9 storage images (maxPerStageDescriptorStorageImages).
+  // bind 8 storage images (maxPerStageDescriptorStorageImages).
   VkPhysicalDevice physical_device;
   // With the features synchronization2 and shaderStorageImageWriteWithoutFormat enabled. Where the
   // instance was created for Vulkan 1.2, VK_KHR_synchronization2 is enabled as well.

@@ -1,0 +1,156 @@
+// Small files that name the same data many times. Memory and time stay within the limits, which
+// count data once for each use.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <tiny_gltf.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "cli/open_session.h"
+#include "cli/options.h"
+#include "gltf_maker.h"
+#include "scene/gltf_origin.h"
+#include "temporary_folder.h"
+
+namespace alcove::sample {
+namespace {
+
+using testing::HasSubstr;
+
+tl::expected<Scene, std::string> parsed_within(const GltfMaker& maker, const GltfLimits& limits) {
+  return parse_gltf(maker.gltf(), "repeated.gltf", "", limits);
+}
+
+// A triangle that `nodes` nodes show, whose mesh has `primitives` primitives.
+GltfMaker repeated_triangle(int nodes, int primitives) {
+  GltfMaker maker = GltfMaker::triangle();
+  const nlohmann::json primitive = maker.primitive();
+  maker.json["meshes"][0]["primitives"] =
+      nlohmann::json(static_cast<size_t>(primitives), primitive);
+  maker.json["nodes"] = nlohmann::json(static_cast<size_t>(nodes), {{"mesh", 0}});
+  for (int i = 0; i < nodes; ++i) maker.json["scenes"][0]["nodes"][static_cast<size_t>(i)] = i;
+  return maker;
+}
+
+// A triangle that follows one joint, with `sets` sets of joints and weights.
+GltfMaker skinned_triangle(int sets) {
+  GltfMaker maker = GltfMaker::triangle();
+  const int joints =
+      maker.accessor(maker.view<uint8_t>({0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}), 5121, "VEC4", 3);
+  const int weights =
+      maker.accessor(maker.view<float>({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}), 5126, "VEC4", 3);
+  for (int set = 0; set < sets; ++set) {
+    maker.primitive()["attributes"]["JOINTS_" + std::to_string(set)] = joints;
+    maker.primitive()["attributes"]["WEIGHTS_" + std::to_string(set)] = weights;
+  }
+  maker.json["skins"] = {{{"joints", {0, 0, 0}}}};
+  maker.json["nodes"][0]["skin"] = 0;
+  return maker;
+}
+
+TEST(GltfAmplification, InstancesCountOnceForEachPrimitive) {
+  GltfLimits limits;
+  limits.instances = 40;
+  EXPECT_TRUE(parsed_within(repeated_triangle(10, 4), limits));
+  const auto scene = parsed_within(repeated_triangle(10, 5), limits);
+  ASSERT_FALSE(scene);
+  EXPECT_THAT(scene.error(), HasSubstr("past the number of instances"));
+}
+
+TEST(GltfAmplification, SetsOfJointsCountAsVertices) {
+  GltfLimits limits;
+  limits.vertices = 6;
+  EXPECT_TRUE(parsed_within(skinned_triangle(2), limits));
+  const auto scene = parsed_within(skinned_triangle(3), limits);
+  ASSERT_FALSE(scene);
+  EXPECT_THAT(scene.error(), HasSubstr("too many joints and weights: 3 sets for 3 vertices"));
+}
+
+TEST(GltfAmplification, JointsOfASkinCountOnceHoweverManyNodesHaveIt) {
+  GltfMaker maker = skinned_triangle(1);
+  const nlohmann::json node = maker.json["nodes"][0];
+  maker.json["nodes"] = nlohmann::json(20, node);
+  for (size_t i = 0; i < 20; ++i) maker.json["scenes"][0]["nodes"][i] = i;
+  GltfLimits limits;
+  limits.joints = 3;
+  EXPECT_TRUE(parsed_within(maker, limits));
+  limits.joints = 2;
+  const auto scene = parsed_within(maker, limits);
+  ASSERT_FALSE(scene);
+  EXPECT_THAT(scene.error(), HasSubstr("past the number of joints"));
+}
+
+// 5 * 10^8 uses of primitives would take 16 GB.
+TEST(GltfAmplification, OriginIsChosenFromAMillionPartsAtMost) {
+  const auto scene = parsed_within(repeated_triangle(50'000, 10'000), {});
+  ASSERT_FALSE(scene);
+  EXPECT_THAT(scene.error(), HasSubstr("past the number of instances"));
+}
+
+// Three meshes of three vertices: the first is a thousand units away, the others are at the origin.
+TEST(GltfAmplification, OriginIsChosenFromTheVerticesWithinTheLimit) {
+  tinygltf::Model model;
+  Layout layout;
+  std::vector<float> positions = {1000, 0, 0, 1001, 0, 0, 1000, 1, 0};
+  for (int i = 0; i < 2; ++i) positions.insert(positions.end(), {0, 0, 0, 1, 0, 0, 0, 1, 0});
+  model.buffers.resize(1);
+  const auto* bytes = reinterpret_cast<const unsigned char*>(positions.data());
+  model.buffers[0].data.assign(bytes, bytes + positions.size() * sizeof(float));
+  model.bufferViews.resize(1);
+  model.bufferViews[0].buffer = 0;
+  model.bufferViews[0].byteLength = model.buffers[0].data.size();
+  for (int i = 0; i < 3; ++i) {
+    tinygltf::Accessor accessor;
+    accessor.bufferView = 0;
+    accessor.byteOffset = static_cast<size_t>(36 * i);
+    accessor.componentType = TINYGLTF_COMPONENT_TYPE_FLOAT;
+    accessor.type = TINYGLTF_TYPE_VEC3;
+    accessor.count = 3;
+    model.accessors.push_back(accessor);
+    tinygltf::Primitive primitive;
+    primitive.attributes["POSITION"] = i;
+    model.meshes.emplace_back().primitives.push_back(primitive);
+    model.nodes.emplace_back().mesh = i;
+    layout.world_from_node.emplace_back(1.0);
+    layout.drawn.push_back({static_cast<size_t>(i), {}});
+  }
+  EXPECT_EQ(chosen_origin(model, layout, 9), glm::dvec3(0.0));
+  EXPECT_NEAR(chosen_origin(model, layout, 3).x, 1000.5, 1.0);
+}
+
+TEST(GltfAmplification, EmptyEmbeddedImageIsLeftOutWithANote) {
+  GltfMaker maker = painted({{"index", 0}}, {{"index", 0}});
+  maker.json["images"][0] = {{"uri", "data:image/png;base64,"}};
+  EXPECT_THAT(parsed(maker.gltf()).warnings,
+              testing::Contains("image 0 (data:...) is empty and is left out."));
+}
+
+TEST(GltfAmplification, EmptyFileIsCalledEmpty) {
+  const auto scene = parse_gltf({}, "empty.gltf", "");
+  ASSERT_FALSE(scene);
+  EXPECT_EQ(scene.error(), "cannot read empty.gltf: it is empty");
+}
+
+TEST(SceneNotes, OnlyTheFirstTwentyArePrinted) {
+  GltfMaker maker = GltfMaker::triangle();
+  for (int i = 100; i < 150; ++i)
+    maker.json["extensionsUsed"].push_back("EXT_" + std::to_string(i));
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path / "notes.gltf";
+  const std::vector<uint8_t> bytes = maker.gltf();
+  std::ofstream(file, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()),
+             static_cast<std::streamsize>(bytes.size()));
+  Options options;
+  options.scene = file.string();
+  testing::internal::CaptureStderr();
+  EXPECT_TRUE(load_session(options));
+  const std::string printed = testing::internal::GetCapturedStderr();
+  EXPECT_THAT(printed, HasSubstr("EXT_119"));
+  EXPECT_THAT(printed, testing::Not(HasSubstr("EXT_120")));
+  EXPECT_THAT(printed, HasSubstr("note: There are 30 more notes on this scene.\n"));
+}
+
+}  // namespace
+}  // namespace alcove::sample
