@@ -110,6 +110,7 @@ float load_inverse_depth(ivec2 pixel) {
 // The centre of the surface's pixel, in pixels from the image's corner.
 vec2 centre_of(Surface surface) { return vec2(surface.pixel) + 0.5; }
 
+// The surface at a pixel that is not the sky, whose inverse depth is already loaded.
 Surface fetch_surface(ivec2 pixel, float inverse_depth) {
   Surface surface;
   surface.pixel = pixel;
@@ -483,8 +484,9 @@ Occluders find_in_layer(HalfSlice half_slice, float sectors, uint layer) {
   }
   bool known = extrapolated != 0u || here.inverse_depth == sky_inverse_depth(kPerspective);
   found.border_px = known ? kNowherePx : here.offset_px;
-  if (half_slice.reach_px <= 0.0)
+  if (half_slice.reach_px <= 0.0) {
     found = Occluders(0u, 0.0, false, nothing_unobserved(), found.border_px);
+  }
   return found;
 }
 
@@ -545,6 +547,7 @@ void add_connected(inout SliceSum sum, HalfSlice half_slice, Slice slice, LobeSl
     if (kLobe) sum.lobe_left_out += unobserved_lobe(unobserved, lobe, half_slice.side);
   }
 }
+
 #include "gtao_bitmask.h"
 #include "gtao_heuristic.h"
 #include "gtao_horizons.h"
@@ -659,6 +662,7 @@ struct SearchResult {
   uvec2 bent;
 };
 
+// The result of a pixel that shows the sky.
 SearchResult sky_result() {
   return SearchResult(uvec4(pack_raw_occlusion(RawOcclusion(1.0, 1.0), 0u),
                             floatBitsToUint(sky_inverse_depth(kPerspective)), 0u, 0u),

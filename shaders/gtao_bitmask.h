@@ -6,10 +6,10 @@
 
 // The occluder runs of a half-slice, from which hidden_occlusion_behind() is computed.
 struct RunSum {
-  float count;
-  float width_px;
-  float before_first_px;
-  bool last;  // whether the last sample is part of a run
+  float count;            // number of runs
+  float width_px;         // of all runs together
+  float before_first_px;  // offset of the last sample before the first run
+  bool last;              // whether the last sample is part of a run
 };
 
 // Adds a sample at `offset_px` that is part of an occluder run if `hides` is true.
