@@ -1,16 +1,17 @@
-// Specular occlusion by a table (Jimenez et al. 2016, section 6): the visible share of the GGX lobe
-// itself, where the cones of gtso.h take a cone for it.
+// Specular occlusion by a table ([Jimenez 2016], section 6): the visible fraction of the GGX lobe
+// itself, which the cones of gtso.h only approximate.
 //
-// Four numbers: the half-angle of the cone of visibility, the angle of its axis (the bent normal)
-// from the mirror direction, the angle of the mirror direction from the normal, and roughness. They
-// leave open on which side of the mirror direction the bent normal lies; an entry is the mean over
-// the sides on which the cone is all above the surface, evenly spread, or, where there is none, the
-// side towards the normal. Lobes are cut by the surface: shares are of what is above it.
+// The table has four parameters: the half-angle of the visibility cone, the angle between its axis
+// (the bent normal) and the mirror direction, the angle between the mirror direction and the
+// normal, and the roughness. These do not determine on which side of the mirror direction the bent
+// normal lies. An entry is the mean over all sides, evenly spaced, for which the whole cone lies
+// above the surface; if there is none, it is the value for the side towards the normal. Fractions
+// are of the part of the lobe above the surface.
 //
-// The share falls from 1 to 0 within the width of the lobe where the mirror direction leaves the
-// cone. So in place of the second number an entry's first coordinate is the angle by which that
-// direction is inside, in widths of the lobe, squeezed so that all of the range fits and most
-// entries lie about 0.
+// Where the mirror direction leaves the cone, the fraction falls from 1 to 0 within the width of
+// the lobe. The table's first coordinate is therefore the angle by which the mirror direction is
+// inside the cone, divided by the width of the lobe and compressed, so that the whole range fits
+// and most entries are near 0.
 #ifndef ALCOVE_MATHS_GTSO_TABLE_H
 #define ALCOVE_MATHS_GTSO_TABLE_H
 
@@ -20,9 +21,10 @@
 
 ALCOVE_MATHS_BEGIN
 
-// Entries along each coordinate: depth inside the cone, the cone, the mirror's angle, roughness. 54
-// KiB at 8 bits each, of which RMSE .006 and at most .10 between entries. 24 12 12 12 errs by .007
-// and .13, 32 16 16 16 by .005 and .10; 8 bits alone by at most .002.
+// Number of entries along each coordinate: angle inside the cone, half-angle of the cone, angle of
+// the mirror direction, roughness. The table has 54 KiB with 8 bits per entry. Between entries its
+// RMSE is .006 and its largest error .10. A table of 24 12 12 12 entries has .007 and .13, one of
+// 32 16 16 16 has .005 and .10. The error of 8 bits alone is at most .002.
 const uint kGtsoInside = 24u;
 const uint kGtsoCone = 12u;
 const uint kGtsoMirror = 16u;
