@@ -2,8 +2,9 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
-// Probe light on surfaces: diffuse from spherical harmonics along the bent normal, specular from a
-// prefiltered environment by the split sum (compiled with SPECULAR), each with its occlusion.
+// Lights surfaces with a probe. Diffuse light comes from spherical harmonics along the bent normal.
+// Specular light comes from a prefiltered environment by the split sum, if compiled with SPECULAR.
+// Each is multiplied by its occlusion.
 
 #include "apply_parameters.h"
 #include "maths/gtso.h"
@@ -65,7 +66,8 @@ vec3 fetch_bent_normal(ivec2 pixel, vec3 normal, float visibility) {
   return kVisibility ? raised_bent_normal(bent, normal, converged_visibility(visibility)) : bent;
 }
 
-// Irradiance over pi; ringing must not turn into darkness below black.
+// Returns irradiance divided by pi. Negative values, which spherical harmonics can give by ringing,
+// become 0.
 vec3 irradiance(vec3 direction) {
   vec3 sum = vec3(0.0);
   for (uint i = 0u; i < kHarmonics; ++i) {
@@ -138,7 +140,7 @@ Light light_of(ivec2 pixel, vec3 normal, vec3 view) {
 }
 #endif
 
-// In world space, towards the eye.
+// Returns the direction from the surface to the eye in world space.
 vec3 view_of(ivec2 pixel, float depth) {
   vec2 uv = pixel_centre_uv(parameters.projection, uvec2(pixel));
   vec3 view = view_direction(parameters.projection, position_vs(parameters.projection, uv, depth));

@@ -9,9 +9,9 @@ struct ApplyParameters {
   Projection projection;
   mat4 world_from_view;    // rotation
   mat4 world_from_normal;  // rotation from the space of the normals to world space
-  vec2 map;                // of the environment: texels a side of its first level, levels
-  float roughness;         // perceptual, where no texture has it
-  float metallic;          // where no texture has it
+  vec2 map;                // the environment map: width of mip 0 in texels, number of mips
+  float roughness;         // perceptual; used if there is no roughness texture
+  float metallic;          // used if there is no metallic texture
 };
 
 ALCOVE_MATHS_END

@@ -1,10 +1,9 @@
-// The normal of the surface that the depth buffer shows at a pixel, for pixels whose given normal
-// is missing. Included by shaders that have load_inverse_depth(), parameters.slope, kPerspective
-// and size_px().
+// Normals from depth, for pixels whose given normal is missing. A shader that includes it must
+// define load_inverse_depth(), parameters.slope, kPerspective and size_px().
 #ifndef ALCOVE_DEPTH_NORMAL_H
 #define ALCOVE_DEPTH_NORMAL_H
 
-// Stands for the change of depth towards a pixel of the sky.
+// Marks the change of depth towards a pixel of the sky.
 const float kNoSurface = 1e30;
 
 float inverse_depth_rise(ivec2 pixel, float here) {
@@ -12,9 +11,9 @@ float inverse_depth_rise(ivec2 pixel, float here) {
   return there == sky_inverse_depth(kPerspective) ? kNoSurface : there - here;
 }
 
-// Change of the inverse depth from one pixel to the next along an axis of the image. Of the two
-// neighbours the one that is nearer in depth is more likely to lie on the same surface. 0 where
-// there is none.
+// Returns the change of the inverse depth from one pixel to the next along an axis of the image. It
+// uses the neighbour that is nearer in depth, which is more likely to lie on the same surface. The
+// result is 0 if both neighbours are sky.
 float inverse_depth_gradient(ivec2 pixel, ivec2 axis, float here) {
   ivec2 last = size_px() - 1;
   float before = -inverse_depth_rise(max(pixel - axis, ivec2(0)), here);
@@ -25,7 +24,7 @@ float inverse_depth_gradient(ivec2 pixel, ivec2 axis, float here) {
   return abs(nearer) < kNoSurface ? nearer : 0.0;
 }
 
-// Unit, towards the eye, view space.
+// Returns the unit normal from depth in view space. It points towards the eye.
 vec3 depth_normal(ivec2 pixel) {
   float here = load_inverse_depth(pixel);
   if (here == sky_inverse_depth(kPerspective)) {
@@ -37,10 +36,10 @@ vec3 depth_normal(ivec2 pixel) {
   return normal_of_gradient(parameters.slope.xy, slope, here, gradient, kPerspective);
 }
 
-// The unit normal, in view space, of the side of the surface that the eye sees. `given` is the
-// normal of the texture in view space, of any length; it is taken from depth where it has no
-// direction. One that faces away by less than kFlippedNormal belongs to the other side of the
-// surface or leans over a silhouette: the depth buffer tells which.
+// Returns the unit normal, in view space, of the side of the surface that the eye sees. `given` is
+// the normal of the texture in view space, with any length. If it has no direction, the normal
+// comes from depth. If it faces away by less than kFlippedNormal, it belongs to the other side of
+// the surface or to a surface just beyond a silhouette; the depth buffer decides which.
 vec3 seen_normal(ivec2 pixel, vec3 given, vec3 view) {
   bool missing = !has_direction(given);
   vec3 normal = normalize(given);

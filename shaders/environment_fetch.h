@@ -1,10 +1,11 @@
-// Reads of octahedral environment maps, for GLSL alone: Kernels binds images without samplers.
+// Bilinear reads of octahedral environment maps with texelFetch, because the passes bind these maps
+// without samplers.
 #ifndef ALCOVE_ENVIRONMENT_FETCH_H
 #define ALCOVE_ENVIRONMENT_FETCH_H
 
 #include "maths/environment_map.h"
 
-// One level at a unit direction, bilinear, across the edges as between any texels.
+// Reads one mip at a unit direction. The interpolation continues across the edges of the map.
 vec3 fetch_map_level(texture2D map, float first_size, int level, vec3 direction) {
   int size = max(int(first_size) >> level, 1);
   vec2 texel = map_uv(direction) * float(size) - 0.5;
@@ -17,7 +18,7 @@ vec3 fetch_map_level(texture2D map, float first_size, int level, vec3 direction)
   return mix(mix(low_low, high_low, t.x), mix(low_high, high_high, t.x), t.y);
 }
 
-// Between levels, `level` in [0, levels - 1].
+// Interpolates between two mips; `level` is in [0, number of mips - 1].
 vec3 fetch_map(texture2D map, float first_size, float level, vec3 direction) {
   int low = int(level);
   float t = level - float(low);

@@ -2,7 +2,8 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
-// An environment map at half the size: the mean of four texels by the angles that they cover.
+// Halves the size of an environment map: each texel is the mean of four, weighted by the solid
+// angles that they cover.
 
 #include "environment_parameters.h"
 #include "maths/environment_map.h"
@@ -11,7 +12,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 0, binding = 0) uniform Parameters { EnvironmentParameters parameters; };
 layout(set = 0, binding = 1) uniform texture2D source_image;
-layout(set = 0, binding = 2) uniform writeonly image2D map_image;
+layout(set = 0, binding = 2) uniform writeonly image2D target_image;
 
 void main() {
   ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
@@ -25,5 +26,5 @@ void main() {
     float angle = map_texel_angle((vec2(from) + 0.5) / source_size, source_size);
     sum += vec4(texelFetch(source_image, from, 0).rgb, 1.0) * angle;
   }
-  imageStore(map_image, texel, vec4(sum.rgb / sum.a, 1.0));
+  imageStore(target_image, texel, vec4(sum.rgb / sum.a, 1.0));
 }

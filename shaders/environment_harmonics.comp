@@ -2,8 +2,9 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
-// The nine coefficients of a map's light, by a sum over the texels of one level. One group: each
-// thread sums its share, then one thread for each coefficient sums the threads.
+// Computes the nine spherical-harmonics coefficients of an environment map by a sum over the texels
+// of one mip. A single workgroup runs: each invocation sums a part of the texels, then one
+// invocation for each coefficient adds up these parts.
 
 #include "environment_parameters.h"
 #include "maths/environment_map.h"
@@ -12,8 +13,8 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 0, binding = 0) uniform Parameters { EnvironmentParameters parameters; };
-layout(set = 0, binding = 1) uniform texture2D source_image;  // of parameters.size texels a side
-layout(set = 0, binding = 2) uniform writeonly image2D harmonics_image;
+layout(set = 0, binding = 1) uniform texture2D source_image;  // size: parameters.size squared
+layout(set = 0, binding = 2) uniform writeonly image2D target_image;
 
 const uint kThreads = 64u;
 shared vec3 shares[kHarmonics][kThreads];
@@ -48,6 +49,6 @@ void main() {
     for (uint i = 0u; i < kThreads; ++i) {
       sum += shares[thread][i];
     }
-    imageStore(harmonics_image, ivec2(thread, 0), vec4(sum, 1.0));
+    imageStore(target_image, ivec2(thread, 0), vec4(sum, 1.0));
   }
 }

@@ -2,8 +2,9 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
-// An equirectangular image as an octahedral map: the mean of several bilinear reads a texel. What
-// is not a number, or below 0, counts as black; infinity as the largest half.
+// Resamples an equirectangular image to an octahedral map. Each texel is the mean of several
+// bilinear reads. NaN and negative values count as black, and values above 65504 (the largest half
+// float) as 65504.
 
 #include "environment_parameters.h"
 #include "maths/environment_map.h"
@@ -12,11 +13,11 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 0, binding = 0) uniform Parameters { EnvironmentParameters parameters; };
 layout(set = 0, binding = 1) uniform texture2D source_image;
-layout(set = 0, binding = 2) uniform writeonly image2D map_image;
+layout(set = 0, binding = 2) uniform writeonly image2D target_image;
 
 const float kLargestHalf = 65504.0;
 
-// Columns wrap around, rows end at the poles.
+// Reads a texel of the source. Columns wrap around, rows are clamped at the poles.
 vec3 fetch(ivec2 texel) {
   ivec2 size = ivec2(parameters.source_px);
   ivec2 at = ivec2((texel.x + size.x) % size.x, clamp(texel.y, 0, size.y - 1));
@@ -46,5 +47,5 @@ void main() {
       sum += fetch_bilinear(map_direction((vec2(texel) + within) / parameters.size));
     }
   }
-  imageStore(map_image, texel, vec4(sum / float(samples * samples), 1.0));
+  imageStore(target_image, texel, vec4(sum / float(samples * samples), 1.0));
 }

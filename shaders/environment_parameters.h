@@ -5,13 +5,13 @@
 
 ALCOVE_MATHS_BEGIN
 
-// For the passes that make an environment; each reads what it needs.
+// Parameters of the environment passes. Each pass reads the fields that it needs.
 struct EnvironmentParameters {
-  vec2 source_px;   // size of what is read
-  float size;       // texels a side of what is written
-  float samples;    // a side of a texel (resampling), or of a lobe (prefiltering)
-  float roughness;  // perceptual, of the level that is written
-  float levels;     // of the map that is read
+  vec2 source_px;   // size of the source image in texels
+  float size;       // width of the written mip in texels
+  float samples;    // per axis of a texel (resampling), or per lobe (prefiltering)
+  float roughness;  // perceptual, of the written mip
+  float levels;     // number of mips of the source
 };
 
 ALCOVE_MATHS_END

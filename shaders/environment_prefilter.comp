@@ -2,9 +2,9 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
-// One level of a prefiltered map: the light of a GGX lobe seen along its normal (Karis 2013), by
-// samples that each read the level of the source whose texels are as large as the sample stands for
-// (Colbert and Krivanek 2007).
+// Computes one mip of a prefiltered map: the environment's light through a GGX lobe whose view is
+// along its normal (Karis 2013). Each sample reads the mip of the source whose texels cover the
+// solid angle that the sample stands for (Colbert and Krivanek 2007).
 
 #include "environment_fetch.h"
 #include "environment_parameters.h"
@@ -14,7 +14,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 0, binding = 0) uniform Parameters { EnvironmentParameters parameters; };
 layout(set = 0, binding = 1) uniform texture2D source_image;
-layout(set = 0, binding = 2) uniform writeonly image2D map_image;
+layout(set = 0, binding = 2) uniform writeonly image2D target_image;
 
 mat3 frame_of(vec3 normal) {
   vec3 helper = abs(normal.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
@@ -22,7 +22,8 @@ mat3 frame_of(vec3 normal) {
   return mat3(x, cross(normal, x), normal);
 }
 
-// The level whose texels cover about twice as much as one of the samples at this density.
+// Returns the source mip whose texels cover about twice the solid angle of one sample at this
+// density.
 float source_level(float density) {
   float sample_angle = 1.0 / (parameters.samples * density);
   float texel_angle = 4.0 * kPi / (parameters.source_px.x * parameters.source_px.x);
@@ -56,5 +57,5 @@ void main() {
   vec3 light = parameters.roughness > 0.0
                    ? prefilter(normal, alpha)
                    : fetch_map_level(source_image, parameters.source_px.x, 0, normal);
-  imageStore(map_image, texel, vec4(light, 1.0));
+  imageStore(target_image, texel, vec4(light, 1.0));
 }

@@ -1,9 +1,10 @@
-// Part of gtao.comp: the visibility bitmask (Therrien, Levesque and Gilet 2023). Each sample is an
-// occluder of its own, of one thickness along the view direction.
+// Part of gtao.comp: the estimator `bitmask` [Therrien, Levesque and Gilet 2023]. Each sample is an
+// occluder of its own, whose thickness along the view direction is that of the settings or, with
+// back faces, that of the object.
 #ifndef ALCOVE_GTAO_BITMASK_H
 #define ALCOVE_GTAO_BITMASK_H
 
-// Occluder runs, for the fraction of what they hide that counts as occluded.
+// The occluder runs of a half-slice, from which hidden_occlusion_behind() is computed.
 struct RunSum {
   float count;
   float width_px;
@@ -11,6 +12,7 @@ struct RunSum {
   bool last;  // whether the last sample is part of a run
 };
 
+// Adds a sample at `offset_px` that is part of an occluder run if `hides` is true.
 RunSum add_run_sample(RunSum runs, bool hides, float interval_px, float offset_px) {
   runs.count += hides && !runs.last ? 1.0 : 0.0;
   runs.width_px += hides ? interval_px : 0.0;
@@ -19,6 +21,7 @@ RunSum add_run_sample(RunSum runs, bool hides, float interval_px, float offset_p
   return runs;
 }
 
+// The sectors that the samples of one depth layer occlude.
 uint occluded_by_layer(HalfSlice half_slice, float per_diamond_angle, uint layer,
                        inout RunSum runs) {
   uint occluded = 0u;

@@ -1,10 +1,21 @@
-// Part of gtao.comp: the paper's heuristic for thin occluders (Jimenez et al. 2016, section 4.2).
-// It finds horizons as gtao_horizons.h does, but lets each lower sample pull the horizon down.
+// Part of gtao.comp: the estimator `heuristic`, the paper's treatment of thin occluders [Jimenez
+// 2016, section 4.2]. It finds a horizon as gtao_horizons.h does, but each sample below the horizon
+// pulls it down by the fraction AdvancedSettings::blend.
 #ifndef ALCOVE_GTAO_HEURISTIC_H
 #define ALCOVE_GTAO_HEURISTIC_H
 
-float lower_horizon(float horizon, float found) {
-  return raise_horizon(horizon, found, parameters.blend);
+#include "gtao_horizons.h"
+
+// Adds the visible part of a half-slice.
+void add_heuristic(inout SliceSum sum, HalfSlice half_slice, Slice slice, LobeSlice lobe) {
+  float horizon = -1.0;
+  uint k = 0u;
+  do {
+    float cosine = sample_cosine(half_slice, fetch_sample(half_slice, 0u, k).point);
+    horizon = cosine == kNoHorizon ? horizon : raise_horizon(horizon, cosine, parameters.blend);
+    ++k;
+  } while (k < kStepCount);
+  add_up_to_horizon(sum, half_slice, slice, lobe, half_slice.reach_px > 0.0 ? horizon : -1.0);
 }
 
 #endif

@@ -2,9 +2,9 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
-// The visible fraction of each pixel's GGX lobe from its visibility and bent normal
-// ([Jimenez 2016], section 6): by the intersection of two cones (maths/gtso.h) or, with TABLE, by
-// the paper's table.
+// Computes specular occlusion: the visible fraction of each pixel's GGX lobe, from its visibility
+// and bent normal ([Jimenez 2016], section 6). It uses the intersection of two cones (maths/gtso.h)
+// or, with TABLE, the paper's table.
 
 #include "gtso_parameters.h"
 #include "maths/gtso.h"
@@ -23,7 +23,7 @@ layout(set = 0, binding = 1) uniform texture2D visibility_image;
 layout(set = 0, binding = 2) uniform texture2D bent_normal_image;
 layout(set = 0, binding = 3) uniform texture2D normal_image;
 layout(set = 0, binding = 4) uniform texture2D depth_image;      // linear
-layout(set = 0, binding = 5) uniform texture2D roughness_image;  // unread where there is none
+layout(set = 0, binding = 5) uniform texture2D roughness_image;  // read with kRoughnessTexture
 layout(set = 0, binding = 6) uniform writeonly image2D result_image;
 
 #ifdef TABLE

@@ -8,7 +8,7 @@ ALCOVE_MATHS_BEGIN
 struct GtsoParameters {
   Projection projection;
   mat4 view_from_normal;  // rotation from the space of the normals to view space
-  float roughness;        // perceptual, where no texture has it
+  float roughness;        // perceptual; used if there is no roughness texture
 };
 
 ALCOVE_MATHS_END

@@ -7,29 +7,28 @@
 //
 // The samples lie on a grid over the image. Each takes two texels, one above the other: the depths
 // of the pixel and of its left, right and upper neighbours; then the depth of the lower neighbour
-// and the normal as it is stored. A last row has the sizes of the two images and the serial number.
+// and the normal as it is stored. The last row begins with the sizes of the two images.
 
 #include "inspect_parameters.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 0, binding = 0) uniform Parameters { InspectParameters parameters; };
-layout(set = 0, binding = 1) uniform texture2D depth_image;  // as it is stored
+layout(set = 0, binding = 1) uniform texture2D depth_image;  // raw depth
 layout(set = 0, binding = 2) uniform texture2D normal_image;
 layout(set = 0, binding = 3) uniform writeonly image2D sample_image;
 
 float fetch_depth(ivec2 pixel) {
-  // An image that is smaller than it is said to be is not read beyond its edge.
+  // An image that is smaller than the view says is not read beyond its edge.
   ivec2 last = min(ivec2(parameters.size_px), textureSize(depth_image, 0)) - 1;
   return texelFetch(depth_image, clamp(pixel, ivec2(0), last), 0).r;
 }
 
 void main() {
   ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
-  if (cell.y == int(kInspectRows) && cell.x < 2) {
-    imageStore(sample_image, ivec2(cell.x, 2 * int(kInspectRows)),
-               cell.x == 0 ? vec4(textureSize(depth_image, 0), textureSize(normal_image, 0))
-                           : vec4(float(parameters.serial)));
+  if (cell == ivec2(0, kInspectRows)) {
+    imageStore(sample_image, ivec2(0, 2 * int(kInspectRows)),
+               vec4(textureSize(depth_image, 0), textureSize(normal_image, 0)));
   }
   if (cell.x >= int(kInspectColumns) || cell.y >= int(kInspectRows)) {
     return;

@@ -6,14 +6,15 @@
 
 ALCOVE_MATHS_BEGIN
 
-// The grid of sampled pixels. Two texels of the result for each, and one row for the whole image.
+// Size of the grid of sampled pixels. The result has two texels for each of them, and one row for
+// the whole image.
 const uint kInspectColumns = 64;
 const uint kInspectRows = 48;
 
 struct InspectParameters {
-  uvec2 size_px;  // of the part of the image that is in use
-  uint serial;    // tells this frame's samples from older ones, below 2^24
+  uvec2 size_px;  // size of the part of the image that is in use
   uint has_normals;
+  uint unused;
 };
 
 ALCOVE_MATHS_END

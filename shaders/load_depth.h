@@ -3,14 +3,12 @@
 #ifndef ALCOVE_LOAD_DEPTH_H
 #define ALCOVE_LOAD_DEPTH_H
 
+// Whether a raw depth is the far plane's, beyond it or NaN.
+bool is_sky(float depth_ndc) { return kReversed ? !(depth_ndc > 0.0) : !(depth_ndc < 1.0); }
+
 float inverse_depth_of(float depth_ndc) {
   return inverse_depth_of_ndc(parameters.inverse_depth_from_ndc, depth_ndc, kPerspective,
                               kReversed);
-}
-
-vec4 inverse_depths_of(vec4 depths_ndc) {
-  return vec4(inverse_depth_of(depths_ndc.x), inverse_depth_of(depths_ndc.y),
-              inverse_depth_of(depths_ndc.z), inverse_depth_of(depths_ndc.w));
 }
 
 #endif

@@ -2,7 +2,8 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
-// Visibility brightened by what occluders send back, per channel (Jimenez et al. 2016, section 5).
+// Brightens visibility by the light that occluders reflect, per colour channel ([Jimenez 2016],
+// section 5).
 
 #include "maths/multi_bounce.h"
 #include "multi_bounce_parameters.h"

@@ -2,8 +2,8 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
-// Normals from depth. On each axis the neighbour is taken from the side whose two depths continue
-// to the pixel's own better: across a silhouette the other side belongs to another surface.
+// Computes normals from depth. On each image axis it uses the neighbour on the side where the
+// depths continue the pixel's depth better, because the other side may belong to another surface.
 
 #include "maths/projection.h"
 #include "maths/slice.h"
@@ -25,11 +25,11 @@ vec3 fetch_position(ivec2 pixel, float depth) {
                      depth);
 }
 
-// How badly the line through the depths one and two pixels away misses the pixel's own. Depth
-// itself is no line on the image of a plane; its inverse is, in perspective, so that is compared
-// there. The step to the first counts for a little: on a strip two pixels wide both lines miss by
-// the strip's whole depth, and at a crease between planes a quarter of the step never outweighs
-// that.
+// Returns by how much the line through the depths one and two pixels away misses the pixel's depth.
+// In perspective the inverse depths are compared, because these are linear on the image of a plane.
+// A quarter of the difference to the nearer depth is added: on a strip that is two pixels wide,
+// both lines miss by the whole depth of the strip, and the addition then prefers the strip itself.
+// At a crease between two planes the addition is too small to change the choice.
 float miss(float depth, float one, float two) {
   vec3 inverse_depth = vec3(depth, one, two);
   if (parameters.projection.eye.w > 0.0) {
@@ -39,7 +39,8 @@ float miss(float depth, float one, float two) {
          0.25 * abs(inverse_depth.y - inverse_depth.x);
 }
 
-// From the pixel to its better neighbour along an axis, pointing along +axis of the image.
+// Returns the vector from the pixel to its better neighbour along an axis, in the direction of
+// +axis of the image.
 vec3 tangent(ivec2 pixel, ivec2 axis, float depth) {
   ivec2 last = ivec2(parameters.projection.size_px) - 1;
   float before = fetch_depth(pixel - axis);
@@ -51,13 +52,14 @@ vec3 tangent(ivec2 pixel, ivec2 axis, float depth) {
   bool none_before = first || is_sky_depth(before);
   bool none_after = final || is_sky_depth(after);
   bool take_after = none_before || (!none_after && miss_after < miss_before);
-  // A pixel alone on its axis faces the eye there: its neighbour counts as being as deep.
+  // If both neighbours are sky, the surface is assumed to face the eye along this axis: the
+  // neighbour gets the depth of the pixel.
   before = none_before ? depth : before;
   after = none_after ? depth : after;
   vec3 here = fetch_position(pixel, depth);
   vec3 there = take_after ? fetch_position(pixel + axis, after) - here
                           : here - fetch_position(pixel - axis, before);
-  return normalize(there);  // so that no product of far ones overflows
+  return normalize(there);  // so that the cross product of distant points does not overflow
 }
 
 void main() {
@@ -71,7 +73,8 @@ void main() {
     imageStore(normal_image, pixel, vec4(view, 0.0));
     return;
   }
-  // Image y points down; where a projection is flipped the facing test turns the normal back.
+  // In images y points down. If the projection is flipped, the test below turns the normal towards
+  // the eye again.
   vec3 normal = cross(tangent(pixel, ivec2(0, 1), depth), tangent(pixel, ivec2(1, 0), depth));
   float squared = dot(normal, normal);
   normal = squared > 0.0 ? normal * inversesqrt(squared) : view;

@@ -55,38 +55,55 @@ const bool kLobe = false;
 #define RAW_FORMAT rg32ui
 #endif
 
+#ifdef HALF
+#define BENT_HISTORY_SAMPLER sampler2D
+#define BENT_HISTORY_IMAGE image2D
+#else
+#define BENT_HISTORY_SAMPLER usampler2D
+#define BENT_HISTORY_IMAGE uimage2D
+#endif
+
 layout(set = 0, binding = 0) uniform Parameters { ReconstructParameters parameters; };
 layout(set = 0, binding = 1, RAW_FORMAT) uniform readonly uimage2D raw_image;  // one texel a tile
-// Another image where there are no bent normals.
+// Without bent normals it is never read, and another image is bound in its place.
 layout(set = 0, binding = 2, rg32ui) uniform readonly uimage2D bent_image;
 layout(set = 0, binding = 4) uniform texture2D normal_image;  // xyz
 #ifdef HALF
-// As the projection wrote it. With a nearest sampler that clamps to the edge.
+// The depth buffer as the projection wrote it. Its sampler is nearest and clamps to the edge.
 layout(set = 0, binding = 3) uniform sampler2D depth_image;
-layout(set = 0, binding = 5) uniform writeonly uimage2D half_image;  // HalfTexel
-const int kFirstHistoryBinding = 6;
+layout(set = 0, binding = 5) uniform writeonly image2D half_image;        // pack_half_texel()
+layout(set = 0, binding = 6) uniform writeonly image2D half_depth_image;  // half_texel_depth()
+const int kFirstHistoryBinding = 7;
 #else
-layout(set = 0, binding = 3) uniform texture2D depth_image;  // as the projection wrote it
-// Another image where it is not written; so is the next.
+layout(set = 0, binding = 3) uniform texture2D depth_image;  // the depth buffer
+// If an output is not wanted, it is never written, and another image is bound in its place.
 layout(set = 0, binding = 5) uniform writeonly image2D visibility_image;
 // In the space of the normals.
 layout(set = 0, binding = 6) uniform writeonly image2D bent_normal_image;
 const int kFirstHistoryBinding = 7;
 #endif
 #ifdef HISTORY
-// HistoryTexel. With a nearest sampler that clamps to the edge.
-layout(set = 0, binding = kFirstHistoryBinding) uniform usampler2D history_image;
+// The samplers are nearest and clamp to the edge.
+#ifdef HALF
+// half_image and half_depth_image of the previous frame.
+layout(set = 0, binding = kFirstHistoryBinding) uniform sampler2D history_image;
+layout(set = 0, binding = kFirstHistoryBinding + 1) uniform sampler2D history_depth_image;
+#else
+layout(set = 0, binding = kFirstHistoryBinding) uniform usampler2D history_image;  // HistoryTexel
 layout(set = 0, binding = kFirstHistoryBinding + 1) uniform writeonly uimage2D next_history_image;
-// Another image without kMotion.
+#endif
+// Without kMotion it is never read, and another image is bound in its place.
 layout(set = 0, binding = kFirstHistoryBinding + 2) uniform texture2D motion_image;
-// Bent-normal residuals of pack_residual(); other images where there are no bent normals.
-layout(set = 0, binding = kFirstHistoryBinding + 3) uniform usampler2D bent_history_image;
-layout(set = 0,
-       binding = kFirstHistoryBinding + 4) uniform writeonly uimage2D next_bent_history_image;
+// Bent-normal residuals: pack_residual(), at half resolution pack_half_residual(). Without bent
+// normals they are never accessed, and other images are bound in their place.
+layout(set = 0, binding = kFirstHistoryBinding + 3) uniform BENT_HISTORY_SAMPLER bent_history_image;
+layout(set = 0, binding = kFirstHistoryBinding +
+                          4) uniform writeonly BENT_HISTORY_IMAGE next_bent_history_image;
 const int kFirstLobeBinding = kFirstHistoryBinding + 5;
 #elif defined(HALF)
 // The upsampling pass reads residuals and lobes in the formats of the history.
-layout(set = 0, binding = kFirstHistoryBinding) uniform writeonly uimage2D next_bent_history_image;
+layout(set = 0,
+       binding = kFirstHistoryBinding) uniform writeonly BENT_HISTORY_IMAGE next_bent_history_image;
 const int kFirstLobeBinding = kFirstHistoryBinding + 1;
 #else
 const int kFirstLobeBinding = kFirstHistoryBinding;
@@ -117,28 +134,27 @@ const int kTexelSize = 2;
 const int kTexelSize = 1;
 #endif
 
-// Whether pixels lie between traced ones; else each was traced, or takes its tile's value.
+// Whether the weight of a traced pixel falls with the angle between its normal and the pixel's. At
+// half resolution such a weight raises the error by 1 %.
+#ifdef HALF
+const bool kByNormal = false;
+#else
+const bool kByNormal = true;
+#endif
+
+// Whether a pixel averages the traced pixels around it. If not, every pixel was traced itself, or
+// takes the value of its tile.
 const bool kBetween = kTileSize > 1 && kFilterRadius > 0;
-// Traced pixels on each side that a pixel with a history averages.
+// Number of traced pixels on each side that are averaged for a pixel with a history.
 const int kNearRadius = kFilterRadius == 0 ? 0 : 1;
-// Traced tiles that the pixels of a group average, in each direction.
+// Number of tiles along x and along y whose traced pixels the pixels of a group average.
 const int kSpan = 8 * kTexelSize / kTileSize + 2 * kFilterRadius;
-const int kShift = kTileSize == 4 ? 2 : kTileSize == 2 ? 1 : 0;
+// Base-2 logarithm of kTileSize.
+const int kShift = kTileSize == 8 ? 3 : kTileSize == 4 ? 2 : kTileSize == 2 ? 1 : 0;
 
-// The unpacked raw occlusion of a tile.
-struct TracedPixel {
-  float inverse_depth;
-  float occluded;
-  float open;
-  vec2 stereographic;  // of QuantisedNormal
-  vec3 residual;
-  vec3 expected_residual;
-  RawOcclusion lobe;
-  uint lobe_surface;
-};
-
+// The unpacked raw occlusion of the tiles around the group.
 shared vec4 traced[kSpan * kSpan];  // inverse depth, occluded, open, stereographic x
-shared float traced_stereographic_y[kSpan * kSpan];
+shared float traced_stereographic_y[kByNormal ? kSpan * kSpan : 1];
 // The arrays of results that are not computed have one element, which nothing reads.
 const int kBentSpan = kBentNormal ? kSpan * kSpan : 1;
 shared vec4 traced_residual[kBentSpan];           // residual, expected residual x
@@ -149,9 +165,9 @@ shared uint traced_lobe_surface[kLobeSpan];
 
 struct Surface {
   bool sky;
-  ivec2 texel;          // where its results are stored
-  ivec2 pixel;          // where its inputs are read
-  vec2 centre;          // of the texel, in pixels
+  ivec2 texel;          // texel of the history at which its results are stored
+  ivec2 pixel;          // pixel at which its inputs are read
+  vec2 centre;          // centre of the texel, pixels
   float inverse_depth;  // 1/depth in perspective, depth otherwise: linear along any plane's image
   vec2 gradient;        // of inverse_depth on the tangent plane, per pixel
   float plane_weight;   // tolerances per unit of inverse_depth off the tangent plane
@@ -159,6 +175,7 @@ struct Surface {
   QuantisedNormal quantised;
   LobeSurface lobe;   // normal as it was given
   vec2 tilt;          // HalfTexel::tilt; only with HALF
+  float depth;        // about 1/inverse_depth in perspective; only with HALF
   int first_tile;     // index in `traced` of the tile to the upper left
   vec2 offset;        // to the pixel that was traced there, pixels, before clamping to the image
   vec4 traced_range;  // smallest and largest offset of a traced pixel in the image
@@ -178,8 +195,9 @@ float load_inverse_depth(ivec2 pixel) {
 #include "depth_normal.h"
 #endif
 
-// Not unit, in the space of the normals. The direction to the eye where the texture has none, which
-// is enough for the filter's weights; a NaN would stay in the history.
+// Returns the pixel's normal in the space of the normals; its length may be any but 0. If the
+// texture has no valid normal, returns the direction to the eye: that is exact enough for the
+// filter's weights, and a NaN would stay in the history.
 vec3 fetch_normal(ivec2 pixel) {
   vec3 normal = decode_normal(texelFetch(normal_image, pixel, 0).xyz, kNormalEncoding);
   return has_direction(normal) ? normal : parameters.normal_from_view[2].xyz;
@@ -195,12 +213,19 @@ LobeSurface fetch_lobe_surface(ivec2 pixel, vec3 normal) {
   return surface;
 }
 
-// The tile of which a pixel's neighbourhood of radius 1 begins, or the pixel's own tile.
+// Returns the tile to the upper left among the 2x2 tiles whose traced pixels surround a pixel. If
+// pixels take the value of their tile, returns the pixel's own tile.
 ivec2 cell_of(ivec2 pixel) {
-  return kBetween ? (pixel - ivec2(parameters.interleave_offset)) >> kShift : pixel >> kShift;
+  return kBetween ? (pixel - parameters.interleave_pixel) >> kShift : pixel >> kShift;
 }
 
-// The first tile of the group.
+// Returns the offset from a pixel to the traced pixel of the tile cell_of(pixel), in pixels.
+vec2 offset_of_traced(ivec2 pixel) {
+  return kBetween ? -vec2((pixel - parameters.interleave_pixel) & (kTileSize - 1))
+                  : parameters.interleave_offset - vec2(pixel & (kTileSize - 1));
+}
+
+// Returns the tile to the upper left of all tiles that the group averages.
 ivec2 first_tile_of_group() {
   ivec2 cell = cell_of(ivec2(gl_WorkGroupID.xy) * (8 * kTexelSize));
   return cell - (kBetween ? kFilterRadius - 1 : kFilterRadius);
@@ -213,7 +238,9 @@ void load_tile(ivec2 first, ivec2 place) {
   RawOcclusion raw = unpack_raw_occlusion(stored.x);
   vec2 stereographic = stereographic_of_bits(raw_occlusion_normal(stored.x));
   traced[i] = vec4(uintBitsToFloat(stored.y), raw.open - raw.visible, raw.open, stereographic.x);
-  traced_stereographic_y[i] = stereographic.y;
+  if (kByNormal) {
+    traced_stereographic_y[i] = stereographic.y;
+  }
   if (kBentNormal) {
     uvec2 bent = imageLoad(bent_image, tile).xy;
     vec3 expected = unpack_residual(bent.y);
@@ -241,16 +268,13 @@ void load_tiles() {
   barrier();
 }
 
-// Sets which traced pixels lie around the surface's centre.
+// Sets the members of `surface` that locate the traced pixels around its centre.
 void find_traced(inout Surface surface) {
-  ivec2 cell = cell_of(surface.texel * kTexelSize);
-  ivec2 place = cell - first_tile_of_group();
+  ivec2 pixel = surface.texel * kTexelSize;
+  ivec2 place = cell_of(pixel) - first_tile_of_group();
   surface.first_tile = place.y * kSpan + place.x;
-  vec2 first = surface.centre - 0.5;
-  surface.offset = vec2(cell * kTileSize) + parameters.interleave_offset - first;
-  vec2 largest =
-      min(vec2(last_tile() * kTileSize) + parameters.interleave_offset, vec2(size_px() - 1));
-  surface.traced_range = vec4(min(parameters.interleave_offset, largest), largest) - first.xyxy;
+  surface.offset = offset_of_traced(pixel) - 0.5 * float(kTexelSize - 1);
+  surface.traced_range = parameters.traced_range - (surface.centre - 0.5).xyxy;
 }
 
 // Bound of the cosine between normal and view direction: a plane seen edge-on would reach any
@@ -301,15 +325,13 @@ struct Sums {
 
 Sums no_sums() { return Sums(0.0, 0.0, vec3(0.0), vec3(0.0), vec2(0.0), vec3(0.0)); }
 
-// A neighbour at distance d is weighted by 1 / (1 + inverse_squared_width d^2)^4.
-float inverse_squared_width_of(float squared_width_px) { return 0.125 / squared_width_px; }
-
 // Bound of the squared angle between normals in a neighbour's weight, which is then at least
 // 1 / (1 + 1.23)^2 = 0.2: where a pixel has few other neighbours, one across a crease is better
 // than none. Fitted to the error of first frames (`alcove compare --frames 1`).
 const float kLargestSquaredAngle = 1.23;
 
-// The offset in pixels of the traced pixel `i` tiles to the right of (below) the surface's first.
+// Returns the offset from the surface's centre to the traced pixel that lies `i` tiles to the right
+// of (axis 0) or below (axis 1) the surface's first, pixels.
 float traced_offset(Surface surface, int axis, int i) {
   return clamp(surface.offset[axis] + float(i * kTileSize), surface.traced_range[axis],
                surface.traced_range[axis + 2]);
@@ -328,8 +350,10 @@ void add_traced(inout Sums sums, Surface surface, float inverse_squared_width, i
   float near = 1.0 + offset.x * offset.x * inverse_squared_width +
                offset.y * offset.y * inverse_squared_width;
   float level = 1.0 + min(off_plane * off_plane, 1e14);  // the weight is no denormal
-  level += min(squared_turn(surface.quantised, vec2(found.w, traced_stereographic_y[index])),
-               kLargestSquaredAngle);
+  if (kByNormal) {
+    level += min(squared_turn(surface.quantised, vec2(found.w, traced_stereographic_y[index])),
+                 kLargestSquaredAngle);
+  }
   float both = near * near * level;
   float weight = 1.0 / (both * both);
   sums.occluded += weight * found.y;
@@ -349,7 +373,7 @@ void add_traced(inout Sums sums, Surface surface, float inverse_squared_width, i
   }
 }
 
-// The traced pixels of radius kNearRadius.
+// Returns the sums over the traced pixels within kNearRadius.
 Sums sum_near(Surface surface, float inverse_squared_width) {
   Sums sums = no_sums();
   const int first = kBetween ? 0 : -kNearRadius;
@@ -380,7 +404,7 @@ void add_ring(inout Sums sums, Surface surface, float inverse_squared_width, int
 
 #ifndef HALF
 
-// The normal in view space, as the search of the pixel uses it.
+// Returns the unit normal in view space, as the search uses it.
 vec3 traced_normal(Surface surface) {
   vec2 slope =
       parameters.slope.zw + (kPerspective ? surface.centre * parameters.slope.xy : vec2(0.0));
@@ -391,7 +415,7 @@ vec3 traced_normal(Surface surface) {
 
 #endif
 
-// Results of a texel.
+// The results of a texel.
 struct Result {
   float occlusion;
   vec3 residual;
@@ -410,11 +434,16 @@ float dither_of(ivec2 texel) {
 // Stores residual and lobe as history and upsampling read them.
 void store_kept(Surface surface, Result result, float dither) {
   if (kBentNormal) {
-    uint residual = pack_residual_dithered(surface.sky ? vec3(0.0) : result.residual, dither);
-    imageStore(next_bent_history_image, surface.texel, uvec4(residual));
+    vec3 residual = surface.sky ? vec3(0.0) : result.residual;
+#ifdef HALF
+    vec4 packed = pack_half_residual(residual, dither);
+#else
+    uvec4 packed = uvec4(pack_residual_dithered(residual, dither));
+#endif
+    imageStore(next_bent_history_image, surface.texel, packed);
   }
 #ifdef SPECULAR
-  // Written so that a NaN becomes nothing, for it would stay in the history.
+  // The comparisons are false for NaN, which would stay in the history.
   bool valid = !surface.sky && result.lobe.x >= 0.0 && result.lobe.y < 1e30;
   LobeTexel lobe = LobeTexel(valid ? result.lobe.x / max(result.lobe.y, 1e-30) : 0.0,
                              valid ? result.lobe.y : 0.0);
@@ -425,15 +454,14 @@ void store_kept(Surface surface, Result result, float dither) {
 #endif
 #ifdef HALF
 
-void store(Surface surface, Result result) {
-  HalfTexel texel;
-  texel.inverse_depth = surface.sky ? sky_inverse_depth(kPerspective) : surface.inverse_depth;
-  texel.occlusion = surface.sky ? 0.0 : result.occlusion;
-  texel.tilt = surface.sky ? vec2(0.0) : surface.tilt;
-  imageStore(half_image, surface.texel, uvec4(pack_half_texel(texel), 0u, 0u));
-#ifndef HISTORY
-  store_kept(surface, result, 0.5);
-#endif
+// Stores a texel for upsampling and for the next frame. `recent` is the occlusion of the last few
+// frames, which is read only with kMotion.
+void store_half(Surface surface, Result result, float weight, float recent) {
+  HalfTexel texel = HalfTexel(result.occlusion, weight, surface.tilt);
+  imageStore(half_image, surface.texel, surface.sky ? vec4(0.0) : pack_half_texel(texel));
+  float depth = surface.sky ? sky_inverse_depth(kPerspective)
+                            : half_texel_depth(surface.inverse_depth, recent, kMotion);
+  imageStore(half_depth_image, surface.texel, vec4(depth));
 }
 
 #else
@@ -464,14 +492,19 @@ void store(Surface surface, Result result) {
 
 void reconstruct(Surface surface) {
   Sums sums = no_sums();
-  add_ring(sums, surface, inverse_squared_width_of(parameters.window_px * parameters.window_px), 0);
+  add_ring(sums, surface, parameters.inverse_squared_window, 0);
   float scale = 1.0 / max(sums.open, 1e-37);
   Result result = Result(saturate(sums.occluded * scale), vec3(0.0), sums.lobe);
   if (kBentNormal) {
     result.residual =
         converged_residual(sums.residual, sums.expected_residual, 1.0 - result.occlusion) * scale;
   }
+#ifdef HALF
+  store_half(surface, result, 0.0, 0.0);
+  store_kept(surface, result, 0.5);
+#else
   store(surface, result);
+#endif
 }
 
 #endif
@@ -479,7 +512,8 @@ void reconstruct(Surface surface) {
 void main() {
   load_tiles();
   ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(texel * kTexelSize, size_px()))) {
+  // At half resolution one texel beyond the border too, which upsampling reads.
+  if (any(greaterThan(texel * kTexelSize, size_px() + (2 * kTexelSize - 3)))) {
     return;
   }
   reconstruct(fetch_surface(texel));

@@ -7,12 +7,13 @@
 // the change on the other side has the other sign: about 70 degrees.
 const float kPlausibleTilt = 3.0;
 
-// A pixel of the texel and its four neighbours. The inner ones are pixels of the texel too.
+// The pixel that stands for a texel. Its inner neighbours are pixels of the texel too, its outer
+// ones are not.
 struct TexelPixel {
-  float inverse_depth;
-  vec2 inner;  // inverse depths, the neighbour along x and along y
+  float depth_ndc;
+  vec2 inner;  // raw depths, the neighbour along x and along y
   vec2 outer;
-  ivec2 place;  // 0 or 1
+  vec2 way;  // 1 or -1 along each axis, from the pixel to its inner neighbour
 };
 
 // The change of inverse depth along an axis: the smaller of the changes on both sides of a pixel,
@@ -33,39 +34,36 @@ TexelPixel representative(ivec2 texel) {
   vec2 uv = vec2(texel * 2) * parameters.pixel_uv;
   vec2 step = 2.0 * parameters.pixel_uv;
   // Blocks of 2x2 pixels around the corners of the texel: each has one of its pixels.
-  vec4 upper_left = inverse_depths_of(textureGather(depth_image, uv));
-  vec4 upper_right = inverse_depths_of(textureGather(depth_image, uv + vec2(step.x, 0.0)));
-  vec4 lower_left = inverse_depths_of(textureGather(depth_image, uv + vec2(0.0, step.y)));
-  vec4 lower_right = inverse_depths_of(textureGather(depth_image, uv + step));
+  vec4 upper_left = textureGather(depth_image, uv);
+  vec4 upper_right = textureGather(depth_image, uv + vec2(step.x, 0.0));
+  vec4 lower_left = textureGather(depth_image, uv + vec2(0.0, step.y));
+  vec4 lower_right = textureGather(depth_image, uv + step);
   // In the order of textureGather: lower left, lower right, upper right, upper left.
   vec4 inside = vec4(lower_left.z, lower_right.w, upper_right.x, upper_left.y);
   vec4 outer_x = vec4(lower_left.w, lower_right.z, upper_right.y, upper_left.x);
   vec4 outer_y = vec4(lower_left.y, lower_right.x, upper_right.w, upper_left.z);
-  float sky = sky_inverse_depth(kPerspective);
   float smallest = min(min(inside.x, inside.y), min(inside.z, inside.w));
   float largest = max(max(inside.x, inside.y), max(inside.z, inside.w));
-  bool nearest = ((texel.x ^ texel.y) & 1) == 0;
-  float wanted = nearest == kPerspective ? largest : smallest;
-  if (wanted == sky) {
-    wanted = kPerspective ? largest : smallest;
-  }
-  // At the border of the image a gather repeats the last pixels, which come first here.
+  float nearest = kReversed ? largest : smallest;
+  float farthest = kReversed ? smallest : largest;
+  bool takes_nearest = ((texel.x ^ texel.y) & 1) == 0 || is_sky(farthest);
   TexelPixel found;
-  found.inverse_depth = wanted;
-  if (wanted == inside.w) {
-    found.place = ivec2(0, 0);
+  found.depth_ndc = takes_nearest ? nearest : farthest;
+  // At the border of the image a gather repeats the last pixels, which come first here.
+  if (found.depth_ndc == inside.w) {
+    found.way = vec2(1.0, 1.0);
     found.inner = inside.zx;
     found.outer = vec2(outer_x.w, outer_y.w);
-  } else if (wanted == inside.x) {
-    found.place = ivec2(0, 1);
+  } else if (found.depth_ndc == inside.x) {
+    found.way = vec2(1.0, -1.0);
     found.inner = inside.yw;
     found.outer = vec2(outer_x.x, outer_y.x);
-  } else if (wanted == inside.z) {
-    found.place = ivec2(1, 0);
+  } else if (found.depth_ndc == inside.z) {
+    found.way = vec2(-1.0, 1.0);
     found.inner = inside.wy;
     found.outer = vec2(outer_x.z, outer_y.z);
   } else {
-    found.place = ivec2(1, 1);
+    found.way = vec2(-1.0, -1.0);
     found.inner = inside.xz;
     found.outer = vec2(outer_x.y, outer_y.y);
   }
@@ -74,19 +72,24 @@ TexelPixel representative(ivec2 texel) {
 
 Surface fetch_surface(ivec2 texel) {
   TexelPixel found = representative(texel);
+  float inverse_depth = inverse_depth_of(found.depth_ndc);
   Surface surface;
   surface.texel = texel;
-  surface.pixel = texel * 2 + found.place;
+  surface.pixel = texel * 2 + ivec2(found.way.x < 0.0 ? 1 : 0, found.way.y < 0.0 ? 1 : 0);
   surface.centre = vec2(texel * 2) + 1.0;
-  surface.sky = found.inverse_depth == sky_inverse_depth(kPerspective);
-  float scale = kPerspective ? found.inverse_depth : 1.0;
+  surface.sky = is_sky(found.depth_ndc);
+  float scale = kPerspective ? inverse_depth : 1.0;
+  // The change of inverse depth per unit of raw depth.
+  float per_ndc = grows_with_inverse_depth(kPerspective, kReversed)
+                      ? parameters.inverse_depth_from_ndc.x
+                      : -parameters.inverse_depth_from_ndc.x;
+  vec2 to_inner = (found.inner - found.depth_ndc) * (found.way * per_ndc);
+  vec2 from_outer = (found.depth_ndc - found.outer) * (found.way * per_ndc);
   vec2 plausible = kPlausibleTilt * scale * abs(parameters.slope.xy);
-  vec2 way = 1.0 - 2.0 * vec2(found.place);  // from the pixel to its inner neighbours
-  vec2 inner = (found.inner - found.inverse_depth) * way;
-  vec2 outer = (found.inverse_depth - found.outer) * way;
-  surface.gradient =
-      vec2(gradient_of(inner.x, outer.x, plausible.x), gradient_of(inner.y, outer.y, plausible.y));
+  surface.gradient = vec2(gradient_of(to_inner.x, from_outer.x, plausible.x),
+                          gradient_of(to_inner.y, from_outer.y, plausible.y));
   float inverse_scale = 1.0 / scale;
+  surface.depth = inverse_scale;
   surface.tilt = surface.gradient * parameters.pixels_per_slope *
                  (kPerspective ? -inverse_scale : inverse_scale);
   vec2 ray =
@@ -94,11 +97,10 @@ Surface fetch_surface(ivec2 texel) {
   float z = 1.0 + dot(surface.tilt, ray);
   float per_length = inversesqrt(dot(surface.tilt, surface.tilt) + z * z);
   surface.n_dot_v = max(per_length, kLeastNDotV);
-  surface.quantised = make_quantised_normal(vec3(surface.tilt, z) * per_length);
   // The plane at the texel's centre, bounded where it is seen edge-on.
-  float moved = found.inverse_depth + dot(0.5 * way, surface.gradient);
+  float moved = inverse_depth + 0.5 * dot(found.way, surface.gradient);
   surface.inverse_depth =
-      kPerspective ? clamp(moved, 0.5 * found.inverse_depth, 2.0 * found.inverse_depth) : moved;
+      kPerspective ? clamp(moved, 0.5 * inverse_depth, 2.0 * inverse_depth) : moved;
   surface.plane_weight = surface.n_dot_v * parameters.tolerance * inverse_scale;
   if (kLobe) {
     surface.lobe = fetch_lobe_surface(surface.pixel, fetch_normal(surface.pixel));

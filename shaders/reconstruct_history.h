@@ -3,7 +3,7 @@
 #ifndef ALCOVE_RECONSTRUCT_HISTORY_H
 #define ALCOVE_RECONSTRUCT_HISTORY_H
 
-// The history of a surface.
+// What the history holds of a surface.
 struct History {
   float weight;     // frames; 0 where nothing of this surface is known
   float occlusion;  // [0,1]
@@ -23,7 +23,7 @@ float log_inverse_depth(float inverse_depth, float unit) {
   return kPerspective ? log2(inverse_depth * unit) : inverse_depth;
 }
 
-// Where a surface was on the image of the previous frame.
+// The position of a surface in the image of the previous frame.
 struct Previous {
   vec2 position;  // texels, clamped to the centres of the outermost ones
   float depth;    // linear, over the depth now in perspective; positive
@@ -58,7 +58,7 @@ Previous reproject(Surface surface) {
   return previous;
 }
 
-// Weights of the four texels of a bilinear footprint, in the order of textureGather.
+// Returns the bilinear weights of four texels in the order of textureGather.
 vec4 bilinear_weights(vec2 part) {
   vec2 rest = 1.0 - part;
   return vec4(rest.x * part.y, part.x * part.y, part.x * rest.y, rest.x * rest.y);
@@ -72,31 +72,11 @@ vec4 gather_offsets(float x, float y, vec2 part) {
   return vec4(left + bottom, right + bottom, right + top, left + top);
 }
 
-// Stored depths of the four texels minus those that the surface's tangent plane had there.
-vec4 depth_differences(uvec4 texels, Surface surface, Previous previous, vec2 part) {
-  vec4 found;
-  [[unroll]] for (int i = 0; i < 4; ++i) { found[i] = texel_depth(texels[i]); }
-  vec2 scale = parameters.history_depth_scale.zw;
-  // The gradient of the stored depth to first order; it hardly changes from frame to frame.
-  vec2 gradient = surface.gradient * (scale.x * float(kTexelSize));
-  float at_position = scale.y;
-  if (kPerspective) {
-    gradient *= 1.442695 / surface.inverse_depth;
-    at_position += scale.x * log_inverse_depth(surface.inverse_depth / max(previous.depth, 1e-30),
-                                               parameters.history_unit.y);
-  } else {
-    at_position += scale.x * previous.depth;
-  }
-  return found - (gather_offsets(gradient.x, gradient.y, part) + at_position);
-}
-
 // Motion vectors do not say how far a moving surface has come nearer. The texel that lies nearest
-// to the expected depth does, if it lies near enough.
-vec4 follow_depth(vec4 differences) {
+// to the expected depth does, if it lies within `limit` of it.
+vec4 follow_depth(vec4 differences, float limit) {
   vec4 apart = abs(differences);
   float least = min(min(apart.x, apart.y), min(apart.z, apart.w));
-  float limit =
-      kPerspective ? kDepthMotion * 1.442695 * abs(parameters.history_depth_scale.z) : kDepthMotion;
   if (least > limit) {
     return differences;
   }
@@ -107,119 +87,39 @@ vec4 follow_depth(vec4 differences) {
   return differences - shift;
 }
 
-vec3 residual_of_texel(uint bits) { return unpack_residual(bits); }
-
-// Between four texels.
-History read_moving(Surface surface) {
-  Previous previous = reproject(surface);
-  vec2 first = floor(previous.position - 0.5);
-  vec2 part = previous.position - 0.5 - first;
-  // The corner that the four texels share, so that no rounding can move the footprint.
-  vec2 uv = (first + 1.0) * parameters.history_texel;
-  uvec4 texels = textureGather(history_image, uv);
-  vec4 differences = depth_differences(texels, surface, previous, part);
-  if (kMotion) {
-    if (previous.moves) {
-      differences = follow_depth(differences);
-    }
-  }
-  vec4 shares = bilinear_weights(part);
-  float sharpness = parameters.history_sharpness * surface.n_dot_v;
-  float total = 0.0;
-  float squares = 0.0;
-  float log_weight = 0.0;
-  History history = no_history();
-  vec4 weights;
-  [[unroll]] for (int i = 0; i < 4; ++i) {
-    float weight =
-        shares[i] * history_agreement(differences[i], parameters.history_slack, sharpness);
-    weights[i] = weight;
-    float occlusion = texel_occlusion(texels[i]);
-    total += weight;
-    history.occlusion += weight * occlusion;
-    squares += weight * occlusion * occlusion;
-    log_weight += weight * texel_log_weight(texels[i]);
-    if (kMotion) {
-      history.recent += weight * texel_recent(texels[i]);
-    }
-  }
-  bool known = previous.seen && total >= 0.05;
-  float scale = 1.0 / max(total, 0.05);
-  history.occlusion *= scale;
-  history.recent *= scale;
-  float variance = max(squares * scale - history.occlusion * history.occlusion, 0.0);
-  float weight = min(weight_of_log(log_weight * scale), parameters.largest_weight);
-  history.weight = known ? weight_after_blur(weight, variance, 1.0 - total) : 0.0;
-  history.between = dot(part, 1.0 - part);
-  if (kBentNormal) {
-    uvec4 residuals = textureGather(bent_history_image, uv);
-    [[unroll]] for (int i = 0; i < 4; ++i) {
-      history.residual += weights[i] * residual_of_texel(residuals[i]);
-    }
-    // From the view space of the previous frame.
-    history.residual = (history.residual * scale) * mat3(parameters.previous_from_view);
-  }
-#ifdef SPECULAR
-  uvec4 lobes = textureGather(lobe_history_image, uv);
-  [[unroll]] for (int i = 0; i < 4; ++i) {
-    LobeTexel lobe = unpack_lobe_texel(lobes[i]);
-    history.lobe += weights[i] * scale * lobe.open * vec2(lobe.occlusion, 1.0);
-  }
+#ifdef HALF
+#include "reconstruct_half_history.h"
+#else
+#include "reconstruct_pixel_history.h"
 #endif
-  return history;
-}
 
-// The pixel's own texel. Its depth is checked too, for something may have moved although no motion
-// vectors say so.
-History read_static(Surface surface) {
-  uint bits = texelFetch(history_image, surface.texel, 0).r;
-  float difference =
-      texel_depth(bits) -
-      history_depth(parameters.history_depth_scale.xy,
-                    log_inverse_depth(surface.inverse_depth, parameters.history_unit.x));
-  float agreement = history_agreement(difference, parameters.history_slack,
-                                      parameters.history_sharpness * surface.n_dot_v);
-  History history = no_history();
-  history.occlusion = texel_occlusion(bits);
-  history.recent = texel_recent(bits);
-  float weight = min(weight_of_log(texel_log_weight(bits)), parameters.largest_weight);
-  history.weight = agreement >= 0.05 ? weight : 0.0;
-  if (kBentNormal) {
-    history.residual = residual_of_texel(texelFetch(bent_history_image, surface.texel, 0).r);
-  }
-#ifdef SPECULAR
-  LobeTexel lobe = unpack_lobe_texel(texelFetch(lobe_history_image, surface.texel, 0).r);
-  history.lobe = lobe.open * vec2(lobe.occlusion, 1.0);
-#endif
-  return history;
-}
-
-// Width of a tile in texels.
+// The width of a tile in texels, at least 1.
 const int kTileTexels = kTileSize > kTexelSize ? kTileSize / kTexelSize : 1;
 
 // With tiles of 4 texels few samples are a texel's own even in time, so the window stays wider.
 const float kWidth = kTileTexels > 2 ? 2.5 : 1.0;
 
-// 0.125 / w^2 for a window of w pixels: wide while a texel has few samples of its own, then hardly
-// wider than the texel, or as wide as interpolation blurs anyway.
+// Returns 0.125 / w^2 for a filter window of w pixels. The window is wide while a texel has few
+// samples of its own. Later it is hardly wider than the texel, or as wide as the interpolation of
+// the history blurs in any case.
 float window_of(History history) {
   const float own = 0.58 * kWidth;
   const float per_squared_texel = 1.0 / float(kTexelSize * kTexelSize);
-  float first = 1.0 / (parameters.window_px * parameters.window_px);
-  return 0.125 * min(per_squared_texel / (own * own + 2.6 * history.between),
-                     first * (3.0 * history.weight + 1.0));
+  return min(0.125 * per_squared_texel / (own * own + 2.6 * history.between),
+             parameters.inverse_squared_window * (3.0 * history.weight + 1.0));
 }
 
-// How much nearer to the tangent plane a neighbour has to be than in a first frame: the more
-// samples of its own a pixel has, the less it needs those of other surfaces. Fitted to the error
+// Returns the factor, at least 1, on the weight of a neighbour's distance from the tangent plane,
+// compared with a first frame. The more samples of its own a pixel has, the less it needs those of
+// other surfaces. Fitted to the error
 // after 4 and 32 frames at each tile size (`alcove compare --frames`).
 float plane_weight_growth(float weight) {
   const float own = 1.0 / float(kTileTexels * kTileTexels);  // traced frames per frame
   return min(1.0 + 12.0 * own * weight, 5.0);
 }
 
-// Where something moves, visibility changes on surfaces at rest: the mean of the last few frames
-// then replaces that of all.
+// If objects move, visibility also changes on surfaces at rest. Where the mean of the last few
+// frames differs from the mean of all frames by more than noise, it replaces the latter.
 void follow_change(inout History history, float now, float open) {
   history.recent = update_recent(history.recent, history.weight, now, open);
   float changed =
@@ -239,20 +139,8 @@ void clamp_history(inout History history, Sums now) {
   }
 }
 
-void store_history(Surface surface, Result result, float weight, float recent) {
-  float dither = dither_of(surface.texel);
-  HistoryTexel texel;
-  texel.depth = history_depth(parameters.history_depth_scale.xy,
-                              log_inverse_depth(surface.inverse_depth, parameters.history_unit.x));
-  texel.occlusion = result.occlusion;
-  texel.recent = recent;
-  texel.log_weight = log_weight_of(weight);
-  uint bits = pack_history_texel(texel, dither);
-  imageStore(next_history_image, surface.texel, uvec4(surface.sky ? 0u : bits));
-  store_kept(surface, result, dither);
-}
-
-// The neighbourhood of this frame, with a wider one where a pixel has hardly any history.
+// Returns the sums over the neighbourhood in this frame. A pixel with hardly any history gets the
+// wider neighbourhood of a first frame.
 Sums sum_neighbourhood(Surface surface, History history, float window) {
   if (kFresh) {
     Sums sums = no_sums();
@@ -280,9 +168,9 @@ void reconstruct(Surface surface) {
   if (kMotion) {
     follow_change(history, now.occluded / max(now.open, 1e-37), now.open);
   }
-  // Not normalised: a frame that traced the pixel itself has more weight than one that traced its
-  // neighbours. Scaled by the traced pixels that the window's area holds, so that the mean weight
-  // of a frame is about 1 for every window and tile size.
+  // The sums are not normalised: a frame that traced the pixel itself has more weight than a frame
+  // that traced its neighbours. They are scaled by the number of traced pixels per area of the
+  // window, so that the mean weight of a frame is about 1 for every window and tile size.
   float scale = 1.3 * float(kTileSize * kTileSize) * window;
   float open = max(scale * now.open, 1e-37);
   float total = history.weight + open;
@@ -299,7 +187,6 @@ void reconstruct(Surface surface) {
       kLobe ? (history.weight * history.lobe + scale * now.lobe) * inverse_total : vec2(0.0);
   float recent = kMotion ? history.recent : result.occlusion;
   store_history(surface, result, total, recent);
-  store(surface, result);
 }
 
 #endif

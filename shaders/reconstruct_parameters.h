@@ -16,6 +16,7 @@ struct ReconstructParameters {
   vec4 previous_extent;      // of the previous frame: xy the centre of its last texel, in texels,
                              // zw its size in pixels as parts of this frame's
   vec4 history_depth_scale;  // of history_depth(): xy of this frame, zw of the previous frame
+  vec4 traced_range;         // smallest and largest xy of a traced pixel, in pixels
   vec4 motion;         // from motion vectors to pixels of the previous frame: xy scale, zw offset
   vec2 history_unit;   // of this and of the previous frame: a power of two near the near plane,
                        // in which depths are held, so that no unit of length changes a bit
@@ -24,16 +25,19 @@ struct ReconstructParameters {
   vec2 inverse_depth_from_ndc;  // of inverse_depth_of_ndc()
   vec2 pixels_per_slope;        // 1 over ray_per_px()
   vec2 interleave_offset;       // pixel of each tile that was traced this frame
-  float window_px;              // width of the filter's window in a first frame, pixels
-  float tolerance;              // scale of distances from the tangent plane, in depths
-  float history_sharpness;      // of history_agreement(), for a surface seen head-on
-  float history_slack;          // of history_agreement()
-  float largest_weight;         // of the history, frames
-  float clamp_width;            // of clamp_to_spread()
-  float roughness;              // perceptual, of every surface where no texture has it
-  float power;                  // of shaped_visibility()
-  float intensity;              // of shaped_visibility()
-  float dither_offset;          // [0,1), another one each frame
+  ivec2 interleave_pixel;       // the same in whole numbers
+  // 0.125 / w^2 for the filter's window of w pixels in a first frame. A neighbour at a distance of
+  // d pixels is weighted by 1 / (1 + inverse_squared_window d^2)^4.
+  float inverse_squared_window;
+  float tolerance;          // scale of distances from the tangent plane, in depths
+  float history_sharpness;  // of history_agreement(), for a surface seen head-on
+  float history_slack;      // of history_agreement()
+  float largest_weight;     // of the history, frames
+  float clamp_width;        // of clamp_to_spread()
+  float roughness;          // perceptual, of every surface where no texture has it
+  float power;              // of shaped_visibility()
+  float intensity;          // of shaped_visibility()
+  float dither_offset;      // [0,1), another one each frame
 };
 
 ALCOVE_MATHS_END

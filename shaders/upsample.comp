@@ -31,18 +31,19 @@ layout(constant_id = 5) const bool kReversed = false;    // raw depth is 1 at th
 
 layout(set = 0, binding = 0) uniform Parameters { UpsampleParameters parameters; };
 // The samplers are nearest and clamp to the edge.
-layout(set = 0, binding = 1) uniform usampler2D half_image;   // HalfTexel
-layout(set = 0, binding = 2) uniform sampler2D depth_image;   // as the projection wrote it
-layout(set = 0, binding = 3) uniform texture2D normal_image;  // xyz
-// pack_residual(); another image without bent normals.
-layout(set = 0, binding = 4) uniform usampler2D residual_image;
-// Another image where it is not written; so is the next.
-layout(set = 0, binding = 5) uniform writeonly image2D visibility_image;
+layout(set = 0, binding = 1) uniform sampler2D half_image;        // pack_half_texel()
+layout(set = 0, binding = 2) uniform sampler2D half_depth_image;  // half_texel_depth()
+layout(set = 0, binding = 3) uniform sampler2D depth_image;       // as the projection wrote it
+layout(set = 0, binding = 4) uniform texture2D normal_image;      // xyz
+// pack_half_residual(). Without bent normals it is never read, and another image is bound.
+layout(set = 0, binding = 5) uniform sampler2D residual_image;
+// The next two are each bound to another image if they are not written.
+layout(set = 0, binding = 6) uniform writeonly image2D visibility_image;
 // In the space of the normals.
-layout(set = 0, binding = 6) uniform writeonly image2D bent_normal_image;
+layout(set = 0, binding = 7) uniform writeonly image2D bent_normal_image;
 #ifdef SPECULAR
-layout(set = 0, binding = 7) uniform usampler2D lobe_image;  // LobeTexel
-layout(set = 0, binding = 8) uniform writeonly image2D specular_image;
+layout(set = 0, binding = 8) uniform usampler2D lobe_image;  // LobeTexel
+layout(set = 0, binding = 9) uniform writeonly image2D specular_image;
 #endif
 
 ivec2 size_px() { return textureSize(depth_image, 0); }
@@ -62,64 +63,60 @@ float below_of(int i) { return i < 2 ? 1.0 : -1.0; }
 
 struct Cell {
   ivec2 first;      // the pixel to the upper left
-  vec4 depths;      // inverse depths of the pixels
-  vec4 occlusions;  // of the texels, in units of kHalfTexelOcclusionUnit
-  // Four values of each texel. s is the distance from its plane per distance along the view ray:
-  // `steepness` is s times parameters.tolerance, `planes` is s times the inverse depth of the plane
-  // at the cell's centre, and `right` and `below` are s times the change of that inverse depth over
-  // half a pixel.
+  vec4 depths_ndc;  // raw depths of the pixels
+  vec4 occlusions;  // of the texels
+  // For each texel its distance from a pixel, in tolerances, is steepness - plane / depth of the
+  // pixel in perspective, and steepness * depth - plane in orthographic views. `planes` holds four
+  // planes of each texel, one for each pixel of the cell.
   vec4 steepness;
-  vec4 planes;
-  vec4 right;
-  vec4 below;
+  vec4 planes[4];
 };
 
 Cell fetch_cell(ivec2 index) {
   Cell cell;
   cell.first = index * 2 - 1;
-  cell.depths =
-      inverse_depths_of(textureGather(depth_image, vec2(index * 2) * parameters.pixel_uv));
+  cell.depths_ndc = textureGather(depth_image, vec2(index * 2) * parameters.pixel_uv);
   vec2 uv = vec2(index) * parameters.texel_uv;
-  uvec4 texels = textureGather(half_image, uv, 0);
-  uvec4 tilts = textureGather(half_image, uv, 1);
-  vec2 ray =
-      parameters.slope.zw + (kPerspective ? vec2(index * 2) * parameters.slope.xy : vec2(0.0));
-  vec2 half_pixel = (kPerspective ? -0.5 : 0.5) * parameters.slope.xy;
+  vec4 texel_depths = textureGather(half_depth_image, uv);
+  cell.occlusions = textureGather(half_image, uv, 0);
+  vec4 tilts_x = textureGather(half_image, uv, 2);
+  vec4 tilts_y = textureGather(half_image, uv, 3);
   [[unroll]] for (int i = 0; i < 4; ++i) {
-    float inverse_depth = half_texel_inverse_depth(texels[i]);
-    vec2 tilt = unpackHalf2x16(tilts[i]);
-    // The normal over its component along the ray (ray.x, ray.y, -1) has -tilt as its x and y and
-    // -1 - dot(tilt, ray) as its z.
-    float z = 1.0 + dot(tilt, ray);
-    float steepness = inversesqrt(dot(tilt, tilt) + z * z);
-    float scaled = inverse_depth * steepness;
-    vec2 change = tilt * (half_pixel * (kPerspective ? scaled : steepness));
+    vec2 tilt = vec2(tilts_x[i], tilts_y[i]);  // in units of kLargestTilt
+    // About the cosine between the normal and the view direction.
+    float steepness =
+        parameters.tolerance * inversesqrt(1.0 + dot(tilt, tilt) * (kLargestTilt * kLargestTilt));
+    float plane = steepness * texel_depths[i];
+    // Over half a pixel.
+    vec2 change = tilt * parameters.half_pixel_per_tilt * (kPerspective ? plane : steepness);
     // The texel's centre lies two half pixels from that of the cell.
-    cell.planes[i] = scaled - 2.0 * right_of(i) * change.x - 2.0 * below_of(i) * change.y;
-    cell.right[i] = change.x;
-    cell.below[i] = change.y;
-    cell.steepness[i] = steepness * parameters.tolerance;
-    cell.occlusions[i] = half_texel_occlusion(texels[i]);
+    plane -= 2.0 * right_of(i) * change.x + 2.0 * below_of(i) * change.y;
+    float left = plane - change.x;
+    float right = plane + change.x;
+    cell.steepness[i] = steepness;
+    cell.planes[i] = vec4(left + change.y, right + change.y, right - change.y, left - change.y);
   }
   return cell;
 }
 
-// Distance from a plane, in tolerances, from which on a weight no longer falls, squared. The
-// product of three weights' denominators is then still a float.
-const float kFarthest = 1e6;
+// Distance from a plane, in tolerances, from which on a weight no longer falls. The product of
+// three weights' denominators is then still a float.
+const float kFarthest = 1e5;
 
-// The weights of the four texels for pixel `j`, up to a common factor:
-// share / (1 + distance^2)^2, where the distance from the plane is in tolerances.
+// The weights of the four texels for pixel `j`, which is not of the sky, up to a common factor:
+// share / (1 + distance^2), where the distance from the plane is in tolerances.
 vec4 weights_of(Cell cell, int j) {
-  float depth = cell.depths[j];
-  float along = kPerspective ? 1.0 : depth;
-  float scale = kPerspective ? -parameters.tolerance / depth : -parameters.tolerance;
+  float from_smallest = grows_with_inverse_depth(kPerspective, kReversed)
+                            ? cell.depths_ndc[j]
+                            : 1.0 - cell.depths_ndc[j];
+  float depth =
+      parameters.inverse_depth_from_ndc.x * from_smallest + parameters.inverse_depth_from_ndc.y;
+  float scale = kPerspective ? 1.0 / depth : 1.0;
   vec4 levels;
   [[unroll]] for (int i = 0; i < 4; ++i) {
-    float expected = cell.planes[i] + right_of(j) * cell.right[i] + below_of(j) * cell.below[i];
-    float off_plane = cell.steepness[i] * along + expected * scale;
-    float level = 1.0 + min(off_plane * off_plane, kFarthest);
-    levels[i] = level * level;
+    float off_plane = cell.steepness[i] * (kPerspective ? 1.0 : depth) - cell.planes[i][j] * scale;
+    float bounded = min(abs(off_plane), kFarthest);
+    levels[i] = 1.0 + bounded * bounded;
   }
   // Over the product of all denominators, which costs no division.
   float lower = levels.x * levels.y;
@@ -149,9 +146,11 @@ void main() {
   }
   Cell cell = fetch_cell(index);
   vec2 uv = vec2(index) * parameters.texel_uv;
-  uvec4 residuals = uvec4(0u);
+  vec4 residuals_x, residuals_y, residuals_z;
   if (kBentNormal) {
-    residuals = textureGather(residual_image, uv);
+    residuals_x = textureGather(residual_image, uv, 0);
+    residuals_y = textureGather(residual_image, uv, 1);
+    residuals_z = textureGather(residual_image, uv, 2);
   }
 #ifdef SPECULAR
   uvec4 lobes = textureGather(lobe_image, uv);
@@ -161,19 +160,17 @@ void main() {
     bool inside = all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, size));
     vec4 weights = weights_of(cell, j);
     float inverse_sum = 1.0 / (weights.x + weights.y + weights.z + weights.w);
-    bool sky = cell.depths[j] == sky_inverse_depth(kPerspective);
-    float occlusion = dot(weights, cell.occlusions) * (inverse_sum * kHalfTexelOcclusionUnit);
+    bool sky = is_sky(cell.depths_ndc[j]);
+    float occlusion = dot(weights, cell.occlusions) * inverse_sum;
     float visibility = sky ? 1.0 : saturate(1.0 - occlusion);
     if (kVisibility && inside) {
       float shaped = shaped_visibility(visibility, parameters.power, parameters.intensity);
       imageStore(visibility_image, pixel, vec4(kShaped ? shaped : visibility));
     }
     if (kBentNormal && inside) {
-      vec3 residual = vec3(0.0);
-      [[unroll]] for (int i = 0; i < 4; ++i) {
-        residual += weights[i] * unpack_residual(residuals[i]);
-      }
-      residual *= sky ? 0.0 : inverse_sum;
+      vec3 stored =
+          vec3(dot(weights, residuals_x), dot(weights, residuals_y), dot(weights, residuals_z));
+      vec3 residual = sky ? vec3(0.0) : unpack_half_residual(stored * inverse_sum);
       vec3 bent = finish_bent_normal(residual, visibility, unit_normal(pixel));
       imageStore(bent_normal_image, pixel, vec4(mat3(parameters.normal_from_view) * bent, 0.0));
     }

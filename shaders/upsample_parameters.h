@@ -11,6 +11,7 @@ struct UpsampleParameters {
   vec2 inverse_depth_from_ndc;  // of inverse_depth_of_ndc()
   vec2 pixel_uv;                // 1 over the size of the depth buffer
   vec2 texel_uv;                // 1 over the size of the half-resolution images
+  vec2 half_pixel_per_tilt;     // change of inverse depth over half a pixel, per stored tilt
   float tolerance;              // scale of distances from the tangent plane, in depths
   float power;                  // of shaped_visibility()
   float intensity;              // of shaped_visibility()

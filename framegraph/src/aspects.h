@@ -1,13 +1,13 @@
-// The aspects of formats.
+// Image aspects of formats.
 #pragma once
 
 #include "alcove/framegraph/types.h"
 
 namespace alcove::framegraph {
 
-// All aspects of the format, as barriers name them.
+// Returns all aspects of the format, as an image barrier names them.
 VkImageAspectFlags aspects(VkFormat format);
-// The aspect that a view shows: depth for depth formats.
+// Returns the aspect that a sampled view shows: depth if the format has depth.
 VkImageAspectFlags view_aspect(VkFormat format);
 
 }  // namespace alcove::framegraph

@@ -1,4 +1,5 @@
-// Checks that the device can make the textures of a plan, once their usage is known.
+// Checks that the device can create the textures of a plan. It runs after culling, because the
+// usage of a texture depends on the passes that run.
 #include "print_names.h"
 #include "workspace.h"
 
@@ -11,7 +12,8 @@ constexpr VkBufferUsageFlags kBufferUsages =
     VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT |
     VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
 
-// Whether the fixed limits and the format's features settle that the device can make the texture.
+// Returns whether the fields of Limits and the format's features alone show that the device can
+// create the texture.
 bool is_settled(const ResourceRecord& record) {
   return record.kind == ResourceKind::buffer || record.origin == Origin::imported ||
          (record.samples == 1 && record.layers == 1 && record.depth == 1 &&
@@ -53,7 +55,8 @@ VkFlags history_usage(const Limits& limits, const ResourceRecord& record) {
   constexpr VkFlags kDrawn =
       VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
   if ((usage & kDrawn) == 0) usage &= ~VkFlags{VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT};
-  // Few devices store to multisampled images.
+  // Few devices support storage usage for multisampled images, and a history is created with every
+  // usage that it can have.
   if (record.samples > 1) usage &= ~VkFlags{VK_IMAGE_USAGE_STORAGE_BIT};
   return usage;
 }
@@ -77,7 +80,7 @@ bool check_images(const GraphDescription& graph, const Limits& limits, const Pla
                           usage_names(record.kind, usage) + ": " + problem +
                           ": choose another format, use or number of samples",
                       VK_SUCCESS, kNone, r, 0});
-    if (history) break;  // The other slots are alike.
+    if (history) break;  // The other slots have the same description.
   }
   return errors.empty();
 }

@@ -1,4 +1,4 @@
-// Command buffers of one pool, handed out one after the other and taken back together.
+// A pool of command buffers that are handed out one after the other and taken back together.
 #pragma once
 
 #include <cstddef>
@@ -8,14 +8,15 @@
 
 namespace alcove::framegraph {
 
-// Command buffers of one device, queue class, frame slot and thread, made on first use and kept.
+// The command buffers of one device, queue class, frame slot and thread. They are allocated on
+// first use and kept.
 class CommandBuffers {
  public:
   void destroy(const DeviceContext& device);
-  // The next one, not yet begun.
+  // Returns the next command buffer, which is not yet in the recording state.
   [[nodiscard]] VkResult next(const DeviceContext& device, QueueClass queue,
                               VkCommandBufferLevel level, VkCommandBuffer& commands);
-  // Takes back all that were handed out: the device has finished with them.
+  // Takes back all command buffers that were handed out. The device must have finished them.
   [[nodiscard]] VkResult take_back(const DeviceContext& device);
 
  private:

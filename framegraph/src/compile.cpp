@@ -23,8 +23,9 @@ VkDeviceSize schedule(const GraphDescription& graph, const Limits& limits, Works
   return bytes;
 }
 
-// In order of declaration, or in another order where that takes fewer bytes in the end: the two are
-// compared as they are scheduled, with the device's requirements and over the same queues.
+// Schedules the passes in the order of declaration, and in another order if find_lower_order()
+// finds one. Keeps the order that needs fewer bytes with the device's memory requirements. Both
+// orders use the same queues.
 bool schedule_lowest(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
                      Plan& plan, Errors& errors) {
   order_as_declared(workspace, plan);

@@ -1,5 +1,6 @@
-// Contents: what each access finds in its range and whether what it leaves is needed. Attachments
-// are loaded and stored by that, and those that are neither need no memory.
+// Contents: finds for each access whether its range has earlier contents, and whether the contents
+// that it leaves are needed later. Load and store operations of attachments follow from the two. An
+// attachment that is neither loaded nor stored needs no memory.
 #include <algorithm>
 
 #include "workspace.h"
@@ -51,7 +52,7 @@ class ContentsFinder {
     }
   }
 
-  // Attachments that no pass loads and nobody needs later can do without memory.
+  // Marks attachments that no pass loads and nobody needs later. They can do without memory.
   void find_transient_attachments() {
     subs_.assign(graph_.resources.size(), 0);
     for (const PlannedPass& planned : plan_.passes) {
@@ -109,7 +110,7 @@ class ContentsFinder {
 void find_contents(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
                    Plan& plan) {
   plan.contents.assign(graph.accesses.size(), 0);
-  // Only attachments are loaded and stored.
+  // Load and store operations exist for attachments only.
   if (!draws(graph, plan)) return;
   ContentsFinder finder(graph, workspace, plan);
   finder.run();

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::uint32_t kUnneeded = kNone;
 constexpr std::uint32_t kByOutput = kNone - 1;
-// Marks the need of a pass that reads an older slot of a history. The bits below hold the pass.
+// This bit marks that a pass reads an older slot of a history. The bits below it hold the pass.
 constexpr std::uint32_t kHistoryBit = 0x4000'0000;
 
 class Culler {

@@ -59,8 +59,8 @@ void DeviceAllocator::free(const MemoryRange& range) {
     device_.vk.vkFreeMemory(device_.handles.device, range.memory, device_.callbacks());
 }
 
-// Whether the caller's memory block can serve this request. It never serves buffers with a device
-// address, because it is not known whether the block was allocated with
+// Returns whether the caller's memory block can serve this request. It never serves buffers with a
+// device address, because it is not known whether the block was allocated with
 // VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT.
 bool DeviceAllocator::suits_block(const MemoryRequest& request) const {
   const std::uint32_t type = device_.handles.host.block.memory_type;
@@ -69,7 +69,7 @@ bool DeviceAllocator::suits_block(const MemoryRequest& request) const {
          (device_.memory.memoryTypes[type].propertyFlags & request.required) == request.required;
 }
 
-// Into the first gap that is large enough.
+// Allocates from the first gap of the caller's block that is large enough.
 bool DeviceAllocator::allocate_in_block(const MemoryRequest& request, MemoryRange& range) {
   const MemoryBlock& block = device_.handles.host.block;
   if (used_.size() == used_.capacity()) used_.reserve(2 * used_.size() + 8);
@@ -89,7 +89,8 @@ bool DeviceAllocator::allocate_in_block(const MemoryRequest& request, MemoryRang
 }
 
 VkResult DeviceAllocator::allocate_from_vulkan(const MemoryRequest& request, MemoryRange& range) {
-  // Lazily allocated types are allowed for transient attachments only, and best for those.
+  // Lazily allocated memory types are allowed for transient attachments only, for which they are
+  // the best choice.
   const auto rank = [&](std::uint32_t type) {
     const VkMemoryPropertyFlags flags = device_.memory.memoryTypes[type].propertyFlags;
     if (flags & VK_MEMORY_PROPERTY_LAZILY_ALLOCATED_BIT) return 2;

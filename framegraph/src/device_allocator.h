@@ -17,11 +17,11 @@ class DeviceAllocator {
   DeviceAllocator& operator=(const DeviceAllocator&) = delete;
 
   [[nodiscard]] VkResult allocate(const MemoryRequest& request, MemoryRange& range);
-  // A range without memory is allowed.
+  // Frees the range. A range without memory is ignored.
   void free(const MemoryRange& range);
 
-  // Why an allocation has failed since the last call, as a clause: "because the block ...". Empty
-  // where Vulkan's result says everything.
+  // Returns the reason why an allocation has failed since the last call, as a clause that begins
+  // with "because". The text is empty if Vulkan's result says everything.
   std::string take_reason() { return std::exchange(reason_, {}); }
 
  private:
@@ -35,7 +35,7 @@ class DeviceAllocator {
   VkResult allocate_from_vulkan(const MemoryRequest& request, MemoryRange& range);
 
   const DeviceContext& device_;
-  std::vector<Used> used_;  // of the block, in order
+  std::vector<Used> used_;  // ranges of the block in use, ascending
   std::string reason_;
 };
 

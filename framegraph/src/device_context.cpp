@@ -7,7 +7,8 @@
 namespace alcove::framegraph {
 namespace {
 
-// A device without VK_KHR_maintenance4 tells the requirements of resources that exist.
+// Creates the resource to query its memory requirements, and destroys it. Without
+// VK_KHR_maintenance4 a device reports the requirements of existing resources only.
 VkMemoryRequirements made_requirements(const DeviceContext& device, const ResourceRecord& record,
                                        VkFlags usage) {
   const VkDevice handle = device.handles.device;
@@ -90,7 +91,8 @@ VkImageUsageFlags format_usage(const void* context, VkFormat format) {
       {VK_FORMAT_FEATURE_TRANSFER_SRC_BIT, VK_IMAGE_USAGE_TRANSFER_SRC_BIT},
       {VK_FORMAT_FEATURE_TRANSFER_DST_BIT, VK_IMAGE_USAGE_TRANSFER_DST_BIT},
   };
-  // Input and transient attachments follow from the attachment bits, which are asked for as well.
+  // Usages for input and transient attachments have no format feature of their own: they are
+  // supported if the attachment usages are.
   VkImageUsageFlags usage =
       VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSIENT_ATTACHMENT_BIT;
   for (const Pair& pair : kPairs) {
@@ -99,7 +101,8 @@ VkImageUsageFlags format_usage(const void* context, VkFormat format) {
   return usage;
 }
 
-// Without VK_KHR_maintenance4, a buffer can be as large as one allocation.
+// Returns the largest size of a buffer in bytes. Without VK_KHR_maintenance4, that is the largest
+// size of one allocation.
 VkDeviceSize max_buffer_size(const DeviceContext& context) {
   VkPhysicalDeviceMaintenance4Properties buffers{};
   buffers.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_4_PROPERTIES;
@@ -112,7 +115,7 @@ VkDeviceSize max_buffer_size(const DeviceContext& context) {
   context.vk.vkGetPhysicalDeviceProperties2(context.handles.physical_device, &all);
   if (buffers.maxBufferSize != 0) return buffers.maxBufferSize;
   if (allocations.maxMemoryAllocationSize != 0) return allocations.maxMemoryAllocationSize;
-  return Limits{}.max_buffer_size;  // The driver tells neither.
+  return Limits{}.max_buffer_size;  // The driver reports neither limit.
 }
 
 void read_limits(DeviceContext& context) {
@@ -121,7 +124,7 @@ void read_limits(DeviceContext& context) {
   limits.max_extent_2d = device.maxImageDimension2D;
   limits.max_extent_3d = device.maxImageDimension3D;
   limits.max_layers = device.maxImageArrayLayers;
-  // The largest count of any format. image_limits() gives the counts for a single texture.
+  // The largest sample count of any format. image_limits() returns the counts of a single texture.
   const VkSampleCountFlags samples =
       device.framebufferColorSampleCounts | device.framebufferDepthSampleCounts |
       device.sampledImageColorSampleCounts | device.sampledImageIntegerSampleCounts |

@@ -1,4 +1,4 @@
-// The caller's device as the executor's parts see it.
+// The caller's device, its functions, properties and limits, shared by the parts of the executor.
 #pragma once
 
 #include <string>
@@ -14,22 +14,24 @@ struct DeviceContext {
   VulkanFunctions vk;
   VkPhysicalDeviceProperties properties{};
   VkPhysicalDeviceMemoryProperties memory{};
-  // By queue class: the bits of a timestamp that count, 0 where the queue has no timestamps.
+  // For each queue class, the number of valid bits of a timestamp; 0 if the queue has no
+  // timestamps.
   std::uint32_t timestamp_bits[kQueueClasses] = {};
   Limits limits;
 
   const VkAllocationCallbacks* callbacks() const { return handles.host.allocation_callbacks; }
 };
 
-// Functions, properties and limits of a device; the error says what it lacks.
+// Fetches the functions, properties and limits of a device. The error names the function or feature
+// that the device lacks.
 [[nodiscard]] tl::expected<void, Errors> open(DeviceContext& context, const DeviceHandles& handles);
 
-// The create infos that memory requirements are asked for, and resources created with.
+// Return the create infos with which memory requirements are queried and resources created.
 VkImageCreateInfo image_info(const ResourceRecord& record, VkFlags usage);
 VkBufferCreateInfo buffer_info(const ResourceRecord& record, VkFlags usage);
 
 Errors vulkan_error(VkResult result, std::string what);
-// `VK_ERROR_OUT_OF_DEVICE_MEMORY` and so on.
+// Returns the name of a result, for example `VK_ERROR_OUT_OF_DEVICE_MEMORY`.
 const char* result_name(VkResult result);
 
 }  // namespace alcove::framegraph

@@ -51,7 +51,7 @@ constexpr std::uint32_t find_texel_size(VkFormat format) {
   return 16;
 }
 
-// By format, as far as those of Vulkan 1.0 go.
+// Bytes per texel, indexed by format, for the formats of Vulkan 1.0.
 constexpr auto kTexelSizes = [] {
   std::array<std::uint8_t, VK_FORMAT_ASTC_12x12_SRGB_BLOCK + 1> sizes{};
   for (std::size_t i = 0; i < sizes.size(); ++i)

@@ -20,7 +20,7 @@ tl::unexpected<Errors> failure(ErrorCode code, std::string message) {
   return tl::unexpected(std::move(errors));
 }
 
-// The queues of a frame: record() has one, submit() all of the device.
+// The queues that a frame may use: one for record(), all of the device for submit().
 enum class Queues : std::uint8_t { one, all };
 
 }  // namespace
@@ -47,7 +47,7 @@ struct Executor::Implementation {
   void begin_frame(const FrameInfo& info);
   void create_timestamps();
   void forget_timestamps(std::uint32_t slot);
-  // Null where there are none.
+  // Returns the timestamps of a slot and queue, or null if timestamps are off there.
   Timestamps* timestamps_of(std::size_t slot, std::size_t queue) {
     return timestamps[slot * kQueueClasses + queue].get();
   }
@@ -70,7 +70,8 @@ struct Executor::Implementation {
   std::unique_ptr<Submitter> submitter;  // destroyed first: it waits for the device
 };
 
-// A frame from its beginning; given up where nothing of it will run.
+// The attempt to record or submit a frame. If the frame does not run, its destructor calls
+// give_up().
 struct Executor::Attempt {
   Attempt(Implementation& implementation, Graph& of, const FrameInfo& with)
       : self(implementation), graph(of), info(with) {
@@ -120,7 +121,7 @@ void Executor::Implementation::create_timestamps() {
   for (std::size_t i = 0; i < timestamps.size() && options.timestamps; ++i) {
     const std::size_t queue = i % kQueueClasses;
     const std::uint32_t bits = device.timestamp_bits[queue];
-    // A queue for transfers alone may not reset queries.
+    // A queue with transfers only cannot reset query pools.
     if (queue != static_cast<std::size_t>(QueueClass::transfer) && bits != 0)
       timestamps[i] = std::make_unique<Timestamps>(device, bits);
   }
@@ -240,7 +241,7 @@ tl::expected<void, Errors> Executor::Implementation::check_call(const FrameInfo&
   return check_slot(info.slot);
 }
 
-// A graph belongs to one executor, which holds the contents of its histories.
+// Binds the graph to this executor, which holds the contents of its histories.
 tl::expected<void, Errors> Executor::Implementation::adopt(Graph& graph) const {
   const std::shared_ptr<const char> other = graph.executor_.lock();
   if (other == life) return {};
@@ -266,7 +267,8 @@ tl::expected<void, Errors> Executor::Implementation::check_histories(Graph& grap
   return {};
 }
 
-// A plan expects in memory what it left there; what another plan left needs a barrier of its own.
+// Returns whether the frame must begin with a barrier over everything. A plan's barriers assume
+// that the same plan ran before it.
 bool Executor::Implementation::starts_anew(const CachedPlan& cached) const {
   return before != &cached || before_generation != pool->generation();
 }
@@ -301,7 +303,7 @@ tl::expected<FrameReport, Errors> Executor::Implementation::prepare(Graph& graph
   return report;
 }
 
-// Histories move on: slot 0 becomes slot 1 where it was written.
+// Moves the histories on to the next frame: slot 0 becomes slot 1 if it was written.
 void Executor::Implementation::finish(Graph& graph, const CachedPlan& cached) {
   before = &cached;
   before_generation = pool->generation();
@@ -314,7 +316,7 @@ void Executor::Implementation::forget_timestamps(std::uint32_t slot) {
   }
 }
 
-// The frame that was begun with this slot does not run. Frames before it may still run.
+// Undoes the beginning of a frame that will not run. Earlier frames may still be running.
 void Executor::Implementation::give_up(std::uint32_t slot) {
   slot_frames[slot] = finished;
   before = nullptr;
@@ -378,7 +380,7 @@ tl::expected<FrameReport, Errors> Executor::submit(Graph& graph, const FrameInfo
   const VkResult result = self.submitter->submit(cached->plan, *self.recording_threads, info,
                                                  timestamps, self.starts_anew(*cached));
   if (result != VK_SUCCESS) {
-    // Half a frame may have written to any of them.
+    // A frame that was submitted in part may have written to any history.
     attempt.runs = self.submitter->stopped_midway();
     if (attempt.runs) graph.histories().invalidate_all();
     self.before = nullptr;

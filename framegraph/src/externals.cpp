@@ -4,8 +4,8 @@
 namespace alcove::framegraph {
 namespace {
 
-// The reads of an initial state saw what was written before. Other stages and accesses have not
-// seen it.
+// Records that the read accesses of an initial state have seen the earlier writes. Other stages and
+// accesses have not.
 void note_seen(UseState& state, const State& initial_state) {
   const bool every_access = (initial_state.access & VK_ACCESS_2_MEMORY_READ_BIT) != 0;
   const bool every_stage = (initial_state.stages & VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT) != 0;
@@ -106,7 +106,8 @@ AccessRecord Synchroniser::outside_use(std::uint32_t resource, const State& stat
   return access;
 }
 
-// The state in which a history slot is left. All of it is in one layout.
+// Finds the state in which the frame leaves a history slot. All subresources of the slot are left
+// in one layout.
 void Synchroniser::leave(std::uint32_t resource) {
   const std::uint32_t first = workspace_.first_sub[resource];
   const std::uint32_t last = workspace_.first_sub[resource + 1];

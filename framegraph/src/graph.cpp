@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kBlockSize = 16384;
 
-// A number for each frame of each graph, whose lower half is not 0.
+// Returns a new number for a frame of any graph. Its lower half is never 0.
 std::uint64_t next_frame() {
   static std::atomic<std::uint64_t> frame{0};
   for (;;) {
@@ -20,7 +20,7 @@ std::uint64_t next_frame() {
   }
 }
 
-// The size relative to another one; 0 where it is not a size.
+// Returns the size relative to another size, or 0 if the result is not a valid size.
 std::uint32_t relative_size(std::uint32_t size, const Extent& extent) {
   if (extent.divisor == 0 || extent.multiplier == 0) return 0;
   const std::uint64_t multiplied = std::uint64_t{size} * extent.multiplier;
@@ -41,7 +41,7 @@ Graph::~Graph() { destroy_callables(); }
 void Graph::reset() {
   destroy_callables();
   description_.passes.clear();
-  // The records after this one describe resources that may not be there any more.
+  // The next record is from an earlier frame and may name resources that no longer exist.
   description_.accesses.next() = {};
   description_.accesses.clear();
   next_access_ = &description_.accesses.next();
@@ -84,7 +84,7 @@ void Graph::keep_long_name(std::string_view name, GraphDescription::Name& to) {
   description_.long_names.append(name);
 }
 
-// The next record, which is as a rule there already.
+// Appends a record. The place usually holds the same record from the frame before.
 template <typename Record>
 void Graph::add(Records<Record>& records, const Record& record) {
   if (records.is_full()) records.grow();
@@ -95,7 +95,8 @@ void Graph::add(Records<Record>& records, const Record& record) {
   changed();
 }
 
-// Arrays that run parallel to the records grow first: if memory gives out, none is too small.
+// Grows the arrays that run parallel to the records before the records themselves: if memory runs
+// out, no array is too small.
 void Graph::grow_resources() {
   const std::size_t capacity = description_.resources.next_capacity();
   description_.resource_names.resize(capacity);
@@ -179,7 +180,8 @@ Buffer Graph::create_buffer(std::string_view name, const BufferDesc& desc) {
   return {add_resource(name, buffer_record(desc)), 0, tag_};
 }
 
-// The external that has the same image, in some of the same layers, or the same buffer.
+// Returns the external that was imported with the same buffer, or with the same image and an
+// overlapping range of layers.
 std::uint32_t Graph::imported_before(VkImage image, VkBuffer buffer, std::uint32_t layer,
                                      const ResourceRecord& record) const {
   if (image == VK_NULL_HANDLE && buffer == VK_NULL_HANDLE) return kNone;
@@ -302,7 +304,7 @@ void Graph::leave_histories(std::span<const FinalState> finals) {
     slot.state = final.state;
     slot.queue = final.queue;
     if (record.slot == 0 && final.written != Written::nothing) {
-      // A valid persistent resource stays valid when a part of it is written anew.
+      // A valid persistent resource stays valid if only a part of it is written.
       const bool whole =
           final.written == Written::whole ||
           ((record.flags & kPersistent) != 0 && slot.validity == HistoryValidity::valid);

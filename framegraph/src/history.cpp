@@ -16,7 +16,7 @@ bool same(const ResourceRecord& a, const ResourceRecord& b) {
 std::uint32_t HistoryTable::declare(std::string_view name, const ResourceRecord& record) {
   for (std::uint32_t i = 0; i < entries_.size(); ++i) {
     HistoryEntry& entry = entries_[i];
-    // Two histories of one name in one frame are two histories.
+    // Two histories with one name in one frame are different histories.
     if (entry.declared || entry.dropped || entry.name != name) continue;
     remember(i);
     entry.declared = true;
@@ -39,7 +39,8 @@ std::uint32_t HistoryTable::declare(std::string_view name, const ResourceRecord&
     before_.reserve(entries_.size() + 1);
     place = entries_.insert(place, HistoryEntry{});
   }
-  // The generations go on: what the place held before is of an earlier one.
+  // Generations keep increasing, so that resources of the entry's previous history are not found
+  // again.
   const std::uint32_t newest = place->newest;
   *place = {};
   place->name = name;
@@ -73,14 +74,14 @@ void HistoryTable::invalidate_all() {
 
 void HistoryTable::invalidate(std::uint32_t index) {
   for (HistorySlot& slot : entries_[index].slots) {
-    // A slot that never held anything keeps the first reason.
+    // A slot that is already invalid keeps its first reason.
     if (slot.validity != HistoryValidity::valid) continue;
     remember(index);
     slot.validity = HistoryValidity::reset;
   }
 }
 
-// A second frame of one declaration takes back only itself.
+// The frame may be a second one with the same declaration. undo() then takes back only that frame.
 void HistoryTable::begin_end() {
   if (ended_) before_.clear();
   ended_ = false;
@@ -93,7 +94,7 @@ void HistoryTable::leave(std::uint32_t index, std::uint32_t slot, const HistoryS
   entry.slots[entry.physical(slot)] = left;
 }
 
-// The oldest slot is the next to be written.
+// Slots rotate: the oldest one becomes the current one.
 void HistoryTable::rotate(std::uint32_t index) {
   HistoryEntry& entry = entries_[index];
   entry.head = (entry.head + entry.record.slots - 1) % entry.record.slots;

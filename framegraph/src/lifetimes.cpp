@@ -40,7 +40,7 @@ void lifetimes(const GraphDescription& graph, Workspace& workspace, Plan& plan) 
     ++position;
   }
   if (workspace.several_queues) lengthen(graph, workspace, plan);
-  // An output keeps its memory to the end of the frame.
+  // The memory of an output is in use until the end of the frame.
   for (const OutputRecord& output : graph.outputs) {
     Placement& placement = plan.placements[output.resource];
     if (placement.first != kNone)

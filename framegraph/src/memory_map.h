@@ -1,4 +1,4 @@
-// The resources that last used the bytes of a heap.
+// For each byte of a heap, the resource that used it last.
 #pragma once
 
 #include <algorithm>
@@ -14,13 +14,13 @@ struct Segment {
   VkDeviceSize begin = 0;
   VkDeviceSize end = 0;
   std::uint32_t resource = kNone;
-  bool before = false;  // in the frame before
+  bool before = false;  // it used them in the previous frame
 };
 
-// Segments in order, none overlapping.
+// Segments in ascending order that do not overlap.
 using MemoryMap = std::vector<Segment>;
 
-// The first segment that ends after an offset.
+// Returns the first segment that ends after an offset.
 inline Segment* first_after(MemoryMap& map, VkDeviceSize offset) {
   Segment* first = map.data();
   for (std::size_t count = map.size(); count > 0;) {
@@ -32,14 +32,15 @@ inline Segment* first_after(MemoryMap& map, VkDeviceSize offset) {
   return first;
 }
 
-// Calls f for each owner of bytes in [begin, end), then makes them `owner`'s.
+// Calls f for each segment that overlaps [owner.begin, owner.end), then gives these bytes to
+// `owner`.
 template <typename Function>
 inline void take_over(MemoryMap& map, const Segment& owner, Function&& f) {
   Segment* const first = first_after(map, owner.begin);
   Segment* const end = map.data() + map.size();
   Segment* last = first;
   for (; last != end && last->begin < owner.end; ++last) f(*last);
-  // In the common case one owner's bytes go to another whole.
+  // The common case: `owner` takes the bytes of one segment exactly.
   if (last == first + 1 && first->begin >= owner.begin && first->end <= owner.end) {
     *first = owner;
     return;
@@ -64,7 +65,8 @@ inline void take_over(MemoryMap& map, const Segment& owner, Function&& f) {
     map.erase(std::copy(kept, kept + keep, from), from + old);
 }
 
-// Gives those bytes of [begin, end) to `owner` that nobody has; how many they were.
+// Gives the bytes of [owner.begin, owner.end) that have no owner to `owner`, and returns their
+// number.
 inline VkDeviceSize claim_free(MemoryMap& map, const Segment& owner) {
   VkDeviceSize claimed = 0;
   VkDeviceSize at = owner.begin;

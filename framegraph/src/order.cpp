@@ -28,14 +28,15 @@ class Orderer {
     measure();
     std::int64_t floor = 0;
     const std::int64_t peak = peak_as_declared(floor);
-    // The resources of one pass are live together in any order.
+    // In any order, all resources of one pass are live at the same time. If the peak is no higher
+    // than that, no order is better.
     if (peak <= floor) return false;
     find_edges();
     return list_greedily(peak) < peak && s_.order.size() == live;
   }
 
  private:
-  // Bytes of each transient, and the number of passes that use it.
+  // Finds the size of each transient in bytes and the number of passes that use it.
   void measure() {
     s_.bytes.assign(graph_.resources.size(), 0);
     s_.uses.assign(graph_.resources.size(), 0);
@@ -49,12 +50,12 @@ class Orderer {
         ++s_.uses[access.resource];
       });
     }
-    // An output keeps its memory to the end of the frame.
+    // The memory of an output is in use until the end of the frame.
     for (const OutputRecord& output : graph_.outputs) ++s_.uses[output.resource];
   }
 
-  // The bytes that become live when a pass runs (`gained`), that are free after it (`freed`), and
-  // of all transients that it uses (`own`).
+  // For one pass: the bytes that become live when it runs (`gained`), the bytes that are free after
+  // it (`freed`), and the bytes of all transients that it uses (`own`).
   struct Step {
     std::int64_t gained = 0;
     std::int64_t freed = 0;

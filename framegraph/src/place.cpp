@@ -39,14 +39,15 @@ class Placer {
   }
 
  private:
-  // Gives each transient its heap, and lists the transients of all heaps.
+  // Assigns each transient to a heap, and makes a list of the transients of all heaps.
   void make_heaps() {
     s_.items.resize(workspace_.transients.size());
     PlaceItem* item = s_.items.data();
     for (const std::uint32_t r : workspace_.transients) {
       Placement& placement = plan_.placements[r];
       const MemoryRequirements needed = requirements(graph_.resources[r], placement.usage);
-      // Whole pages keep buffers and images apart by the granularity.
+      // Aligning to whole pages keeps buffers and images in different pages of
+      // bufferImageGranularity.
       placement.alignment = std::max(needed.alignment, limits_.buffer_image_granularity);
       placement.size = align_up(needed.size, limits_.buffer_image_granularity);
       placement.heap = heap_of(needed.memory_types);
@@ -145,7 +146,7 @@ class Placer {
       item.offset = offset;
       const Workspace::Taken own{offset, offset + item.size, item.last};
       peak = std::max(peak, own.end);
-      // The new range replaces the first ended one.
+      // The new range takes the place of the first ended range in the array.
       if (kept == next) {
         taken.insert(taken.begin() + static_cast<std::ptrdiff_t>(kept), own);
         continue;
@@ -257,11 +258,11 @@ class Placer {
         [](VkDeviceSize value, const PlaceItem& there) { return value < there.offset; });
     const auto made = s_.live.insert(at, item);
     made->offset = offset;
-    made->resource = index;  // among the items
+    made->resource = index;  // index of its PlaceItem
     return offset + item.size;
   }
 
-  // Makes this order the one to which further changes are made.
+  // Accepts the order that was tried last: further changes start from it.
   void settle() {
     s_.settled_order = s_.order;
     s_.settled_offsets = s_.offsets;
@@ -274,7 +275,8 @@ class Placer {
     while (best_ > bound && budget_ > 0) {
       budget_ -= 16;
       const std::size_t from = change_order();
-      // Slightly worse orders are accepted too, to leave local minima.
+      // Orders that are slightly worse than the settled one are accepted too, so that the search
+      // leaves local minima.
       const VkDeviceSize limit = settled_peak_ + bound / 256 * roll(3);
       if (!try_order(limit, from) && last_ <= limit) settle();
     }

@@ -1,4 +1,4 @@
-// Compiled plans, found again by the declarations themselves.
+// A cache of compiled plans, looked up by the frame's declaration.
 #pragma once
 
 #include <memory>
@@ -11,23 +11,24 @@
 namespace alcove::framegraph {
 
 struct CachedPlan {
-  std::optional<std::uint64_t> key;  // the hash of the declaration; none until the plan is kept
+  std::optional<std::uint64_t> key;  // hash of the declaration; empty until the plan is kept
   GraphDescription declaration;      // names are those of the frame that made it
   Plan plan;
   std::uint64_t last_frame = 0;
-  // The transients' physical side, right for one generation of the pool.
+  // The images and buffers of the transients. They are valid for one generation of the pool.
   std::uint64_t generation = 0;
   std::vector<Physical*> physical;
 };
 
 class PlanCache {
  public:
-  // At least 1; before the first plan.
+  // Sets the largest number of plans, at least 1. Call it before the first plan is compiled.
   void set_capacity(std::size_t capacity) { capacity_ = capacity; }
-  // A plan for these declarations; null when they were not seen lately. The last one is tried
-  // first, without hashing.
+  // Returns the plan of an equal declaration, or null if the cache has none. The plan that was
+  // returned last is compared first, without hashing.
   CachedPlan* find(const GraphDescription& graph);
-  // Room for a new one, replacing the one unused for longest; it counts only once kept.
+  // Returns an entry for a new plan. If the cache is full, it replaces the plan that was unused for
+  // longest. The entry is looked up only after it was marked as kept.
   CachedPlan& room(std::uint64_t frame);
   void keep(CachedPlan& plan, const GraphDescription& graph);
 

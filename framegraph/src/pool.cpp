@@ -9,10 +9,10 @@
 namespace alcove::framegraph {
 namespace {
 
-// Frames after which what is unused is destroyed.
+// The number of frames after which an unused object is destroyed.
 constexpr std::uint64_t kPatience = 120;
 
-// Room for `more`, made before what is to be put there: where memory gives out nothing is lost.
+// Makes room for `more` values before they exist, so that no object is lost if memory runs out.
 template <typename Value>
 void make_room(std::vector<Value>& values, std::size_t more = 1) {
   const std::size_t needed = values.size() + more;
@@ -37,7 +37,7 @@ bool wants_addresses(const GraphDescription& graph, const Plan& plan, std::uint3
   return false;
 }
 
-// A multiple of what every placement in the heap asks for.
+// Returns the largest alignment of all placements in the heap.
 VkDeviceSize alignment_of(const Plan& plan, std::uint32_t heap) {
   VkDeviceSize alignment = 1;
   for (const Placement& placement : plan.placements) {
@@ -47,7 +47,7 @@ VkDeviceSize alignment_of(const Plan& plan, std::uint32_t heap) {
 }
 
 bool same(const ResourceRecord& a, const ResourceRecord& b) {
-  // Where a resource came from does not matter to what it is.
+  // Compares descriptions only. The origin of a resource does not matter.
   return a.kind == b.kind && a.size == b.size && a.format == b.format && a.width == b.width &&
          a.height == b.height && a.depth == b.depth && a.mips == b.mips && a.layers == b.layers &&
          a.samples == b.samples && a.create_flags == b.create_flags;
@@ -89,7 +89,8 @@ VkResult Pool::reserve(const GraphDescription& graph, const Plan& plan, std::uin
     if (const VkResult result =
             allocate({size, alignment_of(plan, h), wanted.memory_types}, has_addresses, memory))
       return result;
-    // Everything in the old memory goes with it; other heaps' transients are cheap to make again.
+    // All transients are retired with the old memory. Those of other heaps are cheap to create
+    // again.
     for (auto& physical : transients_) retired_.push_back({frame, std::move(physical)});
     transients_.clear();
     if (heap->memory.memory) retired_.push_back({frame, nullptr, heap->memory, heap->size});
@@ -315,7 +316,7 @@ void Pool::set_name(const Physical& physical, std::string_view name) {
   VkDebugUtilsObjectNameInfoEXT info{};
   info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT;
   info.objectType = physical.image ? VK_OBJECT_TYPE_IMAGE : VK_OBJECT_TYPE_BUFFER;
-  // Handles are pointers or integers, by platform: only this cast does for both.
+  // A handle is a pointer or an integer, depending on the platform. This cast works for both.
   info.objectHandle =
       physical.image ? (std::uint64_t)physical.image : (std::uint64_t)physical.buffer;
   info.pObjectName = text;

@@ -1,10 +1,10 @@
-// The physical side: device memory, images, buffers and views, kept from frame to frame and shared
-// by all cached plans.
+// Device memory, images, buffers and views, kept from frame to frame and shared by all cached
+// plans.
 //
-// Transients of every plan lie in the same heaps, one for each set of memory types, which only
-// grow. A transient is found again by description, usage and offset, so that a plan that comes back
-// finds its very images. Objects that no frame used for a while are destroyed once the device is
-// done with them.
+// The transients of all plans lie in the same heaps, one for each set of memory types. Heaps only
+// grow. A transient is looked up by description, usage and offset, so that a cached plan finds its
+// own images again. Objects that no frame has used for a while are destroyed after the device has
+// finished with them.
 #pragma once
 
 #include <cstdint>
@@ -28,12 +28,12 @@ struct Physical {
   ResourceRecord record;
   VkFlags usage = 0;
   VkDeviceSize offset = 0;
-  std::uint32_t heap = kNone;  // into the pool's heaps; kNone with memory of its own
+  std::uint32_t heap = kNone;  // index into the pool's heaps; kNone if its memory is its own
   VkImage image = VK_NULL_HANDLE;
   VkBuffer buffer = VK_NULL_HANDLE;
   MemoryRange own_memory;
   VkDeviceSize own_size = 0;
-  bool owned = true;        // false for imports: only the views are the pool's
+  bool owned = true;        // false for imports, of which the pool owns the views only
   std::uint32_t layer = 0;  // the image's layer at which an imported texture begins
   std::vector<CachedView> views;
   std::uint64_t last_frame = 0;
@@ -50,35 +50,37 @@ class Pool {
   // `generation` changes.
   [[nodiscard]] VkResult reserve(const GraphDescription& graph, const Plan& plan,
                                  std::uint64_t frame);
-  // The transient of this description at this place.
+  // Finds or creates the transient with this description at this place.
   [[nodiscard]] VkResult transient(const ResourceRecord& record, const Plan& plan,
                                    const Placement& placement, std::string_view name,
                                    Physical*& found);
-  // One slot of a history, with memory of its own.
+  // Finds or creates one slot of a history, which has memory of its own.
   [[nodiscard]] VkResult history(const HistoryTable& table, std::uint32_t entry,
                                  std::uint32_t position, const ResourceRecord& record,
                                  VkFlags usage, std::string_view name, Physical*& found);
-  // The slot of a history if it was made already, else null.
+  // Returns the slot of a history, or null if it was not created yet.
   Physical* find_history(const HistoryTable& table, std::uint32_t entry,
                          std::uint32_t position) const;
-  // Retires what belongs to no entry any more: dropped, made anew in another shape in an earlier
-  // frame, or of a graph that is gone. Other graphs' histories stay.
+  // Retires the slots of histories that no longer exist: those that were dropped, that got another
+  // description in an earlier frame, or whose graph is gone. Histories of other graphs stay.
   void retire_histories(const HistoryTable& table, std::uint64_t frame);
-  // A stand-in for an import: its views are cached by image and layer.
+  // Returns an object for an imported resource, whose views are cached by image and layer.
   Physical& import(const ResourceRecord& record, const ImportHandles& handles);
   void forget(VkImage image, std::uint64_t frame);
-  // The view of a range, made on first use; null when the device is out of memory. Several threads
-  // may ask at the same time.
+  // Returns the view of a range, which is created on first use, or null if memory runs out. Several
+  // threads may call it at the same time.
   VkImageView view(Physical& physical, const Range& range, VkImageViewType type, VkFormat format);
 
-  // Destroys what is retired or was not used for long, up to a frame that the device has finished.
+  // Destroys retired objects and objects that were not used for a while, if the device has finished
+  // the last frame that used them. `finished` is the last finished frame.
   void collect(std::uint64_t finished, std::uint64_t frame);
 
   std::uint64_t generation() const { return generation_; }
-  // Bytes of device memory, what is retired and not yet freed among them.
+  // Returns the allocated device memory in bytes, including retired objects that are not yet freed.
   VkDeviceSize allocated() const;
   VkDeviceSize history_size() const;
-  // Why an allocation of device memory has failed since the last call; may be empty.
+  // Returns the reason why an allocation of device memory has failed since the last call. It may be
+  // empty.
   std::string take_shortage() { return memory_.take_reason(); }
 
  private:
@@ -86,7 +88,7 @@ class Pool {
     std::uint32_t memory_types = 0;
     MemoryRange memory;
     VkDeviceSize size = 0;
-    bool has_addresses = false;  // Buffers in it may have a device address.
+    bool has_addresses = false;  // whether its buffers may have a device address
   };
   struct HistoryImage {
     std::weak_ptr<const char> table;  // HistoryTable::life()
@@ -102,7 +104,8 @@ class Pool {
     VkDeviceSize heap_size = 0;
   };
 
-  // Far enough apart that no two pools of the process ever have a generation in common.
+  // Returns a start value for `generation`. Start values are so far apart that no two pools of the
+  // process ever have the same generation.
   static std::uint64_t first_generation();
   VkResult create(Physical& physical, std::string_view name);
   VkResult allocate(const VkMemoryRequirements& requirements, bool has_addresses,

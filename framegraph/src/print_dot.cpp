@@ -1,5 +1,5 @@
-// Plans for Graphviz: passes coloured by queue, an edge from each to those that read what it
-// writes, culled passes dashed.
+// Prints a plan for Graphviz: passes coloured by queue, an edge from each pass to the passes that
+// use what it wrote, and culled passes with dashed borders.
 #include <map>
 #include <vector>
 
@@ -67,7 +67,7 @@ class DotPrinter {
   void edges() {
     std::vector<std::uint32_t> writer(graph_.resources.size(), kNone);
     for (std::uint32_t pass = 0; pass < graph_.passes.size(); ++pass) {
-      std::map<std::uint32_t, std::string> labels;  // by writer
+      std::map<std::uint32_t, std::string> labels;  // key: the pass that wrote
       for (const AccessRecord& access : graph_.pass_accesses(pass)) {
         const std::uint32_t from = writer[access.resource];
         if (from == kNone || from == pass || (access.flags & kDiscard)) continue;

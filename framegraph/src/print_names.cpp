@@ -61,7 +61,7 @@ constexpr Bit kAccesses[] = {
     {VK_ACCESS_2_MEMORY_WRITE_BIT, "memory write"},
 };
 
-// Vulkan's names without their common prefix and suffix.
+// Vulkan's names without their common prefix and suffix, for example TRANSFER_SRC.
 constexpr Bit kImageUsages[] = {
     {VK_IMAGE_USAGE_TRANSFER_SRC_BIT, "TRANSFER_SRC"},
     {VK_IMAGE_USAGE_TRANSFER_DST_BIT, "TRANSFER_DST"},
@@ -156,7 +156,7 @@ std::string queue_name(QueueClass queue) {
 }
 
 std::string byte_size(VkDeviceSize bytes) {
-  // Tenths of the largest unit that leaves at least one.
+  // The text has one decimal, in the largest unit in which the number is at least 1.
   constexpr const char* kUnits[] = {"B", "KiB", "MiB", "GiB"};
   std::size_t unit = 0;
   VkDeviceSize scale = 1;

@@ -1,4 +1,4 @@
-// Short names for stages, accesses, usages, layouts and formats.
+// Returns short names of stages, accesses, usages, layouts and formats.
 #pragma once
 
 #include <string>
@@ -10,18 +10,19 @@
 
 namespace alcove::framegraph {
 
-// Bits joined by '|'; "none" for none.
+// Returns the names of the bits, joined by '|', or "none" if no bit is set.
 std::string stage_names(VkPipelineStageFlags2 stages);
 std::string access_names(VkAccessFlags2 accesses);
 std::string usage_names(ResourceKind kind, VkFlags usage);
 std::string layout_name(VkImageLayout layout);
 std::string queue_name(QueueClass queue);
 std::string byte_size(VkDeviceSize bytes);
-// "mip 0..2 layer 1" where it is not everything.
+// Returns a text such as "mip 0..2 layer 1", or an empty one if the range covers the whole texture.
 std::string range_name(const Range& range, std::uint32_t mips, std::uint32_t layers);
-// Names of all resources, with their index where several have the same one.
+// Returns the names of all resources. Names that several resources have are followed by the index
+// of the resource.
 std::vector<std::string> resource_names(const GraphDescription& graph);
-// Why a pass runs, "for 'lighting'", or why it does not.
+// Returns the reason why a pass runs, for example "for 'lighting'", or why it was culled.
 std::string reason(const GraphDescription& graph, const PassCullReason& cull_reason);
 
 }  // namespace alcove::framegraph

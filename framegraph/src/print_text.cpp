@@ -1,5 +1,5 @@
-// Plans as text: passes in order with their barriers, what was culled, and lifetimes against memory
-// as a picture.
+// Prints a plan as text: the passes in order with their barriers, the culled passes, and a chart of
+// lifetimes and memory offsets.
 #include <algorithm>
 #include <vector>
 
@@ -18,7 +18,7 @@ std::string padded(std::string_view text, std::size_t width) {
   return out;
 }
 
-// `head`, then the items, on as many lines as they need.
+// Returns `head` followed by the items, broken into lines.
 std::string wrapped(const std::string& head, const std::vector<std::string>& items,
                     const char* separator) {
   std::string out;
@@ -106,7 +106,7 @@ class TextPrinter {
     for (std::uint32_t b = first; b < first + count; ++b) batch(plan_.batches[b]);
   }
 
-  // One line for all transitions that wait for and hold up the same stages.
+  // Prints one line for all transitions of the batch with equal source and destination stages.
   void batch(const Batch& batch) {
     std::vector<std::uint8_t> done(batch.count, 0);
     for (std::uint32_t i = 0; i < batch.count; ++i) {
@@ -160,8 +160,8 @@ class TextPrinter {
     if (any) line("");
   }
 
-  // One row for each transient, by offset; one column for each position (or several, when there
-  // are more positions than columns).
+  // Prints the chart of memory: one row for each transient in order of offset, and one column for
+  // each position. If there are more positions than columns, a column stands for several.
   void memory() {
     std::vector<std::uint32_t> rows;
     for (std::uint32_t r = 0; r < plan_.placements.size(); ++r) {
@@ -190,7 +190,7 @@ class TextPrinter {
     }
   }
 
-  // The positions that stand above every tenth column.
+  // Returns the line with the positions above every tenth column.
   std::string ruler(std::size_t step) const {
     std::string text;
     for (std::size_t column = 0; column * step < plan_.passes.size(); column += 10)

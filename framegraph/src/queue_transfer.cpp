@@ -1,14 +1,14 @@
-// Resources that go from one queue to another. The semaphore wait between the two submissions
-// orders them. Between queue families there is also a release after the last pass of the first
-// submission and an acquire before the pass that takes the resource.
+// Moves resources from one queue to another. The semaphore wait between the two submissions orders
+// them. Between queue families there is also a release after the last pass of the first submission
+// and an acquire before the pass that takes the resource.
 #include <algorithm>
 
 #include "synchronise.h"
 
 namespace alcove::framegraph {
 
-// True if an ownership transfer was added, which also changes the layout: nothing is left to do
-// then.
+// Returns true if an ownership transfer was added. It also changes the layout, so that the access
+// needs no other barrier.
 bool Synchroniser::change_queue(std::uint32_t position, const AccessRecord& access, UseState& state,
                                 const Range& range) {
   const auto family = [this](QueueClass queue) {
@@ -36,21 +36,22 @@ bool Synchroniser::change_queue(std::uint32_t position, const AccessRecord& acce
   return true;
 }
 
-// The submission that releases the subresource: the last one that uses it on its queue.
+// Returns the submission that releases the subresource: the last one that uses it on its queue.
 std::uint32_t Synchroniser::giving_submission(const UseState& state) const {
   const std::int32_t time = std::max(state.read_time, state.write_time);
   if (time >= 0) return plan_.passes[static_cast<std::size_t>(time / 2)].submission;
   const std::uint32_t opening = workspace_.queues.opening[static_cast<std::size_t>(state.queue)];
   if (opening != kNone) return opening;
-  // No pass used this part of a history, and the end of the frame takes it. Any submission of its
-  // queue comes before that.
+  // No pass used this part of a history, and the end of the frame transfers it. Any submission of
+  // its queue may release it.
   const auto own = std::find_if(
       plan_.submissions.begin(), plan_.submissions.end(),
       [&state](const Submission& submission) { return submission.queue == state.queue; });
   return static_cast<std::uint32_t>(own - plan_.submissions.begin());
 }
 
-// An image whose contents are not kept needs no release: it is taken from the undefined layout.
+// Takes an image whose contents are not kept. It needs no release, because it is taken from the
+// undefined layout.
 void Synchroniser::take_without_giver(std::uint32_t position, UseState& state, bool same_family) {
   UseState taken;
   taken.queue = queue_;
@@ -58,7 +59,8 @@ void Synchroniser::take_without_giver(std::uint32_t position, UseState& state, b
   taken.used = state.used;
   taken.layout = same_family ? state.layout : VK_IMAGE_LAYOUT_UNDEFINED;
   if (state.handed_over) {
-    // The resource that had the memory before may have been on this queue, with no wait in between.
+    // The resource that had the memory before may have been used on this queue, without a wait in
+    // between.
     taken.handed_over = 1;
     taken.frame_before = state.frame_before;
     wait_for_frame_before(position, state.frame_before);
@@ -88,7 +90,7 @@ Transition Synchroniser::release_of(const AccessRecord& access, const UseState& 
   return release;
 }
 
-// Releases come after the last pass of their submissions.
+// Adds the releases after the last passes of their submissions.
 void Synchroniser::add_releases() {
   std::sort(s_.releases.begin(), s_.releases.end(), [](const auto& a, const auto& b) {
     return a.submission != b.submission ? a.submission < b.submission : a.number < b.number;

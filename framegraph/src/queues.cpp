@@ -39,8 +39,8 @@ class QueueAssigner {
     return limits_.queue_families[static_cast<std::size_t>(queue)];
   }
 
-  // Each pass gets the queue of its class, or the graphics queue where the device has none of that
-  // class.
+  // Assigns each pass to the queue of its class, or to the graphics queue if the device has no
+  // queue of that class.
   void choose_queues() {
     plan_.passes.resize(workspace_.order.size());
     workspace_.several_queues = false;
@@ -56,7 +56,8 @@ class QueueAssigner {
     }
   }
 
-  // Whether a pass uses a resource that another queue than graphics used before the frame.
+  // Returns whether a pass uses a resource whose last use before the frame was on a queue other
+  // than graphics.
   bool takes_from_others(std::uint32_t pass) const {
     bool takes = false;
     for_each_live(graph_, plan_, pass, [&](const AccessRecord& access) {
@@ -65,8 +66,8 @@ class QueueAssigner {
     return takes;
   }
 
-  // For each pass and each other queue, the last pass that it must wait for, unless that is known
-  // to be done.
+  // Finds, for each pass and each other queue, the last pass that it must wait for, unless that one
+  // is known to be done.
   void find_waits() {
     const std::size_t count = plan_.passes.size();
     s_.waits.assign(count * kQueueClasses, kNobody);
@@ -116,8 +117,8 @@ class QueueAssigner {
     }
   }
 
-  // When this pass runs, its queue knows to be done what the pass waits for, and what that knew to
-  // be done.
+  // Updates what the pass's queue knows to be done: the passes that this pass waits for, and
+  // everything that their queues knew to be done.
   void learn(std::uint32_t position) {
     const auto own = static_cast<std::size_t>(plan_.passes[position].queue);
     for (std::size_t other = 0; other < kQueueClasses; ++other) {
@@ -137,7 +138,8 @@ class QueueAssigner {
       s_.known_at[position * kQueueClasses + other] = known_[own][other];
   }
 
-  // A bit for the queue that used the resource before the frame, if that is not `user`.
+  // Returns the bit of the queue that used the resource before the frame, or 0 if that queue is
+  // `user`.
   std::uint8_t given_by(std::uint32_t resource, QueueClass user) const {
     const std::uint32_t external = graph_.resources[resource].external;
     if (external == kNone) return 0;
@@ -147,7 +149,7 @@ class QueueAssigner {
     return static_cast<std::uint8_t>(1u << static_cast<unsigned>(owner));
   }
 
-  // f(resource, subresource) for all that a pass uses.
+  // Calls f(resource, subresource) for every subresource that a pass uses.
   template <typename Function>
   void for_each_live_sub(std::uint32_t position, Function&& f) const {
     for_each_live(graph_, plan_, plan_.passes[position].pass, [&](const AccessRecord& access) {
@@ -189,8 +191,8 @@ class QueueAssigner {
     ++plan_.submissions.back().wait_count;
   }
 
-  // Resources that another queue used before the frame are waited for, and released, by a
-  // submission without passes on that queue.
+  // Adds a submission without passes on each queue whose resources, used before the frame, go to
+  // another queue. It releases them, and the taking queue waits for it.
   void open_before() {
     std::fill(std::begin(s_.opening), std::end(s_.opening), kNobody);
     std::uint8_t opened = 0;
@@ -204,7 +206,8 @@ class QueueAssigner {
     }
   }
 
-  // Resources of a queue that this frame does not have belong to the graphics queue.
+  // Returns the queue that the resource was last used on, or graphics if the device has no such
+  // queue in this frame.
   QueueClass initial_queue(const ExternalRecord& external) const {
     return family(external.queue) == kNone ? QueueClass::graphics : external.queue;
   }
@@ -227,8 +230,7 @@ class QueueAssigner {
       s_.moved[to].submission = s_.submission_of[position];
       s_.new_position[position] = to;
     }
-    // Translates what is known of each queue to the new positions. The passes of a queue keep their
-    // order.
+    // Translates the known positions to the new numbering. The passes of a queue keep their order.
     for (std::uint32_t position = 0; position < plan_.passes.size(); ++position) {
       for (std::size_t other = 0; other < kQueueClasses; ++other) {
         const std::int32_t old = s_.known_at[position * kQueueClasses + other];
@@ -242,8 +244,8 @@ class QueueAssigner {
       workspace_.order[position] = plan_.passes[position].pass;
   }
 
-  // Graphics waits for the last uses of imports, which the next frame takes over from it, and of
-  // histories whose parts may be in different states.
+  // Makes the graphics queue wait for the last uses of imports, which the next frame takes over
+  // from it, and of histories whose subresources may be in different states.
   void close() {
     if (graph_.externals.empty()) return;
     std::uint32_t last[kQueueClasses] = {kNobody, kNobody, kNobody};
@@ -276,9 +278,10 @@ class QueueAssigner {
     }
   }
 
-  // By queue, of another: the last position that it knows to be done, -1 where it knows of none.
+  // For each queue and each other queue: the last position of the other queue that it knows to be
+  // done, or -1.
   std::int32_t known_[kQueueClasses][kQueueClasses] = {};
-  // Queues whose opening submission is known to be done, as bits.
+  // For each queue: bits of the queues whose opening submission it knows to be done.
   std::uint8_t known_open_[kQueueClasses] = {};
   const GraphDescription& graph_;
   const Limits& limits_;
@@ -299,8 +302,8 @@ std::uint32_t taken_until(const Workspace& workspace, const Plan& plan, std::uin
   std::uint32_t until = position;
   for (std::size_t other = 0; other < kQueueClasses; ++other) {
     if (other == own) continue;
-    // Later passes of the other queue may run at the same time unless they know this one to be
-    // done.
+    // Later passes of the other queue may run at the same time, unless their queue knows this pass
+    // to be done.
     for (std::uint32_t later = position + 1; later < plan.passes.size(); ++later) {
       if (static_cast<std::size_t>(plan.passes[later].queue) != other) continue;
       if (workspace.queues.known[later * kQueueClasses + own] >=

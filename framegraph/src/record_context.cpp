@@ -54,7 +54,7 @@ VkRenderingAttachmentInfo RecordContext::attachment(const Attachment& wanted,
   info.loadOp = (contents & kHasContents) != 0 ? VK_ATTACHMENT_LOAD_OP_LOAD
                 : wanted.clear                 ? VK_ATTACHMENT_LOAD_OP_CLEAR
                                                : VK_ATTACHMENT_LOAD_OP_DONT_CARE;
-  // One that is only tested against is not stored, which would be a write.
+  // An attachment that is only tested against is not stored, because storing is a write.
   info.storeOp = !(access.flags & kWrite)      ? VK_ATTACHMENT_STORE_OP_NONE
                  : (contents & kIsNeeded) != 0 ? VK_ATTACHMENT_STORE_OP_STORE
                                                : VK_ATTACHMENT_STORE_OP_DONT_CARE;
@@ -127,7 +127,7 @@ bool RecordContext::begin_rendering(std::span<const Attachment> colors,
     if (!bind(VK_IMAGE_ASPECT_DEPTH_BIT, depth_info, info.pDepthAttachment) ||
         !bind(VK_IMAGE_ASPECT_STENCIL_BIT, stencil_info, info.pStencilAttachment))
       return false;
-    // Both have to be one view, whose aspect does not count.
+    // Vulkan requires the same view for depth and stencil. The view's own aspects are ignored.
     if (info.pDepthAttachment) stencil_info.imageView = depth_info.imageView;
   }
   if (!alike)

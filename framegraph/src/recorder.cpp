@@ -7,7 +7,7 @@
 namespace alcove::framegraph {
 namespace {
 
-// The execution dependency of a transition without its memory dependency.
+// Returns a barrier with the execution dependency of a transition and no memory dependency.
 VkMemoryBarrier2 execution(const Transition& t) {
   VkMemoryBarrier2 barrier{};
   barrier.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2;
@@ -89,7 +89,8 @@ void Recorder::batches(std::uint32_t first, std::uint32_t count, VkCommandBuffer
   }
 }
 
-// Valid until the next call.
+// Returns the barriers of a batch for vkCmdPipelineBarrier2. The result is valid until the next
+// call.
 VkDependencyInfo Recorder::dependency(const Batch& batch) {
   images_.clear();
   memories_.clear();
@@ -128,7 +129,7 @@ VkDependencyInfo Recorder::dependency(const Batch& batch) {
   return info;
 }
 
-// A barrier that is in the dependency already is not added again.
+// Adds a memory barrier unless the dependency already contains the same one.
 void Recorder::add_memory(const VkMemoryBarrier2& barrier) {
   for (const VkMemoryBarrier2& there : memories_) {
     if (there.srcStageMask == barrier.srcStageMask && there.dstStageMask == barrier.dstStageMask &&
@@ -145,14 +146,14 @@ VkImageMemoryBarrier2 Recorder::image_barrier(const Transition& t) const {
   barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
   barrier.srcStageMask = t.src_stages;
   barrier.srcAccessMask = t.src_access;
-  // After full_barrier() there is nothing left to make available. The validation layers (1.3.239)
-  // follow that barrier into a change of layout only where this one names an access of its own,
-  // and else take what another plan wrote last for a hazard: told so, at no cost.
+  // After full_barrier() nothing is left to make available. The validation layers (1.3.239) connect
+  // that barrier with a layout change only if the layout change names a source access. Otherwise
+  // they report a hazard with what another plan wrote last. Naming an access costs nothing.
   if (starts_anew_ && t.old_layout == VK_IMAGE_LAYOUT_UNDEFINED)
     barrier.srcAccessMask |= VK_ACCESS_2_MEMORY_WRITE_BIT;
-  // The layers also lose an image's last write on the way to the next image on its bytes if a
-  // buffer had the bytes in between, unless the barrier names the access by which the buffer was
-  // read. Reads have nothing to make available, so that naming them costs nothing.
+  // The layers (1.3.239) also lose an image's last write if a buffer had the bytes between that
+  // image and the next one, unless the barrier names the access that read the buffer. Reads have
+  // nothing to make available, so that naming them costs nothing.
   if (t.old_layout == VK_IMAGE_LAYOUT_UNDEFINED && t.src_stages != 0)
     barrier.srcAccessMask |= VK_ACCESS_2_MEMORY_READ_BIT;
   barrier.dstStageMask = t.dst_stages;
@@ -182,7 +183,7 @@ VkBufferMemoryBarrier2 Recorder::buffer_barrier(const Transition& t) const {
   return barrier;
 }
 
-// Named only where ownership changes.
+// Returns the queue family of a transition, or VK_QUEUE_FAMILY_IGNORED if the owner stays.
 std::uint32_t Recorder::family(const Transition& t, QueueClass queue) const {
   const auto& families = device_.limits.queue_families;
   const bool changes = families[static_cast<std::size_t>(t.src_queue)] !=
@@ -269,8 +270,8 @@ void Recorder::release_imports(VkCommandBuffer commands) {
   }
 }
 
-// Without a change of layout: the plan's own barriers do that. Stages and accesses of the other
-// side of a transfer between families are ignored.
+// Records a queue ownership transfer of an import. It does not change the layout: the plan's own
+// barriers do that. Vulkan ignores the stages and accesses of the other side of a transfer.
 void Recorder::transfer_import(std::uint32_t resource, std::uint32_t from, std::uint32_t to,
                                const State& state, bool acquires, VkCommandBuffer commands) {
   if (from == to) return;

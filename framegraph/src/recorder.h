@@ -1,5 +1,5 @@
-// Records passes and barriers of a plan into a command buffer. One thread at a time; several
-// recorders may record parts of one plan at the same time.
+// Records passes and barriers of a plan into a command buffer. A recorder is used by one thread at
+// a time. Several recorders may record parts of one plan at the same time.
 #pragma once
 
 #include <vector>
@@ -12,22 +12,23 @@
 
 namespace alcove::framegraph {
 
-// A frame that is being recorded. `physical` is by resource, null where a resource is not used.
+// A frame that is being recorded. `physical` is indexed by resource and is null for resources
+// without a use.
 struct RecordedFrame {
   const Graph* graph = nullptr;
   const Plan* plan = nullptr;
   const std::vector<Physical*>* physical = nullptr;
   bool check_uses = false;
-  bool starts_anew = false;  // follows another plan: begins with full_barrier()
+  bool starts_anew = false;  // it follows a frame of another plan: begin with full_barrier()
   std::uint32_t slot = 0;
 };
 
-// Passes that follow each other on a queue, at positions [first, first + count) of the plan.
+// Consecutive passes of a queue, at positions [first, first + count) of the plan.
 struct PassRun {
   std::uint32_t first = 0;
   std::uint32_t count = 0;
   Timestamps* timestamps = nullptr;
-  std::uint32_t first_time = 0;  // the first pass's number among those
+  std::uint32_t first_time = 0;  // number of the first pass among the timestamps
 };
 
 class Recorder {
@@ -36,18 +37,19 @@ class Recorder {
 
   // Sets the frame that the next calls record.
   void begin(const RecordedFrame& frame);
-  // Orders everything after all that the queue did before.
+  // Records a barrier that orders all later commands after all earlier commands of the queue.
   void full_barrier(VkCommandBuffer commands);
   void passes(const PassRun& run, VkCommandBuffer commands);
   void batches(std::uint32_t first, std::uint32_t count, VkCommandBuffer commands);
-  // Queue ownership transfers of imports from and to families outside of the graph: before the
-  // submission in which they are first used, and after the last one.
+  // Record queue ownership transfers of imports from and to families outside the graph: before the
+  // submission that uses the import first, and after the last one.
   void acquire_imports(const Submission& submission, VkCommandBuffer commands);
   void release_imports(VkCommandBuffer commands);
   bool is_last(const Submission& submission) const {
     return &submission == &plan_->submissions.back();
   }
-  // Uses that callbacks had not declared, and objects that could not be made while recording.
+  // Returns the errors of callbacks: undeclared uses, and objects that could not be created while
+  // recording.
   Errors& errors() { return errors_; }
 
  private:
@@ -63,14 +65,14 @@ class Recorder {
   VkBufferMemoryBarrier2 buffer_barrier(const Transition& transition) const;
   std::uint32_t family(const Transition& transition, QueueClass queue) const;
 
-  // The access of the running pass that names this resource; null, and an error where uses are
-  // checked, when there is none.
+  // Returns the access of the running pass that names this resource, or null if there is none.
+  // Without one, adds an error if uses are checked.
   const AccessRecord* declared(std::uint32_t pass, std::uint32_t resource) const;
-  // The index of the access by which the pass draws to a resource; kNone and an error where there
-  // is none.
+  // Returns the index of the access that declares the resource as an attachment of the pass. If
+  // there is none, adds an error and returns kNone.
   std::uint32_t attachment_access(std::uint32_t pass, std::uint32_t resource) const;
-  // The access by which the pass draws to one aspect of a resource, or to any if `aspect` is 0;
-  // kNone without an error where there is none.
+  // Returns the index of the access that declares one aspect of the resource as an attachment of
+  // the pass, or any aspect if `aspect` is 0. Returns kNone, without an error, if there is none.
   std::uint32_t find_attachment(std::uint32_t pass, std::uint32_t resource,
                                 VkImageAspectFlags aspect) const;
   // Returns whether `range` lies within the texture `resource` and, if check_uses_ is set, whether
@@ -86,7 +88,7 @@ class Recorder {
   bool check_uses_ = false;
   bool shares_with_buffers_ = false;  // the plan has transient buffers
   bool starts_anew_ = false;
-  bool has_outside_families_ = false;  // some import comes from or goes to another queue family
+  bool has_outside_families_ = false;  // an import is transferred from or to another queue family
   std::uint32_t slot_ = 0;
   std::vector<VkImageMemoryBarrier2> images_;
   std::vector<VkBufferMemoryBarrier2> buffers_;

@@ -6,7 +6,8 @@
 namespace alcove::framegraph {
 namespace {
 
-// Calls f and returns what it throws. Without exceptions nothing is thrown.
+// Calls f and returns the exception that it throws, or null. In a build without exceptions the
+// result is always null.
 template <typename Function>
 std::exception_ptr thrown_by(Function&& f) {
 #if defined(__cpp_exceptions) || defined(_CPPUNWIND)
@@ -32,7 +33,7 @@ RecordingThreads::RecordingThreads(const DeviceContext& device, Pool& pool, std:
   start(threads - 1);
 }
 
-// Where the system has no more threads, or no memory for them, the existing ones do the work.
+// If the system cannot create more threads, the existing ones do the work.
 void RecordingThreads::start(std::size_t threads) {
   threads_.reserve(threads);
   (void)thrown_by([&] {
@@ -97,7 +98,8 @@ Errors RecordingThreads::take_errors() {
   return all;
 }
 
-// More pieces than threads, so that one that has slow passes is made up for by the others.
+// Makes more pieces than threads, so that the threads stay busy if some passes take longer than
+// others.
 void RecordingThreads::cut(const PassRun& passes) {
   const auto count =
       static_cast<std::uint32_t>(std::min<std::size_t>(passes.count, 2 * (threads_.size() + 1)));
@@ -140,8 +142,8 @@ void RecordingThreads::work(std::size_t thread) {
   }
 }
 
-// Throws nothing: submission() rethrows what a callback or operator new threw, once every thread
-// has finished.
+// Does not throw. submission() rethrows the exception of a callback or of operator new after all
+// threads have finished.
 void RecordingThreads::record_pieces(std::size_t thread) {
   for (std::size_t i = next_piece_++; i < pieces_.size(); i = next_piece_++) {
     pieces_[i].thrown = thrown_by([&] { pieces_[i].result = record(pieces_[i], thread); });

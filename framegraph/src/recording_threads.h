@@ -1,5 +1,5 @@
-// Records a plan's submissions: by one thread into the command buffer itself, or by several into
-// secondary command buffers that it executes in order.
+// Records a plan's submissions: either with one thread into the command buffer itself, or with
+// several threads into secondary command buffers that it executes in order.
 #pragma once
 
 #include <atomic>
@@ -17,21 +17,23 @@ namespace alcove::framegraph {
 
 class RecordingThreads {
  public:
-  // `threads` counts the caller's: 1 makes none. Fewer where the system does not give them.
+  // `threads` includes the caller's thread: 1 creates none. Fewer are created if the system cannot
+  // create so many.
   RecordingThreads(const DeviceContext& device, Pool& pool, std::uint32_t threads,
                    std::uint32_t slots);
   ~RecordingThreads();
   RecordingThreads(const RecordingThreads&) = delete;
   RecordingThreads& operator=(const RecordingThreads&) = delete;
 
-  // Sets the frame that the next calls record. The device has finished the last frame of its slot.
+  // Sets the frame that the next calls record. The device must have finished the last frame with
+  // its slot.
   [[nodiscard]] VkResult begin(const RecordedFrame& frame);
   void full_barrier(VkCommandBuffer commands) { recorders_[0]->full_barrier(commands); }
-  // On an error nothing is recorded. An exception of any thread is thrown here, after all have
-  // finished.
+  // Records a submission. On an error nothing is recorded. If a thread throws, rethrows its
+  // exception after all threads have finished.
   [[nodiscard]] VkResult submission(const Submission& submission, VkCommandBuffer commands,
                                     Timestamps* timestamps);
-  // The errors of callbacks since begin(), which are forgotten then.
+  // Returns the errors of callbacks since begin() and forgets them.
   Errors take_errors();
 
  private:
@@ -56,9 +58,10 @@ class RecordingThreads {
   std::vector<CommandBuffers> buffers_;               // by thread, slot and queue class
   std::size_t slots_;
   std::size_t slot_ = 0;
-  bool together_ = false;  // whether several threads record this frame
+  bool together_ = false;  // several threads record this frame
 
-  // The job in hand. The threads read it while `round_` has just moved on and `busy_` is not 0.
+  // The current job. Threads read it between the moment when `round_` has increased and the moment
+  // when `busy_` becomes 0.
   std::vector<Piece> pieces_;
   std::vector<VkCommandBuffer> recorded_;
   QueueClass queue_ = QueueClass::graphics;

@@ -1,4 +1,4 @@
-// Declarations compared and hashed as bytes: the records have no padding.
+// Compares and hashes declarations as bytes, which is correct because the records have no padding.
 #include <cstring>
 
 #include "alcove/framegraph/description.h"
@@ -17,7 +17,8 @@ std::uint64_t mix(std::uint64_t a, std::uint64_t b) {
   return a ^ (a >> 32);
 }
 
-// Eight bytes at a time in four lanes: the records are multiples of four bytes.
+// Hashes eight bytes at a time in four independent lanes. The sizes of the records are multiples of
+// four bytes.
 template <typename Record>
 std::uint64_t hash_records(std::uint64_t seed, const Records<Record>& records) {
   static_assert(sizeof(Record) % 4 == 0);
@@ -41,7 +42,8 @@ bool same_declaration(const GraphDescription& a, const GraphDescription& b) {
   if (a.accesses.size() != b.accesses.size() || a.resources.size() != b.resources.size() ||
       a.externals.size() != b.externals.size() || a.outputs.size() != b.outputs.size())
     return false;
-  // The flags of a pass come one by one, so passes are always looked at.
+  // Pass records are always compared, because their flags are set after the pass was added and do
+  // not change the edition.
   if (!same(a.passes, b.passes)) return false;
   return a.edition == b.edition ||
          (same(a.accesses, b.accesses) && same(a.resources, b.resources) &&

@@ -7,7 +7,8 @@ namespace {
 
 constexpr std::uint8_t kEveryQueue = (1u << kQueueClasses) - 1;
 
-// The first (or last) submission of a queue class; of the frame where the class runs nothing.
+// Returns the first (or last) submission of a queue class. If the class runs nothing in this frame,
+// returns the first (or last) submission of the frame.
 std::uint32_t outermost(const Plan& plan, QueueClass queue, bool first) {
   const auto count = static_cast<std::uint32_t>(plan.submissions.size());
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -21,8 +22,8 @@ std::uint32_t outermost(const Plan& plan, QueueClass queue, bool first) {
 
 Submitter::~Submitter() {
   const VkDevice device = device_.handles.device;
-  // Waiting for a semaphore's value is enough by the letter, but a software driver may still be
-  // letting go of the semaphore then: an idle queue has let go of everything.
+  // By the specification, waiting for the semaphore's value is enough before it is destroyed.
+  // Software drivers may still use the semaphore at that time, so that the queue must be idle too.
   for (std::size_t q = 0; q < kQueueClasses; ++q) {
     if (values_[q] != 0) device_.vk.vkQueueWaitIdle(device_.handles.queues[q].queue);
   }
@@ -74,7 +75,8 @@ VkResult Submitter::submit(const Plan& plan, RecordingThreads& recording_threads
                            bool full_barrier) {
   submitted_ = 0;
   if (const VkResult result = prepare(info.slot)) return result;
-  // All is recorded before anything runs: what fails while recording leaves the device untouched.
+  // Everything is recorded before anything is submitted, so that an error while recording leaves
+  // the device untouched.
   if (const VkResult result = record(plan, recording_threads, info.slot, timestamps, full_barrier))
     return result;
   const bool several =
@@ -87,7 +89,7 @@ VkResult Submitter::submit(const Plan& plan, RecordingThreads& recording_threads
   VkResult result = VK_SUCCESS;
   for (std::uint32_t i = 0; i < plan.submissions.size() && result == VK_SUCCESS; ++i) {
     const Submission& submission = plan.submissions[i];
-    // A queue is handed what another one waits for before that one is handed the wait.
+    // Work that another queue waits for is submitted before that queue is given the wait.
     for (std::uint32_t w = 0; w < submission.wait_count && result == VK_SUCCESS; ++w) {
       const Described& awaited = described_[plan.waits[submission.first_wait + w].submission];
       if (awaited.pending && awaited.queue != queue_of(submission)) result = flush(awaited.queue);
@@ -95,7 +97,7 @@ VkResult Submitter::submit(const Plan& plan, RecordingThreads& recording_threads
     bool& own = begun[static_cast<std::size_t>(submission.queue)];
     described_.push_back({});
     described_.back().first_semaphore = static_cast<std::uint32_t>(semaphore_infos_.size());
-    // A frame of another plan begins when the frame before is done.
+    // If the previous frame had another plan, this frame begins after that frame is done.
     const bool joins = full_barrier && !own && (several || several_before_);
     add_waits(plan, i, joins ? kEveryQueue : submission.frame_before);
     describe(plan, i, info);
@@ -168,7 +170,8 @@ void Submitter::describe(const Plan& plan, std::uint32_t index, const FrameInfo&
     return static_cast<std::uint32_t>(semaphore_infos_.size()) - described.first_semaphore;
   };
   described.waits = add_external(info.waits, true);
-  // A submission before this one that is not handed over yet counts.
+  // The value includes an earlier submission of the queue that was described and not yet handed
+  // over.
   std::uint64_t last = values_[own];
   for (std::uint32_t i = 0; i < index; ++i) {
     if (described_[i].queue_class == submission.queue) last = std::max(last, described_[i].value);

@@ -1,4 +1,4 @@
-// Hands recorded submissions to the queues, ordered by one timeline semaphore for each queue class.
+// Submits recorded work to the queues, ordered by one timeline semaphore for each queue class.
 #pragma once
 
 #include <cstdint>
@@ -17,21 +17,21 @@ class Submitter {
   Submitter(const Submitter&) = delete;
   Submitter& operator=(const Submitter&) = delete;
 
-  // Waits until the device has finished what was submitted with this slot.
+  // Waits until the device has finished the frame that was last submitted with this slot.
   [[nodiscard]] VkResult wait(std::uint32_t slot);
-  // Records and submits a plan that `recording_threads` was begun with. `timestamps` is by queue
-  // class, null where there are none. `full_barrier`: begin with a barrier over everything, since
-  // another plan used the memory before.
+  // Records and submits the plan with which `recording_threads` was begun. `timestamps` is indexed
+  // by queue class and may be null. If `full_barrier` is true, the frame begins with a barrier over
+  // everything, because another plan used the memory before.
   [[nodiscard]] VkResult submit(const Plan& plan, RecordingThreads& recording_threads,
                                 const FrameInfo& info, Timestamps* const* timestamps,
                                 bool full_barrier);
-  // Whether submit handed over some of a frame and then failed.
+  // Returns whether submit() failed after it had submitted a part of the frame.
   bool stopped_midway() const { return submitted_ != 0; }
 
  private:
   struct SlotQueue {
     CommandBuffers buffers;
-    std::uint64_t value = 0;  // of the queue's semaphore once the slot's last frame is done
+    std::uint64_t value = 0;  // the queue's semaphore value after the slot's last frame
   };
   struct Slot {
     SlotQueue queues[kQueueClasses];
@@ -40,23 +40,24 @@ class Submitter {
   VkResult prepare(std::uint32_t slot);
   VkResult record(const Plan& plan, RecordingThreads& recording_threads, std::uint32_t slot,
                   Timestamps* const* timestamps, bool full_barrier);
-  // `queues_before`: bits of the queue classes whose work of the frame before is waited for.
+  // Adds the semaphore waits of a submission. `queues_before` has a bit for each queue class whose
+  // work in the previous frame it waits for.
   void add_waits(const Plan& plan, std::uint32_t index, std::uint8_t queues_before);
-  // Describes a submission; flush() hands over those of a queue that are described.
+  // Describes a submission. flush() submits the described submissions of a queue.
   void describe(const Plan& plan, std::uint32_t index, const FrameInfo& info);
   VkResult flush(VkQueue queue);
   VkQueue queue_of(const Submission& submission) const {
     return device_.handles.queues[static_cast<std::size_t>(submission.queue)].queue;
   }
 
-  // A submission that is described and not yet handed over.
+  // A submission that is described and not yet submitted.
   struct Described {
     VkQueue queue = VK_NULL_HANDLE;
     std::uint32_t first_semaphore = 0;  // into semaphore_infos_: waits, then signals
     std::uint32_t waits = 0;
     std::uint32_t signals = 0;
     VkCommandBufferSubmitInfo commands{};
-    std::uint64_t value = 0;  // of its queue class's semaphore once it is done
+    std::uint64_t value = 0;  // the semaphore value of its queue class after it is done
     QueueClass queue_class = QueueClass::graphics;
     bool pending = true;
   };
@@ -65,7 +66,7 @@ class Submitter {
   std::vector<Slot> slots_;
   VkSemaphore semaphores_[kQueueClasses] = {};
   std::uint64_t values_[kQueueClasses] = {};  // last value that will be signalled
-  std::uint64_t before_[kQueueClasses] = {};  // values_ at the end of the frame before
+  std::uint64_t before_[kQueueClasses] = {};  // values_ at the end of the previous frame
   std::vector<VkCommandBuffer> recorded_;     // by submission of this frame
   std::uint32_t submitted_ = 0;               // submissions of this frame handed over
   std::vector<Described> described_;          // by submission of this frame

@@ -32,8 +32,8 @@ void note(UseState& state, const AccessRecord& access, std::int32_t time) {
   state.used = 1;
 }
 
-// Whether the access is one more of a series of writes whose order does not matter: all of them
-// come after what the first came after.
+// Returns whether the access continues a series of writes whose order does not matter. All of them
+// come after whatever the first one came after.
 bool goes_on(const UseState& state, const AccessRecord& access) {
   return (access.flags & kUnordered) && state.read_stages == 0 &&
          state.write_stages == access.stages && state.unordered_access == access.access;
@@ -69,8 +69,8 @@ void Synchroniser::run() {
   depart();
 }
 
-// The frame before used memory as this one does. Finds the last use of each resource that has some
-// of the bytes at the end of a frame, and of each history.
+// The previous frame used memory as this one does. Finds the last use of each history, and of each
+// resource that occupies some of the bytes at the end of a frame.
 void Synchroniser::find_last_uses() {
   s_.last_uses.resize(workspace_.first_sub.back());
   s_.is_last.assign(graph_.resources.size(), 0);
@@ -99,7 +99,7 @@ void Synchroniser::find_last_uses() {
       if (!s_.is_last[access.resource]) return;
       for_each_sub(graph_, workspace_, access, [&](std::uint32_t sub) {
         UseState& last = s_.last_uses[sub];
-        // Uses on another queue came before this one, by a semaphore.
+        // Uses on another queue come before this one, ordered by a semaphore.
         if (last.queue != queue) last = {};
         note(last, access, kBeforeFrame);
         last.queue = queue;
@@ -109,8 +109,8 @@ void Synchroniser::find_last_uses() {
   }
 }
 
-// Bytes belong to the last transient that has them, so that this goes backwards and ends when all
-// bytes of all heaps have an owner.
+// Each byte belongs to the last transient that occupies it. The loop therefore goes backwards and
+// ends when all bytes of all heaps have an owner.
 void Synchroniser::find_last_owners() {
   s_.memory.resize(std::max(s_.memory.size(), plan_.heaps.size()));
   for (MemoryMap& map : s_.memory) map.clear();
@@ -124,12 +124,13 @@ void Synchroniser::find_last_owners() {
   }
 }
 
-// A transient's first use comes after the last uses of all resources that had its bytes before.
+// Makes a transient's first use come after the last uses of all resources that occupied its bytes
+// before.
 inline void Synchroniser::take_over_memory(std::uint32_t resource) {
   const Placement& placed = plan_.placements[resource];
   const std::uint32_t* const subs = workspace_.first_sub.data();
   UseState* const states = s_.states.data();
-  // Made in place, and then copied to the other subresources.
+  // The state is merged in place for the first subresource, and then copied to the others.
   UseState& merged = states[subs[resource]];
   merged = {};
   const auto merge = [&](const Segment& segment) {
@@ -161,8 +162,8 @@ inline void Synchroniser::take_over_memory(std::uint32_t resource) {
   std::fill(states + subs[resource] + 1, states + subs[resource + 1], merged);
 }
 
-// UseState::frame_before of a use at this position in the frame before: a queue has to wait for it
-// that is another one and does not know by the end of that frame that the use is done.
+// Returns UseState::frame_before for a use at this position in the previous frame. Another queue
+// has to wait for the use if it does not know, by the end of that frame, that the use is done.
 std::uint32_t Synchroniser::queues_that_wait(std::uint32_t position) const {
   if (!workspace_.several_queues) return 0;
   const auto used_on = static_cast<std::size_t>(plan_.passes[position].queue);
@@ -177,8 +178,8 @@ std::uint32_t Synchroniser::queues_that_wait(std::uint32_t position) const {
   return bits;
 }
 
-// The pass takes over memory from the frame before: its submission waits for these queues. Where it
-// knows a pass of this frame on such a queue to be done, the frame before is done there too.
+// The pass takes over memory from the previous frame, so that its submission waits for these
+// queues. It need not wait for a queue of which it already knows a pass of this frame to be done.
 void Synchroniser::wait_for_frame_before(std::uint32_t position, std::uint32_t frame_before) {
   const auto own = static_cast<std::size_t>(queue_);
   unsigned queues = frame_before >> (own * kQueueClasses) & ((1u << kQueueClasses) - 1);
@@ -242,8 +243,9 @@ inline void Synchroniser::use_range(std::uint32_t position, const AccessRecord& 
 inline void Synchroniser::change_layout(std::uint32_t position, const AccessRecord& access,
                                         UseState& state, const Range& range) {
   Transition& wanted = next_image(std::max(state.read_time, state.write_time), position);
-  // Reads come after the write that they saw. Memory that others had may have reads and writes of
-  // different resources.
+  // Reads come after the write that they saw, so that waiting for the reads is enough. This does
+  // not hold for memory that other resources had: its reads and writes may be of different
+  // resources.
   const bool after_reads = state.read_stages != 0 && !state.handed_over;
   wanted.src_stages = after_reads ? state.read_stages : state.read_stages | state.write_stages;
   wanted.src_access = after_reads ? 0 : state.write_access;
@@ -311,8 +313,8 @@ void Synchroniser::write_again(std::uint32_t position, const AccessRecord& acces
   note(state, access, pass_time(position));
 }
 
-// Makes `last` cover the mips, layers or aspect of `next` too, if the two are neighbours that
-// change alike: both are of one resource.
+// Extends `last` to the mips, layers or aspect of `next` if both are of one resource, are
+// neighbours, and change in the same way. Returns whether it did.
 bool Synchroniser::extend(Transition& last, const Transition& next) {
   const Range& a = last.range;
   const Range& b = next.range;

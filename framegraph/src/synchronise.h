@@ -1,5 +1,6 @@
-// The synchroniser. synchronise.cpp follows the passes, externals.cpp the initial and final states
-// of imports and histories, and queue_transfer.cpp what goes from one queue to another.
+// The synchroniser, in three source files: synchronise.cpp follows the passes, externals.cpp
+// handles the initial and final states of imports and histories, and queue_transfer.cpp handles
+// resources that go from one queue to another.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +10,7 @@
 
 namespace alcove::framegraph {
 
-// Stages of this access that a semaphore wait covers.
+// Returns the stages of this access for which a semaphore wait is made.
 inline VkPipelineStageFlags2 waited_stages(const AccessRecord& access) {
   const VkPipelineStageFlags2 stages =
       access.stages & ~(VK_PIPELINE_STAGE_2_HOST_BIT | VK_PIPELINE_STAGE_2_BOTTOM_OF_PIPE_BIT);
@@ -19,7 +20,7 @@ inline VkPipelineStageFlags2 waited_stages(const AccessRecord& access) {
 // The value of UseState::seen_access when every access sees the write.
 inline constexpr VkAccessFlags2 kEveryAccess = ~VkAccessFlags2{0};
 
-// Seen accesses as barriers and states name them.
+// Converts UseState::seen_access to the access mask of a barrier or a state.
 inline VkAccessFlags2 reads_in(VkAccessFlags2 seen) {
   return seen == kEveryAccess ? VK_ACCESS_2_MEMORY_READ_BIT : seen;
 }
@@ -86,16 +87,17 @@ class Synchroniser {
   Workspace& workspace_;
   Plan& plan_;
   Workspace::Synchronise& s_;
-  std::int32_t batch_time_ = kNever;  // of the last batch
+  std::int32_t batch_time_ = kNever;  // time of the last batch
   // The start of the current pass's submission, before which no barrier can be placed.
   std::int32_t earliest_ = kBeforeFrame;
   QueueClass queue_ = QueueClass::graphics;  // of the current pass
-  // By queue: the bits of the queues whose work of the frame before it has waited for.
+  // For each queue: bits of the queues for whose work of the previous frame it has already waited.
   std::uint8_t frame_before_[kQueueClasses] = {};
-  std::uint32_t last_position_[kQueueClasses] = {};  // by queue: of its last pass
+  std::uint32_t last_position_[kQueueClasses] = {};  // for each queue: position of its last pass
 };
 
-// The dependencies go into the last batch if that comes after `time`, else into a new one.
+// Returns the batch for dependencies on work that ends at `time`: the last batch if it comes after
+// that, else a new one.
 inline Batch& Synchroniser::batch_after(std::int32_t time, std::uint32_t position) {
   time = std::max(time, earliest_);
   if (batch_time_ < time) {
@@ -105,13 +107,13 @@ inline Batch& Synchroniser::batch_after(std::int32_t time, std::uint32_t positio
   return plan_.batches.back();
 }
 
-// A new image barrier, which is joined with its neighbours once it is filled in.
+// Appends an image barrier. join_neighbours() joins it with its neighbours after it is filled in.
 inline Transition& Synchroniser::next_image(std::int32_t time, std::uint32_t position) {
   ++batch_after(time, position).count;
   return plan_.transitions.emplace_back();
 }
 
-// Neighbouring mips and layers that change alike become one barrier.
+// Joins barriers of neighbouring mips and layers that change in the same way into one barrier.
 inline void Synchroniser::join_neighbours() {
   while (plan_.batches.back().count >= 2) {
     Transition* const last = &plan_.transitions.back();
@@ -119,7 +121,8 @@ inline void Synchroniser::join_neighbours() {
     if (last[-1].resource != resource || !extend(last[-1], *last)) return;
     plan_.transitions.pop_back();
     --plan_.batches.back().count;
-    // The mips of a layer that are joined with the layer before name the barrier that is gone.
+    // States of mips that were joined with the previous layer still refer to the barrier that was
+    // removed.
     const auto gone = static_cast<std::uint32_t>(plan_.transitions.size());
     const auto& first = workspace_.first_sub;
     for (std::uint32_t sub = first[resource]; sub < first[resource + 1]; ++sub) {
@@ -128,7 +131,7 @@ inline void Synchroniser::join_neighbours() {
   }
 }
 
-// The state after an access for which the last image barrier was just added.
+// Sets the state after an access whose image barrier is the one that was added last.
 inline void Synchroniser::note_change(std::uint32_t position, const AccessRecord& access,
                                       UseState& state) {
   state = {};

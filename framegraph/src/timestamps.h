@@ -1,4 +1,4 @@
-// GPU time of passes: two timestamps each, a query pool for each frame slot.
+// Measures the GPU time of passes with two timestamps each, in one query pool for each frame slot.
 #pragma once
 
 #include <string>
@@ -11,29 +11,32 @@ namespace alcove::framegraph {
 
 class Timestamps {
  public:
-  // `valid_bits`: how many bits of the queue's timestamps count, 1 to 64.
+  // `valid_bits` is the number of valid bits of the queue's timestamps, 1 to 64.
   Timestamps(const DeviceContext& device, std::uint32_t valid_bits)
       : device_(device), mask_(~std::uint64_t{0} >> (64 - valid_bits)) {}
   ~Timestamps();
   Timestamps(const Timestamps&) = delete;
   Timestamps& operator=(const Timestamps&) = delete;
 
-  // Starts a frame of so many passes; the device has finished the last one.
+  // Starts a frame with `passes` passes. The device must have finished the previous frame with
+  // these queries.
   [[nodiscard]] VkResult begin_frame(VkCommandBuffer commands, std::uint32_t passes);
-  // Nothing is to be read until a frame begins again.
+  // Makes read() return nothing until the next frame begins.
   void forget() { count_ = 0; }
-  // Announces so many passes; the number of the first. Numbers are in order of execution.
+  // Adds `passes` passes to the frame and returns the number of the first. Numbers are in order of
+  // execution.
   std::uint32_t add(std::uint32_t passes) {
     count_ += passes;
     return count_ - passes;
   }
-  // Different passes may be recorded at the same time.
-  // `pass` is its number in the graph.
+  // Begins the timing of a pass. Different passes may be recorded at the same time. `pass` is its
+  // index in the graph.
   void begin_pass(VkCommandBuffer commands, std::uint32_t number, std::uint32_t pass,
                   std::string_view name);
   void end_pass(VkCommandBuffer commands, std::uint32_t number);
-  // The times of the frame that began last, once the device has finished it. Until then empty, or
-  // of the frame before it with these queries; nothing is kept, so a later call is right.
+  // Returns the times of the frame that began last, after the device has finished it. Until then
+  // the result is empty, or has the times of the previous frame with these queries. A later call
+  // returns the right times.
   std::span<const PassTiming> read();
 
  private:

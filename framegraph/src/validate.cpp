@@ -1,4 +1,5 @@
-// Validation: follows versions and contents through the passes in order of declaration.
+// Validation: checks a declaration by following versions and contents through the passes in order
+// of declaration.
 #include "validate.h"
 
 #include <algorithm>
@@ -10,7 +11,8 @@ constexpr VkAccessFlags2 kAttachmentBits =
     VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT |
     VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
 
-// Whether an access needs contents to read. An attachment that nothing wrote is not loaded.
+// Returns whether an access reads contents that must exist. An attachment that nothing wrote is not
+// loaded, so that it needs none.
 constexpr bool reads_contents(const AccessRecord& access) {
   if (!(access.flags & kWrite)) return true;
   return !(access.flags & kDiscard) && (access.access & kWriteBits) != 0 &&
@@ -49,7 +51,7 @@ class Replay {
     if (access.version != version) stale(pass, access, version);
     if (access.flags & kWrite) ++version;
     const auto& first = v_.workspace.first_sub;
-    if (first[access.resource] == first[access.resource + 1]) return;  // a wrong description
+    if (first[access.resource] == first[access.resource + 1]) return;  // its description is invalid
     unwritten_ = conflict_ = false;
     for_each_sub(v_.graph, v_.workspace, access,
                  [&](std::uint32_t sub) { touch(pass, access, s_.touches[sub]); });
@@ -75,8 +77,8 @@ class Replay {
     touched.layout = access.layout;
   }
 
-  // The attachments of a rendering are drawn to together. One that has one sample and is not read,
-  // beside multisampled ones, is the target of a resolve.
+  // Checks that the attachments of a rendering have one size and one number of samples. An
+  // attachment with one sample that is not read, beside multisampled ones, is a resolve target.
   void check_attachment(std::uint32_t pass, const AccessRecord& access) {
     const ResourceRecord& r = v_.graph.resources[access.resource];
     const auto side = [&access](std::uint32_t size) {
@@ -157,7 +159,7 @@ class Replay {
                        });
   }
 
-  // The pass that made version `version` + 1, kNone when there is none.
+  // Returns the pass that wrote version `version` + 1, or kNone.
   std::uint32_t writer_of(std::uint32_t resource, std::uint32_t version) const {
     for (std::uint32_t pass = 0; pass < v_.graph.passes.size(); ++pass) {
       for (const AccessRecord& access : v_.graph.pass_accesses(pass)) {
@@ -218,11 +220,11 @@ class Replay {
   Workspace::Validate& s_;
   bool unwritten_ = false;
   bool conflict_ = false;
-  std::uint32_t attachment_ = kNone;  // the first of this pass, and the size of its mip
+  std::uint32_t attachment_ = kNone;  // the first attachment of this pass, and the size of its mip
   std::uint32_t width_ = 0;
   std::uint32_t height_ = 0;
   std::uint32_t rendering_ = 0;
-  std::uint32_t samples_ = 0;  // 0 while only resolve targets were seen
+  std::uint32_t samples_ = 0;  // 0 until an attachment other than a resolve target was seen
 };
 
 }  // namespace

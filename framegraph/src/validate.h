@@ -1,4 +1,4 @@
-// The parts of validation and the state that they share.
+// The functions of validation and the state that they share.
 #pragma once
 
 #include <string>
@@ -32,7 +32,8 @@ struct Validation {
 // Checks descriptions, imports and histories, and numbers the subresources of valid resources.
 void validate_resources(Validation& validation);
 
-// Checks the handle, range, usage and masks of one access. False when the access names no resource.
+// Checks the handle, range, usage and masks of one access. Returns false if the access names no
+// valid resource.
 bool validate_access(Validation& validation, std::uint32_t pass, const AccessRecord& access);
 
 }  // namespace alcove::framegraph

@@ -5,7 +5,7 @@
 namespace alcove::framegraph {
 namespace {
 
-// The stages that a queue class cannot run.
+// The pipeline stages that only a graphics queue supports.
 constexpr VkPipelineStageFlags2 kGraphicsStages =
     VK_PIPELINE_STAGE_2_VERTEX_INPUT_BIT | VK_PIPELINE_STAGE_2_INDEX_INPUT_BIT |
     VK_PIPELINE_STAGE_2_VERTEX_ATTRIBUTE_INPUT_BIT | VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT |
@@ -22,7 +22,7 @@ constexpr VkPipelineStageFlags2 kComputeStages =
     VK_PIPELINE_STAGE_2_RAY_TRACING_SHADER_BIT_KHR |
     VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR |
     VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_COPY_BIT_KHR;
-// Blits need a graphics queue, though they are transfers.
+// The stage of blits, which need a graphics queue although they are transfers.
 constexpr VkPipelineStageFlags2 kBlitStages =
     VK_PIPELINE_STAGE_2_BLIT_BIT | VK_PIPELINE_STAGE_2_RESOLVE_BIT;
 
@@ -43,7 +43,8 @@ struct Checker {
   std::uint32_t pass;
   const AccessRecord& access;
 
-  // Sentences are put together in functions of their own, because nearly all accesses are right.
+  // The sentences are composed in functions of their own that are rarely called, because nearly all
+  // accesses are valid.
   bool refuse(ErrorCode code, const std::string& sentence) {
     v.fail(code, v.pass_text(pass) + " " + sentence, pass, access.resource, access.version);
     return false;

@@ -67,7 +67,7 @@ bool check_buffer(Validation& v, std::uint32_t index, const ResourceRecord& r) {
   return false;
 }
 
-// The resource that was made from an external.
+// Returns the resource that belongs to an external.
 std::uint32_t resource_of(const GraphDescription& graph, std::uint32_t external) {
   std::uint32_t index = 0;
   while (graph.resources[index].external != external) ++index;

@@ -6,7 +6,8 @@
 namespace alcove::framegraph {
 namespace {
 
-// The function of this name, or of the extension that it was part of before it became core.
+// Returns the function of this name, or its KHR or EXT version from before the function became
+// core.
 template <typename Get>
 PFN_vkVoidFunction find(const Get& get, const char* name) {
   for (const char* suffix : {"", "KHR", "EXT"}) {

@@ -14,15 +14,16 @@
 
 namespace alcove::framegraph {
 
-// Time runs in half positions: the batch before position p is at 2p, the pass at 2p + 1.
+// Time counts half positions: the batch before position p has time 2p, and the pass at p has time
+// 2p + 1.
 inline constexpr std::int32_t kBeforeFrame = -1;
 inline constexpr std::int32_t kNever = -2;
 
-// The last uses of a subresource, or of bytes of memory.
+// The last uses of a subresource, or of a range of bytes of memory.
 struct UseState {
   VkPipelineStageFlags2 write_stages = 0;  // of the last write or layout change
-  VkAccessFlags2 write_access = 0;         // 0 after a layout change: it is available by itself
-  VkPipelineStageFlags2 read_stages = 0;   // of the reads since
+  VkAccessFlags2 write_access = 0;         // 0 after a layout change, which is available by itself
+  VkPipelineStageFlags2 read_stages = 0;   // of the reads after that write
   VkPipelineStageFlags2 seen_stages = 0;   // by which the write can be seen
   VkAccessFlags2 seen_access = 0;
   VkAccessFlags2 unordered_access = 0;  // of the last write, if it is Contents::accumulate
@@ -30,19 +31,20 @@ struct UseState {
   std::int32_t read_time = kNever;
   VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
   std::uint32_t transition = kNone;  // the image barrier that made this layout
-  // Queues of the frame before that have to be waited for before memory is taken over from them:
+  // Queues of the previous frame that have to be waited for before memory is taken over from them:
   // three bits for each queue class that takes it over.
   std::uint32_t frame_before = 0;
-  // Memory that others had before: its reads do not stand for its writes.
+  // Set if other resources had the memory before: waiting for the reads then does not order its
+  // writes.
   std::uint8_t handed_over = 0;
-  // Comes after work of another queue by a wait that covers all stages.
+  // Set if a semaphore wait over all stages orders the next use after work of another queue.
   std::uint8_t by_wait = 0;
   QueueClass queue = QueueClass::graphics;  // of the last use
-  std::uint8_t used = 0;                    // in this frame, or arrived with contents
+  std::uint8_t used = 0;                    // it was used in this frame, or arrived with contents
   bool operator==(const UseState&) const = default;
 };
 
-// A transient while it is placed.
+// A transient, with the data that placement needs.
 struct PlaceItem {
   VkDeviceSize size = 0;
   VkDeviceSize alignment = 1;
@@ -53,20 +55,22 @@ struct PlaceItem {
 };
 
 struct Workspace {
-  // Subresources of all resources are numbered, those of resource r from first_sub[r] on, mips
-  // within layers within planes. A resource whose description is wrong has none.
+  // Subresources of all resources are numbered: those of resource r begin at first_sub[r], ordered
+  // by mip, then layer, then plane. A resource with an invalid description has none.
   std::vector<std::uint32_t> first_sub;
 
-  // order -> queues -> all: live passes in execution order.
+  // Written by order and by queues, read by all later phases: the live passes in order of
+  // execution.
   std::vector<std::uint32_t> order;
 
-  // queues -> all: the frame runs on other queues than graphics, or takes over from them.
+  // Written by queues, read by all later phases: whether the frame uses queues other than graphics,
+  // or takes resources over from them.
   bool several_queues = false;
 
-  // lifetimes -> place: live transients in order of first use.
+  // Written by lifetimes, read by place: the live transients in order of first use.
   std::vector<std::uint32_t> transients;
 
-  // Scratch of the single phases.
+  // Working memory of the individual phases.
   std::vector<std::uint8_t> contents;  // by subresource
   struct Touch {
     std::uint32_t stamp = 0;  // the last pass that used it, from 1
@@ -81,11 +85,12 @@ struct Workspace {
   } validate;
   struct Cull {
     std::vector<std::uint32_t> needed_by;  // by subresource
-    // By resource, of a history's slot 0: the pass that reads an older one.
+    // For slot 0 of each history, indexed by resource: the pass that reads an older slot.
     std::vector<std::uint32_t> history_reader;
   } cull;
   struct Reorder {
-    // A link of a list: of the passes that follow a pass, or of the readers of a subresource.
+    // An element of a linked list of passes: those that follow a pass, or those that read a
+    // subresource.
     struct Link {
       std::uint32_t pass = kNone;
       std::uint32_t next = kNone;  // link
@@ -119,7 +124,7 @@ struct Workspace {
     std::vector<PlannedPass> moved;
     std::uint32_t opening[kQueueClasses] = {kNone, kNone, kNone};  // submission before the passes
   } queues;
-  // Bytes of a heap that are taken until after a position.
+  // A range of bytes of a heap that is in use up to and including a position.
   struct Taken {
     VkDeviceSize begin = 0;
     VkDeviceSize end = 0;
@@ -132,7 +137,8 @@ struct Workspace {
     std::vector<std::int64_t> change;
     std::vector<std::uint32_t> order;
     std::vector<VkDeviceSize> offsets;
-    // The order that is being improved, its offsets, and its items in order of offset.
+    // The settled order, which the search changes, with its offsets and its items in order of
+    // offset.
     std::vector<std::uint32_t> settled_order;
     std::vector<VkDeviceSize> settled_offsets;
     std::vector<PlaceItem> settled_items;
@@ -184,14 +190,15 @@ inline void for_each_live(const GraphDescription& graph, const Plan& plan, std::
   }
 }
 
-// The phases, in order.
+// The phases, in the order in which they run.
 
-// Numbers the subresources and finds every error of the declaration. False when there are any.
+// Numbers the subresources and finds all errors of the declaration. Returns false if there are any.
 bool validate(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
               Errors& errors);
-// Finds the passes and accesses that are needed; fills cull_reasons and live_accesses.
+// Finds the passes and accesses that are needed, and writes plan.cull_reasons and
+// plan.live_accesses.
 void cull(const GraphDescription& graph, Workspace& workspace, Plan& plan);
-// The live passes in order of declaration, as the order of execution.
+// Makes the order of declaration the order of execution of the live passes.
 void order_as_declared(Workspace& workspace, const Plan& plan);
 // Looks for an order of passes whose peak of transient memory is lower. Resource sizes come from
 // `plan`, which is in order of declaration. If it returns true, workspace.reorder.order holds an
@@ -201,23 +208,24 @@ bool find_lower_order(const GraphDescription& graph, const Limits& limits, Works
 // Assigns passes to queues and submissions.
 void assign_queues(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
                    Plan& plan);
-// The last position at which another queue may still run beside this pass.
+// Returns the last position at which another queue may still run at the same time as this pass.
 std::uint32_t taken_until(const Workspace& workspace, const Plan& plan, std::uint32_t position);
-// First and last position of each resource, and its usage.
+// Finds the first and last position of each resource, and its usage.
 void lifetimes(const GraphDescription& graph, Workspace& workspace, Plan& plan);
 // Finds the accesses that find contents and those that leave some that are needed, and attachments
 // that need no memory of their own.
 void find_contents(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
                    Plan& plan);
-// Whether the device can make the textures that live passes use. Errors where not.
+// Returns whether the device can create the textures that live passes use, and adds an error for
+// each one that it cannot create.
 bool check_images(const GraphDescription& graph, const Limits& limits, const Plan& plan,
                   Errors& errors);
-// The usage that a history is created with: every usage that it can have, so that it need never be
-// made again, with its contents lost, when a later frame uses it in another way.
+// Returns the usage with which a history is created: every usage that it can have. A later frame
+// that uses it in another way then does not need to create it again, which would lose its contents.
 VkFlags history_usage(const Limits& limits, const ResourceRecord& record);
-// Offsets in heaps.
+// Assigns each live transient an offset in a heap.
 void place(const GraphDescription& graph, const Limits& limits, Workspace& workspace, Plan& plan);
-// Barriers, submissions and waits.
+// Adds barriers, and the waits of submissions.
 void synchronise(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
                  Plan& plan);
 

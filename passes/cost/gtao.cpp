@@ -8,31 +8,91 @@ namespace {
 // they depend on the scene.
 constexpr double kOccluderRuns = 2.5;
 
+// The depth samples that the settings ask for, by which loops are told apart. Compilers unroll some
+// loops, so the depth of a loop does not tell what it runs over.
+struct Samples {
+  std::uint32_t loads_per_step = 1;       // image loads of one step in one depth layer
+  std::uint32_t steps_per_iteration = 1;  // of the loop over steps, kUnrolled of gtao.comp
+  std::uint32_t iterations = 1;           // of the loop over steps
+  std::uint32_t half_slice = 1;           // image loads of a half-slice
+};
+
+Samples samples_of(const OcclusionSettings& settings) {
+  const bool connected = settings.advanced.estimator == Estimator::connected;
+  Samples samples;
+  samples.loads_per_step = needs_back_depth(settings) ? 2 : 1;
+  samples.half_slice =
+      settings.steps * samples.loads_per_step * (needs_second_depth(settings) ? 2 : 1);
+  samples.steps_per_iteration = connected ? (settings.slices > 1 ? 2 : 4) : 1;
+  // With connected samples the first two steps, and a remainder, are outside of the loop.
+  samples.iterations =
+      connected ? (settings.steps - 2) / samples.steps_per_iteration : settings.steps;
+  return samples;
+}
+
+std::optional<double> sampling_iterations(const PassWork& work, std::uint32_t index);
+
+// Image loads in one iteration of a loop, those of its inner loops as often as they run.
+std::optional<double> loads_per_iteration(const PassWork& work, std::uint32_t index) {
+  const CompiledLoop& loop = work.loops[index];
+  double loads = loop.loads;
+  for (std::uint32_t i = index + 1; i < work.loops.size() && work.loops[i].depth > loop.depth;
+       ++i) {
+    const CompiledLoop& inner = work.loops[i];
+    if (inner.depth != loop.depth + 1 || inner.loads == 0) {
+      continue;
+    }
+    const auto times = sampling_iterations(work, i);
+    const auto inside = times ? loads_per_iteration(work, i) : std::nullopt;
+    if (!inside) {
+      return std::nullopt;
+    }
+    loads += *times * *inside - inner.loads;
+  }
+  return loads;
+}
+
+// How often a loop with image loads runs: over the steps of a half-slice, the two half-slices of a
+// slice or the slices of a pixel, whichever its loads agree with.
+std::optional<double> sampling_iterations(const PassWork& work, std::uint32_t index) {
+  const Samples samples = samples_of(work.settings);
+  const auto loads = loads_per_iteration(work, index);
+  if (!loads) {
+    return std::nullopt;
+  }
+  if (*loads == samples.half_slice) {
+    return 2.0;
+  }
+  if (*loads == 2.0 * samples.half_slice) {
+    return work.settings.slices;
+  }
+  if (*loads == samples.steps_per_iteration * samples.loads_per_step) {
+    return samples.iterations;
+  }
+  return std::nullopt;
+}
+
+// Whether a loop over the ends of occluder runs exists.
+bool integrates_runs(const OcclusionSettings& settings) {
+  return settings.advanced.estimator == Estimator::bitmask || needs_back_depth(settings) ||
+         settings.specular == Specular::slices;
+}
+
 }  // namespace
 
 std::optional<double> gtao_iterations(const PassWork& work, const CompiledLoop& loop) {
-  const OcclusionSettings& settings = work.settings;
-  const bool connected = settings.advanced.estimator == Estimator::connected;
-  // Over the slices of a pixel, where there are several; within it over the two half-slices.
-  if (settings.slices > 1 && loop.depth == 1) {
-    return settings.slices;
+  if (loop.loads == 0) {
+    return integrates_runs(work.settings) ? std::optional(kOccluderRuns) : std::nullopt;
   }
-  if (loop.depth == (settings.slices > 1 ? 2 : 1)) {
-    return 2;
-  }
-  if (loop.loads > 0) {
-    // Over the steps of a half-slice. With connected samples the first two are outside of the loop,
-    // and an iteration of the loop has kUnrolled of shaders/gtao_connected.h.
-    const std::uint32_t unrolled = settings.slices > 1 ? 2 : 4;
-    return connected ? (settings.steps - 2) / unrolled : settings.steps;
-  }
-  return kOccluderRuns;
+  return sampling_iterations(work, loop.index);
 }
 
 double gtao_traffic(const PassWork& work, std::string_view image, Direction direction) {
-  // One pixel in 4x4 reads its normal of 8 bytes: half of the cache lines of 64 bytes.
-  const bool sparse = work.settings.tile_size == 4;
-  return sparse && image == "normals" && direction == Direction::read ? 0.5 : 1.0;
+  // The share of the cache lines of 64 bytes, eight normals, that hold a traced pixel: of every
+  // `tile` rows one, and of its lines all if there are eight traced pixels or fewer between them.
+  const std::uint32_t tile = work.settings.tile_size;
+  const bool normals = image == "normals" && direction == Direction::read;
+  return normals && tile >= 4 ? 1.0 / tile : 1.0;
 }
 
 }  // namespace alcove::passes::cost

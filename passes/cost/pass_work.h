@@ -1,8 +1,9 @@
-// The functions that work.cpp chooses from, one pair for each pass that has loops or partial
-// traffic. `nullopt` is a loop that the function does not know.
+// The functions from which work.cpp chooses: one pair for each pass with loops or partial traffic.
+// A result of `nullopt` means that the function does not know the loop.
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "work.h"
 
@@ -14,6 +15,7 @@ namespace alcove::passes::cost {
 
 [[nodiscard]] std::optional<double> reconstruct_iterations(const PassWork& work,
                                                            const CompiledLoop& loop);
+[[nodiscard]] std::vector<LoadPattern> reconstruct_loads(const PassWork& work);
 [[nodiscard]] double reconstruct_traffic(const PassWork& work, std::string_view image,
                                          Direction direction);
 

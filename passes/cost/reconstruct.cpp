@@ -22,4 +22,35 @@ double reconstruct_traffic(const PassWork& work, std::string_view image, Directi
   return history && direction == Direction::read && work.state == FrameState::first ? 0.0 : 1.0;
 }
 
+std::vector<LoadPattern> reconstruct_loads(const PassWork& work) {
+  const OcclusionSettings& settings = work.settings;
+  const bool half = settings.half_resolution;
+  std::vector<LoadPattern> loads;
+  // load_tiles(): the raw occlusion of adjacent tiles, in up to four instructions.
+  const std::uint32_t span =
+      (half ? 16u : 8u) / settings.tile_size + 2 * settings.advanced.filter_radius;
+  const std::uint32_t across = (span + 7) / 8;
+  loads.push_back({.texel_bytes = 8, .anywhere = true, .count = across * across});
+  if (half) {
+    // The four gathers of representative(), two of which begin a pixel before the texels.
+    loads.push_back({.pitch = 2, .footprint = 2, .first = -1, .count = 2});
+    loads.push_back({.pitch = 2, .footprint = 2, .first = 1, .count = 2});
+  } else {
+    loads.push_back({});                  // depth
+    loads.push_back({.texel_bytes = 8});  // normal
+  }
+  if (settings.history_frames == 0 || work.state == FrameState::first) {
+    return loads;
+  }
+  const bool moving = work.state == FrameState::moving;
+  const std::uint32_t footprint = moving ? 2 : 1;
+  loads.push_back({.footprint = footprint, .anywhere = moving});  // depth, or all of the history
+  if (half) {
+    const std::uint32_t channels = moving ? 2 : 1;  // a gather reads one
+    loads.push_back(
+        {.texel_bytes = 8, .footprint = footprint, .anywhere = moving, .count = channels});
+  }
+  return loads;
+}
+
 }  // namespace alcove::passes::cost

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "pass_work.h"
@@ -48,6 +49,42 @@ double traffic_share(const PassWork& work, std::string_view image, Direction dir
     return reconstruct_traffic(work, image, direction);
   }
   return 1.0;
+}
+
+double cache_lines(const LoadPattern& pattern) {
+  constexpr std::int32_t kLine = 64;
+  constexpr std::int32_t kGroup = 8;
+  const auto texel = static_cast<std::int32_t>(pattern.texel_bytes);
+  const auto pitch = static_cast<std::int32_t>(pattern.pitch);
+  const auto footprint = static_cast<std::int32_t>(pattern.footprint);
+  std::set<std::int32_t> rows;
+  for (std::int32_t i = 0; i < kGroup * footprint; ++i) {
+    rows.insert(i / footprint * pitch + i % footprint);
+  }
+  const std::int32_t positions = pattern.anywhere ? kLine / texel : 1;
+  double lines = 0;
+  for (std::int32_t position = 0; position < positions; ++position) {
+    std::set<std::int32_t> of_row;
+    for (const std::int32_t column : rows) {
+      const std::int32_t x = column + position + pattern.first;
+      of_row.insert((x * texel + kLine) / kLine);  // a group begins at most a line before its image
+    }
+    lines += static_cast<double>(of_row.size() * rows.size());
+  }
+  return lines / positions;
+}
+
+double cache_lines_per_load(const PassWork& work) {
+  if (work.pass != "reconstruct") {
+    return 0;
+  }
+  double lines = 0;
+  double loads = 0;
+  for (const LoadPattern& pattern : reconstruct_loads(work)) {
+    lines += pattern.count * cache_lines(pattern);
+    loads += pattern.count;
+  }
+  return lines / loads;
 }
 
 }  // namespace alcove::passes::cost

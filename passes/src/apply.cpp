@@ -15,7 +15,6 @@
 
 namespace alcove::passes {
 
-using framegraph::Range;
 using framegraph::RecordContext;
 using framegraph::Texture;
 
@@ -68,7 +67,7 @@ tl::expected<void, Error> check_probe(const Frame& frame, const ApplyInputs& inp
   return {};
 }
 
-// On the stack, so that a steady frame allocates nothing for it.
+// A list of inputs on the stack, so that a steady frame allocates no memory for it.
 class NamedInputs {
  public:
   void add(const NamedInput& input) { inputs_.at(count_++) = input; }
@@ -79,7 +78,8 @@ class NamedInputs {
   std::size_t count_ = 0;
 };
 
-// The inputs that are as large as the depth, by name; those that are null and may be are left out.
+// Returns the inputs that must have the size of the depth, with their names. Optional inputs that
+// are null are left out.
 NamedInputs named_inputs(const ApplyInputs& inputs) {
   NamedInputs named;
   named.add({"linear depth", inputs.depth});
@@ -99,21 +99,19 @@ NamedInputs named_inputs(const ApplyInputs& inputs) {
 
 tl::expected<Kernel, Error> kernel_of(const Frame& frame, const ApplyInputs& inputs,
                                       const ApplySettings& settings) {
-  const std::array diffuse{
-      flag(bool(inputs.bent_normal)), flag(bool(inputs.visibility)),
-      flag(settings.multi_bounce && (inputs.visibility || inputs.specular_occlusion)),
-      flag(bool(inputs.light)), flag(settings.parts)};
-  if (!inputs.map) {
-    return frame.kernels.get(Shader::apply, diffuse);
-  }
-  const auto [bent, visible, bounces, light, parts] = diffuse;
-  return frame.kernels.get(
-      Shader::apply_specular,
-      std::array{bent, visible, bounces, light, parts, flag(bool(inputs.roughness)),
-                 channel_if(bool(inputs.roughness), settings.roughness_channel),
-                 flag(bool(inputs.metallic)),
-                 channel_if(bool(inputs.metallic), settings.metallic_channel),
-                 flag(bool(inputs.specular_occlusion))});
+  const bool bounces = settings.multi_bounce && (inputs.visibility || inputs.specular_occlusion);
+  const auto constants = std::to_array<NamedConstant>(
+      {{"kBentNormal", flag(bool(inputs.bent_normal))},
+       {"kVisibility", flag(bool(inputs.visibility))},
+       {"kMultiBounce", flag(bounces)},
+       {"kLight", flag(bool(inputs.light))},
+       {"kParts", flag(settings.parts)},
+       {"kRoughnessTexture", flag(bool(inputs.roughness))},
+       {"kRoughnessChannel", channel_if(bool(inputs.roughness), settings.roughness_channel)},
+       {"kMetallicTexture", flag(bool(inputs.metallic))},
+       {"kMetallicChannel", channel_if(bool(inputs.metallic), settings.metallic_channel)},
+       {"kSpecularOcclusion", flag(bool(inputs.specular_occlusion))}});
+  return frame.kernels.get(inputs.map ? Shader::apply_specular : Shader::apply, constants);
 }
 
 Texture write_light(const Frame& frame, framegraph::PassBuilder& pass, const char* name,
@@ -128,7 +126,7 @@ void declare_reads(framegraph::PassBuilder& pass, const ApplyInputs& inputs) {
   const auto& sampled = framegraph::access::sampled_compute;
   const NamedInputs named = named_inputs(inputs);
   for (const NamedInput& input : std::span<const NamedInput>(named)) {
-    pass.read(input.texture, sampled, input.texture == inputs.depth ? Range::mip(0) : Range{});
+    pass.read(input.texture, sampled);
   }
   pass.read(inputs.harmonics, sampled);
   if (inputs.map) {
@@ -136,7 +134,7 @@ void declare_reads(framegraph::PassBuilder& pass, const ApplyInputs& inputs) {
   }
 }
 
-// What a purely diffuse surface does not use.
+// Returns the inputs without those that a purely diffuse surface does not use.
 ApplyInputs without_specular(ApplyInputs inputs) {
   inputs.roughness = inputs.metallic = inputs.specular_occlusion = {};
   return inputs;
@@ -189,28 +187,27 @@ tl::expected<AppliedLight, Error> add_apply(const Frame& frame, const ApplyInput
   if (settings.parts && inputs.map) {
     result.specular = write_light(frame, pass, "specular light", inputs.depth, settings.precision);
   }
-  pass.record(
-      [&kernels = frame.kernels, kernel = *kernel, inputs, result,
-       parameters = parameters_of(frame, inputs, settings, *projection)](RecordContext& context) {
-        const std::array views{context.view(inputs.depth),
-                               context.view(inputs.normals),
-                               context.view(inputs.albedo),
-                               view_or(context, inputs.bent_normal, inputs.normals),
-                               view_or(context, inputs.visibility, inputs.albedo),
-                               view_or(context, inputs.light, inputs.albedo),
-                               context.view(inputs.harmonics),
-                               context.view(result.lit),
-                               view_or(context, result.diffuse, result.lit),
-                               view_or(context, result.specular, result.lit),
-                               view_or(context, inputs.roughness, inputs.albedo),
-                               view_or(context, inputs.metallic, inputs.albedo),
-                               view_or(context, inputs.specular_occlusion, inputs.albedo),
-                               view_or(context, inputs.map, inputs.albedo)};
-        constexpr std::size_t kDiffuseViews = 9;
-        kernels.dispatch(context, kernel,
-                         std::span(views).first(inputs.map ? views.size() : kDiffuseViews),
-                         bytes_of(parameters), context.extent(result.lit));
-      });
+  pass.record([&kernels = frame.kernels, kernel = *kernel, inputs, result,
+               parameters =
+                   parameters_of(frame, inputs, settings, *projection)](RecordContext& context) {
+    // Images that are not given are replaced by another one, which the shader does not read.
+    const auto views = std::to_array<NamedView>(
+        {{"depth_image", context.view(inputs.depth)},
+         {"normal_image", context.view(inputs.normals)},
+         {"albedo_image", context.view(inputs.albedo)},
+         {"bent_normal_image", view_or(context, inputs.bent_normal, inputs.normals)},
+         {"visibility_image", view_or(context, inputs.visibility, inputs.albedo)},
+         {"light_image", view_or(context, inputs.light, inputs.albedo)},
+         {"harmonics_image", context.view(inputs.harmonics)},
+         {"lit_image", context.view(result.lit)},
+         {"diffuse_image", view_or(context, result.diffuse, result.lit)},
+         {"specular_image", view_or(context, result.specular, result.lit)},
+         {"roughness_image", view_or(context, inputs.roughness, inputs.albedo)},
+         {"metallic_image", view_or(context, inputs.metallic, inputs.albedo)},
+         {"specular_occlusion_image", view_or(context, inputs.specular_occlusion, inputs.albedo)},
+         {"map_image", view_or(context, inputs.map, inputs.albedo)}});
+    kernels.dispatch(context, kernel, views, bytes_of(parameters), context.extent(result.lit));
+  });
   return result;
 }
 

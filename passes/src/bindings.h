@@ -1,4 +1,4 @@
-// What passes give to shaders beside their parameters.
+// Values that passes give to their shaders in addition to the parameters.
 #pragma once
 
 #include <cstdint>
@@ -7,17 +7,17 @@
 
 namespace alcove::passes {
 
-// A constant that turns part of a shader on.
+// Returns the value of a specialisation constant that turns a part of a shader on or off.
 [[nodiscard]] constexpr std::uint32_t flag(bool on) { return on ? 1 : 0; }
 
-// A constant that picks the channel of a texture; where that is not read all channels are one
-// pipeline.
+// Returns the value of a specialisation constant that selects a channel of a texture. If the
+// texture is not read, the value is 0, so that all channels share one pipeline.
 [[nodiscard]] constexpr std::uint32_t channel_if(bool read, std::uint32_t channel) {
   return read ? channel : 0;
 }
 
-// The view of a texture; where it is null and so not read, or not written, that of `instead`, which
-// is of its kind.
+// Returns the view of `texture`. If that is null, returns the view of `instead`, because every
+// binding needs a view of its kind; the shader does not use it.
 [[nodiscard]] inline VkImageView view_or(const framegraph::RecordContext& context,
                                          framegraph::Texture texture, framegraph::Texture instead) {
   return context.view(texture ? texture : instead);

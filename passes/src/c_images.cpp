@@ -110,6 +110,11 @@ tl::expected<void, Failure> check(const ImageRole& role, const AlcoveImage& imag
     return fail("is " + size(image) + " pixels and that of depth " + size(depth) +
                 "; make them equal.");
   }
+  if (image.samples > 1) {
+    return fail("has " + std::to_string(image.samples) +
+                " samples a pixel; resolve it first, depth and normals to sample 0 "
+                "(VK_RESOLVE_MODE_SAMPLE_ZERO_BIT).");
+  }
   if (!suits(role, image.format)) {
     return fail("has the format " + format_name(image.format) + "; it must be " +
                 wanted_format(role) + ".");

@@ -18,7 +18,9 @@ using maths::kInspectRows;
 
 using Texel = std::array<float, 4>;
 constexpr std::uint32_t kTexelRows = 2 * kInspectRows + 1;
-constexpr VkDeviceSize kBytes = VkDeviceSize{kInspectColumns} * kTexelRows * sizeof(Texel);
+constexpr VkDeviceSize kTexelBytes = VkDeviceSize{kInspectColumns} * kTexelRows * sizeof(Texel);
+// The serial number of the frame follows the texels.
+constexpr VkDeviceSize kBytes = kTexelBytes + sizeof(std::uint32_t);
 constexpr std::uint32_t kSureFrames = 3;
 
 }  // namespace
@@ -38,7 +40,7 @@ tl::expected<void, Failure> PixelObserver::add(const Frame& frame, const AlcoveV
   if (!kernel) {
     return tl::unexpected(failure_of(kernel.error(), "View"));
   }
-  serial_ = serial_ % 0xffffff + 1;
+  ++serial_;
   pending.declared = true;
   pending.serial = serial_;
   pending.id = view.id;
@@ -62,11 +64,13 @@ tl::expected<void, Failure> PixelObserver::add(const Frame& frame, const AlcoveV
   samples = sampling.write(samples, framegraph::access::storage_write_compute, {},
                            framegraph::Contents::discard);
   const maths::InspectParameters parameters{
-      {view.depth.width, view.depth.height}, serial_, normals ? 1u : 0u};
+      {view.depth.width, view.depth.height}, normals ? 1u : 0u, 0};
   sampling.record([&kernels = frame.kernels, kernel = *kernel, depth, normals, samples,
                    parameters](RecordContext& context) {
-    const std::array views{context.view(depth), context.view(normals ? normals : depth),
-                           context.view(samples)};
+    const auto views =
+        std::to_array<NamedView>({{"depth_image", context.view(depth)},
+                                  {"normal_image", context.view(normals ? normals : depth)},
+                                  {"sample_image", context.view(samples)}});
     kernels.dispatch(context, kernel, views, bytes_of(parameters),
                      {kInspectColumns, kInspectRows + 1, 1});
   });
@@ -78,13 +82,17 @@ tl::expected<void, Failure> PixelObserver::add(const Frame& frame, const AlcoveV
                                        .final_state = framegraph::buffer_access::host_read});
   auto copying = graph.add_pass("read samples");
   copying.read(samples, framegraph::access::transfer_source);
-  buffer = copying.write(buffer, framegraph::buffer_access::transfer_destination);
-  copying.record([samples, buffer](RecordContext& context) {
+  buffer = copying.write(buffer, framegraph::buffer_access::fill);
+  copying.record([samples, buffer, serial = serial_](RecordContext& context) {
     const VkBufferImageCopy region{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
                                    .imageExtent = context.extent(samples)};
     context.vk.vkCmdCopyImageToBuffer(context.commands, context.image(samples),
                                       VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, context.buffer(buffer),
                                       1, &region);
+    // The number lies in the command buffer, and not in memory that the next frame of a slot
+    // overwrites. It tells which frame the device has really finished.
+    context.vk.vkCmdUpdateBuffer(context.commands, context.buffer(buffer), kTexelBytes,
+                                 sizeof serial, &serial);
   });
   return {};
 }
@@ -102,7 +110,9 @@ void PixelObserver::collect(std::uint32_t slot) {
                 sizeof result);
     return result;
   };
-  if (texel(1, 2 * kInspectRows)[0] != static_cast<float>(pending.serial)) {
+  std::uint32_t finished = 0;
+  std::memcpy(&finished, pending.buffer->bytes() + kTexelBytes, sizeof finished);
+  if (finished != pending.serial) {
     ++early_;
     return;
   }

@@ -58,11 +58,10 @@ std::uint64_t pixel_bytes(const OcclusionSettings& settings, bool multi_bounce,
   return sum;
 }
 
-// Bytes per texel of the transients between the filter and the upsampling pass. With a history, the
-// upsampling pass reads residuals and lobes from the history's textures.
+// Bytes per texel of the textures that the filter writes for the upsampling pass without a history;
+// with one, they are the history's.
 std::uint64_t half_resolution_bytes(const OcclusionSettings& settings, bool lobe, bool bent) {
-  const std::uint64_t of_history = (history_bytes(lobe, bent) - history_bytes(false, false)) / 2;
-  return bytes_of(VK_FORMAT_R32G32_UINT) + (settings.history_frames > 0 ? 0 : of_history);
+  return settings.history_frames > 0 ? 0 : half_history_bytes(lobe, bent) / 2;
 }
 
 }  // namespace
@@ -96,7 +95,9 @@ AlcoveResult alcoveEstimateMemory(const AlcoveSettings* settings, uint32_t width
   const std::uint64_t transients =
       pixels * pixel_bytes(wanted, multi_bounce, normals_given != VK_FALSE) + tiles * tile_bytes +
       (wanted.half_resolution ? texels * half_resolution_bytes(wanted, lobe, bent) : 0);
-  const std::uint64_t history = wanted.history_frames > 0 ? texels * history_bytes(lobe, bent) : 0;
+  const std::uint64_t texel_bytes =
+      wanted.half_resolution ? half_history_bytes(lobe, bent) : history_bytes(lobe, bent);
+  const std::uint64_t history = wanted.history_frames > 0 ? texels * texel_bytes : 0;
   *memory = {.struct_size = sizeof *memory,
              .transients = transients,
              .transients_unshared = transients,

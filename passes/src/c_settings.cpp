@@ -18,7 +18,8 @@ template <typename Ours, typename Theirs>
 constexpr bool same(Ours ours, Theirs theirs) {
   return static_cast<int>(ours) == static_cast<int>(theirs);
 }
-static_assert(same(Quality::low, ALCOVE_QUALITY_LOW) &&
+static_assert(same(Quality::console, ALCOVE_QUALITY_CONSOLE) &&
+              same(Quality::low, ALCOVE_QUALITY_LOW) &&
               same(Quality::medium, ALCOVE_QUALITY_MEDIUM) &&
               same(Quality::high, ALCOVE_QUALITY_HIGH) &&
               same(Quality::reference, ALCOVE_QUALITY_REFERENCE));
@@ -34,8 +35,6 @@ static_assert(same(ThicknessUnit::radius, ALCOVE_THICKNESS_UNIT_RADIUS) &&
 static_assert(same(Pattern::golden, ALCOVE_PATTERN_GOLDEN) &&
               same(Pattern::hilbert, ALCOVE_PATTERN_HILBERT) &&
               same(Pattern::paper, ALCOVE_PATTERN_PAPER));
-static_assert(same(Grouping::neighbours, ALCOVE_GROUPING_NEIGHBOURS) &&
-              same(Grouping::pattern, ALCOVE_GROUPING_PATTERN));
 static_assert(same(Specular::slices, ALCOVE_SPECULAR_SLICES) &&
               same(Specular::table, ALCOVE_SPECULAR_TABLE) &&
               same(Specular::cone, ALCOVE_SPECULAR_CONE));
@@ -77,7 +76,6 @@ void for_each_advanced_pair(Theirs& theirs, Ours& ours, const Visit& visit) {
   visit(theirs.snap_to_texels, ours.snap_to_texels);
   visit(theirs.extrapolation, ours.extrapolation);
   visit(theirs.unobserved, ours.unobserved);
-  visit(theirs.grouping, ours.grouping);
 }
 
 constexpr auto kToCpp = [](const auto& theirs, auto& ours) {

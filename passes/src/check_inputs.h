@@ -1,4 +1,4 @@
-// Checks of the textures that a pass is given.
+// Checks the textures that a pass is given.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,8 @@ struct NamedInput {
   framegraph::Texture texture;
 };
 
-// An error that names the first input that is missing, or not as large as the first of them.
+// Returns an error that names the first input that is missing or whose size differs from that of
+// the first input.
 [[nodiscard]] inline tl::expected<void, Error> check_inputs(const framegraph::Graph& graph,
                                                             std::string_view pass,
                                                             std::span<const NamedInput> inputs) {

@@ -75,7 +75,7 @@ tl::expected<void, Error> check_raw_occlusion(const Frame& frame, const Reconstr
       .and_then([&]() -> tl::expected<void, Error> {
         if (half_resolution && raw_occlusion.tile_size < 2) {
           return tl::unexpected(
-              Error{"Half resolution needs tiles of 2 or 4 pixels; the tile_size is 1."});
+              Error{"Half resolution needs tiles of at least 2 pixels; the tile_size is 1."});
         }
         return {};
       })

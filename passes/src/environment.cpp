@@ -21,9 +21,9 @@ using framegraph::Texture;
 
 namespace {
 
-constexpr std::uint32_t kHarmonicsSize = 64;  // texels a side of the level that is projected
-constexpr float kMostReads = 16.0f;           // a side of a texel, of a large source
-constexpr std::uint32_t kMostSamples = 4096;  // of a lobe
+constexpr std::uint32_t kHarmonicsSize = 64;  // width of the mip that is projected, in texels
+constexpr float kMostReads = 16.0f;           // per axis of a texel, if the source is large
+constexpr std::uint32_t kMostSamples = 4096;  // per lobe
 
 tl::expected<void, Error> check(const Frame& frame, Texture equirectangular,
                                 const EnvironmentSettings& settings) {
@@ -46,7 +46,7 @@ tl::expected<void, Error> check(const Frame& frame, Texture equirectangular,
   return check_inputs(frame.graph, "environment", needed);
 }
 
-// One dispatch that reads `source` and writes `range` of `target`; returns the written version.
+// A dispatch that reads `source` and writes `target_range` of `target`.
 struct Step {
   const char* name;
   Shader shader;
@@ -54,7 +54,7 @@ struct Step {
   Range source_range;
   Texture target;
   Range target_range;
-  std::uint32_t threads;  // a side
+  std::uint32_t threads;  // per axis
   maths::EnvironmentParameters parameters;
 };
 
@@ -68,15 +68,16 @@ tl::expected<Texture, Error> add_step(const Frame& frame, const Step& step) {
   const Texture written = pass.write(step.target, framegraph::access::storage_write_compute,
                                      step.target_range, framegraph::Contents::discard);
   pass.record([&kernels = frame.kernels, kernel = *kernel, step](RecordContext& context) {
-    const std::array views{context.view(step.source, step.source_range),
-                           context.view(step.target, step.target_range)};
+    const auto views =
+        std::to_array<NamedView>({{"source_image", context.view(step.source, step.source_range)},
+                                  {"target_image", context.view(step.target, step.target_range)}});
     kernels.dispatch(context, kernel, views, bytes_of(step.parameters),
                      {step.threads, step.threads, 1});
   });
   return written;
 }
 
-// Adds steps until one fails.
+// Adds steps until one fails, and keeps its error.
 class Steps {
  public:
   explicit Steps(const Frame& frame) : frame_(frame) {}
@@ -100,14 +101,14 @@ class Steps {
 
 maths::vec2 square(std::uint32_t size) { return maths::vec2(static_cast<float>(size)); }
 
-// The light as an octahedral map with every level that is half another, in whole floats.
+// Adds the passes that convert the image to an octahedral map in 32-bit floats, with all mips.
 Texture add_source(const Frame& frame, Steps& steps, Texture equirectangular, std::uint32_t size) {
   const auto levels = static_cast<std::uint32_t>(std::bit_width(size));
   Texture source = frame.graph.create_texture(
       "environment", {VK_FORMAT_R32G32B32A32_SFLOAT, Extent::absolute(size, size), levels});
   const VkExtent3D given = frame.graph.extent(equirectangular);
   const maths::vec2 given_px(static_cast<float>(given.width), static_cast<float>(given.height));
-  // A texel spans about 2/3 of the columns over the size.
+  // In the mean, a texel covers 0.67 * (columns of the source / width of the map) columns.
   const float samples =
       std::clamp(std::ceil(0.67f * given_px.x / static_cast<float>(size)), 2.0f, kMostReads);
   source = steps.add({"environment",
@@ -132,7 +133,8 @@ Texture add_source(const Frame& frame, Steps& steps, Texture equirectangular, st
   return source;
 }
 
-// A level has a quarter of the texels of the one before, and wider lobes: four times the samples.
+// Returns the samples per lobe for a mip. Each mip has a quarter of the texels of the previous one
+// and wider lobes, so that it gets four times as many samples.
 float samples_of_level(std::uint32_t level, std::uint32_t first) {
   const std::uint32_t more = 2 * (level == 0 ? 0 : level - 1);
   return static_cast<float>(std::min(std::uint64_t{first} << more, std::uint64_t{kMostSamples}));

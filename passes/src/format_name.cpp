@@ -5,7 +5,8 @@
 namespace alcove::passes {
 namespace {
 
-// The formats of Vulkan 1.0, which are numbered from 0 on without a gap.
+// The names of the formats of Vulkan 1.0 without their prefix. The formats are numbered from 0
+// without gaps.
 constexpr auto kNames = std::to_array<std::string_view>({"UNDEFINED",
                                                          "R4G4_UNORM_PACK8",
                                                          "R4G4B4A4_UNORM_PACK16",

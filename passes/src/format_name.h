@@ -7,7 +7,8 @@
 
 namespace alcove::passes {
 
-// "VK_FORMAT_R8_UNORM"; a format of an extension by its number.
+// Returns the name of a format, for example "VK_FORMAT_R8_UNORM". A format of an extension is named
+// by its number.
 [[nodiscard]] std::string format_name(VkFormat format);
 
 }  // namespace alcove::passes

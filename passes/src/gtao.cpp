@@ -1,7 +1,6 @@
 #include "alcove/passes/gtao.h"
 
 #include <array>
-#include <span>
 #include <utility>
 
 #include "bindings.h"
@@ -36,13 +35,6 @@ RawOcclusionTextures create_raw_occlusion(const Frame& frame, Texture depth,
   return result;
 }
 
-// Threads for `blocks`: with groups by pattern a whole number of tile_by_pattern()'s.
-VkExtent3D searches(VkExtent3D blocks, bool by_pattern) {
-  const std::uint32_t whole = by_pattern ? 32 : 1;
-  return {(blocks.width + whole - 1) / whole * whole, (blocks.height + whole - 1) / whole * whole,
-          1};
-}
-
 // What of the inputs the settings read beside depth and normals.
 struct Reads {
   bool roughness = false;
@@ -66,40 +58,35 @@ tl::expected<void, Error> check_textures(const Frame& frame, const GtaoInputs& i
   return check_inputs(frame.graph, "gtao", needed);
 }
 
-bool by_pattern(const OcclusionSettings& settings) {
-  return settings.advanced.grouping == Grouping::pattern;
-}
-
 // Whether thickness is a part of distance; else of the radius, or there is none.
 bool of_distance(const OcclusionSettings& settings) {
   return has_thickness(settings.advanced.estimator) &&
          settings.advanced.thickness_unit == ThicknessUnit::distance;
 }
 
-// Of the shader, in its order.
-std::array<std::uint32_t, 20> constants_of(const GtaoInputs& inputs,
+std::array<NamedConstant, 19> constants_of(const GtaoInputs& inputs,
                                            const OcclusionSettings& settings, const Reads& reads,
                                            const maths::Projection& projection) {
-  return {settings.slices,
-          settings.steps,
-          flag(needs_bent_normal(settings)),
-          static_cast<std::uint32_t>(settings.advanced.estimator),
-          settings.tile_size,
-          static_cast<std::uint32_t>(settings.advanced.pattern),
-          flag(is_perspective(projection)),
-          flag(reads.roughness),
-          channel_if(reads.roughness, settings.roughness_channel),
-          flag(settings.advanced.weighting == Weighting::uniform),
-          flag(settings.advanced.falloff > 0.0f),
-          flag(of_distance(settings)),
-          flag(reads.back_faces),
-          flag(settings.advanced.snap_to_texels),
-          flag(by_pattern(settings)),
-          flag(reads.second_layer),
-          flag(settings.advanced.extrapolation),
-          flag(settings.advanced.unobserved),
-          static_cast<std::uint32_t>(inputs.normal_encoding),
-          flag(is_reversed(projection))};
+  const AdvancedSettings& advanced = settings.advanced;
+  return {{{"kSliceCount", settings.slices},
+           {"kStepCount", settings.steps},
+           {"kBentNormal", flag(needs_bent_normal(settings))},
+           {"kEstimator", static_cast<std::uint32_t>(advanced.estimator)},
+           {"kTileSize", settings.tile_size},
+           {"kPattern", static_cast<std::uint32_t>(advanced.pattern)},
+           {"kPerspective", flag(is_perspective(projection))},
+           {"kRoughnessTexture", flag(reads.roughness)},
+           {"kRoughnessChannel", channel_if(reads.roughness, settings.roughness_channel)},
+           {"kUniformWeight", flag(advanced.weighting == Weighting::uniform)},
+           {"kFalloff", flag(advanced.falloff > 0.0f)},
+           {"kThicknessOfDistance", flag(of_distance(settings))},
+           {"kBackFaces", flag(reads.back_faces)},
+           {"kSnapToTexels", flag(advanced.snap_to_texels)},
+           {"kSecondLayer", flag(reads.second_layer)},
+           {"kExtrapolation", flag(advanced.extrapolation)},
+           {"kUnobserved", flag(advanced.unobserved)},
+           {"kNormalEncoding", static_cast<std::uint32_t>(inputs.normal_encoding)},
+           {"kReversed", flag(is_reversed(projection))}}};
 }
 
 void declare_accesses(framegraph::PassBuilder& pass, const GtaoInputs& inputs, const Reads& reads,
@@ -148,19 +135,20 @@ maths::GtaoParameters parameters_of(const Frame& frame, const GtaoInputs& inputs
       step.per_inverse_depth};
 }
 
-// In the order of the shader's bindings; what is not read is bound to something of its kind.
-std::array<VkImageView, 7> views_of(RecordContext& context, const GtaoInputs& inputs,
-                                    const Reads& reads, const RawOcclusionTextures& result) {
+// Images that the settings do not use are replaced by others of their kind, because every binding
+// needs a view.
+std::array<NamedView, 7> views_of(RecordContext& context, const GtaoInputs& inputs,
+                                  const Reads& reads, const RawOcclusionTextures& result) {
   const VkImageView depth = context.view(inputs.depth_ndc);
   const VkImageView normals = context.view(inputs.normals);
   const VkImageView raw_occlusion = context.view(result.raw_occlusion);
-  return {depth,
-          normals,
-          raw_occlusion,
-          result.bent ? context.view(result.bent) : raw_occlusion,
-          reads.back_faces ? context.view(inputs.back_depth_ndc) : depth,
-          reads.second_layer ? context.view(inputs.second_depth_ndc) : depth,
-          reads.roughness ? context.view(inputs.roughness) : normals};
+  return {{{"depth_image", depth},
+           {"normal_image", normals},
+           {"raw_image", raw_occlusion},
+           {"bent_image", result.bent ? context.view(result.bent) : raw_occlusion},
+           {"back_image", reads.back_faces ? context.view(inputs.back_depth_ndc) : depth},
+           {"second_image", reads.second_layer ? context.view(inputs.second_depth_ndc) : depth},
+           {"roughness_image", reads.roughness ? context.view(inputs.roughness) : normals}}};
 }
 
 }  // namespace
@@ -184,15 +172,12 @@ tl::expected<RawOcclusionTextures, Error> add_gtao(const Frame& frame, const Gta
   RawOcclusionTextures result = create_raw_occlusion(frame, inputs.depth_ndc, settings);
   auto pass = frame.graph.add_pass("gtao");
   declare_accesses(pass, inputs, reads, result);
-  pass.record([&kernels = frame.kernels, kernel = *kernel, inputs, result, reads,
-               parameters = parameters_of(frame, inputs, settings, *projection),
-               whole = by_pattern(settings)](RecordContext& context) {
-    const auto views = views_of(context, inputs, reads, result);
-    // Without a lobe the last binding does not exist.
-    const std::span<const VkImageView> bound(views.data(), views.size() - (result.lobe ? 0 : 1));
-    kernels.dispatch(context, kernel, bound, bytes_of(parameters),
-                     searches(context.extent(result.raw_occlusion), whole));
-  });
+  pass.record(
+      [&kernels = frame.kernels, kernel = *kernel, inputs, result, reads,
+       parameters = parameters_of(frame, inputs, settings, *projection)](RecordContext& context) {
+        kernels.dispatch(context, kernel, views_of(context, inputs, reads, result),
+                         bytes_of(parameters), context.extent(result.raw_occlusion));
+      });
   return result;
 }
 

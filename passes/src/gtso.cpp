@@ -14,7 +14,6 @@
 
 namespace alcove::passes {
 
-using framegraph::Range;
 using framegraph::RecordContext;
 using framegraph::Texture;
 
@@ -45,12 +44,11 @@ tl::expected<void, Error> check(const Frame& frame, const GtsoInputs& inputs,
 
 void declare_reads(framegraph::PassBuilder& pass, const GtsoInputs& inputs) {
   for (const Texture texture :
-       {inputs.visibility, inputs.bent_normal, inputs.normals, inputs.roughness}) {
+       {inputs.visibility, inputs.bent_normal, inputs.normals, inputs.depth, inputs.roughness}) {
     if (texture) {
       pass.read(texture, framegraph::access::sampled_compute);
     }
   }
-  pass.read(inputs.depth, framegraph::access::sampled_compute, Range::mip(0));
 }
 
 }  // namespace
@@ -64,9 +62,11 @@ tl::expected<Texture, Error> add_gtso(const Frame& frame, const GtsoInputs& inpu
   if (!projection) {
     return tl::unexpected(projection.error());
   }
-  const std::array constants{flag(bool(inputs.roughness)),
-                             channel_if(bool(inputs.roughness), settings.roughness_channel),
-                             static_cast<std::uint32_t>(inputs.normal_encoding)};
+  const bool textured = bool(inputs.roughness);
+  const auto constants = std::to_array<NamedConstant>(
+      {{"kRoughnessTexture", flag(textured)},
+       {"kRoughnessChannel", channel_if(textured, settings.roughness_channel)},
+       {"kNormalEncoding", static_cast<std::uint32_t>(inputs.normal_encoding)}});
   const auto kernel = frame.kernels.get(
       settings.specular == Specular::table ? Shader::gtso_by_table : Shader::gtso, constants);
   if (!kernel) {
@@ -83,12 +83,13 @@ tl::expected<Texture, Error> add_gtso(const Frame& frame, const GtsoInputs& inpu
       settings.roughness};
   pass.record([&kernels = frame.kernels, kernel = *kernel, inputs, result,
                parameters](RecordContext& context) {
-    const std::array views{context.view(inputs.visibility),
-                           context.view(inputs.bent_normal),
-                           context.view(inputs.normals),
-                           context.view(inputs.depth),
-                           view_or(context, inputs.roughness, inputs.visibility),
-                           context.view(result)};
+    const auto views = std::to_array<NamedView>(
+        {{"visibility_image", context.view(inputs.visibility)},
+         {"bent_normal_image", context.view(inputs.bent_normal)},
+         {"normal_image", context.view(inputs.normals)},
+         {"depth_image", context.view(inputs.depth)},
+         {"roughness_image", view_or(context, inputs.roughness, inputs.visibility)},
+         {"result_image", context.view(result)}});
     kernels.dispatch(context, kernel, views, bytes_of(parameters), context.extent(result));
   });
   return result;

@@ -1,4 +1,4 @@
-// Memory that the host writes and the device reads.
+// A buffer that the host writes and the device reads.
 #pragma once
 
 #include <vulkan/vulkan_core.h>
@@ -11,8 +11,8 @@
 
 namespace alcove::passes {
 
-// A buffer with memory of its own, mapped as long as it lives. The functions, the device and the
-// caller's allocators outlive it. The device must have finished with it before it is destroyed.
+// A buffer with memory of its own that stays mapped. The functions, the device and the caller's
+// allocators must outlive it. The device must have finished with it before it is destroyed.
 class HostBuffer {
  public:
   [[nodiscard]] static tl::expected<std::unique_ptr<HostBuffer>, VkResult> create(

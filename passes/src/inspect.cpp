@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <iterator>
 #include <optional>
 #include <vector>
 
@@ -37,10 +37,10 @@ struct Reading {
   double tangent_scale = 1.0;  // of the tangents of half the angles of view
 };
 
-// Three quarters of the values are at most this. The median would not do: walls and floors that are
-// seen along the axes of the view have the same normals with any angle of view.
-double upper_quartile(std::vector<double> values) {
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() * 3 / 4);
+// Returns the value that a fraction `share`, 0 to 1, of the values does not exceed.
+double quantile(std::vector<double> values, double share) {
+  const auto at =
+      values.begin() + static_cast<std::ptrdiff_t>(static_cast<double>(values.size()) * share);
   std::nth_element(values.begin(), at, values.end());
   return *at;
 }
@@ -62,6 +62,7 @@ class Inspector {
         samples_(samples),
         clip_from_view_(to_mat4(view.view.clip_from_view)),
         view_from_clip_(maths::inverse(clip_from_view_)),
+        rotation_(to_rigid(view.view.view_from_world)),
         perspective_(view.view.clip_from_view[15] == 0.0f) {
     const double near = position(0.5, 0.5, 0.0).z;
     const double far = position(0.5, 0.5, 1.0 - 1e-7).z;
@@ -79,9 +80,10 @@ class Inspector {
     if (reversed) {
       return found;  // everything else would follow from it
     }
-    set(Mistake::depth_from_minus_one, is_depth_from_minus_one());
+    const bool from_minus_one = is_depth_from_minus_one();
+    set(Mistake::depth_from_minus_one, from_minus_one);
     inspect_radius(set);
-    if (view_.has_normals) {
+    if (view_.has_normals && !from_minus_one) {
       inspect_normals(set);
     }
     return found;
@@ -203,29 +205,81 @@ class Inspector {
     return result;
   }
 
-  // The angle between normals of depth and given ones, in degrees, that three quarters of them keep
-  // to. Either normal may face away.
-  double error_of(const Reading& reading) const {
+  dvec3 given_normal(const SmoothSample& s, const Reading& reading) const {
     auto encoding = static_cast<std::uint32_t>(view_.normal_encoding) & ~1u;
     encoding |= reading.packed ? 1u : 0u;
-    const dmat4 rotation = to_rigid(view_.view.view_from_world);
-    std::vector<double> angles;
-    angles.reserve(smooth_.size());
-    for (const SmoothSample& s : smooth_) {
-      dvec3 given(maths::decode_normal(s.stored, encoding));
-      if (!reading.in_view_space) {
-        given = dvec3(rotation * dvec4(given, 0.0));
-      } else if (reading.forward_z) {
-        given.z = -given.z;
-      }
-      const double k = reading.tangent_scale;
-      const dvec3 scale(k, reading.flip_y ? -k : k, 1.0);
-      const dvec3 own = maths::cross(s.along_x * scale, s.along_y * scale);
-      const double length = maths::length(own) * maths::length(given);
-      const double cosine = length > 0.0 ? std::abs(maths::dot(own, given)) / length : 0.0;
-      angles.push_back(std::acos(std::min(cosine, 1.0)) * kDegrees);
+    dvec3 given(maths::decode_normal(s.stored, encoding));
+    if (!reading.in_view_space) {
+      given = dvec3(rotation_ * dvec4(given, 0.0));
+    } else if (reading.forward_z) {
+      given.z = -given.z;
     }
-    return upper_quartile(std::move(angles));
+    return given;
+  }
+
+  static dvec3 scale_of(const Reading& reading) {
+    const double k = reading.tangent_scale;
+    return {k, reading.flip_y ? -k : k, 1.0};
+  }
+
+  // The normal of the surface by its depth. It has any length, and may face away.
+  static dvec3 own_normal(const SmoothSample& s, const Reading& reading) {
+    const dvec3 scale = scale_of(reading);
+    return maths::cross(s.along_x * scale, s.along_y * scale);
+  }
+
+  // The angle between two normals in degrees, 0 to 90. Either may face away.
+  static double angle_between(const dvec3& a, const dvec3& b) {
+    const double length = maths::length(a) * maths::length(b);
+    const double cosine = length > 0.0 ? std::abs(maths::dot(a, b)) / length : 0.0;
+    return std::acos(std::min(cosine, 1.0)) * kDegrees;
+  }
+
+  std::vector<double> angles_of(const Reading& reading,
+                                std::span<const SmoothSample> samples) const {
+    std::vector<double> angles;
+    angles.reserve(samples.size());
+    for (const SmoothSample& s : samples) {
+      angles.push_back(angle_between(own_normal(s, reading), given_normal(s, reading)));
+    }
+    return angles;
+  }
+
+  // The angle between normals of depth and given ones, in degrees, that three quarters of all
+  // samples keep to. The median would not do: walls and floors that are seen along the axes of the
+  // view have the same normals with any angle of view.
+  double error_of(const Reading& reading) const {
+    return quantile(angles_of(reading, smooth_), 0.75);
+  }
+
+  // The fraction of the samples whose normals are at most 2 degrees apart.
+  double agreement_of(const Reading& reading, std::span<const SmoothSample> samples) const {
+    const std::vector<double> angles = angles_of(reading, samples);
+    const auto agreeing = std::ranges::count_if(angles, [](double angle) { return angle <= 2.0; });
+    return static_cast<double>(agreeing) / static_cast<double>(angles.size());
+  }
+
+  // The fraction of the given normals that face away from the eye, by more than 15 degrees.
+  double facing_away(const Reading& reading) const {
+    std::size_t away = 0;
+    for (const SmoothSample& s : smooth_) {
+      const dvec3 to_eye = perspective_ ? -s.position * scale_of(reading) : dvec3(0.0, 0.0, 1.0);
+      const dvec3 given = given_normal(s, reading);
+      away += maths::dot(given, to_eye) < -0.25 * maths::length(given) * maths::length(to_eye);
+    }
+    return static_cast<double>(away) / static_cast<double>(smooth_.size());
+  }
+
+  // Floors and walls along the axes of the view have the same normals with any angle of view. The
+  // samples that are left tell it.
+  std::vector<SmoothSample> samples_that_tell_angle_of_view(const Reading& given) const {
+    Reading wide = given;
+    wide.tangent_scale = 1.5;
+    std::vector<SmoothSample> result;
+    std::ranges::copy_if(smooth_, std::back_inserter(result), [&](const SmoothSample& s) {
+      return angle_between(own_normal(s, given), own_normal(s, wide)) > 5.0;
+    });
+    return result;
   }
 
   template <typename Set>
@@ -242,54 +296,89 @@ class Inspector {
                         view_.normal_encoding == NormalEncoding::unsigned_xyz ||
                             view_.normal_encoding == NormalEncoding::unsigned_octahedral,
                         view_.normals_forward_z};
+    Mistake found = best_reading(given);
+    if (found == Mistake::count && perspective_ && has_other_angle_of_view(given)) {
+      found = Mistake::field_of_view;
+    }
+    // Floors that are seen from above have the normals of ceilings that are seen from below.
+    Reading flipped = given;
+    flipped.flip_y = true;
+    if (found == Mistake::count && facing_away(given) > 0.2 && facing_away(flipped) < 0.02) {
+      found = Mistake::flipped_y;
+    }
+    if (found != Mistake::count) {
+      set(found, true);
+    }
+  }
+
+  // The mistake without which the given normals fit those of depth, if there is one.
+  Mistake best_reading(const Reading& given) const {
     const double now = error_of(given);
     // Normal maps tilt normals by some degrees from the surface.
     if (now < 4.0) {
-      return;
+      return Mistake::count;
     }
-    struct Candidate {
-      Mistake mistake;
-      Reading reading;
+    double least = std::min(0.4 * now, 15.0);
+    Mistake best = Mistake::count;
+    const auto consider = [&](Mistake mistake, auto&& change) {
+      Reading reading = given;
+      change(reading);
+      const double error = error_of(reading);
+      if (error < least - 0.1) {
+        least = error;
+        best = mistake;
+      }
     };
-    std::vector<Candidate> candidates;
-    const auto add = [&](Mistake mistake, auto&& change) {
-      candidates.push_back({mistake, given});
-      change(candidates.back().reading);
-    };
-    add(Mistake::normal_space, [](Reading& r) { r.in_view_space = !r.in_view_space; });
-    add(Mistake::normal_packing, [](Reading& r) { r.packed = !r.packed; });
-    add(Mistake::normal_packing, [](Reading& r) {
+    consider(Mistake::normal_space, [](Reading& r) { r.in_view_space = !r.in_view_space; });
+    consider(Mistake::normal_packing, [](Reading& r) { r.packed = !r.packed; });
+    consider(Mistake::normal_packing, [](Reading& r) {
       r.packed = !r.packed;
       r.in_view_space = !r.in_view_space;
     });
     if (given.in_view_space) {
-      add(Mistake::normal_forward_z, [](Reading& r) { r.forward_z = !r.forward_z; });
+      consider(Mistake::normal_forward_z, [](Reading& r) { r.forward_z = !r.forward_z; });
     }
-    add(Mistake::flipped_y, [](Reading& r) { r.flip_y = true; });
-    for (double scale = 0.25; perspective_ && scale < 4.2; scale *= 1.05) {
+    consider(Mistake::flipped_y, [](Reading& r) { r.flip_y = true; });
+    if (perspective_) {
+      least = std::min(least, 3.1);
+      for_other_angles_of_view([&](double scale) {
+        consider(Mistake::field_of_view, [scale](Reading& r) { r.tangent_scale = scale; });
+      });
+    }
+    return best;
+  }
+
+  // Calls `call` with the scale of the tangents of half the angles of view, from 1/4 to 4, but not
+  // near 1.
+  template <typename Call>
+  static void for_other_angles_of_view(const Call& call) {
+    for (double scale = 0.25; scale < 4.2; scale *= 1.05) {
       if (scale < 0.87 || scale > 1.15) {
-        add(Mistake::field_of_view, [scale](Reading& r) { r.tangent_scale = scale; });
+        call(scale);
       }
     }
-    double least = std::numeric_limits<double>::infinity();
-    Mistake best = Mistake::count;
-    for (const Candidate& candidate : candidates) {
-      const double error = error_of(candidate.reading);
-      const double most = candidate.mistake == Mistake::field_of_view ? 3.0 : 15.0;
-      if (error < most && error < 0.4 * now && error < least - 0.1) {
-        least = error;
-        best = candidate.mistake;
-      }
+  }
+
+  bool has_other_angle_of_view(const Reading& given) const {
+    const std::vector<SmoothSample> samples = samples_that_tell_angle_of_view(given);
+    if (samples.size() < kEnoughSamples) {
+      return false;
     }
-    if (best != Mistake::count) {
-      set(best, true);
-    }
+    const double now = agreement_of(given, samples);
+    double most = now;
+    for_other_angles_of_view([&](double scale) {
+      Reading reading = given;
+      reading.tangent_scale = scale;
+      most = std::max(most, agreement_of(reading, samples));
+    });
+    return now < 0.2 && most > 0.5;
   }
 
   const InspectedView& view_;
   std::span<const PixelSample> samples_;
   dmat4 clip_from_view_;
   dmat4 view_from_clip_;
+  dmat4 rotation_;  // view from world space
   bool perspective_;
   bool reversed_ = false;
   std::vector<SmoothSample> smooth_;

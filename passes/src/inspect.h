@@ -1,5 +1,5 @@
-// Mistakes that show in the pixels of a view's inputs: what a few thousand samples of depth and
-// normals say about the camera and the formats that the view names.
+// Finds mistakes of the caller in the pixels of a view's inputs. A few thousand samples of depth
+// and normals are compared with the camera and the formats that the view names.
 #pragma once
 
 #include <array>
@@ -10,7 +10,8 @@
 
 namespace alcove::passes {
 
-// A pixel with its four neighbours: depths as they are stored, and the normal as it is stored.
+// A sampled pixel: its depth and those of its four neighbours, and its normal, all as they are
+// stored in the textures.
 struct PixelSample {
   std::uint32_t x = 0;
   std::uint32_t y = 0;
@@ -25,8 +26,8 @@ struct PixelSample {
 // The view that the samples are from, as the engine described it.
 struct InspectedView {
   View view;
-  VkExtent2D size{};        // of the part in use
-  VkExtent2D depth_size{};  // of the images, as the device has them
+  VkExtent2D size{};        // of the part of the image that is in use
+  VkExtent2D depth_size{};  // of the whole images, as the device reports them
   VkExtent2D normals_size{};
   VkFormat depth_format = VK_FORMAT_UNDEFINED;
   bool has_normals = false;
@@ -37,25 +38,26 @@ struct InspectedView {
 };
 
 enum class Mistake : std::uint8_t {
-  depth_reversed,        // depth runs the other way than the projection says
+  depth_reversed,        // depth is reversed and the projection is not, or the other way round
   depth_from_minus_one,  // the projection is OpenGL's, with depth from -1 to 1
-  field_of_view,         // normals fit the depth with another angle of view
-  normal_space,          // world space for view space, or the other way round
-  normal_packing,        // packed normals read as signed ones, or the other way round
-  normal_forward_z,      // z of the normals has the other sign
-  flipped_y,             // y of the projection has the other sign than the image
+  field_of_view,         // the normals fit the depth with another field of view
+  normal_space,          // normals are in world space instead of view space, or the other way round
+  normal_packing,        // normals in [0,1] are read as signed ones, or the other way round
+  normal_forward_z,      // z of the normals has the wrong sign
+  flipped_y,             // y of the projection has the wrong sign for the image
   radius_too_small,
   radius_too_large,
-  image_too_small,  // smaller than the part that is said to be in use
+  image_too_small,  // the image is smaller than the part of it that is in use
   count,
 };
 
-// A sentence for the engine's programmer: what is wrong, and what to do.
+// Returns a sentence that says what is wrong and what to do.
 [[nodiscard]] const char* sentence(Mistake mistake);
 
 using Mistakes = std::array<bool, static_cast<std::size_t>(Mistake::count)>;
 
-// The mistakes that the samples show. Where they are too few to tell, there is none.
+// Returns the mistakes that the samples show. If there are too few samples to tell, the result has
+// none.
 [[nodiscard]] Mistakes inspect(const InspectedView& view, std::span<const PixelSample> samples);
 
 }  // namespace alcove::passes

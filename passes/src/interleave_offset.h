@@ -1,4 +1,4 @@
-// Which pixel of a block is searched in a frame.
+// The pixel of each tile that is traced in a frame.
 #pragma once
 
 #include <array>
@@ -11,21 +11,20 @@ struct InterleaveOffset {
   std::uint32_t y = 0;
 };
 
-// The pixel of a tile of tile_size x tile_size (1, 2 or 4) that is traced in a frame. Each pixel is
-// traced once in tile_size^2 frames, and successive pixels are far apart. The order in 2x2 is
-// (0,0), (1,1), (1,0), (0,1); 4x4 uses it for the quarters and within each quarter.
+// Returns the pixel of a tile of tile_size x tile_size pixels (1, 2, 4 or 8) that is traced in a
+// frame. Each pixel is traced once in tile_size^2 frames, and successive pixels are far apart:
+// successive frames visit the quarters of the tile in the order (0,0), (1,1), (1,0), (0,1), and
+// successive visits to a quarter visit its quarters in the same order.
 [[nodiscard]] constexpr InterleaveOffset interleave_offset_of(std::uint32_t tile_size,
                                                               std::uint32_t frame) {
   constexpr std::array<InterleaveOffset, 4> kOrder{{{0, 0}, {1, 1}, {1, 0}, {0, 1}}};
-  if (tile_size == 1) {
-    return {};
+  InterleaveOffset offset;
+  for (std::uint32_t half = tile_size / 2; half > 0; half /= 2) {
+    offset.x += kOrder[frame % 4].x * half;
+    offset.y += kOrder[frame % 4].y * half;
+    frame /= 4;
   }
-  const InterleaveOffset coarse = kOrder[frame % 4];
-  if (tile_size == 2) {
-    return coarse;
-  }
-  const InterleaveOffset fine = kOrder[frame / 4 % 4];
-  return {coarse.x * 2 + fine.x, coarse.y * 2 + fine.y};
+  return offset;
 }
 
 }  // namespace alcove::passes

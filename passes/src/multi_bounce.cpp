@@ -38,8 +38,10 @@ tl::expected<Texture, Error> add_multi_bounce(const Frame& frame, const MultiBou
       maths::vec2(static_cast<float>(size.width), static_cast<float>(size.height))};
   pass.record([&kernels = frame.kernels, kernel = *kernel, inputs, result,
                parameters](RecordContext& context) {
-    const std::array views{context.view(inputs.visibility), context.view(inputs.albedo),
-                           context.view(result)};
+    const auto views =
+        std::to_array<NamedView>({{"visibility_image", context.view(inputs.visibility)},
+                                  {"albedo_image", context.view(inputs.albedo)},
+                                  {"result_image", context.view(result)}});
     kernels.dispatch(context, kernel, views, bytes_of(parameters), context.extent(result));
   });
   return result;

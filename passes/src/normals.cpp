@@ -8,7 +8,6 @@
 
 namespace alcove::passes {
 
-using framegraph::Range;
 using framegraph::RecordContext;
 using framegraph::Texture;
 
@@ -28,13 +27,14 @@ tl::expected<Texture, Error> add_normals(const Frame& frame, Texture depth) {
   Texture normals = frame.graph.create_texture(
       "normals from depth", {VK_FORMAT_R16G16B16A16_SFLOAT, framegraph::Extent::relative(depth)});
   auto pass = frame.graph.add_pass("normals");
-  pass.read(depth, framegraph::access::sampled_compute, Range::mip(0));
+  pass.read(depth, framegraph::access::sampled_compute);
   normals = pass.write(normals, framegraph::access::storage_write_compute, {},
                        framegraph::Contents::discard);
   const maths::NormalsParameters parameters{*projection};
   pass.record([&kernels = frame.kernels, kernel = *kernel, depth, normals,
                parameters](RecordContext& context) {
-    const std::array views{context.view(depth), context.view(normals)};
+    const auto views = std::to_array<NamedView>(
+        {{"depth_image", context.view(depth)}, {"normal_image", context.view(normals)}});
     kernels.dispatch(context, kernel, views, bytes_of(parameters), context.extent(normals));
   });
   return normals;

@@ -1,4 +1,4 @@
-// Numbers in what the library says.
+// Formats numbers for the sentences of the library.
 #pragma once
 
 #include <array>
@@ -7,8 +7,8 @@
 
 namespace alcove::passes {
 
-// The shortest text that reads back as the same float, at most 15 characters. Unlike
-// std::to_string it is the same in every locale that the program may have set.
+// Returns the shortest text that reads back as the same float, at most 15 characters. Unlike
+// std::to_string, it does not depend on the locale of the program.
 [[nodiscard]] inline std::string number_text(float value) {
   std::array<char, 16> text;
   const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;

@@ -5,13 +5,13 @@
 namespace alcove::passes {
 namespace {
 
-// Adds linear depth where an output, specular occlusion or normals from depth need it.
+// Adds linear depth if an output, specular occlusion or normals from depth need it.
 tl::expected<framegraph::Texture, Error> add_linear(const Frame& frame,
                                                     const OcclusionInputs& inputs,
                                                     const OcclusionSettings& settings) {
   const bool read =
       settings.linear_depth || specular_reads_bent_normal(settings) || !inputs.normals;
-  return read ? add_linear_depth(frame, inputs.depth_ndc, 1, 0.0f)
+  return read ? add_linear_depth(frame, inputs.depth_ndc)
               : tl::expected<framegraph::Texture, Error>(framegraph::Texture{});
 }
 
@@ -52,7 +52,7 @@ tl::expected<OcclusionOutputs, Error> add_occlusion(const Frame& frame,
   }
   framegraph::Texture normals = inputs.normals;
   const bool in_view_space = inputs.normals_in_view_space || !normals;
-  // Normals that are made from depth are signed vectors with the camera along -Z.
+  // Normals from depth are signed vectors in a view space with the camera along -Z.
   const NormalEncoding encoding = normals ? inputs.normal_encoding : NormalEncoding::signed_xyz;
   const bool forward_z = normals && inputs.normals_forward_z;
   if (!normals) {

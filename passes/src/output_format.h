@@ -1,4 +1,4 @@
-// The formats of results by their precision.
+// The formats of results for each precision.
 #pragma once
 
 #include "alcove/passes/frame.h"
@@ -16,7 +16,7 @@ namespace alcove::passes {
   }
 }
 
-// Colours from 0 to 1.
+// Returns the format of colours from 0 to 1.
 [[nodiscard]] inline VkFormat colour_format(Precision precision) {
   switch (precision) {
     case Precision::unorm8:
@@ -28,12 +28,13 @@ namespace alcove::passes {
   }
 }
 
-// Unit vectors.
+// Returns the format of unit vectors.
 [[nodiscard]] inline VkFormat direction_format(Precision precision) {
   return precision == Precision::unorm8 ? VK_FORMAT_R8G8B8A8_SNORM : colour_format(precision);
 }
 
-// Raw occlusion, as add_gtao writes it: two words, and two more for a lobe.
+// Returns the format of the raw occlusion that add_gtao() writes: two 32-bit words, and two more
+// with a GGX lobe.
 [[nodiscard]] inline VkFormat raw_format(bool lobe) {
   return lobe ? VK_FORMAT_R32G32B32A32_UINT : VK_FORMAT_R32G32_UINT;
 }
@@ -45,9 +46,21 @@ inline constexpr VkFormat kHistoryFormat = VK_FORMAT_R32_UINT;
 inline constexpr VkFormat kBentHistoryFormat = VK_FORMAT_R32_UINT;
 inline constexpr VkFormat kLobeHistoryFormat = VK_FORMAT_R16_UINT;
 
-// Bytes a pixel of all textures of a history, as add_reconstruct() declares them: two of each.
+// Histories at half resolution, which the upsampling pass reads too: maths::pack_half_texel(),
+// maths::half_texel_depth() and maths::pack_half_residual().
+inline constexpr VkFormat kHalfFormat = VK_FORMAT_R16G16B16A16_SNORM;
+inline constexpr VkFormat kHalfDepthFormat = VK_FORMAT_R32_SFLOAT;
+inline constexpr VkFormat kHalfBentFormat = VK_FORMAT_A2B10G10R10_UNORM_PACK32;
+
+// Returns the bytes per pixel of all textures of a history as add_reconstruct() declares them: two
+// of each kind.
 [[nodiscard]] inline std::uint64_t history_bytes(bool lobe, bool bent) {
   return 2u * (4u + (lobe ? 2u : 0u) + (bent ? 4u : 0u));
+}
+
+// Returns the bytes per texel of 2x2 pixels of all textures of a history at half resolution.
+[[nodiscard]] inline std::uint64_t half_history_bytes(bool lobe, bool bent) {
+  return history_bytes(lobe, bent) + 2u * 8u;
 }
 
 }  // namespace alcove::passes

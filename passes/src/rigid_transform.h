@@ -1,5 +1,4 @@
-// The rotation and translation that a view_from_world stands for, without the rounding errors of
-// the engine that computed it.
+// Removes the engine's rounding errors from a view_from_world matrix.
 #pragma once
 
 #include <cmath>
@@ -18,12 +17,13 @@ namespace alcove::passes {
   return result;
 }
 
-// Whether `m` is a rotation and translation, or a reflection and translation (for left-handed
-// worlds), up to rounding. Engines hand over scaled or transposed matrices by mistake; the inverse
-// of a camera's matrix in float, with fused multiply-adds or without, is within 1e-6.
+// Returns whether `m` is a rotation and translation, or a reflection and translation (for
+// left-handed worlds), up to rounding errors. It is not if an engine passes a scaled or transposed
+// matrix by mistake. The rounding errors of a camera matrix that was inverted in floats are within
+// 1e-6.
 [[nodiscard]] inline bool is_rigid(const Matrix& m) {
-  constexpr float kAxes = 1e-3f;  // of dot products between axes
-  constexpr float kRow = 1e-5f;   // of the elements of the last row, which should be 0
+  constexpr float kAxes = 1e-3f;  // tolerance of dot products between axes
+  constexpr float kRow = 1e-5f;   // tolerance of the elements of the last row that should be 0
   for (std::size_t a = 0; a < 3; ++a) {
     for (std::size_t b = a; b < 3; ++b) {
       const float* const u = &m[4 * a];
@@ -39,9 +39,9 @@ namespace alcove::passes {
          std::isfinite(m[14]);
 }
 
-// The nearest such transform: axes of length 1 at right angles, the last row 0 0 0 1. Gram and
-// Schmidt's process on the axes; their error is far below a pixel, whichever axis goes first.
-// `matrix` is rigid.
+// Returns the nearest rigid transform to `matrix`, which must satisfy is_rigid(): axes of length 1
+// at right angles, and the last row 0 0 0 1. It uses the Gram-Schmidt process, whose error is far
+// below a pixel, whichever axis goes first.
 [[nodiscard]] inline maths::dmat4 to_rigid(const Matrix& matrix) {
   const maths::dmat4 m(to_mat4(matrix));
   const maths::dvec3 x = maths::normalize(maths::dvec3(m[0]));

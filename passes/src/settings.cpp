@@ -12,7 +12,8 @@
 namespace alcove::passes {
 namespace {
 
-// Completes "The setting 'slices' is ...", or is empty where the value is allowed.
+// Returns a text that completes a sentence such as "The setting 'slices' is ...", or an empty text
+// if the value is allowed.
 template <typename Value>
 std::string complaint(const SettingInfo& info, const Value& value) {
   if constexpr (std::is_same_v<Value, float>) {
@@ -76,6 +77,11 @@ OcclusionSettings quality_settings(Quality quality, float radius) {
   OcclusionSettings settings;
   settings.radius = radius;
   switch (quality) {
+    case Quality::console:
+      settings.tile_size = 8;
+      settings.steps = 8;
+      settings.half_resolution = true;
+      break;
     case Quality::low:
       settings.tile_size = 4;
       settings.steps = 8;
@@ -105,8 +111,8 @@ tl::expected<void, Error> validate(const OcclusionSettings& settings) {
   }
   if (settings.half_resolution && settings.tile_size < 2) {
     return tl::unexpected(Error{
-        "The setting 'half_resolution' is true with a tile_size of 1; choose a tile_size of 2 "
-        "or 4."});
+        "The setting 'half_resolution' is true with a tile_size of 1; choose a tile_size of at "
+        "least 2."});
   }
   const AdvancedSettings& advanced = settings.advanced;
   if (advanced.falloff > 0.0f && has_thickness(advanced.estimator)) {

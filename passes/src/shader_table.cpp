@@ -1,7 +1,5 @@
 #include "shader_table.h"
 
-#include <array>
-
 #include "spirv/apply.h"
 #include "spirv/apply_specular.h"
 #include "spirv/environment_half.h"
@@ -31,58 +29,60 @@
 
 namespace alcove::passes {
 
-const ShaderSource& shader_source(Shader shader) {
-  static const std::array<ShaderSource, static_cast<std::size_t>(Shader::count)> sources{{
-      {kLinearDepth, "sttttt"},
-      {kNormals, "st"},
-      {kGtao, "ssttss"},
-      {kGtaoSpecular,
-       "ssttss"
-       "s"},
-      {kReconstruct, "ttsstt"},
-      {kReconstructHistory,
-       "ttsstt"
-       "gtsgt"},
-      {kReconstructSpecular,
-       "ttsstt"
-       "st"},
-      {kReconstructSpecularHistory,
-       "ttsstt"
-       "gtsgt"
-       "stgt"},
-      {kReconstructHalf,
-       "ttgst"
-       "t"},
-      {kReconstructHalfHistory,
-       "ttgst"
-       "gtsgt"},
-      {kReconstructHalfSpecular,
-       "ttgst"
-       "t"
-       "st"},
-      {kReconstructHalfSpecularHistory,
-       "ttgst"
-       "gtsgt"
-       "sgt"},
-      {kUpsample, "ggsgtt"},
-      {kUpsampleSpecular,
-       "ggsgtt"
-       "gt"},
-      {kMultiBounce, "sst"},
-      {kGtso, "ssssst"},
-      {kGtsoByTable, "ssssstb", kGtsoTable},
-      {kApply, "ssssssstt"},
-      {kApplySpecular,
-       "ssssssstt"
-       "tssssb",
-       kReflectanceTable},
-      {kEnvironmentMap, "st"},
-      {kEnvironmentHalf, "st"},
-      {kEnvironmentPrefilter, "st"},
-      {kEnvironmentHarmonics, "st"},
-      {kInspect, "sst"},
-  }};
-  return sources[static_cast<std::size_t>(shader)];
+ShaderSource shader_source(Shader shader) {
+  switch (shader) {
+    case Shader::linear_depth:
+      return {"linear_depth", kLinearDepth};
+    case Shader::normals:
+      return {"normals", kNormals};
+    case Shader::gtao:
+      return {"gtao", kGtao};
+    case Shader::gtao_specular:
+      return {"gtao_specular", kGtaoSpecular};
+    case Shader::reconstruct:
+      return {"reconstruct", kReconstruct};
+    case Shader::reconstruct_history:
+      return {"reconstruct_history", kReconstructHistory};
+    case Shader::reconstruct_specular:
+      return {"reconstruct_specular", kReconstructSpecular};
+    case Shader::reconstruct_specular_history:
+      return {"reconstruct_specular_history", kReconstructSpecularHistory};
+    case Shader::reconstruct_half:
+      return {"reconstruct_half", kReconstructHalf};
+    case Shader::reconstruct_half_history:
+      return {"reconstruct_half_history", kReconstructHalfHistory};
+    case Shader::reconstruct_half_specular:
+      return {"reconstruct_half_specular", kReconstructHalfSpecular};
+    case Shader::reconstruct_half_specular_history:
+      return {"reconstruct_half_specular_history", kReconstructHalfSpecularHistory};
+    case Shader::upsample:
+      return {"upsample", kUpsample};
+    case Shader::upsample_specular:
+      return {"upsample_specular", kUpsampleSpecular};
+    case Shader::multi_bounce:
+      return {"multi_bounce", kMultiBounce};
+    case Shader::gtso:
+      return {"gtso", kGtso};
+    case Shader::gtso_by_table:
+      return {"gtso_by_table", kGtsoByTable, kGtsoTable};
+    case Shader::apply:
+      return {"apply", kApply};
+    case Shader::apply_specular:
+      return {"apply_specular", kApplySpecular, kReflectanceTable};
+    case Shader::environment_map:
+      return {"environment_map", kEnvironmentMap};
+    case Shader::environment_half:
+      return {"environment_half", kEnvironmentHalf};
+    case Shader::environment_prefilter:
+      return {"environment_prefilter", kEnvironmentPrefilter};
+    case Shader::environment_harmonics:
+      return {"environment_harmonics", kEnvironmentHarmonics};
+    case Shader::inspect:
+      return {"inspect", kInspect};
+    case Shader::count:
+      break;
+  }
+  return {};
 }
 
 }  // namespace alcove::passes

@@ -1,4 +1,4 @@
-// The embedded SPIR-V of each shader and what it binds after its parameters.
+// The SPIR-V modules that are embedded in the library, and the tables that their shaders look up.
 #pragma once
 
 #include <cstdint>
@@ -10,14 +10,12 @@
 namespace alcove::passes {
 
 struct ShaderSource {
-  std::span<const std::uint32_t> code;
-  // One letter a binding from binding 1 on: 's' a sampled image, 'g' one with a
-  // nearest sampler that clamps to the edge, 't' a storage image, and as the
-  // last of them 'b' a storage buffer with `table`.
-  std::string_view bindings;
+  std::string_view name;                // for error sentences
+  std::span<const std::uint32_t> code;  // words of the SPIR-V module
+  // Contents of the shader's storage buffer. Empty if the shader has none.
   std::span<const std::uint32_t> table = {};
 };
 
-[[nodiscard]] const ShaderSource& shader_source(Shader shader);
+[[nodiscard]] ShaderSource shader_source(Shader shader);
 
 }  // namespace alcove::passes

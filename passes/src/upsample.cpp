@@ -2,9 +2,9 @@
 
 #include <array>
 #include <cmath>
-#include <span>
 
 #include "bindings.h"
+#include "maths/half_texel.h"
 #include "upsample_parameters.h"
 #include "view_parameters.h"
 #include "write_result.h"
@@ -23,13 +23,15 @@ constexpr float kTolerancePx = 1.0f;
 tl::expected<Kernel, Error> get_kernel(const Frame& frame, const UpsampleInputs& inputs,
                                        const Occlusion& result, const OcclusionSettings& settings,
                                        const maths::Projection& projection) {
-  const std::array constants{
-      flag(is_perspective(projection)),
-      flag(bool(result.visibility)),
-      flag(settings.power != 1.0f || settings.intensity != 1.0f),
-      flag(bool(result.bent_normal)),
-      result.bent_normal ? static_cast<std::uint32_t>(inputs.normal_encoding) : 0u,
-      flag(is_reversed(projection))};
+  const std::uint32_t encoding =
+      result.bent_normal ? static_cast<std::uint32_t>(inputs.normal_encoding) : 0u;
+  const auto constants = std::to_array<NamedConstant>(
+      {{"kPerspective", flag(is_perspective(projection))},
+       {"kVisibility", flag(bool(result.visibility))},
+       {"kShaped", flag(settings.power != 1.0f || settings.intensity != 1.0f)},
+       {"kBentNormal", flag(bool(result.bent_normal))},
+       {"kNormalEncoding", encoding},
+       {"kReversed", flag(is_reversed(projection))}});
   return frame.kernels.get(result.specular ? Shader::upsample_specular : Shader::upsample,
                            constants);
 }
@@ -38,6 +40,7 @@ void declare_accesses(const Frame& frame, framegraph::PassBuilder& pass,
                       const UpsampleInputs& inputs, Occlusion& result) {
   const auto& sampled = framegraph::access::sampled_compute;
   pass.read(inputs.half, sampled);
+  pass.read(inputs.half_depth, sampled);
   pass.read(inputs.depth_ndc, sampled);
   if (result.bent_normal) {
     pass.read(inputs.normals, sampled);
@@ -56,7 +59,8 @@ void declare_accesses(const Frame& frame, framegraph::PassBuilder& pass,
 maths::UpsampleParameters parameters_of(const Frame& frame, const UpsampleInputs& inputs,
                                         const OcclusionSettings& settings,
                                         const maths::Projection& projection) {
-  const VkExtent3D half = frame.graph.extent(inputs.half);
+  // The textures are of the largest size.
+  const VkExtent3D stored = frame.graph.extent(inputs.half);
   const maths::vec2 per_px = maths::ray_per_px(projection);
   maths::UpsampleParameters parameters{};
   parameters.normal_from_view = maths::transpose(
@@ -64,7 +68,9 @@ maths::UpsampleParameters parameters_of(const Frame& frame, const UpsampleInputs
   parameters.slope = maths::vec4(per_px, projection.uv_to_slope.z, projection.uv_to_slope.w);
   parameters.inverse_depth_from_ndc = inverse_depth_from_ndc(projection);
   parameters.pixel_uv = 1.0f / projection.size_px;
-  parameters.texel_uv = 1.0f / maths::vec2(half.width, half.height);
+  parameters.texel_uv = 1.0f / maths::vec2(stored.width, stored.height);
+  parameters.half_pixel_per_tilt =
+      (is_perspective(projection) ? -0.5f : 0.5f) * maths::kLargestTilt * per_px;
   parameters.tolerance = 1.0f / (kTolerancePx * std::abs(per_px.y));
   parameters.power = settings.power;
   parameters.intensity = settings.intensity;
@@ -87,27 +93,28 @@ tl::expected<Occlusion, Error> add_upsample(const Frame& frame, const UpsampleIn
   Occlusion out = result;
   auto pass = frame.graph.add_pass("upsample");
   declare_accesses(frame, pass, inputs, out);
-  const VkExtent3D half = frame.graph.extent(inputs.half);
-  pass.record([&kernels = frame.kernels, kernel = *kernel, inputs, out, half,
-               parameters =
-                   parameters_of(frame, inputs, settings, *projection)](RecordContext& context) {
-    const Texture written = out.visibility    ? out.visibility
-                            : out.bent_normal ? out.bent_normal
-                                              : out.specular;
-    const std::array<VkImageView, 8> views{
-        context.view(inputs.half),
-        context.view(inputs.depth_ndc),
-        view_or(context, out.bent_normal ? inputs.normals : Texture{}, inputs.depth_ndc),
-        view_or(context, out.bent_normal ? inputs.residuals : Texture{}, inputs.half),
-        view_or(context, out.visibility, written),
-        view_or(context, out.bent_normal, written),
-        view_or(context, inputs.lobes, inputs.half),
-        view_or(context, out.specular, written)};
-    const std::span<const VkImageView> bound(views.data(), views.size() - (out.specular ? 0 : 2));
-    // Invocations stand between texels, and begin and end outside of the image.
-    kernels.dispatch(context, kernel, bound, bytes_of(parameters),
-                     {half.width + 1, half.height + 1, 1});
-  });
+  pass.record(
+      [&kernels = frame.kernels, kernel = *kernel, inputs, out,
+       parameters = parameters_of(frame, inputs, settings, *projection)](RecordContext& context) {
+        const Texture written = out.visibility    ? out.visibility
+                                : out.bent_normal ? out.bent_normal
+                                                  : out.specular;
+        const auto views = std::to_array<NamedView>(
+            {{"half_image", context.view(inputs.half)},
+             {"half_depth_image", context.view(inputs.half_depth)},
+             {"depth_image", context.view(inputs.depth_ndc)},
+             {"normal_image",
+              view_or(context, out.bent_normal ? inputs.normals : Texture{}, inputs.depth_ndc)},
+             {"residual_image",
+              view_or(context, out.bent_normal ? inputs.residuals : Texture{}, inputs.half)},
+             {"visibility_image", view_or(context, out.visibility, written)},
+             {"bent_normal_image", view_or(context, out.bent_normal, written)},
+             {"lobe_image", view_or(context, inputs.lobes, inputs.half)},
+             {"specular_image", view_or(context, out.specular, written)}});
+        // Invocations stand between texels, and begin and end outside of the image.
+        kernels.dispatch(context, kernel, views, bytes_of(parameters),
+                         {inputs.half_size.width + 1, inputs.half_size.height + 1, 1});
+      });
   return out;
 }
 

@@ -1,4 +1,4 @@
-// What the passes' C++ needs of a View, in the types that the shaders share.
+// Converts a View to the parameters that the shaders use.
 #pragma once
 
 #include <algorithm>
@@ -14,17 +14,17 @@
 
 namespace alcove::passes {
 
-// Whether a perspective was given row by row: the factor 1 of w = -z then stands where the offset
-// of the depth belongs. Such a matrix could also be a perspective whose w is scaled; engines have
-// none.
+// Returns whether a perspective matrix was given row by row instead of column by column: the
+// coefficient 1 of w = -z then stands at the place of the depth offset. A perspective whose w is
+// scaled could look the same, but engines have none.
 [[nodiscard]] inline bool is_transposed(const Matrix& clip_from_view) {
   const auto is_one = [](float value) { return std::abs(std::abs(value) - 1.0f) <= 1e-5f; };
   return is_one(clip_from_view[14]) && !is_one(clip_from_view[11]) && clip_from_view[11] != 0.0f &&
          clip_from_view[15] == 0.0f;
 }
 
-// The projection of a view over an image of `size` pixels, or what is wrong with the view, which
-// the sentence calls `name`.
+// Returns the projection of a view over an image of `size` pixels, or an error that says what is
+// wrong with the view. The sentence calls the view `name`.
 [[nodiscard]] inline tl::expected<maths::Projection, Error> projection_of(
     const View& view, VkExtent2D size, const char* name = "The view") {
   const auto unusable = [name](const std::string& why) {
@@ -42,15 +42,15 @@ namespace alcove::passes {
       .map_error(unusable);
 }
 
-// The same over the whole of `texture`.
+// Returns the projection of a view over the whole of `texture`.
 [[nodiscard]] inline tl::expected<maths::Projection, Error> projection_of(
     const Frame& frame, const View& view, framegraph::Texture texture) {
   const VkExtent3D extent = frame.graph.extent(texture);
   return projection_of(view, {extent.width, extent.height});
 }
 
-// The rotation, or reflection, that turns normals into view space. `forward_z` is of normals in
-// view space whose z grows away from the eye.
+// Returns the rotation or reflection from the space of the normals to view space. `forward_z` means
+// that normals are in a view space whose z axis points away from the eye.
 [[nodiscard]] inline maths::mat4 view_from_normal(const Frame& frame, bool normals_in_view_space,
                                                   bool forward_z = false) {
   maths::mat4 result =
@@ -82,12 +82,13 @@ namespace alcove::passes {
           static_cast<float>(perspective ? std::max(offset, 0.0) : offset)};
 }
 
-// The step of a depth buffer of this format.
+// Returns the resolution of a depth buffer of this format.
 [[nodiscard]] inline maths::DepthStep depth_step(const maths::Projection& projection,
                                                  VkFormat format) {
   const maths::vec2 from_ndc = inverse_depth_from_ndc(projection);
   const double scale = from_ndc.x;
-  // Half a step more than the step: rasterisers do not round as exactly as they may.
+  // The result is one and a half steps, because rasterisers do not always round to the nearest
+  // value.
   const auto fixed = [&](double levels) {
     return maths::DepthStep{static_cast<float>(1.5 * scale / levels), 0.0f};
   };

@@ -1,4 +1,4 @@
-// Where passes write what they were asked for, and how.
+// Textures for the results of passes, and their accesses.
 #pragma once
 
 #include <string_view>
@@ -7,7 +7,7 @@
 
 namespace alcove::passes {
 
-// The texture that a caller gave for a result, or else a transient.
+// Returns the texture that the caller gave for a result, or a new transient if it gave none.
 [[nodiscard]] inline framegraph::Texture given_or_created(framegraph::Graph& graph,
                                                           framegraph::Texture given,
                                                           std::string_view name,
@@ -15,9 +15,9 @@ namespace alcove::passes {
   return given ? given : graph.create_texture(name, desc);
 }
 
-// Has `pass` write every texel of `texture`, in a shader. What was there may be thrown away, but
-// for what an import arrives with: its image may be larger than the part that the graph knows, and
-// the rest of it is the caller's.
+// Declares that a shader of `pass` writes every texel of `texture`. Earlier contents are discarded,
+// except those of an import with contents: its image may be larger than the part that the graph
+// knows, and the rest belongs to the caller.
 [[nodiscard]] inline framegraph::Texture write_result(const framegraph::Graph& graph,
                                                       framegraph::PassBuilder& pass,
                                                       framegraph::Texture texture) {

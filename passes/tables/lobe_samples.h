@@ -1,4 +1,4 @@
-// The GGX lobe by samples, for the integrals of the tables.
+// Samples of the GGX lobe, for the integrals of the tables.
 #pragma once
 
 #include <cmath>
@@ -7,9 +7,11 @@
 
 namespace alcove::passes {
 
-// Calls f(light, half vector, share) for microfacets spread evenly over those that `view` sees,
-// where they reflect it to a light above the surface. `share` of that light leaves unshadowed.
-// Tangent space, z along the normal; view.z above 0.
+// Samples the GGX lobe of a surface seen from `view`: calls f(light, half vector, share) for
+// microfacet normals in proportion to how much of them the view sees, if they reflect the view to a
+// light direction above the surface. `share` is the fraction, [0,1], of the light that other
+// microfacets do not shadow. Vectors are in tangent space with z along the normal; view.z must be
+// above 0.
 template <typename Function>
 void for_each_lobe_sample(const maths::vec3& view, float alpha, int samples, Function&& f) {
   for (int i = 0; i < samples; ++i) {

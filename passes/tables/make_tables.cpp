@@ -1,5 +1,5 @@
-// Writes the tables that the passes look up, as C++ arrays: make_tables NAME FILE. A tool of the
-// build, which knows each table by its name.
+// A build tool that writes a table of the passes as a C++ array: make_tables NAME FILE. NAME is
+// gtso or reflectance.
 #include <cstdint>
 #include <cstdio>
 #include <fstream>

@@ -14,7 +14,8 @@ using maths::vec3;
 
 constexpr int kSamples = 2048;
 
-// Scale and offset of the reflectance at normal incidence (maths/split_sum.h).
+// Returns the scale and offset of the reflectance at normal incidence (maths/split_sum.h), by
+// numerical integration.
 vec2 integrate(float n_dot_v, float roughness) {
   const float alpha = roughness * roughness;
   const float z = std::max(n_dot_v, 1e-4f);

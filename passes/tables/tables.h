@@ -1,4 +1,5 @@
-// The tables that the passes look up, by integrals: run in the build, and by the tests.
+// Computes the tables that the passes look up, by numerical integration. Used in the build and by
+// the tests.
 #pragma once
 
 #include <cstdint>
@@ -9,20 +10,23 @@
 
 namespace alcove::passes {
 
-// The pairs of maths/split_sum.h by view, which varies fastest, and roughness. Each word holds two
-// 16-bit unorms, the factor of f0 in the lower half.
+// Returns the table of maths/split_sum.h. The view varies fastest, then the roughness. Each word
+// holds two 16-bit unorms: the factor of f0 in the lower half and the offset in the upper half.
 [[nodiscard]] std::vector<std::uint32_t> reflectance_table();
 
-// A GGX lobe above its surface, by samples spread evenly over the microfacets that its view sees.
+// A GGX lobe above its surface, represented by samples of the microfacets that its view sees.
 class GtsoLobe {
  public:
-  // `mirror_from_normal` in radians, [0,pi/2]; `roughness` perceptual.
+  // `mirror_from_normal` is the angle between the mirror direction and the normal in radians,
+  // [0,pi/2]. `roughness` is perceptual, [0,1].
   GtsoLobe(float mirror_from_normal, float roughness, int samples);
 
-  // The share of the lobe within a cone whose axis lies `bent_from_mirror` from the mirror
-  // direction, by maths/gtso_table.h: the mean over `sides` of its sides.
+  // Returns the fraction of the lobe within a cone of half-angle `cone` whose axis lies
+  // `bent_from_mirror` radians from the mirror direction. It is the mean over `sides` azimuths of
+  // the axis around the mirror direction.
   [[nodiscard]] float share(float cone, float bent_from_mirror, int sides) const;
-  // The same for one axis; the surface's normal is +Z, the mirror direction towards +X.
+  // Returns the fraction of the lobe within a cone around `axis`. The normal is +Z, and the mirror
+  // direction lies towards +X.
   [[nodiscard]] float within(float cone, const maths::vec3& axis) const;
 
  private:
@@ -30,10 +34,11 @@ class GtsoLobe {
   std::vector<float> x_, y_, z_, weights_;
 };
 
-// maths/gtso_table.h's shares, four 8-bit parts of 1 a word, the lowest first.
+// Returns the table of maths/gtso_table.h: fractions of lobes as 8-bit unorms, four per word with
+// the first in the lowest byte.
 [[nodiscard]] std::vector<std::uint32_t> gtso_table();
 
-// The share of such a table at angles as maths/gtso_table.h has them, as the shader looks it up.
+// Looks up the table at angles as maths/gtso_table.h defines them, with the shader's interpolation.
 [[nodiscard]] float look_up_gtso(std::span<const std::uint32_t> table, float visibility, float cone,
                                  float bent_from_mirror, float mirror_from_normal, float roughness);
 

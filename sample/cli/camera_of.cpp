@@ -12,7 +12,8 @@
 namespace alcove::sample {
 namespace {
 
-// Whether view axes can be computed: the squared lengths are normal floats.
+// Returns whether the axes of the view can be computed: their squared lengths must be normal
+// floats.
 bool has_axes(const Camera& camera) {
   const glm::vec3 back = camera.eye_ws - camera.target_ws;
   return std::isnormal(glm::dot(back, back)) &&
@@ -20,7 +21,7 @@ bool has_axes(const Camera& camera) {
          std::isfinite(glm::dot(camera.eye_ws, camera.eye_ws));
 }
 
-// The first names, and the number of the others, because a file may have thousands.
+// Returns the first camera names and the number of the others, because a file may have thousands.
 std::string names_of(const std::vector<Camera>& cameras) {
   constexpr std::size_t kMost = 10;
   const std::size_t listed = std::min(cameras.size(), kMost);

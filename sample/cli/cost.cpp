@@ -20,7 +20,8 @@ std::vector<passes::Quality> qualities_of(const Options& options) {
   if (options.occlusion.quality_given) {
     return {options.occlusion.quality};
   }
-  return {passes::Quality::low, passes::Quality::medium, passes::Quality::high};
+  return {passes::Quality::console, passes::Quality::low, passes::Quality::medium,
+          passes::Quality::high};
 }
 
 tl::expected<CostInputs, std::string> inputs_of(const Options& options, passes::Quality quality) {

@@ -23,7 +23,8 @@ class Group {
       : app_(app), heading_(std::move(heading)) {}
 
   using Read = std::function<void(const OptionValue& given)>;
-  // `type` is what --help calls the value; `read` gets it where there is one, the last of several.
+  // Adds an option with a value. --help calls the value `type`. `read` receives the value, and the
+  // last one if the option is given several times.
   void add(const std::string& option, const std::string& type, const std::string& help,
            const Read& read) const {
     const auto typed = [option, read](const std::string& text) { read({option, text}); };
@@ -32,7 +33,7 @@ class Group {
         ->take_last()
         ->group(heading_);
   }
-  // The same for an option that may be repeated.
+  // Adds an option that may be given several times. `read` receives every value.
   void add_repeatable(const std::string& option, const std::string& type, const std::string& help,
                       const Read& read) const {
     const auto typed = [option, read](const std::vector<std::string>& texts) {
@@ -73,7 +74,7 @@ void add_frames(const Group& group, ViewOptions& view, std::int64_t fewest,
   });
 }
 
-// A plane at the eye or behind it: only an orthographic view has that.
+// Reports a plane at the eye or behind it, which only an orthographic view may have.
 void check_plane(const std::string& option, const std::optional<float>& plane,
                  const ViewOptions& view) {
   if (plane && !(*plane > 0.0f) && !view.ortho_height) {
@@ -125,7 +126,7 @@ void add_view(CLI::App& app, ViewOptions& view) {
   });
   group.add(
       "--fov-y", "DEGREES", "vertical angle of view; the camera's", [&](const OptionValue& given) {
-        // As far as a file's camera may go.
+        // The range of a camera in a scene file.
         view.fov_y = glm::radians(static_cast<float>(
             given.number(0.001, 178.0, "the vertical angle of view in degrees, 0.001 to 178")));
       });
@@ -167,7 +168,7 @@ void add_course(CLI::App& app, ViewOptions& view, const std::string& frames_help
 }
 
 void add_standing(CLI::App& app, ViewOptions& view) {
-  view.frames = 32;  // as many as the history averages
+  view.frames = 32;  // the number of frames that the history averages
   add_frames(Group(app, "View"), view, 1,
              "how many are drawn with each setting, the camera standing; the last is compared; 32");
 }
@@ -185,7 +186,7 @@ void add_motion(CLI::App& app, Options& options) {
               options.path =
                   which < kMotionKinds.size() ? std::optional(kMotionKinds[which]) : std::nullopt;
             });
-  constexpr std::int64_t kFewest = 12;  // fewer leave nothing to compare
+  constexpr std::int64_t kFewest = 12;  // with fewer frames there is nothing to compare
   options.view.frames = 48;
   add_frames(group, options.view, kFewest,
              "how long each path is, from the view given on; three of its frames are compared with "
@@ -194,7 +195,7 @@ void add_motion(CLI::App& app, Options& options) {
 
 void add_occlusion(CLI::App& app, OcclusionOptions& occlusion) {
   const Group group(app, "Occlusion");
-  group.add("--quality", "NAME", "low, medium, high or reference; medium",
+  group.add("--quality", "NAME", "console, low, medium, high or reference; medium",
             [&](const OptionValue& given) {
               occlusion.quality_given = true;
               occlusion.quality =
@@ -235,7 +236,8 @@ void add_roughness(CLI::App& app, OcclusionOptions& occlusion) {
              const std::string wanted =
                  "up to 16 numbers from 0 to 1, no two alike, such as 0.1,0.3,0.6";
              occlusion.roughness = given.numbers(16, 0.0f, 1.0f, wanted);
-             // Images are named by their first six digits.
+             // Output files are named by the first six digits of the roughness, which must
+             // therefore differ.
              std::vector<float> sorted = occlusion.roughness;
              std::ranges::sort(sorted);
              const auto alike = [](float a, float b) { return b - a < 1e-5f; };
@@ -299,6 +301,20 @@ void add_cost(CLI::App& app, Options& options) {
             [&](const OptionValue& given) { options.cost.budget = given.text; });
   group.add("--chart", "FILE", "also draw an SVG chart of where the time goes",
             [&](const OptionValue& given) { options.cost.chart = given.text; });
+}
+
+void add_doctor(CLI::App& app, Options& options) {
+  const Group group(app);
+  group.add_flag(
+      "--mistakes",
+      "plant each mistake of integration in frames of the built-in scene, and print what "
+      "alcoveDiagnose says of it",
+      options.mistakes);
+  group.add("--pictures", "FOLDER", "write a picture without and with each mistake; as --mistakes",
+            [&](const OptionValue& given) {
+              options.pictures = given.text;
+              options.mistakes = true;
+            });
 }
 
 void add_light(CLI::App& app, Options& options) {

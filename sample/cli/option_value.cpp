@@ -23,7 +23,7 @@ std::optional<double> number_of(const std::string& text) {
   }
 }
 
-// Numbers between commas; empty where any is malformed.
+// Returns the numbers between commas, or an empty list if one of them is malformed.
 std::vector<double> numbers_of(const std::string& text) {
   std::vector<double> values;
   std::size_t start = 0;
@@ -42,7 +42,7 @@ bool is_positive(double value) { return std::isfinite(value) && value > 0.0; }
 }  // namespace
 
 void OptionValue::refuse(const std::string& wanted) const {
-  constexpr std::size_t kLongest = 80;  // bytes of an argument that are repeated
+  constexpr std::size_t kLongest = 80;  // bytes of an argument that a message repeats
   throw Mistake{option + " " + (text.empty() ? "''" : shortened(text, kLongest)) + ": give " +
                 wanted};
 }

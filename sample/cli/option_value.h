@@ -12,42 +12,42 @@
 
 namespace alcove::sample {
 
-// A mistake in the command line, in a sentence. Thrown within parse_options only, as CLI11's own
-// errors are.
+// A mistake in the command line, described by a sentence. It is thrown within parse_options() only,
+// as CLI11's own errors are.
 struct Mistake {
   std::string text;
 };
 
-// A value as it was typed, and the option that it was typed for. Each conversion refuses what it
-// cannot take; `wanted` completes the sentence "give ...".
+// An option and the text of its value. Each conversion throws a Mistake for a value that it does
+// not accept; `wanted` completes the sentence "give ...".
 struct OptionValue {
   std::string option;
   std::string text;
 
   [[noreturn]] void refuse(const std::string& wanted) const;
 
-  // Within [low, high].
+  // Returns a number within [low, high].
   double number(double low, double high, const std::string& wanted) const;
   std::int64_t whole_number(std::int64_t low, std::int64_t high, const std::string& wanted) const;
-  // Finite and above 0.
+  // Returns a finite number above 0.
   double positive(const std::string& wanted) const;
-  // A finite length above 0, in the scene's units.
+  // Returns a finite length above 0, in scene units.
   float length() const;
   glm::dvec3 vector() const;  // finite as floats too
-  // Numbers between commas, at least one and at most `most`, each within [low, high].
+  // Returns the numbers between commas: at least one and at most `most`, each within [low, high].
   std::vector<float> numbers(std::size_t most, float low, float high,
                              const std::string& wanted) const;
-  // Pixels, each of WIDTHxHEIGHT from 1 to 16384.
+  // Returns the numbers of WIDTHxHEIGHT, each from 1 to 16384.
   std::pair<std::uint32_t, std::uint32_t> size() const;
-  // Which of the names.
+  // Returns the index of the value in a list of names.
   std::size_t one_of(std::span<const std::string_view> names) const;
 };
 
-// The shortest text that is parsed as the same float.
+// Returns the shortest text that is parsed as the same float.
 [[nodiscard]] std::string shown(float value);
 
-// A coordinate in the space of the scene's file, from which `origin` was subtracted: the shortest
-// text that gives the same float again.
+// Returns the shortest text of a coordinate in the space of the scene's file, that is with `origin`
+// added, which is parsed as the same float.
 [[nodiscard]] std::string shown_coordinate(float value, double origin);
 
 }  // namespace alcove::sample

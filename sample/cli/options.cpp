@@ -9,13 +9,14 @@
 namespace alcove::sample {
 namespace {
 
-// Each function gives a command its options.
+// Each of these functions adds the options of one command.
 void add_output(CLI::App& app, Options& options) {
   add_out(app, options, "folder for images and report.json; out");
   add_device(app, options);
 }
 
-// Takes --spp too, which has no effect, so that a line for `compare` serves; so does `graph`.
+// `render` also accepts --spp, without effect, so that the arguments of `compare` can be reused. So
+// does `graph`.
 void add_render(CLI::App& app, Options& options) {
   add_scene(app, options.scene);
   add_materials(app, options.materials);
@@ -45,7 +46,7 @@ void add_motion_command(CLI::App& app, Options& options) {
   add_no_cache(app, options.use_cache);
 }
 
-// The truth of a standing camera and what is compared with it.
+// Adds the options for comparing a static camera with its truth.
 void add_comparison(CLI::App& app, Options& options) {
   add_view(app, options.view);
   add_standing(app, options.view);
@@ -111,7 +112,15 @@ void add_window(CLI::App& app, Options& options) {
   add_device(app, options);
 }
 
-void add_nothing(CLI::App& /*app*/, Options& /*options*/) {}
+void add_doctor_command(CLI::App& app, Options& options) {
+  options.view.width = 320;
+  options.view.height = 180;
+  add_scene(app, options.scene);
+  add_materials(app, options.materials);
+  add_doctor(app, options);
+  add_view(app, options.view);
+  add_device(app, options);
+}
 
 struct Entry {
   Command command;
@@ -141,16 +150,19 @@ constexpr std::array<Entry, 10> kCommands{{
     {Command::kGraph, "graph", "the compiled plan of a frame: passes, barriers, memory", add_graph},
     {Command::kView, "view",
      "a window to orbit a scene in and see what each setting does and costs", add_window},
-    {Command::kDoctor, "doctor", "the Vulkan devices here and what they lack", add_nothing},
+    {Command::kDoctor, "doctor",
+     "the Vulkan devices here and what they lack; what alcoveDiagnose says of a scene or of "
+     "mistakes",
+     add_doctor_command},
 }};
 
-// CLI11's own words, as one line.
+// Joins the lines of a message of CLI11.
 std::string one_line(std::string text) {
   std::ranges::replace(text, '\n', ' ');
   return text;
 }
 
-// The help of the command that was asked for it; empty: none was.
+// Returns the help of the command for which it was requested, or an empty text if none was.
 std::string help_of_command(const CLI::App& app) {
   for (const CLI::App* sub : app.get_subcommands()) {
     if (sub->count("--help") != 0) return sub->help(app.get_name());
@@ -160,7 +172,7 @@ std::string help_of_command(const CLI::App& app) {
 
 Stop no_command(const std::string& what) { return {2, what + "; see alcove --help"}; }
 
-// What CLI11 does not like, and where that would have been told.
+// Converts an error of CLI11 to a sentence that also names the --help to read.
 Stop mistake_of(const CLI::App& app, const CLI::ParseError& error) {
   const auto commands = app.get_subcommands();
   if (commands.empty()) return no_command("name a command first");

@@ -35,25 +35,26 @@ enum class Command {
 enum class GraphFormat { kText, kDot };
 inline constexpr std::array<std::string_view, 2> kGraphFormatNames{"text", "dot"};
 
-// Only what was typed; the camera of the scene fills the rest. Angles already in radians.
+// The options of the view. Options that were not given are empty; the scene's camera supplies them.
+// Angles are in radians.
 struct ViewOptions {
   std::string camera;  // name of a scene's camera; empty: the default one
-  // In the space of the scene's file: Scene::origin is taken from them.
+  // Positions in the space of the scene's file. Scene::origin is subtracted from them later.
   std::optional<glm::dvec3> eye, target;
   std::optional<glm::vec3> up_ws;
   std::optional<float> fov_y, ortho_height, near_plane, far_plane;
-  // Near at depth 1. None: reversed in perspective, where that spreads the precision of floats
-  // evenly over distances, and not in orthographic views.
+  // Whether the near plane has depth 1. If empty, depth is reversed in perspective views, where
+  // that makes the relative precision of distances nearly constant, and not in orthographic views.
   std::optional<bool> reversed_z;
   uint32_t width = 960;
   uint32_t height = 540;
-  uint32_t frames = 1;  // 0: `view` draws until its window is closed
+  uint32_t frames = 1;  // 0: the command `view` runs until its window is closed
   float orbit = 0.0f;   // radians per frame
 };
 
 struct OcclusionOptions {
   passes::Quality quality = passes::Quality::medium;
-  bool quality_given = false;   // --quality was typed
+  bool quality_given = false;   // --quality was given
   std::optional<float> radius;  // scene units; none: default_radius(scene)
   NormalSource normals = NormalSource::kShading;
   std::vector<std::pair<std::string, std::string>> set;  // --set name=value, in order
@@ -63,10 +64,10 @@ struct OcclusionOptions {
 
 struct CostOptions {
   std::string family;            // of the modelled GPU; empty for all that the model knows
-  bool motion_vectors = false;   // the passes are given motion vectors
-  bool loops = false;            // also print the loops
+  bool motion_vectors = false;   // gives motion vectors to the passes
+  bool loops = false;            // also prints the loops of the shaders
   std::filesystem::path json;    // empty for none
-  std::filesystem::path budget;  // of the presets, in place of all else; empty for none
+  std::filesystem::path budget;  // file for the budget of the presets; empty for none
   std::filesystem::path chart;   // an SVG image; empty for none
 };
 
@@ -76,16 +77,19 @@ struct Options {
   std::vector<std::string> scenes;  // bench: any number, each as `scene`
   MaterialTreatment materials;
   std::filesystem::path environment;  // .hdr or .exr; empty: the procedural sky
-  bool lit = false;                   // compare: also trace the lit picture
-  uint32_t lit_points = 32'000;       // compare: pixels at which light is traced, about
+  bool lit = false;                   // compare: also traces the lit picture
+  uint32_t lit_points = 32'000;       // compare: approximate number of pixels with traced light
   ViewOptions view;
   OcclusionOptions occlusion;
-  std::filesystem::path out = "out";  // empty: `view` was given none
-  // recommend: one of the two. Milliseconds of GPU time; RMSE of visibility.
+  std::filesystem::path out = "out";  // empty for the command `view` without --out
+  // Limits for the command `recommend`, of which one is given: GPU time in milliseconds, or RMSE of
+  // visibility.
   std::optional<double> budget_ms, tolerance;
-  std::optional<MotionKind> path;  // motion: none for all of them
+  std::optional<MotionKind> path;  // motion: empty for all paths
   CostOptions cost;
-  bool grid = false;  // bench: steps and slices in place of the sweep of presets
+  bool mistakes = false;           // doctor: draws the built-in scene with planted mistakes
+  std::filesystem::path pictures;  // doctor: folder for pictures of the mistakes; empty for none
+  bool grid = false;  // bench: measures the grid of steps and slices instead of the presets
   GraphFormat graph_format = GraphFormat::kText;
   int device = -1;
   bool validation = false;
@@ -99,8 +103,8 @@ struct Stop {
   std::string text;
 };
 
-// Never exits and never prints. Each value is checked alone and against the others here; what needs
-// the scene is checked by camera_of.
+// Parses the command line. It never exits and never prints. Each value is checked alone and against
+// the other options; checks that need the scene are made by camera_of().
 [[nodiscard]] tl::expected<Options, Stop> parse_options(int argc, const char* const* argv);
 
 }  // namespace alcove::sample

@@ -38,7 +38,7 @@ std::string degrees_text(float radians) {
   return text;
 }
 
-// The settings that differ from those of a quality, in the form of --set.
+// Returns the settings that differ from those of a quality, in the form of --set.
 std::vector<std::string> changes(Quality quality, const OcclusionSettings& settings) {
   const OcclusionSettings preset = passes::quality_settings(quality, settings.radius);
   std::vector<std::string> before, result;
@@ -76,7 +76,7 @@ void append_camera(const Camera& camera, std::vector<std::string>& to) {
 
 // Uses the quality that needs the fewest --set options.
 void append_settings(const OcclusionSettings& settings, std::vector<std::string>& to) {
-  Quality closest = Quality::low;
+  Quality closest = Quality::console;
   std::vector<std::string> fewest = changes(closest, settings);
   for (std::size_t i = 1; i < passes::kNames<Quality>.size(); ++i) {
     std::vector<std::string> more = changes(static_cast<Quality>(i), settings);

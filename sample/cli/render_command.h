@@ -8,9 +8,9 @@
 
 namespace alcove::sample {
 
-// The command line of `alcove render` that renders the shot: the program's name, then arguments
-// that parse_options() reads back. Scene, treatment of materials, environment, normals, device and
-// the name of the camera are those of `options`.
+// Returns the command line of `alcove render` that renders the shot: the program's name, then
+// arguments that parse_options() reads back. Scene, treatment of materials, environment, normals,
+// device and the name of the camera are those of `options`.
 [[nodiscard]] std::vector<std::string> render_arguments(const Options& options, const Shot& shot);
 
 // The arguments as a line for a POSIX shell, quoted where necessary.

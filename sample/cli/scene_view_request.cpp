@@ -28,7 +28,7 @@ SceneViewRequest scene_view_request(const Options& options) {
   request.load_session = [shown](const std::string& file) {
     Options other = *shown;
     other.scene = file;
-    // A view, depth range or radius that was typed for one scene does not suit another.
+    // A view, depth range or radius that was given for one scene does not suit another.
     other.view.camera.clear();
     other.view.eye.reset();
     other.view.target.reset();

@@ -18,7 +18,8 @@ using passes::SettingGroup;
 using passes::SettingInfo;
 using Failure = tl::unexpected<std::string>;
 
-// Each overload reads `text` into a setting. Returns what to give instead where that fails.
+// Each overload parses `text` as a setting. If that fails, it returns the allowed values for the
+// error sentence.
 template <typename Number>
 std::string parse_number(const std::string& text, const SettingInfo& info, const char* kind,
                          Number& value) {
@@ -66,7 +67,7 @@ std::string value_text(Choice value) {
   return std::string(passes::name_of(value));
 }
 
-// Calls `visit(info, field)` for each setting that --set takes: all but those of the surfaces,
+// Calls `visit(info, field)` for each setting that --set accepts: all except those of surfaces,
 // which have options of their own.
 template <typename Settings, typename Visit>
 void for_each_option(Settings& settings, const Visit& visit) {
@@ -77,7 +78,7 @@ void for_each_option(Settings& settings, const Visit& visit) {
   });
 }
 
-// Changes one setting by its name. Returns what to give instead where that fails.
+// Changes one setting by its name. If that fails, returns the allowed names or values.
 std::optional<std::string> set(OcclusionSettings& settings, const std::string& name,
                                const std::string& value) {
   bool known = false;

@@ -10,17 +10,17 @@
 
 namespace alcove::sample {
 
-// The occlusion settings that the options ask for: a quality, a radius (the scene's own where none
-// is given), and whatever --set changes. Errors name the setting and what it may be.
+// Returns the occlusion settings of the options: a quality, a radius (by default the scene's own),
+// and the changes by --set. Errors name the setting and its allowed values.
 [[nodiscard]] tl::expected<passes::OcclusionSettings, std::string> occlusion_settings(
     const OcclusionOptions& options, const Scene& scene);
 
-// The allowed names or values, if the name of --set NAME=VALUE is unknown or its value is out of
-// range; nothing if it is right. Combinations are checked by occlusion_settings().
+// Returns the allowed names or values if the name of --set NAME=VALUE is unknown or its value is
+// out of range, and nothing if it is valid. Combinations are checked by occlusion_settings().
 [[nodiscard]] std::optional<std::string> wanted_instead(const std::string& name,
                                                         const std::string& value);
 
-// All settings, a line each: name, meaning, range, default.
+// Returns a text with one line for each setting: name, meaning, range, default.
 [[nodiscard]] std::string settings_help();
 
 }  // namespace alcove::sample

@@ -8,7 +8,6 @@ namespace alcove::sample {
 namespace {
 
 using passes::Estimator;
-using passes::Grouping;
 using passes::OcclusionSettings;
 using passes::Pattern;
 
@@ -104,11 +103,6 @@ void add_sampling(VariantList& list) {
   part = "unobserved";
   list.add(part, "excluded", [](OcclusionSettings& s) { s.advanced.unobserved = true; });
   list.add(part, "open", [](OcclusionSettings& s) { s.advanced.unobserved = false; });
-  part = "grouping";
-  list.add(part, "neighbouring pixels",
-           [](OcclusionSettings& s) { s.advanced.grouping = Grouping::neighbours; });
-  list.add(part, "one direction (deinterleaved)",
-           [](OcclusionSettings& s) { s.advanced.grouping = Grouping::pattern; });
 }
 
 void add_reconstruction(VariantList& list, const OcclusionSettings& base) {

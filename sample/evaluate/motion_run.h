@@ -72,7 +72,7 @@ struct MotionReport {
 // RMSE of visibility a number of frames after a cut.
 struct CutErrors {
   std::uint32_t frames = 0;
-  double kept = 0;       // the history is kept, and rejects what does not match by itself
+  double kept = 0;       // with the history kept: the pass itself rejects samples that do not match
   double restarted = 0;  // the history is discarded at the cut
 };
 struct CutReport {

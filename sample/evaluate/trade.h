@@ -38,8 +38,8 @@ struct TradePoint {
   double rmse = 0;               // against ray-traced scene truth
   double height_field_rmse = 0;  // against brute force on the same depth buffer
   double time_ms = 0;            // of the occlusion passes of a frame, by the trade's clock
-  double spread_ms = 0;          // of that time; 0 where it is modelled
-  double processor_ms = 0;       // processor time of all threads for them; 0 where it was not taken
+  double spread_ms = 0;          // of that time; 0 if it is modelled
+  double processor_ms = 0;       // processor time of all threads for them; 0 if it was not measured
   std::uint64_t bytes = 0;       // of transients at their peak, and histories
 };
 
@@ -57,8 +57,8 @@ struct Trade {
 // length and one order.
 [[nodiscard]] std::vector<TradePoint> over_scenes(std::span<const std::vector<TradePoint>> scenes);
 
-// The point with the least error among those that take at most `ms`, and the fastest among those
-// with an error of at most `rmse`; null where there is none.
+// Return the point with the smallest error among those that take at most `ms`, and the fastest
+// point among those with an error of at most `rmse`. The result is null if there is no such point.
 [[nodiscard]] const TradePoint* least_error_within_ms(std::span<const TradePoint> points,
                                                       double ms);
 [[nodiscard]] const TradePoint* fastest_within_rmse(std::span<const TradePoint> points,

@@ -61,7 +61,7 @@ class Gpu {
   framegraph::Executor& executor() { return *executor_; }
 
   // Declares a frame with `declare`, submits it and waits for it. An error of `declare` or of the
-  // graph comes back as one sentence (several lines where several things are wrong).
+  // graph is returned as one sentence for each fault, on separate lines.
   using Declare = std::function<tl::expected<void, std::string>(framegraph::Graph&)>;
   [[nodiscard]] tl::expected<framegraph::FrameReport, std::string> run(const Declare& declare);
   // Records a frame that `declare` declares, for callers with frames in flight who submit
@@ -96,10 +96,9 @@ class Gpu {
 framegraph::Texture add_copy(framegraph::Graph& graph, const HostBuffer& source,
                              framegraph::Texture target);
 
-// Adds passes that fill the other mips of a colour texture of `mips`, each from the one before with
-// half its sides, rounded down: by linear blits, which its format must support. Where sides are
-// even that is the mean of four texels, of sRGB formats in linear light. Returns the filled
-// version.
+// Adds passes that fill the mips from 1 on of a colour texture with `mips` mips, each from the mip
+// before by a linear blit, which the format must support. If width and height are even, each texel
+// is the mean of four, for sRGB formats in linear light. Returns the filled version.
 framegraph::Texture add_mips(framegraph::Graph& graph, framegraph::Texture texture,
                              std::uint32_t mips);
 
@@ -108,7 +107,7 @@ framegraph::Texture add_mips(framegraph::Graph& graph, framegraph::Texture textu
 void add_read_back(framegraph::Graph& graph, framegraph::Texture texture, const HostBuffer& target,
                    std::uint32_t mip = 0);
 
-// Half-precision floats as IEEE 754 has them, to float.
+// Converts an IEEE 754 half-precision float to a float.
 [[nodiscard]] float half_to_float(std::uint16_t half);
 
 }  // namespace alcove::sample

@@ -9,9 +9,9 @@
 
 namespace alcove::sample {
 
-// A 2D image with device memory of its own, which lives from frame to frame. It has a view of all
-// mips and layers where its usage allows one. A graph imports the image; between frames it stays in
-// the state that the last frame left it in.
+// A 2D image with device memory of its own that keeps its contents from frame to frame. It has a
+// view of all mips and layers if its usage allows one. A graph imports the image; between frames it
+// stays in the state in which the last frame left it.
 class GpuImage {
  public:
   // The extent of `desc` is absolute. Errors say in one sentence why the device refused.
@@ -22,12 +22,13 @@ class GpuImage {
   GpuImage& operator=(const GpuImage&) = delete;
 
   VkImage image() const { return image_; }
-  VkImageView view() const { return view_; }  // null where the usage allows none
+  VkImageView view() const { return view_; }  // null if the usage allows none
   std::uint32_t mips() const { return desc_.mips; }
 
-  // For a frame that overwrites the image and leaves it in `final_state`.
+  // Returns the import for a frame that overwrites the image and leaves it in `final_state`.
   framegraph::ImportedTexture import_to_fill(framegraph::State final_state) const;
-  // For a frame that finds it in `initial_state`, reads it, and leaves it there.
+  // Returns the import for a frame that finds the image in `initial_state`, reads it, and leaves it
+  // in that state.
   framegraph::ImportedTexture import_to_read(framegraph::State initial_state) const;
 
  private:
@@ -47,7 +48,7 @@ inline constexpr framegraph::State kSampledState{
     VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
     VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
 
-// The aspect that shaders read of an image of this format: depth or colour.
+// Returns the aspect that shaders read of an image of this format: depth or colour.
 [[nodiscard]] VkImageAspectFlags aspect_of(VkFormat format);
 
 }  // namespace alcove::sample

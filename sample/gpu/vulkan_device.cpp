@@ -8,7 +8,8 @@ namespace alcove::sample {
 namespace {
 
 constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
-// The only way this layer's generation offers to look across submits.
+// The setting with which validation layers of this generation enable synchronisation validation
+// across submits.
 constexpr const char* kQueueSubmitCheck =
     "VALIDATION_CHECK_ENABLE_SYNCHRONIZATION_VALIDATION_QUEUE_SUBMIT";
 
@@ -292,7 +293,8 @@ tl::expected<void, std::string> VulkanDevice::create_device(bool presentation) {
   enabled.all.features.shaderStorageImageWriteWithoutFormat = VK_TRUE;
   VkPhysicalDeviceFeatures optional;
   vkGetPhysicalDeviceFeatures(physical_device_, &optional);
-  // Mesa's software device reads the whole of a texture for a pixel whose ellipse is long enough.
+  // With anisotropic filtering, Mesa's software device reads the whole texture for pixels with a
+  // long footprint.
   if (optional.samplerAnisotropy && properties_.deviceType != VK_PHYSICAL_DEVICE_TYPE_CPU) {
     enabled.all.features.samplerAnisotropy = VK_TRUE;
     max_anisotropy_ = properties_.limits.maxSamplerAnisotropy;

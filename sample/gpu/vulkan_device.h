@@ -12,8 +12,8 @@ namespace alcove::sample {
 
 // Options for creating a device.
 struct DeviceOptions {
-  // Khronos validation with synchronisation validation, across queue submits too. Fails where the
-  // layer is not installed.
+  // Enables Khronos validation with synchronisation validation, also across queue submits. It fails
+  // if the layer is not installed.
   bool validation = false;
   // Index of the physical device in the loader's order. -1 chooses the first discrete GPU, else the
   // first integrated GPU, else any device, such as lavapipe.
@@ -26,10 +26,10 @@ struct DeviceOptions {
 // A physical device as `alcove doctor` lists it.
 struct DeviceSummary {
   std::string name;
-  std::string driver;    // name and version, as the driver gives them
+  std::string driver;    // name and version as the driver reports them
   uint32_t api_version;  // VK_MAKE_API_VERSION
   VkPhysicalDeviceType type;
-  std::string missing;  // requirements of Alcove that the device lacks; empty when it has all
+  std::string missing;  // requirements of Alcove that the device lacks; empty if it has all
 };
 
 // Owns an instance, a device and one queue for graphics and compute. The sample and the tests use
@@ -50,7 +50,8 @@ class VulkanDevice {
   uint32_t queue_family() const { return queue_family_; }
   const VkPhysicalDeviceProperties& properties() const { return properties_; }
   const std::string& driver() const { return driver_; }
-  // The largest anisotropy for samplers; 1 on software devices and without an anisotropic filter.
+  // Returns the largest anisotropy for samplers: 1 on software devices and on devices without
+  // anisotropic filtering.
   float max_anisotropy() const { return max_anisotropy_; }
 
   // The largest allocation in bytes, which also limits buffers and images.
@@ -59,8 +60,8 @@ class VulkanDevice {
   // The errors and warnings of the validation layers so far, in order.
   const std::vector<std::string>& validation_messages() const { return messages_; }
 
-  // The first memory type allowed by `type_bits` with all of `flags`; UINT32_MAX when there is
-  // none.
+  // Returns the first memory type allowed by `type_bits` with all of `flags`, or UINT32_MAX if
+  // there is none.
   uint32_t memory_type(uint32_t type_bits, VkMemoryPropertyFlags flags) const;
 
  private:
@@ -86,15 +87,16 @@ class VulkanDevice {
   std::vector<std::string> messages_;
 };
 
-// Every Vulkan device of the machine, usable or not.
+// Returns every Vulkan device of the machine, including those that Alcove cannot use.
 [[nodiscard]] tl::expected<std::vector<DeviceSummary>, std::string> list_devices();
 
-// `VK_ERROR_DEVICE_LOST` and the like, for sentences.
+// Returns the name of a result for error sentences, for example `VK_ERROR_DEVICE_LOST`.
 [[nodiscard]] std::string_view result_name(VkResult result);
-// "The device could not WHAT (VK_ERROR_DEVICE_LOST)."
+// Returns the error "The device could not WHAT (RESULT).", for example with RESULT
+// VK_ERROR_DEVICE_LOST.
 [[nodiscard]] tl::unexpected<std::string> device_failure(const std::string& what, VkResult result);
-// The sentence for `what`, of `bytes`, which is over VulkanDevice::max_allocation(). Drivers may
-// crash where they are asked for more.
+// Returns the error for an object of `bytes` bytes that exceeds VulkanDevice::max_allocation().
+// Drivers may crash if they are asked for more.
 [[nodiscard]] tl::unexpected<std::string> too_large(const std::string& what, VkDeviceSize bytes,
                                                     const VulkanDevice& device);
 

@@ -20,13 +20,14 @@ double reference_ms(const GpuPart& part) { return part.peers[kXeGtaoHigh].millis
 
 std::string pass_row(const ModelledPass& pass) {
   return fmt::format(
-      "    {:20}{:8.3f}  {:14}{:8.0f}{:8.1f}{:7.1f}{:7.1f}{:7.0f}{:7.0f}{:8.0f}{:8.0f}{:8.0f}   "
-      "{:.3f} {:.3f} {:.3f} {:.3f} {:.3f}\n",
+      "    {:20}{:8.3f}  {:14}{:8.0f}{:8.1f}{:7.1f}{:7.1f}{:7.0f}{:7.0f}{:8.0f}{:8.0f}{:8.0f}{:>7} "
+      "  {:.3f} {:.3f} {:.3f} {:.3f} {:.3f}\n",
       pass.pass, pass.milliseconds(), pass.limit(), pass.instructions_per_pixel,
       pass.fetches_per_pixel, pass.stores_per_pixel, pass.bytes_per_pixel, pass.vector_registers,
       pass.waves_per_simd, pass.spills > 0 ? pass.spills : pass.scratch_bytes, pass.code_bytes,
-      pass.shared_bytes, pass.alu_ms, pass.texture_ms, pass.shared_ms, pass.bandwidth_ms,
-      pass.latency_ms);
+      pass.shared_bytes,
+      pass.cache_lines_per_load > 0 ? fmt::format("{:.1f}", pass.cache_lines_per_load) : "-",
+      pass.alu_ms, pass.texture_ms, pass.shared_ms, pass.bandwidth_ms, pass.latency_ms);
 }
 
 std::string wave_rows(const ModelledPass& pass) {
@@ -75,6 +76,7 @@ Json to_json(const ModelledPass& pass) {
           {"fetches_per_pixel", pass.fetches_per_pixel},
           {"stores_per_pixel", pass.stores_per_pixel},
           {"bytes_per_pixel", pass.bytes_per_pixel},
+          {"cache_lines_per_load", pass.cache_lines_per_load},
           {"vector_registers", pass.vector_registers},
           {"scalar_registers", pass.scalar_registers},
           {"waves_per_simd", pass.waves_per_simd},
@@ -110,7 +112,7 @@ std::string table_of(std::span<const SettingsCost> costs, bool loops) {
     out +=
         "; all passes of the paper on a PS4 0.5 (as published)\n"
         "    pass                      ms  limit          instr/px fetches stores  bytes  VGPRs"
-        "  waves  spills    code  shared   ALU texture shared bandwidth latency\n";
+        "  waves  spills    code  shared  lines   ALU texture shared bandwidth latency\n";
     for (const SettingsCost& cost : costs) {
       if (cost.family == part.family) {
         out += settings_rows(cost, loops);

@@ -140,6 +140,7 @@ tl::expected<ModelledPass, std::string> Model::cost(const RecordedPass& pass,
     cost.bytes_per_pixel += traffic.bytes / pixels() *
                             passes::cost::traffic_share(work, traffic.image, traffic.direction);
   }
+  cost.cache_lines_per_load = passes::cost::cache_lines_per_load(work);
   cost.bandwidth_ms = cost.bytes_per_pixel * pixels() / part.bytes_per_second * 1e3;
   return cost;
 }

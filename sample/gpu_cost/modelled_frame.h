@@ -42,6 +42,7 @@ struct ModelledPass {
   double fetches_per_pixel = 0;
   double stores_per_pixel = 0;
   double bytes_per_pixel = 0;
+  double cache_lines_per_load = 0;  // passes::cost::cache_lines_per_load(); 0: not declared
   double alu_ms = 0;
   double texture_ms = 0;
   double shared_ms = 0;

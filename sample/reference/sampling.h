@@ -9,8 +9,8 @@
 
 namespace alcove::sample {
 
-// Random numbers and directions for the ray-traced truths. Shares nothing with shaders/maths, which
-// it is there to check.
+// Random numbers and directions for the ray-traced truths. This file shares no code with
+// shaders/maths, because the truths check that code.
 
 // A 64-bit mix of two integers (the finaliser of splitmix64, twice).
 [[nodiscard]] inline uint64_t hash(uint64_t a, uint64_t b) {

@@ -8,13 +8,14 @@
 
 namespace alcove::sample {
 
-// Baselines of specular occlusion, 1 is open: ground truth but for one approximation each.
+// Baselines of specular occlusion, where 1 is open. Each is the ground truth with one
+// approximation.
 struct SpecularBaselines {
   // The true visibility, approximated by fifteen polynomials (visibility_polynomials.h).
   Image<float> polynomials;
   // The lobe itself, occluded by the height field of the depth image as in height_field_truth().
   Image<float> depth;
-  // Both: the visibility of the height field, approximated by the polynomials.
+  // Both approximations: the visibility of the height field, approximated by the polynomials.
   Image<float> depth_polynomials;
 };
 

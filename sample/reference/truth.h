@@ -34,9 +34,9 @@ struct GBuffer {
 // The points at which a truth is computed, one per pixel. A zero normal marks a pixel to skip, such
 // as the sky, which gets the value of an open surface.
 struct SurfacePoints {
-  // Precise to a few rounding errors, like those of cast_gbuffer(). Positions from a depth buffer
-  // that is not reversed may have larger errors than the offset of the ray origins, and then
-  // occlude themselves.
+  // Positions must be precise to a few rounding errors, like those of cast_gbuffer(). Positions
+  // from a depth buffer that is not reversed may have larger errors than the offset of the ray
+  // origins; surfaces then occlude themselves.
   Image<glm::vec3> position_ws;
   Image<glm::vec3> normal_ws;            // the normal that the occlusion pass was given; unit
   Image<glm::vec3> geometric_normal_ws;  // faces the viewer; ray origins are offset along it
@@ -52,13 +52,13 @@ struct TruthSettings {
 // within the radius.
 struct OcclusionTruth {
   Image<float> visibility;  // 0..1, 1 is open
-  // Unit, along the cosine-weighted mean of visible directions; the normal where nothing is
-  // visible, zero in the sky.
+  // The unit direction of the cosine-weighted mean of the visible directions; the normal if nothing
+  // is visible, and zero in the sky.
   Image<glm::vec3> bent_normal_ws;
 };
 
 // The triangles of a scene in an Embree acceleration structure. Alpha-masked texels do not occlude.
-// Immutable; any thread may trace. Borrows the scene, which must outlive it.
+// It is immutable, and any thread may trace. The scene must outlive it.
 class RayScene {
  public:
   // Errors: Embree has no device or no memory; the scene extends further than 1e12 from its origin.

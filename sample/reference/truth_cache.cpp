@@ -13,14 +13,15 @@
 namespace alcove::sample {
 namespace {
 
-// Stands before the floats of an entry. A different one means another version or a damaged file.
+// The header of an entry, before its floats. If the header of a file differs, the file is of
+// another version or damaged.
 struct Header {
   std::array<char, 8> magic{'a', 'l', 'c', 'o', 'v', 'e', 't', '2'};
   uint64_t count = 0;
   uint64_t checksum = 0;
 };
 
-// Tells damaged files from whole ones; not secure against forgery.
+// Returns a checksum that detects damaged files. It is not secure against forgery.
 uint64_t checksum(std::span<const float> values) {
   return XXH3_64bits(values.data(), values.size_bytes());
 }
@@ -120,7 +121,7 @@ std::optional<std::vector<float>> TruthCache::read(const CacheKey& key, size_t c
   if (folder_.empty()) {
     return std::nullopt;
   }
-  // Anything but a regular file is no entry: reading a named pipe would wait for ever.
+  // Only regular files are entries: reading a named pipe could wait for ever.
   const auto file = open_regular_file(folder_ / (key.hex() + ".truth"));
   Header header;
   const Header expected;

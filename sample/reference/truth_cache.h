@@ -52,8 +52,8 @@ class CacheKey {
 // write are ignored, because a cache may always be empty.
 class TruthCache {
  public:
-  // `$XDG_CACHE_HOME/alcove`, or else `~/.cache/alcove`. Empty, which caches nothing, where neither
-  // is known.
+  // Returns `$XDG_CACHE_HOME/alcove`, or else `~/.cache/alcove`. If neither is known, returns an
+  // empty path, with which nothing is cached.
   [[nodiscard]] static std::filesystem::path default_folder();
   explicit TruthCache(std::filesystem::path folder);
 

@@ -1,4 +1,4 @@
-// acos without the device's own, whose cost and error differ from driver to driver.
+// An arc cosine with the same cost and error on every device, which acos() does not have.
 #ifndef ALCOVE_MATHS_ARC_COSINE_H
 #define ALCOVE_MATHS_ARC_COSINE_H
 
@@ -7,9 +7,9 @@
 
 ALCOVE_MATHS_BEGIN
 
-// acos(x) within 4.6e-5 rad: sqrt(1 - |x|) times a cubic, mirrored for x < 0, without a step at 0.
-// x outside [-1,1] is taken as the nearer end. (The form of Abramowitz and Stegun 4.4.45; the
-// coefficients are the least maximum error among those exact at 0.)
+// Returns acos(x) with an error of at most 4.6e-5 rad, by sqrt(1 - |x|) times a cubic polynomial,
+// mirrored for x < 0 and continuous at 0. x is clamped to [-1,1]. The form is that of Abramowitz
+// and Stegun 4.4.45. The coefficients minimise the largest error among those that are exact at 0.
 ALCOVE_INLINE float arc_cosine(float x) {
   float a = min(abs(x), 1.0f);
   float cubic = ((-0.0216414023f * a + 0.0779813800f) * a - 0.213301321f) * a + kHalfPi;

@@ -1,4 +1,4 @@
-// Numbers that more than one header needs.
+// Constants that several headers need.
 #ifndef ALCOVE_MATHS_CONSTANTS_H
 #define ALCOVE_MATHS_CONSTANTS_H
 
@@ -9,7 +9,8 @@ ALCOVE_MATHS_BEGIN
 const float kPi = 3.14159265f;
 const float kHalfPi = 1.57079633f;
 
-// The linear depth of what is infinitely far. Its square still fits a float with room for sums.
+// The linear depth of the sky and of infinitely far surfaces. The sum of several of its squares is
+// still finite in a float.
 const float kSkyDepth = 1e12f;
 
 ALCOVE_MATHS_END

@@ -1,10 +1,9 @@
-// Light from all around as an image: equirectangular as files have it, octahedral as it is looked
-// up.
+// Environment images: equirectangular, as files have them, and octahedral, as shaders look them up.
 //
-// World space with +Y up. Equirectangular: u runs from 0 at -Z over +X (a quarter), +Z (half) and
-// -X back to -Z; v from 0 at +Y to 1 at -Y. Octahedral: the square of octahedral.h with +Y in the
-// middle and -Y in its four corners, so that the fold lies under the horizon; the texels beyond an
-// edge are those of the same edge, mirrored.
+// Directions are in world space with +Y up. Equirectangular: u runs from 0 at -Z over +X (0.25), +Z
+// (0.5) and -X (0.75) back to -Z; v runs from 0 at +Y to 1 at -Y. Octahedral: the square of
+// octahedral.h with +Y in the middle and -Y in its four corners, so that its fold is the horizon.
+// The texels beyond an edge are those of the same edge, mirrored.
 #ifndef ALCOVE_MATHS_ENVIRONMENT_MAP_H
 #define ALCOVE_MATHS_ENVIRONMENT_MAP_H
 
@@ -20,7 +19,7 @@ ALCOVE_INLINE vec2 equirectangular_uv(vec3 direction) {
   return vec2(turn < 0.0f ? turn + 1.0f : turn, atan(across, direction.y) / kPi);
 }
 
-// From a unit direction to [0,1]^2 of the octahedral map, and back.
+// Converts a unit direction to a point in [0,1]^2 of the octahedral map, and back.
 ALCOVE_INLINE vec2 map_uv(vec3 direction) {
   vec2 square = octahedral_encode(vec3(direction.x, direction.z, direction.y));
   return vec2(square.x * 0.5f + 0.5f, square.y * 0.5f + 0.5f);
@@ -31,7 +30,8 @@ ALCOVE_INLINE vec3 map_direction(vec2 uv) {
   return vec3(d.x, d.z, d.y);
 }
 
-// The texel of a map of `size` texels a side that one up to `size` outside of it stands for.
+// Returns the texel of a map of `size` x `size` texels for a texel index that is up to `size`
+// outside of the map.
 ALCOVE_INLINE ivec2 map_texel(ivec2 texel, int size) {
   int x = texel.x;
   int y = texel.y;
@@ -46,7 +46,8 @@ ALCOVE_INLINE ivec2 map_texel(ivec2 texel, int size) {
   return ivec2(x, y);
 }
 
-// Steradians of a texel around `uv`, for a map of `size` texels a side.
+// Returns the solid angle in steradians of the texel around `uv`, for a map of `size` x `size`
+// texels.
 ALCOVE_INLINE float map_texel_angle(vec2 uv, float size) {
   float x = uv.x * 2.0f - 1.0f;
   float y = uv.y * 2.0f - 1.0f;
@@ -58,8 +59,8 @@ ALCOVE_INLINE float map_texel_angle(vec2 uv, float size) {
   return 4.0f / (size * size * squared * sqrt(squared));
 }
 
-// The levels of a prefiltered map hold the light of GGX lobes whose perceptual roughness grows from
-// 0 in the first by equal steps to 1 in the last.
+// Convert between roughness and mips of a prefiltered map. The perceptual roughness grows in equal
+// steps from 0 in the first mip to 1 in the last.
 ALCOVE_INLINE float level_of_roughness(float roughness, uint levels) {
   return clamp(roughness, 0.0f, 1.0f) * float(levels - 1u);
 }

@@ -1,8 +1,9 @@
-// The GGX microfacet lobe: what specular occlusion is weighted by, and how its truth is sampled.
+// The GGX microfacet lobe, which weights specular occlusion and is sampled for its ray-traced
+// truth.
 //
-// Tangent space: z along the normal; `view` and `light` are unit and point away from the surface.
-// `alpha` is the GGX width, perceptual roughness squared, in [0,1]; below kSmallestAlpha a lobe is
-// a mirror to a float, so smaller ones are taken as that.
+// Directions are in tangent space with z along the normal. `view` and `light` are unit and point
+// away from the surface. `alpha` is the GGX width, perceptual roughness squared, in [0,1]. Values
+// below kSmallestAlpha are replaced by it; such a lobe is a mirror in float precision.
 #ifndef ALCOVE_MATHS_GGX_H
 #define ALCOVE_MATHS_GGX_H
 
@@ -13,8 +14,8 @@ ALCOVE_MATHS_BEGIN
 
 const float kSmallestAlpha = 1e-3f;
 
-// Density of microfacet normals, per steradian, for the cosine between microfacet and normal
-// (Walter et al. 2007, eq. 33). `n_dot_h` in [0,1].
+// Returns the density of microfacet normals per steradian (Walter et al. 2007, eq. 33). `n_dot_h`,
+// in [0,1], is the cosine between a microfacet normal and the surface normal.
 ALCOVE_INLINE float ggx_distribution(float n_dot_h, float alpha) {
   float a = max(alpha, kSmallestAlpha);
   float a2 = a * a;
@@ -24,25 +25,27 @@ ALCOVE_INLINE float ggx_distribution(float n_dot_h, float alpha) {
   return a2 / (kPi * d * d);
 }
 
-// Smith's Lambda of GGX for a direction at cosine `n_dot_x` (Heitz 2014, eq. 72).
+// Returns Smith's function Lambda of GGX for a direction whose angle to the normal has the cosine
+// `n_dot_x` (Heitz 2014, eq. 72).
 ALCOVE_INLINE float ggx_lambda(float n_dot_x, float alpha) {
   float a = max(alpha, kSmallestAlpha);
   float c2 = max(n_dot_x * n_dot_x, 1e-12f);
   return 0.5f * (sqrt(1.0f + a * a * max(1.0f - c2, 0.0f) / c2) - 1.0f);
 }
 
-// The visible fraction of microfacets from one direction, [0,1].
+// Returns the fraction of microfacets, [0,1], that are visible from one direction.
 ALCOVE_INLINE float ggx_masking(float n_dot_x, float alpha) {
   return 1.0f / (1.0f + ggx_lambda(n_dot_x, alpha));
 }
 
-// Height-correlated masking and shadowing of both directions, [0,1].
+// Returns the fraction of microfacets, [0,1], that are visible from both directions, with
+// height-correlated masking and shadowing.
 ALCOVE_INLINE float ggx_shadowing(float n_dot_v, float n_dot_l, float alpha) {
   return 1.0f / (1.0f + ggx_lambda(n_dot_v, alpha) + ggx_lambda(n_dot_l, alpha));
 }
 
-// A microfacet normal in proportion to how much of it the view sees, from two uniform numbers in
-// [0,1) (Dupuy and Benyoub 2023: a spherical cap, stretched). `view` in tangent space, z >= 0.
+// Samples a microfacet normal in proportion to how much of it the view sees, from two uniform
+// numbers in [0,1) (Dupuy and Benyoub 2023). `view.z` must be at least 0.
 ALCOVE_INLINE vec3 sample_ggx_normal(vec3 view, float alpha, float u1, float u2) {
   float a = max(alpha, kSmallestAlpha);
   vec3 stretched = normalize(vec3(view.x * a, view.y * a, view.z));
@@ -53,9 +56,10 @@ ALCOVE_INLINE vec3 sample_ggx_normal(vec3 view, float alpha, float u1, float u2)
   return normalize(vec3(cap.x * a, cap.y * a, max(cap.z, 1e-7f)));
 }
 
-// The density of the light direction that reflecting `view` in such a normal gives, per steradian.
-// The lobe (BRDF times the cosine of the light, without Fresnel) over it is ggx_shadowing() over
-// ggx_masking(), in [0,1].
+// Returns the probability density per steradian of the light direction that is obtained by
+// reflecting `view` at a normal of sample_ggx_normal(). The lobe (BRDF times the cosine of the
+// light, without Fresnel) divided by this density is ggx_shadowing() / ggx_masking(), which is in
+// [0,1].
 ALCOVE_INLINE float ggx_reflection_density(vec3 normal, vec3 view, vec3 light, float alpha) {
   float n_dot_v = max(dot(normal, view), 1e-6f);
   float n_dot_h = clamp(dot(normal, normalize(view + light)), 0.0f, 1.0f);

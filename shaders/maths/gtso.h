@@ -1,10 +1,10 @@
-// Specular occlusion from visibility and bent normal (Jimenez et al. 2016, section 6: GTSO).
+// Specular occlusion from visibility and bent normal ([Jimenez 2016], section 6: GTSO).
 //
-// What the surface sees is taken as a cone around the bent normal, what it reflects as a cone
-// around the mirror direction; the part of the second that the first holds is the specular
-// visibility S, 1 for open. The paper divides by the whole lobe's cone, which darkens an open
-// surface at grazing angles; here it is divided by the part of the lobe's cone above the surface.
-// Names: `alpha` is the GGX width (perceptual roughness squared); every vector is unit.
+// The visible directions are approximated by a cone around the bent normal, and the specular lobe
+// by a cone around the mirror direction. The specular visibility is the fraction of the second cone
+// that the first contains; 1 is open. The paper divides by the whole cone of the lobe, which
+// darkens unoccluded surfaces at grazing angles. Here it is divided by the part of that cone above
+// the surface. `alpha` is the GGX width (perceptual roughness squared); all vectors are unit.
 #ifndef ALCOVE_MATHS_GTSO_H
 #define ALCOVE_MATHS_GTSO_H
 
@@ -22,35 +22,36 @@ ALCOVE_INLINE float converged_visibility(float visibility) {
   return saturate(visibility * (128.0f / 127.0f));
 }
 
-// The direction that mirrors `view` in the surface. A view from under it, as interpolated normals
-// have, is taken along it.
+// Returns the mirror direction of `view`. A view direction below the surface, which interpolated
+// normals can cause, is first moved onto the surface.
 ALCOVE_INLINE vec3 mirror_direction(vec3 normal, vec3 view) {
   float n_dot_v = dot(normal, view);
   vec3 facing = n_dot_v < 1e-3f ? normalize(view + (1e-3f - n_dot_v) * normal) : view;
   return 2.0f * dot(normal, facing) * normal - facing;
 }
 
-// The angle whose sine and cosine are given up to a common factor, from arguments that rounding may
-// have pushed under 0.
+// Returns the angle with this squared sine and this cosine, which may have a common factor.
+// Rounding may have made the square negative.
 ALCOVE_INLINE float angle_of(float sine_squared, float cosine) {
   return atan(sqrt(max(sine_squared, 0.0f)), cosine);
 }
 
-// The angle between two unit vectors, [0,pi], good at both ends where acos is not.
+// Returns the angle between two unit vectors, [0,pi]. It is accurate at both ends, where acos is
+// not.
 ALCOVE_INLINE float angle_between(vec3 a, vec3 b) {
   vec3 normal = cross(a, b);
   return atan(sqrt(dot(normal, normal)), dot(a, b));
 }
 
-// Half-angle of the cone, around the normal, whose cosine-weighted visibility is `visibility`.
+// Returns the half-angle of the cone around the normal that has this cosine-weighted visibility.
 ALCOVE_INLINE float visibility_cone(float visibility) {
   float v = clamp(visibility, 0.0f, 1.0f);
   return angle_of(v, sqrt(1.0f - v));
 }
 
-// The bent normal turned towards the normal until the cone of this visibility around it lies above
-// the surface, where everything visible lies. An open surface's is the normal itself, whatever
-// noise has tilted it.
+// Returns the bent normal, rotated towards the normal until the cone of this visibility around it
+// lies above the surface. For an unoccluded surface the result is the normal itself, without the
+// noise of the bent normal.
 ALCOVE_INLINE vec3 raised_bent_normal(vec3 bent_normal, vec3 normal, float visibility) {
   float v = clamp(visibility, 0.0f, 1.0f);
   float bent_dot_normal = dot(bent_normal, normal);
@@ -61,17 +62,17 @@ ALCOVE_INLINE vec3 raised_bent_normal(vec3 bent_normal, vec3 normal, float visib
   return sqrt(v) * normal + sqrt((1.0f - v) / squared) * across;
 }
 
-// Half-angle of the cone that stands for the lobe: its cosine is 10^(-alpha^2).
+// Returns the half-angle of the cone that approximates the lobe: its cosine is 10^(-alpha^2).
 ALCOVE_INLINE float lobe_cone(float alpha) {
   float x = alpha * alpha * 2.302585f;
-  // 1 - cosine, by its series where the subtraction would lose it.
+  // 1 - cosine. For small x, a series avoids the cancellation of the subtraction.
   float rise = x < 0.02f ? x * (1.0f - x * (0.5f - x * (1.0f / 6.0f))) : 1.0f - exp(-x);
   return angle_of(rise * (2.0f - rise), 1.0f - rise);
 }
 
-// S of a visibility cone around `bent_normal` for the lobe cone around `reflection`, which is above
-// the surface, as mirror_direction() gives it. A lobe too narrow to have an area is a mirror: what
-// it shows is visible or it is not.
+// Returns the specular visibility for a visibility cone around `bent_normal` and a lobe cone around
+// `reflection`, the result of mirror_direction(). A lobe that is too narrow to have an area is a
+// mirror: it is visible or it is not.
 ALCOVE_INLINE float cone_specular_occlusion(float visibility_angle, float lobe_angle,
                                             vec3 bent_normal, vec3 normal, vec3 reflection) {
   float above = cap_intersection(kHalfPi, lobe_angle, angle_between(normal, reflection));
@@ -81,7 +82,8 @@ ALCOVE_INLINE float cone_specular_occlusion(float visibility_angle, float lobe_a
   return angle_between(bent_normal, reflection) <= visibility_angle ? 1.0f : 0.0f;
 }
 
-// S from visibility, bent normal and width, by the exact intersection of cones.
+// Returns the specular visibility from visibility, bent normal and GGX width, by the exact
+// intersection of cones.
 ALCOVE_INLINE float specular_occlusion(float visibility, vec3 bent_normal, vec3 normal,
                                        vec3 reflection, float alpha) {
   return cone_specular_occlusion(visibility_cone(visibility), lobe_cone(alpha), bent_normal, normal,

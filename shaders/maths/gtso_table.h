@@ -29,12 +29,12 @@ const uint kGtsoMirror = 16u;
 const uint kGtsoRoughness = 12u;
 const uint kGtsoEntries = kGtsoInside * kGtsoCone * kGtsoMirror * kGtsoRoughness;
 
-// The width of the lobe as the coordinates take it, radians.
+// Returns the width of the lobe, in radians, that the table's coordinates use.
 ALCOVE_INLINE float gtso_width(float roughness) {
   return 2.5f * max(roughness * roughness, kSmallestAlpha);
 }
 
-// From an angle inside the cone, [cone - pi, cone], to [-1,1], 0 at the rim.
+// Maps an angle inside the cone, [cone - pi, cone], to [-1,1], with 0 at the rim of the cone.
 ALCOVE_INLINE float squeeze_inside(float inside, float cone, float width) {
   float most = inside < 0.0f ? kPi - cone : cone;
   float size = min(abs(inside), most);
@@ -49,8 +49,8 @@ ALCOVE_INLINE float unsqueeze_inside(float squeezed, float cone, float width) {
   return squeezed < 0.0f ? -size : size;
 }
 
-// From the half-angle of a cone, [0,pi/2], to [0,1]: cones that hold but a part of the lobe's
-// middle take as many entries as those that hold it all.
+// Maps the half-angle of a cone, [0,pi/2], to [0,1]. Cones that contain only a part of the lobe's
+// centre get as many entries as those that contain all of it.
 ALCOVE_INLINE float squeeze_cone(float cone, float width) {
   return cone / (cone + width) * (kHalfPi + width) / kHalfPi;
 }
@@ -60,7 +60,8 @@ ALCOVE_INLINE float unsqueeze_cone(float squeezed, float width) {
   return min(part * width / max(1.0f - part, 1e-6f), kHalfPi);
 }
 
-// From the angle of the mirror direction, [0,pi/2], to [0,1], densest at grazing angles, and back.
+// Map the angle of the mirror direction, [0,pi/2], to [0,1], with most entries at grazing angles,
+// and back.
 ALCOVE_INLINE float squeeze_mirror(float mirror_from_normal) {
   float part = clamp(mirror_from_normal / kHalfPi, 0.0f, 1.0f);
   return part * part;
@@ -68,9 +69,9 @@ ALCOVE_INLINE float squeeze_mirror(float mirror_from_normal) {
 
 ALCOVE_INLINE float unsqueeze_mirror(float squeezed) { return sqrt(squeezed) * kHalfPi; }
 
-// Where a configuration lies among the entries, each from 0 to one less than there are. Angles in
-// radians: `cone` [0,pi/2], `bent_from_mirror` [0,pi], `mirror_from_normal` [0,pi/2]; what is out
-// of range is cut to it.
+// Returns the table coordinates of a configuration, each from 0 to the number of entries minus 1.
+// Angles are in radians: `cone` in [0,pi/2], `bent_from_mirror` in [0,pi], `mirror_from_normal` in
+// [0,pi/2]. Values out of range are clamped.
 ALCOVE_INLINE vec4 gtso_coordinates(float cone, float bent_from_mirror, float mirror_from_normal,
                                     float roughness) {
   float half_angle = clamp(cone, 0.0f, kHalfPi);
@@ -86,8 +87,8 @@ ALCOVE_INLINE uint gtso_index(uvec4 entry) {
   return ((entry.w * kGtsoMirror + entry.z) * kGtsoCone + entry.y) * kGtsoInside + entry.x;
 }
 
-// How far the sides on which the cone is above the surface reach from the side towards the normal,
-// [0,pi]: the axis must be at least as high as the cone is wide.
+// Returns the largest azimuth, [0,pi], of the bent normal around the mirror direction at which the
+// whole cone lies above the surface. Azimuth 0 points towards the normal.
 ALCOVE_INLINE float gtso_sides(float cone, float bent_from_mirror, float mirror_from_normal) {
   float level = cos(bent_from_mirror) * cos(mirror_from_normal);
   float steep = sin(bent_from_mirror) * sin(mirror_from_normal);
@@ -95,14 +96,16 @@ ALCOVE_INLINE float gtso_sides(float cone, float bent_from_mirror, float mirror_
   return acos(clamp((sin(cone) - level) / steep, -1.0f, 1.0f));
 }
 
-// The entry below a configuration's coordinates along each axis, so that the next one exists too.
+// Returns the entry below the coordinates along each axis. It is never the last one, so that the
+// next entry exists too.
 ALCOVE_INLINE uvec4 gtso_entry(vec4 coordinates) {
   return uvec4(min(uint(coordinates.x), kGtsoInside - 2u), min(uint(coordinates.y), kGtsoCone - 2u),
                min(uint(coordinates.z), kGtsoMirror - 2u),
                min(uint(coordinates.w), kGtsoRoughness - 2u));
 }
 
-// Corner `corner` (below 16) of a cell: bit i steps along axis i; and its weight at `t` in [0,1]^4.
+// Return the entry at corner `corner` (below 16) of a cell, where bit i of the number steps along
+// axis i, and its interpolation weight at `t` in [0,1]^4.
 ALCOVE_INLINE uvec4 gtso_corner(uvec4 entry, uint corner) {
   return uvec4(entry.x + (corner & 1u), entry.y + ((corner >> 1u) & 1u),
                entry.z + ((corner >> 2u) & 1u), entry.w + ((corner >> 3u) & 1u));

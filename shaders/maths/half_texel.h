@@ -1,42 +1,63 @@
-// A reconstructed texel of 2x2 pixels, from which upsampling makes pixels: its occlusion and the
-// tangent plane of its surface, in 8 bytes.
+// A reconstructed texel of 2x2 pixels, which upsampling turns into pixels: its occlusion and the
+// tangent plane of its surface. The next frame reads it as history. It is stored in two images of
+// formats that texture units unpack: R16G16B16A16_SNORM and R32_SFLOAT.
 #ifndef ALCOVE_MATHS_HALF_TEXEL_H
 #define ALCOVE_MATHS_HALF_TEXEL_H
 
 #include "language.h"
+#include "raw_occlusion.h"
 
 ALCOVE_MATHS_BEGIN
 
+// Largest component of a tilt, 86 degrees; larger ones are stored as this.
+const float kLargestTilt = 16.0f;
+
+// Weights are stored in units of so many frames.
+const float kHalfTexelWeightUnit = 128.0f;
+
 struct HalfTexel {
-  float inverse_depth;  // of the plane at the texel's centre, at least 0, to 2^-14 of itself
-  float occlusion;      // 1 - visibility, [0,1], to 2^-12; 0 and 1 are exact
-  // The plane's slope: the view-space normal's xy over minus its component along the view ray that
-  // has a depth of 1. Times ray_per_px(), and in perspective times -inverse_depth, it is the change
-  // of inverse depth from one pixel to the next. Stored as halves.
+  float occlusion;  // 1 - visibility, [0,1]; error 2^-16; 0 and 1 are exact
+  float weight;     // of the history, frames, [0,kMaxHistoryFrames]
+  // The plane's slope: the xy components of the view-space normal, divided by minus its component
+  // along the view ray with depth 1. Multiplied by ray_per_px(), and in perspective by
+  // -inverse_depth, it is the change of inverse depth from one pixel to the next.
   vec2 tilt;
 };
 
-// 21 bits of the depth's float, which has no sign, and 11 of the occlusion.
-ALCOVE_INLINE uvec2 pack_half_texel(HalfTexel texel) {
-  uint depth = ((floatBitsToUint(texel.inverse_depth) + 0x200u) << 1u) & 0xfffff800u;
-  return uvec2(depth | uint(clamp(texel.occlusion, 0.0f, 1.0f) * 2047.0f + 0.5f),
-               packHalf2x16(texel.tilt));
+// Returns the texel as it is stored in R16G16B16A16_SNORM, which clamps tilts that are too large.
+ALCOVE_INLINE vec4 pack_half_texel(HalfTexel texel) {
+  return vec4(texel.occlusion, texel.weight * (1.0f / kHalfTexelWeightUnit),
+              texel.tilt.x * (1.0f / kLargestTilt), texel.tilt.y * (1.0f / kLargestTilt));
 }
 
-ALCOVE_INLINE float half_texel_inverse_depth(uint bits) {
-  return uintBitsToFloat((bits & 0xfffff800u) >> 1u);
+// Returns the inverse depth of the plane at the texel's centre, which must be at least 0, as it is
+// stored in R32_SFLOAT. If `knows_recent`, the last eight bits of the mantissa hold the occlusion
+// of the last few frames, [0,1]. The relative error of the depth is 2^-15.
+ALCOVE_INLINE float half_texel_depth(float inverse_depth, float recent, bool knows_recent) {
+  uint bits = floatBitsToUint(inverse_depth) & 0xffffff00u;
+  uint code = knows_recent ? uint(sqrt(clamp(recent, 0.0f, 1.0f)) * 254.0f + 1.5f) : 0u;
+  return uintBitsToFloat(bits | code);
 }
 
-// In units of 1/2047.
-ALCOVE_INLINE float half_texel_occlusion(uint bits) { return float(bits & 0x7ffu); }
-const float kHalfTexelOcclusionUnit = 1.0f / 2047.0f;
+// Returns the occlusion of the last few frames that a stored depth holds, or `otherwise` if it
+// holds none.
+ALCOVE_INLINE float half_texel_recent(float depth, float otherwise) {
+  uint code = floatBitsToUint(depth) & 255u;
+  float root = (float(code) - 1.0f) * (1.0f / 254.0f);
+  return code == 0u ? otherwise : root * root;
+}
 
-ALCOVE_INLINE HalfTexel unpack_half_texel(uvec2 bits) {
-  HalfTexel texel;
-  texel.inverse_depth = half_texel_inverse_depth(bits.x);
-  texel.occlusion = half_texel_occlusion(bits.x) * kHalfTexelOcclusionUnit;
-  texel.tilt = unpackHalf2x16(bits.y);
-  return texel;
+// Returns a bent-normal residual (bent_normal.h) as it is stored in A2B10G10R10_UNORM. A component
+// of 0 is exact. `dither` in [0,1) replaces the 0.5 of rounding to nearest.
+ALCOVE_INLINE vec4 pack_half_residual(vec3 residual, float dither) {
+  float scale = 511.0f / (1023.0f * kLargestResidual);
+  float offset = (511.5f + dither) * (1.0f / 1023.0f);
+  return vec4(residual.x * scale + offset, residual.y * scale + offset, residual.z * scale + offset,
+              0.0f);
+}
+
+ALCOVE_INLINE vec3 unpack_half_residual(vec3 stored) {
+  return (stored - 512.0f / 1023.0f) * (1023.0f / 511.0f * kLargestResidual);
 }
 
 ALCOVE_MATHS_END

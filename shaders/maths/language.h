@@ -1,8 +1,9 @@
-// Macros that let one header be both GLSL (460, GL_GOOGLE_include_directive) and C++20 with GLM.
+// Macros with which one header compiles as GLSL (460, GL_GOOGLE_include_directive) and as C++20
+// with GLM.
 //
-// In C++ everything is in namespace alcove::maths, and GLM has the types and functions of GLSL.
-// The text itself keeps to what both languages read alike: `f` on literals, no swizzles, structs
-// filled field by field and returned. Every function is pure and may be called from any thread.
+// In C++ everything is in namespace alcove::maths, and GLM provides the types and functions of
+// GLSL. The headers use only what both languages have: `f` on literals, no swizzles, structs that
+// are filled field by field and returned. Every function is pure and may be called from any thread.
 #ifndef ALCOVE_MATHS_LANGUAGE_H
 #define ALCOVE_MATHS_LANGUAGE_H
 
@@ -25,10 +26,10 @@ using namespace glm;
 
 ALCOVE_MATHS_BEGIN
 
-// x cut to [0,1]; 0 where it is not a number, for which clamp() may give anything.
+// Returns x clamped to [0,1], and 0 for NaN, for which the result of clamp() is undefined.
 ALCOVE_INLINE float saturate(float x) { return x > 0.0f ? min(x, 1.0f) : 0.0f; }
 
-// Whether a vector can be made unit: it is neither zero nor infinite nor not a number.
+// Returns whether a vector can be normalised: it is finite and not zero.
 ALCOVE_INLINE bool has_direction(vec3 v) {
   float squared = dot(v, v);
   return squared > 1e-12f && squared < 1e12f;

@@ -19,25 +19,25 @@ inline bool all_finite(const mat4& m) {
   return true;
 }
 
-// Elements that are zero in every projection may hold this much of rounding, relative to the
-// elements that they are compared with. Matrices that were multiplied or inverted in float stay
-// well below it.
+// Tolerance of matrix elements that are zero in every projection, relative to the elements that
+// they are compared with. The rounding errors of matrices that were multiplied or inverted in
+// floats are well below it.
 constexpr double kRounding = 1e-5;
 
-// Whether w hardly depends on z: not over the whole depth range, and not next to the constant part.
+// Returns whether the projection is orthographic: w does not depend on z within rounding errors.
 inline bool is_orthographic(const dmat4& m) {
   const double w_per_z = std::abs(m[2][3]);
   return w_per_z == 0.0 ||
          (w_per_z <= kRounding * std::abs(m[3][3]) && w_per_z <= 1e-4 * std::abs(m[2][2]));
 }
 
-// Whether the constant part of w is at most a rounding error: it would move the eye along z by less
-// than a ten-thousandth of the near plane's distance.
+// Returns whether the constant part of w is at most a rounding error: it would move the eye along z
+// by less than a ten-thousandth of the near plane's distance.
 inline bool has_no_constant_w(const dmat4& m) {
   return std::abs(m[3][3]) <= std::max(1e-6 * std::abs(m[2][3]), 1e-4 * std::abs(m[3][2]));
 }
 
-// Why `m` is not a projection that a Projection can hold; null where it is one.
+// Returns the reason why `m` cannot be a Projection, or null if it can.
 inline const char* projection_fault(const dmat4& m) {
   const double size = std::abs(m[0][0]) + std::abs(m[1][1]);
   const double w_size = std::abs(m[2][3]) + std::abs(m[3][3]);
@@ -60,7 +60,7 @@ inline const char* projection_fault(const dmat4& m) {
   return nullptr;
 }
 
-// `m`, which is a projection, with exact zeros where w has them.
+// Returns the projection `m` with exact zeros in the row of w.
 inline dmat4 without_rounding(dmat4 m) {
   if (is_orthographic(m)) {
     m[2][3] = 0.0;
@@ -72,10 +72,11 @@ inline dmat4 without_rounding(dmat4 m) {
 
 }  // namespace detail
 
-// The Projection of `matrix`, which takes view space (right-handed, camera along -Z) to Vulkan clip
-// space (y down, depth 0 to 1), column-major as in GLM, over an image of width x height pixels.
-// Jitter belongs in the matrix. Rounding errors in elements that a projection has as zeros are
-// accepted and removed. The error is a clause (static storage) that says what is wrong.
+// Returns the Projection of `matrix`, which maps view space (right-handed, camera along -Z) to
+// Vulkan clip space (y down, depth 0 to 1), for an image of width x height pixels. The matrix is
+// column-major as in GLM, and includes the jitter. Rounding errors in elements that are zero in a
+// projection are accepted and removed. The error is a clause with static storage that says what is
+// wrong.
 [[nodiscard]] inline tl::expected<Projection, const char*> make_projection(const mat4& matrix,
                                                                            std::uint32_t width,
                                                                            std::uint32_t height) {

@@ -1,7 +1,7 @@
-// The light that returns from the occluders (Jimenez et al. 2016, section 5).
+// Multi-bounce: the light that occluders reflect ([Jimenez 2016], section 5).
 //
-// An occluder of the same albedo as the surface, lit as the surface is, sends back part of what it
-// takes. The paper fits the result, per channel, as a cubic of the visibility.
+// An occluder with the albedo and the lighting of the surface reflects a part of the light that it
+// receives. The paper fits the result, per channel, with a cubic polynomial of the visibility.
 #ifndef ALCOVE_MATHS_MULTI_BOUNCE_H
 #define ALCOVE_MATHS_MULTI_BOUNCE_H
 
@@ -9,9 +9,10 @@
 
 ALCOVE_MATHS_BEGIN
 
-// Visibility brightened by interreflection, one channel. `visibility` and `albedo` in [0,1]
-// (saturated); the result is at least the visibility and at most 1, and grows with both. The cubic
-// alone gives 0.9996 to 1.0001 at visibility 1, hence both bounds.
+// Returns visibility brightened by interreflection, for one channel. `visibility` and `albedo` are
+// clamped to [0,1]. The result is at least the visibility and at most 1, and grows with both
+// arguments. The polynomial alone gives 0.9996 to 1.0001 at visibility 1, which is why both bounds
+// are enforced.
 ALCOVE_INLINE float multi_bounce_channel(float visibility, float albedo) {
   float v = saturate(visibility);
   float p = saturate(albedo);
@@ -21,7 +22,7 @@ ALCOVE_INLINE float multi_bounce_channel(float visibility, float albedo) {
   return min(max(v, ((v * a + b) * v + c) * v), 1.0f);
 }
 
-// multi_bounce_channel() of the three channels of a colour.
+// Returns multi_bounce_channel() for the three channels of a colour.
 ALCOVE_INLINE vec3 multi_bounce(float visibility, vec3 albedo) {
   return vec3(multi_bounce_channel(visibility, albedo.x),
               multi_bounce_channel(visibility, albedo.y),

@@ -1,5 +1,5 @@
-// Unit vectors as two numbers: the octahedral map (Cigolle et al. 2014). It has no pole and no seam
-// inside a hemisphere, and spends its bits evenly.
+// The octahedral map, which encodes a unit vector in two numbers (Cigolle et al. 2014). It has no
+// pole and no seam within a hemisphere, and its error is nearly uniform.
 #ifndef ALCOVE_MATHS_OCTAHEDRAL_H
 #define ALCOVE_MATHS_OCTAHEDRAL_H
 
@@ -7,10 +7,11 @@
 
 ALCOVE_MATHS_BEGIN
 
-// 1 or -1, never 0.
+// Returns the sign of x as 1 or -1; 0 gives 1.
 ALCOVE_INLINE float sign_not_zero(float x) { return x < 0.0f ? -1.0f : 1.0f; }
 
-// `direction` of any length but 0 to the square [-1,1]^2; the zero vector goes where +Z does.
+// Encodes a direction of any length except 0 in the square [-1,1]^2. The zero vector is encoded as
+// +Z.
 ALCOVE_INLINE vec2 octahedral_encode(vec3 direction) {
   float length_1 = abs(direction.x) + abs(direction.y) + abs(direction.z);
   if (!(length_1 > 0.0f)) return vec2(0.0f, 0.0f);
@@ -20,7 +21,8 @@ ALCOVE_INLINE vec2 octahedral_encode(vec3 direction) {
   return vec2((1.0f - abs(y)) * sign_not_zero(x), (1.0f - abs(x)) * sign_not_zero(y));
 }
 
-// The unit vector of a point of the square; one outside of it still gives a unit vector.
+// Returns the unit vector of a point of the square [-1,1]^2. Points outside of it also give a unit
+// vector.
 ALCOVE_INLINE vec3 octahedral_decode(vec2 encoded) {
   float z = 1.0f - abs(encoded.x) - abs(encoded.y);
   float fold = max(-z, 0.0f);

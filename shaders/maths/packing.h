@@ -1,4 +1,4 @@
-// Numbers of [0,1] in few bits, rounded to nearest so that 0 and 1 are exact.
+// Packs numbers in [0,1] in a few bits, rounded to the nearest value. 0 and 1 are exact.
 #ifndef ALCOVE_MATHS_PACKING_H
 #define ALCOVE_MATHS_PACKING_H
 
@@ -6,8 +6,8 @@
 
 ALCOVE_MATHS_BEGIN
 
-// x in [0,1] as an integer of `bits` bits (1 to 16). What lies outside is clamped; within
-// 0.5 / (2^bits - 1) after unpack_unorm().
+// Returns x, clamped to [0,1], as an integer of `bits` bits (1 to 16). The error after
+// unpack_unorm() is at most 0.5 / (2^bits - 1).
 ALCOVE_INLINE uint pack_unorm(float x, uint bits) {
   float last = float((1u << bits) - 1u);
   return uint(clamp(x, 0.0f, 1.0f) * last + 0.5f);

@@ -1,8 +1,10 @@
-// A normal that faces the eye in a byte: enough to tell the faces at a crease apart.
+// A normal that faces the eye, quantised to one byte, which is enough to distinguish the faces at a
+// crease.
 //
-// It is held by its stereographic coordinates in view space, tan(angle / 2) along the direction in
-// which it leans away from the eye's axis. They are conformal, so that distances between them are
-// angles without any decoding.
+// It is stored by its stereographic coordinates in view space: a vector of length tan(angle / 2),
+// where `angle` is the angle between the normal and the view axis. Stereographic projection is
+// conformal, so that small distances between coordinates are proportional to angles without
+// decoding.
 #ifndef ALCOVE_MATHS_COARSE_NORMAL_H
 #define ALCOVE_MATHS_COARSE_NORMAL_H
 
@@ -11,12 +13,12 @@
 ALCOVE_MATHS_BEGIN
 
 struct QuantisedNormal {
-  uint bits;            // 8; the same normal has the same ones
-  vec2 stereographic;   // its coordinates, each in [-1,1]
-  float squared_scale;  // from squared distances of coordinates to squared angles about it
+  uint bits;            // 8 bits; equal normals have equal bits
+  vec2 stereographic;   // stereographic coordinates, each in [-1,1]
+  float squared_scale;  // factor from squared distances of coordinates to squared angles
 };
 
-// By its lowest eight bits.
+// Returns the stereographic coordinates that the lowest eight bits of `bits` encode.
 ALCOVE_INLINE vec2 stereographic_of_bits(uint bits) {
   return vec2((float(bits & 15u) - 7.0f) * (1.0f / 7.0f),
               (float((bits >> 4u) & 15u) - 7.0f) * (1.0f / 7.0f));
@@ -36,8 +38,9 @@ ALCOVE_INLINE QuantisedNormal make_quantised_normal(vec3 normal) {
   return coarse;
 }
 
-// The square of the angle, in radians, to another normal that leans so: 0 where it is the same, off
-// by the more the further they part, and above 0.5 from 60 degrees on.
+// Returns the approximate squared angle, in radians, to another normal with the stereographic
+// coordinates `other`. It is 0 for equal normals, grows with the angle, and is above 0.5 from 60
+// degrees on.
 ALCOVE_INLINE float squared_turn(QuantisedNormal own, vec2 other) {
   vec2 apart = other - own.stereographic;
   return dot(apart, apart) * own.squared_scale;

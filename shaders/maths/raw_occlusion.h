@@ -11,7 +11,7 @@
 ALCOVE_MATHS_BEGIN
 
 struct RawOcclusion {
-  float visible;  // visible part of the slices, [0,open]
+  float visible;  // the visible part of the slices, [0,open]
   float open;     // the same integral without occluders, which is the weight, [0,kLargestOpen]
 };
 
@@ -88,7 +88,8 @@ struct LobeSurface {
   float roughness;  // perceptual, [0,1]
 };
 
-// A byte each: normal to half a degree, roughness to 2^-9.
+// Packs a surface with one byte per value. The error of the normal is half a degree, that of the
+// roughness 2^-9.
 ALCOVE_INLINE uint pack_lobe_surface(LobeSurface surface) {
   return packUnorm4x8(vec4(surface.normal.x * 0.5f + 0.5f, surface.normal.y * 0.5f + 0.5f,
                            surface.normal.z * 0.5f + 0.5f, surface.roughness));
@@ -101,16 +102,18 @@ ALCOVE_INLINE float sixteenth_power(float x) {
   return eighth * eighth;
 }
 
-// The filter weight, [0,1], of a neighbour's packed surface: a half where the normals differ by
-// about 12 degrees or the roughness by 0.1.
+// Returns the filter weight, [0,1], of a neighbour's packed surface. It is 0.5 if the normals
+// differ by about 12 degrees or the roughness by 0.1.
 ALCOVE_INLINE float lobe_weight(LobeSurface own, uint neighbour) {
-  // dot(own.normal, bytes * 2 / 255 - 1), the scale on the own side, where it is done once.
+  // dot(own.normal, bytes * 2 / 255 - 1), with the scale moved to the pixel's own normal, where it
+  // is computed once.
   vec3 scaled = own.normal * (2.0f / 255.0f);
   float offset = own.normal.x + own.normal.y + own.normal.z;
   float agreement = scaled.x * float(neighbour & 255u) +
                     scaled.y * float((neighbour >> 8u) & 255u) +
                     scaled.z * float((neighbour >> 16u) & 255u) - offset;
-  // Bytes round unit vectors to no more than 1.007; longer ones must not outweigh all others.
+  // Quantised unit vectors have a length of at most 1.007. Longer vectors must not outweigh all
+  // others.
   float sixteenth = sixteenth_power(clamp(agreement, 0.0f, 1.01f));
   float apart = own.roughness * 5.0f - float(neighbour >> 24u) * (5.0f / 255.0f);
   return sixteenth * sixteenth * max(1.0f - abs(apart), 0.0f);

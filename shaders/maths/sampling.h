@@ -76,15 +76,6 @@ ALCOVE_INLINE SliceNoise golden_pattern(uvec2 pixel, uint frame, bool moves) {
   return noise;
 }
 
-// Tiles that share their place in a 4x4 pattern, 64 of each 32x32, in a group of 8x8 threads: with
-// paper_pattern() all of them search one direction (the order of deinterleaved rendering, Bavoil
-// 2014, in place). Returns the tile of thread `local` of group `group`. The groups of a whole
-// number of 32x32 tiles meet each tile once.
-ALCOVE_INLINE uvec2 tile_by_pattern(uvec2 group, uvec2 local) {
-  return uvec2(((group.x >> 2u) * 8u + local.x) * 4u + (group.x & 3u),
-               ((group.y >> 2u) * 8u + local.y) * 4u + (group.y & 3u));
-}
-
 // Position along a Hilbert curve through a 64x64 block; takes x and y modulo 64. In [0,4096).
 ALCOVE_INLINE uint hilbert_index(uvec2 pixel) {
   uint x = pixel.x & 63u;

@@ -1,7 +1,7 @@
-// Areas of spherical caps and of what two of them share.
+// Areas of spherical caps and of their intersections.
 //
-// Angles in radians: `a` and `b` the half-angles of two caps, in [0,pi/2], `d` the angle between
-// their axes, in [0,pi]. Areas in steradians.
+// Angles are in radians: `a` and `b` are the half-angles of two caps, in [0,pi/2], and `d` is the
+// angle between their axes, in [0,pi]. Areas are in steradians.
 #ifndef ALCOVE_MATHS_SPHERICAL_CAP_H
 #define ALCOVE_MATHS_SPHERICAL_CAP_H
 
@@ -10,27 +10,28 @@
 
 ALCOVE_MATHS_BEGIN
 
-// 2 pi (1 - cos a), without the cancellation at small caps.
+// Returns the area of a cap, 2 pi (1 - cos a), in a form without cancellation for small caps.
 ALCOVE_INLINE float cap_area(float a) {
   float s = sin(0.5f * a);
   return 4.0f * kPi * s * s;
 }
 
-// Twice the area of the spherical triangle with two sides and the angle between them.
+// Returns twice the area of a spherical triangle with two sides and the angle between them.
 ALCOVE_INLINE float twice_triangle_area(float side_1, float side_2, float angle) {
   float t = tan(0.5f * side_1) * tan(0.5f * side_2);
   return 4.0f * atan(t * sin(angle), 1.0f + t * cos(angle));
 }
 
-// The area that two caps share, exact: the two sectors that the crossings of the rims cut from the
-// caps, less the kite that both sectors cover. Sums are taken so that a small cap keeps its digits:
-// within 1e-6 / min(a,b) of the smaller cap's area.
+// Returns the exact area of the intersection of two caps: the two sectors between the crossings of
+// the rims, minus the kite that both sectors cover. The error is within 1e-6 / min(a,b) of the
+// smaller cap's area.
 ALCOVE_INLINE float cap_intersection(float a, float b, float d) {
   float small = min(a, b);
   float large = max(a, b);
   if (d >= small + large) return 0.0f;
   if (d <= large - small) return cap_area(small);
-  // The triangle of the two axes and a crossing of the rims: angles from sides by half-angles.
+  // The angles of the triangle between the two axes and a crossing of the rims, by the half-angle
+  // formula.
   float whole = max(sin(0.5f * (large + d + small)), 1e-20f);
   float less_small = max(sin(0.5f * (large + d - small)), 1e-20f);
   float less_large = max(sin(0.5f * (small + (d - large))), 0.0f);

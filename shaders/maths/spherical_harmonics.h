@@ -1,8 +1,9 @@
-// Irradiance from nine coefficients of the light around a point (Ramamoorthi and Hanrahan 2001).
+// Irradiance from nine spherical-harmonics coefficients of the light around a point (Ramamoorthi
+// and Hanrahan 2001).
 //
-// The basis is the real, orthonormal one of order 2, in the sequence (0,0); (1,-1), (1,0), (1,1);
-// (2,-2), (2,-1), (2,0), (2,1), (2,2), without the Condon-Shortley interleave_offset: element 1 is
-// along +y, 2 along +z, 3 along +x. Coefficients are of radiance, not yet of irradiance.
+// The basis is real and orthonormal, of order 2, in the sequence (0,0); (1,-1), (1,0), (1,1);
+// (2,-2), (2,-1), (2,0), (2,1), (2,2), without the Condon-Shortley phase: element 1 is along +y, 2
+// along +z, 3 along +x. Coefficients are of radiance, not yet of irradiance.
 #ifndef ALCOVE_MATHS_SPHERICAL_HARMONICS_H
 #define ALCOVE_MATHS_SPHERICAL_HARMONICS_H
 
@@ -13,7 +14,7 @@ ALCOVE_MATHS_BEGIN
 
 const uint kHarmonics = 9u;
 
-// Element `index` (below kHarmonics) of the basis at a unit direction.
+// Returns the basis function `index` (below kHarmonics) at a unit direction.
 ALCOVE_INLINE float harmonic(uint index, vec3 d) {
   switch (index) {
     case 0u:
@@ -36,7 +37,8 @@ ALCOVE_INLINE float harmonic(uint index, vec3 d) {
   return 0.546274215f * (d.x * d.x - d.y * d.y);
 }
 
-// The factor from a coefficient of radiance to one of irradiance over pi: 1, 2/3 and 1/4 by band.
+// Returns the factor from a coefficient of radiance to one of irradiance divided by pi: 1, 2/3 or
+// 1/4, by band.
 ALCOVE_INLINE float harmonic_irradiance(uint index) {
   return index == 0u ? 1.0f : (index < 4u ? 2.0f / 3.0f : 0.25f);
 }

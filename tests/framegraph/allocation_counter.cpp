@@ -6,7 +6,7 @@
 namespace {
 
 thread_local std::size_t count = 0;
-thread_local std::size_t left = 0;  // until one fails; 0: none does
+thread_local std::size_t left = 0;  // allocations until one fails; 0: none fails
 thread_local bool failed = false;
 
 void* allocate(std::size_t size) {

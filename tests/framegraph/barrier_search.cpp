@@ -10,9 +10,10 @@
 namespace alcove::framegraph {
 namespace {
 
-using Changes = std::vector<std::vector<Transition>>;  // by position
+using Changes = std::vector<std::vector<Transition>>;  // indexed by position
 
-// The plan's layout changes at the latest positions of the mask that are not too late.
+// Returns the plan's layout changes, each moved to the latest position of the mask at which it is
+// still in time.
 Changes moved_changes(const Plan& plan, std::uint32_t mask) {
   Changes changes(plan.passes.size() + 1);
   const auto move = [&](std::uint32_t first, std::uint32_t count, std::size_t position) {
@@ -31,7 +32,7 @@ Changes moved_changes(const Plan& plan, std::uint32_t mask) {
   return changes;
 }
 
-// Everything waits for everything, and the changes.
+// Appends a barrier over all stages and accesses, with these layout changes.
 void append_full_barrier(Plan& plan, const std::vector<Transition>& changes) {
   Batch batch;
   batch.first = static_cast<std::uint32_t>(plan.transitions.size());

@@ -1,4 +1,5 @@
-// Plans with fewer barrier commands than compile gave them: none of them may be right.
+// Searches for plans with fewer barrier commands than the compiler's plan. None of them may be
+// valid.
 #pragma once
 
 #include <cstdint>
@@ -7,14 +8,15 @@
 
 namespace alcove::framegraph {
 
-// The plan, of one queue and at most 30 passes, with barriers before the positions of a mask only,
-// each as strong as can be: everything waits for everything, and each layout change of the plan is
-// moved to the latest of those positions that the change's own pass allows.
+// Returns the plan with barriers only before the positions of a mask. Each barrier is as strong as
+// possible: it covers all stages and accesses, and each layout change of the plan moves to the
+// latest of those positions that is not after its pass. The plan must have one queue and at most 30
+// passes.
 Plan with_barriers_at(const Plan& plan, std::uint32_t mask);
 
-// Fails the running test if the plan would be right with a command fewer at any places; prints how
-// many commands it has and how many places were tried. With a command more a right plan stays
-// right, so that this covers all smaller numbers.
+// Fails the running test if the plan would be valid with one barrier command less, at any
+// positions. Prints the number of commands and of the positions tried. Smaller numbers need no
+// search, because a valid plan stays valid with one command more.
 void expect_no_command_too_many(const char* name, const GraphDescription& graph,
                                 const Limits& limits, const Plan& plan);
 

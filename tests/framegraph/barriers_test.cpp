@@ -1,4 +1,4 @@
-// The number of barrier commands, against an exhaustive search over where they could be.
+// Compares the number of barrier commands with an exhaustive search over their positions.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -14,9 +14,9 @@
 namespace alcove::framegraph {
 namespace {
 
-// Without transient buffers: what those must wait for in the frame before could now and then be met
-// by a command of that frame, and compile meets it in this one.
-TEST(Barriers, NoPlacementOfFewerBarrierCommandsIsVerified) {
+// The graphs have no transient buffers. A dependency of those on the previous frame could sometimes
+// be met by a barrier of that frame, while the compiler meets it in this one.
+TEST(Barriers, NoPlanWithFewerBarrierCommandsIsValid) {
   Graph graph;
   std::uint32_t tried = 0;
   RandomOptions options;
@@ -44,7 +44,7 @@ TEST(Barriers, NoPlacementOfFewerBarrierCommandsIsVerified) {
 
 // Each face of a cube, and each of its mips, is written by a pass of its own; one barrier suffices
 // for the pass that reads the cube.
-TEST(Barriers, LayersAndMipsThatChangeAlikeShareABarrier) {
+TEST(Barriers, LayersAndMipsWithTheSameTransitionShareABarrier) {
   for (const std::uint32_t mips : {1u, 3u}) {
     Graph graph;
     Texture cube =
@@ -58,7 +58,8 @@ TEST(Barriers, LayersAndMipsThatChangeAlikeShareABarrier) {
     PassBuilder reader = graph.add_pass("reader");
     reader.read(cube, access::sampled_fragment);
     reader.side_effect();
-    // A later stage: the barrier that it needs is the one before the first reader, made wider.
+    // This pass reads in a later stage. The barrier before the first reader is extended to that
+    // stage.
     PassBuilder later = graph.add_pass("later");
     later.read(cube, access::sampled_compute);
     later.side_effect();
@@ -84,13 +85,14 @@ TEST(Barriers, ReadAfterReadNeedsNoBarrier) {
   }
   const auto plan = compile(graph);
   ASSERT_TRUE(plan);
-  // One for the first use, one for all the readers, of both stages.
+  // One transition for the first use, and one for all readers of both stages.
   EXPECT_EQ(plan->transitions.size(), 2u);
   EXPECT_EQ(plan->transitions[1].dst_stages,
             VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT);
 }
 
-// Where a stage reads in a second way, and another stage read that way before it or does after.
+// A stage reads with a second access. Another stage read with that access, either before or after
+// it.
 TEST(Barriers, WriteSeenByOneAccessIsNotSeenByAnotherAccessOfTheStage) {
   Graph graph;
   Buffer data = graph.create_buffer("data", {64});
@@ -103,7 +105,7 @@ TEST(Barriers, WriteSeenByOneAccessIsNotSeenByAnotherAccessOfTheStage) {
     reader.side_effect();
   };
   add_reader(buffer_access::uniform_graphics);
-  // A barrier of its own between the two, which the second joins.
+  // This pass has a barrier of its own between the two, which the second reader joins.
   PassBuilder fill = graph.add_pass("fill");
   other = fill.write(other, buffer_access::fill);
   PassBuilder mixed = graph.add_pass("mixed");
@@ -210,7 +212,7 @@ TEST_F(InitialStates, PartlyWrittenHistoryIsNotValid) {
   EXPECT_EQ(declare({}), HistoryValidity::valid);
 }
 
-TEST(Barriers, NeighbouringMipsThatChangeAlikeAreOneBarrier) {
+TEST(Barriers, NeighbouringMipsWithTheSameTransitionShareABarrier) {
   Graph graph;
   Texture texture = graph.create_texture("t", {VK_FORMAT_R8_UNORM, Extent::absolute(64, 64), 5, 3});
   PassBuilder writer = graph.add_pass("writer");

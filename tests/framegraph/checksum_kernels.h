@@ -1,4 +1,4 @@
-// The two compute kernels that device tests mix contents with, and their descriptor sets.
+// The two compute kernels with which device tests mix contents, and their descriptor sets.
 #pragma once
 
 #include <mutex>
@@ -8,7 +8,8 @@
 
 namespace alcove::framegraph {
 
-// The function of two words that the kernels compute; the tests' model of the frame uses it too.
+// The function of two words that the kernels compute. The model of the frame on the host uses it
+// too.
 inline std::uint32_t mix_in(std::uint32_t a, std::uint32_t b) {
   const std::uint32_t x = (a ^ b) * 0x9e3779b1u;
   return x ^ (x >> 15);
@@ -29,7 +30,7 @@ class ChecksumKernels {
                   std::uint32_t words, std::uint32_t seed, bool keep);
 
  private:
-  // A sampled image, then two images or buffers that are stored to.
+  // The bindings of a kernel: a sampled image, then two storage images or buffers.
   static constexpr std::uint32_t kBindings = 3;
   struct Kernel {
     VkDescriptorType written = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;

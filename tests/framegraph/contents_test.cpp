@@ -15,7 +15,8 @@
 namespace alcove::framegraph {
 namespace {
 
-// Frames of each test: 400, or as many as ALCOVE_RANDOM_FRAMES says, as the soak tests do.
+// Returns the number of frames of each test: 400, or the value of ALCOVE_RANDOM_FRAMES, which the
+// soak tests set.
 std::uint32_t frame_count() {
   const char* const text = std::getenv("ALCOVE_RANDOM_FRAMES");
   return text == nullptr ? 400 : static_cast<std::uint32_t>(std::strtoul(text, nullptr, 10));
@@ -27,7 +28,7 @@ struct Modelled {
   bool texture = true;
   Texture handle;
   Buffer buffer;
-  std::uint32_t width = 1;  // of a buffer: its words
+  std::uint32_t width = 1;  // of a buffer: its number of words
   std::uint32_t height = 1;
   std::vector<std::uint32_t> words;
 };
@@ -132,7 +133,8 @@ class FrameMaker {
     all_.push_back(std::move(made));
   }
 
-  // Mixes two textures into a new texture, or into one that exists, whose contents take part then.
+  // Mixes two textures into a new texture, or into an existing one whose contents are then part of
+  // the result.
   void mix_texture() {
     const Modelled sampled = *choose(true);
     const Modelled storage = *choose(true);
@@ -157,8 +159,8 @@ class FrameMaker {
     replace(std::move(result), before.index);
   }
 
-  // One pass with two outputs: a new texture from what was in an old one, and the old one updated.
-  // Whoever wants the new texture alone needs what was in the old one all the same.
+  // Adds a pass with two outputs: a new texture made from the contents of an old one, and the
+  // updated old one. A reader of the new texture alone still needs the contents of the old one.
   void update_and_mix() {
     const Modelled sampled = *choose(true);
     const Modelled storage = *choose(true);
@@ -321,7 +323,8 @@ tl::expected<Executor, Errors> make_executor(const Gpu& gpu, const Way& way) {
   options.verify = verify;
   options.check_uses = true;
   DeviceHandles handles = gpu.handles();
-  // One queue plays all three: the submissions and their semaphores are those of three.
+  // One queue takes the role of all three. The submissions and semaphores are those of three
+  // queues.
   if (way.path == Path::submit_to_three) handles.queues[1] = handles.queues[2] = handles.queues[0];
   return Executor::create(handles, options);
 }
@@ -368,18 +371,20 @@ void expect_contents(const Way& way, std::uint64_t seed) {
   EXPECT_EQ(messages(gpu, way), "");
 }
 
-TEST(Contents, AreRightInRandomFramesThatShareMemory) { expect_contents({}, 1000); }
-TEST(Contents, AreRightInRandomFramesThatShareNoMemory) { expect_contents({.alias = false}, 1000); }
-TEST(Contents, AreRightInRandomFramesThatTheExecutorSubmits) {
+TEST(Contents, RandomFramesThatShareMemoryHaveTheExpectedContents) { expect_contents({}, 1000); }
+TEST(Contents, RandomFramesThatShareNoMemoryHaveTheExpectedContents) {
+  expect_contents({.alias = false}, 1000);
+}
+TEST(Contents, SubmittedRandomFramesHaveTheExpectedContents) {
   expect_contents({.path = Path::submit}, 2000);
 }
-TEST(Contents, AreRightInRandomFramesOverSeveralQueues) {
+TEST(Contents, RandomFramesOverSeveralQueuesHaveTheExpectedContents) {
   expect_contents({.path = Path::submit_to_three}, 3000);
 }
-TEST(Contents, AreRightInRandomFramesThatThreeThreadsRecord) {
+TEST(Contents, RandomFramesRecordedByThreeThreadsHaveTheExpectedContents) {
   expect_contents({.threads = 3}, 1000);
 }
-TEST(Contents, AreRightInRandomFramesThatThreeThreadsRecordForSeveralQueues) {
+TEST(Contents, RandomFramesOverSeveralQueuesRecordedByThreeThreadsHaveTheExpectedContents) {
   expect_contents({.path = Path::submit_to_three, .threads = 3}, 3000);
 }
 }  // namespace

@@ -1,4 +1,4 @@
-// Culling: what nobody wants goes, with a reason; what stays says for whom.
+// Tests of culling: passes that nobody needs are removed, and every pass has a reason.
 #include <gtest/gtest.h>
 
 #include "alcove/framegraph/compile.h"
@@ -101,7 +101,8 @@ TEST_F(Cull, HistoryKeepsItsWriterOnlyIfItIsRead) {
   accumulate.read(history.previous(), access::sampled_compute);
   result = accumulate.write(result, access::storage_write_compute);
   (void)write("remember", history.current);
-  // Nobody wants the result: reader and writer of the history keep each other alive no more.
+  // Nobody needs the result, so that the reader and the writer of the history no longer keep each
+  // other alive.
   EXPECT_EQ(plan().passes.size(), 0u);
   graph_.output(result);
   const Plan kept = plan();
@@ -127,13 +128,13 @@ TEST_F(Cull, UpdateInPlaceIsKeptIfTheHistoryIsRead) {
   EXPECT_EQ(kept.cull_reasons[2].consumer, 1u);
 }
 
-// A pass that updates `acc` and writes a second texture, which alone is wanted:
+// A pass that updates `acc` and writes a second texture. Only the second texture is an output:
 //
 //   clear -> acc -> update -> acc (unread)
-//                      +----> second -> output
+//                     +----> second -> output
 class CullUpdate : public Cull {
  protected:
-  // The plan of that frame, with these accesses to `acc`.
+  // Returns the plan of that frame with these accesses to `acc`.
   Plan plan_of_update(const Access& clear, Contents cleared, Need need, const Access& update) {
     TextureDesc desc = kDesc;
     if (update.usage & VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT)
@@ -186,7 +187,7 @@ TEST_F(CullUpdate, PartialWriteThatReadsNothingDoesNotKeepTheProducer) {
 TEST_F(CullUpdate, VerifierRefusesAPlanWithoutTheProducerOfWhatAnUpdateReads) {
   Plan result = plan_of_update(access::clear, Contents::discard, Need::required,
                                access::storage_read_write_compute);
-  // The plan of the same frame in which the update does not read: nothing clears `acc`.
+  // This plan is of the same frame with an update that does not read, so that nothing clears `acc`.
   const GraphDescription& description = graph_.description();
   GraphDescription not_reading = description;
   not_reading.accesses[1].access = access::storage_write_compute.access;

@@ -43,7 +43,7 @@ class DeferredFrame {
     pass.record([](RecordContext&) {});
   }
 
-  // A bit for each of 128 lights in each tile of 16 x 16 pixels.
+  // Adds the pass that writes one bit for each of 128 lights in each tile of 16x16 pixels.
   void sort_lights() {
     const VkDeviceSize tiles = VkDeviceSize{(width_ + 15) / 16} * ((height_ + 15) / 16);
     light_tiles_ = graph_.create_buffer("light tiles", {16 * tiles});

@@ -11,7 +11,7 @@ namespace alcove::framegraph {
 
 void declare_deferred_frame(Graph& graph, std::uint32_t width, std::uint32_t height);
 
-// Sizes and alignments in pages of 64 KiB.
+// Returns memory requirements rounded up to pages of 64 KiB.
 MemoryRequirements paged_requirements(const void*, const ResourceRecord& record, VkFlags);
 
 }  // namespace alcove::framegraph

@@ -1,6 +1,6 @@
 // Clears a texture and copies it to the images of a window, with two frames in flight.
 #include <vulkan/vulkan_raii.hpp>
-// After Vulkan, so that it declares glfwCreateWindowSurface.
+// GLFW is included after Vulkan, so that it declares glfwCreateWindowSurface.
 #include <GLFW/glfw3.h>
 
 #include "alcove/framegraph/framegraph.h"
@@ -18,7 +18,7 @@ int main() {
   VkSurfaceKHR handle = VK_NULL_HANDLE;
   glfwCreateWindowSurface(*instance, window, nullptr, &handle);
   const vk::raii::SurfaceKHR surface(instance, handle);
-  // The first device, and its first queue family, which draws and presents.
+  // Uses the first device and its first queue family, which must support graphics and presenting.
   const vk::raii::PhysicalDevice physical(vk::raii::PhysicalDevices(instance).front());
   const float priority = 1.0f;
   const vk::DeviceQueueCreateInfo queues({}, 0, 1, &priority);
@@ -33,7 +33,7 @@ int main() {
       device, vk::SwapchainCreateInfoKHR({}, *surface, 3, vk::Format::eB8G8R8A8Unorm, {},
                                          {640, 360}, 1, kUsage));
   const std::vector<vk::Image> images = swapchain.getImages();
-  std::vector<vk::raii::Semaphore> acquired, drawn;  // by frame slot; by image
+  std::vector<vk::raii::Semaphore> acquired, drawn;  // one per frame slot; one per image
   while (acquired.size() < 2) acquired.emplace_back(device, vk::SemaphoreCreateInfo());
   while (drawn.size() < images.size()) drawn.emplace_back(device, vk::SemaphoreCreateInfo());
 
@@ -53,7 +53,7 @@ int main() {
         graph.import_texture("window", {.image = images[index],
                                         .desc = desc,
                                         .usage = VK_IMAGE_USAGE_TRANSFER_DST_BIT,
-                                        // The stage that waits for the image.
+                                        // The first use of the image waits in this stage.
                                         .initial_state = {.stages = VK_PIPELINE_STAGE_2_COPY_BIT},
                                         .final_state = access::present});
     PassBuilder draw = graph.add_pass("draw");

@@ -40,7 +40,8 @@ class ExecutorTest : public testing::Test {
   Gpu gpu_;
 };
 
-// A chain of clears into textures that share memory, each copied out before the next.
+// Declares a chain of clears into textures that share memory. Each is copied out before the next
+// clear.
 void declare_chain(Graph& graph, const HostBuffer& host, std::uint32_t length) {
   graph.reset();
   Buffer out = graph.import_buffer("out", Gpu::imported(host));
@@ -59,8 +60,9 @@ void declare_chain(Graph& graph, const HostBuffer& host, std::uint32_t length) {
   }
 }
 
-// Graphs in turn on one executor: each is compiled once, as long as there is room for all plans.
-TEST_F(ExecutorTest, PlansOfGraphsInTurnAreKept) {
+// Several graphs run in turn on one executor. Each is compiled once if the cache has room for all
+// plans.
+TEST_F(ExecutorTest, PlansOfAlternatingGraphsAreKept) {
   for (const std::uint32_t graphs : {60u, 3u}) {
     ExecutorOptions options;
     if (graphs == 3) options.cached_plans = 2;
@@ -114,12 +116,12 @@ TEST_F(ExecutorTest, UndeclaredUseIsReportedWhereUsesAreChecked) {
   EXPECT_THAT(report.error()[0].message, testing::HasSubstr("'nosy' uses 'secret'"));
 }
 
-// A texture of four mips of which a pass declares the second.
+// A pass declares the second of the four mips of a texture.
 TEST_F(ExecutorTest, ViewsOutsideOfTheDeclaredRangeAreRefused) {
   struct Case {
     Range range;
     ErrorCode code;
-    bool checked;  // Only where uses are checked.
+    bool checked;  // refused only if uses are checked
   };
   const Case cases[] = {{Range::mip(0), ErrorCode::undeclared_use, true},
                         {{1, 2, 0, 1}, ErrorCode::undeclared_use, true},
@@ -183,14 +185,15 @@ TEST_F(ExecutorTest, LimitsAreThoseOfTheDevice) {
   EXPECT_LE(executor.limits().max_samples, 64u);
 }
 
-// A texture that the device cannot make is refused with a sentence; others run without a message.
+// A texture that the device cannot create is refused with a sentence. Others run without a
+// validation message.
 TEST_F(ExecutorTest, MultisampledTexturesThatTheDeviceCannotMakeAreRefused) {
   struct Case {
     VkFormat format;
     VkSampleCountFlagBits samples;
     Access access;
     bool history;
-    const char* refusal;  // null: it works
+    const char* refusal;  // null if the texture is supported
   };
   constexpr auto kFour = VK_SAMPLE_COUNT_4_BIT;
   constexpr VkFormat kFormat = VK_FORMAT_R8G8B8A8_UNORM;
@@ -225,8 +228,8 @@ TEST_F(ExecutorTest, MultisampledTexturesThatTheDeviceCannotMakeAreRefused) {
   }
 }
 
-// The device has no functions of Vulkan 1.3 but those of VK_KHR_synchronization2, by their own
-// names.
+// Returns the functions of a Vulkan 1.2 device with VK_KHR_synchronization2, whose functions have
+// the suffix KHR.
 PFN_vkVoidFunction VKAPI_CALL get_device_proc_addr_1_2(VkDevice device, const char* name) {
   for (const char* core :
        {"vkCmdPipelineBarrier2", "vkQueueSubmit2", "vkCmdWriteTimestamp2", "vkCmdBeginRendering",
@@ -273,7 +276,7 @@ TEST_F(ExecutorTest, Vulkan12WithSynchronization2Suffices) {
   auto report = executor->submit(graph);
   ASSERT_TRUE(report) << to_string(report.error());
   ASSERT_TRUE(executor->wait());
-  // A pass that draws with dynamic rendering is told what the device lacks.
+  // The error of a pass that uses dynamic rendering names the missing feature.
   graph.reset();
   Texture color = graph.create_texture("c", {VK_FORMAT_R8G8B8A8_UNORM, Extent::absolute(16, 16)});
   PassBuilder draw = graph.add_pass("draw");
@@ -290,7 +293,8 @@ TEST_F(ExecutorTest, Vulkan12WithSynchronization2Suffices) {
                                  "vkCmdBeginRendering"));
 }
 
-// A transient without an address, then one with an address in the same heap, then a history.
+// Declares a transient without a device address, then one with an address in the same heap, then a
+// history.
 TEST_F(ExecutorTest, BuffersWithADeviceAddressHaveMemoryForIt) {
   VkPhysicalDeviceVulkan12Features v12{};
   v12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
@@ -353,9 +357,10 @@ TEST_F(ExecutorTest, ReplacedResourcesCountAsAllocatedUntilTheyAreFreed) {
   const VkDeviceSize before = allocated(resized, 64);
   const VkDeviceSize after = allocated(large, 128);
   EXPECT_GT(before, 0u);
-  // Recording the second frame, the executor does not know yet that the first has finished.
+  // While the second frame is recorded, the executor does not yet know that the first has finished.
   EXPECT_EQ(allocated(resized, 128), before + after);
-  // The old history stayed while the frame that replaced it could be discarded, and goes now.
+  // The old history was kept as long as the frame that replaced it could be discarded. Now it is
+  // freed.
   EXPECT_GT(allocated(resized, 128), allocated(large, 128));
   EXPECT_EQ(allocated(resized, 128), allocated(large, 128));
 }
@@ -371,7 +376,8 @@ class FailingDeviceTest : public ExecutorTest {
     handles_.get_instance_proc_addr = failing::get_instance_proc_addr;
   }
 
-  // Transients, an import and a history; the remembering pass on `queue`.
+  // Declares a frame with transients, an import and a history. The pass that writes the history
+  // runs on `queue`.
   void declare(Graph& graph, QueueClass queue = QueueClass::graphics) {
     declare_chain(graph, host_, 4);
     const TextureHistory history =
@@ -391,7 +397,8 @@ class FailingDeviceTest : public ExecutorTest {
   DeviceHandles handles_;
 };
 
-// Whatever call fails, the frame comes back as an error, the next one runs, and nothing is leaked.
+// Makes each creating call fail in turn: the frame then returns an error, the next frame runs, and
+// nothing leaks.
 void FailingDeviceTest::expect_out_of_memory_anywhere_is_an_error(std::uint32_t threads) {
   ExecutorOptions options;
   options.recording_threads = threads;
@@ -432,7 +439,8 @@ TEST_F(FailingDeviceTest, RunningOutOfMemoryInAnyThreadIsAnErrorAndLeaksNothing)
   expect_out_of_memory_anywhere_is_an_error(2);
 }
 
-// Lost at any submission of any frame: an error each time it is asked, and nothing is leaked.
+// The device is lost at each submission in turn. Every later call returns an error, and nothing
+// leaks.
 TEST_F(FailingDeviceTest, LosingTheDeviceIsAnErrorAndLeaksNothing) {
   handles_.queues[1] = handles_.queues[0];
   int lost = 0;

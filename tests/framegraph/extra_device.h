@@ -1,4 +1,4 @@
-// A second device of the physical device of a Gpu, with features and extensions of its own.
+// Creates a second device on the physical device of a Gpu, with other features and extensions.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@ namespace alcove::framegraph {
 
 class ExtraDevice {
  public:
-  // `features` is the chain of VkDeviceCreateInfo.
+  // `features` is the pNext chain of VkDeviceCreateInfo.
   ExtraDevice(Gpu& gpu, const void* features, const std::vector<const char*>& extensions = {})
       : handles_(gpu.handles()) {
     const float priority = 1.0f;

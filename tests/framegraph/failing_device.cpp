@@ -15,9 +15,9 @@ int submit_count = 0;
 int update_count = 0;
 int wait_count = 0;
 int outside_count = 0;
-int submissions_left = -1;  // until the device is lost; below 0: it is not going to be
+int submissions_left = -1;  // until the device is lost; negative: it is not lost
 
-// Wraps one creating and one destroying function of the device.
+// Wraps a creating and a destroying function of the device.
 template <auto kCreate, auto kDestroy>
 struct Wrapped;
 
@@ -70,7 +70,7 @@ VKAPI_ATTR void VKAPI_CALL destroy_pipeline(VkDevice device, VkPipeline pipeline
   vkDestroyPipeline(device, pipeline, callbacks);
 }
 
-// Freed with their pool.
+// Descriptor sets are freed with their pool.
 VKAPI_ATTR VkResult VKAPI_CALL allocate_sets(VkDevice device,
                                              const VkDescriptorSetAllocateInfo* info,
                                              VkDescriptorSet* sets) {
@@ -108,7 +108,7 @@ VKAPI_ATTR VkResult VKAPI_CALL wait_semaphores(VkDevice device, const VkSemaphor
   return is_lost ? VK_ERROR_DEVICE_LOST : vkWaitSemaphores(device, info, timeout);
 }
 
-// The device that really is there has to be idle before anything is destroyed.
+// The real device must be idle before anything is destroyed.
 VKAPI_ATTR VkResult VKAPI_CALL wait_idle(VkQueue queue) {
   const VkResult result = vkQueueWaitIdle(queue);
   return is_lost ? VK_ERROR_DEVICE_LOST : result;

@@ -1,29 +1,32 @@
-// A device whose creating calls fail when they are told to, that can be lost, and that counts what
-// is not destroyed.
+// Wraps a device: its creating calls can be made to fail, it can be lost, and objects that are not
+// destroyed are counted.
 #pragma once
 
 #include <vulkan/vulkan.h>
 
 namespace alcove::framegraph::failing {
 
-// The call, counted from 1, that fails with out of device memory; 0 for none.
+// Makes the creating call with this number, counted from 1, fail with
+// VK_ERROR_OUT_OF_DEVICE_MEMORY. 0: none fails.
 void fail_at(int call);
-// Calls since fail_at.
+// Returns the number of creating calls since fail_at().
 int calls();
-// From now on (or no more) the device is lost: nothing is submitted, and waits say so.
+// Makes the device lost, or not lost any more. While it is lost, submissions and waits return
+// VK_ERROR_DEVICE_LOST.
 void lose(bool lost);
-// Loses it at the submission after so many more.
+// Makes the device lost after this number of further submissions.
 void lose_after(int submissions);
-// Objects that were created and not destroyed.
+// Returns the number of objects that were created and not destroyed.
 int alive();
-// Calls of vkUpdateDescriptorSets so far.
+// Returns the number of calls of vkUpdateDescriptorSets.
 int descriptor_updates();
-// Calls of vkQueueSubmit2 so far, and the semaphores that they wait for.
+// Return the number of calls of vkQueueSubmit2, and of the semaphores that they wait for.
 int submits();
 int semaphore_waits();
-// Image barriers recorded so far whose queue family on one side is VK_QUEUE_FAMILY_EXTERNAL.
+// Returns the number of recorded image barriers with VK_QUEUE_FAMILY_EXTERNAL as one of their queue
+// families.
 int outside_transfers();
-// The function that the executor gets in place of vkGetInstanceProcAddr.
+// The function to give to the executor instead of vkGetInstanceProcAddr.
 PFN_vkVoidFunction VKAPI_CALL get_instance_proc_addr(VkInstance instance, const char* name);
 
 }  // namespace alcove::framegraph::failing

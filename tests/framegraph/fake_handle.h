@@ -1,4 +1,5 @@
-// Vulkan handles that are not null, for graphs that are declared and compiled but never recorded.
+// Makes Vulkan handles that are not null, for graphs that are declared and compiled but never
+// recorded.
 #pragma once
 
 #include <cstddef>
@@ -6,11 +7,11 @@
 
 namespace alcove::framegraph {
 
-// Handles of different numbers, up to 255, are different.
+// Returns the handle with a number up to 255. Different numbers give different handles.
 template <typename Handle>
 Handle fake_handle(std::size_t number = 0) {
   static char objects[256] = {};
-  // Handles are pointers or integers, by platform.
+  // A handle is a pointer or an integer, depending on the platform.
   if constexpr (std::is_pointer_v<Handle>)
     return reinterpret_cast<Handle>(&objects[number % 256]);
   else

@@ -1,4 +1,4 @@
-// Frames that follow each other without a wait of the host.
+// Tests of consecutive frames between which the host does not wait.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -48,7 +48,8 @@ class FramesInFlight : public testing::Test {
     vkEndCommandBuffer(commands_.at(slot));
     return report;
   }
-  // The slot's frame before has finished; this one has not when it returns.
+  // Records and submits a frame. The slot's previous frame has finished; this frame may still be
+  // running when the function returns.
   void run(Executor& executor, Graph& graph, std::uint32_t slot) {
     const auto report = record(executor, graph, slot);
     ASSERT_TRUE(report) << to_string(report.error());
@@ -76,7 +77,7 @@ void add_clear(Graph& graph, Texture& texture, const char* name = "clear") {
   });
 }
 
-// The frame before copied into it.
+// Returns an import of the buffer, into which the previous frame copied.
 ImportedBuffer arriving(const HostBuffer& host) {
   ImportedBuffer import = Gpu::imported(host);
   import.initial_state = {VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
@@ -105,8 +106,8 @@ void declare(Graph& graph, std::uint32_t size) {
   graph.output(texture);
 }
 
-// One plan writes the texture last and the other reads it last, so that each finds it otherwise
-// than it would leave it itself. Validation looks across the submissions.
+// One plan ends with a write of the texture and the other with a read, so that each finds the
+// texture in another state than it leaves it in. Validation covers both submissions.
 TEST_F(FramesInFlight, FramesOfDifferentPlansNeedNoWait) {
   Executor executor = make();
   const HostBuffer host = gpu_.make_host_buffer(4);
@@ -129,8 +130,8 @@ TEST_F(FramesInFlight, FramesOfDifferentPlansNeedNoWait) {
   wait();
 }
 
-// An image is read by one stage of the frame and then, in the same layout, by another of the
-// caller's, for which alone the next frame waits.
+// An image is read by one stage of the frame, and later, in the same layout, by a stage of the
+// caller's commands. The next frame waits for the latter only.
 TEST_F(FramesInFlight, FinalStateComesAfterTheReadsOfTheFrame) {
   Executor executor = make();
   const HostBuffer host = gpu_.make_host_buffer(4);
@@ -156,18 +157,18 @@ TEST_F(FramesInFlight, FinalStateComesAfterTheReadsOfTheFrame) {
   wait();
 }
 
-// A frame that never runs says nothing of those that were recorded before it.
+// A frame that never runs does not show that earlier frames have finished.
 TEST_F(FramesInFlight, RefusedOrDiscardedFrameFreesNothingThatMayBeInUse) {
   Executor executor = make();
   Graph graph;
   declare(graph, 4);
   run(executor, graph, 0);
-  declare(graph, 64);  // needs more memory: what the frame before used goes when it may
+  declare(graph, 64);  // needs more memory: the old memory is freed when the device is done
   run(executor, graph, 1);
-  wait();  // of which the executor knows nothing
+  wait();  // the executor does not know of this wait
   const int alive = failing::alive();
   for (const bool refused : {true, false, true}) {
-    // The frame of slot 0 is done; that of slot 1 may not be.
+    // The frame of slot 0 has finished. That of slot 1 may still be running.
     declare(graph, refused ? 0 : 64);
     EXPECT_EQ(record(executor, graph, 0).has_value(), !refused);
     if (!refused) executor.discard(graph, {0});

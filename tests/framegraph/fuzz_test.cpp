@@ -1,5 +1,5 @@
-// Random graphs through compile and verify. rapidcheck prints the seed of the run, which
-// RC_PARAMS="seed=..." replays; RC_PARAMS="max_success=..." runs a property so many times, as the
+// Compiles and verifies random graphs. rapidcheck prints the seed of the run, which
+// RC_PARAMS="seed=..." replays. RC_PARAMS="max_success=..." sets how often a property runs, as the
 // soak tests do.
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
@@ -14,16 +14,16 @@
 namespace alcove::framegraph {
 namespace {
 
-// rapidcheck runs a property 100 times: 10,000 graphs a property.
+// rapidcheck runs a property 100 times, so that each property tests 10,000 graphs.
 constexpr std::uint64_t kGraphsPerRun = 100;
-constexpr std::uint64_t kProgress = 25'000;  // graphs from line to line
+constexpr std::uint64_t kProgress = 25'000;  // graphs between two lines of progress
 
-// Any seed is as good as any other: none is small, as rapidcheck would have the first.
+// Returns a seed from the whole range. rapidcheck's own integers begin with small values.
 std::uint64_t any_seed() {
   return *rc::gen::noShrink(rc::gen::resize(rc::kNominalSize, rc::gen::arbitrary<std::uint64_t>()));
 }
 
-// Histories go on from graph to graph.
+// Verifies the plans of a sequence of graphs that share their histories.
 void expect_verified(const RandomOptions& options, const Limits& limits) {
   static std::uint64_t graphs = 0;
   const std::uint64_t seed = any_seed();

@@ -28,7 +28,7 @@ struct HostBuffer {
 
 class Gpu {
  public:
-  // Without validation: for counting what the executor itself does.
+  // Without validation it serves tests that count calls of the executor.
   explicit Gpu(bool validation = true) {
     sample::DeviceOptions options;
     options.validation = validation_ = validation;
@@ -83,7 +83,7 @@ class Gpu {
     images_.push_back(std::move(*made));
     return images_.back()->image();
   }
-  // Changes the layout from undefined, in a submission of its own.
+  // Changes the layout of an image from UNDEFINED in a submission of its own.
   void change_layout(VkImage image, VkImageLayout layout) {
     VkImageMemoryBarrier2 barrier{};
     barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
@@ -112,7 +112,7 @@ class Gpu {
     return import;
   }
 
-  // Records one frame, runs it and waits; on an error it is thrown away.
+  // Records one frame, runs it and waits for it. On an error, the commands are discarded.
   tl::expected<FrameReport, Errors> run(Executor& executor, Graph& graph) {
     begin();
     auto report = executor.record(graph, commands_);
@@ -122,7 +122,7 @@ class Gpu {
       throw_away();
     return report;
   }
-  // Records one frame and throws its commands away.
+  // Records one frame and discards its commands.
   tl::expected<FrameReport, Errors> record(Executor& executor, Graph& graph) {
     begin();
     auto report = executor.record(graph, commands_);
@@ -148,7 +148,8 @@ class Gpu {
     vkQueueWaitIdle(device_->queue());
   }
 
-  // The messages of the validation layers, one a line, without those that contain one of `except`.
+  // Returns the messages of the validation layers, one per line, without those that contain one of
+  // the texts in `except`.
   std::string messages(std::initializer_list<const char*> except = {}) const {
     std::string text;
     for (const std::string& message : device_->validation_messages()) {

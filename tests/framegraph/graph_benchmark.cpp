@@ -31,13 +31,13 @@ namespace {
 
 enum class Shape { chain, random };
 
-// A pass reads what these two wrote.
+// The two earlier passes whose textures a pass reads.
 struct Reads {
   std::uint32_t first = kNone;
   std::uint32_t second = kNone;
 };
 
-// Chosen once: choosing is no part of what declaring costs.
+// Chooses the reads of all passes in advance, because the choice is not part of the measured time.
 std::vector<Reads> choose_reads(Shape shape, std::uint32_t passes) {
   std::vector<Reads> reads(passes);
   Dice dice(passes);
@@ -72,7 +72,8 @@ double median(std::vector<double>& values) {
   return values[values.size() / 2];
 }
 
-// Processor time of one call, over so many: other programs do not count, and the clock is coarse.
+// Returns the processor time of one call, as a mean over many calls. Other programs do not affect
+// it, and many calls are needed because the clock is coarse.
 template <typename Function>
 double time_ns(int repeats, Function&& f) {
   const std::clock_t start = std::clock();
@@ -119,7 +120,8 @@ void measure(Shape shape, std::uint32_t passes) {
               passes);
 }
 
-// One texture a pass, of any size, from up to three of the last 16. All passes are needed.
+// Declares passes that each write one texture of random size and read up to three of the last 16.
+// No pass is culled.
 void declare_sizes(Graph& graph, std::uint64_t seed, std::uint32_t passes, std::uint32_t width) {
   graph.reset();
   Dice dice(seed);

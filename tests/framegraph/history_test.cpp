@@ -1,4 +1,5 @@
-// Histories on the device: what each slot holds, frame by frame, is what history.h promises.
+// Tests histories on the device: in every frame, each slot has the contents that history.h
+// promises.
 #include <gtest/gtest.h>
 
 #include "alcove/framegraph/verify.h"
@@ -12,12 +13,12 @@ namespace {
 struct Frame {
   std::uint32_t value = 0;
   bool writes = true;
-  bool wanted = true;       // false: the writer is culled
-  bool by_compute = false;  // read as a storage image of a kernel instead of a copy
+  bool wanted = true;       // if false, the pass that writes the history is culled
+  bool by_compute = false;  // read by a compute kernel instead of a copy
   std::uint32_t size = 8;
-  bool discarded = false;  // recorded, but never run
-  bool in_place = false;   // writes the newest of the older slots instead
-  bool reset = false;      // forgets what was before
+  bool discarded = false;  // it is recorded and never submitted
+  bool in_place = false;   // it updates the newest of the older slots instead
+  bool reset = false;      // it resets the history first
 };
 
 class GraphHistory : public testing::Test {
@@ -98,7 +99,8 @@ class GraphHistory : public testing::Test {
     return out;
   }
 
-  // Copies a slot by other accesses, usages and layouts to a texture, and the texture to the host.
+  // Copies a slot with other accesses, usages and layouts to a texture, and the texture to the
+  // host.
   Buffer read_by_kernel(Texture texture, Buffer out, std::uint32_t age) {
     Texture zero = graph_->create_texture("zero", {VK_FORMAT_R32_UINT, Extent::absolute(1, 1)});
     zero = write(zero, 0);
@@ -225,7 +227,7 @@ TEST_F(GraphHistory, DiscardedFrameLeavesNoTrace) {
   run({.value = 99, .discarded = true});
   run({.value = 2});
   EXPECT_EQ(slot(1), 1u);
-  // The first of its kind, and one after a change of size.
+  // The first frame of all, and the first one after a change of size.
   run({.value = 98, .size = 16, .discarded = true});
   EXPECT_EQ(validity_, HistoryValidity::resized);
   run({.value = 3, .size = 16});
@@ -252,7 +254,7 @@ TEST_F(GraphHistory, DiscardedFrameOfAnotherSizeOrAfterAResetLeavesNoTrace) {
   EXPECT_EQ(slot(1), 2u);
   EXPECT_EQ(slot(2), 1u);
   EXPECT_EQ(history_bytes_, bytes);
-  // One that runs is remembered as ever.
+  // A frame that runs after discarded ones is kept as usual.
   run({.value = 4, .size = 16});
   run({.value = 5, .size = 16, .discarded = true, .reset = true});
   run({.value = 6, .size = 16});
@@ -275,7 +277,7 @@ TEST_F(GraphHistory, DiscardedFrameOfAnotherSizeIsNotRecordedAgain) {
 TEST_F(GraphHistory, GraphsOfOneExecutorHaveSeparateHistories) {
   run({.value = 1});
   const VkDeviceSize bytes = history_bytes_;
-  // A history of the same name, but of another size.
+  // Another graph has a history of the same name with another size.
   auto other = std::make_unique<Graph>();
   std::swap(graph_, other);
   run({.value = 10, .size = 16});
@@ -286,7 +288,7 @@ TEST_F(GraphHistory, GraphsOfOneExecutorHaveSeparateHistories) {
   std::swap(graph_, other);
   run({.value = 2});
   EXPECT_EQ(slot(1), 1u);
-  // One that is gone leaves nothing to those that come.
+  // A destroyed graph leaves no history to later graphs.
   other = std::make_unique<Graph>();
   run({.value = 3});
   EXPECT_EQ(history_bytes_, bytes);
@@ -308,8 +310,8 @@ TEST_F(GraphHistory, ContentsSurviveAChangeOfAccess) {
   EXPECT_EQ(slot(2), 2u);
 }
 
-// Recorded again without being declared again, into the same command buffer: every record goes on
-// from the histories that the record before left.
+// The frame is recorded several times into one command buffer without being declared again. Each
+// record continues from the histories that the previous one left.
 TEST_F(GraphHistory, OneDeclarationCanBeRecordedSeveralTimesIntoOneCommandBuffer) {
   ExecutorOptions options;
   options.frames_in_flight = 3;
@@ -342,7 +344,7 @@ TEST_F(GraphHistory, OneDeclarationCanBeRecordedSeveralTimesIntoOneCommandBuffer
   EXPECT_EQ(slot(2), 1u);
 }
 
-// The first executor takes the contents of the histories with it.
+// The contents of the histories are lost with the first executor.
 TEST_F(GraphHistory, GraphWhoseExecutorIsGoneBeginsWithoutHistories) {
   run({1});
   run({2});

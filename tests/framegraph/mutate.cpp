@@ -30,7 +30,7 @@ class Mutator {
  private:
   void drop_transition(std::uint32_t index) {
     Plan mutant = plan_;
-    // Out of every batch: the others of its batch stay.
+    // Removes one transition. The others of its batch stay.
     mutant.transitions.erase(mutant.transitions.begin() + index);
     for (Batch& batch : mutant.batches) {
       if (index < batch.first)
@@ -112,7 +112,8 @@ class Mutator {
     return false;
   }
 
-  // Moves a resource onto one that is live at the same time, and out of its heap.
+  // Moves a resource to the memory of another one that is live at the same time, and beyond the end
+  // of its heap.
   void collide(std::uint32_t resource) {
     const Placement& placement = plan_.placements[resource];
     if (placement.heap == kNone) return;

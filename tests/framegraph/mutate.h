@@ -1,4 +1,4 @@
-// All the ways to spoil a right plan by one change, each of which the verifier has to find.
+// Makes all mutants of a valid plan: each has one harmful change, which the verifier must find.
 #pragma once
 
 #include <functional>
@@ -9,7 +9,7 @@
 
 namespace alcove::framegraph {
 
-// Calls `visit` with each mutant and the kind of change, for instance "narrow source stage".
+// Calls `visit` with each mutant and the kind of its change, for example "narrow source stage".
 void for_each_mutant(const GraphDescription& graph, const Plan& plan,
                      const std::function<void(const std::string& kind, const Plan& mutant)>& visit);
 

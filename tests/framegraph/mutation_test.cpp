@@ -1,5 +1,5 @@
-// Spoilt plans: the verifier must refuse them. A mutant that it lets pass must be harmless, by the
-// word of the path oracle, which searches for each ordering anew.
+// Tests that the verifier refuses mutants of valid plans. A mutant that it accepts must be harmless
+// according to the path oracle, which searches for each ordering separately.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace {
 
 struct Count {
   std::uint32_t killed = 0;
-  std::uint32_t killed_by_both = 0;  // the oracle would refuse it too
+  std::uint32_t killed_by_both = 0;  // refused by the oracle too
   std::uint32_t harmless = 0;
 };
 using Counts = std::map<std::string, Count>;
@@ -36,7 +36,8 @@ std::uint32_t killed(const Counts& counts) {
   return sum;
 }
 
-// Mutants of so many graphs; each that the verifier lets pass is harmless by the oracle's word.
+// Tests the mutants of `graphs` random graphs. Each mutant that the verifier accepts must be
+// harmless according to the oracle.
 Counts mutate_graphs(std::uint64_t graphs, const RandomOptions& options, const Limits& limits) {
   Counts counts;
   Graph graph;
@@ -54,7 +55,7 @@ Counts mutate_graphs(std::uint64_t graphs, const RandomOptions& options, const L
     for_each_mutant(description, *plan, [&](const std::string& kind, const Plan& mutant) {
       if (!verify(description, limits, mutant)) {
         ++counts[kind].killed;
-        // The oracle knows nothing of what the other kinds spoil.
+        // The oracle checks orderings only, which are what these kinds of mutants change.
         if (!kind.starts_with("narrow") && !kind.starts_with("drop")) return;
         if (!find_unordered_pair(description, mutant).empty()) ++counts[kind].killed_by_both;
         return;
@@ -67,7 +68,8 @@ Counts mutate_graphs(std::uint64_t graphs, const RandomOptions& options, const L
   return counts;
 }
 
-// Only what something else does as well may go.
+// Fails for accepted mutants of other kinds than those listed, whose change is redundant with
+// something else in the plan.
 void expect_harmless_only(const Counts& counts, std::initializer_list<const char*> kinds) {
   for (const auto& [kind, count] : counts) {
     const bool may =
@@ -76,9 +78,9 @@ void expect_harmless_only(const Counts& counts, std::initializer_list<const char
   }
 }
 
-// An oracle that finds nothing wrong would prove nothing: most orderings that the verifier misses
-// it misses too. What it lets pass are changes that were dropped whole, with their layouts and
-// owners.
+// Checks that the oracle can find faults at all: it must refuse most of the mutants that the
+// verifier refuses for an ordering. The exceptions are transitions that were removed completely,
+// with their layouts and owners, which the oracle does not check.
 void expect_agreement(const Counts& counts) {
   for (const auto& [kind, count] : counts) {
     if (!kind.starts_with("narrow")) continue;
@@ -100,7 +102,7 @@ TEST(Mutation, VerifierRefusesHarmfulMutantsOfQueueTransfers) {
   RandomOptions options;
   options.queues = true;
   const Counts counts = mutate_graphs(200, options, limits);
-  // A dependency may be met twice, by a barrier or by way of a third queue.
+  // A dependency may be met twice, for example by a barrier and by way of a third queue.
   expect_harmless_only(counts,
                        {"drop a barrier", "drop a semaphore", "drop a wait for the frame before"});
   EXPECT_GT(counts.at("drop a wait for the frame before").killed, 50u);
@@ -154,7 +156,7 @@ TEST(Mutation, TexturesThatLiveTogetherInADiamondShareNoMemory) {
   ASSERT_TRUE(plan) << to_string(plan.error());
   EXPECT_TRUE(verify(description, {}, *plan));
   EXPECT_EQ(plan->passes.size(), 6u);
-  // Three textures are live at once, and three is what is allocated.
+  // Three textures are live at the same time, and the heap has room for exactly three.
   EXPECT_EQ(plan->heaps[0].size, 3u * 64 * 64 * 4);
   EXPECT_EQ(plan->heaps[0].size, plan->heaps[0].lower_bound);
   for (const auto& [one, other] :
@@ -163,7 +165,7 @@ TEST(Mutation, TexturesThatLiveTogetherInADiamondShareNoMemory) {
     Plan wrong = *plan;
     wrong.placements[one.index].offset = wrong.placements[other.index].offset;
     EXPECT_FALSE(verify(description, {}, wrong));
-    // Plans that give false lifetimes are refused too.
+    // Plans with wrong lifetimes are refused too.
     wrong.placements[one.index].last = wrong.placements[one.index].first;
     EXPECT_FALSE(verify(description, {}, wrong));
   }

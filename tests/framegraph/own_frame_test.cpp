@@ -1,4 +1,5 @@
-// Alcove's own frame: its peak is the lower bound, and no barrier command is too many.
+// Tests the plan of Alcove's own frame: its memory peak equals the lower bound, and it has no
+// superfluous barrier command.
 #include <gtest/gtest.h>
 
 #include "alcove/passes/occlusion.h"
@@ -8,7 +9,7 @@
 namespace alcove::framegraph {
 namespace {
 
-// Declares the frame of an engine, which gives depth and reads visibility and bent normals.
+// Declares the frame of an engine that provides depth and reads visibility and bent normals.
 void declare(Graph& graph, passes::Kernels& kernels, VkImage image, passes::Quality quality) {
   ImportedTexture engine_depth;
   engine_depth.image = image;
@@ -30,7 +31,7 @@ void declare(Graph& graph, passes::Kernels& kernels, VkImage image, passes::Qual
   light.record([](RecordContext&) {});
 }
 
-TEST(OwnFrame, HasNoBarrierCommandTooManyAndMeetsItsLowerBound) {
+TEST(OwnFrame, OcclusionFrameHasNoSuperfluousBarrierAndMeetsItsMemoryLowerBound) {
   Gpu gpu;
   ASSERT_EQ(gpu.problem(), "");
   auto kernels = passes::Kernels::create(gpu.handles(), 1);

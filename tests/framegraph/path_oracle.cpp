@@ -11,7 +11,8 @@ namespace {
 
 // The stages that an operation's effects have reached.
 struct Spread {
-  // By queue: stages that come after it, and those after which it is available besides.
+  // For each queue: the stages that come after the operation, and those for which its writes are
+  // also available.
   VkPipelineStageFlags2 after[kQueueClasses] = {};
   VkPipelineStageFlags2 available[kQueueClasses] = {};
 };
@@ -56,7 +57,8 @@ class Oracle {
         x.stages == y.stages && x.access == y.access && x.frame == y.frame &&
         !is_between(x_index, y_index))
       return false;
-    // One pass's accesses, and one command's changes, are not ordered among themselves.
+    // The accesses of one pass, and the layout changes of one command, are not ordered among each
+    // other.
     if (x.queue == y.queue && x.step == y.step && (x.change != nullptr) == (y.change != nullptr))
       return false;
     const bool external = graph_.resources[x.resource].external != kNone;
@@ -65,7 +67,8 @@ class Oracle {
            (x.resource != y.resource && overlap(x.resource, y.resource));
   }
 
-  // Whether something but an unordered write of that access is done to y's subresource in between.
+  // Returns whether an operation other than an unordered write with that access uses y's
+  // subresource in between.
   bool is_between(std::size_t x_index, std::size_t y_index) const {
     const Operation& y = trace_.operations[y_index];
     for (std::size_t i = x_index + 1; i < y_index; ++i) {
@@ -77,15 +80,16 @@ class Oracle {
     return false;
   }
 
-  // Whether the bytes of one resource hold all of another's.
+  // Returns whether the bytes of one resource include all bytes of another.
   bool holds(std::uint32_t outer, std::uint32_t inner) const {
     const Placement& x = plan_.placements[outer];
     const Placement& y = plan_.placements[inner];
     return overlap(outer, inner) && x.offset <= y.offset && x.offset + x.size >= y.offset + y.size;
   }
 
-  // Whether something between the two does to the same subresource what makes `y` follow it
-  // instead of `x`: a write for any, a read for a write. Or another resource took all the bytes.
+  // Returns whether an operation between the two replaces `x` as the one that `y` must follow: a
+  // write to the same subresource, a read if `y` writes, or another resource that took all the
+  // bytes.
   bool superseded(std::size_t x_index, std::size_t y_index) const {
     const Operation& x = trace_.operations[x_index];
     const Operation& y = trace_.operations[y_index];
@@ -103,12 +107,12 @@ class Oracle {
     return t.resource == kNone || t.resource == o.resource || overlap(t.resource, o.resource);
   }
 
-  // Walks what lies between the two, from each stage of x.
+  // Returns whether a path leads from x to y, starting at each stage of x.
   bool ordered(std::size_t x_index, std::size_t y_index) const {
     const Operation& x = trace_.operations[x_index];
     const Operation& y = trace_.operations[y_index];
     const bool same = x.resource == y.resource && x.sub == y.sub;
-    // The accesses by which y must see x, beyond coming after it.
+    // The accesses of y that must see the writes of x. Without any, y only has to come after x.
     VkAccessFlags2 sees = 0;
     if (x.writes && same && y.change == nullptr && !superseded(x_index, y_index)) sees = y.access;
     if (x.change) return Walk(*this, x_index, 0).reaches(y, sees);
@@ -153,7 +157,7 @@ class Oracle {
       bool before = false;
       bool available = false;
     };
-    // How x stands to the first scope of a barrier.
+    // Returns whether x is in the first scope of a barrier.
     Reach reach(const Step& step, const Transition& t) const {
       const VkPipelineStageFlags2 src = plain(t.src_stages);
       Spread known;
@@ -163,7 +167,7 @@ class Oracle {
       }
       const bool direct = x_.change == nullptr && x_.queue == step.queue &&
                           from_ < step.operations_before && (src & stage_) != 0;
-      // Before x itself an event knows nothing of it.
+      // A barrier before x does not affect it.
       const bool chained = from_ < step.operations_before && (src & known.after[step.queue]) != 0;
       if (!direct && !chained) return {};
       return {true, (src & known.available[step.queue]) != 0 || writes_ == 0 ||
@@ -176,7 +180,7 @@ class Oracle {
       return r.before && (!x_.writes || r.available);
     }
 
-    // Barriers of one command do not follow on each other.
+    // The barriers of one command are not ordered among each other.
     void pass_barriers(const Step& step) {
       Spread next = now_;
       for (const Transition* t : step.barriers) {
@@ -193,7 +197,7 @@ class Oracle {
       now_ = next;
     }
 
-    // A semaphore's signal follows on all that its queue did before, and shows all of it.
+    // A semaphore signal comes after all earlier work of its queue and makes all of it available.
     void pass_end(const Step& step) {
       const bool own = x_.queue == step.queue && (x_.change == nullptr || x_.releases);
       if (own || now_.after[step.queue] != 0) signalled_.push_back(step.submission);
@@ -226,7 +230,7 @@ class Oracle {
     VkPipelineStageFlags2 stage_;
     VkAccessFlags2 writes_ = 0;
     Spread now_;
-    std::vector<Spread> before_;  // by step from x's on: what was known before it
+    std::vector<Spread> before_;  // for each step from x's step on: the spread before that step
     std::vector<Sight> sights_;
     std::vector<std::uint32_t> signalled_;
   };

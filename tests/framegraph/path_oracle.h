@@ -1,7 +1,7 @@
-// A second opinion on the ordering in a plan: for every pair of conflicting operations of two
-// frames it searches for a path of barriers, events and semaphores from the one to the other. Slow
-// and simple; it shares nothing with the verifier, which carries knowledge forward instead.
-// Layouts, contents, owners and lifetimes are not its business.
+// An independent check of the ordering in a plan. For every pair of conflicting operations of two
+// frames it searches for a path of barriers and semaphores from one to the other. It is slow and
+// simple and shares no code or method with the verifier. It does not check layouts, contents,
+// owners and lifetimes.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace alcove::framegraph {
 
-// Empty when every pair is ordered, else the first that is not.
+// Returns the first pair that is not ordered, as a text, or an empty text if all are.
 std::string find_unordered_pair(const GraphDescription& graph, const Plan& plan);
 
 }  // namespace alcove::framegraph

@@ -1,4 +1,4 @@
-// Placement against the lower bound: the most bytes that are live at once.
+// Compares placement with the lower bound, the most bytes that are live at the same time.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ constexpr double kMebibyte = 1 << 20;
 TEST(Place, EstimateMatchesTheTexelSizeOfTheFormat) {
   struct Case {
     VkFormat format;
-    VkDeviceSize bytes;  // a texel
+    VkDeviceSize bytes;  // per texel
   };
   for (const auto& [format, bytes] :
        {Case{VK_FORMAT_R8_UNORM, 1}, Case{VK_FORMAT_R5G6B5_UNORM_PACK16, 2},
@@ -63,7 +63,8 @@ TEST(Place, DeferredFrameMeetsItsLowerBound) {
             << " barriers\n";
 }
 
-// `fewest` to twice as many passes with up to three reads and two new textures of any size each.
+// Declares `fewest` to 2 * `fewest` passes, each with up to three reads and two new textures of
+// random size.
 void declare_sizes(Graph& graph, Dice& dice, std::uint32_t fewest = 20) {
   std::vector<Texture> textures;
   const std::uint32_t passes = fewest + dice.roll(fewest + 1);
@@ -84,7 +85,8 @@ void declare_sizes(Graph& graph, Dice& dice, std::uint32_t fewest = 20) {
           {VK_FORMAT_R8_UNORM, Extent::absolute(1 + dice.roll(2048), 1 + dice.roll(1080))});
       textures.push_back(pass.write(texture, access::storage_write_compute));
     }
-    // Each pass is kept by an import of its own, so that no two passes are ordered by it.
+    // Each pass writes an import of its own, so that it is not culled and no two passes are ordered
+    // by it.
     const Buffer kept = graph.import_buffer("kept", {.buffer = fake_handle<VkBuffer>(i),
                                                      .desc = {4},
                                                      .usage = ~VkBufferUsageFlags{0},
@@ -94,7 +96,8 @@ void declare_sizes(Graph& graph, Dice& dice, std::uint32_t fewest = 20) {
   }
 }
 
-// Peak over lower bound of 1,000 graphs: the median and the 99th percentile are at most these.
+// Checks the ratio of peak to lower bound over 1,000 graphs: the median and the 99th percentile
+// must be at most these values.
 void expect_close_to_bound(std::uint32_t fewest_passes, std::int64_t effort, double median,
                            double percentile) {
   std::vector<double> ratios;
@@ -159,7 +162,8 @@ TEST(Place, DifferentMemoryTypesGetSeparateHeaps) {
   EXPECT_TRUE(verify(graph.description(), limits, *plan));
 }
 
-// Frames that differ in memory requirements and queues: the peak is what they end up with.
+// Compares the final peaks of both orders over frames with different memory requirements and
+// queues.
 void expect_no_higher_peak(const Limits& limits, bool queues) {
   std::uint32_t reordered = 0;
   Graph graph;
@@ -191,7 +195,7 @@ void expect_no_higher_peak(const Limits& limits, bool queues) {
   EXPECT_GT(reordered, 10u);
 }
 
-TEST(Order, AnotherOrderIsTakenOnlyWhereItsPeakIsLower) { expect_no_higher_peak({}, false); }
+TEST(Order, AnotherOrderIsUsedOnlyIfItsPeakIsLower) { expect_no_higher_peak({}, false); }
 
 TEST(Order, AnotherOrderHasALowerPeakInPagesOf64KiB) {
   Limits limits;

@@ -31,7 +31,7 @@ TEST_F(Print, TextShowsPassesBarriersCullingAndMemory) {
   EXPECT_THAT(text, HasSubstr("side effect: nobody \"wants\" this\n"));
   EXPECT_THAT(text, HasSubstr("memory by offset"));
   EXPECT_THAT(text, HasSubstr("(for 'antialiasing')"));
-  // Resources of one name are told apart.
+  // Resources with the same name are distinguished by an index.
   EXPECT_THAT(text, HasSubstr("<bloom down#"));
 }
 

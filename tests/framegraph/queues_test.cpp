@@ -1,4 +1,4 @@
-// Queues wait for each other no more than they must.
+// Tests that queues wait for each other only if they must.
 #include <gtest/gtest.h>
 
 #include "alcove/framegraph/compile.h"
@@ -17,7 +17,7 @@ class Queues : public testing::Test {
     limits_.queue_families[2] = 2;
   }
   Texture make(const char* name) { return graph_.create_texture(name, kDesc); }
-  // It departs to the compute shaders of whoever comes next.
+  // Imports a texture whose final state is a read by compute shaders.
   Texture import(const char* name) {
     const State state{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_READ_BIT,
                       VK_IMAGE_LAYOUT_GENERAL};
@@ -87,7 +87,8 @@ TEST_F(Queues, ResourcesThatGraphicsUsedBeforeTheFrameAreWaitedForOnce) {
   EXPECT_EQ(plan.passes[0].submission, plan.passes[1].submission);
 }
 
-// A history that another queue left is released by it, in a frame without passes there too.
+// A history that was last used on another queue is released by that queue, even in a frame without
+// passes on it.
 TEST_F(Queues, HistoryOfAnotherQueueCanBeUsedInAFrameWithGraphicsOnly) {
   const auto declare = [&](QueueClass queue) {
     graph_.reset();
@@ -108,8 +109,8 @@ TEST_F(Queues, HistoryOfAnotherQueueCanBeUsedInAFrameWithGraphicsOnly) {
   EXPECT_EQ(plan.submissions[0].batch_count, 1u) << "the release";
 }
 
-// The part that no pass uses is given by the queue that has it, in a submission of its other
-// passes.
+// The part of the history that no pass uses is released by the queue that owns it, in a submission
+// with its other passes.
 TEST_F(Queues, PartOfAHistoryIsUpdatedOnTheQueueThatOwnsIt) {
   const auto declare = [&] {
     graph_.reset();
@@ -126,8 +127,8 @@ TEST_F(Queues, PartOfAHistoryIsUpdatedOnTheQueueThatOwnsIt) {
   (void)compiled();
 }
 
-// Particles are simulated on the compute queue beside the drawing of the scene, each with memory of
-// its own: neither queue waits for the other's frame before.
+// Particles are simulated on the compute queue while the scene is drawn, each with memory of its
+// own. Neither queue waits for the previous frame of the other.
 TEST_F(Queues, FramesOverlapWhereTheyShareNoMemory) {
   BufferHistory particles = graph_.create_buffer_history("particles", {4096});
   PassBuilder simulate = graph_.add_pass("simulate", QueueClass::compute);

@@ -23,7 +23,7 @@ constexpr Access kBufferWrites[] = {buffer_access::storage_write_compute,
                                     buffer_access::storage_read_write_compute,
                                     buffer_access::transfer_destination, buffer_access::fill};
 
-// Indices of the tables above that each queue class can run.
+// Picks one of those table entries that the queue class can run.
 std::uint32_t pick(Dice& dice, QueueClass queue, std::initializer_list<std::uint32_t> graphics,
                    std::initializer_list<std::uint32_t> compute,
                    std::initializer_list<std::uint32_t> transfer) {
@@ -43,7 +43,7 @@ struct Known {
   Buffer buffer;
   std::uint32_t mips = 1;
   std::uint32_t layers = 1;
-  std::vector<bool> written;  // mips within layers
+  std::vector<bool> written;  // for each subresource
   bool old = false;           // an older history slot
   std::uint32_t last_pass = kNone;
 };
@@ -154,7 +154,7 @@ class Declarer {
   }
 
   void add_history() {
-    // All have one size, so that the next frame finds what this one leaves.
+    // All histories have one size, so that the next frame can use what this one leaves.
     TextureDesc desc{VK_FORMAT_R32_SFLOAT, Extent::absolute(16, 16), 1 + dice_.roll(2)};
     const TextureHistory history = graph_.create_texture_history("h", desc, 2 + dice_.roll(2));
     Known current;
@@ -181,7 +181,7 @@ class Declarer {
     if (dice_.chance(options_.side_effects)) pass.side_effect();
   }
 
-  // Half of the time one of the last few, else any.
+  // Chooses one of the last few resources in half of the cases, and any resource otherwise.
   std::size_t choose() {
     const auto count = static_cast<std::uint32_t>(known_.size());
     const std::uint32_t window = dice_.chance(128) ? std::min(count, 4u) : count;
@@ -193,7 +193,8 @@ class Declarer {
     Known& known = known_[chosen];
     if (known.last_pass == index) return;
     const bool old = known.old;
-    // A history without contents is read only in frames that write it, its writer first here.
+    // A history without contents can be read only in frames that write it; here the writer comes
+    // first.
     if (old && !known.written[0] && !known_[history_ - 1].written[0]) return;
     Range range;
     const bool all =
@@ -229,7 +230,7 @@ class Declarer {
     const Need need = dice_.chance(40) ? Need::optional : Need::required;
     if (!known.texture) {
       std::uint32_t way = pick(dice_, queue, {0, 1, 2, 3}, {0, 1, 2, 3}, {2});
-      // Only what was written can be read and written.
+      // A read-modify-write needs contents.
       if (way == 1 && !known.written[0] && contents != Contents::discard) way = 0;
       known.buffer = pass.write(known.buffer, kBufferWrites[way], contents, need);
       known.written[0] = true;
@@ -249,7 +250,7 @@ class Declarer {
       known.written.assign(known.written.size(), true);
     }
     std::uint32_t way = pick(dice_, queue, {0, 1, 2, 3, 4}, {0, 1, 3, 4}, {3});
-    // The attachments of a pass would have to be of one size.
+    // The attachments of one pass would need to have one size.
     if (way == 2 && drawn_in_ == index) way = 4;
     if (way == 2) drawn_in_ = index;
     if (way == 1 && !had_contents && contents != Contents::discard) way = 0;

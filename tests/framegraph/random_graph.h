@@ -1,4 +1,4 @@
-// Random frames for tests: right ones, of every kind of resource and access that a pass can have.
+// Random valid frames for tests, with every kind of resource and access that a pass can have.
 #pragma once
 
 #include <cstddef>
@@ -11,13 +11,13 @@
 
 namespace alcove::framegraph {
 
-// Where choices come from: a seed, or bytes (a fuzzer's).
+// A source of random choices: a generator with a seed, or the bytes of a fuzzer.
 class Dice {
  public:
   explicit Dice(std::uint64_t seed) : state_(seed) {}
   explicit Dice(std::span<const std::uint8_t> bytes) : bytes_(bytes), from_bytes_(true) {}
 
-  // 0 to sides - 1; always 0 when the bytes are used up.
+  // Returns 0 to sides - 1, and always 0 after all bytes are used.
   std::uint32_t roll(std::uint32_t sides) {
     if (sides <= 1) return 0;
     if (from_bytes_) {
@@ -51,9 +51,9 @@ struct RandomOptions {
   bool imports = true;
   bool histories = true;
   bool transient_buffers = true;
-  bool queues = false;              // passes on compute and transfer queues too
-  std::uint32_t side_effects = 20;  // of 256 passes
-  bool mistakes = false;            // stale and foreign handles, wrong ranges and sizes
+  bool queues = false;              // with passes on compute and transfer queues
+  std::uint32_t side_effects = 20;  // probability in 1/256 that a pass has side effects
+  bool mistakes = false;            // with stale and foreign handles, wrong ranges and sizes
 };
 
 // Declares a frame. The callbacks record nothing.

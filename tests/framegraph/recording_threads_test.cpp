@@ -1,4 +1,4 @@
-// Threads that record together: one of them fails, or cannot be made at all.
+// Tests of recording with several threads, of which one fails or cannot be created.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -44,7 +44,7 @@ class RecordingThreads : public testing::Test {
       });
     }
   }
-  // Whether recording what is declared runs out of host memory; nothing of it runs.
+  // Returns whether recording the declared frame throws std::bad_alloc. The frame is not submitted.
   bool throws(Executor& executor) {
     try {
       (void)gpu_.record(executor, graph_);
@@ -108,7 +108,8 @@ TEST_F(RecordingThreads, ExceptionInTheCallersThreadIsThrownAfterAllThreadsFinis
   expect_right(*executor, 2);
 }
 
-// An executor and its first frame, each allocation of the calling thread failing in turn.
+// Creates an executor and records its first frame, with each allocation of the calling thread
+// failing in turn.
 TEST_F(RecordingThreads, NextFrameIsRightAfterHostMemoryRanOutAnywhere) {
   options_.recording_threads = 4;
   bool failed = true;
@@ -135,7 +136,8 @@ TEST_F(RecordingThreads, NextFrameIsRightAfterHostMemoryRanOutAnywhere) {
 }
 
 #ifdef __GLIBC__
-// Sets the stack that threads get to what no machine has: none can be made while this lives.
+// Sets the stack size of new threads to more than any machine has, so that no thread can be created
+// during the object's lifetime.
 class NoThreads {
  public:
   NoThreads() {

@@ -1,5 +1,5 @@
-// Frames that renderers have, as they are known from the tests of other render graphs: what each
-// must run, how many barriers it needs, and that its plan is verified.
+// Frames of typical renderers, many known from the tests of other render graphs. Each test checks
+// which passes run and how many barriers they need, and verifies the plan.
 #include <gtest/gtest.h>
 
 #include "alcove/framegraph/compile.h"
@@ -23,7 +23,7 @@ class Scenario : public testing::Test {
     EXPECT_TRUE(verified) << to_string(verified.error());
     return std::move(*compiled);
   }
-  // How many transitions come before the pass that was declared at this place.
+  // Returns the number of transitions before the pass with this declaration index.
   static std::uint32_t transitions_before(const Plan& plan, std::uint32_t pass) {
     std::uint32_t count = 0;
     for (const PlannedPass& planned : plan.passes) {
@@ -87,7 +87,7 @@ TEST_F(Scenario, AtomicAdditionsThatAreUnorderedGetNoBarrierBetween) {
   EXPECT_EQ(transitions_before(result, 2), 0u);
   EXPECT_EQ(transitions_before(result, 3), 0u);
   EXPECT_EQ(transitions_before(result, 4), 1u);
-  // The barriers around the series are needed for all of it.
+  // The barriers before and after the series of additions are still needed.
   for (const std::uint32_t position : {1u, 4u}) {
     Plan wrong = result;
     wrong.batches[wrong.passes[position].first_batch].count = 0;
@@ -108,7 +108,7 @@ TEST_F(Scenario, AtomicAdditionsThatAreOrderedGetABarrierEach) {
   for (const std::uint32_t pass : {1u, 2u, 3u}) EXPECT_EQ(transitions_before(result, pass), 1u);
 }
 
-// a -> b -> a -> b -> output: two textures in turn
+// a -> b -> a -> b -> output: passes alternate between two textures.
 TEST_F(Scenario, PingPongNeedsTwoTexturesAndKeepsEveryPass) {
   Texture a = graph_.create_texture("a", kColor);
   Texture b = graph_.create_texture("b", kColor);
@@ -143,7 +143,8 @@ TEST_F(Scenario, MipChainInManyPassesReadsEachMipForTheNext) {
   reader.side_effect();
   const Plan result = plan();
   EXPECT_EQ(result.passes.size(), 6u);
-  // Only the last mip is left to change for the reader, which sees the others by a barrier besides.
+  // Only the last mip still needs a layout change for the reader. A memory barrier makes the others
+  // visible to it.
   EXPECT_LE(transitions_before(result, 5), 2u);
 }
 
@@ -160,7 +161,7 @@ TEST_F(Scenario, MipChainInOnePassIsOneWriteOfAllMips) {
   EXPECT_EQ(result.transitions.size(), 2u);
 }
 
-// The first graph leaves the texture in the state in which the second takes it over.
+// The first graph leaves the texture in the state in which the second imports it.
 TEST_F(Scenario, TextureHandedFromOneGraphToAnotherNeedsNoSecondBarrier) {
   const State between{access::sampled_fragment.stages, access::sampled_fragment.access,
                       access::sampled_fragment.layout};
@@ -272,8 +273,8 @@ TEST_F(Scenario, WritingTheStencilLeavesTheDepthReadable) {
   }
 }
 
-// Both aspects that change alike change in one barrier.
-TEST_F(Scenario, DepthAndStencilThatChangeAlikeShareABarrier) {
+// Both aspects change in the same way and share one barrier.
+TEST_F(Scenario, DepthAndStencilWithTheSameTransitionShareABarrier) {
   Texture depth =
       graph_.create_texture("depth", {VK_FORMAT_D24_UNORM_S8_UINT, Extent::absolute(64, 64), 1, 2});
   PassBuilder prepass = graph_.add_pass("prepass");

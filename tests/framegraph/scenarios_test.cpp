@@ -1,4 +1,4 @@
-// Scenarios of a renderer on the device, each with a check of what comes out.
+// Scenarios of a renderer that run on the device. Each test checks the results.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ class Scenario : public testing::Test {
   }
   void TearDown() override {
     executor_.reset();
-    // The layers do not follow timeline semaphores from submission to submission.
+    // The validation layers do not follow timeline semaphores from one submission to another.
     EXPECT_EQ(several_queues_ ? gpu_.messages({"vkQueueSubmit2: Hazard"}) : gpu_.messages(), "");
   }
 
@@ -54,7 +54,7 @@ class Scenario : public testing::Test {
                   VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT) {
     return graph_.create_texture(name, {format, Extent::absolute(16, 16), 1, 1, samples});
   }
-  // The first texel of each layer, in words of the host's buffer from `word` on.
+  // Copies the first texel of each layer to words of the host's buffer from `word` on.
   void copy_out(Texture from, std::uint32_t word = 0, std::uint32_t layers = 1,
                 VkImageAspectFlags aspect = VK_IMAGE_ASPECT_COLOR_BIT) {
     ImportedBuffer import = Gpu::imported(host_);
@@ -112,7 +112,7 @@ TEST_F(Scenario, MultisampledColorIsResolvedInItsPass) {
   EXPECT_EQ(word(0), kRed);
 }
 
-// The second pass loads what the first stored; a discarding one does not.
+// The second pass loads the contents that the first one stored. A pass that discards does not load.
 TEST_F(Scenario, AttachmentsAreLoadedAndStoredWhereContentsAreNeeded) {
   begin();
   Texture color = texture("color");
@@ -193,7 +193,8 @@ TEST_F(Scenario, DepthIsSampledWhileItsStencilIsWritten) {
   EXPECT_EQ(word(2) & 0xff, 7u);
 }
 
-// Written in the first frame, read in the others, and in the last one updated in part.
+// The texture is written in the first frame, read in the others, and updated in part in the last
+// one.
 TEST_F(Scenario, PersistentTextureKeepsItsContents) {
   for (std::uint32_t frame = 0; frame < 4; ++frame) {
     begin();
@@ -213,13 +214,40 @@ TEST_F(Scenario, PersistentTextureKeepsItsContents) {
                                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &value, 1, &range);
       });
     }
-    // A frame without a reader has to write all the same.
+    // A write of a persistent texture runs even in a frame without a reader.
     if (frame != 0 && frame != 2) copy_out(current, 0, 2);
     run({frame % 2});
     if (frame == 0 || frame == 2) continue;
     EXPECT_EQ(word(0), 100u);
     EXPECT_EQ(word(1), frame == 1 ? 100u : 102u);
   }
+}
+
+// The buffer is filled in the first frame and read in the second.
+TEST_F(Scenario, PersistentBufferKeepsItsContents) {
+  for (std::uint32_t frame = 0; frame < 2; ++frame) {
+    begin();
+    const BufferHistory counter = graph_.create_persistent_buffer("counter", {4});
+    EXPECT_EQ(counter.validity, frame == 0 ? HistoryValidity::first_frame : HistoryValidity::valid);
+    if (frame == 0) {
+      PassBuilder pass = graph_.add_pass("fill");
+      const Buffer filled = pass.write(counter.current, buffer_access::fill);
+      pass.record([=](RecordContext& c) {
+        c.vk.vkCmdFillBuffer(c.commands, c.buffer(filled), 0, VK_WHOLE_SIZE, 77);
+      });
+    } else {
+      out_ = graph_.import_buffer("host", Gpu::imported(host_));
+      PassBuilder pass = graph_.add_pass("copy out");
+      pass.read(counter.current, buffer_access::transfer_source);
+      out_ = pass.write(out_, buffer_access::transfer_destination);
+      pass.record([=, out = out_](RecordContext& c) {
+        const VkBufferCopy all{0, 0, 4};
+        c.vk.vkCmdCopyBuffer(c.commands, c.buffer(counter.current), c.buffer(out), 1, &all);
+      });
+    }
+    run({frame});
+  }
+  EXPECT_EQ(word(0), 77u);
 }
 
 // The first graph draws a persistent texture and leaves it in a final state. The second graph
@@ -264,7 +292,7 @@ TEST_F(Scenario, GraphsHandOverAPersistentTexture) {
   }
 }
 
-// A pass for each face; the cube is then viewed whole.
+// One pass draws each face. The cube is then read through a cube view.
 TEST_F(Scenario, CubeShadowMapIsDrawnFaceByFace) {
   begin();
   TextureDesc desc{VK_FORMAT_D32_SFLOAT, Extent::absolute(16, 16), 1, 6};
@@ -297,8 +325,9 @@ TEST_F(Scenario, CubeShadowMapIsDrawnFaceByFace) {
   }
 }
 
-// Graphics, then compute beside graphics, then graphics: the frame waits for a semaphore of the
-// caller's and signals another. All classes run on one queue here, so that one submit suffices.
+// Graphics, then compute and graphics at the same time, then graphics. The frame waits for a
+// semaphore of the caller and signals another. All queue classes use one queue here, so that one
+// vkQueueSubmit2 suffices.
 TEST_F(Scenario, AsyncComputeIsOrderedWithSemaphoresOfTheCaller) {
   several_queues_ = true;
   const VkDevice device = gpu_.device().device();
@@ -350,8 +379,9 @@ TEST_F(Scenario, AsyncComputeIsOrderedWithSemaphoresOfTheCaller) {
   vkDestroySemaphore(device, semaphore, nullptr);
 }
 
-// Particles on the compute queue, the scene on graphics, nothing in common: from the second frame
-// of a plan on, no queue waits for what the other did in the frame before.
+// Particles run on the compute queue and the scene on the graphics queue, with no resource in
+// common. From the second frame of a plan on, no queue waits for the other's work of the previous
+// frame.
 TEST_F(Scenario, FramesOverTwoQueuesOverlap) {
   several_queues_ = true;
   const auto declare = [&](std::uint32_t frame, VkDeviceSize size) {
@@ -374,12 +404,13 @@ TEST_F(Scenario, FramesOverTwoQueuesOverlap) {
     });
   };
   for (std::uint32_t frame = 0; frame < 5; ++frame) {
-    // The last frame has another plan, which begins when all before it is done.
+    // The last frame has another plan, which begins after all earlier work is done.
     declare(frame, frame < 4 ? 64 : 128);
     const int before = failing::semaphore_waits();
     run({frame % 2});
     const int waits = failing::semaphore_waits() - before;
-    // The first frames have plans of their own, in which the slots of the history come into use.
+    // The first frames have other plans, because the slots of the history get their contents one by
+    // one.
     if (frame == 3) {
       EXPECT_EQ(waits, 0);
     } else if (frame == 4) {
@@ -388,7 +419,7 @@ TEST_F(Scenario, FramesOverTwoQueuesOverlap) {
   }
 }
 
-// The image comes from outside of the device's queue families, and goes there again.
+// The image is transferred from a queue family outside the device and back to it.
 TEST_F(Scenario, ImportIsTakenFromAndGivenToAnotherQueueFamily) {
   ImportedTexture import;
   import.desc = {VK_FORMAT_R32_UINT, Extent::absolute(8, 8)};

@@ -1,4 +1,5 @@
-// A frame that was recorded before is declared, recorded and submitted again without an allocation.
+// Tests that a frame that was recorded before is declared, recorded and submitted again without an
+// allocation.
 #include <gtest/gtest.h>
 
 #include "allocation_counter.h"
@@ -14,7 +15,7 @@ void clear(RecordContext& context, VkImage image) {
                                   &color, 1, &range);
 }
 
-// Transients, a history, an import, views and passes of other queues.
+// Declares a frame with transients, a history, an import, views, and passes on other queues.
 void declare(Graph& graph, const HostBuffer& host) {
   graph.reset();
   const TextureDesc desc{VK_FORMAT_R32_UINT, Extent::absolute(16, 16)};
@@ -46,7 +47,7 @@ void declare(Graph& graph, const HostBuffer& host) {
 
 enum class Path { record, submit, submit_to_three };
 
-// Allocations of this thread in 20 frames, after some frames of getting used to it.
+// Returns the number of allocations of this thread in 20 frames, after some frames of warm-up.
 std::size_t allocations_of_steady_frames(Path path, std::uint32_t threads = 1) {
   Gpu gpu(false);
   EXPECT_EQ(gpu.problem(), "");

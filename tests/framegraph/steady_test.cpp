@@ -1,4 +1,5 @@
-// A frame that did not change allocates nothing: counted by replacing operator new.
+// Tests that declaring and compiling an unchanged frame allocates nothing. Allocations are counted
+// by replacing operator new.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -72,7 +73,7 @@ bool same_bytes(const GraphDescription& a, const GraphDescription& b) {
          same_bytes(a.outputs, b.outputs);
 }
 
-// Declares a few frames in random order, some of them empty and some wrong.
+// Declares one of a few frames, chosen at random. Some are empty and some are invalid.
 void declare_one_of_few(Graph& graph, Dice& order) {
   graph.reset();
   graph.reset_histories();
@@ -124,7 +125,8 @@ TEST(Steady, ReusedGraphDeclaresAsANewOne) {
   }
 }
 
-// A record that an older, longer frame left behind is of a texture that is another one now.
+// A record that a longer, older frame left behind refers to a resource index that is another
+// texture in this frame.
 TEST(Steady, AccessBeyondTheEndOfTheLastFrameIsComparedAgain) {
   const auto declare = [](Graph& graph, std::uint32_t mips, bool reads) {
     graph.reset();
@@ -142,8 +144,8 @@ TEST(Steady, AccessBeyondTheEndOfTheLastFrameIsComparedAgain) {
   EXPECT_EQ(read.range, (Range{0, 2, 0, 1}));
 }
 
-// A handle made up by counting from another names nothing until that is declared, even where the
-// frame before declared it.
+// A handle that the caller made up by incrementing another one is invalid until its resource is
+// declared, even if the previous frame declared such a resource.
 TEST(Steady, WholeAccessIsNotTakenForTheMipOfTheLastFrame) {
   Graph graph;
   for (const Range range : {Range::mip(0), Range{}}) {

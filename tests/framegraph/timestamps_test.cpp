@@ -1,4 +1,5 @@
-// Tests how timings() converts the ticks of a device, which a stand-in gives as the test says.
+// Tests how timings() converts the ticks of a device. A wrapper of the device reports the ticks
+// that each test sets.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -11,7 +12,7 @@ namespace {
 
 std::uint32_t valid_bits = 64;
 std::array<std::uint64_t, 2> ticks{};  // at the beginning and the end of each pass
-int written = 0;                       // timestamps
+int written = 0;                       // number of timestamps written
 
 VKAPI_ATTR void VKAPI_CALL get_families(VkPhysicalDevice device, std::uint32_t* count,
                                         VkQueueFamilyProperties* families) {
@@ -69,7 +70,7 @@ class TimestampsTest : public testing::Test {
     EXPECT_TRUE(made) << to_string(made.error());
     return std::move(*made);
   }
-  // One pass.
+  // Declares a frame with one pass.
   Graph& declare() {
     graph_.reset();
     Buffer out = graph_.import_buffer("host", Gpu::imported(host_));
@@ -114,7 +115,7 @@ TEST_F(TimestampsTest, TimingsAskedForTooEarlyAreRightLater) {
   Executor executor = make(64);
   gpu_.begin();
   ASSERT_TRUE(executor.record(declare(), gpu_.commands()));
-  ticks = {1000, 1007};  // still those of the frame before
+  ticks = {1000, 1007};  // the previous frame's ticks
   EXPECT_EQ(executor.timings().size(), 1u);
   gpu_.end_and_wait();
   ticks = {2000, 2003};

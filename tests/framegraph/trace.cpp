@@ -6,7 +6,7 @@ namespace alcove::framegraph {
 namespace {
 
 constexpr VkAccessFlags2 kMeta = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
-// All that commands of these tests run in.
+// The stages in which the commands of these tests run.
 constexpr VkPipelineStageFlags2 kCommandStages =
     VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT | VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT |
     VK_PIPELINE_STAGE_2_VERTEX_ATTRIBUTE_INPUT_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT |

@@ -1,5 +1,5 @@
-// Two frames of a plan, one after the other, as a list of what the device is told: operations, and
-// the barriers, events and semaphores between them.
+// Lists the work of two consecutive frames of a plan: operations, and the barriers and semaphores
+// between them.
 #pragma once
 
 #include <cstddef>
@@ -15,11 +15,11 @@ inline constexpr VkAccessFlags2 kWriteMask =
     VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT |
     VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
 
-// Without those that stand for others, as far as these tests have them.
+// Replaces stages that stand for several others by those, for the stages that these tests use.
 VkPipelineStageFlags2 plain(VkPipelineStageFlags2 stages);
 VkAccessFlags2 plain_access(VkAccessFlags2 access);
 
-// An access of a pass, a layout change, or what came before or comes after the frame.
+// An access of a pass, a layout change, or a use before or after the frame.
 struct Operation {
   std::uint32_t resource = 0;
   std::uint32_t sub = 0;
@@ -28,25 +28,25 @@ struct Operation {
   VkAccessFlags2 access = 0;
   bool writes = false;
   bool unordered = false;  // Contents::accumulate
-  bool releases = false;   // to another queue: nothing on this one follows it
-  bool departs = false;    // the use after the frame: it comes after reads in other stages too
+  bool releases = false;   // an ownership release, after which this queue does not use it
+  bool departs = false;    // the use after the frame, which must also come after all reads
   std::uint32_t frame = 0;
-  std::uint32_t step = 0;  // steps at or above this come after it
+  std::uint32_t step = 0;  // steps with this index or a higher one come after it
   const Transition* change = nullptr;
 };
 
-// The barriers recorded by one command, or where a submission begins or ends; those of
-// two frames are numbered through.
+// The barriers of one command, or the beginning or end of a submission. Submissions of both frames
+// are numbered consecutively.
 struct Step {
   enum class Kind : std::uint8_t { barriers, begins, ends };
   Kind kind = Kind::barriers;
   std::size_t queue = 0;
   std::vector<const Transition*> barriers;
-  // The numbers of the operations and steps that come before the barriers.
+  // The number of operations that come before the barriers.
   std::size_t operations_before = 0;
   std::uint32_t steps_before = 0;
-  std::vector<Wait> waits;       // of a submission that begins
-  std::uint32_t submission = 0;  // that ends
+  std::vector<Wait> waits;       // if a submission begins: its waits
+  std::uint32_t submission = 0;  // if a submission ends: its number
 };
 
 struct Trace {
@@ -54,7 +54,7 @@ struct Trace {
   std::vector<Step> steps;
 };
 
-// It points into the plan.
+// Returns the trace of a plan. It refers to the plan, which must outlive it.
 Trace trace_of(const GraphDescription& graph, const Plan& plan);
 
 }  // namespace alcove::framegraph

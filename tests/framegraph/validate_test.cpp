@@ -1,4 +1,5 @@
-// Wrong declarations: each comes back as an error that names what is wrong and what to change.
+// Tests that each invalid declaration gives an error whose sentence says what is wrong and what to
+// change.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -24,7 +25,7 @@ class Validate : public testing::Test {
     Texture texture = graph_.create_texture(name, kDesc);
     return pass("writer").write(texture, access::storage_write_compute);
   }
-  // Exactly this error, and its sentence.
+  // Checks that compiling gives exactly this error, and that its sentence contains `text`.
   void expect(ErrorCode code, const char* text, const Limits& limits = {}) {
     const auto plan = compile(graph_, limits);
     ASSERT_FALSE(plan);
@@ -102,7 +103,7 @@ TEST_F(Validate, RelativeExtentsMultiplyAndDivide) {
   EXPECT_EQ(size(2, 0), (std::pair{0u, 0u}));
 }
 
-// The depth of a prepass that nothing reads later, on a device with lazily allocated memory.
+// A depth attachment that nothing reads later, on a device with lazily allocated memory.
 TEST_F(Validate, AttachmentsWithoutContentsAreTransientOnDevicesWithLazyMemory) {
   for (const bool read_later : {false, true}) {
     graph_.reset();
@@ -412,7 +413,7 @@ TEST_F(Validate, DisjointLayersOfOneImageMayBeImportedUnderTwoNames) {
          "'overlapping' and texture 'next two' are imported with one VkImage");
 }
 
-// Access bits of extensions that write, each in a stage that has it.
+// Access bits of extensions that write, each with a stage that supports it.
 constexpr Access kExtensionWrites[] = {
     buffer_access::acceleration_structure_build,
     buffer_access::build_scratch,

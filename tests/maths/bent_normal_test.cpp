@@ -103,8 +103,9 @@ TEST(BentNormal, UnoccludedResidualsCancelOverAllSlices) {
   }
 }
 
-// A wall along a random direction that hides up to most of its side, from 3 slices at random:
-// filters and histories weigh directions unevenly. By the root-mean-square angle to what 256 say.
+// A wall in a random direction hides up to most of one side. The bent normal of 3 random slices, as
+// filters and histories weight directions unevenly, is compared with that of 256 slices by the
+// root-mean-square angle.
 TEST(BentNormal, SubtractingTheExpectedResidualHelpsFewSlices) {
   RandomInput random;
   double raw = 0.0;

@@ -10,18 +10,19 @@
 
 namespace alcove::maths_test {
 
-// A pipeline whose set 0 has a uniform buffer at binding 0 and storage buffers after it, all in
-// host-visible memory. Vulkan errors fail the running test and leave zeros.
+// A compute pipeline whose descriptor set 0 has a uniform buffer at binding 0 and storage buffers
+// after it, all in host-visible memory. A Vulkan error fails the running test and leaves zeros in
+// the buffers.
 class ComputeRun {
  public:
-  // Sizes in bytes; the device must outlive this.
+  // Sizes are in bytes. The device must outlive the object.
   ComputeRun(const sample::VulkanDevice& device, std::span<const std::uint32_t> spirv,
              std::vector<std::uint32_t> buffer_sizes);
   ~ComputeRun();
   ComputeRun(const ComputeRun&) = delete;
   ComputeRun& operator=(const ComputeRun&) = delete;
 
-  // The memory of a buffer, mapped; read it after dispatch().
+  // Returns the mapped memory of a buffer. Read results after dispatch().
   void* data(std::size_t buffer) const { return buffers_[buffer]->bytes().data(); }
 
   // Runs `groups` workgroups with two words of push constants and waits for them.

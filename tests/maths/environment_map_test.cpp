@@ -33,7 +33,8 @@ TEST(EnvironmentMap, AxesAreAtTheDocumentedTexels) {
   EXPECT_LT(distance(maths::map_uv({0, 1, 0}), vec2(0.5f)), 1e-6f);
 }
 
-// A step across an edge of the map is as short as one within it.
+// Compares the angle between neighbouring texels across an edge of the map with that within the
+// map.
 TEST(EnvironmentMap, TexelsBeyondAnEdgeContinueTheMap) {
   constexpr int kSize = 16;
   const auto direction = [](ivec2 texel) {
@@ -48,7 +49,7 @@ TEST(EnvironmentMap, TexelsBeyondAnEdgeContinueTheMap) {
     EXPECT_LT(distance(direction({i, kSize}), direction({i, kSize - 1})), 0.26f) << i;
     EXPECT_EQ(maths::map_texel({i, i}, kSize), ivec2(i, i));
   }
-  // All four corners are the one point below.
+  // All four corners are the direction -Y.
   EXPECT_LT(distance(direction({-1, -1}), direction({0, 0})), 0.26f);
 }
 

@@ -1,4 +1,4 @@
-// The direction of a point of an equirectangular image, as environment_map.h lays it out.
+// Returns the direction of a point of an equirectangular image as environment_map.h defines it.
 #pragma once
 
 #include <cmath>

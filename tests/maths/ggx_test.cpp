@@ -16,7 +16,8 @@ const vec3 kNormal(0, 0, 1);
 
 vec3 at_angle(double angle) { return {float(std::sin(angle)), 0.0f, float(std::cos(angle))}; }
 
-// The lobe without Fresnel: BRDF times the cosine of the light, per steradian.
+// Returns the GGX lobe without Fresnel: BRDF times the cosine of the light direction, per
+// steradian.
 float ggx_lobe(vec3 normal, vec3 view, vec3 light, float alpha) {
   const float n_dot_v = dot(normal, view), n_dot_l = dot(normal, light);
   if (n_dot_v <= 0.0f || n_dot_l <= 0.0f) return 0.0f;
@@ -25,8 +26,8 @@ float ggx_lobe(vec3 normal, vec3 view, vec3 light, float alpha) {
          (4.0f * n_dot_v);
 }
 
-// Integral over the hemisphere of f(light), in half-vector coordinates where the lobe is wide
-// enough for plain ones.
+// Returns the integral of f(light) over the hemisphere. Narrow lobes are integrated in half-vector
+// coordinates.
 template <typename Function>
 double over_hemisphere(Function f, int panels = 60) {
   return integrate(
@@ -44,7 +45,8 @@ double over_hemisphere(Function f, int panels = 60) {
 
 TEST(Ggx, ProjectedMicrofacetAreaIsOne) {
   for (const float alpha : {1e-3f, 0.01f, 0.1f, 0.5f, 1.0f}) {
-    // tan as the variable: the density is spread over many powers of it.
+    // The integration variable is log(tan), because the density extends over many powers of ten of
+    // the tangent.
     const double sum = integrate(
         [&](double log_tan) {
           const double tan = std::exp(log_tan), cos = 1.0 / std::hypot(1.0, tan);
@@ -54,7 +56,7 @@ TEST(Ggx, ProjectedMicrofacetAreaIsOne) {
                  cos * cos * tan;
         },
         std::log(1e-6), std::log(1e6), 200);
-    // The cosine is a float: near 1 it cannot tell a narrow lobe's angles apart.
+    // The cosine is a float, which near 1 cannot resolve the angles of a narrow lobe.
     EXPECT_NEAR(sum, 1.0, alpha < 0.005f ? 0.03 : 1e-3) << "alpha " << alpha;
   }
 }
@@ -100,7 +102,8 @@ TEST(Ggx, SamplesFollowTheirDensity) {
   for (const float alpha : {0.1f, 0.4f, 1.0f}) {
     for (double angle : {0.0, 0.8, 1.4}) {
       const vec3 view = at_angle(angle);
-      // The mean of a function over samples, weighed by lobe / density, is its lobe integral.
+      // The mean over samples of a function times lobe / density is the integral of the function
+      // over the lobe.
       double sampled = 0.0, sampled_x = 0.0, squares = 0.0;
       constexpr int kSamples = 100000;
       for (int i = 0; i < kSamples; ++i) {

@@ -65,7 +65,7 @@ TEST(Slice, ZeroAndDenormalNormalsGiveFiniteResults) {
   }
 }
 
-TEST(Slice, NormalsThatFaceAwayAreFlippedBeyondTheThresholdAndBentBelowIt) {
+TEST(Slice, NormalsThatFaceAwayAreFlippedBeyondTheThresholdAndClampedBelowIt) {
   RandomInput random;
   for (int i = 0; i < 1000; ++i) {
     const vec3 view = random.unit_vector(), normal = random.unit_vector();
@@ -133,7 +133,8 @@ TEST(Gtao, UnoccludedArcEqualsVisibilityWithoutOccluders) {
   }
 }
 
-// Mean over slices around `view` of what each side's horizon leaves, as a pass computes it.
+// Returns the mean over slices around `view` of the visibility between the horizons of both
+// half-slices, as a pass computes it.
 template <typename Horizon>
 float visibility_over_slices(vec3 normal, vec3 view, int slices, double turn, Horizon horizon) {
   const maths::ViewBasis basis = maths::make_view_basis(view);
@@ -179,8 +180,9 @@ TEST(Gtao, UnoccludedWeightsAverageToOneOverManySlices) {
   }
 }
 
-// The elevation, over a plane, of the top of a sphere of radius 1 that rests on it, seen from the
-// plane at distance x from where they touch, in the slice at `direction`; 0 where the slice misses.
+// Returns the elevation angle above a plane of the highest point of a sphere in a slice. The sphere
+// has radius 1 and rests on the plane at distance x from the point; the slice has this direction.
+// Returns 0 if the slice misses the sphere.
 double sphere_elevation(double x, glm::dvec2 direction) {
   const double across = x * direction.y, toward = x * direction.x;
   if (toward <= 0.0 || std::abs(across) >= 1.0) return 0.0;
@@ -197,8 +199,8 @@ TEST(Gtao, SphereOnAPlaneOccludesEverythingBelowItsSilhouette) {
       return 0.5 * std::sin(zenith) * std::sin(zenith);
     };
     const double expected = integrate(open_sector, 0.0, 2 * kPi, 4000) / kPi;
-    // The sphere alone, which lets light in beneath it, hides less: sin^2 of its half-angle times
-    // the cosine of its axis.
+    // A free sphere, under which light passes, occludes less: sin^2 of its half-angle times the
+    // cosine of its axis.
     EXPECT_LT(expected, 1.0 - 1.0 / std::pow(x * x + 1.0, 1.5));
     const float a = visibility_over_slices(up, up, 4096, 0.5, [x](vec3 direction) {
       const double elevation = sphere_elevation(x, {direction.x, direction.y});
@@ -209,11 +211,12 @@ TEST(Gtao, SphereOnAPlaneOccludesEverythingBelowItsSilhouette) {
 }
 
 TEST(Gtao, BottomOfAGrooveHasVisibilityOfTheSineOfItsHalfAngle) {
-  // From the bottom line of an endless V the open sky is a wedge, whose view factor is the sine.
+  // From the bottom of an infinite groove the open sky is a wedge, whose view factor is the sine of
+  // its half-angle.
   const vec3 up(0, 0, 1);
   for (double half : {0.2, 0.5, 1.0, 1.4}) {
     const float a = visibility_over_slices(up, up, 2048, 0.5, [&](vec3 direction) {
-      // In the slice at angle phi to the cross direction the wall rises less steeply.
+      // In a slice that is rotated from the cross direction, the wall rises less steeply.
       const double slope = std::abs(double(direction.x)) / std::tan(half);
       return float(slope / std::hypot(1.0, slope));
     });

@@ -26,7 +26,7 @@ float look_up(float visibility, float bent_from_mirror, float mirror_from_normal
                       mirror_from_normal, roughness);
 }
 
-// An angle between bent normal and mirror direction that a cone above the surface can have.
+// Returns a possible angle between bent normal and mirror direction for a cone above the surface.
 float possible_angle(float share, float cone, float mirror_from_normal) {
   const float room = maths::kHalfPi - cone;
   const float low = std::max(mirror_from_normal - room, 0.0f);
@@ -34,9 +34,10 @@ float possible_angle(float share, float cone, float mirror_from_normal) {
   return low + share * (high - low);
 }
 
-// Every coordinate at random, some of them at an end: entries, between entries, and along edges.
-TEST(GtsoTable, IsCloseToItsOwnIntegral) {
-  RandomInput random(1);  // always the same set: the README states its figures
+// Samples every coordinate at random, some at the ends of their ranges, so that entries, edges and
+// points between entries are tested.
+TEST(GtsoTable, TableIsCloseToTheIntegral) {
+  RandomInput random(1);  // a fixed set, because the README states its figures
   double squares = 0.0, worst = 0.0;
   int count = 0;
   const auto coordinate = [&](int i) {
@@ -44,7 +45,7 @@ TEST(GtsoTable, IsCloseToItsOwnIntegral) {
     return i % 7 == 0 ? std::round(x) : x;
   };
   for (int i = 0; i < 400; ++i) {
-    const float mirror_from_normal = coordinate(i) * 1.55f;  // grazing, short of 89 degrees
+    const float mirror_from_normal = coordinate(i) * 1.55f;  // at most 89 degrees
     const float roughness = std::max(coordinate(i + 3), 0.04f);
     const GtsoLobe lobe(mirror_from_normal, roughness, 4096);
     for (int j = 0; j < 20; ++j) {
@@ -60,7 +61,7 @@ TEST(GtsoTable, IsCloseToItsOwnIntegral) {
   }
   const double rmse = std::sqrt(squares / count);
   std::cout << "specular occlusion table: max " << worst << ", RMSE " << rmse << "\n";
-  // A narrow lobe at the edge of its cone falls from 1 to 0 within an entry.
+  // For a narrow lobe at the edge of the cone, the fraction falls from 1 to 0 within one entry.
   EXPECT_LT(worst, 0.3);
   EXPECT_LT(rmse, 0.008);
 }
@@ -79,8 +80,9 @@ TEST(GtsoTable, FullyOpenFullyOccludedAndMirrorsAreExact) {
   }
 }
 
-// At roughness 1 the table is its last layer: exact at its entries to the bits that they have.
-TEST(GtsoTable, EntriesOfRoughnessOneAreTheIntegralItself) {
+// At roughness 1 only the last layer of the table is read. At its entries the value is exact to 8
+// bits.
+TEST(GtsoTable, EntriesOfRoughnessOneEqualTheIntegral) {
   for (const unsigned mirror : {0u, 7u, 14u}) {
     const float mirror_from_normal =
         maths::unsqueeze_mirror(float(mirror) / float(maths::kGtsoMirror - 1));
@@ -114,7 +116,8 @@ TEST(GtsoTable, CompressedAnglesCanBeExpanded) {
   }
 }
 
-// Beside the cones: against the lobe's own share for a bent normal on any possible side.
+// Compares table and cones with the fraction of the lobe, for bent normals on any possible side of
+// the mirror direction.
 TEST(GtsoTable, HasLessThanHalfTheErrorOfTheCone) {
   RandomInput random;
   double by_table = 0.0, by_cone = 0.0;

@@ -15,8 +15,8 @@ using glm::vec3;
 
 const vec3 kNormal(0, 0, 1);
 
-// The area two caps share, by rings around the axis of `a`: of a ring at angle t, the arc inside
-// `b`.
+// Returns the area of the intersection of two caps by integration over rings around the axis of
+// `a`: each ring at angle t contributes the arc inside `b`.
 double shared_area(double a, double b, double d) {
   const auto ring = [&](double t) {
     const double across = std::sin(t) * std::sin(d), along = std::cos(t) * std::cos(d);
@@ -28,7 +28,7 @@ double shared_area(double a, double b, double d) {
     }
     return 2 * half_arc * std::sin(t);
   };
-  // Split where the ring enters and leaves the rim of b.
+  // The integral is split at the angles at which the ring crosses the rim of `b`.
   const double k1 = std::clamp(std::abs(d - b), 0.0, a), k2 = std::clamp(d + b, k1, a);
   return integrate(ring, 0.0, k1, 200) + integrate(ring, k1, k2, 2000) +
          integrate(ring, k2, a, 200);

@@ -1,4 +1,4 @@
-// The texels of the history, and the accumulation of frames.
+// Tests the texels of the history and the accumulation of frames.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -148,7 +148,7 @@ TEST(History, BlurAddsItsVarianceToTheNoise) {
     const float weight = random.uniform(1.0f, 127.0f);
     const float variance = random.uniform(0.0f, 0.25f);
     const float missing = random.uniform(0.0f, 1.0f);
-    // The variance of a mean of so many frames, before and after.
+    // The variance of the mean of the accumulated frames, before and after.
     const float before = maths::kFrameVariance / weight;
     const float after = maths::kFrameVariance / maths::weight_after_blur(weight, variance, missing);
     EXPECT_NEAR(after, before + variance + maths::kMissingVariance * missing, 1e-5f * after);
@@ -168,7 +168,7 @@ TEST(History, ChangesAreDistinguishedFromNoiseByAFewSamples) {
     EXPECT_LE(changed, 1.0f);
     EXPECT_EQ(changed, maths::visibility_changed(b, a));
   }
-  // There is no noise on an open surface, where a trail is seen at once.
+  // Unoccluded surfaces have no noise, so that a trail would be visible there at once.
   EXPECT_EQ(maths::visibility_changed(0.8f, 1.0f), 1.0f);
   EXPECT_EQ(maths::visibility_changed(1.0f, 0.8f), 1.0f);
   EXPECT_EQ(maths::visibility_changed(0.55f, 0.45f), 0.0f);
@@ -186,7 +186,8 @@ TEST(History, RecentOcclusionAveragesOnlyAFewFrames) {
     return recent;
   };
   EXPECT_GT(after_a_dozen(1.0f), 0.95f);
-  // Samples that hardly belong to the pixel's surface change little; a first frame is taken whole.
+  // Samples with a small weight for the pixel's surface change the mean little. The first frame is
+  // used completely.
   EXPECT_LT(after_a_dozen(0.02f), 0.35f);
   EXPECT_EQ(maths::update_recent(0.3f, 0.0f, 0.9f, 0.0f), 0.9f);
 }

@@ -21,7 +21,8 @@ using maths::Slice;
 
 constexpr float kRoughnesses[] = {0.1f, 0.2f, 0.3f, 0.45f, 0.6f, 0.8f, 1.0f};
 
-// GGX in a slice, in double, from its definition and not from the half-angle identity.
+// The GGX lobe in a slice in double precision, from the definition instead of the half-angle
+// identity.
 class LobeTruth {
  public:
   LobeTruth(const Slice& s, double n_dot_v, double alpha)
@@ -43,7 +44,7 @@ class LobeTruth {
     return a2 / (kPi * d * d);
   }
 
-  // Integral of f between two angles, panels gathered where the lobe has its centre.
+  // Returns the integral of f between two angles, with more panels near the centre of the lobe.
   template <typename Function>
   double between(Function f, double from, double to) const {
     if (from >= to) return 0.0;
@@ -87,7 +88,8 @@ class LobeTruth {
   double n_dot_v_, alpha_;
 };
 
-// A surface tilted from the view, cut by slices at even turns around the view direction.
+// A surface tilted against the view direction, with slices at evenly spaced angles around the view
+// direction.
 struct Surface {
   vec3 view{0, 0, 1};
   vec3 normal;
@@ -242,7 +244,7 @@ TEST(LobeSlice, MirrorIsVisibleExactlyAtItsAngle) {
   EXPECT_GT(seen(2 * tilt + 0.1), 0.98f);
 }
 
-// The sectors beyond a horizon are occluded, to the nearest boundary.
+// The sectors beyond the horizon, rounded to the nearest boundary, are occluded.
 TEST(LobeSlice, SectorsBelowAHorizonHaveTheLobeOfThatHorizon) {
   RandomInput random;
   for (const float roughness : kRoughnesses) {

@@ -1,4 +1,5 @@
-// Parameter structs are written once for both sides: they must lie in a uniform block as in C++.
+// Tests that parameter structs, which GLSL and C++ share, have the same layout in a uniform block
+// as in C++.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -9,7 +10,6 @@
 #include "environment_parameters.h"
 #include "gtao_parameters.h"
 #include "gtso_parameters.h"
-#include "linear_depth_parameters.h"
 #include "maths/projection.h"
 #include "multi_bounce_parameters.h"
 #include "normals_parameters.h"
@@ -33,9 +33,6 @@ const std::map<std::string, Offsets> kExpected = {
       ALCOVE_OFFSET(Projection, depth_unproject), ALCOVE_OFFSET(Projection, eye),
       ALCOVE_OFFSET(Projection, size_px), ALCOVE_OFFSET(Projection, texel_uv),
       ALCOVE_OFFSET(Projection, sky), ALCOVE_OFFSET(Projection, near_far)}},
-    {"LinearDepthParameters",
-     {ALCOVE_OFFSET(LinearDepthParameters, projection),
-      ALCOVE_OFFSET(LinearDepthParameters, reach)}},
     {"GtaoParameters",
      {ALCOVE_OFFSET(GtaoParameters, view_from_normal), ALCOVE_OFFSET(GtaoParameters, slope),
       ALCOVE_OFFSET(GtaoParameters, inverse_depth_from_ndc),
@@ -64,16 +61,18 @@ const std::map<std::string, Offsets> kExpected = {
       ALCOVE_OFFSET(ReconstructParameters, normal_from_view),
       ALCOVE_OFFSET(ReconstructParameters, previous_from_view),
       ALCOVE_OFFSET(ReconstructParameters, slope),
-      ALCOVE_OFFSET(ReconstructParameters, inverse_depth_from_ndc),
       ALCOVE_OFFSET(ReconstructParameters, previous_extent),
       ALCOVE_OFFSET(ReconstructParameters, history_depth_scale),
+      ALCOVE_OFFSET(ReconstructParameters, traced_range),
       ALCOVE_OFFSET(ReconstructParameters, motion),
       ALCOVE_OFFSET(ReconstructParameters, history_unit),
       ALCOVE_OFFSET(ReconstructParameters, history_texel),
       ALCOVE_OFFSET(ReconstructParameters, pixel_uv),
+      ALCOVE_OFFSET(ReconstructParameters, inverse_depth_from_ndc),
       ALCOVE_OFFSET(ReconstructParameters, pixels_per_slope),
       ALCOVE_OFFSET(ReconstructParameters, interleave_offset),
-      ALCOVE_OFFSET(ReconstructParameters, window_px),
+      ALCOVE_OFFSET(ReconstructParameters, interleave_pixel),
+      ALCOVE_OFFSET(ReconstructParameters, inverse_squared_window),
       ALCOVE_OFFSET(ReconstructParameters, tolerance),
       ALCOVE_OFFSET(ReconstructParameters, history_sharpness),
       ALCOVE_OFFSET(ReconstructParameters, history_slack),
@@ -87,6 +86,7 @@ const std::map<std::string, Offsets> kExpected = {
      {ALCOVE_OFFSET(UpsampleParameters, normal_from_view), ALCOVE_OFFSET(UpsampleParameters, slope),
       ALCOVE_OFFSET(UpsampleParameters, inverse_depth_from_ndc),
       ALCOVE_OFFSET(UpsampleParameters, pixel_uv), ALCOVE_OFFSET(UpsampleParameters, texel_uv),
+      ALCOVE_OFFSET(UpsampleParameters, half_pixel_per_tilt),
       ALCOVE_OFFSET(UpsampleParameters, tolerance), ALCOVE_OFFSET(UpsampleParameters, power),
       ALCOVE_OFFSET(UpsampleParameters, intensity)}},
 };

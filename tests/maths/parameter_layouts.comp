@@ -7,7 +7,6 @@
 #include "environment_parameters.h"
 #include "gtao_parameters.h"
 #include "gtso_parameters.h"
-#include "linear_depth_parameters.h"
 #include "maths/projection.h"
 #include "multi_bounce_parameters.h"
 #include "normals_parameters.h"
@@ -15,7 +14,6 @@
 #include "upsample_parameters.h"
 
 layout(set = 0, binding = 0) uniform A { Projection projection; };
-layout(set = 0, binding = 1) uniform B { LinearDepthParameters linear_depth; };
 layout(set = 0, binding = 2) uniform C { GtaoParameters gtao; };
 layout(set = 0, binding = 3) uniform D { NormalsParameters normals; };
 layout(set = 0, binding = 4) uniform E { ReconstructParameters reconstruct; };
@@ -27,7 +25,7 @@ layout(set = 0, binding = 11) uniform K { UpsampleParameters upsample; };
 layout(std430, set = 0, binding = 10) buffer Sum { float sum; };
 
 void main() {
-  sum = projection.size_px.x + linear_depth.reach + gtao.radius + normals.projection.size_px.x +
+  sum = projection.size_px.x + gtao.radius + normals.projection.size_px.x +
         reconstruct.largest_weight + gtso.roughness + multi_bounce.size_px.x + apply.roughness +
         environment.size + gtao.depth_step + upsample.tolerance;
 }

@@ -1,5 +1,5 @@
-// Functions of shaders/maths, called in one way from both languages, so that the device's results
-// can be laid beside the CPU's. Written in the shared subset of GLSL and C++.
+// Calls functions of shaders/maths in the same way from GLSL and C++, so that the results of the
+// device can be compared with those of the processor. Written in the common subset of GLSL and C++.
 #ifndef ALCOVE_TESTS_PARITY_CASES_H
 #define ALCOVE_TESTS_PARITY_CASES_H
 
@@ -15,7 +15,6 @@
 #include "maths/octahedral.h"
 #include "maths/packing.h"
 #include "maths/projection.h"
-#include "maths/pyramid.h"
 #include "maths/quantised_normal.h"
 #include "maths/raw_occlusion.h"
 #include "maths/sampling.h"
@@ -30,7 +29,7 @@ ALCOVE_INLINE vec3 parity_direction(float x, float y) {
   return octahedral_decode(vec2(x * 2.0f - 1.0f, y * 2.0f - 1.0f));
 }
 
-// A unit vector before the eye.
+// Returns a unit vector that points towards the eye.
 ALCOVE_INLINE vec3 parity_view(float x, float y) {
   vec3 v = parity_direction(x, y);
   return vec3(v.x, v.y, abs(v.z));
@@ -42,7 +41,7 @@ ALCOVE_INLINE Slice parity_slice(vec4 a) {
   return make_slice(normal, slice_direction(make_view_basis(view), a.z * kPi), view);
 }
 
-// A word of any bits (PCG-RXS-M-XS, O'Neill 2014).
+// Returns a pseudo-random word (PCG-RXS-M-XS, O'Neill 2014).
 ALCOVE_INLINE uint parity_word(uint seed) {
   uint state = seed * 747796405u + 2891336453u;
   uint word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
@@ -57,7 +56,8 @@ ALCOVE_INLINE vec4 parity_of_slices(uint which, vec4 a, vec4 b) {
   float behind = b.y * 2.0f - 1.0f;
   switch (which) {
     case 0u:
-      // A slice that the normal stands on has no angle to speak of.
+      // The angle is multiplied by the scale, because it is ill conditioned if the normal is
+      // perpendicular to the slice.
       return vec4(s.along, s.toward, s.scale, slice_gamma(s) * s.scale);
     case 1u:
       return vec4(slice_arc(s, 1.0f, ahead), slice_arc(s, -1.0f, behind),
@@ -72,7 +72,7 @@ ALCOVE_INLINE vec4 parity_of_slices(uint which, vec4 a, vec4 b) {
     case 3u: {
       vec2 point = vec2(b.z, ahead);
       float per_diamond_angle = sectors_per_diamond_angle(s, 1.0f);
-      // A narrow side has sectors narrower than the digits of its angle.
+      // On a narrow half-slice, sectors are narrower than the precision of their angles.
       return vec4(diamond_angle(point), diamond_angle_light(2.0f * b.w).x,
                   sector_position(per_diamond_angle, point) / per_diamond_angle,
                   height_of_back(ahead, b.z, b.w));
@@ -149,9 +149,8 @@ ALCOVE_INLINE vec4 parity_of_storage(uint which, vec4 a, vec4 b) {
                   unpack_open(uint(a.w * 1000.0f)));
     }
     case 15u:
-      return vec4(average_depth(vec4(1.0f + a.x, 1.0f + a.y, 1.0f + a.z, 1.0f + a.w), 0.1f + b.x),
-                  weight_of_log(log_weight_of(b.z * 40.0f)),
-                  weight_after_clamp(b.y * 32.0f, b.z, b.w, 0.25f), 0.0f);
+      return vec4(weight_of_log(log_weight_of(b.z * 40.0f)),
+                  weight_after_clamp(b.y * 32.0f, b.z, b.w, 0.25f), 0.0f, 0.0f);
     case 16u: {
       Spread spread = spread_of_sums(a.x + a.y + a.z, a.x * a.x + a.y * a.y + a.z * a.z, 3.0f);
       return vec4(spread.mean, spread.deviation, clamp_to_spread(a.w, spread, 1.0f),
@@ -162,8 +161,8 @@ ALCOVE_INLINE vec4 parity_of_storage(uint which, vec4 a, vec4 b) {
       lobe.visible = a.x * a.y;
       lobe.open = a.x;
       lobe = unpack_lobe(pack_lobe(lobe));
-      // A word of whole bytes and the surface that it stands for: packing rounds, and a byte more
-      // or less is a quarter of the weight.
+      // The surface is made from whole bytes, so that packing is exact: one byte more or less
+      // changes the weight by a quarter.
       uvec3 bytes = uvec3(uint(b.x * 255.0f), uint(b.y * 255.0f), uint(b.z * 255.0f));
       LobeSurface surface;
       surface.normal = normalize(vec3(bytes) * (2.0f / 255.0f) - vec3(1.0f));
@@ -220,7 +219,7 @@ ALCOVE_INLINE vec4 parity_of_sampling(uint which, vec4 a, vec4 b) {
       Unobserved unobserved =
           add_beyond_border(mean_row(add_column(nothing_unobserved(), true, b.y, b.z)), b.w, b.z,
                             border_share(b.x, b.y));
-      // Sectors are whole: only without occluders does a rounding not move an end.
+      // Without occluders, a rounding error does not move an end by a whole sector.
       UnobservedArc arc = make_unobserved_arc(tangent_light(s, 1.0f), unobserved, 1.0f);
       return vec4(unobserved_part(arc, s, 1.0f, false), unobserved_part(arc, s, 1.0f, true),
                   unobserved_lobe(arc, lobe, 1.0f), arc.share);
@@ -231,7 +230,7 @@ ALCOVE_INLINE vec4 parity_of_sampling(uint which, vec4 a, vec4 b) {
 
 const uint kParityCases = 25u;
 
-// Four results of case `which` for eight numbers in [0,1).
+// Returns four results of case `which` for eight numbers in [0,1).
 ALCOVE_INLINE vec4 parity_case(uint which, vec4 a, vec4 b, Projection p) {
   if (which < 5u) return parity_of_slices(which, a, b);
   if (which < 7u) return parity_of_cameras(which, a, b, p);

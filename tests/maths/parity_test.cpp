@@ -22,7 +22,7 @@ constexpr std::size_t kInputs = 1u << 14;
 
 struct Bound {
   const char* name;
-  double absolute, relative;  // their sum is allowed
+  double absolute, relative;  // the tolerance is absolute + relative * |value|
 };
 
 // Largest allowed differences of well-conditioned functions. They come from rounding and from the
@@ -43,7 +43,7 @@ constexpr Bound kBounds[] = {
     {"specular occlusion", 1e-3, 1e-4},
     {"octahedral", 1e-5, 1e-5},
     {"packed numbers", 4.1e-3, 0.0},
-    {"pyramid and counts", 5e-5, 1e-5},
+    {"history weights", 5e-5, 1e-5},
     {"history", 3e-4, 1e-5},
     {"patterns", 0.0, 0.0},
     {"integers", 0.0, 0.0},
@@ -65,8 +65,9 @@ maths::Projection off_centre_projection() {
   return maths::make_projection(m, 960, 540).value();
 }
 
-// How far each result moves when the inputs do by a few units in the last place: what rounding may
-// do to it where the function is ill conditioned (a slice that the normal all but stands on).
+// Returns the change of each result if the inputs change by a few units in the last place. It is
+// the effect that rounding may have where a function is ill conditioned, for example in a slice
+// that is nearly perpendicular to the normal.
 vec4 sensitivity(std::uint32_t which, vec4 a, vec4 b, const maths::Projection& projection) {
   constexpr int kNudges = 32;
   constexpr float kNudge = 4.0f / float(1 << 23);

@@ -22,11 +22,11 @@ using maths::Projection;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-// A view frustum by its planes: left to top are at distance 1 for a perspective.
+// A view frustum. In perspective, left, right, bottom and top are those at distance 1.
 struct Frustum {
   double left = -1, right = 1, bottom = -1, top = 1, near = 0.1, far = 100;
   bool perspective = true, infinite = false, reversed = false, flipped = false;
-  glm::dvec2 jitter{0};  // in clip space over w
+  glm::dvec2 jitter{0};  // in normalised device coordinates
 };
 
 // The Vulkan projection matrix of a frustum, from the definition of each kind.
@@ -128,8 +128,8 @@ TEST(Projection, RawDepthConvertsBackToItsDistance) {
     const double depth = f.near + random.uniform(0.001f, 0.999f) * (farthest - f.near);
     const double exact = image_of(matrix, glm::dvec3(0, 0, -depth)).depth_ndc;
     const float ndc = float(exact);
-    // A raw depth and the matrix are floats: neither can tell depths apart that are nearer than
-    // this, the change of depth over a few steps of the raw depth.
+    // The raw depth and the matrix are floats, so that depths closer than the change over a few
+    // steps of the raw depth cannot be distinguished.
     const double step = 4e-7;
     const double slope =
         std::abs(image_of(matrix, glm::dvec3(0, 0, -depth * 1.001)).depth_ndc - exact) /
@@ -156,7 +156,7 @@ TEST(Projection, NearAndFarPlanesEqualThoseOfTheFrustum) {
   for (int i = 0; i < 2000; ++i) {
     const Frustum f = random_frustum(random);
     const Projection p = projection_of(f);
-    // The far plane of a finite perspective hangs on a difference of nearly equal numbers.
+    // The far plane of a finite perspective is computed from a difference of nearly equal numbers.
     const double slack = f.perspective ? 2e-7 * f.far / f.near : 2e-6;
     if (slack > 0.1) continue;
     EXPECT_NEAR(p.near_far.x, f.near, 1e-5 * std::max(std::abs(f.near), f.far * 0.1));
@@ -263,7 +263,8 @@ TEST(Projection, FirstRowIsTheTopOfTheView) {
   EXPECT_LT(maths::position_vs(projection_of(upside_down), vec2(0.5f, 0.0f), 1.0f).y, -0.9f);
 }
 
-// Elements that are zero in the exact matrix hold what products and inverses in float leave there.
+// Elements that are zero in the exact matrix contain the rounding errors of products and inverses
+// in floats.
 TEST(MakeProjection, AcceptsRoundingErrorsAndRemovesThem) {
   RandomInput random;
   for (int i = 0; i < 20000; ++i) {

@@ -1,11 +1,11 @@
-// Where points fall on the image of a Projection, to hold what shaders do on the image against.
+// Projects points with a Projection, as the reference for image-space computations of shaders.
 #pragma once
 
 #include "maths/projection.h"
 
 namespace alcove::maths_test {
 
-// The uv of a view-space position whose perspective divisor is above 0.
+// Returns the uv of a view-space position whose perspective divisor is positive.
 inline glm::vec2 uv_of_position(const maths::Projection& p, glm::vec3 position) {
   const float depth = -position.z;
   const glm::vec2 sum = glm::vec2(p.position_to_uv) * glm::vec2(position) +

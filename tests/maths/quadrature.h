@@ -1,4 +1,4 @@
-// Integrals in double, to prove closed forms against.
+// Numerical integration in double precision, as the reference for closed forms.
 #pragma once
 
 #include <array>
@@ -10,8 +10,8 @@ namespace alcove::maths_test {
 
 inline constexpr double kPi = std::numbers::pi;
 
-// Integral of f over [a,b] by eight-point Gauss-Legendre on `panels` equal pieces. Exact to about
-// 1e-12 for smooth f; put kinks of f at a or b.
+// Returns the integral of f over [a,b] by eight-point Gauss-Legendre quadrature on `panels` equal
+// pieces. The error is about 1e-12 for smooth f; split the interval at kinks of f.
 template <typename Function>
 auto integrate(Function f, double a, double b, int panels = 32) {
   constexpr std::array<double, 4> kNodes = {0.1834346424956498, 0.5255324099163290,

@@ -1,4 +1,4 @@
-// Random inputs whose seed is logged, and replayed with ALCOVE_TEST_SEED.
+// Random inputs. The seed is logged, and ALCOVE_TEST_SEED replays it.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -18,14 +18,14 @@ class RandomInput {
     std::cout << "seed " << seed_ << " (replay with ALCOVE_TEST_SEED)\n";
   }
 
-  // Always the same inputs, and nothing logged.
+  // Gives the same inputs in every run and logs nothing.
   explicit RandomInput(unsigned seed) : seed_(seed), engine_(seed) {}
 
   float uniform(float low, float high) {
     return std::uniform_real_distribution<float>(low, high)(engine_);
   }
 
-  // Evenly spread over powers, for lengths of every size.
+  // Returns a number whose logarithm is uniformly distributed, for lengths of all magnitudes.
   float log_uniform(float low, float high) {
     return std::exp(uniform(std::log(low), std::log(high)));
   }
@@ -38,7 +38,7 @@ class RandomInput {
     return glm::normalize(glm::vec3(radius * std::cos(phi), radius * std::sin(phi), z));
   }
 
-  // Unit, within a right angle of `axis`.
+  // Returns a random unit vector within 90 degrees of `axis`.
   glm::vec3 facing(glm::vec3 axis) {
     const glm::vec3 v = unit_vector();
     return glm::dot(v, axis) < 0.0f ? -v : v;

@@ -38,7 +38,7 @@ Projection some_projection(RandomInput& random) {
   return maths::make_projection(m, kWidth, kHeight).value();
 }
 
-// A point of a surface, a slice through it and the line of that slice.
+// A point of a surface, a slice through it, and the slice's line on the image.
 struct Setting {
   Projection projection;
   vec2 pixel;
@@ -106,8 +106,7 @@ TEST(SliceLine, BackFaceEndsAnOccluderOnlyBehindItsFrontFace) {
   }
 }
 
-// The sectors of an occluder are then those between its two ends, independent of the points
-// between.
+// The sectors of an occluder are those between its two ends, whatever lies between.
 TEST(SliceLine, BackOfAnOccluderIsOnTheViewRayOfItsFront) {
   RandomInput random;
   for (int i = 0; i < 5000; ++i) {
@@ -139,7 +138,7 @@ TEST(SliceLine, SamplesOfTheTangentPlaneStayOnItWhenSnapped) {
     EXPECT_TRUE(maths::lies_on_tangent_plane(tangent, off_plane, length(exact)));
     const float moved = inverse_depth + dot(exact - snapped, tangent.gradient);
     const float depth = s.perspective() ? 1.0f / moved : moved;
-    // A plane that passes behind the eye has no image there.
+    // Where a plane passes behind the eye it has no image.
     if (!(depth > 0.0f) || depth > 10.0f * s.depth) continue;
     EXPECT_NEAR(dot(s.delta(exact, depth), s.normal), 0.0f, 2e-4f * depth);
   }
@@ -200,7 +199,8 @@ TEST(SliceLine, RadiusOnTheImageIsTheSilhouetteOfItsSphere) {
     Setting s(random);
     s.normal = s.view;
     const float radius = 0.2f * s.depth;
-    // The sphere's silhouette in this slice: where a ray of the plane touches it.
+    // The silhouette of the sphere in this slice: the point at which a view ray of the slice plane
+    // touches it.
     const bool perspective = s.projection.eye.w > 0.0f;
     const float away = length(s.position);
     const float sine = radius / away;
@@ -210,7 +210,7 @@ TEST(SliceLine, RadiusOnTheImageIsTheSilhouetteOfItsSphere) {
     const vec2 imaged = uv_of_position(s.projection, touch) * s.projection.size_px;
     const float expected = distance(imaged, s.pixel);
     const float spanned = maths::slice_radius_px(s.line, radius, s.depth, s.perspective());
-    // To first order in the sphere's size against its distance, off the axis.
+    // The formula is exact to first order in the ratio of radius to distance, off the axis.
     EXPECT_NEAR(spanned / expected, 1.0f, 0.35f);
   }
 }

@@ -1,4 +1,5 @@
-// A slice in double, straight from its definition, to hold the shaders' closed forms against.
+// A slice in double precision, computed from its definition, as the reference for the shaders'
+// closed forms.
 #pragma once
 
 #include <algorithm>
@@ -24,11 +25,11 @@ struct SliceTruth {
   double lowest() const { return gamma - kPi / 2; }
   double highest() const { return gamma + kPi / 2; }
 
-  // The integrand of visibility over the angle t from the view direction.
+  // Returns the integrand of visibility at the angle t from the view direction.
   double density(double t) const { return scale * std::cos(t - gamma) * std::abs(std::sin(t)); }
 
-  // Visibility between two angles, cut to the hemisphere of the normal; split at the view
-  // direction.
+  // Returns the visibility between two angles, clamped to the hemisphere of the normal. The
+  // integral is split at the view direction.
   double visibility(double from, double to) const {
     const double a = std::max(from, lowest()), b = std::min(to, highest());
     if (a >= b) return 0.0;
@@ -37,7 +38,8 @@ struct SliceTruth {
     return integrate(f, a, split) + integrate(f, split, b);
   }
 
-  // The mean direction as a vector: x along the slice, y along the view direction.
+  // Returns the integral of the direction as a vector: x along the slice, y along the view
+  // direction.
   glm::dvec2 bent(double from, double to) const {
     const double a = std::max(from, lowest()), b = std::min(to, highest());
     if (a >= b) return glm::dvec2(0.0);
@@ -49,7 +51,7 @@ struct SliceTruth {
   double open() const { return scale * (std::cos(gamma) + gamma * std::sin(gamma)); }
 };
 
-// A slice whose projected normal has the given length and angle.
+// Returns a slice whose projected normal has the given length and angle.
 inline maths::Slice slice_of(double scale, double gamma) {
   const glm::vec3 view(0, 0, 1), direction(1, 0, 0);
   const double y = std::sqrt(std::max(0.0, 1.0 - scale * scale));
@@ -57,8 +59,8 @@ inline maths::Slice slice_of(double scale, double gamma) {
   return maths::make_slice(normal, direction, view);
 }
 
-// Calls f(slice, truth, horizon) for slices of many normals and a horizon's cosine from the view
-// vector to straight behind it.
+// Calls f(slice, truth, horizon) for slices of many normals. `horizon` is the cosine of an angle
+// from 0 to 180 degrees to the view direction.
 template <typename Function>
 void for_each_slice_and_horizon(Function f) {
   for (double gamma = -kPi / 2; gamma <= kPi / 2 + 1e-9; gamma += kPi / 60) {

@@ -36,7 +36,7 @@ TEST(SphericalHarmonics, BasisIsOrthonormal) {
   }
 }
 
-// The clamped cosine times each element of the basis gives the element back, by its factor.
+// The integral of the clamped cosine times a basis function is the basis function times its factor.
 TEST(SphericalHarmonics, IrradianceScalesEachElementByTheFactorOfItsBand) {
   const vec3 normal = normalize(vec3(0.3f, 0.8f, -0.5f));
   for (unsigned i = 0; i < maths::kHarmonics; ++i) {

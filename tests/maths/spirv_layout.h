@@ -1,4 +1,4 @@
-// Reads from a SPIR-V module where its structs keep their members.
+// Reads the offsets of struct members from a SPIR-V module.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@
 namespace alcove::maths_test {
 
 struct StructLayout {
-  std::string name;                              // as in the shader
-  std::map<std::string, std::uint32_t> offsets;  // bytes, by member
+  std::string name;                              // of the struct in GLSL
+  std::map<std::string, std::uint32_t> offsets;  // in bytes, for each member
 };
 
 namespace detail {
@@ -25,8 +25,8 @@ inline std::string literal_string(std::span<const std::uint32_t> words) {
 
 }  // namespace detail
 
-// Every struct of the module with a decorated offset. A struct in two memory layouts is two
-// entries.
+// Returns every struct of the module that has member offsets. A struct with two memory layouts has
+// two entries.
 inline std::vector<StructLayout> struct_layouts(std::span<const std::uint32_t> module) {
   constexpr std::uint32_t kOpName = 5, kOpMemberName = 6, kOpMemberDecorate = 72, kOffset = 35;
   std::map<std::uint32_t, std::string> names;

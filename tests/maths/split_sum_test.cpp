@@ -19,7 +19,7 @@ using glm::uvec2;
 using glm::vec2;
 using glm::vec3;
 
-// The table as the shader reads it.
+// Looks up the table with the shader's interpolation.
 vec2 look_up(const std::vector<std::uint32_t>& table, float n_dot_v, float roughness) {
   const vec2 at = maths::reflectance_coordinates(n_dot_v, roughness);
   const uvec2 low = min(uvec2(at), uvec2(maths::kReflectanceTable - 2));
@@ -31,7 +31,8 @@ vec2 look_up(const std::vector<std::uint32_t>& table, float n_dot_v, float rough
   return mix(mix(entry(0, 0), entry(1, 0), t.x), mix(entry(0, 1), entry(1, 1), t.x), t.y);
 }
 
-// The lobe's integral over microfacets that the view sees: by the angle and, evenly, by the turn.
+// Returns the integral of the lobe over the microfacets that the view sees, by quadrature over the
+// polar angle and the azimuth.
 vec2 quadrature(float n_dot_v, float roughness) {
   const float alpha = roughness * roughness;
   const vec3 view(std::sqrt(1.0f - n_dot_v * n_dot_v), 0.0f, n_dot_v);
@@ -61,11 +62,11 @@ vec2 quadrature(float n_dot_v, float roughness) {
 
 TEST(SplitSum, TableIsCloseToTheIntegralAlsoBetweenItsEntries) {
   const auto table = alcove::passes::reflectance_table();
-  RandomInput random(1);  // always the same set: the README states its figures
+  RandomInput random(1);  // a fixed set, because the README states its figures
   double worst = 0.0, squares = 0.0;
   constexpr int kPoints = 1000;
   for (int i = 0; i < kPoints; ++i) {
-    // Every fifth edge-on, where it changes fastest.
+    // Every fifth view is at a grazing angle, where the table changes fastest.
     const float n_dot_v = std::max(random.uniform(0.0f, i % 5 == 0 ? 0.03f : 1.0f), 1e-3f);
     const float roughness = random.uniform(0.0f, 1.0f);
     const vec2 error = look_up(table, n_dot_v, roughness) - quadrature(n_dot_v, roughness);
@@ -93,12 +94,13 @@ TEST(SplitSum, ReflectanceIsAtMostOne) {
   EXPECT_NEAR(maths::specular_reflectance(vec3(1), look_up(table, 1.0f, 0.0f)).x, 1.0f, 1e-3f);
 }
 
-// Bright above, dark below, brightest on one side.
+// Returns the radiance of a test environment: bright above, dark below, and brightest on one side.
 double light_from(vec3 d) {
   return (d.y > 0.0f ? 1.0 : 0.25) + 4.0 * std::exp(10.0 * (dot(d, vec3(0.6f, 0.8f, 0.0f)) - 1.0));
 }
 
-// The mean light of the lobe about `normal` that `view` sees: an even spread over its microfacets.
+// Returns the mean radiance over the lobe around `normal` seen from `view`, by evenly distributed
+// microfacets.
 double lobe_light(vec3 normal, vec3 view, float alpha) {
   const vec3 x =
       normalize(cross(std::abs(normal.y) < 0.9f ? vec3(0, 1, 0) : vec3(1, 0, 0), normal));

@@ -1,4 +1,4 @@
-// Values that are stored between passes: octahedral vectors, packed visibility, the depth pyramid.
+// Encodings of values that one pass writes and another reads: octahedral vectors and visibility.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,7 +7,6 @@
 
 #include "maths/octahedral.h"
 #include "maths/packing.h"
-#include "maths/pyramid.h"
 #include "maths/quantised_normal.h"
 #include "maths/raw_occlusion.h"
 #include "random_input.h"
@@ -78,13 +77,13 @@ TEST(RawOcclusion, LobeWeightsDependOnNormalAndRoughness) {
     const auto weight = [&](vec3 other, float other_roughness) {
       return maths::lobe_weight(own, maths::pack_lobe_surface(surface(other, other_roughness)));
     };
-    // 32 times the error of a byte.
+    // The tolerance is 32 times the quantisation error of a byte.
     EXPECT_NEAR(weight(normal, roughness), 1.0f, 0.3f);
     EXPECT_EQ(weight(-normal, roughness), 0.0f);
     EXPECT_EQ(weight(normal, roughness < 0.5f ? roughness + 0.25f : roughness - 0.25f), 0.0f);
     const vec3 across = normalize(cross(normal, vec3(0.3f, 0.5f, 0.8f)));
     EXPECT_NEAR(weight(normalize(normal + across * 0.21f), roughness), 0.5f, 0.2f);
-    // Too long a normal counts for no more than a good one.
+    // A normal that is too long does not get a larger weight than a unit normal.
     EXPECT_LT(weight(normal * 1e3f, roughness), 1.5f);
   }
 }
@@ -138,13 +137,13 @@ TEST(Octahedral, DecodesAnyPointToAUnitVector) {
   }
 }
 
-// The unit normal of these stereographic coordinates.
+// Returns the unit normal with these stereographic coordinates.
 vec3 normal_of(vec2 stereographic) {
   const float squared = dot(stereographic, stereographic);
   return vec3(2.0f * stereographic, 1.0f - squared) / (1.0f + squared);
 }
 
-// Towards the eye, in view space.
+// Returns a random unit normal in view space that faces the eye.
 vec3 facing_normal(RandomInput& random) {
   vec3 normal = random.unit_vector();
   normal.z = std::abs(normal.z);
@@ -194,44 +193,6 @@ TEST(Packing, UnormRoundsToNearestAndKeepsZeroAndOne) {
     EXPECT_EQ(maths::pack_unorm(-5.0f, bits), 0u);
     EXPECT_EQ(maths::pack_unorm(5.0f, bits), (1u << bits) - 1u);
   }
-}
-
-TEST(Pyramid, AveragingConstantDepthChangesNothing) {
-  for (const float depth : {-50.0f, 1e-6f, 1.0f, 1e7f, 1e11f})
-    EXPECT_EQ(maths::average_depth(vec4(depth), 0.1f), depth);
-}
-
-TEST(Pyramid, AveragesWithinASurfaceAndNotAcrossTwo) {
-  RandomInput random;
-  for (int i = 0; i < 10000; ++i) {
-    const float base = random.log_uniform(0.1f, 100.0f), range = 0.2f;
-    const vec4 slope =
-        base + vec4(random.uniform(0, 0.5f * range), random.uniform(0, 0.5f * range),
-                    random.uniform(0, 0.5f * range), random.uniform(0, 0.5f * range));
-    const float mean = 0.25f * (slope.x + slope.y + slope.z + slope.w);
-    EXPECT_NEAR(maths::average_depth(slope, range), mean, 1e-6f * base);
-    // Two surfaces: the result lies on the farther one, not between.
-    const vec4 edge(base, base + 10 * range, base, base + 10 * range + 0.1f * range);
-    EXPECT_GE(maths::average_depth(edge, range), edge.y - 1e-5f * edge.y);
-    EXPECT_LE(maths::average_depth(edge, range), edge.w);
-  }
-}
-
-TEST(Pyramid, SkyTexelsAreNotAveragedAndNotCreated) {
-  const float sky = maths::kSkyDepth;
-  EXPECT_EQ(maths::average_depth(vec4(sky), 0.1f), sky);
-  EXPECT_EQ(maths::average_depth(vec4(sky, sky, 3, sky), 0.1f), sky);
-  EXPECT_EQ(maths::average_depth(vec4(sky, 3, 3, sky), 0.1f), 3.0f);
-  EXPECT_EQ(maths::average_depth(vec4(3, 3, 3, sky), 0.1f), 3.0f);
-  const float nan = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_EQ(maths::average_depth(vec4(3, 3, 3, nan), 0.1f), 3.0f);
-}
-
-TEST(Pyramid, OrderOfTexelsDoesNotMatter) {
-  const vec4 d(1.0f, 1.05f, 2.0f, 1.9f);
-  const float a = maths::average_depth(d, 0.3f);
-  EXPECT_FLOAT_EQ(maths::average_depth(vec4(d.w, d.z, d.y, d.x), 0.3f), a);
-  EXPECT_FLOAT_EQ(maths::average_depth(vec4(d.y, d.x, d.w, d.z), 0.3f), a);
 }
 
 }  // namespace

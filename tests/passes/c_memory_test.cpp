@@ -21,6 +21,7 @@ TEST_F(CMemory, EstimatesEqualTheMemoryOfFrames) {
     bool normals;
     Quality quality;
     bool half_resolution = false;
+    bool history = true;
   };
   for (const Case& wanted :
        {Case{"visibility", ALCOVE_OUTPUT_VISIBILITY, Specular::none, true, Quality::medium},
@@ -30,12 +31,16 @@ TEST_F(CMemory, EstimatesEqualTheMemoryOfFrames) {
         Case{"all", 7, Specular::slices, true, Quality::low},
         Case{"by cone", ALCOVE_OUTPUT_SPECULAR, Specular::cone, true, Quality::low},
         Case{"half resolution", 7, Specular::slices, true, Quality::medium, true},
+        Case{"console", ALCOVE_OUTPUT_VISIBILITY, Specular::none, true, Quality::console, true},
+        Case{"half resolution without history", 7, Specular::slices, true, Quality::medium, true,
+             false},
         Case{"without history", ALCOVE_OUTPUT_VISIBILITY, Specular::none, true,
              Quality::reference}}) {
     SCOPED_TRACE(wanted.name);
     GivenView given = given_view(test_views()[2], kWidth, kHeight, {tilted_plane(20.0, 4.0)});
     given.settings = quality_settings(wanted.quality, 0.5f);
     given.settings.half_resolution = wanted.half_resolution;
+    given.settings.history_frames = wanted.history ? given.settings.history_frames : 0;
     given.settings.slices = 1;
     given.settings.steps = 4;
     given.settings.visibility = (wanted.outputs & ALCOVE_OUTPUT_VISIBILITY) != 0;

@@ -216,7 +216,7 @@ TEST_F(CPlan, TimingsContainTheViewOfEachPass) {
   }
   const std::multiset<std::string> plain{"gtao", "reconstruct"};
   std::multiset<std::string> with_normals = plain;
-  with_normals.insert({"depth pyramid", "normals"});
+  with_normals.insert({"linear depth", "normals"});
   EXPECT_EQ(passes.size(), given.size());
   EXPECT_EQ(passes[given[0].id], plain);
   EXPECT_EQ(passes[given[1].id], with_normals);
@@ -224,7 +224,7 @@ TEST_F(CPlan, TimingsContainTheViewOfEachPass) {
 }
 
 TEST(CSettings, SettingsCanBeFilledPrintedAndPassedBack) {
-  for (int quality = ALCOVE_QUALITY_LOW; quality <= ALCOVE_QUALITY_REFERENCE; ++quality) {
+  for (int quality = ALCOVE_QUALITY_CONSOLE; quality <= ALCOVE_QUALITY_REFERENCE; ++quality) {
     AlcoveSettings settings{.struct_size = sizeof(AlcoveSettings)};
     ASSERT_EQ(alcoveGetSettings(static_cast<AlcoveQuality>(quality), 2.5f, &settings),
               ALCOVE_SUCCESS);

@@ -1,4 +1,4 @@
-// A host program whose numbers have a comma.
+// Sets a locale in which numbers have a decimal comma.
 #pragma once
 
 #include <clocale>
@@ -7,9 +7,9 @@
 
 namespace alcove::passes {
 
-// While it lives, the locale of C++ writes decimals with a comma, and groups digits by threes with
-// a point. So does that of C, where the system has a locale of the kind; many a container has none,
-// so that a test of numbers should look at digits too.
+// During the object's lifetime, the C++ locale writes a comma as the decimal separator and points
+// between groups of three digits. The C locale does so too if the system has such a locale. Many
+// containers have none, so that tests of numbers should also check grouped digits.
 class CommaLocale {
  public:
   CommaLocale() : c_before_(std::setlocale(LC_ALL, nullptr)) {

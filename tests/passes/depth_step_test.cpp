@@ -1,4 +1,4 @@
-// Open planes seen by depth buffers that cannot hold their depths.
+// Tests unoccluded planes in depth buffers whose resolution is too coarse for their depths.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ constexpr std::uint32_t kHeight = 64;
 
 class DepthStep : public PassTest {
  protected:
-  // The visibility of the last of `frames` frames, of a depth buffer of `format`.
+  // Returns the visibility of the last of `frames` frames with a depth buffer of `format`.
   HostImage visibility(const TestView& view, const Drawing& drawing, VkFormat format,
                        const OcclusionSettings& settings, std::uint32_t frames) {
     for (std::uint32_t index = 0; index < frames; ++index) {
@@ -72,7 +72,7 @@ Drawing with_fixed_point_depth(Drawing drawing, double levels) {
   return drawing;
 }
 
-// Ground 60 units below the eye, seen 500 units away by a telephoto lens.
+// The ground lies 60 units below the eye and is seen 500 units away with a telephoto lens.
 TEST_F(DepthStep, FlatGroundIsUnoccludedWithFloatDepthThatIsNotReversed) {
   const double scale = 1.0 / std::tan(1.5 * std::numbers::pi / 180.0);
   const TestView view = perspective_view("", scale / 1.5, scale, 0.01, 5000.0, false);
@@ -103,7 +103,7 @@ TEST_F(DepthStep, FloorIsUnoccludedInAnOrthographicViewWithReversedDepth) {
   }
 }
 
-// The tolerance must not take away what a depth buffer resolves.
+// The tolerance must not remove occlusion that the depth buffer resolves.
 TEST_F(DepthStep, GrooveOfManyDepthStepsKeepsItsOcclusion) {
   const TestView view = perspective_view("", 1.2, 1.8, 0.1, 100.0, false);
   const Drawing exact = draw(view, kWidth, kHeight, groove(0.8));

@@ -83,7 +83,8 @@ TestCamera::TestCamera(const View& view, std::uint32_t width, std::uint32_t heig
 Ray TestCamera::ray(double x, double y) const {
   const double u = 2.0 * x / width_ - 1.0;
   const double v = 2.0 * y / height_ - 1.0;
-  // The near plane's raw depth and one a little behind it: the far plane may be infinite.
+  // The raw depth of the near plane and one a little behind it, because the far plane may be
+  // infinite.
   const glm::dvec4 near = view_from_clip_ * glm::dvec4(u, v, reversed_ ? 1.0 : 0.0, 1.0);
   const glm::dvec4 behind = view_from_clip_ * glm::dvec4(u, v, 0.5, 1.0);
   const glm::dvec3 from = glm::dvec3(near) / near.w;
@@ -123,7 +124,7 @@ bool Drawing::is_sky(std::uint32_t x, std::uint32_t y) const {
 
 namespace {
 
-// Of what `hit_by` finds along each pixel's ray.
+// Draws the hits that `hit_by` finds along the ray of each pixel.
 template <typename HitBy>
 Drawing draw_hits(const TestView& view, std::uint32_t width, std::uint32_t height,
                   const Scene& scene, const HitBy& hit_by) {
@@ -144,7 +145,7 @@ Drawing draw_hits(const TestView& view, std::uint32_t width, std::uint32_t heigh
   return drawing;
 }
 
-// Of each surface the hits that `kept(hit, ray)` says.
+// Draws only those hits of each surface for which `kept(hit, ray)` is true.
 template <typename Kept>
 Scene with_hits(const Scene& scene, const Kept& kept) {
   Scene result = scene;

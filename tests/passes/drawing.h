@@ -1,5 +1,5 @@
-// Depth buffers and normals of simple surfaces, drawn by rays in double precision: what an engine
-// would hand to the passes, and the exact surfaces for references to search.
+// Draws depth buffers and normals of simple surfaces with rays in double precision. The exact
+// surfaces are available to references.
 #pragma once
 
 #include <functional>
@@ -11,31 +11,32 @@
 
 namespace alcove::passes {
 
-// All in view space: right-handed, the camera along -Z.
+// Positions and directions are in view space: right-handed, with the camera along -Z.
 struct Ray {
   glm::dvec3 from;
-  glm::dvec3 along;  // not of unit length
+  glm::dvec3 along;  // direction, not of unit length
 };
 
 struct Hit {
-  double t = 0.0;  // along the ray, over 0
+  double t = 0.0;  // position along the ray, above 0
   glm::dvec3 position{0.0};
   glm::dvec3 normal{0.0};  // unit, towards the ray's origin
 };
 
 struct Surface {
-  // Where the ray's line meets the surface, from near to far; the normals may face either way, but
-  // outwards for draw_back_faces().
+  // Returns the hits of a ray with the surface, from near to far. Normals may point to either side,
+  // except for draw_back_faces(), where they must point outwards.
   std::function<std::vector<Hit>(const Ray&)> meet;
-  // Which of its points exist; null: all.
+  // Returns whether a point of the surface exists. Null: all points exist.
   std::function<bool(const glm::dvec3&)> keep;
 };
 
 Surface plane(const glm::dvec3& through, const glm::dvec3& normal);
-// Tilted about the image's diagonal, through the point `distance` before the eye.
+// Returns a plane through the point `distance` in front of the eye, tilted about the image's
+// diagonal.
 Surface tilted_plane(double tilt_degrees, double distance);
 Surface sphere(const glm::dvec3& centre, double radius);
-// The six faces of a solid with edges along the axes.
+// Returns the six faces of an axis-aligned box.
 std::vector<Surface> box(const glm::dvec3& low, const glm::dvec3& high);
 
 // A view over an image, in double precision.
@@ -43,13 +44,13 @@ class TestCamera {
  public:
   TestCamera(const View& view, std::uint32_t width, std::uint32_t height);
 
-  // The ray through a point of the image, in pixels.
+  // Returns the ray through a point of the image, in pixels.
   Ray ray(double x, double y) const;
-  // Where a point falls on the image, in pixels, and its raw depth.
+  // Returns the image position of a point in pixels, and its raw depth.
   glm::dvec3 project(const glm::dvec3& position) const;
-  // Unit, from what pixel (x, y) sees towards the eye.
+  // Returns the unit direction to the eye at pixel (x, y).
   glm::dvec3 to_eye(std::uint32_t x, std::uint32_t y) const;
-  // The raw depth of the far plane.
+  // Returns the raw depth of the far plane.
   float sky() const { return reversed_ ? 0.0f : 1.0f; }
 
   std::uint32_t width() const { return width_; }
@@ -65,7 +66,7 @@ class TestCamera {
 
 using Scene = std::vector<Surface>;
 
-// The surface that a ray meets first.
+// Returns the nearest hit of a ray.
 std::optional<Hit> cast(const Scene& scene, const Ray& ray);
 
 struct Drawing {
@@ -79,15 +80,15 @@ struct Drawing {
 
 Drawing draw(const TestView& view, std::uint32_t width, std::uint32_t height, const Scene& scene);
 
-// The same scene in other units, and elsewhere.
+// Returns a scaled copy of a scene.
 Scene scaled(const Scene& scene, double scale);
 Scene shifted(const Scene& scene, const glm::dvec3& shift);
 
-// The depth of the nearest faces that look away from the eye.
+// Returns the depth of the nearest faces that face away from the eye.
 HostImage draw_back_faces(const TestView& view, std::uint32_t width, std::uint32_t height,
                           const Scene& scene);
 
-// The depth of the nearest faces towards the eye behind what draw() shows.
+// Returns the depth of the nearest faces that face the eye behind those of draw().
 HostImage draw_second_layer(const TestView& view, std::uint32_t width, std::uint32_t height,
                             const Scene& scene);
 

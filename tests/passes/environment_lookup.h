@@ -1,4 +1,4 @@
-// Reads of octahedral maps on the host, as the shaders read them.
+// Reads octahedral maps on the host with the shaders' interpolation.
 #pragma once
 
 #include "maths/environment_map.h"
@@ -10,7 +10,7 @@ inline glm::vec3 rgb(const HostImage& image, std::uint32_t x, std::uint32_t y) {
   return {image.at(x, y, 0), image.at(x, y, 1), image.at(x, y, 2)};
 }
 
-// One level at a unit direction, bilinear.
+// Returns the bilinear value of one mip at a unit direction.
 inline glm::vec3 look_up(const HostImage& map, glm::vec3 direction) {
   const int size = static_cast<int>(map.width);
   const glm::vec2 texel = maths::map_uv(direction) * float(size) - 0.5f;

@@ -27,7 +27,7 @@ using EnvironmentPass = PassTest;
 constexpr std::uint32_t kSize = 256;
 constexpr std::uint32_t kLevels = 6;
 
-// A sky with a bright patch 20 degrees wide, over dark ground.
+// Returns the radiance of a sky with a bright patch of 20 degrees above dark ground.
 vec3 sky(vec3 direction) {
   const vec3 sun = normalize(vec3(0.5f, 0.6f, -0.4f));
   const float glow = std::exp(30.0f * (dot(direction, sun) - 1.0f));
@@ -48,7 +48,7 @@ HostImage equirectangular(std::uint32_t width, const Light& light) {
   return image;
 }
 
-// Sum of f(direction, steradians) over a fine grid of the sphere.
+// Returns the sum of f(direction, solid angle) over a fine grid of directions.
 template <typename Function>
 void over_sphere(const Function& f) {
   constexpr int kRows = 200;
@@ -62,7 +62,8 @@ void over_sphere(const Function& f) {
   }
 }
 
-// What a lobe seen along its normal gets, by quadrature over the sphere.
+// Returns the environment's light through a lobe whose view is along its normal, by quadrature over
+// the sphere.
 vec3 prefiltered(vec3 normal, float alpha) {
   glm::dvec3 sum(0);
   double weights = 0.0;
@@ -104,14 +105,14 @@ TEST_F(EnvironmentPass, LevelsAgreeWithQuadratureOfTheLobe) {
       read_back(graph, made->map, level);
     }
   });
-  maths_test::RandomInput random(1);  // of so few directions a mean differs from set to set
+  maths_test::RandomInput random(1);  // a fixed set, because the mean of so few directions varies
   for (std::uint32_t level = 0; level < kLevels; ++level) {
     const float roughness = maths::roughness_of_level(level, kLevels);
     const HostImage& map = result(level);
     ASSERT_EQ(map.width, kSize >> level);
     double squares = 0.0, wholes = 0.0, worst = 0.0;
     for (int i = 0; i < 60; ++i) {
-      // Between texels too.
+      // Random directions also lie between texels.
       const vec3 normal = random.unit_vector();
       const vec3 wanted = level == 0 ? sky(normal) : prefiltered(normal, roughness * roughness);
       const vec3 error = look_up(map, normal) - wanted;

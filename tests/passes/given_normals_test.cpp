@@ -1,4 +1,4 @@
-// Normals of a g-buffer that face away from the eye, or are missing.
+// Tests normals of a g-buffer that face away from the eye or are missing.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ OcclusionSettings all_outputs(Quality quality, Specular specular = Specular::sli
   return settings;
 }
 
-// `image` with every normal replaced, or those of every third pixel.
+// Returns `image` with every normal replaced, or with that of every third pixel.
 HostImage replaced(HostImage image, std::array<float, 3> with, std::size_t stride) {
   for (std::size_t i = 0; i < image.texels.size() / image.channels; i += stride) {
     std::ranges::copy(with, image.texels.begin() + static_cast<std::ptrdiff_t>(i * image.channels));
@@ -49,7 +49,7 @@ double rms(const HostImage& a, const HostImage& b) {
 
 class GivenNormals : public PassTest {
  protected:
-  // The images of the third frame.
+  // Returns the images of the third frame.
   OcclusionImages images_of(const TestView& view, const Drawing& drawing, const HostImage& normals,
                             const OcclusionSettings& settings) {
     OcclusionImages images;

@@ -159,40 +159,6 @@ TEST_F(GtaoInvariance, EverySizeTileSizeAndPatternCoversEveryPixel) {
   }
 }
 
-// Odd sizes, more than a group's 32 blocks, and blocks that the border cuts.
-TEST_F(GtaoInvariance, GroupingDoesNotChangeTheImage) {
-  const TestView view = test_views()[2];
-  const std::vector<std::pair<std::uint32_t, std::uint32_t>> sizes{{3, 5}, {33, 1}, {139, 131}};
-  for (const auto& [width, height] : sizes) {
-    const Drawing drawing = draw(view, width, height, ball_on_floor());
-    const OcclusionFrame frame{.view = view.view,
-                               .depth_ndc = drawing.depth_ndc,
-                               .normal_vs = &drawing.normal_vs,
-                               .index = 3,
-                               .reset = true};
-    for (const auto& [tile_size, pattern] :
-         {std::pair{1u, Pattern::golden}, {2u, Pattern::hilbert}, {4u, Pattern::paper}}) {
-      SCOPED_TRACE(testing::Message() << width << " x " << height << " by " << tile_size
-                                      << ", pattern " << static_cast<int>(pattern));
-      OcclusionSettings settings = unfiltered(Estimator::connected, 0.5f);
-      settings.slices = 1;
-      settings.steps = 4;
-      settings.tile_size = tile_size;
-      settings.advanced.pattern = pattern;
-      settings.bent_normal = true;
-      settings.specular = Specular::slices;
-      const OcclusionImages expected = run_occlusion(frame, settings);
-      settings.advanced.grouping = Grouping::pattern;
-      poison_memory(width, height);
-      const OcclusionImages found = run_occlusion(frame, settings);
-      // Another kernel, which a device may round otherwise: a unit of 8 bits.
-      EXPECT_LE(difference(found.visibility, expected.visibility).largest, 1.0 / 255.0);
-      EXPECT_LE(difference(found.bent_normal, expected.bent_normal).largest, 1.0 / 255.0);
-      EXPECT_LE(difference(found.specular, expected.specular).largest, 1.0 / 255.0);
-    }
-  }
-}
-
 TEST_F(GtaoInvariance, EveryPatternHasTheSameMeanInAGroove) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, 64, 48, groove(0.8));

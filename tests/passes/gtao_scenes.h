@@ -1,4 +1,4 @@
-// Scenes for ambient occlusion, in view space about 4 units before the eye.
+// Scenes for ambient occlusion in view space, about 4 units in front of the eye.
 #pragma once
 
 #include <cmath>
@@ -8,8 +8,8 @@
 
 namespace alcove::passes {
 
-// Two walls that meet in a line along y at x = `aside`, `half_angle` (radians) between each and the
-// view's axis.
+// Returns two walls that meet in a line along y at x = `aside`. Each is at `half_angle` radians
+// from the view axis.
 inline Scene groove(double half_angle, double bottom = 4.5, double aside = 0.0) {
   const glm::dvec3 through(aside, 0.0, -bottom);
   Surface left = plane(through, {std::cos(half_angle), 0.0, std::sin(half_angle)});
@@ -19,7 +19,7 @@ inline Scene groove(double half_angle, double bottom = 4.5, double aside = 0.0) 
   return {left, right};
 }
 
-// A floor that faces the eye, and a platform `height` above it where x > `edge`.
+// Returns a floor that faces the eye, and a platform `height` above it where x > `edge`.
 inline Scene step(double edge, double height, double floor = 4.0) {
   Surface platform = plane({0.0, 0.0, -floor + height}, {0.0, 0.0, 1.0});
   platform.keep = [=](const glm::dvec3& p) { return p.x > edge; };
@@ -28,7 +28,7 @@ inline Scene step(double edge, double height, double floor = 4.0) {
   return {plane({0.0, 0.0, -floor}, {0.0, 0.0, 1.0}), platform, wall};
 }
 
-// A sphere that lies on a tilted floor.
+// Returns a sphere that lies on a tilted floor.
 inline Scene ball_on_floor() {
   const glm::dvec3 normal = glm::normalize(glm::dvec3(0.1, 0.5, 1.0));
   const glm::dvec3 through(0.0, 0.0, -4.2);

@@ -19,7 +19,8 @@ struct Preset {
   const char* name;
   Quality quality;
 };
-constexpr Preset kPresets[] = {{"low", Quality::low},
+constexpr Preset kPresets[] = {{"console", Quality::console},
+                               {"low", Quality::low},
                                {"medium", Quality::medium},
                                {"high", Quality::high},
                                {"reference", Quality::reference}};

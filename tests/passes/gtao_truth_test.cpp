@@ -1,4 +1,4 @@
-// The occlusion of drawn scenes against brute force on the exact surfaces, and against closed
+// Compares the occlusion of drawn scenes with brute force on the exact surfaces, and with closed
 // forms.
 #include <gmock/gmock.h>
 
@@ -13,7 +13,8 @@
 namespace alcove::passes {
 namespace {
 
-// What compares with horizons of infinite thickness, whatever the estimator.
+// Returns settings whose result can be compared with horizons of infinite thickness, for any
+// estimator.
 OcclusionSettings exact(Estimator estimator, float radius) {
   OcclusionSettings settings = quality_settings(Quality::reference, radius);
   settings.advanced.estimator = estimator;
@@ -24,8 +25,8 @@ OcclusionSettings exact(Estimator estimator, float radius) {
 
 class GtaoTruth : public PassTest {
  protected:
-  // Mean visibility of a wall 4 units away beside what stands before it from x = 0 on: of the eight
-  // pixels left of the middle.
+  // Returns the mean visibility of a wall 4 units away, at the eight pixels left of an occluder
+  // that covers the image from x = 0 on.
   double visibility_beside(const TestView& view, const Surface& front,
                            const OcclusionSettings& settings) {
     const Drawing drawing = draw(view, 96, 40, {plane({0.0, 0.0, -4.0}, {0.0, 0.0, 1.0}), front});
@@ -46,7 +47,7 @@ struct Errors {
   double largest = 0.0;
 };
 
-// Over every 5th pixel of every 3rd row.
+// Returns the errors at every 5th pixel of every 3rd row.
 Errors errors_of(const HostImage& visibility, const Drawing& drawing, double radius) {
   Errors errors;
   int count = 0;
@@ -65,7 +66,7 @@ Errors errors_of(const HostImage& visibility, const Drawing& drawing, double rad
   return errors;
 }
 
-// In degrees, over every 7th pixel of every 4th row.
+// Returns the mean angle in degrees at every 7th pixel of every 4th row.
 double mean_bent_error(const HostImage& bent, const Drawing& drawing, double radius) {
   double sum = 0.0;
   int count = 0;
@@ -91,7 +92,8 @@ TEST_F(GtaoTruth, HorizonsAgreeWithBruteForceInEverySceneAndView) {
                                         exact(Estimator::horizons, radius));
       const Errors errors = errors_of(images.visibility, drawing, radius);
       EXPECT_LT(errors.mean, 0.008);
-      // Silhouettes lie between pixels, and the ball's contact is narrower than one.
+      // The largest errors are at silhouettes, which lie between pixels, and at the ball's contact,
+      // which is narrower than a pixel.
       EXPECT_LT(errors.largest, scene.name == "ball" ? 0.3 : 0.08);
     }
   }
@@ -131,7 +133,8 @@ TEST_F(GtaoTruth, FloorInFrontOfAPlatformMatchesTheClosedForm) {
   }
 }
 
-// On a wall of a groove whose walls are an angle a apart: (1 - cos a) / 2 near the bottom.
+// The visibility of a wall of a groove with the angle a between its walls is (1 - cos a) / 2 near
+// the bottom.
 TEST_F(GtaoTruth, GrooveMatchesTheClosedFormNearItsBottom) {
   const TestView view = orthographic_view("orthographic", 4.0, 4.0, 0.1, 20.0);
   for (const double half_angle : {0.5, std::numbers::pi / 4.0, 1.2}) {
@@ -148,7 +151,8 @@ TEST_F(GtaoTruth, GrooveMatchesTheClosedFormNearItsBottom) {
   }
 }
 
-// The sky above a platform's edge is a lune: of a hemisphere the part that its angle is of pi.
+// The sky above a platform's edge is a spherical lune, whose fraction of the hemisphere is its
+// angle divided by pi.
 TEST_F(GtaoTruth, UniformWeightingMeasuresSolidAngle) {
   const TestView view = orthographic_view("orthographic", 4.0, 4.0, 0.1, 20.0);
   const double height = 0.5, half_angle = std::numbers::pi / 4.0;
@@ -173,7 +177,7 @@ TEST_F(GtaoTruth, UniformWeightingMeasuresSolidAngle) {
   }
 }
 
-// The mean visibility of a drawing.
+// Returns the mean visibility of a drawing.
 double mean_of(const HostImage& image) {
   double sum = 0.0;
   for (std::uint32_t y = 0; y < image.height; ++y) {
@@ -237,7 +241,7 @@ TEST_F(GtaoTruth, BitmaskOfThickOccludersEqualsHorizons) {
   }
 }
 
-// Where all that occludes stands at one distance from the eye.
+// All occluders have the same distance from the eye.
 TEST_F(GtaoTruth, ThicknessUnitsAgreeAtTheDistanceWhereTheyAreEqual) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, 60, 40, step(0.0, 0.5, 4.0));
@@ -260,11 +264,11 @@ TEST_F(GtaoTruth, ThicknessUnitsAgreeAtTheDistanceWhereTheyAreEqual) {
   }
 }
 
-// A slat before a wall hides little of a ray behind it, a board much.
+// A slat in front of a wall occludes little of the volume behind it, and a board occludes much.
 TEST_F(GtaoTruth, HiddenVolumeIsMoreSolidBehindWideOccluders) {
   for (const TestView& view : {test_views()[2], test_views().back()}) {
     SCOPED_TRACE(view.name);
-    // Behind slats from x = 0 on, `apart` from each other.
+    // Returns the occlusion behind slats that begin at x = 0 and are `apart` from each other.
     const auto filled = [&](double width, double apart, int slats) {
       Surface front = plane({0.0, 0.0, -3.6}, {0.0, 0.0, 1.0});
       front.keep = [=](const glm::dvec3& p) {
@@ -272,7 +276,7 @@ TEST_F(GtaoTruth, HiddenVolumeIsMoreSolidBehindWideOccluders) {
       };
       const auto beside = [&](float hidden_occlusion) {
         OcclusionSettings settings = exact(Estimator::connected, 1.2f);
-        settings.thickness = 0.01f;  // so that there is something to hide behind the front
+        settings.thickness = 0.01f;  // small, so that a hidden volume remains behind the occluder
         settings.hidden_occlusion = hidden_occlusion;
         return visibility_beside(view, front, settings);
       };
@@ -284,17 +288,17 @@ TEST_F(GtaoTruth, HiddenVolumeIsMoreSolidBehindWideOccluders) {
     const double slat = filled(0.12, 0.12, 1);
     const double board = filled(1.0, 1.0, 1);
     EXPECT_LT(slat, 0.5 * board);
-    // It goes on to the radius, wherever it begins.
+    // The board extends to the end of the radius.
     EXPECT_GT(board, 0.8);
-    // As much of the way, in one piece and in three.
+    // Occluders with the same total width, in one piece and in three.
     const double half = filled(0.3, 0.3, 1);
     const double slats = filled(0.1, 0.2, 3);
     EXPECT_LT(slats, 0.5 * half);
   }
 }
 
-// A strip of one sample's width is no thicker than that, whatever the settings say of occluders; a
-// board, of many samples, is as thick as they say.
+// A strip as wide as one sample is at most as thick as it is wide, whatever the setting. A board as
+// wide as many samples has the thickness of the setting.
 TEST_F(GtaoTruth, NarrowOccludersAreThin) {
   for (const TestView& view : {test_views()[2], test_views().back()}) {
     SCOPED_TRACE(view.name);
@@ -325,8 +329,9 @@ TEST_F(GtaoTruth, OccludersBeyondTheRadiusDoNotOcclude) {
     const auto images =
         run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, exact(estimator, radius));
     for (std::uint32_t x = 0; x < 64; ++x) {
-      // To the nearest sample on the platform's edge, known to half a pixel. Connected samples join
-      // floor and platform by a slope, whose foot is nearer by the height of the wall and a step.
+      // The distance to the nearest sample on the platform's edge, within half a pixel. Connected
+      // samples join floor and platform by a slope, whose foot is nearer than the wall by the
+      // wall's height and one step.
       const double across = (63.5 - x) * 8.0 / 128;
       const double distance = std::hypot(across, height);
       if ((estimator == Estimator::connected ? across / 1.15 : distance) > radius) {
@@ -338,7 +343,7 @@ TEST_F(GtaoTruth, OccludersBeyondTheRadiusDoNotOcclude) {
   }
 }
 
-// A groove whose right wall all but leaves the image, beside the same groove seen whole.
+// A groove whose right wall is mostly outside the image, and the same groove completely inside it.
 TEST_F(GtaoTruth, WallThatLeavesTheImageOccludesAsIfVisible) {
   constexpr std::uint32_t kWhole = 192, kPart = 108, kHeight = 40;
   constexpr float kRadius = 1.2f;

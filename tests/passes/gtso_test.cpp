@@ -55,7 +55,7 @@ vec3 direction(const HostImage& image, std::uint32_t x, std::uint32_t y) {
   return glm::normalize(vec3(image.at(x, y, 0), image.at(x, y, 1), image.at(x, y, 2)));
 }
 
-// Surfaces that face the eye, in view space, with every seventh pixel sky.
+// Returns random surfaces that face the eye. Every seventh pixel is sky.
 Inputs random_inputs() {
   maths_test::RandomInput random;
   Inputs inputs;
@@ -99,7 +99,7 @@ maths::Projection projection_of(const View& view) {
   return maths::make_projection(clip_from_view, kWidth, kHeight).value();
 }
 
-// What the pass should write at a pixel.
+// Returns the value that the pass should write at a pixel.
 float expected(const Inputs& inputs, const maths::Projection& projection, Specular model,
                std::uint32_t x, std::uint32_t y) {
   const float depth = inputs.depth.at(x, y);
@@ -141,7 +141,7 @@ TEST_F(GtsoPass, AgreesWithTheFormulasInEveryView) {
   }
 }
 
-// Each pixel lacks one of its inputs, or some that none.
+// At each pixel one or several of the inputs are invalid.
 TEST_F(GtsoPass, InvalidInputsGiveValuesInRange) {
   constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
   constexpr std::array kWrong{kNaN, std::numeric_limits<float>::infinity(), 0.0f, -1e30f};
@@ -161,7 +161,7 @@ TEST_F(GtsoPass, InvalidInputsGiveValuesInRange) {
   }
 }
 
-// Visibility and bent normals of an open plane with the noise that filtered ones have.
+// Returns visibility and bent normals of an unoccluded plane, with noise as after the filter.
 Inputs open_inputs(const PlaneScene& plane) {
   maths_test::RandomInput random;
   Inputs inputs;
@@ -173,7 +173,8 @@ Inputs open_inputs(const PlaneScene& plane) {
   return inputs;
 }
 
-// Over the pixels of a plane that are seen under up to 85 degrees.
+// Returns the smallest value over the pixels of a plane whose view direction is within 85 degrees
+// of the normal.
 float lowest_of(const HostImage& image, const PlaneScene& plane, const View& view) {
   const maths::Projection projection = projection_of(view);
   float lowest = 1.0f;
@@ -199,7 +200,7 @@ TEST_F(GtsoPass, UnoccludedSurfaceStaysUnoccludedAtAnyRoughness) {
       const Inputs open = open_inputs(plane);
       run([&](Graph& graph) {
         const Frame frame{graph, gpu().kernels(), view.view, 0};
-        const auto depth = add_linear_depth(frame, upload(graph, plane.depth_ndc), 1, 0.05f);
+        const auto depth = add_linear_depth(frame, upload(graph, plane.depth_ndc));
         ASSERT_TRUE(depth) << depth.error().message;
         const GtsoInputs inputs{.visibility = upload(graph, open.visibility),
                                 .bent_normal = upload(graph, open.bent),
@@ -239,7 +240,7 @@ TEST_F(GtsoPass, RotatesWorldSpaceNormalsIntoViewSpace) {
   const HostImage in_view_space = with(view, true);
   const HostImage unturned = with(view, false);
   EXPECT_EQ(in_view_space.texels, unturned.texels);
-  // A half turn about the view axis.
+  // The camera is rotated by 180 degrees about the view axis.
   view.view_from_world[0] = view.view_from_world[5] = -1.0f;
   EXPECT_NE(in_view_space.texels, with(view, false).texels);
   EXPECT_EQ(in_view_space.texels, with(view, true).texels);

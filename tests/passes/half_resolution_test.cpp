@@ -8,13 +8,14 @@
 #include "gtao_scenes.h"
 #include "interleave_offset.h"
 #include "maths/half_texel.h"
+#include "maths/history.h"
 #include "reconstruct_fixture.h"
 
 namespace alcove::passes {
 namespace {
 
-// Occlusion is stored in 11 bits.
-constexpr double kOcclusionStep = 1.0 / 2047.0;
+// Rounding of the stored sums, of a software device's reciprocals and of 16-bit texels.
+constexpr float kRounding = 1e-3f;
 
 OcclusionSettings half_resolution(std::uint32_t history_frames) {
   OcclusionSettings settings = precise(2, history_frames);
@@ -22,18 +23,27 @@ OcclusionSettings half_resolution(std::uint32_t history_frames) {
   return settings;
 }
 
-TEST(HalfTexelPacking, KeepsDepthOcclusionAndTilt) {
+TEST(HalfTexelPacking, ValuesFitTheSignedNormalisedFormat) {
+  maths::HalfTexel texel;
+  texel.occlusion = 1.0f;
+  texel.weight = static_cast<float>(maths::kMaxHistoryFrames);
+  texel.tilt = maths::vec2(maths::kLargestTilt, -maths::kLargestTilt);
+  const maths::vec4 packed = maths::pack_half_texel(texel);
+  EXPECT_EQ(packed.x, 1.0f);
+  EXPECT_EQ(packed.y, 127.0f / 128.0f);
+  EXPECT_EQ(packed.z, 1.0f);
+  EXPECT_EQ(packed.w, -1.0f);
+}
+
+TEST(HalfTexelPacking, KeepsDepthAndRecentOcclusion) {
   for (const float inverse_depth : {1e-12f, 0.013f, 0.7f, 20.0f, 1e12f}) {
-    for (const float occlusion : {0.0f, 0.37f, 1.0f}) {
-      maths::HalfTexel texel;
-      texel.inverse_depth = inverse_depth;
-      texel.occlusion = occlusion;
-      texel.tilt = maths::vec2(0.25f, -3.0f);
-      const maths::HalfTexel found = maths::unpack_half_texel(maths::pack_half_texel(texel));
-      EXPECT_NEAR(found.inverse_depth / inverse_depth, 1.0, 6.2e-5);
-      EXPECT_NEAR(found.occlusion, occlusion, occlusion == 0.37f ? kOcclusionStep : 0.0);
-      EXPECT_EQ(found.tilt.x, 0.25f);
-      EXPECT_EQ(found.tilt.y, -3.0f);
+    const float unknown = maths::half_texel_depth(inverse_depth, 0.5f, false);
+    EXPECT_NEAR(unknown / inverse_depth, 1.0, 3.1e-5);
+    EXPECT_EQ(maths::half_texel_recent(unknown, 0.25f), 0.25f);
+    for (const float recent : {0.0f, 0.01f, 0.37f, 1.0f}) {
+      const float known = maths::half_texel_depth(inverse_depth, recent, true);
+      EXPECT_NEAR(known / inverse_depth, 1.0, 3.1e-5);
+      EXPECT_NEAR(maths::half_texel_recent(known, 0.25f), recent, 0.004);
     }
   }
 }
@@ -46,7 +56,7 @@ TEST_F(HalfResolution, ConstantOcclusionStaysConstantAtOddSizes) {
   scenes.push_back({"grazing", {tilted_plane(75.0, 4.0)}});
   for (const NamedScene& scene : scenes) {
     const Drawing drawing = draw(view, 33, 23, scene.scene);
-    for (const std::uint32_t tile_size : {2u, 4u}) {
+    for (const std::uint32_t tile_size : {2u, 4u, 8u}) {
       for (const float visibility : {0.37f, 1.0f}) {
         const HostImage raw_occlusion =
             constant_raw_occlusion(blocks(33, tile_size), blocks(23, tile_size), visibility);
@@ -65,8 +75,7 @@ TEST_F(HalfResolution, ConstantOcclusionStaysConstantAtOddSizes) {
             for (std::uint32_t x = 0; x < 33; ++x) {
               const float ndc = drawing.depth_ndc.at(x, y);
               const double expected = ndc == 0.0f || ndc == 1.0f ? 1.0 : visibility;  // the sky
-              ASSERT_NEAR(found.at(x, y), expected,
-                          visibility == 1.0f ? 1e-6 : 2.0 * kOcclusionStep)
+              ASSERT_NEAR(found.at(x, y), expected, visibility == 1.0f ? 1e-6 : kRounding)
                   << "at " << x << ", " << y;
             }
           }
@@ -107,6 +116,34 @@ TEST_F(HalfResolution, VisibilityDoesNotBleedAcrossADepthEdge) {
       }
     }
   }
+}
+
+// With dynamic resolution the history's textures are larger than the image. Beyond the image's
+// border they hold results of an earlier, larger image. Averages of one frame show them undiluted.
+TEST_F(HalfResolution, TexelsBeyondASmallerImageAreNotRead) {
+  constexpr VkExtent2D kLargest{kWidth, kHeight};
+  const TestView view = test_views()[2];
+  const Drawing large = draw(view, kWidth, kHeight, {tilted_plane(0.0, 4.0)});
+  const Drawing small = draw(view, kWidth / 2, kHeight / 2, {tilted_plane(0.0, 4.0)});
+  const HostImage dark = constant_raw_occlusion(kWidth / 2, kHeight / 2, 0.1f);
+  const HostImage bright = constant_raw_occlusion(kWidth / 4, kHeight / 4, 0.9f);
+  (void)reconstruct({.view = view.view,
+                     .drawing = large,
+                     .raw_occlusion = dark,
+                     .tile_size = 2,
+                     .reset = true,
+                     .previous_size = kLargest,
+                     .largest_size = kLargest},
+                    half_resolution(1));
+  const HostImage found = reconstruct({.view = view.view,
+                                       .drawing = small,
+                                       .raw_occlusion = bright,
+                                       .tile_size = 2,
+                                       .index = 1,
+                                       .previous_size = kLargest,
+                                       .largest_size = kLargest},
+                                      half_resolution(1));
+  EXPECT_THAT(found.texels, testing::Each(testing::FloatNear(0.9f, kRounding)));
 }
 
 TEST_F(HalfResolution, BentNormalsAndSpecularOcclusionFollowFullResolutionOnAPlane) {

@@ -5,13 +5,14 @@
 #include "drawing.h"
 #include "pass_fixture.h"
 
-// For tests of the depths that tell what the first one hides.
+// Helpers for tests of back faces and of the second depth layer, which show surfaces that the first
+// layer hides.
 namespace alcove::passes {
 
-// That read them.
+// The estimators that read these depths.
 inline constexpr std::array kThickEstimators{Estimator::bitmask, Estimator::connected};
 
-// Nothing is hidden but by what the depths show.
+// Returns settings without hidden occlusion, so that only the given depths occlude.
 inline OcclusionSettings without_fill(Estimator estimator, float radius) {
   OcclusionSettings settings = quality_settings(Quality::reference, radius);
   settings.advanced.estimator = estimator;
@@ -23,7 +24,7 @@ inline OcclusionSettings without_fill(Estimator estimator, float radius) {
 
 class HiddenDepthTest : public PassTest {
  protected:
-  // `hidden`: back faces or the second layer, as the settings read it.
+  // `hidden` is the depth of back faces or of the second layer, whichever the settings read.
   HostImage visibility(const TestView& view, const Drawing& drawing, const HostImage& hidden,
                        const OcclusionSettings& settings) {
     return run_occlusion({.view = view.view,

@@ -1,4 +1,4 @@
-// A history that was off for a while knows nothing of what happened meanwhile.
+// Tests that a history which was turned off for some frames starts without contents.
 #include <gtest/gtest.h>
 
 #include "gtao_scenes.h"
@@ -9,8 +9,9 @@ namespace {
 
 class HistoryRestart : public PassTest {
  protected:
-  // Four frames of a groove by `settings`, as many of a ball on a floor by `meanwhile`, and one
-  // more of that by `settings`, which `forgets` what was before.
+  // Renders four frames of a groove with `settings`, four frames of a ball on a floor with
+  // `meanwhile`, and one more frame of the ball with `settings`. If `forgets` is true, the history
+  // is reset before that frame.
   OcclusionImages come_back(const OcclusionSettings& settings, const OcclusionSettings& meanwhile,
                             bool forgets) {
     const TestView view = test_views()[2];

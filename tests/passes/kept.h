@@ -1,4 +1,4 @@
-// What of a frame's declaration its plan keeps.
+// The passes and resources that a frame's plan keeps after culling.
 #pragma once
 
 #include <cstdint>
@@ -9,16 +9,16 @@
 
 namespace alcove::passes {
 
-// By name; uploads and read-backs are left out.
+// Names of the kept passes and resources, without uploads and read-backs.
 struct Kept {
   std::vector<std::string> passes;
   std::vector<std::string> transients;
   std::vector<std::string> histories;
-  std::size_t uploads = 0;  // that something reads
-  std::uint64_t bytes = 0;  // of the transients
+  std::size_t uploads = 0;  // uploads that a pass reads
+  std::uint64_t bytes = 0;  // memory of the transients
 };
 
-// Fails the test where the declaration is wrong.
+// Compiles the graph. Fails the test if its declaration is invalid.
 Kept kept_of(const framegraph::Graph& graph);
 
 }  // namespace alcove::passes

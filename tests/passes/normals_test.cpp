@@ -22,7 +22,7 @@ class Normals : public PassTest {
   HostImage normals(const View& view, const HostImage& depth_ndc) {
     run([&](Graph& graph) {
       const Frame frame{graph, gpu().kernels(), view, 0};
-      const auto depth = add_linear_depth(frame, upload(graph, depth_ndc), 1, 1.0f);
+      const auto depth = add_linear_depth(frame, upload(graph, depth_ndc));
       ASSERT_TRUE(depth) << depth.error().message;
       const auto made = add_normals(frame, *depth);
       ASSERT_TRUE(made) << made.error().message;
@@ -40,7 +40,7 @@ double angle_between(const glm::dvec3& a, const glm::dvec3& b) {
   return degrees(std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)));
 }
 
-// Whether a pixel has a neighbour on each axis that shows anything at all.
+// Returns whether the pixel has a neighbour that is not sky on each axis.
 bool has_neighbours(const Drawing& drawing, std::uint32_t x, std::uint32_t y) {
   const auto seen = [&](std::uint32_t column, std::uint32_t row) {
     return column < drawing.depth_ndc.width && row < drawing.depth_ndc.height &&
@@ -49,7 +49,8 @@ bool has_neighbours(const Drawing& drawing, std::uint32_t x, std::uint32_t y) {
   return (seen(x - 1, y) || seen(x + 1, y)) && (seen(x, y - 1) || seen(x, y + 1));
 }
 
-// The largest angle, in degrees, from the normals that were drawn, borders included; the sky apart.
+// Returns the largest angle in degrees between computed and drawn normals, including border pixels
+// and excluding the sky.
 double largest_error(const HostImage& normals, const Drawing& drawing) {
   double largest = 0.0;
   for (std::uint32_t y = 0; y < normals.height; ++y) {
@@ -73,7 +74,7 @@ TEST_F(Normals, PlanesGetTheExactNormalAtAnyTiltUpToTheBorder) {
     for (const double tilt : {0.0, 30.0, 60.0, 80.0}) {
       SCOPED_TRACE(testing::Message() << view.name << " tilted " << tilt << " degrees");
       const Drawing drawing = draw(view, 41, 27, {tilted_plane(tilt, 4.0)});
-      // Raw depth is 32-bit: of a finite or infinite projection it holds 1e-6 of the distance.
+      // A 32-bit raw depth determines the distance with a relative error of 1e-6.
       EXPECT_LT(largest_error(normals(view.view, drawing.depth_ndc), drawing), 0.5);
     }
   }
@@ -82,7 +83,8 @@ TEST_F(Normals, PlanesGetTheExactNormalAtAnyTiltUpToTheBorder) {
 TEST_F(Normals, AreNotBlurredAcrossADepthStep) {
   for (const TestView& view : test_views()) {
     SCOPED_TRACE(view.name);
-    // A box's front before a wall: both face the eye, half a unit and more apart.
+    // The front of a box in front of a wall. Both face the eye, and their depths differ by at least
+    // half a unit.
     Surface front = plane({0.0, 0.0, -3.4}, {0.0, 0.2, 1.0});
     front.keep = [](const glm::dvec3& p) { return p.x > -0.9 && p.x < 0.7 && p.y < 0.5; };
     const Drawing drawing = draw(view, 60, 40, {front, tilted_plane(20.0, 4.5)});

@@ -12,11 +12,11 @@
 
 namespace alcove::passes {
 
-// A float image of the host, row by row from the top.
+// A float image in host memory, row by row from the top.
 struct HostImage {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
-  std::vector<float> texels;  // `channels` a pixel
+  std::vector<float> texels;  // `channels` values per pixel
   std::uint32_t channels = 1;
 
   float at(std::uint32_t x, std::uint32_t y, std::uint32_t channel = 0) const {
@@ -24,30 +24,30 @@ struct HostImage {
   }
 };
 
-// Runs passes on the machine's device under the validation layers; a message of theirs fails the
-// test.
+// Runs passes on the machine's device under the validation layers. Any message of the layers fails
+// the test.
 class PassTest : public testing::Test {
  protected:
   void SetUp() override;
   void TearDown() override;
 
-  // Adds a texture of 32-bit floats (1, 2 or 4 channels) that holds `image`.
-  // A `format` of 32-bit channels takes the floats by their bits.
+  // Adds a texture of 32-bit floats with 1, 2 or 4 channels that holds `image`. If a `format` with
+  // 32-bit channels is given, the texture gets the bits of the floats.
   framegraph::Texture upload(framegraph::Graph& graph, const HostImage& image,
                              VkFormat format = VK_FORMAT_UNDEFINED);
-  // Has `target`, of such a format, filled with `image`.
+  // Adds a pass that fills `target`, a texture with 32-bit channels, with `image`.
   framegraph::Texture fill(framegraph::Graph& graph, framegraph::Texture target,
                            const HostImage& image);
-  // Has `texture`, of any format that the passes write, read back: result() gives it as floats once
-  // the frame has run.
+  // Adds a read-back of `texture`, which may have any format that the passes write. After the
+  // frame, result() returns it as floats.
   void read_back(framegraph::Graph& graph, framegraph::Texture texture, std::uint32_t mip = 0);
-  // The images read back by the last frame, in order.
+  // Returns an image that the last frame read back, by its order.
   const HostImage& result(std::size_t index = 0) const { return results_[index]; }
 
-  // Runs one frame that `declare` declares; fails the test where it cannot.
+  // Runs a frame that `declare` declares. Fails the test if that is not possible.
   void run(const std::function<void(framegraph::Graph&)>& declare);
 
-  // Runs frame `frame.index` of the whole of add_occlusion and returns its images.
+  // Runs add_occlusion() for frame `frame.index` and returns its images.
   struct OcclusionFrame {
     View view;
     const HostImage& depth_ndc;
@@ -55,22 +55,22 @@ class PassTest : public testing::Test {
     const HostImage* motion = nullptr;     // null: none
     View previous_view = view;
     std::uint32_t index = 0;
-    bool reset = false;                         // forgets the history first
+    bool reset = false;                         // resets the history first
     const HostImage* back_depth_ndc = nullptr;  // null: none
     const HostImage* second_depth_ndc = nullptr;
     const HostImage* roughness = nullptr;
-    VkExtent2D previous_size{};  // as Frame has them
+    VkExtent2D previous_size{};  // Frame::previous_size; the next is Frame::largest_size
     VkExtent2D largest_size{};
   };
   struct OcclusionImages {
     HostImage visibility;
-    HostImage bent_normal;  // empty where none was asked for, as is the next
+    HostImage bent_normal;  // empty if not requested, as is specular
     HostImage specular;
   };
   OcclusionImages run_occlusion(const OcclusionFrame& frame, const OcclusionSettings& settings);
 
-  // Fills the device memory that transients of about this size get with what is not a number, so
-  // that a texel which a pass forgets shows.
+  // Fills the device memory that transients of about this size get with NaN, so that a texel that a
+  // pass does not write is noticed.
   void poison_memory(std::uint32_t width, std::uint32_t height);
 
   sample::Gpu& gpu() { return *gpu_; }

@@ -1,4 +1,5 @@
-// Model only what is required: what is off or unread has no pass, no memory and no pipeline.
+// Tests that a part of the occlusion that is turned off or not read has no pass, no memory and no
+// pipeline.
 #include <gmock/gmock.h>
 
 #include "gtao_scenes.h"
@@ -13,7 +14,7 @@ using testing::Contains;
 using testing::ElementsAre;
 using testing::Not;
 
-// What a frame is given beside depth.
+// The inputs of a frame besides depth.
 struct Given {
   bool normals = true;
   bool motion = false;
@@ -21,7 +22,7 @@ struct Given {
   bool roughness = false;
 };
 
-// Which outputs of add_occlusion the frame reads.
+// The outputs of add_occlusion() that the frame reads.
 struct Reads {
   bool visibility = true;
   bool bent_normal = false;
@@ -119,7 +120,7 @@ TEST_F(OcclusionPlan, BentNormalsAndHistoryCostNothingWhenOff) {
   EXPECT_THAT(kept(history, {.bent_normal = true}).histories, testing::SizeIs(4));
 }
 
-// Motion leads back to a history.
+// Motion vectors are only needed to read a history.
 TEST_F(OcclusionPlan, MotionIsNotReadWithoutAHistory) {
   const Given moving{.motion = true};
   OcclusionSettings history = least();
@@ -156,7 +157,7 @@ TEST_F(OcclusionPlan, BackFacesCostNothingWithOtherThicknessUnits) {
   const Kept read = kept(settings, {}, {.hidden_depths = true});
   EXPECT_EQ(read.passes, constant.passes);
   EXPECT_EQ(read.bytes, constant.bytes);
-  // The search that reads back faces is another pipeline.
+  // A search that reads back faces has a pipeline of its own.
   EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines + 1);
 }
 
@@ -166,11 +167,10 @@ TEST_F(OcclusionPlan, SearchPartsCostOnePipelineEachAndNoPassOrMemory) {
   (void)kept(least());
   EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines);
   const AdvancedSettings base = least().advanced;
-  std::array<AdvancedSettings, 4> parts{base, base, base, base};
+  std::array<AdvancedSettings, 3> parts{base, base, base};
   parts[0].snap_to_texels = false;
   parts[1].extrapolation = false;
   parts[2].unobserved = false;
-  parts[3].grouping = Grouping::pattern;
   for (const AdvancedSettings& each : parts) {
     OcclusionSettings changed = least();
     changed.advanced = each;
@@ -210,7 +210,7 @@ TEST_F(OcclusionPlan, SecondLayerCostsNothingWhenItIsNotSearched) {
 TEST_F(OcclusionPlan, SpecularOcclusionCostsNothingWhenOff) {
   const Kept without = kept(least());
   OcclusionSettings settings = least();
-  settings.roughness = 0.2f;  // which nothing reads
+  settings.roughness = 0.2f;  // no pass reads it
   EXPECT_EQ(kept(settings).bytes, without.bytes);
 
   settings.specular = Specular::slices;
@@ -237,7 +237,8 @@ TEST_F(OcclusionPlan, RoughnessChannelWithoutATextureCreatesNoPipeline) {
     (void)kept(settings, {.specular = read});
     EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines);
     (void)kept(settings, {.specular = read}, {.roughness = true});
-    // The slices' roughness is read by the search and by its reconstruction.
+    // With specular occlusion from slices, the roughness is read by the search and by its
+    // reconstruction.
     const std::size_t readers = !read ? 0 : specular == Specular::slices ? 2 : 1;
     EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines + readers);
   }
@@ -249,11 +250,11 @@ TEST_F(OcclusionPlan, LinearDepthRunsOnlyWhenItIsRead) {
   OcclusionSettings asked = least();
   asked.linear_depth = true;
   EXPECT_EQ(kept(asked).passes, without.passes) << "where nobody reads it";
-  EXPECT_THAT(kept(asked, {.linear_depth = true}).passes, Contains("depth pyramid"));
+  EXPECT_THAT(kept(asked, {.linear_depth = true}).passes, Contains("linear depth"));
   EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines + 1);
   OcclusionSettings by_model = least();
   by_model.specular = Specular::cone;
-  EXPECT_THAT(kept(by_model, {.specular = true}).passes, Contains("depth pyramid"));
+  EXPECT_THAT(kept(by_model, {.specular = true}).passes, Contains("linear depth"));
 }
 
 TEST_F(OcclusionPlan, LargerTilesTakeLessMemory) {
@@ -265,12 +266,12 @@ TEST_F(OcclusionPlan, LargerTilesTakeLessMemory) {
 TEST_F(OcclusionPlan, UnreadOutputsAreCulledWithTheirProducers) {
   const Kept depth_only =
       kept(least(), {.visibility = false, .linear_depth = true}, {.normals = false});
-  EXPECT_THAT(depth_only.passes, ElementsAre("depth pyramid"));
+  EXPECT_THAT(depth_only.passes, ElementsAre("linear depth"));
   EXPECT_THAT(depth_only.transients, ElementsAre("linear depth"));
   EXPECT_THAT(kept(least(), {.visibility = false}, {.normals = false}).passes, testing::IsEmpty());
 }
 
-// One that is prepared in a graph of its own, which is never recorded.
+// The frame is prepared in a graph of its own that is never recorded.
 TEST_F(OcclusionPlan, PreparedFramesCreateNoPipelineWhateverTheFrameBefore) {
   const Drawing drawing = draw(test_views()[2], 32, 24, groove(0.8));
   OcclusionSettings settings = least();

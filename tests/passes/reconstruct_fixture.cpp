@@ -50,8 +50,10 @@ HostImage Reconstruct::reconstruct(const Input& input, const OcclusionSettings& 
     if (input.reset) {
       graph.reset_history("occlusion");
     }
-    const Frame frame{graph,       gpu().kernels(),     input.view,
-                      input.index, input.previous_view, input.static_frames};
+    Frame frame{graph,       gpu().kernels(),     input.view,
+                input.index, input.previous_view, input.static_frames};
+    frame.previous_size = input.previous_size;
+    frame.largest_size = input.largest_size;
     ReconstructInputs inputs{
         .raw_occlusion = {.raw_occlusion = upload(
                               graph,

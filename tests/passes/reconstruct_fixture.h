@@ -26,6 +26,8 @@ class Reconstruct : public PassTest {
     std::uint32_t index = 0;
     bool reset = false;
     std::uint32_t static_frames = 0;
+    VkExtent2D previous_size{};  // Frame::previous_size
+    VkExtent2D largest_size{};   // Frame::largest_size
   };
 
   // Visibility.

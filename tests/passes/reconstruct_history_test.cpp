@@ -1,4 +1,4 @@
-// The history, fed with signals that the tests write.
+// Tests the history with raw occlusion that the tests write.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -83,8 +83,9 @@ TEST_F(Reconstruct, MotionVectorsOfAStaticViewAreNotRead) {
   EXPECT_EQ(second_frame(&wrong).texels, second_frame(nullptr).texels);
 }
 
-// A history of many more frames than its largest weight. Visibility is stored in steps of 2^-10,
-// dithered, so single pixels may differ by a few steps; the mean must neither drift nor lock.
+// Accumulates many more frames than the largest weight of the history. Visibility is stored in
+// steps of 2^-10 with dithering, so that single pixels may differ by a few steps. The mean must
+// neither drift nor stop changing.
 TEST_F(Reconstruct, HundredsOfEqualFramesDoNotDrift) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, 9, 7, {tilted_plane(30.0, 4.0)});
@@ -106,7 +107,7 @@ TEST_F(Reconstruct, HundredsOfEqualFramesDoNotDrift) {
       EXPECT_NEAR(mean_of(found), visibility, 1e-3);
     };
     expect_kept();
-    // From a wrong start the history comes back to within what it can store.
+    // A history with wrong contents returns to the right value within its quantisation step.
     const HostImage wrong = constant_raw_occlusion(9, 7, 1.0f - visibility);
     for (std::uint32_t frame = 0; frame < 130; ++frame) {
       found = reconstruct({.view = view.view,

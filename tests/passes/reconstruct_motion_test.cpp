@@ -268,36 +268,45 @@ TEST_F(Reconstruct, HistoryFollowsApproachingSurfaces) {
   EXPECT_THAT(anew.texels, testing::Each(testing::FloatNear(0.9f, 2e-3f)));
 }
 
-// What shaded a plane moves away, and then shades it again: the plane itself stands still.
+// An occluder moves away from a plane that stands still, and comes back later. Motion vectors of 0
+// tell the pass that occluders may move, so the plane's visibility changes within a few frames.
 TEST_F(Reconstruct, MovingOccludersLeaveNoTrail) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(30.0, 4.0)});
   const HostImage motion = no_motion();
-  const HostImage shaded = constant_raw_occlusion(kWidth, kHeight, 0.6f);
-  const HostImage open = constant_raw_occlusion(kWidth, kHeight, 1.0f);
   const std::uint32_t long_ago = 30;
   const std::uint32_t soon = 12;
-  for (const bool given : {true, false}) {
-    std::vector<HostImage> found;
-    for (std::uint32_t frame = 0; frame < long_ago + 2 * soon; ++frame) {
-      const bool is_open = frame >= long_ago && frame < long_ago + soon;
-      found.push_back(reconstruct({.view = view.view,
-                                   .drawing = drawing,
-                                   .raw_occlusion = is_open ? open : shaded,
-                                   .motion = given ? &motion : nullptr,
-                                   .index = frame,
-                                   .reset = frame == 0},
-                                  precise(1, 32)));
-    }
-    // Recent occlusion is stored in 4 bits, dithered.
-    const auto left = testing::Each(testing::Gt(0.93f));
-    const auto back = testing::Each(testing::Lt(0.75f));
-    EXPECT_THAT(found[long_ago - 1].texels, testing::Each(testing::FloatNear(0.6f, 5e-3f)));
-    if (given) {
-      EXPECT_THAT(found[long_ago + soon - 1].texels, left);
-      EXPECT_THAT(found[long_ago + 2 * soon - 1].texels, back);
-    } else {
-      EXPECT_THAT(found[long_ago + soon - 1].texels, testing::Each(testing::Lt(0.9f)));
+  for (const bool half_resolution : {false, true}) {
+    const std::uint32_t tile_size = half_resolution ? 2 : 1;
+    const HostImage shaded = constant_raw_occlusion(kWidth / tile_size, kHeight / tile_size, 0.6f);
+    const HostImage open = constant_raw_occlusion(kWidth / tile_size, kHeight / tile_size, 1.0f);
+    OcclusionSettings settings = precise(1, 32);
+    settings.half_resolution = half_resolution;
+    for (const bool given : {true, false}) {
+      SCOPED_TRACE(testing::Message()
+                   << "half resolution " << half_resolution << ", motion vectors " << given);
+      std::vector<HostImage> found;
+      for (std::uint32_t frame = 0; frame < long_ago + 2 * soon; ++frame) {
+        const bool is_open = frame >= long_ago && frame < long_ago + soon;
+        found.push_back(reconstruct({.view = view.view,
+                                     .drawing = drawing,
+                                     .raw_occlusion = is_open ? open : shaded,
+                                     .tile_size = tile_size,
+                                     .motion = given ? &motion : nullptr,
+                                     .index = frame,
+                                     .reset = frame == 0},
+                                    settings));
+      }
+      // Recent occlusion is stored in 4 bits, dithered.
+      const auto left = testing::Each(testing::Gt(0.93f));
+      const auto back = testing::Each(testing::Lt(0.75f));
+      EXPECT_THAT(found[long_ago - 1].texels, testing::Each(testing::FloatNear(0.6f, 5e-3f)));
+      if (given) {
+        EXPECT_THAT(found[long_ago + soon - 1].texels, left);
+        EXPECT_THAT(found[long_ago + 2 * soon - 1].texels, back);
+      } else {
+        EXPECT_THAT(found[long_ago + soon - 1].texels, testing::Each(testing::Lt(0.9f)));
+      }
     }
   }
 }

@@ -1,4 +1,4 @@
-// The spatial filter and the upsampling, fed with signals that the tests write.
+// Tests the spatial filter and the upsampling with raw occlusion that the tests write.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -13,7 +13,8 @@
 namespace alcove::passes {
 namespace {
 
-// One coordinate of what a pixel looks at: the `i`th of the 2 x `reach` traced pixels around it.
+// One coordinate of a traced pixel that a pixel's filter reads: the `i`th of the 2 x `reach` traced
+// pixels around it.
 struct Searched {
   std::uint32_t block;
   std::uint32_t pixel;
@@ -34,12 +35,13 @@ double squared_distance(std::uint32_t a, std::uint32_t b) {
   return apart * apart;
 }
 
-// The mean that a pixel of a wall seen head-on has of the searches around it, on its first frame:
-// all but the corners', where it looks further than at those next to it.
+// Returns the filtered value of a pixel in its first frame on a wall that faces the eye: the mean
+// of the traced pixels around it, without the corners of the window if the filter radius is
+// above 1.
 double mean_around(const HostImage& raw_occlusion, std::uint32_t x, std::uint32_t y,
                    std::uint32_t width, std::uint32_t height, std::uint32_t tile_size,
                    InterleaveOffset interleave_offset, int reach) {
-  const double window_px = 1.1 * tile_size;  // of one slice
+  const double window_px = 1.1 * tile_size;  // half-width of the window for one slice
   double visible = 0.0;
   double open = 0.0;
   for (int j = 0; j < 2 * reach; ++j) {
@@ -60,7 +62,8 @@ double mean_around(const HostImage& raw_occlusion, std::uint32_t x, std::uint32_
   return visible / open;
 }
 
-// As many on each side as the reach says, at any resolution, up to the last row and column.
+// The filter reads as many traced pixels on each side as its radius, at any tile size, up to the
+// last row and column.
 TEST_F(Reconstruct, PixelsWithoutHistoryAverageTheTracedPixelsAroundThem) {
   constexpr std::uint32_t kOddWidth = 33;
   constexpr std::uint32_t kOddHeight = 23;
@@ -92,7 +95,7 @@ TEST_F(Reconstruct, PixelsWithoutHistoryAverageTheTracedPixelsAroundThem) {
               ASSERT_NEAR(found.at(x, y),
                           mean_around(raw_occlusion, x, y, kOddWidth, kOddHeight, tile_size,
                                       interleave_offset, static_cast<int>(reach)),
-                          6e-4)  // searches weigh by their open parts, stored within a 120th
+                          6e-4)  // weights are unoccluded parts, stored with an error of 1/120
                   << "at " << x << ", " << y;
             }
           }
@@ -129,7 +132,8 @@ TEST_F(Reconstruct, ConstantOcclusionStaysConstantInAnySceneAtAnyResolution) {
             for (std::uint32_t y = 0; y < 23; ++y) {
               for (std::uint32_t x = 0; x < 33; ++x) {
                 const float expected = drawing.is_sky(x, y) ? 1.0f : 0.37f;
-                // History keeps 16 bits of sums, which are small where no search lies near.
+                // The history stores the sums in 16 bits. They are small if no traced pixel is
+                // near.
                 ASSERT_NEAR(found.at(x, y), expected, history == 0 ? 1e-4 : 0.02)
                     << "at " << x << ", " << y;
               }
@@ -155,7 +159,7 @@ TEST_F(Reconstruct, FilterReducesNoiseOnATiltedPlane) {
   }
 }
 
-// The filter knows how many directions its input holds: stripes of four pixels stay the clearer.
+// With more slices the filter blurs less, so that stripes of four pixels stay clearer.
 TEST_F(Reconstruct, FilterNarrowsWithMoreSlices) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(0.0, 4.0)});
@@ -172,8 +176,8 @@ TEST_F(Reconstruct, FilterNarrowsWithMoreSlices) {
   EXPECT_LT(kept, 0.04) << "of the stripes' own variance";
 }
 
-// A neighbour on the other side of a crease, a fraction of a pixel off the tangent plane, helps a
-// pixel that knows nothing else, and is less and less asked once there are slices or frames.
+// A neighbour on the other side of a crease, a fraction of a pixel off the tangent plane,
+// contributes to a pixel without history. Its weight falls as the number of slices or frames grows.
 TEST_F(Reconstruct, LeakAcrossACreaseFallsWithMoreTracedPixels) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, kWidth, kHeight, groove(0.8, 4.5));
@@ -206,11 +210,12 @@ TEST_F(Reconstruct, LeakAcrossACreaseFallsWithMoreTracedPixels) {
   const double first = after(1, 1);
   EXPECT_GT(first, 1.0) << "of all pixels";
   EXPECT_LT(after(4, 1), 0.35 * first);
-  // The dither of stored visibilities accounts for 0.16: 3e-4 in the mean over pixels.
+  // The dithering of stored visibilities accounts for 0.16 of it, which is 3e-4 in the mean over
+  // pixels.
   EXPECT_LT(after(1, 48), 0.2 * first);
 }
 
-// Neighbours at the very depth of the tangent plane, but of another normal.
+// Neighbours that lie on the tangent plane but have another normal.
 TEST_F(Reconstruct, NeighboursWithOtherNormalsWeighLess) {
   const TestView view = test_views()[2];
   const Drawing flat = draw(view, kWidth, kHeight, {tilted_plane(0.0, 5.0)});
@@ -252,7 +257,7 @@ TEST_F(Reconstruct, NothingLeaksAcrossADepthEdge) {
         for (std::uint32_t y = 0; y < kHeight; ++y) {
           for (std::uint32_t x = 0; x < kWidth; ++x) {
             const auto hit = cast(drawing.scene, drawing.camera.ray(x + 0.5, y + 0.5));
-            if (std::abs(hit->normal.z) > 0.5) {  // not on the platform's wall
+            if (std::abs(hit->normal.z) > 0.5) {  // the hit is not on the platform's wall
               ASSERT_NEAR(found.at(x, y), on_platform(x, y) ? 0.9f : 0.2f, 0.01)
                   << "at " << x << ", " << y;
             }

@@ -1,5 +1,5 @@
-// Surfaces under a probe, and the light that goes from them to the eye: by the formulas of the
-// shaders, on the host.
+// Surfaces lit by a probe, and their radiance towards the eye, computed on the host with the
+// shaders' formulas.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ struct LitSurfaces {
   static constexpr std::uint32_t kWidth = 37;
   static constexpr std::uint32_t kHeight = 23;
   static constexpr std::uint32_t kMapSize = 8;
-  static constexpr float kSky = 1e12f;  // the depth where there is no surface
+  static constexpr float kSky = 1e12f;  // depth of the sky
 
   HostImage depth{kWidth, kHeight, {}, 1};
   HostImage normals{kWidth, kHeight, {}, 4};
@@ -27,10 +27,11 @@ struct LitSurfaces {
   HostImage map{kMapSize, kMapSize, {}, 4};
 };
 
-// They face the eye, in view space, with every seventh pixel sky.
+// Returns random surfaces that face the eye, with normals in view space. Every seventh pixel is
+// sky.
 LitSurfaces random_surfaces();
 
-// Puts them under white light from everywhere.
+// Changes the probe to uniform white light.
 void make_white(LitSurfaces& surfaces);
 
 struct Light {
@@ -38,7 +39,8 @@ struct Light {
   maths::vec3 specular{0};
 };
 
-// What add_apply should write at a pixel, all inputs given, normals in view space.
+// Returns the light that add_apply() should write at a pixel if all inputs are given and normals
+// are in view space.
 Light reference_light(const LitSurfaces& surfaces, const View& view, std::uint32_t x,
                       std::uint32_t y);
 

@@ -7,7 +7,7 @@ namespace alcove::passes {
 namespace {
 
 constexpr int kSlices = 48;
-constexpr int kAngles = 128;  // of a slice
+constexpr int kAngles = 128;  // integration steps of a slice
 constexpr double kStepPx = 0.5;
 
 struct Point {
@@ -17,8 +17,8 @@ struct Point {
   glm::dvec3 view;
 };
 
-// The largest cosine to the view direction of what the image shows on one side of a slice; -1 where
-// nothing lies within the radius.
+// Returns the largest cosine between the view direction and the direction to a visible surface
+// point in one half-slice, or -1 if none lies within the radius.
 double highest_cosine(const Drawing& drawing, const Point& point, glm::dvec2 direction_px,
                       double radius) {
   double highest = -1.0;

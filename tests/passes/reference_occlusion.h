@@ -1,5 +1,5 @@
-// What ambient occlusion should be, by brute force: every slice through the eye marched in steps of
-// half a pixel over the exact surfaces, integrated numerically in double precision.
+// Ambient occlusion by brute force: every slice is marched in steps of half a pixel over the exact
+// surfaces and integrated numerically in double precision.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,9 @@ struct ReferenceOcclusion {
   glm::dvec3 bent_normal{0.0};  // unit, view space
 };
 
-// Of pixel (x, y), which must show a surface. An occluder is whatever the image shows within
-// `radius` of the point, and all that lies behind it within the plane of a slice.
+// Returns the occlusion of pixel (x, y), which must show a surface. An occluder is everything that
+// the image shows within `radius` of the point, and everything behind it within the plane of a
+// slice.
 ReferenceOcclusion reference_occlusion(const Drawing& drawing, std::uint32_t x, std::uint32_t y,
                                        double radius);
 

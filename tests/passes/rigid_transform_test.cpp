@@ -1,5 +1,5 @@
-// View matrices as engines compute them: rounded, inverted in float or double, with and without
-// fused multiply-adds, far from the origin.
+// Tests view matrices with the rounding errors of engines: rounded, inverted in float or double,
+// with and without fused multiply-adds, and far from the origin.
 #include "rigid_transform.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace {
 
 using maths_test::RandomInput;
 
-// a b - c d as a compiler may contract it.
+// Returns a * b - c * d, with or without a fused multiply-add, as a compiler may contract it.
 template <typename Number, bool kFused>
 Number difference_of_products(Number a, Number b, Number c, Number d) {
   if constexpr (kFused) {
@@ -26,7 +26,8 @@ Number difference_of_products(Number a, Number b, Number c, Number d) {
   }
 }
 
-// By cofactors, as glm::inverse and most engines have it: the last row is a quotient too.
+// Inverts a matrix by cofactors, as glm::inverse and most engines do. The last row is also computed
+// by a division, so that it has rounding errors.
 template <typename Number, bool kFused>
 glm::mat<4, 4, Number> inverse_of(const glm::mat<4, 4, Number>& m) {
   const auto minor_of = [&](int skipped_column, int skipped_row) {
@@ -59,7 +60,7 @@ glm::mat<4, 4, Number> inverse_of(const glm::mat<4, 4, Number>& m) {
   for (int row = 0; row < 4; ++row) {
     determinant += m[0][row] * adjugate[row][0];
   }
-  // The reciprocal first, as fast-math builds do.
+  // Multiplying by the reciprocal is what fast-math builds do.
   return adjugate * (Number(1) / determinant);
 }
 
@@ -71,7 +72,7 @@ Matrix to_matrix(const glm::mat4& m) {
   return result;
 }
 
-// A camera's place in the world: a rotation, in half of the cases mirrored, and a translation.
+// Returns a random camera pose: a rotation, in half of the cases mirrored, and a translation.
 glm::dmat4 random_pose(RandomInput& random, float far) {
   const glm::dvec3 axis(random.unit_vector());
   glm::dmat4 pose = glm::rotate(glm::dmat4(1.0), double{random.uniform(-3.2f, 3.2f)}, axis);
@@ -159,7 +160,8 @@ TEST(RigidTransform, ExactMatricesAreNotChanged) {
 }
 
 TEST(Transposed, ProjectionIsTransposedOnlyIfItsMinusOneIsInTheTransposedPlace) {
-  // A near plane at 1: the offset of the depth is -1 too, and w may come rounded.
+  // With a near plane at 1 the depth offset is -1, like the factor of w, which may have rounding
+  // errors.
   for (const float w_from_z : {-1.0f, -0.9999999f, -1.0000002f}) {
     Matrix m{};
     m[0] = m[5] = 1.0f;

@@ -1,4 +1,4 @@
-// Two layers of depth: what the first hides occludes as if it were seen.
+// Tests that surfaces hidden by the first depth layer occlude as if they were visible.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -61,7 +61,7 @@ Scene tilted_and_box() {
   return scene;
 }
 
-// The sky, what is not a number, and the first layer again.
+// The second layers of this test: the sky, NaN, and the first layer again.
 TEST_F(SecondLayer, SecondLayerChangesNothingWhereNothingIsHidden) {
   const Scene scene = tilted_and_box();
   for (const TestView& view : test_views()) {
@@ -74,7 +74,7 @@ TEST_F(SecondLayer, SecondLayerChangesNothingWhereNothingIsHidden) {
       HostImage second = drawing.depth_ndc;
       const HostImage expected = visibility(view, drawing, second, settings);
       settings.depth_layers = 2;
-      // Two programs may round apart: by a step of 16 bits.
+      // Two pipelines may round differently, by one step of 16 bits.
       const auto same = testing::Pointwise(testing::FloatNear(1.6e-5f), expected.texels);
       EXPECT_THAT(visibility(view, drawing, second, settings).texels, same);
       for (const float none : {drawing.camera.sky(), std::numeric_limits<float>::quiet_NaN()}) {
@@ -85,7 +85,7 @@ TEST_F(SecondLayer, SecondLayerChangesNothingWhereNothingIsHidden) {
   }
 }
 
-// A layer adds sectors and takes none away.
+// A second layer adds occluded sectors and removes none.
 TEST_F(SecondLayer, SecondLayerNeverBrightens) {
   Scene scene = tilted_and_box();
   scene.push_back(sphere({0.36, 0.1, -2.2}, 0.35));

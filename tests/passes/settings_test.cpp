@@ -1,4 +1,4 @@
-// The defaults and ranges of the settings, and validate().
+// Tests the defaults and ranges of the settings, and validate().
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -43,11 +43,12 @@ TEST(Settings, NamesAreUniqueAndHelpIsSentences) {
   });
 }
 
-// What validate() says where the setting `name` has `value`; empty where it is accepted.
+// Returns the error of validate() if the setting `name` has `value`, or an empty text if it is
+// accepted.
 template <typename Value>
 std::string error_of(const std::string& name, Value value) {
   OcclusionSettings settings;
-  settings.advanced.estimator = Estimator::horizons;  // with which falloff may be above 0
+  settings.advanced.estimator = Estimator::horizons;  // allows a falloff above 0
   for_each_setting(settings, [&](const SettingInfo& info, auto& field) {
     if constexpr (std::is_same_v<std::remove_reference_t<decltype(field)>, Value>) {
       if (info.name == name) {

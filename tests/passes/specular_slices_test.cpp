@@ -1,5 +1,5 @@
-// Specular occlusion by the slices of visibility: against the GGX lobe cast over the exact
-// surfaces, and where nothing occludes.
+// Compares specular occlusion from slices with the GGX lobe traced over the exact surfaces, and
+// checks unoccluded scenes.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -23,8 +23,8 @@ OcclusionSettings settings_of(Quality quality, float radius, float roughness) {
   return settings;
 }
 
-// The share of the lobe at a pixel that meets nothing within the radius, from rays spread evenly
-// over the microfacets that the eye sees.
+// Returns the fraction of the lobe at a pixel that meets no surface within the radius, by rays for
+// evenly distributed microfacets that the eye sees.
 double cast_lobe(const Drawing& drawing, std::uint32_t x, std::uint32_t y, double radius,
                  float roughness) {
   constexpr int kSide = 48;
@@ -50,7 +50,7 @@ double cast_lobe(const Drawing& drawing, std::uint32_t x, std::uint32_t y, doubl
   return open > 0.0 ? visible / open : 1.0;
 }
 
-// Mean error over every 7th pixel of every 5th row.
+// Returns the mean error over every 7th pixel of every 5th row.
 double mean_error(const HostImage& specular, const Drawing& drawing, double radius,
                   float roughness) {
   double sum = 0.0;
@@ -68,7 +68,8 @@ double mean_error(const HostImage& specular, const Drawing& drawing, double radi
 
 TEST_F(SpecularSlices, AgreeWithRayCastLobesOnExactSurfaces) {
   const float radius = 1.2f;
-  // Perspective and orthographic. Walls and platforms are as deep as a depth buffer takes them for.
+  // Tests a perspective and an orthographic view. Walls and platforms extend as far back as the
+  // estimator assumes.
   for (const TestView& view : {test_views().front(), test_views().back()}) {
     for (const NamedScene& scene : {gtao_scenes()[0], gtao_scenes()[1]}) {
       const Drawing drawing = draw(view, 60, 40, scene.scene);
@@ -113,7 +114,7 @@ TEST_F(SpecularSlices, UnoccludedSurfaceHasSpecularVisibilityOne) {
   }
 }
 
-// History gathers what one frame cannot hold: a narrow lobe lies in few slices.
+// The error falls over several frames, because a narrow lobe lies in few slices of one frame.
 TEST_F(SpecularSlices, ErrorOfNarrowLobesFallsOverFrames) {
   const float radius = 1.2f, roughness = 0.2f;
   const TestView view = test_views().front();

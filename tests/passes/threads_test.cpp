@@ -1,4 +1,4 @@
-// Frames whose passes several threads record at the same time.
+// Tests frames whose passes several threads record at the same time.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -35,7 +35,7 @@ std::unique_ptr<sample::HostBuffer> uploaded(const sample::Gpu& gpu, const HostI
   return buffer;
 }
 
-// Several views of one picture, so that many passes are recorded at once.
+// Several views of one scene, so that many passes are recorded at the same time.
 class Views {
  public:
   explicit Views(sample::Gpu& gpu) : gpu_(gpu) {
@@ -89,8 +89,9 @@ class Views {
   std::vector<std::unique_ptr<sample::HostBuffer>> results_;
 };
 
-// What the validation layers said, but that from one command buffer to another they do not see a
-// layout change ordered by what its barrier's own sources waited for; with one thread they do.
+// Returns the messages of the validation layers without a known false one: across command buffers,
+// the layers do not see that a layout change is ordered by the operations for which its barrier's
+// source stages waited. With one thread they do.
 std::string messages(const sample::Gpu& gpu) {
   std::string text;
   for (const std::string& message : gpu.device().validation_messages()) {
@@ -101,7 +102,7 @@ std::string messages(const sample::Gpu& gpu) {
   return text;
 }
 
-// The visibility of each view of each frame, recorded by so many threads.
+// Returns the visibility of each view of each frame, recorded by `threads` threads.
 std::vector<std::vector<float>> run_frames(std::uint32_t threads, std::uint32_t frames) {
   const auto gpu = sample::Gpu::create(
       {.validation = true},

@@ -1,4 +1,4 @@
-// What foregrounds and the image's border hide is left out of visibility.
+// Tests that directions which foregrounds or the image's border hide are excluded from visibility.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -29,7 +29,7 @@ std::vector<TestView> two_views() {
           orthographic_view("orthographic", 3.0, 1.25, 0.1, 20.0)};
 }
 
-// A floor between two walls along y, the same to both sides.
+// Returns a floor between two equal walls along y.
 Scene trench() {
   constexpr double kFloor = 4.5, kHalfWidth = 0.5, kDepth = 0.6;
   Scene scene = {plane({0.0, 0.0, -kFloor}, {0.0, 0.0, 1.0})};
@@ -44,7 +44,7 @@ Scene trench() {
   return scene;
 }
 
-// Before all that lies to the right of the eye, and further from it than the radius.
+// Returns a plate in front of everything to the right of `edge`, farther from it than the radius.
 Surface plate(double edge) {
   Surface surface = plane({0.0, 0.0, -2.5}, {0.0, 0.0, 1.0});
   surface.keep = [edge](const glm::dvec3& p) { return p.x > edge; };
@@ -61,7 +61,7 @@ double mean_difference(const HostImage& a, const HostImage& b, std::uint32_t fro
   return sum / count;
 }
 
-// Half a trench is as open as the whole.
+// The visible half of a trench must have the visibility of the whole trench.
 TEST_F(UnobservedPass, HiddenHalfOfATrenchIsAssumedEqualToTheVisibleHalf) {
   for (const TestView& view : two_views()) {
     SCOPED_TRACE(view.name);
@@ -94,7 +94,8 @@ TEST_F(UnobservedPass, TrenchIsAssumedToContinueBeyondTheBorder) {
   }
 }
 
-// A ball on a floor, in a radius wider than the image: what is seen occluded is not multiplied.
+// A ball on a floor with a radius wider than the image: occlusion that is visible must not be
+// multiplied.
 TEST_F(UnobservedPass, WideRadiusExcludesFewDirections) {
   for (const TestView& view : two_views()) {
     SCOPED_TRACE(view.name);
@@ -114,7 +115,7 @@ TEST_F(UnobservedPass, WideRadiusExcludesFewDirections) {
 TEST_F(UnobservedPass, BackgroundIsAssumedToContinueBeyondTheBorder) {
   for (const TestView& view : two_views()) {
     SCOPED_TRACE(view.name);
-    // Half a trench, and beside its floor nothing.
+    // The scene is half a trench, with nothing beside its floor.
     Scene scene = trench();
     for (Surface& surface : scene) {
       const auto keep = surface.keep;

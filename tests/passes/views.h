@@ -1,4 +1,5 @@
-// Views of every kind, and depth buffers of planes as they would draw them, in double precision.
+// Views of every kind of projection, and depth buffers of planes in these views, computed in double
+// precision.
 #pragma once
 
 #include <string>
@@ -14,16 +15,17 @@ struct TestView {
   bool orthographic = false;
 };
 
-// Perspective: finite, infinite, reversed, off-centre, jittered, flipped in Y; orthographic.
+// Returns one view of each kind: perspective (finite, infinite, reversed, off-centre, jittered,
+// flipped in Y) and orthographic.
 std::vector<TestView> test_views();
 
-// `scale_x` and `scale_y` are cotangents of half the angles of view; `far` may be infinite.
+// `scale_x` and `scale_y` are the cotangents of half the fields of view. `far` may be infinite.
 TestView perspective_view(std::string name, double scale_x, double scale_y, double near, double far,
                           bool reversed);
 TestView orthographic_view(std::string name, double half_width, double half_height, double near,
                            double far);
 
-// A plane through the point 4 units before the eye, tilted about the image's diagonal.
+// A plane through the point 4 units in front of the eye, tilted about the image's diagonal.
 struct PlaneScene {
   HostImage depth_ndc;
   HostImage normal_vs;  // four channels
@@ -31,7 +33,8 @@ struct PlaneScene {
 PlaneScene plane_scene(const TestView& view, std::uint32_t width, std::uint32_t height,
                        float tilt_degrees);
 
-// The columns of an image from `first` on, `count` of `width`, as an image of their own.
+// Returns the view whose image has `count` of the `width` columns of another one, from column
+// `first` on.
 TestView columns_of(TestView view, std::uint32_t width, std::uint32_t first, std::uint32_t count);
 
 }  // namespace alcove::passes

@@ -29,7 +29,7 @@ TEST(Variants, EachDiffersFromTheBaseAndHasAUniqueName) {
       parts.insert(variant.part);
     }
     for (const char* part : {"estimator", "occluders", "resolution", "work", "pattern",
-                             "snap_to_texels", "border", "grouping", "filter", "history"}) {
+                             "snap_to_texels", "border", "filter", "history"}) {
       EXPECT_TRUE(parts.contains(part)) << part;
     }
     EXPECT_GT(names.size(), 15u);
@@ -141,21 +141,6 @@ TEST_F(AblationTest, SnappingKeepsOpenSurfacesOpen) {
   const double without = compare_images(result->visibility, truth, open_surfaces).bias;
   EXPECT_GT(with, -0.01);
   EXPECT_LT(without, 2.0 * with - 0.003);
-  EXPECT_EQ(result->cost.bytes, ablation->base_bytes());
-}
-
-TEST_F(AblationTest, GroupingByPatternChangesNeitherImageNorMemory) {
-  const auto gpu = open_validated();
-  const auto other = open_validated();
-  ASSERT_TRUE(gpu && other);
-  auto ablation = VariantRunner::create(*gpu, scene_, setup_, base_);
-  ASSERT_TRUE(ablation) << ablation.error();
-  Variant variant{"grouping", "one direction", base_};
-  variant.settings.advanced.grouping = passes::Grouping::pattern;
-  const auto result = ablation->run(*other, variant);
-  ASSERT_TRUE(result) << result.error();
-  const Mask all(setup_.width, setup_.height, 1);
-  EXPECT_LT(compare_images(result->visibility, ablation->base().visibility, all).rmse, 1e-4);
   EXPECT_EQ(result->cost.bytes, ablation->base_bytes());
 }
 

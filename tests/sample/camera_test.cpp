@@ -97,8 +97,9 @@ TEST(Camera, LookingAlongUpStillHasAxes) {
   EXPECT_NEAR(glm::determinant(glm::mat3(view)), 1.0f, 1e-5f);
 }
 
-TEST(Camera, AnOrbitByNothingIsTheSameView) {
-  // Near a target so large beside it that eye and arm cannot be had from each other again.
+TEST(Camera, OrbitByZeroIsTheSameView) {
+  // The target's coordinates are so large that the eye and the offset from the target cannot be
+  // computed from each other in floats.
   Camera camera;
   camera.eye_ws = {1.1e-9f, 3e-9f, 6e-9f};
   camera.target_ws = {-0.5f, -0.4f, -0.8f};

@@ -22,7 +22,7 @@ void write_file(const std::filesystem::path& file, const std::string& bytes) {
   std::ofstream(file, std::ios::binary) << bytes;
 }
 
-// An uncompressed Radiance file of one colour: mantissas and exponent.
+// Returns an uncompressed Radiance file of one colour, given as three mantissas and an exponent.
 std::string radiance_file(int width, int height, const std::string& pixel) {
   std::string text = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y " + std::to_string(height) + " +X " +
                      std::to_string(width) + "\n";
@@ -81,7 +81,7 @@ TEST(Environment, LargeFilesAreReducedToTheirMean) {
   for (const glm::vec3& pixel : loaded->pixels) ASSERT_EQ(pixel, glm::vec3(2.0f));
 }
 
-// The coding by channels: a run of one value, then single values.
+// Rows are coded by channel: a run of one value, then single values.
 TEST(Environment, RadianceRunsByChannelAreRead) {
   const TemporaryFolder folder;
   std::string text = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 8\n";
@@ -97,7 +97,7 @@ TEST(Environment, RadianceRunsByChannelAreRead) {
   EXPECT_EQ(image->at(7, 0), glm::vec3(1.0f, 1.0f, 0.5f));
 }
 
-// The older coding: the pixel (1, 1, 1, n) repeats the one before it n times.
+// In the older coding, the pixel (1, 1, 1, n) repeats the previous pixel n times.
 TEST(Environment, RadianceRunsOfWholePixelsAreRead) {
   const TemporaryFolder folder;
   std::string text = "#?RGBE\n\n-Y 2 +X 300\n";
@@ -150,7 +150,7 @@ TEST(Environment, SidesOverTheLimitAreRefusedBeforeReading) {
   EXPECT_THAT(image.error(), HasSubstr("40000x20000"));
 }
 
-// OpenEXR would take as much memory as the attribute says.
+// OpenEXR would allocate as much memory as the attribute's size field says.
 TEST(Environment, ExrAttributesOfAWrongSizeAreRefused) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_exr(folder.path / "a.exr", EnvironmentImage(8, 4)));

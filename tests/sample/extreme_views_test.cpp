@@ -16,7 +16,8 @@
 namespace alcove::sample {
 namespace {
 
-// ALCOVE_VIEWS generated views; 24 where it is not set. The soak test draws 250.
+// Returns the number of generated views: ALCOVE_VIEWS, or 24 if it is not set. The soak test sets
+// 250.
 std::uint32_t view_count() {
   const char* text = std::getenv("ALCOVE_VIEWS");
   return text != nullptr ? static_cast<std::uint32_t>(std::stoul(text)) : 24;

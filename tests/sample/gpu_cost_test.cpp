@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <fstream>
+#include <vector>
 
+#include "alcove/passes/setting_names.h"
 #include "gpu_cost/budget.h"
 
 namespace alcove::sample {
@@ -100,6 +102,43 @@ TEST(GpuCost, TextOfAnotherCompilerIsReported) {
   EXPECT_FALSE(blocks_of(shader_of("no blocks here")));
 }
 
+// The number of times that each loop of the search runs; -1 for one that is not known.
+std::vector<double> search_iterations(const passes::OcclusionSettings& settings,
+                                      std::vector<CompiledLoop> loops) {
+  std::vector<double> found;
+  for (std::uint32_t i = 0; i < loops.size(); ++i) {
+    loops[i].index = i;
+  }
+  const PassWork work{"gtao", settings, FrameState::moving, loops};
+  for (const CompiledLoop& loop : loops) {
+    found.push_back(passes::cost::iterations(work, loop).value_or(-1.0));
+  }
+  return found;
+}
+
+TEST(GpuCost, LoopsOfTheSearchAreToldApartByTheirFetches) {
+  passes::OcclusionSettings settings;
+  settings.slices = 2;
+  settings.steps = 16;
+  const auto loop = [](std::uint32_t depth, std::uint32_t loads) {
+    return CompiledLoop{.depth = depth, .loads = loads};
+  };
+  EXPECT_THAT(search_iterations(settings, {loop(1, 4), loop(2, 4), loop(3, 2)}),
+              ElementsAre(2, 2, 7))
+      << "slices, half-slices, steps";
+  EXPECT_THAT(search_iterations(settings, {loop(1, 16), loop(2, 16)}), ElementsAre(2, 2))
+      << "the loop over steps is unrolled";
+  EXPECT_THAT(search_iterations(settings, {loop(1, 8), loop(2, 2), loop(2, 2)}),
+              ElementsAre(2, 7, 7))
+      << "the loop over half-slices is unrolled";
+  EXPECT_THAT(search_iterations(settings, {loop(1, 16), loop(1, 16)}), ElementsAre(2, 2))
+      << "the loop over slices is unrolled";
+  EXPECT_THAT(search_iterations(settings, {loop(1, 5), loop(2, 5)}), ElementsAre(-1, -1))
+      << "no number of steps has five fetches";
+  EXPECT_THAT(search_iterations(settings, {loop(1, 0)}), ElementsAre(-1))
+      << "visibility has no loop over occluder runs";
+}
+
 TEST(GpuCost, LoopWithoutDeclaredIterationsIsReported) {
   const passes::OcclusionSettings settings;
   const CompiledLoop loop{.index = 0, .depth = 1, .instructions = 7};
@@ -108,6 +147,31 @@ TEST(GpuCost, LoopWithoutDeclaredIterationsIsReported) {
   ASSERT_FALSE(iterations);
   EXPECT_THAT(iterations.error(), HasSubstr("'normals' (moving frame)"));
   EXPECT_THAT(iterations.error(), HasSubstr("7 instructions"));
+}
+
+// Rows of 8 texels of 4 or 8 bytes lie in one line each. A gather of adjacent texels reads 9 rows
+// of 9 texels, and one of every second texel 16 rows of 16.
+TEST(GpuCost, CacheLinesOfALoadAreThoseOfItsAddresses) {
+  using passes::cost::cache_lines;
+  EXPECT_EQ(cache_lines({}), 8);
+  EXPECT_EQ(cache_lines({.texel_bytes = 8}), 8);
+  EXPECT_EQ(cache_lines({.pitch = 2}), 8);
+  EXPECT_EQ(cache_lines({.texel_bytes = 8, .pitch = 2}), 16);
+  EXPECT_EQ(cache_lines({.footprint = 2, .anywhere = true}), 9 * 1.5);
+  EXPECT_EQ(cache_lines({.pitch = 2, .footprint = 2, .first = -1}), 16 * 2);
+}
+
+// The limit of 12 holds for pixels that load 4 or 8 bytes each. Texels of 2x2 pixels read 16 rows
+// of depth with every gather.
+TEST(GpuCost, ReconstructionAtFullResolutionTouchesFewCacheLines) {
+  for (const auto quality :
+       {passes::Quality::low, passes::Quality::medium, passes::Quality::high}) {
+    const passes::OcclusionSettings settings = passes::quality_settings(quality, 0.5f);
+    for (const FrameState state : {FrameState::first, FrameState::moving, FrameState::converged}) {
+      const PassWork work{"reconstruct", settings, state, {}};
+      EXPECT_LE(passes::cost::cache_lines_per_load(work), 12) << passes::name_of(quality);
+    }
+  }
 }
 
 SettingsCost one_pass(double instructions, double registers, double waves, double spills) {

@@ -23,9 +23,9 @@ struct PngRecipe {
   int bits = 8;
   bool interlaced = false;
   std::vector<uint16_t> samples;
-  std::vector<png_color> palette;  // of PNG_COLOR_TYPE_PALETTE
+  std::vector<png_color> palette;  // for PNG_COLOR_TYPE_PALETTE
   std::vector<uint8_t> alphas;     // of palette entries; may be empty
-  double gamma = 0.0;              // of a gAMA chunk; 0: none
+  double gamma = 0.0;              // value of a gAMA chunk; 0: no chunk
 
   int channels() const {
     switch (colour_type) {
@@ -63,7 +63,7 @@ inline std::vector<uint8_t> make_png(const PngRecipe& recipe) {
   }
   if (recipe.gamma > 0.0) png_set_gAMA(png, info, recipe.gamma);
   png_write_info(png, info);
-  // Samples packed as PNG has them: the highest bits first, 16 bits as two bytes.
+  // Samples are packed as PNG requires: the highest bits first, 16 bits as two bytes.
   const size_t per_row = size_t{recipe.width} * static_cast<size_t>(recipe.channels());
   const size_t row_bytes = (per_row * static_cast<size_t>(recipe.bits) + 7) / 8;
   std::vector<uint8_t> packed(row_bytes * recipe.height);
@@ -89,7 +89,7 @@ inline std::vector<uint8_t> make_plain_png(uint32_t width, uint32_t height, uint
   return make_png(recipe);
 }
 
-// A PNG that promises a size and holds `padding` bytes of nothing.
+// Returns a PNG whose header has this size and whose data are `padding` bytes of zeros.
 inline std::vector<uint8_t> make_png_promise(uint32_t width, uint32_t height, size_t padding) {
   std::vector<uint8_t> out{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n', 0, 0, 0, 13};
   std::vector<uint8_t> header{'I', 'H', 'D', 'R'};

@@ -15,7 +15,7 @@
 
 namespace alcove::sample {
 
-// Triangles without normals: each is shaded by its own.
+// Triangles without vertex normals, so that each is shaded with its geometric normal.
 struct Triangles {
   std::vector<glm::vec3> positions;
   std::vector<uint32_t> indices;
@@ -128,7 +128,8 @@ class ModelMaker {
   GltfMaker gltf;
 };
 
-// `alcove render FILE` under the validation layers, at 160x90. The test fails where it does.
+// Renders a file as `alcove render` does, at 160x90 under the validation layers. Any message fails
+// the test.
 inline tl::expected<Rendering, std::string> draw_file(const std::string& file, Options options) {
   options.scene = file;
   options.view.width = 160;
@@ -147,8 +148,8 @@ inline tl::expected<Rendering, std::string> draw_file(const std::string& file) {
 // Fractions of the pixels of a picture, by their contents.
 struct Shares {
   double sky = 0.0;       // pixels without a surface, of all
-  double occluded = 0.0;  // pixels of a visibility under .9, of those with a surface
-  double least = 1.0;     // the least visibility of a surface
+  double occluded = 0.0;  // pixels with a visibility below .9, of those with a surface
+  double least = 1.0;     // the smallest visibility of a surface
 };
 inline Shares shares_of(const Rendering& rendering) {
   Shares shares;

@@ -1,4 +1,5 @@
-// A quad with a normal map, drawn and read back: the normals that the occlusion and the truths get.
+// Renders a quad with a normal map and reads back the normals that the occlusion pass and the
+// truths get.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,9 +14,10 @@ namespace alcove::sample {
 namespace {
 
 constexpr std::uint32_t kSize = 16;
-constexpr float kByte = 1.0f / 127.0f;  // a step of an 8-bit map
+constexpr float kByte = 1.0f / 127.0f;  // quantisation step of an 8-bit map
 
-// What the map of these tests says, as its bytes hold it: right, up and towards the viewer.
+// The normal in the map of these tests, after quantisation: to the right, up and towards the
+// viewer.
 const glm::vec3 kTilt(0.48f, 0.36f, 0.8f);
 
 TextureImage map_of(const glm::vec3& normal) {
@@ -41,7 +43,7 @@ class NormalMap : public QuadTest {
     return QuadTest::draw(scene, kSize, camera, normals);
   }
 
-  // Everywhere on the quad, which fills the picture.
+  // Checks the normal at every pixel of the quad, which fills the picture.
   static void expect_normal(const FrameImages& images, const glm::vec3& normal) {
     ASSERT_EQ(images.normal_ws.pixels.size(), std::size_t{kSize} * kSize);
     for (const glm::vec3& n : images.normal_ws.pixels) {
@@ -51,9 +53,9 @@ class NormalMap : public QuadTest {
   }
 };
 
-TEST_F(NormalMap, TiltsRightAlongUAndUpAgainstV) { expect_normal(draw(quad()), kTilt); }
+TEST_F(NormalMap, RedTiltsNormalsAlongUAndGreenAgainstV) { expect_normal(draw(quad()), kTilt); }
 
-TEST_F(NormalMap, ScaleIsOfXAndY) {
+TEST_F(NormalMap, ScaleMultipliesXAndYOnly) {
   for (const float scale : {-1.0f, 0.0f, 0.5f, 1e6f}) {
     Scene scene = quad();
     scene.materials[0].normal_scale = scale;
@@ -61,7 +63,7 @@ TEST_F(NormalMap, ScaleIsOfXAndY) {
   }
 }
 
-TEST_F(NormalMap, TangentsOfTheFileAgreeWithThoseThatAreMade) {
+TEST_F(NormalMap, TangentsOfTheFileAgreeWithGeneratedOnes) {
   Scene scene = quad();
   scene.meshes[0].tangents.assign(6, glm::vec4(1.0f, 0.0f, 0.0f, 1.0f));
   expect_normal(draw(scene), kTilt);
@@ -69,7 +71,7 @@ TEST_F(NormalMap, TangentsOfTheFileAgreeWithThoseThatAreMade) {
   expect_normal(draw(scene), kTilt * glm::vec3(-1.0f, 1.0f, 1.0f));
 }
 
-TEST_F(NormalMap, MirroredHalvesTiltAgainstEachOtherThoughTheyShareVertices) {
+TEST_F(NormalMap, MirroredHalvesWithSharedVerticesTiltInOppositeDirections) {
   Scene scene = quad();
   for (glm::vec2& uv : scene.meshes[0].uvs) uv.x = std::abs(uv.x - 0.5f);
   const FrameImages images = draw(scene);
@@ -81,18 +83,18 @@ TEST_F(NormalMap, MirroredHalvesTiltAgainstEachOtherThoughTheyShareVertices) {
   }
 }
 
-TEST_F(NormalMap, TurnsWithTheTransformOfItsTexture) {
+TEST_F(NormalMap, TextureTransformRotatesTheNormals) {
   Scene scene = quad();
-  // u of the map is v of the mesh, v of the map is -u.
+  // The transform maps u of the mesh to -v of the map, and v of the mesh to u of the map.
   scene.materials[0].normal_texture.texture_from_mesh_uv = {0.0f, -1.0f, 1.0f, 0.0f, 0.0f, 1.0f};
   expect_normal(draw(scene), {kTilt.y, -kTilt.x, kTilt.z});
 }
 
-TEST_F(NormalMap, SeenFromBehindTurnsWithTheSurface) {
+TEST_F(NormalMap, NormalsAreFlippedOnBackFaces) {
   expect_normal(draw(quad(), camera_at(-3.0f)), -kTilt);
 }
 
-TEST_F(NormalMap, LeavesTheVerticesNormalWhereThereIsNothingToLayItAlong) {
+TEST_F(NormalMap, VertexNormalIsKeptWhereTextureCoordinatesHaveNoArea) {
   Scene scene = quad();
   for (glm::vec2& uv : scene.meshes[0].uvs) uv = glm::vec2(0.25f);
   expect_normal(draw(scene), {0.0f, 0.0f, 1.0f});
@@ -103,16 +105,17 @@ TEST_F(NormalMap, LeavesTheVerticesNormalWhereThereIsNothingToLayItAlong) {
   expect_normal(draw(scene), {0.0f, 0.0f, 1.0f});
 }
 
-TEST_F(NormalMap, BendsNoFurtherThanIntoTheFace) {
+TEST_F(NormalMap, NormalsAreLimitedToTheSideOfTheFace) {
   expect_normal(draw(quad({0.6f, 0.0f, -0.8f})), {1.0f, 0.0f, 0.0f});
-  // Straight in: which way it then lies is the map's rounding.
+  // The normal in the map points straight into the surface, so that rounding decides its direction
+  // in the surface.
   for (const glm::vec3& n : draw(quad({0.0f, 0.0f, -1.0f})).normal_ws.pixels) {
     EXPECT_NEAR(glm::length(n), 1.0f, 2e-3f);
     EXPECT_GT(n.z, -1e-3f);
   }
 }
 
-TEST_F(NormalMap, TiltsAgainstEachOtherCancelWhereTexelsAreSmallerThanPixels) {
+TEST_F(NormalMap, OppositeTiltsCancelWhereTexelsAreSmallerThanPixels) {
   Scene scene = quad();
   TextureImage& map = scene.images[0];
   const TextureImage right = map_of(kTilt), left = map_of(kTilt * glm::vec3(-1.0f, -1.0f, 1.0f));
@@ -124,11 +127,11 @@ TEST_F(NormalMap, TiltsAgainstEachOtherCancelWhereTexelsAreSmallerThanPixels) {
   expect_normal(draw(scene), {0.0f, 0.0f, 1.0f});
 }
 
-TEST_F(NormalMap, IsOfShadingNormalsAlone) {
+TEST_F(NormalMap, NormalMapAffectsShadingNormalsOnly) {
   expect_normal(draw(quad(), camera_at(3.0f), NormalSource::kGeometric), {0.0f, 0.0f, 1.0f});
 }
 
-TEST_F(NormalMap, TruthIsOfTheNormalsThatTheOcclusionWasGiven) {
+TEST_F(NormalMap, TruthUsesTheNormalsThatThePassWasGiven) {
   const Scene scene = quad();
   const Camera camera = camera_at(3.0f);
   const FrameImages images = draw(scene, camera);
@@ -137,16 +140,17 @@ TEST_F(NormalMap, TruthIsOfTheNormalsThatTheOcclusionWasGiven) {
   const auto points =
       surface_points(*rays, camera, images.normal_ws, linear_depth(camera, images.depth_ndc));
   const auto truth = occlusion_truth(*rays, points, {.radius = 0.2f, .spp = 1024}, nullptr);
-  // Of the cosine lobe about a tilted normal, a plane leaves (1 + cos) / 2.
+  // A plane leaves (1 + cos) / 2 of the cosine lobe around a tilted normal visible.
   EXPECT_NEAR(truth.visibility.at(kSize / 2, kSize / 2), 0.5f * (1.0f + kTilt.z), 0.01f);
 }
 
-TEST_F(NormalMap, CutOutsFollowTheirTransformInRasteriserAndRayTracerAlike) {
+TEST_F(NormalMap, AlphaMasksFollowTheirTransformInRasteriserAndRayTracer) {
   Scene scene = quad();
   Material& material = scene.materials[0];
   material.normal_texture = {};
   material.alpha_mode = AlphaMode::kMask;
-  // Opaque left of the middle; at twice the coordinates and a quarter turn, strips.
+  // The mask is opaque left of the middle. The transform doubles the coordinates and rotates them
+  // by 90 degrees, which gives strips.
   scene.images[0] = {"mask", 2, 1, {255, 255, 255, 255, 255, 255, 255, 0}};
   material.base_color_texture.image = 0;
   material.base_color_texture.texture_from_mesh_uv = {0.0f, -2.0f, 2.0f, 0.0f, 0.0f, 1.0f};
@@ -182,7 +186,8 @@ TEST(Tangents, AreUnitOrZeroAndPerpendicularToNormalsOfACurvedMesh) {
   }
 }
 
-// MikkTSpace welds corners of equal values, so it makes no difference whether a file does.
+// MikkTSpace merges corners with equal values, so that shared and unshared vertices give the same
+// tangents.
 TEST(Tangents, UnsharedVerticesHaveThoseOfSharedOnes) {
   Scene scene = quad();
   const Mesh shared = scene.meshes[0];
@@ -206,7 +211,7 @@ TEST(Tangents, TrianglesThatMeetInAVertexAloneDoNotShareItsTangent) {
   Mesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {-1, 0, 0}, {-1, -1, 0}};
   mesh.normals.assign(5, glm::vec3(0, 0, 1));
-  // The second triangle's u runs along y, and it is as little mirrored as the first.
+  // In the second triangle, u runs along y. It is mirrored as the first one is.
   mesh.uvs = {{0, 0}, {1, 0}, {1, -1}, {0, -1}, {-1, -1}};
   mesh.indices = {0, 1, 2, 0, 3, 4};
   const auto tangents = corner_tangents(mesh, {});
@@ -214,7 +219,7 @@ TEST(Tangents, TrianglesThatMeetInAVertexAloneDoNotShareItsTangent) {
   EXPECT_LT(glm::distance(glm::vec3(tangents[3]), glm::vec3(0, 1, 0)), 1e-6f);
 }
 
-// A triangle without area in the texture takes the tangents of the one beside it.
+// A triangle without area in the texture gets the tangents of its neighbour.
 TEST(Tangents, TriangleWithoutAreaInTheTextureFollowsItsNeighbour) {
   Mesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};

@@ -25,7 +25,7 @@ TEST(Options, DefaultsAreTheBuiltInSceneAt960By540) {
   EXPECT_EQ(options->view.height, 540u);
 }
 
-TEST(Options, AWindowStaysOpenAndWritesNothingUnlessToldOtherwise) {
+TEST(Options, ViewWithoutFramesAndOutputStaysOpenAndWritesNothing) {
   const auto plain = parse({"view", "scene.glb"});
   ASSERT_TRUE(plain) << plain.error().text;
   EXPECT_EQ(plain->command, Command::kView);
@@ -38,7 +38,7 @@ TEST(Options, AWindowStaysOpenAndWritesNothingUnlessToldOtherwise) {
   EXPECT_FALSE(parse({"view", "--frames", "0"}));
 }
 
-TEST(Options, AFullCommandLineIsUnderstood) {
+TEST(Options, CommandLineWithEveryOptionIsParsed) {
   const auto options =
       parse({"compare",  "scene.glb", "--eye",         "-9,5.5,-0.4", "--target",    "5,3.2,-0.3",
              "--fov-y",  "60",        "--near",        "0.1",         "--far",       "inf",
@@ -63,7 +63,7 @@ TEST(Options, AFullCommandLineIsUnderstood) {
   EXPECT_EQ(options->out, "x");
 }
 
-TEST(Options, NonsenseIsRefusedInASentenceThatNamesTheOption) {
+TEST(Options, InvalidValuesAreRefusedInASentenceThatNamesTheOption) {
   const std::vector<std::vector<const char*>> wrong = {
       {"render", "--size", "0x540"},     {"render", "--size", "960"},
       {"render", "--size", "99999x2"},   {"render", "--radius", "0"},
@@ -84,7 +84,7 @@ TEST(Options, NonsenseIsRefusedInASentenceThatNamesTheOption) {
   }
 }
 
-TEST(Options, MotionTakesAnOptionalCameraPathAndRefusesTooFewFrames) {
+TEST(Options, MotionAcceptsACameraPathAndRefusesTooFewFrames) {
   const auto all = parse({"motion"});
   ASSERT_TRUE(all);
   EXPECT_EQ(all->command, Command::kMotion);
@@ -104,7 +104,7 @@ TEST(Options, MotionTakesAnOptionalCameraPathAndRefusesTooFewFrames) {
   }
 }
 
-TEST(Options, BenchTakesAnyNumberOfScenes) {
+TEST(Options, BenchAcceptsAnyNumberOfScenes) {
   const auto none = parse({"bench"});
   ASSERT_TRUE(none) << none.error().text;
   EXPECT_EQ(none->command, Command::kBench);
@@ -115,7 +115,7 @@ TEST(Options, BenchTakesAnyNumberOfScenes) {
   EXPECT_EQ(two->scenes, (std::vector<std::string>{"step", "corner"}));
 }
 
-TEST(Options, RecommendTakesATimeOrAnError) {
+TEST(Options, RecommendNeedsATimeOrAnError) {
   const auto time = parse({"recommend", "step", "--budget-ms", "0.5"});
   ASSERT_TRUE(time) << time.error().text;
   EXPECT_EQ(time->budget_ms, 0.5);
@@ -133,7 +133,7 @@ TEST(Options, RecommendTakesATimeOrAnError) {
   }
 }
 
-TEST(Options, NearMustBeBeforeFar) {
+TEST(Options, NearPlaneMustBeInFrontOfTheFarPlane) {
   const auto options = parse({"render", "--near", "5", "--far", "2"});
   ASSERT_FALSE(options);
   EXPECT_THAT(options.error().text, HasSubstr("--near"));
@@ -141,7 +141,7 @@ TEST(Options, NearMustBeBeforeFar) {
               HasSubstr("--near 1e-07:"));
 }
 
-TEST(Options, AnOrthographicViewMayReachBehindItsEye) {
+TEST(Options, OrthographicNearPlaneMayBeBehindTheEye) {
   const auto options = parse({"render", "--ortho-height", "4", "--near", "-20", "--far", "-0.5"});
   ASSERT_TRUE(options) << options.error().text;
   EXPECT_EQ(*options->view.near_plane, -20.0f);
@@ -155,13 +155,13 @@ TEST(Options, AnOrthographicViewMayReachBehindItsEye) {
   EXPECT_FALSE(parse({"render", "--ortho-height", "4", "--near", "inf"}));
 }
 
-TEST(Options, AngleOfViewMayBeAsWideAndAsNarrowAsAFilesCamera) {
+TEST(Options, FieldOfViewHasTheRangeOfCamerasInFiles) {
   EXPECT_EQ(*parse({"render", "--fov-y", "174.75"})->view.fov_y, glm::radians(174.75f));
   EXPECT_EQ(*parse({"render", "--fov-y", "0.573"})->view.fov_y, glm::radians(0.573f));
   EXPECT_FALSE(parse({"render", "--fov-y", "0"}));
 }
 
-TEST(Options, AnOrbitTurnsAtMostOnceRoundPerFrame) {
+TEST(Options, OrbitIsAtMostAFullRotationPerFrame) {
   for (const char* angle : {"360", "-360", "1e-3", "0"}) {
     const auto options = parse({"render", "--orbit", angle});
     ASSERT_TRUE(options) << options.error().text;
@@ -176,13 +176,13 @@ TEST(Options, AnOrbitTurnsAtMostOnceRoundPerFrame) {
   }
 }
 
-TEST(Options, OfAnOptionThatIsGivenTwiceTheLastCounts) {
+TEST(Options, LastOfRepeatedOptionsCounts) {
   const auto options = parse({"render", "--size", "1x1", "--eye", "1,2,3", "--size", "640x360"});
   ASSERT_TRUE(options) << options.error().text;
   EXPECT_EQ(options->view.width, 640u);
 }
 
-TEST(Options, WhatHasNoEffectIsRefused) {
+TEST(Options, OptionsWithoutEffectAreRefused) {
   EXPECT_FALSE(parse({"view", "--spp", "16"}));
   for (const char* command : {"render", "graph"}) {
     EXPECT_TRUE(parse({command, "--spp", "16"})) << "a line for compare serves " << command;
@@ -196,14 +196,14 @@ TEST(Options, WhatHasNoEffectIsRefused) {
   EXPECT_TRUE(parse({"graph", "--roughness", "0.3"}));
 }
 
-TEST(Options, TwoOfRoughnessThatWouldBeOneFileAreRefused) {
+TEST(Options, RoughnessValuesWithTheSameFileNameAreRefused) {
   const auto options = parse({"render", "--roughness", "0.3,0.1,0.3"});
   ASSERT_FALSE(options);
   EXPECT_THAT(options.error().text, HasSubstr("0.3,0.1,0.3: give"));
   EXPECT_TRUE(parse({"render", "--roughness", "0.3,0.301"}));
 }
 
-TEST(Options, ASettingIsCheckedBeforeAnythingIsLoaded) {
+TEST(Options, SettingsAreCheckedBeforeASceneIsLoaded) {
   const struct {
     const char* given;
     const char* wanted;
@@ -222,7 +222,7 @@ TEST(Options, ASettingIsCheckedBeforeAnythingIsLoaded) {
   }
 }
 
-TEST(Options, HelpTeachesAndAsksForNoRun) {
+TEST(Options, HelpIsPrintedWithoutRunningTheCommand) {
   const auto all = parse({"--help"});
   ASSERT_FALSE(all);
   EXPECT_EQ(all.error().status, 0);
@@ -235,7 +235,7 @@ TEST(Options, HelpTeachesAndAsksForNoRun) {
   EXPECT_EQ(after_a_mistake.error().text, one.error().text);
 }
 
-TEST(Options, HelpSaysHowTheCommandIsTyped) {
+TEST(Options, HelpShowsTheUsageOfTheCommand) {
   EXPECT_THAT(parse({"render", "--help"}).error().text, HasSubstr("Usage: alcove render "));
 }
 
@@ -244,26 +244,26 @@ TEST(Options, HelpListsTheSettings) {
        {"render", "compare", "motion", "ablate", "bench", "recommend", "graph", "view"}) {
     const std::string help = parse({command, "--help"}).error().text;
     EXPECT_THAT(help, HasSubstr("clamp_width")) << command;
-    EXPECT_THAT(help, HasSubstr("Tiles that a workgroup traces: 8x8 adjacent")) << command;
+    EXPECT_THAT(help, HasSubstr("Radius of the spatial filter in tiles")) << command;
     EXPECT_THAT(help, HasSubstr("horizons, heuristic, bitmask or connected")) << command;
   }
   EXPECT_THAT(parse({"doctor", "--help"}).error().text, testing::Not(HasSubstr("clamp_width")));
 }
 
-TEST(Options, TheVersionIsThatOfTheProject) {
+TEST(Options, VersionIsThatOfTheProject) {
   const auto version = parse({"--version"});
   ASSERT_FALSE(version);
   EXPECT_EQ(version.error().status, 0);
   EXPECT_THAT(version.error().text, testing::MatchesRegex("alcove [0-9]+\\.[0-9]+\\.[0-9]+"));
 }
 
-TEST(Options, NoCommandAndUnknownOnesAreMistakes) {
+TEST(Options, MissingAndUnknownCommandsAreRefused) {
   EXPECT_EQ(parse({}).error().status, 2);
   EXPECT_EQ(parse({"paint"}).error().status, 2);
   EXPECT_EQ(parse({"render", "--colour", "red"}).error().status, 2);
 }
 
-TEST(Options, AMistakeIsNamedWithWhereHelpIs) {
+TEST(Options, ErrorSentencePointsToTheHelpOfTheCommand) {
   EXPECT_EQ(parse({"paint", "--size", "2x2"}).error().text,
             "there is no command paint; see alcove --help");
   EXPECT_EQ(parse({}).error().text, "name a command; see alcove --help");
@@ -280,7 +280,7 @@ TEST(Options, EmptyFolderNameIsRefused) {
   }
 }
 
-TEST(Options, ControlCharactersOfArgumentsAreNotRepeatedAndLongOnesAreCut) {
+TEST(Options, MessagesReplaceControlCharactersAndShortenLongArguments) {
   const std::string text = "\x1b[31m" + std::string(5000, 'x');
   const auto options = parse({"render", "--radius", text.c_str()});
   ASSERT_FALSE(options);

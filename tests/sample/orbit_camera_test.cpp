@@ -19,7 +19,7 @@ Camera some_camera() {
 
 float arm(const Camera& camera) { return glm::distance(camera.eye_ws, camera.target_ws); }
 
-// Where a point lies in the image, -1..1, y down.
+// Returns the position of a point in the image, from -1 to 1, y down.
 glm::vec2 ndc(const Camera& camera, const glm::vec3& point_ws) {
   const glm::vec4 clip =
       camera_matrices(camera, kSize, kSize).clip_from_world * glm::vec4(point_ws, 1.0f);

@@ -6,10 +6,10 @@
 #include "gpu_test.h"
 #include "render/frame_renderer.h"
 
-// A quad that fills the picture, drawn and read back.
+// A test fixture that renders a quad which fills the picture, and reads images back.
 namespace alcove::sample {
 
-// Two halves that share the vertices between them, facing +Z, u to the right and v down, of one
+// Returns two halves with shared vertices that face +Z, with u to the right, v down, and one
 // material.
 inline Scene plain_quad() {
   Scene scene;

@@ -95,7 +95,6 @@ TEST(CommandLine, EverySettingIsParsedBack) {
   settings.advanced.snap_to_texels = false;
   settings.advanced.extrapolation = false;
   settings.advanced.unobserved = false;
-  settings.advanced.grouping = passes::Grouping::pattern;
   settings.advanced.filter_radius = 0;
   settings.advanced.filter_tolerance_px = 2.5f;
   settings.history_frames = 17;

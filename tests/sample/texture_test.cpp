@@ -1,5 +1,5 @@
-// Mips, wrap modes, filters and sets of texture coordinates, as the rasteriser and the ray tracer
-// read them.
+// Tests mips, wrap modes, filters and sets of texture coordinates in the rasteriser and the ray
+// tracer.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -59,7 +59,7 @@ class TextureTest : public QuadTest {
  protected:
   FrameImages drawn(const Scene& scene) { return QuadTest::draw(scene, kSize); }
 
-  // The texels of the last mip, which is one.
+  // Returns the only texel of the last mip.
   glm::u8vec4 last_mip(const TextureImage& image, VkFormat format, std::uint32_t mips) {
     auto made = GpuImage::create(
         gpu().device(), {format, framegraph::Extent::absolute(image.width, image.height), mips},
@@ -88,12 +88,12 @@ class TextureTest : public QuadTest {
 
 TEST_F(TextureTest, LastMipOfACheckerboardIsItsMeanInLinearLight) {
   const TextureImage image = checkerboard(16);
-  // The sRGB value of one half is 187.5; each of four mips rounds.
+  // The sRGB value of 0.5 is 187.5. Each of the four mips adds a rounding error.
   EXPECT_NEAR(last_mip(image, VK_FORMAT_R8G8B8A8_SRGB, 5).r, 188, 2);
   EXPECT_NEAR(last_mip(image, VK_FORMAT_R8G8B8A8_UNORM, 5).r, 127.5, 2);
 }
 
-TEST_F(TextureTest, MipsOfOneRowHalveItAlone) {
+TEST_F(TextureTest, MipsOfAOneRowTextureHalveOnlyItsWidth) {
   const TextureImage image = image_of(8, 1, [](auto x, auto) { return x < 4 ? kRed : kGreen; });
   const glm::u8vec4 texel = last_mip(image, VK_FORMAT_R8G8B8A8_UNORM, 4);
   EXPECT_NEAR(texel.r, 127.5, 1);
@@ -108,8 +108,8 @@ TEST_F(TextureTest, CheckerboardFinerThanPixelsIsGrey) {
   }
 }
 
-TEST_F(TextureTest, WithoutMipsACheckerboardIsBlackOrWhite) {
-  // Eight texels and a third to the pixel, so that pixels meet both colours.
+TEST_F(TextureTest, CheckerboardWithoutMipsIsBlackOrWhite) {
+  // A pixel covers eight and a third texels, so that pixels contain both colours.
   const Sampler sampler{.minify = Filter::kNearest, .mips = MipFilter::kNone};
   const FrameImages images = drawn(quad_of(checkerboard(200), sampler));
   std::size_t white = 0;
@@ -121,7 +121,7 @@ TEST_F(TextureTest, WithoutMipsACheckerboardIsBlackOrWhite) {
   EXPECT_LT(white, images.albedo.pixels.size() * 3 / 4);
 }
 
-TEST_F(TextureTest, MagnifiedTexelsAreBlocksOrBlendAsTheSamplerSays) {
+TEST_F(TextureTest, MagnificationFilterOfTheSamplerIsUsed) {
   const TextureImage image = image_of(2, 1, [](auto x, auto) { return x == 0 ? kRed : kGreen; });
   for (const Filter filter : {Filter::kNearest, Filter::kLinear}) {
     const Scene scene = quad_of(image, {.wrap_u = Wrap::kClamp, .magnify = filter});
@@ -138,11 +138,11 @@ TEST_F(TextureTest, MagnifiedTexelsAreBlocksOrBlendAsTheSamplerSays) {
   }
 }
 
-TEST_F(TextureTest, WrapModesAreThoseOfTheSamplerInRasteriserAndRayTracerAlike) {
+TEST_F(TextureTest, WrapModesAgreeBetweenRasteriserAndRayTracer) {
   const TextureImage image = image_of(2, 2, [](auto x, auto y) {
     return x + y == 0 ? kBlack : x == 0 ? kGreen : y == 0 ? kRed : kWhite;
   });
-  // Which of two texels is read from -1 to 2 of a coordinate.
+  // The index of the texel, of two, that is read at coordinates from -1 to 2.
   const std::array<std::pair<Wrap, std::array<int, 6>>, 3> wraps{
       {{Wrap::kRepeat, {0, 1, 0, 1, 0, 1}},
        {Wrap::kMirror, {1, 0, 0, 1, 1, 0}},
@@ -196,9 +196,9 @@ TEST_F(TextureTest, MissingSetOfCoordinatesReadsAsZero) {
   }
 }
 
-// More than any device binds at once that has no more than Vulkan's least.
+// The number of textures exceeds the smallest limit that Vulkan allows for bound images.
 TEST_F(TextureTest, EachMaterialHasTexturesOfItsOwnHoweverManyThereAre) {
-  constexpr std::uint32_t kCells = 12;  // a side, of 2x2 pixels
+  constexpr std::uint32_t kCells = 12;  // cells of 2x2 pixels per axis
   Scene scene = plain_quad();
   const Mesh whole = scene.meshes[0];
   scene.meshes.clear();
@@ -228,8 +228,9 @@ TEST_F(TextureTest, EachMaterialHasTexturesOfItsOwnHoweverManyThereAre) {
   }
 }
 
-TEST_F(TextureTest, CutOutsOfTheSecondSetAreThoseOfTheRayTracerAndFinerThanPixelsKeepTheirShare) {
-  // One texel of four is solid, so that the mean of any mip is a hole; a pixel is 1.618 periods.
+TEST_F(TextureTest, AlphaMasksOfTheSecondSetAgreeWithTheRayTracerAndKeepTheirCoverage) {
+  // One texel in four is opaque, so that the mean of any mip is below the cutoff. A pixel
+  // covers 1.618 periods.
   Scene scene = quad_of(
       image_of(256, 256, [](auto x, auto y) { return x % 2 + y % 2 == 0 ? kWhite : kHole; }));
   scene.materials[0].alpha_mode = AlphaMode::kMask;
@@ -244,7 +245,7 @@ TEST_F(TextureTest, CutOutsOfTheSecondSetAreThoseOfTheRayTracerAndFinerThanPixel
     EXPECT_EQ(raster.pixels[i] < 1.0f, std::isfinite(rays.pixels[i])) << i;
     solid += raster.pixels[i] < 1.0f;
   }
-  // A bilinear alpha of at least a half: (1 - ln 2) / 2 of the surface.
+  // The bilinear alpha is at least 0.5 on (1 - ln 2) / 2 of the surface.
   const double share = static_cast<double>(solid) / static_cast<double>(raster.pixels.size());
   EXPECT_NEAR(share, 0.153, 0.04);
 }

@@ -26,7 +26,7 @@ void Replay::check_state(const AccessRecord& access, const Sub& sub, std::uint8_
     fail(name(access.resource) + " is in layout " + std::to_string(sub.layout) + ", needed is " +
          std::to_string(access.layout));
   if (sub.released) fail(name(access.resource) + " is used between release and acquire");
-  // A buffer whose contents are thrown away can be taken by anybody.
+  // A buffer whose contents are discarded can be used by any queue family.
   const bool taken = record.kind == ResourceKind::buffer && (access.flags & kDiscard);
   if (!taken && sub.family != kNone && sub.family != family(queue))
     fail(name(access.resource) + " is used by a queue family that does not own it");
@@ -35,7 +35,7 @@ void Replay::check_state(const AccessRecord& access, const Sub& sub, std::uint8_
 void Replay::check_read(const AccessRecord& access, std::uint32_t expected, const Sub& sub,
                         std::uint8_t queue) {
   const ResourceRecord& record = graph_.resources[access.resource];
-  // A history slot that was never written may hold anything.
+  // A history slot that was never written has undefined contents, which any access may find.
   const bool any = record.origin == Origin::history && expected == kGarbage;
   if (!any && (sub.content != expected || sub.spoiled))
     fail("the read of " + name(access.resource) + " does not find what was written for it");
@@ -47,7 +47,7 @@ void Replay::check_read(const AccessRecord& access, std::uint32_t expected, cons
   }
 }
 
-// Whether the access is one more of a series of writes that are not ordered among themselves.
+// Returns whether the access continues a series of writes that are not ordered among themselves.
 bool Replay::continues(const Sub& sub, const AccessRecord& access, std::uint8_t queue) const {
   if (sub.series == kNone || !(access.flags & kUnordered) || !sub.last.reads.empty() ||
       sub.last.writes.back().queue != queue)
@@ -64,8 +64,8 @@ void Replay::check_write(const AccessRecord& access, std::uint32_t expected, Sub
     if (!order_.is_ordered(read, queue, access.stages))
       fail("the write of " + name(access.resource) + " overtakes a read");
   }
-  // A write right after a write must see it. After reads it comes after those, and must see what it
-  // reads itself.
+  // A write that follows a write must see it. A write that follows reads comes after those reads,
+  // and must see the earlier write only if it reads.
   const Accesses seen = before.reads.empty()      ? access.access
                         : access.flags & kDiscard ? Accesses{0}
                                                   : reads_of(access.access);
@@ -84,7 +84,7 @@ void Replay::check_write(const AccessRecord& access, std::uint32_t expected, Sub
   sub.spoiled = true;
 }
 
-// Those that had the memory before must be done.
+// The uses by resources that occupied the memory before must be done.
 void Replay::check_former(const AccessRecord& access, std::uint8_t queue) {
   const Accesses writes = access.access & ~reads_of(access.access);
   for (const Former& former : resources_[access.resource].former) {
@@ -130,7 +130,7 @@ void Replay::end_frame() {
   where_ = "at the end of the frame";
   for (std::uint32_t r = 0; r < resources_.size(); ++r) {
     const ResourceRecord& record = graph_.resources[r];
-    // A history that the frame does not use stays as it is.
+    // A history that the frame does not use stays in its state.
     if (record.external != kNone && graph_.externals[record.external].has_final_state &&
         (record.origin == Origin::imported || plan_.placements[r].first != kNone))
       check_final_state(r);
@@ -164,7 +164,8 @@ void Replay::check_final_state(std::uint32_t resource) {
     if (sub.released || (sub.family != kNone && sub.family != family(queue)))
       fail(name(resource) + " is left with another queue family than it came with");
     for (const Operation& read : sub.last.reads) {
-      // Whoever has it next waits for its own stages alone, or for what they come after.
+      // The next user waits for the stages of the final state only, or for stages that come after
+      // them.
       const bool waited_for = !is_write(final_state.access) && read.queue == queue &&
                               (read.stages & ~expand_stages(final_state.stages)) == 0;
       if (!waited_for && !order_.is_ordered(read, queue, final_state.stages))
@@ -178,7 +179,8 @@ void Replay::check_final_state(std::uint32_t resource) {
   }
 }
 
-// The next frame arrives in what this one claims to leave.
+// Checks the states in which the plan says that it leaves histories, because the next frame starts
+// from them.
 void Replay::check_final(const FinalState& final) {
   if (final.resource >= resources_.size()) {
     fail("the final state of a resource that was not declared");
@@ -200,7 +202,8 @@ void Replay::check_final(const FinalState& final) {
   }
 }
 
-// The next frame waits for the queue that the history is said to be left on.
+// Checks that all work on a history comes before the last work of the queue that the plan names for
+// it: the next frame waits for that queue.
 void Replay::check_final_order(const FinalState& final, const Operation& operation) {
   const auto queue = static_cast<std::uint8_t>(final.queue);
   if (operation.queue != queue &&

@@ -134,7 +134,8 @@ void HappensBefore::apply(std::span<const Barrier> barriers) {
   for (std::size_t i = 0; i < barriers.size(); ++i) spread(barriers[i], reached_[i]);
 }
 
-// A barrier reaches what its first scope names, and what is ordered before that.
+// Finds the operations that a barrier orders: those in its first scope, and everything that is
+// ordered before them.
 void HappensBefore::reach(const Barrier& barrier, Reached& reached) const {
   reached.ordered.assign(places_, 0);
   reached.available.assign(places_ * writes_.size(), 0);
@@ -176,8 +177,8 @@ void HappensBefore::spread(const Barrier& barrier, const Reached& reached) {
   });
 }
 
-// A signal comes after all that its queue did and all that is ordered before any of it, and makes
-// it available.
+// A signal comes after all earlier work of its queue and after everything that is ordered before
+// that work. It makes all of it available.
 void HappensBefore::signal(std::uint8_t queue, std::uint32_t submission) {
   if (signalled_.size() <= submission) signalled_.resize(submission + 1);
   std::vector<Time>& times = signalled_[submission];
@@ -190,7 +191,7 @@ void HappensBefore::signal(std::uint8_t queue, std::uint32_t submission) {
 }
 
 void HappensBefore::wait(std::uint8_t queue, std::uint32_t submission, Stages stages) {
-  // All is available and visible that came before the signal.
+  // Everything that came before the signal is available and visible after the wait.
   const std::vector<Time>& times = signalled_[submission];
   Reached all{times, {}};
   for (const Time time : times) all.available.insert(all.available.end(), writes_.size(), time);

@@ -1,13 +1,13 @@
-// Tells which accesses of a replayed plan are ordered, available and visible, by Vulkan's memory
-// model
-// ("Execution and Memory Dependencies" of the specification). Knows nothing of how plans are made.
+// Computes which accesses of a replayed plan are ordered, available and visible, by Vulkan's memory
+// model ("Execution and Memory Dependencies" of the specification). It does not depend on how plans
+// are made.
 //
-// Time counts the commands of the replay. The model keeps, for each source (a queue, a stage and an
-// access that writes, or none) and each destination (a queue and a stage), the latest time up to
-// which the source's accesses happen before the next command of the destination. One time is
-// enough: a barrier that orders a command of a stage orders all earlier commands of that stage and
-// queue too. A barrier therefore costs time in the number of stages, and not in the number of
-// earlier commands.
+// Time counts the commands of the replay. A source is a queue, a stage, and a write access or none.
+// A destination is a queue and a stage. For each pair of a source and a destination, the model
+// keeps one time: all accesses of the source up to it happen before the next command of the
+// destination. One time is enough, because a barrier that orders a command of a stage orders all
+// earlier commands of that stage and queue too. The cost of a barrier therefore depends on the
+// number of stages, and not on the number of earlier commands.
 #pragma once
 
 #include <cstdint>
@@ -23,30 +23,30 @@ using Stages = VkPipelineStageFlags2;
 using Accesses = VkAccessFlags2;
 using Time = std::uint32_t;
 
-// Stages and accesses that stand for several others, as those others.
+// Replace stage and access bits that stand for several others by those others.
 Stages expand_stages(Stages stages);
 Accesses expand_accesses(Accesses accesses);
 bool is_write(Accesses accesses);
 Accesses reads_of(Accesses accesses);
 
-// One access of a command, or what a barrier does to a subresource.
+// One access of a command to a subresource, or the effect of a barrier on it.
 struct Operation {
   enum class Kind : std::uint8_t {
     access,
-    change,   // a layout change: it happens before any command of `stages`, its second scope
-    release,  // an ownership release: nothing on its queue follows it, its submission's signal does
+    change,   // a layout change; it happens before any command of `stages`, its second scope
+    release,  // an ownership release; only the signal of its submission comes after it
   };
   Kind kind = Kind::access;
   std::uint8_t queue = 0;
   Time time = 0;
-  Stages stages = 0;     // expanded
-  Accesses writes = 0;   // of an access: the bits that write
+  Stages stages = 0;     // expanded by expand_stages()
+  Accesses writes = 0;   // of an access: its bits that write
   Accesses seen_by = 0;  // of a change: the accesses of `stages` that see it
   bool operator==(const Operation&) const = default;
 };
 
-// A barrier with its scopes expanded. `memory`: its memory dependency covers every resource, and
-// not one image alone.
+// A barrier with expanded scopes. `memory` is true if its memory dependency covers every resource,
+// and false if it covers one image.
 struct Barrier {
   std::uint8_t queue = 0;
   Stages src = 0;
@@ -59,42 +59,42 @@ Barrier barrier_of(const Transition& transition, QueueClass queue);
 
 class HappensBefore {
  public:
-  // The stages and accesses that the plan's accesses and barriers name, expanded, and the number of
-  // queue classes.
+  // `stages` and `accesses` are all expanded bits that the plan's accesses and barriers name.
+  // `queues` is the number of queue classes.
   HappensBefore(Stages stages, Accesses accesses, std::uint32_t queues);
 
-  // The stages of the first argument of the constructor.
+  // Returns the stages that the constructor was given.
   Stages tracked_stages() const {
     return std::accumulate(stages_.begin(), stages_.end(), Stages{0});
   }
 
-  // The next command's time.
+  // Starts the next command and returns its time.
   Time next() { return ++now_; }
   Time now() const { return now_; }
-  // The barriers of one command, which do not follow each other.
+  // Applies the barriers of one command. They are not ordered among each other.
   void apply(std::span<const Barrier> barriers);
-  // The signal of a submission, numbered from 0, and a wait for it.
+  // signal() records the signal of a submission, numbered from 0. wait() makes a queue wait for it.
   void signal(std::uint8_t queue, std::uint32_t submission);
   void wait(std::uint8_t queue, std::uint32_t submission, Stages stages);
 
-  // Whether the operation comes before the barrier's second scope, and whether its writes are then
-  // available, where the barrier's memory dependency covers its resource.
+  // Returns whether the operation comes before the barrier's second scope and its writes are then
+  // available, if the barrier's memory dependency covers the operation's resource.
   bool is_before(const Operation& operation, const Barrier& barrier) const;
   bool is_available_by(const Operation& operation, const Barrier& barrier) const;
-  // Whether the operation happens before the next command of these stages, whether its writes are
-  // then available, and whether these accesses of it see them.
+  // Returns whether the operation happens before the next command of these stages, whether its
+  // writes are then available, and whether these accesses see them.
   bool is_ordered(const Operation& operation, std::uint8_t queue, Stages stages) const;
   bool is_available(const Operation& operation, std::uint8_t queue, Stages stages) const;
   bool is_visible(const Operation& operation, std::uint8_t queue, Stages stages,
                   Accesses accesses) const;
-  // Whether it happens before the next command of any of these stages.
+  // Returns whether the operation happens before the next command of any of these stages.
   bool is_before_any(const Operation& operation, std::uint8_t queue, Stages stages) const;
 
  private:
-  // The times that a barrier of the batch in hand reaches, by source.
+  // For each source, the times up to which one barrier of the current batch orders it.
   struct Reached {
     std::vector<Time> ordered;
-    std::vector<Time> available;  // by write too
+    std::vector<Time> available;  // by source and write access
   };
 
   std::size_t place(std::uint8_t queue, std::size_t stage) const {
@@ -108,7 +108,8 @@ class HappensBefore {
   Time available(std::size_t source, std::size_t write, std::size_t to) const {
     return available_[(source * writes_.size() + write) * places_ + to];
   }
-  // `write` is writes_.size() where the source does not write. The first of all accesses.
+  // Returns the first of the times of a source and destination, one for each access. `write` is
+  // writes_.size() if the source does not write.
   Time* visible(std::size_t source, std::size_t write, std::size_t to) {
     return &visible_[((source * (writes_.size() + 1) + write) * places_ + to) * accesses_.size()];
   }
@@ -123,10 +124,12 @@ class HappensBefore {
   bool any_stage(Stages stages, Function&& f) const;
   template <typename Function>
   bool all_writes(Accesses writes, Function&& f) const;
-  // f(place of a source) for the stages of an access, all of them, or of a change, any of them.
+  // Calls f(index of a source) for each stage of an operation. An access needs all of them, a
+  // layout change any of them.
   template <typename Function>
   bool holds(const Operation& operation, Function&& f) const;
-  // A change is before the stages that its own barrier names.
+  // Returns whether the stages are in the second scope of the barrier that made the layout change.
+  // The change happens before those.
   static bool is_own(const Operation& operation, std::uint8_t queue, Stages stage) {
     return operation.kind == Operation::Kind::change && operation.queue == queue &&
            (operation.stages & stage) != 0;
@@ -135,7 +138,7 @@ class HappensBefore {
   std::vector<Stages> stages_;      // one bit each
   std::vector<Accesses> writes_;    // one bit each
   std::vector<Accesses> accesses_;  // one bit each
-  std::size_t places_ = 0;          // queues times stages
+  std::size_t places_ = 0;          // number of queues times number of stages
   Time now_ = 0;
   std::vector<Time> ordered_;
   std::vector<Time> available_;

@@ -13,7 +13,7 @@ Replay::Replay(const GraphDescription& graph, const Limits& limits, const Plan& 
       queue_count_(queue_count(graph, plan)),
       order_(order_of(graph, plan, queue_count_)) {}
 
-// The number of the queue classes that take part.
+// Returns the number of queue classes that the plan or the limits name.
 std::uint32_t Replay::queue_count(const GraphDescription& graph, const Plan& plan) {
   QueueClass last = QueueClass::graphics;
   for (const ExternalRecord& external : graph.externals) last = std::max(last, external.queue);
@@ -22,8 +22,8 @@ std::uint32_t Replay::queue_count(const GraphDescription& graph, const Plan& pla
   return static_cast<std::uint32_t>(last) + 1;
 }
 
-// All that the frame and the plan name. A mask of all commands only stands for stages that are
-// named besides.
+// Creates the model with the stages and accesses that the frame and the plan name. A mask such as
+// ALL_COMMANDS is expanded only to stages that are also named elsewhere.
 HappensBefore Replay::order_of(const GraphDescription& graph, const Plan& plan,
                                std::uint32_t queues) {
   Stages stages = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
@@ -84,7 +84,8 @@ void Replay::find_expected() {
   }
 }
 
-// Transients hold nothing, imports come as declared.
+// Sets the contents and states at the start of a frame: transients have no contents, and imports
+// are as declared.
 void Replay::begin_frame(bool first) {
   where_ = first ? "at the start of the frame" : "at the start of the next frame";
   first_frame_ = first;
@@ -108,9 +109,9 @@ void Replay::begin_frame(bool first) {
   }
 }
 
-// Earlier writes are seen by the reads of the initial state, and by nothing else yet. An
-// initial state without access bits has seen nothing: it came before some of the stages only, and
-// all of them must be waited for.
+// Sets the state of a subresource that comes from outside the frame. The reads of the initial state
+// have seen earlier writes; nothing else has. An initial state without access bits has seen
+// nothing: it only names stages, and all of them must be waited for.
 void Replay::arrive(Sub& sub, std::uint8_t queue, const State& initial_state) {
   using Kind = Operation::Kind;
   const Stages stages = expand_stages(initial_state.stages);
@@ -121,7 +122,7 @@ void Replay::arrive(Sub& sub, std::uint8_t queue, const State& initial_state) {
     if (stages != 0) sub.last.writes.push_back({Kind::access, queue, time, stages, writes, 0});
     return;
   }
-  // Stages that nothing in the frame names cannot be told from each other, and are not tracked.
+  // Stages that nothing in the frame names are not tracked, because no access can tell them apart.
   for (Stages left = accesses == 0 ? stages & order_.tracked_stages() : 0; left != 0;
        left &= left - 1)
     sub.last.writes.push_back({Kind::change, queue, time, left & (~left + 1), 0, 0});
@@ -152,7 +153,8 @@ void Replay::submission(std::uint32_t index) {
   order_.signal(queue, index);
 }
 
-// The transitions of a batch do not see each other: all are checked, then all apply.
+// Applies the transitions of batches. The transitions of one batch are not ordered among each
+// other, so that all are checked before any takes effect.
 void Replay::batches(std::uint32_t first, std::uint32_t count, QueueClass queue) {
   for (std::uint32_t b = first; b < first + count; ++b) {
     const Batch& batch = plan_.batches[b];
@@ -175,8 +177,9 @@ void Replay::batches(std::uint32_t first, std::uint32_t count, QueueClass queue)
   }
 }
 
-// Whether everything that was done to the subresource and its bytes comes before the change. An
-// image barrier's memory dependency covers the bytes of its image, whichever resource wrote them.
+// Checks that every earlier use of the subresource and of its bytes comes before the layout change.
+// The memory dependency of an image barrier covers the bytes of its image, whichever resource wrote
+// them.
 void Replay::check_order_of_change(std::uint32_t resource, const Barrier& barrier, const Sub& sub) {
   for (const Operation& read : sub.last.reads) {
     if (!order_.is_before(read, barrier))
@@ -196,7 +199,8 @@ void Replay::check_order_of_change(std::uint32_t resource, const Barrier& barrie
   }
 }
 
-// Whether the subresource is in the layout and with the owner that the change expects.
+// Checks that the subresource is in the layout and belongs to the owner that the layout change
+// expects.
 void Replay::check_state_of_change(const Transition& t, const Sub& sub, std::uint8_t queue) {
   const bool transfer = family(static_cast<std::uint8_t>(t.src_queue)) !=
                         family(static_cast<std::uint8_t>(t.dst_queue));
@@ -242,9 +246,9 @@ void Replay::change(const Transition& t, QueueClass on) {
   });
 }
 
-// A transient's bytes are its own from its first use on, until another takes them: then they hold
-// nothing of its any more. What comes after the taker's first use comes after what that came after,
-// so that only those need be looked at who had the bytes just before.
+// Makes a transient the owner of its bytes, which it is from its first use until another resource
+// takes them. The previous owner then has no contents. Only the resources that owned the bytes just
+// before must be done: these in turn came after the owners before them.
 void Replay::take_memory(std::uint32_t resource) {
   const Placement& placement = plan_.placements[resource];
   Resource& taker = resources_[resource];
@@ -276,7 +280,7 @@ void Replay::take_memory(std::uint32_t resource) {
 void Replay::keep_former(Resource& taker, std::uint32_t resource) {
   Resource& giver = resources_[resource];
   giver.has_memory = false;
-  // The mips and layers of one access are one entry, as a rule.
+  // The mips and layers of one access usually have one common entry.
   const auto keep = [&taker](const Former& former) {
     if (taker.former.empty() || taker.former.back() != former) taker.former.push_back(former);
   };

@@ -10,29 +10,30 @@
 
 namespace alcove::framegraph::verifier {
 
-// The contents of a subresource: the access that wrote it last, by index, or one of these.
-inline constexpr std::uint32_t kGarbage = kNone;      // nothing, or another resource's bytes
-inline constexpr std::uint32_t kInitial = kNone - 1;  // what an import came with
-inline constexpr std::uint32_t kMissing = kNone - 2;  // where an expected writer does not run
+// The contents of a subresource: the index of the access that wrote it last, or one of these
+// values.
+inline constexpr std::uint32_t kGarbage = kNone;      // undefined
+inline constexpr std::uint32_t kInitial = kNone - 1;  // the initial contents of an import
+inline constexpr std::uint32_t kMissing = kNone - 2;  // the expected writer does not run
 
 // The last operations on a subresource.
 struct History {
   std::vector<Operation> writes;  // the last write or layout change; several if unordered
-  std::vector<Operation> reads;   // since
+  std::vector<Operation> reads;   // the reads after those writes
 };
 
 struct Sub {
   History last;
-  // The last access of a series of unordered writes (Contents::accumulate), and what was done
-  // before.
+  // The last access of a series of unordered writes (Contents::accumulate), and the operations
+  // before the series.
   std::uint32_t series = kNone;
   History before_series;
   VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
   std::uint32_t content = kGarbage;
-  bool spoiled = false;          // a partial write fell on contents that were not the expected ones
-  bool fresh = false;            // not used since the resource took its memory
-  std::uint32_t family = kNone;  // owner; kNone: any queue family may take it
-  bool released = false;         // on its way to `released_to`
+  bool spoiled = false;          // a partial write was made over wrong contents
+  bool fresh = false;            // it was not used after the resource took its memory
+  std::uint32_t family = kNone;  // the owning queue family; kNone if any family may take it
+  bool released = false;         // it was released to `released_to` and not yet acquired
   std::uint32_t released_to = kNone;
   VkImageLayout released_layout = VK_IMAGE_LAYOUT_UNDEFINED;
 };
@@ -43,7 +44,7 @@ class Replay {
   void run();
 
  private:
-  // The last operations on bytes by the resources that had them before.
+  // The last operations on a range of bytes by the resources that occupied it before.
   struct Former {
     std::uint32_t resource = kNone;
     Operation operation;
@@ -52,11 +53,11 @@ class Replay {
     bool operator==(const Former&) const = default;
   };
   struct Resource {
-    std::vector<Sub> subs;  // mips within layers within planes
+    std::vector<Sub> subs;  // ordered by mip, then layer, then plane
     bool has_memory = false;
     std::vector<Former> former;
   };
-  // Bytes of a heap by their end: who has them, and where they begin.
+  // A range of bytes of a heap, keyed by its end: its owner and its first byte.
   struct Bytes {
     VkDeviceSize begin = 0;
     std::uint32_t resource = kNone;
@@ -66,7 +67,8 @@ class Replay {
   static std::uint32_t queue_count(const GraphDescription& graph, const Plan& plan);
   static HappensBefore order_of(const GraphDescription& graph, const Plan& plan,
                                 std::uint32_t queues);
-  // The signal of all that a queue did in the frame, beside those of the submissions.
+  // Returns the number of the signal for all work of a queue in the frame. It follows those of the
+  // submissions.
   std::uint32_t end_signal(std::uint8_t queue) const {
     return static_cast<std::uint32_t>(plan_.submissions.size()) + queue;
   }
@@ -127,18 +129,19 @@ class Replay {
   HappensBefore order_;
   std::vector<Resource> resources_;
   std::vector<Memory> memory_;  // by heap
-  // By access, by subresource of its range: the contents that it must find. The first of each
-  // access.
+  // For each subresource of each access's range: the contents that the access must find. Also the
+  // index of the first entry of each access.
   std::vector<std::uint32_t> expected_;
   std::vector<std::size_t> first_expected_;
-  std::vector<std::vector<std::uint32_t>> last_;  // by resource: the contents at the end
+  std::vector<std::vector<std::uint32_t>>
+      last_;  // by resource: its contents at the end of the frame
   bool first_frame_ = true;
-  std::vector<Barrier> barriers_;  // of the batch in hand
+  std::vector<Barrier> barriers_;  // of the current batch
   std::string where_;
 };
 
-// The plan's tables by themselves: indices, passes, lifetimes, heaps. False when a replay would not
-// be safe.
+// Checks the plan's tables by themselves: indices, passes, lifetimes and heaps. Returns false if a
+// replay could read out of bounds.
 bool check_tables(const GraphDescription& graph, const Limits& limits, const Plan& plan,
                   Errors& errors);
 

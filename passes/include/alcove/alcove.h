@@ -30,48 +30,31 @@
 #include <stdint.h>
 #include <vulkan/vulkan_core.h>
 
+#include "alcove/alcove_camera.h"
+#include "alcove/alcove_diagnose.h"
+#include "alcove/alcove_memory.h"
+#include "alcove/alcove_result.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-#define ALCOVE_VERSION VK_MAKE_API_VERSION(0, 0, 1, 0)  // the version of this header
-#define ALCOVE_MAX_VIEWS 8                              // the most views in a frame
-#define ALCOVE_MAX_FRAMES_IN_FLIGHT 8
-#define ALCOVE_MAX_NAME 32      // bytes of a pass's name, terminating zero included
-#define ALCOVE_MAX_MESSAGE 512  // bytes of a message, the same way; longer messages are cut
-
-typedef enum AlcoveResult {
-  ALCOVE_SUCCESS = 0,
-  ALCOVE_ERROR_INVALID_INPUT = -1,  // the caller gave something that cannot be used
-  ALCOVE_ERROR_UNSUPPORTED = -2,    // the device lacks something
-  ALCOVE_ERROR_OUT_OF_HOST_MEMORY = -3,
-  ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY = -4,
-  ALCOVE_ERROR_DEVICE_LOST = -5,  // the context is of no more use: destroy it
-  ALCOVE_ERROR_VULKAN = -6,       // another error of Vulkan; the message has its number
-  ALCOVE_ERROR_INTERNAL = -7,     // an error of the library itself
-  ALCOVE_RESULT_MAX_ENUM = 0x7fffffff
-} AlcoveResult;
-
-// Returns the name of a result, such as "ALCOVE_SUCCESS". It has static storage and is never null.
-const char* alcoveGetResultName(AlcoveResult result);
-
-// ALCOVE_VERSION as it was when the library was compiled.
-uint32_t alcoveGetVersion(void);
-
 // Presets for alcoveGetSettings. Fields that the table does not have are the defaults that
 // AlcoveSettings states. REFERENCE also has FLOAT32 and, in its advanced settings, the paper's
-// horizons and no filter.
+// horizons and no filter; CONSOLE also has half_resolution.
 //
 //              slices  steps  tile_size  history_frames  depth fetches a pixel and frame
+//   CONSOLE         1      8        8              32                              0.25
 //   LOW             1      8        4              32                                1
 //   MEDIUM          1     10        2              32                                5
 //   HIGH            2     16        2              32                               16
 //   REFERENCE      32     64        1               0                             4096
 typedef enum AlcoveQuality {
-  ALCOVE_QUALITY_LOW = 0,        // traces one of 4x4 pixels in each frame
-  ALCOVE_QUALITY_MEDIUM = 1,     // traces one of 2x2; the preset to begin with
-  ALCOVE_QUALITY_HIGH = 2,       // MEDIUM with two slices and more steps
-  ALCOVE_QUALITY_REFERENCE = 3,  // traces every pixel: a static image to compare with
+  ALCOVE_QUALITY_CONSOLE = 0,  // traces one of 8x8 pixels in each frame, filters at half resolution
+  ALCOVE_QUALITY_LOW = 1,      // traces one of 4x4 pixels in each frame
+  ALCOVE_QUALITY_MEDIUM = 2,   // traces one of 2x2; the preset to begin with
+  ALCOVE_QUALITY_HIGH = 3,     // MEDIUM with two slices and more steps
+  ALCOVE_QUALITY_REFERENCE = 4,  // traces every pixel: a static image to compare with
   ALCOVE_QUALITY_MAX_ENUM = 0x7fffffff
 } AlcoveQuality;
 
@@ -116,7 +99,7 @@ typedef struct AlcoveSettings {
   // Scene units, above 0. Occluders further away do not count. A twentieth to a fifth of a room's
   // height is usual.
   float radius;
-  // One pixel of a tile of tile_size x tile_size pixels is traced in each frame: 1, 2 or 4. The
+  // One pixel of a tile of tile_size x tile_size pixels is traced in each frame: 1, 2, 4 or 8. The
   // traced pixel changes from frame to frame, so that every pixel is traced in time.
   uint32_t tile_size;
   // Slices of a traced pixel, 1 to 64. A slice is a plane through the view direction, in which
@@ -132,8 +115,9 @@ typedef struct AlcoveSettings {
   float hidden_occlusion;
   uint32_t depth_layers;    // that are searched: 1, or 2 with AlcoveView::second_depth [1]
   uint32_t history_frames;  // that are averaged, 0 to 127. 0 takes no memory for a history
-  // Filters and accumulates texels of 2x2 pixels, then upsamples along depth edges: less time, a
-  // quarter of the history's memory, and a larger error. Needs a tile_size of 2 or 4. [VK_FALSE]
+  // Filters and accumulates texels of 2x2 pixels, then upsamples along depth edges: less time, less
+  // memory for the history, and a larger error. Needs a tile_size of at least 2. [VK_FALSE, but
+  // VK_TRUE for CONSOLE]
   VkBool32 half_resolution;
   AlcoveSpecular specular;     // read if AlcoveView::specular is given [SLICES]
   float roughness;             // perceptual, 0 to 1, for pixels without AlcoveView::roughness [0.5]
@@ -158,46 +142,6 @@ AlcoveResult alcoveGetSettings(AlcoveQuality quality, float radius, AlcoveSettin
 // locale. Returns the bytes that the whole text takes without that zero, 0 if the settings are
 // invalid. `text` may be null if `size` is 0.
 size_t alcovePrintSettings(const AlcoveSettings* settings, char* text, size_t size);
-
-typedef struct AlcoveContext AlcoveContext;
-
-// Device memory that a context needs.
-typedef struct AlcoveMemoryRequest {
-  VkMemoryRequirements requirements;  // size, alignment, and the memory types that will do
-  VkMemoryPropertyFlags required;     // properties that the memory type must have
-  VkMemoryPropertyFlags preferred;    // properties that it should have
-} AlcoveMemoryRequest;
-
-// A part of a device memory object.
-typedef struct AlcoveMemoryRange {
-  VkDeviceMemory memory;
-  VkDeviceSize offset;  // of the first byte, a multiple of the alignment
-  // The address of the first byte in host memory. Needed if VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT was
-  // required: the memory then stays mapped until it is freed.
-  void* mapped;
-  void* handle;  // the engine's own, for `free`
-} AlcoveMemoryRange;
-
-// The engine's allocator of device memory: both functions, or neither. They are called by the
-// thread that calls the library, and must not call it. `free` is called only after the device has
-// finished with the memory.
-typedef struct AlcoveMemoryFunctions {
-  // Fills `range`, which is all zeros when the function is called. Any result but VK_SUCCESS makes
-  // the Alcove call fail; VK_ERROR_OUT_OF_DEVICE_MEMORY becomes ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY.
-  VkResult (*allocate)(void* user, const AlcoveMemoryRequest* request, AlcoveMemoryRange* range);
-  void (*free)(void* user, const AlcoveMemoryRange* range);
-  void* user;
-} AlcoveMemoryFunctions;
-
-// Memory that the engine has allocated, for the images of one context: device-local, in any memory
-// type that the images allow (usually every device-local one). alcoveEstimateMemory says how much
-// frames take. A change of size needs room for the old and the new images at the same time.
-typedef struct AlcoveMemoryBlock {
-  VkDeviceMemory memory;
-  VkDeviceSize offset;   // the first byte that may be used
-  VkDeviceSize size;     // bytes from there on
-  uint32_t memory_type;  // index of the memory type that the block was allocated from
-} AlcoveMemoryBlock;
 
 typedef enum AlcoveSeverity {
   ALCOVE_SEVERITY_INFO = 0,     // device memory was allocated, a pipeline was created
@@ -273,8 +217,7 @@ typedef struct AlcoveState {
 } AlcoveState;
 
 // An image of the engine's: 2D, optimal tiling, one mip, one sample, of the queue family of the
-// context or shared. Zeroed: there is none. Depth of several samples is resolved by the engine
-// first, to that of sample 0 (VK_RESOLVE_MODE_SAMPLE_ZERO_BIT): an average lies on no surface.
+// context or shared. Zeroed: there is none.
 typedef struct AlcoveImage {
   VkImage image;
   // 2D, of the layer, of the depth aspect alone in formats that have it: Vulkan allows no shader to
@@ -292,6 +235,11 @@ typedef struct AlcoveImage {
   // visibility also needs SAMPLED with multi-bounce or a specular model other than SLICES, and bent
   // normals with the models that read them.
   VkImageUsageFlags usage;
+  // The samples of a pixel that the image was created with; 0 stands for 1. Images of several
+  // samples are refused in a sentence: the engine resolves them first, depth and normals to sample
+  // 0 (VK_RESOLVE_MODE_SAMPLE_ZERO_BIT, for colour a shader that reads sample 0), because an
+  // average of several surfaces lies on none of them.
+  uint32_t samples;
   // The last use before the frame (of an input the last write, of an output the last read or write)
   // and the layout at that time. The first barrier waits for these stages. An output may come in
   // VK_IMAGE_LAYOUT_UNDEFINED, because all of its pixels are overwritten.
@@ -300,69 +248,6 @@ typedef struct AlcoveImage {
   // to these stages, even if no pass reads it. Required.
   AlcoveState final_state;
 } AlcoveImage;
-
-// The camera that depth was drawn with, jitter included. Where the viewport has a negative height,
-// change the sign of the second row of the engine's clip_from_view. Where the engine's view space
-// looks along +Z, change the sign of the third column of clip_from_view, of the third row of
-// view_from_world, and of z of normals in view space.
-//
-// Rounding errors are accepted and removed: elements that should be 0 or 1 may be off by what float
-// products and inverses leave there, with fused multiply-adds or without.
-typedef struct AlcoveCamera {
-  // Any projection: finite, infinite, reversed, off-centre, jittered, flipped in Y, orthographic.
-  // In perspective w must be 0 at the eye.
-  float clip_from_view[16];
-  // A rotation and a translation, without scale; or a reflection and a translation, for left-handed
-  // worlds.
-  float view_from_world[16];
-} AlcoveCamera;
-
-// How an engine's matrices differ from those of AlcoveCamera, for alcoveConvertCamera. Bits to be
-// combined.
-typedef enum AlcoveCameraConvention {
-  // Clip space has y up: the viewport has a negative height, or the API's y points up.
-  ALCOVE_CAMERA_CONVENTION_CLIP_Y_UP = 1,
-  // Clip space has depth -1 to 1, which is stored as 0.5 + 0.5 * depth.
-  ALCOVE_CAMERA_CONVENTION_DEPTH_FROM_MINUS_ONE = 2,
-  // The camera looks along +Z of view space.
-  ALCOVE_CAMERA_CONVENTION_FORWARD_Z = 4,
-  // Matrices of column vectors lie in memory row by row. (Matrices of row vectors that lie row by
-  // row, as those of DirectXMath and Unreal, need no bit: in memory they are the same.)
-  ALCOVE_CAMERA_CONVENTION_ROW_MAJOR = 8,
-
-  // glm::perspectiveRH_ZO and glm::lookAtRH, drawn with a viewport of negative height. Where the
-  // engine changes the sign of the projection's [1][1] instead, no conversion is needed.
-  ALCOVE_CAMERA_CONVENTION_GLM = 1,
-  // gluPerspective, glFrustum.
-  ALCOVE_CAMERA_CONVENTION_OPENGL = 3,
-  // Direct3D, DirectXMath's ...LH functions and Unreal's view and projection matrices.
-  ALCOVE_CAMERA_CONVENTION_DIRECT3D = 5,
-  ALCOVE_CAMERA_CONVENTION_UNREAL = 5,
-  ALCOVE_CAMERA_CONVENTION_MAX_ENUM = 0x7fffffff
-} AlcoveCameraConvention;
-
-// Fills `camera` with an engine's matrices of 16 floats each. `conventions` is any combination of
-// AlcoveCameraConvention, 0 for none. Returns ALCOVE_ERROR_INVALID_INPUT if a pointer is null or a
-// bit is unknown; what the matrices hold is checked when a frame is recorded. Normals in view space
-// of a camera that looks along +Z need AlcoveView::normals_forward_z too.
-AlcoveResult alcoveConvertCamera(const float* clip_from_view, const float* view_from_world,
-                                 uint32_t conventions, AlcoveCamera* camera);
-
-// A perspective in plain numbers.
-typedef struct AlcovePerspective {
-  uint32_t struct_size;
-  float fov_y;        // vertical angle of view in radians, above 0 and below pi
-  float near_plane;   // distance in scene units, above 0
-  float far_plane;    // above near_plane; 0 or infinity: infinite
-  VkBool32 reversed;  // near at depth 1, far at depth 0
-  uint32_t width;     // of the image in pixels
-  uint32_t height;
-  float jitter_px[2];  // by which the image is shifted, in pixels, x right and y down
-} AlcovePerspective;
-
-// Fills AlcoveCamera::clip_from_view. Returns ALCOVE_ERROR_INVALID_INPUT if a number is out of
-// range.
-AlcoveResult alcoveMakePerspective(const AlcovePerspective* perspective, float* clip_from_view);
 
 // One view of a frame, such as an eye or a part of a split screen, with images or layers of its
 // own. An output without an image is not computed and costs neither a pass nor memory.
@@ -401,7 +286,16 @@ typedef struct AlcoveView {
   uint32_t previous_height;
 
   // Inputs.
-  AlcoveImage depth;  // as clip_from_view gives it, in any depth format or R32_SFLOAT. Required
+  //
+  // Depth as clip_from_view gives it, in any depth format or R32_SFLOAT. Required.
+  //
+  // The search knows the step between neighbouring values of the format, in scene units: at a
+  // distance z about z^2 / near * 6e-8 for floats that are not reversed, z * 1.2e-7 for reversed
+  // floats, z^2 / near / 65535 for 16 bits. Samples within one step of the tangent plane do not
+  // occlude. Up to a step of a quarter of the radius occlusion is complete; from there it fades,
+  // and from a step of one radius on everything is open, because the depth buffer holds no detail
+  // of that size. Reverse depth, or move the near plane away, if distant occlusion is missing.
+  AlcoveImage depth;
   // Unit vectors, as normal_encoding says. Without an image, normals are made from
   // depth, and bent normals are in view space.
   //
@@ -470,10 +364,10 @@ typedef struct AlcoveFrame {
 // Returns the same errors as alcoveRecordFrame.
 AlcoveResult alcovePrepareFrame(AlcoveContext* context, const AlcoveFrame* frame);
 
-// Records the passes of all views into `commands`: a primary command buffer in the recording state,
-// of the context's queue family, outside a render pass. Submit frames in the order in which they
-// were recorded, each once and all to one queue; call alcoveDiscardFrame for a frame that is not
-// submitted. A frame like the one before allocates nothing.
+// Records the passes of all views into `commands`: a primary or secondary command buffer in the
+// recording state, of the context's queue family, outside a render pass. Submit frames in the order
+// in which they were recorded, each once and all to one queue; call alcoveDiscardFrame for a frame
+// that is not submitted. A frame like the one before allocates nothing.
 //
 // Pipelines that are missing are created now, which may take the driver a second: see
 // alcovePrepareFrame.
@@ -496,74 +390,6 @@ AlcoveResult alcoveRecordFrame(AlcoveContext* context, VkCommandBuffer commands,
 // been recorded. Without this call the next frames would read histories that were never written.
 // After a frame that failed, or before the first, there is nothing to do.
 AlcoveResult alcoveDiscardFrame(AlcoveContext* context);
-
-// Bytes of device memory of the last recorded frame; zeros before the first, and after a frame that
-// failed or was discarded. Memory of transients grows with the largest frame and is kept.
-typedef struct AlcoveMemory {
-  uint32_t struct_size;
-  uint64_t transients;           // intermediate images, which share memory
-  uint64_t transients_unshared;  // the same if each had memory of its own
-  uint64_t history;              // of all views
-  uint64_t allocated;            // everything that the context holds, with parameters and tables
-} AlcoveMemory;
-
-// Fills `memory`, whose struct_size is set.
-AlcoveResult alcoveGetMemory(AlcoveContext* context, AlcoveMemory* memory);
-
-// Outputs, to be combined.
-typedef enum AlcoveOutput {
-  ALCOVE_OUTPUT_VISIBILITY = 1,
-  ALCOVE_OUTPUT_BENT_NORMAL = 2,
-  ALCOVE_OUTPUT_SPECULAR = 4,
-  ALCOVE_OUTPUT_MULTI_BOUNCE = 8,
-  ALCOVE_OUTPUT_MAX_ENUM = 0x7fffffff
-} AlcoveOutput;
-
-// Fills `memory`, whose struct_size is set, with the bytes that one view of width x height pixels
-// takes, before there is a context or a frame. `outputs` is a combination of AlcoveOutput;
-// `normals_given` says that AlcoveView::normals has an image. The figures are those of texels:
-// drivers round each image up. `transients` is what the view needs when nothing shares memory, as
-// is `transients_unshared`; a frame that was recorded may need less. `allocated` is the sum of
-// transients and history. Returns ALCOVE_ERROR_INVALID_INPUT if an argument is invalid; there is no
-// message.
-AlcoveResult alcoveEstimateMemory(const AlcoveSettings* settings, uint32_t width, uint32_t height,
-                                  uint32_t outputs, VkBool32 normals_given, AlcoveMemory* memory);
-
-typedef struct AlcoveTiming {
-  char pass[ALCOVE_MAX_NAME];
-  uint32_t view;  // AlcoveView::id
-  double milliseconds;
-} AlcoveTiming;
-
-// The device time of each pass of the frame last recorded with `slot`, in order, after the device
-// has finished it. With `timings` null, *count becomes the number of timings; else *count is the
-// room in `timings` and becomes the number written. There are none without
-// AlcoveContextInfo::timestamps.
-AlcoveResult alcoveGetTimings(AlcoveContext* context, uint32_t slot, uint32_t* count,
-                              AlcoveTiming* timings);
-
-// Writes the plan of the last recorded frame as text: passes, barriers, memory. Buffer and result
-// are as with alcovePrintSettings. Returns 0 if no such frame exists or there is no memory for the
-// text.
-size_t alcovePrintPlan(AlcoveContext* context, char* text, size_t size);
-
-// Mistakes that show in the frames recorded so far: a line with a sentence for each, nothing where
-// there is none. Ask after some dozens of frames in which the camera moved.
-//
-// Mistakes in the calls: an index that stands still, a previous_camera that is always this frame's
-// or never the last one's, jitter in only one of the two, static_frames in motion, reset_history in
-// every frame.
-//
-// Mistakes in the pixels, if at least three frames have AlcoveFrame::diagnose_pixels and all of
-// them show the mistake: depth that runs the other way than the projection, a projection with depth
-// from -1 to 1, normals that fit the depth only with another angle of view, in the other space,
-// unpacked the other way, with the other sign of z or with y of the projection the other way round,
-// a radius far out of proportion to the image, an image smaller than it is said to be, and a slot
-// that is recorded again before its frame has finished. A wrong near plane alone scales the whole
-// scene and cannot be seen.
-//
-// Buffer and result are as with alcovePrintSettings.
-size_t alcoveDiagnose(AlcoveContext* context, char* text, size_t size);
 
 // Removes a view and its history. The memory is freed while the next frames are recorded, after the
 // device has finished the frames that used it. An id that was never recorded is allowed.

@@ -49,14 +49,6 @@ typedef enum AlcovePattern {
   ALCOVE_PATTERN_MAX_ENUM = 0x7fffffff
 } AlcovePattern;
 
-// Which pixels a workgroup traces. It changes the cost and not the image.
-typedef enum AlcoveGrouping {
-  ALCOVE_GROUPING_NEIGHBOURS = 0,  // 8x8 adjacent tiles
-  // Every fourth tile in x and y. With ALCOVE_PATTERN_PAPER these have one slice direction.
-  ALCOVE_GROUPING_PATTERN = 1,
-  ALCOVE_GROUPING_MAX_ENUM = 0x7fffffff
-} AlcoveGrouping;
-
 // Brackets hold the default of every quality but REFERENCE. A field that the estimator or the
 // history does not use is not read, but it has to be in range.
 typedef struct AlcoveAdvancedSettings {
@@ -89,7 +81,6 @@ typedef struct AlcoveAdvancedSettings {
   // Leaves directions that the depth buffer does not show (behind a foreground, or beyond the
   // image's border) partly out of the average. If off, they count as open. For CONNECTED. [true]
   VkBool32 unobserved;
-  AlcoveGrouping grouping;  // [NEIGHBOURS]
 } AlcoveAdvancedSettings;
 
 // Fills `settings`, whose struct_size is set, with the advanced settings of a preset: the defaults,

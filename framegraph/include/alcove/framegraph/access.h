@@ -25,17 +25,21 @@ constexpr Access operator|(const Access& a, const Access& b) {
 
 namespace alcove::framegraph::access {
 
-// Textures. Sampled in any shader stages.
+// Accesses to textures.
+
+// Returns the access of a texture that shaders of these stages sample.
 constexpr Access sampled(VkPipelineStageFlags2 stages) {
   return {stages, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
           VK_IMAGE_USAGE_SAMPLED_BIT};
 }
-// Sampled in the general layout: for a pass that also stores to other mips of the same texture.
+// Returns the access of a texture that is sampled in VK_IMAGE_LAYOUT_GENERAL, for a pass that also
+// stores to other mips of the same texture.
 constexpr Access sampled_general(VkPipelineStageFlags2 stages) {
   return {stages, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, VK_IMAGE_LAYOUT_GENERAL,
           VK_IMAGE_USAGE_SAMPLED_BIT};
 }
-// A depth texture sampled in the layout in which it can be tested against at the same time.
+// Returns the access of a depth texture that is sampled, in a layout that allows the depth test
+// against it at the same time.
 constexpr Access depth_read(VkPipelineStageFlags2 stages) {
   return {stages, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
           VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL, VK_IMAGE_USAGE_SAMPLED_BIT};
@@ -75,7 +79,8 @@ inline constexpr Access color_attachment{
     VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
     VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
     VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT};
-// The texture of one sample that a multisampled colour or depth attachment is resolved to.
+// The texture with one sample per texel that a multisampled colour or depth attachment is resolved
+// to.
 inline constexpr Access resolve_target{
     VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
     VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT};
@@ -83,7 +88,8 @@ inline constexpr Access depth_attachment{
     VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
     VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
     VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT};
-// Stencil test and writes, with Range::stencil(): the depth of the texture can be read beside it.
+// Stencil test and writes. Declared with Range::stencil(), another access may read the texture's
+// depth at the same time.
 inline constexpr Access stencil_attachment{
     VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
     VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
@@ -93,7 +99,8 @@ inline constexpr Access depth_test{
     VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
     VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT, VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL,
     VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT};
-// Read in the fragment shader at its own pixel, as an input attachment of a render pass.
+// A texture that the fragment shader reads at its own pixel, as an input attachment of a render
+// pass.
 inline constexpr Access input_attachment{
     VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_INPUT_ATTACHMENT_READ_BIT,
     VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT};
@@ -113,7 +120,7 @@ inline constexpr Access blit_destination{
 inline constexpr Access clear{VK_PIPELINE_STAGE_2_CLEAR_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                               VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                               VK_IMAGE_USAGE_TRANSFER_DST_BIT};
-// For a final state: a swapchain image that is presented next.
+// The final state of a swapchain image that is presented after the frame.
 inline constexpr State present{VK_PIPELINE_STAGE_2_BOTTOM_OF_PIPE_BIT, 0,
                                VK_IMAGE_LAYOUT_PRESENT_SRC_KHR};
 
@@ -133,7 +140,8 @@ constexpr Access storage_write(VkPipelineStageFlags2 stages) {
   return {stages, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
           VK_BUFFER_USAGE_STORAGE_BUFFER_BIT};
 }
-// With Contents::accumulate, atomic operations of several passes need no barrier in between.
+// Returns the access of a buffer that shaders of these stages read and write. If it is declared
+// with Contents::accumulate, atomic operations of several passes need no barrier in between.
 constexpr Access storage_read_write(VkPipelineStageFlags2 stages) {
   return storage_read(stages) | storage_write(stages);
 }
@@ -169,14 +177,15 @@ inline constexpr Access transfer_source{VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_
 inline constexpr Access transfer_destination{
     VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
     VK_BUFFER_USAGE_TRANSFER_DST_BIT};
-// vkCmdFillBuffer and vkCmdUpdateBuffer, which implementations count among the clears or the
-// copies.
+// The destination of vkCmdFillBuffer and vkCmdUpdateBuffer. Implementations count these commands
+// among the clears or the copies.
 inline constexpr Access fill{VK_PIPELINE_STAGE_2_CLEAR_BIT | VK_PIPELINE_STAGE_2_COPY_BIT,
                              VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
                              VK_BUFFER_USAGE_TRANSFER_DST_BIT};
 
-// Ray tracing. An acceleration structure is declared as the buffer that it lies in.
-// Vertices, indices, transforms and instances that a build reads.
+// Ray tracing. A pass declares an acceleration structure as the buffer that contains it.
+
+// Vertices, indices, transforms and instances that the build of an acceleration structure reads.
 inline constexpr Access build_input{
     VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR, VK_ACCESS_2_SHADER_READ_BIT,
     VK_IMAGE_LAYOUT_UNDEFINED,
@@ -192,13 +201,14 @@ inline constexpr Access acceleration_structure_build{
     VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR,
     VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR, VK_IMAGE_LAYOUT_UNDEFINED,
     VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_STORAGE_BIT_KHR};
-// Traced by shaders of these stages, or (in the build stage) read by the build of another one.
+// Returns the access of an acceleration structure that shaders of these stages trace rays through.
+// With the build stage, the build of another structure reads it.
 constexpr Access acceleration_structure_read(VkPipelineStageFlags2 stages) {
   return {stages, VK_ACCESS_2_ACCELERATION_STRUCTURE_READ_BIT_KHR, VK_IMAGE_LAYOUT_UNDEFINED,
           VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_STORAGE_BIT_KHR};
 }
 
-// For a final state: a buffer that the host reads once the frame's fence has signalled.
+// The final state of a buffer that the host reads after the frame's fence has signalled.
 inline constexpr State host_read{VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT,
                                  VK_IMAGE_LAYOUT_UNDEFINED};
 

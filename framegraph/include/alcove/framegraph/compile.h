@@ -1,5 +1,6 @@
-// Turns a declared frame into a plan: a pure function, no device. The phases, each in a file of its
-// own: validate, cull, order, assign queues, lifetimes, place, synchronise.
+// Compiles a declared frame to a plan. It is a pure function that needs no device. Its phases are:
+// validate, cull, order, assign queues, lifetimes, place, synchronise. Each phase has a source file
+// of its own.
 #pragma once
 
 #include <cstdint>
@@ -19,78 +20,86 @@ struct MemoryRequirements {
   std::uint32_t memory_types = ~0u;  // allowed types, as a mask
 };
 
-// Asked for each live transient; `usage` is what its live passes need. Must be a pure function.
+// A function that returns the memory requirements of a transient. The compiler calls it for each
+// transient that a live pass uses; `usage` is the union of the usages of these passes. It must be a
+// pure function.
 struct MemoryOracle {
   MemoryRequirements (*query)(const void* context, const ResourceRecord& record,
                               VkFlags usage) = nullptr;
   const void* context = nullptr;
 };
-// Width times height times texel size, mips summed, aligned to 256 bytes: what the default oracle
-// gives, for plans without a device.
+// Estimates the memory of a resource without a device: the texels of all mips times the texel size,
+// aligned to 256 bytes. The default MemoryOracle uses it.
 MemoryRequirements estimate_requirements(const ResourceRecord& record);
 
-// The usages that a format supports; 0 refuses the format. The query must be a pure function.
+// A function that returns the usages that a format supports, or 0 to refuse the format. It must be
+// a pure function.
 struct FormatOracle {
-  VkImageUsageFlags (*query)(const void* context, VkFormat format) = nullptr;  // null: anything
+  VkImageUsageFlags (*query)(const void* context,
+                             VkFormat format) = nullptr;  // if null, every usage is supported
   const void* context = nullptr;
 };
 
 // The device's limits for a texture of a format, dimension, usage and flags.
 struct ImageLimits {
-  VkExtent3D extent{};             // the largest; 0 where the combination is not supported at all
-  std::uint32_t mips = 0;          // the most
-  std::uint32_t layers = 0;        // the most
-  VkSampleCountFlags samples = 0;  // each allowed count
+  VkExtent3D extent{};             // the largest size; 0 if the combination is not supported
+  std::uint32_t mips = 0;          // the largest number of mips
+  std::uint32_t layers = 0;        // the largest number of layers
+  VkSampleCountFlags samples = 0;  // mask of the supported sample counts
 };
-// Asked for textures that the fixed limits do not settle: with several samples, layers or slices,
-// or with flags. Must be pure.
+// A function that returns the limits of one texture. The compiler calls it for textures that the
+// fields of Limits do not decide: those with several samples, layers or slices, or with flags. It
+// must be a pure function.
 struct ImageOracle {
   ImageLimits (*query)(const void* context, const ResourceRecord& record, VkFlags usage) = nullptr;
   const void* context = nullptr;
 };
 
 enum class Ordering : std::uint8_t {
-  program,  // as declared
-  // In another order if that lowers the bytes of all heaps, as they are placed: never a higher
-  // peak. Passes with side effects keep their order among each other.
+  program,  // in the order of declaration
+  // In another order, if that order needs fewer bytes of memory in all heaps together after
+  // placement. Passes with side effects keep their order relative to each other.
   lower_peak,
 };
 
-// Limits of the device and wishes of the caller. The defaults suit any desktop device.
+// Limits of the device and options of the caller. The defaults suit any desktop device.
 struct Limits {
   std::uint32_t max_extent_2d = 16384;
   std::uint32_t max_extent_3d = 2048;
   std::uint32_t max_layers = 2048;
   VkDeviceSize max_buffer_size = VkDeviceSize{1} << 32;
-  std::uint32_t max_samples = 64;  // mask of VkSampleCountFlagBits is (2 * max_samples - 1)
-  // Bytes between a buffer and an image (optimal tiling) that share memory.
+  std::uint32_t max_samples = 64;  // all powers of two up to it are allowed
+  // The limit bufferImageGranularity in bytes: a buffer and an image with optimal tiling that share
+  // memory lie in different pages of this size.
   VkDeviceSize buffer_image_granularity = 1;
-  // The device has lazily allocated memory: attachments whose contents no pass loads or needs get
-  // it.
+  // Whether the device has lazily allocated memory. Attachments whose contents no pass loads and
+  // nobody needs later are then allocated from it.
   bool has_lazy_memory = false;
-  // The feature separateDepthStencilLayouts, for accesses to one aspect of a texture with two.
+  // Whether the feature separateDepthStencilLayouts is enabled. Accesses to one aspect of a texture
+  // with depth and stencil need it.
   bool separate_depth_stencil = true;
-  // Queue family of each class, kNone where there is none: its passes then run on graphics.
+  // Queue family of each QueueClass. If a class has none (kNone), its passes run on the graphics
+  // queue.
   std::uint32_t queue_families[kQueueClasses] = {0, kNone, kNone};
   MemoryOracle memory;
   FormatOracle formats;
-  ImageOracle images;  // without it everything within the fixed limits is allowed
+  ImageOracle images;  // if it has no query, every texture within the fields above is allowed
   Ordering ordering = Ordering::lower_peak;
-  // Graphs of more live passes than this keep program order: looking for another takes time that
-  // grows faster than the graph.
+  // Graphs with more live passes than this keep the order of declaration, because the search for
+  // another order takes time that grows faster than the graph.
   std::uint32_t reorder_passes = 48;
-  // How long placement looks for a lower peak if its first attempt does not meet the lower bound,
-  // in comparisons of two resources, 0 or more; 0 keeps the first attempt. The time that a changed
-  // frame takes grows with it. For 200 passes with textures of differing sizes
-  // (framegraph_benchmark):
-  // 0 takes .05 ms at a median peak of 1.16 times the lower bound, 2^18 takes .6 ms at 1.002, and
-  // 2^24 takes up to 30 ms for the last hundredths of the worst frames.
+  // Budget of the search for a placement with a lower memory peak, in comparisons of two resources,
+  // at least 0. The search runs only if the first placement exceeds the lower bound; 0 keeps the
+  // first placement. A larger budget takes more time in frames whose declaration changes. For 200
+  // passes with textures of differing sizes (framegraph_benchmark), 0 takes .05 ms at a median peak
+  // of 1.16 times the lower bound, and 2^18 takes .6 ms at 1.002. 2^24 takes up to 30 ms and
+  // improves the worst frames by some hundredths.
   std::int64_t placement_effort = 1 << 18;
-  bool alias = true;  // false gives each transient bytes of its own
+  bool alias = true;  // whether transients may share memory
 };
 
-// Everything that compiling needs beside its input: kept from call to call, so that no memory is
-// allocated once it has grown. One thread at a time.
+// Compiles graphs and keeps its working memory from call to call, so that it allocates nothing
+// after that memory has grown to the largest graph. Only one thread at a time may use it.
 class Compiler {
  public:
   Compiler();
@@ -98,7 +107,8 @@ class Compiler {
   Compiler(const Compiler&) = delete;
   Compiler& operator=(const Compiler&) = delete;
 
-  // Overwrites `plan`. All errors of the declaration, or none and the plan is right.
+  // Compiles `graph` and writes the result to `plan`. If the declaration has errors, returns all of
+  // them.
   [[nodiscard]] tl::expected<void, Errors> compile(const GraphDescription& graph,
                                                    const Limits& limits, Plan& plan);
 

@@ -1,5 +1,6 @@
-// A declared frame as plain data: what Graph writes, and what compile, verify and print read.
-// The records have no padding: equal bytes mean equal declarations, which is the plan cache's key.
+// A declared frame as plain data. Graph writes it; the compiler, the verifier and the printers read
+// it. Its records have no padding bytes, so that two declarations are equal if their bytes are. The
+// plan cache compares them in this way.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +19,7 @@ enum class ResourceKind : std::uint8_t { texture, buffer };
 enum class Origin : std::uint8_t { transient, imported, history };
 
 struct ResourceRecord {
-  std::uint64_t size = 0;  // bytes, of a buffer
+  std::uint64_t size = 0;  // of a buffer, in bytes
   VkFormat format = VK_FORMAT_UNDEFINED;
   std::uint32_t width = 0;
   std::uint32_t height = 0;
@@ -26,14 +27,14 @@ struct ResourceRecord {
   std::uint32_t mips = 1;
   std::uint32_t layers = 1;
   std::uint32_t samples = 1;
-  std::uint32_t external = kNone;  // index into externals, of an import or a history slot
+  std::uint32_t external = kNone;  // of an import or a history slot: index into externals
   ResourceKind kind = ResourceKind::texture;
   Origin origin = Origin::transient;
-  std::uint8_t slot = 0;     // of a history: 0 is this frame's, k is that of k frames ago
-  std::uint8_t slots = 1;    // of a history
+  std::uint8_t slot = 0;     // of a history: its age in frames; 0 is this frame's slot
+  std::uint8_t slots = 1;    // of a history: the number of its slots
   std::uint32_t flags = 0;   // ResourceFlags
   VkFlags create_flags = 0;  // of a texture, TextureDesc::flags; of a buffer, BufferDesc::usage
-  std::uint32_t planes = 1;  // aspects that are followed separately: 2 with depth and stencil
+  std::uint32_t planes = 1;  // aspects with separate states: 2 if the format has depth and stencil
 };
 static_assert(std::has_unique_object_representations_v<ResourceRecord>);
 
@@ -41,7 +42,8 @@ constexpr bool has_depth_and_stencil(VkFormat format) {
   return format >= VK_FORMAT_D16_UNORM_S8_UINT && format <= VK_FORMAT_D32_SFLOAT_S8_UINT;
 }
 
-// Subresources are numbered mips within layers within planes; depth is the first of two planes.
+// Returns the index of the range's first plane. Subresources are numbered by mip, then by layer,
+// then by plane; depth is plane 0 and stencil plane 1.
 constexpr std::uint32_t first_plane(const Range& range) {
   return range.aspects == VK_IMAGE_ASPECT_STENCIL_BIT ? 1 : 0;
 }
@@ -54,8 +56,8 @@ inline bool has_one_subresource(const ResourceRecord& record) {
 }
 
 enum ResourceFlags : std::uint32_t {
-  kRelativeToNothing = 1,  // a relative extent of a dead handle
-  kPersistent = 2,         // a history of one slot, which keeps its contents
+  kRelativeToNothing = 1,  // its extent is relative to a handle that is no longer valid
+  kPersistent = 2,         // a history with one slot, which keeps its contents from frame to frame
 };
 
 // The state of a resource that exists outside the frame: an import or a history slot.
@@ -63,13 +65,14 @@ struct ExternalRecord {
   State initial_state;
   State final_state;
   VkFlags usage = 0;
-  // The external that was imported before with the same Vulkan handle, kNone where there is none.
+  // Index of an external that was imported earlier in this frame with the same Vulkan handle, or
+  // kNone.
   std::uint32_t same_as = kNone;
   std::uint8_t has_contents = 0;                      // 0 or 1
   std::uint8_t has_final_state = 0;                   // 0 or 1
-  std::uint8_t has_handle = 0;                        // 0 or 1: its Vulkan handle was given
+  std::uint8_t has_handle = 0;                        // 0 or 1: the caller gave a Vulkan handle
   HistoryValidity validity = HistoryValidity::valid;  // of a history slot
-  QueueClass queue = QueueClass::graphics;            // that used it last
+  QueueClass queue = QueueClass::graphics;            // the queue that used it last
   std::uint8_t reserved[3] = {};
 };
 static_assert(std::has_unique_object_representations_v<ExternalRecord>);
@@ -78,19 +81,20 @@ enum AccessFlags : std::uint32_t {
   kWrite = 1,
   kDiscard = 2,
   kOptional = 4,
-  kForeign = 8,     // the handle was of another graph or frame
-  kNull = 16,       // the handle was never made
-  kClosed = 32,     // declared on a pass that is not the last
-  kOnBuffer = 128,  // the handle was of a buffer
-  // Contents::accumulate: the write is not ordered among others of the same access.
+  kForeign = 8,     // the handle belongs to another graph or an earlier frame
+  kNull = 16,       // the handle is default-constructed
+  kClosed = 32,     // declared on a pass after the next pass was added
+  kOnBuffer = 128,  // the handle is a Buffer
+  // Contents::accumulate: the order of this write relative to others with the same access is free.
   kUnordered = 256,
   // Marks an OutputRecord that stands for a PassBuilder which was used after reset().
   kStaleBuilder = 1u << 16,
-  // The bits from this one on hold the number of an attachment's rendering within its pass.
+  // The bits from this one upwards count the renderings of the pass
+  // (PassBuilder::next_rendering()).
   kRendering = 1u << 24,
 };
 
-// The access bits that write: those of Vulkan and of its extensions, but for video.
+// The bits of VkAccessFlags2 that write, of Vulkan and its extensions except video.
 inline constexpr VkAccessFlags2 kWriteBits =
     VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT |
     VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT |
@@ -112,11 +116,12 @@ struct AccessRecord {
   VkFlags usage = 0;
   std::uint32_t resource = kNone;
   std::uint32_t flags = 0;  // AccessFlags
-  // Resolved: kAll only where the base is out of range, aspects only where it is one of two.
+  // The declared range with kAll replaced by the texture's counts. kAll remains only if the base is
+  // out of range. `aspects` is 0 unless it selects one of two planes.
   Range range;
-  std::uint32_t version = 0;  // that the access names: a write makes the next one
+  std::uint32_t version = 0;  // of the handle; a write returns the next version
 
-  ResourceKind kind() const {  // of the handle
+  ResourceKind kind() const {
     return flags & kOnBuffer ? ResourceKind::buffer : ResourceKind::texture;
   }
 };
@@ -132,7 +137,7 @@ struct PassRecord {
 };
 static_assert(std::has_unique_object_representations_v<PassRecord>);
 
-// A version that is wanted after the frame.
+// A version of a resource that Graph::output() has marked.
 struct OutputRecord {
   std::uint32_t resource = kNone;
   std::uint32_t version = 0;
@@ -146,18 +151,18 @@ struct GraphDescription {
   Records<ResourceRecord> resources;
   Records<ExternalRecord> externals;
   Records<OutputRecord> outputs;
-  // The number of the frame that first declared these records, passes excepted. Descriptions of one
-  // edition have the same records, because no two frames of any graph have the same number.
+  // The number of the frame that first declared these records, without the passes. Two descriptions
+  // with the same edition have the same records, because frame numbers are unique among all graphs.
   std::uint64_t edition = 0;
 
-  // Names appear in messages only and are not compared.
+  // A name, which appears in messages only. Names are not part of the comparison of declarations.
   struct Name {
     std::uint32_t size = 0;
-    std::uint32_t offset = 0;  // in long_names, where it is too long for the place here
+    std::uint32_t offset = 0;  // into long_names, if the name does not fit into `place`
     char place[24] = {};
   };
   std::string long_names;
-  std::vector<Name> pass_names;  // with room for more, as resource_names
+  std::vector<Name> pass_names;  // it may be longer than `passes`, as may resource_names
   std::vector<Name> resource_names;
 
   std::span<const AccessRecord> pass_accesses(std::uint32_t pass) const {
@@ -177,7 +182,7 @@ struct GraphDescription {
   }
 };
 
-// Returns whether two frames were declared the same, names aside.
+// Returns whether two declarations are equal apart from their names.
 bool same_declaration(const GraphDescription& a, const GraphDescription& b);
 // Returns a hash of everything that same_declaration compares.
 std::uint64_t hash(const GraphDescription& description);

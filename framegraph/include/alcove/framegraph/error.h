@@ -11,27 +11,28 @@ namespace alcove::framegraph {
 
 enum class ErrorCode : std::uint8_t {
   stale_handle,         // a version that a later write has replaced
-  foreign_handle,       // of another graph, or of a frame before reset
-  null_handle,          // never created
-  read_before_write,    // nothing wrote what is read
+  foreign_handle,       // a handle of another graph, or of a frame before reset()
+  null_handle,          // a default-constructed handle
+  read_before_write,    // a read of contents that nothing wrote
   read_and_write,       // one pass reads and writes one subresource in two accesses
   two_writers,          // one pass writes one subresource twice
   attachment_mismatch,  // one pass's attachments differ in size or samples
   missing_usage,        // an import was not created for this use
   unsupported_format,   // the device does not support this use of the format
-  bad_range,            // mips or layers that the texture does not have
+  bad_range,            // a range with mips or layers that the texture does not have
   bad_access,           // an access that contradicts itself or the pass's queue
-  bad_description,      // zero size, undefined format, or over a device limit
-  bad_import,  // an import without a Vulkan handle, with another import's, or of a relative
-               // extent
-  history_never_written,  // a history slot is read that no frame wrote and none writes
+  bad_description,      // a size of zero, an undefined format, or a size above a device limit
+  // An import without a Vulkan handle, with the handle of another import, or with a relative
+  // extent.
+  bad_import,
+  history_never_written,  // a pass reads a history that no frame writes
   history_cycle,          // a history's slots form a cycle within the frame
   closed_pass,            // an access declared after the next pass was begun
-  missing_callback,       // a live pass has nothing to record
-  undeclared_use,         // a recording callback touched what its pass did not declare
+  missing_callback,       // a live pass has no recording callback
+  undeclared_use,         // a recording callback used a resource that its pass did not declare
   misuse,                 // a call that is not allowed at this point
-  no_queue,               // no queue for the pass
-  verification,           // the verifier found the plan wrong: an error of the compiler
+  no_queue,               // the device has no queue for the pass
+  verification,           // the verifier found an error in the plan, which is a bug of the compiler
   vulkan,                 // a Vulkan call failed; see `result`
 };
 
@@ -39,8 +40,8 @@ struct Error {
   ErrorCode code = ErrorCode::vulkan;
   std::string message;
   VkResult result = VK_SUCCESS;    // with ErrorCode::vulkan
-  std::uint32_t pass = kNone;      // declaration index, kNone where none is concerned
-  std::uint32_t resource = kNone;  // index as in the handles
+  std::uint32_t pass = kNone;      // declaration index, or kNone if no pass is concerned
+  std::uint32_t resource = kNone;  // index of its handle, or kNone if no resource is concerned
   std::uint32_t version = 0;
 };
 

@@ -60,11 +60,11 @@ struct ExecutorOptions {
   // that of a kept plan is not compiled again. When all are taken, the plan that was unused for
   // longest is replaced. A plan takes some hundred bytes a pass and resource.
   std::uint32_t cached_plans = 64;
-  // Number of threads that record passes, 1 to 64, including the caller's; fewer are used if the
-  // system cannot create so many. With more than one, the callbacks of different passes run at the
-  // same time, into secondary command buffers. No query of the caller may then be active in the
-  // command buffer that record() is given. An exception of a callback reaches the caller from
-  // whichever thread it ran in.
+  // Number of threads that record passes, 1 to 64, including the caller's. Fewer are used if the
+  // system cannot create so many. With more than one thread, callbacks of different passes run at
+  // the same time, into secondary command buffers. The command buffer that record() is given must
+  // then have no active query. If a callback throws, the exception reaches the caller of record(),
+  // whichever thread the callback ran in.
   std::uint32_t recording_threads = 1;
   // If not null, this function checks each new plan when it is compiled. Pass framegraph::verify()
   // from verify.h (library alcove::framegraph_verifier). Debug builds of this library use that
@@ -101,22 +101,22 @@ struct FrameInfo {
 
 // Memory of a frame's transients in bytes, summed over all heaps.
 struct MemoryStatistics {
-  VkDeviceSize aliased = 0;      // as placed
-  VkDeviceSize unaliased = 0;    // were each given bytes of its own
-  VkDeviceSize lower_bound = 0;  // most bytes live at once
+  VkDeviceSize aliased = 0;      // with transients that share memory
+  VkDeviceSize unaliased = 0;    // if each transient had memory of its own
+  VkDeviceSize lower_bound = 0;  // most bytes that are live at the same time
   VkDeviceSize history = 0;      // of all history slots
-  VkDeviceSize allocated = 0;    // that the executor holds, what is to be freed soon among it
+  VkDeviceSize allocated = 0;    // all device memory of the executor, with what it will free soon
 };
 
 struct FrameReport {
-  const Plan* plan = nullptr;  // valid until the next record
+  const Plan* plan = nullptr;  // valid until the next record() or submit()
   MemoryStatistics memory;
   bool compiled = false;  // false when the plan came from the cache
 };
 
 struct PassTiming {
   std::string_view name;
-  std::uint32_t pass = kNone;  // its number in the graph, as PassBuilder::index() had it
+  std::uint32_t pass = kNone;  // PassBuilder::index()
   double milliseconds = 0.0;
 };
 
@@ -129,27 +129,29 @@ class Executor {
   // The device must have finished all recorded frames. The destructor waits for submitted ones.
   ~Executor();
 
-  // Records the frame into `commands`, a primary command buffer of the graphics family in the
-  // recording state, outside a render pass. All passes run on its queue. Commands are submitted in
-  // the order of their recording, once, to one queue. On an error nothing is recorded, unless it is
-  // found while recording (an undeclared use, memory that gives out): `commands` is to be thrown
-  // away then. Histories are as before the frame, but those that it declared otherwise or reset
-  // begin anew.
+  // Records the frame into `commands`, a primary command buffer of the graphics family that is in
+  // the recording state and outside a render pass. All passes run on its queue. The caller must
+  // submit the command buffers in the order in which they were recorded, once each, to one queue.
+  // On an error nothing is recorded, unless the error is found while recording (an undeclared use,
+  // or memory that runs out): `commands` must then be thrown away. After an error, histories are as
+  // before the frame, except that histories which the frame declared differently or reset have no
+  // contents.
   [[nodiscard]] tl::expected<FrameReport, Errors> record(Graph& graph, VkCommandBuffer commands,
                                                          const FrameInfo& frame = {});
-  // Takes a recorded frame back whose commands are not submitted after all. Call it before anything
-  // else of this graph or executor. The graph and the executor are then as if that frame had not
-  // been recorded or declared. Without this call its histories are lost. To record the frame again,
-  // declare it anew if it changed the description of a history.
+  // Takes back a recorded frame whose commands are not submitted after all. Call it before any
+  // other function of this graph or executor. The graph and the executor are then as if that frame
+  // had not been recorded or declared. Without this call the frame's histories have wrong contents.
+  // To record the frame again, declare it again if it changed the description of a history.
   void discard(Graph& graph, const FrameInfo& frame = {});
 
-  // Records and submits on as many queues as there are, with one vkQueueSubmit2 for all that a
-  // queue does before another queue waits for it. Waits itself for what was last submitted with
-  // this slot. Not to be mixed with record() on one executor unless the caller orders the two. When
-  // the device is lost, this and wait() give an error with VK_ERROR_DEVICE_LOST, each time: what is
-  // left is to destroy the executor, which waits for nothing and leaks nothing.
+  // Records the frame and submits it to all queues of the device, with one vkQueueSubmit2 for all
+  // work of a queue that comes before another queue waits for it. First waits for the frame that
+  // was last submitted with this slot. Do not mix it with record() on one executor unless the
+  // caller orders the two. After the device is lost, submit() and wait() return an error with
+  // VK_ERROR_DEVICE_LOST every time; the executor can then only be destroyed, which does not wait
+  // and leaks nothing.
   [[nodiscard]] tl::expected<FrameReport, Errors> submit(Graph& graph, const FrameInfo& frame = {});
-  // Waits for the frame last submitted with this slot.
+  // Waits until the device has finished the frame that was last submitted with this slot.
   [[nodiscard]] tl::expected<void, Errors> wait(std::uint32_t slot = 0);
 
   // Returns the GPU time of each pass of the frame last recorded with this slot, in order of
@@ -165,8 +167,8 @@ class Executor {
   [[nodiscard]] ImportedTexture exported(const Graph& graph, const TextureHistory& texture) const;
   [[nodiscard]] ImportedBuffer exported(const Graph& graph, const BufferHistory& buffer) const;
 
-  // To be called before the caller destroys an image that it imported, if passes asked for views of
-  // it other than the one imported: a new image may have the same handle.
+  // Call it before you destroy an image that was imported, if passes asked for views of it other
+  // than the imported one: a new image may get the same handle.
   void forget(VkImage image);
 
   const VulkanFunctions& functions() const;

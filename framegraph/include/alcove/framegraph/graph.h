@@ -1,4 +1,5 @@
-// Declares a frame: resources, passes, what each pass reads and writes, and what is wanted of it.
+// The render graph: declares a frame with its resources, its passes, their reads and writes, and
+// the frame's outputs.
 //
 //   Graph graph;
 //   Texture depth = graph.import_texture("depth", engine_depth);
@@ -9,11 +10,11 @@
 //   pass.record([=](RecordContext& context) { ... context.view(ao) ... });
 //   graph.output(ao);
 //
-// Declaring never fails: what is wrong is kept and comes back from compile as errors, all of them.
-// Order of declaration is program order: a pass reads what passes before it wrote. One thread
-// declares; a graph may be used by one executor only, which may run several graphs: their frames
-// are numbered together. The memory of a graph's histories is freed some frames after the graph is
-// gone. A frame like the one before allocates nothing, from the second reset() on.
+// Declaring never fails. Errors of the declaration are kept, and compiling returns all of them. The
+// order of declaration is the program order: a pass reads what earlier passes wrote. Only one
+// thread may declare. A graph may be used with one executor only; an executor may run several
+// graphs. The memory of a graph's histories is freed some frames after the graph is destroyed. From
+// the second reset() on, declaring a frame that equals the previous one allocates nothing.
 #pragma once
 
 #include <cstddef>
@@ -43,12 +44,14 @@ class PassBuilder {
   void read(Texture texture, const Access& access, Range range = {});
   void read(Buffer buffer, const Access& access);
 
-  // The pass writes, which makes the next version and ends the one given.
+  // The pass writes the texture or buffer. Returns the handle of the next version; the given handle
+  // becomes invalid.
   [[nodiscard]] Texture write(Texture texture, const Access& access, Range range = {},
                               Contents contents = Contents::keep, Need need = Need::required);
   [[nodiscard]] Buffer write(Buffer buffer, const Access& access,
                              Contents contents = Contents::keep, Need need = Need::required);
-  // An output of the pass that costs nothing when nobody reads it.
+  // Declares a write that is left out if nobody reads it. RecordContext::is_used() tells the
+  // callback.
   [[nodiscard]] Texture write_optional(Texture texture, const Access& access, Range range = {}) {
     return write(texture, access, range, Contents::keep, Need::optional);
   }
@@ -56,11 +59,12 @@ class PassBuilder {
     return write(buffer, access, Contents::keep, Need::optional);
   }
 
-  // Attachments that are declared from now on belong to another rendering of the pass. Those of one
-  // rendering have one size, and one number of samples but for resolve targets. At most 255 times.
+  // Begins another rendering of the pass: attachments that are declared after this call belong to
+  // it. The attachments of one rendering must have one size and, except for resolve targets, one
+  // number of samples. At most 255 calls.
   void next_rendering() { rendering_ += kRendering; }
 
-  // The pass does something that the graph does not see: it is never culled.
+  // Marks the pass as one with effects outside the graph. It is never culled.
   void side_effect();
 
   // The function that records the pass. It is called with a RecordContext& once a frame if the pass
@@ -77,7 +81,8 @@ class PassBuilder {
   friend class Graph;
   PassBuilder(Graph& graph, std::uint32_t pass, std::uint32_t tag)
       : graph_(graph), pass_(pass), tag_(tag) {}
-  // Whether the frame of the pass is still being declared. A use after reset() becomes an error.
+  // Returns whether the frame of the pass is still being declared. If not, adds an error for the
+  // use after reset().
   bool is_current();
 
   Graph& graph_;
@@ -86,14 +91,15 @@ class PassBuilder {
   std::uint32_t rendering_ = 0;  // a multiple of kRendering
 };
 
-// A resource with memory from frame to frame. `current` is written this frame; previous(k) is what
-// was `current` k frames ago: frames count only when `current` was written by a live pass. Where
-// nothing moves, previous() can be updated in place instead, by a write that keeps contents.
+// A resource that keeps contents from frame to frame. `current` is written in this frame.
+// previous(k) is what was `current` k frames ago, where only frames in which a live pass wrote
+// `current` count. If nothing changes, a write that keeps contents can update previous() in place
+// instead.
 struct TextureHistory {
   Texture current;
   std::uint32_t slots = 0;
   HistoryValidity validity = HistoryValidity::first_frame;  // of previous(1)
-  // A version that the graph refuses when age is 0 or not below `slots`.
+  // Returns the slot of that age. The graph reports an error if age is 0 or not below `slots`.
   Texture previous(std::uint32_t age = 1) const;
 };
 struct BufferHistory {
@@ -103,14 +109,14 @@ struct BufferHistory {
   Buffer previous(std::uint32_t age = 1) const;
 };
 
-// The caller's Vulkan handles of one frame: no part of the plan.
+// The caller's Vulkan handles for one frame. They are not part of the plan.
 struct ImportHandles {
   VkImage image = VK_NULL_HANDLE;
   VkImageView view = VK_NULL_HANDLE;
   VkBuffer buffer = VK_NULL_HANDLE;
-  std::uint32_t history = kNone;  // of a history slot: index into the graph's histories
-  std::uint32_t layer = 0;        // of the image: the texture's first
-  std::uint32_t layers = 1;       // of the texture
+  std::uint32_t history = kNone;  // for a history slot: index into the graph's histories
+  std::uint32_t layer = 0;        // the layer of the image that is the texture's first
+  std::uint32_t layers = 1;       // number of layers of the texture
   std::uint32_t initial_family = kNone;
   std::uint32_t final_family = kNone;
 };
@@ -129,8 +135,8 @@ class Graph {
   Buffer create_buffer(std::string_view name, const BufferDesc& desc);
   Texture import_texture(std::string_view name, const ImportedTexture& import);
   Buffer import_buffer(std::string_view name, const ImportedBuffer& import);
-  // Histories are known from frame to frame by their name. `slots` counts this frame's: 2 gives one
-  // frame of memory; at most 8.
+  // A history is identified by its name from frame to frame. `slots`, 1 to 8, includes the slot of
+  // the current frame: 2 keeps the contents of one earlier frame.
   TextureHistory create_texture_history(std::string_view name, const TextureDesc& desc,
                                         std::uint32_t slots = 2);
   BufferHistory create_buffer_history(std::string_view name, const BufferDesc& desc,
@@ -144,11 +150,11 @@ class Graph {
                                            const State& final_state = {});
   BufferHistory create_persistent_buffer(std::string_view name, const BufferDesc& desc,
                                          const State& final_state = {});
-  // From the next create_*_history on, nothing of the named history (or of all) is valid.
+  // Discards the contents of the named history, or of all, from its next create_*_history() on.
   void reset_history(std::string_view name);
   void reset_histories();
-  // Forgets the named history, unless this frame declared it (or, after its record, the frame did):
-  // the executor frees its memory in the next frames that it records, as the device gets done.
+  // Forgets the named history, unless this frame declared it. The executor frees its memory in one
+  // of the next frames, after the device has finished with it.
   void drop_history(std::string_view name);
 
   PassBuilder add_pass(std::string_view name, QueueClass queue = QueueClass::graphics);
@@ -167,9 +173,9 @@ class Graph {
 
   const GraphDescription& description() const { return description_; }
 
-  // For a caller that compiles without an executor, or declares a frame and does not record
-  // it: what is remembered of the histories, and moving them on as a frame leaves them that runs by
-  // a plan with these finals.
+  // For callers that compile a frame without an executor, or declare a frame and do not record it.
+  // histories() is the state of the histories. leave_histories() moves them on as a frame with
+  // these final states does.
   HistoryTable& histories() { return histories_; }
   const HistoryTable& histories() const { return histories_; }
   void leave_histories(std::span<const FinalState> finals);
@@ -200,7 +206,8 @@ class Graph {
 
   void keep_name(std::string_view name, GraphDescription::Name& to);
   void keep_long_name(std::string_view name, GraphDescription::Name& to);
-  // Called where a record is not what lay there: from now on this frame repeats no other.
+  // Notes that a record differs from the one of the previous frame: this frame then repeats no
+  // earlier one.
   void changed();
   template <typename Record>
   void add(Records<Record>& records, const Record& record);
@@ -236,11 +243,11 @@ class Graph {
   std::vector<Callback> callbacks_;      // room as for description_.passes
   std::vector<Cleanup> cleanups_;
   std::vector<Block> blocks_;
-  std::size_t block_ = 0;      // the next block
-  std::byte* next_ = nullptr;  // free bytes of the current one
+  std::size_t block_ = 0;      // index of the next block
+  std::byte* next_ = nullptr;  // the free bytes of the current block: [next_, end_)
   std::byte* end_ = nullptr;
-  std::uint64_t frame_ = 0;  // its number
-  std::uint32_t tag_ = 0;    // of the handles of this frame of this graph: half of its number
+  std::uint64_t frame_ = 0;          // number of the frame, unique among all graphs
+  std::uint32_t tag_ = 0;            // lower half of frame_; handles of this frame carry it
   std::uint32_t repeating_tag_ = 0;  // equals tag_ until changed(), then 0
   HistoryTable histories_;
   std::weak_ptr<const char> executor_;  // Tells which executor the graph was last recorded by.

@@ -1,5 +1,6 @@
-// The part of Graph and PassBuilder that runs for every pass of every frame: inline, so that a
-// frame that did not change costs little more than writing its records. graph.h includes it.
+// The functions of Graph and PassBuilder that run for every pass of every frame. They are inline,
+// so that declaring an unchanged frame costs little more than writing its records. graph.h includes
+// this file.
 #pragma once
 
 #include <cstddef>
@@ -70,7 +71,7 @@ inline void Graph::changed() {
 }
 
 inline bool Graph::is_texture_record(const ResourceRecord& record, const TextureDesc& desc) {
-  // Neighbours in both, so that they are compared two at a time.
+  // These fields are neighbours in both structs, so that the compiler compares two at a time.
   const auto pair = [](std::uint32_t low, std::uint32_t high) {
     return low | static_cast<std::uint64_t>(high) << 32;
   };
@@ -140,7 +141,7 @@ inline bool PassBuilder::is_current() {
   return false;
 }
 
-// The version that the access leaves.
+// Adds an access and returns the version after it.
 template <typename Handle>
 inline std::uint32_t Graph::add_access(std::uint32_t pass, const Handle& handle,
                                        const Access& access, Range range, std::uint32_t flags) {

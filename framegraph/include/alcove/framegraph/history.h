@@ -1,11 +1,11 @@
-// The state of a graph's history resources from frame to frame.
+// The state of a graph's history resources, kept from frame to frame.
 //
-// A history has N slots. Each frame slot 0 ("current") may be written and slots 1..N-1 hold what
-// was current 1..N-1 frames ago. Slots rotate at the end of a frame in which a live pass wrote slot
-// 0, and only then: a frame that culls the writer leaves all contents where they are, and one that
-// writes an older slot instead, keeping contents, updates it in place. A change of description or a
-// reset makes every slot invalid, with the reason; a slot becomes valid again when it was written.
-// A frame that does not declare the history leaves it untouched.
+// A history has N slots. In each frame, slot 0 ("current") may be written, and slot k holds what
+// was current k frames ago. Slots rotate at the end of a frame in which a live pass wrote slot 0. A
+// frame in which that pass is culled leaves all contents where they are. A frame that instead
+// writes an older slot and keeps its contents updates that slot in place. A changed description or
+// a reset makes every slot invalid and keeps the reason. A slot becomes valid again when it is
+// written. A frame that does not declare the history leaves it unchanged.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ namespace alcove::framegraph {
 inline constexpr std::uint32_t kMaxHistorySlots = 8;
 
 struct HistorySlot {
-  State state;  // how the last frame that touched it left it
+  State state;  // the state in which the last frame that used it left it
   QueueClass queue = QueueClass::graphics;
   HistoryValidity validity = HistoryValidity::first_frame;
 };
@@ -46,35 +46,36 @@ class HistoryTable {
   HistoryTable(const HistoryTable&) = delete;
   HistoryTable& operator=(const HistoryTable&) = delete;
 
-  // Finds or makes the entry; a changed record invalidates it.
+  // Finds or creates the entry with this name. A changed record makes its slots invalid.
   std::uint32_t declare(std::string_view name, const ResourceRecord& record);
   void invalidate(std::string_view name);
   void invalidate_all();
-  // Frees the place of a history that is not declared in this frame.
+  // Drops the history with this name unless this frame declares it.
   void drop(std::string_view name);
   void begin_frame();
-  // No history is declared any more: each can be dropped.
+  // Marks all histories as not declared, so that each can be dropped.
   void end_frame();
 
-  // At the end of a frame, after begin_end(): how it left a slot, and that slot 0 becomes slot 1.
+  // leave() sets the state in which the frame left a slot, and rotate() turns slot 0 into slot 1.
+  // Call them at the end of a frame, after begin_end().
   void begin_end();
   void leave(std::uint32_t index, std::uint32_t slot, const HistorySlot& left);
   void rotate(std::uint32_t index);
-  // The frame does not run: takes back all that was done since begin_frame(), but for drop().
+  // Takes back everything since begin_frame() except drop(), because the frame does not run.
   void undo();
-  // Whether undo() took back a description that the declared frame still goes by.
+  // Returns whether undo() took back a description that the declared frame still uses.
   bool must_be_declared_anew() const { return anew_; }
-  // No slot has contents any more, nor a state: the executor that had them is gone.
+  // Makes all slots invalid and without a state, because their executor is gone.
   void forget_contents();
-  // Whether a frame has left or taken back slots since begin_frame() or clear_moved().
+  // Returns whether a frame has changed or taken back slots since begin_frame() or clear_moved().
   bool have_moved() const { return moved_; }
   void clear_moved() { moved_ = false; }
-  // Whether the resources of a generation are in use, or undo() could bring them back.
+  // Returns whether the resources of a generation are in use, or undo() could make them used again.
   bool needs(std::uint32_t index, std::uint32_t generation) const;
 
   const std::vector<HistoryEntry>& entries() const { return entries_; }
   HistoryEntry& entry(std::uint32_t index) { return entries_[index]; }
-  // Tells executors the histories of one graph from another's; expires with the table.
+  // Returns a token that identifies the table to executors. It expires with the table.
   std::weak_ptr<const char> life() const { return life_; }
 
  private:

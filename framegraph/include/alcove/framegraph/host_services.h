@@ -1,6 +1,6 @@
-// Services that the caller may provide in place of Vulkan's defaults: host memory for the driver,
-// device memory, and a log. Everything here is optional, and must outlive the executor and the
-// kernels that it is given to.
+// Services that the caller may provide instead of Vulkan's defaults: host memory for the driver,
+// device memory, and a log. Everything here is optional. What is given must outlive the executor
+// and the kernels that use it.
 #pragma once
 
 #include <vulkan/vulkan_core.h>
@@ -9,24 +9,24 @@
 
 namespace alcove::framegraph {
 
-// Device memory that is needed.
+// A request for device memory.
 struct MemoryRequest {
-  VkMemoryRequirements requirements{};  // size, alignment, and the memory types that will do
+  VkMemoryRequirements requirements{};  // size, alignment, and the allowed memory types
   VkMemoryPropertyFlags required = 0;   // properties that the memory type must have
-  VkMemoryPropertyFlags preferred = 0;  // properties that it should have
+  VkMemoryPropertyFlags preferred = 0;  // properties that the memory type should have
   // A buffer with a device address will be bound: allocate with
   // VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT.
   bool device_address = false;
 };
 
-// A part of a device memory object, whose first byte is `offset`, a multiple of the alignment.
+// A range of a device memory object. It begins at `offset` bytes, a multiple of the alignment.
 struct MemoryRange {
   VkDeviceMemory memory = VK_NULL_HANDLE;
   VkDeviceSize offset = 0;
-  // The address of the first byte in host memory. Needed if VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT was
-  // required: the memory then stays mapped until it is freed.
+  // The address of the range in host memory. It is needed if VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT
+  // was required: the memory must then stay mapped until it is freed.
   void* mapped = nullptr;
-  // For `free`: anything that finds the allocation again.
+  // A value of the caller's, which `free` gets back to find the allocation.
   void* handle = nullptr;
 };
 
@@ -54,15 +54,15 @@ struct MemoryBlock {
 
 enum class Severity : std::uint8_t { info, warning, error };
 
-// Receives one sentence at a time, terminated by zero and valid during the call. It must not call
-// the library.
+// The caller's log. `write` receives one sentence at a time, terminated by zero and valid during
+// the call. It must not call the library.
 struct Log {
   void (*write)(void* user, Severity severity, const char* sentence) = nullptr;
   void* user = nullptr;
 };
 
 struct HostServices {
-  // Given to every function of Vulkan that creates or destroys something.
+  // Given to every Vulkan function that creates or destroys an object.
   const VkAllocationCallbacks* allocation_callbacks = nullptr;
   MemoryFunctions memory;
   MemoryBlock block;

@@ -12,12 +12,12 @@ namespace alcove::framegraph {
 
 // Why a pass is in the plan, or is not.
 enum class CullReason : std::uint8_t {
-  side_effect,    // it runs: it has effects outside the graph
-  output,         // it runs: it writes an output, or an import with a final state
-  feeds_pass,     // it runs: `consumer` reads what it writes
-  feeds_history,  // it runs: `consumer` reads its history slot in later frames
-  unread,         // culled: no pass that runs reads what it writes
-  writes_nothing  // culled: it writes nothing and has no side effect
+  side_effect,    // the pass runs because it has effects outside the graph
+  output,         // the pass runs because it writes an output, or an import with a final state
+  feeds_pass,     // the pass runs because `consumer` reads what it writes
+  feeds_history,  // the pass runs because `consumer` reads its history slot in later frames
+  unread,         // the pass is culled because no pass that runs reads what it writes
+  writes_nothing  // the pass is culled because it writes nothing and has no side effect
 };
 
 struct PassCullReason {
@@ -39,7 +39,7 @@ struct Transition {
   VkImageLayout old_layout = VK_IMAGE_LAYOUT_UNDEFINED;
   VkImageLayout new_layout = VK_IMAGE_LAYOUT_UNDEFINED;
   Range range;
-  // Queue classes of an ownership transfer; equal where there is none.
+  // Queue classes of an ownership transfer. They are equal if there is none.
   QueueClass src_queue = QueueClass::graphics;
   QueueClass dst_queue = QueueClass::graphics;
 };
@@ -56,29 +56,30 @@ struct PlannedPass {
   std::uint32_t pass = kNone;  // declaration index
   QueueClass queue = QueueClass::graphics;
   std::uint32_t submission = 0;   // into Plan::submissions
-  std::uint32_t first_batch = 0;  // batches that come before it
+  std::uint32_t first_batch = 0;  // into Plan::batches; recorded before the pass
   std::uint32_t batch_count = 0;
 };
 
 // Work that is submitted to one queue at once. A submission waits only for earlier ones.
 //
-// Frames of one plan that follow each other overlap. What the frame before did on the same queue is
-// waited for by barriers, as far as the two use the same memory or histories. What it did on other
-// queues is waited for where `frame_before` says so.
+// Consecutive frames of one plan overlap. Barriers wait for the previous frame's work on the same
+// queue, as far as both frames use the same memory or histories. Submissions wait for the previous
+// frame's work on other queues as `frame_before` says.
 struct Submission {
   QueueClass queue = QueueClass::graphics;
-  // Bits by queue class: all that the frame before did on these queues comes before this
+  // A bit for each queue class. All work of the previous frame on these queues comes before this
   // submission, which takes over memory from it.
   std::uint8_t frame_before = 0;
   std::uint32_t first_pass = 0;  // positions [first_pass, first_pass + pass_count)
   std::uint32_t pass_count = 0;
   std::uint32_t first_wait = 0;  // into Plan::waits
   std::uint32_t wait_count = 0;
-  std::uint32_t first_batch = 0;  // batches after its last pass
+  std::uint32_t first_batch = 0;  // into Plan::batches; recorded after its last pass
   std::uint32_t batch_count = 0;
 };
 
-// A timeline wait: before `stages` of the submission, all of `submission`.
+// A timeline semaphore wait: `stages` of the waiting submission come after all work of
+// `submission`.
 struct Wait {
   std::uint32_t submission = 0;
   VkPipelineStageFlags2 stages = 0;
@@ -90,15 +91,15 @@ struct Placement {
   VkDeviceSize offset = 0;
   VkDeviceSize size = 0;
   VkDeviceSize alignment = 1;
-  std::uint32_t first = kNone;  // positions of first and last use
+  std::uint32_t first = kNone;  // positions of its first and its last use
   std::uint32_t last = kNone;
   VkFlags usage = 0;  // of all live accesses
 };
 
 struct Heap {
   std::uint32_t memory_types = 0;  // allowed memory types, as a mask
-  VkDeviceSize size = 0;           // the peak
-  VkDeviceSize lower_bound = 0;    // most bytes live at once
+  VkDeviceSize size = 0;           // in bytes
+  VkDeviceSize lower_bound = 0;    // most bytes that are live at the same time
   VkDeviceSize unaliased = 0;      // sum of the sizes
 };
 
@@ -111,8 +112,8 @@ enum ContentFlags : std::uint8_t {
 // How many of the mips and layers of a history slot the live passes wrote.
 enum class Written : std::uint8_t { nothing, part, whole };
 
-// The state in which the frame leaves a history slot, from which the next frame goes on. If the
-// state has read accesses, those have seen the last write.
+// The state in which the frame leaves a history slot. The next frame starts from it. If the state
+// has read accesses, these have seen the last write.
 struct FinalState {
   std::uint32_t resource = kNone;
   State state;

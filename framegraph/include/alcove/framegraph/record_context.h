@@ -25,22 +25,23 @@ struct Attachment {
   VkResolveModeFlagBits resolve_mode = VK_RESOLVE_MODE_AVERAGE_BIT;
 };
 
-// Valid only during the callback. Any version of a handle finds the same image or buffer.
+// The argument of a recording callback. It is valid only during the callback. Any version of a
+// handle refers to the same image or buffer.
 //
-// Views and buffers are stable: as long as the declarations do not change they are the same handles
-// every frame, so descriptor sets made from them may be kept; `resources_id` changes when they do.
-// Imports are as the caller gave them this frame.
+// Views and buffers are the same handles in every frame as long as the declarations do not change,
+// so that descriptor sets made from them may be kept; `resources_id` changes when they do. Imported
+// handles are those that the caller gave in this frame.
 //
-// A texture or buffer that the pass did not declare gives a null handle where uses are checked
-// (ExecutorOptions::check_uses, on in debug builds), and Executor::record returns the error.
+// If uses are checked (ExecutorOptions::check_uses, on in debug builds), a texture or buffer that
+// the pass did not declare gives a null handle, and Executor::record() returns an error.
 class RecordContext {
  public:
   VkCommandBuffer commands = VK_NULL_HANDLE;
   const VulkanFunctions& vk;
-  // Changes whenever a handle that passes can see may have become another one, but for imported
-  // views. No two executors have an id in common.
+  // Changes whenever a handle that passes can see may have changed, except imported views. No two
+  // executors have the same id.
   std::uint64_t resources_id = 0;
-  // Frame slot as in FrameInfo: for what a pass keeps per frame in flight.
+  // FrameInfo::slot, for objects that a pass keeps per frame in flight.
   std::uint32_t frame_slot = 0;
 
   // Returns a view of `range`, which must lie within what the pass declared for this texture.
@@ -78,8 +79,8 @@ class RecordContext {
   HistoryValidity validity(Texture texture) const;
   HistoryValidity validity(Buffer buffer) const;
   std::string_view pass_name() const;
-  // Reports that an object which the pass needs could not be made: record() returns an error with
-  // this, and nothing of the frame is to run. `what` is named in its sentence.
+  // Reports that an object which the pass needs could not be created: record() returns an error,
+  // and the frame must not be submitted. The error sentence contains `what`.
   void fail(std::string_view what, VkResult result) const;
 
  private:

@@ -1,5 +1,5 @@
-// Handles, descriptions, accesses and ranges, with which a frame is declared. Plain data, no
-// device: Vulkan's own enums are used as they are, and nothing of Vulkan is called.
+// Handles, descriptions, accesses and ranges: the plain data with which a frame is declared. It
+// uses Vulkan's enums as they are and calls no Vulkan function.
 #pragma once
 
 #include <vulkan/vulkan_core.h>
@@ -10,11 +10,11 @@
 namespace alcove::framegraph {
 
 inline constexpr std::uint32_t kNone = ~std::uint32_t{0};
-// In a Range: all mips or layers from the base on.
+// Value of Range::mips and Range::layers: all mips or layers from the base on.
 inline constexpr std::uint16_t kAll = 0xffff;
 
-// One version of a texture of one frame of one graph. A write gives the next version and the graph
-// refuses the old one from then on. A handle is dead after Graph::reset.
+// One version of a texture, in one frame of one graph. A write returns the next version, and the
+// graph then refuses the old one. Graph::reset() makes all handles invalid.
 struct Texture {
   std::uint32_t index = kNone;
   std::uint32_t version = 0;
@@ -23,7 +23,7 @@ struct Texture {
   bool operator==(const Texture&) const = default;
 };
 
-// One version of a buffer, as Texture is of a texture.
+// One version of a buffer, with the same rules as Texture.
 struct Buffer {
   std::uint32_t index = kNone;
   std::uint32_t version = 0;
@@ -37,7 +37,7 @@ struct Buffer {
 struct Extent {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
-  std::uint32_t depth = 1;  // over 1 makes a 3D image
+  std::uint32_t depth = 1;  // above 1 makes a 3D image
   Texture relative_to = {};
   std::uint32_t divisor = 1;
   std::uint32_t multiplier = 1;
@@ -54,7 +54,7 @@ struct TextureDesc {
   VkFormat format = VK_FORMAT_UNDEFINED;
   Extent extent;
   std::uint32_t mips = 1;
-  std::uint32_t layers = 1;  // over 1 makes an array
+  std::uint32_t layers = 1;  // above 1 makes an array
   VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
   // For example VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT, or MUTABLE_FORMAT_BIT for views of another
   // format.
@@ -63,15 +63,16 @@ struct TextureDesc {
 
 struct BufferDesc {
   VkDeviceSize size = 0;  // bytes
-  // Usage besides what the accesses of the live passes ask for. A history needs it for every usage
-  // that is not of Vulkan 1.0, for example SHADER_DEVICE_ADDRESS_BIT: histories are made once, for
-  // all frames.
+  // Additional usage flags. The usages of the live passes' accesses are added automatically. A
+  // history is created once for all frames, with all usages of Vulkan 1.0; it needs other usages
+  // here, for example VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT.
   VkBufferUsageFlags usage = 0;
 };
 
-// How a pass touches a resource. `layout` is for textures only. `usage` is VkImageUsageFlags for a
-// texture and VkBufferUsageFlags for a buffer; the graph creates a resource with all that its live
-// passes ask for. access.h names the common ones.
+// How a pass uses a resource: pipeline stages, memory accesses, layout and usage. `layout` is for
+// textures only. `usage` is VkImageUsageFlags for a texture and VkBufferUsageFlags for a buffer.
+// The graph creates a resource with the usages of all its live passes. access.h names the common
+// accesses.
 struct Access {
   VkPipelineStageFlags2 stages = 0;
   VkAccessFlags2 access = 0;
@@ -79,14 +80,14 @@ struct Access {
   VkFlags usage = 0;
 };
 
-// The mips, layers and aspects of one access; the default is all of them.
+// The mips, layers and aspects of one access. The default is all of them.
 struct Range {
   std::uint16_t base_mip = 0;
   std::uint16_t mips = kAll;
   std::uint16_t base_layer = 0;
   std::uint16_t layers = kAll;
-  // One aspect of a texture with depth and stencil; 0 is every aspect of the format. A pass may
-  // read the depth and write the stencil of one texture. Needs the feature
+  // An aspect of a texture with depth and stencil, or 0 for all aspects of the format. With it, a
+  // pass may read the depth and write the stencil of one texture. It needs the feature
   // separateDepthStencilLayouts.
   VkImageAspectFlags aspects = 0;
 
@@ -97,16 +98,17 @@ struct Range {
   constexpr bool operator==(const Range&) const = default;
 
  private:
-  // An index that does not fit stays out of range: no texture has so many mips or layers.
+  // Converts an index. One that does not fit becomes kAll, which is out of range for every texture.
   static constexpr std::uint16_t base(std::uint32_t index) {
     return index < kAll ? static_cast<std::uint16_t>(index) : kAll;
   }
 };
 
-// Where an imported resource comes from, or is to be left: the last (or next) stages and accesses
-// outside the graph and, for a texture, the layout. An initial_state in VK_IMAGE_LAYOUT_UNDEFINED
-// (for a buffer: with no access) has no contents. Reads that a resource arrives with have seen what
-// was written before; the graph makes it visible to other stages, and to theirs for other accesses.
+// The state of an imported resource before or after the frame: the last (or next) pipeline stages
+// and accesses outside the graph and, for a texture, the layout. An initial_state with
+// VK_IMAGE_LAYOUT_UNDEFINED (for a buffer: without accesses) means that the resource has no
+// contents. Read accesses of an initial_state have already seen earlier writes. The graph makes
+// these writes visible to other stages and accesses.
 struct State {
   VkPipelineStageFlags2 stages = 0;
   VkAccessFlags2 access = 0;
@@ -114,16 +116,16 @@ struct State {
   std::uint32_t reserved = 0;
 };
 
-// An image of the caller's. The graph never owns or outlives it; `view` may be null, then the
-// executor makes the views that passes ask for and keeps them by image: call Executor::forget
-// before the image is destroyed. `usage` is what the image was created with.
+// An image of the caller's, which the graph does not own. If `view` is null, the executor creates
+// the views that passes ask for and keeps them by image: call Executor::forget before you destroy
+// the image. `usage` is the usage with which the image was created.
 struct ImportedTexture {
   VkImage image = VK_NULL_HANDLE;
-  VkImageView view = VK_NULL_HANDLE;  // of the whole image
+  VkImageView view = VK_NULL_HANDLE;  // a view of the whole image, or null
   TextureDesc desc;                   // the extent must be absolute
   VkImageUsageFlags usage = 0;
-  // The first layer of the image's array that is imported; desc.layers follow from it. Barriers and
-  // views count from it; a callback that takes the image itself has to.
+  // The first imported layer of the image's array; desc.layers layers are imported. Barriers and
+  // views count layers from it. A callback that uses the image itself has to add it.
   std::uint32_t first_layer = 0;
   State initial_state;
   // The queue family (VK_QUEUE_FAMILY_EXTERNAL is allowed) that has released the image to the
@@ -131,11 +133,13 @@ struct ImportedTexture {
   // it. The graph records the matching acquire barrier, with initial_state.layout as old and new
   // layout. kNone: no ownership transfer is needed.
   std::uint32_t initial_family = kNone;
-  // The family that the graph releases the image to from graphics, in final_state's layout.
+  // The queue family to which the graph releases the image from the graphics family, in
+  // final_state's layout, or kNone.
   std::uint32_t final_family = kNone;
-  // With a final_state the graph leaves the image so, and a write to it is an output of the frame.
-  // All that the frame does with it comes before what is done at these stages later. Without one
-  // (layout undefined and no stages) a write that nobody reads is culled.
+  // The state in which the graph leaves the image. A write to an image with a final_state is an
+  // output of the frame. All work of the frame on the image comes before later work at these
+  // stages. If there is no final_state (undefined layout and no stages), a write that nobody reads
+  // is culled.
   State final_state;
 };
 
@@ -143,7 +147,8 @@ struct ImportedBuffer {
   VkBuffer buffer = VK_NULL_HANDLE;
   BufferDesc desc;
   VkBufferUsageFlags usage = 0;
-  // A buffer that arrives with contents that need no barrier has has_contents and no stages.
+  // Whether the buffer has contents at the start of the frame. If they need no barrier,
+  // initial_state has no stages.
   bool has_contents = true;
   State initial_state;
   State final_state;
@@ -174,13 +179,13 @@ enum class Need : std::uint8_t {
 enum class QueueClass : std::uint8_t { graphics, compute, transfer };
 inline constexpr std::size_t kQueueClasses = 3;
 
-// Why a slot of a history resource has no contents, or that it has.
+// Whether a slot of a history resource has contents, and if not, why.
 enum class HistoryValidity : std::uint8_t {
   valid,
-  first_frame,      // never written so far
+  first_frame,      // it was never written
   resized,          // the description changed: extent, format, mips, layers, samples or slot count
   reset,            // Graph::reset_history was called
-  written_in_part,  // the frame that wrote it left out some mip or layer
+  written_in_part,  // the frame that wrote it did not write every mip and layer
 };
 
 }  // namespace alcove::framegraph

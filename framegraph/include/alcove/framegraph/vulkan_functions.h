@@ -1,13 +1,13 @@
-// The Vulkan functions that the executor and recording callbacks call, fetched from the caller's
-// vkGetInstanceProcAddr: the library defines no Vulkan symbol and links no loader.
+// The Vulkan functions that the executor and recording callbacks call. They are fetched through the
+// caller's vkGetInstanceProcAddr, because the library defines no Vulkan symbol and links no loader.
 #pragma once
 
 #include <vulkan/vulkan_core.h>
 
 namespace alcove::framegraph {
 
-// X(name) for each function of the instance. Functions that a version above 1.0 made core are also
-// found under their names with the suffix KHR or EXT.
+// Calls X(name) for each function of the instance. Functions that a version above 1.0 made core are
+// also found under their names with the suffix KHR or EXT.
 #define ALCOVE_FRAMEGRAPH_INSTANCE_FUNCTIONS(X) \
   X(vkGetDeviceProcAddr)                        \
   X(vkGetPhysicalDeviceProperties)              \
@@ -17,7 +17,7 @@ namespace alcove::framegraph {
   X(vkGetPhysicalDeviceImageFormatProperties2)  \
   X(vkGetPhysicalDeviceProperties2)
 
-// Functions of the device that the executor calls, or that every device of Vulkan 1.2 has.
+// Calls X(name) for each function of the device that every device of Vulkan 1.2 has.
 #define ALCOVE_FRAMEGRAPH_DEVICE_FUNCTIONS(X) \
   X(vkAllocateCommandBuffers)                 \
   X(vkAllocateDescriptorSets)                 \
@@ -105,8 +105,9 @@ namespace alcove::framegraph {
   X(vkWaitForFences)                          \
   X(vkWaitSemaphores)
 
-// Functions of Vulkan 1.3 or of extensions that the executor does without: null where the device
-// does not have them. A callback that calls one checks it first.
+// Calls X(name) for each function of Vulkan 1.3 or of an extension that the executor does not
+// require. Such a function is null if the device does not have it. A callback must check it before
+// it calls it.
 #define ALCOVE_FRAMEGRAPH_OPTIONAL_FUNCTIONS(X) \
   X(vkCmdBeginRendering)                        \
   X(vkCmdEndRendering)                          \
@@ -129,7 +130,8 @@ struct VulkanFunctions {
 #undef ALCOVE_DECLARE
 };
 
-// Fetches everything; the name of the first function that is missing, or null when all are there.
+// Fetches all functions. Returns the name of the first required function that is missing, or null
+// if all are there.
 const char* load(VulkanFunctions& functions, PFN_vkGetInstanceProcAddr get_instance_proc_addr,
                  VkInstance instance, VkDevice device);
 

@@ -50,26 +50,20 @@ enum class Weighting : std::uint8_t {
 enum class Pattern : std::uint8_t {
   golden,   // Lattices without a period, rotated by the golden ratio each frame.
   hilbert,  // The R2 sequence along a Hilbert curve.
-  paper,    // The 4x4 pixels and six rotations of [Jimenez 2016].
+  paper,    // 16 directions in tiles of 4x4 pixels, rotated over six frames [Jimenez 2016].
 };
 
-// Which pixels a workgroup traces. It changes the cost and not the image.
-enum class Grouping : std::uint8_t {
-  neighbours,  // 8x8 adjacent tiles.
-  pattern,     // Every fourth tile in x and y: with Pattern::paper these have one slice direction.
-};
-
-// OcclusionSettings::advanced. A setting that the estimator or the history does not use is not
-// read, but it has to be in range. setting_table.h has the ranges.
+// The type of OcclusionSettings::advanced. A setting that the estimator or the history does not use
+// is not read, but it must be in range. setting_table.h has the ranges.
 struct AdvancedSettings {
   Estimator estimator = Estimator::connected;
   Weighting weighting = Weighting::cosine;
   ThicknessUnit thickness_unit = ThicknessUnit::radius;
-  // How far a sample below the horizon lowers it: 0 not at all, 1 down to the sample. `heuristic`
-  // only.
+  // How far a sample that lies below the horizon lowers the horizon towards itself: 0 not at all, 1
+  // down to the sample. Only the estimator `heuristic` reads it.
   float blend = 0.05f;
-  // Last fraction of the radius over which occluders fade, [0,1]; 0 turns fading off. It must be 0
-  // with the estimators `bitmask` and `connected`, whose sectors are either occluded or open.
+  // Occluders fade out over this last fraction of the radius, [0,1]. 0 turns fading off. It must be
+  // 0 with the estimators `bitmask` and `connected`, whose sectors are either occluded or open.
   float falloff = 0.0f;
   Pattern pattern = Pattern::golden;
   // Filter radius in tiles for pixels with fewer than two frames of history, 0 to 3. Pixels with
@@ -84,7 +78,8 @@ struct AdvancedSettings {
 
   // Parts of the search that can be switched off to measure what they do (`alcove ablate`).
 
-  // Snaps samples to texel centres. Without it, tilted planes occlude themselves.
+  // Moves each depth sample to the centre of its texel. Without it, tilted planes occlude
+  // themselves.
   bool snap_to_texels = true;
   // Extrapolates surfaces that leave the image beyond its border (`connected` only).
   bool extrapolation = true;
@@ -92,7 +87,6 @@ struct AdvancedSettings {
   // image's border) partly out of the average; see shaders/maths/unobserved.h. If off, they count
   // as open. `connected` only.
   bool unobserved = true;
-  Grouping grouping = Grouping::neighbours;
 
   friend bool operator==(const AdvancedSettings&, const AdvancedSettings&) = default;
 };

@@ -1,4 +1,4 @@
-// A probe of what is infinitely far: an equirectangular image as the light that add_apply takes.
+// Converts an equirectangular environment image to the probe that add_apply() takes.
 #pragma once
 
 #include <cstdint>
@@ -8,22 +8,24 @@
 namespace alcove::passes {
 
 struct EnvironmentSettings {
-  std::uint32_t size = 256;    // texels a side of the map's first level: a power of two, 16 to 2048
-  std::uint32_t levels = 6;    // of the map, from roughness 0 to 1; 2 to log2(size) - 1
+  std::uint32_t size = 256;    // width of the map's mip 0 in texels: a power of two, 16 to 2048
+  std::uint32_t levels = 6;    // mips of the map, for roughness 0 to 1: 2 to log2(size) - 1
   std::uint32_t samples = 64;  // of a texel's lobe in the second level, 1 to 4096; more in the next
 };
 
-// Transients of the frame. An engine keeps them by copying them, for as long as its sky stays.
+// The result, as transients of the frame. An engine that wants to keep them copies them to textures
+// of its own.
 struct Environment {
   framegraph::Texture harmonics;  // 9x1 RGBA32_SFLOAT: ApplyInputs::harmonics
   framegraph::Texture map;        // RGBA16_SFLOAT with mips: ApplyInputs::map
 };
 
-// In: `equirectangular`, linear RGB radiance of any size and float format, world space with +Y up
-// (shaders/maths/environment_map.h); what is not a number or below 0 counts as black, and what is
-// over 65504 as that. What is not read of the result is culled.
+// Adds the passes that make a probe from `equirectangular`, an image of linear RGB radiance in any
+// size and float format, in world space with +Y up (shaders/maths/environment_map.h). NaN and
+// negative values count as black, and values above 65504 as 65504. Passes whose result nobody reads
+// are culled.
 //
-// Errors: a texture that is missing, a setting out of range.
+// Errors: a missing texture, or a setting out of range.
 [[nodiscard]] tl::expected<Environment, Error> add_environment(
     const Frame& frame, framegraph::Texture equirectangular,
     const EnvironmentSettings& settings = {});

@@ -1,4 +1,4 @@
-// What every pass of a frame is given: the graph it is added to, the kernels, and the view.
+// The common arguments of all passes of a frame: the graph, the kernels, and the view.
 //
 //   once:   Executor::create, Kernels::create, for as many frames in flight
 //   frame:  wait for the fence of slot s;  graph.reset(); kernels.begin_frame(s);
@@ -18,21 +18,20 @@ using Matrix = std::array<float, 16>;
 
 inline constexpr Matrix kIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 
-// View space is right-handed with the camera along -Z. `clip_from_view` leads to Vulkan clip space:
-// any perspective or orthographic projection, finite or infinite, reversed, off-centre, jittered or
-// flipped in Y, a perspective from depth 0. AlcoveCamera (alcove.h) says what engines of other
-// conventions change.
-//
-// Rounding errors are accepted and removed: see AlcoveCamera.
+// A camera. View space is right-handed with the camera along -Z. `clip_from_view` maps view space
+// to Vulkan clip space. It may be any perspective or orthographic projection: finite or infinite,
+// reversed, off-centre, jittered, flipped in Y, or with its near plane at 0. AlcoveCamera
+// (alcove.h) says how to convert the matrices of engines with other conventions, and which rounding
+// errors are accepted.
 struct View {
   Matrix clip_from_view = kIdentity;
-  // A rotation and a translation, or a reflection and a translation; without scale.
+  // A rotation and a translation, or a reflection and a translation. It must not scale.
   Matrix view_from_world = kIdentity;
 
   bool operator==(const View&) const = default;
 };
 
-// How many bits the results have, also where another pass reads them.
+// The formats of results, and of intermediate results that other passes read.
 enum class Precision : std::uint8_t {
   unorm8,   // visibility R8_UNORM, bent normals RGBA8_SNORM
   float16,  // R16_SFLOAT, RGBA16_SFLOAT: visibility within 2^-12
@@ -54,18 +53,19 @@ struct Frame {
   Kernels& kernels;
   View view;
   std::uint32_t index = 0;  // frame number: rotates the noise and selects the traced pixels
-  // The view of the frame before, by which history is reprojected. It is not read where there is no
-  // history to read: in a first frame, after a reset, and with `prepare`.
+  // The view of the previous frame, with which history is reprojected. It is not read if there is
+  // no history: in a first frame, after a reset, and with `prepare`.
   View previous_view = view;
-  // Number of frames in a row, this one included, that show exactly the same as the frame before. 0
-  // if this frame differs, or if that is not known. It starts again at 0 whenever histories do:
-  // after a cut, and when size, settings or wanted results change. From 1 on motion vectors are not
-  // read and history is not reprojected; from 16 on the history averages up to 127 frames.
+  // The number of consecutive frames, including this one, that show exactly the same as their
+  // previous frame. It is 0 if this frame differs from the previous one, or if that is unknown. It
+  // must restart at 0 when histories do: after a camera cut, and when the size, the settings or the
+  // outputs change. From 1 on, motion vectors are not read and history is not reprojected. From 16
+  // on, the history averages up to 127 frames.
   std::uint32_t static_frames = 0;
-  // For dynamic resolution: sizes with which history continues while the size of the depth changes.
-  // Zero means the present size of the depth.
-  VkExtent2D largest_size{};   // that histories have room for; another begins them anew
-  VkExtent2D previous_size{};  // of the depth in the frame before, within it
+  // For dynamic resolution: sizes with which the history continues while the size of the depth
+  // changes. Zero means the current size of the depth.
+  VkExtent2D largest_size{};   // size of the history textures; a change discards the history
+  VkExtent2D previous_size{};  // of the depth in the previous frame; at most largest_size
   // Also make the pipelines of every frame that differs from this one only in what lies before it:
   // a first one, one after a cut, in motion, still. For a frame in a graph of its own that is never
   // recorded, declared while loading or before settings change: none then waits for a pipeline.

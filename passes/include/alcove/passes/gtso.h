@@ -20,19 +20,20 @@ struct GtsoInputs {
   NormalEncoding normal_encoding = NormalEncoding::signed_xyz;  // of `normals`
   bool normals_forward_z = false;                               // see OcclusionInputs
   framegraph::Texture
-      into;  // to be written, whole; null: a transient of OcclusionSettings::precision
+      into;  // the texture to write completely; null: a transient of OcclusionSettings::precision
 };
 
-// Out: one channel, the visible share of the GGX lobe of each pixel, [0,1], 1 open, which
-// multiplies specular probe light; 1 in the sky. Unorm8 is R8_UNORM, float16 R16_SFLOAT, float32
-// R32_SFLOAT.
+// Adds a pass that computes specular occlusion from visibility and bent normals. Returns a texture
+// with one channel: the visible fraction of the GGX lobe of each pixel, [0,1], where 1 is open, by
+// which specular probe light is multiplied. The sky gets 1. Its format is R8_UNORM, R16_SFLOAT or
+// R32_SFLOAT, by OcclusionSettings::precision.
 //
-// An open surface stays open at any roughness and angle: a visibility within 1/128 of 1 counts as
-// open, because a filtered one is no surer than that and a cone turns it into degrees. The paper
-// divides by the whole lobe, also by what lies under the surface; here that is left out.
+// An unoccluded surface gets 1 at any roughness and angle: a visibility within 1/128 of 1 counts as
+// open, because a filtered visibility is not more accurate than that. The paper divides by the
+// whole lobe; here the part of the lobe below the surface is left out.
 //
-// Errors: an input that is missing or of another size than the rest, settings that validate()
-// refuses or whose `specular` is neither `table` nor `cone`.
+// Errors: a missing input, inputs of different sizes, settings that validate() refuses, or a
+// setting `specular` other than `table` and `cone`.
 [[nodiscard]] tl::expected<framegraph::Texture, Error> add_gtso(const Frame& frame,
                                                                 const GtsoInputs& inputs,
                                                                 const OcclusionSettings& settings);

@@ -1,12 +1,12 @@
-// The compute pipelines of the passes, and the descriptors and parameters that a frame gives them.
+// The compute pipelines of the passes, and the descriptors and parameters of their dispatches.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <tl/expected.hpp>
 
 #include "alcove/framegraph/executor.h"
@@ -14,14 +14,15 @@
 
 namespace alcove::passes {
 
-// Why a pass could not be added: a sentence, and the result of the Vulkan call that failed, or
-// VK_ERROR_FEATURE_NOT_PRESENT if the device lacks something.
+// The reason why a pass could not be added: a sentence, and the result of the Vulkan call that
+// failed, or VK_ERROR_FEATURE_NOT_PRESENT if the device lacks a function or a limit.
 struct Error {
   std::string message;
   VkResult result = VK_SUCCESS;
 };
 
-// The shaders of the library: each a file in shaders/, or a variant of one.
+// The compute shaders of the library. Each is a file in shaders/, or a variant of a file that is
+// compiled with other preprocessor definitions.
 enum class Shader : std::uint8_t {
   linear_depth,
   normals,
@@ -56,29 +57,41 @@ struct Kernel {
   Shader shader = Shader::count;
 };
 
-// Owns every pipeline, descriptor and parameter buffer of the passes on one device. Pipelines are
-// made at the first use of a shader with a set of constants, or before it (Frame::prepare), and
-// kept; a frame that uses none anew allocates nothing. One thread at a time, but for dispatch(),
-// which the threads that record a frame (ExecutorOptions::recording_threads) may call at the same
-// time.
+// A value for a specialisation constant of a shader, by the constant's name in GLSL.
+struct NamedConstant {
+  std::string_view name;
+  std::uint32_t value = 0;  // of a bool: 0 or 1
+};
+
+// A view for an image binding of a shader, by the variable's name in GLSL.
+struct NamedView {
+  std::string_view name;
+  VkImageView view = VK_NULL_HANDLE;
+};
+
+// Owns the pipelines, descriptor sets and parameter buffers of the passes on one device. A pipeline
+// is created when a shader is first used with a set of constants (Frame::prepare creates all that a
+// view can need) and is kept. A frame that needs no new pipeline allocates nothing. dispatch() may
+// be called by several recording threads at the same time (ExecutorOptions::recording_threads); all
+// other functions by one thread at a time.
 class Kernels {
  public:
-  static constexpr std::uint32_t kMaxDispatches = 80;        // of a frame
+  static constexpr std::uint32_t kMaxDispatches = 80;        // in a frame
   static constexpr std::uint32_t kMaxParameterBytes = 1024;  // of a dispatch
-  static constexpr std::size_t kMaxConstants = 24;           // of a pipeline
+  static constexpr std::size_t kMaxConstants = 24;           // of a shader
   static constexpr std::uint32_t kMaxFramesInFlight = 8;
 
   // `device`, made with the feature shaderStorageImageWriteWithoutFormat, must outlive the kernels.
   // `frames_in_flight`, 1 to kMaxFramesInFlight, is how many frames may be recorded before the
   // first of them has finished on the device: ExecutorOptions::frames_in_flight.
   //
-  // `cache`, of the same device, is where every pipeline is looked up and kept. It is the caller's
-  // to load, store and destroy, and outlives the kernels. Vulkan synchronises it, so that others
-  // may use it at the same time, unless it was created with
-  // VK_PIPELINE_CACHE_CREATE_EXTERNALLY_SYNCHRONIZED_BIT: then none may while passes are added.
+  // `cache` is a pipeline cache of the same device, or null for none. The caller loads, stores and
+  // destroys it, and it must outlive the kernels. Other threads may use it at the same time, unless
+  // it was created with VK_PIPELINE_CACHE_CREATE_EXTERNALLY_SYNCHRONIZED_BIT: then no other thread
+  // may use it while passes are added.
   //
-  // Errors: a handle that is null, frames in flight out of range, a function or a limit that the
-  // device lacks (maxPerStageDescriptorStorageImages must be 9), memory that gives out.
+  // Errors: a null handle, frames in flight out of range, a Vulkan function that the device lacks,
+  // a limit maxPerStageDescriptorStorageImages below 9, or memory that runs out.
   [[nodiscard]] static tl::expected<Kernels, Error> create(const framegraph::DeviceHandles& device,
                                                            std::uint32_t frames_in_flight,
                                                            VkPipelineCache cache = VK_NULL_HANDLE);
@@ -86,44 +99,42 @@ class Kernels {
   Kernels& operator=(Kernels&&) noexcept;
   ~Kernels();
 
-  // Takes back the descriptors and parameters of the frame that was last recorded with `slot`
-  // (below `frames_in_flight`), which must have finished on the device: FrameInfo::slot. Once a
-  // frame, before it is recorded.
+  // Begins a frame with the frame slot `slot` (FrameInfo::slot), which is below
+  // `frames_in_flight`. It reuses the descriptors and parameters of the slot's previous frame,
+  // which must have finished on the device. Call it once a frame, before the frame is recorded.
   void begin_frame(std::uint32_t slot);
 
-  // Returns the pipeline of `shader` with specialisation constants 0, 1, 2... of these values.
-  template <std::size_t N>
-  requires(N <= kMaxConstants)
-      [[nodiscard]] tl::expected<Kernel, Error> get(Shader shader,
-                                                    const std::array<std::uint32_t, N>& constants) {
-    return get_pipeline(shader, constants);
-  }
-  [[nodiscard]] tl::expected<Kernel, Error> get(Shader shader) { return get_pipeline(shader, {}); }
+  // Returns the pipeline of `shader` with these specialisation constants. Values for names that the
+  // shader does not have are ignored, so that all variants of a shader can be given the same list.
+  // Errors: a specialisation constant of the shader that has no value in the list, or a pipeline
+  // that the device could not create.
+  [[nodiscard]] tl::expected<Kernel, Error> get(Shader shader,
+                                                std::span<const NamedConstant> constants = {});
 
   // Returns the size in bytes of the tables that the shaders in use look up. Unused tables do not
   // count.
   [[nodiscard]] std::size_t table_bytes() const;
 
-  // Returns the bytes of device memory: parameters of all frames in flight, and those tables.
+  // Returns the device memory of these objects in bytes: the parameters of all frames in flight,
+  // and table_bytes().
   [[nodiscard]] VkDeviceSize memory_bytes() const;
 
-  // Records a dispatch that covers `size` pixels (and layers) with 8x8 groups. Binding 0 is a
-  // uniform buffer with `parameters`; the views follow in the order of the shader's bindings,
-  // sampled ones in SHADER_READ_ONLY_OPTIMAL, stored ones in GENERAL; the shader's table comes
-  // last. Where memory gives out, there is no such slot, or the frame has kMaxDispatches already,
-  // Executor::record() gives the error.
-  void dispatch(framegraph::RecordContext& context, Kernel kernel,
-                std::span<const VkImageView> views, std::span<const std::byte> parameters,
-                VkExtent3D size);
+  // Records a dispatch that covers `size` pixels (and layers) with groups of 8x8 invocations.
+  // `parameters` are the contents of the shader's uniform buffer. Each image binding of the shader
+  // gets the view of its name: sampled images in the layout SHADER_READ_ONLY_OPTIMAL, storage
+  // images in GENERAL. Views with other names are ignored, so that all variants of a shader can be
+  // given the same list. Executor::record() returns an error if a binding has no view in the list,
+  // if memory runs out, if begin_frame() was given no valid slot, or if the frame already has
+  // kMaxDispatches.
+  void dispatch(framegraph::RecordContext& context, Kernel kernel, std::span<const NamedView> views,
+                std::span<const std::byte> parameters, VkExtent3D size);
 
-  // How many pipelines exist: a frame that models less makes fewer.
+  // Returns how many pipelines have been created. Passes that are not added create none.
   [[nodiscard]] std::size_t pipeline_count() const;
 
  private:
   struct State;
   explicit Kernels(std::unique_ptr<State> state);
-  // At most kMaxConstants.
-  tl::expected<Kernel, Error> get_pipeline(Shader shader, std::span<const std::uint32_t> constants);
   std::unique_ptr<State> state_;
 };
 

@@ -1,4 +1,4 @@
-// The light that occluders send back: Jimenez, Wu, Pesce and Jarabo 2016, section 5.
+// Multi-bounce: visibility with the light that occluders reflect ([Jimenez 2016], section 5).
 #pragma once
 
 #include "alcove/passes/frame.h"
@@ -7,15 +7,17 @@ namespace alcove::passes {
 
 struct MultiBounceInputs {
   framegraph::Texture visibility;  // one channel, [0,1], 1 open
-  framegraph::Texture albedo;      // linear RGB, [0,1], as large as the visibility
-  framegraph::Texture into;        // to be written, whole; null: a transient of `precision`
+  framegraph::Texture albedo;      // linear RGB, [0,1], of the size of the visibility
+  framegraph::Texture into;        // the texture to write completely; null: a transient
 };
 
-// Out: RGB, the share of the environment's light that reaches each pixel after any number of
-// bounces between surfaces of the pixel's own albedo; at least the visibility, at most 1. It
-// multiplies diffuse probe light where the visibility would. Unorm8 is RGBA8_UNORM, float16
-// RGBA16_SFLOAT, float32 RGBA32_SFLOAT. Errors: an input that is missing, or of another size than
-// the rest.
+// Adds a pass that computes coloured visibility. Returns an RGB texture with the fraction of the
+// environment's light that reaches each pixel after any number of bounces, if all surfaces have the
+// pixel's own albedo. It is at least the visibility and at most 1. Multiply diffuse probe light by
+// it instead of by the visibility. The format of a transient is RGBA8_UNORM, RGBA16_SFLOAT or
+// RGBA32_SFLOAT, by `precision`.
+//
+// Errors: a missing input, or inputs of different sizes.
 [[nodiscard]] tl::expected<framegraph::Texture, Error> add_multi_bounce(
     const Frame& frame, const MultiBounceInputs& inputs, Precision precision = Precision::unorm8);
 

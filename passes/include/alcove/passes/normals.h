@@ -1,15 +1,17 @@
-// Normals from depth, for engines that keep none.
+// Normals from depth, for engines without a normal buffer.
 #pragma once
 
 #include "alcove/passes/frame.h"
 
 namespace alcove::passes {
 
-// In: `depth`, linear depth as add_linear_depth makes it. Out: RGBA16_SFLOAT, unit normals in view
-// space towards the eye. Each axis takes the side whose depth continues the pixel's own better, so
-// that normals do not residual across silhouettes. Sky gets the direction to the eye.
+// Adds a pass that computes normals from `depth`, a linear depth of add_linear_depth(). Returns an
+// RGBA16_SFLOAT texture of unit normals in view space that point towards the eye. On each image
+// axis the normal uses the neighbour on the side where the depths continue the pixel's depth
+// better, so that surfaces on both sides of a silhouette do not mix. The sky gets the direction to
+// the eye.
 //
-// Errors: a texture that is missing, a view that cannot be used.
+// Errors: a null texture, or a view whose matrices the passes cannot use.
 [[nodiscard]] tl::expected<framegraph::Texture, Error> add_normals(const Frame& frame,
                                                                    framegraph::Texture depth);
 

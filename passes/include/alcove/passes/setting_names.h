@@ -10,14 +10,15 @@
 
 namespace alcove::passes {
 
-// In the order of the enum. Each ends with a zero, so data() is a C string.
+// The names of an enum's values, in the order of the enum. Each is terminated by zero, so that
+// data() is a C string.
 template <typename Choice>
 inline constexpr std::array<std::string_view, 0> kNames{};
 template <>
 inline constexpr auto kNames<bool> = std::to_array<std::string_view>({"false", "true"});
 template <>
-inline constexpr auto kNames<Quality> = std::to_array<std::string_view>({"low", "medium", "high",
-                                                                         "reference"});
+inline constexpr auto kNames<Quality> = std::to_array<std::string_view>({"console", "low", "medium",
+                                                                         "high", "reference"});
 template <>
 inline constexpr auto kNames<Estimator> = std::to_array<std::string_view>({"horizons", "heuristic",
                                                                            "bitmask", "connected"});
@@ -30,21 +31,19 @@ template <>
 inline constexpr auto kNames<Pattern> = std::to_array<std::string_view>({"golden", "hilbert",
                                                                          "paper"});
 template <>
-inline constexpr auto kNames<Grouping> = std::to_array<std::string_view>({"neighbours", "pattern"});
-template <>
 inline constexpr auto kNames<Specular> = std::to_array<std::string_view>({"none", "slices", "table",
                                                                           "cone"});
 template <>
 inline constexpr auto kNames<Precision> = std::to_array<std::string_view>({"unorm8", "float16",
                                                                            "float32"});
 
-// The name of one of the enum's values.
+// Returns the name of a value.
 template <typename Choice>
 constexpr std::string_view name_of(Choice value) {
   return kNames<Choice>[static_cast<std::size_t>(value)];
 }
 
-// All names of an enum: "cosine or uniform", "golden, hilbert or paper".
+// Returns all names of an enum in one text, for example "golden, hilbert or paper".
 template <typename Choice>
 std::string names_text() {
   const auto& names = kNames<Choice>;

@@ -1,5 +1,6 @@
-// The settings as a table: name, description and range of each. validate(), the C interface,
-// `--set` and the help of `alcove`, report.json and the window's sliders all read it.
+// The table of settings: the name, the description and the range of each. validate(), the C
+// interface, the option `--set` and the help of the program `alcove`, report.json and the window's
+// sliders all use it.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +12,7 @@
 
 namespace alcove::passes {
 
-// The numbers that a setting may have. Numbers that are not finite are never allowed.
+// The range of values of a numeric setting. Infinite values and NaN are never allowed.
 struct SettingRange {
   float minimum = 0.0f;
   float maximum = std::numeric_limits<float>::infinity();  // infinity: no maximum
@@ -20,14 +21,15 @@ struct SettingRange {
 
   [[nodiscard]] bool contains(float value) const;
   [[nodiscard]] bool contains(std::uint32_t value) const;
-  // Completes "it must be ...": "1 to 64", "above 0", "1, 2 or 4".
+  // Returns a text that completes the words "it must be", for example "1 to 64", "above 0" or "1, 2
+  // or 4".
   [[nodiscard]] std::string text() const;
 };
 
 enum class SettingGroup : std::uint8_t {
   main,
-  output,   // what is computed; in C, giving an image asks for it
-  surface,  // what materials are like where there is no texture of it
+  output,   // an output to compute; in C, an output is selected by giving an image for it
+  surface,  // a material parameter that is used if there is no texture for it
   advanced,
 };
 
@@ -36,13 +38,13 @@ struct SettingInfo {
   const char* help;  // one or more sentences
   SettingGroup group = SettingGroup::main;
   SettingRange range = {};   // of a number
-  SettingRange slider = {};  // what a slider offers of a range without a maximum
-  // Whether the setting has an effect beside the others; null: always.
+  SettingRange slider = {};  // range of a slider, if `range` has no maximum
+  // Returns whether the setting has an effect with these other settings. Null: it always has one.
   bool (*matters)(const OcclusionSettings& settings) = nullptr;
 };
 
-// Calls `visit(info, field)` for every setting but the outputs `visibility` and `linear_depth`. The
-// main settings come first, the advanced ones last.
+// Calls `visit(info, field)` for every setting except the outputs `visibility` and `linear_depth`.
+// The main settings come first, the advanced ones last.
 template <typename Settings, typename Visit>
 void for_each_setting(Settings& settings, const Visit& visit) {
   using S = const OcclusionSettings&;
@@ -54,19 +56,22 @@ void for_each_setting(Settings& settings, const Visit& visit) {
         settings.radius);
   visit(SettingInfo{.name = "tile_size",
                     .help = "Width of a tile in pixels. One pixel per tile is traced in a frame.",
-                    .range = {.minimum = 1, .maximum = 4, .power_of_two = true}},
+                    .range = {.minimum = 1, .maximum = 8, .power_of_two = true}},
         settings.tile_size);
-  visit(SettingInfo{.name = "slices",
-                    .help = "Slices per traced pixel and frame. More slices reduce noise.",
-                    .range = {.minimum = 1, .maximum = 64}},
-        settings.slices);
+  visit(
+      SettingInfo{.name = "slices",
+                  .help = "Slices (planes through the view direction) that are searched per traced "
+                          "pixel and frame. More slices reduce noise and cost time in proportion.",
+                  .range = {.minimum = 1, .maximum = 64}},
+      settings.slices);
   visit(SettingInfo{.name = "steps",
-                    .help = "Depth samples per half-slice. More find thinner occluders.",
+                    .help = "Depth samples in each of the two directions of a slice. More samples "
+                            "find thinner occluders.",
                     .range = {.minimum = 2, .maximum = 64}},
         settings.steps);
   visit(SettingInfo{.name = "thickness",
-                    .help = "Thickness of occluders, as a fraction of the radius or in "
-                            "thickness_unit.",
+                    .help = "Assumed thickness of occluders, in the unit that thickness_unit "
+                            "selects: by default a fraction of the radius.",
                     .slider = {.maximum = 1.0f},
                     .matters = has_thickness},
         settings.thickness);
@@ -77,127 +82,140 @@ void for_each_setting(Settings& settings, const Visit& visit) {
                     .matters = has_thickness},
         settings.hidden_occlusion);
   visit(SettingInfo{.name = "depth_layers",
-                    .help = "Depth layers that are searched. The second holds the nearest front "
-                            "faces behind the first.",
+                    .help = "Number of depth buffers that are searched for occluders. The second "
+                            "one holds the nearest front faces behind the first.",
                     .range = {.minimum = 1, .maximum = 2},
                     .matters = has_thickness},
         settings.depth_layers);
-  visit(SettingInfo{.name = "history_frames",
-                    .help = "The most frames that the history averages. 0 keeps no history.",
-                    .range = {.maximum = 127}},
-        settings.history_frames);
+  visit(
+      SettingInfo{
+          .name = "history_frames",
+          .help = "Largest number of frames that the history averages. 0 turns the history off.",
+          .range = {.maximum = 127}},
+      settings.history_frames);
   visit(SettingInfo{.name = "half_resolution",
-                    .help = "Filters and accumulates at half resolution, then upsamples. For tiles "
-                            "of 2 or 4 pixels.",
+                    .help = "Filters and accumulates at half of the image's width and height, then "
+                            "upsamples. It needs a tile_size above 1.",
                     .matters = [](S s) { return s.tile_size > 1; }},
         settings.half_resolution);
   visit(SettingInfo{.name = "specular",
-                    .help = "How specular occlusion is computed: from the slices (most exact), or "
-                            "from visibility and the bent normal by a table or by cones."},
+                    .help = "Method of specular occlusion: none, from the slices (smallest error), "
+                            "or from visibility and the bent normal with a table or with cones."},
         settings.specular);
-  visit(SettingInfo{.name = "precision", .help = "Format of outputs and intermediate results."},
+  visit(SettingInfo{.name = "precision",
+                    .help = "Format of the outputs: 8-bit integers, 16-bit or 32-bit floats."},
         settings.precision);
   visit(SettingInfo{.name = "power",
-                    .help = "Exponent of the visibility that is written. 1 changes nothing.",
+                    .help = "Exponent that is applied to visibility before it is written. Above 1 "
+                            "darkens; 1 changes nothing.",
                     .range = {.maximum = 16.0f, .above_minimum = true}},
         settings.power);
   visit(SettingInfo{.name = "intensity",
-                    .help = "Factor of the occlusion that is written. 1 changes nothing.",
+                    .help = "Factor that is applied to occlusion (1 - visibility) before it is "
+                            "written. Above 1 darkens; 1 changes nothing.",
                     .range = {.maximum = 16.0f}},
         settings.intensity);
-  visit(SettingInfo{.name = "bent_normal",
-                    .help = "Also computes the mean visible direction.",
-                    .group = SettingGroup::output},
-        settings.bent_normal);
+  visit(
+      SettingInfo{.name = "bent_normal",
+                  .help = "Also writes bent normals: the mean unoccluded direction of each pixel.",
+                  .group = SettingGroup::output},
+      settings.bent_normal);
   visit(SettingInfo{.name = "roughness",
                     .help = "Perceptual roughness of pixels without a roughness texture.",
                     .group = SettingGroup::surface,
                     .range = {.maximum = 1.0f}},
         settings.roughness);
-  visit(SettingInfo{.name = "roughness_channel",
-                    .help = "Channel of the roughness texture.",
-                    .group = SettingGroup::surface,
-                    .range = {.maximum = 3}},
-        settings.roughness_channel);
+  visit(
+      SettingInfo{
+          .name = "roughness_channel",
+          .help = "Channel of the roughness texture that holds the roughness: 0 red to 3 alpha.",
+          .group = SettingGroup::surface,
+          .range = {.maximum = 3}},
+      settings.roughness_channel);
 
   constexpr SettingGroup advanced = SettingGroup::advanced;
-  visit(SettingInfo{.name = "estimator",
-                    .help = "What is behind an occluder's front: everything (horizons, and the "
-                            "heuristic that lowers them), or a thickness for each sample (bitmask) "
-                            "or for each connected segment (connected).",
-                    .group = advanced},
-        settings.advanced.estimator);
+  visit(
+      SettingInfo{
+          .name = "estimator",
+          .help = "Assumption about the thickness of occluders: infinite (horizons), infinite with "
+                  "horizons that later samples lower (heuristic), finite for each sample "
+                  "(bitmask), or finite with the samples of a surface connected (connected).",
+          .group = advanced},
+      settings.advanced.estimator);
   visit(SettingInfo{.name = "weighting",
-                    .help = "Weight of a visible direction in visibility: the cosine of its angle "
-                            "to the normal, or 1.",
+                    .help = "Weight of each direction in visibility: the cosine of its angle to "
+                            "the normal, or 1 for all (uniform).",
                     .group = advanced},
         settings.advanced.weighting);
-  visit(SettingInfo{.name = "thickness_unit",
-                    .help = "Unit of the thickness: the radius, the distance from the eye, or the "
-                            "scene's back faces in its place.",
-                    .group = advanced,
-                    .matters = has_thickness},
-        settings.advanced.thickness_unit);
+  visit(
+      SettingInfo{
+          .name = "thickness_unit",
+          .help = "Unit of the setting thickness: the radius, or the occluder's distance from the "
+                  "eye. With back_faces, a depth buffer of back faces gives the thickness instead.",
+          .group = advanced,
+          .matters = has_thickness},
+      settings.advanced.thickness_unit);
   visit(SettingInfo{.name = "blend",
-                    .help = "How far a sample below the horizon lowers it: 0 not at all, 1 down to "
-                            "the sample (heuristic only).",
+                    .help = "How far a sample that lies below the horizon lowers the horizon: 0 "
+                            "not at all, 1 down to the sample (heuristic only).",
                     .group = advanced,
                     .range = {.maximum = 1.0f},
                     .matters = [](S s) { return s.advanced.estimator == Estimator::heuristic; }},
         settings.advanced.blend);
   visit(SettingInfo{.name = "falloff",
-                    .help = "Last fraction of the radius, over which occluders fade (horizons and "
-                            "heuristic).",
+                    .help = "Occluders fade out over this last fraction of the radius. 0 turns "
+                            "fading off (horizons and heuristic only).",
                     .group = advanced,
                     .range = {.maximum = 1.0f},
                     .matters = [](S s) { return !passes::has_thickness(s.advanced.estimator); }},
         settings.advanced.falloff);
-  visit(SettingInfo{.name = "pattern",
-                    .help = "How slice directions vary over pixels and frames.",
-                    .group = advanced},
-        settings.advanced.pattern);
+  visit(
+      SettingInfo{
+          .name = "pattern",
+          .help = "Sequence of slice directions over pixels and frames: golden-ratio lattices, the "
+                  "R2 sequence along a Hilbert curve, or the paper's 4x4 pixels and six frames.",
+          .group = advanced},
+      settings.advanced.pattern);
   visit(SettingInfo{.name = "filter_radius",
-                    .help = "Filter radius in tiles for pixels with fewer than two frames of "
-                            "history. 0 turns the filter off.",
+                    .help = "Radius of the spatial filter in tiles for pixels with fewer than two "
+                            "frames of history; other pixels use 1. 0 turns the filter off.",
                     .group = advanced,
                     .range = {.maximum = 3}},
         settings.advanced.filter_radius);
-  visit(SettingInfo{.name = "filter_tolerance_px",
-                    .help = "Distance from the pixel's tangent plane, in pixels, at which a "
-                            "neighbour's weight falls to 0.25. It holds for one slice and no "
-                            "history, and shrinks with more samples.",
-                    .group = advanced,
-                    .range = {.above_minimum = true},
-                    .slider = {.minimum = 0.1f, .maximum = 8.0f},
-                    .matters = [](S s) { return s.advanced.filter_radius > 0; }},
-        settings.advanced.filter_tolerance_px);
+  visit(
+      SettingInfo{
+          .name = "filter_tolerance_px",
+          .help = "Distance of a neighbour from the pixel's tangent plane, in pixels, at which the "
+                  "spatial filter gives it the weight 0.25. Smaller values keep edges sharper. The "
+                  "value holds for one slice and no history, and shrinks with more samples.",
+          .group = advanced,
+          .range = {.above_minimum = true},
+          .slider = {.minimum = 0.1f, .maximum = 8.0f},
+          .matters = [](S s) { return s.advanced.filter_radius > 0; }},
+      settings.advanced.filter_tolerance_px);
   visit(SettingInfo{.name = "clamp_width",
-                    .help = "Standard deviations around the mean of the frame's neighbourhood to "
-                            "which the history is clamped. 0 turns clamping off.",
+                    .help = "The history is clamped to the mean of the current neighbourhood plus "
+                            "or minus this many standard deviations. 0 turns clamping off.",
                     .group = advanced,
                     .slider = {.maximum = 8.0f},
                     .matters = [](S s) { return s.history_frames > 0; }},
         settings.advanced.clamp_width);
-  visit(
-      SettingInfo{
-          .name = "snap_to_texels", .help = "Snaps samples to texel centres.", .group = advanced},
-      settings.advanced.snap_to_texels);
+  visit(SettingInfo{.name = "snap_to_texels",
+                    .help = "Moves each depth sample to the centre of its texel, which keeps "
+                            "tilted planes from occluding themselves.",
+                    .group = advanced},
+        settings.advanced.snap_to_texels);
   visit(SettingInfo{.name = "extrapolation",
-                    .help = "Extrapolates surfaces beyond the image's border (connected).",
+                    .help = "Assumes that surfaces which leave the image go on beyond its border, "
+                            "where they can occlude (connected only).",
                     .group = advanced},
         settings.advanced.extrapolation);
   visit(SettingInfo{.name = "unobserved",
-                    .help = "Leaves directions that the depth buffer does not show (behind a "
-                            "foreground, or beyond the image's border) partly out of the "
-                            "average. If off, they count as open (connected only).",
+                    .help = "Excludes directions that the depth buffer does not show (behind a "
+                            "foreground, or beyond the image's border) in part from the average. "
+                            "If off, they count as open (connected only).",
                     .group = advanced},
         settings.advanced.unobserved);
-  visit(
-      SettingInfo{.name = "grouping",
-                  .help = "Tiles that a workgroup traces: 8x8 adjacent ones, or every fourth in x "
-                          "and y. It changes the cost and not the image.",
-                  .group = advanced},
-      settings.advanced.grouping);
 }
 
 }  // namespace alcove::passes

@@ -1,0 +1,89 @@
+// Device memory: sources that the engine gives to a context, and how much frames take. Included by
+// alcove.h.
+#ifndef ALCOVE_ALCOVE_MEMORY_H_
+#define ALCOVE_ALCOVE_MEMORY_H_
+
+#include "alcove/alcove_result.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+struct AlcoveSettings;  // alcove.h
+
+// Device memory that a context needs.
+typedef struct AlcoveMemoryRequest {
+  VkMemoryRequirements requirements;  // size, alignment, and the memory types that will do
+  VkMemoryPropertyFlags required;     // properties that the memory type must have
+  VkMemoryPropertyFlags preferred;    // properties that it should have
+} AlcoveMemoryRequest;
+
+// A part of a device memory object.
+typedef struct AlcoveMemoryRange {
+  VkDeviceMemory memory;
+  VkDeviceSize offset;  // of the first byte, a multiple of the alignment
+  // The address of the first byte in host memory. Needed if VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT was
+  // required: the memory then stays mapped until it is freed.
+  void* mapped;
+  void* handle;  // the engine's own, for `free`
+} AlcoveMemoryRange;
+
+// The engine's allocator of device memory: both functions, or neither. They are called by the
+// thread that calls the library, and must not call it. `free` is called only after the device has
+// finished with the memory.
+typedef struct AlcoveMemoryFunctions {
+  // Fills `range`, which is all zeros when the function is called. Any result but VK_SUCCESS makes
+  // the Alcove call fail; VK_ERROR_OUT_OF_DEVICE_MEMORY becomes ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY.
+  VkResult (*allocate)(void* user, const AlcoveMemoryRequest* request, AlcoveMemoryRange* range);
+  void (*free)(void* user, const AlcoveMemoryRange* range);
+  void* user;
+} AlcoveMemoryFunctions;
+
+// Memory that the engine has allocated, for the images of one context: device-local, in any memory
+// type that the images allow (usually every device-local one). alcoveEstimateMemory says how much
+// frames take. A change of size needs room for the old and the new images at the same time.
+typedef struct AlcoveMemoryBlock {
+  VkDeviceMemory memory;
+  VkDeviceSize offset;   // the first byte that may be used
+  VkDeviceSize size;     // bytes from there on
+  uint32_t memory_type;  // index of the memory type that the block was allocated from
+} AlcoveMemoryBlock;
+
+// Bytes of device memory of the last recorded frame; zeros before the first, and after a frame that
+// failed or was discarded. Memory of transients grows with the largest frame and is kept.
+typedef struct AlcoveMemory {
+  uint32_t struct_size;
+  uint64_t transients;           // intermediate images, which share memory
+  uint64_t transients_unshared;  // the same if each had memory of its own
+  uint64_t history;              // of all views
+  uint64_t allocated;            // everything that the context holds, with parameters and tables
+} AlcoveMemory;
+
+// Fills `memory`, whose struct_size is set.
+AlcoveResult alcoveGetMemory(AlcoveContext* context, AlcoveMemory* memory);
+
+// Outputs, to be combined.
+typedef enum AlcoveOutput {
+  ALCOVE_OUTPUT_VISIBILITY = 1,
+  ALCOVE_OUTPUT_BENT_NORMAL = 2,
+  ALCOVE_OUTPUT_SPECULAR = 4,
+  ALCOVE_OUTPUT_MULTI_BOUNCE = 8,
+  ALCOVE_OUTPUT_MAX_ENUM = 0x7fffffff
+} AlcoveOutput;
+
+// Fills `memory`, whose struct_size is set, with the bytes that one view of width x height pixels
+// takes, before there is a context or a frame. `outputs` is a combination of AlcoveOutput;
+// `normals_given` says that AlcoveView::normals has an image. The figures are those of texels:
+// drivers round each image up. `transients` is what the view needs when nothing shares memory, as
+// is `transients_unshared`; a frame that was recorded may need less. `allocated` is the sum of
+// transients and history. Returns ALCOVE_ERROR_INVALID_INPUT if an argument is invalid; there is no
+// message.
+AlcoveResult alcoveEstimateMemory(const struct AlcoveSettings* settings, uint32_t width,
+                                  uint32_t height, uint32_t outputs, VkBool32 normals_given,
+                                  AlcoveMemory* memory);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif  // ALCOVE_ALCOVE_MEMORY_H_
