@@ -27,9 +27,9 @@ class GltfImages {
  public:
   GltfImages(const tinygltf::Model& model, const ImageLimits& limits, Scene& scene);
 
-  // The index in Scene::images, or -1 for an image that cannot be read, with a warning once. The
-  // error, the end of a sentence about the material that uses it: too large, or a buffer view that
-  // does not exist.
+  // Returns the index in Scene::images, or -1 for an image that cannot be read, which causes one
+  // warning. An image that is too large or lies in a missing buffer view is an error, the end of a
+  // sentence about the material that uses it.
   [[nodiscard]] tl::expected<int32_t, std::string> decode(size_t index);
 
  private:

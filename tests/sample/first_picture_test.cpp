@@ -165,7 +165,7 @@ TEST_P(FirstPicture, ShowsTheModelWithOcclusion) {
   const Shares shares = shares_of(*drawn);
   RecordProperty("sky", std::to_string(shares.sky));
   RecordProperty("occluded", std::to_string(shares.occluded));
-  EXPECT_LT(shares.sky, 0.96);        // 0.955 for the screw, which is tall; at most 0.852 for others
+  EXPECT_LT(shares.sky, 0.96);  // 0.955 for the screw, which is tall; at most 0.852 for others
   EXPECT_GT(shares.occluded, 0.003);  // 0.0054 for the character, whose dome has no occlusion
   EXPECT_LT(shares.least, 0.9);
   EXPECT_LT(shares.occluded, 0.9);
