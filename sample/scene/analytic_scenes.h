@@ -16,36 +16,38 @@ struct ReferencePoint {
   double visibility;    // cosine-weighted, 0..1
 };
 
-// A scene whose occlusion is known. The closed forms hold for rays of at least
-// `closed_form_radius`, short of the edges of the geometry, which is finite.
+// A scene whose visibility is known in closed form. The geometry is finite. The closed forms hold
+// if the radius of the occlusion is at least `closed_form_radius` and no ray reaches past its
+// edges.
 struct AnalyticScene {
   Scene scene;
   double closed_form_radius;  // scene units
   std::vector<ReferencePoint> points;
 };
 
-// By name: `plane:DEG` (tilt from facing the camera, 0..89; 0 without a number), `groove:DEG`
-// (opening angle between its walls, 10..170; 90), `corner`, `sphere`, `pit`, `step`. Metres.
-// Errors: an unknown name or an angle out of range, with what is allowed.
+// Returns the scene of a name: `plane:DEG` (DEG is the tilt from facing the camera, 0..89, default
+// 0), `groove:DEG` (DEG is the opening angle between the walls, 10..170, default 90), `corner`,
+// `sphere`, `pit` or `step`. Lengths are metres. Unknown names and angles out of range are errors
+// that list the valid ones.
 [[nodiscard]] tl::expected<AnalyticScene, std::string> analytic_scene(const std::string& name);
 
-// Whether `name` is meant for analytic_scene, right or wrong in its angle.
+// Whether `name` begins as a name of analytic_scene() does. Its angle may be out of range.
 [[nodiscard]] bool is_analytic_name(const std::string& name);
 
-// The closed forms, each at a point with its normal up, the share of the cosine-weighted hemisphere
-// that the shape leaves open.
+// The closed forms. Each returns the cosine-weighted visibility of a point whose normal points up.
 
-// Sphere of `radius` whose centre stands at distance d in a direction `cosine` from the normal, all
-// of it above the horizon (cosine >= radius / d): 1 - cosine (radius / d)^2.
+// Under a sphere of `radius` whose centre is at distance d. `cosine` is that of the angle between
+// the normal and the direction to the centre. All of the sphere is above the horizon (cosine >=
+// radius / d). The visibility is 1 - cosine (radius / d)^2.
 [[nodiscard]] double visibility_under_sphere(double radius, double distance, double cosine);
-// V-groove of infinite length, from anywhere on a wall, walls endless: the other wall rises
-// from the edge to pi minus the opening angle (radians), which leaves (1 - cos(angle)) / 2.
+// At any point of a wall of a V-shaped groove with infinite walls: (1 - cos(angle)) / 2. `angle` is
+// the opening angle between the walls in radians.
 [[nodiscard]] double visibility_in_groove(double opening_angle);
-// Floor at distance d from an endless wall of height h: (1 + d / sqrt(d^2 + h^2)) / 2.
+// On a floor at distance d from an infinitely long wall of height h: (1 + d / sqrt(d^2 + h^2)) / 2.
 [[nodiscard]] double visibility_beside_wall(double distance, double height);
-// Floor of a corner of two endless walls of height h at right angles, at distances a and b.
+// On a floor at distances a and b from two infinitely long walls of height h at right angles.
 [[nodiscard]] double visibility_in_corner(double a, double b, double height);
-// Centre of a cylindrical pit's floor: r^2 / (r^2 + depth^2).
+// At the centre of the floor of a cylindrical pit: r^2 / (r^2 + depth^2).
 [[nodiscard]] double visibility_in_pit(double radius, double depth);
 
 }  // namespace alcove::sample

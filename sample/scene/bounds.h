@@ -38,7 +38,7 @@ struct MeshInstance {
   uint32_t instance;  // below instance_count()
   Bounds bounds_ws;   // around the transformed box of the mesh
 };
-// All instances of all meshes that have triangles, in their order.
+// Returns all instances of all meshes that have triangles, ordered by mesh.
 [[nodiscard]] std::vector<MeshInstance> instances_of(const std::vector<Mesh>& meshes);
 
 // The box of all triangles of all instances, each taken as in MeshInstance. Vertices that no

@@ -16,7 +16,7 @@ struct DepthRange {
 // The depth range of the triangles within the image. `aspect` is its width over its height.
 // Perspective views leave out triangles behind the eye. Null if nothing is in view.
 //
-// The range is exact as long as the instances whose bounds could change it have fewer than 2^27
+// The range is exact as long as the instances whose bounds could change it have fewer than 2^25
 // triangles together. Beyond that their bounds count, so that the range is too wide at most.
 [[nodiscard]] std::optional<DepthRange> depth_in_view(const Scene& scene, const Camera& camera,
                                                       double aspect);

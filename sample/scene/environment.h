@@ -9,12 +9,12 @@
 
 namespace alcove::sample {
 
-// Light from infinitely far as an equirectangular image: linear RGB radiance, finite and at least
-// 0, top row up (+Y), the left edge at -Z and a quarter to the right +X.
+// Light from infinitely far as an equirectangular image of linear RGB radiance, finite and at least
+// 0. The top row is +Y, the left edge is -Z, and a quarter of the width further right is +X.
 using EnvironmentImage = Image<glm::vec3>;
 
-// A hazy sky over brown ground, brightest towards a low sun. It has no sun disc, which would be
-// direct light. Its mean radiance is about 1.
+// Generates a hazy sky over brown ground, brightest towards a low sun. It has no sun disc, because
+// that would be direct light. Its mean radiance is about 1.
 [[nodiscard]] EnvironmentImage procedural_sky();
 
 // Reads a .hdr (Radiance) or .exr file of at most 16384 pixels a side, and reduces it by a whole

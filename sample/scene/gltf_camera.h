@@ -8,22 +8,23 @@
 
 namespace alcove::sample {
 
-// A camera of a file and its direction. Its target is set when the size of the scene is known: at a
-// fixed distance it could be lost in the rounding of a large position, or lie far behind a small
-// scene.
+// A camera of a file and its direction. Its target is set when the size of the scene is known. A
+// target at a fixed distance could vanish in the rounding of a large position, or lie far behind a
+// small scene.
 struct PlacedCamera {
   Camera camera;          // its target is not set
   glm::dvec3 forward_ws;  // unit
 };
 
-// Adds the camera of a node, where it has one, to `cameras`. An invalid camera is left out with a
+// Adds the camera of a node to `cameras` if the node has one. An invalid camera is left out with a
 // warning in the scene, because the triangles do not depend on it.
 void add_camera(const tinygltf::Model& model, const tinygltf::Node& node,
                 const glm::dmat4& world_from_node, std::vector<PlacedCamera>& cameras,
                 Scene& scene);
 
-// The camera with its target at the depth of the centre of the bounds, but at least a twentieth of
-// their diagonal away, and so far that rounding turns the view by less than a tenth of a pixel.
+// Returns the camera with its target at the depth of the centre of the bounds, but at least a
+// twentieth of their diagonal away, and so far that rounding turns the view by less than a tenth of
+// a pixel.
 [[nodiscard]] Camera aimed(const PlacedCamera& placed, const Bounds& bounds_ws);
 
 }  // namespace alcove::sample

@@ -14,9 +14,9 @@ struct GltfParts {
   bool has_binary = false;
 };
 
-// Takes a file of either kind apart (glTF 2.0 section 4.4 for the binary one, told by its magic
-// number). An error, the end of a sentence: a header or chunk that is cut short, of a wrong length,
-// unaligned, repeated or out of order. Chunks of unknown types are skipped.
+// Splits a file into its parts. The magic number tells whether it is binary (glTF 2.0 section 4.4).
+// Chunks of unknown types are skipped. A header or chunk that is cut short, has a wrong length, or
+// is unaligned, repeated or out of order is an error, the end of a sentence.
 [[nodiscard]] tl::expected<GltfParts, std::string> split_gltf(std::span<const uint8_t> file);
 
 }  // namespace alcove::sample

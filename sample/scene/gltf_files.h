@@ -8,22 +8,22 @@
 
 namespace alcove::sample {
 
-// The only way in which a glTF file reaches other files: regular files in the scene's folder or
-// below it, after symbolic links are followed, up to a number of bytes in all; and data that is
-// embedded in the URI itself.
+// Reads the files that a glTF file names. It reads regular files in the scene's folder or below it,
+// after symbolic links are resolved, up to kMostFileBytes together, and data that is embedded in a
+// URI.
 class GltfFiles {
  public:
-  // An empty folder: no files at all.
+  // With an empty folder, no file can be read.
   explicit GltfFiles(const std::filesystem::path& folder);
 
-  // The bytes that a URI names. A relative reference is decoded after RFC 3986: %XX stands for a
-  // byte, and no other character for anything but itself. Where no file has that name, the name as
-  // it is written is tried, and then the name with \ for /, as exporters on Windows write it.
-  // `data:` URIs may have any media type, and be base64 or percent-encoded. Errors are the end of a
-  // sentence that begins with the URI.
+  // Returns the bytes that a URI names. A relative reference is decoded after RFC 3986: %XX is a
+  // byte, and all other characters are themselves. If no such file exists, the name is tried
+  // without decoding, and then with / for \, which exporters on Windows write. `data:` URIs may
+  // have any media type, and be base64 or percent-encoded. Errors are the end of a sentence that
+  // begins with the URI.
   [[nodiscard]] tl::expected<std::vector<uint8_t>, std::string> read(const std::string& uri);
 
-  // The URI as a sentence can hold it: embedded data is left out.
+  // Returns the URI for a message, without embedded data and at most 80 bytes of it.
   [[nodiscard]] static std::string shown(const std::string& uri);
 
  private:
@@ -33,11 +33,12 @@ class GltfFiles {
   uint64_t bytes_left_;
 };
 
-// All of a regular file of at most `most` bytes. Errors are the end of a sentence.
+// Reads all of a regular file. More than `most` bytes are an error. Errors are the end of a
+// sentence.
 [[nodiscard]] tl::expected<std::vector<uint8_t>, std::string> read_regular_file(
     const std::filesystem::path& file, uint64_t most);
 
-// The largest file, and the most bytes of all files of a scene together.
+// The limit on the size of a file, and on the sum of the sizes of all files of a scene.
 constexpr uint64_t kMostFileBytes = INT32_MAX;
 
 }  // namespace alcove::sample

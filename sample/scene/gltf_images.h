@@ -15,27 +15,29 @@ namespace alcove::sample {
 
 // Limits on the images of a scene, in pixels.
 struct ImageLimits {
-  uint64_t kept = uint64_t{1} << 27;     // all together, in memory: 512 MiB
-  uint64_t decoded = uint64_t{1} << 30;  // all together, in their files: some seconds of decoding
+  uint64_t kept = uint64_t{1} << 27;  // sum over all images in memory: 512 MiB
+  uint64_t decoded =
+      uint64_t{1} << 30;  // sum over all images before reduction: some seconds of decoding
 };
 
-// Decodes the images of a model into a scene as materials ask for them, each at most once. The
-// headers of all are read first: where the images would take more than the limit together, every
-// image is reduced by a power of 2 to a side that lets them fit, and the scene gets a warning.
+// Decodes the images of a model into a scene when materials ask for them, each image at most once.
+// The headers of all images are read first. If the images exceed the limit together, large images
+// are reduced by powers of 2 until all fit, and the scene gets a warning.
 class GltfImages {
  public:
   GltfImages(const tinygltf::Model& model, const ImageLimits& limits, Scene& scene);
 
-  // The index in Scene::images, or -1 for an image that cannot be read, with a warning once. The
-  // error, the end of a sentence about the material that uses it: too large, or a buffer view that
-  // does not exist.
+  // Returns the index in Scene::images, or -1 for an image that cannot be read, which causes one
+  // warning. An image that is too large or lies in a missing buffer view is an error, the end of a
+  // sentence about the material that uses it.
   [[nodiscard]] tl::expected<int32_t, std::string> decode(size_t index);
 
  private:
   struct Entry {
     std::span<const uint8_t> bytes;
     tl::expected<ImageHeader, std::string> header = tl::unexpected<std::string>("");
-    std::string refusal;  // a reason to refuse the scene where a material uses the image
+    std::string
+        refusal;  // why the scene is refused if a material uses the image; empty if it is valid
     bool tried = false;
     int32_t image = -1;
   };

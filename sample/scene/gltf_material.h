@@ -11,11 +11,11 @@
 
 namespace alcove::sample {
 
-// Adds the model's materials, a default one at the end for primitives that name none, and the
-// images that the materials use (gltf_images.h). Warnings: images that cannot be read, textures by
-// coordinates beyond the second set, and samplers of values unknown to glTF, which are all left out
-// (white, no normal map, linear filters). Errors: images over the limits, references to things that
-// do not exist, and numbers that are not finite.
+// Adds the materials of a model and the images that they use (gltf_images.h). The last material is
+// a default for primitives without one. Images that cannot be read, textures with more than two
+// sets of coordinates, and samplers with values unknown to glTF are left out with a warning: they
+// read as white, as no normal map, or with linear filters. Images over the limits, references to
+// missing elements and numbers that are not finite are errors.
 [[nodiscard]] tl::expected<void, std::string> add_materials(const tinygltf::Model& model,
                                                             const ImageLimits& limits,
                                                             Scene& scene);

@@ -25,7 +25,8 @@ bool finite(const glm::vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-// Strips and fans as lists. Every second triangle of a strip turns, so that all keep one side.
+// Converts strips and fans to lists. Every second triangle of a strip is reversed, so that all have
+// the same winding.
 std::vector<uint32_t> as_list(std::vector<uint32_t> in, int mode) {
   if (mode == TINYGLTF_MODE_TRIANGLES) {
     in.resize(in.size() - in.size() % 3);
@@ -64,7 +65,7 @@ tl::expected<std::vector<glm::vec3>, std::string> world_positions(const tinygltf
   return out;
 }
 
-// Normals of the file in world space; zero where the file's are useless.
+// Reads normals in world space. Normals that are zero or not finite become zero.
 tl::expected<std::vector<glm::vec3>, std::string> world_normals(const tinygltf::Model& model,
                                                                 int accessor,
                                                                 const VertexPlacement& placement,
@@ -73,8 +74,8 @@ tl::expected<std::vector<glm::vec3>, std::string> world_normals(const tinygltf::
   if (!values) return Failure(values.error());
   std::vector<glm::vec3> out(values->size() / 3);
   for (size_t i = 0; i < out.size(); ++i) {
-    // The cofactor matrix is the inverse transpose times the determinant, and exists where that is
-    // 0.
+    // The cofactor matrix is the inverse transpose times the determinant. It exists even if the
+    // determinant is 0.
     const glm::dmat3 m(placement.at(i));
     const double side = glm::determinant(m) < 0.0 ? -1.0 : 1.0;
     const glm::dmat3 cofactor(side * glm::cross(m[1], m[2]), side * glm::cross(m[2], m[0]),
@@ -85,7 +86,7 @@ tl::expected<std::vector<glm::vec3>, std::string> world_normals(const tinygltf::
   return out;
 }
 
-// Tangents of the file in world space; zero where the file's are useless.
+// Reads tangents in world space. Tangents that are zero or not finite become zero.
 tl::expected<std::vector<glm::vec4>, std::string> world_tangents(const tinygltf::Model& model,
                                                                  int accessor,
                                                                  const VertexPlacement& placement,
@@ -103,7 +104,7 @@ tl::expected<std::vector<glm::vec4>, std::string> world_tangents(const tinygltf:
   return out;
 }
 
-// Triangles that their transform mirrors are wound the other way.
+// Reverses the winding of triangles that their transform mirrors.
 void turn_mirrored(const VertexPlacement& placement, std::vector<uint32_t>& indices) {
   for (size_t i = 0; i + 2 < indices.size(); i += 3) {
     if (glm::determinant(glm::dmat3(placement.at(indices[i]))) < 0.0) {
@@ -112,7 +113,7 @@ void turn_mirrored(const VertexPlacement& placement, std::vector<uint32_t>& indi
   }
 }
 
-// Faces without area have no normal, cover no pixel and stop no ray.
+// Removes triangles without an area. They have no normal, cover no pixel and block no ray.
 void drop_flat_faces(Mesh& mesh) {
   size_t kept = 0;
   for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
@@ -124,7 +125,7 @@ void drop_flat_faces(Mesh& mesh) {
   mesh.indices.resize(kept);
 }
 
-// Gives each corner a vertex of its own, with the normal of its triangle.
+// Gives each corner its own vertex with the normal of its triangle.
 void make_flat_normals(Mesh& mesh) {
   Mesh flat;
   const auto copy = [](auto& from, auto& to, uint32_t v) {
@@ -151,7 +152,7 @@ void make_flat_normals(Mesh& mesh) {
   mesh.indices = std::move(flat.indices);
 }
 
-// Vertices whose normal the file left zero or not finite take the mean of their faces.
+// Replaces normals that are zero by the area-weighted mean normal of the triangles at the vertex.
 void mend_normals(Mesh& mesh) {
   if (std::ranges::find(mesh.normals, glm::vec3(0.0f)) == mesh.normals.end()) return;
   std::vector<glm::dvec3> sums(mesh.positions.size(), glm::dvec3(0.0));
@@ -174,7 +175,8 @@ bool reads_by(const Material& material, uint32_t uv_set) {
   });
 }
 
-// Texture coordinates of the file; empty where it has none, zero where they are useless.
+// Reads texture coordinates. Empty if the file has none. Coordinates that are not finite become
+// zero.
 tl::expected<std::vector<glm::vec2>, std::string> texture_coordinates(
     const tinygltf::Model& model, const tinygltf::Primitive& primitive, uint32_t uv_set,
     size_t vertices) {
@@ -193,7 +195,7 @@ tl::expected<std::vector<glm::vec2>, std::string> texture_coordinates(
   return out;
 }
 
-// The sets that the mesh's material reads textures by.
+// Adds the sets of texture coordinates that the textures of the material use.
 tl::expected<void, std::string> add_texture_coordinates(const tinygltf::Model& model,
                                                         const tinygltf::Primitive& primitive,
                                                         Mesh& mesh, Scene& scene) {
@@ -212,7 +214,7 @@ tl::expected<void, std::string> add_texture_coordinates(const tinygltf::Model& m
   return {};
 }
 
-// COLOR_0, with an alpha of 1 where it has none. All of them white is none.
+// Adds COLOR_0. Colours without alpha have an alpha of 1. If all are white, none are kept.
 tl::expected<void, std::string> add_colors(const tinygltf::Model& model,
                                            const tinygltf::Primitive& primitive, Mesh& mesh) {
   const int accessor = attribute(primitive, "COLOR_0");
@@ -238,8 +240,8 @@ tl::expected<void, std::string> add_colors(const tinygltf::Model& model,
   return {};
 }
 
-// Normals and tangents of the file's `vertices`. Where it has no normals, triangles have their own
-// and tangents are ignored (glTF 2.0 section 3.7.2.1).
+// Adds normals and tangents. `vertices` is the number of vertices in the file. Without normals,
+// triangles have geometric normals and tangents are ignored (glTF 2.0 section 3.7.2.1).
 tl::expected<void, std::string> add_normals(const tinygltf::Model& model,
                                             const tinygltf::Primitive& primitive,
                                             const Material& material,
@@ -281,7 +283,7 @@ tl::expected<std::vector<uint32_t>, std::string> vertex_order(const tinygltf::Mo
   return order;
 }
 
-// How the vertices of a primitive are placed in the space of its mesh.
+// The placement of the vertices of a primitive in the space of its mesh.
 tl::expected<VertexPlacement, std::string> vertex_placement(const tinygltf::Model& model,
                                                             const tinygltf::Primitive& primitive,
                                                             const PrimitivePlacement& placement,
@@ -311,7 +313,7 @@ tl::expected<void, std::string> add_primitive(const tinygltf::Model& model,
     return refuse("takes the scene past the number of parts that is read here");
   }
   --budget.primitives;
-  // -1 is tinygltf's for a mode that the file does not give: triangles.
+  // tinygltf stores -1 if the file gives no mode; then it is triangles.
   const int mode = primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
   if (mode < TINYGLTF_MODE_TRIANGLES || mode > TINYGLTF_MODE_TRIANGLE_FAN) {
     scene.warnings.push_back("Mesh " + name + " has points or lines, which are left out.");
@@ -330,7 +332,7 @@ tl::expected<void, std::string> add_primitive(const tinygltf::Model& model,
   const Material& material = scene.materials[mesh.material];
   if (is_invisible(material)) {
     scene.warnings.push_back("Material \"" + material.name +
-                             "\" blends with an alpha of 0: what has it is not drawn.");
+                             "\" blends with an alpha of 0: its triangles are not drawn.");
     return {};
   }
   auto placed = vertex_placement(model, primitive, placement, budget.vertices);
@@ -362,7 +364,7 @@ tl::expected<void, std::string> add_primitive(const tinygltf::Model& model,
         "takes the scene past the number of triangles that is drawn here, instances "
         "counted each");
   }
-  // Charged here, because triangles without area took time to read too.
+  // Triangles without an area count too, because they took time to read.
   charge(budget.vertices, vertices);
   charge(budget.indices, mesh.indices.size());
   charge(budget.drawn_triangles, drawn);
@@ -373,7 +375,7 @@ tl::expected<void, std::string> add_primitive(const tinygltf::Model& model,
   if (auto added = add_normals(model, primitive, material, *placed, vertices, mesh); !added) {
     return refuse(added.error());
   }
-  // The vertices that flat normals have added.
+  // Flat normals may have added vertices.
   charge(budget.vertices, mesh.positions.size() - std::min(vertices, mesh.positions.size()));
   scene.meshes.push_back(std::move(mesh));
   return {};

@@ -102,7 +102,8 @@ Checked check_node_tree(const json& root) {
       if (std::exchange(parents[index], i) != kNone) return reached_twice(index);
     }
   }
-  // Every node leads up to a root. `cleared` nodes are known to.
+  // Follows the parents of every node. A walk of more steps than nodes is in a cycle. Nodes that
+  // are known to lead to a root are `cleared`.
   std::vector<char> cleared(parents.size(), 0);
   for (size_t start = 0; start < parents.size(); ++start) {
     size_t steps = 0;
@@ -116,8 +117,8 @@ Checked check_node_tree(const json& root) {
   return {};
 }
 
-// What is taken out of the JSON before tinygltf reads it: it would read files by rules of its own,
-// and refuses accessors of indices without a buffer view, which are valid.
+// Parts of the JSON that are removed before tinygltf reads it. tinygltf would read files by rules
+// of its own, and it refuses valid accessors of indices that have no buffer view.
 struct Taken {
   json buffers;
   json images;
@@ -172,8 +173,9 @@ Checked read_by_tinygltf(const json& root, const Taken& taken, tinygltf::Model& 
   return {};
 }
 
-// The first buffer of a binary file may be its binary chunk; others without a URI have no data.
-// Takes the bytes of the file, so that they are not held twice.
+// Fills the buffers of the model. The first buffer of a binary file may be its binary chunk. Other
+// buffers without a URI have no data.
+// It moves the bytes out of `file`, so that they are not held twice.
 Checked fill_buffers(const json& buffers, std::vector<uint8_t> file, const GltfParts& parts,
                      GltfFiles& files, tinygltf::Model& model) {
   std::vector<uint8_t> chunk;
@@ -209,12 +211,12 @@ Checked fill_buffers(const json& buffers, std::vector<uint8_t> file, const GltfP
   return {};
 }
 
-// Marks `all[index]` where that exists.
+// Sets `all[index]` if that element exists.
 void mark(std::vector<char>& all, int index) {
   if (index >= 0 && static_cast<size_t>(index) < all.size()) all[static_cast<size_t>(index)] = 1;
 }
 
-// The images of the materials of the meshes of nodes.
+// Marks the images that materials of meshes of nodes use.
 std::vector<char> used_images(const json& root, size_t image_count) {
   const json none = json::array();
   const auto array = [&](const char* name) -> const json& {
@@ -232,7 +234,7 @@ std::vector<char> used_images(const json& root, size_t image_count) {
       mark(material_used, primitive.value("material", -1));
     }
   }
-  // A material refers to textures at several places; every one is an object with an index.
+  // A material refers to textures at several places. Each reference is an object with an index.
   std::vector<const json*> open;
   for (size_t i = 0; i < materials.size(); ++i) {
     if (material_used[i]) open.push_back(&materials[i]);

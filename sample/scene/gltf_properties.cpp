@@ -442,7 +442,7 @@ class Copier {
     return Failure(path() + " is " + shown(value) + "; it must be " + expected);
   }
   Failure wrong(const json& value) const { return wrong(value, expectation(*property_)); }
-  // Of a value that may be one of an array.
+  // Checks one value, which may be an element of an array.
   Failure wrong_element(const json& value) const {
     Property element = *property_;
     if (element.type == Type::kWholes) element.type = Type::kWhole;

@@ -11,8 +11,8 @@
 
 namespace alcove::sample {
 
-// 8-bit RGBA, top row first. Base colour and emission are sRGB; roughness, metal and normals
-// linear: the material says which by where it uses the image.
+// An 8-bit RGBA image, top row first. Base colour and emission are encoded as sRGB; roughness,
+// metal and normals are linear. The use in the material determines the encoding.
 struct TextureImage {
   std::string name;
   uint32_t width = 0;
@@ -24,7 +24,7 @@ enum class Wrap : uint8_t { kRepeat, kClamp, kMirror };
 enum class Filter : uint8_t { kLinear, kNearest };
 enum class MipFilter : uint8_t { kLinear, kNearest, kNone };  // kNone: mip 0 alone is read
 
-// How an image is read at its edges, and between texels and mips.
+// How an image is read outside of 0..1, and between texels and mips.
 struct Sampler {
   Wrap wrap_u = Wrap::kRepeat;
   Wrap wrap_v = Wrap::kRepeat;
@@ -35,7 +35,8 @@ struct Sampler {
   bool operator==(const Sampler&) const = default;
 };
 
-// An image as a material uses it. `image` indexes Scene::images; -1 is none, and reads white.
+// The use of an image by a material. `image` indexes Scene::images; -1 is no image, which reads as
+// white.
 struct TextureUse {
   int32_t image = -1;
   Sampler sampler;
@@ -43,15 +44,16 @@ struct TextureUse {
   glm::mat3x2 texture_from_mesh_uv{1.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f};  // finite
 };
 
-// A g-buffer holds one surface a pixel, and an occluder either blocks or does not: alpha-blended
-// materials are opaque, in the rasteriser and in the ray tracer alike.
+// Alpha-blended materials are opaque in the rasteriser and in the ray tracer, because a g-buffer
+// holds one surface per pixel.
 enum class AlphaMode : uint8_t {
   kOpaque,
   kMask,   // cut out below alpha_cutoff
-  kBlend,  // drawn and traced as opaque: a depth buffer has no half surfaces
+  kBlend,  // drawn and traced as opaque
 };
 
-// Metal and roughness, after glTF 2.0 section 3.9. Factors are linear and multiply the texture.
+// A metallic-roughness material after glTF 2.0 section 3.9. Factors are linear and multiply the
+// texture.
 struct Material {
   std::string name;
   glm::vec4 base_color{1.0f};  // 0..1
@@ -61,11 +63,12 @@ struct Material {
   TextureUse metal_roughness_texture;  // green: roughness, blue: metal
   glm::vec3 emissive{0.0f};            // >= 0
   TextureUse emissive_texture;
-  // Tangent space: x along u, y against v (up in the image), z along the normal. Off without image.
+  // In tangent space: x along u, y against v (up in the image), z along the normal. Without an
+  // image the normal of the mesh holds.
   TextureUse normal_texture;
   float normal_scale = 1.0f;  // of x and y; -1e6..1e6
   AlphaMode alpha_mode = AlphaMode::kOpaque;
-  float alpha_cutoff = 0.5f;  // of kMask: kept where alpha >= cutoff
+  float alpha_cutoff = 0.5f;  // for kMask: points with alpha >= cutoff are kept
   // False: back faces are neither drawn nor hit by rays (glTF 2.0 section 3.9.6).
   bool double_sided = true;
 };
@@ -93,55 +96,55 @@ struct Mesh {
   bool moves = false;
 };
 
-// Everything that is drawn and traced. Materials hold at least one entry wherever there is a mesh.
+// A scene as it is drawn and traced. A scene with meshes has at least one material.
 struct Scene {
   std::string name;
   std::vector<Mesh> meshes;
   std::vector<Material> materials;
   std::vector<TextureImage> images;
   std::vector<Camera> cameras;  // the first is the default view; may be empty
-  // Where the origin of world space is in the space of the file. Views that people type and read
-  // are in that of the file.
+  // The origin of world space in the coordinates of the file. Views that the user types or reads
+  // are in the coordinates of the file.
   glm::dvec3 origin{0.0};
-  Bounds bounds_ws;               // of all triangles
-  Bounds core_bounds_ws;          // of what the scene is about, see scene_core(); empty: bounds_ws
-  float suggested_radius = 0.0f;  // 0: a twentieth of the diagonal of the core's bounds
+  Bounds bounds_ws;                   // of all triangles
+  Bounds core_bounds_ws;              // see scene_core(); if without extent, bounds_ws is used
+  float suggested_radius = 0.0f;      // 0 for a twentieth of the diagonal of core_bounds_ws
   std::vector<std::string> warnings;  // one sentence for each part that is not drawn as stored
 };
 
-// Triangles of all meshes, counted once for each instance.
+// The number of triangles of all meshes, counted once for each instance.
 [[nodiscard]] uint64_t triangle_count(const Scene& scene);
 
-// The camera of that name, or for an empty name the first. Null when there is none.
+// Returns the camera of a name, or the first for an empty name. Null if there is no such camera.
 [[nodiscard]] const Camera* find_camera(const Scene& scene, const std::string& name);
 
-// The radius where none is given, in scene units.
+// The radius in scene units that is used if the user gives none.
 [[nodiscard]] float default_radius(const Scene& scene);
 
-// The transform of an instance; the identity where the mesh stands once. `instance` is below
-// instance_count().
+// The transform of an instance, below instance_count(). The identity for a mesh without
+// `instances`.
 [[nodiscard]] glm::mat4x3 world_from_mesh(const Mesh& mesh, size_t instance);
 [[nodiscard]] inline size_t instance_count(const Mesh& mesh) {
   return mesh.instances.empty() ? 1 : mesh.instances.size();
 }
 
-// A mesh's texture coordinates at a point of it, by TextureUse::uv_set.
+// The texture coordinates at a point of a mesh, indexed by TextureUse::uv_set.
 using MeshUvs = std::array<glm::vec2, 2>;
 [[nodiscard]] MeshUvs uvs_at(const Mesh& mesh, uint32_t vertex);
 // The texture coordinates at the barycentric coordinates (1 - u - v, u, v) of a triangle.
 [[nodiscard]] MeshUvs uvs_within(const Mesh& mesh, uint32_t triangle, float u, float v);
-// The vertex colour at the same point, 0..1.
+// The vertex colour at the same barycentric coordinates, 0..1.
 [[nodiscard]] glm::vec4 color_within(const Mesh& mesh, uint32_t triangle, float u, float v);
 
-// Where a use looks for its texel, by the mesh's coordinates. Finite.
+// The coordinates in the image for the texture coordinates of the mesh. Finite.
 [[nodiscard]] glm::vec2 texture_uv(const TextureUse& use, const MeshUvs& mesh_uvs);
 
-// An image's texel by the mesh's coordinates, 0..1 as stored (no sRGB decoding), as its sampler
-// magnifies it: mip 0.
+// The colour that the sampler reads from mip 0 for the texture coordinates of the mesh. 0..1 as
+// stored, without sRGB decoding.
 [[nodiscard]] glm::vec4 sample_texture(const Scene& scene, const TextureUse& use,
                                        const MeshUvs& mesh_uvs);
 
-// sRGB to linear, per channel.
+// Decodes an sRGB value from 0 to 1 to a linear one.
 [[nodiscard]] float srgb_to_linear(float encoded);
 
 }  // namespace alcove::sample

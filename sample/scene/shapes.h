@@ -9,32 +9,34 @@
 
 namespace alcove::sample {
 
-// Puts solids into a scene, one mesh per material. Every shape is placed by `world_from_shape`,
-// which may move, turn and scale but not mirror. Faces look outwards, counter-clockwise.
+// Adds solids to a scene, one mesh per material. Every shape is transformed by `world_from_shape`,
+// which may translate, rotate and scale but not mirror. Triangles are counter-clockwise from
+// outside.
 class SceneBuilder {
  public:
-  // What the next shapes are made of.
+  // Sets the material of the following shapes.
   uint32_t add_material(const std::string& name, glm::vec3 base_color, float roughness,
                         float metallic = 0.0f);
   void use(uint32_t material) { material_ = material; }
   glm::mat4 world_from_shape{1.0f};
 
-  // One flat face, corners counter-clockwise from the front.
+  // Adds one flat face with its corners counter-clockwise from the front.
   void quad(glm::vec3 a, glm::vec3 b, glm::vec3 c, glm::vec3 d);
   void triangle(glm::vec3 a, glm::vec3 b, glm::vec3 c);
   void box(glm::vec3 low, glm::vec3 high);
-  // Turned around +Y: a profile of (radius, height) from bottom to top. Edges of the profile that
-  // bend by less than 40 degrees are smooth.
+  // Adds a solid of revolution about +Y. The profile is a list of (radius, height) from bottom to
+  // top. Normals are smooth where the profile bends by less than 40 degrees.
   void lathe(std::span<const glm::vec2> profile, uint32_t sides);
-  // A sphere as a lathe.
+  // Adds a sphere as a solid of revolution.
   void sphere(glm::vec3 centre, float radius, uint32_t rings, uint32_t sides);
-  // A wall in the XY plane, from `low` to `high` in x and y and `depth` thick about z = 0, that a
-  // half-round arch opens from its foot: the arch of that radius springs at low.y, in the middle.
+  // Adds a wall about the XY plane, from `low` to `high` in x and y and from -depth / 2 to depth /
+  // 2 in z. It has a semicircular opening of `radius` whose centre is in the middle of its lower
+  // edge.
   void arch(glm::vec2 low, glm::vec2 high, float radius, float depth, uint32_t segments);
-  // A bar of square section between two points.
+  // Adds a bar with a square cross-section between two points.
   void bar(glm::vec3 from, glm::vec3 to, float width);
 
-  // The scene; the builder is empty afterwards.
+  // Returns the scene. The builder is empty afterwards.
   Scene finish(const std::string& name);
 
  private:

@@ -40,7 +40,7 @@ glm::dvec3 in_plane(const glm::dvec3& v, const glm::dvec3& normal) {
   return direction_of(v - normal * glm::dot(normal, v));
 }
 
-// What corners must have in common to be one vertex of MikkTSpace.
+// The values that corners must share to be one vertex of MikkTSpace.
 struct CornerValues {
   glm::vec3 position;
   glm::vec3 normal;

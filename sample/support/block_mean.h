@@ -48,7 +48,7 @@ class BlockMean {
   uint32_t width_;
   uint32_t factor_;
   uint32_t rows_left_;
-  uint32_t rows_ = 0;  // of the block that is being added up
+  uint32_t rows_ = 0;  // rows of the current block so far
   std::vector<Sum> sums_;
 };
 

@@ -10,9 +10,9 @@
 namespace alcove::sample {
 
 // Decoding of PNG (by libpng) and JPEG (by libjpeg-turbo), the two image formats of glTF. Both
-// libraries are maintained for, and fuzzed with, hostile input. The bytes may be anything: a format
-// is told by its signature, and time and memory are bounded by what the header promises before
-// anything is decoded. Errors are the end of a sentence that begins with the image's name.
+// libraries are maintained for, and fuzzed with, hostile input. The bytes may be hostile. The
+// signature determines the format, and the header is checked against limits on time and memory
+// before anything is decoded. Errors are the end of a sentence that begins with the image's name.
 // Thread-safe.
 
 enum class ImageFormat : uint8_t { kPng, kJpeg };
@@ -34,14 +34,15 @@ struct DecodedImage {
 // The largest side, in pixels, that a caller should decode: the largest texture of most devices.
 constexpr uint32_t kLargestImageSide = 16384;
 
-// Reads the size from the header without decoding. An error: another format, a damaged header, or
-// fewer bytes than that many pixels can be compressed to.
+// Reads the size from the header without decoding. Another format, a damaged header, or fewer bytes
+// than so many pixels can be compressed to are an error.
 [[nodiscard]] tl::expected<ImageHeader, std::string> read_image_header(
     std::span<const uint8_t> bytes);
 
-// Decodes the image whose header that is. Every block of `reduction` x `reduction` pixels (at least
-// 1) becomes its mean; the full image is then not kept in memory, except for an interlaced PNG. An
-// error: the data is damaged or cut short, or a progressive JPEG needs over 512 MiB.
+// Decodes an image. `header` is the result of read_image_header() for the same bytes. Every block
+// of `reduction` x `reduction` pixels (at least 1) becomes its mean; the full image is then not
+// kept in memory, except for an interlaced PNG. Data that is damaged or cut short, and a
+// progressive JPEG that needs over 512 MiB, are errors.
 [[nodiscard]] tl::expected<DecodedImage, std::string> decode_image(std::span<const uint8_t> bytes,
                                                                    const ImageHeader& header,
                                                                    uint32_t reduction = 1);

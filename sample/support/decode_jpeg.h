@@ -4,7 +4,7 @@
 
 namespace alcove::sample {
 
-// The JPEG half of decode_image.h.
+// The functions of decode_image.h for JPEG.
 [[nodiscard]] bool is_jpeg(std::span<const uint8_t> bytes);
 [[nodiscard]] tl::expected<ImageHeader, std::string> read_jpeg_header(
     std::span<const uint8_t> bytes);

@@ -4,7 +4,7 @@
 
 namespace alcove::sample {
 
-// The PNG half of decode_image.h.
+// The functions of decode_image.h for PNG.
 [[nodiscard]] bool is_png(std::span<const uint8_t> bytes);
 [[nodiscard]] tl::expected<ImageHeader, std::string> read_png_header(
     std::span<const uint8_t> bytes);

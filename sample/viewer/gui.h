@@ -11,22 +11,23 @@
 
 namespace alcove::sample {
 
-// Dear ImGui on a window: its input, and a pass that draws it. One at a time.
+// Dear ImGui for a window: it takes the input of the window and adds a pass that draws the widgets.
+// Only one object may exist at a time.
 class Gui {
  public:
-  // `format` is the window's. Both references must outlive it.
+  // `format` is the format of the window's images. Both references must outlive the object.
   [[nodiscard]] static tl::expected<std::unique_ptr<Gui>, std::string> create(Gpu& gpu,
                                                                               Window& window,
                                                                               VkFormat format);
-  // The device must have finished with it.
+  // The device must have finished all frames that draw the widgets.
   ~Gui();
   Gui(const Gui&) = delete;
   Gui& operator=(const Gui&) = delete;
 
-  // What is called of ImGui between these two is drawn by the next frames that add() is called for.
+  // ImGui functions are called between begin() and end(). The next calls of add() draw the result.
   void begin();
   void end();
-  // Adds the pass that draws it over `target`, and returns the drawn version.
+  // Adds a pass that draws the widgets over `target`. Returns the version of the texture after it.
   [[nodiscard]] framegraph::Texture add(framegraph::Graph& graph, framegraph::Texture target);
 
  private:
@@ -39,7 +40,7 @@ class Gui {
   VkRenderPass render_pass_ = VK_NULL_HANDLE;
   VkDescriptorPool pool_ = VK_NULL_HANDLE;
   std::vector<VkFramebuffer> framebuffers_;  // by frame slot
-  bool on_window_ = false;                   // ImGui's two parts are there
+  bool on_window_ = false;                   // ImGui's backends for GLFW and Vulkan are initialised
   bool on_device_ = false;
 };
 

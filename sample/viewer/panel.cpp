@@ -17,14 +17,15 @@ namespace {
 const ImVec4 kRefused{1.0f, 0.45f, 0.35f, 1.0f};
 constexpr const char* kKeys =
     "left drag     orbit\n"
-    "right drag    pan (middle too)\n"
-    "wheel         nearer, farther\n"
-    "1 to 9        what is shown\n"
-    "Home          back to the first view\n"
+    "right drag    pan (also middle drag)\n"
+    "wheel         move closer or away\n"
+    "1 to 9        choose the picture\n"
+    "Home          return to the first view\n"
     "R             reset the settings\n"
     "P             screenshot and command\n"
-    "H             hide all but the picture\n"
-    "Escape        close";
+    "H             show or hide the panel\n"
+    "Escape        close\n"
+    "drop a file   open a .gltf or .glb";
 
 template <typename Choice, std::size_t size>
 void combo(const char* label, Choice& value, const std::array<std::string_view, size>& names) {
@@ -40,13 +41,13 @@ void combo(const char* label, Choice& value, const std::array<std::string_view, 
 }
 
 void lay_out_picture(ViewState& state, const PanelFacts& facts) {
-  combo("show", state.picture, kPictureNames);
-  combo("beside", state.comparison, kComparisonNames);
+  combo("picture", state.picture, kPictureNames);
+  combo("compare with", state.comparison, kComparisonNames);
   if (state.comparison != Comparison::kNone) {
-    ImGui::SliderFloat("split", &state.split, 0.0f, 1.0f, "%.2f");
+    ImGui::SliderFloat("split position", &state.split, 0.0f, 1.0f, "%.2f");
   }
   ImGui::BeginDisabled(!facts.refusal.empty());
-  if (ImGui::Button("keep these settings to compare with")) {
+  if (ImGui::Button("keep settings for comparison")) {
     state.kept = state.settings;
     state.comparison = Comparison::kKept;
   }
@@ -68,7 +69,7 @@ void lay_out_qualities(ViewState& state, const PanelFacts& facts) {
 
 void lay_out_roughness(ViewState& state) {
   bool of_materials = !state.roughness;
-  if (ImGui::Checkbox("roughness of the materials", &of_materials)) {
+  if (ImGui::Checkbox("roughness of materials", &of_materials)) {
     constexpr float kMiddle = 0.5f;
     state.roughness = of_materials ? std::nullopt : std::optional(kMiddle);
   }
@@ -81,7 +82,8 @@ bool section(const char* name) {
   return ImGui::CollapsingHeader(name, ImGuiTreeNodeFlags_DefaultOpen);
 }
 
-// At the left edge, as high as the window.
+// Lays out the choices at the left edge, as high as the window. Returns true if the user asks for a
+// screenshot.
 bool lay_out_choices(ViewState& state, const PanelFacts& facts) {
   const float unit = ImGui::GetFontSize();
   ImGui::SetNextWindowPos({0.0f, 0.0f});
@@ -92,8 +94,11 @@ bool lay_out_choices(ViewState& state, const PanelFacts& facts) {
     ImGui::PushItemWidth(-11.0f * unit);
     if (!facts.refusal.empty()) {
       ImGui::PushStyleColor(ImGuiCol_Text, kRefused);
-      ImGui::TextWrapped("%s What is drawn are the settings before.", facts.refusal.c_str());
+      ImGui::TextWrapped("%s The picture shows the previous settings.", facts.refusal.c_str());
       ImGui::PopStyleColor();
+    }
+    if (!facts.message.empty()) {
+      ImGui::TextWrapped("%s", facts.message.c_str());
     }
     if (section("picture")) {
       lay_out_picture(state, facts);
@@ -103,9 +108,8 @@ bool lay_out_choices(ViewState& state, const PanelFacts& facts) {
       lay_out_settings(state.settings, facts.first_settings.radius);
       lay_out_roughness(state);
     }
-    if (section("take with you")) {
+    if (section("screenshot")) {
       screenshot = ImGui::Button("screenshot and command (P)");
-      ImGui::TextWrapped("%s", facts.message.c_str());
     }
     if (section("mouse and keys")) {
       ImGui::TextUnformatted(kKeys);
@@ -130,24 +134,24 @@ void lay_out_times(const SmoothedTimes& times) {
                          {6.0f * unit, ImGui::GetTextLineHeight()}, "");
     }
     ImGui::TableNextColumn();
-    ImGui::TextUnformatted("together");
+    ImGui::TextUnformatted("total");
     ImGui::TableNextColumn();
     ImGui::Text("%8.3f ms", times.total_ms());
     ImGui::EndTable();
   }
 }
 
-// In the upper right corner.
+// Lays out times and memory in the upper right corner.
 void lay_out_cost(const PanelFacts& facts) {
   ImGui::SetNextWindowPos({ImGui::GetIO().DisplaySize.x, 0.0f}, ImGuiCond_Always, {1.0f, 0.0f});
   if (ImGui::Begin("cost", nullptr, ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize)) {
     ImGui::TextUnformatted(facts.device.c_str());
-    ImGui::Text("%ux%u, %.1f frames a second", facts.width, facts.height,
+    ImGui::Text("%ux%u, %.1f frames per second", facts.width, facts.height,
                 static_cast<double>(ImGui::GetIO().Framerate));
     lay_out_times(facts.times);
-    ImGui::Text("transients %.1f MiB (unshared %.1f)", mib(facts.memory.aliased),
+    ImGui::Text("transient memory %.1f MiB (%.1f without aliasing)", mib(facts.memory.aliased),
                 mib(facts.memory.unaliased));
-    ImGui::Text("histories  %.1f MiB", mib(facts.memory.history));
+    ImGui::Text("history          %.1f MiB", mib(facts.memory.history));
   }
   ImGui::End();
 }

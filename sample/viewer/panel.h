@@ -8,7 +8,7 @@
 
 namespace alcove::sample {
 
-// Everything that the panel shows.
+// The information that the panel shows besides the ViewState.
 struct PanelFacts {
   std::string device;
   std::uint32_t width = 0;
@@ -16,8 +16,8 @@ struct PanelFacts {
   SmoothedTimes times;
   framegraph::MemoryStatistics memory;
   std::string refusal;  // why the chosen settings are not drawn; empty if they are
-  std::string message;  // of the last action: a screenshot, or a dropped file
-  passes::OcclusionSettings first_settings;  // restored by a reset
+  std::string message;  // the result of the last screenshot or dropped file
+  passes::OcclusionSettings first_settings;  // settings that a reset restores
 };
 
 // Lays the panel out between Gui::begin() and Gui::end() and changes `state` as its widgets are

@@ -12,29 +12,30 @@
 
 namespace alcove::sample {
 
-// The textures that are shown. All are as large as the window.
+// The textures that the window shows. All have the size of the window.
 struct Shown {
   std::uint32_t show = maths::kShowGrey;
   framegraph::Texture texture;
-  framegraph::Texture other;         // shown right of `split`; null: nothing is
-  float split = 0.0f;                // in pixels from the left
-  framegraph::Texture linear_depth;  // of radiance; where it has the sky, the environment is shown
-  framegraph::Texture environment;   // of radiance: a probe's map
-  glm::mat3 world_from_shown{1.0f};  // of directions and radiance, as PictureParameters has them
-  float scale = 1.0f;                // the same
+  framegraph::Texture other;  // shown right of `split`; null without a comparison
+  float split = 0.0f;         // in pixels from the left
+  framegraph::Texture
+      linear_depth;  // for radiance: the environment is shown at pixels without a surface
+  framegraph::Texture environment;   // for radiance: the map of a probe
+  glm::mat3 world_from_shown{1.0f};  // for directions and radiance, see PictureParameters
+  float scale = 1.0f;                // see PictureParameters
 };
 
-// The pass that draws a picture on the whole of a window's image.
+// A pass that draws a picture over the whole image of a window.
 class PicturePass {
  public:
-  // `format` is the window's; the Gpu must outlive the pass.
+  // `format` is the format of the window's images. The Gpu must outlive the pass.
   [[nodiscard]] static tl::expected<std::unique_ptr<PicturePass>, std::string> create(
       Gpu& gpu, VkFormat format);
   ~PicturePass();
   PicturePass(const PicturePass&) = delete;
   PicturePass& operator=(const PicturePass&) = delete;
 
-  // Returns the drawn version of `target`. Once a frame.
+  // Returns the version of `target` after the pass. To be called once per frame.
   [[nodiscard]] framegraph::Texture add(framegraph::Graph& graph, framegraph::Texture target,
                                         const Shown& shown);
 

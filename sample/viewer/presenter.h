@@ -12,30 +12,31 @@
 
 namespace alcove::sample {
 
-// Draws frames into a window, as many in flight as the Gpu has.
+// Draws frames into a window. As many frames are in flight as the Gpu has slots.
 class Presenter {
  public:
-  // Both must outlive the presenter.
+  // Gpu and window must outlive the presenter.
   [[nodiscard]] static tl::expected<std::unique_ptr<Presenter>, std::string> create(
       Gpu& gpu, const Window& window);
   ~Presenter();
   Presenter(const Presenter&) = delete;
   Presenter& operator=(const Presenter&) = delete;
 
-  // Follows the size of the window. False: there is nothing to draw on, the window is minimised.
+  // Adapts the swapchain to the size of the window. Returns false if the window is minimised: then
+  // no frame can be drawn.
   [[nodiscard]] tl::expected<bool, std::string> prepare();
   VkExtent2D size() const { return swapchain_->size(); }
   VkFormat format() const { return swapchain_->format(); }
 
-  // After prepare(): declares a frame that draws `target`, all of it, submits and presents it.
-  // After an error of `declare` or of the graph another frame can be tried.
+  // Declares a frame that draws all of `target`, submits and presents it. To be called after
+  // prepare(). After an error of `declare` or of the graph, another frame may be drawn.
   using Declare = std::function<tl::expected<void, std::string>(framegraph::Graph&,
                                                                 framegraph::Texture target)>;
   [[nodiscard]] tl::expected<framegraph::FrameReport, std::string> draw(const Declare& declare);
-  // Of the frame that the device finished last.
+  // The times of the frame that the device finished last.
   const std::vector<PassTime>& timings() const { return timings_; }
 
-  // Waits until all is drawn.
+  // Waits until the device has finished all frames.
   void wait() const;
 
  private:
@@ -46,7 +47,7 @@ class Presenter {
   Presenter(Gpu& gpu, const Window& window) : gpu_(gpu), window_(window) {}
   tl::expected<void, std::string> create_slots();
   tl::expected<void, std::string> create_swapchain();
-  // Waits for the frame that had the next one's slot and takes its timings.
+  // Waits for the frame that last used the slot of the next frame, and reads its timings.
   VkResult wait_for_slot();
   VkResult submit(const Slot& slot) const;
 
@@ -55,11 +56,11 @@ class Presenter {
   VkSurfaceKHR surface_ = VK_NULL_HANDLE;
   VkCommandPool pool_ = VK_NULL_HANDLE;
   std::unique_ptr<Swapchain> swapchain_;
-  VkExtent2D window_size_{};  // that it was made for
+  VkExtent2D window_size_{};  // the size that the swapchain was made for
   std::vector<Slot> slots_;
-  std::uint32_t slot_ = 0;  // of the next frame
+  std::uint32_t slot_ = 0;  // slot of the next frame
   bool acquired_ = false;   // the swapchain has an image for it
-  bool outdated_ = false;   // the window is no longer what the swapchain was made for
+  bool outdated_ = false;   // the swapchain no longer suits the window
   std::vector<PassTime> timings_;
 };
 

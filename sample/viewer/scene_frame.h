@@ -16,32 +16,34 @@
 
 namespace alcove::sample {
 
-// Declares the frames of the window: g-buffer, occlusion and what is made of it, each only as far
-// as the picture that is shown needs it. One graph, nothing outside of it but the scene's triangles
-// and textures and the light.
+// Declares the frames of the window: g-buffer, occlusion and the picture. Passes that the picture
+// does not need are culled. Each frame is one graph; the scene's triangles and textures and the
+// probe are the only resources outside of it.
 class SceneFrame {
  public:
-  // `format` is the window's. Both references must outlive it.
+  // `format` is the format of the window's images. Both references must outlive the object.
   [[nodiscard]] static tl::expected<std::unique_ptr<SceneFrame>, std::string> create(
       Gpu& gpu, const Scene& scene, const EnvironmentImage& environment, NormalSource normals,
       VkFormat format);
 
-  // Adds the passes that draw `target` and returns its drawn version.
+  // Adds the passes that draw `target`. Returns the version of the texture after them.
   [[nodiscard]] tl::expected<framegraph::Texture, std::string> declare(framegraph::Graph& graph,
                                                                        framegraph::Texture target,
                                                                        const ViewState& state);
-  // To be called when the declared frame was handed to the device: the next one goes on from it.
+  // To be called after the declared frame was submitted. The next frame takes it as the previous
+  // one.
   void advance();
 
  private:
-  // What decides the kind and size of histories: where it differs, nothing stands still.
+  // The choices that determine format and size of the histories. A frame that differs from the last
+  // one in these does not count as static.
   struct Kept {
     passes::OcclusionSettings settings;
     std::uint32_t width = 0;
     std::uint32_t height = 0;
     bool operator==(const Kept&) const = default;
   };
-  // What the frame before was drawn with: where it differs, histories begin anew.
+  // The choices that the previous frame was drawn with. Histories restart if they change.
   struct Drawn {
     passes::OcclusionSettings settings;
     std::optional<passes::OcclusionSettings> compared;
@@ -65,17 +67,17 @@ class SceneFrame {
   NormalSource normals_;
   std::unique_ptr<GbufferRenderer> gbuffer_;
   std::unique_ptr<Probe> probe_;
-  passes::Environment light_;  // the probe in the frame that is declared, once a picture reads it
+  passes::Environment light_;  // the probe in the declared frame; null until a picture reads it
   std::unique_ptr<PicturePass> picture_;
   float exposure_ = 1.0f;
   std::uint32_t index_ = 0;
-  std::uint32_t static_frames_ = 0;  // as passes::Frame has them
-  GbufferView view_;                 // of the frame that is declared
-  glm::mat3 ray_from_ndc_{1.0f};     // the same: from (ndc x, ndc y, 1)
+  std::uint32_t static_frames_ = 0;  // see passes::Frame
+  GbufferView view_;                 // of the declared frame
+  glm::mat3 ray_from_ndc_{1.0f};     // of the declared frame: the ray of (ndc x, ndc y, 1)
   Drawn drawing_;
   std::optional<GbufferView> drawn_view_;
   std::optional<Drawn> drawn_;
-  Kept kept_;  // of the frame before
+  Kept kept_;  // of the previous frame
 };
 
 }  // namespace alcove::sample

@@ -21,46 +21,48 @@
 
 namespace alcove::sample {
 
-// The first view of a window, and the functions of the program that it calls.
+// The initial view of a window, and functions of the program that the window calls.
 struct SceneViewRequest {
-  std::uint32_t width = 960;  // of the window, pixels
+  std::uint32_t width = 960;  // width of the window in pixels
   std::uint32_t height = 540;
   std::string title;
-  float orbit = 0.0f;  // radians that the camera orbits its target by, per frame
+  float orbit = 0.0f;  // angle in radians by which the camera orbits its target per frame
   NormalSource normals = NormalSource::kShading;
-  std::optional<float> roughness;     // perceptual, of every surface; none: of the materials
+  std::optional<float> roughness;  // perceptual roughness of every surface; null: of its material
   std::filesystem::path environment;  // .hdr or .exr; empty: the procedural sky
-  std::filesystem::path screenshots;  // folder for them; empty: the current one
+  std::filesystem::path screenshots;  // folder for screenshots; empty: the current folder
   // Loads the scene and opens a device with these instance extensions.
   std::function<tl::expected<Session, std::string>(const std::vector<const char*>&)> open_session;
-  // Loads another scene with a camera and settings of its own, and opens no device.
+  // Loads another scene with a camera and settings for it. Opens no device.
   std::function<tl::expected<Session, std::string>(const std::string& file)> load_session;
-  // The shell command that draws a shot without a window.
+  // Returns the shell command that renders a view without a window.
   std::function<std::string(const Shot&)> command;
 };
 
-// A scene in a window: what `alcove view` runs, frame by frame.
+// A scene in a window. `alcove view` draws one frame after the other.
 class SceneView {
  public:
-  // Opens the window before the scene is loaded: where there is no display, that is told first.
+  // Opens the window before it loads the scene, so that a missing display is reported at once.
   [[nodiscard]] static tl::expected<std::unique_ptr<SceneView>, std::string> create(
       SceneViewRequest request);
   ~SceneView();
   SceneView(const SceneView&) = delete;
   SceneView& operator=(const SceneView&) = delete;
 
-  // Takes in what the user did and draws a frame. False: the window is closed, nothing is drawn.
+  // Processes input and draws a frame. Returns false if the window is closed; then nothing is
+  // drawn.
   [[nodiscard]] tl::expected<bool, std::string> draw();
-  // Frames that were presented: none while the window is minimised.
+  // The number of presented frames. It does not grow while the window is minimised.
   std::uint32_t drawn_frames() const { return drawn_frames_; }
-  // Also writes the next frame to a file and prints the command that draws it without a window.
+  // Requests a screenshot: the next frame is also written to a file, and the command that renders
+  // it without a window is printed.
   void take_screenshot() { wanted_ = true; }
   const Image<glm::vec3>& last_screenshot() const { return screenshot_; }
   // Shows or hides the panel.
   void show_panel(bool shown) { panel_shown_ = shown; }
 
-  // Shows another scene from its own first view, with the settings that are chosen and the radius
-  // that suits it. If the file cannot be read, the scene stays and the panel says why.
+  // Replaces the scene by that of a file, in its own first view. The chosen settings stay, except
+  // the radius. If the file cannot be read, the scene stays and the panel shows the reason.
   void open(const std::string& file);
 
   ViewState& state() { return state_; }
@@ -70,7 +72,7 @@ class SceneView {
   const Scene& scene() const { return session_.scene; }
 
  private:
-  // The part of the state that the passes may refuse.
+  // The choices that the passes may refuse.
   struct Choice {
     passes::OcclusionSettings settings;
     std::optional<float> roughness;
@@ -79,29 +81,30 @@ class SceneView {
 
   explicit SceneView(SceneViewRequest request) : request_(std::move(request)) {}
   tl::expected<void, std::string> replace_scene(const std::string& file);
-  // The camera with a far plane behind the scene, wherever the user has moved it.
+  // The camera with its far plane moved behind all of the scene, because the user may have moved
+  // away.
   Camera camera_around_scene() const;
   void take_keys();
   void lay_out();
-  // Where `read_back` is not null, the window's image goes there.
+  // Copies the window's image to `read_back` unless it is null.
   tl::expected<void, std::string> draw_choice(const Choice& choice, const HostBuffer* read_back);
-  // Falls back on the last choice that could be drawn.
+  // Draws the chosen settings, or if the passes refuse them the last ones that could be drawn.
   tl::expected<void, std::string> draw_chosen(const HostBuffer* read_back);
   tl::expected<void, std::string> draw_and_read();
   tl::expected<void, std::string> write();
 
   SceneViewRequest request_;
-  std::unique_ptr<Window> window_;  // outlives what is on it
+  std::unique_ptr<Window> window_;  // outlives the members below
   Session session_;
   std::unique_ptr<Presenter> presenter_;
   std::unique_ptr<SceneFrame> frame_;
   std::unique_ptr<Gui> gui_;
   ViewState state_;
-  Choice good_;                    // the last that could be drawn
-  std::optional<Choice> refused_;  // the one that is chosen and cannot
+  Choice good_;                    // the last choice that could be drawn
+  std::optional<Choice> refused_;  // the choice that the passes refuse; null if they accept it
   PanelFacts facts_;
   bool panel_shown_ = true;
-  bool wanted_ = false;  // a screenshot
+  bool wanted_ = false;  // whether the next frame is a screenshot
   Image<glm::vec3> screenshot_;
   std::uint32_t drawn_frames_ = 0;
 };

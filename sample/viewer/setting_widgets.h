@@ -4,9 +4,10 @@
 
 namespace alcove::sample {
 
-// A widget for each setting, by the name that --set has for it, with its range and what it does.
-// What has no effect beside the others is dimmed. Numbers that are typed (control and click) are
-// not held to the range: the passes refuse what they cannot do. `radius` is the scene's usual one.
+// Lays out a widget for each setting, with its name in --set, its range and its help as a tooltip.
+// Settings without an effect under the present others are dimmed. Numbers that the user types
+// (control and click) may lie outside of the range; the passes refuse invalid ones. `radius` is the
+// default radius of the scene and scales the range of the radius.
 void lay_out_settings(passes::OcclusionSettings& settings, float radius);
 
 }  // namespace alcove::sample

@@ -6,8 +6,8 @@
 
 namespace alcove::sample {
 
-// The times of a frame's passes, calm enough to be read: each follows what is measured with a lag
-// of some twenty frames. Other passes than before begin anew.
+// The times of a frame's passes as moving averages over about twenty frames, so that they can be
+// read. The averages restart if the passes change.
 class SmoothedTimes {
  public:
   void add(const std::vector<PassTime>& measured);

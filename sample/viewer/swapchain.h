@@ -11,16 +11,16 @@
 
 namespace alcove::sample {
 
-// The images of a window, of one size: another size, another swapchain. Eight bits a channel that
-// are shown as they are written: who draws encodes sRGB.
+// The images of a window of one size. A window that changes its size needs another swapchain. The
+// images have 8 bits per channel and no conversion: shaders write sRGB-encoded values.
 class Swapchain {
  public:
-  // `old` is taken over and may be null. Errors: a surface that the device cannot present to, or
-  // that has no format of that kind.
+  // `old` is retired by the new swapchain and may be null. Errors: the device cannot present to the
+  // surface, or the surface has no 8-bit format without conversion.
   [[nodiscard]] static tl::expected<std::unique_ptr<Swapchain>, std::string> create(
       const VulkanDevice& device, VkSurfaceKHR surface, VkExtent2D size,
       std::uint32_t frames_in_flight, std::unique_ptr<Swapchain> old);
-  // The device must have finished with it.
+  // The device must have finished all frames that use the images.
   ~Swapchain();
   Swapchain(const Swapchain&) = delete;
   Swapchain& operator=(const Swapchain&) = delete;
@@ -28,16 +28,18 @@ class Swapchain {
   VkExtent2D size() const { return size_; }
   VkFormat format() const { return format_; }
 
-  // Makes the next image the current one. The device may draw on it once arrived(slot) is
-  // signalled, whose last use it must have finished. VK_ERROR_OUT_OF_DATE_KHR: the window has
-  // changed.
+  // Acquires the next image, which becomes the current one. The device may draw to it after
+  // arrived(slot) is signalled; the previous frame of this slot must be finished. Returns
+  // VK_ERROR_OUT_OF_DATE_KHR if the window has changed.
   [[nodiscard]] VkResult acquire(std::uint32_t slot);
-  // The current image as a graph imports it: without contents, to be left ready to present.
+  // The current image for import into a graph. Its contents are undefined; its final state is ready
+  // for presentation.
   framegraph::ImportedTexture import() const;
   VkSemaphore arrived(std::uint32_t slot) const { return arrived_[slot]; }
-  // What the device must signal once it has drawn the current image.
+  // The semaphore that the device must signal after it has drawn the current image.
   VkSemaphore drawn() const { return drawn_[current_]; }
-  // VK_SUBOPTIMAL_KHR and VK_ERROR_OUT_OF_DATE_KHR: the window has changed.
+  // Presents the current image. Returns VK_SUBOPTIMAL_KHR or VK_ERROR_OUT_OF_DATE_KHR if the window
+  // has changed.
   [[nodiscard]] VkResult present() const;
 
  private:
@@ -52,7 +54,8 @@ class Swapchain {
   std::vector<VkImage> images_;
   std::vector<VkImageView> views_;
   std::vector<VkSemaphore> arrived_;  // by frame slot
-  std::vector<VkSemaphore> drawn_;    // by image: presentation is the only one to know when it ends
+  std::vector<VkSemaphore>
+      drawn_;  // by image, because only presentation tells when the semaphore is free again
   std::uint32_t current_ = 0;
 };
 

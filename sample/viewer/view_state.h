@@ -10,7 +10,7 @@
 
 namespace alcove::sample {
 
-// The image of a frame that the window shows.
+// The images of a frame that the window can show.
 enum class Picture : std::uint8_t {
   kVisibility,
   kLit,
@@ -26,23 +26,23 @@ inline constexpr std::array<std::string_view, 9> kPictureNames{
     "visibility", "lit",   "multi-bounce", "bent normal", "specular occlusion",
     "normals",    "depth", "albedo",       "motion"};
 
-// The settings that the right part of the window is drawn with.
+// The settings of the right part of the window, for comparison.
 enum class Comparison : std::uint8_t { kNone, kHorizons, kReference, kKept };
 inline constexpr std::array<std::string_view, 4> kComparisonNames{
-    "nothing", "infinite thickness", "reference quality", "settings kept"};
+    "nothing", "estimator horizons", "preset reference", "kept settings"};
 
 // Everything that the user can choose in the window.
 struct ViewState {
   Camera camera;
   passes::OcclusionSettings settings;
-  std::optional<float> roughness;  // of every surface; none: of their materials
+  std::optional<float> roughness;  // of every surface; null: the roughness of its material
   Picture picture = Picture::kVisibility;
   Comparison comparison = Comparison::kNone;
-  passes::OcclusionSettings kept;  // of Comparison::kKept
-  float split = 0.5f;              // where the right begins, in parts of the width
+  passes::OcclusionSettings kept;  // the settings of Comparison::kKept
+  float split = 0.5f;              // position of the right part's left edge, 0..1 of the width
 };
 
-// The settings of the right part; none if nothing is compared.
+// The settings of the right part; null without a comparison.
 [[nodiscard]] inline std::optional<passes::OcclusionSettings> compared_settings(
     const ViewState& state) {
   passes::OcclusionSettings settings = state.settings;

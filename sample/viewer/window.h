@@ -12,33 +12,32 @@ struct GLFWwindow;
 
 namespace alcove::sample {
 
-// A window on the machine's display, hidden until show(). One at a time, on the main thread.
+// A window on the display, hidden until show(). Only one may exist at a time, on the main thread.
 class Window {
  public:
-  // The error says why no window can be opened here.
+  // The error says why no window can be opened.
   [[nodiscard]] static tl::expected<std::unique_ptr<Window>, std::string> create(
       VkExtent2D size, const std::string& title);
   ~Window();
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
 
-  // What a Vulkan instance needs to present to it.
+  // The extensions that a Vulkan instance needs to present to a window.
   [[nodiscard]] static std::vector<const char*> instance_extensions();
   [[nodiscard]] tl::expected<VkSurfaceKHR, std::string> create_surface(VkInstance instance) const;
 
   void show();
-  // Takes in what happened since the last call; waits for something to happen where there is
-  // nothing to draw.
+  // Processes the events since the last call. Waits for an event if the window is minimised.
   void poll();
   bool is_closed() const;
   void close();
-  // In pixels; nothing where it is minimised.
+  // The size in pixels; 0x0 if the window is minimised.
   VkExtent2D size() const;
   void resize(VkExtent2D size);
   float content_scale() const;
-  // GLFW's numbers of the keys that were pressed before the last poll(), in order.
+  // The GLFW codes of the keys that were pressed before the last poll(), in order.
   const std::vector<int>& pressed_keys() const { return pressed_keys_; }
-  // The files that were dropped on the window since the last call, in order.
+  // The paths of the files that were dropped on the window since the last call, in order.
   std::vector<std::string> take_dropped_files() { return std::exchange(dropped_files_, {}); }
   void set_title(const std::string& title);
   void copy_to_clipboard(const std::string& text);
