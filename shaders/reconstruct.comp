@@ -153,7 +153,9 @@ const int kSpan = 8 * kTexelSize / kTileSize + 2 * kFilterRadius;
 const int kShift = kTileSize == 8 ? 3 : kTileSize == 4 ? 2 : kTileSize == 2 ? 1 : 0;
 
 // The unpacked raw occlusion of the tiles around the group.
-shared vec4 traced[kSpan * kSpan];  // inverse depth, occluded, open, stereographic x
+// x: inverse depth. y: the occluded part, z: RawOcclusion::open, neither of them normalised. w: x
+// of the normal's stereographic projection.
+shared vec4 traced[kSpan * kSpan];
 shared float traced_stereographic_y[kByNormal ? kSpan * kSpan : 1];
 // The arrays of results that are not computed have one element, which nothing reads.
 const int kBentSpan = kBentNormal ? kSpan * kSpan : 1;

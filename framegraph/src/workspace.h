@@ -34,8 +34,8 @@ struct UseState {
   // Queues of the previous frame that have to be waited for before memory is taken over from them:
   // three bits for each queue class that takes it over.
   std::uint32_t frame_before = 0;
-  // Set if other resources had the memory before: waiting for the reads then does not order its
-  // writes.
+  // Set if other resources had the memory before. The reads and the writes that are recorded here
+  // may then be those of different resources, so that a barrier has to wait for both.
   std::uint8_t handed_over = 0;
   // Set if a semaphore wait over all stages orders the next use after work of another queue.
   std::uint8_t by_wait = 0;
@@ -55,8 +55,9 @@ struct PlaceItem {
 };
 
 struct Workspace {
-  // Subresources of all resources are numbered: those of resource r begin at first_sub[r], ordered
-  // by mip, then layer, then plane. A resource with an invalid description has none.
+  // Subresources of all resources are numbered: those of resource r begin at first_sub[r]. The mip
+  // varies fastest, then the layer, then the plane. A resource with an invalid description has
+  // none.
   std::vector<std::uint32_t> first_sub;
 
   // Written by order and by queues, read by all later phases: the live passes in order of

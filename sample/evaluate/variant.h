@@ -38,8 +38,9 @@ struct StaticSetup {
     Gpu& gpu, const Scene& scene, const StaticSetup& setup,
     const passes::OcclusionSettings& settings);
 
-// The cost of a variant relative to the base: medians over pairs of consecutive frames. A spread is
-// half the distance between the quartiles of the same ratios.
+// The cost of a variant. A frame of the base and a frame of the variant are drawn in turn and make
+// a pair. The times are medians of the pairs' ratios, variant to base. A spread is half of the
+// interquartile range of these ratios. `bytes` is absolute.
 struct VariantCost {
   double gpu = 1;           // ratio of the GPU times of the occlusion
   double processor = 1;     // ratio of the processor times of all threads

@@ -109,7 +109,7 @@ ALCOVE_INLINE SliceNoise hilbert_pattern(uvec2 pixel, uint frame) {
   return r2_sequence(hilbert_index(pixel) + 288u * (frame & 63u));
 }
 
-// The nearest distance in pixels at which a step can find another texel in every direction.
+// The distance in pixels of the nearest sample. It reaches another texel in every direction.
 const float kNearestStep = 1.3f;
 
 ALCOVE_MATHS_END

@@ -171,7 +171,7 @@ TEST(Steady, InventedHandleIsRefused) {
   }
 }
 
-TEST(Steady, NamesOfAnyLengthAreKept) {
+TEST(Steady, PassAndResourceNamesOfAnyLengthAreStored) {
   Graph graph;
   for (std::size_t size = 0; size < 80; ++size) {
     graph.reset();

@@ -120,8 +120,9 @@ TEST_F(BackFaces, SolidThickerThanTheRadiusEqualsHorizons) {
   }
 }
 
-// The back-face depths of this test: the sky, NaN, a face that is seen from behind, and a face in
-// front of the first layer.
+// Back-face depths that give no thickness: the far plane (sky), the near plane (in front of the
+// first layer), NaN, and the depth of the first layer itself, as if the visible surface were a back
+// face.
 TEST_F(BackFaces, ThicknessOfTheSettingsIsUsedWithoutABackFaceBehindTheFront) {
   Scene scene = box({0.31, -50.0, -20.0}, {0.6, 50.0, -3.5});
   scene.push_back(plane({0.0, 0.0, -4.0}, {0.3, 0.1, 1.0}));

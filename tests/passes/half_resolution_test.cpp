@@ -15,7 +15,7 @@ namespace alcove::passes {
 namespace {
 
 // Rounding of the stored sums, of a software device's reciprocals and of 16-bit texels.
-constexpr float kRounding = 1e-3f;
+constexpr float kRounding = 1.2e-3f;
 
 OcclusionSettings half_resolution(std::uint32_t history_frames) {
   OcclusionSettings settings = precise(2, history_frames);

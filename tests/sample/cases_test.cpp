@@ -167,7 +167,7 @@ TEST_F(Cases, RoomOfInwardFacesIsOpenFromOutsideUnlessItIsDoubleSided) {
   EXPECT_GT(least(false, true), 0.95);
 }
 
-TEST_F(Cases, SpecularGlossinessCutsOutAndColours) {
+TEST_F(Cases, SpecularGlossinessDiffuseTextureGivesColourAndCutOut) {
   // A card whose texture is red and opaque on the left, and transparent on the right.
   PngRecipe recipe{2, 1, PNG_COLOR_TYPE_RGB_ALPHA, 8, false};
   recipe.samples = {255, 0, 0, 255, 0, 255, 0, 0};

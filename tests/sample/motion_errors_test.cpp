@@ -191,7 +191,8 @@ TEST(MotionErrors, NoiseOfTheTruthDoesNotCountAsChange) {
   };
   const RunningMean none = change_lower_bound(truth_of(0.0f), truth_of(0.0f), reprojection);
   const RunningMean some = change_lower_bound(truth_of(0.03f), truth_of(0.0f), reprojection);
-  // A change in one half has a deviation of 0.028, so its sign is wrong in 14.44 % of the pixels.
+  // The change that one half of the rays measures has a standard deviation of sqrt(2) * 0.02 =
+  // 0.028, so its sign is wrong in 14.44 % of the pixels if the true change is 0.03.
   const double deviation = 0.03 / std::sqrt(static_cast<double>(none.count));
   EXPECT_NEAR(none.mean(), 0.0, 6.0 * deviation);
   EXPECT_NEAR(some.mean(), 0.03 * (1.0 - 2.0 * 0.1444), 6.0 * deviation);

@@ -144,7 +144,7 @@ TEST(CommandLine, FramesOptionIsThatOfTheShotOrElseTheHistoryLength) {
   EXPECT_EQ(parse(render_arguments(kDefaults, shot))->view.frames, 1u);
 }
 
-TEST(CommandLine, DeviceComesFromTheOptions) {
+TEST(CommandLine, DeviceIsThatOfTheOptions) {
   Options options;
   EXPECT_EQ(parse(render_arguments(options, some_shot()))->device, options.device);
   options.device = 3;

@@ -53,7 +53,8 @@ class Replay {
     bool operator==(const Former&) const = default;
   };
   struct Resource {
-    std::vector<Sub> subs;  // ordered by mip, then layer, then plane
+    // The subresource of a mip, layer and plane is at (plane * layers + layer) * mips + mip.
+    std::vector<Sub> subs;
     bool has_memory = false;
     std::vector<Former> former;
   };

@@ -93,8 +93,9 @@ typedef enum AlcovePrecision {
 
 struct AlcoveAdvancedSettings;  // alcove_advanced.h
 
-// Fill it with alcoveGetSettings, then change what is wanted. Brackets hold the default of every
-// quality but REFERENCE. Numbers that are out of range are refused in a sentence.
+// Fill it with alcoveGetSettings, then change individual fields. Values in square brackets are the
+// defaults of all qualities except REFERENCE. If a value is out of range, the call fails with
+// ALCOVE_ERROR_INVALID_INPUT, and alcoveGetMessage names the field and its range.
 typedef struct AlcoveSettings {
   uint32_t struct_size;  // sizeof(AlcoveSettings)
   // The largest distance of an occluder in scene units, above 0. A twentieth to a fifth of a room's

@@ -40,7 +40,7 @@ enum class ThicknessUnit : std::uint8_t {
   back_faces,
 };
 
-// Weight of a visible direction in visibility. Bent normals always have the cosine.
+// Weight of a visible direction in visibility. Bent normals are always weighted by the cosine.
 enum class Weighting : std::uint8_t {
   cosine,   // The cosine of its angle to the normal, as diffuse reflection needs it.
   uniform,  // 1: visibility is a fraction of the hemisphere's solid angle (the paper's appendix A).

@@ -90,7 +90,8 @@ void for_each_setting(Settings& settings, const Visit& visit) {
   visit(
       SettingInfo{
           .name = "history_frames",
-          .help = "Largest number of frames that the history averages. 0 turns the history off.",
+          .help = "Largest number of frames that the history averages while the image changes. "
+                  "After 16 frames without a change it is 127. 0 turns the history off.",
           .range = {.maximum = 127}},
       settings.history_frames);
   visit(SettingInfo{.name = "half_resolution",
@@ -103,7 +104,8 @@ void for_each_setting(Settings& settings, const Visit& visit) {
                             "or from visibility and the bent normal with a table or with cones."},
         settings.specular);
   visit(SettingInfo{.name = "precision",
-                    .help = "Format of the outputs: 8-bit integers, 16-bit or 32-bit floats."},
+                    .help = "Format of intermediate results, and of outputs for which the caller "
+                            "gives no texture: 8-bit UNORM, 16-bit or 32-bit floats."},
         settings.precision);
   visit(SettingInfo{.name = "power",
                     .help = "Exponent that is applied to visibility before it is written. Above 1 "
@@ -150,21 +152,22 @@ void for_each_setting(Settings& settings, const Visit& visit) {
   visit(
       SettingInfo{
           .name = "thickness_unit",
-          .help = "Unit of the setting thickness: the radius, or the occluder's distance from the "
-                  "eye. With back_faces, a depth buffer of back faces gives the thickness instead.",
+          .help = "Unit of the setting thickness: the radius, or the occluder's depth along the "
+                  "view axis. With back_faces, a depth buffer of back faces gives the thickness "
+                  "instead.",
           .group = advanced,
           .matters = has_thickness},
       settings.advanced.thickness_unit);
   visit(SettingInfo{.name = "blend",
-                    .help = "How far a sample that lies below the horizon lowers the horizon: 0 "
-                            "not at all, 1 down to the sample (heuristic only).",
+                    .help = "For heuristic: how far a sample that lies below the horizon lowers "
+                            "the horizon. 0: not at all. 1: down to the sample.",
                     .group = advanced,
                     .range = {.maximum = 1.0f},
                     .matters = [](S s) { return s.advanced.estimator == Estimator::heuristic; }},
         settings.advanced.blend);
   visit(SettingInfo{.name = "falloff",
-                    .help = "Occluders fade out over this last fraction of the radius. 0 turns "
-                            "fading off (horizons and heuristic only).",
+                    .help = "For horizons and heuristic: occluders fade out over this last "
+                            "fraction of the radius. 0 turns fading off.",
                     .group = advanced,
                     .range = {.maximum = 1.0f},
                     .matters = [](S s) { return !passes::has_thickness(s.advanced.estimator); }},
@@ -211,9 +214,9 @@ void for_each_setting(Settings& settings, const Visit& visit) {
                     .group = advanced},
         settings.advanced.extrapolation);
   visit(SettingInfo{.name = "unobserved",
-                    .help = "Excludes directions that the depth buffer does not show (behind a "
-                            "foreground, or beyond the image's border) in part from the average. "
-                            "If off, they count as open (connected only).",
+                    .help = "For connected: excludes a share of the directions that the depth "
+                            "buffer does not show (behind a foreground, or beyond the image's "
+                            "border) from the average. If off, all of them count as open.",
                     .group = advanced},
         settings.advanced.unobserved);
 }
