@@ -1,5 +1,5 @@
-// The inverse depth of pixels of a depth buffer as the projection wrote it. Included by shaders that
-// have the constants kPerspective and kReversed and parameters.inverse_depth_from_ndc.
+// The inverse depth of pixels of a depth buffer as the projection wrote it. Included by shaders
+// that have the constants kPerspective and kReversed and parameters.inverse_depth_from_ndc.
 #ifndef ALCOVE_LOAD_DEPTH_H
 #define ALCOVE_LOAD_DEPTH_H
 
