@@ -259,9 +259,13 @@ void GbufferRenderer::State::record(RecordContext& context, const Gbuffer& gbuff
   if (drawing.first) {
     bind_first_layer(context, drawing.first);
   }
+  std::optional<std::uint32_t> bound_material;
   for (const MeshDraw& draw : meshes->draws()) {
-    vk.vkCmdBindDescriptorSets(context.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 2, 1,
-                               &material_sets[draw.material], 0, nullptr);
+    if (bound_material != draw.material) {
+      vk.vkCmdBindDescriptorSets(context.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 2, 1,
+                                 &material_sets[draw.material], 0, nullptr);
+      bound_material = draw.material;
+    }
     const maths::GbufferDraw pushed{draw.moves ? 1u : 0u, draw.faceted ? 1u : 0u};
     vk.vkCmdPushConstants(context.commands, layout, VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof(pushed),
                           &pushed);
