@@ -56,13 +56,15 @@ void lay_out_picture(ViewState& state, const PanelFacts& facts) {
 
 void lay_out_qualities(ViewState& state, const PanelFacts& facts) {
   for (std::size_t i = 0; i < passes::kNames<passes::Quality>.size(); ++i) {
+    if (i > 0) {
+      ImGui::SameLine();
+    }
     const auto quality = static_cast<passes::Quality>(i);
     if (ImGui::Button(passes::name_of(quality).data())) {
       state.settings = passes::quality_settings(quality, state.settings.radius);
     }
-    ImGui::SameLine();
   }
-  if (ImGui::Button("reset")) {
+  if (ImGui::Button("reset settings (R)")) {
     state.settings = facts.first_settings;
   }
 }
