@@ -103,6 +103,9 @@ tl::expected<void, std::string> check_scene(const Options& options, const Sessio
     for (const Camera& camera : session.scene.cameras) {
       names.push_back(camera.name);
     }
+    if (names.empty()) {
+      names.emplace_back();  // the default view
+    }
   }
   struct Course {
     const char* name;
