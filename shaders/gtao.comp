@@ -123,7 +123,7 @@ Surface fetch_surface(ivec2 pixel, float inverse_depth) {
   vec3 given = decode_normal(texelFetch(normal_image, pixel, 0).xyz, kNormalEncoding);
   surface.normal = seen_normal(pixel, mat3(parameters.view_from_normal) * given, surface.view);
   vec3 own = has_direction(given) ? given : surface.normal * mat3(parameters.view_from_normal);
-  surface.lobe = LobeSurface(own, fetch_roughness(pixel));
+  surface.lobe = LobeSurface(kLobe ? normalize(own) : own, fetch_roughness(pixel));
   surface.tangent = make_tangent_plane(parameters.slope.xy, surface.normal, surface.view,
                                        surface.depth, kPerspective);
   surface.tangent.inverse_depth = inverse_depth;

@@ -208,6 +208,7 @@ vec3 fetch_normal(ivec2 pixel) {
 LobeSurface fetch_lobe_surface(ivec2 pixel, vec3 normal) {
   LobeSurface surface = LobeSurface(normal, parameters.roughness);
 #ifdef SPECULAR
+  surface.normal = normalize(normal);
   if (kRoughnessTexture) {
     surface.roughness = saturate(texelFetch(roughness_image, pixel, 0)[kRoughnessChannel]);
   }

@@ -12,7 +12,7 @@ ALCOVE_MATHS_BEGIN
 ALCOVE_INLINE vec3 decode_normal(vec3 texel, uint encoding) {
   bool packed = encoding == 1u || encoding == 3u;
   vec3 value = packed ? texel * 2.0f - vec3(1.0f) : texel;
-  return encoding >= 2u ? octahedral_decode(vec2(value.x, value.y)) : value;
+  return encoding >= 2u ? octahedral_unfold(vec2(value.x, value.y)) : value;
 }
 
 ALCOVE_MATHS_END

@@ -21,15 +21,18 @@ ALCOVE_INLINE vec2 octahedral_encode(vec3 direction) {
   return vec2((1.0f - abs(y)) * sign_not_zero(x), (1.0f - abs(x)) * sign_not_zero(y));
 }
 
+// Returns a vector in the direction of a point of the square [-1,1]^2. Its length is between
+// sqrt(1/3) and 1.
+ALCOVE_INLINE vec3 octahedral_unfold(vec2 encoded) {
+  float z = 1.0f - abs(encoded.x) - abs(encoded.y);
+  float fold = max(-z, 0.0f);  // in the square no larger than |x| and |y|
+  return vec3(encoded.x - clamp(encoded.x, -fold, fold), encoded.y - clamp(encoded.y, -fold, fold),
+              z);
+}
+
 // Returns the unit vector of a point of the square [-1,1]^2. Points outside of it also give a unit
 // vector.
-ALCOVE_INLINE vec3 octahedral_decode(vec2 encoded) {
-  float z = 1.0f - abs(encoded.x) - abs(encoded.y);
-  float fold = max(-z, 0.0f);
-  float x = encoded.x - sign_not_zero(encoded.x) * fold;
-  float y = encoded.y - sign_not_zero(encoded.y) * fold;
-  return normalize(vec3(x, y, z));
-}
+ALCOVE_INLINE vec3 octahedral_decode(vec2 encoded) { return normalize(octahedral_unfold(encoded)); }
 
 ALCOVE_MATHS_END
 
