@@ -272,8 +272,8 @@ TEST(NormalEncodings, DecodingStaysWithinItsInstructionsPerPixel) {
     double most;  // instructions per pixel, a little above the measured ones
   };
   constexpr Named kPacked[] = {{"unsigned xyz", NormalEncoding::unsigned_xyz, 6.0},
-                               {"octahedral", NormalEncoding::octahedral, 25.0},
-                               {"unsigned octahedral", NormalEncoding::unsigned_octahedral, 28.0}};
+                               {"octahedral", NormalEncoding::octahedral, 13.0},
+                               {"unsigned octahedral", NormalEncoding::unsigned_octahedral, 15.5}};
   for (const GpuPart& part : kGpuParts) {
     const auto device = create_null_device(part.family);
     if (!device) {
