@@ -88,11 +88,11 @@ void for_each_setting(Settings& settings, const Visit& visit) {
                     .matters = has_thickness},
         settings.depth_layers);
   visit(
-      SettingInfo{
-          .name = "history_frames",
-          .help = "Largest number of frames that the history averages while the image changes. "
-                  "After 16 frames without a change it is 127. 0 turns the history off.",
-          .range = {.maximum = 127}},
+      SettingInfo{.name = "history_frames",
+                  .help =
+                      "Largest number of frames that the history averages while the image changes. "
+                      "After 16 frames without a change it is 127. 0 turns the history off.",
+                  .range = {.maximum = 127}},
       settings.history_frames);
   visit(SettingInfo{.name = "half_resolution",
                     .help = "Filters and accumulates at half of the image's width and height, then "
