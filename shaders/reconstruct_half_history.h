@@ -1,5 +1,5 @@
-// The history of texels of 2x2 pixels, the part of reconstruct_history.h with HALF. It is what the
-// previous frame stored for upsampling (HalfTexel), in formats that texture units unpack.
+// The history of texels of 2x2 pixels, included by reconstruct_history.h if HALF is defined. It is
+// what the previous frame stored for upsampling (HalfTexel), in formats that texture units unpack.
 #ifndef ALCOVE_RECONSTRUCT_HALF_HISTORY_H
 #define ALCOVE_RECONSTRUCT_HALF_HISTORY_H
 

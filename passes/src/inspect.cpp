@@ -271,8 +271,8 @@ class Inspector {
     return static_cast<double>(away) / static_cast<double>(smooth_.size());
   }
 
-  // Floors and walls along the axes of the view have the same normals with any angle of view. The
-  // samples that are left tell it.
+  // Floors and walls along the axes of the view have the same normals with any angle of view.
+  // Returns the other samples.
   std::vector<SmoothSample> samples_that_tell_angle_of_view(const Reading& given) const {
     Reading wide = given, narrow = given;
     wide.tangent_scale = 1.5;

@@ -35,8 +35,8 @@ enum class Command {
 enum class GraphFormat { kText, kDot };
 inline constexpr std::array<std::string_view, 2> kGraphFormatNames{"text", "dot"};
 
-// The options of the view. Options that were not given are empty; the scene's camera supplies them.
-// Angles are in radians.
+// The options of the view. Optional members are empty if the option was not given: camera_of() then
+// takes the value from the scene's camera or derives it from the scene. Angles are in radians.
 struct ViewOptions {
   std::string camera;  // name of a scene's camera; empty: the default one
   // Positions in the space of the scene's file. Scene::origin is subtracted from them later.

@@ -7,7 +7,8 @@
 
 namespace alcove::sample {
 
-// The part of a scene that a viewer wants to see: all of it, without its surroundings.
+// The main content of a scene: the scene without its surroundings, such as sky domes, ground planes
+// and stray triangles far away.
 struct SceneCore {
   Bounds bounds_ws;
   uint64_t triangles_outside = 0;  // triangles of the scene that were left out of bounds_ws

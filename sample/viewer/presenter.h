@@ -22,8 +22,9 @@ class Presenter {
   Presenter(const Presenter&) = delete;
   Presenter& operator=(const Presenter&) = delete;
 
-  // Adapts the swapchain to the size of the window. Returns false if the window is minimised: then
-  // no frame can be drawn.
+  // Adapts the swapchain to the size of the window, waits for the frame's slot and acquires an
+  // image. Returns false if no frame can be drawn now: the window is minimised, or the next call
+  // has to create the swapchain anew.
   [[nodiscard]] tl::expected<bool, std::string> prepare();
   VkExtent2D size() const { return swapchain_->size(); }
   VkFormat format() const { return swapchain_->format(); }

@@ -35,7 +35,7 @@ class Window {
   VkExtent2D size() const;
   void resize(VkExtent2D size);
   float content_scale() const;
-  // The GLFW codes of the keys that were pressed before the last poll(), in order.
+  // The GLFW codes of the key presses that the most recent poll() processed, in order.
   const std::vector<int>& pressed_keys() const { return pressed_keys_; }
   // The paths of the files that were dropped on the window since the last call, in order.
   std::vector<std::string> take_dropped_files() { return std::exchange(dropped_files_, {}); }

@@ -84,7 +84,7 @@ void declare_one_of_few(Graph& graph, Dice& order) {
   if (order.roll(4) != 0) declare_random(graph, dice, options);
 }
 
-TEST(Steady, FramesWithEqualBytesAreTheSame) {
+TEST(Steady, SameDeclarationAgreesWithAComparisonOfBytes) {
   Graph graph;
   std::vector<GraphDescription> kept;
   Dice order(7);

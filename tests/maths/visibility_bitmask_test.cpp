@@ -211,7 +211,7 @@ TEST(VisibilityBitmask, FullHiddenOcclusionGivesTheHorizon) {
   }
 }
 
-TEST(VisibilityBitmask, HiddenOcclusionGrowsWithTheRunWidthAndItsMeanIsTheSetting) {
+TEST(VisibilityBitmask, HiddenOcclusionGrowsWithTheWidthOfOccludersAndItsMeanIsTheSetting) {
   for (const float hidden_occlusion : {0.1f, 0.35f, 0.5f, 0.9f}) {
     const float exponent = maths::hidden_exponent(hidden_occlusion);
     constexpr int kSteps = 4000;

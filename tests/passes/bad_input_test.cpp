@@ -258,7 +258,7 @@ TEST_F(BadInput, FrameSlotOutOfRangeIsReported) {
   expect_a_good_frame();
 }
 
-TEST_F(BadInput, TooManyFramesInFlightAreReported) {
+TEST_F(BadInput, FramesInFlightOutOfRangeAreReported) {
   for (const std::uint32_t frames : {0u, 9u, ~0u}) {
     const auto kernels = Kernels::create(handles(), frames);
     ASSERT_FALSE(kernels) << frames;

@@ -259,8 +259,9 @@ TEST(CSettings, SettingsArePrintedShortAndExactInEveryLocale) {
   EXPECT_THAT(text, HasSubstr("\nfilter_tolerance_px = 1234567\n"));
 }
 
-// Frames of two views by every output, on a device without validation, which allocates. With an odd
-// number of frames in flight a slot meets both images of a history in turn.
+// Each frame has two views with every output. The device has no validation layers, because these
+// allocate memory. With an odd number of frames in flight a slot uses both images of a history in
+// turn.
 class CSteadyFrame : public testing::TestWithParam<std::uint32_t> {};
 INSTANTIATE_TEST_SUITE_P(FramesInFlight, CSteadyFrame, testing::Values(1u, 2u, 3u));
 

@@ -86,7 +86,7 @@ TEST(CameraOf, PerspectiveViewNeedsANearPlaneInFrontOfTheEye) {
   EXPECT_TRUE(camera_of(view, scene));
 }
 
-TEST(CameraOf, LengthsWhoseSquaresOverflowAreRefused) {
+TEST(CameraOf, VectorsWhoseSquaredLengthsOverflowOrUnderflowAreRefused) {
   ViewOptions view;
   view.eye = glm::dvec3(0.0, 0.0, 1.0);
   view.target = glm::dvec3(0.0);

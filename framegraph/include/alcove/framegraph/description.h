@@ -65,8 +65,8 @@ struct ExternalRecord {
   State initial_state;
   State final_state;
   VkFlags usage = 0;
-  // Index of an external that was imported earlier in this frame with the same Vulkan handle, or
-  // kNone.
+  // Index of an external that was imported earlier in this frame with the same VkBuffer, or with
+  // the same VkImage and layers that overlap; kNone if there is none.
   std::uint32_t same_as = kNone;
   std::uint8_t has_contents = 0;                      // 0 or 1
   std::uint8_t has_final_state = 0;                   // 0 or 1

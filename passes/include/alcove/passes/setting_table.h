@@ -175,8 +175,10 @@ void for_each_setting(Settings& settings, const Visit& visit) {
   visit(
       SettingInfo{
           .name = "pattern",
-          .help = "Sequence of slice directions over pixels and frames: golden-ratio lattices, the "
-                  "R2 sequence along a Hilbert curve, or the paper's 4x4 pixels and six frames.",
+          .help =
+              "How slice directions and step offsets vary over pixels and frames: lattices "
+              "(golden), the R2 sequence along a Hilbert curve (hilbert), or 4x4 pixels and six "
+              "frames as in Jimenez et al. 2016 (paper).",
           .group = advanced},
       settings.advanced.pattern);
   visit(SettingInfo{.name = "filter_radius",
@@ -188,9 +190,10 @@ void for_each_setting(Settings& settings, const Visit& visit) {
   visit(
       SettingInfo{
           .name = "filter_tolerance_px",
-          .help = "Distance of a neighbour from the pixel's tangent plane, in pixels, at which the "
-                  "spatial filter gives it the weight 0.25. Smaller values keep edges sharper. The "
-                  "value holds for one slice and no history, and shrinks with more samples.",
+          .help =
+              "Distance of a neighbour from the pixel's tangent plane, in pixels, at which the "
+              "spatial filter gives it the weight 0.25. Smaller values keep edges sharper. The "
+              "value holds for one slice and no history, and shrinks with more slices and frames.",
           .group = advanced,
           .range = {.above_minimum = true},
           .slider = {.minimum = 0.1f, .maximum = 8.0f},
@@ -214,9 +217,9 @@ void for_each_setting(Settings& settings, const Visit& visit) {
                     .group = advanced},
         settings.advanced.extrapolation);
   visit(SettingInfo{.name = "unobserved",
-                    .help = "For connected: excludes a share of the directions that the depth "
-                            "buffer does not show (behind a foreground, or beyond the image's "
-                            "border) from the average. If off, all of them count as open.",
+                    .help = "For connected: partly excludes directions that the depth buffer does "
+                            "not show (behind a foreground, or beyond the image's border) from the "
+                            "average, the more the wider they are. If off, all count as open.",
                     .group = advanced},
         settings.advanced.unobserved);
 }
