@@ -61,6 +61,10 @@ float load_inverse_depth(ivec2 pixel) {
 float right_of(int i) { return i == 1 || i == 2 ? 1.0 : -1.0; }
 float below_of(int i) { return i < 2 ? 1.0 : -1.0; }
 
+// Distance from a plane, in tolerances, from which on a weight no longer falls. The product of
+// three weights' denominators is then still a float.
+const float kFarthest = 1e5;
+
 struct Cell {
   ivec2 first;      // the pixel to the upper left
   vec4 depths_ndc;  // raw depths of the pixels
@@ -86,6 +90,10 @@ Cell fetch_cell(ivec2 index) {
     // About the cosine between the normal and the view direction.
     float steepness =
         parameters.tolerance * inversesqrt(1.0 + dot(tilt, tilt) * (kLargestTilt * kLargestTilt));
+    // In perspective the sky has a finite distance from a plane, but it must not count at all.
+    if (kPerspective && texel_depths[i] == sky_inverse_depth(kPerspective)) {
+      steepness = kFarthest;
+    }
     float plane = steepness * texel_depths[i];
     // Over half a pixel.
     vec2 change = tilt * parameters.half_pixel_per_tilt * (kPerspective ? plane : steepness);
@@ -98,10 +106,6 @@ Cell fetch_cell(ivec2 index) {
   }
   return cell;
 }
-
-// Distance from a plane, in tolerances, from which on a weight no longer falls. The product of
-// three weights' denominators is then still a float.
-const float kFarthest = 1e5;
 
 // The weights of the four texels for pixel `j`, which is not of the sky, up to a common factor:
 // share / (1 + distance^2), where the distance from the plane is in tolerances.

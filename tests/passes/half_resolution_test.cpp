@@ -15,10 +15,7 @@ namespace alcove::passes {
 namespace {
 
 // Rounding of the stored sums, of a software device's reciprocals and of 16-bit texels.
-constexpr float kRounding = 2e-3f;
-// Beside the horizon of a plane seen at a grazing angle, texels of the sky keep a small weight,
-// which must be less than a step of 8 bits.
-constexpr float kEightBitStep = 1.0f / 255.0f;
+constexpr float kRounding = 1e-3f;
 
 OcclusionSettings half_resolution(std::uint32_t history_frames) {
   OcclusionSettings settings = precise(2, history_frames);
@@ -78,7 +75,7 @@ TEST_F(HalfResolution, ConstantOcclusionStaysConstantAtOddSizes) {
             for (std::uint32_t x = 0; x < 33; ++x) {
               const float ndc = drawing.depth_ndc.at(x, y);
               const double expected = ndc == 0.0f || ndc == 1.0f ? 1.0 : visibility;  // the sky
-              ASSERT_NEAR(found.at(x, y), expected, visibility == 1.0f ? 1e-6f : kEightBitStep)
+              ASSERT_NEAR(found.at(x, y), expected, visibility == 1.0f ? 1e-6f : kRounding)
                   << "at " << x << ", " << y;
             }
           }
