@@ -181,8 +181,8 @@ AlcoveResult alcoveDiscardFrame(AlcoveContext* context) {
 
 AlcoveResult alcoveDropView(AlcoveContext* context, uint32_t id) {
   return guarded(context, [&]() -> Result {
-    // The last frame declared the history, and must be over before it is dropped. Its plan can still
-    // be printed.
+    // The last frame declared the history, and must be over before it is dropped. Its plan can
+    // still be printed.
     confirm_last_frame(*context);
     context->graph.histories().end_frame();
     passes::drop_reconstruct_history(context->graph, passes::ViewName(id));
