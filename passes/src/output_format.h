@@ -55,12 +55,14 @@ inline constexpr VkFormat kHalfBentFormat = VK_FORMAT_A2B10G10R10_UNORM_PACK32;
 // Returns the bytes per pixel of all textures of a history as add_reconstruct() declares them: two
 // of each kind.
 [[nodiscard]] inline std::uint64_t history_bytes(bool lobe, bool bent) {
-  return 2u * (4u + (lobe ? 2u : 0u) + (bent ? 4u : 0u));
+  const std::uint64_t texel = 4u + (lobe ? 2u : 0u) + (bent ? 4u : 0u);
+  return 2u * texel;
 }
 
 // Returns the bytes per texel of 2x2 pixels of all textures of a history at half resolution.
 [[nodiscard]] inline std::uint64_t half_history_bytes(bool lobe, bool bent) {
-  return history_bytes(lobe, bent) + 2u * 8u;
+  constexpr std::uint64_t kTexel = 8;  // bytes of kHalfFormat
+  return history_bytes(lobe, bent) + 2u * kTexel;
 }
 
 }  // namespace alcove::passes
