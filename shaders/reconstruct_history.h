@@ -3,7 +3,7 @@
 #ifndef ALCOVE_RECONSTRUCT_HISTORY_H
 #define ALCOVE_RECONSTRUCT_HISTORY_H
 
-// What the history holds of a surface.
+// The values of a surface in the history.
 struct History {
   float weight;     // frames; 0 where nothing of this surface is known
   float occlusion;  // [0,1]

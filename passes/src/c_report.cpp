@@ -1,4 +1,4 @@
-// What a context says of its frames: memory, times, the plan, mistakes.
+// Functions that report on a context's frames: memory, times, the plan, mistakes.
 #include <algorithm>
 #include <cstdint>
 #include <string>

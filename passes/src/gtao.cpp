@@ -35,7 +35,7 @@ RawOcclusionTextures create_raw_occlusion(const Frame& frame, Texture depth,
   return result;
 }
 
-// What of the inputs the settings read beside depth and normals.
+// The inputs beside depth and normals that the settings read.
 struct Reads {
   bool roughness = false;
   bool back_faces = false;

@@ -86,8 +86,9 @@ float history_sharpness(const maths::Projection& p, maths::vec2 scale) {
 // the distance at which a texel no longer counts.
 constexpr float kHalfHistorySlack = 0.03f;
 
-// The same at half resolution, where depths are stored as they are: over relative changes of depth
-// in perspective, over changes of depth in orthographic views.
+// Returns the sharpness of history rejection at half resolution, where depths are stored unscaled.
+// Its unit is one over a relative change of depth in perspective, and one over a change of depth in
+// orthographic views.
 float half_history_sharpness(const maths::Projection& p) {
   const float texel = 2.0f * std::abs(maths::ray_per_px(p).y);
   const float rounding = 0x1p-14f * std::abs(p.near_far.y);

@@ -1,4 +1,4 @@
-// What a context says of the frames that it recorded: times, the plan, and mistakes of the engine.
+// Reports of a context on the frames that it recorded: times, the plan, and mistakes of the engine.
 // Included by alcove.h.
 #ifndef ALCOVE_ALCOVE_DIAGNOSE_H_
 #define ALCOVE_ALCOVE_DIAGNOSE_H_

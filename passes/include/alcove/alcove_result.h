@@ -33,7 +33,7 @@ const char* alcoveGetResultName(AlcoveResult result);
 // ALCOVE_VERSION as it was when the library was compiled.
 uint32_t alcoveGetVersion(void);
 
-// What alcoveCreateContext makes: pipelines, histories and memory on one device.
+// The objects that alcoveCreateContext creates: pipelines, histories and memory on one device.
 typedef struct AlcoveContext AlcoveContext;
 
 #ifdef __cplusplus

@@ -21,9 +21,9 @@ struct GtaoInputs {
   framegraph::Texture normals;
   bool normals_in_view_space = false;
   framegraph::Texture roughness;  // perceptual, [0,1]; null: OcclusionSettings::roughness
-  // As OcclusionInputs::back_depth_ndc. Needed only if needs_back_depth() returns true.
+  // See OcclusionInputs::back_depth_ndc. Needed only if needs_back_depth() returns true.
   framegraph::Texture back_depth_ndc;
-  // As OcclusionInputs::second_depth_ndc. Needed only if needs_second_depth() returns true.
+  // See OcclusionInputs::second_depth_ndc. Needed only if needs_second_depth() returns true.
   framegraph::Texture second_depth_ndc;
   // The format whose depths `depth_ndc` holds, if they were copied from another texture. By default
   // it is that of `depth_ndc` itself.

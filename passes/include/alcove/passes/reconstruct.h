@@ -32,7 +32,7 @@ struct Occlusion {
 
 struct ReconstructInputs {
   RawOcclusionTextures raw_occlusion;  // From add_gtao, with the same Frame::index.
-  framegraph::Texture depth_ndc;       // As GtaoInputs::depth_ndc.
+  framegraph::Texture depth_ndc;       // See GtaoInputs::depth_ndc.
   framegraph::Texture normals;         // As GtaoInputs::normals.
   bool normals_in_view_space = false;
   // xy: how each surface moved on the image, in the units of `motion_convention`. Null: only the
