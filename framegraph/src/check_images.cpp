@@ -55,8 +55,8 @@ VkFlags history_usage(const Limits& limits, const ResourceRecord& record) {
   constexpr VkFlags kDrawn =
       VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
   if ((usage & kDrawn) == 0) usage &= ~VkFlags{VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT};
-  // Few devices support storage usage for multisampled images, and a history is created with every
-  // usage that it can have.
+  // Few devices support storage usage for multisampled images. A history would get this usage too,
+  // because it is created with every usage that it can have. The usage is therefore removed.
   if (record.samples > 1) usage &= ~VkFlags{VK_IMAGE_USAGE_STORAGE_BIT};
   return usage;
 }

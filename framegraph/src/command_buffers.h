@@ -8,8 +8,8 @@
 
 namespace alcove::framegraph {
 
-// The command buffers of one device, queue class, frame slot and thread. They are allocated on
-// first use and kept.
+// The command buffers for one queue class, frame slot and recording thread. They are allocated on
+// first use and reused in later frames.
 class CommandBuffers {
  public:
   void destroy(const DeviceContext& device);

@@ -1,6 +1,6 @@
 // Contents: finds for each access whether its range has earlier contents, and whether the contents
-// that it leaves are needed later. Load and store operations of attachments follow from the two. An
-// attachment that is neither loaded nor stored needs no memory.
+// that it leaves are needed later. The load and store operations of attachments follow from these
+// two answers. An attachment that is neither loaded nor stored can lie in lazily allocated memory.
 #include <algorithm>
 
 #include "workspace.h"

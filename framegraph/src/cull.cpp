@@ -1,7 +1,8 @@
-// Culling: one walk over the passes from the last to the first. It follows, for each subresource,
-// whether its contents are needed by an output or by a later pass that runs. The order of
-// declaration is an order of dependence, so that one walk is enough. Only when a pass turns out to
-// read a history is the walk repeated, with that history's writers needed.
+// Culling: walks over the passes from the last to the first, and follows for each subresource
+// whether its contents are needed by an output or by a later pass that runs. One walk is enough,
+// because a pass can only read what earlier declared passes wrote. Histories are the exception: if
+// a pass that runs reads a history, the walk is repeated with the writers of that history marked as
+// needed.
 #include "workspace.h"
 
 namespace alcove::framegraph {
@@ -114,8 +115,8 @@ class Culler {
                  [&](std::uint32_t sub) { workspace_.cull.needed_by[sub] = pass; });
   }
 
-  // If the access reads or updates an older slot of a history, the writers of the history are
-  // needed.
+  // If the access reads or updates an older slot of a history, marks the passes that write the
+  // history as needed.
   void find_history(const AccessRecord& access, std::uint32_t pass) {
     const ResourceRecord& resource = graph_.resources[access.resource];
     if (resource.origin != Origin::history || resource.slot == 0) return;

@@ -89,8 +89,8 @@ bool DeviceAllocator::allocate_in_block(const MemoryRequest& request, MemoryRang
 }
 
 VkResult DeviceAllocator::allocate_from_vulkan(const MemoryRequest& request, MemoryRange& range) {
-  // Lazily allocated memory types are allowed for transient attachments only, for which they are
-  // the best choice.
+  // Only transient attachments may use a lazily allocated memory type. For them it ranks first,
+  // because it may need no memory at all.
   const auto rank = [&](std::uint32_t type) {
     const VkMemoryPropertyFlags flags = device_.memory.memoryTypes[type].propertyFlags;
     if (flags & VK_MEMORY_PROPERTY_LAZILY_ALLOCATED_BIT) return 2;

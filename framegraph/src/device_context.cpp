@@ -91,8 +91,8 @@ VkImageUsageFlags format_usage(const void* context, VkFormat format) {
       {VK_FORMAT_FEATURE_TRANSFER_SRC_BIT, VK_IMAGE_USAGE_TRANSFER_SRC_BIT},
       {VK_FORMAT_FEATURE_TRANSFER_DST_BIT, VK_IMAGE_USAGE_TRANSFER_DST_BIT},
   };
-  // Usages for input and transient attachments have no format feature of their own: they are
-  // supported if the attachment usages are.
+  // Vulkan has no format feature for the usages of input and transient attachments. A format
+  // supports them if it supports the colour or depth attachment usage.
   VkImageUsageFlags usage =
       VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSIENT_ATTACHMENT_BIT;
   for (const Pair& pair : kPairs) {

@@ -8,8 +8,9 @@
 namespace alcove::framegraph {
 namespace {
 
-// Bytes per texel. Block-compressed formats count as 1, which is their largest. Formats that are
-// not listed count as 16, because an estimate must not be too small.
+// Returns the bytes per texel of a format. Block-compressed formats count as 1 byte per texel,
+// which none of them exceeds. Formats that are not listed count as 16, because an estimate must not
+// be too small.
 constexpr std::uint32_t find_texel_size(VkFormat format) {
   const auto in = [format](VkFormat first, VkFormat last) {
     return format >= first && format <= last;

@@ -70,7 +70,7 @@ struct Executor::Implementation {
   std::unique_ptr<Submitter> submitter;  // destroyed first: it waits for the device
 };
 
-// The attempt to record or submit a frame. If the frame does not run, its destructor calls
+// One call of record() or submit(). If the frame does not run in the end, the destructor calls
 // give_up().
 struct Executor::Attempt {
   Attempt(Implementation& implementation, Graph& of, const FrameInfo& with)
@@ -267,8 +267,8 @@ tl::expected<void, Errors> Executor::Implementation::check_histories(Graph& grap
   return {};
 }
 
-// Returns whether the frame must begin with a barrier over everything. A plan's barriers assume
-// that the same plan ran before it.
+// Returns whether the frame must begin with a barrier over all memory. It must if the previous
+// frame had another plan, because the barriers of a plan assume that the same plan ran before.
 bool Executor::Implementation::starts_anew(const CachedPlan& cached) const {
   return before != &cached || before_generation != pool->generation();
 }

@@ -4,8 +4,8 @@
 namespace alcove::framegraph {
 namespace {
 
-// Records that the read accesses of an initial state have seen the earlier writes. Other stages and
-// accesses have not.
+// Records in `state` that earlier writes are already visible to the read accesses of an initial
+// state, and not to other stages and accesses.
 void note_seen(UseState& state, const State& initial_state) {
   const bool every_access = (initial_state.access & VK_ACCESS_2_MEMORY_READ_BIT) != 0;
   const bool every_stage = (initial_state.stages & VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT) != 0;
@@ -73,8 +73,10 @@ void Synchroniser::depart() {
   if (!s_.releases.empty()) add_releases();
 }
 
-// The next user waits for the stages of the final state only. These stages therefore come after
-// reads in other stages. A layout change or a write at the end has that order already.
+// Orders the frame's reads of an import before its final state. Work after the frame waits only for
+// the stages of the final state, so that a barrier from the reading stages to those stages is
+// added. It is not needed if the final state brings a layout change or a write, which wait for the
+// reads anyway.
 void Synchroniser::end_reads(std::uint32_t resource, const State& final_state) {
   const bool texture = graph_.resources[resource].kind == ResourceKind::texture;
   if ((final_state.access & kWriteBits) != 0 || final_state.stages == 0 ||
@@ -106,8 +108,8 @@ AccessRecord Synchroniser::outside_use(std::uint32_t resource, const State& stat
   return access;
 }
 
-// Finds the state in which the frame leaves a history slot. All subresources of the slot are left
-// in one layout.
+// Finds the state in which the frame leaves a history slot, and changes layouts at the end of the
+// frame if the subresources of the slot would be left in different ones.
 void Synchroniser::leave(std::uint32_t resource) {
   const std::uint32_t first = workspace_.first_sub[resource];
   const std::uint32_t last = workspace_.first_sub[resource + 1];
@@ -126,13 +128,14 @@ void Synchroniser::leave(std::uint32_t resource) {
     written += s_.last_uses[sub].write_stages != 0 ? 1 : 0;
   }
   if (written != 0) final.written = written == last - first ? Written::whole : Written::part;
-  // The accesses that saw the write are part of the state if they are the same for all
-  // subresources.
+  // If the last write is visible to the same accesses in all subresources, these accesses become
+  // part of the final state.
   if (final.state.access == 0 && seen_alike && (lead.read_stages & ~lead.seen_stages) == 0)
     final.state.access = reads_in(lead.seen_access);
   final.state.layout = lead.layout;
   if (workspace_.several_queues) {
-    // Uses before a change of queue are not kept separately. The next frame waits for all of them.
+    // States do not keep uses from before a change of queue. The next frame therefore waits for all
+    // commands of the queue.
     final.state.stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
     final.state.access = VK_ACCESS_2_MEMORY_WRITE_BIT;
   }

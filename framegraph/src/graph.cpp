@@ -95,8 +95,8 @@ void Graph::add(Records<Record>& records, const Record& record) {
   changed();
 }
 
-// Grows the arrays that run parallel to the records before the records themselves: if memory runs
-// out, no array is too small.
+// Grows the arrays that run parallel to the records before the records themselves. If memory runs
+// out in between, no parallel array is then shorter than the records.
 void Graph::grow_resources() {
   const std::size_t capacity = description_.resources.next_capacity();
   description_.resource_names.resize(capacity);

@@ -1,5 +1,5 @@
-// Lifetimes: for each resource the positions of its first and last use, between which a transient's
-// memory is used by nothing else, and the usage flags that it is created with.
+// Lifetimes: finds for each resource the positions of its first and its last use, between which no
+// other resource may use a transient's memory, and the usage flags with which it is created.
 #include <algorithm>
 
 #include "workspace.h"
@@ -8,8 +8,8 @@ namespace alcove::framegraph {
 
 namespace {
 
-// Lengthens lifetimes up to the last pass of another queue that may run at the same time as the
-// last use.
+// Extends the lifetime of each resource to the last pass of another queue that may run at the same
+// time as the resource's last use.
 void lengthen(const GraphDescription& graph, const Workspace& workspace, Plan& plan) {
   for (std::uint32_t position = 0; position < plan.passes.size(); ++position) {
     const std::uint32_t until = taken_until(workspace, plan, position);

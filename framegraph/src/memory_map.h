@@ -65,7 +65,7 @@ inline void take_over(MemoryMap& map, const Segment& owner, Function&& f) {
     map.erase(std::copy(kept, kept + keep, from), from + old);
 }
 
-// Gives the bytes of [owner.begin, owner.end) that have no owner to `owner`, and returns their
+// Gives those bytes of [owner.begin, owner.end) that no resource owns to `owner`, and returns their
 // number.
 inline VkDeviceSize claim_free(MemoryMap& map, const Segment& owner) {
   VkDeviceSize claimed = 0;

@@ -1,8 +1,9 @@
 // Order: the order of declaration, unless another order lowers the memory peak.
 //
-// The other order is made greedily: of the passes whose inputs are ready, the one that leaves the
-// fewest bytes live comes next, the earliest declared among equals. A graph in which no order could
-// have a lower peak is not tried. compile() schedules both orders and takes the one of fewer bytes.
+// The other order is built greedily: of the passes whose inputs are ready, the next one is the pass
+// after which the fewest bytes are live, or the earliest declared one among equals. If no order
+// could have a lower peak, none is built. compile() schedules both orders and uses the one that
+// takes fewer bytes.
 #include <algorithm>
 
 #include "workspace.h"
@@ -29,7 +30,7 @@ class Orderer {
     std::int64_t floor = 0;
     const std::int64_t peak = peak_as_declared(floor);
     // In any order, all resources of one pass are live at the same time. If the peak is no higher
-    // than that, no order is better.
+    // than the largest such sum (`floor`), no order is better.
     if (peak <= floor) return false;
     find_edges();
     return list_greedily(peak) < peak && s_.order.size() == live;
@@ -114,8 +115,8 @@ class Orderer {
     ++s_.waiting[to];
   }
 
-  // A read follows the last write. A write follows the last write and all reads since. Passes with
-  // side effects follow each other as declared.
+  // Finds which passes must come before which: a read follows the last write; a write follows the
+  // last write and all reads since; passes with side effects keep their declared order.
   void find_edges() {
     s_.edges.clear();
     s_.first_edge.assign(graph_.passes.size(), kNone);
@@ -175,8 +176,8 @@ class Orderer {
     return peak;
   }
 
-  // Chooses the ready pass after which the fewest bytes are live. Passes that stay below the
-  // peak so far are preferred to those that raise it.
+  // Returns the index of the ready pass that runs next: the one after which the fewest bytes are
+  // live. Passes that do not raise the peak so far are preferred to those that do.
   std::size_t choose(std::int64_t live, std::int64_t peak) {
     std::size_t best = 0;
     bool best_below = false;

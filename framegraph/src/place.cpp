@@ -1,12 +1,13 @@
 // Placement: offsets for all transients, in one heap for each set of memory types that they allow.
 //
-// The cheapest way comes first: first fit in order of first use. It meets the lower bound (the most
-// bytes that are live at once) when sizes are alike. Where it does not, first fit is tried in other
-// orders: by falling size, by falling product of size and lifetime, by falling lifetime, and
-// outwards from the peak. Then the best order is changed at random, one change at a time: a
-// resource that ends at the peak is placed earlier, or two resources change places. The search ends
-// at the lower bound, or when its budget of comparisons is used up. The budget does not depend on
-// time, so that a frame always gets the same plan.
+// The cheapest method is tried first: first fit in order of first use. It reaches the lower bound
+// (the most bytes that are live at once) if sizes are alike. If it does not, first fit is tried in
+// other orders: by decreasing size, by decreasing product of size and lifetime, by decreasing
+// lifetime, and by increasing distance in time from the peak. Then a local search changes the best
+// of these orders at random, one change at a time: a resource whose bytes end at the peak is placed
+// earlier, or two resources swap their places. The search stops at the lower bound, or when its
+// budget of comparisons is used up. The budget does not depend on time, so that a frame always gets
+// the same plan.
 #include <algorithm>
 #include <numeric>
 
@@ -125,8 +126,8 @@ class Placer {
     improve(bound);
   }
 
-  // First fit in order of first use. `taken` holds the ranges of bytes in use, in order of offset.
-  // A range whose lifetime has ended is removed when the search comes across it.
+  // Places by first fit in order of first use. `taken` holds the byte ranges in use, in order of
+  // offset. A range whose lifetime has ended is removed when the search next comes across it.
   VkDeviceSize fit_by_time() {
     VkDeviceSize peak = 0;
     std::vector<Workspace::Taken>& taken = s_.taken;
@@ -170,8 +171,8 @@ class Placer {
     try_order();
   }
 
-  // Resources that are live at the peak have the least choice and come first. The others follow by
-  // their distance in time from the peak.
+  // Tries first fit with the resources that are live at the peak first, because they have the
+  // fewest possible offsets. The others follow in order of their distance in time from the peak.
   void try_from_peak() {
     std::int64_t live = 0;
     std::int64_t most = -1;
@@ -202,8 +203,9 @@ class Placer {
     try_order();
   }
 
-  // First fit in s_.order. The result is kept if it is lower than the best, and given up when it
-  // exceeds `limit`. Resources before `from` in the order keep the offsets of the settled order.
+  // Places by first fit in s_.order. Keeps the result if its peak is lower than the best so far,
+  // and gives up when its peak exceeds `limit`. The resources before `from` in the order keep the
+  // offsets that they have in the accepted order (s_.settled_order).
   bool try_order(VkDeviceSize limit = ~VkDeviceSize{0}, std::size_t from = 0) {
     VkDeviceSize peak = keep_before(from);
     for (std::size_t i = from; i < s_.order.size(); ++i) {
@@ -221,7 +223,8 @@ class Placer {
     return true;
   }
 
-  // Places the resources before `from` at their settled offsets, and returns their peak.
+  // Places the resources before `from` at their offsets in the accepted order, and returns their
+  // peak.
   VkDeviceSize keep_before(std::size_t from) {
     s_.live.clear();
     s_.offsets.resize(s_.items.size());
@@ -262,7 +265,7 @@ class Placer {
     return offset + item.size;
   }
 
-  // Accepts the order that was tried last: further changes start from it.
+  // Makes the order that was tried last the accepted one, from which the search continues.
   void settle() {
     s_.settled_order = s_.order;
     s_.settled_offsets = s_.offsets;
@@ -275,18 +278,18 @@ class Placer {
     while (best_ > bound && budget_ > 0) {
       budget_ -= 16;
       const std::size_t from = change_order();
-      // Orders that are slightly worse than the settled one are accepted too, so that the search
-      // leaves local minima.
+      // An order that is slightly worse than the accepted one is accepted too, so that the search
+      // can leave local minima.
       const VkDeviceSize limit = settled_peak_ + bound / 256 * roll(3);
       if (!try_order(limit, from) && last_ <= limit) settle();
     }
     s_.settled_order.clear();
   }
 
-  // Makes one change to the settled order, and returns the first place that differs.
+  // Makes one change to the accepted order, and returns the first place that differs.
   std::size_t change_order() {
     s_.order = s_.settled_order;
-    // A resource that ends at the peak had too little choice: it is moved to an earlier place.
+    // A resource whose bytes end at the peak was placed too late: it is moved forward in the order.
     const auto high = std::find_if(s_.order.begin(), s_.order.end(), [this](std::uint32_t i) {
       return s_.settled_offsets[i] + s_.items[i].size == settled_peak_;
     });

@@ -27,8 +27,8 @@ class PlanCache {
   // Returns the plan of an equal declaration, or null if the cache has none. The plan that was
   // returned last is compared first, without hashing.
   CachedPlan* find(const GraphDescription& graph);
-  // Returns an entry for a new plan. If the cache is full, it replaces the plan that was unused for
-  // longest. The entry is looked up only after it was marked as kept.
+  // Returns an entry for a new plan. If the cache is full, the entry is that of the plan that was
+  // unused for longest. find() finds the entry only after keep() was called for it.
   CachedPlan& room(std::uint64_t frame);
   void keep(CachedPlan& plan, const GraphDescription& graph);
 

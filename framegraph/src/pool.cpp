@@ -89,8 +89,8 @@ VkResult Pool::reserve(const GraphDescription& graph, const Plan& plan, std::uin
     if (const VkResult result =
             allocate({size, alignment_of(plan, h), wanted.memory_types}, has_addresses, memory))
       return result;
-    // All transients are retired with the old memory. Those of other heaps are cheap to create
-    // again.
+    // All transients are moved to retired_, to be destroyed with the old memory once the device has
+    // finished. This includes transients of other heaps, because creating them again is cheap.
     for (auto& physical : transients_) retired_.push_back({frame, std::move(physical)});
     transients_.clear();
     if (heap->memory.memory) retired_.push_back({frame, nullptr, heap->memory, heap->size});

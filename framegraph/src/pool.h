@@ -46,8 +46,8 @@ class Pool {
   Pool(const Pool&) = delete;
   Pool& operator=(const Pool&) = delete;
 
-  // Makes the heaps of a plan large enough. When one had to grow, all transients are retired and
-  // `generation` changes.
+  // Makes the heaps of a plan large enough. If a heap had to grow, all transients are moved to the
+  // list of objects to be destroyed, and `generation` changes.
   [[nodiscard]] VkResult reserve(const GraphDescription& graph, const Plan& plan,
                                  std::uint64_t frame);
   // Finds or creates the transient with this description at this place.
@@ -61,8 +61,9 @@ class Pool {
   // Returns the slot of a history, or null if it was not created yet.
   Physical* find_history(const HistoryTable& table, std::uint32_t entry,
                          std::uint32_t position) const;
-  // Retires the slots of histories that no longer exist: those that were dropped, that got another
-  // description in an earlier frame, or whose graph is gone. Histories of other graphs stay.
+  // Moves the slots of histories that no longer exist to the list of objects to be destroyed: those
+  // that were dropped, those that got another description in an earlier frame, and those whose
+  // graph is gone. Histories of other graphs stay.
   void retire_histories(const HistoryTable& table, std::uint64_t frame);
   // Returns an object for an imported resource, whose views are cached by image and layer.
   Physical& import(const ResourceRecord& record, const ImportHandles& handles);
@@ -71,8 +72,8 @@ class Pool {
   // threads may call it at the same time.
   VkImageView view(Physical& physical, const Range& range, VkImageViewType type, VkFormat format);
 
-  // Destroys retired objects and objects that were not used for a while, if the device has finished
-  // the last frame that used them. `finished` is the last finished frame.
+  // Destroys the objects on the retired list and those that were not used for a while, if the
+  // device has finished the last frame that used them. `finished` is the last finished frame.
   void collect(std::uint64_t finished, std::uint64_t frame);
 
   std::uint64_t generation() const { return generation_; }

@@ -1,14 +1,14 @@
-// Moves resources from one queue to another. The semaphore wait between the two submissions orders
-// them. Between queue families there is also a release after the last pass of the first submission
-// and an acquire before the pass that takes the resource.
+// Moves resources from one queue to another. A semaphore wait between the two submissions orders
+// the uses. If the queues are of different families, there is also an ownership release after the
+// last pass of the first submission, and an acquire before the pass that uses the resource next.
 #include <algorithm>
 
 #include "synchronise.h"
 
 namespace alcove::framegraph {
 
-// Returns true if an ownership transfer was added. It also changes the layout, so that the access
-// needs no other barrier.
+// Orders the access after the uses on another queue. Returns true if a queue ownership transfer was
+// added. The transfer also changes the layout, so that the access needs no other barrier.
 bool Synchroniser::change_queue(std::uint32_t position, const AccessRecord& access, UseState& state,
                                 const Range& range) {
   const auto family = [this](QueueClass queue) {
@@ -42,16 +42,17 @@ std::uint32_t Synchroniser::giving_submission(const UseState& state) const {
   if (time >= 0) return plan_.passes[static_cast<std::size_t>(time / 2)].submission;
   const std::uint32_t opening = workspace_.queues.opening[static_cast<std::size_t>(state.queue)];
   if (opening != kNone) return opening;
-  // No pass used this part of a history, and the end of the frame transfers it. Any submission of
-  // its queue may release it.
+  // No pass of this frame used this part of the history: it is transferred at the end of the frame.
+  // Any submission of its queue may release it.
   const auto own = std::find_if(
       plan_.submissions.begin(), plan_.submissions.end(),
       [&state](const Submission& submission) { return submission.queue == state.queue; });
   return static_cast<std::uint32_t>(own - plan_.submissions.begin());
 }
 
-// Takes an image whose contents are not kept. It needs no release, because it is taken from the
-// undefined layout.
+// Moves a resource to the current queue without an ownership transfer: the queues are of the same
+// family, or the contents are discarded, so that the layout can change from
+// VK_IMAGE_LAYOUT_UNDEFINED.
 void Synchroniser::take_without_giver(std::uint32_t position, UseState& state, bool same_family) {
   UseState taken;
   taken.queue = queue_;
@@ -59,8 +60,8 @@ void Synchroniser::take_without_giver(std::uint32_t position, UseState& state, b
   taken.used = state.used;
   taken.layout = same_family ? state.layout : VK_IMAGE_LAYOUT_UNDEFINED;
   if (state.handed_over) {
-    // The resource that had the memory before may have been used on this queue, without a wait in
-    // between.
+    // The resource that occupied this memory before may have been used on the current queue, where
+    // no semaphore wait orders its use before this one.
     taken.handed_over = 1;
     taken.frame_before = state.frame_before;
     wait_for_frame_before(position, state.frame_before);

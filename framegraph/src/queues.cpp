@@ -1,11 +1,13 @@
-// Queues: gives each pass its queue, and cuts the order of execution into submissions where one
-// queue must wait for another. It also finds, for each pass, up to which pass of every other queue
-// is known to be done, which decides how long a transient's memory is in use.
+// Queues: gives each pass its queue, and divides the order of execution into submissions at the
+// points where one queue must wait for another. It also finds, for each pass, the last pass of
+// every other queue that has finished before it. This decides how long the memory of a transient is
+// in use.
 //
-// A submission begins with a pass that waits and ends with a pass that is waited for, so that no
-// queue waits longer than it must. With one queue there is one submission. Two passes on different
-// queues depend on each other when they use one subresource, even if both read: its layout or its
-// owner may have to change between them.
+// A submission begins with a pass that waits for another queue, and ends with a pass for which
+// another queue waits, so that no queue waits longer than it must. With one queue there is one
+// submission. Two passes on different queues depend on each other when they use one subresource,
+// even if both only read it, because its layout or its owning queue family may have to change
+// between them.
 #include <algorithm>
 
 #include "workspace.h"
@@ -66,8 +68,8 @@ class QueueAssigner {
     return takes;
   }
 
-  // Finds, for each pass and each other queue, the last pass that it must wait for, unless that one
-  // is known to be done.
+  // Finds, for each pass and each other queue, the last pass of that queue for which this pass must
+  // wait. There is none if earlier waits already ensure that it is done.
   void find_waits() {
     const std::size_t count = plan_.passes.size();
     s_.waits.assign(count * kQueueClasses, kNobody);
@@ -117,8 +119,8 @@ class QueueAssigner {
     }
   }
 
-  // Updates what the pass's queue knows to be done: the passes that this pass waits for, and
-  // everything that their queues knew to be done.
+  // Updates what this pass's queue knows to be done: the passes for which this pass waits, and all
+  // passes that those passes' queues knew to be done.
   void learn(std::uint32_t position) {
     const auto own = static_cast<std::size_t>(plan_.passes[position].queue);
     for (std::size_t other = 0; other < kQueueClasses; ++other) {
@@ -191,8 +193,9 @@ class QueueAssigner {
     ++plan_.submissions.back().wait_count;
   }
 
-  // Adds a submission without passes on each queue whose resources, used before the frame, go to
-  // another queue. It releases them, and the taking queue waits for it.
+  // If a resource was last used on one queue before the frame and the frame uses it on another
+  // queue, the first queue must release it. Adds a submission without passes on each such queue.
+  // The other queue waits for that submission.
   void open_before() {
     std::fill(std::begin(s_.opening), std::end(s_.opening), kNobody);
     std::uint8_t opened = 0;
@@ -206,8 +209,8 @@ class QueueAssigner {
     }
   }
 
-  // Returns the queue that the resource was last used on, or graphics if the device has no such
-  // queue in this frame.
+  // Returns the queue on which the resource was last used before the frame, or graphics if the
+  // device has no queue of that class.
   QueueClass initial_queue(const ExternalRecord& external) const {
     return family(external.queue) == kNone ? QueueClass::graphics : external.queue;
   }
@@ -244,8 +247,9 @@ class QueueAssigner {
       workspace_.order[position] = plan_.passes[position].pass;
   }
 
-  // Makes the graphics queue wait for the last uses of imports, which the next frame takes over
-  // from it, and of histories whose subresources may be in different states.
+  // Makes the graphics queue wait for the last uses of imports, because the next frame expects
+  // imports on that queue, and of histories with several subresources, which may be in different
+  // states.
   void close() {
     if (graph_.externals.empty()) return;
     std::uint32_t last[kQueueClasses] = {kNobody, kNobody, kNobody};
@@ -278,8 +282,8 @@ class QueueAssigner {
     }
   }
 
-  // For each queue and each other queue: the last position of the other queue that it knows to be
-  // done, or -1.
+  // For each queue and each other queue: the last position on the other queue that is known to be
+  // done when the queue reaches its current pass, or -1.
   std::int32_t known_[kQueueClasses][kQueueClasses] = {};
   // For each queue: bits of the queues whose opening submission it knows to be done.
   std::uint8_t known_open_[kQueueClasses] = {};

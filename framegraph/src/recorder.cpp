@@ -105,11 +105,11 @@ VkDependencyInfo Recorder::dependency(const Batch& batch) {
                                   t.dst_access};
     if (t.resource != kNone && (*physical_)[t.resource]->image) {
       images_.push_back(image_barrier(t));
-      // An image barrier orders all commands of its stages, whatever they touch. The validation
-      // layers (1.3.239) apply it to its own image only, and report a hazard between two other
-      // resources that are ordered by way of it. A memory barrier over the same stages tells them.
-      // It makes nothing available or visible that the image barrier does not, so that it costs
-      // nothing.
+      // An image barrier orders all commands of its stages, whichever resources they use. The
+      // validation layers (1.3.239) assume that it orders only uses of its own image. They then
+      // report a hazard between two other resources that this image barrier orders. A memory
+      // barrier over the same stages avoids the false report. It makes nothing available or visible
+      // that the image barrier does not, so that it costs nothing.
       const bool takes_over = t.old_layout == VK_IMAGE_LAYOUT_UNDEFINED && shares_with_buffers_;
       add_memory(takes_over ? memory : execution(t));
     } else if (t.resource != kNone) {
@@ -146,14 +146,15 @@ VkImageMemoryBarrier2 Recorder::image_barrier(const Transition& t) const {
   barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
   barrier.srcStageMask = t.src_stages;
   barrier.srcAccessMask = t.src_access;
-  // After full_barrier() nothing is left to make available. The validation layers (1.3.239) connect
-  // that barrier with a layout change only if the layout change names a source access. Otherwise
-  // they report a hazard with what another plan wrote last. Naming an access costs nothing.
+  // After full_barrier() there is nothing left to make available. The validation layers (1.3.239)
+  // see that this layout change follows full_barrier() only if the layout change has a source
+  // access. Otherwise they report a hazard with the last write of another plan. The additional
+  // access costs nothing.
   if (starts_anew_ && t.old_layout == VK_IMAGE_LAYOUT_UNDEFINED)
     barrier.srcAccessMask |= VK_ACCESS_2_MEMORY_WRITE_BIT;
-  // The layers (1.3.239) also lose an image's last write if a buffer had the bytes between that
-  // image and the next one, unless the barrier names the access that read the buffer. Reads have
-  // nothing to make available, so that naming them costs nothing.
+  // The validation layers (1.3.239) forget the last write to an image if a buffer occupied its
+  // bytes before the next image did, unless the barrier names the access that read the buffer. A
+  // read has nothing to make available, so that naming it costs nothing.
   if (t.old_layout == VK_IMAGE_LAYOUT_UNDEFINED && t.src_stages != 0)
     barrier.srcAccessMask |= VK_ACCESS_2_MEMORY_READ_BIT;
   barrier.dstStageMask = t.dst_stages;
@@ -270,8 +271,9 @@ void Recorder::release_imports(VkCommandBuffer commands) {
   }
 }
 
-// Records a queue ownership transfer of an import. It does not change the layout: the plan's own
-// barriers do that. Vulkan ignores the stages and accesses of the other side of a transfer.
+// Records the queue ownership transfer of an import. The transfer does not change the layout: the
+// plan's own barriers do that. Vulkan ignores the destination stages and accesses of a release, and
+// the source stages and accesses of an acquire.
 void Recorder::transfer_import(std::uint32_t resource, std::uint32_t from, std::uint32_t to,
                                const State& state, bool acquires, VkCommandBuffer commands) {
   if (from == to) return;

@@ -12,8 +12,8 @@
 
 namespace alcove::framegraph {
 
-// A frame that is being recorded. `physical` is indexed by resource and is null for resources
-// without a use.
+// A frame that is being recorded. `physical` is indexed by resource; its entry is null if no pass
+// uses the resource.
 struct RecordedFrame {
   const Graph* graph = nullptr;
   const Plan* plan = nullptr;
@@ -41,15 +41,16 @@ class Recorder {
   void full_barrier(VkCommandBuffer commands);
   void passes(const PassRun& run, VkCommandBuffer commands);
   void batches(std::uint32_t first, std::uint32_t count, VkCommandBuffer commands);
-  // Record queue ownership transfers of imports from and to families outside the graph: before the
-  // submission that uses the import first, and after the last one.
+  // Record the queue ownership transfers of imports between the graph's queue families and families
+  // outside the graph. Acquires come before the submission that uses the import first, releases
+  // after the last submission.
   void acquire_imports(const Submission& submission, VkCommandBuffer commands);
   void release_imports(VkCommandBuffer commands);
   bool is_last(const Submission& submission) const {
     return &submission == &plan_->submissions.back();
   }
-  // Returns the errors of callbacks: undeclared uses, and objects that could not be created while
-  // recording.
+  // Returns the errors that callbacks caused while recording: undeclared uses, and objects that
+  // could not be created.
   Errors& errors() { return errors_; }
 
  private:
@@ -65,8 +66,8 @@ class Recorder {
   VkBufferMemoryBarrier2 buffer_barrier(const Transition& transition) const;
   std::uint32_t family(const Transition& transition, QueueClass queue) const;
 
-  // Returns the access of the running pass that names this resource, or null if there is none.
-  // Without one, adds an error if uses are checked.
+  // Returns the access with which the running pass declares this resource, or null if it declares
+  // none. In that case adds an error if uses are checked.
   const AccessRecord* declared(std::uint32_t pass, std::uint32_t resource) const;
   // Returns the index of the access that declares the resource as an attachment of the pass. If
   // there is none, adds an error and returns kNone.

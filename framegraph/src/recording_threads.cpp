@@ -98,8 +98,8 @@ Errors RecordingThreads::take_errors() {
   return all;
 }
 
-// Makes more pieces than threads, so that the threads stay busy if some passes take longer than
-// others.
+// Divides the passes into more pieces than there are threads, so that all threads stay busy even if
+// some passes take longer than others.
 void RecordingThreads::cut(const PassRun& passes) {
   const auto count =
       static_cast<std::uint32_t>(std::min<std::size_t>(passes.count, 2 * (threads_.size() + 1)));

@@ -1,5 +1,6 @@
-// Records a plan's submissions: either with one thread into the command buffer itself, or with
-// several threads into secondary command buffers that it executes in order.
+// Records the submissions of a plan. One thread records into the primary command buffer directly.
+// Several threads record into secondary command buffers, which the primary one then executes in
+// order.
 #pragma once
 
 #include <atomic>

@@ -42,7 +42,7 @@ bool same_declaration(const GraphDescription& a, const GraphDescription& b) {
   if (a.accesses.size() != b.accesses.size() || a.resources.size() != b.resources.size() ||
       a.externals.size() != b.externals.size() || a.outputs.size() != b.outputs.size())
     return false;
-  // Pass records are always compared, because their flags are set after the pass was added and do
+  // Pass records are always compared: their flags may be set after the pass was added, which does
   // not change the edition.
   if (!same(a.passes, b.passes)) return false;
   return a.edition == b.edition ||

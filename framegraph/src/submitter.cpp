@@ -22,8 +22,9 @@ std::uint32_t outermost(const Plan& plan, QueueClass queue, bool first) {
 
 Submitter::~Submitter() {
   const VkDevice device = device_.handles.device;
-  // By the specification, waiting for the semaphore's value is enough before it is destroyed.
-  // Software drivers may still use the semaphore at that time, so that the queue must be idle too.
+  // According to Vulkan's specification, a semaphore may be destroyed once its last value has been
+  // waited for. Software drivers may still use it at that time, so that the queue must also be
+  // idle.
   for (std::size_t q = 0; q < kQueueClasses; ++q) {
     if (values_[q] != 0) device_.vk.vkQueueWaitIdle(device_.handles.queues[q].queue);
   }
@@ -170,8 +171,8 @@ void Submitter::describe(const Plan& plan, std::uint32_t index, const FrameInfo&
     return static_cast<std::uint32_t>(semaphore_infos_.size()) - described.first_semaphore;
   };
   described.waits = add_external(info.waits, true);
-  // The value includes an earlier submission of the queue that was described and not yet handed
-  // over.
+  // Earlier submissions of this queue that are described but not yet passed to vkQueueSubmit2 will
+  // also raise the semaphore's value.
   std::uint64_t last = values_[own];
   for (std::uint32_t i = 0; i < index; ++i) {
     if (described_[i].queue_class == submission.queue) last = std::max(last, described_[i].value);

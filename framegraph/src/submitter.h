@@ -40,8 +40,8 @@ class Submitter {
   VkResult prepare(std::uint32_t slot);
   VkResult record(const Plan& plan, RecordingThreads& recording_threads, std::uint32_t slot,
                   Timestamps* const* timestamps, bool full_barrier);
-  // Adds the semaphore waits of a submission. `queues_before` has a bit for each queue class whose
-  // work in the previous frame it waits for.
+  // Adds the semaphore waits of a submission. `queues_before` has one bit per queue class: the
+  // submission waits for the work of the previous frame on these queues.
   void add_waits(const Plan& plan, std::uint32_t index, std::uint8_t queues_before);
   // Describes a submission. flush() submits the described submissions of a queue.
   void describe(const Plan& plan, std::uint32_t index, const FrameInfo& info);

@@ -1,8 +1,8 @@
-// Synchronisation: follows every subresource through the passes in order of execution. Each
-// dependency goes into the last batch of barriers, if that comes after the work that is waited for,
-// and else into a new batch before the pass that needs it. A dependency is an interval of positions
-// in which its barrier may be. Placing a batch at the end of the interval that ends first gives the
-// least number of batches.
+// Synchronisation: follows every subresource through the passes in order of execution, and adds the
+// barriers. A dependency can be met by a batch of barriers at any position after the work that it
+// waits for, and up to the pass that needs it. It goes into the last batch if that batch is late
+// enough, and otherwise into a new batch immediately before the pass. Placing each new batch as
+// late as possible gives the least number of batches.
 #include "synchronise.h"
 
 #include <algorithm>
@@ -32,8 +32,8 @@ void note(UseState& state, const AccessRecord& access, std::int32_t time) {
   state.used = 1;
 }
 
-// Returns whether the access continues a series of writes whose order does not matter. All of them
-// come after whatever the first one came after.
+// Returns whether the access continues a series of writes whose order does not matter. All writes
+// of the series wait for the same work as the first one, and not for each other.
 bool goes_on(const UseState& state, const AccessRecord& access) {
   return (access.flags & kUnordered) && state.read_stages == 0 &&
          state.write_stages == access.stages && state.unordered_access == access.access;
@@ -42,8 +42,8 @@ bool goes_on(const UseState& state, const AccessRecord& access) {
 }  // namespace
 
 void Synchroniser::run() {
-  // Imports and histories get their states from outside the frame, transients when they take over
-  // memory.
+  // Imports and histories get their states from before the frame. A transient gets its state when
+  // it takes over memory from other resources.
   s_.states.resize(workspace_.first_sub.back());
   arrive();
   find_last_uses();
@@ -69,8 +69,9 @@ void Synchroniser::run() {
   depart();
 }
 
-// The previous frame used memory as this one does. Finds the last use of each history, and of each
-// resource that occupies some of the bytes at the end of a frame.
+// Finds the last use, in the previous frame, of each history and of each transient that is the last
+// one in a frame to occupy some byte. This frame's plan gives the answer, because the previous
+// frame had the same plan.
 void Synchroniser::find_last_uses() {
   s_.last_uses.resize(workspace_.first_sub.back());
   s_.is_last.assign(graph_.resources.size(), 0);
@@ -109,8 +110,8 @@ void Synchroniser::find_last_uses() {
   }
 }
 
-// Each byte belongs to the last transient that occupies it. The loop therefore goes backwards and
-// ends when all bytes of all heaps have an owner.
+// Finds, for each byte of the heaps, the last transient that occupies it in a frame. The loop goes
+// from the last transient to the first, and ends when each byte has an owner.
 void Synchroniser::find_last_owners() {
   s_.memory.resize(std::max(s_.memory.size(), plan_.heaps.size()));
   for (MemoryMap& map : s_.memory) map.clear();
@@ -124,7 +125,7 @@ void Synchroniser::find_last_owners() {
   }
 }
 
-// Makes a transient's first use come after the last uses of all resources that occupied its bytes
+// Orders a transient's first use after the last uses of all resources that occupied its bytes
 // before.
 inline void Synchroniser::take_over_memory(std::uint32_t resource) {
   const Placement& placed = plan_.placements[resource];
@@ -162,8 +163,8 @@ inline void Synchroniser::take_over_memory(std::uint32_t resource) {
   std::fill(states + subs[resource] + 1, states + subs[resource + 1], merged);
 }
 
-// Returns UseState::frame_before for a use at this position in the previous frame. Another queue
-// has to wait for the use if it does not know, by the end of that frame, that the use is done.
+// Returns UseState::frame_before for a use at this position in the previous frame. It has a bit for
+// each queue that, by the end of that frame, has not waited for the use.
 std::uint32_t Synchroniser::queues_that_wait(std::uint32_t position) const {
   if (!workspace_.several_queues) return 0;
   const auto used_on = static_cast<std::size_t>(plan_.passes[position].queue);
@@ -178,8 +179,9 @@ std::uint32_t Synchroniser::queues_that_wait(std::uint32_t position) const {
   return bits;
 }
 
-// The pass takes over memory from the previous frame, so that its submission waits for these
-// queues. It need not wait for a queue of which it already knows a pass of this frame to be done.
+// Makes the pass's submission wait for the previous frame's work on the queues in `frame_before`,
+// because the pass takes over their memory. The wait is left out for a queue if this pass already
+// waits for a pass of this frame on that queue.
 void Synchroniser::wait_for_frame_before(std::uint32_t position, std::uint32_t frame_before) {
   const auto own = static_cast<std::size_t>(queue_);
   unsigned queues = frame_before >> (own * kQueueClasses) & ((1u << kQueueClasses) - 1);
@@ -243,9 +245,9 @@ inline void Synchroniser::use_range(std::uint32_t position, const AccessRecord& 
 inline void Synchroniser::change_layout(std::uint32_t position, const AccessRecord& access,
                                         UseState& state, const Range& range) {
   Transition& wanted = next_image(std::max(state.read_time, state.write_time), position);
-  // Reads come after the write that they saw, so that waiting for the reads is enough. This does
-  // not hold for memory that other resources had: its reads and writes may be of different
-  // resources.
+  // Reads come after the write that they read from, so that waiting for the reads is enough. This
+  // does not hold for memory that the resource took over from others: there, the reads and the
+  // writes may belong to different resources.
   const bool after_reads = state.read_stages != 0 && !state.handed_over;
   wanted.src_stages = after_reads ? state.read_stages : state.read_stages | state.write_stages;
   wanted.src_access = after_reads ? 0 : state.write_access;
@@ -273,8 +275,8 @@ void Synchroniser::read_again(std::uint32_t position, const AccessRecord& access
       Transition wanted;
       wanted.src_stages = state.by_wait ? VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT : state.write_stages;
       wanted.src_access = state.write_access;
-      // The stages and the accesses that see the write are kept in separate masks. The barrier
-      // covers every combination of the two.
+      // The state stores the stages and the accesses to which the write is visible as two separate
+      // masks. The barrier makes the write visible to every combination of the two.
       wanted.dst_stages = access.stages;
       if (access.access & ~state.seen_access) wanted.dst_stages |= state.seen_stages;
       wanted.dst_access = access.access;
@@ -313,8 +315,9 @@ void Synchroniser::write_again(std::uint32_t position, const AccessRecord& acces
   note(state, access, pass_time(position));
 }
 
-// Extends `last` to the mips, layers or aspect of `next` if both are of one resource, are
-// neighbours, and change in the same way. Returns whether it did.
+// Extends the barrier `last` to also cover the mips, layers or aspect of `next`, if both barriers
+// are of one resource, cover adjacent subresources, and make the same change. Returns whether it
+// did.
 bool Synchroniser::extend(Transition& last, const Transition& next) {
   const Range& a = last.range;
   const Range& b = next.range;

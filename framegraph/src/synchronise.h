@@ -1,6 +1,6 @@
-// The synchroniser, in three source files: synchronise.cpp follows the passes, externals.cpp
-// handles the initial and final states of imports and histories, and queue_transfer.cpp handles
-// resources that go from one queue to another.
+// The Synchroniser is split into three source files. synchronise.cpp follows the passes,
+// externals.cpp handles the initial and final states of imports and histories, and
+// queue_transfer.cpp handles resources that move from one queue to another.
 #pragma once
 
 #include <algorithm>
@@ -96,8 +96,8 @@ class Synchroniser {
   std::uint32_t last_position_[kQueueClasses] = {};  // for each queue: position of its last pass
 };
 
-// Returns the batch for dependencies on work that ends at `time`: the last batch if it comes after
-// that, else a new one.
+// Returns the batch of barriers for a dependency on work that ends at `time`: the last batch if it
+// comes after that work, otherwise a new batch before the pass at `position`.
 inline Batch& Synchroniser::batch_after(std::int32_t time, std::uint32_t position) {
   time = std::max(time, earliest_);
   if (batch_time_ < time) {
@@ -121,8 +121,8 @@ inline void Synchroniser::join_neighbours() {
     if (last[-1].resource != resource || !extend(last[-1], *last)) return;
     plan_.transitions.pop_back();
     --plan_.batches.back().count;
-    // States of mips that were joined with the previous layer still refer to the barrier that was
-    // removed.
+    // The UseState of a subresource may still hold the index of the barrier that was removed. It
+    // now belongs to the barrier into which that one was merged.
     const auto gone = static_cast<std::uint32_t>(plan_.transitions.size());
     const auto& first = workspace_.first_sub;
     for (std::uint32_t sub = first[resource]; sub < first[resource + 1]; ++sub) {

@@ -29,14 +29,14 @@ class Timestamps {
     count_ += passes;
     return count_ - passes;
   }
-  // Begins the timing of a pass. Different passes may be recorded at the same time. `pass` is its
-  // index in the graph.
+  // Begins the timing of a pass. Several threads may call it at the same time for different passes.
+  // `pass` is the index of the pass in the graph.
   void begin_pass(VkCommandBuffer commands, std::uint32_t number, std::uint32_t pass,
                   std::string_view name);
   void end_pass(VkCommandBuffer commands, std::uint32_t number);
-  // Returns the times of the frame that began last, after the device has finished it. Until then
-  // the result is empty, or has the times of the previous frame with these queries. A later call
-  // returns the right times.
+  // Returns the times of the frame that began last. Call it after the device has finished that
+  // frame. Before that, the result is empty or has the times of the previous frame with these
+  // queries.
   std::span<const PassTiming> read();
 
  private:

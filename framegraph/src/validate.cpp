@@ -11,8 +11,8 @@ constexpr VkAccessFlags2 kAttachmentBits =
     VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT |
     VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
 
-// Returns whether an access reads contents that must exist. An attachment that nothing wrote is not
-// loaded, so that it needs none.
+// Returns whether an access reads contents that must exist. An attachment does not need contents:
+// if nothing wrote it, it is cleared or left undefined instead of loaded.
 constexpr bool reads_contents(const AccessRecord& access) {
   if (!(access.flags & kWrite)) return true;
   return !(access.flags & kDiscard) && (access.access & kWriteBits) != 0 &&
@@ -78,7 +78,8 @@ class Replay {
   }
 
   // Checks that the attachments of a rendering have one size and one number of samples. An
-  // attachment with one sample that is not read, beside multisampled ones, is a resolve target.
+  // attachment with one sample that is only written counts as a resolve target if the others are
+  // multisampled.
   void check_attachment(std::uint32_t pass, const AccessRecord& access) {
     const ResourceRecord& r = v_.graph.resources[access.resource];
     const auto side = [&access](std::uint32_t size) {

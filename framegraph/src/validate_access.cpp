@@ -43,8 +43,8 @@ struct Checker {
   std::uint32_t pass;
   const AccessRecord& access;
 
-  // The sentences are composed in functions of their own that are rarely called, because nearly all
-  // accesses are valid.
+  // Error sentences are composed in separate functions, because nearly all accesses are valid and
+  // the usual path should stay short.
   bool refuse(ErrorCode code, const std::string& sentence) {
     v.fail(code, v.pass_text(pass) + " " + sentence, pass, access.resource, access.version);
     return false;

@@ -1,5 +1,5 @@
-// The data that the phases of compile share. It is kept from call to call, so that its memory is
-// used again.
+// The data that the phases of compile() share. It is kept from call to call, so that its memory is
+// reused.
 #pragma once
 
 #include <cstdint>
@@ -31,11 +31,12 @@ struct UseState {
   std::int32_t read_time = kNever;
   VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
   std::uint32_t transition = kNone;  // the image barrier that made this layout
-  // Queues of the previous frame that have to be waited for before memory is taken over from them:
-  // three bits for each queue class that takes it over.
+  // The queues that must wait for work of the previous frame before they take over this memory.
+  // There are three bits for each waiting queue class: one for each queue class whose work it must
+  // wait for.
   std::uint32_t frame_before = 0;
-  // Set if other resources had the memory before. The reads and the writes that are recorded here
-  // may then be those of different resources, so that a barrier has to wait for both.
+  // Set if other resources occupied this memory before. The recorded reads and writes may then
+  // belong to different resources, so that a barrier has to wait for both.
   std::uint8_t handed_over = 0;
   // Set if a semaphore wait over all stages orders the next use after work of another queue.
   std::uint8_t by_wait = 0;
@@ -65,7 +66,7 @@ struct Workspace {
   std::vector<std::uint32_t> order;
 
   // Written by queues, read by all later phases: whether the frame uses queues other than graphics,
-  // or takes resources over from them.
+  // or uses resources that were last used on another queue.
   bool several_queues = false;
 
   // Written by lifetimes, read by place: the live transients in order of first use.
@@ -138,8 +139,8 @@ struct Workspace {
     std::vector<std::int64_t> change;
     std::vector<std::uint32_t> order;
     std::vector<VkDeviceSize> offsets;
-    // The settled order, which the search changes, with its offsets and its items in order of
-    // offset.
+    // The order that the search has accepted and now changes, with its offsets and its items in
+    // order of offset.
     std::vector<std::uint32_t> settled_order;
     std::vector<VkDeviceSize> settled_offsets;
     std::vector<PlaceItem> settled_items;
@@ -196,14 +197,15 @@ inline void for_each_live(const GraphDescription& graph, const Plan& plan, std::
 // Numbers the subresources and finds all errors of the declaration. Returns false if there are any.
 bool validate(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
               Errors& errors);
-// Finds the passes and accesses that are needed, and writes plan.cull_reasons and
+// Finds the passes and accesses that are not culled, and writes plan.cull_reasons and
 // plan.live_accesses.
 void cull(const GraphDescription& graph, Workspace& workspace, Plan& plan);
 // Makes the order of declaration the order of execution of the live passes.
 void order_as_declared(Workspace& workspace, const Plan& plan);
-// Looks for an order of passes whose peak of transient memory is lower. Resource sizes come from
-// `plan`, which is in order of declaration. If it returns true, workspace.reorder.order holds an
-// order whose estimated peak is lower, and workspace.reorder.declared the order of declaration.
+// Looks for an order of passes with a lower peak of transient memory. Resource sizes come from
+// `plan`, which holds the passes in order of declaration. If it returns true,
+// workspace.reorder.order holds an order whose estimated peak is lower, and
+// workspace.reorder.declared the order of declaration.
 bool find_lower_order(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
                       const Plan& plan);
 // Assigns passes to queues and submissions.
@@ -213,8 +215,8 @@ void assign_queues(const GraphDescription& graph, const Limits& limits, Workspac
 std::uint32_t taken_until(const Workspace& workspace, const Plan& plan, std::uint32_t position);
 // Finds the first and last position of each resource, and its usage.
 void lifetimes(const GraphDescription& graph, Workspace& workspace, Plan& plan);
-// Finds the accesses that find contents and those that leave some that are needed, and attachments
-// that need no memory of their own.
+// Finds for each access whether its range has contents and whether the contents it leaves are
+// needed later, and finds the attachments that need no memory of their own.
 void find_contents(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
                    Plan& plan);
 // Returns whether the device can create the textures that live passes use, and adds an error for
@@ -222,7 +224,7 @@ void find_contents(const GraphDescription& graph, const Limits& limits, Workspac
 bool check_images(const GraphDescription& graph, const Limits& limits, const Plan& plan,
                   Errors& errors);
 // Returns the usage with which a history is created: every usage that it can have. A later frame
-// that uses it in another way then does not need to create it again, which would lose its contents.
+// that uses it in another way then does not need to create it again, which would lose the contents.
 VkFlags history_usage(const Limits& limits, const ResourceRecord& record);
 // Assigns each live transient an offset in a heap.
 void place(const GraphDescription& graph, const Limits& limits, Workspace& workspace, Plan& plan);

@@ -64,8 +64,8 @@ void Replay::check_write(const AccessRecord& access, std::uint32_t expected, Sub
     if (!order_.is_ordered(read, queue, access.stages))
       fail("the write of " + name(access.resource) + " overtakes a read");
   }
-  // A write that follows a write must see it. A write that follows reads comes after those reads,
-  // and must see the earlier write only if it reads.
+  // A write that follows a write needs that write to be visible. A write that follows reads must be
+  // ordered after those reads, and needs the earlier write to be visible only if it also reads.
   const Accesses seen = before.reads.empty()      ? access.access
                         : access.flags & kDiscard ? Accesses{0}
                                                   : reads_of(access.access);
@@ -164,8 +164,8 @@ void Replay::check_final_state(std::uint32_t resource) {
     if (sub.released || (sub.family != kNone && sub.family != family(queue)))
       fail(name(resource) + " is left with another queue family than it came with");
     for (const Operation& read : sub.last.reads) {
-      // The next user waits for the stages of the final state only, or for stages that come after
-      // them.
+      // Work after the frame waits only for the stages of the final state. Each read must therefore
+      // be in these stages, or be ordered before them.
       const bool waited_for = !is_write(final_state.access) && read.queue == queue &&
                               (read.stages & ~expand_stages(final_state.stages)) == 0;
       if (!waited_for && !order_.is_ordered(read, queue, final_state.stages))
@@ -179,8 +179,8 @@ void Replay::check_final_state(std::uint32_t resource) {
   }
 }
 
-// Checks the states in which the plan says that it leaves histories, because the next frame starts
-// from them.
+// Checks that each history ends the frame in the state that the plan names, because the next frame
+// starts from that state.
 void Replay::check_final(const FinalState& final) {
   if (final.resource >= resources_.size()) {
     fail("the final state of a resource that was not declared");
@@ -202,8 +202,8 @@ void Replay::check_final(const FinalState& final) {
   }
 }
 
-// Checks that all work on a history comes before the last work of the queue that the plan names for
-// it: the next frame waits for that queue.
+// Checks that all work on a history is ordered before the end of the frame on the queue that the
+// plan names for the history, because the next frame waits for that queue only.
 void Replay::check_final_order(const FinalState& final, const Operation& operation) {
   const auto queue = static_cast<std::uint8_t>(final.queue);
   if (operation.queue != queue &&

@@ -134,8 +134,8 @@ void HappensBefore::apply(std::span<const Barrier> barriers) {
   for (std::size_t i = 0; i < barriers.size(); ++i) spread(barriers[i], reached_[i]);
 }
 
-// Finds the operations that a barrier orders: those in its first scope, and everything that is
-// ordered before them.
+// Finds the operations that a barrier waits for: those in its first scope, and all operations that
+// are ordered before these.
 void HappensBefore::reach(const Barrier& barrier, Reached& reached) const {
   reached.ordered.assign(places_, 0);
   reached.available.assign(places_ * writes_.size(), 0);
@@ -177,8 +177,8 @@ void HappensBefore::spread(const Barrier& barrier, const Reached& reached) {
   });
 }
 
-// A signal comes after all earlier work of its queue and after everything that is ordered before
-// that work. It makes all of it available.
+// Records a semaphore signal. It comes after all earlier work of its queue and after everything
+// that is ordered before that work, and makes all writes of this work available.
 void HappensBefore::signal(std::uint8_t queue, std::uint32_t submission) {
   if (signalled_.size() <= submission) signalled_.resize(submission + 1);
   std::vector<Time>& times = signalled_[submission];

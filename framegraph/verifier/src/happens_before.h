@@ -45,8 +45,8 @@ struct Operation {
   bool operator==(const Operation&) const = default;
 };
 
-// A barrier with expanded scopes. `memory` is true if its memory dependency covers every resource,
-// and false if it covers one image.
+// A barrier with expanded scopes. `memory` is true if its memory dependency covers all resources,
+// and false if it covers only one image.
 struct Barrier {
   std::uint8_t queue = 0;
   Stages src = 0;
@@ -59,7 +59,7 @@ Barrier barrier_of(const Transition& transition, QueueClass queue);
 
 class HappensBefore {
  public:
-  // `stages` and `accesses` are all expanded bits that the plan's accesses and barriers name.
+  // `stages` and `accesses` contain every expanded bit that an access or barrier of the plan names.
   // `queues` is the number of queue classes.
   HappensBefore(Stages stages, Accesses accesses, std::uint32_t queues);
 
@@ -77,12 +77,14 @@ class HappensBefore {
   void signal(std::uint8_t queue, std::uint32_t submission);
   void wait(std::uint8_t queue, std::uint32_t submission, Stages stages);
 
-  // Returns whether the operation comes before the barrier's second scope and its writes are then
-  // available, if the barrier's memory dependency covers the operation's resource.
+  // is_before() returns whether the operation is ordered before the barrier's second scope.
+  // is_available_by() returns whether its writes are also available there, if the barrier's memory
+  // dependency covers the operation's resource.
   bool is_before(const Operation& operation, const Barrier& barrier) const;
   bool is_available_by(const Operation& operation, const Barrier& barrier) const;
-  // Returns whether the operation happens before the next command of these stages, whether its
-  // writes are then available, and whether these accesses see them.
+  // For the next command of these stages on this queue: is_ordered() returns whether the operation
+  // happens before it, is_available() whether the operation's writes are then also available, and
+  // is_visible() whether they are visible to these accesses.
   bool is_ordered(const Operation& operation, std::uint8_t queue, Stages stages) const;
   bool is_available(const Operation& operation, std::uint8_t queue, Stages stages) const;
   bool is_visible(const Operation& operation, std::uint8_t queue, Stages stages,
@@ -91,7 +93,7 @@ class HappensBefore {
   bool is_before_any(const Operation& operation, std::uint8_t queue, Stages stages) const;
 
  private:
-  // For each source, the times up to which one barrier of the current batch orders it.
+  // For each source, the times up to which one barrier of the current batch orders its accesses.
   struct Reached {
     std::vector<Time> ordered;
     std::vector<Time> available;  // by source and write access
@@ -108,8 +110,8 @@ class HappensBefore {
   Time available(std::size_t source, std::size_t write, std::size_t to) const {
     return available_[(source * writes_.size() + write) * places_ + to];
   }
-  // Returns the first of the times of a source and destination, one for each access. `write` is
-  // writes_.size() if the source does not write.
+  // Returns the array of times, one for each access of the destination, up to which the writes of a
+  // source are visible to a destination. `write` is writes_.size() if the source does not write.
   Time* visible(std::size_t source, std::size_t write, std::size_t to) {
     return &visible_[((source * (writes_.size() + 1) + write) * places_ + to) * accesses_.size()];
   }
@@ -124,12 +126,12 @@ class HappensBefore {
   bool any_stage(Stages stages, Function&& f) const;
   template <typename Function>
   bool all_writes(Accesses writes, Function&& f) const;
-  // Calls f(index of a source) for each stage of an operation. An access needs all of them, a
-  // layout change any of them.
+  // Calls f(index of a source) for each stage of an operation and combines the results. An access
+  // requires f for all of its stages, a layout change for any of them.
   template <typename Function>
   bool holds(const Operation& operation, Function&& f) const;
-  // Returns whether the stages are in the second scope of the barrier that made the layout change.
-  // The change happens before those.
+  // Returns whether `stage` is in the second scope of the barrier that made the layout change. The
+  // layout change happens before the commands of those stages.
   static bool is_own(const Operation& operation, std::uint8_t queue, Stages stage) {
     return operation.kind == Operation::Kind::change && operation.queue == queue &&
            (operation.stages & stage) != 0;

@@ -62,8 +62,8 @@ void Replay::run() {
   }
 }
 
-// Finds the contents that each access must find, from the declaration alone: the last write
-// declared before it.
+// Finds the contents that each access must find: those of the last write that is declared before
+// it. Uses the declaration alone and not the plan.
 void Replay::find_expected() {
   last_.resize(graph_.resources.size());
   for (std::uint32_t r = 0; r < graph_.resources.size(); ++r) {
@@ -85,7 +85,7 @@ void Replay::find_expected() {
 }
 
 // Sets the contents and states at the start of a frame: transients have no contents, and imports
-// are as declared.
+// are in the state that the graph declares.
 void Replay::begin_frame(bool first) {
   where_ = first ? "at the start of the frame" : "at the start of the next frame";
   first_frame_ = first;
@@ -109,9 +109,9 @@ void Replay::begin_frame(bool first) {
   }
 }
 
-// Sets the state of a subresource that comes from outside the frame. The reads of the initial state
-// have seen earlier writes; nothing else has. An initial state without access bits has seen
-// nothing: it only names stages, and all of them must be waited for.
+// Sets the state of a subresource that comes from outside the frame. Earlier writes are visible to
+// the read accesses of the initial state and to nothing else. An initial state without access bits
+// only names stages: later work must wait for all of them, and no write is visible yet.
 void Replay::arrive(Sub& sub, std::uint8_t queue, const State& initial_state) {
   using Kind = Operation::Kind;
   const Stages stages = expand_stages(initial_state.stages);
@@ -122,7 +122,8 @@ void Replay::arrive(Sub& sub, std::uint8_t queue, const State& initial_state) {
     if (stages != 0) sub.last.writes.push_back({Kind::access, queue, time, stages, writes, 0});
     return;
   }
-  // Stages that nothing in the frame names are not tracked, because no access can tell them apart.
+  // Only stages that the frame or the plan names are tracked. Waiting for the others would make no
+  // difference.
   for (Stages left = accesses == 0 ? stages & order_.tracked_stages() : 0; left != 0;
        left &= left - 1)
     sub.last.writes.push_back({Kind::change, queue, time, left & (~left + 1), 0, 0});
@@ -153,8 +154,8 @@ void Replay::submission(std::uint32_t index) {
   order_.signal(queue, index);
 }
 
-// Applies the transitions of batches. The transitions of one batch are not ordered among each
-// other, so that all are checked before any takes effect.
+// Applies the barriers of several batches. The barriers of one batch are not ordered among each
+// other, so that all of them are checked before any takes effect.
 void Replay::batches(std::uint32_t first, std::uint32_t count, QueueClass queue) {
   for (std::uint32_t b = first; b < first + count; ++b) {
     const Batch& batch = plan_.batches[b];
@@ -177,9 +178,9 @@ void Replay::batches(std::uint32_t first, std::uint32_t count, QueueClass queue)
   }
 }
 
-// Checks that every earlier use of the subresource and of its bytes comes before the layout change.
-// The memory dependency of an image barrier covers the bytes of its image, whichever resource wrote
-// them.
+// Checks that every earlier use of the subresource, and of the bytes that it occupies, is ordered
+// before the layout change. The memory dependency of an image barrier covers the bytes of its
+// image, including those that another resource wrote.
 void Replay::check_order_of_change(std::uint32_t resource, const Barrier& barrier, const Sub& sub) {
   for (const Operation& read : sub.last.reads) {
     if (!order_.is_before(read, barrier))
@@ -199,8 +200,7 @@ void Replay::check_order_of_change(std::uint32_t resource, const Barrier& barrie
   }
 }
 
-// Checks that the subresource is in the layout and belongs to the owner that the layout change
-// expects.
+// Checks that the subresource has the old layout and the queue family that the barrier names.
 void Replay::check_state_of_change(const Transition& t, const Sub& sub, std::uint8_t queue) {
   const bool transfer = family(static_cast<std::uint8_t>(t.src_queue)) !=
                         family(static_cast<std::uint8_t>(t.dst_queue));
@@ -246,9 +246,9 @@ void Replay::change(const Transition& t, QueueClass on) {
   });
 }
 
-// Makes a transient the owner of its bytes, which it is from its first use until another resource
-// takes them. The previous owner then has no contents. Only the resources that owned the bytes just
-// before must be done: these in turn came after the owners before them.
+// Makes a transient the owner of its bytes, from its first use until another resource takes them.
+// The contents of the previous owners are lost. Only the owners immediately before must be done,
+// because they in turn came after the owners before them.
 void Replay::take_memory(std::uint32_t resource) {
   const Placement& placement = plan_.placements[resource];
   Resource& taker = resources_[resource];
@@ -280,7 +280,8 @@ void Replay::take_memory(std::uint32_t resource) {
 void Replay::keep_former(Resource& taker, std::uint32_t resource) {
   Resource& giver = resources_[resource];
   giver.has_memory = false;
-  // The mips and layers of one access usually have one common entry.
+  // Adds an entry only if it differs from the last one, because the mips and layers of one access
+  // usually have one entry in common.
   const auto keep = [&taker](const Former& former) {
     if (taker.former.empty() || taker.former.back() != former) taker.former.push_back(former);
   };

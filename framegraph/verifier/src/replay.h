@@ -68,8 +68,8 @@ class Replay {
   static std::uint32_t queue_count(const GraphDescription& graph, const Plan& plan);
   static HappensBefore order_of(const GraphDescription& graph, const Plan& plan,
                                 std::uint32_t queues);
-  // Returns the number of the signal for all work of a queue in the frame. It follows those of the
-  // submissions.
+  // Returns the number of the semaphore signal that stands for all work of a queue in the frame.
+  // These signals are numbered after those of the submissions.
   std::uint32_t end_signal(std::uint8_t queue) const {
     return static_cast<std::uint32_t>(plan_.submissions.size()) + queue;
   }

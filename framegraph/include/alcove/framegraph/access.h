@@ -1,7 +1,8 @@
-// The common accesses by name: how a pass reads or writes a resource.
+// Named Access values for common uses: each says how a pass reads or writes a resource.
 //
-// Functions take the shader stages of the access; constants name the usual stages. Accesses of one
-// pass to one subresource are joined with `|`, because a pass declares each subresource once.
+// Functions take the shader stages of the access as an argument. Constants have the usual stages. A
+// pass declares each subresource only once. If it uses a subresource in two ways, combine the two
+// accesses with `|`.
 #pragma once
 
 #include "alcove/framegraph/types.h"
@@ -79,8 +80,8 @@ inline constexpr Access color_attachment{
     VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
     VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
     VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT};
-// The texture with one sample per texel that a multisampled colour or depth attachment is resolved
-// to.
+// The access of a resolve target: the texture with one sample per texel into which a multisampled
+// colour or depth attachment is resolved.
 inline constexpr Access resolve_target{
     VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
     VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT};
@@ -88,8 +89,8 @@ inline constexpr Access depth_attachment{
     VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
     VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
     VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT};
-// Stencil test and writes. Declared with Range::stencil(), another access may read the texture's
-// depth at the same time.
+// The stencil test and stencil writes. If the pass declares this access with Range::stencil(),
+// another access of the pass may read the depth aspect of the same texture.
 inline constexpr Access stencil_attachment{
     VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
     VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
@@ -99,8 +100,8 @@ inline constexpr Access depth_test{
     VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
     VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT, VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL,
     VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT};
-// A texture that the fragment shader reads at its own pixel, as an input attachment of a render
-// pass.
+// The access of a texture that the fragment shader reads at its own pixel, as an input attachment
+// of a render pass.
 inline constexpr Access input_attachment{
     VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_INPUT_ATTACHMENT_READ_BIT,
     VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT};
@@ -140,8 +141,9 @@ constexpr Access storage_write(VkPipelineStageFlags2 stages) {
   return {stages, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
           VK_BUFFER_USAGE_STORAGE_BUFFER_BIT};
 }
-// Returns the access of a buffer that shaders of these stages read and write. If it is declared
-// with Contents::accumulate, atomic operations of several passes need no barrier in between.
+// Returns the access of a buffer that shaders of these stages read and write. Between consecutive
+// passes that declare it with Contents::accumulate, for example for atomic additions, the graph
+// adds no barrier.
 constexpr Access storage_read_write(VkPipelineStageFlags2 stages) {
   return storage_read(stages) | storage_write(stages);
 }
@@ -177,8 +179,8 @@ inline constexpr Access transfer_source{VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_
 inline constexpr Access transfer_destination{
     VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
     VK_BUFFER_USAGE_TRANSFER_DST_BIT};
-// The destination of vkCmdFillBuffer and vkCmdUpdateBuffer. Implementations count these commands
-// among the clears or the copies.
+// The destination of vkCmdFillBuffer and vkCmdUpdateBuffer. The access names both the clear stage
+// and the copy stage, because implementations differ in which of the two these commands belong to.
 inline constexpr Access fill{VK_PIPELINE_STAGE_2_CLEAR_BIT | VK_PIPELINE_STAGE_2_COPY_BIT,
                              VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
                              VK_BUFFER_USAGE_TRANSFER_DST_BIT};
@@ -202,7 +204,7 @@ inline constexpr Access acceleration_structure_build{
     VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR, VK_IMAGE_LAYOUT_UNDEFINED,
     VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_STORAGE_BIT_KHR};
 // Returns the access of an acceleration structure that shaders of these stages trace rays through.
-// With the build stage, the build of another structure reads it.
+// If `stages` is the acceleration structure build stage, the build of another structure reads it.
 constexpr Access acceleration_structure_read(VkPipelineStageFlags2 stages) {
   return {stages, VK_ACCESS_2_ACCELERATION_STRUCTURE_READ_BIT_KHR, VK_IMAGE_LAYOUT_UNDEFINED,
           VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_STORAGE_BIT_KHR};

@@ -47,9 +47,9 @@ struct ImageLimits {
   std::uint32_t layers = 0;        // the largest number of layers
   VkSampleCountFlags samples = 0;  // mask of the supported sample counts
 };
-// A function that returns the limits of one texture. The compiler calls it for textures that the
-// fields of Limits do not decide: those with several samples, layers or slices, or with flags. It
-// must be a pure function.
+// A function that returns the device's limits for one texture. The compiler calls it only for
+// textures whose support does not follow from the other fields of Limits: those with flags, or with
+// more than one sample, layer or depth slice. It must be a pure function.
 struct ImageOracle {
   ImageLimits (*query)(const void* context, const ResourceRecord& record, VkFlags usage) = nullptr;
   const void* context = nullptr;
@@ -57,8 +57,9 @@ struct ImageOracle {
 
 enum class Ordering : std::uint8_t {
   program,  // in the order of declaration
-  // In another order, if that order needs fewer bytes of memory in all heaps together after
-  // placement. Passes with side effects keep their order relative to each other.
+  // The passes run in another order than declared, because placing the transients for that order
+  // takes fewer bytes in all heaps together. Passes with side effects keep their order relative to
+  // each other.
   lower_peak,
 };
 
@@ -69,11 +70,11 @@ struct Limits {
   std::uint32_t max_layers = 2048;
   VkDeviceSize max_buffer_size = VkDeviceSize{1} << 32;
   std::uint32_t max_samples = 64;  // all powers of two up to it are allowed
-  // The limit bufferImageGranularity in bytes: a buffer and an image with optimal tiling that share
-  // memory lie in different pages of this size.
+  // The device limit bufferImageGranularity in bytes. A buffer and an image with optimal tiling
+  // never share a page of this size, even if both lie in the same heap.
   VkDeviceSize buffer_image_granularity = 1;
-  // Whether the device has lazily allocated memory. Attachments whose contents no pass loads and
-  // nobody needs later are then allocated from it.
+  // Whether the device has a lazily allocated memory type. If so, attachments whose contents are
+  // neither loaded by a pass nor needed later are allocated from it.
   bool has_lazy_memory = false;
   // Whether the feature separateDepthStencilLayouts is enabled. Accesses to one aspect of a texture
   // with depth and stencil need it.
@@ -88,12 +89,12 @@ struct Limits {
   // Graphs with more live passes than this keep the order of declaration, because the search for
   // another order takes time that grows faster than the graph.
   std::uint32_t reorder_passes = 48;
-  // Budget of the search for a placement with a lower memory peak, in comparisons of two resources,
-  // at least 0. The search runs only if the first placement exceeds the lower bound; 0 keeps the
-  // first placement. A larger budget takes more time in frames whose declaration changes. For 200
-  // passes with textures of differing sizes (framegraph_benchmark), 0 takes .05 ms at a median peak
-  // of 1.16 times the lower bound, and 2^18 takes .6 ms at 1.002. 2^24 takes up to 30 ms and
-  // improves the worst frames by some hundredths.
+  // How long placement searches for a lower memory peak, in comparisons of two resources, at least
+  // 0. The search runs only if the first placement exceeds the lower bound; 0 always keeps the
+  // first placement. A larger value takes more time in frames whose declaration changes. Examples
+  // for 200 passes with textures of differing sizes (framegraph_benchmark): 0 takes .05 ms and has
+  // a median peak of 1.16 times the lower bound, 2^18 takes .6 ms and has 1.002 times the bound,
+  // and 2^24 takes up to 30 ms and lowers the worst peaks by a few hundredths of the bound.
   std::int64_t placement_effort = 1 << 18;
   bool alias = true;  // whether transients may share memory
 };

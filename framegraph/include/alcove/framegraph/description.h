@@ -1,6 +1,6 @@
 // A declared frame as plain data. Graph writes it; the compiler, the verifier and the printers read
-// it. Its records have no padding bytes, so that two declarations are equal if their bytes are. The
-// plan cache compares them in this way.
+// it. Its records have no padding bytes, so that the plan cache can compare two declarations byte
+// by byte.
 #pragma once
 
 #include <cstdint>
@@ -87,10 +87,10 @@ enum AccessFlags : std::uint32_t {
   kOnBuffer = 128,  // the handle is a Buffer
   // Contents::accumulate: the order of this write relative to others with the same access is free.
   kUnordered = 256,
-  // Marks an OutputRecord that stands for a PassBuilder which was used after reset().
+  // Marks an OutputRecord that reports the use of a PassBuilder after Graph::reset().
   kStaleBuilder = 1u << 16,
-  // The bits from this one upwards count the renderings of the pass
-  // (PassBuilder::next_rendering()).
+  // Bits 24 to 31 of the flags hold the number of the rendering within the pass to which the access
+  // belongs (see PassBuilder::next_rendering()).
   kRendering = 1u << 24,
 };
 
@@ -116,8 +116,9 @@ struct AccessRecord {
   VkFlags usage = 0;
   std::uint32_t resource = kNone;
   std::uint32_t flags = 0;  // AccessFlags
-  // The declared range with kAll replaced by the texture's counts. kAll remains only if the base is
-  // out of range. `aspects` is 0 unless it selects one of two planes.
+  // The declared range, with kAll replaced by the texture's number of mips or layers. kAll remains
+  // only if the base mip or layer is out of range. `aspects` is 0 unless the range selects only the
+  // depth or only the stencil of a format that has both.
   Range range;
   std::uint32_t version = 0;  // of the handle; a write returns the next version
 
@@ -151,8 +152,9 @@ struct GraphDescription {
   Records<ResourceRecord> resources;
   Records<ExternalRecord> externals;
   Records<OutputRecord> outputs;
-  // The number of the frame that first declared these records, without the passes. Two descriptions
-  // with the same edition have the same records, because frame numbers are unique among all graphs.
+  // The number of the frame in which the current records (all except the pass records) were first
+  // declared. Two descriptions with the same edition have the same records, because frame numbers
+  // are unique among all graphs.
   std::uint64_t edition = 0;
 
   // A name, which appears in messages only. Names are not part of the comparison of declarations.

@@ -3,10 +3,12 @@
 // also needs timelineSemaphore, even with a single queue. Passes that call
 // RecordContext::begin_rendering() also need dynamicRendering.
 //
-//   frame:  wait for the fence of slot s;  graph.reset(); declare;  begin commands
+//   frame:  wait for the fence of frame slot s;  graph.reset(); declare;  begin commands
 //           executor.record(graph, commands, {s});  end commands, submit with the fence of slot s
 //
-// Plans and physical resources are cached. A frame whose declaration is cached compiles and
+// Frame slots are numbered 0 to frames_in_flight - 1; each frame in flight uses another one. Plans
+// and physical resources are cached: for a frame that was declared before, the executor compiles
+// and allocates nothing. Only one thread at a time may call an executor.
 // allocates nothing. Only one thread at a time may call an executor.
 #pragma once
 
@@ -30,9 +32,9 @@ struct QueueHandle {
   std::uint32_t family = kNone;
 };
 
-// The caller's device. It must outlive the executor. `queues` is indexed by QueueClass. The
-// graphics queue is required, but its family is enough for an executor that only records; the other
-// queues may be null.
+// The caller's device. It must outlive the executor. `queues` is indexed by QueueClass. The entry
+// for graphics is required; an executor that only uses record() needs its queue family and no queue
+// handle. The other queues may be null.
 struct DeviceHandles {
   VkInstance instance = VK_NULL_HANDLE;
   VkPhysicalDevice physical_device = VK_NULL_HANDLE;
@@ -56,9 +58,10 @@ struct ExecutorOptions {
   // How long placement looks for a lower memory peak when a frame's declaration changes, in
   // comparisons of two resources: see Limits::placement_effort.
   std::int64_t placement_effort = Limits{}.placement_effort;
-  // Plans that are kept, 1 to 4096, for each of record() and submit(). A frame whose declaration is
-  // that of a kept plan is not compiled again. When all are taken, the plan that was unused for
-  // longest is replaced. A plan takes some hundred bytes a pass and resource.
+  // The number of compiled plans that are cached, 1 to 4096. record() and submit() have a cache of
+  // this size each. A frame whose declaration has a cached plan is not compiled again. When a cache
+  // is full, the plan that was unused for longest is replaced. A plan takes a few hundred bytes per
+  // pass and per resource.
   std::uint32_t cached_plans = 64;
   // Number of threads that record passes, 1 to 64, including the caller's. Fewer are used if the
   // system cannot create so many. With more than one thread, callbacks of different passes run at
@@ -79,7 +82,7 @@ struct ExecutorOptions {
 
 // A semaphore of the caller's that submit() waits for or signals. The wait comes before the frame's
 // first work on `queue`, the signal after its last work there. If the frame runs nothing on that
-// queue, they go to its first or last submission.
+// queue, the frame's first submission waits, and its last submission signals.
 struct QueueSemaphore {
   VkSemaphore semaphore = VK_NULL_HANDLE;
   std::uint64_t value = 0;  // of a timeline semaphore; a binary one ignores it
@@ -91,10 +94,10 @@ struct QueueSemaphore {
 struct FrameInfo {
   // The number of the frame in flight. The device must have finished the last frame with this slot.
   std::uint32_t slot = 0;
-  // Used by submit() only; with record() the caller synchronises. For a swapchain image, add the
-  // semaphore of vkAcquireNextImageKHR to `waits`, for the queue that uses the image first, and the
-  // semaphore that vkQueuePresentKHR waits for to `signals`, for the graphics queue, which leaves
-  // imports in their final states.
+  // Semaphores for submit(). record() ignores them, because its caller submits the commands. For a
+  // swapchain image, add the semaphore of vkAcquireNextImageKHR to `waits`, with the queue that
+  // uses the image first. Add the semaphore that vkQueuePresentKHR waits for to `signals`, with the
+  // graphics queue, because the graphics queue brings imports into their final states.
   std::span<const QueueSemaphore> waits = {};
   std::span<const QueueSemaphore> signals = {};
 };
@@ -129,46 +132,49 @@ class Executor {
   // The device must have finished all recorded frames. The destructor waits for submitted ones.
   ~Executor();
 
-  // Records the frame into `commands`, a primary command buffer of the graphics family that is in
-  // the recording state and outside a render pass. All passes run on its queue. The caller must
-  // submit the command buffers in the order in which they were recorded, once each, to one queue.
-  // On an error nothing is recorded, unless the error is found while recording (an undeclared use,
-  // or memory that runs out): `commands` must then be thrown away. After an error, histories are as
-  // before the frame, except that histories which the frame declared differently or reset have no
-  // contents.
+  // Records the frame into `commands`, a primary command buffer of the graphics queue family that
+  // is in the recording state and outside a render pass. All passes are recorded into it, whatever
+  // their queue class. The caller must submit the command buffers in the order in which they were
+  // recorded, once each, to one queue. If the declaration is invalid, nothing is recorded. An error
+  // that is found while recording (an undeclared use, or no more memory) leaves `commands`
+  // incomplete: discard it. After any error, the histories have the contents that they had before
+  // the frame, except that a history which the frame declared with another description, or reset,
+  // has no contents.
   [[nodiscard]] tl::expected<FrameReport, Errors> record(Graph& graph, VkCommandBuffer commands,
                                                          const FrameInfo& frame = {});
-  // Takes back a recorded frame whose commands are not submitted after all. Call it before any
-  // other function of this graph or executor. The graph and the executor are then as if that frame
-  // had not been recorded or declared. Without this call the frame's histories have wrong contents.
-  // To record the frame again, declare it again if it changed the description of a history.
+  // Undoes the effects of recording a frame, if its commands will not be submitted. Call it before
+  // any other function of this graph or executor. The graph and the executor are then as if that
+  // frame had not been declared or recorded. Without this call, the histories would be treated as
+  // if the frame had written them. To record the frame again, declare it again if it changed the
+  // description of a history.
   void discard(Graph& graph, const FrameInfo& frame = {});
 
-  // Records the frame and submits it to all queues of the device, with one vkQueueSubmit2 for all
-  // work of a queue that comes before another queue waits for it. First waits for the frame that
-  // was last submitted with this slot. Do not mix it with record() on one executor unless the
-  // caller orders the two. After the device is lost, submit() and wait() return an error with
-  // VK_ERROR_DEVICE_LOST every time; the executor can then only be destroyed, which does not wait
-  // and leaks nothing.
+  // Records the frame and submits it to the queues of the device. The work of a queue is collected
+  // into one vkQueueSubmit2 until another queue has to wait for it. Before recording, submit()
+  // waits for the frame that was last submitted with this slot. If you use both record() and
+  // submit() on one executor, you must synchronise their frames yourself. After the device is lost,
+  // submit() and wait() return an error with VK_ERROR_DEVICE_LOST every time; the executor can then
+  // only be destroyed, which does not wait and leaks nothing.
   [[nodiscard]] tl::expected<FrameReport, Errors> submit(Graph& graph, const FrameInfo& frame = {});
   // Waits until the device has finished the frame that was last submitted with this slot.
   [[nodiscard]] tl::expected<void, Errors> wait(std::uint32_t slot = 0);
 
-  // Returns the GPU time of each pass of the frame last recorded with this slot, in order of
-  // execution on each queue. Call it after the device has finished that frame; until then it may
-  // return the times of the frame before. The result is empty if no such frame exists or timestamps
-  // are off. It is valid until the next call.
+  // Returns the GPU time of each pass of the frame that was last recorded with this slot, in order
+  // of execution on each queue. Call it after the device has finished that frame; before that, it
+  // may return the times of an earlier frame with this slot. The result is empty if no such frame
+  // exists or timestamps are off. It is valid until the next call of timings().
   [[nodiscard]] std::span<const PassTiming> timings(std::uint32_t slot = 0);
 
-  // Returns a persistent texture or buffer, as the frames recorded so far leave it, for another
-  // graph to import. The other graph's frame must come between two frames of this one and leaves
-  // the resource in the same state, which is also the import's final state. Handles are null before
-  // a frame has used the resource.
+  // Returns the import with which another graph can use a persistent texture or buffer of this
+  // graph, in the state in which the frames recorded so far leave it. The initial state and the
+  // final state of the import are the same. Submit the other graph's frame between two frames of
+  // this graph. The Vulkan handles are null until a frame has used the resource.
   [[nodiscard]] ImportedTexture exported(const Graph& graph, const TextureHistory& texture) const;
   [[nodiscard]] ImportedBuffer exported(const Graph& graph, const BufferHistory& buffer) const;
 
-  // Call it before you destroy an image that was imported, if passes asked for views of it other
-  // than the imported one: a new image may get the same handle.
+  // Drops the cached views of an imported image. Call it before you destroy the image, unless
+  // passes only ever used the view that was imported with it: a new image may get the same handle
+  // as the old one.
   void forget(VkImage image);
 
   const VulkanFunctions& functions() const;

@@ -50,8 +50,8 @@ class PassBuilder {
                               Contents contents = Contents::keep, Need need = Need::required);
   [[nodiscard]] Buffer write(Buffer buffer, const Access& access,
                              Contents contents = Contents::keep, Need need = Need::required);
-  // Declares a write that is left out if nobody reads it. RecordContext::is_used() tells the
-  // callback.
+  // Declares a write that is culled if no later pass reads its result. The callback can ask
+  // RecordContext::is_used() whether the write takes place.
   [[nodiscard]] Texture write_optional(Texture texture, const Access& access, Range range = {}) {
     return write(texture, access, range, Contents::keep, Need::optional);
   }
@@ -59,19 +59,19 @@ class PassBuilder {
     return write(buffer, access, Contents::keep, Need::optional);
   }
 
-  // Begins another rendering of the pass: attachments that are declared after this call belong to
-  // it. The attachments of one rendering must have one size and, except for resolve targets, one
-  // number of samples. At most 255 calls.
+  // Begins another rendering (vkCmdBeginRendering) within the pass: attachments that are declared
+  // after this call belong to it. The attachments of one rendering must have one size and, except
+  // for resolve targets, one number of samples. A pass may call it at most 255 times.
   void next_rendering() { rendering_ += kRendering; }
 
   // Marks the pass as one with effects outside the graph. It is never culled.
   void side_effect();
 
-  // The function that records the pass. It is called with a RecordContext& once a frame if the pass
-  // is live. It is moved into the graph's own memory and lives until reset. It must not throw if
-  // the library is built without exceptions. Otherwise an exception propagates out of
-  // Executor::record or submit after all recording threads have finished, and the frame counts as
-  // failed.
+  // Sets the callback that records the pass's commands. It is called with a RecordContext& once in
+  // each frame in which the pass is not culled. The callable is moved into the graph's own memory
+  // and lives until reset(). It must not throw if the library is built without exceptions.
+  // Otherwise an exception propagates out of Executor::record or submit after all recording threads
+  // have finished, and the frame counts as failed.
   template <typename Callable>
   void record(Callable&& callable);
 
@@ -81,8 +81,8 @@ class PassBuilder {
   friend class Graph;
   PassBuilder(Graph& graph, std::uint32_t pass, std::uint32_t tag)
       : graph_(graph), pass_(pass), tag_(tag) {}
-  // Returns whether the frame of the pass is still being declared. If not, adds an error for the
-  // use after reset().
+  // Returns whether the frame to which this builder belongs is still being declared. If it is not,
+  // because reset() was called, adds an error to the new frame.
   bool is_current();
 
   Graph& graph_;
@@ -92,9 +92,9 @@ class PassBuilder {
 };
 
 // A resource that keeps contents from frame to frame. `current` is written in this frame.
-// previous(k) is what was `current` k frames ago, where only frames in which a live pass wrote
-// `current` count. If nothing changes, a write that keeps contents can update previous() in place
-// instead.
+// previous(k) is what was `current` k frames ago; frames in which no pass wrote `current` do not
+// count. A frame that changes only a part of the contents may write previous() with Contents::keep
+// instead of `current`, which updates the older slot in place.
 struct TextureHistory {
   Texture current;
   std::uint32_t slots = 0;
@@ -128,29 +128,29 @@ class Graph {
   Graph(const Graph&) = delete;
   Graph& operator=(const Graph&) = delete;
 
-  // Created textures and buffers are transient: the executor provides them for the passes that are
-  // not culled. Imported ones belong to the caller. Names are copied. They need not be unique,
-  // except those of histories.
+  // Created textures and buffers are transient: the executor provides memory for them during the
+  // frame if a pass that is not culled uses them. Imported ones belong to the caller. Names are
+  // copied. They need not be unique, except those of histories.
   Texture create_texture(std::string_view name, const TextureDesc& desc);
   Buffer create_buffer(std::string_view name, const BufferDesc& desc);
   Texture import_texture(std::string_view name, const ImportedTexture& import);
   Buffer import_buffer(std::string_view name, const ImportedBuffer& import);
-  // A history is identified by its name from frame to frame. `slots`, 1 to 8, includes the slot of
-  // the current frame: 2 keeps the contents of one earlier frame.
+  // Creates a history, or finds the one with this name from the previous frames. `slots`, 1 to 8,
+  // includes the slot of the current frame: 2 keeps the contents of one earlier frame.
   TextureHistory create_texture_history(std::string_view name, const TextureDesc& desc,
                                         std::uint32_t slots = 2);
   BufferHistory create_buffer_history(std::string_view name, const BufferDesc& desc,
                                       std::uint32_t slots = 2);
-  // Histories of one slot: `current` keeps its contents from frame to frame, and a write that keeps
-  // them updates it in place. `validity` is that of `current`. If it is valid, `current` can be
-  // read before the frame writes it. Passes that write it are live. With a final state, each frame
-  // that uses it leaves it in that state, so that another graph can take it over by importing the
-  // result of Executor::exported().
+  // Create persistent resources: histories with one slot. `current` keeps its contents from frame
+  // to frame, and a write with Contents::keep updates it in place. `validity` tells whether
+  // `current` has contents; if it does, passes can read it before the frame writes it. Passes that
+  // write it are never culled. If a final state is given, each frame that uses the resource leaves
+  // it in that state, and another graph can then import the result of Executor::exported().
   TextureHistory create_persistent_texture(std::string_view name, const TextureDesc& desc,
                                            const State& final_state = {});
   BufferHistory create_persistent_buffer(std::string_view name, const BufferDesc& desc,
                                          const State& final_state = {});
-  // Discards the contents of the named history, or of all, from its next create_*_history() on.
+  // Discards the contents of the named history, or of all histories, when they are next declared.
   void reset_history(std::string_view name);
   void reset_histories();
   // Forgets the named history, unless this frame declared it. The executor frees its memory in one
@@ -160,7 +160,8 @@ class Graph {
   PassBuilder add_pass(std::string_view name, QueueClass queue = QueueClass::graphics);
 
   // Marks this version as an output of the frame, so that the passes that produce it are not
-  // culled. A transient's contents can be read until its memory is used again in the next frame.
+  // culled. The contents of a transient can be read after the frame, until the next frame reuses
+  // its memory.
   void output(Texture texture);
   void output(Buffer buffer);
 
@@ -173,15 +174,15 @@ class Graph {
 
   const GraphDescription& description() const { return description_; }
 
-  // For callers that compile a frame without an executor, or declare a frame and do not record it.
-  // histories() is the state of the histories. leave_histories() moves them on as a frame with
-  // these final states does.
+  // For callers that compile a frame without an executor, or that declare a frame and do not record
+  // it. histories() returns the state of the histories. leave_histories() advances that state as if
+  // a frame that ends in these final states had run.
   HistoryTable& histories() { return histories_; }
   const HistoryTable& histories() const { return histories_; }
   void leave_histories(std::span<const FinalState> finals);
-  // Updates the declaration with the state in which histories were left since it was made, so that
-  // it can be compiled and recorded once more. Returns false if a history that it declares was
-  // dropped.
+  // Writes the current states of the histories into the declared frame, so that the same
+  // declaration can be compiled and recorded once more. Returns false if a history that it declares
+  // was dropped.
   [[nodiscard]] bool refresh_histories();
 
  private:
@@ -206,8 +207,8 @@ class Graph {
 
   void keep_name(std::string_view name, GraphDescription::Name& to);
   void keep_long_name(std::string_view name, GraphDescription::Name& to);
-  // Notes that a record differs from the one of the previous frame: this frame then repeats no
-  // earlier one.
+  // Called when a record of the declaration differs from the record at the same place in the
+  // previous frame. The frame is then no longer treated as a repetition of the previous one.
   void changed();
   template <typename Record>
   void add(Records<Record>& records, const Record& record);

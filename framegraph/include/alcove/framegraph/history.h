@@ -56,12 +56,13 @@ class HistoryTable {
   // Marks all histories as not declared, so that each can be dropped.
   void end_frame();
 
-  // leave() sets the state in which the frame left a slot, and rotate() turns slot 0 into slot 1.
-  // Call them at the end of a frame, after begin_end().
+  // Called at the end of a frame, after begin_end(): leave() sets the state in which the frame left
+  // a slot, and rotate() turns slot 0 of a history into slot 1.
   void begin_end();
   void leave(std::uint32_t index, std::uint32_t slot, const HistorySlot& left);
   void rotate(std::uint32_t index);
-  // Takes back everything since begin_frame() except drop(), because the frame does not run.
+  // Restores the table as it was at begin_frame(), except for drop(), because the frame does not
+  // run.
   void undo();
   // Returns whether undo() took back a description that the declared frame still uses.
   bool must_be_declared_anew() const { return anew_; }

@@ -1,6 +1,6 @@
 // Services that the caller may provide instead of Vulkan's defaults: host memory for the driver,
-// device memory, and a log. Everything here is optional. What is given must outlive the executor
-// and the kernels that use it.
+// device memory, and a log. All of them are optional. The functions and memory that the caller
+// provides must outlive the executor and the kernels that use them.
 #pragma once
 
 #include <vulkan/vulkan_core.h>
@@ -14,8 +14,8 @@ struct MemoryRequest {
   VkMemoryRequirements requirements{};  // size, alignment, and the allowed memory types
   VkMemoryPropertyFlags required = 0;   // properties that the memory type must have
   VkMemoryPropertyFlags preferred = 0;  // properties that the memory type should have
-  // A buffer with a device address will be bound: allocate with
-  // VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT.
+  // Whether a buffer with a device address will be bound to the memory. If so, the memory must be
+  // allocated with VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT.
   bool device_address = false;
 };
 
@@ -41,10 +41,11 @@ struct MemoryFunctions {
   void* user = nullptr;
 };
 
-// Memory that the caller has allocated, for the transients and histories of one executor. If it is
-// full, or a resource cannot lie in its memory type, MemoryFunctions provide the rest. If there are
-// no functions, a full block is an error (VK_ERROR_OUT_OF_DEVICE_MEMORY), and a resource that
-// cannot lie in the memory type is allocated with vkAllocateMemory.
+// Memory that the caller has allocated, from which one executor takes the memory of its transients
+// and histories. If the block is full, or a resource cannot lie in its memory type, MemoryFunctions
+// provide the rest. If there are no such functions, a full block is an error
+// (VK_ERROR_OUT_OF_DEVICE_MEMORY), and a resource that cannot lie in the memory type is allocated
+// with vkAllocateMemory.
 struct MemoryBlock {
   VkDeviceMemory memory = VK_NULL_HANDLE;  // null: there is no block
   VkDeviceSize offset = 0;                 // the first byte that may be used

@@ -27,9 +27,10 @@ struct PassCullReason {
   bool is_live() const { return cull_reason < CullReason::unread; }
 };
 
-// One dependency within a batch. With a resource it is an image barrier over `range`, or the
-// ownership transfer of a buffer. Without a resource it is a memory barrier over all memory:
-// textures whose layout and owner stay, and buffers that stay on their queue family, need no other.
+// One dependency of a barrier command. If `resource` is set, it is an image barrier over `range`,
+// or the queue ownership transfer of a buffer. Otherwise it is a memory barrier over all memory,
+// which is enough for a texture that keeps its layout and queue family and for a buffer that keeps
+// its queue family.
 struct Transition {
   VkPipelineStageFlags2 src_stages = 0;
   VkAccessFlags2 src_access = 0;
@@ -39,12 +40,13 @@ struct Transition {
   VkImageLayout old_layout = VK_IMAGE_LAYOUT_UNDEFINED;
   VkImageLayout new_layout = VK_IMAGE_LAYOUT_UNDEFINED;
   Range range;
-  // Queue classes of an ownership transfer. They are equal if there is none.
+  // The queue classes between which ownership is transferred. They are equal if there is no
+  // transfer.
   QueueClass src_queue = QueueClass::graphics;
   QueueClass dst_queue = QueueClass::graphics;
 };
 
-// Transitions that one barrier command records, before a pass or after the last pass of a
+// The transitions that one vkCmdPipelineBarrier2 records, before a pass or after the last pass of a
 // submission.
 struct Batch {
   std::uint32_t first = 0;  // into Plan::transitions
@@ -60,15 +62,15 @@ struct PlannedPass {
   std::uint32_t batch_count = 0;
 };
 
-// Work that is submitted to one queue at once. A submission waits only for earlier ones.
+// Work that is submitted to one queue at once. A submission waits only for earlier submissions.
 //
-// Consecutive frames of one plan overlap. Barriers wait for the previous frame's work on the same
-// queue, as far as both frames use the same memory or histories. Submissions wait for the previous
-// frame's work on other queues as `frame_before` says.
+// Consecutive frames of one plan may overlap on the GPU. Barriers order work after the previous
+// frame's work on the same queue if both use the same memory or histories. The bits of
+// `frame_before` say for which other queues' work of the previous frame the submission waits.
 struct Submission {
   QueueClass queue = QueueClass::graphics;
-  // A bit for each queue class. All work of the previous frame on these queues comes before this
-  // submission, which takes over memory from it.
+  // A mask with one bit per queue class. The submission waits until all work of the previous frame
+  // on these queues is done, because it reuses memory that this work used.
   std::uint8_t frame_before = 0;
   std::uint32_t first_pass = 0;  // positions [first_pass, first_pass + pass_count)
   std::uint32_t pass_count = 0;
@@ -78,8 +80,8 @@ struct Submission {
   std::uint32_t batch_count = 0;
 };
 
-// A timeline semaphore wait: `stages` of the waiting submission come after all work of
-// `submission`.
+// A wait for a timeline semaphore: the stages `stages` of the waiting submission begin after all
+// work of the submission with the index `submission` is done.
 struct Wait {
   std::uint32_t submission = 0;
   VkPipelineStageFlags2 stages = 0;
@@ -112,8 +114,8 @@ enum ContentFlags : std::uint8_t {
 // How many of the mips and layers of a history slot the live passes wrote.
 enum class Written : std::uint8_t { nothing, part, whole };
 
-// The state in which the frame leaves a history slot. The next frame starts from it. If the state
-// has read accesses, these have seen the last write.
+// The state in which the frame leaves a history slot, and from which the next frame starts. If the
+// state has read accesses, the last write is already visible to them.
 struct FinalState {
   std::uint32_t resource = kNone;
   State state;

@@ -38,8 +38,8 @@ class RecordContext {
  public:
   VkCommandBuffer commands = VK_NULL_HANDLE;
   const VulkanFunctions& vk;
-  // Changes whenever a handle that passes can see may have changed, except imported views. No two
-  // executors have the same id.
+  // A number that changes whenever a handle that passes can see may have changed, except for
+  // imported views. Two executors never have the same number.
   std::uint64_t resources_id = 0;
   // FrameInfo::slot, for objects that a pass keeps per frame in flight.
   std::uint32_t frame_slot = 0;
@@ -79,8 +79,8 @@ class RecordContext {
   HistoryValidity validity(Texture texture) const;
   HistoryValidity validity(Buffer buffer) const;
   std::string_view pass_name() const;
-  // Reports that an object which the pass needs could not be created: record() returns an error,
-  // and the frame must not be submitted. The error sentence contains `what`.
+  // Tells the executor that an object which the pass needs could not be created: record() then
+  // returns an error whose sentence contains `what`, and the frame must not be submitted.
   void fail(std::string_view what, VkResult result) const;
 
  private:

@@ -29,8 +29,9 @@ class Records {
     capacity_ = capacity;
   }
 
-  // The memory of the next value, which can always be read and written. repeat() adds it to the
-  // array, and may be called only if is_full() is false.
+  // next() returns the element after the last one. Its memory always exists, and usually still
+  // holds the record that an earlier frame declared there. repeat() appends this element as it is;
+  // it may be called only if is_full() is false.
   Value& next() { return values_[size_]; }
   void repeat() { ++size_; }
 

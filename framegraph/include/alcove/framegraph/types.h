@@ -32,8 +32,8 @@ struct Buffer {
   bool operator==(const Buffer&) const = default;
 };
 
-// A size in texels, or relative to another texture's size: each side is multiplied, then divided
-// and rounded up, and is at least 1.
+// A size in texels, or a size relative to that of another texture. A relative size multiplies and
+// then divides each dimension, rounds it up, and is at least 1.
 struct Extent {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
@@ -56,23 +56,23 @@ struct TextureDesc {
   std::uint32_t mips = 1;
   std::uint32_t layers = 1;  // above 1 makes an array
   VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
-  // For example VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT, or MUTABLE_FORMAT_BIT for views of another
-  // format.
+  // Flags with which the image is created, for example VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT, or
+  // VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT for views of another format.
   VkImageCreateFlags flags = 0;
 };
 
 struct BufferDesc {
   VkDeviceSize size = 0;  // bytes
-  // Additional usage flags. The usages of the live passes' accesses are added automatically. A
-  // history is created once for all frames, with all usages of Vulkan 1.0; it needs other usages
-  // here, for example VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT.
+  // Additional usage flags. The graph adds the usages of the accesses that are not culled. A
+  // history is created once for all frames, with all buffer usages of Vulkan 1.0; name any other
+  // usage that it needs here, for example VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT.
   VkBufferUsageFlags usage = 0;
 };
 
-// How a pass uses a resource: pipeline stages, memory accesses, layout and usage. `layout` is for
-// textures only. `usage` is VkImageUsageFlags for a texture and VkBufferUsageFlags for a buffer.
-// The graph creates a resource with the usages of all its live passes. access.h names the common
-// accesses.
+// How a pass uses a resource: pipeline stages, memory accesses, layout and usage. `layout` applies
+// to textures only. `usage` is VkImageUsageFlags for a texture and VkBufferUsageFlags for a buffer.
+// The graph creates a resource with the usages of all passes that are not culled. access.h names
+// the common accesses.
 struct Access {
   VkPipelineStageFlags2 stages = 0;
   VkAccessFlags2 access = 0;
@@ -107,8 +107,8 @@ struct Range {
 // The state of an imported resource before or after the frame: the last (or next) pipeline stages
 // and accesses outside the graph and, for a texture, the layout. An initial_state with
 // VK_IMAGE_LAYOUT_UNDEFINED (for a buffer: without accesses) means that the resource has no
-// contents. Read accesses of an initial_state have already seen earlier writes. The graph makes
-// these writes visible to other stages and accesses.
+// contents. Earlier writes are assumed to be visible to the read accesses of an initial_state
+// already; the graph makes them visible to other stages and accesses.
 struct State {
   VkPipelineStageFlags2 stages = 0;
   VkAccessFlags2 access = 0;
@@ -116,16 +116,17 @@ struct State {
   std::uint32_t reserved = 0;
 };
 
-// An image of the caller's, which the graph does not own. If `view` is null, the executor creates
-// the views that passes ask for and keeps them by image: call Executor::forget before you destroy
-// the image. `usage` is the usage with which the image was created.
+// An image that the caller owns. If `view` is null, the executor creates the views that passes ask
+// for and caches them by image: call Executor::forget before you destroy the image. `usage` is the
+// usage with which the image was created.
 struct ImportedTexture {
   VkImage image = VK_NULL_HANDLE;
   VkImageView view = VK_NULL_HANDLE;  // a view of the whole image, or null
   TextureDesc desc;                   // the extent must be absolute
   VkImageUsageFlags usage = 0;
-  // The first imported layer of the image's array; desc.layers layers are imported. Barriers and
-  // views count layers from it. A callback that uses the image itself has to add it.
+  // The first imported layer of the image; desc.layers layers are imported. Barriers and views of
+  // the graph count layers from it. A callback that uses the VkImage directly has to add it to its
+  // layers.
   std::uint32_t first_layer = 0;
   State initial_state;
   // The queue family (VK_QUEUE_FAMILY_EXTERNAL is allowed) that has released the image to the
@@ -133,13 +134,13 @@ struct ImportedTexture {
   // it. The graph records the matching acquire barrier, with initial_state.layout as old and new
   // layout. kNone: no ownership transfer is needed.
   std::uint32_t initial_family = kNone;
-  // The queue family to which the graph releases the image from the graphics family, in
-  // final_state's layout, or kNone.
+  // The queue family to which the graphics queue releases the image at the end of the frame, in the
+  // layout of final_state. kNone: no ownership transfer.
   std::uint32_t final_family = kNone;
   // The state in which the graph leaves the image. A write to an image with a final_state is an
-  // output of the frame. All work of the frame on the image comes before later work at these
-  // stages. If there is no final_state (undefined layout and no stages), a write that nobody reads
-  // is culled.
+  // output of the frame. All work of the frame on the image is ordered before later work in the
+  // stages of final_state. Without a final_state (undefined layout and no stages), a write that
+  // nobody reads is culled.
   State final_state;
 };
 
@@ -147,8 +148,8 @@ struct ImportedBuffer {
   VkBuffer buffer = VK_NULL_HANDLE;
   BufferDesc desc;
   VkBufferUsageFlags usage = 0;
-  // Whether the buffer has contents at the start of the frame. If they need no barrier,
-  // initial_state has no stages.
+  // Whether the buffer has contents at the start of the frame. If the frame's first access needs no
+  // barrier against earlier work, leave initial_state without stages.
   bool has_contents = true;
   State initial_state;
   State final_state;
@@ -158,15 +159,16 @@ struct ImportedBuffer {
 
 // The effect of a write on the earlier contents of its range.
 enum class Contents : std::uint8_t {
-  // The write may be partial: the earlier contents stay. The passes that made them run if the
-  // result is wanted, or if the access reads as well (blending, a depth test, atomics): the pass
-  // then depends on the earlier contents, whatever becomes of the result.
+  // The write may be partial, so that the earlier contents are kept. The passes that wrote them run
+  // if the result is needed. They also run if the access itself reads (blending, a depth test,
+  // atomics), even if nobody needs the result.
   keep,
   // The pass writes every texel and reads none: the earlier contents may be thrown away.
   discard,
-  // Keeps as `keep` does. The order among writes of this kind does not matter, as with atomic
-  // additions: writes that follow each other with the same access on one queue get no barrier
-  // between them. All of them come after what was before, and before the next read or other write.
+  // The write keeps the earlier contents, as with `keep`, and its order among other such writes
+  // does not matter, as with atomic additions. Consecutive writes of this kind with the same access
+  // on one queue get no barrier between them. All of them are ordered after the accesses before
+  // them, and before the next read or other write.
   accumulate,
 };
 

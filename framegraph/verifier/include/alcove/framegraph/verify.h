@@ -1,12 +1,12 @@
 // Checks a plan against the declaration by replaying it access by access. It shares no code with
-// compile.
+// the compiler.
 //
-// Two frames of the plan are replayed, because a frame also has to wait for the uses of its memory
-// in the frame before. Every access must happen after the earlier conflicting accesses, to its
-// subresource or to its bytes, with their writes available and visible, over all queues. The
-// verifier also follows the layout and the owner of every subresource, its contents, and the final
-// states of imports. The time is linear in the number of accesses, times the logarithm of the
-// number of transients that live at once.
+// The plan is replayed for two frames, because a frame also has to wait for the uses of its memory
+// in the previous frame. Every access must happen after the earlier conflicting accesses to its
+// subresource or to its bytes of memory, and their writes must be available and visible to it, on
+// all queues. The verifier also follows the layout, the owning queue family and the contents of
+// every subresource, and the final states of imports. The time is linear in the number of accesses,
+// times the logarithm of the number of transients that live at once.
 #pragma once
 
 #include <tl/expected.hpp>
