@@ -78,8 +78,8 @@ class NamedInputs {
   std::size_t count_ = 0;
 };
 
-// Returns the inputs that must have the size of the depth, with their names. Optional inputs that
-// are null are left out.
+// Returns the inputs that must have the size of the depth texture, with their names. Optional
+// inputs that are null are left out.
 NamedInputs named_inputs(const ApplyInputs& inputs) {
   NamedInputs named;
   named.add({"linear depth", inputs.depth});
@@ -190,7 +190,7 @@ tl::expected<AppliedLight, Error> add_apply(const Frame& frame, const ApplyInput
   pass.record([&kernels = frame.kernels, kernel = *kernel, inputs, result,
                parameters =
                    parameters_of(frame, inputs, settings, *projection)](RecordContext& context) {
-    // Images that are not given are replaced by another one, which the shader does not read.
+    // An optional image that is null is replaced by another image, which the shader does not read.
     const auto views = std::to_array<NamedView>(
         {{"depth_image", context.view(inputs.depth)},
          {"normal_image", context.view(inputs.normals)},

@@ -11,13 +11,13 @@ namespace alcove::passes {
 [[nodiscard]] constexpr std::uint32_t flag(bool on) { return on ? 1 : 0; }
 
 // Returns the value of a specialisation constant that selects a channel of a texture. If the
-// texture is not read, the value is 0, so that all channels share one pipeline.
+// texture is not read, the value is 0: all settings of the channel then share one pipeline.
 [[nodiscard]] constexpr std::uint32_t channel_if(bool read, std::uint32_t channel) {
   return read ? channel : 0;
 }
 
-// Returns the view of `texture`. If that is null, returns the view of `instead`, because every
-// binding needs a view of its kind; the shader does not use it.
+// Returns the view of `texture`, or the view of `instead` if `texture` is null. Every binding needs
+// a view of its type, even if the shader does not use it.
 [[nodiscard]] inline VkImageView view_or(const framegraph::RecordContext& context,
                                          framegraph::Texture texture, framegraph::Texture instead) {
   return context.view(texture ? texture : instead);

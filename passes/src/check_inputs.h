@@ -15,8 +15,8 @@ struct NamedInput {
   framegraph::Texture texture;
 };
 
-// Returns an error that names the first input that is missing or whose size differs from that of
-// the first input.
+// Returns an error that names the first input that is missing or that differs in size from the
+// first input of the list.
 [[nodiscard]] inline tl::expected<void, Error> check_inputs(const framegraph::Graph& graph,
                                                             std::string_view pass,
                                                             std::span<const NamedInput> inputs) {

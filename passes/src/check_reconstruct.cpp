@@ -57,7 +57,7 @@ tl::expected<void, Error> check_blocks(const Frame& frame, Texture depth, std::u
                               ", one for each tile, and " + format_name(format) + "."});
 }
 
-// Tile size and slices that a search can have had.
+// Checks that add_gtao() can have made the raw occlusion with this tile size and number of slices.
 tl::expected<void, Error> check_tracing(const RawOcclusionTextures& raw_occlusion) {
   OcclusionSettings settings;
   settings.tile_size = raw_occlusion.tile_size;

@@ -19,8 +19,8 @@ struct ReconstructSizes {
   VkExtent2D largest;
 };
 
-// The size of `depth` in this frame, and the sizes that the frame states for the last one and at
-// most.
+// Returns the current size of `depth`, and the previous and the largest size that `frame` states,
+// or an error if a size is larger than the largest.
 [[nodiscard]] tl::expected<ReconstructSizes, Error> reconstruct_sizes(const Frame& frame,
                                                                       framegraph::Texture depth);
 

@@ -101,8 +101,9 @@ VkDeviceSize DescriptorSets::parameter_bytes() const {
   return VkDeviceSize{slots_.size()} * Kernels::kMaxDispatches * Kernels::kMaxParameterBytes;
 }
 
-// Returns whether the set still holds what the dispatch binds. Equal handles are the same views
-// only as long as no image has been replaced. Imported views may be other ones at any time.
+// Returns whether the set still holds the resources that the dispatch binds. Equal handles mean
+// equal views only if no image was replaced since (RecordContext::resources_id). A view that the
+// caller imported may have been replaced at any time.
 bool DescriptorSets::holds(const Set& set, const DispatchBindings& bound,
                            const framegraph::RecordContext& context) {
   return set.shader == bound.shader && set.resources_id == context.resources_id &&
@@ -111,7 +112,7 @@ bool DescriptorSets::holds(const Set& set, const DispatchBindings& bound,
 }
 
 // Gives `set` a descriptor set with the shader's layout and undefined contents. The pools are sized
-// for the worst frame, so an allocation fails only if memory runs out.
+// for the largest possible frame, so an allocation fails only if memory runs out.
 VkResult DescriptorSets::allocate(Set& set, const DispatchBindings& bound) {
   if (set.shader == bound.shader) {
     return VK_SUCCESS;
@@ -134,8 +135,9 @@ VkResult DescriptorSets::allocate(Set& set, const DispatchBindings& bound) {
   return result;
 }
 
-// Takes the frame's next dispatch. Of its two sets it uses the one that holds what is bound, or
-// else replaces the one that was used longer ago.
+// Assigns the frame's next dispatch. Of its two descriptor sets, chooses the one that already holds
+// the bound resources. If neither does, chooses the one that was used less recently, to be
+// rewritten.
 DescriptorSets::Claim DescriptorSets::claim(framegraph::RecordContext& context,
                                             const DispatchBindings& bound) {
   const std::lock_guard lock(mutex_);

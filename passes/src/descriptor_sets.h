@@ -29,8 +29,8 @@ struct DispatchBindings {
   std::span<const std::byte> parameters;
 };
 
-// Keeps descriptor sets for each frame slot and each dispatch of a frame. A steady frame finds the
-// sets of earlier frames as it needs them, and neither allocates nor writes any.
+// Keeps descriptor sets for each frame slot and each dispatch of a frame. A frame that repeats an
+// earlier one finds the sets of that frame, and neither allocates nor writes any.
 class DescriptorSets {
  public:
   // `interfaces` are those of all shaders, from which the pools are sized. `vk` and `device` must
@@ -45,9 +45,9 @@ class DescriptorSets {
   // Starts a frame in `slot`, whose previous frame must have finished on the device.
   void begin_frame(std::uint32_t slot);
 
-  // Copies the parameters to the uniform buffer and returns a descriptor set with everything that
-  // `bound` names. Returns null after context.fail() if there is no such slot, the frame has
-  // Kernels::kMaxDispatches already, or memory runs out. Several threads may call it.
+  // Copies the parameters to the uniform buffer and returns a descriptor set with all resources of
+  // `bound`. If the frame slot does not exist, the frame already has Kernels::kMaxDispatches, or
+  // memory runs out, calls context.fail() and returns null. Several threads may call it.
   [[nodiscard]] VkDescriptorSet get(framegraph::RecordContext& context,
                                     const DispatchBindings& bound);
 
@@ -65,8 +65,9 @@ class DescriptorSets {
     std::array<VkImageView, kMaxBindings> views{};
   };
 
-  // The sets of one dispatch of a frame slot. There are two, because histories alternate between
-  // two images: with an odd number of frames in flight a slot meets both of them in turn.
+  // The descriptor sets of one dispatch in one frame slot. There are two, because a history
+  // alternates between two images: with an odd number of frames in flight, a slot uses both of them
+  // in turn.
   struct DispatchSets {
     std::array<Set, 2> sets;
     std::size_t latest = 0;
@@ -98,8 +99,8 @@ class DescriptorSets {
   std::vector<FrameSlot> slots_;
   std::unique_ptr<HostBuffer> parameters_;
   std::size_t slot_ = 0;
-  // Guards `dispatches_` and the slot's sets and pool. What a dispatch has claimed is its own and
-  // needs no lock.
+  // Guards `dispatches_` and the slot's sets and pool. After a dispatch has claimed its set, no
+  // lock is needed to use it.
   std::mutex mutex_;
   std::uint32_t dispatches_ = 0;  // of this frame so far
 };

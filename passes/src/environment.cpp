@@ -108,7 +108,8 @@ Texture add_source(const Frame& frame, Steps& steps, Texture equirectangular, st
       "environment", {VK_FORMAT_R32G32B32A32_SFLOAT, Extent::absolute(size, size), levels});
   const VkExtent3D given = frame.graph.extent(equirectangular);
   const maths::vec2 given_px(static_cast<float>(given.width), static_cast<float>(given.height));
-  // In the mean, a texel covers 0.67 * (columns of the source / width of the map) columns.
+  // On average, a texel of the map covers 0.67 * (width of the source / width of the map) columns
+  // of the source.
   const float samples =
       std::clamp(std::ceil(0.67f * given_px.x / static_cast<float>(size)), 2.0f, kMostReads);
   source = steps.add({"environment",
@@ -133,8 +134,8 @@ Texture add_source(const Frame& frame, Steps& steps, Texture equirectangular, st
   return source;
 }
 
-// Returns the samples per lobe for a mip. Each mip has a quarter of the texels of the previous one
-// and wider lobes, so that it gets four times as many samples.
+// Returns the number of samples per lobe for a mip level. Each level has a quarter of the texels of
+// the level before and wider lobes, and therefore gets four times as many samples.
 float samples_of_level(std::uint32_t level, std::uint32_t first) {
   const std::uint32_t more = 2 * (level == 0 ? 0 : level - 1);
   return static_cast<float>(std::min(std::uint64_t{first} << more, std::uint64_t{kMostSamples}));

@@ -5,8 +5,8 @@
 namespace alcove::passes {
 namespace {
 
-// The names of the formats of Vulkan 1.0 without their prefix. The formats are numbered from 0
-// without gaps.
+// The names of Vulkan 1.0's formats, without the prefix VK_FORMAT_. The index is the value of the
+// enum, which has no gaps.
 constexpr auto kNames = std::to_array<std::string_view>({"UNDEFINED",
                                                          "R4G4_UNORM_PACK8",
                                                          "R4G4B4A4_UNORM_PACK16",

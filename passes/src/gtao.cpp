@@ -35,7 +35,7 @@ RawOcclusionTextures create_raw_occlusion(const Frame& frame, Texture depth,
   return result;
 }
 
-// The inputs beside depth and normals that the settings read.
+// Which optional inputs the shader reads with the given settings.
 struct Reads {
   bool roughness = false;
   bool back_faces = false;
@@ -58,7 +58,7 @@ tl::expected<void, Error> check_textures(const Frame& frame, const GtaoInputs& i
   return check_inputs(frame.graph, "gtao", needed);
 }
 
-// Whether thickness is a part of distance; else of the radius, or there is none.
+// Returns whether the thickness is a fraction of the occluder's distance.
 bool of_distance(const OcclusionSettings& settings) {
   return has_thickness(settings.advanced.estimator) &&
          settings.advanced.thickness_unit == ThicknessUnit::distance;
@@ -135,8 +135,8 @@ maths::GtaoParameters parameters_of(const Frame& frame, const GtaoInputs& inputs
       step.per_inverse_depth};
 }
 
-// Images that the settings do not use are replaced by others of their kind, because every binding
-// needs a view.
+// Returns the image views of a dispatch. Every binding needs a view, so that an image that the
+// settings do not use is replaced by another image of the same type.
 std::array<NamedView, 7> views_of(RecordContext& context, const GtaoInputs& inputs,
                                   const Reads& reads, const RawOcclusionTextures& result) {
   const VkImageView depth = context.view(inputs.depth_ndc);

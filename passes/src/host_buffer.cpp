@@ -6,8 +6,8 @@ namespace {
 constexpr VkMemoryPropertyFlags kProperties =
     VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
 
-// Returns the first memory type of this mask that is host-visible and host-coherent. Vulkan
-// guarantees one for every buffer.
+// Returns the first memory type in the mask `bits` that is host-visible and host-coherent. Vulkan
+// guarantees that such a type exists for every buffer.
 std::uint32_t coherent_type(const VkPhysicalDeviceMemoryProperties& memory, std::uint32_t bits) {
   std::uint32_t type = 0;
   while (type < memory.memoryTypeCount &&

@@ -11,8 +11,8 @@
 
 namespace alcove::passes {
 
-// A buffer with memory of its own that stays mapped. The functions, the device and the caller's
-// allocators must outlive it. The device must have finished with it before it is destroyed.
+// A buffer with its own memory, which stays mapped. The Vulkan functions, the device and the
+// caller's allocators must outlive it. Destroy it only after the device has finished using it.
 class HostBuffer {
  public:
   [[nodiscard]] static tl::expected<std::unique_ptr<HostBuffer>, VkResult> create(

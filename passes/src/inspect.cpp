@@ -20,8 +20,8 @@ constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 // The least number of samples from which a mistake is concluded.
 constexpr std::size_t kEnoughSamples = 100;
 
-// A sample on a smooth surface: its position, the differences of its neighbours' positions, and the
-// stored normal.
+// A sample on a smooth surface: its position, the differences between the positions of opposite
+// neighbours, and the stored normal.
 struct SmoothSample {
   dvec3 position;
   dvec3 along_x;
@@ -128,8 +128,9 @@ class Inspector {
            static_cast<double>(close) > 0.95 * static_cast<double>(surfaces);
   }
 
-  // The two conventions give matrices of the same form. They differ in the near plane that a matrix
-  // stands for, which is a round number in the convention that it was made for.
+  // Returns whether the projection was made for OpenGL's depth range of -1 to 1. A matrix has the
+  // same form for either range, but it stands for different near planes. The near plane is a round
+  // number only for the range for which the matrix was made.
   bool is_depth_from_minus_one() const {
     if (!perspective_ || reversed_) {
       return false;
@@ -156,7 +157,8 @@ class Inspector {
       return;
     }
     std::sort(pixels.begin(), pixels.end());
-    // The radius is below half a pixel almost everywhere, or above three images everywhere.
+    // The radius is smaller than half a pixel at 90 % of the samples, or larger than three image
+    // heights at 90 %.
     set(Mistake::radius_too_small, pixels[pixels.size() * 9 / 10] < 0.5);
     set(Mistake::radius_too_large, pixels[pixels.size() / 10] > 3.0 * view_.size.height);
   }
@@ -175,8 +177,10 @@ class Inspector {
     }
   }
 
-  // Depth as it is stored is linear along the image of a plane. The pixel is left out where it is
-  // not, and where the step of the format would tilt the normal.
+  // Returns the sample with its differences of position, or nothing if the surface is not smooth
+  // there. The depth buffer is linear in screen space on a plane, so a pixel whose depth is not
+  // linear among its neighbours is left out. A pixel is also left out if the depth format is so
+  // coarse that it would tilt the normal.
   std::optional<SmoothSample> smooth(const PixelSample& s) const {
     const double step = depth_step(s.depth);
     const auto is_line = [&](float before, float after) {
@@ -223,7 +227,8 @@ class Inspector {
     return {k, reading.flip_y ? -k : k, 1.0};
   }
 
-  // The normal of the surface by its depth. It has any length, and may face away.
+  // Returns the surface's normal from the depths. It is not normalised and may face away from the
+  // eye.
   static dvec3 own_normal(const SmoothSample& s, const Reading& reading) {
     const dvec3 scale = scale_of(reading);
     return maths::cross(s.along_x * scale, s.along_y * scale);
@@ -246,9 +251,9 @@ class Inspector {
     return angles;
   }
 
-  // The angle between normals of depth and given ones, in degrees, that three quarters of all
-  // samples keep to. The median would not do: walls and floors that are seen along the axes of the
-  // view have the same normals with any angle of view.
+  // Returns the angle in degrees, between normals from depth and the given normals, that three
+  // quarters of the samples do not exceed. The median would hide mistakes: walls and floors along
+  // the axes of the view have the same normals with any field of view.
   double error_of(const Reading& reading) const {
     return quantile(angles_of(reading, smooth_), 0.75);
   }
@@ -271,8 +276,8 @@ class Inspector {
     return static_cast<double>(away) / static_cast<double>(smooth_.size());
   }
 
-  // Floors and walls along the axes of the view have the same normals with any angle of view.
-  // Returns the other samples.
+  // Returns the samples whose normals from depth would change with another field of view. Floors
+  // and walls along the axes of the view are left out.
   std::vector<SmoothSample> samples_that_tell_angle_of_view(const Reading& given) const {
     Reading wide = given, narrow = given;
     wide.tangent_scale = 1.5;
@@ -315,7 +320,8 @@ class Inspector {
     }
   }
 
-  // The mistake without which the given normals fit those of depth, if there is one.
+  // Returns the mistake whose correction makes the given normals match those from depth, if there
+  // is one.
   Mistake best_reading(const Reading& given) const {
     const double now = error_of(given);
     // Normal maps tilt normals by some degrees from the surface.
@@ -352,8 +358,8 @@ class Inspector {
     return best;
   }
 
-  // Calls `call` with the scale of the tangents of half the angles of view, from 1/4 to 4, but not
-  // near 1.
+  // Calls `call` with the factors by which the tangent of half the field of view may be wrong, from
+  // 1/4 to 4 except near 1.
   template <typename Call>
   static void for_other_angles_of_view(const Call& call) {
     for (double scale = 0.25; scale < 4.2; scale *= 1.05) {

@@ -1,5 +1,5 @@
-// Finds mistakes of the caller in the pixels of a view's inputs. A few thousand samples of depth
-// and normals are compared with the camera and the formats that the view names.
+// Finds mistakes of the caller by means of the pixels of a view's inputs. A few thousand samples of
+// depth and normals are compared with the camera and the formats that the view states.
 #pragma once
 
 #include <array>
@@ -56,8 +56,8 @@ enum class Mistake : std::uint8_t {
 
 using Mistakes = std::array<bool, static_cast<std::size_t>(Mistake::count)>;
 
-// Returns the mistakes that the samples show. If there are too few samples to tell, the result has
-// none.
+// Returns the mistakes that the samples show. With too few samples for a conclusion, the result is
+// empty.
 [[nodiscard]] Mistakes inspect(const InspectedView& view, std::span<const PixelSample> samples);
 
 }  // namespace alcove::passes

@@ -11,10 +11,10 @@ struct InterleaveOffset {
   std::uint32_t y = 0;
 };
 
-// Returns the pixel of a tile of tile_size x tile_size pixels (1, 2, 4 or 8) that is traced in a
-// frame. Each pixel is traced once in tile_size^2 frames, and successive pixels are far apart:
-// successive frames visit the quarters of the tile in the order (0,0), (1,1), (1,0), (0,1), and
-// successive visits to a quarter visit its quarters in the same order.
+// Returns which pixel of a tile of tile_size x tile_size pixels (1, 2, 4 or 8) is traced in a
+// frame. Each pixel is traced once in tile_size^2 frames. Successive frames visit the quarters of
+// the tile in the order (0,0), (1,1), (1,0), (0,1), and successive visits to a quarter visit its
+// own quarters in the same order, so that successive pixels are far apart.
 [[nodiscard]] constexpr InterleaveOffset interleave_offset_of(std::uint32_t tile_size,
                                                               std::uint32_t frame) {
   constexpr std::array<InterleaveOffset, 4> kOrder{{{0, 0}, {1, 1}, {1, 0}, {0, 1}}};

@@ -38,8 +38,8 @@ struct Pipeline {
   VkPipeline pipeline = VK_NULL_HANDLE;
 };
 
-// Returns the element of `given` that is called `name`, or null. It is looked for at the index
-// `expected` first, where it is if the list has the order of the shader.
+// Returns the element of `given` whose name is `name`, or null. Looks at the index `expected`
+// first, because lists usually have the order of the shader's declarations.
 template <typename Named>
 const Named* find_named(std::span<const Named> given, std::string_view name, std::size_t expected) {
   if (expected < given.size() && given[expected].name == name) {
@@ -100,8 +100,8 @@ Kernels::State::~State() {
   vk.vkDestroySampler(device(), sampler, callbacks());
 }
 
-// Storage images are the only descriptors of which a shader binds more than every Vulkan device
-// supports: the smallest limit that Vulkan allows is 4.
+// Checks the device limit on storage images per stage. It is the only descriptor limit that the
+// shaders may exceed: Vulkan guarantees only 4.
 tl::expected<void, Error> Kernels::State::check_limits() const {
   VkPhysicalDeviceProperties properties{};
   vk.vkGetPhysicalDeviceProperties(handles.physical_device, &properties);
@@ -235,8 +235,8 @@ tl::expected<Kernel, Error> Kernels::State::create_pipeline(
                 .pName = "main",
                 .pSpecializationInfo = &specialisation},
       .layout = shaders[index].pipeline_layout};
-  // The vector grows before the pipeline is created, so that no pipeline is lost if memory runs
-  // out.
+  // The vector of pipelines grows before the pipeline is created, so that a failed allocation
+  // cannot leak the pipeline.
   if (pipelines.size() == pipelines.capacity()) {
     pipelines.reserve(2 * pipelines.size() + 8);
   }

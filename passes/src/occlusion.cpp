@@ -52,7 +52,7 @@ tl::expected<OcclusionOutputs, Error> add_occlusion(const Frame& frame,
   }
   framegraph::Texture normals = inputs.normals;
   const bool in_view_space = inputs.normals_in_view_space || !normals;
-  // Normals from depth are signed vectors in a view space with the camera along -Z.
+  // Normals from depth are signed vectors in view space with the camera looking along -Z.
   const NormalEncoding encoding = normals ? inputs.normal_encoding : NormalEncoding::signed_xyz;
   const bool forward_z = normals && inputs.normals_forward_z;
   if (!normals) {

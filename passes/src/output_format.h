@@ -33,27 +33,27 @@ namespace alcove::passes {
   return precision == Precision::unorm8 ? VK_FORMAT_R8G8B8A8_SNORM : colour_format(precision);
 }
 
-// Returns the format of the raw occlusion that add_gtao() writes: two 32-bit words, and two more
-// with a GGX lobe.
+// Returns the format of the raw occlusion that add_gtao() writes: two 32-bit words, or four if it
+// also holds a GGX lobe.
 [[nodiscard]] inline VkFormat raw_format(bool lobe) {
   return lobe ? VK_FORMAT_R32G32B32A32_UINT : VK_FORMAT_R32G32_UINT;
 }
 inline constexpr VkFormat kBentRawFormat = VK_FORMAT_R32G32_UINT;
 
-// Histories: of visibility (maths::pack_history_texel), of bent normals (maths::pack_residual) and
-// of GGX lobes (maths::pack_lobe_texel).
+// The formats of histories: of visibility (maths::pack_history_texel), of bent normals
+// (maths::pack_residual) and of GGX lobes (maths::pack_lobe_texel).
 inline constexpr VkFormat kHistoryFormat = VK_FORMAT_R32_UINT;
 inline constexpr VkFormat kBentHistoryFormat = VK_FORMAT_R32_UINT;
 inline constexpr VkFormat kLobeHistoryFormat = VK_FORMAT_R16_UINT;
 
-// Histories at half resolution, which the upsampling pass reads too: maths::pack_half_texel(),
-// maths::half_texel_depth() and maths::pack_half_residual().
+// The formats of histories at half resolution, which the upsampling pass also reads:
+// maths::pack_half_texel(), maths::half_texel_depth() and maths::pack_half_residual().
 inline constexpr VkFormat kHalfFormat = VK_FORMAT_R16G16B16A16_SNORM;
 inline constexpr VkFormat kHalfDepthFormat = VK_FORMAT_R32_SFLOAT;
 inline constexpr VkFormat kHalfBentFormat = VK_FORMAT_A2B10G10R10_UNORM_PACK32;
 
-// Returns the bytes per pixel of all textures of a history as add_reconstruct() declares them: two
-// of each kind.
+// Returns the bytes per pixel that all textures of a history take, as add_reconstruct() declares
+// them: two slots of each texture.
 [[nodiscard]] inline std::uint64_t history_bytes(bool lobe, bool bent) {
   const std::uint64_t texel = 4u + (lobe ? 2u : 0u) + (bent ? 4u : 0u);
   return 2u * texel;

@@ -20,8 +20,8 @@ namespace {
 // Static frames after which every pixel of a tile of 4x4 has been traced once.
 constexpr std::uint32_t kConvergedFrames = 16;
 
-// The state of the history at a frame. The pipeline depends on it, on settings, on inputs and on
-// the kind of projection.
+// What history a frame can use. The pipeline depends on it, and also on the settings, the inputs
+// and the kind of projection.
 enum class Past : std::uint8_t {
   none,  // no history, or none that can be read
   moving,
@@ -92,7 +92,7 @@ tl::expected<Kernel, Error> get_kernel(const Frame& frame, const ReconstructInpu
   return get(past);
 }
 
-// Without a history nothing of the frame before is read.
+// Returns the frame without its previous view and sizes, which are not read if there is no history.
 Frame without_past(const Frame& frame) {
   Frame alone = frame;
   alone.previous_view = frame.view;
@@ -149,7 +149,7 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& given_frame,
   declare_reconstruct_accesses(frame.graph, pass, textures);
   maths::ReconstructParameters parameters =
       reconstruct_parameters(frame, *projection, *previous, inputs, settings);
-  // Nothing changes, so all frames count alike.
+  // In a static view all frames get the same weight in the history.
   if (past == Past::unchanged && frame.static_frames >= kConvergedFrames) {
     parameters.largest_weight = static_cast<float>(maths::kMaxHistoryFrames) - 1.0f;
   }
@@ -157,8 +157,8 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& given_frame,
   const VkExtent3D stored =
       textures.history.next ? frame.graph.extent(textures.history.next) : VkExtent3D{1, 1, 1};
   parameters.history_texel = 1.0f / maths::vec2(stored.width, stored.height);
-  // One more texel at the right and the lower border, if the textures have room for it, since the
-  // upsampling pass reads it.
+  // The dispatch covers one more texel to the right and below, if the textures have room for it,
+  // because the upsampling pass reads those texels.
   const VkExtent3D half_extent{std::min(half_size.width + 1, stored.width),
                                std::min(half_size.height + 1, stored.height), 1};
   pass.record([&kernels = frame.kernels, kernel = *kernel, textures, parameters,

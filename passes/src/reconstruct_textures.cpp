@@ -15,8 +15,8 @@ using framegraph::TextureHistory;
 
 namespace {
 
-// The name of another history that goes with `history_name`. Its memory is part of the object, so
-// that a steady frame allocates nothing for it.
+// The name of a second history that belongs to `history_name`. The text is stored inside the
+// object, so that a frame that repeats an earlier one allocates no memory.
 class DerivedHistoryName {
  public:
   DerivedHistoryName(std::string_view history_name, std::string_view suffix) {
@@ -35,8 +35,9 @@ constexpr std::string_view kDepthSuffix = " depth";
 constexpr std::string_view kBentSuffix = " bent normal";
 constexpr std::string_view kLobeSuffix = " specular";
 
-// Declares a history, or resets it where it is not wanted, since it is out of date by the time that
-// it is wanted again. Clears `valid` where the previous frame's texture cannot be read.
+// Declares a history. If it is not wanted in this frame, resets it instead, because its contents
+// will be out of date when it is wanted again. Sets `valid` to false if the texture of the previous
+// frame cannot be read.
 HistoryTextures create_history(Graph& graph, bool wanted, std::string_view name, VkFormat format,
                                framegraph::Extent largest, bool& valid) {
   if (!wanted) {
@@ -94,8 +95,8 @@ void create_half(Graph& graph, const OcclusionSettings& settings, const Reconstr
   }
 }
 
-// The normals, or null where the pass does not read them: at half resolution only the weights of
-// GGX lobes need them.
+// Returns the normals, or null if the pass does not read them: at half resolution only the weights
+// of GGX lobes need normals.
 Texture read_normals(const ReconstructTextures& textures) {
   const bool read = !is_half(textures) || textures.inputs.raw_occlusion.lobe;
   return read ? textures.inputs.normals : Texture{};
@@ -179,10 +180,10 @@ ReconstructViews reconstruct_views(RecordContext& context, const ReconstructText
   };
   const bool half = is_half(textures);
   const ReconstructInputs& in = textures.inputs;
-  // At half resolution the upsampling pass writes the results.
+  // At half resolution the upsampling pass writes the results, and this pass writes none.
   const Occlusion out = half ? Occlusion{} : textures.result;
   const Texture written = any_of(out);
-  // Half resolution may read no normals.
+  // At half resolution the normals may be null.
   const Texture sampled = half ? in.depth_ndc : in.normals;
   const HistoryTextures& history = textures.history;
   return {{{"raw_image", view(in.raw_occlusion.raw_occlusion)},

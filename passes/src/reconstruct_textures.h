@@ -1,5 +1,5 @@
-// The textures of add_reconstruct(): which it makes, how its pass accesses them, and in which order
-// the shader binds them.
+// The textures of add_reconstruct(): creates them, declares how the pass accesses them, and lists
+// them in the order of the shader's bindings.
 #pragma once
 
 #include <array>
@@ -32,8 +32,8 @@ struct ReconstructTextures {
   return settings.half_resolution ? 2 : 1;
 }
 
-// Declares the textures that the pass writes and the histories. `valid` becomes whether the
-// previous frame's histories can be read.
+// Creates the textures that the pass writes, and declares the histories. Sets `valid` to whether
+// the histories of the previous frame can be read.
 [[nodiscard]] ReconstructTextures create_reconstruct_textures(
     const Frame& frame, const ReconstructInputs& inputs, const OcclusionSettings& settings,
     const ReconstructSizes& sizes, std::string_view history_name, bool& valid);
@@ -48,9 +48,9 @@ void declare_reconstruct_accesses(const framegraph::Graph& graph, framegraph::Pa
 // A view for each image binding that a variant of the shader can have.
 using ReconstructViews = std::array<NamedView, 18>;
 
-// Returns the views of a dispatch. Images that this variant of the shader does not use are replaced
-// by others of their kind, because every binding needs a view. Bindings that the variant does not
-// have may get a null view.
+// Returns the image views of a dispatch. An image that the shader variant does not use is replaced
+// by another image of the same type, because every binding needs a view. The view may be null if
+// the variant does not have the binding.
 [[nodiscard]] ReconstructViews reconstruct_views(framegraph::RecordContext& context,
                                                  const ReconstructTextures& textures);
 

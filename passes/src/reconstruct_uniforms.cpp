@@ -11,8 +11,9 @@
 namespace alcove::passes {
 namespace {
 
-// To view-space positions from (x s, y s, depth, 1), x and y in pixels and s the depth in
-// perspective and 1 in orthographic views.
+// Returns the matrix that converts (x s, y s, depth, 1) to a position in view space. (x, y) is a
+// position on the image in pixels, depth is the linear depth, and s is depth in perspective views
+// and 1 in orthographic views.
 maths::mat4 view_from_pixel(const maths::Projection& p) {
   const maths::vec2 per_px = maths::ray_per_px(p);
   maths::mat4 m(0.0f);
@@ -23,7 +24,7 @@ maths::mat4 view_from_pixel(const maths::Projection& p) {
   return m;
 }
 
-// From view-space positions to (x w, y w, depth, w), x and y in pixels.
+// Returns the matrix from view space to (x w, y w, depth, w), where (x, y) is a position in pixels.
 maths::mat4 pixel_from_view(const maths::Projection& p) {
   maths::mat4 m(0.0f);
   m[0][0] = p.position_to_uv.x * p.size_px.x;
@@ -35,8 +36,9 @@ maths::mat4 pixel_from_view(const maths::Projection& p) {
   return m;
 }
 
-// Octaves of depth that the history of a perspective view can tell apart, from the near plane on.
-// 14 bits then resolve depth to 2^-10 of itself, or finer where the far plane is nearer.
+// The largest range of depths that the history of a perspective view distinguishes, in octaves
+// (factors of two) from the near plane on. 14 bits then resolve a relative change of depth of
+// 2^-10. The resolution is finer if the far plane is nearer than that.
 constexpr float kLargestDepthOctaves = 22.0f;
 
 // The largest power of two that is no larger than the near plane's distance.
@@ -45,8 +47,8 @@ float history_unit(const maths::Projection& p) {
   return std::ldexp(1.0f, std::ilogb(std::max(p.near_far.x, kLeast)));
 }
 
-// Scale and offset of maths::history_depth(). A perspective view's depth is stored as its
-// logarithm, an orthographic view's as it is, both between the near and the far plane.
+// Returns scale and offset for maths::history_depth(), which stores depths between the near and the
+// far plane: the logarithm of depth in perspective views, and depth itself in orthographic views.
 maths::vec2 history_depth_scale(const maths::Projection& p) {
   constexpr float kLeast = 1e-30f;
   const float near = p.near_far.x;
@@ -64,31 +66,33 @@ maths::vec2 history_depth_scale(const maths::Projection& p) {
   return {scale, -near * scale};
 }
 
-// Half a step of the 14 bits of a stored depth, and what computing it rounds.
+// The error of a stored depth: half a step of its 14 bits, plus the rounding of its computation.
 constexpr float kHistorySlack = 0.75f / 16383.0f;
 
-// ReconstructParameters::history_sharpness. A texel counts less the further it lies off the tangent
-// plane, and not at all from 1.5 texels on, or from 0.3 % of the depth in perspective where texels
-// are larger. It must at least be 0.12 % there, about the step of a stored depth.
+// Returns the relative difference of depth from the tangent plane at which a history texel's weight
+// reaches 0 in perspective views: 1.5 texels, and at most 0.3 % of the depth. At least 0.12 %,
+// which is about the step of a stored depth. ReconstructParameters::history_sharpness is computed
+// from it.
 float relative_history_distance(float texel) { return std::clamp(1.5f * texel, 0.0012f, 0.003f); }
 
 float history_sharpness(const maths::Projection& p, maths::vec2 scale) {
   const float pixel = std::abs(maths::ray_per_px(p).y);
   if (is_perspective(p)) {
-    // The stored depth changes by scale / ln 2 times a relative change of depth.
+    // A relative change of depth by e changes the stored depth by e * scale / ln 2.
     constexpr float kLn2 = 0.69314718f;
     return kLn2 / (relative_history_distance(pixel) * scale.x);
   }
   return 1.0f / std::max(1.5f * pixel * scale.x, 2.0f * kHistorySlack);
 }
 
-// The depth of a texel at half resolution is stored to 2^-15 of itself, which is a small part of
-// the distance at which a texel no longer counts.
+// Error of the depth of a texel at half resolution, relative to the distance at which its weight
+// reaches
+// 0. The depth is stored with a relative error of 2^-15.
 constexpr float kHalfHistorySlack = 0.03f;
 
-// Returns the sharpness of history rejection at half resolution, where depths are stored unscaled.
-// Its unit is one over a relative change of depth in perspective, and one over a change of depth in
-// orthographic views.
+// Returns ReconstructParameters::history_sharpness at half resolution, where depths are stored
+// unscaled: the reciprocal of the change of depth at which a history texel's weight reaches 0. The
+// change is relative in perspective views and in scene units in orthographic views.
 float half_history_sharpness(const maths::Projection& p) {
   const float texel = 2.0f * std::abs(maths::ray_per_px(p).y);
   const float rounding = 0x1p-14f * std::abs(p.near_far.y);
@@ -96,16 +100,17 @@ float half_history_sharpness(const maths::Projection& p) {
          (is_perspective(p) ? relative_history_distance(texel) : std::max(1.5f * texel, rounding));
 }
 
-// The width in pixels of the filter's window in a first frame: wide for few slices, for many hardly
-// wider than the distance between tiles. Fitted to the error of first frames (`alcove compare
-// --frames 1`).
+// Returns the width of the filter's window in pixels for a frame without history: wide if there are
+// few slices, and with many slices hardly wider than a tile. Fitted to the error of first frames
+// (`alcove compare --frames 1`).
 float window_px(const RawOcclusionTextures& raw_occlusion) {
   const float few = 1.1f / std::sqrt(static_cast<float>(raw_occlusion.slices));
   return static_cast<float>(raw_occlusion.tile_size) * std::max(few, 0.55f);
 }
 
-// ReconstructParameters::traced_range. The tiles at the right and the lower border trace their last
-// pixel where the interleave offset lies beyond the image.
+// Returns ReconstructParameters::traced_range: the positions of the first and the last traced
+// pixel. The tiles at the right and lower border trace their last pixel within the image if the
+// interleave offset lies outside of it.
 maths::vec4 traced_range(maths::vec2 size_px, maths::vec2 offset, float tile_size) {
   const maths::vec2 last = maths::ceil(size_px / tile_size) * tile_size - tile_size + offset;
   const maths::vec2 largest = maths::min(last, size_px - 1.0f);
@@ -120,7 +125,8 @@ maths::ReconstructParameters reconstruct_parameters(const Frame& frame,
                                                     const ReconstructInputs& inputs,
                                                     const OcclusionSettings& settings) {
   const maths::mat4 from_pixel = view_from_pixel(projection);
-  // In double: far from the world's origin the two all but cancel.
+  // Computed in double, because the translations nearly cancel if the camera is far from the
+  // origin.
   const maths::dmat4 to_previous = to_rigid(frame.previous_view.view_from_world) *
                                    maths::inverse(to_rigid(frame.view.view_from_world));
   const maths::mat4 to_view =
@@ -155,7 +161,8 @@ maths::ReconstructParameters reconstruct_parameters(const Frame& frame,
     parameters.history_sharpness = history_sharpness(projection, history_depth_scale(previous));
     parameters.history_slack = kHistorySlack;
   }
-  // The golden ratio's fractions are spread evenly over any run of frames.
+  // Multiples of the golden ratio modulo 1, which are spread evenly over any number of successive
+  // frames.
   parameters.dither_offset = static_cast<float>(frame.index * 2654435769u) * 0x1p-32f;
   const MotionConvention& motion = inputs.motion_convention;
   parameters.motion =
@@ -164,7 +171,8 @@ maths::ReconstructParameters reconstruct_parameters(const Frame& frame,
   parameters.roughness = settings.roughness;
   const float window = window_px(inputs.raw_occlusion);
   parameters.inverse_squared_window = 0.125f / (window * window);
-  // Distances from the plane count for more with the slices, as the window narrows with them.
+  // More slices narrow the window, and reduce the distance from the tangent plane that is
+  // tolerated.
   parameters.tolerance *= std::sqrt(static_cast<float>(inputs.raw_occlusion.slices));
   const auto [offset_x, offset_y] =
       interleave_offset_of(inputs.raw_occlusion.tile_size, frame.index);

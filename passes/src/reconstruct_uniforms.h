@@ -7,8 +7,9 @@
 
 namespace alcove::passes {
 
-// All parameters but the size of the history's texture. `previous` is the previous frame's
-// projection. The largest weight is that of a moving camera.
+// Returns all parameters except the size of the history's texture. `previous` is the previous
+// frame's projection. ReconstructParameters::largest_weight is set to its value for a view that is
+// not static.
 [[nodiscard]] maths::ReconstructParameters reconstruct_parameters(
     const Frame& frame, const maths::Projection& projection, const maths::Projection& previous,
     const ReconstructInputs& inputs, const OcclusionSettings& settings);

@@ -17,10 +17,9 @@ namespace alcove::passes {
   return result;
 }
 
-// Returns whether `m` is a rotation and translation, or a reflection and translation (for
-// left-handed worlds), up to rounding errors. It is not if an engine passes a scaled or transposed
-// matrix by mistake. The rounding errors of a camera matrix that was inverted in floats are within
-// 1e-6.
+// Returns whether `m` is a rotation or a reflection (for left-handed worlds) with a translation, up
+// to rounding errors. It is not if an engine passes a scaled or transposed matrix by mistake. A
+// camera matrix that was inverted in floats has rounding errors of at most about 1e-6.
 [[nodiscard]] inline bool is_rigid(const Matrix& m) {
   constexpr float kAxes = 1e-3f;  // tolerance of dot products between axes
   constexpr float kRow = 1e-5f;   // tolerance of the elements of the last row that should be 0
@@ -39,9 +38,9 @@ namespace alcove::passes {
          std::isfinite(m[14]);
 }
 
-// Returns the nearest rigid transform to `matrix`, which must satisfy is_rigid(): axes of length 1
-// at right angles, and the last row 0 0 0 1. It uses the Gram-Schmidt process, whose error is far
-// below a pixel, whichever axis goes first.
+// Returns the rigid transform nearest to `matrix`, which must satisfy is_rigid(): axes of length 1
+// at right angles, and the last row 0 0 0 1. The Gram-Schmidt process is used. Its result depends
+// on which axis goes first, but by far less than a pixel.
 [[nodiscard]] inline maths::dmat4 to_rigid(const Matrix& matrix) {
   const maths::dmat4 m(to_mat4(matrix));
   const maths::dvec3 x = maths::normalize(maths::dvec3(m[0]));

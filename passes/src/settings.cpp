@@ -12,8 +12,8 @@
 namespace alcove::passes {
 namespace {
 
-// Returns a text that completes a sentence such as "The setting 'slices' is ...", or an empty text
-// if the value is allowed.
+// Returns the end of the sentence "The setting 'slices' is ..." for a value that is not allowed, or
+// an empty text if the value is allowed.
 template <typename Value>
 std::string complaint(const SettingInfo& info, const Value& value) {
   if constexpr (std::is_same_v<Value, float>) {

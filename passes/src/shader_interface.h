@@ -1,6 +1,6 @@
-// The descriptor bindings and specialisation constants of a compute shader, read from its SPIR-V.
-// The GLSL file is their only declaration: the passes refer to them by the names that they have
-// there, and types and numbers come from the module.
+// Reads the descriptor bindings and specialisation constants of a compute shader from its SPIR-V.
+// The GLSL source is the only place where they are declared: the passes refer to them by their GLSL
+// names.
 #pragma once
 
 #include <vulkan/vulkan_core.h>
@@ -13,8 +13,8 @@
 namespace alcove::passes {
 
 struct ShaderBinding {
-  // Name of the GLSL variable; it points into the module. Empty for a block without an instance
-  // name.
+  // Name of the GLSL variable, which points into the module. It is empty for a block without an
+  // instance name.
   std::string_view name;
   std::uint32_t number = 0;  // layout(binding = number)
   // VK_DESCRIPTOR_TYPE_MAX_ENUM if read_shader_interface() does not know the variable's type.
@@ -31,9 +31,9 @@ struct ShaderInterface {
   std::vector<ShaderConstant> constants;  // ascending by id
 };
 
-// Returns the interface of `module`, the words of a valid SPIR-V module with names (OpName), which
-// must outlive the result. Bindings of all descriptor sets are listed together; the shaders of this
-// library use set 0 alone.
+// Returns the interface of `module`, the words of a valid SPIR-V module with debug names (OpName).
+// The module must outlive the result. Bindings of all descriptor sets are listed together, because
+// the shaders of this library only use set 0.
 [[nodiscard]] ShaderInterface read_shader_interface(std::span<const std::uint32_t> module);
 
 }  // namespace alcove::passes

@@ -111,7 +111,8 @@ tl::expected<Occlusion, Error> add_upsample(const Frame& frame, const UpsampleIn
              {"bent_normal_image", view_or(context, out.bent_normal, written)},
              {"lobe_image", view_or(context, inputs.lobes, inputs.half)},
              {"specular_image", view_or(context, out.specular, written)}});
-        // Invocations stand between texels, and begin and end outside of the image.
+        // Each invocation handles the pixels between four texels, so that one more row and column
+        // are needed.
         kernels.dispatch(context, kernel, views, bytes_of(parameters),
                          {inputs.half_size.width + 1, inputs.half_size.height + 1, 1});
       });

@@ -18,10 +18,10 @@ struct UpsampleInputs {
   bool normals_forward_z = false;
 };
 
-// Adds the pass that writes `result`, whose textures of the depth's size were made but not yet
-// written. A result that is null is not written.
+// Adds the pass that writes `result`. Its textures have the size of the depth and were created but
+// not yet written. A texture of `result` that is null is not written.
 //
-// Errors: a view that cannot be used, a pipeline that cannot be made.
+// Errors: a view that cannot be used, or a pipeline that cannot be created.
 [[nodiscard]] tl::expected<Occlusion, Error> add_upsample(const Frame& frame,
                                                           const UpsampleInputs& inputs,
                                                           const Occlusion& result,

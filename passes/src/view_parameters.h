@@ -14,17 +14,17 @@
 
 namespace alcove::passes {
 
-// Returns whether a perspective matrix was given row by row instead of column by column: the
-// coefficient 1 of w = -z then stands at the place of the depth offset. A perspective whose w is
-// scaled could look the same, but engines have none.
+// Returns whether a perspective matrix was given in row-major instead of column-major order: the
+// coefficient 1 of w = -z is then found in the place of the depth offset. A perspective matrix with
+// a scaled w could look the same, but engines do not use such matrices.
 [[nodiscard]] inline bool is_transposed(const Matrix& clip_from_view) {
   const auto is_one = [](float value) { return std::abs(std::abs(value) - 1.0f) <= 1e-5f; };
   return is_one(clip_from_view[14]) && !is_one(clip_from_view[11]) && clip_from_view[11] != 0.0f &&
          clip_from_view[15] == 0.0f;
 }
 
-// Returns the projection of a view over an image of `size` pixels, or an error that says what is
-// wrong with the view. The sentence calls the view `name`.
+// Returns the projection of a view onto an image of `size` pixels, or an error that says what is
+// wrong with the view. The error sentence calls the view `name`.
 [[nodiscard]] inline tl::expected<maths::Projection, Error> projection_of(
     const View& view, VkExtent2D size, const char* name = "The view") {
   const auto unusable = [name](const std::string& why) {
@@ -49,8 +49,8 @@ namespace alcove::passes {
   return projection_of(view, {extent.width, extent.height});
 }
 
-// Returns the rotation or reflection from the space of the normals to view space. `forward_z` means
-// that normals are in a view space whose z axis points away from the eye.
+// Returns the rotation or reflection from the space of the normals to view space. `forward_z` says
+// that the normals are in a view space whose z axis points away from the eye.
 [[nodiscard]] inline maths::mat4 view_from_normal(const Frame& frame, bool normals_in_view_space,
                                                   bool forward_z = false) {
   maths::mat4 result =
@@ -77,7 +77,7 @@ namespace alcove::passes {
                                           : maths::dvec2(unproject.x, unproject.y) / unproject.w;
   const bool grows = maths::grows_with_inverse_depth(perspective, is_reversed(projection));
   const double offset = grows ? linear.y : linear.x + linear.y;
-  // The far plane of a matrix of rounded numbers can lie behind infinity.
+  // If the matrix has rounding errors, its inverse depth at the far plane can be slightly negative.
   return {static_cast<float>(std::abs(linear.x)),
           static_cast<float>(perspective ? std::max(offset, 0.0) : offset)};
 }
@@ -87,8 +87,8 @@ namespace alcove::passes {
                                                  VkFormat format) {
   const maths::vec2 from_ndc = inverse_depth_from_ndc(projection);
   const double scale = from_ndc.x;
-  // The result is one and a half steps, because rasterisers do not always round to the nearest
-  // value.
+  // The result is one and a half steps instead of one, because rasterisers do not always round to
+  // the nearest value.
   const auto fixed = [&](double levels) {
     return maths::DepthStep{static_cast<float>(1.5 * scale / levels), 0.0f};
   };
@@ -101,8 +101,9 @@ namespace alcove::passes {
     case VK_FORMAT_D24_UNORM_S8_UINT:
       return fixed(16777215.0);
     default: {
-      // Floats: at most 2^-23 of the raw depth, and 2^-24 from a half to 1. The raw depth is
-      // (inverse_depth - offset) / scale if it grows with the inverse depth, else 1 less that.
+      // Float formats have steps of at most 2^-23 of the stored depth, and of 2^-24 from 0.5 to 1.
+      // The stored depth is (inverse_depth - offset) / scale if it grows with the inverse depth,
+      // otherwise 1 minus that.
       const double step = std::ldexp(1.0, -23);
       return maths::grows_with_inverse_depth(is_perspective(projection), is_reversed(projection))
                  ? maths::DepthStep{static_cast<float>(-step * from_ndc.y),

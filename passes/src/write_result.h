@@ -16,8 +16,8 @@ namespace alcove::passes {
 }
 
 // Declares that a shader of `pass` writes every texel of `texture`. Earlier contents are discarded,
-// except those of an import with contents: its image may be larger than the part that the graph
-// knows, and the rest belongs to the caller.
+// unless the texture is an import with contents: its image may be larger than the part that the
+// graph uses, and the rest must keep its contents.
 [[nodiscard]] inline framegraph::Texture write_result(const framegraph::Graph& graph,
                                                       framegraph::PassBuilder& pass,
                                                       framegraph::Texture texture) {

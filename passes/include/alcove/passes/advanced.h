@@ -1,6 +1,6 @@
-// Settings that most users never change: alternatives from the literature to compare with, filter
-// tuning, and parts of the search that can be switched off to measure what they do. The defaults
-// suit every scene.
+// Settings that most users never change: alternative methods from the literature to compare with,
+// filter tuning, and parts of the occlusion search that can be switched off to measure their
+// effect. The defaults suit every scene.
 #pragma once
 
 #include <cstdint>
@@ -11,19 +11,19 @@ namespace alcove::passes {
 enum class Estimator : std::uint8_t {
   // Occluders are infinitely thick: the horizons of [Jimenez 2016].
   horizons,
-  // Occluders are infinitely thick, but each lower sample further out pulls the horizon down: the
-  // paper's thickness heuristic.
+  // Occluders are infinitely thick, but each sample that is farther out and lower than the horizon
+  // lowers the horizon: the thickness heuristic of [Jimenez 2016].
   heuristic,
-  // Every sample is a separate occluder of the thickness in the settings: the visibility bitmask of
-  // Therrien et al. 2023, with exact cosine weights.
+  // Every sample is a separate occluder whose thickness is OcclusionSettings::thickness: the
+  // visibility bitmask of Therrien et al. 2023, with exact cosine weights.
   bitmask,
-  // As `bitmask`, but consecutive samples of one surface are connected without gaps
-  // (shaders/maths/connected_samples.h). Suits thin objects and walls alike.
+  // As `bitmask`, but the space between two consecutive samples of one surface is occluded too
+  // (shaders/maths/connected_samples.h). It suits both thin objects and walls.
   connected,
 };
 
-// Whether the estimator reads thickness, hidden_occlusion and depth_layers. The other estimators
-// read AdvancedSettings::falloff instead.
+// Returns whether the estimator gives occluders a finite thickness, and thus reads thickness,
+// hidden_occlusion and depth_layers. The other estimators read AdvancedSettings::falloff instead.
 [[nodiscard]] constexpr bool has_thickness(Estimator estimator) {
   return estimator == Estimator::bitmask || estimator == Estimator::connected;
 }
@@ -32,11 +32,11 @@ enum class Estimator : std::uint8_t {
 enum class ThicknessUnit : std::uint8_t {
   radius,    // The occlusion radius: the thickness is constant in the scene.
   distance,  // The occluder's distance along the view axis: the thickness is constant on the image.
-  // A second depth buffer of back faces gives the thickness: each occluder ends at the nearest back
-  // face on its view ray. For a closed solid that is where the ray leaves it, unless another solid
-  // stands inside. Without a back face behind the front (cards, planes, sky) the unit is `radius`.
-  // A card in front of a solid is taken to reach to the solid's back, because two depths cannot
-  // distinguish that case.
+  // OcclusionInputs::back_depth_ndc, a second depth buffer with back faces, gives the thickness:
+  // each occluder ends at the nearest back face on its view ray. For a closed solid, that is the
+  // point where the ray leaves it, unless another solid stands inside it. If there is no back face
+  // behind the front face (cards, planes, sky), the unit is `radius`. A card in front of a solid is
+  // assumed to extend to the solid's back, because two depths cannot distinguish this case.
   back_faces,
 };
 
@@ -53,39 +53,40 @@ enum class Pattern : std::uint8_t {
   paper,    // 16 directions in tiles of 4x4 pixels, rotated over six frames [Jimenez 2016].
 };
 
-// The type of OcclusionSettings::advanced. A setting that the estimator or the history does not use
-// is not read, but it must be in range. setting_table.h has the ranges.
+// The type of OcclusionSettings::advanced. A setting that the selected estimator or history does
+// not use has no effect, but it must still be in range. setting_table.h has the ranges.
 struct AdvancedSettings {
   Estimator estimator = Estimator::connected;
   Weighting weighting = Weighting::cosine;
   ThicknessUnit thickness_unit = ThicknessUnit::radius;
-  // How far a sample that lies below the horizon lowers the horizon towards itself: 0 not at all, 1
-  // down to the sample. Only the estimator `heuristic` reads it.
+  // How far a sample that lies below the horizon lowers the horizon, [0,1]: 0 does not lower it, 1
+  // lowers it to the sample. Only the estimator `heuristic` reads it.
   float blend = 0.05f;
   // Occluders fade out over this last fraction of the radius, [0,1]. 0 turns fading off. It must be
-  // 0 with the estimators `bitmask` and `connected`, whose sectors are either occluded or open.
+  // 0 with the estimators `bitmask` and `connected`, whose sectors are either occluded or not.
   float falloff = 0.0f;
   Pattern pattern = Pattern::golden;
   // Filter radius in tiles for pixels with fewer than two frames of history, 0 to 3. Pixels with
   // more history use 1. 0 turns the spatial filter off.
   std::uint32_t filter_radius = 2;
-  // Distance from the pixel's tangent plane, in pixels, at which a neighbour's weight falls to
-  // 0.25; above 0. It holds for one slice and no history, and shrinks with more samples.
+  // Distance from the pixel's tangent plane, in pixels, at which the spatial filter gives a
+  // neighbour the weight 0.25; above 0. This is the value for one slice and no history. The
+  // distance shrinks as slices and frames accumulate.
   float filter_tolerance_px = 1.5f;
-  // The history is clamped to this many standard deviations around the mean of this frame's
-  // neighbourhood, at least 0. 0 turns clamping off.
+  // The history is clamped to the mean of the current frame's neighbourhood plus or minus this many
+  // standard deviations, at least 0. 0 turns clamping off.
   float clamp_width = 0.0f;
 
   // Parts of the search that can be switched off to measure what they do (`alcove ablate`).
 
-  // Moves each depth sample to the centre of its texel. Without it, tilted planes occlude
+  // Moves each depth sample to the centre of its texel. If this is off, tilted planes occlude
   // themselves.
   bool snap_to_texels = true;
   // Extrapolates surfaces that leave the image beyond its border (`connected` only).
   bool extrapolation = true;
-  // Leaves directions that the depth buffer does not show (behind a foreground, or beyond the
-  // image's border) partly out of the average; see shaders/maths/unobserved.h. If off, they count
-  // as open. `connected` only.
+  // Partly excludes directions that the depth buffer does not show (behind a foreground, or beyond
+  // the image's border) from the average; see shaders/maths/unobserved.h. If this is off, such
+  // directions count as unoccluded. Only the estimator `connected` reads it.
   bool unobserved = true;
 
   friend bool operator==(const AdvancedSettings&, const AdvancedSettings&) = default;

@@ -8,9 +8,10 @@
 namespace alcove::passes {
 
 struct ApplySettings {
-  // Whether occluders reflect light. They are assumed to have the albedo and the lighting of the
-  // occluded surface. The visibility of diffuse light is then brightened as add_multi_bounce()
-  // does, and the occluded part of specular light shows such an occluder instead of black.
+  // Whether occluders reflect light. Occluders are assumed to have the albedo and the lighting of
+  // the surface that they occlude. If true, the visibility of diffuse light is raised as in
+  // add_multi_bounce(), and the occluded part of specular light shows this reflected light instead
+  // of black.
   bool multi_bounce = true;
   float roughness = 0.5f;               // perceptual, [0,1]; used if there is no roughness texture
   float metallic = 0.0f;                // [0,1]; used if there is no metallic texture
@@ -20,8 +21,8 @@ struct ApplySettings {
   Precision precision = Precision::float16;  // light is above 1: unorm8 is refused
 };
 
-// Textures must have the size of `depth`, except those of the probe. Parts of the shader that need
-// a null texture are left out.
+// Textures must have the size of `depth`, except those of the probe. If an optional texture is
+// null, the parts of the shader that need it are compiled out.
 struct ApplyInputs {
   framegraph::Texture depth;        // linear, as add_linear_depth makes it
   framegraph::Texture normals;      // xyz unit, in world space unless told otherwise
@@ -31,8 +32,8 @@ struct ApplyInputs {
   framegraph::Texture visibility;   // one channel, [0,1]; null: diffuse light is not occluded
   framegraph::Texture bent_normal;  // in the space of the normals; null: the normal is used
   framegraph::Texture specular_occlusion;  // one channel, [0,1], as add_gtso makes it; null: none
-  // RGB light that is added to the result unchanged, also at the sky, for example emission and
-  // direct light. Null: none.
+  // RGB light that is added to the result unchanged, also at pixels of the sky, for example
+  // emission and direct light. Null: none.
   framegraph::Texture light;
   // The probe's radiance in any unit, in world space with +Y up: 9x1 texels with the RGB
   // coefficients of its spherical harmonics (shaders/maths/spherical_harmonics.h).
@@ -45,7 +46,7 @@ struct ApplyInputs {
 };
 
 // Radiance towards the eye in RGB, and 1 in alpha, in the format RGBA16_SFLOAT or RGBA32_SFLOAT.
-// The sky is black except for ApplyInputs::light.
+// Pixels of the sky are black, apart from ApplyInputs::light.
 struct AppliedLight {
   framegraph::Texture lit;       // the sum of the parts and ApplyInputs::light
   framegraph::Texture diffuse;   // null without ApplySettings::parts
@@ -54,8 +55,9 @@ struct AppliedLight {
 
 // Adds a pass that lights the surfaces of a view with a probe. Materials are those of glTF 2.0:
 // dielectrics reflect 0.04 at normal incidence, metals their base colour. Specular light is
-// computed by the split sum (shaders/maths/split_sum.h). Diffuse light gets the energy that
-// specular light leaves, so that a surface never reflects more light than it receives.
+// computed with the split-sum approximation (shaders/maths/split_sum.h). Diffuse light gets the
+// energy that is not reflected specularly, so that a surface never reflects more light than it
+// receives.
 //
 // Errors: a missing input, an input of the wrong size, or a setting out of range.
 [[nodiscard]] tl::expected<AppliedLight, Error> add_apply(const Frame& frame,

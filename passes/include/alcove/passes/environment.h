@@ -13,8 +13,8 @@ struct EnvironmentSettings {
   std::uint32_t samples = 64;  // of a texel's lobe in the second level, 1 to 4096; more in the next
 };
 
-// The result, as transients of the frame. An engine that wants to keep them copies them to textures
-// of its own.
+// The two textures of a probe, as transients of the frame. To keep them for later frames, copy them
+// to textures of your own.
 struct Environment {
   framegraph::Texture harmonics;  // 9x1 RGBA32_SFLOAT: ApplyInputs::harmonics
   framegraph::Texture map;        // RGBA16_SFLOAT with mips: ApplyInputs::map
@@ -22,8 +22,8 @@ struct Environment {
 
 // Adds the passes that make a probe from `equirectangular`, an image of linear RGB radiance in any
 // size and float format, in world space with +Y up (shaders/maths/environment_map.h). NaN and
-// negative values count as black, and values above 65504 as 65504. Passes whose result nobody reads
-// are culled.
+// negative values count as black, and values above 65504 (the largest half float) as 65504. Passes
+// whose result nobody reads are culled.
 //
 // Errors: a missing texture, or a setting out of range.
 [[nodiscard]] tl::expected<Environment, Error> add_environment(

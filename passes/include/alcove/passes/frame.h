@@ -1,7 +1,7 @@
 // The common arguments of all passes of a frame: the graph, the kernels, and the view.
 //
-//   once:   Executor::create, Kernels::create, for as many frames in flight
-//   frame:  wait for the fence of slot s;  graph.reset(); kernels.begin_frame(s);
+//   once:   Executor::create and Kernels::create, for the same number of frames in flight
+//   frame:  wait for the fence of frame slot s;  graph.reset(); kernels.begin_frame(s);
 //           import textures, add passes;  executor.record(graph, commands, {s})
 #pragma once
 
@@ -18,14 +18,14 @@ using Matrix = std::array<float, 16>;
 
 inline constexpr Matrix kIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 
-// A camera. View space is right-handed with the camera along -Z. `clip_from_view` maps view space
-// to Vulkan clip space. It may be any perspective or orthographic projection: finite or infinite,
-// reversed, off-centre, jittered, flipped in Y, or with its near plane at 0. AlcoveCamera
+// A camera. View space is right-handed with the camera looking along -Z. `clip_from_view` maps view
+// space to Vulkan clip space. It may be any perspective or orthographic projection: finite or
+// infinite, reversed, off-centre, jittered, flipped in Y, or with its near plane at 0. AlcoveCamera
 // (alcove.h) says how to convert the matrices of engines with other conventions, and which rounding
 // errors are accepted.
 struct View {
   Matrix clip_from_view = kIdentity;
-  // A rotation and a translation, or a reflection and a translation. It must not scale.
+  // A rotation or a reflection, followed by a translation. The matrix must not scale.
   Matrix view_from_world = kIdentity;
 
   bool operator==(const View&) const = default;
@@ -46,29 +46,30 @@ enum class NormalEncoding : std::uint8_t {
   unsigned_octahedral,  // the same packed into [0,1]
 };
 
-// The graph, kernels and view that the passes of one frame are added for. Everything referenced
-// must stay alive until the frame is recorded.
+// What the passes of one frame are added to: the graph, the kernels and the view. The referenced
+// objects must stay alive until the frame is recorded.
 struct Frame {
   framegraph::Graph& graph;
   Kernels& kernels;
   View view;
   std::uint32_t index = 0;  // frame number: rotates the noise and selects the traced pixels
   // The view of the previous frame, with which history is reprojected. It is not read if there is
-  // no history: in a first frame, after a reset, and with `prepare`.
+  // no history: in the first frame, after a reset, and if `prepare` is true.
   View previous_view = view;
-  // The number of consecutive frames, including this one, that show exactly the same as their
-  // previous frame. It is 0 if this frame differs from the previous one, or if that is unknown. It
-  // must restart at 0 when histories do: after a camera cut, and when the size, the settings or the
-  // outputs change. From 1 on, motion vectors are not read and history is not reprojected. From 16
-  // on, the history averages up to 127 frames.
+  // The number of consecutive frames, up to and including this one, whose image is exactly that of
+  // the frame before. It is 0 if this frame differs from the previous one, or if you do not know.
+  // It must restart at 0 when the histories do: after a camera cut, and when the size, the settings
+  // or the outputs change. If it is at least 1, motion vectors are not read and history is not
+  // reprojected. If it is at least 16, the history averages up to 127 frames.
   std::uint32_t static_frames = 0;
-  // For dynamic resolution: sizes with which the history continues while the size of the depth
-  // changes. Zero means the current size of the depth.
+  // For dynamic resolution: sizes that let the history continue while the size of the depth texture
+  // changes. Zero means the current size of the depth texture.
   VkExtent2D largest_size{};   // size of the history textures; a change discards the history
   VkExtent2D previous_size{};  // of the depth in the previous frame; at most largest_size
-  // Also make the pipelines of every frame that differs from this one only in what lies before it:
-  // a first one, one after a cut, in motion, still. For a frame in a graph of its own that is never
-  // recorded, declared while loading or before settings change: none then waits for a pipeline.
+  // If true, adding the passes creates all pipelines that frames of this view can need: for a first
+  // frame, after a camera cut, in motion and while static. Declare such a frame in a separate graph
+  // that is never recorded, while loading or before settings change. No frame then has to wait for
+  // a pipeline.
   bool prepare = false;
 };
 

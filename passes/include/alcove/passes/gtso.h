@@ -24,13 +24,13 @@ struct GtsoInputs {
 };
 
 // Adds a pass that computes specular occlusion from visibility and bent normals. Returns a texture
-// with one channel: the visible fraction of the GGX lobe of each pixel, [0,1], where 1 is open, by
-// which specular probe light is multiplied. The sky gets 1. Its format is R8_UNORM, R16_SFLOAT or
+// with one channel: the visible fraction of the GGX lobe of each pixel, [0,1], where 1 is open.
+// Multiply specular probe light by it. The sky gets 1. The format is R8_UNORM, R16_SFLOAT or
 // R32_SFLOAT, by OcclusionSettings::precision.
 //
 // An unoccluded surface gets 1 at any roughness and angle: a visibility within 1/128 of 1 counts as
 // open, because a filtered visibility is not more accurate than that. The paper divides by the
-// whole lobe; here the part of the lobe below the surface is left out.
+// whole lobe; this pass leaves out the part of the lobe that lies below the surface.
 //
 // Errors: a missing input, inputs of different sizes, settings that validate() refuses, or a
 // setting `specular` other than `table` and `cone`.

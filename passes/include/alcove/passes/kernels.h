@@ -14,8 +14,9 @@
 
 namespace alcove::passes {
 
-// The reason why a pass could not be added: a sentence, and the result of the Vulkan call that
-// failed, or VK_ERROR_FEATURE_NOT_PRESENT if the device lacks a function or a limit.
+// The reason why a pass could not be added. `message` is a sentence. `result` is that of the Vulkan
+// call that failed, or VK_ERROR_FEATURE_NOT_PRESENT if the device lacks a function or its limits
+// are too small.
 struct Error {
   std::string message;
   VkResult result = VK_SUCCESS;
@@ -70,10 +71,10 @@ struct NamedView {
 };
 
 // Owns the pipelines, descriptor sets and parameter buffers of the passes on one device. A pipeline
-// is created when a shader is first used with a set of constants (Frame::prepare creates all that a
-// view can need) and is kept. A frame that needs no new pipeline allocates nothing. dispatch() may
-// be called by several recording threads at the same time (ExecutorOptions::recording_threads); all
-// other functions by one thread at a time.
+// is created when a shader is first used with a set of constants, and is kept (Frame::prepare
+// creates all that a view can need). A frame that needs no new pipeline allocates nothing. Several
+// recording threads may call dispatch() at the same time (ExecutorOptions::recording_threads); only
+// one thread at a time may call any other function.
 class Kernels {
  public:
   static constexpr std::uint32_t kMaxDispatches = 80;        // in a frame
@@ -81,9 +82,10 @@ class Kernels {
   static constexpr std::size_t kMaxConstants = 24;           // of a shader
   static constexpr std::uint32_t kMaxFramesInFlight = 8;
 
-  // `device`, made with the feature shaderStorageImageWriteWithoutFormat, must outlive the kernels.
-  // `frames_in_flight`, 1 to kMaxFramesInFlight, is how many frames may be recorded before the
-  // first of them has finished on the device: ExecutorOptions::frames_in_flight.
+  // `device` must have been created with the feature shaderStorageImageWriteWithoutFormat, and must
+  // outlive the kernels. `frames_in_flight`, 1 to kMaxFramesInFlight, is the number of frames that
+  // may be recorded before the first of them has finished on the device: the same value as
+  // ExecutorOptions::frames_in_flight.
   //
   // `cache` is a pipeline cache of the same device, or null for none. The caller loads, stores and
   // destroys it, and it must outlive the kernels. Other threads may use it at the same time, unless
@@ -91,7 +93,7 @@ class Kernels {
   // may use it while passes are added.
   //
   // Errors: a null handle, frames in flight out of range, a Vulkan function that the device lacks,
-  // a limit maxPerStageDescriptorStorageImages below 9, or memory that runs out.
+  // a limit maxPerStageDescriptorStorageImages below 9, or no more memory.
   [[nodiscard]] static tl::expected<Kernels, Error> create(const framegraph::DeviceHandles& device,
                                                            std::uint32_t frames_in_flight,
                                                            VkPipelineCache cache = VK_NULL_HANDLE);
@@ -99,9 +101,10 @@ class Kernels {
   Kernels& operator=(Kernels&&) noexcept;
   ~Kernels();
 
-  // Begins a frame with the frame slot `slot` (FrameInfo::slot), which is below
-  // `frames_in_flight`. It reuses the descriptors and parameters of the slot's previous frame,
-  // which must have finished on the device. Call it once a frame, before the frame is recorded.
+  // Begins a frame that is recorded with the frame slot `slot` (FrameInfo::slot), which must be
+  // below `frames_in_flight`. The frame reuses the descriptors and parameters of the slot's
+  // previous frame, which must have finished on the device. Call it once per frame, before the
+  // frame is recorded.
   void begin_frame(std::uint32_t slot);
 
   // Returns the pipeline of `shader` with these specialisation constants. Values for names that the
@@ -111,12 +114,12 @@ class Kernels {
   [[nodiscard]] tl::expected<Kernel, Error> get(Shader shader,
                                                 std::span<const NamedConstant> constants = {});
 
-  // Returns the size in bytes of the tables that the shaders in use look up. Unused tables do not
-  // count.
+  // Returns the size in bytes of the lookup tables of the shaders that have a pipeline. Tables of
+  // other shaders are not created and do not count.
   [[nodiscard]] std::size_t table_bytes() const;
 
-  // Returns the device memory of these objects in bytes: the parameters of all frames in flight,
-  // and table_bytes().
+  // Returns the device memory that the kernels use, in bytes: the parameters of all frames in
+  // flight, and table_bytes().
   [[nodiscard]] VkDeviceSize memory_bytes() const;
 
   // Records a dispatch that covers `size` pixels (and layers) with groups of 8x8 invocations.

@@ -5,11 +5,11 @@
 
 namespace alcove::passes {
 
-// Adds a pass that computes normals from `depth`, a linear depth of add_linear_depth(). Returns an
-// RGBA16_SFLOAT texture of unit normals in view space that point towards the eye. On each image
-// axis the normal uses the neighbour on the side where the depths continue the pixel's depth
-// better, so that surfaces on both sides of a silhouette do not mix. The sky gets the direction to
-// the eye.
+// Adds a pass that computes normals from `depth`, the linear depth from add_linear_depth(). Returns
+// an RGBA16_SFLOAT texture of unit normals in view space that point towards the eye. On each image
+// axis, the pass uses the one of the two neighbours whose depth continues the pixel's surface more
+// smoothly, so that normals do not mix the surfaces on both sides of a silhouette. The sky gets the
+// direction to the eye.
 //
 // Errors: a null texture, or a view whose matrices the passes cannot use.
 [[nodiscard]] tl::expected<framegraph::Texture, Error> add_normals(const Frame& frame,

@@ -20,23 +20,23 @@ struct OcclusionInputs {
   framegraph::Texture motion;          // as ReconstructInputs::motion; null: only the camera moves
   framegraph::Texture roughness;       // perceptual, [0,1]; null: OcclusionSettings::roughness
   // The depth of back faces, for ThicknessUnit::back_faces. It is ignored unless
-  // needs_back_depth(). It is the depth of the scene drawn a second time with front faces culled,
-  // with the same projection, size, clear value and depth test: the nearest back face is kept,
-  // because there the view ray leaves the solid that it enters first. If its value at a pixel is
-  // the sky, NaN, or less than a ten-thousandth of the distance behind `depth_ndc`, the occluder
-  // has the thickness of the settings.
+  // needs_back_depth(). Draw the scene a second time with front faces culled, with the same
+  // projection, size, clear value and depth test, so that the nearest back face is kept: there the
+  // view ray leaves the first solid that it enters. A pixel's occluder has the thickness of the
+  // settings instead if this depth is the sky or NaN, or is behind `depth_ndc` by less than a
+  // ten-thousandth of the distance.
   framegraph::Texture back_depth_ndc;
   // The second depth layer, for OcclusionSettings::depth_layers = 2. It is ignored unless
-  // needs_second_depth(). It is the depth of the scene drawn a second time with back faces culled,
-  // discarding fragments that are not behind `depth_ndc`, by a thousandth of the distance for
-  // example: the nearest front face that the first layer hides. If its value at a pixel is the sky
-  // or NaN, nothing is hidden there.
+  // needs_second_depth(). It holds the nearest front face that the first layer hides. Draw the
+  // scene a second time with back faces culled, and discard fragments that are not behind
+  // `depth_ndc` (for example by at least a thousandth of the distance). If this depth is the sky or
+  // NaN at a pixel, the second layer has no occluder there.
   framegraph::Texture second_depth_ndc;
   // Textures of the caller for the outputs: see ReconstructInputs::into.
   Occlusion into;
   NormalEncoding normal_encoding = NormalEncoding::signed_xyz;
   // Whether normals in view space have a z axis that points away from the eye, as in engines whose
-  // camera looks along +Z. Bent normals are then written in the same way.
+  // camera looks along +Z. Bent normals then have the same convention.
   bool normals_forward_z = false;
   MotionConvention motion_convention;
 };
@@ -48,8 +48,8 @@ struct OcclusionOutputs {
   framegraph::Texture bent_normal;
   // One channel that multiplies specular probe light, [0,1], 1 is open. Null if not requested.
   framegraph::Texture specular;
-  // Linear depth from add_linear_depth. Null if neither the settings, nor their
-  // specular model, nor the computation of normals needs it.
+  // Linear depth from add_linear_depth. Null unless it was requested, or specular occlusion or
+  // normals from depth need it.
   framegraph::Texture linear_depth;
   framegraph::Texture normals;  // the given ones, or normals from depth in view space
 };

@@ -1,4 +1,4 @@
-// Reconstructs every pixel from the traced ones: spatial filter, upsampling and temporal
+// Reconstructs every pixel from the traced pixels: spatial filter, upsampling and temporal
 // accumulation in one pass (Jimenez et al. 2016, sections 4.4 and 4.5, with other weights).
 #pragma once
 
@@ -12,17 +12,18 @@
 
 namespace alcove::passes {
 
-// The convention of motion vectors: uv in this frame's image minus uv in the last frame's, y down,
-// is scale * vector + offset. Vectors in pixels have a scale of 1 / size, those in normalised
-// device coordinates 0.5 (y of Vulkan down), those from this frame to the last -1. Vectors that
-// were drawn without jitter have an offset: this frame's jitter minus the last frame's, in uv.
+// Converts motion vectors to the difference of uv in this frame's image minus uv in the previous
+// frame's image, with y down: scale * vector + offset. Use a scale of 1 / size for vectors in
+// pixels, 0.5 for vectors in normalised device coordinates (with Vulkan's y down), and negate it
+// for vectors that point from this frame to the previous one. If the vectors were drawn without
+// jitter, the offset is this frame's jitter minus the previous frame's, in uv.
 struct MotionConvention {
   std::array<float, 2> scale{1.0f, 1.0f};
   std::array<float, 2> offset{0.0f, 0.0f};
 };
 
 struct Occlusion {
-  // One channel, [0,1], 1 is open, of the depth's size. Null if it is not wanted.
+  // One channel, [0,1], 1 is open, of the depth's size. Null if it was not requested.
   framegraph::Texture visibility;
   // Unit vectors in xyz, in the space of the normals. Null without bent normals.
   framegraph::Texture bent_normal;
@@ -36,30 +37,33 @@ struct ReconstructInputs {
   framegraph::Texture normals;         // As GtaoInputs::normals.
   bool normals_in_view_space = false;
   // xy: how each surface moved on the image, in the units of `motion_convention`. Null: only the
-  // camera moves. Where motion is given, occluders may move too, and with them the visibility of
-  // surfaces that stand still: history is held to what the last few frames say.
+  // camera moves. If motion is given, occluders may move too, which changes the visibility of
+  // surfaces that stand still. The history is then replaced if it differs from the mean of about
+  // the last four frames by more than noise.
   framegraph::Texture motion;
   framegraph::Texture roughness;  // as GtaoInputs::roughness
-  // Textures of the caller's, of the depth's size, that results are written to completely. If null,
-  // the result is a transient of OcclusionSettings::precision. Read only if the result is wanted.
+  // Textures of the caller, of the depth's size, to which the results are written completely. If a
+  // texture is null, its result is a transient with OcclusionSettings::precision. A texture whose
+  // result was not requested is ignored.
   Occlusion into;
   NormalEncoding normal_encoding = NormalEncoding::signed_xyz;
   bool normals_forward_z = false;  // see OcclusionInputs
   MotionConvention motion_convention;
 };
 
-// Adds the reconstruction. Each view of a graph needs a `history_name` of its own. A history starts
-// anew when the size or the contents of the raw occlusion change, when history or bent normals were
-// off in the previous frame, and after Graph::reset_history(history_name).
+// Adds the reconstruction. Each view of a graph needs its own `history_name`. A history starts
+// again from this frame when the size of the raw occlusion changes or it gets other contents, when
+// history or bent normals were off in the previous frame, and after
+// Graph::reset_history(history_name).
 //
-// Errors: an input that is missing or whose size differs from the depth's, raw occlusion
-// with another number of tiles, a view or previous view that cannot be used, sizes above the
-// largest, settings that validate() refuses, nothing to write.
+// Errors: an input that is missing or whose size differs from the depth's, raw occlusion whose size
+// does not fit the number of tiles, a view or previous view that cannot be used, a size above
+// Frame::largest_size, settings that validate() refuses, or no output that was requested.
 [[nodiscard]] tl::expected<Occlusion, Error> add_reconstruct(
     const Frame& frame, const ReconstructInputs& inputs, const OcclusionSettings& settings,
     std::string_view history_name = "occlusion");
 
-// Frees the histories of this name that the current or last declared frame does not use, once the
+// Frees the histories of this name that the most recently declared frame does not use, after the
 // device has finished with them: see Graph::drop_history.
 void drop_reconstruct_history(framegraph::Graph& graph, std::string_view history_name);
 

@@ -1,6 +1,6 @@
-// The table of settings: the name, the description and the range of each. validate(), the C
-// interface, the option `--set` and the help of the program `alcove`, report.json and the window's
-// sliders all use it.
+// The table of settings: the name, the description and the range of each. It is used by validate(),
+// the C interface, the option `--set` and the help of the program `alcove`, report.json, and the
+// sliders of the window.
 #pragma once
 
 #include <cstdint>
@@ -49,15 +49,21 @@ template <typename Settings, typename Visit>
 void for_each_setting(Settings& settings, const Visit& visit) {
   using S = const OcclusionSettings&;
   constexpr auto has_thickness = [](S s) { return passes::has_thickness(s.advanced.estimator); };
-  visit(SettingInfo{.name = "radius",
-                    .help = "Distance in scene units beyond which occluders do not count.",
-                    .range = {.above_minimum = true},
-                    .slider = {.minimum = 0.05f, .maximum = 10.0f}},
-        settings.radius);
-  visit(SettingInfo{.name = "tile_size",
-                    .help = "Width of a tile in pixels. One pixel per tile is traced in a frame.",
-                    .range = {.minimum = 1, .maximum = 8, .power_of_two = true}},
-        settings.tile_size);
+  visit(
+      SettingInfo{
+          .name = "radius",
+          .help = "Distance in scene units beyond which occluders do not count. A twentieth to a "
+                  "fifth of a room's height is usual.",
+          .range = {.above_minimum = true},
+          .slider = {.minimum = 0.05f, .maximum = 10.0f}},
+      settings.radius);
+  visit(
+      SettingInfo{
+          .name = "tile_size",
+          .help = "Width of a tile in pixels. One pixel per tile is traced in each frame, and the "
+                  "filter and the history fill the others. 1 traces every pixel.",
+          .range = {.minimum = 1, .maximum = 8, .power_of_two = true}},
+      settings.tile_size);
   visit(
       SettingInfo{.name = "slices",
                   .help = "Slices (planes through the view direction) that are searched per traced "
@@ -69,21 +75,23 @@ void for_each_setting(Settings& settings, const Visit& visit) {
                             "find thinner occluders.",
                     .range = {.minimum = 2, .maximum = 64}},
         settings.steps);
-  visit(SettingInfo{.name = "thickness",
-                    .help = "Assumed thickness of occluders, in the unit that thickness_unit "
-                            "selects: by default a fraction of the radius.",
-                    .slider = {.maximum = 1.0f},
-                    .matters = has_thickness},
-        settings.thickness);
+  visit(
+      SettingInfo{.name = "thickness",
+                  .help = "Assumed thickness of occluders, in the unit that thickness_unit "
+                          "selects: by default a fraction of the radius. Thicker occluders darken.",
+                  .slider = {.maximum = 1.0f},
+                  .matters = has_thickness},
+      settings.thickness);
   visit(SettingInfo{.name = "hidden_occlusion",
-                    .help = "Fraction of the volume hidden behind occluders that is treated as "
-                            "solid.",
+                    .help =
+                        "Average fraction of the volume hidden behind occluders that is treated as "
+                        "solid. Raising it darkens corners behind foregrounds.",
                     .range = {.maximum = 1.0f},
                     .matters = has_thickness},
         settings.hidden_occlusion);
   visit(SettingInfo{.name = "depth_layers",
                     .help = "Number of depth buffers that are searched for occluders. The second "
-                            "one holds the nearest front faces behind the first.",
+                            "one holds the nearest front faces that the first one hides.",
                     .range = {.minimum = 1, .maximum = 2},
                     .matters = has_thickness},
         settings.depth_layers);
@@ -91,17 +99,19 @@ void for_each_setting(Settings& settings, const Visit& visit) {
       SettingInfo{.name = "history_frames",
                   .help =
                       "Largest number of frames that the history averages while the image changes. "
-                      "After 16 frames without a change it is 127. 0 turns the history off.",
+                      "After 16 frames without a change the limit is 127. 0 turns the history off.",
                   .range = {.maximum = 127}},
       settings.history_frames);
   visit(SettingInfo{.name = "half_resolution",
                     .help = "Filters and accumulates at half of the image's width and height, then "
-                            "upsamples. It needs a tile_size above 1.",
+                            "upsamples: less time, larger error. It needs a tile_size above 1.",
                     .matters = [](S s) { return s.tile_size > 1; }},
         settings.half_resolution);
   visit(SettingInfo{.name = "specular",
-                    .help = "Method of specular occlusion: none, from the slices (smallest error), "
-                            "or from visibility and the bent normal with a table or with cones."},
+                    .help =
+                        "Method of specular occlusion: none, integration over the slices (smallest "
+                        "error), or from visibility and the bent normal with a table or with "
+                        "cones."},
         settings.specular);
   visit(SettingInfo{.name = "precision",
                     .help = "Format of intermediate results, and of outputs for which the caller "
@@ -140,8 +150,9 @@ void for_each_setting(Settings& settings, const Visit& visit) {
       SettingInfo{
           .name = "estimator",
           .help = "Assumption about the thickness of occluders: infinite (horizons), infinite with "
-                  "horizons that later samples lower (heuristic), finite for each sample "
-                  "(bitmask), or finite with the samples of a surface connected (connected).",
+                  "horizons that lower samples farther out pull down (heuristic), finite for each "
+                  "sample (bitmask), or finite and without gaps between the samples of one surface "
+                  "(connected).",
           .group = advanced},
       settings.advanced.estimator);
   visit(SettingInfo{.name = "weighting",
@@ -175,10 +186,10 @@ void for_each_setting(Settings& settings, const Visit& visit) {
   visit(
       SettingInfo{
           .name = "pattern",
-          .help =
-              "How slice directions and step offsets vary over pixels and frames: lattices "
-              "(golden), the R2 sequence along a Hilbert curve (hilbert), or 4x4 pixels and six "
-              "frames as in Jimenez et al. 2016 (paper).",
+          .help = "How slice directions and step offsets vary over pixels and frames: lattices "
+                  "without a period (golden), the R2 sequence along a Hilbert curve (hilbert), or "
+                  "tiles of 4x4 pixels that repeat after six frames, as in Jimenez et al. 2016 "
+                  "(paper).",
           .group = advanced},
       settings.advanced.pattern);
   visit(SettingInfo{.name = "filter_radius",
@@ -212,14 +223,14 @@ void for_each_setting(Settings& settings, const Visit& visit) {
                     .group = advanced},
         settings.advanced.snap_to_texels);
   visit(SettingInfo{.name = "extrapolation",
-                    .help = "Assumes that surfaces which leave the image go on beyond its border, "
-                            "where they can occlude (connected only).",
+                    .help = "For connected: assumes that surfaces which leave the image continue "
+                            "beyond its border, where they can occlude.",
                     .group = advanced},
         settings.advanced.extrapolation);
   visit(SettingInfo{.name = "unobserved",
                     .help = "For connected: partly excludes directions that the depth buffer does "
                             "not show (behind a foreground, or beyond the image's border) from the "
-                            "average, the more the wider they are. If off, all count as open.",
+                            "average. If off, they count as unoccluded.",
                     .group = advanced},
         settings.advanced.unobserved);
 }

@@ -9,17 +9,18 @@
 
 namespace alcove::passes {
 
-// Presets for quality_settings(). All except `reference` keep a history of 32 frames. The number of
-// fetches is that of depth samples per pixel of the image and frame.
+// Presets for quality_settings(). All except `reference` keep a history of 32 frames. The comments
+// say how many depth samples are fetched per pixel of the image and frame.
 enum class Quality : std::uint8_t {
-  // 1 slice of 8 steps per half-slice; traces one pixel in 8x8; filter and history at half
-  // resolution: a quarter of a fetch. For consoles of the paper's generation.
+  // 1 slice of 8 steps per half-slice; traces one pixel of 8x8; filter and history at half
+  // resolution: a quarter of a fetch. For consoles of about the year 2013 (PS4), as in [Jimenez
+  // 2016].
   console,
   low,     // 1 slice of 8 steps per half-slice; traces one pixel in 4x4: 1 fetch.
   medium,  // 1 slice of 10 steps; one pixel in 2x2: 5 fetches. The default.
   high,    // 2 slices of 16 steps; one pixel in 2x2: 16 fetches.
-  // 32 slices of 64 steps; every pixel: 4096 fetches. The paper's horizons without filter and
-  // history, in 32-bit floats: a static image for comparisons.
+  // 32 slices of 64 steps; traces every pixel: 4096 fetches. A static image for comparisons, with
+  // the infinitely thick occluders of [Jimenez 2016], without filter and history, in 32-bit floats.
   reference,
 };
 
@@ -27,8 +28,8 @@ enum class Quality : std::uint8_t {
 enum class Specular : std::uint8_t {
   none,    // Not at all.
   slices,  // Integrates the lobe over the slices of visibility. It has the smallest error.
-  // `table` and `cone` use visibility and the bent normal, which are then computed too: [Jimenez
-  // 2016], section 6 (shaders/maths/gtso.h).
+  // `table` and `cone` compute specular occlusion from visibility and the bent normal, which are
+  // then computed too: [Jimenez 2016], section 6 (shaders/maths/gtso.h).
   table,  // Fraction of the lobe within the visibility cone, from a table of 54 KiB.
   cone,   // Intersection of the visibility cone with a cone that approximates the lobe.
 };
@@ -38,7 +39,7 @@ struct OcclusionSettings {
   // room's height is usual.
   float radius = 0.5f;
   // Width of a tile in pixels: 1, 2, 4 or 8. One pixel per tile is traced in a frame; the
-  // interleave offset moves it from frame to frame.
+  // interleave offset selects another pixel of the tile in each frame. 1 traces every pixel.
   std::uint32_t tile_size = 2;
   // Slices per traced pixel and frame, 1 to 64. More slices reduce noise.
   std::uint32_t slices = 1;
@@ -49,18 +50,19 @@ struct OcclusionSettings {
   // least 0. At its leading edge an occluder is at most as thick as its visible width, so that
   // blades, bars and leaves are thin.
   float thickness = 0.15f;
-  // Fraction of the volume hidden behind occluders that is treated as solid, [0,1], in the mean. It
-  // is larger behind occluders that are wide on the image (hidden_occlusion_behind() in
-  // shaders/maths/visibility_bitmask.h). Raising it darkens corners behind foregrounds.
+  // Average fraction of the volume hidden behind occluders that is treated as solid, [0,1]. The
+  // actual fraction is larger behind occluders that are wide on the image
+  // (hidden_occlusion_behind() in shaders/maths/visibility_bitmask.h). Raising it darkens corners
+  // behind foregrounds.
   float hidden_occlusion = 0.33f;
-  // Number of depth buffers that are searched for occluders: 1, or 2 with
-  // OcclusionInputs::second_depth_ndc.
+  // Number of depth buffers that are searched for occluders: 1, or 2. With 2,
+  // OcclusionInputs::second_depth_ndc is searched too.
   std::uint32_t depth_layers = 1;
-  // Largest number of frames that the history averages, 0 to 127. From 16 static frames on it is
-  // 127. 0 keeps no history and allocates none, for engines with a temporal filter of their own.
+  // Largest number of frames that the history averages, 0 to 127. After 16 static frames the limit
+  // is 127. 0 keeps no history and allocates none, for engines with a temporal filter of their own.
   std::uint32_t history_frames = 32;
-  // Filters and accumulates texels of 2x2 pixels, and upsamples them to pixels with regard to
-  // edges. It takes less time and less memory for the history, and has a larger error (figures:
+  // Filters and accumulates texels of 2x2 pixels, and upsamples the result to pixels along depth
+  // edges. This takes less time and less memory for the history, and has a larger error (figures in
   // passes/README.md). It needs a tile_size of at least 2.
   bool half_resolution = false;
 
@@ -76,9 +78,9 @@ struct OcclusionSettings {
   // Format of outputs for which the caller gives no texture, and of intermediate results.
   Precision precision = Precision::unorm8;
   // The passes write the visibility 1 - intensity * (1 - visibility^power), clamped to [0,1].
-  // `power` is above 0 and at most 16; `intensity` is 0 to 16. Values above 1 darken; 1 and 1
-  // change nothing and cost nothing. Multi-bounce and the specular models `table` and `cone` read
-  // the changed visibility.
+  // `power` is above 0 and at most 16; `intensity` is 0 to 16. Values above 1 darken. If both are
+  // 1, visibility is unchanged and the shaders skip the computation. Multi-bounce and the specular
+  // models `table` and `cone` read the changed visibility.
   float power = 1.0f;
   float intensity = 1.0f;
 
@@ -90,8 +92,9 @@ struct OcclusionSettings {
 // Returns the settings of a preset with a radius in scene units.
 [[nodiscard]] OcclusionSettings quality_settings(Quality quality, float radius);
 
-// Checks every setting against its range (setting_table.h), and the combinations. The error is a
-// sentence with the setting's name, its value and the allowed values. Every pass calls it.
+// Checks every setting against its range (setting_table.h), and settings that depend on each other.
+// The error is a sentence with the setting's name, its value and the allowed values. Every pass
+// calls it.
 [[nodiscard]] tl::expected<void, Error> validate(const OcclusionSettings& settings);
 
 // Returns whether OcclusionInputs::back_depth_ndc is read. If not, an engine need not draw back
@@ -106,7 +109,7 @@ struct OcclusionSettings {
   return has_thickness(settings.advanced.estimator) && settings.depth_layers > 1;
 }
 
-// Returns whether a pass of its own computes specular occlusion from visibility and bent normal.
+// Returns whether add_gtso() computes specular occlusion, from visibility and the bent normal.
 [[nodiscard]] constexpr bool specular_reads_bent_normal(const OcclusionSettings& settings) {
   return settings.specular == Specular::table || settings.specular == Specular::cone;
 }
