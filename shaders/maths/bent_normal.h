@@ -15,9 +15,10 @@
 
 ALCOVE_MATHS_BEGIN
 
-// The part of one half-slice between the view direction and a direction above the tangent plane: x
-// along the slice's direction, y along the view direction, each at most 1 in size. `light` is the
-// sine (at least 0) and cosine of the direction's angle.
+// Returns the integral of the unoccluded direction over one half-slice, between the view direction
+// and a direction above the tangent plane: x along the slice's direction, y along the view
+// direction, each at most 1 in size. `light` has the sine (at least 0) and the cosine of that
+// direction's angle.
 ALCOVE_INLINE vec2 bent_light_arc(Slice s, float side, vec2 light) {
   float along = side * s.along;
   float sine_cubed = light.x * light.x * light.x;
@@ -27,12 +28,13 @@ ALCOVE_INLINE vec2 bent_light_arc(Slice s, float side, vec2 light) {
   return vec2(side * x * (1.0f / 3.0f), y * (1.0f / 3.0f));
 }
 
-// bent_light_arc() up to a horizon, given as to horizon_light().
+// Returns bent_light_arc() up to a horizon, which is given by its cosine as in horizon_light().
 ALCOVE_INLINE vec2 bent_arc(Slice s, float side, float horizon) {
   return bent_light_arc(s, side, horizon_light(s, side, horizon));
 }
 
-// A slice's part of the bent normal, in the space of `direction` and `view`; sum over slices.
+// Returns a slice's contribution to the bent normal, in the space of `direction` and `view`. Sum it
+// over slices.
 ALCOVE_INLINE vec3 slice_bent_normal(Slice s, vec3 direction, vec3 view, float ahead,
                                      float behind) {
   vec2 front = bent_arc(s, 1.0f, ahead);
@@ -40,29 +42,30 @@ ALCOVE_INLINE vec3 slice_bent_normal(Slice s, vec3 direction, vec3 view, float a
   return direction * (front.x + back.x) + view * (front.y + back.y);
 }
 
-// The residual of a slice: its part of the bent normal, `part`, minus the contribution that
-// unoccluded slices of the same visibility `visible` have on average, which is 2/3 of it along the
-// `normal`. Filters and history average residuals, so that the normal itself is never blurred. All
-// vectors are in one space; the normal is unit. Each component is at most 4/3 in size.
+// Returns the residual of a slice: its contribution to the bent normal, `part`, minus the
+// contribution that unoccluded slices with the same visibility `visible` have on average, which is
+// 2/3 of it along `normal`. The filter and the history average residuals, so that the normal itself
+// is never blurred. All vectors are in one space; `normal` is unit. Each component is at most 4/3
+// in size.
 ALCOVE_INLINE vec3 residual_of(vec3 part, float visible, vec3 normal) {
   return part - normal * (visible * (2.0f / 3.0f));
 }
 
-// The residual of a slice without occluders; `open` is its open_slice(). Its mean over all slices
-// is zero. With few slices it is most of their error.
+// Returns the residual of a slice without occluders; `open` is its open_slice(). Its mean over all
+// slices is zero. If there are few slices, it is most of the error of their sum of residuals.
 ALCOVE_INLINE vec3 expected_residual(Slice s, vec3 direction, vec3 view, vec3 normal, float open) {
   return residual_of(slice_bent_normal(s, direction, view, -1.0f, -1.0f), open, normal);
 }
 
-// A sum of residuals minus the visible fraction, [0,1], of the same sum of expected residuals. This
-// is a control variate: the mean over all slices does not change, and the residual of an unoccluded
-// surface becomes zero.
+// Returns a sum of residuals minus `visibility`, [0,1], times the same sum of expected residuals.
+// The expected residual is a control variate: subtracting it does not change the mean over all
+// slices, and makes the residual of an unoccluded surface zero.
 ALCOVE_INLINE vec3 converged_residual(vec3 residual, vec3 expected_residual, float visibility) {
   return residual - expected_residual * visibility;
 }
 
-// The unit bent normal, from the sums of residuals and of visible parts over slices; `normal` where
-// nothing is visible.
+// Returns the unit bent normal, from the sums of residuals and of visible parts over slices, or
+// `normal` if nothing is visible.
 ALCOVE_INLINE vec3 finish_bent_normal(vec3 residual, float visible, vec3 normal) {
   vec3 sum = residual_of(residual, -visible, normal);
   float squared = dot(sum, sum);

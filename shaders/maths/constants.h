@@ -9,8 +9,8 @@ ALCOVE_MATHS_BEGIN
 const float kPi = 3.14159265f;
 const float kHalfPi = 1.57079633f;
 
-// The linear depth of the sky and of infinitely far surfaces. The sum of several of its squares is
-// still finite in a float.
+// The linear depth of the sky and of infinitely far surfaces, in scene units. It is small enough
+// that a sum of several of its squares is still finite in a float.
 const float kSkyDepth = 1e12f;
 
 ALCOVE_MATHS_END

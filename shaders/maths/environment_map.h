@@ -1,9 +1,11 @@
-// Environment images: equirectangular, as files have them, and octahedral, as shaders look them up.
+// Environment images in two layouts: equirectangular, as files have them, and octahedral, as
+// shaders look them up.
 //
 // Directions are in world space with +Y up. Equirectangular: u runs from 0 at -Z over +X (0.25), +Z
 // (0.5) and -X (0.75) back to -Z; v runs from 0 at +Y to 1 at -Y. Octahedral: the square of
 // octahedral.h with +Y in the middle and -Y in its four corners, so that its fold is the horizon.
-// The texels beyond an edge are those of the same edge, mirrored.
+// Beyond an edge of the square, the map continues with the texels of the same edge in mirrored
+// order.
 #ifndef ALCOVE_MATHS_ENVIRONMENT_MAP_H
 #define ALCOVE_MATHS_ENVIRONMENT_MAP_H
 
@@ -30,8 +32,8 @@ ALCOVE_INLINE vec3 map_direction(vec2 uv) {
   return vec3(d.x, d.z, d.y);
 }
 
-// Returns the texel of a map of `size` x `size` texels for a texel index that is up to `size`
-// outside of the map.
+// Returns the texel inside a map of `size` x `size` texels that has the same direction as `texel`,
+// whose indices may be up to `size` texels outside the map.
 ALCOVE_INLINE ivec2 map_texel(ivec2 texel, int size) {
   int x = texel.x;
   int y = texel.y;
@@ -46,8 +48,8 @@ ALCOVE_INLINE ivec2 map_texel(ivec2 texel, int size) {
   return ivec2(x, y);
 }
 
-// Returns the solid angle in steradians of the texel around `uv`, for a map of `size` x `size`
-// texels.
+// Returns the solid angle in steradians that the texel around `uv` covers in a map of `size` x
+// `size` texels.
 ALCOVE_INLINE float map_texel_angle(vec2 uv, float size) {
   float x = uv.x * 2.0f - 1.0f;
   float y = uv.y * 2.0f - 1.0f;

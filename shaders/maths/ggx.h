@@ -1,5 +1,5 @@
-// The GGX microfacet lobe, which weights specular occlusion and is sampled for its ray-traced
-// truth.
+// The GGX microfacet lobe. It is the weight of specular occlusion, and the ray-traced reference
+// draws samples from it.
 //
 // Directions are in tangent space with z along the normal. `view` and `light` are unit and point
 // away from the surface. `alpha` is the GGX width, perceptual roughness squared, in [0,1]. Values
@@ -44,8 +44,9 @@ ALCOVE_INLINE float ggx_shadowing(float n_dot_v, float n_dot_l, float alpha) {
   return 1.0f / (1.0f + ggx_lambda(n_dot_v, alpha) + ggx_lambda(n_dot_l, alpha));
 }
 
-// Samples a microfacet normal in proportion to how much of it the view sees, from two uniform
-// numbers in [0,1) (Dupuy and Benyoub 2023). `view.z` must be at least 0.
+// Samples a microfacet normal from two uniform numbers in [0,1), with a probability proportional to
+// the area of microfacets with that normal that is visible from `view` (Dupuy and Benyoub 2023).
+// `view.z` must be at least 0.
 ALCOVE_INLINE vec3 sample_ggx_normal(vec3 view, float alpha, float u1, float u2) {
   float a = max(alpha, kSmallestAlpha);
   vec3 stretched = normalize(vec3(view.x * a, view.y * a, view.z));

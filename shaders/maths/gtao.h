@@ -1,14 +1,15 @@
 // Ground-truth ambient occlusion within a slice (Jimenez et al. 2016, ATVI-TR-16-01, section 4).
 //
-// The paper's arc J(h) = (-cos(2h - g) + cos g + 2 h sin g) / 4, times the length of the projected
-// normal, is written here in the cosine of the horizon and the components of the normal: with c and
-// s the cosine and sine of the horizon and h its angle, each positive,
+// The paper integrates visibility up to a horizon at angle h with J(h) = (-cos(2h - g) + cos g + 2
+// h sin g) / 4, times the length of the projected normal. These functions use the same integral
+// without the angle g: with c and s the cosine and sine of the horizon, and h its angle, each
+// positive,
 //     length J = (s (s <n,v> - c <n,d>) + h <n,d>) / 2
 // in the positive half-slice, and with -<n,d> in the negative one. It takes one square root and one
-// arc cosine, and does not need gamma.
+// arc cosine.
 //
 // Visibility is the sum of slice_visibility() over slices, divided by the sum of open_slice(), or
-// by the number of slices where there are many. A visibility of 1 is unoccluded.
+// by the number of slices if there are many. A visibility of 1 is unoccluded.
 #ifndef ALCOVE_MATHS_GTAO_H
 #define ALCOVE_MATHS_GTAO_H
 
@@ -18,60 +19,61 @@
 
 ALCOVE_MATHS_BEGIN
 
-// Cosine-weighted visibility of one half-slice between the view direction and a direction above the
-// tangent plane, times the length of the projected normal. `light` is the sine (at least 0) and
-// cosine of the direction's angle. The error is at most 2.4e-5.
+// Returns the cosine-weighted visibility of one half-slice between the view direction and a
+// direction above the tangent plane, times the length of the projected normal. `light` has the sine
+// (at least 0) and the cosine of the direction's angle. The error is at most 2.4e-5.
 ALCOVE_INLINE float light_arc(Slice s, float side, vec2 light) {
   float swell = arc_cosine(light.y) - light.x * light.y;
   return 0.5f * (light.x * light.x * s.toward + swell * (side * s.along));
 }
 
-// light_arc() up to a horizon, given as to horizon_light().
+// Returns light_arc() up to a horizon, which is given by its cosine as in horizon_light().
 ALCOVE_INLINE float slice_arc(Slice s, float side, float horizon) {
   return light_arc(s, side, horizon_light(s, side, horizon));
 }
 
-// The visible part of both half-slices. `ahead` is the cosine of the horizon in the positive
-// half-slice, `behind` in the negative one. In [0, open_slice(s)], at most 1.571.
+// Returns the visible part of both half-slices, [0, open_slice(s)], at most 1.571. `ahead` is the
+// cosine of the horizon in the positive half-slice, `behind` of that in the negative one.
 ALCOVE_INLINE float slice_visibility(Slice s, float ahead, float behind) {
   return max(slice_arc(s, 1.0f, ahead) + slice_arc(s, -1.0f, behind), 0.0f);
 }
 
-// The visible part of a slice without occluders: length (cos gamma + gamma sin gamma). Its mean
-// over uniformly spaced slices is exactly 1, so it serves as the weight of a slice.
+// Returns the visible part of a slice without occluders: length (cos gamma + gamma sin gamma). Its
+// mean over uniformly spaced slices is exactly 1, so it serves as the weight of a slice.
 ALCOVE_INLINE float open_slice(Slice s) { return s.toward + slice_gamma(s) * s.along; }
 
-// light_arc() of both half-slices up to the tangent plane, x ahead and y behind, with one arc
-// cosine. Their sum is open_slice().
+// Returns light_arc() of both half-slices up to the tangent plane, x for the positive and y for the
+// negative one, with a single arc cosine. Their sum is open_slice().
 ALCOVE_INLINE vec2 tangent_arcs(Slice s) {
   float level = s.cosine * s.cosine * s.toward;
   float swell = arc_cosine(-s.sine) + s.sine * s.cosine;
   return vec2(0.5f * (level + swell * s.along), 0.5f * (level - (kPi - swell) * s.along));
 }
 
-// Visibility of one half-slice without the cosine of the normal (the paper's appendix A), between
-// the view direction and a direction above the tangent plane. Both half-slices of an unoccluded
-// slice sum to 1 at any tilt.
+// Returns the visibility of one half-slice between the view direction and a direction above the
+// tangent plane, with uniform instead of cosine weights (the paper's appendix A). Both half-slices
+// of an unoccluded slice sum to 1 at any tilt.
 ALCOVE_INLINE float uniform_arc(vec2 light) { return 0.5f * (1.0f - light.y); }
 
-// uniform_arc() of both half-slices up to their horizons, in [0,1]. Its mean over slices is the
-// visible fraction of the hemisphere's solid angle.
+// Returns the sum of uniform_arc() of both half-slices up to their horizons, in [0,1]. Its mean
+// over slices is the visible fraction of the hemisphere's solid angle.
 ALCOVE_INLINE float uniform_slice_visibility(Slice s, float ahead, float behind) {
   float ahead_cut = clamp(ahead, tangent_horizon(s, 1.0f), 1.0f);
   float behind_cut = clamp(behind, tangent_horizon(s, -1.0f), 1.0f);
   return 1.0f - 0.5f * (ahead_cut + behind_cut);
 }
 
-// The paper's heuristic for occluders of unknown thickness: a sample above the horizon replaces the
-// horizon, and a sample below it lowers the horizon by the fraction `blend`, [0,1]. With 0,
-// occluders are infinitely thick; 0.05 already brightens visibly. All arguments but `blend` are
-// cosines.
+// Updates a horizon by the paper's heuristic for occluders of unknown thickness: a sample above the
+// horizon replaces the horizon, and a sample below it lowers the horizon by the fraction `blend`,
+// [0,1]. With a `blend` of 0, occluders are infinitely thick; 0.05 already makes the image visibly
+// brighter. `horizon`, `found` and the result are cosines.
 ALCOVE_INLINE float raise_horizon(float horizon, float found, float blend) {
   return found > horizon ? found : mix(horizon, found, blend);
 }
 
-// The weight of an occluder at a distance, [0,1]. It falls linearly from 1 to 0 over the last
-// fraction `falloff`, [0,1], of the radius, and is 0 beyond the radius. A falloff of 0 is a step.
+// Returns the weight of an occluder at a distance, [0,1]. It falls linearly from 1 to 0 over the
+// last fraction `falloff`, [0,1], of the radius, and is 0 beyond the radius. With a falloff of 0 it
+// is a step.
 ALCOVE_INLINE float radius_weight(float distance, float radius, float falloff) {
   float left = radius - distance;
   return left < 0.0f ? 0.0f : min(left / max(falloff * radius, 1e-30f), 1.0f);

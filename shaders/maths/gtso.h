@@ -1,10 +1,11 @@
 // Specular occlusion from visibility and bent normal ([Jimenez 2016], section 6: GTSO).
 //
 // The visible directions are approximated by a cone around the bent normal, and the specular lobe
-// by a cone around the mirror direction. The specular visibility is the fraction of the second cone
-// that the first contains; 1 is open. The paper divides by the whole cone of the lobe, which
-// darkens unoccluded surfaces at grazing angles. Here it is divided by the part of that cone above
-// the surface. `alpha` is the GGX width (perceptual roughness squared); all vectors are unit.
+// by a cone around the mirror direction. The specular visibility is the fraction of the lobe's cone
+// that lies within the visibility cone; 1 is open. The paper divides by the whole cone of the lobe,
+// which darkens unoccluded surfaces at grazing angles. These functions divide by the part of that
+// cone above the surface. `alpha` is the GGX width (perceptual roughness squared); all vectors are
+// unit.
 #ifndef ALCOVE_MATHS_GTSO_H
 #define ALCOVE_MATHS_GTSO_H
 
@@ -14,10 +15,11 @@
 
 ALCOVE_MATHS_BEGIN
 
-// Visibility as input of the cones, [0,1]. Values above 127/128 become 1; smaller ones are scaled
-// by the same factor. A filtered visibility is not more accurate than that. The half-angle of the
-// visibility cone has the cosine sqrt(1 - visibility), so an error of 1/128 on an open surface
-// narrows the cone by 5 degrees. At grazing angles that would remove all of a narrow specular lobe.
+// Returns the visibility that the cones are computed from, [0,1]: values above 127/128 become 1,
+// and smaller ones are scaled by the same factor, because a filtered visibility is not more
+// accurate than that. The half-angle of the visibility cone has the cosine sqrt(1 - visibility), so
+// an error of 1/128 on an open surface narrows the cone by 5 degrees. At grazing angles that would
+// remove all of a narrow specular lobe.
 ALCOVE_INLINE float converged_visibility(float visibility) {
   return saturate(visibility * (128.0f / 127.0f));
 }
@@ -30,14 +32,14 @@ ALCOVE_INLINE vec3 mirror_direction(vec3 normal, vec3 view) {
   return 2.0f * dot(normal, facing) * normal - facing;
 }
 
-// Returns the angle with this squared sine and this cosine, which may have a common factor.
-// Rounding may have made the square negative.
+// Returns the angle whose squared sine and cosine these are, or the same multiple of both. A square
+// that is negative because of rounding counts as 0.
 ALCOVE_INLINE float angle_of(float sine_squared, float cosine) {
   return atan(sqrt(max(sine_squared, 0.0f)), cosine);
 }
 
-// Returns the angle between two unit vectors, [0,pi]. It is accurate at both ends, where acos is
-// not.
+// Returns the angle between two unit vectors, [0,pi]. Unlike acos(dot(a, b)) it is accurate near 0
+// and pi.
 ALCOVE_INLINE float angle_between(vec3 a, vec3 b) {
   vec3 normal = cross(a, b);
   return atan(sqrt(dot(normal, normal)), dot(a, b));
@@ -49,9 +51,9 @@ ALCOVE_INLINE float visibility_cone(float visibility) {
   return angle_of(v, sqrt(1.0f - v));
 }
 
-// Returns the bent normal, rotated towards the normal until the cone of this visibility around it
-// lies above the surface. For an unoccluded surface the result is the normal itself, without the
-// noise of the bent normal.
+// Returns the bent normal, rotated towards the normal until the visibility cone around it lies
+// above the surface. For an unoccluded surface the result is the normal itself, without the noise
+// of the bent normal.
 ALCOVE_INLINE vec3 raised_bent_normal(vec3 bent_normal, vec3 normal, float visibility) {
   float v = clamp(visibility, 0.0f, 1.0f);
   float bent_dot_normal = dot(bent_normal, normal);
@@ -71,8 +73,8 @@ ALCOVE_INLINE float lobe_cone(float alpha) {
 }
 
 // Returns the specular visibility for a visibility cone around `bent_normal` and a lobe cone around
-// `reflection`, the result of mirror_direction(). A lobe that is too narrow to have an area is a
-// mirror: it is visible or it is not.
+// `reflection`, the result of mirror_direction(). A lobe so narrow that its area is 0 is treated as
+// a mirror: its visibility is 0 or 1.
 ALCOVE_INLINE float cone_specular_occlusion(float visibility_angle, float lobe_angle,
                                             vec3 bent_normal, vec3 normal, vec3 reflection) {
   float above = cap_intersection(kHalfPi, lobe_angle, angle_between(normal, reflection));
@@ -82,8 +84,8 @@ ALCOVE_INLINE float cone_specular_occlusion(float visibility_angle, float lobe_a
   return angle_between(bent_normal, reflection) <= visibility_angle ? 1.0f : 0.0f;
 }
 
-// Returns the specular visibility from visibility, bent normal and GGX width, by the exact
-// intersection of cones.
+// Returns the specular visibility from visibility, bent normal and GGX width, with the exact area
+// of the intersection of the two cones.
 ALCOVE_INLINE float specular_occlusion(float visibility, vec3 bent_normal, vec3 normal,
                                        vec3 reflection, float alpha) {
   return cone_specular_occlusion(visibility_cone(visibility), lobe_cone(alpha), bent_normal, normal,

@@ -1,17 +1,18 @@
-// Specular occlusion by a table ([Jimenez 2016], section 6): the visible fraction of the GGX lobe
-// itself, which the cones of gtso.h only approximate.
+// Specular occlusion from a table ([Jimenez 2016], section 6). The table has the visible fraction
+// of the GGX lobe itself, which the cones of gtso.h only approximate.
 //
 // The table has four parameters: the half-angle of the visibility cone, the angle between its axis
 // (the bent normal) and the mirror direction, the angle between the mirror direction and the
-// normal, and the roughness. These do not determine on which side of the mirror direction the bent
-// normal lies. An entry is the mean over all sides, evenly spaced, for which the whole cone lies
-// above the surface; if there is none, it is the value for the side towards the normal. Fractions
-// are of the part of the lobe above the surface.
+// normal, and the roughness. These do not determine the azimuth of the bent normal around the
+// mirror direction. An entry is therefore the mean over evenly spaced azimuths at which the whole
+// cone lies above the surface. If there is no such azimuth, it is the value for the bent normal
+// that is turned towards the normal. Fractions are relative to the part of the lobe above the
+// surface.
 //
-// Where the mirror direction leaves the cone, the fraction falls from 1 to 0 within the width of
-// the lobe. The table's first coordinate is therefore the angle by which the mirror direction is
-// inside the cone, divided by the width of the lobe and compressed, so that the whole range fits
-// and most entries are near 0.
+// When the mirror direction leaves the cone, the fraction falls from 1 to 0 within the width of the
+// lobe. The table's first coordinate is therefore the angle by which the mirror direction is inside
+// the cone, divided by the width of the lobe and compressed, so that the whole range fits and most
+// entries are near 0.
 #ifndef ALCOVE_MATHS_GTSO_TABLE_H
 #define ALCOVE_MATHS_GTSO_TABLE_H
 
@@ -22,9 +23,10 @@
 ALCOVE_MATHS_BEGIN
 
 // Number of entries along each coordinate: angle inside the cone, half-angle of the cone, angle of
-// the mirror direction, roughness. The table has 54 KiB with 8 bits per entry. Between entries its
-// RMSE is .006 and its largest error .10. A table of 24 12 12 12 entries has .007 and .13, one of
-// 32 16 16 16 has .005 and .10. The error of 8 bits alone is at most .002.
+// the mirror direction, roughness. The table has 54 KiB with 8 bits per entry. The RMS error of
+// values interpolated between entries is .006 and the largest error .10. With 24 12 12 12 entries
+// these would be .007 and .13, with 32 16 16 16 entries .005 and .10. The error of 8 bits alone is
+// at most .002.
 const uint kGtsoInside = 24u;
 const uint kGtsoCone = 12u;
 const uint kGtsoMirror = 16u;
@@ -36,7 +38,8 @@ ALCOVE_INLINE float gtso_width(float roughness) {
   return 2.5f * max(roughness * roughness, kSmallestAlpha);
 }
 
-// Maps an angle inside the cone, [cone - pi, cone], to [-1,1], with 0 at the rim of the cone.
+// Maps the angle by which a direction is inside a cone, [cone - pi, cone], to [-1,1]. The rim of
+// the cone is mapped to 0.
 ALCOVE_INLINE float squeeze_inside(float inside, float cone, float width) {
   float most = inside < 0.0f ? kPi - cone : cone;
   float size = min(abs(inside), most);
@@ -51,8 +54,8 @@ ALCOVE_INLINE float unsqueeze_inside(float squeezed, float cone, float width) {
   return squeezed < 0.0f ? -size : size;
 }
 
-// Maps the half-angle of a cone, [0,pi/2], to [0,1]. Cones that contain only a part of the lobe's
-// centre get as many entries as those that contain all of it.
+// Maps the half-angle of a cone, [0,pi/2], to [0,1]. Cones narrower than the lobe get as many
+// entries as wider ones.
 ALCOVE_INLINE float squeeze_cone(float cone, float width) {
   return cone / (cone + width) * (kHalfPi + width) / kHalfPi;
 }
@@ -62,8 +65,8 @@ ALCOVE_INLINE float unsqueeze_cone(float squeezed, float width) {
   return min(part * width / max(1.0f - part, 1e-6f), kHalfPi);
 }
 
-// Map the angle of the mirror direction, [0,pi/2], to [0,1], with most entries at grazing angles,
-// and back.
+// squeeze_mirror() maps the angle between mirror direction and normal, [0,pi/2], to [0,1], so that
+// most entries are at grazing angles. The next function is its inverse.
 ALCOVE_INLINE float squeeze_mirror(float mirror_from_normal) {
   float part = clamp(mirror_from_normal / kHalfPi, 0.0f, 1.0f);
   return part * part;
@@ -98,16 +101,17 @@ ALCOVE_INLINE float gtso_sides(float cone, float bent_from_mirror, float mirror_
   return acos(clamp((sin(cone) - level) / steep, -1.0f, 1.0f));
 }
 
-// Returns the entry below the coordinates along each axis. It is never the last one, so that the
-// next entry exists too.
+// Returns the index of the entry below the coordinates along each axis. It is never the last index
+// of an axis, so that an entry above it exists too.
 ALCOVE_INLINE uvec4 gtso_entry(vec4 coordinates) {
   return uvec4(min(uint(coordinates.x), kGtsoInside - 2u), min(uint(coordinates.y), kGtsoCone - 2u),
                min(uint(coordinates.z), kGtsoMirror - 2u),
                min(uint(coordinates.w), kGtsoRoughness - 2u));
 }
 
-// Return the entry at corner `corner` (below 16) of a cell, where bit i of the number steps along
-// axis i, and its interpolation weight at `t` in [0,1]^4.
+// gtso_corner() returns the entry at corner `corner` (0 to 15) of the cell between entries: bit i
+// selects the upper entry along axis i. gtso_corner_weight() returns its interpolation weight at
+// the position `t` in the cell, [0,1]^4.
 ALCOVE_INLINE uvec4 gtso_corner(uvec4 entry, uint corner) {
   return uvec4(entry.x + (corner & 1u), entry.y + ((corner >> 1u) & 1u),
                entry.z + ((corner >> 2u) & 1u), entry.w + ((corner >> 3u) & 1u));
@@ -118,8 +122,8 @@ ALCOVE_INLINE float gtso_corner_weight(vec4 t, uint corner) {
          ((corner & 4u) != 0u ? t.z : 1.0f - t.z) * ((corner & 8u) != 0u ? t.w : 1.0f - t.w);
 }
 
-// Specular visibility in the cases that need no table: nothing or everything is visible, or the
-// surface is a mirror. A negative value means that the table is needed.
+// Returns the specular visibility if it follows without the table: nothing or everything is
+// visible, or the surface is a mirror. Returns a negative value if the table is needed.
 ALCOVE_INLINE float gtso_exact(float visibility, float cone, float bent_from_mirror,
                                float roughness) {
   if (visibility <= 0.0f) return 0.0f;

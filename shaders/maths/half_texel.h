@@ -1,6 +1,6 @@
-// A reconstructed texel of 2x2 pixels, which upsampling turns into pixels: its occlusion and the
-// tangent plane of its surface. The next frame reads it as history. It is stored in two images of
-// formats that texture units unpack: R16G16B16A16_SNORM and R32_SFLOAT.
+// A reconstructed texel of 2x2 pixels at half resolution: its occlusion and the tangent plane of
+// its surface. The upsampling pass computes pixels from it, and the next frame reads it as history.
+// It is stored in two images whose formats texture units unpack: R16G16B16A16_SNORM and R32_SFLOAT.
 #ifndef ALCOVE_MATHS_HALF_TEXEL_H
 #define ALCOVE_MATHS_HALF_TEXEL_H
 
@@ -18,9 +18,9 @@ const float kHalfTexelWeightUnit = 128.0f;
 struct HalfTexel {
   float occlusion;  // 1 - visibility, [0,1]; error 2^-16; 0 and 1 are exact
   float weight;     // of the history, frames, [0,kMaxHistoryFrames]
-  // The plane's slope: the xy components of the view-space normal, divided by minus its component
-  // along the view ray with depth 1. Multiplied by ray_per_px(), and in perspective by
-  // -inverse_depth, it is the change of inverse depth from one pixel to the next.
+  // The slope of the plane: the xy components of the view-space normal, divided by minus its
+  // component along the view ray of unit depth. Multiplied by ray_per_px(), and in perspective
+  // views also by -inverse_depth, it is the change of inverse depth from one pixel to the next.
   vec2 tilt;
 };
 
@@ -30,25 +30,26 @@ ALCOVE_INLINE vec4 pack_half_texel(HalfTexel texel) {
               texel.tilt.x * (1.0f / kLargestTilt), texel.tilt.y * (1.0f / kLargestTilt));
 }
 
-// Returns the inverse depth of the plane at the texel's centre, which must be at least 0, as it is
-// stored in R32_SFLOAT. If `knows_recent`, the last eight bits of the mantissa hold the occlusion
-// of the last few frames, [0,1]. The relative error of the depth is 2^-15.
+// Returns the value stored in R32_SFLOAT: the inverse depth of the plane at the texel's centre,
+// which must be at least 0. If `knows_recent`, the last eight bits of the mantissa are replaced by
+// the mean occlusion of the last few frames, `recent`, [0,1]. The relative error of the depth is
+// 2^-15.
 ALCOVE_INLINE float half_texel_depth(float inverse_depth, float recent, bool knows_recent) {
   uint bits = floatBitsToUint(inverse_depth) & 0xffffff00u;
   uint code = knows_recent ? uint(sqrt(clamp(recent, 0.0f, 1.0f)) * 254.0f + 1.5f) : 0u;
   return uintBitsToFloat(bits | code);
 }
 
-// Returns the occlusion of the last few frames that a stored depth holds, or `otherwise` if it
-// holds none.
+// Returns the mean occlusion of the last few frames that is stored in `depth`, or `otherwise` if
+// none is stored.
 ALCOVE_INLINE float half_texel_recent(float depth, float otherwise) {
   uint code = floatBitsToUint(depth) & 255u;
   float root = (float(code) - 1.0f) * (1.0f / 254.0f);
   return code == 0u ? otherwise : root * root;
 }
 
-// Returns a bent-normal residual (bent_normal.h) as it is stored in A2B10G10R10_UNORM. A component
-// of 0 is exact. `dither` in [0,1) replaces the 0.5 of rounding to nearest.
+// Returns the value of a bent-normal residual (bent_normal.h) in A2B10G10R10_UNORM. A component of
+// 0 is stored exactly. `dither`, [0,1), replaces the 0.5 that is added to round to nearest.
 ALCOVE_INLINE vec4 pack_half_residual(vec3 residual, float dither) {
   float scale = 511.0f / (1023.0f * kLargestResidual);
   float offset = (511.5f + dither) * (1.0f / 1023.0f);

@@ -1,5 +1,6 @@
-// Accumulation over frames [Jimenez 2016, section 4.5]: which texels of the previous frame show the
-// same surface, how much they weigh against the samples of this frame, and how a texel is stored.
+// Accumulation over frames [Jimenez 2016, section 4.5]: decides which texels of the previous frame
+// show the same surface and how much they weigh against the samples of this frame, and packs the
+// history's texels.
 #ifndef ALCOVE_MATHS_HISTORY_H
 #define ALCOVE_MATHS_HISTORY_H
 
@@ -25,15 +26,17 @@ ALCOVE_INLINE Spread spread_of_sums(float sum, float sum_of_squares, float count
   return spread;
 }
 
-// The history clamped to `width` standard deviations around the neighbourhood's mean. Noise keeps
-// the deviation wide, so the history passes; a change of light or of occluders moves it.
+// Returns the history clamped to the neighbourhood's mean plus or minus `width` standard
+// deviations. If this frame's samples are noisy, the deviation is large and the history is hardly
+// clamped. If light or occluders have changed, the history lies outside and is moved to the nearer
+// limit.
 ALCOVE_INLINE float clamp_to_spread(float history, Spread now, float width) {
   float half_width = width * now.deviation;
   return clamp(history, now.mean - half_width, now.mean + half_width);
 }
 
-// The history's weight after a clamp moved its value from `before` to `after`: unchanged where the
-// value did not move, at most one frame where it moved by `whole` or more.
+// Returns the history's weight after clamping has changed its value from `before` to `after`:
+// unchanged if the value did not change, at most one frame if it changed by `whole` or more.
 ALCOVE_INLINE float weight_after_clamp(float weight, float before, float after, float whole) {
   float moved = clamp(abs(after - before) / max(whole, 1e-6f), 0.0f, 1.0f);
   return mix(weight, min(weight, 1.0f), moved);
@@ -43,14 +46,15 @@ ALCOVE_INLINE float weight_after_clamp(float weight, float before, float after, 
 // orbit` in one view, and checked in another.
 const float kFrameVariance = 0.02f;
 
-// Variance of the visibility between a surface and its neighbours that stand in for a history texel
-// of another surface. Mean over the development scenes.
+// Variance of the difference in visibility between a surface and the neighbouring history texels
+// that are used instead if a texel shows another surface. Mean over the development scenes.
 const float kMissingVariance = 0.003f;
 
-// The history's weight after it was interpolated between texels whose visibilities have the given
-// variance, `missing` of them, [0,1], being of other surfaces. Interpolation blurs, which no later
-// frame undoes, so its variance is added to the noise: `weight` frames have kFrameVariance /
-// weight.
+// Returns the history's weight after interpolation between four texels whose visibilities have the
+// variance `variance`. `missing`, [0,1], is the fraction of the bilinear weights whose texels show
+// other surfaces. Interpolation blurs the history, and later frames do not undo it. Its variance is
+// therefore added to the variance of the noise, which is kFrameVariance / weight for `weight`
+// frames, and the result is the weight that has this sum as its noise.
 ALCOVE_INLINE float weight_after_blur(float weight, float variance, float missing) {
   variance += kMissingVariance * missing;
   return weight / (1.0f + weight * variance * (1.0f / kFrameVariance));
@@ -58,8 +62,8 @@ ALCOVE_INLINE float weight_after_blur(float weight, float variance, float missin
 
 // A texel of the history, stored in 4 bytes.
 //
-// `weight` is the sum of the weights that this pixel's samples had, in frames: 1 is what one frame
-// adds in the mean on a plane. It takes the place of a frame count and of the filter's own weight.
+// `weight` is the sum of the filter weights that the samples had for this pixel, in frames: on a
+// plane, a frame adds 1 on average. It is used instead of a frame count.
 struct HistoryTexel {
   float depth;       // of history_depth(), [0,1], to 2^-15
   float occlusion;   // 1 - visibility, [0,1]; 0 is exact
@@ -67,7 +71,8 @@ struct HistoryTexel {
   float log_weight;  // of log_weight_of(), [0,1]; 0 is exact
 };
 
-// Weights are stored as logarithms: from 2^-4, which stands for none, to 2^7 frames.
+// Weights are stored as base-2 logarithms between -4, which stands for a weight of 0, and 7, which
+// stands for 2^7 frames.
 const float kLeastLogWeight = -4.0f;
 const float kLogWeightRange = 11.0f;
 
@@ -80,32 +85,33 @@ ALCOVE_INLINE float weight_of_log(float log_weight) {
   return exp2(log_weight * kLogWeightRange + kLeastLogWeight) - 0.0625f;
 }
 
-// A depth as the history stores it, [0,1]. `scale_and_offset` is history_depth_scale() of the view
-// (reconstruct.cpp). In perspective views `inverse_depth` is 1/depth and the result is proportional
-// to the logarithm of depth, so that differences are relative; in orthographic views it is the
-// depth and the result is linear. `log_inverse_depth` is the base-2 logarithm of 1/depth, or the
-// depth.
+// Returns a depth as the history stores it, [0,1]. `scale_and_offset` is the result of
+// history_depth_scale() for the view (reconstruct_uniforms.cpp). In perspective views,
+// `log_inverse_depth` is the base-2 logarithm of 1/depth, and equal steps of the result are equal
+// relative differences of depth. In orthographic views, `log_inverse_depth` is the depth itself,
+// and the result is linear.
 ALCOVE_INLINE float history_depth(vec2 scale_and_offset, float log_inverse_depth) {
   return clamp(log_inverse_depth * scale_and_offset.x + scale_and_offset.y, 0.0f, 1.0f);
 }
 
-// The weight of a history texel whose depth differs from the expected one by `difference` (any
-// unit), [0,1]: 1 within `slack`, which is what storing a depth rounds, 0 from
-// `slack` + 1/`sharpness` on.
+// Returns the weight, [0,1], of a history texel whose depth differs from the expected one by
+// `difference` (any unit). It is 1 if the difference is at most `slack`, the rounding error of a
+// stored depth, and 0 if it is at least `slack` + 1/`sharpness`.
 ALCOVE_INLINE float history_agreement(float difference, float slack, float sharpness) {
   float linear = clamp(1.0f - (abs(difference) - slack) * sharpness, 0.0f, 1.0f);
   return linear * linear;
 }
 
-// x in [0,1] as an integer of `bits` bits, as a float. `dither` in [0,1) replaces the 0.5 of
-// rounding to nearest: where it varies evenly over frames and pixels the mean is exact. 0 stays 0.
+// Returns x, [0,1], as an integer of `bits` bits, in a float. `dither`, [0,1), replaces the 0.5
+// that is added to round to nearest. If it varies evenly over frames and pixels, the mean of the
+// results is exact. 0 stays 0.
 ALCOVE_INLINE float dithered(float x, uint bits, float dither) {
   float last = float((1u << bits) - 1u);
   return min(floor(clamp(x, 0.0f, 1.0f) * last + dither), last);
 }
 
-// `bits` bits of a word from bit `first` on as a number in [0,1], without an integer conversion,
-// which GPUs do at a quarter of their rate: the bits become the mantissa of a float in [1,2).
+// Returns `bits` bits of a word, from bit `first` on, as a number in [0,1]. The bits become the
+// mantissa of a float in [1,2), because GPUs convert integers at a quarter of their usual rate.
 ALCOVE_INLINE float unpack_mantissa(uint word, uint first, uint bits) {
   uint last = (1u << bits) - 1u;
   uint mantissa = first + bits > 23u ? word >> (first + bits - 23u) : word << (23u - first - bits);
@@ -113,11 +119,11 @@ ALCOVE_INLINE float unpack_mantissa(uint word, uint first, uint bits) {
   return uintBitsToFloat((mantissa & (last << (23u - bits))) | 0x3f800000u) * scale - scale;
 }
 
-// A logarithmic weight quantised to a whole number from 0 to 15, returned as a float. `dither`
-// rounds up at random, with a probability that preserves the mean of the weight rather than of its
-// logarithm. The weights of successive codes differ by a factor of 2^(11/15). At a fraction f
-// between two codes the exact probability is (2^(11/15 f) - 1) / (2^(11/15) - 1); the polynomial is
-// within 2.2e-3 of it.
+// Quantises a logarithmic weight to a whole number from 0 to 15, which is returned as a float.
+// `dither` rounds up at random, with a probability that preserves the mean of the weight rather
+// than of its logarithm. The weights of successive codes differ by a factor of 2^(11/15). At a
+// fraction f between two codes the exact probability is (2^(11/15 f) - 1) / (2^(11/15) - 1); the
+// polynomial is within 2.2e-3 of it.
 ALCOVE_INLINE float dithered_log_weight(float log_weight, float dither) {
   float code = clamp(log_weight, 0.0f, 1.0f) * 15.0f;
   float whole = floor(code);
@@ -125,8 +131,8 @@ ALCOVE_INLINE float dithered_log_weight(float log_weight, float dither) {
   return whole + (part * (part * 0.253f + 0.747f) + dither >= 1.0f ? 1.0f : 0.0f);
 }
 
-// 14 bits of depth, 10 of occlusion, 4 of recent occlusion, 4 of weight. The last three are put
-// together as floats, which is cheaper than three conversions.
+// Packs a texel into 14 bits of depth, 10 of occlusion, 4 of recent occlusion and 4 of weight. The
+// last three are combined as floats, because one conversion to an integer costs less than three.
 ALCOVE_INLINE uint pack_history_texel(HistoryTexel texel, float dither) {
   float low_bits = dithered(texel.occlusion, 10u, dither) * 256.0f +
                    dithered(sqrt(max(texel.recent, 0.0f)), 4u, dither) * 16.0f +
@@ -151,8 +157,9 @@ ALCOVE_INLINE HistoryTexel unpack_history_texel(uint bits) {
   return texel;
 }
 
-// The GGX lobe's history in 2 bytes: 9 bits of occlusion and 7 of the logarithm of its open part,
-// 2^-12 to 2^4, since it differs by orders of magnitude between roughnesses.
+// The history of a GGX lobe, stored in 2 bytes: 9 bits of occlusion, and 7 bits of the logarithm of
+// the lobe's unoccluded part between 2^-12 and 2^4. The logarithm is stored because the unoccluded
+// part differs by orders of magnitude between roughnesses.
 struct LobeTexel {
   float occlusion;  // [0,1]; 0 is exact
   float open;       // of the lobe's RawOcclusion for a weight of 1; 0 is exact
@@ -170,20 +177,21 @@ ALCOVE_INLINE LobeTexel unpack_lobe_texel(uint bits) {
   return texel;
 }
 
-// Frames over which the recent occlusion is averaged, about.
+// Approximate number of frames over which the recent occlusion is averaged.
 const float kRecentFrames = 4.0f;
 
-// The mean of the last few frames with this frame's `now` added, all in [0,1]. `weight` is that of
-// the history. `open` is the weight that this frame's samples have at the pixel: where it is small,
-// at a crease or on a sliver, they belong to other surfaces and count for less.
+// Returns the mean occlusion of the last few frames after adding this frame's value `now`, all in
+// [0,1]. `weight` is the weight of the history in frames. `open` is the weight that this frame's
+// samples have for the pixel. If it is small, at a crease or on a narrow surface, the samples
+// belong to other surfaces and change the mean less.
 ALCOVE_INLINE float update_recent(float recent, float weight, float now, float open) {
   float known = clamp(1.6f * open, 1e-3f, 1.0f);
   return mix(recent, now, 1.0f / min(max(weight, 0.0f) + 1.0f, kRecentFrames / known));
 }
 
-// How surely the last few frames, `recent`, measure another visibility than the whole history,
-// `all`, both [0,1]: 0 within the noise of a few samples, which is largest between open and
-// occluded, 1 well beyond it.
+// Returns how certain it is, [0,1], that the mean of the last few frames, `recent`, differs from
+// the mean of the whole history, `all`: 0 if the difference is within the noise of a few samples,
+// and 1 if it is well above. The noise is assumed to be largest for a visibility of 0.5.
 ALCOVE_INLINE float visibility_changed(float all, float recent) {
   float spread = sqrt(max(min(all * (1.0f - all), recent * (1.0f - recent)), 0.0f));
   float beyond = abs(recent - all) - (0.01f + 0.25f * spread);

@@ -1,4 +1,4 @@
-// Macros with which one header compiles as GLSL (460, GL_GOOGLE_include_directive) and as C++20
+// Macros with which a header compiles both as GLSL (460, GL_GOOGLE_include_directive) and as C++20
 // with GLM.
 //
 // In C++ everything is in namespace alcove::maths, and GLM provides the types and functions of

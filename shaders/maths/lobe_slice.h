@@ -1,18 +1,18 @@
 // The part of a GGX lobe that a slice leaves visible, in closed form.
 //
-// A single cone is a poor model of the visible directions; slices describe them better. For a light
-// at angle t from the view direction within a slice, the half vector lies in the same slice at t/2,
-// so with p and g the length and angle of the projected normal
+// Slices describe the visible directions better than a single cone does. For a light at angle t
+// from the view direction within a slice, the half vector lies in the same slice at t/2. With p and
+// g the length and the angle of the projected normal,
 //     n.h = p cos(t/2 - g)     and     D = alpha^2 / (pi (1 - k cos^2(t/2 - g))^2),
-// k = (1 - alpha^2) p^2. Times the |sin t| of the slice's measure, D then has an antiderivative in
-// x = t - 2g, the angle from the lobe's centre in this slice: with m = 1 - k, B = k/2, A = 1 - B
-// and N = m + B (1 - cos x),
+// k = (1 - alpha^2) p^2. D times |sin t|, the measure of the slice, has an antiderivative in x = t
+// - 2g, the angle from the lobe's centre in this slice. With m = 1 - k, B = k/2, A = 1 - B and N =
+// m + B (1 - cos x), it is
 //     alpha^2 / (pi m) ( cos 2g (1 - cos x) / N
 //                        + sin 2g (A sin x / N + 2 B / sqrt(m) atan(tan(x/2) / sqrt(m))) ).
 // Shadowing and masking vary slowly. In each half-slice they are approximated by one constant up to
 // three quarters of the angle to the tangent plane and another one beyond. The remaining factors of
-// the BRDF times the cosine of the light are Fresnel, which is left to the caller, and 1 / (4 n.v),
-// which all slices of a pixel share.
+// the BRDF times the cosine of the light are the Fresnel term, which is left to the caller, and 1 /
+// (4 n.v), which is the same for all slices of a pixel.
 //
 // Specular visibility is the sum of the visible parts over slices, divided by the sum of `open`.
 // Compared with quadrature of the whole BRDF, the RMS error is 0.010 for one slice and 0.006 for
@@ -32,7 +32,8 @@ ALCOVE_MATHS_BEGIN
 // cosines within narrower lobes.
 const float kSmallestLobe = 0.005f;
 
-// D times |sin t| along a slice, integrated in closed form.
+// The density of microfacet normals D, times |sin t|, along a slice. It is integrated in closed
+// form.
 struct LobeDensity {
   float cos_twice;  // cosine and sine of twice gamma, where the lobe has its centre
   float sin_twice;
@@ -70,19 +71,21 @@ ALCOVE_INLINE LobeDensity make_lobe_density(Slice s, float alpha) {
   return density;
 }
 
-// The antiderivative at a light, given by the sine and cosine of its signed angle to the view
-// direction. The angle is at most a right angle from gamma.
+// Returns the antiderivative of the density at a light, which is given by the sine and cosine of
+// its signed angle to the view direction. The light is at most 90 degrees from the projected normal
+// (gamma).
 ALCOVE_INLINE float lobe_antiderivative(LobeDensity d, vec2 light) {
   float sin_x = light.x * d.cos_twice - light.y * d.sin_twice;
   float cos_x = clamp(light.y * d.cos_twice + light.x * d.sin_twice, -1.0f, 1.0f);
-  // 1 - cos x and the tangent of x/2, each in the form that keeps its digits on its side.
+  // Compute 1 - cos x and tan(x/2) in the forms that do not lose precision by cancellation for this
+  // sign of cos x.
   bool near = cos_x > 0.0f;
   float rise = near ? sin_x * sin_x / (1.0f + cos_x) : 1.0f - cos_x;
   float half_sine = near ? sin_x : (sin_x < 0.0f ? -rise : rise);
   float half_cosine = near ? 1.0f + cos_x : abs(sin_x);
   float b = 0.5f * (1.0f - d.m);
   float n = d.m + b * rise;
-  // The angle of (root_m half_cosine, half_sine), a right one at most.
+  // Compute the angle of the vector (root_m half_cosine, half_sine), which is at most 90 degrees.
   float opposite = abs(half_sine);
   float adjacent = d.root_m * half_cosine;
   float cosine = adjacent * inversesqrt(max(adjacent * adjacent + opposite * opposite, 1e-30f));
@@ -92,14 +95,14 @@ ALCOVE_INLINE float lobe_antiderivative(LobeDensity d, vec2 light) {
   return d.strength * (d.cos_twice * rise / n + d.sin_twice * around);
 }
 
-// Shadowing and masking of a light within the slice. The vector may have any length.
+// Returns the shadowing and masking of a light within the slice. `light` may have any length.
 ALCOVE_INLINE float lobe_shadowing(Slice s, vec2 light, float alpha) {
   float n_dot_l = (s.along * light.x + s.toward * light.y) *
                   inversesqrt(max(light.x * light.x + light.y * light.y, 1e-12f));
   return ggx_shadowing(max(s.toward, 1e-3f), max(n_dot_l, 1e-4f), alpha);
 }
 
-// The direction halfway between the view direction and a light in a half-slice.
+// Returns the unit direction halfway between the view direction and a light in a half-slice.
 ALCOVE_INLINE vec2 halfway_to_view(vec2 light, float side) {
   return vec2(side * sqrt(max(0.5f - 0.5f * light.y, 0.0f)),
               sqrt(max(0.5f + 0.5f * light.y, 0.0f)));
@@ -114,7 +117,7 @@ ALCOVE_INLINE LobeSide make_lobe_side(Slice s, LobeDensity density, float at_vie
   LobeSide result;
   result.knee = min(abs(lobe_antiderivative(density, knee) - at_view), integral);
   result.inner = lobe_shadowing(s, halfway_to_view(knee, side), alpha);
-  // A little past the middle of the rest, where it falls ever faster.
+  // Beyond the knee, shadowing falls ever faster, so its value a little past the middle is used.
   result.outer = lobe_shadowing(s, knee * 0.375f + tangent * 0.625f, alpha);
   result.whole = result.inner * result.knee + result.outer * (integral - result.knee);
   return result;
@@ -132,9 +135,9 @@ ALCOVE_INLINE LobeSlice make_lobe_slice(Slice s, float alpha) {
   return lobe;
 }
 
-// The integral of the lobe in a half-slice between the view direction and a light above the tangent
-// plane, from 0 to the half-slice's `whole`. `light` is the sine (at least 0) and cosine of its
-// angle.
+// Returns the integral of the lobe in a half-slice between the view direction and a light above the
+// tangent plane, from 0 to the half-slice's `whole`. `light` has the sine (at least 0) and the
+// cosine of the light's angle.
 ALCOVE_INLINE float lobe_light_arc(LobeSlice lobe, float side, vec2 light) {
   float integral =
       abs(lobe_antiderivative(lobe.density, vec2(side * light.x, light.y)) - lobe.at_view);
@@ -145,18 +148,18 @@ ALCOVE_INLINE float lobe_light_arc(LobeSlice lobe, float side, vec2 light) {
   return min(inner * min(integral, knee) + outer * max(integral - knee, 0.0f), whole);
 }
 
-// lobe_light_arc() up to a horizon, given as to horizon_light().
+// Returns lobe_light_arc() up to a horizon, which is given by its cosine as in horizon_light().
 ALCOVE_INLINE float lobe_arc(Slice s, LobeSlice lobe, float side, float horizon) {
   return lobe_light_arc(lobe, side, horizon_light(s, side, horizon));
 }
 
-// The lobe between two horizons. In [0, lobe.open].
+// Returns the integral of the lobe between the two horizons, in [0, lobe.open].
 ALCOVE_INLINE float horizon_lobe(Slice s, LobeSlice lobe, float ahead, float behind) {
   return lobe_arc(s, lobe, 1.0f, ahead) + lobe_arc(s, lobe, -1.0f, behind);
 }
 
-// The part of the lobe in a half-slice that its occluded sectors leave visible. visible_part() is
-// the same for the cosine.
+// Returns the integral of the lobe over the directions of a half-slice that the occluded sectors
+// leave visible. visible_part() returns the same with the cosine as the weight.
 ALCOVE_INLINE float visible_lobe(LobeSlice lobe, float side, float per_diamond_angle, uint occluded,
                                  float hidden_occlusion) {
   float keep = 1.0f - hidden_occlusion;
@@ -175,8 +178,8 @@ ALCOVE_INLINE float visible_lobe(LobeSlice lobe, float side, float per_diamond_a
   return max(sum, 0.0f);
 }
 
-// The angle of the slice that contains the centre of the lobe: the plane of view direction and
-// normal. Where these are equal, every slice contains it.
+// Returns the angle of the slice that contains the centre of the lobe: the plane of view direction
+// and normal. If the two are equal, every slice contains it.
 ALCOVE_INLINE float lobe_plane(vec3 normal, ViewBasis basis) {
   return atan(dot(normal, basis.y), dot(normal, basis.x) + 1e-12f);
 }
@@ -187,9 +190,10 @@ struct WeightedAngle {
   float weight;
 };
 
-// Rotates a slice's angle towards the plane of the lobe, more for narrower lobes, so that slices
-// are up to 6 times as dense there. The weight is the derivative of the rotated angle, so that
-// means over evenly distributed angles do not change. It is within [0.16,1.84].
+// Rotates a slice's angle towards the plane that contains the centre of the lobe. The narrower the
+// lobe, the larger the rotation, so that slices are up to 6 times as dense there. The weight is the
+// derivative of the rotated angle, [0.16,1.84], so that means over evenly distributed angles do not
+// change.
 ALCOVE_INLINE WeightedAngle lobe_angle(float phi, float plane, float roughness) {
   float smooth_part = 1.0f - roughness;
   float focus = min(0.5f * smooth_part * smooth_part, 0.42f);

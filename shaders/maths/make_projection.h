@@ -19,7 +19,7 @@ inline bool all_finite(const mat4& m) {
   return true;
 }
 
-// Tolerance of matrix elements that are zero in every projection, relative to the elements that
+// Tolerance for matrix elements that are zero in every projection, relative to the elements that
 // they are compared with. The rounding errors of matrices that were multiplied or inverted in
 // floats are well below it.
 constexpr double kRounding = 1e-5;
@@ -31,8 +31,8 @@ inline bool is_orthographic(const dmat4& m) {
          (w_per_z <= kRounding * std::abs(m[3][3]) && w_per_z <= 1e-4 * std::abs(m[2][2]));
 }
 
-// Returns whether the constant part of w is at most a rounding error: it would move the eye along z
-// by less than a ten-thousandth of the near plane's distance.
+// Returns whether the constant part of w is at most a rounding error. Removing it then moves the
+// eye along z by less than a ten-thousandth of the near plane's distance.
 inline bool has_no_constant_w(const dmat4& m) {
   return std::abs(m[3][3]) <= std::max(1e-6 * std::abs(m[2][3]), 1e-4 * std::abs(m[3][2]));
 }
@@ -75,8 +75,8 @@ inline dmat4 without_rounding(dmat4 m) {
 // Returns the Projection of `matrix`, which maps view space (right-handed, camera along -Z) to
 // Vulkan clip space (y down, depth 0 to 1), for an image of width x height pixels. The matrix is
 // column-major as in GLM, and includes the jitter. Rounding errors in elements that are zero in a
-// projection are accepted and removed. The error is a clause with static storage that says what is
-// wrong.
+// projection are accepted and removed. The error is a clause (a string literal) that says what is
+// wrong with the matrix.
 [[nodiscard]] inline tl::expected<Projection, const char*> make_projection(const mat4& matrix,
                                                                            std::uint32_t width,
                                                                            std::uint32_t height) {

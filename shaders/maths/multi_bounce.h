@@ -9,10 +9,10 @@
 
 ALCOVE_MATHS_BEGIN
 
-// Returns visibility brightened by interreflection, for one channel. `visibility` and `albedo` are
+// Returns visibility raised by interreflection, for one channel. `visibility` and `albedo` are
 // clamped to [0,1]. The result is at least the visibility and at most 1, and grows with both
-// arguments. The polynomial alone gives 0.9996 to 1.0001 at visibility 1, which is why both bounds
-// are enforced.
+// arguments. Both bounds are enforced, because the polynomial alone gives 0.9996 to 1.0001 at
+// visibility 1.
 ALCOVE_INLINE float multi_bounce_channel(float visibility, float albedo) {
   float v = saturate(visibility);
   float p = saturate(albedo);

@@ -6,9 +6,9 @@
 
 ALCOVE_MATHS_BEGIN
 
-// Returns the normal of a texel, which may have any length. `encoding` is a NormalEncoding: 0 is
-// xyz, 1 is xyz packed into [0,1], 2 is the octahedral map in xy, and 3 is the octahedral map
-// packed into [0,1]. It is a constant in shaders, so that the branches cost nothing.
+// Returns the normal that a texel encodes, which may have any length. `encoding` is a
+// NormalEncoding: 0 is xyz, 1 is xyz packed into [0,1], 2 is the octahedral map in xy, and 3 is the
+// octahedral map packed into [0,1]. It is a constant in shaders, so that the branches cost nothing.
 ALCOVE_INLINE vec3 decode_normal(vec3 texel, uint encoding) {
   bool packed = encoding == 1u || encoding == 3u;
   vec3 value = packed ? texel * 2.0f - vec3(1.0f) : texel;

@@ -10,8 +10,8 @@ ALCOVE_MATHS_BEGIN
 // Returns the sign of x as 1 or -1; 0 gives 1.
 ALCOVE_INLINE float sign_not_zero(float x) { return x < 0.0f ? -1.0f : 1.0f; }
 
-// Encodes a direction of any length except 0 in the square [-1,1]^2. The zero vector is encoded as
-// +Z.
+// Maps a direction of any length except 0 to the square [-1,1]^2. The zero vector gives the same
+// point as +Z.
 ALCOVE_INLINE vec2 octahedral_encode(vec3 direction) {
   float length_1 = abs(direction.x) + abs(direction.y) + abs(direction.z);
   if (!(length_1 > 0.0f)) return vec2(0.0f, 0.0f);
@@ -30,8 +30,8 @@ ALCOVE_INLINE vec3 octahedral_unfold(vec2 encoded) {
               z);
 }
 
-// Returns the unit vector of a point of the square [-1,1]^2. Points outside of it also give a unit
-// vector.
+// Returns the unit vector that a point of the square [-1,1]^2 encodes. Points outside the square
+// also give a unit vector.
 ALCOVE_INLINE vec3 octahedral_decode(vec2 encoded) { return normalize(octahedral_unfold(encoded)); }
 
 ALCOVE_MATHS_END

@@ -1,8 +1,9 @@
-// Converts raw depth to linear depth, and pixels to view-space positions, for every projection.
+// Converts raw depth to linear depth, and pixels to view-space positions, for every kind of
+// projection.
 //
 // A Projection is made on the CPU (make_projection.h) from any Vulkan projection matrix: finite,
-// infinite, reversed, off-centre, jittered, orthographic or flipped in Y. One set of formulas
-// without branches serves all of them.
+// infinite, reversed, off-centre, jittered, orthographic or flipped in Y. The same formulas,
+// without branches, are valid for all of them.
 //
 // View space is right-handed with the camera along -Z. `depth` is linear: the distance along -Z in
 // scene units, positive in front of the eye. The near plane of an orthographic view may lie behind
@@ -18,9 +19,9 @@ ALCOVE_MATHS_BEGIN
 struct Projection {
   vec4 uv_to_slope;   // xy scale, zw offset: view-space xy per unit of depth along a pixel's ray
   vec4 uv_to_origin;  // xy scale, zw offset: view-space xy of a pixel's ray at depth 0
-  // Coefficients of the uv of a view-space position with coordinates xy: (position_to_uv.xy * xy +
-  // depth_to_uv.xy * depth + position_to_uv.zw) / (depth_to_uv.z * depth + depth_to_uv.w). The
-  // divisor is positive.
+  // Coefficients that convert a view-space position, with coordinates xy, to uv: (position_to_uv.xy
+  // * xy + depth_to_uv.xy * depth + position_to_uv.zw) / (depth_to_uv.z * depth + depth_to_uv.w).
+  // The divisor is positive.
   vec4 position_to_uv;
   vec4 depth_to_uv;
   vec4 depth_unproject;  // depth = (x * depth_ndc + y) / (z * depth_ndc + w)
@@ -40,8 +41,8 @@ ALCOVE_INLINE bool is_sky_ndc(Projection p, float depth_ndc) {
 // Returns whether a result of linear_depth() is the sky. Do not call it with averaged depths.
 ALCOVE_INLINE bool is_sky_depth(float depth) { return !(depth < kSkyDepth); }
 
-// Returns the linear depth of a raw depth. The sky, infinity and NaN give kSkyDepth. A value in
-// front of the near plane gives the depth of the near plane.
+// Returns the linear depth of a raw depth. The sky, infinity and NaN give kSkyDepth. A raw depth
+// nearer than the near plane gives the depth of the near plane.
 ALCOVE_INLINE float linear_depth(Projection p, float depth_ndc) {
   if (is_sky_ndc(p, depth_ndc)) return kSkyDepth;
   float d = min(max(depth_ndc, 0.0f), 1.0f);

@@ -1,5 +1,5 @@
-// A normal that faces the eye, quantised to one byte, which is enough to distinguish the faces at a
-// crease.
+// A normal that faces the eye, quantised to one byte. That is precise enough to distinguish the two
+// surfaces at a crease.
 //
 // It is stored by its stereographic coordinates in view space: a vector of length tan(angle / 2),
 // where `angle` is the angle between the normal and the view axis. Stereographic projection is
@@ -25,8 +25,8 @@ ALCOVE_INLINE vec2 stereographic_of_bits(uint bits) {
 }
 
 // Quantises a unit normal in view space. Stereographic coordinates are clamped to those of
-// directions a right angle from the view axis. Each coordinate has 15 values, so the error is at
-// most 12 degrees.
+// directions 90 degrees from the view axis. Each coordinate has 15 values, so the error is at most
+// 12 degrees.
 ALCOVE_INLINE QuantisedNormal make_quantised_normal(vec3 normal) {
   vec2 stereographic = vec2(normal.x, normal.y) * (1.0f / max(1.0f + normal.z, 0.1f));
   QuantisedNormal coarse;
@@ -38,9 +38,9 @@ ALCOVE_INLINE QuantisedNormal make_quantised_normal(vec3 normal) {
   return coarse;
 }
 
-// Returns the approximate squared angle, in radians, to another normal with the stereographic
-// coordinates `other`. It is 0 for equal normals, grows with the angle, and is above 0.5 from 60
-// degrees on.
+// Returns the approximate squared angle, in radians squared, between this normal and one with the
+// stereographic coordinates `other`. It is 0 for equal normals, grows with the angle, and is above
+// 0.5 for angles of 60 degrees or more.
 ALCOVE_INLINE float squared_turn(QuantisedNormal own, vec2 other) {
   vec2 apart = other - own.stereographic;
   return dot(apart, apart) * own.squared_scale;

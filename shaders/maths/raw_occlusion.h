@@ -15,16 +15,16 @@ struct RawOcclusion {
   float open;     // the same integral without occluders, which is the weight, [0,kLargestOpen]
 };
 
-// The largest weight of a mean over slices, also after weighting by a filter kernel.
+// Upper limit of RawOcclusion::open, before and after multiplication by a filter weight.
 const float kLargestOpen = 4.0f;
 
-// The ratio of the visible to the unoccluded part, in [0,1]. A weight of zero gives 1.
+// Returns the ratio of the visible to the unoccluded part, [0,1], or 1 if the unoccluded part is 0.
 ALCOVE_INLINE float mean_visibility(RawOcclusion sum) {
   return sum.open > 0.0f ? saturate(sum.visible / sum.open) : 1.0f;
 }
 
-// The unoccluded part in 11 bits: a half-precision float without its sign and its last four bits.
-// The relative error is at most 1/120, which is enough for a weight. Values out of range are
+// Packs the unoccluded part into 11 bits: a half-precision float without its sign and its last four
+// bits. The relative error is at most 1/120, which is enough for a weight. Values out of range are
 // clamped.
 ALCOVE_INLINE uint pack_open(float open) {
   return (packHalf2x16(vec2(clamp(open, 0.0f, kLargestOpen), 0.0f)) + 8u) >> 4u;
@@ -32,7 +32,8 @@ ALCOVE_INLINE uint pack_open(float open) {
 
 ALCOVE_INLINE float unpack_open(uint bits) { return unpackHalf2x16((bits & 0x7ffu) << 4u).x; }
 
-// The ratio with an error of at most 2^-14, the weight, and the traced pixel's QuantisedNormal.
+// Packs the visibility with an error of at most 2^-14, the unoccluded part, and the traced pixel's
+// QuantisedNormal.
 ALCOVE_INLINE uint pack_raw_occlusion(RawOcclusion raw_occlusion, uint quantised_normal) {
   return pack_unorm(mean_visibility(raw_occlusion), 13u) | (pack_open(raw_occlusion.open) << 13u) |
          (quantised_normal << 24u);
@@ -50,8 +51,8 @@ ALCOVE_INLINE uint raw_occlusion_normal(uint bits) { return bits >> 24u; }
 // Upper bound of the components of a residual (bent_normal.h).
 const float kLargestResidual = 4.0f / 3.0f;
 
-// A residual in 10 bits per component. Components are clamped to +-kLargestResidual. The error
-// after unpack_residual() is at most 0.0014, and 0 for a component of 0.
+// Packs a residual into 10 bits per component. Components are clamped to +-kLargestResidual. The
+// error after unpack_residual() is at most 0.0014, and 0 for a component of 0.
 ALCOVE_INLINE uint pack_residual_dithered(vec3 residual, float dither) {
   vec3 scaled =
       clamp(residual * (1.0f / kLargestResidual), -1.0f, 1.0f) * 511.0f + (512.0f + dither);
@@ -66,9 +67,9 @@ ALCOVE_INLINE vec3 unpack_residual(uint bits) {
   return (scaled - 512.0f) * (kLargestResidual / 511.0f);
 }
 
-// The raw occlusion of a GGX lobe. Its unoccluded part differs by orders of magnitude from slice to
-// slice, so it is stored with a relative error of 2^-8; it must be at least 0 and finite. The error
-// of the ratio is at most 2^-17.
+// Packs the raw occlusion of a GGX lobe. The unoccluded part, which must be finite and at least 0,
+// differs by orders of magnitude between slices. It is therefore stored with a relative error of
+// 2^-8. The error of the ratio is at most 2^-17.
 ALCOVE_INLINE uint pack_lobe(RawOcclusion lobe) {
   float ratio = lobe.open > 0.0f ? clamp(lobe.visible / lobe.open, 0.0f, 1.0f) : 1.0f;
   uint open = (floatBitsToUint(lobe.open) + 0x8000u) & 0xffff0000u;
@@ -88,8 +89,8 @@ struct LobeSurface {
   float roughness;  // perceptual, [0,1]
 };
 
-// Packs a surface with one byte per value. The error of the normal is half a degree, that of the
-// roughness 2^-9.
+// Packs a surface with one byte per value. The error of the normal is half a degree, and that of
+// the roughness 2^-9.
 ALCOVE_INLINE uint pack_lobe_surface(LobeSurface surface) {
   return packUnorm4x8(vec4(surface.normal.x * 0.5f + 0.5f, surface.normal.y * 0.5f + 0.5f,
                            surface.normal.z * 0.5f + 0.5f, surface.roughness));
@@ -102,25 +103,26 @@ ALCOVE_INLINE float sixteenth_power(float x) {
   return eighth * eighth;
 }
 
-// Returns the filter weight, [0,1], of a neighbour's packed surface. It is 0.5 if the normals
-// differ by about 12 degrees or the roughness by 0.1.
+// Returns the weight, [0,1], that the filter gives to a neighbour, whose packed surface is
+// `neighbour`. It is 0.5 if the normals differ by about 12 degrees or the roughness by 0.1.
 ALCOVE_INLINE float lobe_weight(LobeSurface own, uint neighbour) {
-  // dot(own.normal, bytes * 2 / 255 - 1), with the scale moved to the pixel's own normal, where it
-  // is computed once.
+  // Computes dot(own.normal, bytes * 2 / 255 - 1). The scale is applied to the pixel's own normal,
+  // so that it is computed once for all neighbours.
   vec3 scaled = own.normal * (2.0f / 255.0f);
   float offset = own.normal.x + own.normal.y + own.normal.z;
   float agreement = scaled.x * float(neighbour & 255u) +
                     scaled.y * float((neighbour >> 8u) & 255u) +
                     scaled.z * float((neighbour >> 16u) & 255u) - offset;
-  // Quantised unit vectors have a length of at most 1.007. Longer vectors must not outweigh all
-  // others.
+  // Quantised unit vectors have a length of at most 1.007. The clamp keeps longer vectors from
+  // getting a weight far above that of all others.
   float sixteenth = sixteenth_power(clamp(agreement, 0.0f, 1.01f));
   float apart = own.roughness * 5.0f - float(neighbour >> 24u) * (5.0f / 255.0f);
   return sixteenth * sixteenth * max(1.0f - abs(apart), 0.0f);
 }
 
-// Visibility after the artist's controls: 1 - intensity * (1 - visibility^power), clamped to [0,1].
-// A visibility of 1 stays 1. A power or an intensity above 1 darkens, one below 1 brightens.
+// Returns the visibility after the settings `power` and `intensity`: 1 - intensity * (1 -
+// visibility^power), clamped to [0,1]. A visibility of 1 stays 1. A power or an intensity above 1
+// darkens, one below 1 brightens.
 ALCOVE_INLINE float shaped_visibility(float visibility, float power, float intensity) {
   return saturate(1.0f - intensity * (1.0f - pow(max(visibility, 0.0f), power)));
 }

@@ -1,7 +1,7 @@
-// Where to look: directions of slices and offsets of steps.
+// The directions of slices and the offsets of steps for each pixel and frame.
 //
-// Each noise gives a pixel two numbers in [0,1): `direction`, a fraction of half a turn (slice k of
-// n lies at phi = pi (k + direction) / n), and `offset`, a fraction of a step.
+// Each pattern gives a pixel two numbers in [0,1). `direction` is a fraction of the angle between
+// slices: slice k of n lies at phi = pi (k + direction) / n. `offset` is a fraction of a step.
 #ifndef ALCOVE_MATHS_SAMPLING_H
 #define ALCOVE_MATHS_SAMPLING_H
 
@@ -19,18 +19,20 @@ ALCOVE_INLINE float slice_angle(uint slice, uint slice_count, float direction) {
   return kPi * (float(slice) + direction) / float(slice_count);
 }
 
-// The paper's layout (section 4.4): a 4x4 block of pixels holds 16 directions and 4 offsets, and
-// six frames turn every one of them, 96 directions in all, each once. A pixel's own six lie a sixth
-// of half a turn apart, neighbours in time far apart; every second one is shifted by 1/96 so that
-// no two of the 96 coincide.
+// The paper's pattern (section 4.4). A block of 4x4 pixels has 16 directions and 4 offsets. In each
+// of six frames the directions are rotated by another multiple of a sixth of 180 degrees, which
+// gives 96 different directions. The order of the multiples keeps successive frames of a pixel far
+// apart. Every second rotation is shifted by 1/96 of 180 degrees, so that no two of the 96
+// coincide.
 ALCOVE_INLINE SliceNoise paper_pattern(uvec2 pixel, uint frame) {
   uint x = pixel.x & 3u;
   uint y = pixel.y & 3u;
   uint cell = (((x + y) & 3u) << 2u) + x;
-  // Sixths in the order 1, 5, 3, 4, 2, 0, four bits each.
+  // The rotations in sixths of 180 degrees, in the order 1, 5, 3, 4, 2, 0, with four bits each.
   uint sixth = (0x024351u >> ((frame % 6u) * 4u)) & 15u;
   uint step_of_96 = (cell * 6u + sixth * 16u + (sixth & 1u)) % 96u;
-  // Quarters in the order 0, 2, 1, 3, two bits each, held for a whole turn of the directions.
+  // The offsets in quarters of a step, in the order 0, 2, 1, 3, with two bits each. The offset
+  // changes after every six frames.
   uint quarter = (0xD8u >> (((frame / 6u) & 3u) * 2u)) & 3u;
   uint offset = ((y + 4u - x) & 3u) * 4u + quarter;
   SliceNoise noise;
@@ -39,35 +41,37 @@ ALCOVE_INLINE SliceNoise paper_pattern(uvec2 pixel, uint frame) {
   return noise;
 }
 
-// A hash of a pixel's position: multiplications and xor-shifts with the primes of xxHash [Collet
-// 2012].
+// Returns a hash of a pixel's position, by multiplications and xor-shifts with the primes of xxHash
+// [Collet 2012].
 ALCOVE_INLINE uint hash_of(uvec2 pixel) {
   uint bits = (pixel.x * 2654435761u) ^ (pixel.y * 2246822519u);
   bits = (bits ^ (bits >> 15u)) * 3266489917u;
   return bits ^ (bits >> 16u);
 }
 
-// Lattices over the image whose steps from pixel to pixel are irrational, rotated from frame to
-// frame by the golden ratio (directions) and an R2 number (offsets). Any few adjacent pixels cover
-// directions and offsets evenly, and so does any run of frames at one pixel. The steps of the
-// directions are the two numbers of the R2 sequence [Roberts 2018], those of the offsets the golden
+// Lattices over the image whose steps from pixel to pixel are irrational. They are rotated from
+// frame to frame by the golden ratio (directions) and by an R2 number (offsets). Any few adjacent
+// pixels cover directions and offsets evenly, and so do successive frames at one pixel. The
+// directions step by the two numbers of the R2 sequence [Roberts 2018], the offsets by the golden
 // ratio and the square root of 2.
 //
-// Eight searches of a pixel leave the 5th and the 8th harmonic of the error over directions, and a
-// lattice draws each harmonic as parallel stripes that the eye sees. Every direction is therefore
-// shifted at random by up to an eighth, the same in every frame: this turns the 8th harmonic into
-// noise, halves the stripes of the 5th, and leaves the lower ones to the filter over neighbours.
+// The error of a pixel depends on the direction of its slices. After eight traces of a pixel,
+// mainly the 5th and the 8th harmonic of this dependence remain, and a lattice would show each of
+// them as parallel stripes. Every direction is therefore shifted by a random amount of up to an
+// eighth of the angle between slices, which is constant over time. This turns the 8th harmonic into
+// noise and halves the stripes of the 5th. The spatial filter removes the lower harmonics.
 //
-// With `moves`, the traced pixel moves through the pixels of a tile, and returns after four frames.
-// The rotation is then a quarter of such a number, so that the frames in which a pixel itself is
-// traced cover directions and offsets evenly.
+// If `moves` is true, the traced pixel moves through the pixels of a tile and returns after four
+// frames. The rotation per frame is then a quarter of such a number, so that the frames in which a
+// pixel itself is traced cover directions and offsets evenly.
 ALCOVE_INLINE SliceNoise golden_pattern(uvec2 pixel, uint frame, bool moves) {
-  // Fractions of 2^32, exact for every frame: of 1.6180339887 and 0.7548776662, or of a quarter of
-  // 1.6180339887 and of 2.5698402910.
+  // Rotations per frame as fractions of 2^32, exact for every frame: of 1.6180339887 and
+  // 0.7548776662, or of a quarter of 1.6180339887 and of 2.5698402910.
   uint turn = moves ? 1737350766u : 2654435769u;
   uint shift = moves ? 2759345001u : 3242174889u;
   uint random_shift = (hash_of(pixel) >> 16u) << 13u;  // below an eighth
-  // Steps to the right and downwards: 0.7548776662 and 0.5698402910, 0.6180339887 and 0.4142135624.
+  // Steps to the right and downwards: 0.7548776662 and 0.5698402910 for directions, 0.6180339887
+  // and 0.4142135624 for offsets.
   uint direction_bits = random_shift + pixel.x * 3242174889u + pixel.y * 2447445414u + frame * turn;
   uint offset_bits = (1u << 29u) + pixel.x * 2654435769u + pixel.y * 1779033704u + frame * shift;
   SliceNoise noise;
@@ -76,7 +80,8 @@ ALCOVE_INLINE SliceNoise golden_pattern(uvec2 pixel, uint frame, bool moves) {
   return noise;
 }
 
-// Position along a Hilbert curve through a 64x64 block; takes x and y modulo 64. In [0,4096).
+// Returns the position, 0 to 4095, along a Hilbert curve through 64x64 pixels. x and y are taken
+// modulo 64.
 ALCOVE_INLINE uint hilbert_index(uvec2 pixel) {
   uint x = pixel.x & 63u;
   uint y = pixel.y & 63u;
@@ -103,13 +108,15 @@ ALCOVE_INLINE SliceNoise r2_sequence(uint index) {
   return noise;
 }
 
-// Hilbert index through the R2 sequence, 64 frames before it repeats: low discrepancy over any
-// neighbourhood of pixels and over frames, for a spatial filter with a temporal one behind it.
+// The R2 sequence at the pixel's index along a Hilbert curve. It repeats after 64 frames.
+// Neighbouring pixels and successive frames get evenly distributed values, as a spatial filter
+// followed by a temporal one needs them.
 ALCOVE_INLINE SliceNoise hilbert_pattern(uvec2 pixel, uint frame) {
   return r2_sequence(hilbert_index(pixel) + 288u * (frame & 63u));
 }
 
-// The distance in pixels of the nearest sample. It reaches another texel in every direction.
+// The distance in pixels of the nearest sample, which in every direction lies on another texel than
+// the shaded one.
 const float kNearestStep = 1.3f;
 
 ALCOVE_MATHS_END

@@ -14,15 +14,16 @@
 
 ALCOVE_MATHS_BEGIN
 
-// Two unit vectors that with the view direction form a right-handed orthonormal basis: (x, y,
-// view). Both turn smoothly with the view direction wherever view.z > -1, which is all that an eye
-// can see.
+// Two unit vectors that form a right-handed orthonormal basis with the view direction: (x, y,
+// view). Both are continuous functions of the view direction if view.z > -1, which holds for every
+// surface that the eye can see.
 struct ViewBasis {
   vec3 x;
   vec3 y;
 };
 
-// `view` is unit, in view space. (Frisvad 2012, for the half space before the eye.)
+// Returns the basis for a unit view direction in view space (Frisvad 2012, for directions with z >
+// -1).
 ALCOVE_INLINE ViewBasis make_view_basis(vec3 view) {
   float a = -1.0f / (1.0f + max(view.z, -0.9999f));
   float b = view.x * view.y * a;
@@ -32,8 +33,8 @@ ALCOVE_INLINE ViewBasis make_view_basis(vec3 view) {
   return basis;
 }
 
-// The direction of the slice at angle phi around the view direction. The interval [0,pi) has every
-// slice once, [0,2pi) every half-slice once.
+// Returns the direction of the slice at angle phi around the view direction. The interval [0,pi)
+// contains every slice once, and [0,2pi) every half-slice once.
 ALCOVE_INLINE vec3 slice_direction(ViewBasis basis, float phi) {
   float c = cos(phi);
   float s = sin(phi);
@@ -41,8 +42,8 @@ ALCOVE_INLINE vec3 slice_direction(ViewBasis basis, float phi) {
               basis.x.z * c + basis.y.z * s);
 }
 
-// A normal seen within a slice: projected into its plane, the length of the projection kept.
-// gamma is the signed angle from v to the projected normal, in [-pi/2,pi/2].
+// A normal in relation to a slice: the normal projected into the slice's plane, without normalising
+// it. gamma is the signed angle from v to the projected normal, in [-pi/2,pi/2].
 struct Slice {
   float along;   // <n,d> = scale * sin(gamma)
   float toward;  // <n,v> = scale * cos(gamma), at least 0
@@ -51,9 +52,9 @@ struct Slice {
   float cosine;  // cos(gamma); 1 where scale is 0
 };
 
-// `normal`, `direction` and `view` are unit and of one space, the last two perpendicular. A normal
-// that points away from the eye is taken as perpendicular to the view direction; facing_normal()
-// gives one that does not.
+// `normal`, `direction` and `view` are unit and in one space; `direction` and `view` are
+// perpendicular. A normal that points away from the eye is treated as perpendicular to the view
+// direction. facing_normal() returns a normal that does not point away.
 ALCOVE_INLINE Slice make_slice(vec3 normal, vec3 direction, vec3 view) {
   Slice s;
   s.along = dot(normal, direction);
@@ -66,21 +67,23 @@ ALCOVE_INLINE Slice make_slice(vec3 normal, vec3 direction, vec3 view) {
   return s;
 }
 
-// The signed angle from the view direction to the projected normal, in [-pi/2,pi/2]. It is computed
-// from the smaller of sine and cosine, where rounding changes it least.
+// Returns gamma, the signed angle from the view direction to the projected normal, in [-pi/2,pi/2].
+// It is computed from the smaller of its sine and cosine, because rounding then changes it least.
 ALCOVE_INLINE float slice_gamma(Slice s) {
   bool steep = abs(s.sine) > s.cosine;
   float angle = arc_cosine(steep ? s.cosine : s.sine);
   return steep ? (s.sine < 0.0f ? -angle : angle) : kHalfPi - angle;
 }
 
-// A normal whose cosine to the view direction is below minus this belongs to the other side of the
-// surface: interpolated and mapped normals seldom lean further away from the eye near silhouettes.
+// If the cosine between a normal and the view direction is below minus this value, the normal is
+// taken to be that of the other side of the surface. Interpolated and mapped normals near
+// silhouettes seldom point that far away from the eye.
 const float kFlippedNormal = 0.25f;
 
-// The normal of the side that the eye sees: `normal` where it faces the eye, its opposite where it
-// faces away by more than kFlippedNormal (double-sided materials, inverted normals), and in between
-// the nearest direction that is perpendicular to the view direction. Both arguments are unit.
+// Returns the normal of the side of the surface that the eye sees. It is `normal` if that faces the
+// eye, and its opposite if it faces away by more than kFlippedNormal (double-sided materials,
+// inverted normals). In between it is the nearest direction that is perpendicular to the view
+// direction. Both arguments are unit.
 ALCOVE_INLINE vec3 facing_normal(vec3 normal, vec3 view) {
   float towards = dot(normal, view);
   vec3 side = towards < -kFlippedNormal ? -normal : normal;
@@ -92,8 +95,8 @@ ALCOVE_INLINE vec3 facing_normal(vec3 normal, vec3 view) {
 // Cosine of the angle of the tangent plane in a half-slice. It is the lowest possible horizon.
 ALCOVE_INLINE float tangent_horizon(Slice s, float side) { return -side * s.sine; }
 
-// Sine (at least 0) and cosine of the angle of a horizon that is given by its cosine. The cosine is
-// clamped to [tangent plane, 1].
+// Returns the sine (at least 0) and the cosine of the angle of a horizon. The horizon is given by
+// its cosine, which is clamped to [tangent plane, 1].
 ALCOVE_INLINE vec2 horizon_light(Slice s, float side, float horizon) {
   float c = clamp(horizon, tangent_horizon(s, side), 1.0f);
   return vec2(sqrt((1.0f - c) * (1.0f + c)), c);

@@ -22,16 +22,16 @@ ALCOVE_INLINE float twice_triangle_area(float side_1, float side_2, float angle)
   return 4.0f * atan(t * sin(angle), 1.0f + t * cos(angle));
 }
 
-// Returns the exact area of the intersection of two caps: the two sectors between the crossings of
-// the rims, minus the kite that both sectors cover. The error is within 1e-6 / min(a,b) of the
-// smaller cap's area.
+// Returns the exact area of the intersection of two caps: the sum of the two sectors between the
+// points where the rims cross, minus the kite that both sectors cover. The error is within 1e-6 /
+// min(a,b) of the smaller cap's area.
 ALCOVE_INLINE float cap_intersection(float a, float b, float d) {
   float small = min(a, b);
   float large = max(a, b);
   if (d >= small + large) return 0.0f;
   if (d <= large - small) return cap_area(small);
-  // The angles of the triangle between the two axes and a crossing of the rims, by the half-angle
-  // formula.
+  // The angles of the triangle whose corners are the two axes and a point where the rims cross, by
+  // the half-angle formula.
   float whole = max(sin(0.5f * (large + d + small)), 1e-20f);
   float less_small = max(sin(0.5f * (large + d - small)), 1e-20f);
   float less_large = max(sin(0.5f * (small + (d - large))), 0.0f);

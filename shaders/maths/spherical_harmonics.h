@@ -37,8 +37,8 @@ ALCOVE_INLINE float harmonic(uint index, vec3 d) {
   return 0.546274215f * (d.x * d.x - d.y * d.y);
 }
 
-// Returns the factor from a coefficient of radiance to one of irradiance divided by pi: 1, 2/3 or
-// 1/4, by band.
+// Returns the factor that converts a coefficient of radiance to a coefficient of irradiance divided
+// by pi: 1, 2/3 or 1/4 for bands 0, 1 and 2.
 ALCOVE_INLINE float harmonic_irradiance(uint index) {
   return index == 0u ? 1.0f : (index < 4u ? 2.0f / 3.0f : 0.25f);
 }

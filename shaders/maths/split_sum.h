@@ -1,7 +1,7 @@
-// Specular light from a probe by the split sum (Karis 2013): the prefiltered light of the lobe,
-// times the reflectance of the surface under uniform white light. With Schlick's Fresnel term that
-// reflectance is x * f0 + y, where f0 is the reflectance at normal incidence, and (x, y) come from
-// a table over view angle and roughness.
+// Specular light from a probe by the split-sum approximation (Karis 2013): the prefiltered light of
+// the lobe, times the reflectance of the surface under uniform white light. With Schlick's Fresnel
+// term that reflectance is x * f0 + y, where f0 is the reflectance at normal incidence, and (x, y)
+// come from a table over view angle and roughness.
 //
 // The diffuse part gets the remaining energy, 1 - (x * f0 + y), so that a white dielectric in a
 // white environment is white. Light that bounces between microfacets is lost: a white, rough metal
@@ -40,7 +40,8 @@ ALCOVE_INLINE vec3 specular_reflectance(vec3 f0, vec2 table_value) {
 
 // Returns the direction in which the light of a lobe is looked up. For rough lobes it moves from
 // the mirror direction towards the normal, because the surface cuts off the part of the lobe below
-// it (Lagarde and de Rousiers 2014). It halves the error of the split sum from roughness 0.5 on.
+// it (Lagarde and de Rousiers 2014). For roughness 0.5 and above it halves the error of the
+// split-sum approximation.
 ALCOVE_INLINE vec3 dominant_direction(vec3 normal, vec3 mirror, float roughness) {
   float alpha = clamp(roughness * roughness, 0.0f, 1.0f);
   float smooth_part = 1.0f - alpha;
