@@ -30,7 +30,7 @@ TEST(BentNormal, ArcAgreesWithQuadratureForEveryNormalAndHorizon) {
   EXPECT_LT(worst, 1e-6);
 }
 
-TEST(BentNormal, EqualsTheFormulaOfThePaperInAngles) {
+TEST(BentNormal, ClosedFormEqualsThePapersFormulaInAngles) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
     const double g = random.uniform(-1.5f, 1.5f);
@@ -103,10 +103,10 @@ TEST(BentNormal, UnoccludedResidualsCancelOverAllSlices) {
   }
 }
 
-// A wall in a random direction hides up to most of one side. The bent normal of 3 random slices, as
-// filters and histories weight directions unevenly, is compared with that of 256 slices by the
-// root-mean-square angle.
-TEST(BentNormal, SubtractingTheExpectedResidualHelpsFewSlices) {
+// A wall in a random direction occludes up to most of one half-slice. Compares the bent normal of 3
+// random slices, which weight directions unevenly, with that of 256 slices. The error is the
+// root-mean-square angle over many walls, with and without the expected residual.
+TEST(BentNormal, SubtractingTheExpectedResidualReducesTheErrorOfFewSlices) {
   RandomInput random;
   double raw = 0.0;
   double settled = 0.0;
@@ -150,7 +150,7 @@ TEST(BentNormal, SubtractingTheExpectedResidualHelpsFewSlices) {
   EXPECT_LT(std::sqrt(settled), 0.75 * std::sqrt(raw));
 }
 
-TEST(BentNormal, LeansAwayFromAWall) {
+TEST(BentNormal, BentNormalPointsAwayFromAWall) {
   const vec3 view(0, 0, 1);
   const Slice s = maths::make_slice(view, vec3(1, 0, 0), view);
   const vec3 bent = maths::slice_bent_normal(s, vec3(1, 0, 0), view, 0.8f, -1.0f);
@@ -158,7 +158,7 @@ TEST(BentNormal, LeansAwayFromAWall) {
   EXPECT_GT(bent.z, 0.1f);
 }
 
-TEST(BentNormal, FallsBackToTheNormalWhereNothingIsVisible) {
+TEST(BentNormal, BentNormalIsTheNormalIfNothingIsVisible) {
   const vec3 normal(0, 1, 0);
   EXPECT_EQ(maths::finish_bent_normal(vec3(0), 0.0f, normal), normal);
   EXPECT_EQ(maths::finish_bent_normal(vec3(1e-30f), 0.0f, normal), normal);

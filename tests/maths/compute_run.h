@@ -11,8 +11,8 @@
 namespace alcove::maths_test {
 
 // A compute pipeline whose descriptor set 0 has a uniform buffer at binding 0 and storage buffers
-// after it, all in host-visible memory. A Vulkan error fails the running test and leaves zeros in
-// the buffers.
+// from binding 1 on, all in host-visible memory. If a Vulkan call fails, the running test fails,
+// and the buffers contain zeros.
 class ComputeRun {
  public:
   // Sizes are in bytes. The device must outlive the object.

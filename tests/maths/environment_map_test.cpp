@@ -12,7 +12,7 @@ using glm::ivec2;
 using glm::vec2;
 using glm::vec3;
 
-TEST(EnvironmentMap, DirectionsSurviveBothLayouts) {
+TEST(EnvironmentMap, DirectionsConvertToBothLayoutsAndBack) {
   RandomInput random;
   for (int i = 0; i < 20000; ++i) {
     const vec3 d = random.unit_vector();
@@ -33,8 +33,8 @@ TEST(EnvironmentMap, AxesAreAtTheDocumentedTexels) {
   EXPECT_LT(distance(maths::map_uv({0, 1, 0}), vec2(0.5f)), 1e-6f);
 }
 
-// Compares the angle between neighbouring texels across an edge of the map with that within the
-// map.
+// Checks that two neighbouring texels across an edge of the map are not farther apart in angle than
+// neighbouring texels inside the map.
 TEST(EnvironmentMap, TexelsBeyondAnEdgeContinueTheMap) {
   constexpr int kSize = 16;
   const auto direction = [](ivec2 texel) {
@@ -53,7 +53,7 @@ TEST(EnvironmentMap, TexelsBeyondAnEdgeContinueTheMap) {
   EXPECT_LT(distance(direction({-1, -1}), direction({0, 0})), 0.26f);
 }
 
-TEST(EnvironmentMap, TexelsCoverTheWholeSphere) {
+TEST(EnvironmentMap, SolidAnglesOfAllTexelsSumToTheSphere) {
   for (const int size : {16, 64, 256}) {
     double sum = 0.0;
     for (int y = 0; y < size; ++y) {
@@ -65,7 +65,7 @@ TEST(EnvironmentMap, TexelsCoverTheWholeSphere) {
   }
 }
 
-TEST(EnvironmentMap, LevelsGoFromSmoothToRough) {
+TEST(EnvironmentMap, MipLevelsHaveRoughnessZeroToOne) {
   EXPECT_EQ(maths::level_of_roughness(0.0f, 6), 0.0f);
   EXPECT_EQ(maths::level_of_roughness(2.0f, 6), 5.0f);
   EXPECT_EQ(maths::level_of_roughness(0.7f, 1), 0.0f);

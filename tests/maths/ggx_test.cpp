@@ -26,8 +26,8 @@ float ggx_lobe(vec3 normal, vec3 view, vec3 light, float alpha) {
          (4.0f * n_dot_v);
 }
 
-// Returns the integral of f(light) over the hemisphere. Narrow lobes are integrated in half-vector
-// coordinates.
+// Returns the integral of f(light) over the hemisphere. Narrow lobes are integrated over half
+// vectors instead of light directions.
 template <typename Function>
 double over_hemisphere(Function f, int panels = 60) {
   return integrate(
@@ -45,8 +45,8 @@ double over_hemisphere(Function f, int panels = 60) {
 
 TEST(Ggx, ProjectedMicrofacetAreaIsOne) {
   for (const float alpha : {1e-3f, 0.01f, 0.1f, 0.5f, 1.0f}) {
-    // The integration variable is log(tan), because the density extends over many powers of ten of
-    // the tangent.
+    // The integration variable is log(tan(theta)), because the density of a narrow lobe extends
+    // over many powers of ten of the tangent.
     const double sum = integrate(
         [&](double log_tan) {
           const double tan = std::exp(log_tan), cos = 1.0 / std::hypot(1.0, tan);
@@ -61,7 +61,7 @@ TEST(Ggx, ProjectedMicrofacetAreaIsOne) {
   }
 }
 
-TEST(Ggx, MaskingIsOneFromAboveAndFallsTowardsGrazing) {
+TEST(Ggx, MaskingIsOneAtNormalIncidenceAndDecreasesTowardsGrazingAngles) {
   for (const float alpha : {0.01f, 0.3f, 1.0f}) {
     EXPECT_FLOAT_EQ(maths::ggx_masking(1.0f, alpha), 1.0f);
     float before = 1.0f;
@@ -75,7 +75,7 @@ TEST(Ggx, MaskingIsOneFromAboveAndFallsTowardsGrazing) {
   }
 }
 
-TEST(Ggx, WhiteFurnaceGainsNoEnergy) {
+TEST(Ggx, LobeReflectsNoMoreLightThanItReceives) {
   for (const float alpha : {0.2f, 0.5f, 1.0f}) {
     for (double angle : {0.0, 0.7, 1.2, 1.5}) {
       const double sum = over_hemisphere(
@@ -97,13 +97,13 @@ TEST(Ggx, LobeIsReciprocal) {
   }
 }
 
-TEST(Ggx, SamplesFollowTheirDensity) {
+TEST(Ggx, SamplesAreDistributedAccordingToTheirDensity) {
   RandomInput random;
   for (const float alpha : {0.1f, 0.4f, 1.0f}) {
     for (double angle : {0.0, 0.8, 1.4}) {
       const vec3 view = at_angle(angle);
-      // The mean over samples of a function times lobe / density is the integral of the function
-      // over the lobe.
+      // Tests importance sampling: the mean of lobe / density times a function, over samples, is
+      // the integral of the lobe times that function.
       double sampled = 0.0, sampled_x = 0.0, squares = 0.0;
       constexpr int kSamples = 100000;
       for (int i = 0; i < kSamples; ++i) {
@@ -131,7 +131,7 @@ TEST(Ggx, SamplesFollowTheirDensity) {
   }
 }
 
-TEST(Ggx, MirrorSamplesReflectTheView) {
+TEST(Ggx, SamplesOfAMirrorAreTheReflectedViewDirection) {
   const vec3 view = at_angle(1.0);
   const vec3 light = reflect(-view, maths::sample_ggx_normal(view, 0.0f, 0.3f, 0.4f));
   EXPECT_LT(distance(light, at_angle(-1.0)), 0.01f);

@@ -49,7 +49,7 @@ TEST(Slice, GammaIsTheSignedAngleFromTheViewDirectionToTheProjectedNormal) {
     EXPECT_NEAR(maths::slice_gamma(slice_of(0.7, gamma)), gamma, 4.8e-5);
 }
 
-TEST(Slice, NormalPerpendicularToTheSlicePlaneHasZeroWeightAndIsFinite) {
+TEST(Slice, NormalPerpendicularToTheSliceGivesWeightZero) {
   const Slice s = maths::make_slice(vec3(0, 1, 0), vec3(1, 0, 0), vec3(0, 0, 1));
   EXPECT_EQ(s.scale, 0.0f);
   EXPECT_EQ(s.cosine, 1.0f);
@@ -133,8 +133,8 @@ TEST(Gtao, UnoccludedArcEqualsVisibilityWithoutOccluders) {
   }
 }
 
-// Returns the mean over slices around `view` of the visibility between the horizons of both
-// half-slices, as a pass computes it.
+// Returns the mean visibility over `slices` slices around `view`, computed as in the pass.
+// `horizon` returns the horizon in each direction.
 template <typename Horizon>
 float visibility_over_slices(vec3 normal, vec3 view, int slices, double turn, Horizon horizon) {
   const maths::ViewBasis basis = maths::make_view_basis(view);
@@ -180,9 +180,9 @@ TEST(Gtao, UnoccludedWeightsAverageToOneOverManySlices) {
   }
 }
 
-// Returns the elevation angle above a plane of the highest point of a sphere in a slice. The sphere
-// has radius 1 and rests on the plane at distance x from the point; the slice has this direction.
-// Returns 0 if the slice misses the sphere.
+// Returns the elevation angle above a plane of the highest point of a sphere, as seen in a slice
+// with the given direction. The sphere has radius 1 and rests on the plane at distance x from the
+// shaded point. Returns 0 if the slice misses the sphere.
 double sphere_elevation(double x, glm::dvec2 direction) {
   const double across = x * direction.y, toward = x * direction.x;
   if (toward <= 0.0 || std::abs(across) >= 1.0) return 0.0;
@@ -199,8 +199,8 @@ TEST(Gtao, SphereOnAPlaneOccludesEverythingBelowItsSilhouette) {
       return 0.5 * std::sin(zenith) * std::sin(zenith);
     };
     const double expected = integrate(open_sector, 0.0, 2 * kPi, 4000) / kPi;
-    // A free sphere, under which light passes, occludes less: sin^2 of its half-angle times the
-    // cosine of its axis.
+    // The formula for a sphere with open space below it would give less occlusion: sin^2 of its
+    // half-angle times the cosine of its axis.
     EXPECT_LT(expected, 1.0 - 1.0 / std::pow(x * x + 1.0, 1.5));
     const float a = visibility_over_slices(up, up, 4096, 0.5, [x](vec3 direction) {
       const double elevation = sphere_elevation(x, {direction.x, direction.y});
@@ -216,7 +216,8 @@ TEST(Gtao, BottomOfAGrooveHasVisibilityOfTheSineOfItsHalfAngle) {
   const vec3 up(0, 0, 1);
   for (double half : {0.2, 0.5, 1.0, 1.4}) {
     const float a = visibility_over_slices(up, up, 2048, 0.5, [&](vec3 direction) {
-      // In a slice that is rotated from the cross direction, the wall rises less steeply.
+      // In a slice that is rotated from the cross direction of the groove, the wall rises less
+      // steeply.
       const double slope = std::abs(double(direction.x)) / std::tan(half);
       return float(slope / std::hypot(1.0, slope));
     });

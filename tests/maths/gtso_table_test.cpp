@@ -26,7 +26,8 @@ float look_up(float visibility, float bent_from_mirror, float mirror_from_normal
                       mirror_from_normal, roughness);
 }
 
-// Returns a possible angle between bent normal and mirror direction for a cone above the surface.
+// Returns an angle between bent normal and mirror direction at which the cone can lie above the
+// surface.
 float possible_angle(float share, float cone, float mirror_from_normal) {
   const float room = maths::kHalfPi - cone;
   const float low = std::max(mirror_from_normal - room, 0.0f);
@@ -34,8 +35,8 @@ float possible_angle(float share, float cone, float mirror_from_normal) {
   return low + share * (high - low);
 }
 
-// Samples every coordinate at random, some at the ends of their ranges, so that entries, edges and
-// points between entries are tested.
+// Compares the table with the integral at random coordinates. Some coordinates are at the ends of
+// their ranges, so that entries, edges and points between entries are all tested.
 TEST(GtsoTable, TableIsCloseToTheIntegral) {
   RandomInput random(1);  // a fixed set, because the README states its figures
   double squares = 0.0, worst = 0.0;
@@ -80,8 +81,8 @@ TEST(GtsoTable, FullyOpenFullyOccludedAndMirrorsAreExact) {
   }
 }
 
-// At roughness 1 only the last layer of the table is read. At its entries the value is exact to 8
-// bits.
+// At roughness 1 only the last layer of the table is read. At the coordinates of an entry the value
+// is exact to 8 bits.
 TEST(GtsoTable, EntriesOfRoughnessOneEqualTheIntegral) {
   for (const unsigned mirror : {0u, 7u, 14u}) {
     const float mirror_from_normal =
@@ -102,7 +103,7 @@ TEST(GtsoTable, EntriesOfRoughnessOneEqualTheIntegral) {
   }
 }
 
-TEST(GtsoTable, CompressedAnglesCanBeExpanded) {
+TEST(GtsoTable, UnsqueezeInvertsSqueezeForEveryCoordinate) {
   RandomInput random;
   for (int i = 0; i < 5000; ++i) {
     const float cone = random.uniform(0.01f, maths::kHalfPi);
@@ -116,8 +117,8 @@ TEST(GtsoTable, CompressedAnglesCanBeExpanded) {
   }
 }
 
-// Compares table and cones with the fraction of the lobe, for bent normals on any possible side of
-// the mirror direction.
+// Compares the errors of the table and of the cones. Bent normals are at random azimuths around the
+// mirror direction.
 TEST(GtsoTable, HasLessThanHalfTheErrorOfTheCone) {
   RandomInput random;
   double by_table = 0.0, by_cone = 0.0;

@@ -70,7 +70,7 @@ TEST(Gtso, VisibilityConeHasTheSolidAngleOfTheVisibility) {
   }
 }
 
-TEST(Gtso, LobeConeHasTheDocumentedHalfAngle) {
+TEST(Gtso, LobeConeHasTheHalfAngleOfThePaper) {
   for (float alpha = 0.0f; alpha <= 1.0f; alpha += 0.001f) {
     const double expected = std::acos(std::pow(10.0, -double(alpha) * alpha));
     EXPECT_NEAR(maths::lobe_cone(alpha), expected, 1e-5 + 2e-5 * expected);
@@ -118,7 +118,7 @@ TEST(Gtso, IncreasesWithVisibilityAndIsInRange) {
   }
 }
 
-TEST(Gtso, ConvergedVisibilityIsRoundedOnlyNearZeroAndOne) {
+TEST(Gtso, ConvergedVisibilityRoundsNearlyOpenToOpen) {
   EXPECT_EQ(maths::converged_visibility(0.0f), 0.0f);
   EXPECT_EQ(maths::converged_visibility(127.5f / 128.0f), 1.0f);
   for (float v = 0.0f; v <= 1.0f; v += 0.01f) {
@@ -126,7 +126,7 @@ TEST(Gtso, ConvergedVisibilityIsRoundedOnlyNearZeroAndOne) {
   }
 }
 
-TEST(Gtso, RaisedConeIsAboveTheSurface) {
+TEST(Gtso, RaisedBentNormalPutsTheConeAboveTheSurface) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
     const vec3 normal = random.unit_vector(), bent = random.facing(normal);

@@ -22,7 +22,7 @@ maths::HistoryTexel stored(const maths::HistoryTexel& texel, float dither) {
   return maths::unpack_history_texel(maths::pack_history_texel(texel, dither));
 }
 
-TEST(History, TexelKeepsItsValuesWithinTheirQuantisationSteps) {
+TEST(History, PackedTexelKeepsValuesWithinQuantisationSteps) {
   RandomInput random;
   for (int i = 0; i < 20000; ++i) {
     const maths::HistoryTexel texel = texel_of(random.uniform(0, 1), random.uniform(0, 1),
@@ -35,7 +35,7 @@ TEST(History, TexelKeepsItsValuesWithinTheirQuantisationSteps) {
   }
 }
 
-TEST(History, TexelKeepsZeroAndOneExactlyAtAnyDither) {
+TEST(History, PackedTexelKeepsZeroAndOneExactlyForAnyDither) {
   for (const float dither : {0.0f, 0.3f, 0.9999f}) {
     const maths::HistoryTexel least = stored(texel_of(0, 0, 0, 0), dither);
     EXPECT_EQ(least.depth, 0.0f);
@@ -53,7 +53,7 @@ TEST(History, TexelKeepsZeroAndOneExactlyAtAnyDither) {
   }
 }
 
-TEST(History, DitherKeepsTheMean) {
+TEST(History, DitheringPreservesTheMean) {
   constexpr int kSteps = 1000;
   for (const float value : {0.0004f, 0.1234f, 0.5f, 0.9871f}) {
     for (const float weight : {0.3f, 2.0f, 17.0f, 100.0f}) {
@@ -72,7 +72,7 @@ TEST(History, DitherKeepsTheMean) {
   }
 }
 
-TEST(History, WeightSurvivesItsLogarithmicEncoding) {
+TEST(History, LogarithmicEncodingKeepsTheWeight) {
   EXPECT_EQ(maths::log_weight_of(0.0f), 0.0f);
   EXPECT_EQ(maths::weight_of_log(0.0f), 0.0f);
   for (float weight = 0.1f; weight <= float(maths::kMaxHistoryFrames); weight *= 1.3f) {
@@ -95,7 +95,7 @@ TEST(History, MantissaBitsAreUnpackedAtAnyPosition) {
   }
 }
 
-TEST(History, LobeTexelKeepsItsValuesWithinTheirQuantisationSteps) {
+TEST(History, PackedLobeTexelKeepsValuesWithinQuantisationSteps) {
   RandomInput random;
   for (int i = 0; i < 20000; ++i) {
     maths::LobeTexel texel;
@@ -114,7 +114,7 @@ TEST(History, LobeTexelKeepsItsValuesWithinTheirQuantisationSteps) {
   EXPECT_EQ(back.open, 0.0f);
 }
 
-TEST(History, DepthThatDiffersIsRejected) {
+TEST(History, HistoryTexelsWithAnotherDepthAreRejected) {
   EXPECT_EQ(maths::history_agreement(0.0f, 0.001f, 100.0f), 1.0f);
   EXPECT_EQ(maths::history_agreement(-0.001f, 0.001f, 100.0f), 1.0f)
       << "rounding of a stored depth";
@@ -131,7 +131,7 @@ TEST(History, SpreadIsTheMeanAndTheStandardDeviation) {
   EXPECT_GE(maths::spread_of_sums(9 * 0.1f, 9 * 0.01f - 1e-6f, 9.0f).deviation, 0.0f);
 }
 
-TEST(History, ClampKeepsValuesInRangeAndReducesTheWeightOfOthers) {
+TEST(History, ClampingReducesTheWeightOnlyOfValuesOutOfRange) {
   maths::Spread now;
   now.mean = 0.5f;
   now.deviation = 0.1f;
@@ -142,13 +142,13 @@ TEST(History, ClampKeepsValuesInRangeAndReducesTheWeightOfOthers) {
   EXPECT_FLOAT_EQ(maths::weight_after_clamp(21.0f, 0.7f, 0.6f, 0.2f), 11.0f);
 }
 
-TEST(History, BlurAddsItsVarianceToTheNoise) {
+TEST(History, InterpolationAddsItsVarianceToThatOfTheNoise) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
     const float weight = random.uniform(1.0f, 127.0f);
     const float variance = random.uniform(0.0f, 0.25f);
     const float missing = random.uniform(0.0f, 1.0f);
-    // The variance of the mean of the accumulated frames, before and after.
+    // The variance of the accumulated visibility before and after its weight is reduced.
     const float before = maths::kFrameVariance / weight;
     const float after = maths::kFrameVariance / maths::weight_after_blur(weight, variance, missing);
     EXPECT_NEAR(after, before + variance + maths::kMissingVariance * missing, 1e-5f * after);
@@ -157,7 +157,7 @@ TEST(History, BlurAddsItsVarianceToTheNoise) {
   EXPECT_EQ(maths::weight_after_blur(0.0f, 0.2f, 1.0f), 0.0f);
 }
 
-TEST(History, ChangesAreDistinguishedFromNoiseByAFewSamples) {
+TEST(History, VisibilityChangesAreDistinguishedFromNoiseWithinAFewFrames) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
     const float a = random.uniform(0.0f, 1.0f);
@@ -168,7 +168,8 @@ TEST(History, ChangesAreDistinguishedFromNoiseByAFewSamples) {
     EXPECT_LE(changed, 1.0f);
     EXPECT_EQ(changed, maths::visibility_changed(b, a));
   }
-  // Unoccluded surfaces have no noise, so that a trail would be visible there at once.
+  // Unoccluded surfaces have no noise, so that outdated occlusion would leave a visible trail. A
+  // change to or from full visibility must be recognised at once.
   EXPECT_EQ(maths::visibility_changed(0.8f, 1.0f), 1.0f);
   EXPECT_EQ(maths::visibility_changed(1.0f, 0.8f), 1.0f);
   EXPECT_EQ(maths::visibility_changed(0.55f, 0.45f), 0.0f);
@@ -186,8 +187,8 @@ TEST(History, RecentOcclusionAveragesOnlyAFewFrames) {
     return recent;
   };
   EXPECT_GT(after_a_dozen(1.0f), 0.95f);
-  // Samples with a small weight for the pixel's surface change the mean little. The first frame is
-  // used completely.
+  // Samples with a small weight for the pixel's surface change the mean little. If there is no
+  // history, the mean becomes this frame's value.
   EXPECT_LT(after_a_dozen(0.02f), 0.35f);
   EXPECT_EQ(maths::update_recent(0.3f, 0.0f, 0.9f, 0.0f), 0.9f);
 }

@@ -21,8 +21,8 @@ using maths::Slice;
 
 constexpr float kRoughnesses[] = {0.1f, 0.2f, 0.3f, 0.45f, 0.6f, 0.8f, 1.0f};
 
-// The GGX lobe in a slice in double precision, from the definition instead of the half-angle
-// identity.
+// The integral of the GGX lobe in a slice in double precision. It evaluates the definition with the
+// half vector, and not the half-angle identity of the shaders.
 class LobeTruth {
  public:
   LobeTruth(const Slice& s, double n_dot_v, double alpha)
@@ -89,7 +89,7 @@ class LobeTruth {
 };
 
 // A surface tilted against the view direction, with slices at evenly spaced angles around the view
-// direction.
+// direction, for which sums over slices are tested.
 struct Surface {
   vec3 view{0, 0, 1};
   vec3 normal;
@@ -204,7 +204,7 @@ TEST(LobeSlice, UnoccludedSlicesOverAllRotationsSumToTheLobeOfTheBrdf) {
   }
 }
 
-TEST(LobeSlice, FullAndZeroVisibilityAreExactForAnyRoughnessAndView) {
+TEST(LobeSlice, FullyOpenAndFullyOccludedLobesAreExact) {
   RandomInput random;
   for (int i = 0; i < 5000; ++i) {
     const Slice s = Surface(random.uniform(0.0f, 1.5707f)).slice(random.uniform(0.0f, 3.14f));
@@ -232,7 +232,7 @@ TEST(LobeSlice, ArcIncreasesAsTheHorizonFalls) {
   }
 }
 
-TEST(LobeSlice, MirrorIsVisibleExactlyAtItsAngle) {
+TEST(LobeSlice, MirrorLobeIsVisibleIfTheHorizonIsBelowItsDirection) {
   const double tilt = 0.4;
   const Slice s = Surface(tilt).slice(0.0);
   const LobeSlice lobe = maths::make_lobe_slice(s, 0.0f);
@@ -282,7 +282,7 @@ TEST(LobeSlice, SliceThroughViewAndNormalContainsTheMirrorDirection) {
   }
 }
 
-TEST(LobeSlice, RotatedAnglesKeepTheMeanOverAllRotations) {
+TEST(LobeSlice, RotatedAnglesPreserveTheMeanOverAllSlices) {
   for (const float roughness : kRoughnesses) {
     double plain = 0.0, turned = 0.0, weights = 0.0;
     const auto f = [](double phi) {

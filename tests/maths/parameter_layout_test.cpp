@@ -102,7 +102,7 @@ TEST(ParameterStructs, HaveTheSameLayoutInUniformBlocksAndInCpp) {
   for (const auto& [name, offsets] : kExpected) EXPECT_EQ(seen[name], 1) << name;
 }
 
-TEST(ParameterStructs, CanBeConsecutiveMembersOfABlock) {
+TEST(ParameterStructs, ProjectionSizeIsAMultipleOf16Bytes) {
   EXPECT_EQ(sizeof(maths::Projection) % 16, 0u);
 }
 

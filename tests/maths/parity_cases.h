@@ -1,5 +1,6 @@
 // Calls functions of shaders/maths in the same way from GLSL and C++, so that the results of the
-// device can be compared with those of the processor. Written in the common subset of GLSL and C++.
+// GPU can be compared with those of the CPU. The file is written in the common subset of GLSL and
+// C++.
 #ifndef ALCOVE_TESTS_PARITY_CASES_H
 #define ALCOVE_TESTS_PARITY_CASES_H
 
@@ -56,8 +57,8 @@ ALCOVE_INLINE vec4 parity_of_slices(uint which, vec4 a, vec4 b) {
   float behind = b.y * 2.0f - 1.0f;
   switch (which) {
     case 0u:
-      // The angle is multiplied by the scale, because it is ill conditioned if the normal is
-      // perpendicular to the slice.
+      // The angle is multiplied by the length of the projected normal, because it is
+      // ill-conditioned if the normal is perpendicular to the slice.
       return vec4(s.along, s.toward, s.scale, slice_gamma(s) * s.scale);
     case 1u:
       return vec4(slice_arc(s, 1.0f, ahead), slice_arc(s, -1.0f, behind),
@@ -161,8 +162,8 @@ ALCOVE_INLINE vec4 parity_of_storage(uint which, vec4 a, vec4 b) {
       lobe.visible = a.x * a.y;
       lobe.open = a.x;
       lobe = unpack_lobe(pack_lobe(lobe));
-      // The surface is made from whole bytes, so that packing is exact: one byte more or less
-      // changes the weight by a quarter.
+      // The surface is made from whole bytes, so that packing is exact. A difference of one byte
+      // would change the weight by a quarter.
       uvec3 bytes = uvec3(uint(b.x * 255.0f), uint(b.y * 255.0f), uint(b.z * 255.0f));
       LobeSurface surface;
       surface.normal = normalize(vec3(bytes) * (2.0f / 255.0f) - vec3(1.0f));
@@ -219,7 +220,8 @@ ALCOVE_INLINE vec4 parity_of_sampling(uint which, vec4 a, vec4 b) {
       Unobserved unobserved =
           add_beyond_border(mean_row(add_column(nothing_unobserved(), true, b.y, b.z)), b.w, b.z,
                             border_share(b.x, b.y));
-      // Without occluders, a rounding error does not move an end by a whole sector.
+      // No sector is occluded in this case, because rounding could otherwise move an end of the arc
+      // by a whole sector.
       UnobservedArc arc = make_unobserved_arc(tangent_light(s, 1.0f), unobserved, 1.0f);
       return vec4(unobserved_part(arc, s, 1.0f, false), unobserved_part(arc, s, 1.0f, true),
                   unobserved_lobe(arc, lobe, 1.0f), arc.share);

@@ -1,4 +1,4 @@
-// Compares the functions of shaders/maths on the device and on the processor.
+// Compares the results of the functions of shaders/maths on the GPU and on the CPU.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,8 +25,8 @@ struct Bound {
   double absolute, relative;  // the tolerance is absolute + relative * |value|
 };
 
-// Largest allowed differences of well-conditioned functions. They come from rounding and from the
-// device's own sine, arc tangent, power and square root.
+// The largest allowed differences for inputs at which the functions are well-conditioned. They come
+// from rounding, and from the precision of the GPU's own sine, arc tangent, power and square root.
 constexpr Bound kBounds[] = {
     {"slice", 1e-4, 1e-5},
     {"visibility", 1e-4, 1e-5},
@@ -65,9 +65,9 @@ maths::Projection off_centre_projection() {
   return maths::make_projection(m, 960, 540).value();
 }
 
-// Returns the change of each result if the inputs change by a few units in the last place. It is
-// the effect that rounding may have where a function is ill conditioned, for example in a slice
-// that is nearly perpendicular to the normal.
+// Returns the change of each result if the inputs change by a few units in the last place. Rounding
+// may cause a difference of this size if a function is ill-conditioned, for example in a slice that
+// is nearly perpendicular to the normal.
 vec4 sensitivity(std::uint32_t which, vec4 a, vec4 b, const maths::Projection& projection) {
   constexpr int kNudges = 32;
   constexpr float kNudge = 4.0f / float(1 << 23);

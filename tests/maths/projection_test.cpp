@@ -22,7 +22,8 @@ using maths::Projection;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-// A view frustum. In perspective, left, right, bottom and top are those at distance 1.
+// A view frustum. In perspective, left, right, bottom and top are coordinates in the plane at
+// distance 1.
 struct Frustum {
   double left = -1, right = 1, bottom = -1, top = 1, near = 0.1, far = 100;
   bool perspective = true, infinite = false, reversed = false, flipped = false;
@@ -128,8 +129,8 @@ TEST(Projection, RawDepthConvertsBackToItsDistance) {
     const double depth = f.near + random.uniform(0.001f, 0.999f) * (farthest - f.near);
     const double exact = image_of(matrix, glm::dvec3(0, 0, -depth)).depth_ndc;
     const float ndc = float(exact);
-    // The raw depth and the matrix are floats, so that depths closer than the change over a few
-    // steps of the raw depth cannot be distinguished.
+    // The raw depth and the matrix are floats, so that two depths cannot be distinguished if they
+    // differ by less than a few steps of the raw depth.
     const double step = 4e-7;
     const double slope =
         std::abs(image_of(matrix, glm::dvec3(0, 0, -depth * 1.001)).depth_ndc - exact) /
@@ -263,8 +264,8 @@ TEST(Projection, FirstRowIsTheTopOfTheView) {
   EXPECT_LT(maths::position_vs(projection_of(upside_down), vec2(0.5f, 0.0f), 1.0f).y, -0.9f);
 }
 
-// Elements that are zero in the exact matrix contain the rounding errors of products and inverses
-// in floats.
+// Elements that are zero in the exact matrix get random rounding errors, as products and inverses
+// of matrices in floats have them.
 TEST(MakeProjection, AcceptsRoundingErrorsAndRemovesThem) {
   RandomInput random;
   for (int i = 0; i < 20000; ++i) {

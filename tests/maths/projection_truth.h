@@ -1,4 +1,4 @@
-// Projects points with a Projection, as the reference for image-space computations of shaders.
+// Projects view-space positions to uv, as the reference for image-space computations of shaders.
 #pragma once
 
 #include "maths/projection.h"

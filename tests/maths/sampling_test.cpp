@@ -15,7 +15,8 @@ namespace {
 using glm::uvec2;
 using maths::SliceNoise;
 
-// Returns the longest interval of [0,1), taken as a circle, that contains none of the values.
+// Returns the length of the longest interval of [0,1) that contains none of the values. 0 and 1
+// count as the same point.
 float largest_gap(std::vector<float> values) {
   std::sort(values.begin(), values.end());
   float gap = values.front() + 1.0f - values.back();
@@ -23,7 +24,7 @@ float largest_gap(std::vector<float> values) {
   return gap;
 }
 
-TEST(SpatialPattern, BlockOfFourByFourHasSixteenDirectionsAndFourOffsets) {
+TEST(SpatialPattern, FourByFourPixelsHaveSixteenDirectionsAndFourOffsets) {
   for (unsigned frame = 0; frame < 24; ++frame) {
     std::set<float> directions, offsets;
     for (unsigned y = 0; y < 4; ++y) {
@@ -42,7 +43,7 @@ TEST(SpatialPattern, BlockOfFourByFourHasSixteenDirectionsAndFourOffsets) {
   }
 }
 
-TEST(SpatialPattern, SixFramesGiveTheBlockNinetySixDirections) {
+TEST(SpatialPattern, FourByFourPixelsHaveNinetySixDirectionsInSixFrames) {
   std::set<int> directions;
   for (unsigned frame = 0; frame < 6; ++frame)
     for (unsigned y = 0; y < 4; ++y)
@@ -90,9 +91,9 @@ TEST(GoldenPattern, AnyFourByFourPixelsCoverDirectionsAndOffsetsEvenly) {
   }
 }
 
-// Pixels at multiples of `period` must not have a direction or offset in common. Directions are
-// mapped to points of the unit circle: their mean is near the centre if they vary, and on the
-// circle if all are equal.
+// Directions and offsets of pixels that are `period` apart must differ. Each value is mapped to a
+// point of the unit circle. The mean of these points is near the centre if the values vary, and on
+// the circle if all of them are equal.
 TEST(GoldenPattern, DoesNotRepeatAtAnySmallPeriod) {
   constexpr unsigned kWindow = 48;
   for (const unsigned period : {1u, 2u, 3u, 4u, 8u}) {
@@ -112,11 +113,11 @@ TEST(GoldenPattern, DoesNotRepeatAtAnySmallPeriod) {
   }
 }
 
-// The error of a search depends on the direction of its slice. Each harmonic of that dependence
-// would show as parallel stripes if the directions were a plain lattice: the spectrum over the
-// image would be one peak of 1. Stripes of a visible width have to be weak after the eight searches
-// that a pixel has in 32 frames.
-TEST(GoldenPattern, LeavesNoWideStripesAfterEightSearchesOfAPixel) {
+// The error of a pixel depends on the direction of its slice. If the directions were a plain
+// lattice, each harmonic of this dependence would be visible as parallel stripes: its spectrum over
+// the image would have one peak of 1. After the eight traces that a pixel gets in 32 frames,
+// stripes of a visible width must be weak.
+TEST(GoldenPattern, EightTracesOfAPixelLeaveNoWideStripes) {
   constexpr unsigned kWindow = 32;
   const auto residual = [](unsigned harmonic, unsigned x, unsigned y) {
     std::complex<double> mean;
@@ -126,7 +127,7 @@ TEST(GoldenPattern, LeavesNoWideStripesAfterEightSearchesOfAPixel) {
     }
     return mean;
   };
-  // The largest amplitude of a wave over the image that is longer than three pixels.
+  // Find the largest amplitude of waves over the image with a wavelength above three pixels.
   for (const unsigned harmonic : {3u, 5u, 8u, 13u}) {
     std::vector<std::complex<double>> values;
     for (unsigned i = 0; i < kWindow * kWindow; ++i) {
@@ -210,7 +211,7 @@ TEST(HilbertNoise, IsEvenlyDistributedOverABlockAndOverFrames) {
   EXPECT_LT(largest_gap(frames), 4.0f / 64);
 }
 
-TEST(Slices, SlicesOfAllPixelsCoverHalfATurn) {
+TEST(Slices, SliceAnglesAreEvenlySpacedOverHalfATurn) {
   EXPECT_FLOAT_EQ(maths::slice_angle(0, 3, 0.0f), 0.0f);
   EXPECT_FLOAT_EQ(maths::slice_angle(2, 4, 0.0f), maths::kHalfPi);
   EXPECT_LT(maths::slice_angle(2, 3, 0.99f), maths::kPi);

@@ -70,7 +70,7 @@ struct Setting {
   }
 };
 
-TEST(SliceLine, SampleOnTheLineKeepsItsCoordinates) {
+TEST(SliceLine, SampleOnTheLineHasTheCoordinatesOfItsSurfacePoint) {
   RandomInput random;
   for (int i = 0; i < 5000; ++i) {
     const Setting s(random);
@@ -123,7 +123,7 @@ TEST(SliceLine, BackOfAnOccluderIsOnTheViewRayOfItsFront) {
   }
 }
 
-TEST(SliceLine, SamplesOfTheTangentPlaneStayOnItWhenSnapped) {
+TEST(SliceLine, SnappedSamplesOfTheTangentPlaneStayOnThePlane) {
   RandomInput random;
   for (int i = 0; i < 5000; ++i) {
     const Setting s(random);
@@ -138,7 +138,7 @@ TEST(SliceLine, SamplesOfTheTangentPlaneStayOnItWhenSnapped) {
     EXPECT_TRUE(maths::lies_on_tangent_plane(tangent, off_plane, length(exact)));
     const float moved = inverse_depth + dot(exact - snapped, tangent.gradient);
     const float depth = s.perspective() ? 1.0f / moved : moved;
-    // Where a plane passes behind the eye it has no image.
+    // Skip points of the plane that are behind the eye or too far away.
     if (!(depth > 0.0f) || depth > 10.0f * s.depth) continue;
     EXPECT_NEAR(dot(s.delta(exact, depth), s.normal), 0.0f, 2e-4f * depth);
   }
@@ -146,7 +146,8 @@ TEST(SliceLine, SamplesOfTheTangentPlaneStayOnItWhenSnapped) {
 
 TEST(SliceLine, AnyRawDepthIsClampedBetweenTheNearPlaneAndTheSky) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  // With the near plane at 0.1 and none or one at 100 beyond it, reversed and not; orthographic.
+  // Tests perspective views with the near plane at 0.1 and the far plane at 100 or infinity,
+  // reversed or not, and orthographic views.
   for (const float ndc : {-kInfinity, -1e30f, -1.0f, 0.0f, 1e-45f, 1e-38f, 0.5f, 0.99999994f, 1.0f,
                           2.0f, 1e30f, kInfinity}) {
     for (const bool reversed : {false, true}) {
@@ -165,7 +166,7 @@ TEST(SliceLine, AnyRawDepthIsClampedBetweenTheNearPlaneAndTheSky) {
   }
 }
 
-TEST(SliceLine, SamplesFarFromTheTangentPlaneAreNotSnappedToIt) {
+TEST(SliceLine, OnlySamplesCloseToTheTangentPlaneCountAsLyingOnIt) {
   RandomInput random;
   for (int i = 0; i < 1000; ++i) {
     const Setting s(random);
@@ -179,7 +180,7 @@ TEST(SliceLine, SamplesFarFromTheTangentPlaneAreNotSnappedToIt) {
   }
 }
 
-TEST(SliceLine, GoesInTheDirectionOfTheSlice) {
+TEST(SliceLine, LineOnTheImageHasTheDirectionOfTheSlice) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
     const Setting s(random);
@@ -193,14 +194,14 @@ TEST(SliceLine, GoesInTheDirectionOfTheSlice) {
   }
 }
 
-TEST(SliceLine, RadiusOnTheImageIsTheSilhouetteOfItsSphere) {
+TEST(SliceLine, RadiusOnTheImageReachesTheSilhouetteOfTheSphere) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
     Setting s(random);
     s.normal = s.view;
     const float radius = 0.2f * s.depth;
-    // The silhouette of the sphere in this slice: the point at which a view ray of the slice plane
-    // touches it.
+    // The silhouette of the sphere in this slice: the point at which a view ray within the slice
+    // touches the sphere.
     const bool perspective = s.projection.eye.w > 0.0f;
     const float away = length(s.position);
     const float sine = radius / away;
@@ -210,7 +211,8 @@ TEST(SliceLine, RadiusOnTheImageIsTheSilhouetteOfItsSphere) {
     const vec2 imaged = uv_of_position(s.projection, touch) * s.projection.size_px;
     const float expected = distance(imaged, s.pixel);
     const float spanned = maths::slice_radius_px(s.line, radius, s.depth, s.perspective());
-    // The formula is exact to first order in the ratio of radius to distance, off the axis.
+    // Away from the view axis, the formula is only exact to first order in the ratio of radius to
+    // distance.
     EXPECT_NEAR(spanned / expected, 1.0f, 0.35f);
   }
 }

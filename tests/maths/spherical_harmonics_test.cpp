@@ -36,7 +36,8 @@ TEST(SphericalHarmonics, BasisIsOrthonormal) {
   }
 }
 
-// The integral of the clamped cosine times a basis function is the basis function times its factor.
+// The integral over the hemisphere of the cosine times a basis function is that function at the
+// normal, times the factor of its band.
 TEST(SphericalHarmonics, IrradianceScalesEachElementByTheFactorOfItsBand) {
   const vec3 normal = normalize(vec3(0.3f, 0.8f, -0.5f));
   for (unsigned i = 0; i < maths::kHarmonics; ++i) {

@@ -31,8 +31,8 @@ vec2 look_up(const std::vector<std::uint32_t>& table, float n_dot_v, float rough
   return mix(mix(entry(0, 0), entry(1, 0), t.x), mix(entry(0, 1), entry(1, 1), t.x), t.y);
 }
 
-// Returns the integral of the lobe over the microfacets that the view sees, by quadrature over the
-// polar angle and the azimuth.
+// Returns the integral of the lobe over the visible microfacets, by quadrature over their polar
+// angle and azimuth.
 vec2 quadrature(float n_dot_v, float roughness) {
   const float alpha = roughness * roughness;
   const vec3 view(std::sqrt(1.0f - n_dot_v * n_dot_v), 0.0f, n_dot_v);

@@ -31,7 +31,7 @@ TEST(RawOcclusion, ZeroWeightMeansUnoccluded) {
   EXPECT_EQ(maths::mean_visibility(raw_occlusion_of(0.0f, nan)), 1.0f);
 }
 
-TEST(RawOcclusion, RatiosSurvivePackingAndARatioOfOneIsExact) {
+TEST(RawOcclusion, PackingKeepsVisibilityAndKeepsOneExactly) {
   RandomInput random;
   for (int i = 0; i < 20000; ++i) {
     const float open = random.uniform(1e-3f, maths::kLargestOpen);
@@ -46,7 +46,7 @@ TEST(RawOcclusion, RatiosSurvivePackingAndARatioOfOneIsExact) {
   }
 }
 
-TEST(RawOcclusion, LobesOfAnySizeSurvivePacking) {
+TEST(RawOcclusion, PackingKeepsLobesOfAnyMagnitude) {
   RandomInput random;
   for (int i = 0; i < 20000; ++i) {
     const float open = random.log_uniform(1e-20f, 1e20f);
@@ -88,7 +88,7 @@ TEST(RawOcclusion, LobeWeightsDependOnNormalAndRoughness) {
   }
 }
 
-TEST(RawOcclusion, BentNormalResidualsSurvivePackingWithinTenBits) {
+TEST(RawOcclusion, PackingKeepsBentNormalResidualsWithinTenBits) {
   RandomInput random;
   const auto round_trip = [](const vec3& residual) {
     return maths::unpack_residual(maths::pack_residual(residual));
@@ -166,7 +166,7 @@ TEST(QuantisedNormal, DecodesCloseToTheOriginal) {
   EXPECT_EQ(maths::make_quantised_normal(vec3(0, -1, 0)).stereographic, vec2(0, -1));
 }
 
-TEST(QuantisedNormal, DifferenceIsTheSquareOfSmallAngles) {
+TEST(QuantisedNormal, SquaredTurnApproximatesTheSquareOfSmallAngles) {
   RandomInput random;
   for (int i = 0; i < 100000; ++i) {
     const maths::QuantisedNormal own = maths::make_quantised_normal(facing_normal(random));

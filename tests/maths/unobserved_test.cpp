@@ -67,7 +67,7 @@ struct Case {
                     double(maths::kMostUnobserved));
   }
 
-  // Returns the unobserved fraction of the integral of `density` over the directions of the
+  // Returns the excluded fraction of the integral of `density` over the directions of the
   // half-slice.
   template <typename Density>
   double truth(Density density) const {
@@ -76,7 +76,7 @@ struct Case {
   }
 };
 
-TEST(Unobserved, ExcludedPartIsItsFractionOfTheIntegral) {
+TEST(Unobserved, ExcludedPartEqualsTheQuadratureOfTheExcludedFraction) {
   constexpr int kCases = 20000;
   RandomInput random;
   double worst = 0.0, sum = 0.0, sum_uniform = 0.0, largest = 0.0;
@@ -93,10 +93,10 @@ TEST(Unobserved, ExcludedPartIsItsFractionOfTheIntegral) {
     largest = std::max(largest, truth);
   }
   EXPECT_GT(largest, 0.5);
-  // Rounding a cosine near 1 changes its angle by up to 3.5e-4, and directions have at most the
-  // weight 0.5.
+  // Rounding a cosine near 1 changes its angle by up to 3.5e-4. The weight of a direction is at
+  // most 0.5, so that the error of the integral is below 2e-4.
   EXPECT_LT(worst, 2e-4);
-  // Such directions are rare, and the error of light_arc() is at most 2.4e-5.
+  // Angles that small are rare, and otherwise the error is that of light_arc(), at most 2.4e-5.
   EXPECT_LT(sum / kCases, 3e-6);
   EXPECT_LT(sum_uniform / kCases, 2e-8);
 }
@@ -128,7 +128,7 @@ TEST(Unobserved, FullyObservedHalfSliceCountsCompletely) {
   }
 }
 
-TEST(Unobserved, ManyNarrowRunsHideNoMoreThanOne) {
+TEST(Unobserved, ManyNarrowRunsExcludeNoMoreThanOneRun) {
   Unobserved row = maths::add_column(maths::nothing_unobserved(), true, 4.0f, 1.0f);
   row = maths::add_column(row, true, 6.0f, 3.0f);
   EXPECT_EQ(maths::mean_row(row).width_px, 4.0f) << "columns side by side are one row";
@@ -142,7 +142,7 @@ TEST(Unobserved, ManyNarrowRunsHideNoMoreThanOne) {
   EXPECT_EQ(maths::mean_row(maths::nothing_unobserved()).width_px, 0.0f);
 }
 
-TEST(Unobserved, FractionOfTheDirectionsBeyondTheBorderIsExcluded) {
+TEST(Unobserved, ShareOfDirectionsBeyondTheImageBorderIsExcluded) {
   const Unobserved some = maths::add_column(maths::nothing_unobserved(), true, 7.0f, 2.0f);
   const Unobserved border = maths::add_beyond_border(some, 9.0f, 12.0f, 0.5f);
   EXPECT_EQ(border.first_px, 7.0f);
@@ -155,7 +155,7 @@ TEST(Unobserved, FractionOfTheDirectionsBeyondTheBorderIsExcluded) {
   EXPECT_NEAR(maths::make_unobserved_arc(tangent, all, kRadiusPx).share, 0.3f, 1e-6f);
 }
 
-TEST(Unobserved, BorderShareFallsWithTheUnobservedPartOfTheOtherSideAndWithNearness) {
+TEST(Unobserved, BorderShareDecreasesNearTheEyeAndWithTheOtherHalfSliceOutside) {
   EXPECT_EQ(maths::border_share(0.0f, 0.0f), 0.5f);
   EXPECT_EQ(maths::border_share(0.25f, 0.0f), 0.375f);
   EXPECT_EQ(maths::border_share(1.0f, 0.0f), 0.0f);
@@ -165,7 +165,7 @@ TEST(Unobserved, BorderShareFallsWithTheUnobservedPartOfTheOtherSideAndWithNearn
   }
 }
 
-TEST(Unobserved, FullRadiusInsideTheImageExcludesNothing) {
+TEST(Unobserved, RadiusInsideTheImageExcludesNothing) {
   const Unobserved none = maths::nothing_unobserved();
   EXPECT_EQ(maths::add_beyond_border(none, 9.0f, 0.0f, 1.0f).first_px, none.first_px);
   EXPECT_EQ(maths::add_beyond_border(none, maths::kNowherePx, 10.0f, 1.0f).width_px, 0.0f);

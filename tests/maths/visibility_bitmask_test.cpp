@@ -120,8 +120,8 @@ TEST(VisibilityBitmask, TheHighestBitRepeatsTheLastOf31Sectors) {
   EXPECT_EQ(maths::repeat_last_sector(1u << 29), 1u << 29);
 }
 
-// The visible integral of a mask, summed over sectors in double precision. Behind the first
-// occluder, only the fraction 1 - hidden_occlusion counts.
+// The visible integral of a mask of sectors, summed over sectors in double precision. Behind the
+// first occluder, visible sectors count with the factor 1 - hidden_occlusion.
 struct Expected {
   double arc = 0.0;
   glm::dvec2 bent{0.0};
@@ -184,7 +184,7 @@ TEST(VisibilityBitmask, UniformPartsEqualTheSolidAngleOfTheVisibleSectors) {
   }
 }
 
-TEST(VisibilityBitmask, EmptyAndFullMasksAreExact) {
+TEST(VisibilityBitmask, EmptyMaskIsFullyVisibleAndFullMaskIsNotVisible) {
   for (double gamma = -kPi / 2; gamma <= kPi / 2; gamma += 0.1) {
     const Slice s = slice_of(0.7, gamma);
     for (const float side : {-1.0f, 1.0f}) {
@@ -197,7 +197,7 @@ TEST(VisibilityBitmask, EmptyAndFullMasksAreExact) {
   }
 }
 
-TEST(VisibilityBitmask, FullHiddenOcclusionGivesTheHorizon) {
+TEST(VisibilityBitmask, HiddenOcclusionOneGivesTheVisibilityUpToTheHorizon) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
     const Slice s = random_slice(random);
@@ -205,8 +205,8 @@ TEST(VisibilityBitmask, FullHiddenOcclusionGivesTheHorizon) {
     const float per_diamond_angle = maths::sectors_per_diamond_angle(s, side);
     const int first = int(random.bits() % 32);
     const auto horizon = float(std::cos(boundary_angle(per_diamond_angle, first)));
-    // Near the view direction, a float cosine determines the angle with an error of sqrt(2^-23)
-    // only.
+    // Near the view direction, a cosine stored as a float determines the angle only with an error
+    // of sqrt(2^-23).
     EXPECT_NEAR(part_of(s, side, 1u << first, 1.0f).arc, maths::slice_arc(s, side, horizon), 5e-4f);
   }
 }
@@ -236,7 +236,7 @@ TEST(VisibilityBitmask, HiddenOcclusionZeroOccludesNothingAndOneOccludesAll) {
   }
 }
 
-TEST(VisibilityBitmask, SliceWithoutSectorsIsFinite) {
+TEST(VisibilityBitmask, NormalPerpendicularToTheSliceGivesZeroParts) {
   const Slice s = maths::make_slice(vec3(0, 1, 0), vec3(1, 0, 0), vec3(0, 0, 1));
   for (const float side : {-1.0f, 1.0f}) {
     EXPECT_EQ(part_of(s, side, 0x0ff0u, 0.4f).arc, 0.0f);
@@ -244,7 +244,7 @@ TEST(VisibilityBitmask, SliceWithoutSectorsIsFinite) {
   }
 }
 
-TEST(VisibilityBitmask, VisibleShareBeyondTheFirstOccluderCountsSectors) {
+TEST(VisibilityBitmask, VisibleShareIsTheFractionOfSectorsBeyondTheFirstOccluder) {
   EXPECT_EQ(maths::visible_share_beyond(0u), 0.0f) << "nothing lies beyond an occluder";
   EXPECT_EQ(maths::visible_share_beyond(0xffffffffu), 0.0f) << "everything is occluded";
   EXPECT_FLOAT_EQ(maths::visible_share_beyond(1u), 30.0f / 31.0f);

@@ -94,7 +94,7 @@ TEST_F(ApplyPass, AgreesWithTheFormulasInEveryView) {
   }
 }
 
-TEST_F(ApplyPass, WhiteFurnaceGainsNoEnergyAndWhiteDielectricsLoseNone) {
+TEST_F(ApplyPass, SurfacesReflectNoMoreThanTheyReceiveAndWhiteDielectricsReflectAll) {
   LitSurfaces inputs = random_surfaces();
   make_white(inputs);
   inputs.albedo.texels.assign(inputs.albedo.texels.size(), 1.0f);
@@ -123,7 +123,7 @@ TEST_F(ApplyPass, WhiteFurnaceGainsNoEnergyAndWhiteDielectricsLoseNone) {
   }
 }
 
-TEST_F(ApplyPass, TableAndTexturesAreCreatedOnlyWhenUsed) {
+TEST_F(ApplyPass, ReflectanceTableIsCreatedOnlyWithAnEnvironmentMap) {
   const LitSurfaces inputs = random_surfaces();
   const auto transients = [&](bool map, const ApplySettings& settings) {
     Kept kept;
@@ -151,8 +151,8 @@ TEST_F(ApplyPass, TableAndTexturesAreCreatedOnlyWhenUsed) {
   EXPECT_EQ(kernels.pipeline_count(), pipelines) << "nor do channels of no texture";
 }
 
-// A whole frame from depth to light without specular light: no bent normal, no pass of specular
-// occlusion, no environment map and no table.
+// A frame from depth to lit surfaces without specular light: it must have no bent normal, no
+// specular occlusion pass, no environment map and no table.
 TEST_F(ApplyPass, FrameWithoutSpecularLightHasNoSpecularResources) {
   const PlaneScene plane = plane_scene(test_views()[2], kWidth, kHeight, 30.0f);
   const LitSurfaces inputs = random_surfaces();
@@ -192,7 +192,7 @@ TEST_F(ApplyPass, FrameWithoutSpecularLightHasNoSpecularResources) {
   EXPECT_EQ(gpu().kernels().table_bytes(), 0u);
 }
 
-TEST_F(ApplyPass, DiffuseSurfacesNeedNoMap) {
+TEST_F(ApplyPass, DiffuseSurfacesNeedNoEnvironmentMap) {
   LitSurfaces inputs = random_surfaces();
   make_white(inputs);
   run([&](Graph& graph) {

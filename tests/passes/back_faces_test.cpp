@@ -1,4 +1,5 @@
-// Compares thickness from a second depth buffer, of back faces, with closed forms.
+// Compares visibility with closed forms, for occluders whose thickness comes from a depth buffer of
+// back faces.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -25,8 +26,8 @@ OcclusionSettings of_thickness(OcclusionSettings settings, float thickness) {
 }
 
 //            ____
-//           |____|   a slab, endless along y: from a point of the floor it covers the angles
-//        .´ .´       between the sight of its near upper and of its far lower edge
+//           |____|   a slab, endless along y: from a point of the floor it occludes the angles
+//        .´ .´       between the directions to its near upper edge and to its far lower edge
 //   ____x_____________
 TEST_F(BackFaces, SlabAboveAFloorMatchesTheClosedForm) {
   const TestView view = orthographic_view("orthographic", 4.0, 4.0, 0.1, 20.0);
@@ -56,8 +57,8 @@ TEST_F(BackFaces, SlabAboveAFloorMatchesTheClosedForm) {
   }
 }
 
-// A ball with radius r, whose centre is at distance d and at angle t to the normal, occludes cos t
-// (r / d)^2 of a surface if it lies completely above the tangent plane.
+// A ball with radius r, whose centre is at distance d and at angle t to the normal, lowers the
+// visibility by cos t (r / d)^2 if it lies completely above the tangent plane.
 TEST_F(BackFaces, BallAboveAFloorMatchesTheClosedFormInEveryView) {
   const glm::dvec3 centre(0.05, -0.1, -3.1);
   const double radius = 0.35, floor = 4.0;
@@ -93,7 +94,7 @@ TEST_F(BackFaces, BallAboveAFloorMatchesTheClosedFormInEveryView) {
   }
 }
 
-TEST_F(BackFaces, SolidThickerThanTheRadiusEqualsHorizons) {
+TEST_F(BackFaces, SolidThickerThanTheRadiusOccludesLikeInfinitelyThickHorizons) {
   const float radius = 1.2f;
   Scene scene = box({0.31, -50.0, -20.0}, {50.0, 50.0, -3.5});
   scene.push_back(plane({0.0, 0.0, -4.0}, {0.0, 0.0, 1.0}));
@@ -112,7 +113,8 @@ TEST_F(BackFaces, SolidThickerThanTheRadiusEqualsHorizons) {
           EXPECT_NEAR(image.texels[i], thick.texels[i], 1e-5);
           EXPECT_NEAR(image.texels[i], horizons.texels[i], 0.02);
         } else {
-          // Without the depth of its back, the occluder would be thin at its leading edge.
+          // With the thickness of the settings the occluder is thin at its leading edge and
+          // occludes less.
           EXPECT_LT(image.texels[i], thick.texels[i] + 1e-5);
         }
       }
@@ -120,10 +122,10 @@ TEST_F(BackFaces, SolidThickerThanTheRadiusEqualsHorizons) {
   }
 }
 
-// Back-face depths that give no thickness: the far plane (sky), the near plane (in front of the
-// first layer), NaN, and the depth of the first layer itself, as if the visible surface were a back
-// face.
-TEST_F(BackFaces, ThicknessOfTheSettingsIsUsedWithoutABackFaceBehindTheFront) {
+// Tests back-face depths that give no thickness: the far plane (sky), the near plane (in front of
+// the first layer), NaN, and the depth of the first layer itself, as if the visible surface were a
+// back face.
+TEST_F(BackFaces, SettingThicknessIsUsedIfNoBackFaceIsBehindTheFront) {
   Scene scene = box({0.31, -50.0, -20.0}, {0.6, 50.0, -3.5});
   scene.push_back(plane({0.0, 0.0, -4.0}, {0.3, 0.1, 1.0}));
   for (const TestView& view : test_views()) {

@@ -1,4 +1,4 @@
-// Tests that every kind of invalid input gives one sentence that names the fault, and that the
+// Tests that every kind of invalid input gives an error sentence that names the fault, and that the
 // device still works afterwards.
 #include <gmock/gmock.h>
 
@@ -21,8 +21,8 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 class BadInput : public PassTest {
  protected:
-  // Returns the error of add_occlusion() for an input that `spoil` changed, or an empty text if it
-  // is accepted.
+  // Returns the error of add_occlusion() for a view and settings that `spoil` has changed, or an
+  // empty text if they are accepted.
   using Spoil = std::function<void(View&, OcclusionSettings&)>;
   std::string error_of(const Spoil& spoil) {
     const Drawing drawing = draw(test_views()[2], 16, 12, groove(0.8));

@@ -1,4 +1,5 @@
-// Tests unoccluded planes in depth buffers whose resolution is too coarse for their depths.
+// Tests that planes stay unoccluded if the depth buffer's resolution is too coarse for their
+// distance.
 #include <gmock/gmock.h>
 
 #include <algorithm>

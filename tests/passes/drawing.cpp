@@ -83,8 +83,8 @@ TestCamera::TestCamera(const View& view, std::uint32_t width, std::uint32_t heig
 Ray TestCamera::ray(double x, double y) const {
   const double u = 2.0 * x / width_ - 1.0;
   const double v = 2.0 * y / height_ - 1.0;
-  // The raw depth of the near plane and one a little behind it, because the far plane may be
-  // infinite.
+  // The view ray goes through the point on the near plane and through a point behind it. The far
+  // plane is not used, because it may be infinite.
   const glm::dvec4 near = view_from_clip_ * glm::dvec4(u, v, reversed_ ? 1.0 : 0.0, 1.0);
   const glm::dvec4 behind = view_from_clip_ * glm::dvec4(u, v, 0.5, 1.0);
   const glm::dvec3 from = glm::dvec3(near) / near.w;

@@ -1,5 +1,5 @@
-// Draws depth buffers and normals of simple surfaces with rays in double precision. The exact
-// surfaces are available to references.
+// Draws depth buffers and normals of simple surfaces by casting rays in double precision.
+// References for tests are computed from the same exact surfaces.
 #pragma once
 
 #include <functional>
@@ -24,8 +24,8 @@ struct Hit {
 };
 
 struct Surface {
-  // Returns the hits of a ray with the surface, from near to far. Normals may point to either side,
-  // except for draw_back_faces(), where they must point outwards.
+  // Returns the hits of a ray with the surface, from near to far. Normals may point to either side
+  // of the surface. Only draw_back_faces() needs normals that point outwards.
   std::function<std::vector<Hit>(const Ray&)> meet;
   // Returns whether a point of the surface exists. Null: all points exist.
   std::function<bool(const glm::dvec3&)> keep;

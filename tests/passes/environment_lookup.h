@@ -1,4 +1,4 @@
-// Reads octahedral maps on the host with the shaders' interpolation.
+// Reads octahedral maps on the CPU with the same interpolation as the shaders.
 #pragma once
 
 #include "maths/environment_map.h"

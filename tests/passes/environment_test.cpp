@@ -62,8 +62,8 @@ void over_sphere(const Function& f) {
   }
 }
 
-// Returns the environment's light through a lobe whose view is along its normal, by quadrature over
-// the sphere.
+// Returns the environment's light through a GGX lobe whose view direction is its normal, by
+// quadrature over the sphere.
 vec3 prefiltered(vec3 normal, float alpha) {
   glm::dvec3 sum(0);
   double weights = 0.0;
@@ -95,7 +95,7 @@ TEST_F(EnvironmentPass, HarmonicsAgreeWithQuadrature) {
   }
 }
 
-TEST_F(EnvironmentPass, LevelsAgreeWithQuadratureOfTheLobe) {
+TEST_F(EnvironmentPass, MipLevelsAgreeWithQuadratureOfTheLobe) {
   const HostImage source = equirectangular(512, sky);
   run([&](Graph& graph) {
     const auto made = add_environment({graph, gpu().kernels(), {}, 0}, upload(graph, source),
@@ -148,7 +148,7 @@ TEST_F(EnvironmentPass, WhiteEnvironmentStaysWhiteInEveryTexel) {
   }
 }
 
-TEST_F(EnvironmentPass, InvalidRadianceIsBlackAndInfinityIsTheLargestHalf) {
+TEST_F(EnvironmentPass, InvalidRadianceIsBlackAndInfinityBecomesTheLargestHalfFloat) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float infinity = std::numeric_limits<float>::infinity();
   const HostImage source = equirectangular(

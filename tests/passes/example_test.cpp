@@ -1,4 +1,5 @@
-// The C++ example of passes/README.md, as it stands there, run on the device.
+// Runs the C++ example of passes/README.md on the device. The text of the example is compiled
+// unchanged.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -79,7 +80,7 @@ class Example : public passes::CInterface {
   }
 };
 
-TEST_F(Example, TheReadmeExampleDrawsTheSameImageAsTheCInterface) {
+TEST_F(Example, ReadmeExampleDrawsTheSameImageAsTheCInterface) {
   passes::GivenView given =
       passes::given_view(passes::test_views()[2], 40, 30, passes::ball_on_floor());
   given.settings = passes::quality_settings(passes::Quality::medium, 0.5f);

@@ -22,8 +22,8 @@ constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr std::uint32_t kWidth = 57;
 constexpr std::uint32_t kHeight = 39;
 
-// Returns settings for visibility, bent normals and specular occlusion whose pipelines compile
-// quickly.
+// Returns settings that compute visibility, bent normals and specular occlusion, and whose
+// pipelines compile quickly.
 OcclusionSettings everything(Quality quality, float radius) {
   OcclusionSettings settings = quality_settings(quality, radius);
   settings.advanced.estimator = Estimator::horizons;
@@ -51,9 +51,9 @@ class Extremes : public PassTest {
  protected:
   using Images = OcclusionImages;
 
-  // Returns the images of a number of frames. The camera moves sideways by `step` per frame, and
-  // the scene is so far away that no surface moves on the image: the history can be distinguished
-  // by depth only.
+  // Returns the images of several frames. The camera moves sideways by `step` per frame. The scene
+  // is so far away that no surface moves on the image, so that history texels can only be rejected
+  // because of their depth.
   std::vector<Images> strafe(const TestView& view, const Scene& scene, double step,
                              const OcclusionSettings& settings, std::uint32_t frames) {
     const Drawing drawing = draw(view, kWidth, kHeight, scene);
@@ -81,7 +81,7 @@ class Extremes : public PassTest {
   }
 };
 
-TEST_F(Extremes, HistoryIsIndependentOfTheSceneUnit) {
+TEST_F(Extremes, HistoryIsIndependentOfTheUnitOfLength) {
   constexpr std::array<std::pair<Quality, bool>, 4> kCases{{{Quality::medium, false},
                                                             {Quality::medium, true},
                                                             {Quality::console, false},
@@ -110,9 +110,9 @@ TEST_F(Extremes, HistoryIsIndependentOfTheSceneUnit) {
   }
 }
 
-// The near plane is tested in front of the eye and behind it, where some engines place that of an
-// orthographic view.
-TEST_F(Extremes, OrthographicNearPlaneMayBeAnywhere) {
+// Tests near planes in front of the eye and behind it. Some engines place the near plane of an
+// orthographic view behind the eye.
+TEST_F(Extremes, OrthographicNearPlaneMayBeInFrontOfOrBehindTheEye) {
   const OcclusionSettings settings = everything(Quality::medium, 1.0f);
   for (const NamedScene& scene : gtao_scenes()) {
     std::vector<Images> expected;
@@ -131,7 +131,7 @@ TEST_F(Extremes, OrthographicNearPlaneMayBeAnywhere) {
   }
 }
 
-TEST_F(Extremes, OccludersBehindAnOrthographicEyeHaveThickness) {
+TEST_F(Extremes, OccludersBehindTheEyeOfAnOrthographicViewHaveThickness) {
   for (const Estimator estimator : {Estimator::bitmask, Estimator::connected}) {
     OcclusionSettings settings = everything(Quality::medium, 1.0f);
     settings.advanced.estimator = estimator;
@@ -151,8 +151,8 @@ TEST_F(Extremes, OccludersBehindAnOrthographicEyeHaveThickness) {
   }
 }
 
-// The camera is static at coordinates so large that floats have steps of more than 0.05, and motion
-// vectors are given.
+// The camera is static at coordinates so large that adjacent floats differ by more than 0.05.
+// Motion vectors are given.
 TEST_F(Extremes, HistoryIsKeptFarFromTheWorldOrigin) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, kWidth, kHeight, ball_on_floor());
@@ -222,7 +222,8 @@ TEST_F(Extremes, InvalidNormalsAndRoughnessDoNotPersistInHistory) {
         for (const Images& images : found) {
           expect_sound(images);
         }
-        // A quarter of the accumulated samples was computed with another normal.
+        // At the pixels with wrong values, a quarter of the accumulated samples was computed with
+        // other normals or roughness.
         EXPECT_LT(rms(found[4].visibility, expected[4].visibility), 2e-3);
         EXPECT_LT(rms(found[4].bent_normal, expected[4].bent_normal), 4e-3);
         EXPECT_LT(rms(found[4].specular, expected[4].specular), 4e-3);
@@ -232,7 +233,7 @@ TEST_F(Extremes, InvalidNormalsAndRoughnessDoNotPersistInHistory) {
 }
 
 // Every traced pixel of a tile lies on a surface that is 10^10 times nearer than the other pixels.
-// The others' weights are tiny and must not become zero.
+// The weights of the traced pixels for the other pixels are tiny, and must not become zero.
 TEST_F(Extremes, SurfacesFarBehindTracedPixelsKeepTheirVisibility) {
   constexpr std::uint32_t kSide = 64;
   const TestView view = perspective_view("", 1.2, 1.2, 0.01, kInfinity, true);
@@ -288,8 +289,8 @@ TEST_F(Extremes, AnyRadiusGivesFiniteValuesInRange) {
   }
 }
 
-// With a field of view of 170 degrees, a pixel at the plane's horizon is within half a degree of
-// edge-on.
+// Pixels up to half a degree from the horizon of the plane are tested, at a field of view of 170
+// degrees.
 TEST_F(Extremes, PlaneIsUnoccludedAtTheNarrowestAndWidestFieldOfView) {
   const auto view_of = [](double degrees) {
     const double scale = 1.0 / std::tan(degrees * std::numbers::pi / 360.0);

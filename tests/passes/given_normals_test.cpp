@@ -24,7 +24,7 @@ OcclusionSettings all_outputs(Quality quality, Specular specular = Specular::sli
   return settings;
 }
 
-// Returns `image` with every normal replaced, or with that of every third pixel.
+// Returns `image` with the normal of every `stride`th pixel replaced.
 HostImage replaced(HostImage image, std::array<float, 3> with, std::size_t stride) {
   for (std::size_t i = 0; i < image.texels.size() / image.channels; i += stride) {
     std::ranges::copy(with, image.texels.begin() + static_cast<std::ptrdiff_t>(i * image.channels));
@@ -113,7 +113,7 @@ TEST_F(GivenNormals, MissingNormalsAreTakenFromDepth) {
   }
 }
 
-TEST_F(GivenNormals, MissingNormalsBesideTheSkyAndInImagesOfOnePixelAreValid) {
+TEST_F(GivenNormals, MissingNormalsNextToTheSkyOrInTinyImagesGiveValidResults) {
   const TestView view = test_views()[2];
   Surface post = plane({0.0, 0.0, -4.0}, {0.3, 0.0, 1.0});
   post.keep = [](const glm::dvec3& p) { return std::abs(p.x) < 0.8; };

@@ -1,5 +1,5 @@
-// What must not change the image: the scene's unit, the kind of projection, the resolution of the
-// search on an open plane, and what is not a number elsewhere.
+// Tests changes that must not change the image: the unit of length, the kind of projection, the
+// tile size on an open plane, and NaN at other pixels.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -56,7 +56,7 @@ Difference difference(const HostImage& a, const HostImage& b) {
   return found;
 }
 
-TEST_F(GtaoInvariance, ResultIsIndependentOfTheSceneUnit) {
+TEST_F(GtaoInvariance, ResultIsIndependentOfTheUnitOfLength) {
   for (const Estimator estimator : kEstimators) {
     for (const NamedScene& scene : gtao_scenes()) {
       const TestView one = perspective_view("one", 1.2, 1.8, 0.1, kInfinity, true);
@@ -115,7 +115,8 @@ TEST_F(GtaoInvariance, OrthographicViewEqualsANarrowPerspectiveFromAfar) {
   }
 }
 
-// Odd sizes leave blocks that are cut by the border: not a texel may be forgotten there.
+// The sizes are not multiples of the tile size, so that the border cuts tiles. Every pixel must be
+// written.
 TEST_F(GtaoInvariance, EverySizeTileSizeAndPatternCoversEveryPixel) {
   const TestView view = test_views()[2];
   std::vector<std::pair<std::uint32_t, std::uint32_t>> sizes{{1, 1}, {3, 5}, {17, 9}, {33, 1}};
@@ -136,7 +137,7 @@ TEST_F(GtaoInvariance, EverySizeTileSizeAndPatternCoversEveryPixel) {
           settings.advanced.filter_radius = history == 0 ? 0 : 2;
           settings.bent_normal = true;
           poison_memory(width, height);
-          // The last traced pixel of a block falls outside of the image.
+          // In this frame the traced pixels of the last tiles lie outside the image.
           const OcclusionImages images = run_occlusion({.view = view.view,
                                                         .depth_ndc = drawing.depth_ndc,
                                                         .normal_vs = &drawing.normal_vs,
@@ -149,8 +150,7 @@ TEST_F(GtaoInvariance, EverySizeTileSizeAndPatternCoversEveryPixel) {
             for (std::uint32_t c = 0; c < 3; ++c) {
               dot += images.bent_normal.texels[i * 4 + c] * drawing.normal_vs.texels[i * 4 + c];
             }
-            // A single slice holds only what lies in it: its mean direction is no more than above
-            // the surface.
+            // With a single slice the bent normal is only known to lie above the surface.
             ASSERT_GT(dot, 0.0) << "pixel " << i;
           }
         }
@@ -183,7 +183,7 @@ TEST_F(GtaoInvariance, EveryPatternHasTheSameMeanInAGroove) {
   }
 }
 
-TEST_F(GtaoInvariance, NaNDepthHasALocalAndFiniteEffect) {
+TEST_F(GtaoInvariance, NaNDepthOnlyAffectsNearbyPixelsAndGivesFiniteResults) {
   const TestView view = test_views()[2];
   for (const Estimator estimator : kEstimators) {
     OcclusionSettings settings = unfiltered(estimator, 0.5f);
@@ -256,8 +256,9 @@ TEST_F(GtaoInvariance, InvalidDepthBuffersGiveFiniteImages) {
   }
 }
 
-// Noise hangs on pixel and frame alone: where both eyes see the same, they show the same.
-TEST_F(GtaoInvariance, BothEyesOfAFrameHaveTheSameNoise) {
+// The noise depends only on the pixel and the frame number. Pixels that show the same to both eyes
+// must get the same values.
+TEST_F(GtaoInvariance, BothEyesOfAFrameGetTheSameNoise) {
   const TestView view = test_views().front();
   const Drawing drawing = draw(view, kWidth, kHeight, gtao_scenes().front().scene);
   for (const Pattern pattern : {Pattern::golden, Pattern::hilbert, Pattern::paper}) {

@@ -8,8 +8,8 @@
 
 namespace alcove::passes {
 
-// Returns two walls that meet in a line along y at x = `aside`. Each is at `half_angle` radians
-// from the view axis.
+// Returns two walls that meet in a line along y at x = `aside`, at the distance `bottom` from the
+// eye. Each wall is at `half_angle` radians from the view axis.
 inline Scene groove(double half_angle, double bottom = 4.5, double aside = 0.0) {
   const glm::dvec3 through(aside, 0.0, -bottom);
   Surface left = plane(through, {std::cos(half_angle), 0.0, std::sin(half_angle)});
@@ -19,7 +19,8 @@ inline Scene groove(double half_angle, double bottom = 4.5, double aside = 0.0) 
   return {left, right};
 }
 
-// Returns a floor that faces the eye, and a platform `height` above it where x > `edge`.
+// Returns a floor that faces the eye at the distance `floor`, and a platform that is nearer by
+// `height` where x > `edge`.
 inline Scene step(double edge, double height, double floor = 4.0) {
   Surface platform = plane({0.0, 0.0, -floor + height}, {0.0, 0.0, 1.0});
   platform.keep = [=](const glm::dvec3& p) { return p.x > edge; };

@@ -58,8 +58,8 @@ TEST_F(GtaoPass, UnoccludedPlaneHasVisibilityOneAtAnyTilt) {
   }
 }
 
-// Tilted planes occlude themselves if samples are not snapped to texel centres.
-TEST_F(GtaoPass, TiltedPlaneOccludesItselfWithoutSnappingCorrection) {
+// Tests the setting snap_to_texels: without it, tilted planes occlude themselves.
+TEST_F(GtaoPass, TiltedPlaneOccludesItselfIfSamplesAreNotSnapped) {
   const TestView view = test_views()[2];
   for (const Estimator estimator : {Estimator::horizons, Estimator::connected}) {
     OcclusionSettings settings = precise(Quality::medium);

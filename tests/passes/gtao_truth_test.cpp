@@ -13,8 +13,8 @@
 namespace alcove::passes {
 namespace {
 
-// Returns settings whose result can be compared with horizons of infinite thickness, for any
-// estimator.
+// Returns settings for which any estimator gives infinitely thick occluders, so that its result can
+// be compared with horizons.
 OcclusionSettings exact(Estimator estimator, float radius) {
   OcclusionSettings settings = quality_settings(Quality::reference, radius);
   settings.advanced.estimator = estimator;
@@ -25,8 +25,8 @@ OcclusionSettings exact(Estimator estimator, float radius) {
 
 class GtaoTruth : public PassTest {
  protected:
-  // Returns the mean visibility of a wall 4 units away, at the eight pixels left of an occluder
-  // that covers the image from x = 0 on.
+  // Returns the mean visibility of a wall 4 units away, at the eight pixels to the left of an
+  // occluder that covers the image from x = 0 to the right.
   double visibility_beside(const TestView& view, const Surface& front,
                            const OcclusionSettings& settings) {
     const Drawing drawing = draw(view, 96, 40, {plane({0.0, 0.0, -4.0}, {0.0, 0.0, 1.0}), front});
@@ -47,7 +47,7 @@ struct Errors {
   double largest = 0.0;
 };
 
-// Returns the errors at every 5th pixel of every 3rd row.
+// Returns the mean and the largest error of visibility over every 5th pixel of every 3rd row.
 Errors errors_of(const HostImage& visibility, const Drawing& drawing, double radius) {
   Errors errors;
   int count = 0;
@@ -66,7 +66,7 @@ Errors errors_of(const HostImage& visibility, const Drawing& drawing, double rad
   return errors;
 }
 
-// Returns the mean angle in degrees at every 7th pixel of every 4th row.
+// Returns the mean error of bent normals in degrees, over every 7th pixel of every 4th row.
 double mean_bent_error(const HostImage& bent, const Drawing& drawing, double radius) {
   double sum = 0.0;
   int count = 0;
@@ -151,8 +151,8 @@ TEST_F(GtaoTruth, GrooveMatchesTheClosedFormNearItsBottom) {
   }
 }
 
-// The sky above a platform's edge is a spherical lune, whose fraction of the hemisphere is its
-// angle divided by pi.
+// The unoccluded sky above a platform's edge is a spherical lune. Its fraction of the hemisphere is
+// its angle divided by pi.
 TEST_F(GtaoTruth, UniformWeightingMeasuresSolidAngle) {
   const TestView view = orthographic_view("orthographic", 4.0, 4.0, 0.1, 20.0);
   const double height = 0.5, half_angle = std::numbers::pi / 4.0;
@@ -242,7 +242,7 @@ TEST_F(GtaoTruth, BitmaskOfThickOccludersEqualsHorizons) {
 }
 
 // All occluders have the same distance from the eye.
-TEST_F(GtaoTruth, ThicknessUnitsAgreeAtTheDistanceWhereTheyAreEqual) {
+TEST_F(GtaoTruth, ThicknessUnitsGiveTheSameImageIfTheyMeanTheSameThickness) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, 60, 40, step(0.0, 0.5, 4.0));
   const float radius = 1.2f, distance = 3.5f;
@@ -288,9 +288,9 @@ TEST_F(GtaoTruth, HiddenVolumeIsMoreSolidBehindWideOccluders) {
     const double slat = filled(0.12, 0.12, 1);
     const double board = filled(1.0, 1.0, 1);
     EXPECT_LT(slat, 0.5 * board);
-    // The board extends to the end of the radius.
+    // The board is as wide as the radius.
     EXPECT_GT(board, 0.8);
-    // Occluders with the same total width, in one piece and in three.
+    // Compare one slat with three slats of the same total width.
     const double half = filled(0.3, 0.3, 1);
     const double slats = filled(0.1, 0.2, 3);
     EXPECT_LT(slats, 0.5 * half);
@@ -299,7 +299,7 @@ TEST_F(GtaoTruth, HiddenVolumeIsMoreSolidBehindWideOccluders) {
 
 // A strip as wide as one sample is at most as thick as it is wide, whatever the setting. A board as
 // wide as many samples has the thickness of the setting.
-TEST_F(GtaoTruth, NarrowOccludersAreThin) {
+TEST_F(GtaoTruth, OccludersAreAtMostAsThickAsTheyAreWide) {
   for (const TestView& view : {test_views()[2], test_views().back()}) {
     SCOPED_TRACE(view.name);
     const auto darkened_by_thickness = [&](double width) {
@@ -329,9 +329,9 @@ TEST_F(GtaoTruth, OccludersBeyondTheRadiusDoNotOcclude) {
     const auto images =
         run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, exact(estimator, radius));
     for (std::uint32_t x = 0; x < 64; ++x) {
-      // The distance to the nearest sample on the platform's edge, within half a pixel. Connected
-      // samples join floor and platform by a slope, whose foot is nearer than the wall by the
-      // wall's height and one step.
+      // `across` and `distance` lead to the nearest sample on the platform's edge, within half a
+      // pixel. With connected samples, a slope connects floor and platform. Its foot is nearer than
+      // the wall by up to one step between samples, which is why `across` is divided by 1.15.
       const double across = (63.5 - x) * 8.0 / 128;
       const double distance = std::hypot(across, height);
       if ((estimator == Estimator::connected ? across / 1.15 : distance) > radius) {

@@ -264,7 +264,7 @@ TEST_F(GtsoPass, IsCulledWhenItsOutputIsNotRead) {
   }
 }
 
-TEST_F(GtsoPass, OnlyTheModelTableHasATable) {
+TEST_F(GtsoPass, OnlyTheModelTableCreatesALookupTable) {
   const Inputs inputs = random_inputs();
   const auto run_with = [&](Specular model) {
     run([&](Graph& graph) {

@@ -1,4 +1,5 @@
-// Filter and history at half resolution, and the upsampling that makes pixels of them.
+// Tests filter and history at half resolution, and the upsampling pass that computes pixels from
+// them.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -14,7 +15,8 @@
 namespace alcove::passes {
 namespace {
 
-// Rounding of the stored sums, of a software device's reciprocals and of 16-bit texels.
+// Tolerance for the rounding of stored sums, of 16-bit texels, and of reciprocals on a software
+// device.
 constexpr float kRounding = 1e-3f;
 
 OcclusionSettings half_resolution(std::uint32_t history_frames) {
@@ -23,7 +25,7 @@ OcclusionSettings half_resolution(std::uint32_t history_frames) {
   return settings;
 }
 
-TEST(HalfTexelPacking, ValuesFitTheSignedNormalisedFormat) {
+TEST(HalfTexelPacking, PackedValuesFitTheSignedNormalisedFormat) {
   maths::HalfTexel texel;
   texel.occlusion = 1.0f;
   texel.weight = static_cast<float>(maths::kMaxHistoryFrames);
@@ -35,7 +37,7 @@ TEST(HalfTexelPacking, ValuesFitTheSignedNormalisedFormat) {
   EXPECT_EQ(packed.w, -1.0f);
 }
 
-TEST(HalfTexelPacking, KeepsDepthAndRecentOcclusion) {
+TEST(HalfTexelPacking, PackingKeepsDepthAndRecentOcclusion) {
   for (const float inverse_depth : {1e-12f, 0.013f, 0.7f, 20.0f, 1e12f}) {
     const float unknown = maths::half_texel_depth(inverse_depth, 0.5f, false);
     EXPECT_NEAR(unknown / inverse_depth, 1.0, 3.1e-5);
@@ -85,8 +87,8 @@ TEST_F(HalfResolution, ConstantOcclusionStaysConstantAtOddSizes) {
   }
 }
 
-// A near wall covers the left half of a far one; each has a visibility of its own. An odd column of
-// the edge lies within the texels of 2x2 pixels.
+// A near wall covers the left half of a far wall; each has its own visibility. The edge lies in an
+// odd column, and so within texels of 2x2 pixels.
 TEST_F(HalfResolution, VisibilityDoesNotBleedAcrossADepthEdge) {
   const TestView view = test_views()[2];
   Surface near_wall = plane({0.0, 0.0, -3.0}, {0.0, 0.0, 1.0});
@@ -119,7 +121,8 @@ TEST_F(HalfResolution, VisibilityDoesNotBleedAcrossADepthEdge) {
 }
 
 // With dynamic resolution the history's textures are larger than the image. Beyond the image's
-// border they hold results of an earlier, larger image. Averages of one frame show them undiluted.
+// border they hold results of an earlier, larger image. history_frames is 1, so that nothing but
+// this frame and such texels could enter the result.
 TEST_F(HalfResolution, TexelsBeyondASmallerImageAreNotRead) {
   constexpr VkExtent2D kLargest{kWidth, kHeight};
   const TestView view = test_views()[2];

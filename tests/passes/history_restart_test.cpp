@@ -10,8 +10,8 @@ namespace {
 class HistoryRestart : public PassTest {
  protected:
   // Renders four frames of a groove with `settings`, four frames of a ball on a floor with
-  // `meanwhile`, and one more frame of the ball with `settings`. If `forgets` is true, the history
-  // is reset before that frame.
+  // `meanwhile`, and one more frame of the ball with `settings`. Returns the images of the last
+  // frame. If `forgets` is true, the history is reset before it.
   OcclusionImages come_back(const OcclusionSettings& settings, const OcclusionSettings& meanwhile,
                             bool forgets) {
     const TestView view = test_views()[2];
@@ -51,11 +51,11 @@ OcclusionSettings with_history(bool bent_normal) {
   return settings;
 }
 
-TEST_F(HistoryRestart, ReenabledBentNormalsStartANewHistory) {
+TEST_F(HistoryRestart, BentNormalsStartANewHistoryWhenTurnedOnAgain) {
   expect_a_new_beginning(with_history(true), with_history(false));
 }
 
-TEST_F(HistoryRestart, ReenabledHistoryStartsAnew) {
+TEST_F(HistoryRestart, HistoryStartsWithoutContentsWhenTurnedOnAgain) {
   for (const bool bent_normal : {false, true}) {
     OcclusionSettings without = with_history(bent_normal);
     without.history_frames = 0;

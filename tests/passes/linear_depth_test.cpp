@@ -26,7 +26,7 @@ glm::dmat4 clip_from_view(const TestView& view) {
   return glm::dmat4(single);
 }
 
-// Depth as the projection's own inverse gives it: no formula of the shader's.
+// Returns the linear depth by inverting the projection matrix, which is not the shader's formula.
 double linear_depth(const glm::dmat4& projection, float depth_ndc) {
   const glm::dvec4 point = glm::inverse(projection) * glm::dvec4(0.0, 0.0, depth_ndc, 1.0);
   return -point.z / point.w;
@@ -53,7 +53,8 @@ TEST_F(LinearDepth, EqualsTheInverseProjectionForEveryKindOfProjection) {
     SCOPED_TRACE(view.name);
     const glm::dmat4 projection = clip_from_view(view);
     const bool reversed = is_reversed(projection);
-    // Raw depths from the near plane to close to the far one, finer towards the far side.
+    // Raw depths from the near plane nearly to the far plane, in smaller steps towards the far
+    // plane.
     HostImage depth{33, 5, {}, 1};
     for (int i = 0; i < 33 * 5; ++i) {
       const float away = std::pow(0.94f, static_cast<float>(i));
@@ -62,7 +63,8 @@ TEST_F(LinearDepth, EqualsTheInverseProjectionForEveryKindOfProjection) {
     const HostImage linear = linear_image(view.view, depth);
     for (std::size_t i = 0; i < depth.texels.size(); ++i) {
       const double expected = linear_depth(projection, depth.texels[i]);
-      // A raw depth near 1 holds few digits of the distance: half of its last one is forgiven.
+      // A raw depth near 1 determines the distance with few digits. An error of half its last digit
+      // is allowed.
       const double digit = 6e-8 * std::max(std::abs(depth.texels[i]), 1e-30f);
       const double slack =
           std::abs(linear_depth(projection, depth.texels[i] - static_cast<float>(digit)) -

@@ -40,7 +40,7 @@ double angle_between(const glm::dvec3& a, const glm::dvec3& b) {
   return degrees(std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)));
 }
 
-// Returns whether the pixel has a neighbour that is not sky on each axis.
+// Returns whether the pixel has, on each axis, at least one neighbour that is not sky.
 bool has_neighbours(const Drawing& drawing, std::uint32_t x, std::uint32_t y) {
   const auto seen = [&](std::uint32_t column, std::uint32_t row) {
     return column < drawing.depth_ndc.width && row < drawing.depth_ndc.height &&
@@ -80,7 +80,7 @@ TEST_F(Normals, PlanesGetTheExactNormalAtAnyTiltUpToTheBorder) {
   }
 }
 
-TEST_F(Normals, AreNotBlurredAcrossADepthStep) {
+TEST_F(Normals, NormalsAreNotBlurredAcrossADepthStep) {
   for (const TestView& view : test_views()) {
     SCOPED_TRACE(view.name);
     // The front of a box in front of a wall. Both face the eye, and their depths differ by at least
@@ -92,7 +92,7 @@ TEST_F(Normals, AreNotBlurredAcrossADepthStep) {
   }
 }
 
-TEST_F(Normals, AreNotBlurredAcrossACrease) {
+TEST_F(Normals, NormalsAreNotBlurredAcrossACrease) {
   const TestView view = test_views()[5];
   Surface left = plane({0.0, 0.0, -5.0}, {1.0, 0.0, 1.0});
   left.keep = [](const glm::dvec3& p) { return p.x < 0.0; };
@@ -120,7 +120,7 @@ TEST_F(Normals, SkyFacesTheEyeAndDoesNotAffectItsNeighbours) {
   }
 }
 
-TEST_F(Normals, StripTwoPixelsWideKeepsItsNormal) {
+TEST_F(Normals, StripTwoPixelsWideGetsItsOwnNormal) {
   for (const TestView& view : test_views()) {
     for (const double n_dot_v : {-0.5, 0.5}) {
       SCOPED_TRACE(testing::Message() << view.name << " slanted " << n_dot_v);

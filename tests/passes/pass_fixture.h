@@ -24,27 +24,29 @@ struct HostImage {
   }
 };
 
-// Runs passes on the machine's device under the validation layers. Any message of the layers fails
-// the test.
+// Runs passes on the machine's Vulkan device under the validation layers. Any message of the layers
+// fails the test.
 class PassTest : public testing::Test {
  protected:
   void SetUp() override;
   void TearDown() override;
 
-  // Adds a texture of 32-bit floats with 1, 2 or 4 channels that holds `image`. If a `format` with
-  // 32-bit channels is given, the texture gets the bits of the floats.
+  // Adds a texture of 32-bit floats with 1, 2 or 4 channels that contains `image`. If a `format`
+  // with 32-bit channels is given, the texture has that format, and the bits of the floats are
+  // copied unchanged.
   framegraph::Texture upload(framegraph::Graph& graph, const HostImage& image,
                              VkFormat format = VK_FORMAT_UNDEFINED);
   // Adds a pass that fills `target`, a texture with 32-bit channels, with `image`.
   framegraph::Texture fill(framegraph::Graph& graph, framegraph::Texture target,
                            const HostImage& image);
-  // Adds a read-back of `texture`, which may have any format that the passes write. After the
-  // frame, result() returns it as floats.
+  // Adds a copy of `texture` to host memory. The texture may have any format that the passes write.
+  // After the frame, result() returns its contents as floats.
   void read_back(framegraph::Graph& graph, framegraph::Texture texture, std::uint32_t mip = 0);
-  // Returns an image that the last frame read back, by its order.
+  // Returns an image that the last frame read back. They are numbered in the order of read_back()
+  // calls.
   const HostImage& result(std::size_t index = 0) const { return results_[index]; }
 
-  // Runs a frame that `declare` declares. Fails the test if that is not possible.
+  // Runs the frame that `declare` declares. Fails the test if it cannot be run.
   void run(const std::function<void(framegraph::Graph&)>& declare);
 
   // Runs add_occlusion() for frame `frame.index` and returns its images.
@@ -69,8 +71,8 @@ class PassTest : public testing::Test {
   };
   OcclusionImages run_occlusion(const OcclusionFrame& frame, const OcclusionSettings& settings);
 
-  // Fills the device memory that transients of about this size get with NaN, so that a texel that a
-  // pass does not write is noticed.
+  // Fills the device memory that transients of about this size will use with NaN, so that the test
+  // notices texels that a pass does not write.
   void poison_memory(std::uint32_t width, std::uint32_t height);
 
   sample::Gpu& gpu() { return *gpu_; }

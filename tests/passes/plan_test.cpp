@@ -1,5 +1,5 @@
-// Tests that a part of the occlusion that is turned off or not read has no pass, no memory and no
-// pipeline.
+// Tests that a part of the occlusion passes that is turned off, or whose result nobody reads, costs
+// no pass, no memory and no pipeline.
 #include <gmock/gmock.h>
 
 #include "gtao_scenes.h"
@@ -120,8 +120,8 @@ TEST_F(OcclusionPlan, BentNormalsAndHistoryCostNothingWhenOff) {
   EXPECT_THAT(kept(history, {.bent_normal = true}).histories, testing::SizeIs(4));
 }
 
-// Motion vectors are only needed to read a history.
-TEST_F(OcclusionPlan, MotionIsNotReadWithoutAHistory) {
+// Motion vectors are only needed to reproject the history.
+TEST_F(OcclusionPlan, MotionVectorsAreNotReadWithoutAHistory) {
   const Given moving{.motion = true};
   OcclusionSettings history = least();
   history.history_frames = 8;
@@ -132,7 +132,7 @@ TEST_F(OcclusionPlan, MotionIsNotReadWithoutAHistory) {
   EXPECT_EQ(kept(history, {}, moving).uploads, 3u);
 }
 
-TEST_F(OcclusionPlan, BackFacesCostNothingWithOtherThicknessUnits) {
+TEST_F(OcclusionPlan, BackFaceDepthCostsNothingUnlessTheThicknessUnitNeedsIt) {
   const Kept horizons = kept(least());
   OcclusionSettings settings = least();
   settings.advanced.thickness_unit = ThicknessUnit::back_faces;
@@ -157,11 +157,11 @@ TEST_F(OcclusionPlan, BackFacesCostNothingWithOtherThicknessUnits) {
   const Kept read = kept(settings, {}, {.hidden_depths = true});
   EXPECT_EQ(read.passes, constant.passes);
   EXPECT_EQ(read.bytes, constant.bytes);
-  // A search that reads back faces has a pipeline of its own.
+  // The shader variant that reads back faces has its own pipeline.
   EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines + 1);
 }
 
-TEST_F(OcclusionPlan, SearchPartsCostOnePipelineEachAndNoPassOrMemory) {
+TEST_F(OcclusionPlan, TurningOffPartsOfTheSearchAddsOnlyAPipeline) {
   const Kept as_it_is = kept(least());
   std::size_t pipelines = gpu().kernels().pipeline_count();
   (void)kept(least());
@@ -237,14 +237,14 @@ TEST_F(OcclusionPlan, RoughnessChannelWithoutATextureCreatesNoPipeline) {
     (void)kept(settings, {.specular = read});
     EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines);
     (void)kept(settings, {.specular = read}, {.roughness = true});
-    // With specular occlusion from slices, the roughness is read by the search and by its
-    // reconstruction.
+    // With specular occlusion from slices, the passes gtao and reconstruct both read the roughness.
+    // Each gets another pipeline for another channel.
     const std::size_t readers = !read ? 0 : specular == Specular::slices ? 2 : 1;
     EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines + readers);
   }
 }
 
-TEST_F(OcclusionPlan, LinearDepthRunsOnlyWhenItIsRead) {
+TEST_F(OcclusionPlan, LinearDepthPassRunsOnlyWhenItsResultIsRead) {
   const Kept without = kept(least());
   const std::size_t pipelines = gpu().kernels().pipeline_count();
   OcclusionSettings asked = least();
@@ -271,8 +271,8 @@ TEST_F(OcclusionPlan, UnreadOutputsAreCulledWithTheirProducers) {
   EXPECT_THAT(kept(least(), {.visibility = false}, {.normals = false}).passes, testing::IsEmpty());
 }
 
-// The frame is prepared in a graph of its own that is never recorded.
-TEST_F(OcclusionPlan, PreparedFramesCreateNoPipelineWhateverTheFrameBefore) {
+// The frame is prepared in a separate graph that is never recorded.
+TEST_F(OcclusionPlan, PreparedFramesCreateNoPipelineWhateverTheHistory) {
   const Drawing drawing = draw(test_views()[2], 32, 24, groove(0.8));
   OcclusionSettings settings = least();
   settings.history_frames = 8;

@@ -12,8 +12,8 @@
 namespace alcove::passes {
 namespace {
 
-// The raw_occlusion as a search would store it, with depth and normal of the pixel that it
-// searched.
+// Packs the raw occlusion as the pass gtao stores it, with the depth and the normal of the traced
+// pixel of each tile.
 HostImage packed_raw_occlusion(const View& view, const Drawing& drawing,
                                const HostImage& raw_occlusion, std::uint32_t tile_size,
                                std::uint32_t index) {

@@ -9,7 +9,7 @@
 
 namespace alcove::passes {
 
-// The pass alone, fed with signals that the tests write.
+// Tests the pass reconstruct alone, with raw occlusion that the tests write.
 class Reconstruct : public PassTest {
  protected:
   static constexpr std::uint32_t kWidth = 32;
@@ -36,14 +36,14 @@ class Reconstruct : public PassTest {
   static HostImage no_motion();
 };
 
-// Texels on a side of the raw occlusion of one search in tile_size x tile_size pixels.
+// Returns the number of tiles of `tile_size` pixels that cover `pixels` pixels.
 [[nodiscard]] constexpr std::uint32_t blocks(std::uint32_t pixels, std::uint32_t tile_size) {
   return (pixels + tile_size - 1) / tile_size;
 }
 
 [[nodiscard]] OcclusionSettings precise(std::uint32_t reach, std::uint32_t history_frames);
 
-// The raw_occlusion of slices that are all open by `weight` and visible by `visibility` of it.
+// Returns a raw occlusion whose unoccluded part varies around 0.9, with the given visibility.
 template <typename Visibility>
 HostImage raw_occlusion_of(std::uint32_t width, std::uint32_t height,
                            const Visibility& visibility) {
@@ -61,7 +61,8 @@ HostImage raw_occlusion_of(std::uint32_t width, std::uint32_t height,
 [[nodiscard]] HostImage constant_raw_occlusion(std::uint32_t width, std::uint32_t height,
                                                float visibility);
 
-// The same depth, but from column `first` on the normals are turned about the vertical.
+// Returns the drawing with the same depth, in which the normals from column `first` on are rotated
+// about the vertical axis.
 [[nodiscard]] Drawing with_turned_normals(const Drawing& drawing, double degrees,
                                           std::uint32_t first);
 

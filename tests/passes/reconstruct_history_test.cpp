@@ -18,7 +18,7 @@ double mean_of(const HostImage& image) {
   return mean;
 }
 
-TEST_F(Reconstruct, StaticViewConverges) {
+TEST_F(Reconstruct, NoiseOfAStaticViewDecreasesOverFrames) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(30.0, 4.0)});
   const std::uint32_t seed = 17;
@@ -38,8 +38,9 @@ TEST_F(Reconstruct, StaticViewConverges) {
   EXPECT_NEAR(mean_of(last), 0.5, 0.01);
 }
 
-// A view that has been static for 16 frames averages up to 127 of them, whatever history_frames is.
-TEST_F(Reconstruct, ConvergedViewAveragesAllItsFrames) {
+// A view that has been static for 16 frames averages up to 127 of them, independent of
+// history_frames.
+TEST_F(Reconstruct, StaticViewAveragesUpTo127Frames) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(30.0, 4.0)});
   const auto variance_after = [&](bool still) {
@@ -83,10 +84,10 @@ TEST_F(Reconstruct, MotionVectorsOfAStaticViewAreNotRead) {
   EXPECT_EQ(second_frame(&wrong).texels, second_frame(nullptr).texels);
 }
 
-// Accumulates many more frames than the largest weight of the history. Visibility is stored in
-// steps of 2^-10 with dithering, so that single pixels may differ by a few steps. The mean must
-// neither drift nor stop changing.
-TEST_F(Reconstruct, HundredsOfEqualFramesDoNotDrift) {
+// Accumulates many more frames than the history's largest weight. Visibility is stored in steps of
+// 2^-10 with dithering, so that single pixels may differ by a few steps. The mean over all pixels
+// must not drift, and it must still follow a change.
+TEST_F(Reconstruct, HistoryDoesNotDriftOverHundredsOfEqualFrames) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, 9, 7, {tilted_plane(30.0, 4.0)});
   for (const float visibility : {0.013f, 0.37f, 0.985f, 1.0f}) {
@@ -121,7 +122,7 @@ TEST_F(Reconstruct, HundredsOfEqualFramesDoNotDrift) {
   }
 }
 
-TEST_F(Reconstruct, ResetForgetsTheHistory) {
+TEST_F(Reconstruct, ResetDiscardsTheHistory) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(30.0, 4.0)});
   const Drawing smaller = draw(view, kWidth - 3, kHeight, {tilted_plane(30.0, 4.0)});

@@ -1,4 +1,4 @@
-// The history while the camera or things move, fed with signals that the tests write.
+// Tests the history while the camera or surfaces move, with raw occlusion that the tests write.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -12,13 +12,14 @@
 namespace alcove::passes {
 namespace {
 
-// The eye leaps sideways: what it could not see before starts anew, what it could goes on.
+// The camera jumps sideways. Pixels whose surface was not visible before start a new history, and
+// the others keep theirs.
 TEST_F(Reconstruct, PixelsUncoveredByACameraJumpStartANewHistory) {
   const TestView view = test_views()[2];
   const double leap = 0.8;
   Scene before = step(0.3, 1.5, 5.0);
   const Drawing first = draw(view, kWidth, kHeight, before);
-  // The world stands still; in the view space of the eye that moved it lies `leap` to the left.
+  // The scene is static. In the view space of the moved camera it is shifted to the left by `leap`.
   const Drawing second = draw(view, kWidth, kHeight, step(0.3 - leap, 1.5, 5.0));
   View moved = view.view;
   moved.view_from_world[12] = static_cast<float>(-leap);
@@ -42,7 +43,8 @@ TEST_F(Reconstruct, PixelsUncoveredByACameraJumpStartANewHistory) {
       const auto hit = cast(second.scene, second.camera.ray(x + 0.5, y + 0.5));
       const glm::dvec3 was = hit->position + glm::dvec3(leap, 0.0, 0.0);
       const glm::dvec3 pixel = first.camera.project(was);
-      // Margins of a pixel or two: there some of the four texels are of another surface.
+      // Pixels within one or two pixels of an edge are not tested, because some of their four
+      // history texels show another surface.
       const bool outside = pixel.x < -0.5 || pixel.x > kWidth + 0.5;
       const bool well_inside =
           pixel.x > 2.0 && pixel.x < kWidth - 2.0 && pixel.y > 2.0 && pixel.y < kHeight - 2.0;
@@ -70,8 +72,9 @@ TEST_F(Reconstruct, PixelsUncoveredByACameraJumpStartANewHistory) {
   EXPECT_GT(gone_on, 200);
 }
 
-// Two walls meet, one dark, one bright, and the eye creeps along: each keeps to its own. In a
-// narrower view pixels are smaller and so are the walls' differences of depth.
+// A dark and a bright wall meet, and the camera moves along slowly: neither wall may get the
+// history of the other. The view is narrow, because differences of depth between the walls then are
+// small.
 TEST_F(Reconstruct, HistoryDoesNotLeakAcrossACrease) {
   TestView view = test_views()[2];
   const float zoom = 2.0f;
@@ -107,18 +110,20 @@ TEST_F(Reconstruct, HistoryDoesNotLeakAcrossACrease) {
                                                                  raw_occlusion.texels[i * 2 + 1]));
     }
   }
-  // The texels of a history tell surfaces apart by depth alone.
+  // The tolerance is not smaller, because history texels are distinguished by their depth alone.
   EXPECT_LT(worst, 0.1);
 }
 
-// The camera turns before a corner of two walls, which bends what they see of each other: what was
-// gathered of their bent normals turns with it, and is where frames that keep nothing find it.
+// The camera rotates in front of a corner of two walls, which bend each other's bent normals. The
+// accumulated bent normals must rotate with the camera: their mean must be that of frames without a
+// history.
 TEST_F(Reconstruct, BentNormalsRotateWithTheCamera) {
   OcclusionSettings settings = quality_settings(Quality::high, 4.0f);
   settings.slices = 3;  // two leave too much noise in a frame without history
   settings.bent_normal = true;
   settings.precision = Precision::float32;
-  // Of the left wall, whose normals the right one's would make up for, in the last frame.
+  // Returns the mean bent normal of the left wall in the last frame. The right wall is left out,
+  // because its errors would cancel those of the left one.
   const auto mean_bent_normal = [&] {
     glm::dvec3 sum(0.0);
     View before;
@@ -160,12 +165,12 @@ TEST_F(Reconstruct, BentNormalsRotateWithTheCamera) {
   };
   const glm::dvec3 kept = mean_bent_normal();
   settings.history_frames = 0;
-  // A history that is not turned with the camera would be off by over 0.1.
+  // A history that is not rotated with the camera would have an error above 0.1.
   EXPECT_LT(glm::distance(kept, mean_bent_normal()), 0.02);
 }
 
-// A plane slides by three pixels a frame and carries a pattern: with motion vectors the pattern
-// stays sharp, without them it is smeared.
+// A plane with a pattern moves by three pixels per frame. With motion vectors the pattern stays
+// sharp, without them it is blurred.
 TEST_F(Reconstruct, MotionVectorsFollowAMovingPlane) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(0.0, 4.0)});
@@ -193,7 +198,7 @@ TEST_F(Reconstruct, MotionVectorsFollowAMovingPlane) {
                            .reset = frame == 0},
                           precise(0, 32));
     }
-    // Where the plane was on the image ever since the first frame.
+    // Compare only columns that have shown the plane since the first frame.
     double error = 0.0;
     int count = 0;
     for (std::uint32_t y = 0; y < kHeight; ++y) {
@@ -212,9 +217,9 @@ TEST_F(Reconstruct, MotionVectorsFollowAMovingPlane) {
   }
 }
 
-// A plane slides by a pixel a frame and comes nearer by a hundredth of its distance, which motion
-// vectors do not say: its history goes on. What stands still and lies as far behind the last
-// frame's surface was uncovered: it starts anew.
+// A plane moves by one pixel per frame and comes nearer by a hundredth of its distance, which
+// motion vectors do not tell: it keeps its history. Then a static plane appears as far behind it as
+// an uncovered surface would: it starts a new history.
 TEST_F(Reconstruct, HistoryFollowsApproachingSurfaces) {
   const TestView view = test_views()[2];
   const double nearer = 0.99;
@@ -229,7 +234,7 @@ TEST_F(Reconstruct, HistoryFollowsApproachingSurfaces) {
     }
   }
   std::mt19937 random(23);
-  // Of those pixels that show what was on the image for many frames.
+  // Returns the variance over the pixels whose surface has been on the image for many frames.
   const auto spread = [](const HostImage& image) {
     HostImage right{kWidth / 2, kHeight, {}, 1};
     for (std::uint32_t y = 0; y < kHeight; ++y) {
@@ -268,8 +273,9 @@ TEST_F(Reconstruct, HistoryFollowsApproachingSurfaces) {
   EXPECT_THAT(anew.texels, testing::Each(testing::FloatNear(0.9f, 2e-3f)));
 }
 
-// An occluder moves away from a plane that stands still, and comes back later. Motion vectors of 0
-// tell the pass that occluders may move, so the plane's visibility changes within a few frames.
+// An occluder moves away from a static plane, and later comes back. Motion vectors, even if they
+// are 0, tell the pass that occluders may move, so that the plane's visibility changes within a few
+// frames.
 TEST_F(Reconstruct, MovingOccludersLeaveNoTrail) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(30.0, 4.0)});
@@ -297,7 +303,7 @@ TEST_F(Reconstruct, MovingOccludersLeaveNoTrail) {
                                      .reset = frame == 0},
                                     settings));
       }
-      // Recent occlusion is stored in 4 bits, dithered.
+      // The tolerances are wide because recent occlusion is stored in 4 bits, with dithering.
       const auto left = testing::Each(testing::Gt(0.93f));
       const auto back = testing::Each(testing::Lt(0.75f));
       EXPECT_THAT(found[long_ago - 1].texels, testing::Each(testing::FloatNear(0.6f, 5e-3f)));
@@ -311,7 +317,7 @@ TEST_F(Reconstruct, MovingOccludersLeaveNoTrail) {
   }
 }
 
-// Another surface is where one was, which no motion told.
+// In the second frame another surface is visible, without motion vectors that would tell it.
 TEST_F(Reconstruct, PixelsWithoutHistoryUseTheFilterRadiusOfAFirstFrame) {
   const TestView view = test_views()[2];
   const Drawing before = draw(view, kWidth, kHeight, {tilted_plane(30.0, 4.0)});

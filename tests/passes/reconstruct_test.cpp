@@ -13,8 +13,8 @@
 namespace alcove::passes {
 namespace {
 
-// One coordinate of a traced pixel that a pixel's filter reads: the `i`th of the 2 x `reach` traced
-// pixels around it.
+// One coordinate of a traced pixel that a pixel's filter reads. `i` counts the 2 * `reach` traced
+// pixels around it, where `reach` is the filter radius in tiles.
 struct Searched {
   std::uint32_t block;
   std::uint32_t pixel;
@@ -35,9 +35,9 @@ double squared_distance(std::uint32_t a, std::uint32_t b) {
   return apart * apart;
 }
 
-// Returns the filtered value of a pixel in its first frame on a wall that faces the eye: the mean
-// of the traced pixels around it, without the corners of the window if the filter radius is
-// above 1.
+// Returns the filtered value that a pixel must have in its first frame, on a wall that faces the
+// eye: the weighted mean of the traced pixels around it. If the filter radius is above 1, the
+// corners of the window are left out.
 double mean_around(const HostImage& raw_occlusion, std::uint32_t x, std::uint32_t y,
                    std::uint32_t width, std::uint32_t height, std::uint32_t tile_size,
                    InterleaveOffset interleave_offset, int reach) {
@@ -132,8 +132,8 @@ TEST_F(Reconstruct, ConstantOcclusionStaysConstantInAnySceneAtAnyResolution) {
             for (std::uint32_t y = 0; y < 23; ++y) {
               for (std::uint32_t x = 0; x < 33; ++x) {
                 const float expected = drawing.is_sky(x, y) ? 1.0f : 0.37f;
-                // The history stores the sums in 16 bits. They are small if no traced pixel is
-                // near.
+                // The tolerance is larger with a history, because it stores the sums in 16 bits,
+                // and they are small if no traced pixel is near.
                 ASSERT_NEAR(found.at(x, y), expected, history == 0 ? 1e-4 : 0.02)
                     << "at " << x << ", " << y;
               }
@@ -159,7 +159,7 @@ TEST_F(Reconstruct, FilterReducesNoiseOnATiltedPlane) {
   }
 }
 
-// With more slices the filter blurs less, so that stripes of four pixels stay clearer.
+// With more slices the filter is narrower, so that stripes of four pixels keep more contrast.
 TEST_F(Reconstruct, FilterNarrowsWithMoreSlices) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(0.0, 4.0)});
@@ -176,9 +176,10 @@ TEST_F(Reconstruct, FilterNarrowsWithMoreSlices) {
   EXPECT_LT(kept, 0.04) << "of the stripes' own variance";
 }
 
-// A neighbour on the other side of a crease, a fraction of a pixel off the tangent plane,
-// contributes to a pixel without history. Its weight falls as the number of slices or frames grows.
-TEST_F(Reconstruct, LeakAcrossACreaseFallsWithMoreTracedPixels) {
+// A pixel without history is also averaged with neighbours on the other side of a crease, which are
+// a fraction of a pixel away from its tangent plane. Their weight must decrease with the number of
+// slices and of frames.
+TEST_F(Reconstruct, LeakAcrossACreaseDecreasesWithSlicesAndFrames) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, kWidth, kHeight, groove(0.8, 4.5));
   const HostImage raw_occlusion =
@@ -210,13 +211,13 @@ TEST_F(Reconstruct, LeakAcrossACreaseFallsWithMoreTracedPixels) {
   const double first = after(1, 1);
   EXPECT_GT(first, 1.0) << "of all pixels";
   EXPECT_LT(after(4, 1), 0.35 * first);
-  // The dithering of stored visibilities accounts for 0.16 of it, which is 3e-4 in the mean over
+  // Dithering of the stored visibilities causes 0.16 of this, a mean error of 3e-4.
   // pixels.
   EXPECT_LT(after(1, 48), 0.2 * first);
 }
 
-// Neighbours that lie on the tangent plane but have another normal.
-TEST_F(Reconstruct, NeighboursWithOtherNormalsWeighLess) {
+// Tests neighbours that lie on the pixel's tangent plane but have another normal.
+TEST_F(Reconstruct, NeighboursWithOtherNormalsGetSmallerWeights) {
   const TestView view = test_views()[2];
   const Drawing flat = draw(view, kWidth, kHeight, {tilted_plane(0.0, 5.0)});
   const std::uint32_t half = kWidth / 2;
@@ -236,7 +237,7 @@ TEST_F(Reconstruct, NeighboursWithOtherNormalsWeighLess) {
   EXPECT_GT(leak(60.0), 0.05 * leak(0.0)) << "what else is there to know";
 }
 
-TEST_F(Reconstruct, NothingLeaksAcrossADepthEdge) {
+TEST_F(Reconstruct, VisibilityDoesNotLeakAcrossADepthEdge) {
   for (const TestView& view : test_views()) {
     const Drawing drawing = draw(view, kWidth, kHeight, step(0.3, 1.0));
     const auto on_platform = [&](std::uint32_t x, std::uint32_t y) {

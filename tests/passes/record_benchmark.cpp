@@ -1,10 +1,10 @@
-// Prints how long the host takes to record a steady frame with the C interface.
+// Prints how long the CPU takes to record a steady frame with the C interface.
 //
 //   c_record_benchmark
 //
-// Medians over many frames of one view. "The library alone" replaces the driver's recording
-// functions by empty ones, because a software device spends more time in them than the library
-// does.
+// Prints medians over many frames of one view. For "the library alone" the driver's recording
+// functions are replaced by empty ones, because a software device spends more time in them than the
+// library does.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -50,7 +50,7 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_instance_proc_addr(VkInstance insta
              : vkGetInstanceProcAddr(instance, name);
 }
 
-// Microseconds of alcoveRecordFrame; negative where it fails.
+// Returns the median time of alcoveRecordFrame in microseconds, or a negative number if it fails.
 double median_microseconds(const sample::VulkanDevice& device, bool library_alone,
                            bool all_outputs) {
   Engine engine(device);

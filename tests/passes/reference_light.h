@@ -1,5 +1,5 @@
-// Surfaces lit by a probe, and their radiance towards the eye, computed on the host with the
-// shaders' formulas.
+// Surfaces lit by a probe. Their radiance towards the eye is computed on the CPU with the shaders'
+// formulas.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Tests view matrices with the rounding errors of engines: rounded, inverted in float or double,
-// with and without fused multiply-adds, and far from the origin.
+// Tests that view matrices with the rounding errors of engines are accepted: inverted in float or
+// double, with and without fused multiply-adds, and far from the origin.
 #include "rigid_transform.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace {
 
 using maths_test::RandomInput;
 
-// Returns a * b - c * d, with or without a fused multiply-add, as a compiler may contract it.
+// Returns a * b - c * d, with or without a fused multiply-add. Compilers may generate either.
 template <typename Number, bool kFused>
 Number difference_of_products(Number a, Number b, Number c, Number d) {
   if constexpr (kFused) {
@@ -60,7 +60,7 @@ glm::mat<4, 4, Number> inverse_of(const glm::mat<4, 4, Number>& m) {
   for (int row = 0; row < 4; ++row) {
     determinant += m[0][row] * adjugate[row][0];
   }
-  // Multiplying by the reciprocal is what fast-math builds do.
+  // Builds with fast-math multiply by the reciprocal in the same way.
   return adjugate * (Number(1) / determinant);
 }
 
@@ -98,7 +98,7 @@ void expect_accepted(const glm::mat4& view_from_world, const glm::dmat4& exact) 
   }
 }
 
-TEST(RigidTransform, AcceptsInversesOfEveryPrecisionFarFromTheOrigin) {
+TEST(RigidTransform, InverseMatricesOfAnyPrecisionFarFromTheOriginAreAccepted) {
   RandomInput random;
   int inexact_rows = 0;
   for (int i = 0; i < 20000; ++i) {
@@ -119,7 +119,7 @@ TEST(RigidTransform, AcceptsInversesOfEveryPrecisionFarFromTheOrigin) {
   EXPECT_GT(inexact_rows, 100) << "the sweep has to meet last rows that are not exactly 0 0 0 1";
 }
 
-TEST(RigidTransform, AcceptsErrorsOfAFewUlpsInEveryElement) {
+TEST(RigidTransform, ErrorsOfAFewUlpsInEveryElementAreAccepted) {
   RandomInput random;
   for (int i = 0; i < 20000; ++i) {
     const glm::dmat4 exact = glm::inverse(random_pose(random, random.log_uniform(1e-2f, 1e6f)));
@@ -136,7 +136,7 @@ TEST(RigidTransform, AcceptsErrorsOfAFewUlpsInEveryElement) {
   }
 }
 
-TEST(RigidTransform, RefusesScaleTransposesAndNonFiniteElements) {
+TEST(RigidTransform, ScaledTransposedAndNonFiniteMatricesAreRefused) {
   RandomInput random;
   for (int i = 0; i < 1000; ++i) {
     const glm::mat4 good(glm::inverse(random_pose(random, random.log_uniform(0.1f, 1e6f))));
@@ -159,9 +159,9 @@ TEST(RigidTransform, ExactMatricesAreNotChanged) {
   EXPECT_EQ(maths::mat4(to_rigid(exact)), to_mat4(exact));
 }
 
-TEST(Transposed, ProjectionIsTransposedOnlyIfItsMinusOneIsInTheTransposedPlace) {
-  // With a near plane at 1 the depth offset is -1, like the factor of w, which may have rounding
-  // errors.
+TEST(Transposed, OnlyRowMajorProjectionsAreFoundTransposed) {
+  // If the near plane is at 1, the depth offset is -1, like the factor of w. The matrix must not be
+  // taken for a transposed one, even if rounding errors have changed the factor of w.
   for (const float w_from_z : {-1.0f, -0.9999999f, -1.0000002f}) {
     Matrix m{};
     m[0] = m[5] = 1.0f;

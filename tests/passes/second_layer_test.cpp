@@ -23,10 +23,10 @@ OcclusionSettings of_layers(OcclusionSettings settings, std::uint32_t layers) {
   return settings;
 }
 
-//          _______________   a plate beyond the radius, over
+//          _______________   a plate beyond the radius, above
 //
-//                   _______  a step: from a point of the floor it covers all that is lower than
-//   ____x__________|         its edge
+//                   _______  a step: from a point of the floor it occludes all directions that are
+//   ____x__________|         lower than its edge
 TEST_F(SecondLayer, StepUnderAPlateMatchesTheClosedForm) {
   const TestView view = orthographic_view("orthographic", 4.0, 4.0, 0.1, 20.0);
   const double step = 0.35, height = 0.3, floor = 4.0;
@@ -61,8 +61,8 @@ Scene tilted_and_box() {
   return scene;
 }
 
-// The second layers of this test: the sky, NaN, and the first layer again.
-TEST_F(SecondLayer, SecondLayerChangesNothingWhereNothingIsHidden) {
+// Tests second layers without a hidden surface: the sky, NaN, and a copy of the first layer.
+TEST_F(SecondLayer, SecondLayerWithoutHiddenSurfacesChangesNothing) {
   const Scene scene = tilted_and_box();
   for (const TestView& view : test_views()) {
     SCOPED_TRACE(view.name);
@@ -107,7 +107,7 @@ TEST_F(SecondLayer, SecondLayerNeverBrightens) {
   }
 }
 
-TEST_F(SecondLayer, HorizonsDoNotReadTheSecondLayer) {
+TEST_F(SecondLayer, EstimatorHorizonsIgnoresTheSecondLayer) {
   const Scene scene = tilted_and_box();
   const TestView view = test_views().front();
   const Drawing drawing = draw(view, 60, 40, scene);

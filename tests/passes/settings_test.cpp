@@ -34,7 +34,7 @@ TEST(Settings, OnlyThePresetReferenceChangesAdvancedSettings) {
   }
 }
 
-TEST(Settings, NamesAreUniqueAndHelpIsSentences) {
+TEST(Settings, NamesAreUniqueAndHelpTextsAreSentences) {
   std::set<std::string> names;
   const OcclusionSettings settings;
   for_each_setting(settings, [&](const SettingInfo& info, const auto&) {
@@ -72,7 +72,7 @@ void expect_refused(const SettingInfo& info, Value value) {
   EXPECT_THAT(said, HasSubstr("; it must be " + info.range.text() + "."));
 }
 
-TEST(Settings, StatedRangeIsTheEnforcedRange) {
+TEST(Settings, ValidateEnforcesExactlyTheStatedRange) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   int numbers = 0;
   const OcclusionSettings settings;
@@ -123,7 +123,7 @@ TEST(Settings, StatedRangeIsTheEnforcedRange) {
   EXPECT_EQ(numbers, 17);
 }
 
-TEST(Settings, SlidersOfferOnlyWhatIsAccepted) {
+TEST(Settings, SliderRangesContainOnlyAcceptedValues) {
   const OcclusionSettings settings;
   for_each_setting(settings, [&](const SettingInfo& info, const auto& field) {
     if constexpr (std::is_same_v<std::remove_cvref_t<decltype(field)>, float>) {
@@ -136,7 +136,7 @@ TEST(Settings, SlidersOfferOnlyWhatIsAccepted) {
   });
 }
 
-TEST(Settings, RangesAreStatedInWords) {
+TEST(Settings, RangeTextsSayTheLimitsInWords) {
   EXPECT_EQ((SettingRange{.minimum = 1, .maximum = 64}).text(), "1 to 64");
   EXPECT_EQ((SettingRange{.minimum = 1, .maximum = 4, .power_of_two = true}).text(), "1, 2 or 4");
   EXPECT_EQ((SettingRange{.above_minimum = true}).text(), "above 0 and finite");
@@ -144,7 +144,7 @@ TEST(Settings, RangesAreStatedInWords) {
   EXPECT_EQ((SettingRange{.maximum = 16, .above_minimum = true}).text(), "above 0 and at most 16");
 }
 
-TEST(Settings, FalloffIsRefusedWithEstimatorsThatHaveNone) {
+TEST(Settings, FalloffIsRefusedWithEstimatorsOfFiniteThickness) {
   for (std::size_t i = 0; i < kNames<Estimator>.size(); ++i) {
     OcclusionSettings settings;
     settings.advanced.estimator = static_cast<Estimator>(i);

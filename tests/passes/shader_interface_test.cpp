@@ -1,4 +1,5 @@
-// The interfaces of the embedded shaders, and the errors of passes that do not match them.
+// Tests the interfaces that are read from the embedded shaders, and the errors of passes that do
+// not match them.
 #include "shader_interface.h"
 
 #include <gmock/gmock.h>
@@ -27,7 +28,7 @@ std::vector<Shader> all_shaders() {
   return shaders;
 }
 
-TEST(ShaderInterface, NamesNumbersAndTypesAreThoseOfTheGlslFile) {
+TEST(ShaderInterface, BindingNamesNumbersAndTypesAreThoseOfTheGlslFile) {
   const ShaderInterface found = read_shader_interface(shader_source(Shader::gtso_by_table).code);
   std::vector<std::string> bindings, constants;
   for (const ShaderBinding& binding : found.bindings) {
@@ -50,7 +51,7 @@ TEST(ShaderInterface, NamesNumbersAndTypesAreThoseOfTheGlslFile) {
               ElementsAre("0 kRoughnessTexture", "1 kRoughnessChannel", "2 kNormalEncoding"));
 }
 
-TEST(ShaderInterface, SampledImagesWithASamplerAreToldFromThoseWithout) {
+TEST(ShaderInterface, CombinedImageSamplersAreDistinguishedFromSampledImages) {
   const ShaderInterface found = read_shader_interface(shader_source(Shader::upsample).code);
   for (const ShaderBinding& binding : found.bindings) {
     if (binding.name == "half_image") {
@@ -86,7 +87,7 @@ TEST(ShaderInterface, EveryShaderHasUniqueNumbersKnownTypesAndOneParameterBlock)
 
 class KernelsByName : public PassTest {};
 
-TEST_F(KernelsByName, AConstantWithoutAValueIsNamed) {
+TEST_F(KernelsByName, ConstantWithoutAValueIsReportedByName) {
   const auto kernel = gpu().kernels().get(
       Shader::gtso,
       std::to_array<NamedConstant>(
@@ -97,7 +98,7 @@ TEST_F(KernelsByName, AConstantWithoutAValueIsNamed) {
                         "which its pass gives no value"));
 }
 
-TEST_F(KernelsByName, OrderAndSuperfluousNamesOfConstantsDoNotMatter) {
+TEST_F(KernelsByName, ConstantsMayBeGivenInAnyOrderWithAdditionalNames) {
   const auto ordered = gpu().kernels().get(
       Shader::gtso,
       std::to_array<NamedConstant>(
@@ -111,7 +112,7 @@ TEST_F(KernelsByName, OrderAndSuperfluousNamesOfConstantsDoNotMatter) {
   EXPECT_EQ(ordered->pipeline, shuffled->pipeline);
 }
 
-TEST_F(KernelsByName, ABindingWithoutAViewIsNamed) {
+TEST_F(KernelsByName, BindingWithoutAViewIsReportedByName) {
   const auto kernel = gpu().kernels().get(Shader::linear_depth);
   ASSERT_TRUE(kernel) << kernel.error().message;
   const auto done = gpu().run([&](Graph& graph) -> tl::expected<void, std::string> {

@@ -23,8 +23,8 @@ OcclusionSettings settings_of(Quality quality, float radius, float roughness) {
   return settings;
 }
 
-// Returns the fraction of the lobe at a pixel that meets no surface within the radius, by rays for
-// evenly distributed microfacets that the eye sees.
+// Returns the fraction of the lobe at a pixel that meets no surface within the radius. Rays are
+// cast in the directions that evenly distributed visible microfacets reflect.
 double cast_lobe(const Drawing& drawing, std::uint32_t x, std::uint32_t y, double radius,
                  float roughness) {
   constexpr int kSide = 48;
@@ -68,8 +68,8 @@ double mean_error(const HostImage& specular, const Drawing& drawing, double radi
 
 TEST_F(SpecularSlices, AgreeWithRayCastLobesOnExactSurfaces) {
   const float radius = 1.2f;
-  // Tests a perspective and an orthographic view. Walls and platforms extend as far back as the
-  // estimator assumes.
+  // Tests a perspective and an orthographic view of scenes whose occluders extend as far back as
+  // the estimator assumes.
   for (const TestView& view : {test_views().front(), test_views().back()}) {
     for (const NamedScene& scene : {gtao_scenes()[0], gtao_scenes()[1]}) {
       const Drawing drawing = draw(view, 60, 40, scene.scene);
@@ -114,7 +114,7 @@ TEST_F(SpecularSlices, UnoccludedSurfaceHasSpecularVisibilityOne) {
   }
 }
 
-// The error falls over several frames, because a narrow lobe lies in few slices of one frame.
+// The error decreases over several frames. In a single frame few slices cross a narrow lobe.
 TEST_F(SpecularSlices, ErrorOfNarrowLobesFallsOverFrames) {
   const float radius = 1.2f, roughness = 0.2f;
   const TestView view = test_views().front();

@@ -89,9 +89,9 @@ class Views {
   std::vector<std::unique_ptr<sample::HostBuffer>> results_;
 };
 
-// Returns the messages of the validation layers without a known false one: across command buffers,
-// the layers do not see that a layout change is ordered by the operations for which its barrier's
-// source stages waited. With one thread they do.
+// Returns the messages of the validation layers, except one that is known to be false. If a layout
+// change and the operations that its barrier waits for are in different command buffers, the layers
+// do not see that they are ordered. With one thread they do.
 std::string messages(const sample::Gpu& gpu) {
   std::string text;
   for (const std::string& message : gpu.device().validation_messages()) {

@@ -1,4 +1,5 @@
-// Tests that directions which foregrounds or the image's border hide are excluded from visibility.
+// Tests that directions which a foreground or the image's border hides are excluded from
+// visibility.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -61,8 +62,9 @@ double mean_difference(const HostImage& a, const HostImage& b, std::uint32_t fro
   return sum / count;
 }
 
-// The visible half of a trench must have the visibility of the whole trench.
-TEST_F(UnobservedPass, HiddenHalfOfATrenchIsAssumedEqualToTheVisibleHalf) {
+// A plate hides one half of a trench. Excluding the hidden directions must bring the visibility of
+// the floor at least three times closer to that of the whole trench.
+TEST_F(UnobservedPass, HiddenHalfOfATrenchIsEstimatedFromTheVisibleHalf) {
   for (const TestView& view : two_views()) {
     SCOPED_TRACE(view.name);
     const HostImage truth = visibility(view, draw(view, kWidth, kHeight, trench()), true);
@@ -78,7 +80,7 @@ TEST_F(UnobservedPass, HiddenHalfOfATrenchIsAssumedEqualToTheVisibleHalf) {
   }
 }
 
-TEST_F(UnobservedPass, TrenchIsAssumedToContinueBeyondTheBorder) {
+TEST_F(UnobservedPass, TrenchIsAssumedToContinueBeyondTheImageBorder) {
   for (const TestView& view : two_views()) {
     SCOPED_TRACE(view.name);
     const HostImage truth = visibility(view, draw(view, kWidth, kHeight, trench()), true);
@@ -94,8 +96,8 @@ TEST_F(UnobservedPass, TrenchIsAssumedToContinueBeyondTheBorder) {
   }
 }
 
-// A ball on a floor with a radius wider than the image: occlusion that is visible must not be
-// multiplied.
+// A ball on a floor, with a radius wider than the image. Hardly any direction is observed, and the
+// occlusion that is visible must not be amplified.
 TEST_F(UnobservedPass, WideRadiusExcludesFewDirections) {
   for (const TestView& view : two_views()) {
     SCOPED_TRACE(view.name);
@@ -112,7 +114,7 @@ TEST_F(UnobservedPass, WideRadiusExcludesFewDirections) {
   }
 }
 
-TEST_F(UnobservedPass, BackgroundIsAssumedToContinueBeyondTheBorder) {
+TEST_F(UnobservedPass, BackgroundIsAssumedToContinueBeyondTheImageBorder) {
   for (const TestView& view : two_views()) {
     SCOPED_TRACE(view.name);
     // The scene is half a trench, with nothing beside its floor.
@@ -150,7 +152,7 @@ TEST_F(UnobservedPass, PlaneBesideAForegroundPlateStaysUnoccluded) {
   }
 }
 
-TEST_F(UnobservedPass, SecondLayerMakesHiddenDirectionsObserved) {
+TEST_F(UnobservedPass, DirectionsThatTheSecondLayerShowsAreNotExcluded) {
   const TestView view = two_views()[1];
   Scene covered = trench();
   covered.push_back(plate(0.05));

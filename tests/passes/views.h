@@ -33,8 +33,8 @@ struct PlaneScene {
 PlaneScene plane_scene(const TestView& view, std::uint32_t width, std::uint32_t height,
                        float tilt_degrees);
 
-// Returns the view whose image has `count` of the `width` columns of another one, from column
-// `first` on.
+// Returns a view of a part of `view`'s image: of its `width` columns, the `count` columns from
+// column `first` on.
 TestView columns_of(TestView view, std::uint32_t width, std::uint32_t first, std::uint32_t count);
 
 }  // namespace alcove::passes

@@ -1,5 +1,6 @@
-// A device as an engine of Vulkan 1.2 makes it: the instance asks for 1.2, and of what Vulkan 1.3
-// made core the device has VK_KHR_synchronization2 alone. Runs under the validation layers.
+// A Vulkan device as an engine for Vulkan 1.2 creates it: the instance requests version 1.2, and
+// the device enables VK_KHR_synchronization2, but no other feature that Vulkan 1.3 made core. It
+// runs under the validation layers.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -24,18 +25,18 @@ class Vulkan12Device {
   Vulkan12Device(const Vulkan12Device&) = delete;
   Vulkan12Device& operator=(const Vulkan12Device&) = delete;
 
-  // For one frame in flight, with the functions of vkGetInstanceProcAddr.
+  // Returns the info for a context with one frame in flight and the loader's vkGetInstanceProcAddr.
   AlcoveContextInfo context_info() const;
   AlcoveImage make_image(VkFormat format, std::uint32_t width, std::uint32_t height,
                          VkImageUsageFlags usage);
-  // Records with `record`, submits and waits.
+  // Lets `record` record commands, submits them and waits for them.
   void run(const std::function<void(VkCommandBuffer)>& record);
-  // The bytes of a colour image that is in VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL.
+  // Returns the bytes of a colour image that is in VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL.
   std::vector<unsigned char> read(const AlcoveImage& image, std::uint32_t bytes_per_pixel);
 
   VkInstance instance() const { return instance_; }
   VkDevice device() const { return device_; }
-  // The messages of the validation layers so far.
+  // Returns the messages of the validation layers so far.
   const std::string& messages() const { return messages_; }
 
  private:

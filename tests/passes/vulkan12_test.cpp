@@ -1,5 +1,5 @@
-// Devices of Vulkan 1.2: the passes run where VK_KHR_synchronization2 is enabled, and otherwise a
-// sentence names it.
+// Tests devices of Vulkan 1.2. The passes run if VK_KHR_synchronization2 is enabled; otherwise an
+// error sentence names the extension.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -21,7 +21,8 @@ VKAPI_ATTR void VKAPI_CALL get_properties(VkPhysicalDevice device,
   properties->apiVersion = VK_API_VERSION_1_2;
 }
 
-// The loader's function, except that the physical device reports Vulkan 1.2 instead of 1.3.
+// Returns the loader's functions, except that the physical device reports Vulkan 1.2 instead of
+// 1.3.
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_instance_proc_addr(VkInstance instance,
                                                                 const char* name) {
   return std::strcmp(name, "vkGetPhysicalDeviceProperties") == 0
