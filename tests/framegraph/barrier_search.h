@@ -1,5 +1,5 @@
-// Searches for plans with fewer barrier commands than the compiler's plan. None of them may be
-// valid.
+// Searches for valid plans with fewer barrier commands than the compiler's plan. A test fails if
+// one is found.
 #pragma once
 
 #include <cstdint>
@@ -9,14 +9,14 @@
 namespace alcove::framegraph {
 
 // Returns the plan with barriers only before the positions of a mask. Each barrier is as strong as
-// possible: it covers all stages and accesses, and each layout change of the plan moves to the
-// latest of those positions that is not after its pass. The plan must have one queue and at most 30
-// passes.
+// possible: it covers all stages and accesses, and each layout change of the plan moves to the last
+// of those positions that is not after the pass that needs it. The plan must have one queue and at
+// most 30 passes.
 Plan with_barriers_at(const Plan& plan, std::uint32_t mask);
 
 // Fails the running test if the plan would be valid with one barrier command less, at any
-// positions. Prints the number of commands and of the positions tried. Smaller numbers need no
-// search, because a valid plan stays valid with one command more.
+// positions. Prints the number of commands and of the positions tried. Still smaller numbers need
+// no search: if a plan with fewer commands were valid, it would also be valid with additional ones.
 void expect_no_command_too_many(const char* name, const GraphDescription& graph,
                                 const Limits& limits, const Plan& plan);
 

@@ -14,8 +14,9 @@
 namespace alcove::framegraph {
 namespace {
 
-// The graphs have no transient buffers. A dependency of those on the previous frame could sometimes
-// be met by a barrier of that frame, while the compiler meets it in this one.
+// The graphs have no transient buffers. A transient buffer's dependency on the previous frame could
+// sometimes be met by a barrier of that frame, but the compiler always adds a barrier in the
+// current frame.
 TEST(Barriers, NoPlanWithFewerBarrierCommandsIsValid) {
   Graph graph;
   std::uint32_t tried = 0;
@@ -42,8 +43,8 @@ TEST(Barriers, NoPlanWithFewerBarrierCommandsIsValid) {
   std::cerr << tried << " placements of fewer commands refused\n";
 }
 
-// Each face of a cube, and each of its mips, is written by a pass of its own; one barrier suffices
-// for the pass that reads the cube.
+// Each face of a cube, and each mip of a face, is written by a different pass. One barrier must be
+// enough for the pass that reads the cube.
 TEST(Barriers, LayersAndMipsWithTheSameTransitionShareABarrier) {
   for (const std::uint32_t mips : {1u, 3u}) {
     Graph graph;
@@ -58,8 +59,8 @@ TEST(Barriers, LayersAndMipsWithTheSameTransitionShareABarrier) {
     PassBuilder reader = graph.add_pass("reader");
     reader.read(cube, access::sampled_fragment);
     reader.side_effect();
-    // This pass reads in a later stage. The barrier before the first reader is extended to that
-    // stage.
+    // This pass reads the cube in a later stage. It must not get a second barrier: the barrier
+    // before the first reader is extended to this stage.
     PassBuilder later = graph.add_pass("later");
     later.read(cube, access::sampled_compute);
     later.side_effect();
@@ -85,15 +86,15 @@ TEST(Barriers, ReadAfterReadNeedsNoBarrier) {
   }
   const auto plan = compile(graph);
   ASSERT_TRUE(plan);
-  // One transition for the first use, and one for all readers of both stages.
+  // One transition is for the first use, and one for all readers in both stages.
   EXPECT_EQ(plan->transitions.size(), 2u);
   EXPECT_EQ(plan->transitions[1].dst_stages,
             VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT);
 }
 
-// A stage reads with a second access. Another stage read with that access, either before or after
-// it.
-TEST(Barriers, WriteSeenByOneAccessIsNotSeenByAnotherAccessOfTheStage) {
+// A write has been made visible to access A of stage 1 and to access B of stage 2. Stage 1 then
+// reads with access B, for which the write is not visible yet.
+TEST(Barriers, WriteVisibleToOneAccessIsNotVisibleToAnotherAccessOfTheStage) {
   Graph graph;
   Buffer data = graph.create_buffer("data", {64});
   Buffer other = graph.create_buffer("other", {64});
@@ -105,7 +106,8 @@ TEST(Barriers, WriteSeenByOneAccessIsNotSeenByAnotherAccessOfTheStage) {
     reader.side_effect();
   };
   add_reader(buffer_access::uniform_graphics);
-  // This pass has a barrier of its own between the two, which the second reader joins.
+  // The barrier before this pass comes between the write and the second reader. The second reader's
+  // dependency is added to it.
   PassBuilder fill = graph.add_pass("fill");
   other = fill.write(other, buffer_access::fill);
   PassBuilder mixed = graph.add_pass("mixed");
@@ -142,7 +144,7 @@ class InitialStates : public testing::Test {
   Graph graph_;
 };
 
-TEST_F(InitialStates, WriteSeenByOneStageIsMadeVisibleToAnother) {
+TEST_F(InitialStates, WriteVisibleToOneStageIsMadeVisibleToAnother) {
   for (const Access& initial_state : {access::sampled_compute, access::sampled_fragment}) {
     graph_.reset();
     const Texture texture = import(state_of(initial_state));
@@ -235,7 +237,7 @@ TEST(Barriers, DeferredFrameNeedsAllOfItsBarrierCommands) {
   expect_no_command_too_many("deferred frame", graph.description(), limits, *plan);
 }
 
-TEST(Barriers, WriteAfterReadsThatSawTheLastWriteMakesNothingVisible) {
+TEST(Barriers, WriteAfterReadsNeedsOnlyAnExecutionDependency) {
   Graph graph;
   Texture texture = graph.create_texture("t", {VK_FORMAT_R8_UNORM, Extent::absolute(8, 8)});
   PassBuilder writer = graph.add_pass("writer");

@@ -8,8 +8,8 @@
 
 namespace alcove::framegraph {
 
-// The function of two words that the kernels compute. The model of the frame on the host uses it
-// too.
+// Mixes two words in the same way as the kernels. The model that computes the expected contents on
+// the CPU uses it.
 inline std::uint32_t mix_in(std::uint32_t a, std::uint32_t b) {
   const std::uint32_t x = (a ^ b) * 0x9e3779b1u;
   return x ^ (x >> 15);

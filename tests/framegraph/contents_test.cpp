@@ -1,6 +1,6 @@
-// Random frames on the device. Their passes mix what they read into what they write, some into two
-// textures of which they update one. The contents must be those that a plain model of the frame
-// computes on the host, with transients that share memory and with transients that do not.
+// Tests random frames on the device. Their passes mix what they read into what they write; some
+// passes write two textures and update one of them. The contents must be those that a simple model
+// of the frame computes on the CPU, both if transients share memory and if they do not.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -38,7 +38,7 @@ class FrameMaker {
   FrameMaker(Graph& graph, ChecksumKernels& kernels, const HostBuffer& host, std::uint64_t seed)
       : graph_(graph), kernels_(kernels), host_(host), dice_(seed) {}
 
-  // Declares a frame; afterwards `expected` is what the host buffer must hold.
+  // Declares a frame, and sets `expected` to the contents that the host buffer must have after it.
   void declare() {
     graph_.reset();
     clear();
@@ -299,10 +299,11 @@ struct Way {
   std::uint32_t threads = 1;
 };
 
-// Messages of the layers, without those that are known to be false in version 1.3.239: it does not
-// follow timeline semaphores from one queue to another, and from one command buffer to the next it
-// accepts a layout transition only if its barrier waits for the earlier write directly, not through
-// another barrier. The same barriers in one command buffer pass.
+// Returns the messages of the validation layers, without those that are known to be false in
+// version 1.3.239. That version does not follow timeline semaphores from one queue to another. If a
+// layout change and the write that it waits for are in different command buffers, it also reports a
+// hazard unless the barrier waits for the write directly and not by way of another barrier. The
+// same barriers in one command buffer give no message.
 std::string messages(const Gpu& gpu, const Way& way) {
   const char* between_submits = "vkQueueSubmit2: Hazard";
   const char* between_secondaries = "vkCmdExecuteCommands: Hazard";
@@ -323,8 +324,8 @@ tl::expected<Executor, Errors> make_executor(const Gpu& gpu, const Way& way) {
   options.verify = verify;
   options.check_uses = true;
   DeviceHandles handles = gpu.handles();
-  // One queue takes the role of all three. The submissions and semaphores are those of three
-  // queues.
+  // One queue is used for all three queue classes. Submissions and semaphores are the same as with
+  // three queues.
   if (way.path == Path::submit_to_three) handles.queues[1] = handles.queues[2] = handles.queues[0];
   return Executor::create(handles, options);
 }

@@ -24,7 +24,7 @@ class Cull : public testing::Test {
   Graph graph_;
 };
 
-TEST_F(Cull, UnreadPassesAndTheirTexturesAreCulled) {
+TEST_F(Cull, PassesWithoutReadersAndTheirTexturesAreCulled) {
   const Texture wanted = make("wanted");
   (void)make("unwanted");
   graph_.output(wanted);
@@ -56,7 +56,7 @@ TEST_F(Cull, SideEffectKeepsAPassThatWritesNothing) {
   EXPECT_EQ(result.cull_reasons[1].cull_reason, CullReason::writes_nothing);
 }
 
-TEST_F(Cull, DiscardingWriteMakesEarlierWritesUnread) {
+TEST_F(Cull, WritesBeforeADiscardingWriteAreCulled) {
   Texture texture = make("first");
   texture = write("second", texture, Contents::discard);
   graph_.output(texture);
@@ -101,8 +101,8 @@ TEST_F(Cull, HistoryKeepsItsWriterOnlyIfItIsRead) {
   accumulate.read(history.previous(), access::sampled_compute);
   result = accumulate.write(result, access::storage_write_compute);
   (void)write("remember", history.current);
-  // Nobody needs the result, so that the reader and the writer of the history no longer keep each
-  // other alive.
+  // Nobody needs the result. The pass that reads the history and the pass that writes it need only
+  // each other, so that both are culled.
   EXPECT_EQ(plan().passes.size(), 0u);
   graph_.output(result);
   const Plan kept = plan();
@@ -111,7 +111,7 @@ TEST_F(Cull, HistoryKeepsItsWriterOnlyIfItIsRead) {
   EXPECT_EQ(kept.cull_reasons[1].consumer, 0u);
 }
 
-TEST_F(Cull, UpdateInPlaceIsKeptIfTheHistoryIsRead) {
+TEST_F(Cull, InPlaceUpdateOfAHistoryIsNotCulledIfTheHistoryIsRead) {
   const TextureHistory history = graph_.create_texture_history("h", kDesc);
   (void)write("remember", history.current);
   Texture result = graph_.create_texture("result", kDesc);
@@ -128,13 +128,13 @@ TEST_F(Cull, UpdateInPlaceIsKeptIfTheHistoryIsRead) {
   EXPECT_EQ(kept.cull_reasons[2].consumer, 1u);
 }
 
-// A pass that updates `acc` and writes a second texture. Only the second texture is an output:
+// A pass updates `acc` and writes a second texture. Only the second texture is an output:
 //
 //   clear -> acc -> update -> acc (unread)
 //                     +----> second -> output
 class CullUpdate : public Cull {
  protected:
-  // Returns the plan of that frame with these accesses to `acc`.
+  // Returns the plan of the frame above. The arguments are the accesses of the two passes to `acc`.
   Plan plan_of_update(const Access& clear, Contents cleared, Need need, const Access& update) {
     TextureDesc desc = kDesc;
     if (update.usage & VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT)
@@ -172,7 +172,7 @@ TEST_F(CullUpdate, DepthTestKeepsTheDepthPrepass) {
                              access::depth_attachment));
 }
 
-TEST_F(CullUpdate, OptionalOutputIsLiveWhenOnlyAnUpdateReadsIt) {
+TEST_F(CullUpdate, OptionalWriteIsNotCulledIfOnlyAnUpdateReadsIt) {
   expect_both(plan_of_update(access::storage_write_compute, Contents::keep, Need::optional,
                              access::storage_read_write_compute));
 }
@@ -187,7 +187,8 @@ TEST_F(CullUpdate, PartialWriteThatReadsNothingDoesNotKeepTheProducer) {
 TEST_F(CullUpdate, VerifierRefusesAPlanWithoutTheProducerOfWhatAnUpdateReads) {
   Plan result = plan_of_update(access::clear, Contents::discard, Need::required,
                                access::storage_read_write_compute);
-  // This plan is of the same frame with an update that does not read, so that nothing clears `acc`.
+  // This plan is that of the same frame with an update that does not read `acc`, so that the clear
+  // is culled.
   const GraphDescription& description = graph_.description();
   GraphDescription not_reading = description;
   not_reading.accesses[1].access = access::storage_write_compute.access;

@@ -1,7 +1,8 @@
-// A deferred frame as engines have it: a g-buffer of five textures, light tiles, occlusion and its
+// A deferred frame of a typical engine: a g-buffer of five textures, light tiles, occlusion and its
 // blur at half resolution, lighting, temporal antialiasing, a bloom chain of 6 mips down and up
-// again, tonemapping. 24 transients and the imported back buffer. At 1080p, with sizes in whole
-// pages of 64 KiB as devices have them, they sum to 112.4 MiB, and 80.0 MiB are live at once.
+// again, and tonemapping. It has 24 transients and an imported back buffer. At 1080p, with sizes
+// rounded up to the pages of 64 KiB that devices use, the transients sum to 112.4 MiB, and at most
+// 80.0 MiB are live at once.
 #pragma once
 
 #include "alcove/framegraph/compile.h"

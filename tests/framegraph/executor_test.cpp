@@ -40,8 +40,8 @@ class ExecutorTest : public testing::Test {
   Gpu gpu_;
 };
 
-// Declares a chain of clears into textures that share memory. Each is copied out before the next
-// clear.
+// Declares a chain of passes that clear textures which share memory. Each texture is copied out
+// before the next is cleared.
 void declare_chain(Graph& graph, const HostBuffer& host, std::uint32_t length) {
   graph.reset();
   Buffer out = graph.import_buffer("out", Gpu::imported(host));
@@ -60,9 +60,9 @@ void declare_chain(Graph& graph, const HostBuffer& host, std::uint32_t length) {
   }
 }
 
-// Several graphs run in turn on one executor. Each is compiled once if the cache has room for all
-// plans.
-TEST_F(ExecutorTest, PlansOfAlternatingGraphsAreKept) {
+// Several graphs run in turn on one executor. If the cache has room for the plans of all of them,
+// each graph is compiled once.
+TEST_F(ExecutorTest, PlansOfAlternatingGraphsStayInTheCache) {
   for (const std::uint32_t graphs : {60u, 3u}) {
     ExecutorOptions options;
     if (graphs == 3) options.cached_plans = 2;
@@ -96,7 +96,7 @@ TEST_F(ExecutorTest, TransientsThatShareMemoryKeepTheirContents) {
   }
 }
 
-TEST_F(ExecutorTest, UndeclaredUseIsReportedWhereUsesAreChecked) {
+TEST_F(ExecutorTest, UndeclaredUseIsReportedIfUsesAreChecked) {
   ExecutorOptions options;
   options.check_uses = true;
   Executor executor = make(options);
@@ -116,7 +116,7 @@ TEST_F(ExecutorTest, UndeclaredUseIsReportedWhereUsesAreChecked) {
   EXPECT_THAT(report.error()[0].message, testing::HasSubstr("'nosy' uses 'secret'"));
 }
 
-// A pass declares the second of the four mips of a texture.
+// The pass declares only the second of the texture's four mips.
 TEST_F(ExecutorTest, ViewsOutsideOfTheDeclaredRangeAreRefused) {
   struct Case {
     Range range;
@@ -185,9 +185,9 @@ TEST_F(ExecutorTest, LimitsAreThoseOfTheDevice) {
   EXPECT_LE(executor.limits().max_samples, 64u);
 }
 
-// A texture that the device cannot create is refused with a sentence. Others run without a
-// validation message.
-TEST_F(ExecutorTest, MultisampledTexturesThatTheDeviceCannotMakeAreRefused) {
+// Textures that the device cannot create are refused with a sentence that says why. The others run
+// without a validation message.
+TEST_F(ExecutorTest, MultisampledTexturesThatTheDeviceCannotCreateAreRefused) {
   struct Case {
     VkFormat format;
     VkSampleCountFlagBits samples;
@@ -228,8 +228,8 @@ TEST_F(ExecutorTest, MultisampledTexturesThatTheDeviceCannotMakeAreRefused) {
   }
 }
 
-// Returns the functions of a Vulkan 1.2 device with VK_KHR_synchronization2, whose functions have
-// the suffix KHR.
+// Returns the functions of a Vulkan 1.2 device with VK_KHR_synchronization2: the functions that
+// Vulkan 1.3 made core are only found with the suffix KHR.
 PFN_vkVoidFunction VKAPI_CALL get_device_proc_addr_1_2(VkDevice device, const char* name) {
   for (const char* core :
        {"vkCmdPipelineBarrier2", "vkQueueSubmit2", "vkCmdWriteTimestamp2", "vkCmdBeginRendering",
@@ -293,8 +293,8 @@ TEST_F(ExecutorTest, Vulkan12WithSynchronization2Suffices) {
                                  "vkCmdBeginRendering"));
 }
 
-// Declares a transient without a device address, then one with an address in the same heap, then a
-// history.
+// Declares in turn a transient without a device address, a transient with an address in the same
+// heap, and a history.
 TEST_F(ExecutorTest, BuffersWithADeviceAddressHaveMemoryForIt) {
   VkPhysicalDeviceVulkan12Features v12{};
   v12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
@@ -357,9 +357,10 @@ TEST_F(ExecutorTest, ReplacedResourcesCountAsAllocatedUntilTheyAreFreed) {
   const VkDeviceSize before = allocated(resized, 64);
   const VkDeviceSize after = allocated(large, 128);
   EXPECT_GT(before, 0u);
-  // While the second frame is recorded, the executor does not yet know that the first has finished.
+  // While the second frame is recorded, the executor does not yet know that the first frame has
+  // finished.
   EXPECT_EQ(allocated(resized, 128), before + after);
-  // The old history was kept as long as the frame that replaced it could be discarded. Now it is
+  // The old history was kept while the frame that replaced it could still be discarded. Now it is
   // freed.
   EXPECT_GT(allocated(resized, 128), allocated(large, 128));
   EXPECT_EQ(allocated(resized, 128), allocated(large, 128));
@@ -397,8 +398,8 @@ class FailingDeviceTest : public ExecutorTest {
   DeviceHandles handles_;
 };
 
-// Makes each creating call fail in turn: the frame then returns an error, the next frame runs, and
-// nothing leaks.
+// Makes each call that creates an object fail in turn. The frame must then return an error, the
+// next frame must run, and nothing may leak.
 void FailingDeviceTest::expect_out_of_memory_anywhere_is_an_error(std::uint32_t threads) {
   ExecutorOptions options;
   options.recording_threads = threads;
@@ -439,8 +440,8 @@ TEST_F(FailingDeviceTest, RunningOutOfMemoryInAnyThreadIsAnErrorAndLeaksNothing)
   expect_out_of_memory_anywhere_is_an_error(2);
 }
 
-// The device is lost at each submission in turn. Every later call returns an error, and nothing
-// leaks.
+// Loses the device at each submission in turn. Every later call must return an error, and nothing
+// may leak.
 TEST_F(FailingDeviceTest, LosingTheDeviceIsAnErrorAndLeaksNothing) {
   handles_.queues[1] = handles_.queues[0];
   int lost = 0;

@@ -1,15 +1,15 @@
-// Wraps a device: its creating calls can be made to fail, it can be lost, and objects that are not
-// destroyed are counted.
+// Wraps a device for tests: calls that create objects can be made to fail, the device can be lost,
+// and objects that were not destroyed are counted.
 #pragma once
 
 #include <vulkan/vulkan.h>
 
 namespace alcove::framegraph::failing {
 
-// Makes the creating call with this number, counted from 1, fail with
-// VK_ERROR_OUT_OF_DEVICE_MEMORY. 0: none fails.
+// Makes a call that creates an object fail with VK_ERROR_OUT_OF_DEVICE_MEMORY: the call with this
+// number, counted from 1 from now on. 0: none fails.
 void fail_at(int call);
-// Returns the number of creating calls since fail_at().
+// Returns the number of calls that create objects since fail_at().
 int calls();
 // Makes the device lost, or not lost any more. While it is lost, submissions and waits return
 // VK_ERROR_DEVICE_LOST.

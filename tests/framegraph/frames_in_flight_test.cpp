@@ -1,4 +1,4 @@
-// Tests of consecutive frames between which the host does not wait.
+// Tests consecutive frames between which the CPU does not wait for the GPU.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -48,8 +48,8 @@ class FramesInFlight : public testing::Test {
     vkEndCommandBuffer(commands_.at(slot));
     return report;
   }
-  // Records and submits a frame. The slot's previous frame has finished; this frame may still be
-  // running when the function returns.
+  // Records and submits a frame. The slot's previous frame must have finished; this frame may still
+  // be running when the function returns.
   void run(Executor& executor, Graph& graph, std::uint32_t slot) {
     const auto report = record(executor, graph, slot);
     ASSERT_TRUE(report) << to_string(report.error());
@@ -77,7 +77,7 @@ void add_clear(Graph& graph, Texture& texture, const char* name = "clear") {
   });
 }
 
-// Returns an import of the buffer, into which the previous frame copied.
+// Returns an import of the buffer whose last use was a copy by the previous frame.
 ImportedBuffer arriving(const HostBuffer& host) {
   ImportedBuffer import = Gpu::imported(host);
   import.initial_state = {VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
@@ -106,8 +106,9 @@ void declare(Graph& graph, std::uint32_t size) {
   graph.output(texture);
 }
 
-// One plan ends with a write of the texture and the other with a read, so that each finds the
-// texture in another state than it leaves it in. Validation covers both submissions.
+// Two plans alternate. One ends with a write of the texture and the other with a read, so that each
+// frame finds the texture in another state than the one in which it leaves it. The validation
+// layers check both submissions.
 TEST_F(FramesInFlight, FramesOfDifferentPlansNeedNoWait) {
   Executor executor = make();
   const HostBuffer host = gpu_.make_host_buffer(4);
@@ -130,9 +131,10 @@ TEST_F(FramesInFlight, FramesOfDifferentPlansNeedNoWait) {
   wait();
 }
 
-// An image is read by one stage of the frame, and later, in the same layout, by a stage of the
-// caller's commands. The next frame waits for the latter only.
-TEST_F(FramesInFlight, FinalStateComesAfterTheReadsOfTheFrame) {
+// An image is read by one stage of the frame, and later, in the same layout, by another stage in
+// the caller's own commands. The next frame waits only for the caller's stage, so that the frame
+// must order its own reads before the final state.
+TEST_F(FramesInFlight, FinalStateIsOrderedAfterTheReadsOfTheFrame) {
   Executor executor = make();
   const HostBuffer host = gpu_.make_host_buffer(4);
   const TextureDesc desc{VK_FORMAT_R32_UINT, Extent::absolute(16, 16)};
@@ -157,8 +159,8 @@ TEST_F(FramesInFlight, FinalStateComesAfterTheReadsOfTheFrame) {
   wait();
 }
 
-// A frame that never runs does not show that earlier frames have finished.
-TEST_F(FramesInFlight, RefusedOrDiscardedFrameFreesNothingThatMayBeInUse) {
+// The executor must not conclude from a frame that never runs that earlier frames have finished.
+TEST_F(FramesInFlight, RefusedOrDiscardedFrameFreesNoMemoryThatMayBeInUse) {
   Executor executor = make();
   Graph graph;
   declare(graph, 4);
@@ -168,7 +170,7 @@ TEST_F(FramesInFlight, RefusedOrDiscardedFrameFreesNothingThatMayBeInUse) {
   wait();  // the executor does not know of this wait
   const int alive = failing::alive();
   for (const bool refused : {true, false, true}) {
-    // The frame of slot 0 has finished. That of slot 1 may still be running.
+    // The frame of slot 0 has finished. The frame of slot 1 may still be running.
     declare(graph, refused ? 0 : 64);
     EXPECT_EQ(record(executor, graph, 0).has_value(), !refused);
     if (!refused) executor.discard(graph, {0});
@@ -180,7 +182,7 @@ TEST_F(FramesInFlight, RefusedOrDiscardedFrameFreesNothingThatMayBeInUse) {
   wait();
 }
 
-TEST_F(FramesInFlight, PassThatCannotBeRecordedFailsTheFrame) {
+TEST_F(FramesInFlight, FrameFailsIfOneOfItsPassesCannotBeRecorded) {
   Executor executor = make();
   Graph graph;
   PassBuilder pass = graph.add_pass("poor");

@@ -1,6 +1,6 @@
-// Compiles and verifies random graphs. rapidcheck prints the seed of the run, which
-// RC_PARAMS="seed=..." replays. RC_PARAMS="max_success=..." sets how often a property runs, as the
-// soak tests do.
+// Compiles random graphs and verifies their plans. rapidcheck prints the seed of the run, and
+// RC_PARAMS="seed=..." replays it. RC_PARAMS="max_success=..." sets how often a property is tested;
+// the soak tests use it.
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
@@ -18,12 +18,14 @@ namespace {
 constexpr std::uint64_t kGraphsPerRun = 100;
 constexpr std::uint64_t kProgress = 25'000;  // graphs between two lines of progress
 
-// Returns a seed from the whole range. rapidcheck's own integers begin with small values.
+// Returns a seed from the whole range of integers, because rapidcheck's own integers start with
+// small values.
 std::uint64_t any_seed() {
   return *rc::gen::noShrink(rc::gen::resize(rc::kNominalSize, rc::gen::arbitrary<std::uint64_t>()));
 }
 
-// Verifies the plans of a sequence of graphs that share their histories.
+// Compiles and verifies a sequence of frames of one graph, whose histories continue from frame to
+// frame.
 void expect_verified(const RandomOptions& options, const Limits& limits) {
   static std::uint64_t graphs = 0;
   const std::uint64_t seed = any_seed();
@@ -69,7 +71,7 @@ RC_GTEST_PROP(Fuzz, EveryPlanOverQueuesOfOneFamilyIsVerified, ()) {
   expect_verified(on_all_queues(), with_families(0, 0, 0));
 }
 
-RC_GTEST_PROP(Fuzz, GraphsForSeveralQueuesRunOnOne, ()) {
+RC_GTEST_PROP(Fuzz, GraphsForSeveralQueuesCompileForOneQueue, ()) {
   expect_verified(on_all_queues(), with_families(0, kNone, kNone));
 }
 

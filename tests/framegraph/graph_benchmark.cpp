@@ -1,18 +1,19 @@
-// Measures declaring and compiling, by number of passes: a program, not a test.
+// Measures the time of declaring and compiling frames. It is a program and not a test.
 //
-// chain: each pass reads what the one before wrote and writes a texture of its own.
-// random: each pass reads two of the last 32 textures.
-// Prints the median over many runs, in nanoseconds of processor time a pass, of
-//   setup    declaring a frame unlike the one before
-//   compile  Compiler::compile, everything it needs already allocated
-//   steady   declaring the same frame again and finding its plan: what a frame costs as a rule
-// and the allocations of a steady frame, counted by replacing operator new.
+// For each number of passes and each of two shapes (chain: each pass reads what the previous one
+// wrote and writes its own texture; random: each pass reads two of the last 32 textures), it prints
+// the median over many runs, in nanoseconds of processor time per pass:
+//   setup    declaring a frame that differs from the previous one
+//   compile  Compiler::compile with all working memory already allocated
+//   steady   declaring the same frame again and finding its plan, which is the usual cost of a
+//   frame
+// and the number of allocations of a steady frame, counted by replacing operator new.
 //
-// Then what a frame costs whose declaration changes, in milliseconds, with the memory peak over the
-// lower bound (the most bytes live at once) beside it:
-//   all sizes  each frame has textures of other sizes
-//   one size   one texture changes its size from frame to frame, as with dynamic resolution
-// And how long verify() takes for the plans of `random`.
+// Then it prints the cost in milliseconds of a frame whose declaration changes, with the ratio of
+// the memory peak to the lower bound (the most bytes live at once):
+//   all sizes  all textures change their size in each frame
+//   one size   one texture changes its size in each frame, as with dynamic resolution
+// Finally, it prints how long verify() takes for the plans of `random`.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -72,8 +73,8 @@ double median(std::vector<double>& values) {
   return values[values.size() / 2];
 }
 
-// Returns the processor time of one call, as a mean over many calls. Other programs do not affect
-// it, and many calls are needed because the clock is coarse.
+// Returns the processor time of one call, as a mean over many calls, because the clock is coarse.
+// Other programs hardly affect processor time.
 template <typename Function>
 double time_ns(int repeats, Function&& f) {
   const std::clock_t start = std::clock();
@@ -120,8 +121,8 @@ void measure(Shape shape, std::uint32_t passes) {
               passes);
 }
 
-// Declares passes that each write one texture of random size and read up to three of the last 16.
-// No pass is culled.
+// Declares passes that each write one texture of random size and read up to three of the last 16
+// textures. No pass is culled.
 void declare_sizes(Graph& graph, std::uint64_t seed, std::uint32_t passes, std::uint32_t width) {
   graph.reset();
   Dice dice(seed);

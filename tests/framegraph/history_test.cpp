@@ -9,7 +9,8 @@
 namespace alcove::framegraph {
 namespace {
 
-// A frame that may write its number into the history and may read the older slots out to the host.
+// One frame of a test. It can write its number into the history, and can copy the older slots to
+// host memory.
 struct Frame {
   std::uint32_t value = 0;
   bool writes = true;
@@ -99,8 +100,8 @@ class GraphHistory : public testing::Test {
     return out;
   }
 
-  // Copies a slot with other accesses, usages and layouts to a texture, and the texture to the
-  // host.
+  // Copies a slot to a texture with a compute kernel, and the texture to host memory. The accesses,
+  // usages and layouts differ from those of a copy.
   Buffer read_by_kernel(Texture texture, Buffer out, std::uint32_t age) {
     Texture zero = graph_->create_texture("zero", {VK_FORMAT_R32_UINT, Extent::absolute(1, 1)});
     zero = write(zero, 0);
@@ -153,7 +154,7 @@ TEST_F(GraphHistory, SlotsHoldThePreviousFrames) {
   }
 }
 
-TEST_F(GraphHistory, FrameThatDoesNotWriteLeavesTheSlotsInPlace) {
+TEST_F(GraphHistory, FrameThatDoesNotWriteDoesNotRotateTheSlots) {
   run({1});
   run({2});
   run({0, false});
@@ -164,7 +165,7 @@ TEST_F(GraphHistory, FrameThatDoesNotWriteLeavesTheSlotsInPlace) {
   EXPECT_EQ(slot(2), 1u);
 }
 
-TEST_F(GraphHistory, FrameThatCullsTheWriterLeavesTheSlotsInPlace) {
+TEST_F(GraphHistory, FrameThatCullsTheWriterDoesNotRotateTheSlots) {
   run({1});
   run({2});
   run({9, true, false});
@@ -173,7 +174,7 @@ TEST_F(GraphHistory, FrameThatCullsTheWriterLeavesTheSlotsInPlace) {
   EXPECT_EQ(slot(2), 1u);
 }
 
-TEST_F(GraphHistory, UpdateOfAnOlderSlotLeavesTheSlotsInPlace) {
+TEST_F(GraphHistory, UpdateOfAnOlderSlotDoesNotRotateTheSlots) {
   run({1});
   run({2});
   run({.value = 5, .in_place = true});
@@ -189,7 +190,7 @@ TEST_F(GraphHistory, UpdateOfAnOlderSlotLeavesTheSlotsInPlace) {
   EXPECT_EQ(slot(2), 6u);
 }
 
-TEST_F(GraphHistory, FrameWithoutTheHistoryKeepsIt) {
+TEST_F(GraphHistory, FrameThatDoesNotDeclareTheHistoryKeepsIt) {
   run({1});
   graph_->reset();
   ASSERT_TRUE(gpu_.run(*executor_, *graph_));
@@ -222,7 +223,7 @@ TEST_F(GraphHistory, ResetInvalidatesTheHistoryWithAReason) {
   EXPECT_EQ(slot(2), kNothing);
 }
 
-TEST_F(GraphHistory, DiscardedFrameLeavesNoTrace) {
+TEST_F(GraphHistory, DiscardedFrameDoesNotChangeTheHistory) {
   run({.value = 1});
   run({.value = 99, .discarded = true});
   run({.value = 2});
@@ -238,7 +239,7 @@ TEST_F(GraphHistory, DiscardedFrameLeavesNoTrace) {
   EXPECT_EQ(slot(1), 3u);
 }
 
-TEST_F(GraphHistory, DiscardedFrameOfAnotherSizeOrAfterAResetLeavesNoTrace) {
+TEST_F(GraphHistory, DiscardedResizeOrResetDoesNotChangeTheHistory) {
   run({.value = 1});
   run({.value = 2});
   const VkDeviceSize bytes = history_bytes_;
@@ -262,7 +263,7 @@ TEST_F(GraphHistory, DiscardedFrameOfAnotherSizeOrAfterAResetLeavesNoTrace) {
   EXPECT_EQ(slot(2), kNothing);
 }
 
-TEST_F(GraphHistory, DiscardedFrameOfAnotherSizeIsNotRecordedAgain) {
+TEST_F(GraphHistory, DiscardedFrameOfAnotherSizeMustBeDeclaredAgain) {
   run({.value = 1});
   run({.value = 2, .discarded = true});
   EXPECT_TRUE(gpu_.run(*executor_, *graph_)) << "all is as it was declared";
@@ -311,7 +312,7 @@ TEST_F(GraphHistory, ContentsSurviveAChangeOfAccess) {
 }
 
 // The frame is recorded several times into one command buffer without being declared again. Each
-// record continues from the histories that the previous one left.
+// recording continues from the histories that the previous one left.
 TEST_F(GraphHistory, OneDeclarationCanBeRecordedSeveralTimesIntoOneCommandBuffer) {
   ExecutorOptions options;
   options.frames_in_flight = 3;
@@ -344,8 +345,8 @@ TEST_F(GraphHistory, OneDeclarationCanBeRecordedSeveralTimesIntoOneCommandBuffer
   EXPECT_EQ(slot(2), 1u);
 }
 
-// The contents of the histories are lost with the first executor.
-TEST_F(GraphHistory, GraphWhoseExecutorIsGoneBeginsWithoutHistories) {
+// A graph moves to a new executor: the contents of its histories were lost with the first executor.
+TEST_F(GraphHistory, GraphMovedToANewExecutorStartsWithoutHistoryContents) {
   run({1});
   run({2});
   EXPECT_EQ(slot(1), 1u);

@@ -112,8 +112,8 @@ class Mutator {
     return false;
   }
 
-  // Moves a resource to the memory of another one that is live at the same time, and beyond the end
-  // of its heap.
+  // Makes mutants that move a resource to the memory of another one that is live at the same time,
+  // and a mutant that moves it beyond the end of its heap.
   void collide(std::uint32_t resource) {
     const Placement& placement = plan_.placements[resource];
     if (placement.heap == kNone) return;

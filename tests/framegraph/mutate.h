@@ -1,4 +1,5 @@
-// Makes all mutants of a valid plan: each has one harmful change, which the verifier must find.
+// Makes all mutants of a valid plan. A mutant is the plan with one harmful change, which the
+// verifier must find.
 #pragma once
 
 #include <functional>

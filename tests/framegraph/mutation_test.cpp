@@ -1,5 +1,5 @@
 // Tests that the verifier refuses mutants of valid plans. A mutant that it accepts must be harmless
-// according to the path oracle, which searches for each ordering separately.
+// according to the path oracle (path_oracle.h), which searches for each ordering separately.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -36,8 +36,8 @@ std::uint32_t killed(const Counts& counts) {
   return sum;
 }
 
-// Tests the mutants of `graphs` random graphs. Each mutant that the verifier accepts must be
-// harmless according to the oracle.
+// Tests the mutants of the plans of `graphs` random graphs. Each mutant that the verifier accepts
+// must be harmless according to the oracle.
 Counts mutate_graphs(std::uint64_t graphs, const RandomOptions& options, const Limits& limits) {
   Counts counts;
   Graph graph;
@@ -68,8 +68,8 @@ Counts mutate_graphs(std::uint64_t graphs, const RandomOptions& options, const L
   return counts;
 }
 
-// Fails for accepted mutants of other kinds than those listed, whose change is redundant with
-// something else in the plan.
+// Fails for accepted mutants of kinds that are not listed. Mutants of the listed kinds may be
+// accepted if something else in the plan meets the same dependency.
 void expect_harmless_only(const Counts& counts, std::initializer_list<const char*> kinds) {
   for (const auto& [kind, count] : counts) {
     const bool may =
@@ -79,8 +79,8 @@ void expect_harmless_only(const Counts& counts, std::initializer_list<const char
 }
 
 // Checks that the oracle can find faults at all: it must refuse most of the mutants that the
-// verifier refuses for an ordering. The exceptions are transitions that were removed completely,
-// with their layouts and owners, which the oracle does not check.
+// verifier refuses because of an ordering. Exceptions are mutants in which a whole transition was
+// removed, because the oracle does not check layouts and owners.
 void expect_agreement(const Counts& counts) {
   for (const auto& [kind, count] : counts) {
     if (!kind.starts_with("narrow")) continue;
@@ -100,7 +100,8 @@ Counts mutate_graphs_of_several_queues(const Limits& limits) {
   RandomOptions options;
   options.queues = true;
   const Counts counts = mutate_graphs(200, options, limits);
-  // A dependency may be met twice, for example by a barrier and by way of a third queue.
+  // These mutants may be harmless, because a dependency may be met twice, for example by a barrier
+  // and by way of a third queue.
   expect_harmless_only(counts,
                        {"drop a barrier", "drop a semaphore", "drop a wait for the frame before"});
   EXPECT_GT(counts.at("drop a wait for the frame before").killed, 50u);
@@ -124,8 +125,8 @@ TEST(Mutation, VerifierRefusesHarmfulMutantsOfQueuesOfOneFamily) {
 }
 
 //        +-> b -> left  --+
-//   a ---+                +--> end         b and c live together,
-//        +-> c -> right --+                and so do left and right.
+//   a ---+                +--> end         b and c are live at the same time,
+//        +-> c -> right --+                and so are left and right.
 struct Diamond {
   Graph graph;
   Texture a, b, c, left, right, end;
@@ -148,7 +149,7 @@ struct Diamond {
   }
 };
 
-TEST(Mutation, TexturesThatLiveTogetherInADiamondShareNoMemory) {
+TEST(Mutation, TexturesLiveAtTheSameTimeInADiamondShareNoMemory) {
   Diamond diamond;
   const GraphDescription& description = diamond.graph.description();
   const auto plan = compile(diamond.graph);

@@ -9,10 +9,10 @@
 namespace alcove::framegraph {
 namespace {
 
-// The stages that an operation's effects have reached.
+// The stages whose next commands an operation's effects have reached.
 struct Spread {
-  // For each queue: the stages that come after the operation, and those for which its writes are
-  // also available.
+  // For each queue: the stages whose next commands come after the operation, and the stages for
+  // which its writes are also available.
   VkPipelineStageFlags2 after[kQueueClasses] = {};
   VkPipelineStageFlags2 available[kQueueClasses] = {};
 };
@@ -67,8 +67,8 @@ class Oracle {
            (x.resource != y.resource && overlap(x.resource, y.resource));
   }
 
-  // Returns whether an operation other than an unordered write with that access uses y's
-  // subresource in between.
+  // Returns whether the subresource of y is used between x and y by an operation other than an
+  // unordered write with the same access.
   bool is_between(std::size_t x_index, std::size_t y_index) const {
     const Operation& y = trace_.operations[y_index];
     for (std::size_t i = x_index + 1; i < y_index; ++i) {
@@ -87,9 +87,9 @@ class Oracle {
     return overlap(outer, inner) && x.offset <= y.offset && x.offset + x.size >= y.offset + y.size;
   }
 
-  // Returns whether an operation between the two replaces `x` as the one that `y` must follow: a
-  // write to the same subresource, a read if `y` writes, or another resource that took all the
-  // bytes.
+  // Returns whether an operation between the two takes the place of `x`, so that `y` only has to
+  // follow that operation: a write to the same subresource, a read if `y` writes, or another
+  // resource that took all the bytes.
   bool superseded(std::size_t x_index, std::size_t y_index) const {
     const Operation& x = trace_.operations[x_index];
     const Operation& y = trace_.operations[y_index];
@@ -107,12 +107,13 @@ class Oracle {
     return t.resource == kNone || t.resource == o.resource || overlap(t.resource, o.resource);
   }
 
-  // Returns whether a path leads from x to y, starting at each stage of x.
+  // Returns whether from each stage of x a path of barriers and semaphores leads to y.
   bool ordered(std::size_t x_index, std::size_t y_index) const {
     const Operation& x = trace_.operations[x_index];
     const Operation& y = trace_.operations[y_index];
     const bool same = x.resource == y.resource && x.sub == y.sub;
-    // The accesses of y that must see the writes of x. Without any, y only has to come after x.
+    // The accesses of y to which the writes of x must be visible. If there are none, y only has to
+    // come after x.
     VkAccessFlags2 sees = 0;
     if (x.writes && same && y.change == nullptr && !superseded(x_index, y_index)) sees = y.access;
     if (x.change) return Walk(*this, x_index, 0).reaches(y, sees);

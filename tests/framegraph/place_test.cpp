@@ -40,7 +40,7 @@ TEST(Place, EstimateMatchesTheTexelSizeOfTheFormat) {
   }
 }
 
-TEST(Place, DeferredFrameMeetsItsLowerBound) {
+TEST(Place, PeakMemoryOfADeferredFrameEqualsItsLowerBound) {
   Graph graph;
   declare_deferred_frame(graph, 1920, 1080);
   Limits limits;
@@ -63,8 +63,8 @@ TEST(Place, DeferredFrameMeetsItsLowerBound) {
             << " barriers\n";
 }
 
-// Declares `fewest` to 2 * `fewest` passes, each with up to three reads and two new textures of
-// random size.
+// Declares a random number of passes between `fewest` and 2 * `fewest`. Each reads up to three
+// textures and writes two new ones of random size.
 void declare_sizes(Graph& graph, Dice& dice, std::uint32_t fewest = 20) {
   std::vector<Texture> textures;
   const std::uint32_t passes = fewest + dice.roll(fewest + 1);
@@ -85,8 +85,8 @@ void declare_sizes(Graph& graph, Dice& dice, std::uint32_t fewest = 20) {
           {VK_FORMAT_R8_UNORM, Extent::absolute(1 + dice.roll(2048), 1 + dice.roll(1080))});
       textures.push_back(pass.write(texture, access::storage_write_compute));
     }
-    // Each pass writes an import of its own, so that it is not culled and no two passes are ordered
-    // by it.
+    // Each pass also writes its own import. No pass is therefore culled, and the imports do not
+    // order the passes.
     const Buffer kept = graph.import_buffer("kept", {.buffer = fake_handle<VkBuffer>(i),
                                                      .desc = {4},
                                                      .usage = ~VkBufferUsageFlags{0},
@@ -96,8 +96,8 @@ void declare_sizes(Graph& graph, Dice& dice, std::uint32_t fewest = 20) {
   }
 }
 
-// Checks the ratio of peak to lower bound over 1,000 graphs: the median and the 99th percentile
-// must be at most these values.
+// Computes the ratio of memory peak to lower bound for 1,000 random graphs. Checks that its median
+// and its 99th percentile are at most these values.
 void expect_close_to_bound(std::uint32_t fewest_passes, std::int64_t effort, double median,
                            double percentile) {
   std::vector<double> ratios;
@@ -132,7 +132,7 @@ TEST(Place, PeakMemoryOf40To80PassesIsCloseToTheLowerBound) {
 TEST(Place, PeakMemoryOf100To200PassesIsCloseToTheLowerBound) {
   expect_close_to_bound(100, kDefaultEffort, 1.03, 1.15);
 }
-TEST(Place, MoreEffortComesWithinTwoPercentOfTheLowerBound) {
+TEST(Place, LargerPlacementEffortComesWithinTwoPercentOfTheLowerBound) {
   expect_close_to_bound(20, 1 << 24, 1.0, 1.02);
 }
 
@@ -162,8 +162,8 @@ TEST(Place, DifferentMemoryTypesGetSeparateHeaps) {
   EXPECT_TRUE(verify(graph.description(), limits, *plan));
 }
 
-// Compares the final peaks of both orders over frames with different memory requirements and
-// queues.
+// Compares the final peaks of the declared order and of the compiler's other order, over random
+// frames with these memory requirements and queues.
 void expect_no_higher_peak(const Limits& limits, bool queues) {
   std::uint32_t reordered = 0;
   Graph graph;

@@ -35,7 +35,7 @@ TEST_F(Print, TextShowsPassesBarriersCullingAndMemory) {
   EXPECT_THAT(text, HasSubstr("<bloom down#"));
 }
 
-TEST_F(Print, TextFitsAScreenInWidth) {
+TEST_F(Print, TextLinesFitAScreen) {
   std::istringstream lines(print_text(graph_.description(), plan_));
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 120u) << line;
 }

@@ -42,7 +42,7 @@ class Queues : public testing::Test {
 
 //   a (graphics) -- x --> b (compute) -- z --> c (transfer)
 //         +--------------- y -------------------^
-TEST_F(Queues, WaitThatAnotherWaitImpliesIsLeftOut) {
+TEST_F(Queues, WaitsThatFollowFromOtherWaitsAreLeftOut) {
   PassBuilder a = graph_.add_pass("a");
   const Texture x = a.write(make("x"), access::storage_write_compute);
   const Texture y = a.write(make("y"), access::storage_write_compute);
@@ -59,7 +59,7 @@ TEST_F(Queues, WaitThatAnotherWaitImpliesIsLeftOut) {
   EXPECT_EQ(plan.waits[plan.submissions[2].first_wait].submission, 1u) << "not for a as well";
 }
 
-TEST_F(Queues, EndOfFrameWaitsOnlyForTheLastPassOfAChain) {
+TEST_F(Queues, GraphicsQueueWaitsOnlyForTheLastPassOfAChainAtTheEnd) {
   Texture x = import("x");
   Texture y = import("y");
   PassBuilder first = graph_.add_pass("first", QueueClass::compute);
@@ -75,7 +75,7 @@ TEST_F(Queues, EndOfFrameWaitsOnlyForTheLastPassOfAChain) {
   EXPECT_EQ(plan.submissions[plan.waits[last.first_wait].submission].queue, QueueClass::transfer);
 }
 
-TEST_F(Queues, ResourcesThatGraphicsUsedBeforeTheFrameAreWaitedForOnce) {
+TEST_F(Queues, OtherQueueWaitsOnceForResourcesThatGraphicsUsedBefore) {
   const Texture x = import("x");
   const Texture y = import("y");
   for (const Texture texture : {x, y}) {
@@ -87,8 +87,8 @@ TEST_F(Queues, ResourcesThatGraphicsUsedBeforeTheFrameAreWaitedForOnce) {
   EXPECT_EQ(plan.passes[0].submission, plan.passes[1].submission);
 }
 
-// A history that was last used on another queue is released by that queue, even in a frame without
-// passes on it.
+// A history that was last used on another queue is released by that queue, even in a frame in which
+// that queue runs no pass.
 TEST_F(Queues, HistoryOfAnotherQueueCanBeUsedInAFrameWithGraphicsOnly) {
   const auto declare = [&](QueueClass queue) {
     graph_.reset();
@@ -109,8 +109,8 @@ TEST_F(Queues, HistoryOfAnotherQueueCanBeUsedInAFrameWithGraphicsOnly) {
   EXPECT_EQ(plan.submissions[0].batch_count, 1u) << "the release";
 }
 
-// The part of the history that no pass uses is released by the queue that owns it, in a submission
-// with its other passes.
+// A part of the history is not used by any pass of the frame. The queue that owns it releases it in
+// the submission with its other passes.
 TEST_F(Queues, PartOfAHistoryIsUpdatedOnTheQueueThatOwnsIt) {
   const auto declare = [&] {
     graph_.reset();
@@ -127,9 +127,9 @@ TEST_F(Queues, PartOfAHistoryIsUpdatedOnTheQueueThatOwnsIt) {
   (void)compiled();
 }
 
-// Particles are simulated on the compute queue while the scene is drawn, each with memory of its
-// own. Neither queue waits for the previous frame of the other.
-TEST_F(Queues, FramesOverlapWhereTheyShareNoMemory) {
+// Particles are simulated on the compute queue while the scene is drawn on the graphics queue. The
+// two share no memory, so that neither queue waits for the previous frame of the other.
+TEST_F(Queues, QueuesThatShareNoMemoryDoNotWaitForThePreviousFrame) {
   BufferHistory particles = graph_.create_buffer_history("particles", {4096});
   PassBuilder simulate = graph_.add_pass("simulate", QueueClass::compute);
   particles.current =
@@ -146,8 +146,9 @@ TEST_F(Queues, FramesOverlapWhereTheyShareNoMemory) {
 }
 
 //   scene (graphics) --> blur (compute) --> effect outside the graph
-// The texture that graphics writes first has the memory that compute read last in the frame before.
-TEST_F(Queues, MemoryThatAnotherQueueUsedLastIsWaitedFor) {
+// The texture that graphics writes first has the memory that compute read last in the previous
+// frame.
+TEST_F(Queues, QueueWaitsBeforeReusingMemoryOfAnotherQueue) {
   PassBuilder draw = graph_.add_pass("scene");
   const Texture scene = draw.write(make("scene"), access::color_attachment, {}, Contents::discard);
   PassBuilder blur = graph_.add_pass("blur", QueueClass::compute);

@@ -23,7 +23,8 @@ constexpr Access kBufferWrites[] = {buffer_access::storage_write_compute,
                                     buffer_access::storage_read_write_compute,
                                     buffer_access::transfer_destination, buffer_access::fill};
 
-// Picks one of those table entries that the queue class can run.
+// Returns the index of a random table entry. Each queue class has its own list of entries that it
+// supports.
 std::uint32_t pick(Dice& dice, QueueClass queue, std::initializer_list<std::uint32_t> graphics,
                    std::initializer_list<std::uint32_t> compute,
                    std::initializer_list<std::uint32_t> transfer) {
@@ -181,7 +182,7 @@ class Declarer {
     if (dice_.chance(options_.side_effects)) pass.side_effect();
   }
 
-  // Chooses one of the last few resources in half of the cases, and any resource otherwise.
+  // Returns the index of a known resource: in half of the cases one of the last few, otherwise any.
   std::size_t choose() {
     const auto count = static_cast<std::uint32_t>(known_.size());
     const std::uint32_t window = dice_.chance(128) ? std::min(count, 4u) : count;
@@ -193,8 +194,8 @@ class Declarer {
     Known& known = known_[chosen];
     if (known.last_pass == index) return;
     const bool old = known.old;
-    // A history without contents can be read only in frames that write it; here the writer comes
-    // first.
+    // A history without contents can only be read in frames that write it. Here the read must come
+    // after the write.
     if (old && !known.written[0] && !known_[history_ - 1].written[0]) return;
     Range range;
     const bool all =
@@ -250,7 +251,7 @@ class Declarer {
       known.written.assign(known.written.size(), true);
     }
     std::uint32_t way = pick(dice_, queue, {0, 1, 2, 3, 4}, {0, 1, 3, 4}, {3});
-    // The attachments of one pass would need to have one size.
+    // A second attachment in the same pass is avoided, because attachments must have the same size.
     if (way == 2 && drawn_in_ == index) way = 4;
     if (way == 2) drawn_in_ = index;
     if (way == 1 && !had_contents && contents != Contents::discard) way = 0;

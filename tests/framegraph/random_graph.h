@@ -1,4 +1,5 @@
-// Random valid frames for tests, with every kind of resource and access that a pass can have.
+// Declares random valid frames for tests, with every kind of resource and access that a pass can
+// have.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +12,8 @@
 
 namespace alcove::framegraph {
 
-// A source of random choices: a generator with a seed, or the bytes of a fuzzer.
+// A source of random choices: either a random number generator with a seed, or the bytes of a
+// fuzzer.
 class Dice {
  public:
   explicit Dice(std::uint64_t seed) : state_(seed) {}

@@ -1,4 +1,4 @@
-// Tests of recording with several threads, of which one fails or cannot be created.
+// Tests recording with several threads, if one of them throws or cannot be created.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -30,8 +30,8 @@ class RecordingThreads : public testing::Test {
   }
   void TearDown() override { EXPECT_EQ(gpu_.messages(), ""); }
 
-  // Adds a pass for each word of the host buffer, which calls during_ and writes `value` to the
-  // word.
+  // Adds one pass for each word of the host buffer. The pass calls during_ and writes `value` to
+  // its word.
   void declare(std::uint32_t value) {
     graph_.reset();
     Buffer out = graph_.import_buffer("host", Gpu::imported(host_));
@@ -86,7 +86,7 @@ TEST_F(RecordingThreads, ExceptionOfACallbackInAnyThreadReachesTheCaller) {
   expect_right(*executor, 2);
 }
 
-TEST_F(RecordingThreads, ExceptionInTheCallersThreadIsThrownAfterAllThreadsFinished) {
+TEST_F(RecordingThreads, ExceptionInTheCallersThreadIsRethrownAfterAllThreadsFinished) {
   auto executor = Executor::create(gpu_.handles(), options_);
   ASSERT_TRUE(executor) << to_string(executor.error());
   const std::thread::id caller = std::this_thread::get_id();
@@ -108,9 +108,9 @@ TEST_F(RecordingThreads, ExceptionInTheCallersThreadIsThrownAfterAllThreadsFinis
   expect_right(*executor, 2);
 }
 
-// Creates an executor and records its first frame, with each allocation of the calling thread
-// failing in turn.
-TEST_F(RecordingThreads, NextFrameIsRightAfterHostMemoryRanOutAnywhere) {
+// Creates an executor and records its first frame. Repeats this with each allocation of the calling
+// thread failing in turn.
+TEST_F(RecordingThreads, NextFrameIsRightAfterAnyHostAllocationFailed) {
   options_.recording_threads = 4;
   bool failed = true;
   std::size_t which = 1;
@@ -136,8 +136,8 @@ TEST_F(RecordingThreads, NextFrameIsRightAfterHostMemoryRanOutAnywhere) {
 }
 
 #ifdef __GLIBC__
-// Sets the stack size of new threads to more than any machine has, so that no thread can be created
-// during the object's lifetime.
+// During the object's lifetime, no thread can be created: the stack size of new threads is set to
+// more than any machine has.
 class NoThreads {
  public:
   NoThreads() {
@@ -159,7 +159,7 @@ class NoThreads {
   pthread_attr_t before_;
 };
 
-TEST_F(RecordingThreads, WithoutThreadsTheCallerRecordsAlone) {
+TEST_F(RecordingThreads, CallerRecordsAloneIfNoThreadCanBeCreated) {
   options_.recording_threads = 4;
   const auto create = [&] {
     const NoThreads none;

@@ -1,5 +1,5 @@
-// Frames of typical renderers, many known from the tests of other render graphs. Each test checks
-// which passes run and how many barriers they need, and verifies the plan.
+// Tests frames of typical renderers; many are known from the tests of other render graphs. Each
+// test checks which passes run and how many barriers they need, and verifies the plan.
 #include <gtest/gtest.h>
 
 #include "alcove/framegraph/compile.h"
@@ -70,7 +70,7 @@ TEST_F(Scenario, CounterIsClearedCountedAndReadAsIndirectArguments) {
 }
 
 // clear -> counter -> three passes that add to it in any order -> reader
-TEST_F(Scenario, AtomicAdditionsThatAreUnorderedGetNoBarrierBetween) {
+TEST_F(Scenario, UnorderedAtomicAdditionsGetNoBarrierBetweenThem) {
   Buffer counter = graph_.create_buffer("counter", {16});
   PassBuilder clear = graph_.add_pass("clear");
   counter = clear.write(counter, buffer_access::fill, Contents::discard);
@@ -95,7 +95,7 @@ TEST_F(Scenario, AtomicAdditionsThatAreUnorderedGetNoBarrierBetween) {
   }
 }
 
-TEST_F(Scenario, AtomicAdditionsThatAreOrderedGetABarrierEach) {
+TEST_F(Scenario, OrderedAtomicAdditionsGetABarrierBetweenThem) {
   Buffer counter = graph_.create_buffer("counter", {16});
   PassBuilder clear = graph_.add_pass("clear");
   counter = clear.write(counter, buffer_access::fill, Contents::discard);
@@ -127,7 +127,7 @@ TEST_F(Scenario, PingPongNeedsTwoTexturesAndKeepsEveryPass) {
   EXPECT_EQ(result.heaps[0].size, 2u * 64 * 64 * 4);
 }
 
-TEST_F(Scenario, MipChainInManyPassesReadsEachMipForTheNext) {
+TEST_F(Scenario, MipChainInManyPassesReadsEachMipAfterItsWrite) {
   TextureDesc desc = kColor;
   desc.mips = 5;
   Texture chain = graph_.create_texture("chain", desc);
@@ -143,8 +143,8 @@ TEST_F(Scenario, MipChainInManyPassesReadsEachMipForTheNext) {
   reader.side_effect();
   const Plan result = plan();
   EXPECT_EQ(result.passes.size(), 6u);
-  // Only the last mip still needs a layout change for the reader. A memory barrier makes the others
-  // visible to it.
+  // Only the last mip still needs a layout change before the reader. A memory barrier makes the
+  // other mips visible.
   EXPECT_LE(transitions_before(result, 5), 2u);
 }
 
@@ -161,8 +161,8 @@ TEST_F(Scenario, MipChainInOnePassIsOneWriteOfAllMips) {
   EXPECT_EQ(result.transitions.size(), 2u);
 }
 
-// The first graph leaves the texture in the state in which the second imports it.
-TEST_F(Scenario, TextureHandedFromOneGraphToAnotherNeedsNoSecondBarrier) {
+// The final state of the texture in the first graph is its initial state in the second.
+TEST_F(Scenario, TextureThatAnotherGraphTakesOverNeedsNoSecondBarrier) {
   const State between{access::sampled_fragment.stages, access::sampled_fragment.access,
                       access::sampled_fragment.layout};
   ImportedTexture import{.image = fake_handle<VkImage>(),
@@ -248,8 +248,8 @@ TEST_F(Scenario, DepthIsTestedAndSampledInOneAccess) {
 }
 
 // prepass -> depth and stencil -> mark (reads depth, writes stencil) -> ambient (samples depth)
-// Writing the stencil is no write of the depth: the last pass finds the depth as it was, and its
-// sampling needs no barrier.
+// Writing the stencil does not write the depth. The last pass therefore needs no barrier before it
+// samples the depth.
 TEST_F(Scenario, WritingTheStencilLeavesTheDepthReadable) {
   Texture depth =
       graph_.create_texture("depth", {VK_FORMAT_D24_UNORM_S8_UINT, Extent::absolute(64, 64)});
@@ -289,7 +289,7 @@ TEST_F(Scenario, DepthAndStencilWithTheSameTransitionShareABarrier) {
 }
 
 // gbuffer -> albedo -> light (reads albedo at its own pixel, as an input attachment)
-TEST_F(Scenario, InputAttachmentIsReadAtItsPixel) {
+TEST_F(Scenario, InputAttachmentHasItsOwnAccessAndLayout) {
   Texture albedo = graph_.create_texture("albedo", kColor);
   Texture lit = graph_.create_texture("lit", kColor);
   PassBuilder gbuffer = graph_.add_pass("gbuffer");
@@ -304,8 +304,8 @@ TEST_F(Scenario, InputAttachmentIsReadAtItsPixel) {
   EXPECT_EQ(transitions_before(result, 1), 2u);
 }
 
-// 1,000 passes, each of which reads some of the last textures. A debug build verifies such a plan
-// whenever it compiles it; framegraph_benchmark prints how long that takes.
+// 1,000 passes, each of which reads some of the most recent textures. A debug build verifies every
+// new plan; framegraph_benchmark prints how long this takes for a plan of this size.
 TEST_F(Scenario, PlanOfAThousandPassesIsVerified) {
   std::vector<Texture> textures;
   for (std::uint32_t i = 0; i < 1000; ++i) {

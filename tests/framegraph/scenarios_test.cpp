@@ -1,4 +1,4 @@
-// Scenarios of a renderer that run on the device. Each test checks the results.
+// Tests frames of typical renderers on the device, and checks their results.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -112,7 +112,8 @@ TEST_F(Scenario, MultisampledColorIsResolvedInItsPass) {
   EXPECT_EQ(word(0), kRed);
 }
 
-// The second pass loads the contents that the first one stored. A pass that discards does not load.
+// The second pass must load the contents that the first one stored. A pass that discards must not
+// load.
 TEST_F(Scenario, AttachmentsAreLoadedAndStoredWhereContentsAreNeeded) {
   begin();
   Texture color = texture("color");
@@ -158,8 +159,8 @@ TEST_F(Scenario, AttachmentsAreLoadedAndStoredWhereContentsAreNeeded) {
   EXPECT_EQ(ops[3], (Ops{VK_ATTACHMENT_LOAD_OP_LOAD, VK_ATTACHMENT_STORE_OP_NONE}));
 }
 
-// The depth is attached read-only and kept, while the stencil of the same texture is cleared. The
-// depth is sampled by the same pass.
+// The pass clears the stencil of a texture. At the same time it samples the depth of the same
+// texture, which is attached read-only and keeps its contents.
 TEST_F(Scenario, DepthIsSampledWhileItsStencilIsWritten) {
   begin();
   static constexpr VkClearValue kCleared{.depthStencil = {0.25f, 3}};
@@ -193,7 +194,7 @@ TEST_F(Scenario, DepthIsSampledWhileItsStencilIsWritten) {
   EXPECT_EQ(word(2) & 0xff, 7u);
 }
 
-// The texture is written in the first frame, read in the others, and updated in part in the last
+// The texture is written in the first frame, read in later ones, and partly updated in the last
 // one.
 TEST_F(Scenario, PersistentTextureKeepsItsContents) {
   for (std::uint32_t frame = 0; frame < 4; ++frame) {
@@ -214,7 +215,7 @@ TEST_F(Scenario, PersistentTextureKeepsItsContents) {
                                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &value, 1, &range);
       });
     }
-    // A write of a persistent texture runs even in a frame without a reader.
+    // A pass that writes a persistent texture runs even if nothing reads it in that frame.
     if (frame != 0 && frame != 2) copy_out(current, 0, 2);
     run({frame % 2});
     if (frame == 0 || frame == 2) continue;
@@ -250,9 +251,9 @@ TEST_F(Scenario, PersistentBufferKeepsItsContents) {
   EXPECT_EQ(word(0), 77u);
 }
 
-// The first graph draws a persistent texture and leaves it in a final state. The second graph
-// imports it, copies it out and writes another value, which the first graph then reads.
-TEST_F(Scenario, GraphsHandOverAPersistentTexture) {
+// The first graph draws to a persistent texture and leaves it in a final state. The second graph
+// imports it, copies it to host memory and writes another value, which the first graph then reads.
+TEST_F(Scenario, SecondGraphImportsAPersistentTextureOfTheFirst) {
   const State between{VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT,
                       VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL};
   const auto add_clear = [](Graph& graph, Texture& texture, std::uint32_t value) {
@@ -292,7 +293,7 @@ TEST_F(Scenario, GraphsHandOverAPersistentTexture) {
   }
 }
 
-// One pass draws each face. The cube is then read through a cube view.
+// A separate pass draws each face. The cube is then read through a cube view.
 TEST_F(Scenario, CubeShadowMapIsDrawnFaceByFace) {
   begin();
   TextureDesc desc{VK_FORMAT_D32_SFLOAT, Extent::absolute(16, 16), 1, 6};
@@ -325,9 +326,9 @@ TEST_F(Scenario, CubeShadowMapIsDrawnFaceByFace) {
   }
 }
 
-// Graphics, then compute and graphics at the same time, then graphics. The frame waits for a
-// semaphore of the caller and signals another. All queue classes use one queue here, so that one
-// vkQueueSubmit2 suffices.
+// The frame runs a graphics pass, then a compute and a graphics pass that may overlap, and then a
+// graphics pass. It waits for a semaphore of the caller and signals another. All queue classes use
+// one queue, so that one vkQueueSubmit2 is enough.
 TEST_F(Scenario, AsyncComputeIsOrderedWithSemaphoresOfTheCaller) {
   several_queues_ = true;
   const VkDevice device = gpu_.device().device();
@@ -380,8 +381,8 @@ TEST_F(Scenario, AsyncComputeIsOrderedWithSemaphoresOfTheCaller) {
 }
 
 // Particles run on the compute queue and the scene on the graphics queue, with no resource in
-// common. From the second frame of a plan on, no queue waits for the other's work of the previous
-// frame.
+// common. From the second frame of a plan on, no queue waits for the other queue's work of the
+// previous frame.
 TEST_F(Scenario, FramesOverTwoQueuesOverlap) {
   several_queues_ = true;
   const auto declare = [&](std::uint32_t frame, VkDeviceSize size) {
@@ -404,13 +405,13 @@ TEST_F(Scenario, FramesOverTwoQueuesOverlap) {
     });
   };
   for (std::uint32_t frame = 0; frame < 5; ++frame) {
-    // The last frame has another plan, which begins after all earlier work is done.
+    // The last frame has another plan, and therefore begins after all earlier work is done.
     declare(frame, frame < 4 ? 64 : 128);
     const int before = failing::semaphore_waits();
     run({frame % 2});
     const int waits = failing::semaphore_waits() - before;
-    // The first frames have other plans, because the slots of the history get their contents one by
-    // one.
+    // The first frames have other plans, because one more slot of the history gets contents in each
+    // of them.
     if (frame == 3) {
       EXPECT_EQ(waits, 0);
     } else if (frame == 4) {
@@ -420,7 +421,7 @@ TEST_F(Scenario, FramesOverTwoQueuesOverlap) {
 }
 
 // The image is transferred from a queue family outside the device and back to it.
-TEST_F(Scenario, ImportIsTakenFromAndGivenToAnotherQueueFamily) {
+TEST_F(Scenario, ImportIsAcquiredFromAndReleasedToAnotherQueueFamily) {
   ImportedTexture import;
   import.desc = {VK_FORMAT_R32_UINT, Extent::absolute(8, 8)};
   import.usage = VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;

@@ -1,5 +1,5 @@
-// Tests that a frame that was recorded before is declared, recorded and submitted again without an
-// allocation.
+// Tests that no memory is allocated when a frame that was recorded before is declared, recorded and
+// submitted again.
 #include <gtest/gtest.h>
 
 #include "allocation_counter.h"

@@ -49,7 +49,7 @@ TEST(Steady, CompilingAFrameAgainAllocatesNothing) {
   EXPECT_EQ(allocations() - before, 0u);
 }
 
-TEST(Steady, AnyDifferenceChangesTheKey) {
+TEST(Steady, AnyDifferenceOfDeclarationsChangesTheirHash) {
   Graph one;
   Graph other;
   declare_deferred_frame(one, 1920, 1080);
@@ -66,7 +66,7 @@ bool same_bytes(const Records<Record>& a, const Records<Record>& b) {
          (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Record)) == 0);
 }
 
-// Computes same_declaration() by looking at every byte.
+// The reference for same_declaration(): compares every byte of the records.
 bool same_bytes(const GraphDescription& a, const GraphDescription& b) {
   return same_bytes(a.passes, b.passes) && same_bytes(a.accesses, b.accesses) &&
          same_bytes(a.resources, b.resources) && same_bytes(a.externals, b.externals) &&
@@ -105,7 +105,7 @@ TEST(Steady, SameDeclarationAgreesWithAComparisonOfBytes) {
   }
 }
 
-TEST(Steady, ReusedGraphDeclaresAsANewOne) {
+TEST(Steady, ReusedGraphGivesTheSameDeclarationAsANewGraph) {
   Graph used;
   Dice order(11);
   for (int frame = 0; frame < 2000; ++frame) {
@@ -125,9 +125,10 @@ TEST(Steady, ReusedGraphDeclaresAsANewOne) {
   }
 }
 
-// A record that a longer, older frame left behind refers to a resource index that is another
-// texture in this frame.
-TEST(Steady, AccessBeyondTheEndOfTheLastFrameIsComparedAgain) {
+// An earlier, longer frame left a record behind the end of the current records. Its resource index
+// belongs to another texture in this frame, so that the record must not be found equal without a
+// comparison.
+TEST(Steady, AccessLeftFromALongerEarlierFrameIsNotReused) {
   const auto declare = [](Graph& graph, std::uint32_t mips, bool reads) {
     graph.reset();
     Texture texture =
@@ -144,9 +145,9 @@ TEST(Steady, AccessBeyondTheEndOfTheLastFrameIsComparedAgain) {
   EXPECT_EQ(read.range, (Range{0, 2, 0, 1}));
 }
 
-// A handle that the caller made up by incrementing another one is invalid until its resource is
-// declared, even if the previous frame declared such a resource.
-TEST(Steady, WholeAccessIsNotTakenForTheMipOfTheLastFrame) {
+// The caller makes a handle by incrementing the index of another handle. It must be invalid until
+// its resource is declared, even if the previous frame declared such a resource.
+TEST(Steady, AccessToAllMipsIsNotReusedFromAnAccessToOneMip) {
   Graph graph;
   for (const Range range : {Range::mip(0), Range{}}) {
     graph.reset();
@@ -158,7 +159,7 @@ TEST(Steady, WholeAccessIsNotTakenForTheMipOfTheLastFrame) {
   }
 }
 
-TEST(Steady, InventedHandleIsRefused) {
+TEST(Steady, HandleMadeUpByTheCallerIsRefused) {
   Graph graph;
   for (int frame = 0; frame < 3; ++frame) {
     graph.reset();

@@ -1,4 +1,4 @@
-// Tests how timings() converts the ticks of a device. A wrapper of the device reports the ticks
+// Tests how timings() converts the timestamps of a device. A wrapped device reports the timestamps
 // that each test sets.
 #include <gtest/gtest.h>
 
@@ -90,7 +90,7 @@ class TimestampsTest : public testing::Test {
   Graph graph_;
 };
 
-TEST_F(TimestampsTest, CounterThatWrapsAroundIsFollowed) {
+TEST_F(TimestampsTest, TimesAreRightWhenTheTimestampCounterWrapsAround) {
   for (const std::uint32_t bits : {36u, 63u, 64u}) {
     Executor executor = make(bits);
     const std::uint64_t all = ~std::uint64_t{0} >> (64 - bits);
@@ -111,7 +111,7 @@ TEST_F(TimestampsTest, QueueWithoutTimestampsGetsNoTimings) {
   EXPECT_EQ(written, 0);
 }
 
-TEST_F(TimestampsTest, TimingsAskedForTooEarlyAreRightLater) {
+TEST_F(TimestampsTest, TimingsRequestedTooEarlyAreRightInALaterCall) {
   Executor executor = make(64);
   gpu_.begin();
   ASSERT_TRUE(executor.record(declare(), gpu_.commands()));

@@ -1,5 +1,5 @@
-// Lists the work of two consecutive frames of a plan: operations, and the barriers and semaphores
-// between them.
+// Lists the work of two consecutive frames of a plan: the operations, and the barriers and
+// semaphores between them.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@ inline constexpr VkAccessFlags2 kWriteMask =
     VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT |
     VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
 
-// Replaces stages that stand for several others by those, for the stages that these tests use.
+// Replaces stages that stand for several others by those stages, as far as these tests use them.
 VkPipelineStageFlags2 plain(VkPipelineStageFlags2 stages);
 VkAccessFlags2 plain_access(VkAccessFlags2 access);
 
@@ -35,8 +35,8 @@ struct Operation {
   const Transition* change = nullptr;
 };
 
-// The barriers of one command, or the beginning or end of a submission. Submissions of both frames
-// are numbered consecutively.
+// The barriers of one command, or the beginning or end of a submission. The submissions of both
+// frames are numbered consecutively.
 struct Step {
   enum class Kind : std::uint8_t { barriers, begins, ends };
   Kind kind = Kind::barriers;

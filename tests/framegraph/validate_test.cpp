@@ -42,7 +42,7 @@ TEST_F(Validate, ValidGraphHasNoErrors) {
   EXPECT_TRUE(compile(graph_));
 }
 
-TEST_F(Validate, ReadModifyWriteOfWhatNothingWroteIsRefused) {
+TEST_F(Validate, ReadModifyWriteOfUnwrittenContentsIsRefused) {
   const Texture texture = graph_.create_texture("t", kDesc);
   (void)pass("update").write(texture, access::storage_read_write_compute);
   expect(
@@ -103,7 +103,8 @@ TEST_F(Validate, RelativeExtentsMultiplyAndDivide) {
   EXPECT_EQ(size(2, 0), (std::pair{0u, 0u}));
 }
 
-// A depth attachment that nothing reads later, on a device with lazily allocated memory.
+// Tests a depth attachment with and without a later reader, on a device with lazily allocated
+// memory.
 TEST_F(Validate, AttachmentsWithoutContentsAreTransientOnDevicesWithLazyMemory) {
   for (const bool read_later : {false, true}) {
     graph_.reset();
@@ -126,7 +127,7 @@ TEST_F(Validate, AttachmentsWithoutContentsAreTransientOnDevicesWithLazyMemory) 
   }
 }
 
-TEST_F(Validate, LayerOrMipBeyond16BitsIsNotTakenForAnother) {
+TEST_F(Validate, LayerOrMipIndexAbove16BitsIsRefused) {
   const Texture texture = written("t");
   pass("reader").read(texture, access::sampled_compute, Range::layer(65536));
   expect(ErrorCode::bad_range, "pass 'reader' reads texture 't'");
@@ -413,7 +414,7 @@ TEST_F(Validate, DisjointLayersOfOneImageMayBeImportedUnderTwoNames) {
          "'overlapping' and texture 'next two' are imported with one VkImage");
 }
 
-// Access bits of extensions that write, each with a stage that supports it.
+// Write access bits of Vulkan extensions, each with a stage that supports it.
 constexpr Access kExtensionWrites[] = {
     buffer_access::acceleration_structure_build,
     buffer_access::build_scratch,
@@ -421,7 +422,7 @@ constexpr Access kExtensionWrites[] = {
     {VK_PIPELINE_STAGE_2_TRANSFORM_FEEDBACK_BIT_EXT,
      VK_ACCESS_2_TRANSFORM_FEEDBACK_COUNTER_WRITE_BIT_EXT}};
 
-TEST_F(Validate, WritesOfExtensionsAreWrites) {
+TEST_F(Validate, AccessBitsOfExtensionsThatWriteAreTreatedAsWrites) {
   for (const Access& access : kExtensionWrites) {
     graph_.reset();
     PassBuilder writer = pass("writer");
