@@ -30,7 +30,7 @@ constexpr const char* kOpen = "fill=\"#bfe3f2\" fill-opacity=\"0.8\"";
 constexpr const char* kOccluded = "fill=\"#f0b8a8\" fill-opacity=\"0.9\"";
 constexpr const char* kHidden = "fill=\"#f6e3b0\" fill-opacity=\"0.9\"";
 
-// The plane of a slice: x along the slice's direction, y along the view direction.
+// A surface in the plane of a slice: x along the slice's direction, y along the view direction.
 struct Profile {
   std::vector<vec2> surface;  // from left to right
   vec2 shaded;                // the shaded point
@@ -40,8 +40,8 @@ struct Profile {
   }
 };
 
-// A floor that tilts to the left, with a block at either side. The floor's slope is the tangent of
-// the angle between its normal and the view direction.
+// Returns a floor that is tilted to the left, with a block on either side. The floor's slope is the
+// tangent of the angle between its normal and the view direction.
 Profile blocks() {
   const float slope = 0.25f;
   const auto floor = [&](float x) { return slope * x; };
@@ -54,7 +54,8 @@ Profile blocks() {
   return p;
 }
 
-// Cosine of the angle between the view direction and the highest surface point on a side.
+// Returns the cosine of the angle between the view direction and the highest surface point on one
+// side.
 float horizon_of(const Profile& p, float side) {
   float horizon = -1.0f;
   for (const vec2 point : p.surface) {
@@ -66,8 +67,8 @@ float horizon_of(const Profile& p, float side) {
   return horizon;
 }
 
-// A circular sector between two directions, given as signed angles from the view direction in
-// radians.
+// Returns a circular sector between two directions, which are given as signed angles from the view
+// direction in radians.
 std::vector<vec2> circular_sector(vec2 centre, float radius, float from, float to) {
   std::vector<vec2> points{centre};
   for (int i = 0; i <= 32; ++i) {
@@ -261,7 +262,8 @@ Drawing history_reprojection() {
     }
     d.text({left + 3, 6.4f}, title, "middle");
   };
-  // The four texels around a point of the previous frame. The second one shows another surface.
+  // The four texels around a position in the previous frame. The second texel shows another
+  // surface.
   const vec2 at(2.8f, 3.3f);
   const vec2 first(std::floor(at.x - 0.5f), std::floor(at.y - 0.5f));
   const vec2 part = at - 0.5f - first;

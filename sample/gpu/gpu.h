@@ -47,7 +47,7 @@ struct PassTime {
   double milliseconds;
 };
 
-// One graph with its executor and kernels, which runs frames of the sample and of the tests.
+// A render graph with its executor and kernels. The sample and the tests run their frames with it.
 class Gpu {
  public:
   [[nodiscard]] static tl::expected<std::unique_ptr<Gpu>, std::string> create(
@@ -60,14 +60,14 @@ class Gpu {
   passes::Kernels& kernels() { return *kernels_; }
   framegraph::Executor& executor() { return *executor_; }
 
-  // Declares a frame with `declare`, submits it and waits for it. An error of `declare` or of the
-  // graph is returned as one sentence for each fault, on separate lines.
+  // Declares a frame with `declare`, submits it and waits for it. If `declare` or the graph fails,
+  // the error has one sentence for each fault, on separate lines.
   using Declare = std::function<tl::expected<void, std::string>(framegraph::Graph&)>;
   [[nodiscard]] tl::expected<framegraph::FrameReport, std::string> run(const Declare& declare);
-  // Records a frame that `declare` declares, for callers with frames in flight who submit
-  // `commands` themselves. `commands` is in the recording state and of the device's queue family.
-  // `slot` cycles from 0 to frames_in_flight() - 1. The device must have finished the last frame of
-  // the slot, and after an error all frames recorded before.
+  // Records a frame that `declare` declares, for callers with several frames in flight, who submit
+  // `commands` themselves. `commands` must be in the recording state and belong to the device's
+  // queue family. `slot` cycles from 0 to frames_in_flight() - 1. The device must have finished the
+  // last frame of the slot; after an error it must have finished all recorded frames.
   [[nodiscard]] tl::expected<framegraph::FrameReport, std::string> record(const Declare& declare,
                                                                           VkCommandBuffer commands,
                                                                           std::uint32_t slot);
@@ -96,9 +96,10 @@ class Gpu {
 framegraph::Texture add_copy(framegraph::Graph& graph, const HostBuffer& source,
                              framegraph::Texture target);
 
-// Adds passes that fill the mips from 1 on of a colour texture with `mips` mips, each from the mip
-// before by a linear blit, which the format must support. If width and height are even, each texel
-// is the mean of four, for sRGB formats in linear light. Returns the filled version.
+// Adds passes that fill all mips except mip 0 of a colour texture with `mips` mips. Each mip is
+// made from the one before by a linear blit, which the format must support. If width and height are
+// even, each texel is the mean of four texels, for sRGB formats in linear light. Returns the filled
+// version.
 framegraph::Texture add_mips(framegraph::Graph& graph, framegraph::Texture texture,
                              std::uint32_t mips);
 

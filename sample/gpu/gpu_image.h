@@ -9,8 +9,8 @@
 
 namespace alcove::sample {
 
-// A 2D image with device memory of its own that keeps its contents from frame to frame. It has a
-// view of all mips and layers if its usage allows one. A graph imports the image; between frames it
+// A 2D image with its own device memory, which keeps its contents from frame to frame. It has a
+// view of all mips and layers if its usage allows one. A graph imports the image. Between frames it
 // stays in the state in which the last frame left it.
 class GpuImage {
  public:

@@ -8,8 +8,8 @@ namespace alcove::sample {
 namespace {
 
 constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
-// The setting with which validation layers of this generation enable synchronisation validation
-// across submits.
+// The setting that makes these validation layers check synchronisation between queue submissions
+// too.
 constexpr const char* kQueueSubmitCheck =
     "VALIDATION_CHECK_ENABLE_SYNCHRONIZATION_VALIDATION_QUEUE_SUBMIT";
 
@@ -29,7 +29,8 @@ bool has_layer(const char* name) {
   });
 }
 
-// The features of Vulkan 1.3 that Alcove uses, chained; fill() asks the device for them.
+// The structures of the Vulkan 1.3 features that Alcove uses, as a pNext chain. fill() queries them
+// from the device.
 struct Features {
   VkPhysicalDeviceVulkan13Features v13{.sType =
                                            VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
@@ -293,8 +294,8 @@ tl::expected<void, std::string> VulkanDevice::create_device(bool presentation) {
   enabled.all.features.shaderStorageImageWriteWithoutFormat = VK_TRUE;
   VkPhysicalDeviceFeatures optional;
   vkGetPhysicalDeviceFeatures(physical_device_, &optional);
-  // With anisotropic filtering, Mesa's software device reads the whole texture for pixels with a
-  // long footprint.
+  // On Mesa's software device, anisotropic filtering reads nearly the whole texture for pixels with
+  // a long footprint, so that it is turned off there.
   if (optional.samplerAnisotropy && properties_.deviceType != VK_PHYSICAL_DEVICE_TYPE_CPU) {
     enabled.all.features.samplerAnisotropy = VK_TRUE;
     max_anisotropy_ = properties_.limits.maxSamplerAnisotropy;

@@ -54,7 +54,7 @@ class VulkanDevice {
   // anisotropic filtering.
   float max_anisotropy() const { return max_anisotropy_; }
 
-  // The largest allocation in bytes, which also limits buffers and images.
+  // Returns the largest allocation in bytes, which also limits the size of buffers and images.
   VkDeviceSize max_allocation() const { return max_allocation_; }
 
   // The errors and warnings of the validation layers so far, in order.

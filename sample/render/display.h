@@ -5,8 +5,10 @@
 
 namespace alcove::sample {
 
-// Radiance as it is shown: what an environment's light is multiplied with, so that a white surface
-// in its mean comes out bright but not white; then the shoulder and sRGB.
+// Conversion of radiance to displayed colours. exposure_of() returns the factor by which radiance
+// is multiplied, so that a white surface under the mean light of the environment appears bright but
+// not white. display_colours() applies the factor, the tone curve 1 - exp(-x), and the sRGB
+// encoding.
 [[nodiscard]] float exposure_of(const EnvironmentImage& environment);
 [[nodiscard]] Image<glm::vec3> display_colours(const Image<glm::vec3>& radiance, float exposure);
 

@@ -8,7 +8,7 @@ using framegraph::Texture;
 
 namespace {
 
-// What a frame has of its light.
+// Appends the textures with the lit surfaces of a frame.
 void append_lit(const DeclaredFrame& declared, VkExtent2D size, std::vector<Wanted>& wanted) {
   const auto colours = [&](Texture texture, Image<glm::vec3> LitImages::*image) {
     if (texture) {

@@ -9,10 +9,10 @@
 #include "gpu/gpu.h"
 #include "render/frame_renderer.h"
 
-// What a frame of the occlusion makes, and how it comes back as images.
+// The textures of a declared occlusion frame, and how they are read back as images.
 namespace alcove::sample {
 
-// The occlusion's frame: what it was given and what it makes.
+// The textures of a frame that computes occlusion: its inputs and its outputs.
 struct DeclaredFrame {
   framegraph::Texture depth;
   framegraph::Texture normal;
@@ -28,13 +28,13 @@ struct DeclaredFrame {
   framegraph::Texture bounced;
 };
 
-// A texture that is read back and where its texels go.
+// A texture that is read back, and the image that receives its texels.
 struct Wanted {
   framegraph::Texture texture;
   std::function<void(const HostBuffer&, FrameImages&)> store;
 };
 
-// Everything that is read back of a frame.
+// Returns all textures of a frame that are read back.
 [[nodiscard]] std::vector<Wanted> wanted_of(const DeclaredFrame& declared, VkExtent2D size,
                                             passes::Precision precision);
 

@@ -24,7 +24,8 @@ using framegraph::Graph;
 using framegraph::Texture;
 using Failure = tl::unexpected<std::string>;
 
-// The last two are drawn only where the occlusion reads them.
+// The images that the g-buffer is drawn to. The last two are drawn only if the occlusion passes
+// read them.
 enum Target : std::size_t {
   kDepth,
   kNormal,
@@ -49,7 +50,7 @@ constexpr std::array<TargetFormat, kTargetCount> kTargets{
      {kDepthFormat, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT},
      {kDepthFormat, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT}}};
 
-// Processor time that all threads of the process have spent, in milliseconds.
+// Returns the processor time that all threads of the process have used so far, in milliseconds.
 double processor_ms() {
   timespec time{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
@@ -63,7 +64,7 @@ struct FrameRenderer::State {
       : gpu(on), size(of_size), normals(source) {}
 
   tl::expected<void, std::string> create_target(Target target);
-  // Nothing is drawn again while the view and the one before it stay the same.
+  // Draws the g-buffer, unless it was already drawn with the same view and the same previous view.
   tl::expected<void, std::string> draw_gbuffer(const FrameRequest& request, FrameCost& cost);
   passes::Frame frame_of(Graph& graph, const FrameRequest& request);
   Surfaces surfaces_of(const DeclaredFrame& declared, const FrameRequest& request) const;
@@ -80,12 +81,15 @@ struct FrameRenderer::State {
   VkExtent2D size;
   NormalSource normals;
   std::unique_ptr<GbufferRenderer> gbuffer;
-  std::optional<GbufferView> drawn_view;  // what the targets hold
-  HiddenDepths drawn_depths;              // of that view
-  std::optional<HiddenDepths> compiled;   // what was ever drawn beside the g-buffer; none: nothing
-  std::vector<PassTime> gbuffer_times;    // of their last drawing
+  // The view that the targets were drawn with; null before the first drawing.
+  std::optional<GbufferView> drawn_view;
+  HiddenDepths drawn_depths;  // the hidden depths that were drawn for that view
+  // All hidden depths that were ever drawn; null: nothing was drawn yet.
+  std::optional<HiddenDepths> compiled;
+  std::vector<PassTime> gbuffer_times;  // times of the last drawing of the g-buffer
   std::array<std::unique_ptr<GpuImage>, kTargetCount> targets;
-  std::unique_ptr<HostBuffer> environment;  // uploaded in the frame that is lit
+  // Upload buffer of the environment, kept until the lit frame is done.
+  std::unique_ptr<HostBuffer> environment;
   framegraph::MemoryStatistics memory;
 };
 
@@ -140,7 +144,7 @@ tl::expected<void, std::string> FrameRenderer::State::draw_gbuffer(const FrameRe
     }
     return {};
   };
-  // The first drawing also compiles shaders.
+  // The first drawing also compiles shaders, so that only a second one is timed.
   const int drawings = compiled && compiled->covers(hidden) ? 1 : 2;
   for (int i = 0; i < drawings; ++i) {
     auto report = gpu.run(declare);
@@ -210,7 +214,8 @@ tl::expected<DeclaredFrame, std::string> FrameRenderer::State::declare_occlusion
   if (outputs->specular) {
     declared.specular_occlusion.push_back(outputs->specular);
   }
-  // More of them are found again from the start, in histories of their own.
+  // Specular occlusion for each further roughness value runs all occlusion passes again, with its
+  // own history.
   const std::vector<float> roughness =
       request.light != nullptr ? request.light->roughness : std::vector<float>();
   for (std::size_t i = 1; i < roughness.size() && outputs->specular; ++i) {
@@ -224,7 +229,8 @@ tl::expected<DeclaredFrame, std::string> FrameRenderer::State::declare_occlusion
   return declared;
 }
 
-// Adds what is made of visibility and bent normal; nothing without bent normals.
+// Adds the passes that use visibility and bent normals: multi-bounce and lighting. Adds nothing if
+// no bent normals are computed.
 tl::expected<void, std::string> FrameRenderer::State::declare_light(Graph& graph,
                                                                     const FrameRequest& request,
                                                                     DeclaredFrame& declared) {
@@ -244,7 +250,8 @@ tl::expected<void, std::string> FrameRenderer::State::declare_light(Graph& graph
                                             : declare_lit(graph, request, declared);
 }
 
-// Lights the surfaces with the environment; emission is not shown, the truth knows of none.
+// Adds the passes that light the surfaces with the environment. Emission is left out, because the
+// ray-traced reference does not have it.
 tl::expected<void, std::string> FrameRenderer::State::declare_lit(Graph& graph,
                                                                   const FrameRequest& request,
                                                                   DeclaredFrame& declared) {
@@ -289,7 +296,8 @@ tl::expected<void, std::string> FrameRenderer::State::declare_lit(Graph& graph,
   return {};
 }
 
-// Directions of normals that were made from depth are in view space.
+// If normals were computed from depth, normals and bent normals are in view space. Rotates them to
+// world space.
 void FrameRenderer::State::turn_to_world(const FrameRequest& request, FrameImages& images) const {
   if (normals == NormalSource::kDepth) {
     const glm::mat3 world_from_view = glm::transpose(glm::mat3(request.view.view_from_world));
@@ -352,7 +360,8 @@ tl::expected<FrameImages, std::string> FrameRenderer::draw_and_read(const FrameR
   if (auto drawn = state_->draw_gbuffer(request, ignored); !drawn) {
     return Failure(std::move(drawn.error()));
   }
-  // Filled while the frame is declared: what is read back, and into which buffer.
+  // The textures to read back and the buffers that they are copied to. Both are filled while the
+  // frame is declared.
   std::vector<Wanted> wanted;
   std::vector<std::unique_ptr<HostBuffer>> buffers;
   auto report = state_->gpu.run([&](Graph& graph) -> tl::expected<void, std::string> {

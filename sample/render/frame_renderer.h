@@ -16,58 +16,63 @@
 
 namespace alcove::sample {
 
-// What is made of visibility in a frame that is read back.
+// What a frame computes from visibility besides the occlusion itself, if its images are read back.
 struct IndirectRequest {
-  std::vector<float> roughness;  // perceptual, an image each; empty: one, of the materials' own
-  EnvironmentImage environment;  // that lights the scene; empty: it is not lit
-  bool lit_steps = false;        // also light it with less and less of the occlusion
+  std::vector<float> roughness;  // perceptual; one specular occlusion image for each; empty: one
+                                 // image with the materials' roughness
+  // The environment that lights the scene; empty: the scene is not lit.
+  EnvironmentImage environment;
+  bool lit_steps = false;  // also render the lit images with less of the occlusion (LitImages)
 };
 
-// What one frame is drawn with.
+// The view, the settings and the outputs of one frame.
 struct FrameRequest {
   GbufferView view;
-  std::uint32_t index = 0;          // counts frames; 0 begins anew
-  bool restart = false;             // begins anew too: nothing of the frames before is kept
-  std::uint32_t static_frames = 0;  // as passes::Frame has them
-  bool motion_vectors = false;      // the occlusion is given them; else only the camera moves
+  std::uint32_t index = 0;          // number of the frame; 0 resets the histories
+  bool restart = false;             // also resets the histories
+  std::uint32_t static_frames = 0;  // see passes::Frame::static_frames
+  // Whether the occlusion passes get motion vectors; if not, only the camera moves.
+  bool motion_vectors = false;
   passes::OcclusionSettings occlusion;
-  const IndirectRequest* light = nullptr;  // null: none
+  const IndirectRequest* light = nullptr;  // null: nothing besides occlusion
 };
 
-// What a frame cost.
+// The times of a frame in milliseconds.
 struct FrameCost {
-  std::vector<PassTime> gpu;  // each pass by GPU timestamps, g-buffer first
-  double occlusion_ms = 0;    // their sum without the g-buffer
+  std::vector<PassTime> gpu;  // GPU time of each pass, g-buffer first
+  double occlusion_ms = 0;    // sum of these times without the g-buffer
   double cpu_ms = 0;          // processor time of all threads for the occlusion passes
 };
 
-// Radiance towards the eye under the environment, zero in the sky.
+// Radiance towards the eye with the environment as the only light, zero at pixels of the sky.
 struct LitImages {
-  Image<glm::vec3> all;  // with all that is known of occlusion
+  Image<glm::vec3> all;  // with all effects of the occlusion
   Image<glm::vec3> diffuse;
   Image<glm::vec3> specular;
-  Image<glm::vec3> unoccluded;  // this and the rest by IndirectRequest::lit_steps
-  Image<glm::vec3> unbent;      // diffuse light times visibility
-  Image<glm::vec3> occluded;    // the same, from along the bent normal
-  Image<glm::vec3> bounced;     // that times multi-bounce instead, and specular light alike
+  Image<glm::vec3> unoccluded;  // without occlusion; this and the following images only if
+                                // IndirectRequest::lit_steps
+  Image<glm::vec3> unbent;      // diffuse light from along the normal, times visibility
+  Image<glm::vec3> occluded;    // diffuse light from along the bent normal, times visibility
+  // As `occluded`, with multi-bounce, and specular light times visibility.
+  Image<glm::vec3> bounced;
 };
 
 // The images of a frame, read back.
 struct FrameImages {
   Image<float> depth_ndc;      // as the projection wrote it
-  Image<glm::vec3> normal_ws;  // what the occlusion was given, or made from depth
+  Image<glm::vec3> normal_ws;  // the normals that the occlusion passes got, or computed from depth
   Image<glm::vec3> albedo;     // linear
   Image<float> roughness;      // perceptual
   Image<float> metallic;
   Image<float> visibility;
   Image<glm::vec3> bent_normal_ws;  // empty without bent normals, as are the next two
   Image<glm::vec3> multi_bounce;
-  std::vector<Image<float>> specular_occlusion;  // by IndirectRequest::roughness
+  std::vector<Image<float>> specular_occlusion;  // one for each of IndirectRequest::roughness
   LitImages lit;                                 // empty without an environment
 };
 
-// Draws frames of one scene at one size: a g-buffer, then occlusion on it, each a submission of its
-// own so that the cost of the second can be told.
+// Draws frames of one scene at one size. First it draws a g-buffer, then it computes the occlusion.
+// Each is submitted separately, so that the time of the occlusion can be measured.
 class FrameRenderer {
  public:
   [[nodiscard]] static tl::expected<std::unique_ptr<FrameRenderer>, std::string> create(
@@ -76,12 +81,13 @@ class FrameRenderer {
   FrameRenderer(const FrameRenderer&) = delete;
   FrameRenderer& operator=(const FrameRenderer&) = delete;
 
-  // Draws a frame and forgets its images: for what comes before the one that is wanted.
+  // Draws a frame without reading images back, for the frames before the one whose images are
+  // needed.
   [[nodiscard]] tl::expected<FrameCost, std::string> draw(const FrameRequest& request);
-  // Draws a frame, lights it and reads its images back. What that costs is not counted.
+  // Draws a frame, lights it and reads its images back. It returns no times.
   [[nodiscard]] tl::expected<FrameImages, std::string> draw_and_read(const FrameRequest& request);
 
-  // Bytes of the occlusion's transients in the frame drawn last.
+  // Returns the memory of the occlusion passes' transients in the most recent frame.
   const framegraph::MemoryStatistics& memory() const;
 
  private:

@@ -21,8 +21,8 @@ using framegraph::RecordContext;
 using framegraph::Texture;
 using Failure = tl::unexpected<std::string>;
 
-// Distance between the parameters of two frames or two materials in their buffers: a multiple of
-// the largest alignment that a device may ask for, which is 256 bytes.
+// Distances in bytes between the parameters of two frames, and of two materials, in their buffers:
+// multiples of 256, the largest alignment that a device may require.
 constexpr std::uint32_t kParameterStride = 512;
 constexpr std::uint32_t kMaterialStride = 256;
 static_assert(sizeof(maths::GbufferParameters) <= kParameterStride && kParameterStride % 256 == 0);
@@ -57,13 +57,14 @@ maths::GbufferMaterial parameters_of(const Material& material) {
 }  // namespace
 
 struct GbufferRenderer::State {
-  // How the scene is drawn.
+  // The state with which the scene is drawn in one pass.
   struct Drawing {
     bool reversed_z = false;
     std::uint32_t parameters_at = 0;
     VkCullModeFlags culled = VK_CULL_MODE_BACK_BIT;     // of single-sided materials
     VkCullModeFlags double_culled = VK_CULL_MODE_NONE;  // of double-sided ones
-    Texture first;  // depth of the first layer, which the second one leaves out; may be null
+    // Depth of the first layer, which the pass of the second layer reads; may be null.
+    Texture first;
   };
   explicit State(Gpu& owner) : gpu(owner), device(owner.device().device()) {}
   State(const State&) = delete;
@@ -73,7 +74,7 @@ struct GbufferRenderer::State {
   tl::expected<void, std::string> upload(const Scene& scene);
   tl::expected<void, std::string> create_sets(const Scene& scene);
   void write_sets(const Scene& scene) const;
-  // Returns where in the parameters those of the view are.
+  // Writes the parameters of a view, and returns their offset in the parameter buffer.
   std::uint32_t write_parameters(const GbufferView& view);
   void record(RecordContext& context, const Gbuffer& gbuffer, const Drawing& drawing) const;
   void bind_first_layer(RecordContext& context, Texture depth) const;
@@ -84,9 +85,9 @@ struct GbufferRenderer::State {
   std::vector<bool> double_sided;  // by material
   std::unique_ptr<GpuMeshes> meshes;
   std::unique_ptr<HostBuffer> materials;   // GbufferMaterial at multiples of kMaterialStride
-  std::unique_ptr<HostBuffer> parameters;  // one for each frame in flight
-  std::optional<GbufferView> written;      // the latest of them
-  std::uint32_t latest = 0;                // where it is
+  std::unique_ptr<HostBuffer> parameters;  // one set of parameters for each frame in flight
+  std::optional<GbufferView> written;      // the view that was written most recently
+  std::uint32_t latest = 0;                // offset of its parameters
   std::unique_ptr<GpuTextures> textures;
   std::unique_ptr<GbufferPipelines> pipelines;
   VkDescriptorPool pool = VK_NULL_HANDLE;
@@ -203,7 +204,7 @@ void GbufferRenderer::State::begin_rendering(RecordContext& context, const Gbuff
   const std::array targets{gbuffer.normal, gbuffer.albedo, gbuffer.motion, gbuffer.emissive};
   std::array<VkRenderingAttachmentInfo, std::tuple_size_v<decltype(targets)>> colours;
   for (std::size_t i = 0; i < targets.size(); ++i) {
-    // Without a view, what would be written is dropped.
+    // An attachment without a view discards what the shader writes to it.
     colours[i] = {.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
                   .imageView = targets[i] ? context.view(targets[i]) : VkImageView{VK_NULL_HANDLE},
                   .imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
@@ -271,7 +272,8 @@ void GbufferRenderer::State::record(RecordContext& context, const Gbuffer& gbuff
                           &pushed);
     vk.vkCmdSetCullMode(context.commands,
                         double_sided[draw.material] ? drawing.double_culled : drawing.culled);
-    // Not in the graph's table of functions: nothing but the sample's meshes needs these two.
+    // The first two functions are called directly, because the render graph's table of functions
+    // does not have them.
     vkCmdSetFrontFace(context.commands,
                       draw.mirrored ? VK_FRONT_FACE_CLOCKWISE : VK_FRONT_FACE_COUNTER_CLOCKWISE);
     vkCmdBindVertexBuffers2(context.commands, 0, kVertexStreams, draw.buffers.data(),
@@ -356,11 +358,11 @@ Texture GbufferRenderer::add_back_faces(Graph& graph, const GbufferView& view, T
   return depth;
 }
 
-// Culls back faces of double-sided materials too. Exporters often mark closed solids as
-// double-sided, and with their back faces the second layer of a pixel would be the back of the
-// first solid, which tells nothing of the surfaces behind it. The price: a thin double-sided
-// surface, such as a leaf, that is seen from behind is missing from the second layer, where it
-// hides nothing.
+// Culls the back faces of double-sided materials too. Exporters often mark closed solids as
+// double-sided. If their back faces were drawn, the second layer of a pixel would usually be the
+// back of the first solid, which says nothing about the surfaces behind it. The disadvantage: a
+// thin double-sided surface, such as a leaf, that is seen from behind is missing in the second
+// layer, so that it does not occlude there.
 Texture GbufferRenderer::add_second_layer(Graph& graph, const GbufferView& view, Texture first,
                                           Texture depth) {
   const std::uint32_t at = state_->write_parameters(view);

@@ -22,10 +22,11 @@ constexpr std::uint32_t binding_of(VertexStream stream) {
   return static_cast<std::uint32_t>(stream);
 }
 
-// The state that never changes: the vertex streams of MeshDraw, no blending.
+// The state that all pipelines have in common: the vertex streams of MeshDraw, and no blending.
 struct FixedState {
   std::array<VkVertexInputBindingDescription, kVertexStreams> bindings{};
-  // Locations are those of shaders/gbuffer_vertex.h. What the second layer reads comes first.
+  // Locations are those of shaders/gbuffer_vertex.h. The attributes that the second layer reads
+  // come first.
   std::array<VkVertexInputAttributeDescription, 9> attributes{
       {{0, binding_of(VertexStream::kPosition), VK_FORMAT_R32G32B32_SFLOAT, 0},
        {2, binding_of(VertexStream::kUv), VK_FORMAT_R32G32_SFLOAT, 0},

@@ -10,11 +10,11 @@
 
 namespace alcove::sample {
 
-// The g-buffer's pipelines on a device, and the layouts of their descriptor sets. They write depth
-// and, where these targets are attached, normal, albedo, motion and emission.
+// The g-buffer's pipelines on a device, and the layouts of their descriptor sets. The pipelines
+// write depth, and also normal, albedo, motion and emission if these targets are attached.
 class GbufferPipelines {
  public:
-  // What a pipeline writes: all targets, or the depth of the second layer.
+  // What a pipeline writes: all targets of the g-buffer, or only the depth of the second layer.
   enum class Kind : std::uint8_t { all, second_layer };
 
   // `device` must outlive the pipelines.
@@ -24,17 +24,17 @@ class GbufferPipelines {
   GbufferPipelines(const GbufferPipelines&) = delete;
   GbufferPipelines& operator=(const GbufferPipelines&) = delete;
 
-  // `reversed`: nearer surfaces have greater depths. Viewport, scissor, cull mode, front face and
-  // the strides of the vertex streams are dynamic.
+  // Returns a pipeline. `reversed` means that nearer surfaces have greater depths. Viewport,
+  // scissor, cull mode, front face and the strides of the vertex streams are dynamic state.
   [[nodiscard]] VkPipeline pipeline(Kind kind, bool reversed) const {
     return pipelines_[index_of(kind, reversed)];
   }
   [[nodiscard]] VkPipelineLayout layout() const { return layout_; }
-  // Set 0: the frame's parameters (dynamic).
+  // Set 0: the frame's parameters, a uniform buffer with a dynamic offset.
   [[nodiscard]] VkDescriptorSetLayout frame_set() const { return frame_set_; }
-  // Set 1, for the second layer alone: the depth of the first.
+  // Set 1, only for the second layer: the depth of the first layer.
   [[nodiscard]] VkDescriptorSetLayout layer_set() const { return layer_set_; }
-  // Set 2: the textures and the parameters of a material. Each material has a set of its own,
+  // Set 2: the textures and the parameters of a material. Each material has its own descriptor set,
   // because few devices allow hundreds of textures in one set.
   [[nodiscard]] VkDescriptorSetLayout material_set() const { return material_set_; }
 

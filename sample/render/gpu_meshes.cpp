@@ -16,7 +16,8 @@ namespace {
 
 using Failure = tl::unexpected<std::string>;
 
-// Buffers grow to this, so that few of a device's allocations hold many small meshes.
+// The sizes of the buffers (pages) that hold the meshes. Each new page is larger than the one
+// before, up to kLargestPage, so that many small meshes share few device allocations.
 constexpr VkDeviceSize kFirstPage = VkDeviceSize{1} << 20;
 constexpr VkDeviceSize kLargestPage = VkDeviceSize{64} << 20;
 constexpr VkDeviceSize kAlignment = 16;
@@ -25,18 +26,20 @@ std::int16_t snorm16(float value) {
   return static_cast<std::int16_t>(std::lround(std::clamp(value, -1.0f, 1.0f) * 32767.0f));
 }
 
-// A place in a page.
+// A range of a page: the buffer, and the offset of the first byte.
 struct Place {
   VkBuffer buffer = VK_NULL_HANDLE;
   VkDeviceSize offset = 0;
 };
 
-// Part of a mesh with vertices of its own, each the first vertex of at most one triangle: that one
-// has its geometric normal there.
+// Part of a mesh with its own copies of the vertices. Each copy is the first vertex of at most one
+// triangle, because it also stores the geometric normal of that triangle.
 struct Part {
-  std::vector<std::uint32_t> sources;   // the mesh's vertex that each vertex is a copy of
-  std::vector<PackedTangent> tangents;  // parallel to it; empty without a normal map
-  std::vector<PackedDirection> faces;   // parallel to it
+  // For each vertex, the index of the mesh's vertex that it copies.
+  std::vector<std::uint32_t> sources;
+  std::vector<PackedTangent> tangents;  // one for each vertex; empty without a normal map
+  // One for each vertex: normal of the triangle whose first vertex it is.
+  std::vector<PackedDirection> faces;
   std::vector<std::uint32_t> indices;
 };
 
@@ -46,7 +49,7 @@ PackedTangent packed_tangent(const glm::vec4& tangent) {
           static_cast<std::int16_t>(tangent.w < 0.0f ? -32767 : 32767), 0};
 }
 
-// Distributes the triangles of a mesh over parts.
+// Divides the triangles of a mesh into parts.
 class PartBuilder {
  public:
   PartBuilder(const Mesh& mesh, const Material& material) : mesh_(mesh) {
@@ -55,8 +58,8 @@ class PartBuilder {
     }
   }
 
-  // The next part, of at most `most_triangles`; without indices where no triangle is left.
-  // Triangles without area are left out.
+  // Returns the next part, with at most `most_triangles` triangles. It has no indices if no
+  // triangle is left. Triangles without an area are left out.
   Part next(std::size_t most_triangles);
 
  private:
@@ -76,11 +79,14 @@ class PartBuilder {
 
   static constexpr std::uint32_t kNone = UINT32_MAX;
   const Mesh& mesh_;
-  std::vector<glm::vec4> tangents_;       // by index; empty without a normal map
-  std::vector<std::uint32_t> of_vertex_;  // the part's vertex of each of the mesh's
-  std::unordered_map<Corner, std::uint32_t, CornerHash> of_corner_;  // where tangents tell apart
-  std::vector<bool> is_first_;  // of the part's vertices: a triangle begins with it
-  std::size_t at_ = 0;          // of the next triangle's indices
+  std::vector<glm::vec4> tangents_;  // one for each index; empty without a normal map
+  // For each vertex of the mesh, its copy in the current part.
+  std::vector<std::uint32_t> of_vertex_;
+  // The copies of corners that differ in their tangents.
+  std::unordered_map<Corner, std::uint32_t, CornerHash> of_corner_;
+  std::vector<bool> is_first_;  // for each vertex of the part, whether it is already the first
+                                // vertex of a triangle
+  std::size_t at_ = 0;          // position of the next triangle's indices
 };
 
 std::uint32_t PartBuilder::vertex_of(std::size_t index, Part& part) {
@@ -150,7 +156,7 @@ PackedDirection packed_direction(const glm::vec3& direction) {
   return {snorm16(square.x), snorm16(square.y)};
 }
 
-// Fills pages one after the other.
+// Copies the meshes into pages, and creates a new page when the last one is full.
 class GpuMeshes::Builder {
  public:
   Builder(const VulkanDevice& device, VkDeviceSize most_bytes, GpuMeshes& meshes)
@@ -161,7 +167,7 @@ class GpuMeshes::Builder {
 
  private:
   tl::expected<Place, std::string> reserve(VkDeviceSize bytes, std::byte*& data);
-  // Copies `element(i)` of each i below `count` into a page.
+  // Copies element(i) for each i below `count` into a page.
   template <class Element>
   tl::expected<Place, std::string> store(std::size_t count, const Element& element);
   template <class Element>
@@ -178,10 +184,10 @@ class GpuMeshes::Builder {
   const VulkanDevice& device_;
   VkDeviceSize most_bytes_;
   GpuMeshes& meshes_;
-  VkDeviceSize used_ = 0;  // of the last page
+  VkDeviceSize used_ = 0;  // bytes of the last page that are in use
   VkDeviceSize next_page_ = kFirstPage;
   MeshDraw constants_;   // with every stream bound to its constant
-  std::string failure_;  // the first of a draw's streams
+  std::string failure_;  // the first error while storing the streams of a draw
 };
 
 tl::expected<Place, std::string> GpuMeshes::Builder::reserve(VkDeviceSize bytes, std::byte*& data) {
@@ -336,7 +342,8 @@ tl::expected<void, std::string> GpuMeshes::Builder::add_instances(
 
 tl::expected<void, std::string> GpuMeshes::Builder::add(const Mesh& mesh,
                                                         const Material& material) {
-  // A page holds the largest stream of a part even if its triangles share no vertex.
+  // The number of triangles is so small that the largest stream of a part fits into a page even if
+  // no two triangles share a vertex.
   const std::size_t most_triangles = std::min(most_bytes_, kLargestPage) / (3 * sizeof(glm::vec3));
   PartBuilder builder(mesh, material);
   std::vector<MeshDraw> parts;

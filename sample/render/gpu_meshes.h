@@ -14,15 +14,15 @@
 
 namespace alcove::sample {
 
-// The vertex buffers of a draw, by their binding numbers. What a mesh does not have is bound with a
-// stride of zero to one constant element, so every draw has all of them.
+// The vertex buffers of a draw; the values are their binding numbers. Every draw binds all of them.
+// If a mesh does not have a stream, one constant element is bound with a stride of zero.
 enum class VertexStream : std::uint8_t {
   kPosition,  // 3 floats
   kNormals,   // PackedNormals
-  kUv,        // 2 floats; zero
-  kSecondUv,  // 2 floats; zero
-  kTangent,   // PackedTangent; zero
-  kColor,     // 4 bytes, linear RGB and alpha; white
+  kUv,        // 2 floats; zero if the mesh has none
+  kSecondUv,  // 2 floats; zero if the mesh has none
+  kTangent,   // PackedTangent; zero if the mesh has none
+  kColor,     // 4 bytes, linear RGB and alpha; white if the mesh has none
   kInstance,  // the columns of world_from_mesh, 12 floats; the identity. One for each instance
 };
 inline constexpr std::size_t kVertexStreams = 7;
@@ -33,24 +33,24 @@ using PackedDirection = std::array<std::int16_t, 2>;
 [[nodiscard]] PackedDirection packed_direction(const glm::vec3& direction);
 
 struct PackedNormals {
-  PackedDirection vertex;  // of the vertex
-  PackedDirection face;    // of the triangle whose first vertex this is
+  PackedDirection vertex;  // normal of the vertex
+  PackedDirection face;    // normal of the triangle whose first vertex this is
 };
 
 struct PackedTangent {
   PackedDirection direction;
-  std::int16_t side;  // of the bitangent: 32767 or -32767; 0 where there is no tangent
+  std::int16_t side;  // sign of the bitangent: 32767 or -32767; 0 without a tangent
   std::int16_t unused;
 };
 
-// One indexed draw of part of a mesh.
+// One indexed draw, of a part of a mesh.
 struct MeshDraw {
   std::uint32_t material = 0;
   std::uint32_t index_count = 0;
   std::uint32_t instance_count = 0;
   bool moves = false;
   bool faceted = false;   // the mesh has no vertex normals
-  bool mirrored = false;  // its instances mirror the mesh, which turns the winding
+  bool mirrored = false;  // its instances mirror the mesh, which reverses the winding
   VkBuffer index_buffer = VK_NULL_HANDLE;
   VkDeviceSize index_offset = 0;
   std::array<VkBuffer, kVertexStreams> buffers{};
@@ -58,19 +58,20 @@ struct MeshDraw {
   std::array<VkDeviceSize, kVertexStreams> strides{};
 };
 
-// The meshes of a scene as a device draws them: vertices are shared by their triangles, meshes by
-// their instances. Large meshes are split, so that no buffer exceeds the device's limit on one
-// allocation. Per triangle that shares its vertices as in a grid this takes 32 bytes and 8 more for
-// texture coordinates; per instance 48 bytes.
+// The meshes of a scene in device memory. Triangles of a mesh share vertices, and instances share
+// meshes. Large meshes are split, so that no buffer exceeds the device's limit for one allocation.
+// A triangle takes 32 bytes if its vertices are shared as in a grid, and 8 more for texture
+// coordinates; an instance takes 48 bytes.
 class GpuMeshes {
  public:
-  // `most_bytes` bounds each buffer, at least 4096; zero takes the device's limit. Errors: the
-  // device has no memory for the meshes. One sentence with the sizes.
+  // Uploads the meshes. `most_bytes` is the largest size of a buffer, at least 4096; zero selects
+  // the device's limit. If the device has not enough memory, the error is one sentence with the
+  // sizes.
   [[nodiscard]] static tl::expected<std::unique_ptr<GpuMeshes>, std::string> create(
       const VulkanDevice& device, const Scene& scene, VkDeviceSize most_bytes = 0);
 
   [[nodiscard]] const std::vector<MeshDraw>& draws() const { return draws_; }
-  // Of all buffers.
+  // Returns the size of all buffers in bytes.
   [[nodiscard]] VkDeviceSize bytes() const;
   [[nodiscard]] std::size_t buffers() const { return pages_.size(); }
 

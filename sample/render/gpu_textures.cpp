@@ -64,7 +64,7 @@ tl::expected<std::size_t, std::string> GpuTextures::add_texture(const Scene& sce
                    std::to_string(size.height) + " texels; the device takes at most " +
                    std::to_string(largest) + " a side.");
   }
-  // Vulkan has every device blit both formats linearly.
+  // Mips are made by linear blits, which Vulkan guarantees for both formats.
   auto made = GpuImage::create(
       device_,
       {srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM,
@@ -80,7 +80,7 @@ tl::expected<std::size_t, std::string> GpuTextures::add_texture(const Scene& sce
 
 tl::expected<VkSampler, std::string> GpuTextures::add_sampler(const Sampler& sampler) {
   constexpr float kMostAnisotropy = 8.0f;
-  // A file that asks for blocks or for no mips is to have them.
+  // Anisotropic filtering is used only if the file asks for linear filters and mips.
   const bool smooth = sampler.magnify == Filter::kLinear && sampler.minify == Filter::kLinear &&
                       sampler.mips == MipFilter::kLinear;
   const float anisotropy = smooth ? std::min(kMostAnisotropy, device_.max_anisotropy()) : 1.0f;
@@ -95,7 +95,8 @@ tl::expected<VkSampler, std::string> GpuTextures::add_sampler(const Sampler& sam
       .addressModeW = VK_SAMPLER_ADDRESS_MODE_REPEAT,
       .anisotropyEnable = anisotropy > 1.0f,
       .maxAnisotropy = anisotropy,
-      // Below a half mip 0 is the nearest, and above 0 texels are still minified.
+      // With this maxLod, level of detail 0 to 0.25 rounds to mip 0. A maxLod of 0 would disable
+      // the minification filter.
       .maxLod = sampler.mips == MipFilter::kNone ? 0.25f : VK_LOD_CLAMP_NONE};
   VkSampler made = VK_NULL_HANDLE;
   if (const VkResult result = vkCreateSampler(device_.device(), &info, nullptr, &made);
@@ -116,7 +117,8 @@ tl::expected<void, std::string> GpuTextures::add_use(const Scene& scene, const T
   if (!texture) {
     return Failure(texture.error());
   }
-  // Few samplers occur, so one is shared by looking for a use with the same.
+  // Uses with equal samplers share one VkSampler. A linear search is enough, because a scene has
+  // few different samplers.
   const auto like = std::ranges::find(uses_, use.sampler, &Use::sampler);
   VkSampler sampler = VK_NULL_HANDLE;
   if (like != uses_.end()) {
@@ -135,7 +137,7 @@ tl::expected<void, std::string> GpuTextures::add_use(const Scene& scene, const T
 }
 
 tl::expected<void, std::string> GpuTextures::upload(Gpu& gpu, const Scene& scene) {
-  // A frame for each, so that no two are held by the host once more.
+  // Each texture is uploaded in its own frame, so that only one upload buffer exists at a time.
   for (const Texture& texture : textures_) {
     const auto texels = std::as_bytes(texels_of(scene, texture.image));
     auto source = HostBuffer::create(device_, texels.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT);

@@ -15,23 +15,24 @@
 
 namespace alcove::sample {
 
-// How a mask reads its base colour: mip 0, as the ray tracer does, so that both cut out the same
-// and what is far keeps its coverage. By a sampler of its own, since not every driver takes a given
-// mip from an anisotropic one.
+// Returns how the alpha test reads the base colour: from mip 0, like the ray tracer, so that both
+// cut out the same shapes and distant surfaces keep their coverage. It needs a separate sampler,
+// because some drivers ignore an explicit mip level with an anisotropic sampler.
 [[nodiscard]] TextureUse mask_of(const Material& material);
 
-// The images of a scene on the device as its materials use them: one descriptor for each image,
-// sampler and encoding that occurs, after a white one. Mips go down to one texel.
+// The images of a scene in device memory, as its materials use them. There is one descriptor for
+// each combination of image, sampler and encoding that occurs, after one for a white texture. Each
+// image has all mips down to one texel.
 class GpuTextures {
  public:
-  // Uploads through frames of its own.
+  // Uploads the images in separate frames.
   [[nodiscard]] static tl::expected<std::unique_ptr<GpuTextures>, std::string> create(
       Gpu& gpu, const Scene& scene);
   ~GpuTextures();
   GpuTextures(const GpuTextures&) = delete;
   GpuTextures& operator=(const GpuTextures&) = delete;
 
-  // The descriptors of one of the scene's materials, in the order of the g-buffer's shaders.
+  // Returns the descriptors of a material's textures, in the order of the g-buffer's shaders.
   std::array<VkDescriptorImageInfo, maths::kMaterialTextures> descriptors_of(
       const Material& material) const;
 
@@ -43,7 +44,7 @@ class GpuTextures {
     bool operator==(const Use&) const = default;
   };
   struct Texture {
-    std::int32_t image;  // -1: white
+    std::int32_t image;  // index into Scene::images; -1: white
     bool srgb;
     std::unique_ptr<GpuImage> gpu;
   };
@@ -54,7 +55,8 @@ class GpuTextures {
                                                      bool srgb);
   tl::expected<VkSampler, std::string> add_sampler(const Sampler& sampler);
   tl::expected<void, std::string> upload(Gpu& gpu, const Scene& scene);
-  // Of a use that was added. `srgb` is decoded by the device as it is read.
+  // Returns the descriptor of a use that was added. If `srgb` is true, the device decodes sRGB when
+  // it reads the texture.
   const VkDescriptorImageInfo& descriptor_of(const TextureUse& use, bool srgb) const;
 
   const VulkanDevice& device_;

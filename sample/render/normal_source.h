@@ -13,7 +13,7 @@ enum class NormalSource {
   kDepth,      // None are given: the library reconstructs them from the depth buffer.
 };
 
-// Names in the order of the enumerators.
+// Names of the enumerators, in their order.
 inline constexpr std::array<std::string_view, 3> kNormalSourceNames{"shading", "geometric",
                                                                     "depth"};
 

@@ -16,7 +16,8 @@ using Failure = tl::unexpected<std::string>;
 
 constexpr passes::EnvironmentSettings kSettings;
 
-// Adds a pass that copies every mip of a texture into an image that lives on.
+// Adds a pass that copies every mip of a transient texture to an image that is kept after the
+// frame.
 void add_keep(Graph& graph, Texture from, const GpuImage& to, std::uint32_t mips) {
   auto pass = graph.add_pass("keep");
   pass.read(from, framegraph::access::transfer_source);

@@ -11,19 +11,19 @@
 
 namespace alcove::sample {
 
-// Adds the passes that make a probe's light of an environment. `upload` gets the buffer that they
-// read: it must outlive the frame.
+// Adds the passes that compute a probe from an environment image. `upload` receives the buffer that
+// they read: it must outlive the frame.
 [[nodiscard]] tl::expected<passes::Environment, std::string> add_probe(
     const passes::Frame& frame, Gpu& gpu, const EnvironmentImage& image,
     std::unique_ptr<HostBuffer>& upload);
 
-// The same light, made once and kept for all frames.
+// A probe that is computed once and kept for all frames.
 class Probe {
  public:
   [[nodiscard]] static tl::expected<std::unique_ptr<Probe>, std::string> create(
       Gpu& gpu, const EnvironmentImage& image);
 
-  // As the frame of this graph reads it.
+  // Imports the probe's textures into a graph.
   [[nodiscard]] passes::Environment import(framegraph::Graph& graph) const;
 
  private:

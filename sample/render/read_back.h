@@ -8,10 +8,10 @@
 #include "gpu/gpu.h"
 #include "support/image.h"
 
-// Images from buffers that the device copied textures into.
+// Converts buffers into which the device copied textures to images.
 namespace alcove::sample {
 
-// Turns texels of a read-back buffer into an image, one call of `convert` each.
+// Converts a read-back buffer to an image, with one call of `convert` for each texel.
 template <typename Pixel, typename Texel, typename Convert>
 Image<Pixel> to_image(const HostBuffer& buffer, VkExtent2D size, Convert convert) {
   Image<Pixel> image(size.width, size.height);
@@ -35,7 +35,7 @@ inline glm::vec3 from_bytes(const Byte4& texel) {
   return glm::vec3(texel[0], texel[1], texel[2]) / 255.0f;
 }
 
-// Of the formats that are read back.
+// Returns the bytes per texel of a format that is read back.
 inline std::uint32_t texel_bytes(VkFormat format) {
   switch (format) {
     case VK_FORMAT_R8_UNORM:
@@ -51,7 +51,7 @@ inline std::uint32_t texel_bytes(VkFormat format) {
   }
 }
 
-// What a pass wrote in a precision.
+// Converts visibility that a pass wrote with this precision to floats.
 inline Image<float> read_visibility(const HostBuffer& buffer, VkExtent2D size,
                                     passes::Precision precision) {
   switch (precision) {

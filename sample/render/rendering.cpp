@@ -18,10 +18,12 @@ namespace {
 
 using Failure = tl::unexpected<std::string>;
 
-// Frames whose times make the median; one more, the first, also compiles shaders.
+// Number of frames over which the median time is taken. One more frame is drawn first, because it
+// also compiles shaders.
 constexpr std::uint32_t kTimedFrames = 9;
 
-// Passes are told apart by their place in the frame: every frame of a run has the same.
+// Returns the median times. Passes are identified by their index, because all frames of a run have
+// the same passes.
 Costs medians(const std::vector<FrameCost>& frames) {
   const auto over_frames = [&](auto value) {
     std::vector<double> values;
@@ -43,15 +45,16 @@ Costs medians(const std::vector<FrameCost>& frames) {
   return costs;
 }
 
-// What is asked of a frame.
+// The outputs of a frame.
 enum class Outputs : std::uint8_t {
-  kVisibility,   // by the settings as they are, with specular occlusion only where they have it
-  kSpecular,     // and specular occlusion
+  kVisibility,   // visibility, and specular occlusion if the settings have it
+  kSpecular,     // also specular occlusion
   kBentNormals,  // visibility, bent normals and multi-bounce
   kAll,
 };
 
-// The requests of a run's frames, by index: the camera orbits, and motion is from the frame before.
+// The requests for the frames of a run, by frame number. The camera orbits, and motion is relative
+// to the previous frame.
 class Run {
  public:
   Run(const RenderRequest& request, const Camera& camera, const passes::OcclusionSettings& settings)
@@ -97,7 +100,7 @@ class Run {
   IndirectRequest timed_light_;  // one roughness, and no light
 };
 
-// Tells how many of all frames that will be drawn have been.
+// Reports progress: the fraction of all frames that have been drawn.
 class FrameCounter {
  public:
   explicit FrameCounter(std::uint32_t total) : total_(total) {}
@@ -111,8 +114,8 @@ class FrameCounter {
 
 std::uint32_t timed_frames(const Run& run) { return std::max(run.frames(), kTimedFrames + 1); }
 
-// Draws the run and times its last frames; a short run's last frame is drawn again until its time
-// is known.
+// Draws the run and returns the median times of its last frames. If the run is short, its last
+// frame is drawn several times.
 tl::expected<Costs, std::string> time_run(FrameRenderer& renderer, const Run& run, Outputs outputs,
                                           FrameCounter& counter) {
   std::vector<FrameCost> costs;
@@ -141,8 +144,9 @@ tl::expected<FrameImages, std::string> draw_run(FrameRenderer& renderer, const R
   return renderer.draw_and_read(run.request(run.frames() - 1, outputs));
 }
 
-// Slices that look for lobes turn towards them and tell less of visibility: where the settings want
-// none, visibility is that of a run without, as it is timed.
+// Returns the images of the last frame. With specular occlusion, slices are rotated towards the GGX
+// lobe, which makes visibility noisier. If the settings have no specular occlusion, visibility is
+// therefore taken from a second run without it, which is also the run that is timed.
 tl::expected<FrameImages, std::string> draw_images(FrameRenderer& renderer, const Run& run,
                                                    bool one_run, FrameCounter& counter) {
   auto all = draw_run(renderer, run, Outputs::kAll, counter);
@@ -227,7 +231,7 @@ Image<glm::vec3> with_sky(const Rendering& rendering, Image<glm::vec3> picture) 
 
 namespace {
 
-// Directions as colours: each component from -1..1 to 0..1.
+// Converts directions to colours: each component from -1..1 to 0..1.
 Image<glm::vec3> as_colours(const Image<glm::vec3>& directions) {
   Image<glm::vec3> colours = directions;
   for (glm::vec3& colour : colours.pixels) {

@@ -12,39 +12,40 @@
 
 namespace alcove::sample {
 
-// Medians over the frames of a run.
+// Median times over the last frames of a run.
 struct Costs {
   std::vector<PassTime> passes;  // GPU timestamps, milliseconds
-  double occlusion_ms = 0;       // of the occlusion passes together
-  double cpu_ms = 0;             // processor time of all threads for them
+  double occlusion_ms = 0;       // sum over the occlusion passes
+  double cpu_ms = 0;             // processor time of all threads for the occlusion passes
 };
 
-// Everything that `alcove render` knows of what it drew; `compare` adds truths to it.
+// The result of a run of `alcove render`: the scene, the settings, the images and the times.
+// `compare` adds references to it.
 struct Rendering {
   Scene scene;
-  double load_seconds = 0.0;  // of the scene
-  Camera camera;              // of the last frame
+  double load_seconds = 0.0;  // time that loading the scene took
+  Camera camera;              // in the last frame
   passes::OcclusionSettings settings;
   IndirectRequest light;
-  // Of the last frame. Specular occlusion and what is lit with it are of a run of their own where
-  // the settings want none.
+  // The images of the last frame. If the settings have no specular occlusion, specular occlusion
+  // and the images lit with it come from a second run.
   FrameImages images;
-  Costs costs;                // by the settings as they are
-  Costs costs_with_specular;  // and with specular occlusion
+  Costs costs;                // with the settings as given
+  Costs costs_with_specular;  // with specular occlusion
   framegraph::MemoryStatistics memory;
   std::string device;
   std::string driver;
 };
 
-// The model that specular occlusion is drawn by: slices where the settings want none.
+// Returns the method with which specular occlusion is drawn: `slices` if the settings have none.
 [[nodiscard]] passes::Specular specular_model(const passes::OcclusionSettings& settings);
 
-// Which frames of a session to draw, and what to make of the last one.
+// The frames to draw, and the outputs of the last one.
 struct RenderRequest {
   std::uint32_t width = 960;  // pixels
   std::uint32_t height = 540;
   std::uint32_t frames = 1;
-  float orbit = 0.0f;  // radians that the camera orbits its target by, per frame
+  float orbit = 0.0f;  // angle in radians by which the camera orbits its target per frame
   NormalSource normals = NormalSource::kShading;
   IndirectRequest light;
 };
@@ -53,17 +54,18 @@ struct RenderRequest {
 [[nodiscard]] tl::expected<Rendering, std::string> render(Session session,
                                                           const RenderRequest& request);
 
-// Distance along the view axis, infinity in the sky.
+// Returns the distance along the view axis at each pixel, infinity at pixels of the sky.
 [[nodiscard]] Image<float> linear_depth(const Rendering& rendering);
 
-// The picture with the environment where the scene is not.
+// Returns the picture with the environment at pixels without a surface.
 [[nodiscard]] Image<glm::vec3> with_sky(const Rendering& rendering, Image<glm::vec3> picture);
 
-// What the specular occlusion of index `i` was made for: materials, or r30 for a roughness of 0.3.
+// Returns the name of the roughness for which the specular occlusion of index `i` was computed:
+// `materials`, or for example `r30` for a roughness of 0.3.
 [[nodiscard]] std::string roughness_name(const IndirectRequest& light, std::size_t i);
 
-// The name of the specular occlusion of index `i` without its ending: specular_occlusion, followed
-// by _r30 and the like where several roughness values were asked for.
+// Returns the file name, without its extension, of the specular occlusion of index `i`:
+// specular_occlusion, followed by for example _r30 if several roughness values were requested.
 [[nodiscard]] std::string specular_name(const IndirectRequest& light, std::size_t i);
 
 // Writes the images of a rendering to a folder that exists.

@@ -12,7 +12,7 @@
 
 namespace alcove::sample {
 
-// Which Vulkan device to open, and how.
+// The Vulkan device to open, and its options.
 struct DeviceRequest {
   int index = -1;           // As `alcove doctor` lists them; -1 chooses the first suitable one.
   bool validation = false;  // Turns on the validation layers and the checks of the render graph.
@@ -29,7 +29,7 @@ struct Session {
   std::unique_ptr<Gpu> gpu;
 };
 
-// Opens the device. Each call opens it anew, with histories of its own.
+// Opens the device. Each call creates a new Gpu with its own histories.
 [[nodiscard]] tl::expected<std::unique_ptr<Gpu>, std::string> open_gpu(
     const DeviceRequest& request);
 

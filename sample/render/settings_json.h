@@ -6,7 +6,7 @@
 
 namespace alcove::sample {
 
-// Every occlusion setting that --set accepts, by its name.
+// Returns every occlusion setting that --set accepts, by its name, as a JSON object.
 [[nodiscard]] nlohmann::ordered_json to_json(const passes::OcclusionSettings& settings);
 
 }  // namespace alcove::sample

@@ -9,7 +9,8 @@
 
 namespace alcove::sample {
 
-// A shader while pipelines are made of it; `result` says whether there is one.
+// A shader module for the time in which pipelines are created from it. `result` is the result of
+// its creation.
 struct ShaderModule {
   VkDevice device;
   VkShaderModule module = VK_NULL_HANDLE;
@@ -26,14 +27,16 @@ struct ShaderModule {
   ShaderModule& operator=(const ShaderModule&) = delete;
 };
 
-// What a graphics pipeline draws with, while it is made; `result` says whether there is all of it.
+// The shader stages of a graphics pipeline, for the time in which it is created. `result` is the
+// first failure, if any.
 struct ShaderStages {
   ShaderModule vertex;
   ShaderModule fragment;
   VkResult result;
   std::array<VkPipelineShaderStageCreateInfo, 2> infos;
 
-  // `fragment_constants` specialises the fragment shader, outlives this and may be null.
+  // `fragment_constants` specialises the fragment shader. It may be null and must outlive this
+  // object.
   ShaderStages(VkDevice device, std::span<const uint32_t> vertex_code,
                std::span<const uint32_t> fragment_code,
                const VkSpecializationInfo* fragment_constants = nullptr)

@@ -12,10 +12,11 @@ namespace alcove::sample {
 struct Shot {
   Camera camera;
   passes::OcclusionSettings settings;
-  std::optional<float> roughness;  // Perceptual, [0,1], of every surface; none: of the materials.
-  std::uint32_t width = 0;         // pixels
+  // Perceptual, [0,1], of every surface; null: the materials' own roughness.
+  std::optional<float> roughness;
+  std::uint32_t width = 0;  // pixels
   std::uint32_t height = 0;
-  std::uint32_t frames = 0;  // to draw; 0: as many as the history averages
+  std::uint32_t frames = 0;  // number of frames to draw; 0: as many as the history averages
 };
 
 }  // namespace alcove::sample

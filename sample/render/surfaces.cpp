@@ -5,7 +5,8 @@
 namespace alcove::sample {
 namespace {
 
-// Where the g-buffer has them: roughness beside the albedo, metallic beside emission.
+// The channel of the g-buffer textures that holds roughness (with the albedo) and metallic (with
+// the emission).
 constexpr std::uint32_t kAlpha = 3;
 
 }  // namespace

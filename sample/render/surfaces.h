@@ -9,39 +9,41 @@
 
 namespace alcove::sample {
 
-// What a frame knows of the surfaces that it shows, and how the passes are given it: alike wherever
-// the sample draws.
+// The g-buffer of a frame and the values that go with it. The functions below pass them to the
+// occlusion and lighting passes, in the same way in all programs of the sample.
 struct Surfaces {
   Gbuffer gbuffer;
-  framegraph::Texture back_depth;    // as GbufferRenderer::add_back_faces fills it; may be null
-  framegraph::Texture second_depth;  // as GbufferRenderer::add_second_layer does; may be null
+  framegraph::Texture back_depth;    // from GbufferRenderer::add_back_faces; may be null
+  framegraph::Texture second_depth;  // from GbufferRenderer::add_second_layer; may be null
   NormalSource normals = NormalSource::kShading;
-  std::optional<float> roughness;  // perceptual, of every surface; none: of their materials
+  // Perceptual, of every surface; null: the materials' own roughness.
+  std::optional<float> roughness;
 };
 
-// Which depths beyond the g-buffer's are read.
+// The hidden depths that are read besides the g-buffer: back faces and the second layer.
 struct HiddenDepths {
   bool back_faces = false;
   bool second_layer = false;
 
-  // With those that another reads.
+  // Returns the union of both.
   [[nodiscard]] HiddenDepths with(const HiddenDepths& other) const;
   [[nodiscard]] bool covers(const HiddenDepths& other) const;
 };
 [[nodiscard]] HiddenDepths hidden_depths_of(const passes::OcclusionSettings& settings);
 
-// Depths, normals and roughness; motion is left to the caller.
+// Returns the inputs of the occlusion passes: depths, normals and roughness. The caller adds
+// motion.
 [[nodiscard]] passes::OcclusionInputs occlusion_inputs(const Surfaces& surfaces);
-// The settings with the roughness of the surfaces.
+// Returns the settings with the roughness of the surfaces.
 [[nodiscard]] passes::OcclusionSettings with_roughness(const passes::OcclusionSettings& settings,
                                                        const Surfaces& surfaces);
 
-// Fills in all that is known of the surfaces but their occlusion.
+// Sets all fields of `inputs` that describe the surfaces, except their occlusion.
 void give_surfaces(passes::ApplyInputs& inputs, const Surfaces& surfaces,
                    const passes::OcclusionOutputs& outputs);
 [[nodiscard]] passes::ApplySettings apply_settings(const Surfaces& surfaces);
 
-// A matrix as the passes take it.
+// Converts a matrix to the type that the passes use.
 [[nodiscard]] passes::Matrix to_matrix(const glm::mat4& matrix);
 
 }  // namespace alcove::sample

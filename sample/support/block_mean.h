@@ -9,7 +9,7 @@
 namespace alcove::sample {
 
 // Reduces an image while it is read row by row: each block of `factor` x `factor` pixels becomes
-// its mean, at the right and lower edge the mean of the pixels that exist. A pixel has
+// its mean. At the right and lower edge, it is the mean of the pixels that exist. A pixel has
 // `kComponents` interleaved components of type `In`, which are summed as `Sum`.
 template <class In, class Sum, uint32_t kComponents>
 class BlockMean {

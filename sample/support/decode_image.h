@@ -9,10 +9,10 @@
 
 namespace alcove::sample {
 
-// Decoding of PNG (by libpng) and JPEG (by libjpeg-turbo), the two image formats of glTF. Both
-// libraries are maintained for, and fuzzed with, hostile input. The bytes may be hostile. The
-// signature determines the format, and the header is checked against limits on time and memory
-// before anything is decoded. Errors are the end of a sentence that begins with the image's name.
+// Decodes PNG (with libpng) and JPEG (with libjpeg-turbo), the two image formats of glTF. The bytes
+// may be hostile: both libraries are maintained for such input and fuzzed with it. The signature
+// determines the format, and the header is checked against limits on time and memory before
+// anything is decoded. Errors are the end of a sentence that begins with the image's name.
 // Thread-safe.
 
 enum class ImageFormat : uint8_t { kPng, kJpeg };
@@ -34,15 +34,15 @@ struct DecodedImage {
 // The largest side, in pixels, that a caller should decode: the largest texture of most devices.
 constexpr uint32_t kLargestImageSide = 16384;
 
-// Reads the size from the header without decoding. Another format, a damaged header, or fewer bytes
-// than so many pixels can be compressed to are an error.
+// Reads the size from the header without decoding. Another format, a damaged header, or a file too
+// short for so many pixels is an error.
 [[nodiscard]] tl::expected<ImageHeader, std::string> read_image_header(
     std::span<const uint8_t> bytes);
 
 // Decodes an image. `header` is the result of read_image_header() for the same bytes. Every block
-// of `reduction` x `reduction` pixels (at least 1) becomes its mean; the full image is then not
+// of `reduction` x `reduction` pixels (at least 1) becomes its mean, and the full image is then not
 // kept in memory, except for an interlaced PNG. Data that is damaged or cut short, and a
-// progressive JPEG that needs over 512 MiB, are errors.
+// progressive JPEG that needs more than 512 MiB, are errors.
 [[nodiscard]] tl::expected<DecodedImage, std::string> decode_image(std::span<const uint8_t> bytes,
                                                                    const ImageHeader& header,
                                                                    uint32_t reduction = 1);

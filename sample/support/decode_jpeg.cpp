@@ -27,8 +27,8 @@ struct Errors {
   std::longjmp(reinterpret_cast<Errors*>(jpeg->err)->jump, 1);
 }
 
-// libjpeg warns of damaged data (level -1) and goes on with grey; here that is an error, but for
-// what leaves the pixels as they are.
+// libjpeg only warns of damaged data (level -1) and continues with grey. Here a warning is an
+// error, except for warnings after which the pixels are still right.
 void judge(j_common_ptr jpeg, int level) {
   const int code = jpeg->err->msg_code;
   const bool harmless = code == JWRN_EXTRANEOUS_DATA || code == JWRN_JFIF_MAJOR ||
@@ -38,8 +38,8 @@ void judge(j_common_ptr jpeg, int level) {
 
 void print_nothing(j_common_ptr /*jpeg*/) {}
 
-// Each scan of a progressive JPEG goes over the whole image, and a file of a megabyte holds 100,000
-// empty ones. Encoders write at most about 20.
+// Limits the number of scans. Each scan of a progressive JPEG covers the whole image, and a file of
+// a megabyte can contain 100,000 empty scans. Encoders write at most about 20.
 void limit_scans(j_common_ptr jpeg) {
   constexpr int kMostScans = 100;
   if (reinterpret_cast<j_decompress_ptr>(jpeg)->input_scan_number > kMostScans) leave(jpeg);
@@ -58,20 +58,21 @@ class JpegReader {
   JpegReader& operator=(const JpegReader&) = delete;
   ~JpegReader() { jpeg_destroy_decompress(&jpeg_); }
 
-  // False where the header is damaged. Errors of libjpeg come back as a longjmp, which must not
-  // skip the destructor of anything: these functions have trivial locals only.
+  // Returns false if the header is damaged. libjpeg reports errors with longjmp, which must not
+  // skip destructors. These functions therefore only have local variables of trivial types.
   bool read_header() {
     if (setjmp(errors_.jump)) return false;
     jpeg_create_decompress(&jpeg_);
     jpeg_.progress = &progress_;
-    // Progressive images are held as coefficients, 2 bytes a sample, until the last scan.
+    // libjpeg keeps the coefficients of progressive images, 2 bytes per sample, until the last
+    // scan.
     constexpr long kMostMemory = 512L << 20;
     jpeg_.mem->max_memory_to_use = kMostMemory;
     jpeg_mem_src(&jpeg_, bytes_.data(), static_cast<unsigned long>(bytes_.size()));
     return jpeg_read_header(&jpeg_, TRUE) == JPEG_HEADER_OK;
   }
 
-  // `scale` is 1, 2, 4 or 8: libjpeg then decodes at that fraction of the size.
+  // Starts decoding at 1/`scale` of the width and height. `scale` is 1, 2, 4 or 8.
   bool start(unsigned scale) {
     if (setjmp(errors_.jump)) return false;
     jpeg_.scale_num = 1;
@@ -81,7 +82,8 @@ class JpegReader {
     return jpeg_start_decompress(&jpeg_) != FALSE;
   }
 
-  // `row(y)` says where row y goes, as RGBA; `take(y)` is called when it is there.
+  // Decodes all rows to RGBA. `row(y)` returns the memory for row y, and `take(y)` is called when
+  // the row is complete.
   template <class Row, class Take>
   bool read_rows(const Row& row, const Take& take) {
     if (setjmp(errors_.jump)) return false;
@@ -107,7 +109,7 @@ class JpegReader {
   uint32_t output_height() const { return jpeg_.output_height; }
 
  private:
-  // Adobe's inks are stored inverted: 255 is none.
+  // In Adobe's CMYK files the inks are stored inverted: 255 is no ink.
   void make_rgba(uint8_t* pixel) const {
     for (uint32_t x = 0; x < jpeg_.output_width; ++x, pixel += 4) {
       for (int c = 0; c < 3; ++c) pixel[c] = static_cast<uint8_t>(pixel[c] * pixel[3] / 255);
@@ -128,7 +130,8 @@ Failure failure_of(const JpegReader& reader) {
                      : kDamaged);
 }
 
-// libjpeg takes the powers of 2 out of the reduction that it knows.
+// Returns the part of the reduction that libjpeg can do: the largest power of 2 up to 8 that
+// divides it.
 unsigned libjpeg_scale(uint32_t reduction) {
   unsigned scale = 1;
   while (scale < 8 && reduction % (2 * scale) == 0) scale *= 2;
@@ -144,8 +147,9 @@ bool is_jpeg(Bytes bytes) {
 tl::expected<ImageHeader, std::string> read_jpeg_header(Bytes bytes) {
   JpegReader reader(bytes);
   if (!reader.read_header()) return Failure(kDamaged);
-  // A Huffman code has at least one bit, and a block of 64 pixels at least one code; interleaved
-  // sampling and arithmetic coding can save a little more.
+  // The most pixels that one byte can encode: a Huffman code has at least one bit, and a block of
+  // 64 pixels has at least one code. Interleaved sampling and arithmetic coding can save a little
+  // more.
   constexpr uint64_t kMostPixelsPerByte = 2048;
   if (uint64_t{reader.width()} * reader.height() / kMostPixelsPerByte > bytes.size()) {
     return Failure("is cut short");

@@ -26,8 +26,8 @@ void take_bytes(png_structp png, png_bytep out, size_t size) {
 [[noreturn]] void leave(png_structp png, png_const_charp /*message*/) { png_longjmp(png, 1); }
 void ignore(png_structp /*png*/, png_const_charp /*message*/) {}
 
-// A reader over bytes in memory. Chunks that change nothing of the pixels are skipped unread: glTF
-// ignores colour spaces, and compressed text and profiles could only take time and memory.
+// A reader for bytes in memory. Chunks that do not change the pixels are skipped unread: glTF
+// ignores colour spaces, and compressed texts and profiles would only take time and memory.
 class PngReader {
  public:
   explicit PngReader(Bytes bytes) : left_(bytes) {
@@ -38,8 +38,8 @@ class PngReader {
   PngReader& operator=(const PngReader&) = delete;
   ~PngReader() { png_destroy_read_struct(&png_, &info_, nullptr); }
 
-  // False where the header is damaged. Errors of libpng come back as a longjmp, which must not skip
-  // the destructor of anything: these functions have trivial locals only.
+  // Returns false if the header is damaged. libpng reports errors with longjmp, which must not skip
+  // destructors. These functions therefore only have local variables of trivial types.
   bool read_header() {
     if (info_ == nullptr || setjmp(png_jmpbuf(png_))) return false;
     png_set_read_fn(png_, &left_, take_bytes);
@@ -49,8 +49,8 @@ class PngReader {
     return true;
   }
 
-  // `rows` has room for one row of RGBA, or for all of them where `stride`, the bytes from one to
-  // the next, is not 0. `take(y)` is called when row y is complete.
+  // Decodes all rows. If `stride`, the bytes from one row to the next, is 0, `rows` has room for
+  // one row of RGBA, otherwise for all of them. `take(y)` is called when row y is complete.
   template <class Take>
   bool read_rows(uint8_t* rows, size_t stride, const Take& take) {
     if (setjmp(png_jmpbuf(png_))) return false;
@@ -89,7 +89,7 @@ bool is_png(Bytes bytes) { return bytes.size() >= 8 && png_sig_cmp(bytes.data(),
 tl::expected<ImageHeader, std::string> read_png_header(Bytes bytes) {
   PngReader reader(bytes);
   if (!reader.read_header()) return Failure(kDamaged);
-  // Deflate compresses at most 1032 bytes into one (RFC 1951: 258 bytes by 2 bits).
+  // Deflate compresses at most 1032 bytes into one (RFC 1951: 258 bytes into 2 bits).
   constexpr uint64_t kBestRatio = 1032;
   const uint64_t row = 1 + (uint64_t{reader.width()} * reader.bits_per_pixel() + 7) / 8;
   if (row * reader.height() / kBestRatio > bytes.size()) {

@@ -35,8 +35,8 @@ Outcome check_writable_image(uint32_t width, uint32_t height, size_t pixels) {
   return {};
 }
 
-// The destructor of OpenEXR's file ignores errors, so a disk that becomes full at the end is only
-// detected by reading the file back.
+// OpenEXR's destructor ignores errors when it closes the file. A disk that becomes full at the end
+// is therefore only detected by reading the file back.
 Outcome check_complete_exr(const std::filesystem::path& file) {
   try {
     Imf::InputFile input(file.string().c_str());
@@ -71,7 +71,7 @@ Outcome write_exr_channels(const std::filesystem::path& file, uint32_t width, ui
   });
 }
 
-// The chosen channels of an EXR file, interleaved.
+// The selected channels of an EXR file, interleaved.
 struct FloatImage {
   uint32_t width = 0;
   uint32_t height = 0;

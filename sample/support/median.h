@@ -6,7 +6,8 @@
 
 namespace alcove::sample {
 
-// The median; of an even number of values the upper of the two in the middle. 0 if there are none.
+// Returns the median. If the number of values is even, it is the larger of the two in the middle. 0
+// if there are no values.
 template <class T>
 [[nodiscard]] T median(std::vector<T> values) {
   if (values.empty()) {
@@ -17,8 +18,8 @@ template <class T>
   return *middle;
 }
 
-// The value at the fraction `share`, [0, 1], of the sorted values, rounded down to one of them. 0
-// if there are none.
+// Returns the element of the sorted values at the fraction `share`, [0,1], of their number, rounded
+// down. 0 if there are no values.
 template <class T>
 [[nodiscard]] T percentile(std::vector<T> values, double share) {
   if (values.empty()) {
@@ -29,8 +30,8 @@ template <class T>
   return values[static_cast<std::size_t>(rank)];
 }
 
-// Half the distance between the first and the third quartile, a spread that ignores outliers. 0 if
-// there are no values.
+// Returns half the distance between the first and the third quartile, a measure of spread that
+// ignores outliers. 0 if there are no values.
 [[nodiscard]] inline double quartile_spread(const std::vector<double>& values) {
   return 0.5 * (percentile(values, 0.75) - percentile(values, 0.25));
 }

@@ -8,7 +8,7 @@
 namespace alcove::sample {
 
 // Runs `row(y)` for every y below `rows` on all processors, in any order. Only the calling thread
-// calls `progress`. `row` must not throw.
+// calls `progress`, with the completed fraction. `row` must not throw.
 void parallel_rows(uint32_t rows, const std::function<void(uint32_t)>& row,
                    const Progress& progress = {});
 

@@ -12,14 +12,14 @@ uint8_t byte_at(std::string_view text, size_t i) {
 
 bool continues(std::string_view text, size_t i) { return (byte_at(text, i) & 0xc0u) == 0x80; }
 
-// The length in bytes of the character that `text` begins with, after table 3-7 of the Unicode
-// standard; 0 where it does not begin with a character.
+// Returns the length in bytes of the UTF-8 character at the beginning of `text`, after table 3-7 of
+// the Unicode standard, or 0 if there is no valid character.
 size_t character_size(std::string_view text) {
   const uint8_t first = byte_at(text, 0), second = byte_at(text, 1);
   if (first < 0x80) return 1;
   if (first < 0xc2 || first > 0xf4 || !continues(text, 1)) return 0;
   if (first < 0xe0) return 2;
-  // Overlong forms, halves of a surrogate pair and values above U+10FFFF are not characters.
+  // Overlong encodings, halves of a surrogate pair and values above U+10FFFF are not valid.
   if ((first == 0xe0 && second < 0xa0) || (first == 0xed && second > 0x9f) ||
       (first == 0xf0 && second < 0x90) || (first == 0xf4 && second > 0x8f) || !continues(text, 2)) {
     return 0;
@@ -53,7 +53,7 @@ std::string shortened(std::string_view text, std::size_t most) {
   constexpr std::string_view kDots = "...";
   std::string out = printable(text);
   if (out.size() <= most) return out;
-  // Two thirds of the room are for the beginning. Neither cut is within a character.
+  // Two thirds of the length are for the beginning. No character is cut in two.
   std::size_t head = (most - kDots.size()) * 2 / 3;
   std::size_t tail = out.size() - (most - kDots.size() - head);
   while (head > 0 && continues(out, head)) --head;

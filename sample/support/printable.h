@@ -11,8 +11,8 @@ namespace alcove::sample {
 // U+FFFD.
 [[nodiscard]] std::string printable(std::string_view text);
 
-// printable(text), limited to `most` bytes (at least 16): "..." replaces the middle of a longer
-// text, so that a sentence keeps its beginning and its end.
+// Returns printable(text), limited to `most` bytes (at least 16). In a longer text, "..." replaces
+// the middle, so that a sentence keeps its beginning and its end.
 [[nodiscard]] std::string shortened(std::string_view text, std::size_t most);
 
 }  // namespace alcove::sample

@@ -34,7 +34,7 @@ struct Line {
   bool shown = false;
 };
 
-// The share that has to be done before the time that is left is shown.
+// The fraction of the work that must be done before the remaining time is shown.
 constexpr double kLeastKnown = 0.01;
 
 void show(Line& line, double done) {

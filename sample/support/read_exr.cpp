@@ -21,7 +21,7 @@ namespace {
 
 using Failure = tl::unexpected<std::string>;
 
-// OpenEXR over a file that is already open. OpenEXR takes errors as exceptions.
+// Lets OpenEXR read a file that is already open. OpenEXR expects errors as exceptions.
 class FileStream : public Imf::IStream {
  public:
   explicit FileStream(std::FILE* file) : IStream("the file"), file_(file) {}
@@ -54,7 +54,7 @@ bool read_word(std::FILE* file, uint32_t& out) {
   return true;
 }
 
-// A name up to its terminating null.
+// Reads a name up to its terminating zero.
 bool read_name(std::FILE* file, std::string& out) {
   constexpr size_t kLongest = 255;  // bytes
   out.clear();
@@ -65,8 +65,8 @@ bool read_name(std::FILE* file, std::string& out) {
   return false;
 }
 
-// The size in bytes of the types of attributes that have only one; 0 for others. OpenEXR reads that
-// many bytes whatever the file gives as the size.
+// Returns the size in bytes of an attribute type that has only one size, or 0 for other types. For
+// such a type, OpenEXR reads that many bytes, whatever size the file states.
 uint32_t fixed_size(const std::string& type) {
   struct Entry {
     std::string_view type;
@@ -84,7 +84,8 @@ uint32_t fixed_size(const std::string& type) {
   return found == std::end(kSizes) ? 0 : found->size;
 }
 
-// A list of channels: names with 16 bytes each, up to an empty name.
+// Returns whether the attribute is a valid list of channels: names, each followed by 16 bytes, up
+// to an empty name.
 bool is_channel_list(std::FILE* file, uint32_t size) {
   constexpr uint32_t kChannel = 16;
   std::string name;
@@ -97,7 +98,7 @@ bool is_channel_list(std::FILE* file, uint32_t size) {
   return false;
 }
 
-// Strings with a length each.
+// Returns whether the attribute is a valid list of strings, each after its length.
 bool is_string_vector(std::FILE* file, uint32_t size) {
   uint32_t length = 0;
   while (size > 0) {
@@ -108,7 +109,7 @@ bool is_string_vector(std::FILE* file, uint32_t size) {
   return true;
 }
 
-// A width, a height and that many pixels.
+// Returns whether the attribute is a valid preview: a width, a height and that many pixels.
 bool is_preview(std::FILE* file, uint32_t size) {
   uint32_t width = 0, height = 0;
   return size >= 8 && read_word(file, width) && read_word(file, height) &&
@@ -116,7 +117,8 @@ bool is_preview(std::FILE* file, uint32_t size) {
          uint64_t{4} * width * height == size - 8;
 }
 
-// Whether OpenEXR reads exactly `size` bytes for an attribute, and takes no more memory than that.
+// Returns whether OpenEXR reads exactly `size` bytes for an attribute, and allocates no more memory
+// than that.
 bool has_size(std::FILE* file, const std::string& type, uint32_t size) {
   if (const uint32_t fixed = fixed_size(type); fixed != 0) return size == fixed;
   if (type == "chlist") return is_channel_list(file, size);
@@ -125,8 +127,8 @@ bool has_size(std::FILE* file, const std::string& type, uint32_t size) {
   return type != "floatvector" || size % 4 == 0;
 }
 
-// Goes over the attributes of all headers, and back to the beginning of the file. OpenEXR takes
-// memory for an attribute by the size that the file gives, before it reads.
+// Checks the attributes of all headers, and returns to the beginning of the file. OpenEXR allocates
+// memory for an attribute by the size that the file states, before it reads it.
 tl::expected<void, std::string> check_attributes(std::FILE* file) {
   constexpr uint32_t kMagic = 20000630, kMultiPart = 0x1000;
   const long end = std::fseek(file, 0, SEEK_END) == 0 ? std::ftell(file) : -1;
@@ -136,7 +138,8 @@ tl::expected<void, std::string> check_attributes(std::FILE* file) {
     return Failure("is no OpenEXR file");
   }
   std::string name, type;
-  // A header ends with an empty name, the list of the headers of several parts with another one.
+  // A header ends with an empty name. The list of headers of a multi-part file ends with another
+  // empty name.
   for (bool new_header = true;;) {
     if (!read_name(file, name)) return Failure("is cut short in its header");
     if (name.empty()) {
@@ -175,7 +178,7 @@ uint64_t bytes_per_pixel(const Imf::Header& header) {
   return bytes;
 }
 
-// What OpenEXR takes memory for, before it takes any.
+// Checks the sizes for which OpenEXR allocates memory, before it allocates any.
 tl::expected<Size, std::string> check_header(const Imf::Header& header) {
   if (header.hasType() && Imf::isDeepData(header.type())) {
     return Failure("is a deep image; flatten it first");
@@ -187,7 +190,8 @@ tl::expected<Size, std::string> check_header(const Imf::Header& header) {
     return Failure("is " + std::to_string(width) + "x" + std::to_string(height) +
                    " pixels, and a side may have from 1 to " + std::to_string(kLargestFloatSide));
   }
-  // A block is 256 rows at most (DWAB), and OpenEXR holds one packed and one unpacked.
+  // A compressed block has at most 256 rows (DWAB). OpenEXR keeps one compressed and one
+  // decompressed block in memory.
   constexpr uint64_t kMostRowBytes = uint64_t{1} << 20;
   const uint64_t pixel = bytes_per_pixel(header);
   if (static_cast<uint64_t>(width) * pixel > kMostRowBytes) {
@@ -222,8 +226,8 @@ tl::expected<void, std::string> read_checked(FileStream& stream, const ChooseCha
   Imf::FrameBuffer frame;
   for (size_t c = 0; c < names.size(); ++c) {
     if (!exists(names[c])) return Failure("has no channel " + names[c]);
-    // A slice's base is the address of column 0, which may lie before the buffer; all rows are read
-    // into the same one.
+    // The base of a slice is the address that column 0 would have, which may lie before the buffer.
+    // All rows are read into the same memory.
     char* base = reinterpret_cast<char*>(row.data() + c) -
                  ptrdiff_t{size->first_column} * static_cast<ptrdiff_t>(pixel);
     frame.insert(names[c], Imf::Slice(Imf::FLOAT, base, pixel, 0));

@@ -19,8 +19,8 @@ struct Size {
   uint32_t height;
 };
 
-// The next line without its end; nothing where the file ends or the line is longer than any that a
-// header has.
+// Reads the next line, without its end. Returns nothing at the end of the file, or if the line is
+// longer than any line of a header.
 std::optional<std::string> read_line(std::FILE* file) {
   constexpr size_t kLongest = 4096;  // bytes
   std::string line;
@@ -31,7 +31,7 @@ std::optional<std::string> read_line(std::FILE* file) {
   return std::nullopt;
 }
 
-// A side after its axis, such as "-Y 512"; 0 where it is none.
+// Reads a side after the name of its axis, such as 512 in "-Y 512". Returns 0 if there is none.
 uint32_t read_side(std::string_view& text, std::string_view axis) {
   uint32_t value = 0;
   if (!text.starts_with(axis)) return 0;
@@ -77,7 +77,8 @@ tl::expected<Size, std::string> read_header(std::FILE* file) {
 
 bool read_pixel(std::FILE* file, Rgbe& out) { return std::fread(out.data(), 1, 4, file) == 4; }
 
-// One channel of a row: a byte above 128 begins a run of one value, any other that many values.
+// Reads one channel of a row. A byte above 128 begins a run of one value; any other byte is the
+// number of values that follow.
 bool read_channel(std::FILE* file, std::vector<Rgbe>& row, size_t channel) {
   constexpr int kRun = 128;
   for (size_t x = 0; x < row.size();) {
@@ -96,8 +97,8 @@ bool read_channel(std::FILE* file, std::vector<Rgbe>& row, size_t channel) {
   return true;
 }
 
-// A row of whole pixels, of which the first was read: (1, 1, 1, n) repeats the last n times, and
-// further ones in a row count as higher digits of n.
+// Reads a row in the old encoding, whose first pixel was already read. The pixel (1, 1, 1, n)
+// repeats the previous pixel n times; several of them in succession are the digits of one larger n.
 bool read_old_row(std::FILE* file, std::vector<Rgbe>& row, Rgbe pixel) {
   unsigned shift = 0;
   for (size_t x = 0; x < row.size();) {
@@ -132,7 +133,7 @@ bool read_row(std::FILE* file, std::vector<Rgbe>& row) {
   return true;
 }
 
-// Mantissas in units of 1/256 and an exponent with a bias of 128.
+// Decodes pixels: mantissas in units of 1/256, and a common exponent with a bias of 128.
 void decode(const std::vector<Rgbe>& row, std::vector<float>& out) {
   for (size_t x = 0; x < row.size(); ++x) {
     const float unit = row[x][3] == 0 ? 0.0f : std::ldexp(1.0f, row[x][3] - (128 + 8));

@@ -4,12 +4,12 @@
 
 namespace alcove::sample {
 
-// Reads a Radiance picture (.hdr, "-Y H +X W", 32-bit_rle_rgbe), after the format's description in
-// Ward, "Real Pixels", Graphics Gems II, and the file formats of Radiance. The reader is part of
-// Alcove, because the format is simple and the libraries in Debian that read it (stb_image,
-// FreeImage) are not maintained against hostile files. It holds one row in memory. The size in the
-// header bounds the time, and the row bounds every count. Rows are R, G, B. Errors are the end of a
-// sentence that begins with the file's name.
+// Reads a Radiance picture (.hdr, "-Y H +X W", 32-bit_rle_rgbe), after the description of the
+// format in Ward, "Real Pixels", Graphics Gems II, and the documentation of Radiance. Alcove has
+// its own reader, because the format is simple and the libraries in Debian that read it (stb_image,
+// FreeImage) are not maintained against hostile files. It keeps one row in memory. The size in the
+// header limits the time, and every count is checked against the row. Rows are R, G, B. Errors are
+// the end of a sentence that begins with the file's name.
 [[nodiscard]] tl::expected<void, std::string> read_hdr(std::FILE* file, const FloatRows& rows);
 
 }  // namespace alcove::sample

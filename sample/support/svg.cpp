@@ -21,7 +21,7 @@ std::string escaped(std::string_view text) {
   return result;
 }
 
-// The end of a shape's tag, with its title if it has one.
+// Returns the end of a shape's element, with its title if it has one.
 std::string end_of(const char* shape, std::string_view title) {
   return title.empty() ? "/>\n" : fmt::format("><title>{}</title></{}>\n", escaped(title), shape);
 }

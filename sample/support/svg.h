@@ -9,8 +9,8 @@
 namespace alcove::sample {
 
 // An SVG image that is built shape by shape. Positions and lengths are in pixels; y grows
-// downwards. `style` holds presentation attributes, such as `stroke="black"`; a `title` is shown
-// under the pointer.
+// downwards. `style` has presentation attributes, such as `stroke="black"`. A `title` is shown as a
+// tooltip.
 class Svg {
  public:
   void line(glm::vec2 from, glm::vec2 to, std::string_view style);
@@ -20,11 +20,11 @@ class Svg {
   // `corner` is the upper left one.
   void rectangle(glm::vec2 corner, glm::vec2 size, std::string_view style,
                  std::string_view title = "");
-  // `anchor` is start, middle or end: where `at` lies along the text.
+  // `anchor` is `start`, `middle` or `end`: the part of the text that is at the position `at`.
   void text(glm::vec2 at, std::string_view anchor, std::string_view text,
             std::string_view style = "");
 
-  // The file: the shapes on a white background.
+  // Returns the text of the SVG file: the shapes on a white background.
   std::string document(glm::vec2 size, int font_size) const;
 
  private:

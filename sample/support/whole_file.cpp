@@ -25,8 +25,8 @@ using Failure = tl::unexpected<std::string>;
 
 constexpr const char* kPart = ".part";
 
-// A temporary name beside the target, so that the rename stays on one file system. It is random, so
-// that two processes that write the same file do not collide.
+// Returns a temporary file name in the folder of the target, so that the final rename stays on one
+// file system. The name is random, so that two processes that write the same file do not collide.
 fs::path temporary_beside(const fs::path& file) {
   std::random_device random;
   fs::path temporary = file;
@@ -34,7 +34,8 @@ fs::path temporary_beside(const fs::path& file) {
   return temporary;
 }
 
-// Whether temporary_beside() made the name, for the file named `of` or, if that is empty, any file.
+// Returns whether temporary_beside() made the name for the file `of` or, if `of` is empty, for any
+// file.
 bool is_temporary(const std::string& name, const std::string& of) {
   const size_t part = name.rfind(kPart);
   if (part == std::string::npos || (!of.empty() && name.compare(0, part, of) != 0)) return false;

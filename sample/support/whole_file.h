@@ -8,13 +8,13 @@
 
 namespace alcove::sample {
 
-// Files are written completely or not at all: each is written under a temporary name in its folder
+// Writes files completely or not at all: each file is written under a temporary name in its folder
 // and then renamed. Errors are one sentence with the file's name and the system's reason, such as a
 // full disk or a folder without write permission.
 
-// An output folder that is created, with its parents, before the work that fills it. The destructor
-// removes the folders that it created and that are still empty, so that a failed run leaves nothing
-// behind.
+// An output folder that is created, with its parents, before the work whose results it receives.
+// The destructor removes the folders that it created and that are still empty, so that a failed run
+// leaves nothing behind.
 class OutputFolder {
  public:
   // Returns an error also if the folder exists and no file can be created in it.
@@ -39,8 +39,8 @@ class OutputFolder {
                                                          const std::string& text);
 
 // Removes the temporary files in a folder whose writers were killed. A writer holds a lock on its
-// file (flock), which ends with the process; where the file system has no locks, a file counts as
-// abandoned when it is an hour old. `write_whole` does this for the file that it writes.
+// file (flock), which ends with the process. If the file system does not support locks, a file
+// counts as abandoned when it is an hour old. `write_whole` does this for the file that it writes.
 void remove_abandoned(const std::filesystem::path& folder);
 
 }  // namespace alcove::sample

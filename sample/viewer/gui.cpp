@@ -90,7 +90,8 @@ Gui::~Gui() {
   vkDestroyDescriptorPool(device_.device(), pool_, nullptr);
 }
 
-// ImGui's pipeline is made for a render pass: one that leaves layouts and barriers to the graph.
+// ImGui's pipeline needs a render pass. This one changes no layouts and has no barriers, because
+// the render graph does both.
 VkResult Gui::create_render_pass(VkFormat format) {
   const VkAttachmentDescription attachment{
       .format = format,
@@ -142,7 +143,8 @@ void Gui::record(RecordContext& context, Texture target) {
   const VkDevice device = device_.device();
   const VkExtent3D size = context.extent(target);
   const VkImageView view = context.view(target);
-  // The window has several images, and other ones after a change of its size.
+  // The framebuffer is created for each frame, because the window has several images, and gets new
+  // ones when its size changes.
   VkFramebuffer& framebuffer = framebuffers_[context.frame_slot];
   vkDestroyFramebuffer(device, framebuffer, nullptr);
   framebuffer = VK_NULL_HANDLE;

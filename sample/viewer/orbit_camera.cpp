@@ -7,7 +7,8 @@
 namespace alcove::sample {
 namespace {
 
-// From straight up and down, in radians: nearer, what is to the right is no longer known.
+// Least angle in radians between the view direction and the up vector. At smaller angles the right
+// direction is undefined.
 constexpr float kPole = 0.02f;
 
 glm::vec3 rotated(const glm::vec3& v, const glm::vec3& axis, float angle) {
@@ -22,7 +23,7 @@ Camera turned(const Camera& camera, glm::vec2 angles) {
   const glm::vec3 up = glm::normalize(camera.up_ws);
   const glm::vec3 arm = out.eye_ws - out.target_ws;
   const glm::vec3 right(camera_matrices(out, 1, 1).world_from_view[0]);
-  // Between what is up and the arm; dragging downwards lifts the eye.
+  // `now` is the angle between the up vector and the arm. Dragging downwards moves the eye up.
   const float now = std::acos(std::clamp(glm::dot(glm::normalize(arm), up), -1.0f, 1.0f));
   const float then = std::clamp(now - angles.y, kPole, glm::pi<float>() - kPole);
   out.eye_ws = out.target_ws + rotated(arm, right, then - now);
@@ -51,7 +52,7 @@ Camera dollied(const Camera& camera, float factor) {
   const glm::vec3 arm = camera.eye_ws - camera.target_ws;
   const float least = 2.0f * camera.near_plane;
   const float distance = glm::length(arm);
-  // One that already stands nearer is not pushed away.
+  // If the eye is already nearer than the least distance, it is not moved away.
   const float moved = std::max(distance * factor, std::min(least, distance));
   out.eye_ws = camera.target_ws + arm * (moved / distance);
   return out;

@@ -17,10 +17,11 @@ using framegraph::Graph;
 using framegraph::RecordContext;
 using framegraph::Texture;
 
-// As picture.frag binds them.
+// The textures in the order of the bindings of picture.frag.
 using Textures = std::array<Texture, 4>;
 
-// Every binding needs a texture; what the picture does not read repeats the one that it does.
+// Returns the textures of all bindings. A texture that is not given is replaced by the shown one,
+// because every binding needs a texture.
 Textures textures_of(const Shown& shown) {
   Textures textures{shown.texture, shown.other, shown.linear_depth, shown.environment};
   for (Texture& texture : textures) {
@@ -67,7 +68,7 @@ PicturePass::~PicturePass() {
 
 VkResult PicturePass::create_layout() {
   const VkDevice device = device_.device();
-  // The environment is enlarged; the rest is fetched.
+  // The linear filter is for the environment. The other textures are read with texelFetch.
   const VkSamplerCreateInfo sampler{.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
                                     .magFilter = VK_FILTER_LINEAR,
                                     .addressModeU = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,

@@ -12,7 +12,7 @@
 
 namespace alcove::sample {
 
-// Draws frames into a window. As many frames are in flight as the Gpu has slots.
+// Draws frames into a window. The number of frames in flight is that of the Gpu.
 class Presenter {
  public:
   // Gpu and window must outlive the presenter.
@@ -22,19 +22,19 @@ class Presenter {
   Presenter(const Presenter&) = delete;
   Presenter& operator=(const Presenter&) = delete;
 
-  // Adapts the swapchain to the size of the window, waits for the frame's slot and acquires an
-  // image. Returns false if no frame can be drawn now: the window is minimised, or the next call
-  // has to create the swapchain anew.
+  // Creates a new swapchain if the size of the window has changed, waits for the frame's slot, and
+  // acquires an image. Returns false if no frame can be drawn now, because the window is minimised
+  // or the next call has to create a new swapchain.
   [[nodiscard]] tl::expected<bool, std::string> prepare();
   VkExtent2D size() const { return swapchain_->size(); }
   VkFormat format() const { return swapchain_->format(); }
 
-  // Declares a frame that draws all of `target`, submits and presents it. To be called after
-  // prepare(). After an error of `declare` or of the graph, another frame may be drawn.
+  // Declares, submits and presents a frame that draws all of `target`. Call it after prepare().
+  // After an error of `declare` or of the graph, another frame may be drawn.
   using Declare = std::function<tl::expected<void, std::string>(framegraph::Graph&,
                                                                 framegraph::Texture target)>;
   [[nodiscard]] tl::expected<framegraph::FrameReport, std::string> draw(const Declare& declare);
-  // The times of the frame that the device finished last.
+  // Returns the times of the last frame that the device has finished.
   const std::vector<PassTime>& timings() const { return timings_; }
 
   // Waits until the device has finished all frames.

@@ -13,10 +13,10 @@ using framegraph::Texture;
 using passes::OcclusionSettings;
 using Failure = tl::unexpected<std::string>;
 
-// What is fully coloured, in parts of the image.
+// The motion that is shown in full colour, as a fraction of the image's size.
 constexpr float kFullMotion = 0.02f;
 
-// The settings with what the picture shows asked for too.
+// Returns the settings with the outputs that the picture needs turned on.
 OcclusionSettings with_outputs(OcclusionSettings settings, Picture picture) {
   const bool lit = picture == Picture::kLit;
   settings.bent_normal = settings.bent_normal || lit || picture == Picture::kBentNormal;
@@ -188,7 +188,7 @@ Shown SceneFrame::shown_of(const ViewState& state) const {
   return shown;
 }
 
-// The texture that is shown of the frame drawn with `settings`.
+// Adds the passes of the picture with `settings`, and returns the texture that is shown.
 tl::expected<Texture, std::string> SceneFrame::picture_of(Graph& graph, const ViewState& state,
                                                           const Surfaces& surfaces,
                                                           const OcclusionSettings& settings,
@@ -201,7 +201,7 @@ tl::expected<Texture, std::string> SceneFrame::picture_of(Graph& graph, const Vi
   if (!outputs) {
     return Failure(outputs.error().message);
   }
-  // What the settings ask for is made, and timed, whether it is shown or not.
+  // All outputs of the settings are computed, and timed, whether they are shown or not.
   for (const Texture output : {outputs->visibility, outputs->bent_normal, outputs->specular}) {
     if (output) {
       graph.output(output);

@@ -17,8 +17,8 @@
 namespace alcove::sample {
 
 // Declares the frames of the window: g-buffer, occlusion and the picture. Passes that the picture
-// does not need are culled. Each frame is one graph; the scene's triangles and textures and the
-// probe are the only resources outside of it.
+// does not need are culled. Each frame is one graph. Only the scene's meshes and textures and the
+// probe are resources outside of it.
 class SceneFrame {
  public:
   // `format` is the format of the window's images. Both references must outlive the object.
@@ -30,13 +30,14 @@ class SceneFrame {
   [[nodiscard]] tl::expected<framegraph::Texture, std::string> declare(framegraph::Graph& graph,
                                                                        framegraph::Texture target,
                                                                        const ViewState& state);
-  // To be called after the declared frame was submitted. The next frame takes it as the previous
+  // Call it after the declared frame was submitted. That frame then is the previous frame of the
+  // next one.
   // one.
   void advance();
 
  private:
-  // The choices that determine format and size of the histories. A frame that differs from the last
-  // one in these does not count as static.
+  // The choices that determine format and size of the histories. If a frame differs from the
+  // previous one in these, it does not count as static.
   struct Kept {
     passes::OcclusionSettings settings;
     std::uint32_t width = 0;

@@ -242,8 +242,9 @@ tl::expected<bool, std::string> SceneView::draw() {
   if (window_->is_closed()) {
     return false;
   }
-  // Before the frame has an image of the window: version 1.3.239 of the validation layers crashes
-  // where a program waits for the device between acquiring an image and submitting its use.
+  // Dropped files are handled before the frame acquires an image of the window: version 1.3.239 of
+  // the validation layers crashes if a program waits for the device between acquiring an image and
+  // submitting its use.
   if (const auto dropped = window_->take_dropped_files(); !dropped.empty()) {
     open(dropped.back());
   }

@@ -21,7 +21,7 @@
 
 namespace alcove::sample {
 
-// The initial view of a window, and functions of the program that the window calls.
+// The initial state of a window, and functions of the program that the window calls.
 struct SceneViewRequest {
   std::uint32_t width = 960;  // width of the window in pixels
   std::uint32_t height = 540;
@@ -49,20 +49,21 @@ class SceneView {
   SceneView(const SceneView&) = delete;
   SceneView& operator=(const SceneView&) = delete;
 
-  // Processes input and draws a frame. Returns false if the window is closed; then nothing is
+  // Processes input and draws a frame. If the window was closed, draws nothing and returns false.
   // drawn.
   [[nodiscard]] tl::expected<bool, std::string> draw();
   // The number of presented frames. It does not grow while the window is minimised.
   std::uint32_t drawn_frames() const { return drawn_frames_; }
-  // Requests a screenshot: the next frame is also written to a file, and the command that renders
-  // it without a window is printed.
+  // Requests a screenshot: the next frame is also written to a file, and the program prints the
+  // command that renders the same frame without a window.
   void take_screenshot() { wanted_ = true; }
   const Image<glm::vec3>& last_screenshot() const { return screenshot_; }
   // Shows or hides the panel.
   void show_panel(bool shown) { panel_shown_ = shown; }
 
-  // Replaces the scene by that of a file, in its own first view. The chosen settings stay, except
-  // the radius. If the file cannot be read, the scene stays and the panel shows the reason.
+  // Replaces the scene by the one in a file, with the file's default view. The chosen settings
+  // stay, except the radius. If the file cannot be read, the current scene stays and the panel
+  // shows the reason.
   void open(const std::string& file);
 
   ViewState& state() { return state_; }
@@ -81,14 +82,15 @@ class SceneView {
 
   explicit SceneView(SceneViewRequest request) : request_(std::move(request)) {}
   tl::expected<void, std::string> replace_scene(const std::string& file);
-  // The camera with its far plane moved behind all of the scene, because the user may have moved
-  // away.
+  // Returns the camera with its far plane moved behind the whole scene, because the user may have
+  // moved the camera away from it.
   Camera camera_around_scene() const;
   void take_keys();
   void lay_out();
   // Copies the window's image to `read_back` unless it is null.
   tl::expected<void, std::string> draw_choice(const Choice& choice, const HostBuffer* read_back);
-  // Draws the chosen settings, or if the passes refuse them the last ones that could be drawn.
+  // Draws a frame with the chosen settings. If the passes refuse them, uses the last settings that
+  // could be drawn.
   tl::expected<void, std::string> draw_chosen(const HostBuffer* read_back);
   tl::expected<void, std::string> draw_and_read();
   tl::expected<void, std::string> write();

@@ -18,7 +18,8 @@ using passes::SettingGroup;
 using passes::SettingInfo;
 using passes::SettingRange;
 
-// The range of a slider: the setting's range, or the useful part of one without a maximum.
+// Returns the range of a slider: the setting's range, or SettingInfo::slider if the range has no
+// maximum.
 SettingRange slider_range(const SettingInfo& info) {
   SettingRange range = std::isinf(info.range.maximum) ? info.slider : info.range;
   if (range.above_minimum) {
@@ -27,7 +28,7 @@ SettingRange slider_range(const SettingInfo& info) {
   return range;
 }
 
-// Each overload lays out the widget of one kind of setting. `unit` is what the range is in.
+// Each overload lays out the widget for one type of setting. The range is multiplied by `unit`.
 void widget(const SettingInfo& info, float& value, float unit) {
   const SettingRange range = slider_range(info);
   ImGui::SliderFloat(info.name, &value, range.minimum * unit, range.maximum * unit, "%.3g",

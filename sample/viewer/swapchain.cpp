@@ -11,7 +11,7 @@ namespace {
 
 using Failure = tl::unexpected<std::string>;
 
-// Drawn by a pass, and read back for screenshots.
+// The images are drawn by a pass, and copied for screenshots.
 constexpr VkImageUsageFlags kUsage =
     VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
 
@@ -29,7 +29,8 @@ VkSurfaceFormatKHR choose_format(VkPhysicalDevice device, VkSurfaceKHR surface) 
   return found == formats.end() ? VkSurfaceFormatKHR{VK_FORMAT_UNDEFINED} : *found;
 }
 
-// The window system may prescribe the size, else it takes what is wanted within its limits.
+// Returns the size of the images. If the window system prescribes none, it is the wanted size,
+// clamped to the limits.
 VkExtent2D choose_size(const VkSurfaceCapabilitiesKHR& can, VkExtent2D wanted) {
   if (can.currentExtent.width != UINT32_MAX) {
     return can.currentExtent;
@@ -38,7 +39,8 @@ VkExtent2D choose_size(const VkSurfaceCapabilitiesKHR& can, VkExtent2D wanted) {
           std::clamp(wanted.height, can.minImageExtent.height, can.maxImageExtent.height)};
 }
 
-// One more than the least, so that there is one to draw on while another waits to be shown.
+// Returns one more than the least number of images, so that one can be drawn while another waits to
+// be shown.
 std::uint32_t choose_count(const VkSurfaceCapabilitiesKHR& can) {
   const std::uint32_t most = can.maxImageCount == 0 ? UINT32_MAX : can.maxImageCount;
   return std::min(can.minImageCount + 1, most);
@@ -71,7 +73,8 @@ tl::expected<std::unique_ptr<Swapchain>, std::string> Swapchain::create(
   std::unique_ptr<Swapchain> made(new Swapchain(device));
   made->size_ = choose_size(can, size);
   made->format_ = format.format;
-  // FIFO is what every device has: no tearing, and no more frames than the display shows.
+  // Every device supports the present mode FIFO. It has no tearing, and draws no more frames than
+  // the display shows.
   const VkSwapchainCreateInfoKHR info{
       .sType = VK_STRUCTURE_TYPE_SWAPCHAIN_CREATE_INFO_KHR,
       .surface = surface,
@@ -154,7 +157,7 @@ framegraph::ImportedTexture Swapchain::import() const {
   import.view = views_[current_];
   import.desc = {format_, framegraph::Extent::absolute(size_.width, size_.height)};
   import.usage = kUsage;
-  // The session that waits for arrived(): the first barrier goes on from there.
+  // The submission waits for arrived() in this stage, so that the first barrier must begin with it.
   import.initial_state = {VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, 0,
                           VK_IMAGE_LAYOUT_UNDEFINED};
   import.final_state = framegraph::access::present;

@@ -28,12 +28,12 @@ class Swapchain {
   VkExtent2D size() const { return size_; }
   VkFormat format() const { return format_; }
 
-  // Acquires the next image, which becomes the current one. The device may draw to it after
-  // arrived(slot) is signalled; the previous frame of this slot must be finished. Returns
+  // Acquires the next image, which becomes the current one. The device may draw to it after the
+  // semaphore arrived(slot) is signalled. The previous frame of this slot must be finished. Returns
   // VK_ERROR_OUT_OF_DATE_KHR if the window has changed.
   [[nodiscard]] VkResult acquire(std::uint32_t slot);
-  // The current image for import into a graph. Its contents are undefined; its final state is ready
-  // for presentation.
+  // Returns the current image for import into a graph. Its contents are undefined. Its final state
+  // is ready for presentation.
   framegraph::ImportedTexture import() const;
   VkSemaphore arrived(std::uint32_t slot) const { return arrived_[slot]; }
   // The semaphore that the device must signal after it has drawn the current image.

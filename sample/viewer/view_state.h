@@ -26,7 +26,7 @@ inline constexpr std::array<std::string_view, 9> kPictureNames{
     "visibility", "lit",   "multi-bounce", "bent normal", "specular occlusion",
     "normals",    "depth", "albedo",       "motion"};
 
-// The settings of the right part of the window, for comparison.
+// What the right part of the window shows for comparison: other settings, or nothing.
 enum class Comparison : std::uint8_t { kNone, kHorizons, kReference, kKept };
 inline constexpr std::array<std::string_view, 4> kComparisonNames{
     "nothing", "estimator horizons", "preset reference", "kept settings"};
@@ -42,7 +42,7 @@ struct ViewState {
   float split = 0.5f;              // position of the right part's left edge, 0..1 of the width
 };
 
-// The settings of the right part; null without a comparison.
+// Returns the settings of the right part, or null without a comparison.
 [[nodiscard]] inline std::optional<passes::OcclusionSettings> compared_settings(
     const ViewState& state) {
   passes::OcclusionSettings settings = state.settings;

@@ -1,6 +1,6 @@
 #include "viewer/window.h"
 
-// GLFW declares its Vulkan functions where Vulkan's header comes first.
+// GLFW declares its Vulkan functions only if Vulkan's header was included before.
 #include <vulkan/vulkan.h>
 
 #include <GLFW/glfw3.h>
@@ -14,7 +14,7 @@ namespace {
 
 using Failure = tl::unexpected<std::string>;
 
-// GLFW's own reason for the last failure.
+// Returns GLFW's own description of the last failure.
 std::string reason() {
   const char* text = nullptr;
   glfwGetError(&text);

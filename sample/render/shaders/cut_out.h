@@ -1,4 +1,4 @@
-// The material of a draw as fragment shaders read it, and the alpha test.
+// Declares the material of a draw for fragment shaders, and implements the alpha test.
 #ifndef ALCOVE_SAMPLE_SHADERS_CUT_OUT_H_
 #define ALCOVE_SAMPLE_SHADERS_CUT_OUT_H_
 
@@ -7,7 +7,8 @@
 layout(set = 2, binding = 0) uniform sampler2D textures[kMaterialTextures];
 layout(set = 2, binding = 1) uniform MaterialParameters { GbufferMaterial material; };
 
-// Whether the alpha test discards a fragment. `vertex_alpha` is that of the vertex colour.
+// Returns whether the alpha test discards a fragment. `vertex_alpha` is the alpha of the vertex
+// colour.
 bool is_cut_out(vec2 base_colour_uv, float vertex_alpha) {
   if (material.alpha_cutoff <= 0.0) {
     return false;

@@ -10,20 +10,20 @@ layout(set = 0, binding = 0) uniform Parameters { GbufferParameters parameters; 
 layout(location = 0) in vec3 position_ws;
 layout(location = 1) in vec3 normal_ws;
 layout(location = 2) flat in vec3 face_normal_ws;
-layout(location = 3) in vec4 tangent_ws;  // w: the side of the bitangent
-layout(location = 4) in vec4 surface_uv;  // of base colour, of metal and roughness
-layout(location = 5) in vec4 detail_uv;   // of emission, of the normal map
-layout(location = 6) in vec4 color;       // of the vertices, linear RGB and alpha
+layout(location = 3) in vec4 tangent_ws;  // w: the sign of the bitangent
+layout(location = 4) in vec4 surface_uv;  // xy: base colour; zw: metal and roughness
+layout(location = 5) in vec4 detail_uv;   // xy: emission; zw: normal map
+layout(location = 6) in vec4 color;       // vertex colour, linear RGB and alpha
 layout(location = 7) in vec4 clip;
 layout(location = 8) in vec4 previous_clip;
 
 layout(location = 0) out vec4 out_normal_ws;  // unit, towards the eye
 layout(location = 1) out vec4 out_albedo;     // linear RGB; alpha: perceptual roughness
-layout(location = 2) out vec2 out_motion_uv;  // where this surface is, minus where it was
+layout(location = 2) out vec2 out_motion_uv;  // uv minus uv in the previous frame
 layout(location = 3) out vec4 out_emissive;   // linear RGB; alpha: metallic
 
-// The normal of the vertices, perturbed by the normal map's `texel`; `normal` itself where there is
-// no map or no tangent. Not unit.
+// Returns the vertex normal perturbed by the normal map's `texel`, not normalised, or `normal`
+// itself if there is no map or no tangent.
 vec3 mapped_normal(vec3 normal, vec3 texel) {
   vec3 across = tangent_ws.xyz - normal * dot(normal, tangent_ws.xyz);
   float squared = dot(across, across);
@@ -36,7 +36,8 @@ vec3 mapped_normal(vec3 normal, vec3 texel) {
   return tangent * slope.x + bitangent * slope.y + normal * texel.z;
 }
 
-// The shading normal, turned towards the eye, since both faces of a triangle may be visible.
+// Returns the shading normal, flipped towards the eye if necessary, because both faces of a
+// triangle may be visible.
 vec3 facing_normal(vec3 texel) {
   vec3 to_eye = parameters.eye_ws.xyz - position_ws * parameters.eye_ws.w;
   vec3 face = dot(face_normal_ws, to_eye) < 0.0 ? -face_normal_ws : face_normal_ws;
@@ -46,8 +47,8 @@ vec3 facing_normal(vec3 texel) {
   }
   vec3 normal = normal_ws * inversesqrt(squared);
   vec3 mapped = mapped_normal(normal, texel);
-  // On a back face the whole tangent frame turns round. A normal that the map perturbs past the
-  // triangle's own plane is moved back into that plane.
+  // On a back face the whole tangent frame is flipped. If the normal map tilts the normal below the
+  // triangle's own plane, the normal is moved back into that plane.
   vec3 shading = dot(normal, face) < 0.0 ? -mapped : mapped;
   shading -= face * min(dot(shading, face), 0.0);
   squared = dot(shading, shading);
@@ -55,7 +56,8 @@ vec3 facing_normal(vec3 texel) {
 }
 
 void main() {
-  // All lookups come before the first branch: mip levels need derivatives between neighbours.
+  // All texture lookups come before the first branch, because mip selection needs derivatives
+  // between neighbouring invocations.
   vec3 base = texture(textures[kBaseColourTexture], surface_uv.xy).rgb;
   // glTF: roughness in green, metal in blue.
   vec2 surface = texture(textures[kMetallicRoughnessTexture], surface_uv.zw).gb;

@@ -4,13 +4,13 @@
 #include "gbuffer_vertex.h"
 #include "maths/octahedral.h"
 
-layout(location = 1) in vec4 packed_normals;  // of the vertex, of the triangle: octahedral
-layout(location = 4) in vec4 packed_tangent;  // octahedral; z: side of the bitangent, 0: none
+layout(location = 1) in vec4 packed_normals;  // octahedral; xy: vertex, zw: triangle
+layout(location = 4) in vec4 packed_tangent;  // xy: octahedral; z: bitangent sign, 0: none
 
 layout(location = 0) out vec3 out_position_ws;
-layout(location = 1) out vec3 out_normal_ws;            // zero: none
-layout(location = 2) flat out vec3 out_face_normal_ws;  // that of a triangle's first vertex
-layout(location = 3) out vec4 out_tangent_ws;           // w: the side of the bitangent
+layout(location = 1) out vec3 out_normal_ws;            // zero if the mesh has none
+layout(location = 2) flat out vec3 out_face_normal_ws;  // of the triangle
+layout(location = 3) out vec4 out_tangent_ws;           // w: the sign of the bitangent
 layout(location = 4) out vec4 out_surface_uv;
 layout(location = 5) out vec4 out_detail_uv;
 layout(location = 6) out vec4 out_color;
@@ -20,7 +20,8 @@ layout(location = 8) out vec4 out_previous_clip;
 void main() {
   mat4x3 placed = world_from_mesh();
   mat3 linear = mat3(placed);
-  // The inverse transpose times the determinant, which exists for flat transforms too.
+  // The cofactor matrix is the inverse transpose times the determinant. It also exists if the
+  // determinant is 0.
   mat3 cofactor =
       mat3(cross(linear[1], linear[2]), cross(linear[2], linear[0]), cross(linear[0], linear[1]));
   float side = determinant(linear) < 0.0 ? -1.0 : 1.0;

@@ -6,9 +6,9 @@
 #include "picture.h"
 
 layout(set = 0, binding = 0) uniform sampler2D shown;
-layout(set = 0, binding = 1) uniform sampler2D other;         // beyond the split
-layout(set = 0, binding = 2) uniform sampler2D linear_depth;  // of radiance
-layout(set = 0, binding = 3) uniform sampler2D environment;   // of radiance: the probe's map
+layout(set = 0, binding = 1) uniform sampler2D other;         // shown to the right of the split
+layout(set = 0, binding = 2) uniform sampler2D linear_depth;  // for radiance
+layout(set = 0, binding = 3) uniform sampler2D environment;   // for radiance: the map of the probe
 layout(push_constant) uniform Push { PictureParameters parameters; };
 
 layout(location = 0) out vec4 out_colour;

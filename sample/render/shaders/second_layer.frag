@@ -2,8 +2,8 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
-// The depth of the second surface of each pixel: the nearest one behind the first. Back faces of
-// solids are culled, so that the second surface of a pixel is not the back of the first.
+// Writes the depth of the second layer: the nearest front face behind the first layer at each
+// pixel. Back faces are culled, so that the second layer is not the back of the first solid.
 
 #include "cut_out.h"
 
@@ -20,7 +20,7 @@ float linear_depth(float depth_ndc) {
 
 void main() {
   float first = linear_depth(texelFetch(first_depth, ivec2(gl_FragCoord.xy), 0).r);
-  // The first surface itself is drawn again and rounds to within a thousandth.
+  // Discards the surface of the first layer, which is drawn again and is equal except for rounding.
   if (is_cut_out(base_colour_uv, vertex_alpha) || linear_depth(gl_FragCoord.z) <= first * 1.001) {
     discard;
   }

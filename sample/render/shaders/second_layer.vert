@@ -1,12 +1,12 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
-// The vertices of gbuffer.vert for passes that write depth alone.
+// Transforms vertices exactly as gbuffer.vert does, for passes that write only depth.
 
 #include "gbuffer_vertex.h"
 
 layout(location = 0) out vec2 out_base_colour_uv;
-layout(location = 1) out float out_alpha;  // of the vertex colour
+layout(location = 1) out float out_alpha;  // alpha of the vertex colour
 
 void main() {
   vec4 position_ws = vec4(world_from_mesh() * vec4(position, 1.0), 1.0);
