@@ -50,7 +50,8 @@ AnalyticScene finished(SceneBuilder& b, const std::string& name, const Camera& v
   return out;
 }
 
-// Seen from +z; its normal leans by `tilt` from the view towards +y.
+// Returns a plane that is seen from +z. Its normal is tilted by `tilt` from the view direction
+// towards +y.
 AnalyticScene plane(float tilt) {
   SceneBuilder b = grey_builder();
   const glm::vec3 normal(0, std::sin(tilt), std::cos(tilt));
@@ -62,13 +63,14 @@ AnalyticScene plane(float tilt) {
   return out;
 }
 
-// Two walls that meet along z at the origin, open upwards.
+// Returns a groove that is open upwards: two walls that meet along the z axis.
 AnalyticScene groove(float opening) {
   SceneBuilder b = grey_builder();
   const glm::vec3 right(std::sin(0.5f * opening), std::cos(0.5f * opening), 0);
   const glm::vec3 left(-right.x, right.y, 0);
   const glm::vec3 z(0, 0, kFar), foot(0.0f);
-  // Long against the distance of the reference points, so that their ends do not matter.
+  // The walls are so long, compared with the distance of the reference points, that their ends do
+  // not matter.
   b.quad(foot + z, kFar * right + z, kFar * right - z, foot - z);
   b.quad(kFar * left + z, foot + z, foot - z, kFar * left - z);
   AnalyticScene out = finished(b, "groove", camera({0, 3, 0.8f}, {0, 0, 0}, {0, 0, -1}), 1.0f, 1e4);
@@ -79,7 +81,7 @@ AnalyticScene groove(float opening) {
   return out;
 }
 
-// Floor and two walls of height 2 that meet in the origin.
+// Returns a floor and two walls of height 2 that meet at the origin.
 AnalyticScene corner() {
   SceneBuilder b = grey_builder();
   constexpr float kHeight = 2.0f;
@@ -95,7 +97,7 @@ AnalyticScene corner() {
   return out;
 }
 
-// A unit sphere that touches a floor.
+// Returns a unit sphere that touches a floor.
 AnalyticScene sphere() {
   SceneBuilder b = grey_builder();
   b.quad({-kFar, 0, kFar}, {kFar, 0, kFar}, {kFar, 0, -kFar}, {-kFar, 0, -kFar});
@@ -109,7 +111,7 @@ AnalyticScene sphere() {
   return out;
 }
 
-// A round hole of radius 1 and depth 1 in a floor; its bottom is at y = -1.
+// Returns a round hole of radius 1 and depth 1 in a floor; its bottom is at y = -1.
 AnalyticScene pit() {
   SceneBuilder b = grey_builder();
   constexpr uint32_t kSides = 256;
@@ -128,7 +130,7 @@ AnalyticScene pit() {
   return out;
 }
 
-// A floor and, 0.5 above it, a second that begins at x = 0.
+// Returns a floor and, 0.5 above it, a second floor that begins at x = 0.
 AnalyticScene step() {
   SceneBuilder b = grey_builder();
   constexpr float kHeight = 0.5f;
@@ -202,17 +204,18 @@ double visibility_beside_wall(double distance, double height) {
   return 0.5 * (1.0 + distance / std::hypot(distance, height));
 }
 
-// The wall at distance a covers azimuths up to where the other wall stops it, and the other way
-// round; each covers, over an azimuth, the share sin^2 of its elevation. With the azimuth t from a
-// wall's perpendicular the elevation's tangent is h cos t / a, so the share blocked is the mean of
-// h^2 cos^2 t / (h^2 cos^2 t + a^2), whose antiderivative is closed.
+// Each wall occludes the azimuths from its open end to the corner with the other wall. In the
+// direction of an azimuth, a wall with the elevation e occludes the fraction sin^2 e of the
+// cosine-weighted directions. At the azimuth t from the perpendicular of the wall at distance a,
+// tan e = h cos t / a. The occluded part is therefore the mean over t of h^2 cos^2 t / (h^2 cos^2 t
+// + a^2), which has a closed antiderivative.
 double visibility_in_corner(double a, double b, double height) {
   const auto blocked = [&](double distance, double azimuth) {
     const double root = std::hypot(distance, height);
-    // Integral of 1 - d^2 / (d^2 + h^2 cos^2 t).
+    // The integral of 1 - d^2 / (d^2 + h^2 cos^2 t) from 0 to the azimuth.
     return azimuth - distance / root * std::atan(distance * std::tan(azimuth) / root);
   };
-  // Each wall spans from its open end, a right angle away, to the corner.
+  // Each wall extends from its open end, at an azimuth of 90 degrees, to the corner.
   const auto wall = [&](double distance, double other) {
     const double to_corner = std::atan2(other, distance);
     const double open_end = 0.5 * kPi * (1.0 - distance / std::hypot(distance, height));

@@ -16,9 +16,9 @@ struct ReferencePoint {
   double visibility;    // cosine-weighted, 0..1
 };
 
-// A scene whose visibility is known in closed form. The geometry is finite. The closed forms hold
-// if the radius of the occlusion is at least `closed_form_radius` and no ray reaches past its
-// edges.
+// A scene whose visibility is known in closed form. Its geometry is finite, so that the closed
+// forms hold only if the radius of the occlusion is at least `closed_form_radius` and no ray
+// reaches beyond the edges of the geometry.
 struct AnalyticScene {
   Scene scene;
   double closed_form_radius;  // scene units
@@ -31,23 +31,26 @@ struct AnalyticScene {
 // that list the valid ones.
 [[nodiscard]] tl::expected<AnalyticScene, std::string> analytic_scene(const std::string& name);
 
-// Whether `name` begins as a name of analytic_scene() does. Its angle may be out of range.
+// Returns whether `name` begins like a name of analytic_scene(). Its angle may be out of range.
 [[nodiscard]] bool is_analytic_name(const std::string& name);
 
-// The closed forms. Each returns the cosine-weighted visibility of a point whose normal points up.
+// The closed forms. Each returns the cosine-weighted visibility of a point. Lengths may have any
+// unit.
 
-// Under a sphere of `radius` whose centre is at distance d. `cosine` is that of the angle between
-// the normal and the direction to the centre. All of the sphere is above the horizon (cosine >=
-// radius / d). The visibility is 1 - cosine (radius / d)^2.
+// The visibility of a point under a sphere: 1 - cosine (radius / distance)^2. `distance` is that of
+// the sphere's centre, and `cosine` is the cosine of the angle between the normal and the direction
+// to the centre. The whole sphere must be above the horizon (cosine >= radius / distance).
 [[nodiscard]] double visibility_under_sphere(double radius, double distance, double cosine);
-// At any point of a wall of a V-shaped groove with infinite walls: (1 - cos(angle)) / 2. `angle` is
-// the opening angle between the walls in radians.
+// The visibility of any point on a wall of a V-shaped groove with infinite walls: (1 - cos(angle))
+// / 2. `opening_angle` is the angle between the walls in radians.
 [[nodiscard]] double visibility_in_groove(double opening_angle);
-// On a floor at distance d from an infinitely long wall of height h: (1 + d / sqrt(d^2 + h^2)) / 2.
+// The visibility of a point on a floor at distance d from an infinitely long wall of height h: (1 +
+// d / sqrt(d^2 + h^2)) / 2.
 [[nodiscard]] double visibility_beside_wall(double distance, double height);
-// On a floor at distances a and b from two infinitely long walls of height h at right angles.
+// The visibility of a point on a floor at distances a and b from two infinitely long walls of
+// height h, which meet at a right angle.
 [[nodiscard]] double visibility_in_corner(double a, double b, double height);
-// At the centre of the floor of a cylindrical pit: r^2 / (r^2 + depth^2).
+// The visibility of the centre of the floor of a cylindrical pit: r^2 / (r^2 + depth^2).
 [[nodiscard]] double visibility_in_pit(double radius, double depth);
 
 }  // namespace alcove::sample

@@ -6,9 +6,9 @@
 
 namespace alcove::sample {
 
-// The normal of the triangle whose indices begin at `first`, times twice its area. In double,
-// because the cross product of a sliver's edges cancels, and because squares of very small or large
-// lengths are outside of the range of floats.
+// Returns the normal of the triangle whose indices begin at `first`, multiplied by twice its area.
+// It is computed in double, because the cross product of the edges of a narrow triangle cancels,
+// and because the squares of very small or large lengths are outside the range of floats.
 [[nodiscard]] glm::dvec3 area_of(const Mesh& mesh, size_t first);
 
 }  // namespace alcove::sample

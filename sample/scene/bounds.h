@@ -19,20 +19,22 @@ struct Bounds {
 };
 
 [[nodiscard]] Bounds empty_bounds();
-// The smallest box that contains both; either may be empty.
+// Returns the smallest box that contains both boxes; either may be empty.
 [[nodiscard]] Bounds united(const Bounds& a, const Bounds& b);
 [[nodiscard]] bool contains(const Bounds& bounds, const glm::vec3& point);
-// Length of the diagonal, in double: the square of a large float overflows.
+// Returns the length of the diagonal. It is computed in double, because the square of a large float
+// overflows.
 [[nodiscard]] double diagonal(const Bounds& bounds);
-// Bit c of a corner's index is set if its coordinate c is that of `high`.
+// Returns the corners. Bit c of a corner's index is set if its coordinate c is that of `high`.
 [[nodiscard]] std::array<glm::vec3, 8> corners_of(const Bounds& bounds);
 
-// The box of the triangles whose indices are [first, last), in the space of the mesh's arrays.
+// Returns the box of the triangles whose indices are [first, last), in the space of the mesh's
+// arrays.
 [[nodiscard]] Bounds bounds_of_triangles(const Mesh& mesh, size_t first, size_t last);
-// The box around a transformed box.
+// Returns the smallest axis-aligned box around a transformed box.
 [[nodiscard]] Bounds transformed(const Bounds& bounds, const glm::mat4x3& transform);
 
-// One instance of a mesh with triangles. A mesh without `instances` has one.
+// One instance of a mesh with triangles. A mesh whose `instances` is empty has one instance.
 struct MeshInstance {
   uint32_t mesh;      // indexes the meshes
   uint32_t instance;  // below instance_count()
@@ -41,8 +43,8 @@ struct MeshInstance {
 // Returns all instances of all meshes that have triangles, ordered by mesh.
 [[nodiscard]] std::vector<MeshInstance> instances_of(const std::vector<Mesh>& meshes);
 
-// The box of all triangles of all instances, each taken as in MeshInstance. Vertices that no
-// triangle uses do not count. Zero without triangles.
+// Returns the box of all triangles of all instances, or a box of size zero if there are none.
+// Vertices that no triangle uses do not count.
 [[nodiscard]] Bounds bounds_of(const std::vector<Mesh>& meshes);
 
 }  // namespace alcove::sample

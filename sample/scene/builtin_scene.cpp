@@ -12,7 +12,8 @@
 namespace alcove::sample {
 namespace {
 
-// The walk runs along x; the court lies before it at +z, the wall behind it at -z.
+// The arcade extends along the x axis. The courtyard is in front of it at +z, the back wall behind
+// it at -z.
 constexpr int kBays = 8;
 constexpr float kBay = 2.2f;  // from column to column
 constexpr float kEnd = 0.5f * kBay * kBays;

@@ -6,7 +6,8 @@
 namespace alcove::sample {
 namespace {
 
-// Right, up and back of the camera, even where `up_ws` is zero or along the view.
+// Returns the axes right, up and back of the camera. They are valid even if `up_ws` is zero or
+// parallel to the view direction.
 glm::mat3 camera_axes(const Camera& camera) {
   const glm::vec3 back = glm::normalize(camera.eye_ws - camera.target_ws);
   glm::vec3 right = glm::cross(camera.up_ws, back);
@@ -19,8 +20,8 @@ glm::mat3 camera_axes(const Camera& camera) {
   return {right, glm::cross(back, right), back};
 }
 
-// The two entries of the third row: clip z = scale * z_vs + offset, with w = -z_vs (perspective)
-// or w = 1 (orthographic).
+// The two entries of the third row of a projection matrix: clip z = scale * z_vs + offset, with w =
+// -z_vs (perspective) or w = 1 (orthographic).
 struct DepthRow {
   double scale;
   double offset;
@@ -103,7 +104,8 @@ double view_depth(const glm::mat4& clip_from_view, double depth_ndc) {
 }
 
 Camera orbited(const Camera& camera, float angle) {
-  // An eye that is small beside its target is not what target and arm add up to.
+  // Without a rotation the camera must stay exactly the same. Computing the eye from target and arm
+  // would change it by rounding if the target is much farther from the origin than the eye.
   if (angle == 0.0f) return camera;
   Camera out = camera;
   const glm::vec3 axis = glm::normalize(camera.up_ws);

@@ -30,7 +30,7 @@ struct Camera {
   bool fit_planes = false;  // camera_of() still has to fit near and far plane to the view
 };
 
-// The matrices of a camera. A caller that needs the matrices of the previous frame keeps them.
+// The matrices of a camera. To reproject the history, the caller keeps those of the previous frame.
 struct CameraMatrices {
   glm::mat4 view_from_world;
   glm::mat4 world_from_view;
@@ -39,13 +39,13 @@ struct CameraMatrices {
   glm::mat4 clip_from_world;
 };
 
-// `width` and `height` are the size of the image in pixels, both above 0. They determine the aspect
-// ratio and the effect of the jitter.
+// Returns the matrices for an image of `width` x `height` pixels, both above 0. The size determines
+// the aspect ratio and the effect of the jitter.
 [[nodiscard]] CameraMatrices camera_matrices(const Camera& camera, uint32_t width, uint32_t height);
 
-// The ray through a point of the image in world space. `pixel` is in pixels from the top left
-// corner; (0.5, 0.5) is the centre of the first pixel. `direction_ws` is unit. The ray begins at
-// the eye, in orthographic views on the plane through the eye.
+// The ray through a point of the image, in world space. `pixel` is in pixels from the top left
+// corner; (0.5, 0.5) is the centre of the first pixel. `direction_ws` is unit. In perspective views
+// the ray begins at the eye, in orthographic views on the plane through the eye.
 struct Ray {
   glm::vec3 origin_ws;
   glm::vec3 direction_ws;
@@ -53,15 +53,16 @@ struct Ray {
 [[nodiscard]] Ray camera_ray(const CameraMatrices& matrices, bool orthographic, glm::vec2 pixel,
                              uint32_t width, uint32_t height);
 
-// The positive distance along the view axis for a value of the depth buffer. Infinity for the value
-// of an infinite far plane.
+// Returns the positive distance along the view axis for a value of the depth buffer, and infinity
+// for the value of an infinite far plane.
 [[nodiscard]] double view_depth(const glm::mat4& clip_from_view, double depth_ndc);
 
-// The distance along the view axis for each value of a depth buffer. Infinity at pixels without a
-// surface.
+// Returns the distance along the view axis for each value of a depth buffer, and infinity at pixels
+// without a surface.
 [[nodiscard]] Image<float> linear_depth(const Camera& camera, const Image<float>& depth_ndc);
 
-// Orbits the eye about the target by `angle` radians around `up_ws`, as `--orbit` does.
+// Returns the camera with its eye rotated about the target by `angle` radians around `up_ws`, as
+// `--orbit` does.
 [[nodiscard]] Camera orbited(const Camera& camera, float angle);
 
 }  // namespace alcove::sample

@@ -33,8 +33,8 @@ void clip(Polygon& polygon, const glm::dvec4& plane) {
   polygon = std::move(out);
 }
 
-// The image's four sides in view space, and in perspective the plane through the eye. The view is
-// at their positive sides.
+// Returns the planes of the image's four sides in view space, and in perspective also the plane
+// through the eye. The visible part of space is on their positive sides.
 std::vector<glm::dvec4> side_planes(const Camera& camera, double aspect) {
   if (camera.orthographic) {
     const double y = 0.5 * camera.ortho_height, x = y * aspect;
@@ -44,7 +44,7 @@ std::vector<glm::dvec4> side_planes(const Camera& camera, double aspect) {
   return {{1, 0, -x, 0}, {-1, 0, -x, 0}, {0, 1, -y, 0}, {0, -1, -y, 0}, {0, 0, -1, 0}};
 }
 
-// Consecutive triangles of a mesh.
+// A block of consecutive triangles of a mesh.
 struct Block {
   size_t first;  // index
   size_t last;
@@ -66,16 +66,17 @@ DepthRange united(const DepthRange& a, const DepthRange& b) {
   return {std::min(a.nearest, b.nearest), std::max(a.farthest, b.farthest)};
 }
 
-// A block of an instance that may be in view.
+// A block of triangles of an instance that may be in view.
 struct Candidate {
   uint32_t mesh;
   uint32_t instance;
   uint32_t block;
-  DepthRange bounds;  // contains the depths of its triangles in view
+  DepthRange bounds;  // contains the depths of all of its triangles that are in view
 };
 
-// Searches the triangles of the blocks in view, the nearest blocks first, until no block can be
-// nearer than the nearest triangle; likewise for the farthest.
+// Finds the range of depths in view. Searches the blocks in view, the nearest first, until no
+// remaining block can contain a nearer triangle than the nearest one found. Then does the same for
+// the farthest.
 class DepthSearch {
  public:
   DepthSearch(const Scene& scene, const Camera& camera, double aspect)
@@ -105,7 +106,7 @@ class DepthSearch {
     return view_from_world_ * glm::dmat4(glm::dmat4x3(world_from_mesh(mesh, instance)));
   }
 
-  // Whether all points are at the negative side of one of the planes.
+  // Returns whether all points are on the negative side of one of the planes.
   template <size_t N>
   bool is_outside(const std::array<glm::dvec3, N>& points) const {
     return std::ranges::any_of(planes_, [&](const glm::dvec4& plane) {
@@ -114,7 +115,7 @@ class DepthSearch {
     });
   }
 
-  // Null if the box is out of view.
+  // Returns the range of depths of a box, or null if it is out of view.
   std::optional<DepthRange> depth_bounds(const Bounds& bounds, const glm::dmat4& view) const {
     std::array<glm::dvec3, 8> corners_vs;
     const auto corners = corners_of(bounds);
@@ -144,8 +145,9 @@ class DepthSearch {
     return out;
   }
 
-  // Searches the candidates that `may_extend` the range found so far. Candidates beyond the limit
-  // on triangles count with their bounds.
+  // Searches the candidates for which `may_extend` says that they could extend the range found so
+  // far. If the limit on triangles is reached, the bounds of the remaining candidates are used
+  // instead of their triangles.
   template <class MayExtend>
   void search(const std::vector<Candidate>& candidates, const MayExtend& may_extend) {
     constexpr uint64_t kMostTriangles = uint64_t{1} << 25;
@@ -167,7 +169,7 @@ class DepthSearch {
     return blocks_[candidate.mesh][candidate.block];
   }
 
-  // The range extended by the triangles of the candidate.
+  // Returns the range extended by the triangles of the candidate.
   DepthRange extended(DepthRange range, const Candidate& candidate) const {
     const Mesh& mesh = scene_.meshes[candidate.mesh];
     const Block& block = block_of(candidate);
@@ -222,13 +224,14 @@ Camera with_fitted_planes(const Scene& scene, const Camera& camera, double aspec
   if (!range) return camera;
   Camera out = camera;
   const double size = diagonal(scene.core_bounds_ws);
-  // Positions and planes are floats: far behind the farthest triangle by what they round to.
+  // The margin covers the rounding of positions and planes, which are floats.
   const double margin = 1e-3 * std::max(size, range->farthest - range->nearest);
   if (camera.orthographic) {
     out.near_plane = static_cast<float>(range->nearest - margin);
     out.far_plane = static_cast<float>(range->farthest + margin);
   } else {
-    // The view may turn and move afterwards, within the scene.
+    // The far plane must also be far enough for other positions and directions of the camera within
+    // the scene.
     double farthest = range->farthest;
     for (const glm::vec3& corner : corners_of(scene.core_bounds_ws)) {
       farthest = std::max(farthest, double(glm::distance(corner, camera.eye_ws)) + 2.0 * size);

@@ -6,7 +6,7 @@
 
 namespace alcove::sample {
 
-// The unit vector along `v`. Zero if `v` is zero or not finite.
+// Returns the unit vector along `v`, or zero if `v` is zero or not finite.
 [[nodiscard]] inline glm::dvec3 direction_of(const glm::dvec3& v) {
   const double length = glm::length(v);
   return std::isfinite(length) && length > 0.0 ? v / length : glm::dvec3(0.0);

@@ -39,7 +39,8 @@ Loaded refuse(const std::filesystem::path& file, const std::string& why) {
   return tl::unexpected("The environment " + file.string() + " cannot be used: it " + why + ".");
 }
 
-// Collects the rows of a file, reduced by a whole factor to at most kLargestSide pixels a side.
+// Collects the rows of a file, and reduces the image by a whole factor to at most kLargestSide
+// pixels a side.
 class EnvironmentRows {
  public:
   FloatRows receiver() {

@@ -9,7 +9,8 @@
 
 namespace alcove::sample {
 
-// Light from infinitely far as an equirectangular image of linear RGB radiance, finite and at least
+// Light from infinitely far away, as an equirectangular image of linear RGB radiance, finite and at
+// least
 // 0. The top row is +Y, the left edge is -Z, and a quarter of the width further right is +X.
 using EnvironmentImage = Image<glm::vec3>;
 
@@ -24,10 +25,10 @@ using EnvironmentImage = Image<glm::vec3>;
 [[nodiscard]] tl::expected<EnvironmentImage, std::string> load_environment(
     const std::filesystem::path& file);
 
-// The radiance from a unit direction in world space, interpolated bilinearly.
+// Returns the radiance from a unit direction in world space, interpolated bilinearly.
 [[nodiscard]] glm::vec3 radiance(const EnvironmentImage& environment, const glm::vec3& direction);
 
-// The mean radiance over all directions.
+// Returns the mean radiance over all directions.
 [[nodiscard]] glm::vec3 mean_radiance(const EnvironmentImage& environment);
 
 }  // namespace alcove::sample

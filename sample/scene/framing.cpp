@@ -6,8 +6,8 @@
 namespace alcove::sample {
 namespace {
 
-// Bounds that enclose the core at a distance, such as those of a sky dome or a room. The eye should
-// stand within them.
+// Returns the bounds of meshes that enclose the core at a distance, such as a sky dome or a room.
+// The eye should be inside them.
 std::vector<Bounds> shells_around_core(const Scene& scene) {
   constexpr double kLarger = 4.0;  // than the diagonal of the core
   const Bounds& core = scene.core_bounds_ws;
@@ -25,8 +25,8 @@ std::vector<Bounds> shells_around_core(const Scene& scene) {
   return shells;
 }
 
-// The least distance from the centre of a box at which all of it is in view, with a margin of a
-// tenth of the image. `back` is the unit vector from the centre to the eye.
+// Returns the least distance of the eye from the centre of a box at which the whole box is in view,
+// with a margin of a tenth of the image. `back` is the unit vector from the centre to the eye.
 float distance_in_view(const Bounds& bounds, const glm::vec3& back, float fov_y, float aspect) {
   constexpr float kFilled = 0.9f;  // of the half-width and half-height of the image
   const float up_limit = kFilled * std::tan(0.5f * fov_y), right_limit = up_limit * aspect;

@@ -4,10 +4,10 @@
 
 namespace alcove::sample {
 
-// A camera that looks from above and one side at the core of a scene, as near as possible with all
-// of the core in view. `aspect` is the width of the image over its height. If meshes enclose the
-// core at a distance, such as a room, the eye stands within them if one of four sides has room for
-// that. with_fitted_planes() is still to be applied.
+// Returns a camera that looks at the core of a scene from above and from one side, as near as
+// possible with the whole core in view. `aspect` is the width of the image divided by its height.
+// If meshes such as a room enclose the core at a distance, the eye is inside them, if one of four
+// sides has room for it. Call with_fitted_planes() afterwards.
 [[nodiscard]] Camera framing_camera(const Scene& scene, double aspect);
 
 }  // namespace alcove::sample

@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 constexpr size_t kMostOfASentence = 200;  // bytes
 constexpr const char* kTooLittleMemory = "there is not enough memory for it";
 
-// One line of at most `most` bytes: names may be as long as the file.
+// Converts text to one line of at most `most` bytes, because names may be as long as the file.
 std::string readable(std::string text, size_t most) {
   text = printable(text);
   if (text.size() <= most) return text;
@@ -36,8 +36,8 @@ std::string readable(std::string text, size_t most) {
   return text.substr(0, end) + "...";
 }
 
-// Shortens names, so that a sentence has room for its reason, and so that a long name that many
-// nodes share does not take more memory than there is.
+// Shortens names, so that a message has room for its reason, and so that a long name that many
+// nodes share does not exhaust memory.
 void make_names_readable(tinygltf::Model& model) {
   constexpr size_t kMost = 100;
   const auto each = [](auto& things) {
@@ -49,7 +49,7 @@ void make_names_readable(tinygltf::Model& model) {
   each(model.cameras);
 }
 
-// A warning once, however many parts it holds for.
+// Keeps each warning only once, even if it applies to many parts of the file.
 void tidy(std::vector<std::string>& warnings) {
   for (std::string& warning : warnings) warning = readable(std::move(warning), kMostOfASentence);
   std::sort(warnings.begin(), warnings.end());
@@ -97,7 +97,7 @@ tl::expected<Scene, std::string> build_scene(GltfModel read, const GltfLimits& l
       }
     }
   }
-  // The vertices have been copied: the file's bytes need not stay while the scene is measured.
+  // The vertices have been copied, so that the file's bytes can be freed.
   read.model.buffers.clear();
   scene.bounds_ws = bounds_of(scene.meshes);
   add_core(scene);

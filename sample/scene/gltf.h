@@ -21,8 +21,8 @@ namespace alcove::sample {
 // accessor type (normalised, interleaved, sparse), embedded, binary and external buffers and
 // images, metallic-roughness materials and KHR_materials_pbrSpecularGlossiness with normal maps and
 // tangents, vertex colours, doubleSided, samplers, two sets of texture coordinates,
-// KHR_texture_transform, alpha masks, cameras, KHR_node_visibility. Triangles without normals have
-// their geometric ones.
+// KHR_texture_transform, alpha masks, cameras, and KHR_node_visibility. Triangles without normals
+// get their geometric normals.
 //
 // It leaves out, with a warning in the scene, points and lines, morph targets, animation, further
 // sets of texture coordinates and other extensions. It refuses a file that requires an extension
@@ -30,11 +30,11 @@ namespace alcove::sample {
 // occlusion. Alpha-blended materials are opaque; with an alpha of 0 they are not drawn.
 //
 // The file may be hostile. Every index, offset, stride and count is checked before it is used,
-// GltfLimits bounds memory and time, and external files must lie in the scene's folder. Errors are
+// GltfLimits limits memory and time, and external files must be in the scene's folder. Errors are
 // one sentence with the file's name. Thread-safe.
 struct GltfLimits {
-  // Sums over all meshes. A mesh that several nodes share counts once, a skinned mesh once per
-  // node.
+  // Limits on sums over all meshes. A mesh that several nodes share counts once, a skinned mesh
+  // once for each node.
   uint64_t primitives = uint64_t{1} << 20;
   uint64_t vertices = uint64_t{1} << 26;
   uint64_t indices = uint64_t{3} << 25;
@@ -47,7 +47,7 @@ struct GltfLimits {
                                                          const Progress& progress = {});
 
 // Reads a file that is in memory. `name` is the name of the file in messages. External files must
-// be in `folder`; if it is empty, they are refused.
+// be in `folder`; if `folder` is empty, they are refused.
 [[nodiscard]] tl::expected<Scene, std::string> parse_gltf(std::span<const uint8_t> bytes,
                                                           const std::string& name,
                                                           const std::filesystem::path& folder,

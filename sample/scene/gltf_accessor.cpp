@@ -8,9 +8,9 @@ namespace {
 
 using Failure = tl::unexpected<std::string>;
 
-// Elements of one type, `stride` bytes apart, all of them within their buffer view.
+// Elements of one type in memory, `stride` bytes apart, all of them within their buffer view.
 struct Elements {
-  const uint8_t* first = nullptr;  // null where there is no buffer view: all elements are zero
+  const uint8_t* first = nullptr;  // null if there is no buffer view: all elements are zero
   uint64_t stride = 0;
   uint64_t count = 0;
   int component_type = 0;
@@ -93,15 +93,16 @@ bool is_unsigned(int type) {
          type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
 }
 
-// The address of `count` elements of `size` bytes, `stride` bytes apart, from `offset` of a view
-// on.
+// Returns the address of `count` elements of `size` bytes, `stride` bytes apart, which begin at
+// `offset` in a buffer view.
 tl::expected<const uint8_t*, std::string> elements_of(const tinygltf::Model& model, int64_t view,
                                                       uint64_t offset, uint64_t count,
                                                       uint64_t size, uint64_t stride) {
   const auto bytes = view_bytes(model, view);
   if (!bytes) return Failure(bytes.error());
   const uint64_t length = bytes->size();
-  // The last element must end within the view. No term of these comparisons can overflow.
+  // The last element must end within the view. The comparisons are written so that no term can
+  // overflow.
   if (count > 0 && (offset > length || size > length - offset ||
                     (count - 1) > (length - offset - size) / stride)) {
     return Failure("reads past the end of buffer view " + std::to_string(view));

@@ -10,23 +10,23 @@
 
 namespace alcove::sample {
 
-// Checked reading of a glTF model's binary data (glTF 2.0 section 3.6). The model is not trusted:
-// every index, offset, stride and count is checked against the size of the data. Errors are the
-// end of a sentence that starts with the file's name.
+// Functions that read a glTF model's binary data (glTF 2.0 section 3.6). The model is not trusted:
+// every index, offset, stride and count is checked against the size of the data. Errors are the end
+// of a sentence that starts with the file's name.
 
 // Returns the bytes of a buffer view.
 [[nodiscard]] tl::expected<std::span<const uint8_t>, std::string> view_bytes(
     const tinygltf::Model& model, int64_t view);
 
-// Reads all elements as floats. Each has `components` components: 1 to 4, or 16 for a matrix of
-// floats. Normalised integers are mapped to 0..1 or -1..1; other integers keep their value. Sparse
-// values replace those of the buffer view. An accessor with another number of components or with
-// more than `most` elements is an error.
+// Reads all elements of an accessor as floats. Each has `components` components: 1 to 4, or 16 for
+// a matrix of floats. Normalised integers are mapped to 0..1 or -1..1; other integers keep their
+// value. Sparse values replace those of the buffer view. An accessor with another number of
+// components, or with more than `most` elements, is an error.
 [[nodiscard]] tl::expected<std::vector<float>, std::string> read_floats(
     const tinygltf::Model& model, int64_t accessor, int components, uint64_t most);
 
 // Reads a scalar accessor of unsigned integers. A value that is not below `bound`, or more than
-// `most` values, are an error.
+// `most` values, is an error.
 [[nodiscard]] tl::expected<std::vector<uint32_t>, std::string> read_indices(
     const tinygltf::Model& model, int64_t accessor, uint64_t bound, uint64_t most);
 

@@ -10,7 +10,8 @@ namespace {
 
 bool positive(double value) { return std::isfinite(value) && value > 0.0; }
 
-// Sets position and axes from the node. False where its matrix gives no direction or is too large.
+// Sets position and axes from the node. Returns false if its matrix gives no direction or is too
+// large.
 bool place(const glm::dmat4& world_from_node, PlacedCamera& out) {
   constexpr double kFarthest = 1e15;  // scene units, the limit for vertices too
   const glm::dvec3 eye(world_from_node[3]), back(world_from_node[2]), up(world_from_node[1]);
@@ -24,7 +25,8 @@ bool place(const glm::dmat4& world_from_node, PlacedCamera& out) {
   return true;
 }
 
-// Sets projection, angle or size, near and far plane. False where they make no view.
+// Sets the projection, its angle or size, and the near and far plane. Returns false if they are not
+// valid.
 bool read_lens(const tinygltf::Camera& in, Camera& out) {
   double near_plane = 0.0, far_plane = 0.0;
   if (in.type == "orthographic") {
@@ -37,7 +39,8 @@ bool read_lens(const tinygltf::Camera& in, Camera& out) {
     out.fov_y = static_cast<float>(in.perspective.yfov);
     near_plane = in.perspective.znear;
     far_plane = in.perspective.zfar > 0.0 ? in.perspective.zfar : INFINITY;
-    // The limits of --fov-y, so that every camera of a file can be given as options.
+    // The limits of the option --fov-y, so that every camera of a file can also be given by
+    // options.
     constexpr float kNarrowest = 2e-5f, kWidest = 3.1f;
     const bool opens = out.fov_y >= kNarrowest && out.fov_y <= kWidest;
     if (!positive(near_plane) || !opens) return false;

@@ -14,7 +14,7 @@ constexpr uint32_t kBinary = 0x004e4942;  // "BIN"
 constexpr size_t kHeader = 12;            // bytes: magic, version, length
 constexpr size_t kChunkHeader = 8;        // bytes: length, type
 
-// Little-endian, as all of glTF.
+// Reads a 32-bit word. All numbers in glTF are little-endian.
 uint32_t word(Bytes bytes, size_t at) {
   return uint32_t{bytes[at]} | uint32_t{bytes[at + 1]} << 8 | uint32_t{bytes[at + 2]} << 16 |
          uint32_t{bytes[at + 3]} << 24;

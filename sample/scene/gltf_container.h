@@ -7,7 +7,7 @@
 
 namespace alcove::sample {
 
-// The parts of a glTF file: its JSON and, of a binary file (.glb) that has one, the binary chunk.
+// The parts of a glTF file: its JSON, and the binary chunk of a binary file (.glb) if there is one.
 struct GltfParts {
   std::span<const uint8_t> json;
   std::span<const uint8_t> binary;
@@ -16,7 +16,7 @@ struct GltfParts {
 
 // Splits a file into its parts. The magic number tells whether it is binary (glTF 2.0 section 4.4).
 // Chunks of unknown types are skipped. A header or chunk that is cut short, has a wrong length, or
-// is unaligned, repeated or out of order is an error, the end of a sentence.
+// is unaligned, repeated or out of order is an error. The error is the end of a sentence.
 [[nodiscard]] tl::expected<GltfParts, std::string> split_gltf(std::span<const uint8_t> file);
 
 }  // namespace alcove::sample

@@ -14,9 +14,10 @@ bool is_extension_read(const std::string& name) {
 }
 
 bool changes_no_shape(const std::string& name) {
-  // Prefixes of families, then whole names. Not here, because they hold or place triangles: the
-  // compressions of meshes (KHR_draco_mesh_compression, EXT_meshopt_compression),
-  // KHR_texture_basisu and its kind where a texture has no other source, and whatever is unknown.
+  // Extensions that change no shape: prefixes of families, then whole names. Extensions that hold
+  // or place triangles are not listed: mesh compression (KHR_draco_mesh_compression,
+  // EXT_meshopt_compression). KHR_texture_basisu and similar extensions are not listed either,
+  // because a texture may have no other source. Unknown extensions are assumed to change shapes.
   constexpr std::array<std::string_view, 4> kFamilies{"KHR_materials_", "ADOBE_materials_",
                                                       "EXT_lights_", "KHR_lights_"};
   constexpr std::array<std::string_view, 8> kNames{

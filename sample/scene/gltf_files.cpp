@@ -23,7 +23,7 @@ int hexadecimal(char c) {
   return -1;
 }
 
-// RFC 3986 section 2.1. A % that no two digits follow stays as it is.
+// Decodes %XX (RFC 3986 section 2.1). A % that is not followed by two hexadecimal digits is kept.
 std::string percent_decoded(std::string_view text) {
   std::string out;
   out.reserve(text.size());
@@ -47,7 +47,7 @@ int base64_digit(char c) {
   return c == '+' ? 62 : c == '/' ? 63 : -1;
 }
 
-// RFC 4648 section 4; white space is skipped, and the padding may be missing.
+// Decodes base64 (RFC 4648 section 4). White space is skipped, and the padding may be missing.
 tl::expected<Bytes, std::string> base64_decoded(std::string_view text) {
   Bytes out;
   out.reserve(text.size() / 4 * 3 + 2);
@@ -85,13 +85,14 @@ bool is_data(const std::string& uri) {
   return lower_case(std::string_view(uri).substr(0, kData.size())) == kData;
 }
 
-// RFC 2397: data:[media type][;base64],data
+// Returns the bytes of a data URI (RFC 2397): data:[media type][;base64],data
 tl::expected<Bytes, std::string> data_of(const std::string& uri) {
   const size_t comma = uri.find(',');
   if (comma == std::string::npos) return Failure("is a data URI without data");
   const std::string header = lower_case(std::string_view(uri).substr(0, comma));
   const std::string_view data = std::string_view(uri).substr(comma + 1);
-  // Base64 is by far the most frequent and needs no decoding first, unless it is there.
+  // Base64 data usually has no percent-encoding, so that the decoding of %XX is skipped if there is
+  // no %.
   if (header.ends_with(";base64")) {
     return data.find('%') == std::string_view::npos ? base64_decoded(data)
                                                     : base64_decoded(percent_decoded(data));
@@ -100,7 +101,8 @@ tl::expected<Bytes, std::string> data_of(const std::string& uri) {
   return Bytes(decoded.begin(), decoded.end());
 }
 
-// RFC 3986 section 3.1. A single letter is a drive of Windows and no scheme.
+// Returns whether a URI has a scheme (RFC 3986 section 3.1). A single letter is a Windows drive and
+// not a scheme.
 bool has_scheme(const std::string& uri) {
   const size_t colon = uri.find(':');
   if (colon == std::string::npos || colon < 2 ||

@@ -8,22 +8,22 @@
 
 namespace alcove::sample {
 
-// Reads the files that a glTF file names. It reads regular files in the scene's folder or below it,
-// after symbolic links are resolved, up to kMostFileBytes together, and data that is embedded in a
-// URI.
+// Reads the files that a glTF file names: regular files in the scene's folder or below it, after
+// symbolic links are resolved, and data that is embedded in a URI. All files together may have at
+// most kMostFileBytes.
 class GltfFiles {
  public:
-  // With an empty folder, no file can be read.
+  // If `folder` is empty, no file can be read.
   explicit GltfFiles(const std::filesystem::path& folder);
 
   // Returns the bytes that a URI names. A relative reference is decoded after RFC 3986: %XX is a
   // byte, and all other characters are themselves. If no such file exists, the name is tried
-  // without decoding, and then with / for \, which exporters on Windows write. `data:` URIs may
-  // have any media type, and be base64 or percent-encoded. Errors are the end of a sentence that
-  // begins with the URI.
+  // without decoding, and then with every \ replaced by /, because exporters on Windows write \.
+  // `data:` URIs may have any media type, and be base64 or percent-encoded. Errors are the end of a
+  // sentence that begins with the URI.
   [[nodiscard]] tl::expected<std::vector<uint8_t>, std::string> read(const std::string& uri);
 
-  // Returns the URI for a message, without embedded data and at most 80 bytes of it.
+  // Returns the URI for a message, without embedded data and shortened to 80 bytes.
   [[nodiscard]] static std::string shown(const std::string& uri);
 
  private:
@@ -33,7 +33,7 @@ class GltfFiles {
   uint64_t bytes_left_;
 };
 
-// Reads all of a regular file. More than `most` bytes are an error. Errors are the end of a
+// Reads a whole regular file. A file of more than `most` bytes is an error. Errors are the end of a
 // sentence.
 [[nodiscard]] tl::expected<std::vector<uint8_t>, std::string> read_regular_file(
     const std::filesystem::path& file, uint64_t most);

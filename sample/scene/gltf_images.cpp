@@ -43,7 +43,7 @@ void GltfImages::read_header(size_t index) {
     entry.refusal = "uses " + name(index) + ", whose " + view.error();
     return;
   }
-  // Images without bytes have had their warning.
+  // A warning was already added for an image without bytes.
   if (image.bufferView < 0 && entry.bytes.empty()) return;
   entry.header = read_image_header(entry.bytes);
   if (!entry.header) return;

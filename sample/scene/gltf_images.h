@@ -20,16 +20,16 @@ struct ImageLimits {
       uint64_t{1} << 30;  // sum over all images before reduction: some seconds of decoding
 };
 
-// Decodes the images of a model into a scene when materials ask for them, each image at most once.
-// The headers of all images are read first. If the images exceed the limit together, large images
-// are reduced by powers of 2 until all fit, and the scene gets a warning.
+// Decodes the images of a model into a scene when materials use them, each image at most once. The
+// headers of all images are read first. If the images together exceed the limit, large images are
+// reduced by powers of 2 until all fit, and the scene gets a warning.
 class GltfImages {
  public:
   GltfImages(const tinygltf::Model& model, const ImageLimits& limits, Scene& scene);
 
-  // Returns the index in Scene::images, or -1 for an image that cannot be read, which causes one
-  // warning. An image that is too large or lies in a missing buffer view is an error, the end of a
-  // sentence about the material that uses it.
+  // Returns the index in Scene::images, or -1 for an image that cannot be read; the scene then gets
+  // one warning. An image that is too large or is in a missing buffer view is an error. The error
+  // is the end of a sentence about the material that uses the image.
   [[nodiscard]] tl::expected<int32_t, std::string> decode(size_t index);
 
  private:

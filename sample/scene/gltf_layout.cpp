@@ -8,7 +8,7 @@ namespace {
 
 using Failure = tl::unexpected<std::string>;
 
-// For each node, whether another node has it as a child.
+// Returns for each node whether it is a child of another node.
 std::vector<char> children_of_nodes(const tinygltf::Model& model) {
   std::vector<char> is_child(model.nodes.size(), 0);
   for (const tinygltf::Node& node : model.nodes) {
@@ -21,7 +21,8 @@ std::vector<char> children_of_nodes(const tinygltf::Model& model) {
   return is_child;
 }
 
-// The nodes to start from: those of the default scene, or every node that is nobody's child.
+// Returns the root nodes: those of the default scene, or all nodes that are not the child of
+// another node.
 tl::expected<std::vector<int>, std::string> root_nodes(const tinygltf::Model& model) {
   if (!model.scenes.empty()) {
     const int index = std::max(model.defaultScene, 0);
@@ -38,7 +39,7 @@ tl::expected<std::vector<int>, std::string> root_nodes(const tinygltf::Model& mo
   return roots;
 }
 
-// KHR_node_visibility hides a node and all below it.
+// Returns whether KHR_node_visibility hides the node. Its descendants are then hidden too.
 bool is_hidden(const tinygltf::Node& node) {
   const auto found = node.extensions.find("KHR_node_visibility");
   if (found == node.extensions.end() || !found->second.Has("visible")) return false;
@@ -54,7 +55,8 @@ class TreeWalk {
     layout.world_from_node.assign(model.nodes.size(), glm::dmat4(1.0));
   }
 
-  // Nodes that are not `drawn` are placed alone: joints may stand outside of the scene.
+  // If `drawn` is false, the nodes only get a transform, because joints may be outside of the drawn
+  // scene.
   tl::expected<void, std::string> walk(const std::vector<int>& roots, bool drawn) {
     std::vector<Step> open;
     for (auto root = roots.rbegin(); root != roots.rend(); ++root) {

@@ -11,21 +11,21 @@
 
 namespace alcove::sample {
 
-// A node that is drawn, with the instances that it adds to its own transform.
+// A node that is drawn. Its instances have transforms relative to the node.
 struct DrawnNode {
   size_t node;
-  NodeInstances instances;  // empty: one, with the transform of the node
+  NodeInstances instances;  // empty: one instance with the node's own transform
 };
 
-// The transforms of a file's nodes.
+// The transforms of all nodes of a file, and the nodes that are drawn.
 struct Layout {
   std::vector<glm::dmat4> world_from_node;  // by node
-  std::vector<DrawnNode> drawn;             // in the order of the tree
+  std::vector<DrawnNode> drawn;             // in the order of the node tree
 };
 
-// Places the nodes of a file. Drawn are those of the default scene, or all if the file has no
-// scenes, without those that KHR_node_visibility hides. At most `most_instances` instances are
-// read. Errors are the end of a sentence.
+// Computes the transforms of the nodes of a file. The drawn nodes are those of the default scene,
+// or all if the file has no scenes, except those that KHR_node_visibility hides. At most
+// `most_instances` instances are read. Errors are the end of a sentence.
 [[nodiscard]] tl::expected<Layout, std::string> place_nodes(const tinygltf::Model& model,
                                                             uint64_t most_instances);
 

@@ -14,7 +14,7 @@ namespace {
 
 using Failure = tl::unexpected<std::string>;
 
-// A reference of a material to a texture, whichever property of the material it is.
+// A reference to a texture by any property of a material.
 struct TextureReference {
   const char* role;
   int index;  // negative where there is none
@@ -43,7 +43,7 @@ int int_or(const tinygltf::Value& object, const char* key, int otherwise) {
   return value >= -1.0 && value < 2147483647.0 ? static_cast<int>(value) : otherwise;
 }
 
-// A texture reference that lies in an extension.
+// Returns a texture reference that is stored in an extension.
 tinygltf::TextureInfo texture_info(const tinygltf::Value& extension, const char* key) {
   tinygltf::TextureInfo info;
   if (!extension.Has(key) || !extension.Get(key).IsObject()) return info;
@@ -59,8 +59,9 @@ tinygltf::TextureInfo texture_info(const tinygltf::Value& extension, const char*
   return info;
 }
 
-// The material as metallic-roughness has it: the diffuse colour and texture are the base colour of
-// a dielectric, 1 - glossiness is the roughness. The specular colour is left out.
+// Converts a specular-glossiness material to metallic-roughness: the diffuse colour and texture
+// become the base colour of a dielectric, and 1 - glossiness becomes the roughness. The specular
+// colour is left out.
 tinygltf::Material as_metallic_roughness(const tinygltf::Material& material,
                                          const tinygltf::Value& extension) {
   tinygltf::Material out = material;
@@ -88,7 +89,7 @@ std::array<TextureReference, 4> references(const tinygltf::Material& material) {
           reference("normal map", material.normalTexture)};
 }
 
-// Adds materials to a scene, and images as materials ask for them.
+// Adds materials to a scene, and the images that the materials use.
 class MaterialReader {
  public:
   MaterialReader(const tinygltf::Model& model, const ImageLimits& limits, Scene& scene)
@@ -181,7 +182,8 @@ tl::expected<TextureUse, std::string> MaterialReader::texture(const TextureRefer
   if (!transform) return Failure(transform.error());
   use.texture_from_mesh_uv = *transform;
   if (texture.source < 0) {
-    // An extension may name the image instead, such as KHR_texture_basisu.
+    // The image may instead be named by an extension that is not supported, such as
+    // KHR_texture_basisu.
     scene_.warnings.push_back("texture " + std::to_string(index) +
                               " has no image that is read here and is left out.");
     return use;

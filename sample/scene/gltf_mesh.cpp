@@ -25,8 +25,8 @@ bool finite(const glm::vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-// Converts strips and fans to lists. Every second triangle of a strip is reversed, so that all have
-// the same winding.
+// Converts strips and fans to lists. Every second triangle of a strip is reversed, so that all
+// triangles have the same winding.
 std::vector<uint32_t> as_list(std::vector<uint32_t> in, int mode) {
   if (mode == TINYGLTF_MODE_TRIANGLES) {
     in.resize(in.size() - in.size() % 3);
@@ -38,7 +38,7 @@ std::vector<uint32_t> as_list(std::vector<uint32_t> in, int mode) {
     const size_t odd = fan ? 0 : i % 2;
     const uint32_t a = fan ? in[0] : in[i - 2];
     const uint32_t b = in[i - 1];
-    // A strip's triangle is (i, i+1+odd, i+2-odd); a fan's (0, i, i+1).
+    // The triangles of a strip are (i, i+1+odd, i+2-odd), those of a fan (0, i, i+1).
     out.insert(out.end(), {a, odd ? in[i] : b, odd ? b : in[i]});
   }
   return out;
@@ -51,7 +51,7 @@ tl::expected<std::vector<glm::vec3>, std::string> world_positions(const tinygltf
   const auto values = read_floats(model, accessor, 3, most);
   if (!values) return Failure(values.error());
   std::vector<glm::vec3> out(values->size() / 3);
-  // Beyond this, squares of lengths overflow.
+  // The squares of larger lengths overflow a float.
   constexpr float kFarthest = 1e15f;
   for (size_t i = 0; i < out.size(); ++i) {
     const glm::dvec4 local((*values)[3 * i], (*values)[3 * i + 1], (*values)[3 * i + 2], 1.0);
@@ -74,8 +74,8 @@ tl::expected<std::vector<glm::vec3>, std::string> world_normals(const tinygltf::
   if (!values) return Failure(values.error());
   std::vector<glm::vec3> out(values->size() / 3);
   for (size_t i = 0; i < out.size(); ++i) {
-    // The cofactor matrix is the inverse transpose times the determinant. It exists even if the
-    // determinant is 0.
+    // Normals are transformed by the cofactor matrix, the inverse transpose times the determinant.
+    // It exists even if the determinant is 0.
     const glm::dmat3 m(placement.at(i));
     const double side = glm::determinant(m) < 0.0 ? -1.0 : 1.0;
     const glm::dmat3 cofactor(side * glm::cross(m[1], m[2]), side * glm::cross(m[2], m[0]),
@@ -152,7 +152,7 @@ void make_flat_normals(Mesh& mesh) {
   mesh.indices = std::move(flat.indices);
 }
 
-// Replaces normals that are zero by the area-weighted mean normal of the triangles at the vertex.
+// Replaces zero normals by the area-weighted mean normal of the triangles at the vertex.
 void mend_normals(Mesh& mesh) {
   if (std::ranges::find(mesh.normals, glm::vec3(0.0f)) == mesh.normals.end()) return;
   std::vector<glm::dvec3> sums(mesh.positions.size(), glm::dvec3(0.0));
@@ -175,8 +175,8 @@ bool reads_by(const Material& material, uint32_t uv_set) {
   });
 }
 
-// Reads texture coordinates. Empty if the file has none. Coordinates that are not finite become
-// zero.
+// Returns texture coordinates, or an empty array if the file has none. Coordinates that are not
+// finite become zero.
 tl::expected<std::vector<glm::vec2>, std::string> texture_coordinates(
     const tinygltf::Model& model, const tinygltf::Primitive& primitive, uint32_t uv_set,
     size_t vertices) {
@@ -214,7 +214,8 @@ tl::expected<void, std::string> add_texture_coordinates(const tinygltf::Model& m
   return {};
 }
 
-// Adds COLOR_0. Colours without alpha have an alpha of 1. If all are white, none are kept.
+// Adds the vertex colours COLOR_0. Colours without alpha get an alpha of 1. If all colours are
+// white, none are kept.
 tl::expected<void, std::string> add_colors(const tinygltf::Model& model,
                                            const tinygltf::Primitive& primitive, Mesh& mesh) {
   const int accessor = attribute(primitive, "COLOR_0");
@@ -249,7 +250,8 @@ tl::expected<void, std::string> add_normals(const tinygltf::Model& model,
                                             Mesh& mesh) {
   const int normal = attribute(primitive, "NORMAL");
   if (normal < 0) {
-    // Tangents of a normal map are computed at vertices that have a normal.
+    // The tangents of a normal map are computed at vertices that have a normal, so that the mesh
+    // needs vertex normals.
     if (material.normal_texture.image >= 0) make_flat_normals(mesh);
     return {};
   }
@@ -283,7 +285,7 @@ tl::expected<std::vector<uint32_t>, std::string> vertex_order(const tinygltf::Mo
   return order;
 }
 
-// The placement of the vertices of a primitive in the space of its mesh.
+// Returns the transforms of the vertices of a primitive to the space of its mesh.
 tl::expected<VertexPlacement, std::string> vertex_placement(const tinygltf::Model& model,
                                                             const tinygltf::Primitive& primitive,
                                                             const PrimitivePlacement& placement,
@@ -313,7 +315,7 @@ tl::expected<void, std::string> add_primitive(const tinygltf::Model& model,
     return refuse("takes the scene past the number of parts that is read here");
   }
   --budget.primitives;
-  // tinygltf stores -1 if the file gives no mode; then it is triangles.
+  // tinygltf stores -1 if the file gives no mode. The default is triangles.
   const int mode = primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
   if (mode < TINYGLTF_MODE_TRIANGLES || mode > TINYGLTF_MODE_TRIANGLE_FAN) {
     scene.warnings.push_back("Mesh " + name + " has points or lines, which are left out.");

@@ -10,9 +10,9 @@
 
 namespace alcove::sample {
 
-// The amounts of data that may still be read from a file. They bound the memory and the time that a
-// small file can ask for by naming the same data many times. Everything that is read is subtracted,
-// even if nothing is drawn of it.
+// The amounts of data that may still be read from a file. They limit the memory and the time that a
+// small file can consume by naming the same data many times. Everything that is read is subtracted,
+// even if it is not drawn.
 struct MeshBudget {
   uint64_t primitives;
   uint64_t vertices;
@@ -22,18 +22,18 @@ struct MeshBudget {
   uint64_t drawn_triangles;  // counted once for each instance
 };
 
-// The placement of a primitive in world space.
+// The transform of a primitive to world space, or its instances.
 struct PrimitivePlacement {
   glm::dmat4 world_from_mesh{1.0};
   const std::vector<glm::dmat4>* joints =
       nullptr;  // joints of a skin; they replace world_from_mesh
-  // If not null, the mesh stays in mesh space and has these instances.
+  // If not null, the mesh is not transformed and gets these instances.
   const std::vector<glm::mat4x3>* instances = nullptr;
 };
 
 // Adds the triangles of one primitive as a mesh. Points and lines are left out with a warning.
-// Triangles without an area and primitives whose material blends with an alpha of 0 are left out. A
-// mirroring transform reverses the winding. Errors are the end of a sentence.
+// Triangles without an area, and primitives whose material is alpha-blended with an alpha of 0, are
+// left out. A mirroring transform reverses the winding. Errors are the end of a sentence.
 [[nodiscard]] tl::expected<void, std::string> add_primitive(const tinygltf::Model& model,
                                                             const tinygltf::Primitive& primitive,
                                                             const std::string& name,

@@ -48,7 +48,8 @@ std::optional<Version> version_of(const std::string& text) {
   return version;
 }
 
-// Files of a later 2.x are read unless they say that readers of 2.0 cannot (asset.minVersion).
+// Checks the glTF version. Files of a later version 2.x are read, unless asset.minVersion says that
+// readers of 2.0 cannot read them.
 Checked check_version(const json& asset) {
   for (const char* name : {"version", "minVersion"}) {
     const auto found = asset.find(name);
@@ -84,7 +85,8 @@ Failure reached_twice(size_t node) {
                  " is reached twice: nodes form a cycle or have two parents");
 }
 
-// Nodes are a forest (glTF 2.0 section 3.5.2), whether or not a scene shows them.
+// Checks that the nodes form a forest (glTF 2.0 section 3.5.2), including nodes that no scene
+// shows.
 Checked check_node_tree(const json& root) {
   const auto nodes = root.find("nodes");
   if (nodes == root.end()) return {};
@@ -102,8 +104,8 @@ Checked check_node_tree(const json& root) {
       if (std::exchange(parents[index], i) != kNone) return reached_twice(index);
     }
   }
-  // Follows the parents of every node. A walk of more steps than nodes is in a cycle. Nodes that
-  // are known to lead to a root are `cleared`.
+  // Follows the parents of every node. If a walk has more steps than there are nodes, it is in a
+  // cycle. `cleared` marks nodes that are known to lead to a root.
   std::vector<char> cleared(parents.size(), 0);
   for (size_t start = 0; start < parents.size(); ++start) {
     size_t steps = 0;
@@ -117,8 +119,8 @@ Checked check_node_tree(const json& root) {
   return {};
 }
 
-// Parts of the JSON that are removed before tinygltf reads it. tinygltf would read files by rules
-// of its own, and it refuses valid accessors of indices that have no buffer view.
+// Parts of the JSON that are removed before tinygltf reads it. tinygltf would read external files
+// by its own rules, and it refuses valid index accessors that have no buffer view.
 struct Taken {
   json buffers;
   json images;
@@ -174,8 +176,8 @@ Checked read_by_tinygltf(const json& root, const Taken& taken, tinygltf::Model& 
 }
 
 // Fills the buffers of the model. The first buffer of a binary file may be its binary chunk. Other
-// buffers without a URI have no data.
-// It moves the bytes out of `file`, so that they are not held twice.
+// buffers without a URI have no data. The bytes are moved out of `file`, so that they are not in
+// memory twice.
 Checked fill_buffers(const json& buffers, std::vector<uint8_t> file, const GltfParts& parts,
                      GltfFiles& files, tinygltf::Model& model) {
   std::vector<uint8_t> chunk;
@@ -216,7 +218,7 @@ void mark(std::vector<char>& all, int index) {
   if (index >= 0 && static_cast<size_t>(index) < all.size()) all[static_cast<size_t>(index)] = 1;
 }
 
-// Marks the images that materials of meshes of nodes use.
+// Marks the images that are used by a material of a mesh of a node.
 std::vector<char> used_images(const json& root, size_t image_count) {
   const json none = json::array();
   const auto array = [&](const char* name) -> const json& {
@@ -234,7 +236,7 @@ std::vector<char> used_images(const json& root, size_t image_count) {
       mark(material_used, primitive.value("material", -1));
     }
   }
-  // A material refers to textures at several places. Each reference is an object with an index.
+  // A material can refer to textures in several places. Each reference is an object with an index.
   std::vector<const json*> open;
   for (size_t i = 0; i < materials.size(); ++i) {
     if (material_used[i]) open.push_back(&materials[i]);

@@ -14,7 +14,8 @@ namespace {
 
 using Failure = tl::unexpected<std::string>;
 
-// Whether an instance of a mesh can be placed by a matrix of floats and traced by its inverse.
+// Returns whether a transform and its inverse can be stored as floats, as the instances of a mesh
+// need it.
 bool can_be_instance(const glm::dmat4& m) {
   double longest = 0.0;
   for (int c = 0; c < 3; ++c) longest = std::max(longest, glm::length(glm::dvec3(m[c])));
@@ -24,7 +25,7 @@ bool can_be_instance(const glm::dmat4& m) {
          glm::length(glm::dvec3(m[3])) < kFarthest;
 }
 
-// Adds what nodes have to a scene.
+// Adds the meshes and cameras of nodes to a scene.
 class NodeReader {
  public:
   NodeReader(const tinygltf::Model& model, const Layout& layout, MeshBudget& budget, Scene& scene)
@@ -45,7 +46,7 @@ class NodeReader {
       return Failure("node \"" + node.name + "\" has no mesh " + std::to_string(node.mesh));
     }
     if (node.skin >= 0) return add_skinned(node);
-    // The first node of a mesh adds all of its instances.
+    // The first node of a mesh adds the instances of all nodes with that mesh.
     const auto nodes = std::exchange(nodes_of_[static_cast<size_t>(node.mesh)], {});
     size_t count = 0;
     for (const DrawnNode* drawn : nodes) count += std::max<size_t>(drawn->instances.size(), 1);
@@ -89,8 +90,8 @@ class NodeReader {
     return add_mesh(node, PrimitivePlacement{glm::dmat4(1.0), *joints});
   }
 
-  // The joints of a skin relative to the scene's origin. Computed once, because many nodes may have
-  // the same skin.
+  // Returns the joint matrices of a skin relative to the scene's origin. They are computed once,
+  // because many nodes may have the same skin.
   tl::expected<const std::vector<glm::dmat4>*, std::string> joints_of(int skin) {
     const auto [known, is_new] = joints_of_skin_.try_emplace(skin);
     if (is_new) {

@@ -18,13 +18,13 @@ struct Extent {
   double radius = 0.0;
 };
 
-// Reads the extents of primitives, each accessor once.
+// Reads the bounding spheres of primitives. Each accessor is read only once.
 class ExtentReader {
  public:
   ExtentReader(const tinygltf::Model& model, uint64_t most_vertices)
       : model_(model), vertices_left_(most_vertices) {}
 
-  // Null if the positions cannot be read, which add_primitive() reports.
+  // Returns null if the positions cannot be read. add_primitive() reports that error later.
   std::optional<Extent> extent_of(const tinygltf::Primitive& primitive) {
     const auto position = primitive.attributes.find("POSITION");
     if (position == primitive.attributes.end()) return std::nullopt;
@@ -54,9 +54,9 @@ class ExtentReader {
   std::map<int, std::optional<Extent>> extents_;  // by accessor
 };
 
-// The transform of a drawn node's mesh to the space of the file: for several instances that of the
-// middle one, for a skin that of its first joint. Null if the file names a node that does not
-// exist.
+// Returns the transform from the mesh of a drawn node to the space of the file. For several
+// instances it is that of the middle one, for a skin that of its first joint. Returns null if the
+// file names a node that does not exist.
 std::optional<glm::dmat4> placement_of(const tinygltf::Model& model, const Layout& layout,
                                        const DrawnNode& drawn) {
   const tinygltf::Node& node = model.nodes[drawn.node];
@@ -71,7 +71,8 @@ std::optional<glm::dmat4> placement_of(const tinygltf::Model& model, const Layou
   return world * drawn.instances.at(drawn.instances.size() / 2);
 }
 
-// The extents of the primitives of all drawn nodes in the space of the file, a million at most.
+// Returns the bounding spheres of the primitives of all drawn nodes in the space of the file, at
+// most a million.
 std::vector<Extent> placed_extents(const tinygltf::Model& model, const Layout& layout,
                                    uint64_t most_vertices) {
   constexpr size_t kMost = 1'000'000;
@@ -95,7 +96,8 @@ std::vector<Extent> placed_extents(const tinygltf::Model& model, const Layout& l
   return out;
 }
 
-// The value that the fraction `share` of the values does not exceed. `values` is not empty.
+// Returns the value that the fraction `share` of the values does not exceed. `values` must not be
+// empty.
 double quantile(std::vector<double> values, double share) {
   const auto at =
       values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
@@ -126,7 +128,7 @@ glm::dvec3 chosen_origin(const tinygltf::Model& model, const Layout& layout,
   const double size = quantile(std::move(distances), 0.75);
   const double away = glm::length(centre);
   if (!(away > kFarthest * size) || !(size > 0.0) || away > kMostShift) return glm::dvec3(0.0);
-  // Whole units if these are fine enough, so that a printed view has few digits.
+  // Whole units are used if they are precise enough, so that printed positions have few digits.
   return size > 1.0 ? glm::round(centre) : centre;
 }
 

@@ -26,7 +26,7 @@ glm::dmat4 transform_of(const glm::dvec3& translation, const glm::dquat& rotatio
   return m;
 }
 
-// The accessor of an attribute of EXT_mesh_gpu_instancing; -1 where there is none.
+// Returns the accessor of an attribute of EXT_mesh_gpu_instancing, or -1 if there is none.
 int instance_attribute(const tinygltf::Value& extension, const char* name) {
   if (!extension.IsObject() || !extension.Has("attributes")) return -1;
   const tinygltf::Value& attributes = extension.Get("attributes");
@@ -35,7 +35,8 @@ int instance_attribute(const tinygltf::Value& extension, const char* name) {
   return accessor.IsNumber() ? accessor.GetNumberAsInt() : -1;
 }
 
-// The sets JOINTS_0 and WEIGHTS_0 and so on, up to the first that is missing.
+// Returns the accessors of JOINTS_0 and WEIGHTS_0, JOINTS_1 and WEIGHTS_1 and so on, up to the
+// first set that is missing.
 std::vector<JointSet> joint_sets(const tinygltf::Primitive& primitive) {
   std::vector<JointSet> sets;
   for (;;) {

@@ -31,8 +31,8 @@ enum class Type : uint8_t {
 
 enum class Presence : uint8_t { kOptional, kRequired };
 
-// `path`: names from the root, separated by /; * stands for every element of an array or member of
-// an object. Parents come before their members.
+// A row of the table. `path` has the names from the root, separated by /; * stands for every
+// element of an array or member of an object. A parent has its row before its members.
 struct Property {
   std::string_view path;
   Type type;
@@ -81,7 +81,7 @@ constexpr Property text(std::string_view path, std::string_view choices = {},
 }
 constexpr Property texts(std::string_view path) { return {path, Type::kStrings}; }
 
-// A reference of a material to a texture, with the extension that places it.
+// The rows of a material's texture reference, including the extension KHR_texture_transform.
 #define ALCOVE_TEXTURE_INFO(path)                                                   \
   object(path), index(path "/index", kRequired), index(path "/texCoord"),           \
       object(path "/extensions"), object(path "/extensions/KHR_texture_transform"), \
@@ -225,7 +225,7 @@ constexpr Property kProperties[] = {
 
 #undef ALCOVE_TEXTURE_INFO
 
-// Shortest form of a limit, such as 0, 5126 or 2^53.
+// Returns the shortest text of a limit, such as 0, 5126 or 2^53.
 std::string shown(double value) {
   if (value == kLargestExact) return "2^53";
   return json(static_cast<int64_t>(value)).dump();
@@ -270,7 +270,7 @@ std::string expectation(const Property& property) {
   return "one of " + all;
 }
 
-// The beginning of a value as JSON, short enough for a sentence.
+// Returns the beginning of a JSON value, short enough for a sentence.
 std::string shown(const json& value) {
   constexpr size_t kLongest = 40;  // bytes
   if (value.is_object()) return "an object";
@@ -281,7 +281,7 @@ std::string shown(const json& value) {
   return value.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-// Copies the properties of the table from one tree to another, and checks them on the way.
+// Copies the properties of the table from one JSON tree to another, and checks them.
 class Copier {
  public:
   Checked copy(const Property& property, json& from, json& to) {
@@ -291,7 +291,8 @@ class Copier {
   }
 
  private:
-  // `path` is below `from`. place_ ends where it has begun, unless there is an error.
+  // Copies and checks the property at `path`, relative to `from`. Afterwards place_ is the same as
+  // before, unless there is an error.
   Checked descend(std::string_view path, json& from, json& to) {
     const size_t slash = path.find('/');
     const std::string_view name = path.substr(0, slash);
@@ -423,7 +424,7 @@ class Copier {
     }
   }
 
-  // The path to the place that is looked at, such as nodes[3].scale[1].
+  // Returns the path of the property that is being checked, such as nodes[3].scale[1].
   std::string path() const {
     std::string out;
     for (const auto& step : place_) {

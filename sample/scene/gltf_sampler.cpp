@@ -20,7 +20,8 @@ std::optional<Wrap> wrap_of(int mode) {
   }
 }
 
-// The filter within a mip level. glTF gives the one between mip levels by the same number.
+// Returns the filter within a mip level. In glTF the same number also selects the filter between
+// mip levels.
 std::optional<Filter> filter_of(int filter) {
   switch (filter) {
     case kNotGiven:
@@ -56,7 +57,7 @@ tl::expected<Sampler, std::string> read_sampler(const tinygltf::Sampler& in) {
   const auto wrap_u = wrap_of(in.wrapS), wrap_v = wrap_of(in.wrapT);
   if (!wrap_u || !wrap_v) return tl::unexpected<std::string>("has a wrap mode unknown to glTF");
   const auto magnify = filter_of(in.magFilter), minify = filter_of(in.minFilter);
-  // Magnification reads mip level 0 only, so its filter cannot name one between mip levels.
+  // Magnification only reads mip level 0, so that a filter between mip levels is not valid for it.
   const bool magnifies =
       in.magFilter == kNotGiven || mip_filter_of(in.magFilter) == MipFilter::kNone;
   if (!magnify || !minify || !magnifies) {

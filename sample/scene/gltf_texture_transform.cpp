@@ -9,7 +9,7 @@ using tinygltf::Value;
 
 constexpr const char* kExtension = "KHR_texture_transform";
 
-// A member of the extension, or null.
+// Returns a member of the extension KHR_texture_transform, or null.
 const Value* member(const tinygltf::ExtensionMap& extensions, const std::string& name) {
   const auto found = extensions.find(kExtension);
   if (found == extensions.end() || !found->second.IsObject()) return nullptr;
@@ -34,7 +34,8 @@ tl::expected<glm::mat3x2, std::string> texture_transform(const tinygltf::Extensi
   const glm::dvec2 scale = pair(member(extensions, "scale"), 1.0);
   const double rotation = number(member(extensions, "rotation"), 0.0);
   const double c = std::cos(rotation), s = std::sin(rotation);
-  // The columns are the images of the u axis, the v axis and the origin.
+  // The columns of the matrix are the transformed u axis, the transformed v axis and the
+  // transformed origin.
   const glm::mat3x2 out(c * scale.x, -s * scale.x, s * scale.y, c * scale.y, offset.x, offset.y);
   for (int column = 0; column < 3; ++column) {
     if (!std::isfinite(out[column].x) || !std::isfinite(out[column].y)) {

@@ -8,7 +8,7 @@
 
 namespace alcove::sample {
 
-// Choices about materials that a depth buffer cannot show as the file describes them.
+// How materials are drawn that a depth buffer cannot represent as the file describes them.
 struct MaterialTreatment {
   bool cut_blends =
       false;  // alpha-blended materials are cut out below an alpha of 0.5; otherwise opaque
@@ -17,7 +17,7 @@ struct MaterialTreatment {
 
 // Loads a scene by the name that the user typed: empty or `builtin`, an analytic scene (`plane:60`,
 // `groove:90`, `corner`, `sphere`, `pit`, `step`), or the path of a .gltf or .glb file. A scene
-// from a file has the cameras of the file only. Errors are one sentence that names the scene and
+// from a file has only the cameras of the file. Errors are one sentence that names the scene and
 // the remedy. The scene's warnings name each alpha-blended material.
 [[nodiscard]] tl::expected<Scene, std::string> load_scene(const std::string& what,
                                                           const MaterialTreatment& treatment = {},

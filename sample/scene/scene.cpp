@@ -6,7 +6,7 @@
 namespace alcove::sample {
 namespace {
 
-// A coordinate brought into 0..size-1.
+// Returns the texel index within 0..size-1 to which the wrap mode maps an index.
 uint32_t wrapped(int64_t texel, uint32_t size, Wrap wrap) {
   const auto count = static_cast<int64_t>(size);
   if (wrap == Wrap::kClamp) return static_cast<uint32_t>(std::clamp<int64_t>(texel, 0, count - 1));
@@ -77,7 +77,7 @@ glm::vec4 color_within(const Mesh& mesh, uint32_t triangle, float u, float v) {
 
 glm::vec2 texture_uv(const TextureUse& use, const MeshUvs& mesh_uvs) {
   const glm::vec2 uv = use.texture_from_mesh_uv * glm::vec3(mesh_uvs[use.uv_set], 1.0f);
-  // Large numbers may cancel as infinities.
+  // Very large coordinates can overflow to infinity, whose difference is NaN.
   return std::isfinite(uv.x) && std::isfinite(uv.y) ? uv : glm::vec2(0.0f);
 }
 
@@ -87,7 +87,8 @@ glm::vec4 sample_texture(const Scene& scene, const TextureUse& use, const MeshUv
   const Sampler& sampler = use.sampler;
   const bool nearest = sampler.magnify == Filter::kNearest;
   const glm::vec2 uv = texture_uv(use, mesh_uvs);
-  // Far out, a float holds no fraction of a texel; the bound keeps the cast below defined.
+  // The clamp keeps the cast below defined. At such coordinates a float has no fraction of a texel
+  // anyway.
   constexpr float kFar = 1e9f;
   const glm::vec2 at =
       glm::clamp(uv * glm::vec2(image.width, image.height) - (nearest ? 0.0f : 0.5f),

@@ -12,7 +12,7 @@
 namespace alcove::sample {
 
 // An 8-bit RGBA image, top row first. Base colour and emission are encoded as sRGB; roughness,
-// metal and normals are linear. The use in the material determines the encoding.
+// metal and normals are linear. The material's use of the image determines which encoding applies.
 struct TextureImage {
   std::string name;
   uint32_t width = 0;
@@ -35,7 +35,7 @@ struct Sampler {
   bool operator==(const Sampler&) const = default;
 };
 
-// The use of an image by a material. `image` indexes Scene::images; -1 is no image, which reads as
+// How a material uses an image. `image` indexes Scene::images; -1 is no image, which reads as
 // white.
 struct TextureUse {
   int32_t image = -1;
@@ -63,13 +63,13 @@ struct Material {
   TextureUse metal_roughness_texture;  // green: roughness, blue: metal
   glm::vec3 emissive{0.0f};            // >= 0
   TextureUse emissive_texture;
-  // In tangent space: x along u, y against v (up in the image), z along the normal. Without an
-  // image the normal of the mesh holds.
+  // A normal map in tangent space: x along u, y against v (up in the image), z along the normal.
+  // Without an image the mesh's normal is used.
   TextureUse normal_texture;
   float normal_scale = 1.0f;  // of x and y; -1e6..1e6
   AlphaMode alpha_mode = AlphaMode::kOpaque;
   float alpha_cutoff = 0.5f;  // for kMask: points with alpha >= cutoff are kept
-  // False: back faces are neither drawn nor hit by rays (glTF 2.0 section 3.9.6).
+  // If false, back faces are neither drawn nor hit by rays (glTF 2.0 section 3.9.6).
   bool double_sided = true;
 };
 
@@ -83,20 +83,22 @@ struct Mesh {
   std::vector<glm::vec3> normals;     // unit; if empty, each triangle has its geometric normal
   std::vector<glm::vec2> uvs;         // zero if empty
   std::vector<glm::vec2> second_uvs;  // zero if empty
-  // Tangents that the file has, unit or zero. The bitangent is w * cross(normal, tangent). If
-  // empty, corner_tangents() computes tangents from texture coordinates.
+  // Tangents from the file, unit or zero. The bitangent is w * cross(normal, tangent). If empty,
+  // corner_tangents() computes tangents from texture coordinates.
   std::vector<glm::vec4> tangents;
-  // Factors of the base colour: linear RGB and alpha, 8-bit unsigned normalised. White if empty.
+  // Vertex colours, by which the base colour is multiplied: linear RGB and alpha, 8-bit unsigned
+  // normalised. If empty, all are white.
   std::vector<glm::u8vec4> colors;
   std::vector<uint32_t> indices;  // 3 per triangle
   // The affine transform from mesh to world space of each instance. If empty, the mesh has one
   // instance with the identity.
   std::vector<glm::mat4x3> instances;
-  // The rasteriser transforms the mesh by GbufferView::world_from_moving. The ray tracer does not.
+  // Whether the rasteriser also transforms the mesh by GbufferView::world_from_moving. The ray
+  // tracer does not.
   bool moves = false;
 };
 
-// A scene as it is drawn and traced. A scene with meshes has at least one material.
+// A scene for the rasteriser and the ray tracer. A scene with meshes has at least one material.
 struct Scene {
   std::string name;
   std::vector<Mesh> meshes;
@@ -112,17 +114,17 @@ struct Scene {
   std::vector<std::string> warnings;  // one sentence for each part that is not drawn as stored
 };
 
-// The number of triangles of all meshes, counted once for each instance.
+// Returns the number of triangles of all meshes, counted once for each instance.
 [[nodiscard]] uint64_t triangle_count(const Scene& scene);
 
 // Returns the camera of a name, or the first for an empty name. Null if there is no such camera.
 [[nodiscard]] const Camera* find_camera(const Scene& scene, const std::string& name);
 
-// The radius in scene units that is used if the user gives none.
+// Returns the radius in scene units that is used if the user gives none.
 [[nodiscard]] float default_radius(const Scene& scene);
 
-// The transform of an instance, below instance_count(). The identity for a mesh without
-// `instances`.
+// Returns the transform of an instance, whose index is below instance_count(). It is the identity
+// for a mesh whose `instances` is empty.
 [[nodiscard]] glm::mat4x3 world_from_mesh(const Mesh& mesh, size_t instance);
 [[nodiscard]] inline size_t instance_count(const Mesh& mesh) {
   return mesh.instances.empty() ? 1 : mesh.instances.size();
@@ -131,16 +133,16 @@ struct Scene {
 // The texture coordinates at a point of a mesh, indexed by TextureUse::uv_set.
 using MeshUvs = std::array<glm::vec2, 2>;
 [[nodiscard]] MeshUvs uvs_at(const Mesh& mesh, uint32_t vertex);
-// The texture coordinates at the barycentric coordinates (1 - u - v, u, v) of a triangle.
+// Returns the texture coordinates at the barycentric coordinates (1 - u - v, u, v) of a triangle.
 [[nodiscard]] MeshUvs uvs_within(const Mesh& mesh, uint32_t triangle, float u, float v);
-// The vertex colour at the same barycentric coordinates, 0..1.
+// Returns the vertex colour at the barycentric coordinates (1 - u - v, u, v) of a triangle, 0..1.
 [[nodiscard]] glm::vec4 color_within(const Mesh& mesh, uint32_t triangle, float u, float v);
 
-// The coordinates in the image for the texture coordinates of the mesh. Finite.
+// Returns the coordinates in the image for the texture coordinates of the mesh. They are finite.
 [[nodiscard]] glm::vec2 texture_uv(const TextureUse& use, const MeshUvs& mesh_uvs);
 
-// The colour that the sampler reads from mip 0 for the texture coordinates of the mesh. 0..1 as
-// stored, without sRGB decoding.
+// Returns the colour that the sampler reads from mip 0 for the texture coordinates of the mesh:
+// 0..1 as stored, without sRGB decoding.
 [[nodiscard]] glm::vec4 sample_texture(const Scene& scene, const TextureUse& use,
                                        const MeshUvs& mesh_uvs);
 

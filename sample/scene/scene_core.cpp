@@ -17,8 +17,9 @@ uint64_t triangles_of(const std::vector<Mesh>& meshes, const MeshInstance& insta
   return meshes[instance.mesh].indices.size() / 3;
 }
 
-// Whether an instance is a plane or a shell around the smaller instances. These need an eighth of
-// its triangles at least: a large model does not surround a part of itself.
+// Returns whether an instance is flat or encloses all smaller instances. The smaller instances
+// together must have at least an eighth of its triangles, because otherwise a large model could
+// count as the surroundings of a part of itself.
 bool surrounds(const Bounds& bounds, uint64_t triangles, const Bounds& smaller,
                uint64_t triangles_of_smaller) {
   if (8 * triangles_of_smaller < triangles) return false;
@@ -30,8 +31,8 @@ bool surrounds(const Bounds& bounds, uint64_t triangles, const Bounds& smaller,
   return contains(bounds, smaller.low + slack) && contains(bounds, smaller.high - slack);
 }
 
-// The number of surroundings among instances that are sorted by size, the largest first. All of
-// them precede the core.
+// Returns the number of instances that are surroundings. The instances are sorted by size, the
+// largest first, so that all surroundings come before the core.
 size_t count_of_surroundings(const std::vector<Mesh>& meshes,
                              const std::vector<MeshInstance>& sorted) {
   const size_t count = sorted.size();
@@ -50,8 +51,8 @@ size_t count_of_surroundings(const std::vector<Mesh>& meshes,
   return surroundings;
 }
 
-// The smallest part that the core is made of: a triangle of a mesh that has one instance, or an
-// instance as a whole.
+// The smallest part that is left out or kept as a whole: a triangle of a mesh that has one
+// instance, or one of several instances.
 struct Unit {
   Bounds bounds_ws;
   uint64_t triangles;
@@ -82,7 +83,8 @@ struct Sample {
   double weight;
 };
 
-// For each axis, the range of centres without 0.5 % of the weight at either end.
+// Returns, for each axis, the range of the centres without the lowest and the highest 0.5 % of the
+// weight.
 Bounds quantile_bounds(std::vector<Sample>& samples) {
   constexpr double kShare = 0.005;
   double total = 0.0;
@@ -102,8 +104,9 @@ Bounds quantile_bounds(std::vector<Sample>& samples) {
   return out;
 }
 
-// The bounds of the units whose centres are in the central range of centres or at most its diagonal
-// away. `by_area`: units are weighted by area, otherwise by number of triangles.
+// Returns the bounds of the units whose centres are within the central range of all centres, or at
+// most the diagonal of that range away from it. If `by_area`, units are weighted by area, otherwise
+// by their number of triangles.
 SceneCore trimmed(const std::vector<Mesh>& meshes, std::span<const MeshInstance> instances,
                   bool by_area) {
   constexpr uint64_t kMostSamples = 1u << 16;

@@ -8,14 +8,15 @@
 namespace alcove::sample {
 namespace {
 
-// Outward normal of a profile's edge: its direction turned to the right.
+// Returns the outward normal of an edge of a profile: the edge's direction rotated to the right.
 glm::vec2 edge_normal(glm::vec2 from, glm::vec2 to) {
   const glm::vec2 along = to - from;
   const float length = glm::length(along);
   return length > 0.0f ? glm::vec2(along.y, -along.x) / length : glm::vec2(1.0f, 0.0f);
 }
 
-// Normals at the two ends of every edge of a profile, smooth across gentle bends.
+// Returns the normals at the two ends of every edge of a profile. They are smooth if adjacent edges
+// differ little in direction.
 std::vector<std::pair<glm::vec2, glm::vec2>> profile_normals(std::span<const glm::vec2> profile) {
   const float gentle = std::cos(glm::radians(40.0f));
   std::vector<glm::vec2> edges;
@@ -71,7 +72,7 @@ void SceneBuilder::triangle(glm::vec3 a, glm::vec3 b, glm::vec3 c) {
 void SceneBuilder::smooth_quad(const glm::vec3 (&positions)[4], const glm::vec3 (&normals)[4]) {
   const auto first = static_cast<uint32_t>(mesh().positions.size());
   for (int i = 0; i < 4; ++i) vertex(positions[i], normals[i]);
-  // At the pole of a lathe one of the halves has no area.
+  // At a pole of a lathe, one of the two triangles has no area and is left out.
   const auto emit = [&](uint32_t a, uint32_t b, uint32_t c) {
     const glm::dvec3 along(positions[b] - positions[a]), across(positions[c] - positions[a]);
     const double longest = std::max(glm::dot(along, along), glm::dot(across, across));

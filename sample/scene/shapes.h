@@ -29,8 +29,8 @@ class SceneBuilder {
   void lathe(std::span<const glm::vec2> profile, uint32_t sides);
   // Adds a sphere as a solid of revolution.
   void sphere(glm::vec3 centre, float radius, uint32_t rings, uint32_t sides);
-  // Adds a wall about the XY plane, from `low` to `high` in x and y and from -depth / 2 to depth /
-  // 2 in z. It has a semicircular opening of `radius` whose centre is in the middle of its lower
+  // Adds a wall in the XY plane, from `low` to `high` in x and y and from -depth / 2 to depth / 2
+  // in z. It has a semicircular opening of `radius`, whose centre is the middle of the wall's lower
   // edge.
   void arch(glm::vec2 low, glm::vec2 high, float radius, float depth, uint32_t segments);
   // Adds a bar with a square cross-section between two points.

@@ -12,15 +12,15 @@
 namespace alcove::sample {
 namespace {
 
-// How a triangle lies in the texture.
+// The orientation of a triangle in texture space.
 enum class Orientation : uint8_t {
-  kUnknown,  // it has no area there
+  kUnknown,  // its area in texture space is 0
   kFront,
-  kMirrored,  // the texture is seen from behind
+  kMirrored,  // the texture is mirrored on the triangle
 };
 
 struct FaceTangent {
-  glm::dvec3 along_u{0.0};  // unit; zero where the orientation is unknown
+  glm::dvec3 along_u{0.0};  // unit; zero if the orientation is unknown
   Orientation orientation = Orientation::kUnknown;
 };
 
@@ -30,7 +30,7 @@ FaceTangent face_tangent(const std::array<glm::dvec3, 3>& corners,
   const glm::dvec2 c = uvs[2] - uvs[0];
   const double area = b.x * c.y - b.y * c.x;
   if (!std::isfinite(area) || area == 0.0) return {};
-  // v grows downwards in an image, so a triangle that turns left there has a negative area.
+  // v increases downwards in an image, so that a counter-clockwise triangle has a negative area.
   const double sign = area < 0.0 ? -1.0 : 1.0;
   const glm::dvec3 u = (corners[1] - corners[0]) * c.y - (corners[2] - corners[0]) * b.y;
   return {direction_of(sign * u), area > 0.0 ? Orientation::kMirrored : Orientation::kFront};
@@ -40,7 +40,7 @@ glm::dvec3 in_plane(const glm::dvec3& v, const glm::dvec3& normal) {
   return direction_of(v - normal * glm::dot(normal, v));
 }
 
-// The values that corners must share to be one vertex of MikkTSpace.
+// The values that must be equal for corners to be the same vertex in MikkTSpace.
 struct CornerValues {
   glm::vec3 position;
   glm::vec3 normal;
@@ -62,8 +62,8 @@ struct CornerHash {
   }
 };
 
-// Tangents of the corners of a mesh by the rules of MikkTSpace (Mikkelsen 2008, "Simulation of
-// Wrinkled Surfaces Revisited", and the notes of its reference implementation).
+// Computes the tangents of the corners of a mesh by the rules of MikkTSpace (Mikkelsen 2008,
+// "Simulation of Wrinkled Surfaces Revisited", and the notes of its reference implementation).
 class TangentBuilder {
  public:
   TangentBuilder(const Mesh& mesh, const TextureUse& map) : mesh_(mesh) {
@@ -84,8 +84,10 @@ class TangentBuilder {
 
   const Mesh& mesh_;
   std::vector<FaceTangent> faces_;
-  std::vector<uint32_t> vertex_of_;  // by corner: alike for corners of equal values
-  std::vector<uint32_t> parent_;     // by corner: a forest, one tree for each group
+  // For each corner, its vertex: corners with equal values have the same vertex.
+  std::vector<uint32_t> vertex_of_;
+  // For each corner, its parent in a union-find forest: each tree is a group.
+  std::vector<uint32_t> parent_;
 };
 
 size_t next_corner(size_t corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
@@ -122,8 +124,9 @@ void TangentBuilder::join(size_t corner, size_t other) {
   parent_[group_of(corner)] = static_cast<uint32_t>(group_of(other));
 }
 
-// Corners at one vertex belong together where their triangles share an edge there and lie in the
-// texture alike. A triangle of unknown orientation follows the first of its neighbours.
+// Groups the corners of each vertex. Two corners are in one group if their triangles share an edge
+// at the vertex and have the same orientation in texture space. A triangle whose orientation is
+// unknown joins the first of its neighbours.
 void TangentBuilder::group_corners() {
   struct Edge {
     uint64_t key;  // from one vertex to another
@@ -150,7 +153,7 @@ void TangentBuilder::group_corners() {
         const bool alike = known ? here == there && here != Orientation::kUnknown
                                  : here == Orientation::kUnknown && there != here;
         if (!alike) continue;
-        // The edge runs the other way in the neighbour.
+        // In the neighbouring triangle the edge has the opposite direction.
         join(i, next_corner(edge->corner));
         join(next_corner(i), edge->corner);
         if (!known) break;

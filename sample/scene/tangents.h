@@ -6,9 +6,9 @@
 
 namespace alcove::sample {
 
-// The tangents of a mesh with normals for a normal map, one for each of its indices. xyz is the
-// direction in which the map's u grows, in the space of the mesh: unit, or zero if the texture
-// coordinates have no area. The bitangent is w * cross(normal, tangent).
+// Returns the tangents that a normal map needs, one for each index of a mesh with normals. xyz is
+// the direction in which the map's u increases, in the space of the mesh: unit, or zero if the
+// texture coordinates have no area. The bitangent is w * cross(normal, tangent).
 //
 // If the mesh has tangents, these are returned. Otherwise they follow the rules of MikkTSpace, as
 // glTF demands: corners with equal position, normal and texture coordinates are one vertex. Its
