@@ -149,8 +149,8 @@ void for_each_setting(Settings& settings, const Visit& visit) {
   visit(
       SettingInfo{
           .name = "estimator",
-          .help = "Assumption about the thickness of occluders: infinite (horizons), infinite with "
-                  "horizons that lower samples farther out pull down (heuristic), finite for each "
+          .help = "Assumption about the thickness of occluders: infinite (horizons), infinite but "
+                  "lower samples farther out pull the horizon down (heuristic), finite for each "
                   "sample (bitmask), or finite and without gaps between the samples of one surface "
                   "(connected).",
           .group = advanced},
