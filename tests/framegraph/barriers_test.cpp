@@ -36,7 +36,7 @@ TEST(Barriers, NoPlanWithFewerBarrierCommandsIsValid) {
       ++tried;
       EXPECT_FALSE(verify(graph.description(), {}, with_barriers_at(*plan, mask)))
           << "seed " << seed << ": " << used << " commands, but " << std::popcount(mask)
-          << " would do, before positions " << mask;
+          << " would be enough, before the positions of mask " << mask;
     }
   }
   EXPECT_GT(tried, 1000u);
@@ -191,7 +191,7 @@ TEST_F(InitialStates, HistoryIsMadeVisibleToItsNextReader) {
   declare(access::sampled_compute, access::sampled_fragment);
   const Plan plan = compiled();
   const PlannedPass& first = plan.passes[0];
-  ASSERT_EQ(first.batch_count, 1u) << "it was seen by compute alone";
+  ASSERT_EQ(first.batch_count, 1u) << "the last write was visible to compute shaders only";
   const Transition& seen = plan.transitions[plan.batches[first.first_batch].first];
   EXPECT_EQ(seen.src_stages, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
   EXPECT_EQ(seen.dst_stages, VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT);

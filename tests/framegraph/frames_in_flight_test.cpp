@@ -109,7 +109,7 @@ void declare(Graph& graph, std::uint32_t size) {
 // Two plans alternate. One ends with a write of the texture and the other with a read, so that each
 // frame finds the texture in another state than the one in which it leaves it. The validation
 // layers check both submissions.
-TEST_F(FramesInFlight, FramesOfDifferentPlansNeedNoWait) {
+TEST_F(FramesInFlight, HostNeedNotWaitBetweenFramesOfDifferentPlans) {
   Executor executor = make();
   const HostBuffer host = gpu_.make_host_buffer(4);
   Graph graph;

@@ -266,7 +266,7 @@ TEST_F(GraphHistory, DiscardedResizeOrResetDoesNotChangeTheHistory) {
 TEST_F(GraphHistory, DiscardedFrameOfAnotherSizeMustBeDeclaredAgain) {
   run({.value = 1});
   run({.value = 2, .discarded = true});
-  EXPECT_TRUE(gpu_.run(*executor_, *graph_)) << "all is as it was declared";
+  EXPECT_TRUE(gpu_.run(*executor_, *graph_)) << "the frame needs no new declaration";
   run({.value = 3, .size = 16, .discarded = true});
   const auto report = gpu_.record(*executor_, *graph_);
   ASSERT_FALSE(report);
@@ -358,7 +358,7 @@ TEST_F(GraphHistory, GraphMovedToANewExecutorStartsWithoutHistoryContents) {
   EXPECT_NE(refused.error()[0].message.find("another executor"), std::string::npos);
   *executor_ = std::move(*second);
   run({3});
-  EXPECT_EQ(slot(1), 0xffffu) << "what the first executor held was taken for valid";
+  EXPECT_EQ(slot(1), 0xffffu) << "the history of the first executor must not be valid";
   run({4});
   EXPECT_EQ(slot(1), 3u);
 }

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kMebibyte = 1 << 20;
 
-TEST(Place, EstimateMatchesTheTexelSizeOfTheFormat) {
+TEST(Place, EstimatedSizeOfATextureMatchesItsFormat) {
   struct Case {
     VkFormat format;
     VkDeviceSize bytes;  // per texel

@@ -40,7 +40,7 @@ TEST_F(Print, TextLinesFitAScreen) {
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 120u) << line;
 }
 
-TEST_F(Print, DotHasANodeForEachPass) {
+TEST_F(Print, GraphvizTextHasANodeForEachPass) {
   const std::string dot = print_dot(graph_.description(), plan_);
   for (std::size_t i = 0; i < graph_.description().passes.size(); ++i)
     EXPECT_THAT(dot, HasSubstr(std::string("p").append(std::to_string(i)).append(" [label=")));

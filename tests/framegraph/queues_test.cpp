@@ -56,7 +56,8 @@ TEST_F(Queues, WaitsThatFollowFromOtherWaitsAreLeftOut) {
   const Plan plan = compiled();
   ASSERT_EQ(plan.submissions.size(), 3u);
   ASSERT_EQ(plan.submissions[2].wait_count, 1u);
-  EXPECT_EQ(plan.waits[plan.submissions[2].first_wait].submission, 1u) << "not for a as well";
+  EXPECT_EQ(plan.waits[plan.submissions[2].first_wait].submission, 1u)
+      << "the wait for b implies the wait for a";
 }
 
 TEST_F(Queues, GraphicsQueueWaitsOnlyForTheLastPassOfAChainAtTheEnd) {
@@ -106,7 +107,8 @@ TEST_F(Queues, HistoryOfAnotherQueueCanBeUsedInAFrameWithGraphicsOnly) {
   const Plan plan = compiled();
   ASSERT_FALSE(plan.submissions.empty());
   EXPECT_EQ(plan.submissions[0].queue, QueueClass::compute);
-  EXPECT_EQ(plan.submissions[0].batch_count, 1u) << "the release";
+  EXPECT_EQ(plan.submissions[0].batch_count, 1u)
+      << "the release must be in a submission of the compute queue";
 }
 
 // A part of the history is not used by any pass of the frame. The queue that owns it releases it in

@@ -148,7 +148,7 @@ TEST_F(Scenario, MipChainInManyPassesReadsEachMipAfterItsWrite) {
   EXPECT_LE(transitions_before(result, 5), 2u);
 }
 
-TEST_F(Scenario, MipChainInOnePassIsOneWriteOfAllMips) {
+TEST_F(Scenario, MipChainInOnePassIsDeclaredAsOneWriteOfAllMips) {
   TextureDesc desc = kColor;
   desc.mips = 5;
   Texture chain = graph_.create_texture("chain", desc);
@@ -226,7 +226,8 @@ TEST_F(Scenario, AccelerationStructureIsBuiltAndTraced) {
   for (std::uint32_t b = 0; b < result.batches.size(); ++b) {
     Plan wrong = result;
     wrong.batches[b].count = 0;
-    EXPECT_FALSE(verify(graph_.description(), {}, wrong)) << "without the barriers " << b;
+    EXPECT_FALSE(verify(graph_.description(), {}, wrong))
+        << "accepted without batch of barriers " << b;
   }
 }
 
@@ -269,7 +270,7 @@ TEST_F(Scenario, WritingTheStencilLeavesTheDepthReadable) {
     if (result.transitions[t].range.aspects == 0) continue;
     Plan wrong = result;
     wrong.transitions[t].range.aspects ^= VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT;
-    EXPECT_FALSE(verify(graph_.description(), {}, wrong)) << "the other aspect";
+    EXPECT_FALSE(verify(graph_.description(), {}, wrong)) << "accepted with the other aspect";
   }
 }
 

@@ -114,7 +114,7 @@ TEST_F(Scenario, MultisampledColorIsResolvedInItsPass) {
 
 // The second pass must load the contents that the first one stored. A pass that discards must not
 // load.
-TEST_F(Scenario, AttachmentsAreLoadedAndStoredWhereContentsAreNeeded) {
+TEST_F(Scenario, AttachmentsAreLoadedAndStoredOnlyIfContentsAreNeeded) {
   begin();
   Texture color = texture("color");
   Texture depth = texture("depth", VK_FORMAT_D32_SFLOAT);

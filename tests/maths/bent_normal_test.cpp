@@ -30,7 +30,7 @@ TEST(BentNormal, ArcAgreesWithQuadratureForEveryNormalAndHorizon) {
   EXPECT_LT(worst, 1e-6);
 }
 
-TEST(BentNormal, ClosedFormEqualsThePapersFormulaInAngles) {
+TEST(BentNormal, ClosedFormEqualsTheFormulaOfThePaper) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
     const double g = random.uniform(-1.5f, 1.5f);

@@ -65,7 +65,7 @@ TEST(Slice, ZeroAndDenormalNormalsGiveFiniteResults) {
   }
 }
 
-TEST(Slice, NormalsThatFaceAwayAreFlippedBeyondTheThresholdAndClampedBelowIt) {
+TEST(Slice, NormalsFacingAwayAreFlippedOrMadePerpendicularToTheView) {
   RandomInput random;
   for (int i = 0; i < 1000; ++i) {
     const vec3 view = random.unit_vector(), normal = random.unit_vector();
@@ -124,7 +124,7 @@ TEST(Gtao, HorizonsOutOfRangeAreClamped) {
   EXPECT_EQ(maths::slice_visibility(s, -9.0f, -9.0f), maths::slice_visibility(s, -1.0f, -1.0f));
 }
 
-TEST(Gtao, UnoccludedArcEqualsVisibilityWithoutOccluders) {
+TEST(Gtao, OpenSliceEqualsVisibilityUpToTheTangentPlane) {
   for (double gamma = -kPi / 2; gamma <= kPi / 2; gamma += 0.01) {
     const Slice s = slice_of(0.8, gamma);
     EXPECT_NEAR(maths::open_slice(s), SliceTruth(s).open(), 5e-5);

@@ -245,7 +245,7 @@ TEST(LobeSlice, MirrorLobeIsVisibleIfTheHorizonIsBelowItsDirection) {
 }
 
 // The sectors beyond the horizon, rounded to the nearest boundary, are occluded.
-TEST(LobeSlice, SectorsBelowAHorizonHaveTheLobeOfThatHorizon) {
+TEST(LobeSlice, SectorsOccludedBelowAHorizonLeaveTheLobeUpToThatHorizon) {
   RandomInput random;
   for (const float roughness : kRoughnesses) {
     Error error;

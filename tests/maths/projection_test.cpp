@@ -168,7 +168,7 @@ TEST(Projection, NearAndFarPlanesEqualThoseOfTheFrustum) {
   }
 }
 
-TEST(Projection, SkyAndInvalidDepthsAreTheSky) {
+TEST(Projection, FarPlaneAndInvalidDepthsAreTheSky) {
   for (const bool infinite : {false, true}) {
     for (const bool perspective : {false, true}) {
       Frustum f;
@@ -192,7 +192,7 @@ TEST(Projection, SkyAndInvalidDepthsAreTheSky) {
   }
 }
 
-TEST(Projection, EveryOtherDepthIsFiniteAndNoNearerThanTheNearPlane) {
+TEST(Projection, DepthsOfSurfacesAreFiniteAndNotNearerThanTheNearPlane) {
   RandomInput random;
   for (int i = 0; i < 500; ++i) {
     const Frustum f = random_frustum(random);

@@ -24,7 +24,7 @@ float largest_gap(std::vector<float> values) {
   return gap;
 }
 
-TEST(SpatialPattern, FourByFourPixelsHaveSixteenDirectionsAndFourOffsets) {
+TEST(PaperPattern, FourByFourPixelsHaveSixteenDirectionsAndFourOffsets) {
   for (unsigned frame = 0; frame < 24; ++frame) {
     std::set<float> directions, offsets;
     for (unsigned y = 0; y < 4; ++y) {
@@ -43,7 +43,7 @@ TEST(SpatialPattern, FourByFourPixelsHaveSixteenDirectionsAndFourOffsets) {
   }
 }
 
-TEST(SpatialPattern, FourByFourPixelsHaveNinetySixDirectionsInSixFrames) {
+TEST(PaperPattern, FourByFourPixelsHaveNinetySixDirectionsInSixFrames) {
   std::set<int> directions;
   for (unsigned frame = 0; frame < 6; ++frame)
     for (unsigned y = 0; y < 4; ++y)
@@ -53,7 +53,7 @@ TEST(SpatialPattern, FourByFourPixelsHaveNinetySixDirectionsInSixFrames) {
   EXPECT_EQ(directions.size(), 96u);
 }
 
-TEST(SpatialPattern, SixDirectionsOfAPixelAreSpreadOverHalfATurn) {
+TEST(PaperPattern, SixDirectionsOfAPixelAreSpreadOverHalfATurn) {
   for (unsigned pixel = 0; pixel < 16; ++pixel) {
     std::vector<float> directions;
     for (unsigned frame = 0; frame < 6; ++frame)
@@ -66,7 +66,7 @@ TEST(SpatialPattern, SixDirectionsOfAPixelAreSpreadOverHalfATurn) {
   }
 }
 
-TEST(SpatialPattern, RepeatsEveryFourPixelsAndTwentyFourFrames) {
+TEST(PaperPattern, RepeatsEveryFourPixelsAndTwentyFourFrames) {
   const SliceNoise a = maths::paper_pattern(uvec2(5, 6), 7);
   const SliceNoise b = maths::paper_pattern(uvec2(1, 2), 31);
   EXPECT_EQ(a.direction, b.direction);

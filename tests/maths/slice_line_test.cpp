@@ -77,7 +77,8 @@ TEST(SliceLine, SampleOnTheLineHasTheCoordinatesOfItsSurfacePoint) {
     const float offset = random.uniform(-60.0f, 60.0f);
     const float depth = s.depth * random.uniform(0.5f, 2.0f);
     const vec3 delta = s.delta(s.line.direction_px * offset, depth);
-    ASSERT_NEAR(dot(delta, cross(s.view, s.direction)), 0.0f, 1e-4f * s.depth) << "the premise";
+    ASSERT_NEAR(dot(delta, cross(s.view, s.direction)), 0.0f, 1e-4f * s.depth)
+        << "the point must lie in the plane of the slice";
     const vec2 point = s.point(offset, depth);
     EXPECT_NEAR(point.x, dot(delta, s.direction), 3e-4f * s.depth);
     EXPECT_NEAR(point.y, dot(delta, s.view), 3e-4f * s.depth);
@@ -230,7 +231,7 @@ TEST(ConnectedSamples, SamplesAreConnectedAlongPlanesAndAcrossCreasesButNotOverG
 TEST(ConnectedSamples, HiddenSamplesAreConnectedAlongPlanesOnly) {
   EXPECT_TRUE(maths::hidden_samples_join(kNone, kNone)) << "a plane";
   EXPECT_TRUE(maths::hidden_samples_join(kNone, kConcave)) << "a plane that ends";
-  EXPECT_TRUE(maths::hidden_samples_join(kConvex, kNone)) << "and one that begins";
+  EXPECT_TRUE(maths::hidden_samples_join(kConvex, kNone)) << "a plane that begins";
   EXPECT_FALSE(maths::hidden_samples_join(kConvex, kConvex)) << "fragments of several surfaces";
   EXPECT_FALSE(maths::hidden_samples_join(kConvex, kConcave)) << "one surface in front of another";
 }
@@ -281,13 +282,13 @@ TEST(ConnectedSamples, OnlyLargeChangesOfSlopeAreDiscontinuities) {
 }
 
 TEST(ConnectedSamples, ExtrapolatedPlanesStayInFrontOfTheEye) {
-  EXPECT_EQ(maths::extrapolated_way(0.5f, 0.25f, 8.0f, true), 8.0f) << "it comes nearer";
+  EXPECT_EQ(maths::extrapolated_way(0.5f, 0.25f, 8.0f, true), 8.0f) << "the plane comes nearer";
   EXPECT_EQ(maths::extrapolated_way(0.5f, -0.03125f, 8.0f, true), 8.0f);
   EXPECT_FLOAT_EQ(maths::extrapolated_way(0.5f, -0.25f, 8.0f, true), 1.8f);
   EXPECT_EQ(maths::extrapolated_way(0.5f, -0.25f, 8.0f, false), 8.0f) << "orthographic";
 }
 
-TEST(TangentPlane, NormalIsRecoveredFromTheGradient) {
+TEST(TangentPlane, NormalIsRecoveredFromTheGradientOfInverseDepth) {
   RandomInput random;
   for (int i = 0; i < 5000; ++i) {
     const bool perspective = i % 2 == 0;

@@ -100,7 +100,7 @@ TEST(RawOcclusion, PackingKeepsBentNormalResidualsWithinTenBits) {
     const vec3 apart = glm::abs(round_trip(residual) - residual);
     EXPECT_LT(std::max({apart.x, apart.y, apart.z}), 0.0014f);
   }
-  EXPECT_EQ(round_trip(vec3(0)), vec3(0)) << "open surfaces stay exactly so";
+  EXPECT_EQ(round_trip(vec3(0)), vec3(0)) << "unoccluded surfaces must stay exactly unoccluded";
   const float largest = round_trip(vec3(9)).x;
   EXPECT_FLOAT_EQ(largest, maths::kLargestResidual) << "clamped";
   EXPECT_EQ(round_trip(vec3(-9)), -vec3(largest));

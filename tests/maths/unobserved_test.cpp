@@ -101,7 +101,7 @@ TEST(Unobserved, ExcludedPartEqualsTheQuadratureOfTheExcludedFraction) {
   EXPECT_LT(sum_uniform / kCases, 2e-8);
 }
 
-TEST(Unobserved, UnobservedLobeIsTheExcludedShareOfTheLobeInTheArc) {
+TEST(Unobserved, ExcludedLobeIsTheShareOfTheLobeInTheUnobservedArc) {
   RandomInput random;
   for (int i = 0; i < 5000; ++i) {
     const Case c(random);
@@ -115,7 +115,7 @@ TEST(Unobserved, UnobservedLobeIsTheExcludedShareOfTheLobeInTheArc) {
   }
 }
 
-TEST(Unobserved, FullyObservedHalfSliceCountsCompletely) {
+TEST(Unobserved, NothingIsExcludedFromAFullyObservedHalfSlice) {
   RandomInput random;
   for (int i = 0; i < 1000; ++i) {
     Case c(random);
@@ -131,7 +131,7 @@ TEST(Unobserved, FullyObservedHalfSliceCountsCompletely) {
 TEST(Unobserved, ManyNarrowRunsExcludeNoMoreThanOneRun) {
   Unobserved row = maths::add_column(maths::nothing_unobserved(), true, 4.0f, 1.0f);
   row = maths::add_column(row, true, 6.0f, 3.0f);
-  EXPECT_EQ(maths::mean_row(row).width_px, 4.0f) << "columns side by side are one row";
+  EXPECT_EQ(maths::mean_row(row).width_px, 4.0f) << "adjacent columns are one row";
   Unobserved leaves = row;
   for (int i = 1; i < 5; ++i) {
     leaves = maths::add_column(leaves, false, 10.0f * float(i), 5.0f);

@@ -115,7 +115,7 @@ TEST(VisibilityBitmask, ExclusiveOrOfTwoMasksHasTheSectorsBetweenThem) {
   }
 }
 
-TEST(VisibilityBitmask, TheHighestBitRepeatsTheLastOf31Sectors) {
+TEST(VisibilityBitmask, HighestBitRepeatsTheLastOf31Sectors) {
   EXPECT_EQ(maths::repeat_last_sector(1u << 30), 3u << 30);
   EXPECT_EQ(maths::repeat_last_sector(1u << 29), 1u << 29);
 }
@@ -147,7 +147,7 @@ Expected expected_part(const Slice& s, float side, std::uint32_t occluded,
   return sum;
 }
 
-TEST(VisibilityBitmask, VisiblePartsEqualTheIntegralOverTheVisibleSectors) {
+TEST(VisibilityBitmask, VisiblePartEqualsTheIntegralOverTheVisibleSectors) {
   RandomInput random;
   double worst_arc = 0.0, worst_bent = 0.0;
   for (int i = 0; i < 1500; ++i) {
@@ -166,7 +166,7 @@ TEST(VisibilityBitmask, VisiblePartsEqualTheIntegralOverTheVisibleSectors) {
   EXPECT_LT(worst_bent, 1e-5);
 }
 
-TEST(VisibilityBitmask, UniformPartsEqualTheSolidAngleOfTheVisibleSectors) {
+TEST(VisibilityBitmask, UniformVisiblePartEqualsTheSolidAngleOfTheVisibleSectors) {
   RandomInput random;
   for (int i = 0; i < 1500; ++i) {
     const Slice s = random_slice(random);
@@ -211,7 +211,7 @@ TEST(VisibilityBitmask, HiddenOcclusionOneGivesTheVisibilityUpToTheHorizon) {
   }
 }
 
-TEST(VisibilityBitmask, HiddenOcclusionGrowsWithTheWidthOfOccludersAndItsMeanIsTheSetting) {
+TEST(VisibilityBitmask, HiddenOcclusionGrowsWithOccluderWidthAndHasTheSettingAsMean) {
   for (const float hidden_occlusion : {0.1f, 0.35f, 0.5f, 0.9f}) {
     const float exponent = maths::hidden_exponent(hidden_occlusion);
     constexpr int kSteps = 4000;
@@ -245,12 +245,13 @@ TEST(VisibilityBitmask, NormalPerpendicularToTheSliceGivesZeroParts) {
 }
 
 TEST(VisibilityBitmask, VisibleShareIsTheFractionOfSectorsBeyondTheFirstOccluder) {
-  EXPECT_EQ(maths::visible_share_beyond(0u), 0.0f) << "nothing lies beyond an occluder";
+  EXPECT_EQ(maths::visible_share_beyond(0u), 0.0f) << "there is no occluder";
   EXPECT_EQ(maths::visible_share_beyond(0xffffffffu), 0.0f) << "everything is occluded";
   EXPECT_FLOAT_EQ(maths::visible_share_beyond(1u), 30.0f / 31.0f);
-  EXPECT_FLOAT_EQ(maths::visible_share_beyond(1u << 30u), 0.0f) << "the last sector";
+  EXPECT_FLOAT_EQ(maths::visible_share_beyond(1u << 30u), 0.0f)
+      << "only the last sector is occluded";
   EXPECT_FLOAT_EQ(maths::visible_share_beyond(0x80000001u), 30.0f / 31.0f)
-      << "the highest bit is no sector";
+      << "the highest bit is not a sector";
   EXPECT_FLOAT_EQ(maths::visible_share_beyond((1u << 27u) | (1u << 29u)), 0.5f);
 }
 

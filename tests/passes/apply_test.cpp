@@ -146,9 +146,10 @@ TEST_F(ApplyPass, ReflectanceTableIsCreatedOnlyWithAnEnvironmentMap) {
   EXPECT_EQ(kernels.table_bytes(), 4u * maths::kReflectanceTable * maths::kReflectanceTable);
   const std::size_t pipelines = kernels.pipeline_count();
   (void)transients(true, {.roughness = 0.2f});
-  EXPECT_EQ(kernels.pipeline_count(), pipelines) << "numbers make no new pipeline";
+  EXPECT_EQ(kernels.pipeline_count(), pipelines) << "a changed number needs no new pipeline";
   (void)transients(true, {.roughness_channel = 1, .metallic_channel = 2});
-  EXPECT_EQ(kernels.pipeline_count(), pipelines) << "nor do channels of no texture";
+  EXPECT_EQ(kernels.pipeline_count(), pipelines)
+      << "a channel without a texture needs no new pipeline";
 }
 
 // A frame from depth to lit surfaces without specular light: it must have no bent normal, no

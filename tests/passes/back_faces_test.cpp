@@ -52,8 +52,10 @@ TEST_F(BackFaces, SlabAboveAFloorMatchesTheClosedForm) {
     const OcclusionSettings settings = exact(estimator, 8.0f);
     const double error = mean_error(settings);
     EXPECT_LT(error, 0.02);
-    EXPECT_LT(4.5 * error, mean_error(of_thickness(settings, 0.15f))) << "far thicker than it is";
-    EXPECT_LT(2.0 * error, mean_error(of_thickness(settings, 1e-3f))) << "far thinner";
+    EXPECT_LT(4.5 * error, mean_error(of_thickness(settings, 0.15f)))
+        << "with a setting far above the actual thickness";
+    EXPECT_LT(2.0 * error, mean_error(of_thickness(settings, 1e-3f)))
+        << "with a setting far below it";
   }
 }
 

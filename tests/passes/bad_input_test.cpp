@@ -167,7 +167,7 @@ TEST_F(BadInput, InvalidProjectionIsReported) {
   expect_a_good_frame();
 }
 
-TEST_F(BadInput, ViewWithScaleIsReported) {
+TEST_F(BadInput, ViewMatrixThatScalesIsReported) {
   for (const float bad : {0.0f, 2.0f, kNaN, kInfinity}) {
     const std::string said =
         error_of([&](View& view, OcclusionSettings&) { view.view_from_world[5] = bad; });

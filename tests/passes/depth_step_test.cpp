@@ -85,7 +85,7 @@ TEST_F(DepthStep, FlatGroundIsUnoccludedWithFloatDepthThatIsNotReversed) {
   }
 }
 
-TEST_F(DepthStep, FloorFiftyUnitsAwayIsUnoccludedInSixteenBits) {
+TEST_F(DepthStep, FloorFiftyUnitsAwayIsUnoccludedWith16BitDepth) {
   const TestView view = perspective_view("", 1.2, 1.8, 0.1, 1000.0, false);
   const Drawing drawing = with_fixed_point_depth(
       draw(view, kWidth, kHeight, {plane({0.0, 0.0, -50.0}, {0.0, 0.8, 0.6})}), 65535.0);
@@ -105,7 +105,7 @@ TEST_F(DepthStep, FloorIsUnoccludedInAnOrthographicViewWithReversedDepth) {
 }
 
 // The tolerance must not remove occlusion that the depth buffer resolves.
-TEST_F(DepthStep, GrooveOfManyDepthStepsKeepsItsOcclusion) {
+TEST_F(DepthStep, GrooveDeeperThanManyDepthStepsKeepsItsOcclusion) {
   const TestView view = perspective_view("", 1.2, 1.8, 0.1, 100.0, false);
   const Drawing exact = draw(view, kWidth, kHeight, groove(0.8));
   const OcclusionSettings settings = quality_settings(Quality::high, 0.5f);

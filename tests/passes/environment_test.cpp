@@ -91,7 +91,8 @@ TEST_F(EnvironmentPass, HarmonicsAgreeWithQuadrature) {
   for (std::uint32_t i = 0; i < maths::kHarmonics; ++i) {
     vec3 wanted(0);
     over_sphere([&](vec3 d, float angle) { wanted += sky(d) * (maths::harmonic(i, d) * angle); });
-    EXPECT_LT(distance(rgb(result(), i, 0), wanted), 0.02f) << i << ", of up to 8";
+    EXPECT_LT(distance(rgb(result(), i, 0), wanted), 0.02f)
+        << i << "th coefficient; the largest is about 8";
   }
 }
 
@@ -124,7 +125,7 @@ TEST_F(EnvironmentPass, MipLevelsAgreeWithQuadratureOfTheLobe) {
     std::cout << "roughness " << roughness << ": relative RMSE " << relative << ", worst " << worst
               << "\n";
     EXPECT_LT(relative, 0.06) << roughness;
-    EXPECT_LT(worst, 1.0) << roughness << ", of up to 25";
+    EXPECT_LT(worst, 1.0) << roughness << ": radiance is at most about 25";
   }
 }
 

@@ -321,7 +321,7 @@ TEST_F(Extremes, PlaneIsUnoccludedAtTheNarrowestAndWidestFieldOfView) {
   }
 }
 
-TEST_F(Extremes, SizeMayChangeToOnePixelAndBack) {
+TEST_F(Extremes, ImageSizeMayChangeToOnePixelAndBack) {
   constexpr VkExtent2D kLargest{64, 48};
   constexpr std::array<VkExtent2D, 9> kSizes{
       {{1, 1}, {64, 48}, {1, 1}, {1, 48}, {64, 1}, {3, 5}, {2, 2}, {63, 47}, {1, 1}}};

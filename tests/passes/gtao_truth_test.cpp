@@ -200,7 +200,7 @@ TEST_F(GtaoTruth, FalloffFadesOccludersTowardsTheRadius) {
     const double mean = mean_of(faded);
     EXPECT_GT(mean, before + 0.01) << falloff;
     before = mean;
-    EXPECT_LT(faded.at(30, 20), 0.85f) << "what is near occludes still";
+    EXPECT_LT(faded.at(30, 20), 0.85f) << "near occluders must still occlude";
   }
 }
 

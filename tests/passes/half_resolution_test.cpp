@@ -89,7 +89,7 @@ TEST_F(HalfResolution, ConstantOcclusionStaysConstantAtOddSizes) {
 
 // A near wall covers the left half of a far wall; each has its own visibility. The edge lies in an
 // odd column, and so within texels of 2x2 pixels.
-TEST_F(HalfResolution, VisibilityDoesNotBleedAcrossADepthEdge) {
+TEST_F(HalfResolution, UpsampledVisibilityDoesNotLeakAcrossADepthEdge) {
   const TestView view = test_views()[2];
   Surface near_wall = plane({0.0, 0.0, -3.0}, {0.0, 0.0, 1.0});
   near_wall.keep = [](const glm::dvec3& p) { return p.x < 0.05; };
@@ -149,7 +149,7 @@ TEST_F(HalfResolution, TexelsBeyondASmallerImageAreNotRead) {
   EXPECT_THAT(found.texels, testing::Each(testing::FloatNear(0.9f, kRounding)));
 }
 
-TEST_F(HalfResolution, BentNormalsAndSpecularOcclusionFollowFullResolutionOnAPlane) {
+TEST_F(HalfResolution, BentNormalsAndSpecularOcclusionMatchFullResolutionOnAPlane) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, 33, 23, {tilted_plane(40.0, 4.0)});
   OcclusionSettings settings = quality_settings(Quality::medium, 0.5f);

@@ -123,7 +123,7 @@ TEST_F(Normals, SkyFacesTheEyeAndDoesNotAffectItsNeighbours) {
 TEST_F(Normals, StripTwoPixelsWideGetsItsOwnNormal) {
   for (const TestView& view : test_views()) {
     for (const double n_dot_v : {-0.5, 0.5}) {
-      SCOPED_TRACE(testing::Message() << view.name << " slanted " << n_dot_v);
+      SCOPED_TRACE(testing::Message() << view.name << ", n.v " << n_dot_v);
       const Drawing wide = draw(view, 40, 30, {plane({0.0, 0.0, -3.0}, {n_dot_v, 0.1, 1.0})});
       Surface strip = wide.scene[0];
       strip.keep = [&](const glm::dvec3& position) {

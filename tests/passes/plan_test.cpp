@@ -102,7 +102,8 @@ TEST_F(OcclusionPlan, NormalsPassRunsOnlyWithoutGivenNormals) {
   const Kept made = kept(least(), {}, {.normals = false});
   EXPECT_THAT(made.passes, Contains("normals"));
   EXPECT_THAT(made.transients, Contains("normals from depth"));
-  EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines + 2) << "they and linear depth";
+  EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines + 2)
+      << "the pipelines of normals and linear depth";
 }
 
 TEST_F(OcclusionPlan, BentNormalsAndHistoryCostNothingWhenOff) {
@@ -141,7 +142,7 @@ TEST_F(OcclusionPlan, BackFaceDepthCostsNothingUnlessTheThicknessUnitNeedsIt) {
   EXPECT_EQ(unread.bytes, horizons.bytes);
   settings.advanced.thickness_unit = ThicknessUnit::distance;
   (void)kept(settings);
-  EXPECT_EQ(gpu().kernels().pipeline_count(), 2u) << "those of the first";
+  EXPECT_EQ(gpu().kernels().pipeline_count(), 2u) << "no pipeline beyond those of the first frame";
 
   settings.advanced.estimator = Estimator::connected;
   settings.advanced.thickness_unit = ThicknessUnit::radius;
@@ -187,7 +188,8 @@ TEST_F(OcclusionPlan, SecondLayerCostsNothingWhenItIsNotSearched) {
   OcclusionSettings settings = least();
   settings.depth_layers = 2;
   const Kept unread = kept(settings);
-  EXPECT_EQ(unread.passes, horizons.passes) << "what is hidden lies within infinite thickness";
+  EXPECT_EQ(unread.passes, horizons.passes)
+      << "infinitely thick occluders already cover hidden surfaces";
   EXPECT_EQ(unread.bytes, horizons.bytes);
 
   settings.advanced.estimator = Estimator::connected;
@@ -249,7 +251,7 @@ TEST_F(OcclusionPlan, LinearDepthPassRunsOnlyWhenItsResultIsRead) {
   const std::size_t pipelines = gpu().kernels().pipeline_count();
   OcclusionSettings asked = least();
   asked.linear_depth = true;
-  EXPECT_EQ(kept(asked).passes, without.passes) << "where nobody reads it";
+  EXPECT_EQ(kept(asked).passes, without.passes) << "if nobody reads linear depth, no pass is added";
   EXPECT_THAT(kept(asked, {.linear_depth = true}).passes, Contains("linear depth"));
   EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines + 1);
   OcclusionSettings by_model = least();

@@ -80,8 +80,8 @@ TEST_F(Reconstruct, PixelsWithoutHistoryAverageTheTracedPixelsAroundThem) {
     for (const std::uint32_t reach : {1u, 2u, 3u}) {
       for (const std::uint32_t index : {0u, 1u, 2u, 7u}) {
         for (const std::uint32_t history : {0u, 16u}) {
-          SCOPED_TRACE(testing::Message() << "by " << tile_size << ", reach " << reach << ", frame "
-                                          << index << ", history " << history);
+          SCOPED_TRACE(testing::Message() << "by " << tile_size << ", filter radius " << reach
+                                          << ", frame " << index << ", history " << history);
           const HostImage found = reconstruct({.view = view.view,
                                                .drawing = drawing,
                                                .raw_occlusion = raw_occlusion,
@@ -119,7 +119,7 @@ TEST_F(Reconstruct, ConstantOcclusionStaysConstantInAnySceneAtAnyResolution) {
           constant_raw_occlusion(blocks(33, tile_size), blocks(23, tile_size), 0.37f);
       for (const std::uint32_t reach : {0u, 1u, 2u, 3u}) {
         for (const std::uint32_t history : {0u, 16u}) {
-          SCOPED_TRACE(testing::Message() << scene.name << " by " << tile_size << ", reach "
+          SCOPED_TRACE(testing::Message() << scene.name << " by " << tile_size << ", filter radius "
                                           << reach << ", history " << history);
           for (std::uint32_t frame = 0; frame < (history == 0 ? 1u : 4u); ++frame) {
             const HostImage found = reconstruct({.view = view.view,
@@ -173,7 +173,7 @@ TEST_F(Reconstruct, FilterNarrowsWithMoreSlices) {
     EXPECT_GT(variance(found), 1.1 * kept) << slices << " slices";
     kept = variance(found);
   }
-  EXPECT_LT(kept, 0.04) << "of the stripes' own variance";
+  EXPECT_LT(kept, 0.04) << "no more than the variance of the unfiltered stripes";
 }
 
 // A pixel without history is also averaged with neighbours on the other side of a crease, which are
@@ -209,10 +209,10 @@ TEST_F(Reconstruct, LeakAcrossACreaseDecreasesWithSlicesAndFrames) {
     return leak(found);
   };
   const double first = after(1, 1);
-  EXPECT_GT(first, 1.0) << "of all pixels";
+  EXPECT_GT(first, 1.0) << "sum over all pixels";
   EXPECT_LT(after(4, 1), 0.35 * first);
-  // Dithering of the stored visibilities causes 0.16 of this, a mean error of 3e-4.
-  // pixels.
+  // Dithering of the stored visibilities alone adds 0.16 to the sum over all pixels, which is 3e-4
+  // per pixel. pixels.
   EXPECT_LT(after(1, 48), 0.2 * first);
 }
 
@@ -234,7 +234,7 @@ TEST_F(Reconstruct, NeighboursWithOtherNormalsGetSmallerWeights) {
   };
   EXPECT_GT(leak(0.0), 0.1);
   EXPECT_LT(leak(60.0), 0.5 * leak(0.0));
-  EXPECT_GT(leak(60.0), 0.05 * leak(0.0)) << "what else is there to know";
+  EXPECT_GT(leak(60.0), 0.05 * leak(0.0)) << "neighbours with other normals must keep some weight";
 }
 
 TEST_F(Reconstruct, VisibilityDoesNotLeakAcrossADepthEdge) {

@@ -51,7 +51,7 @@ TEST_F(SecondLayer, StepUnderAPlateMatchesTheClosedForm) {
     const OcclusionSettings settings = exact(estimator, 1.5f);
     const double error = mean_error(of_layers(settings, 2));
     EXPECT_LT(error, 0.02);
-    EXPECT_LT(5.0 * error, mean_error(settings)) << "one layer does not see the step";
+    EXPECT_LT(5.0 * error, mean_error(settings)) << "the first layer does not show the step";
   }
 }
 
@@ -86,7 +86,7 @@ TEST_F(SecondLayer, SecondLayerWithoutHiddenSurfacesChangesNothing) {
 }
 
 // A second layer adds occluded sectors and removes none.
-TEST_F(SecondLayer, SecondLayerNeverBrightens) {
+TEST_F(SecondLayer, SecondLayerNeverRaisesVisibility) {
   Scene scene = tilted_and_box();
   scene.push_back(sphere({0.36, 0.1, -2.2}, 0.35));
   for (const TestView& view : test_views()) {

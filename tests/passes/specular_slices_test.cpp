@@ -66,7 +66,7 @@ double mean_error(const HostImage& specular, const Drawing& drawing, double radi
   return sum / count;
 }
 
-TEST_F(SpecularSlices, AgreeWithRayCastLobesOnExactSurfaces) {
+TEST_F(SpecularSlices, SpecularOcclusionAgreesWithRayCastLobesOnExactSurfaces) {
   const float radius = 1.2f;
   // Tests a perspective and an orthographic view of scenes whose occluders extend as far back as
   // the estimator assumes.
@@ -115,7 +115,7 @@ TEST_F(SpecularSlices, UnoccludedSurfaceHasSpecularVisibilityOne) {
 }
 
 // The error decreases over several frames. In a single frame few slices cross a narrow lobe.
-TEST_F(SpecularSlices, ErrorOfNarrowLobesFallsOverFrames) {
+TEST_F(SpecularSlices, ErrorOfNarrowLobesDecreasesOverFrames) {
   const float radius = 1.2f, roughness = 0.2f;
   const TestView view = test_views().front();
   const Drawing drawing = draw(view, 60, 40, groove(0.8));

@@ -108,7 +108,7 @@ TEST_F(UnobservedPass, WideRadiusExcludesFewDirections) {
     const auto left_out = [&](float radius) {
       return mean_difference(seen(true, radius), seen(false, radius), 0, kWidth);
     };
-    EXPECT_GT(left_out(1.5f), 0.002) << "of what the ball hides";
+    EXPECT_GT(left_out(1.5f), 0.002) << "the directions that the ball hides must be excluded";
     EXPECT_LT(left_out(3.0f), 0.02);
     EXPECT_LT(left_out(30.0f), 0.02);
   }

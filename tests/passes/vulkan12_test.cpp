@@ -84,7 +84,7 @@ TEST(CVulkan12, FramesAreRecordedWithSynchronization2) {
     std::uint32_t count = 0;
     EXPECT_EQ(alcoveGetTimings(context.get(), 0, &count, nullptr), ALCOVE_SUCCESS);
     EXPECT_GT(count, 2u);
-    EXPECT_THAT(device.read(view.visibility, 1), Each(255)) << "a plane is open";
+    EXPECT_THAT(device.read(view.visibility, 1), Each(255)) << "a plane is unoccluded";
   }
   EXPECT_EQ(device.messages(), "");
 }
