@@ -3,8 +3,8 @@
 #extension GL_GOOGLE_include_directive : require
 
 // Lights surfaces with a probe. Diffuse light comes from spherical harmonics along the bent normal.
-// Specular light comes from a prefiltered environment by the split sum, if compiled with SPECULAR.
-// Each is multiplied by its occlusion.
+// If compiled with SPECULAR, specular light comes from a prefiltered environment map with the
+// split-sum approximation. Each is multiplied by its occlusion.
 
 #include "apply_parameters.h"
 #include "maths/gtso.h"
@@ -59,15 +59,16 @@ vec3 fetch_direction(texture2D image, ivec2 pixel, vec3 instead) {
   return has_direction(given) ? normalize(mat3(parameters.world_from_normal) * given) : instead;
 }
 
-// The bent normal, limited to the angle from the normal that its visibility allows, so that noise
-// of the bent normal does not show on unoccluded surfaces.
+// Returns the bent normal. Its angle from the normal is limited to the largest angle that is
+// possible at this visibility, so that noise of the bent normal is not visible on unoccluded
+// surfaces.
 vec3 fetch_bent_normal(ivec2 pixel, vec3 normal, float visibility) {
   vec3 bent = fetch_direction(bent_normal_image, pixel, normal);
   return kVisibility ? raised_bent_normal(bent, normal, converged_visibility(visibility)) : bent;
 }
 
-// Returns irradiance divided by pi. Negative values, which spherical harmonics can give by ringing,
-// become 0.
+// Returns irradiance divided by pi. Spherical harmonics can give negative values next to bright
+// light (ringing); these become 0.
 vec3 irradiance(vec3 direction) {
   vec3 sum = vec3(0.0);
   for (uint i = 0u; i < kHarmonics; ++i) {
@@ -103,9 +104,9 @@ vec3 environment_light(vec3 normal, vec3 view, float roughness) {
   return fetch_map(map_image, parameters.map.x, level, direction);
 }
 
-// Light that arrives from the directions of the specular lobe. The visible part shows the
-// environment. With multi-bounce, the occluded part shows occluders that are assumed to have the
-// albedo and the lighting of the surface itself (`occluder`).
+// Returns the light from the directions of the specular lobe. The visible part of the lobe shows
+// the environment. With multi-bounce, the occluded part shows occluders that are assumed to have
+// the albedo and the lighting of the surface itself (`occluder`).
 vec3 specular_light(ivec2 pixel, vec3 environment, vec3 occluder) {
   if (!kSpecularOcclusion) {
     return environment;

@@ -12,8 +12,8 @@ float inverse_depth_rise(ivec2 pixel, float here) {
 }
 
 // Returns the change of the inverse depth from one pixel to the next along an axis of the image. It
-// uses the neighbour that is nearer in depth, which is more likely to lie on the same surface. The
-// result is 0 if both neighbours are sky.
+// uses the one of the two neighbours whose depth is closer to that of the pixel, which is more
+// likely to be on the same surface. The result is 0 if both neighbours are sky.
 float inverse_depth_gradient(ivec2 pixel, ivec2 axis, float here) {
   ivec2 last = size_px() - 1;
   float before = -inverse_depth_rise(max(pixel - axis, ivec2(0)), here);
@@ -37,9 +37,10 @@ vec3 depth_normal(ivec2 pixel) {
 }
 
 // Returns the unit normal, in view space, of the side of the surface that the eye sees. `given` is
-// the normal of the texture in view space, with any length. If it has no direction, the normal
-// comes from depth. If it faces away by less than kFlippedNormal, it belongs to the other side of
-// the surface or to a surface just beyond a silhouette; the depth buffer decides which.
+// the normal of the texture in view space, with any length. If it has no direction, the normal is
+// computed from depth. If it faces away by less than kFlippedNormal, it may be the normal of the
+// other side of the surface, or of a surface just beyond a silhouette; the normal from depth
+// decides which.
 vec3 seen_normal(ivec2 pixel, vec3 given, vec3 view) {
   bool missing = !has_direction(given);
   vec3 normal = normalize(given);

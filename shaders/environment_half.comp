@@ -2,8 +2,8 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
-// Halves the size of an environment map: each texel is the mean of four, weighted by the solid
-// angles that they cover.
+// Halves the width and height of an environment map: each texel is the mean of four texels,
+// weighted by the solid angles that they cover.
 
 #include "environment_parameters.h"
 #include "maths/environment_map.h"

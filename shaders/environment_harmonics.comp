@@ -2,9 +2,9 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
-// Computes the nine spherical-harmonics coefficients of an environment map by a sum over the texels
-// of one mip. A single workgroup runs: each invocation sums a part of the texels, then one
-// invocation for each coefficient adds up these parts.
+// Computes the nine spherical-harmonics coefficients of an environment map as sums over the texels
+// of one mip. Only one workgroup runs: each invocation sums a part of the texels, and then one
+// invocation per coefficient adds up these partial sums.
 
 #include "environment_parameters.h"
 #include "maths/environment_map.h"

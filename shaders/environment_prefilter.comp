@@ -2,9 +2,9 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
-// Computes one mip of a prefiltered map: the environment's light through a GGX lobe whose view is
-// along its normal (Karis 2013). Each sample reads the mip of the source whose texels cover the
-// solid angle that the sample stands for (Colbert and Krivanek 2007).
+// Computes one mip of a prefiltered map: the environment's light through a GGX lobe whose view
+// direction is its normal (Karis 2013). Each sample of the lobe reads the mip of the source whose
+// texels cover about the solid angle of the sample (Colbert and Krivanek 2007).
 
 #include "environment_fetch.h"
 #include "environment_parameters.h"
@@ -22,8 +22,8 @@ mat3 frame_of(vec3 normal) {
   return mat3(x, cross(normal, x), normal);
 }
 
-// Returns the source mip whose texels cover about twice the solid angle of one sample at this
-// density.
+// Returns the source mip whose texels cover about twice the solid angle of one sample, for samples
+// with this probability density per steradian.
 float source_level(float density) {
   float sample_angle = 1.0 / (parameters.samples * density);
   float texel_angle = 4.0 * kPi / (parameters.source_px.x * parameters.source_px.x);

@@ -2,12 +2,12 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
-// Copies samples of a view's inputs for the host, which looks for mistakes in them
-// (alcoveDiagnose).
+// Copies samples of a view's inputs, which the CPU then checks for mistakes (alcoveDiagnose).
 //
-// The samples lie on a grid over the image. Each takes two texels, one above the other: the depths
-// of the pixel and of its left, right and upper neighbours; then the depth of the lower neighbour
-// and the normal as it is stored. The last row begins with the sizes of the two images.
+// The samples are on a grid over the image. Each sample takes two texels, one above the other. The
+// first has the depths of the pixel and of its left, right and upper neighbours. The second has the
+// depth of the lower neighbour and the normal as it is stored. The last row begins with the sizes
+// of the two images.
 
 #include "inspect_parameters.h"
 

@@ -1,5 +1,6 @@
-// The inverse depth of pixels of a depth buffer as the projection wrote it. Included by shaders
-// that have the constants kPerspective and kReversed and parameters.inverse_depth_from_ndc.
+// Reads the inverse depth of pixels from a depth buffer as the projection wrote it. A shader that
+// includes this file must have the constants kPerspective and kReversed and
+// parameters.inverse_depth_from_ndc.
 #ifndef ALCOVE_LOAD_DEPTH_H
 #define ALCOVE_LOAD_DEPTH_H
 

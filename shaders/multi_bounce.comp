@@ -2,7 +2,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
-// Brightens visibility by the light that occluders reflect, per colour channel ([Jimenez 2016],
+// Raises visibility by the light that occluders reflect, for each colour channel ([Jimenez 2016],
 // section 5).
 
 #include "maths/multi_bounce.h"

@@ -2,8 +2,9 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
-// Computes normals from depth. On each image axis it uses the neighbour on the side where the
-// depths continue the pixel's depth better, because the other side may belong to another surface.
+// Computes normals from depth. On each image axis, it uses the one of the two neighbours whose
+// depth continues the pixel's surface more smoothly, because the other may belong to another
+// surface.
 
 #include "maths/projection.h"
 #include "maths/slice.h"
@@ -25,11 +26,12 @@ vec3 fetch_position(ivec2 pixel, float depth) {
                      depth);
 }
 
-// Returns by how much the line through the depths one and two pixels away misses the pixel's depth.
-// In perspective the inverse depths are compared, because these are linear on the image of a plane.
-// A quarter of the difference to the nearer depth is added: on a strip that is two pixels wide,
-// both lines miss by the whole depth of the strip, and the addition then prefers the strip itself.
-// At a crease between two planes the addition is too small to change the choice.
+// Returns how badly the depths one and two pixels away continue the pixel's surface: the distance
+// by which a line through them misses the pixel's depth. In perspective, inverse depths are
+// compared, because they are linear on the image of a plane. A quarter of the difference from the
+// adjacent depth is added. It is needed on a strip that is two pixels wide: there, the lines on
+// both sides miss, and the addition prefers the neighbour on the strip itself. At a crease between
+// two planes the addition is too small to change the choice.
 float miss(float depth, float one, float two) {
   vec3 inverse_depth = vec3(depth, one, two);
   if (parameters.projection.eye.w > 0.0) {
@@ -39,8 +41,8 @@ float miss(float depth, float one, float two) {
          0.25 * abs(inverse_depth.y - inverse_depth.x);
 }
 
-// Returns the vector from the pixel to its better neighbour along an axis, in the direction of
-// +axis of the image.
+// Returns the vector between the positions of the pixel and of its better neighbour along an image
+// axis. It points in the positive direction of the axis.
 vec3 tangent(ivec2 pixel, ivec2 axis, float depth) {
   ivec2 last = ivec2(parameters.projection.size_px) - 1;
   float before = fetch_depth(pixel - axis);
@@ -53,7 +55,7 @@ vec3 tangent(ivec2 pixel, ivec2 axis, float depth) {
   bool none_after = final || is_sky_depth(after);
   bool take_after = none_before || (!none_after && miss_after < miss_before);
   // If both neighbours are sky, the surface is assumed to face the eye along this axis: the
-  // neighbour gets the depth of the pixel.
+  // neighbour is given the depth of the pixel.
   before = none_before ? depth : before;
   after = none_after ? depth : after;
   vec3 here = fetch_position(pixel, depth);
@@ -73,8 +75,8 @@ void main() {
     imageStore(normal_image, pixel, vec4(view, 0.0));
     return;
   }
-  // In images y points down. If the projection is flipped, the test below turns the normal towards
-  // the eye again.
+  // y points down on the image. If the projection is flipped in y, the cross product has the wrong
+  // sign, and the test below turns the normal towards the eye.
   vec3 normal = cross(tangent(pixel, ivec2(0, 1), depth), tangent(pixel, ivec2(1, 0), depth));
   float squared = dot(normal, normal);
   normal = squared > 0.0 ? normal * inversesqrt(squared) : view;

@@ -3,14 +3,15 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
-// Makes pixels from reconstructed texels of 2x2 pixels, so that depth edges stay where they are.
+// Computes pixels from reconstructed texels of 2x2 pixels, without blurring depth edges.
 //
-// A pixel is the weighted mean of the four texels whose centres lie around it. A texel's weight is
+// A pixel is the weighted mean of the four texels whose centres are around it. A texel's weight is
 // its bilinear weight times a function of the pixel's distance from the texel's tangent plane. The
-// plane comes with the texel (HalfTexel), so a pixel reads nothing but its own depth.
+// plane is stored with the texel (HalfTexel), so that the only other input of a pixel is its own
+// depth.
 //
-// The four pixels amid the same four texels are one invocation: texels are unpacked once for them.
-// These pixels straddle the pixels of four texels, so invocations begin one pixel before the image.
+// One invocation computes the four pixels between the centres of four texels, so that the texels
+// are unpacked only once. The first invocation begins one pixel before the image.
 
 #include "maths/bent_normal.h"
 #include "maths/half_texel.h"
@@ -56,22 +57,23 @@ float load_inverse_depth(ivec2 pixel) {
 
 #include "depth_normal.h"
 
-// Texels and pixels are in the order of textureGather: lower left, lower right, upper right, upper
-// left. Whether the i-th is to the right or below; y points down.
+// Texels and pixels are numbered in the order of textureGather: lower left, lower right, upper
+// right, upper left. right_of() is 1 for those on the right and -1 for the others; below_of() is 1
+// for those below and -1 for the others. y points down.
 float right_of(int i) { return i == 1 || i == 2 ? 1.0 : -1.0; }
 float below_of(int i) { return i < 2 ? 1.0 : -1.0; }
 
-// Distance from a plane, in tolerances, from which on a weight no longer falls. The product of
-// three weights' denominators is then still a float.
+// The largest distance from a plane, in units of the tolerance, for which weights still decrease.
+// The limit keeps the product of the denominators of three weights within the range of a float.
 const float kFarthest = 1e5;
 
 struct Cell {
   ivec2 first;      // the pixel to the upper left
   vec4 depths_ndc;  // raw depths of the pixels
   vec4 occlusions;  // of the texels
-  // For each texel its distance from a pixel, in tolerances, is steepness - plane / depth of the
-  // pixel in perspective, and steepness * depth - plane in orthographic views. `planes` holds four
-  // planes of each texel, one for each pixel of the cell.
+  // For each texel, its distance from a pixel in units of the tolerance is steepness - plane /
+  // depth in perspective views, and steepness * depth - plane in orthographic views, where depth is
+  // the pixel's. `planes` holds the value `plane` of each texel for each of the four pixels.
   vec4 steepness;
   vec4 planes[4];
 };
@@ -107,8 +109,9 @@ Cell fetch_cell(ivec2 index) {
   return cell;
 }
 
-// The weights of the four texels for pixel `j`, which is not of the sky, up to a common factor:
-// share / (1 + distance^2), where the distance from the plane is in tolerances.
+// Returns the weights of the four texels for pixel `j`, which must not be sky, up to a common
+// factor: bilinear weight / (1 + distance^2), where the distance from the texel's plane is in units
+// of the tolerance.
 vec4 weights_of(Cell cell, int j) {
   float from_smallest = grows_with_inverse_depth(kPerspective, kReversed)
                             ? cell.depths_ndc[j]

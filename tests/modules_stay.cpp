@@ -1,3 +1,3 @@
-// Drivers and layers stay loaded to the end, so that a leak report can name the module it is about
-// and leaks.supp can know it.
+// Keeps drivers and layers loaded until the program ends, so that a leak report can name the
+// module, and leaks.supp can suppress leaks by that name.
 extern "C" int dlclose(void* /*module*/) { return 0; }

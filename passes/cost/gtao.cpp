@@ -4,12 +4,13 @@
 namespace alcove::passes::cost {
 namespace {
 
-// Ends of occluder runs in a half-slice, at which a GGX lobe is integrated: an assumption, since
-// they depend on the scene.
+// Assumed number of ends of occluder runs in a half-slice, at each of which a GGX lobe is
+// integrated. The actual number depends on the scene.
 constexpr double kOccluderRuns = 2.5;
 
-// The depth samples that the settings ask for, by which loops are told apart. Compilers unroll some
-// loops, so the depth of a loop does not tell what it runs over.
+// The numbers of depth samples that follow from the settings. A loop is identified by its number of
+// image loads, because compilers unroll some loops, so that the nesting depth of a loop does not
+// identify it.
 struct Samples {
   std::uint32_t loads_per_step = 1;       // image loads of one step in one depth layer
   std::uint32_t steps_per_iteration = 1;  // of the loop over steps, kUnrolled of gtao.comp
@@ -52,8 +53,9 @@ std::optional<double> loads_per_iteration(const PassWork& work, std::uint32_t in
   return loads;
 }
 
-// How often a loop with image loads runs: over the steps of a half-slice, the two half-slices of a
-// slice or the slices of a pixel, whichever its loads agree with.
+// Returns how often a loop with image loads runs: once for each step of a half-slice, each of the
+// two half-slices of a slice, or each slice of a pixel. Its number of loads decides which of these
+// loops it is.
 std::optional<double> sampling_iterations(const PassWork& work, std::uint32_t index) {
   const Samples samples = samples_of(work.settings);
   const auto loads = loads_per_iteration(work, index);
@@ -88,8 +90,9 @@ std::optional<double> gtao_iterations(const PassWork& work, const CompiledLoop& 
 }
 
 double gtao_traffic(const PassWork& work, std::string_view image, Direction direction) {
-  // The share of the cache lines of 64 bytes, eight normals, that hold a traced pixel: of every
-  // `tile` rows one, and of its lines all if there are eight traced pixels or fewer between them.
+  // Returns the fraction of the 64-byte cache lines (eight normals) that contain a traced pixel.
+  // One of every `tile` rows contains traced pixels. In these rows every cache line contains one if
+  // tiles are at most eight pixels wide.
   const std::uint32_t tile = work.settings.tile_size;
   const bool normals = image == "normals" && direction == Direction::read;
   return normals && tile >= 4 ? 1.0 / tile : 1.0;

@@ -1,5 +1,5 @@
-// The functions from which work.cpp chooses: one pair for each pass with loops or partial traffic.
-// A result of `nullopt` means that the function does not know the loop.
+// The functions that work.cpp calls for passes with loops or with partial traffic: one pair for
+// each pass. A result of `nullopt` means that the function does not know the loop.
 #pragma once
 
 #include <optional>

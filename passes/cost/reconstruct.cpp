@@ -5,8 +5,8 @@ namespace alcove::passes::cost {
 
 std::optional<double> reconstruct_iterations(const PassWork& work, const CompiledLoop& loop) {
   // The only loops are those of add_ring(): over rows of traced pixels and, within a row, over the
-  // pixels. Pixels with a history run them only while it is less than two frames old, which is
-  // rare.
+  // pixels. Pixels with a history only run them while the history is less than two frames old,
+  // which is rare, so that they are counted as not run.
   if (work.settings.history_frames > 0 && work.state != FrameState::first) {
     return 0.0;
   }

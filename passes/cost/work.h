@@ -1,10 +1,10 @@
 // Facts about the occlusion passes that a compiler cannot know: how often each loop of a shader
-// runs, and how much of an image a pass really reads or writes. The GPU cost model
+// runs, and how much of an image a pass actually reads or writes. The GPU cost model
 // (sample/gpu_cost) multiplies the instructions of each loop by these counts.
 //
-// A commit that changes a loop of a shader, or the texels that a pass uses, also changes gtao.cpp
-// or reconstruct.cpp here. A loop without a count is an error that names it, so that no count is
-// guessed.
+// A commit that changes a loop of a shader, or the texels that a pass uses, must also change
+// gtao.cpp or reconstruct.cpp in this folder. A loop without a count is an error that names the
+// loop, so that no count is guessed.
 #pragma once
 
 #include <cstdint>
@@ -46,15 +46,15 @@ struct PassWork {
 };
 
 // Returns how often the body of `loop`, one of `work.loops`, runs each time that the loop is
-// entered. In a wave, the lane with the most iterations counts. Error: the pass's function does not
-// know the loop.
+// entered. In a wave, the lane with the most iterations counts. It is an error if no count is known
+// for the loop.
 [[nodiscard]] tl::expected<double, std::string> iterations(const PassWork& work,
                                                            const CompiledLoop& loop);
 
 enum class Direction : std::uint8_t { read, write };
 
 // Returns the fraction, 0 to 1, of the bytes of an image that a pass moves between memory and
-// caches. It is 1 unless the pass's function knows a smaller value.
+// caches. It is 1 unless a smaller fraction is known for the pass.
 [[nodiscard]] double traffic_share(const PassWork& work, std::string_view image,
                                    Direction direction);
 
@@ -63,19 +63,20 @@ struct LoadPattern {
   std::uint32_t texel_bytes = 4;
   std::uint32_t pitch = 1;      // texels from one invocation's texel to the next, in x and y
   std::uint32_t footprint = 1;  // texels of an invocation in x and y: 2 for a gather
-  // Whether the group's first texel may be any, as where a moving camera reads its history.
-  // Otherwise it is a multiple of 8 * pitch, plus `first`.
+  // Whether the group's first texel can be at any position, as in a read of the history of a moving
+  // camera. If false, its position is a multiple of 8 * pitch, plus `first`.
   bool anywhere = false;
   std::int32_t first = 0;
   std::uint32_t count = 1;  // instructions of this pattern in a wave
 };
 
-// Cache lines of 64 bytes that a load of this pattern touches, where an image is stored row by row
-// and its rows begin with a line; the mean over all positions if the group may be anywhere.
+// Returns the number of 64-byte cache lines that a load with this pattern touches. The image is
+// assumed to be stored row by row, with each row beginning at a cache line. If the group can be
+// anywhere, it is the mean over all positions.
 [[nodiscard]] double cache_lines(const LoadPattern& pattern);
 
-// Cache lines per load of a pass, the mean over its loads. 0 for a pass whose patterns are not
-// declared, which is all but reconstruct.
+// Returns the mean number of cache lines per load over all loads of a pass. It is 0 for passes
+// whose patterns are not declared, which are all except reconstruct.
 [[nodiscard]] double cache_lines_per_load(const PassWork& work);
 
 }  // namespace alcove::passes::cost

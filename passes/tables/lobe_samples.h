@@ -7,9 +7,9 @@
 
 namespace alcove::passes {
 
-// Samples the GGX lobe of a surface seen from `view`: calls f(light, half vector, share) for
-// microfacet normals in proportion to how much of them the view sees, if they reflect the view to a
-// light direction above the surface. `share` is the fraction, [0,1], of the light that other
+// Samples the GGX lobe of a surface seen from `view`. Microfacet normals are sampled in proportion
+// to their visible area. If a normal reflects the view to a light direction above the surface,
+// calls f(light, half vector, share). `share` is the fraction, [0,1], of the light that other
 // microfacets do not shadow. Vectors are in tangent space with z along the normal; view.z must be
 // above 0.
 template <typename Function>

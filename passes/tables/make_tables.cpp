@@ -1,5 +1,5 @@
-// A build tool that writes a table of the passes as a C++ array: make_tables NAME FILE. NAME is
-// gtso or reflectance.
+// A build tool that writes a lookup table of the passes as a C++ array: make_tables NAME FILE. NAME
+// is `gtso` or `reflectance`.
 #include <cstdint>
 #include <cstdio>
 #include <fstream>

@@ -1,4 +1,5 @@
-// Computes the tables that the passes look up, by numerical integration. Used in the build and by
+// Computes the lookup tables of the passes by numerical integration. The build and the tests use
+// it.
 // the tests.
 #pragma once
 
@@ -10,23 +11,24 @@
 
 namespace alcove::passes {
 
-// Returns the table of maths/split_sum.h. The view varies fastest, then the roughness. Each word
-// holds two 16-bit unorms: the factor of f0 in the lower half and the offset in the upper half.
+// Returns the table of maths/split_sum.h. The view angle varies fastest, then the roughness. Each
+// word holds two 16-bit unorms: the factor of f0 in the lower half and the offset in the upper
+// half.
 [[nodiscard]] std::vector<std::uint32_t> reflectance_table();
 
 // A GGX lobe above its surface, represented by samples of the microfacets that its view sees.
 class GtsoLobe {
  public:
   // `mirror_from_normal` is the angle between the mirror direction and the normal in radians,
-  // [0,pi/2]. `roughness` is perceptual, [0,1].
+  // [0,pi/2]. `roughness` is perceptual, [0,1]. `samples` is the number of samples of the lobe.
   GtsoLobe(float mirror_from_normal, float roughness, int samples);
 
-  // Returns the fraction of the lobe within a cone of half-angle `cone` whose axis lies
-  // `bent_from_mirror` radians from the mirror direction. It is the mean over `sides` azimuths of
-  // the axis around the mirror direction.
+  // Returns the fraction of the lobe within a cone of half-angle `cone`, whose axis is
+  // `bent_from_mirror` radians away from the mirror direction. It is the mean over `sides` azimuths
+  // of the axis around the mirror direction.
   [[nodiscard]] float share(float cone, float bent_from_mirror, int sides) const;
   // Returns the fraction of the lobe within a cone around `axis`. The normal is +Z, and the mirror
-  // direction lies towards +X.
+  // direction is rotated from it towards +X.
   [[nodiscard]] float within(float cone, const maths::vec3& axis) const;
 
  private:

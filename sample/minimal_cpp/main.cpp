@@ -1,9 +1,11 @@
-// From device creation to an occlusion picture with the C++ interface: copy this file to start.
+// A minimal program that uses the C++ interface, from creating the device to an image of the
+// occlusion. Copy this file as a start.
 //
 //   alcove_minimal_cpp FILE.pgm
 //
-// A ball on a floor is written into a depth buffer on the CPU, in place of an engine's rendering.
-// Each frame is a render graph: upload the depth, compute the occlusion, read the visibility back.
+// Instead of an engine's rendering, the CPU writes the depth buffer of a ball on a floor. Each
+// frame is a render graph that uploads the depth, computes the occlusion, and reads the visibility
+// back.
 #include <alcove/framegraph/executor.h>
 #include <alcove/framegraph/graph.h>
 #include <alcove/passes/occlusion.h>
@@ -48,9 +50,9 @@ T value_of(tl::expected<T, passes::Error> result) {
   return std::move(*result);
 }
 
-// The first device with a queue family that draws and computes. The graph needs Vulkan 1.3 with
-// synchronization2, and timelineSemaphore where it submits by itself; the passes need storage
-// images that are written without a format.
+// Creates the first device that has a queue family for graphics and compute. The graph needs Vulkan
+// 1.3 with synchronization2, and timelineSemaphore if it submits frames itself. The passes need
+// shaderStorageImageWriteWithoutFormat.
 framegraph::DeviceHandles create_device() {
   framegraph::DeviceHandles handles;
   handles.get_instance_proc_addr = vkGetInstanceProcAddr;

@@ -24,8 +24,8 @@ struct Camera {
   bool reversed_z = false;     // near at depth 1, far at depth 0
   glm::vec2 offset_ndc{0.0f};  // point of the image that the view axis meets, -1..1, y down
   glm::vec2 jitter_px{0.0f};   // offset of the image in pixels, x right, y down
-  // Scene::origin. It is added to positions before they are printed, and subtracted from positions
-  // that the user types.
+  // A copy of Scene::origin. It is added to positions before they are printed, and subtracted from
+  // positions that the user types.
   glm::dvec3 origin{0.0};
   bool fit_planes = false;  // camera_of() still has to fit near and far plane to the view
 };

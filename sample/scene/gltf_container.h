@@ -16,7 +16,8 @@ struct GltfParts {
 
 // Splits a file into its parts. The magic number tells whether it is binary (glTF 2.0 section 4.4).
 // Chunks of unknown types are skipped. A header or chunk that is cut short, has a wrong length, or
-// is unaligned, repeated or out of order is an error. The error is the end of a sentence.
+// is unaligned, repeated or out of order is an error. The error text is the end of a sentence whose
+// beginning the caller adds.
 [[nodiscard]] tl::expected<GltfParts, std::string> split_gltf(std::span<const uint8_t> file);
 
 }  // namespace alcove::sample

@@ -19,8 +19,8 @@ class GltfFiles {
   // Returns the bytes that a URI names. A relative reference is decoded after RFC 3986: %XX is a
   // byte, and all other characters are themselves. If no such file exists, the name is tried
   // without decoding, and then with every \ replaced by /, because exporters on Windows write \.
-  // `data:` URIs may have any media type, and be base64 or percent-encoded. Errors are the end of a
-  // sentence that begins with the URI.
+  // `data:` URIs may have any media type, and be base64 or percent-encoded. Error texts are the end
+  // of a sentence that begins with the URI.
   [[nodiscard]] tl::expected<std::vector<uint8_t>, std::string> read(const std::string& uri);
 
   // Returns the URI for a message, without embedded data and shortened to 80 bytes.
@@ -33,8 +33,8 @@ class GltfFiles {
   uint64_t bytes_left_;
 };
 
-// Reads a whole regular file. A file of more than `most` bytes is an error. Errors are the end of a
-// sentence.
+// Reads a whole regular file. A file of more than `most` bytes is an error. Error texts are the end
+// of a sentence whose beginning the caller adds.
 [[nodiscard]] tl::expected<std::vector<uint8_t>, std::string> read_regular_file(
     const std::filesystem::path& file, uint64_t most);
 

@@ -25,7 +25,8 @@ struct Layout {
 
 // Computes the transforms of the nodes of a file. The drawn nodes are those of the default scene,
 // or all if the file has no scenes, except those that KHR_node_visibility hides. At most
-// `most_instances` instances are read. Errors are the end of a sentence.
+// `most_instances` instances are read. Error texts are the end of a sentence whose beginning the
+// caller adds.
 [[nodiscard]] tl::expected<Layout, std::string> place_nodes(const tinygltf::Model& model,
                                                             uint64_t most_instances);
 

@@ -33,7 +33,8 @@ struct PrimitivePlacement {
 
 // Adds the triangles of one primitive as a mesh. Points and lines are left out with a warning.
 // Triangles without an area, and primitives whose material is alpha-blended with an alpha of 0, are
-// left out. A mirroring transform reverses the winding. Errors are the end of a sentence.
+// left out. A mirroring transform reverses the winding. Error texts are the end of a sentence whose
+// beginning the caller adds.
 [[nodiscard]] tl::expected<void, std::string> add_primitive(const tinygltf::Model& model,
                                                             const tinygltf::Primitive& primitive,
                                                             const std::string& name,

@@ -19,7 +19,7 @@ namespace alcove::sample {
 // A mesh of several nodes, or of a node with EXT_mesh_gpu_instancing, becomes one mesh with
 // instances. Other meshes are transformed to world space. Skinned meshes are transformed to world
 // space in the pose of their joints. `progress` receives the fraction of the nodes that have been
-// read. Errors are the end of a sentence.
+// read. Error texts are the end of a sentence whose beginning the caller adds.
 [[nodiscard]] tl::expected<void, std::string> add_nodes(const tinygltf::Model& model,
                                                         MeshBudget& budget,
                                                         std::vector<PlacedCamera>& cameras,

@@ -50,7 +50,7 @@ class VertexPlacement {
 
 // Returns, for each joint of a skin, the transform from the mesh's bind pose to the joint's pose in
 // the file's nodes. `placed` has the transform of each node. A skin may have at most `most` joints.
-// Errors are the end of a sentence.
+// Error texts are the end of a sentence whose beginning the caller adds.
 [[nodiscard]] tl::expected<std::vector<glm::dmat4>, std::string> joint_matrices(
     const tinygltf::Model& model, int skin, const std::vector<glm::dmat4>& placed, uint64_t most);
 
@@ -61,7 +61,7 @@ class VertexPlacement {
 class NodeInstances {
  public:
   // Reads the instances, at most `most`. The result is empty if the node does not have the
-  // extension. Errors are the end of a sentence.
+  // extension. Error texts are the end of a sentence whose beginning the caller adds.
   [[nodiscard]] static tl::expected<NodeInstances, std::string> read(const tinygltf::Model& model,
                                                                      const tinygltf::Node& node,
                                                                      uint64_t most);

@@ -14,7 +14,7 @@ namespace alcove::sample {
 // Returns the matrix from the mesh's texture coordinates to those of the image: scale, then
 // rotation, then offset, or the identity without the extension. A positive rotation is
 // counter-clockwise in the image, whose v points down. Numbers outside the range of a float are an
-// error. The error is the end of a sentence.
+// error. The error text is the end of a sentence whose beginning the caller adds.
 [[nodiscard]] tl::expected<glm::mat3x2, std::string> texture_transform(
     const tinygltf::ExtensionMap& extensions);
 

@@ -12,7 +12,7 @@ namespace alcove::sample {
 // Decodes PNG (with libpng) and JPEG (with libjpeg-turbo), the two image formats of glTF. The bytes
 // may be hostile: both libraries are maintained for such input and fuzzed with it. The signature
 // determines the format, and the header is checked against limits on time and memory before
-// anything is decoded. Errors are the end of a sentence that begins with the image's name.
+// anything is decoded. Error texts are the end of a sentence that begins with the image's name.
 // Thread-safe.
 
 enum class ImageFormat : uint8_t { kPng, kJpeg };

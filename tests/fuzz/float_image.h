@@ -10,8 +10,8 @@
 
 namespace alcove::sample {
 
-// Reads an image by `read(file, rows)` and checks that no row is missing, of another length or past
-// the last.
+// Reads an image with `read(file, rows)`. Checks that no row is missing, has another length or
+// comes after the last one.
 template <class Read>
 void read_any(const uint8_t* data, size_t size, size_t channels, const Read& read) {
   if (size == 0) return;

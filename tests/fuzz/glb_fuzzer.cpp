@@ -1,5 +1,6 @@
-// libFuzzer with a structured mutator: a binary glTF file whose JSON stays JSON, and whose chunks
-// stay where its header says. One mutation in eight is of bytes anywhere, so headers are hit too.
+// Fuzzes the reading of binary glTF files with libFuzzer. Most mutations change the JSON so that it
+// stays valid JSON, and keep the chunks where the header says. One mutation in eight changes
+// arbitrary bytes, so that headers are tested too.
 #include <cstring>
 #include <random>
 #include <string>

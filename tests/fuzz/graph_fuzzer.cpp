@@ -1,5 +1,6 @@
-// libFuzzer: bytes make a graph, right or wrong. A wrong one must come back as errors with
-// sentences; a right one as a plan that the verifier passes and that prints.
+// Fuzzes the render graph with libFuzzer. The bytes choose a declaration, which may be valid or
+// not. An invalid one must be refused with error sentences. A valid one must give a plan that the
+// verifier accepts and that can be printed.
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>

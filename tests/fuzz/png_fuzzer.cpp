@@ -1,5 +1,5 @@
-// libFuzzer: bytes are a PNG. The checksums of its chunks are corrected first, for a mutation
-// nearly never gets one right, and libpng would stop there.
+// Fuzzes the reading of PNG files with libFuzzer. The checksums of the chunks are corrected first:
+// mutated bytes nearly never have the right checksum, and libpng would refuse them at once.
 #include <zlib.h>
 
 #include <vector>

@@ -30,9 +30,9 @@ struct Engine {
   float radius = 0.5f;
 };
 
-// Once, for two frames in flight: Executor::create(device, {.frames_in_flight = 2}) and
-// Kernels::create(device, 2), `device` being the engine's. Then in each frame, when the device is
-// done with what was last recorded with `slot`:
+// At the start, with the engine's device and two frames in flight, the engine calls
+// Executor::create(device, {.frames_in_flight = 2}) and Kernels::create(device, 2). It calls this
+// function once per frame, after the device has finished the previous frame with the same slot.
 tl::expected<void, std::string> record_occlusion(Engine& engine, VkCommandBuffer commands) {
   framegraph::Graph& graph = engine.graph;
   graph.reset();

@@ -130,8 +130,8 @@ class Replay {
   HappensBefore order_;
   std::vector<Resource> resources_;
   std::vector<Memory> memory_;  // by heap
-  // For each subresource of each access's range: the contents that the access must find. Also the
-  // index of the first entry of each access.
+  // expected_ has, for each subresource of each access's range, the contents that the access must
+  // find. first_expected_ has the index of the first entry of each access.
   std::vector<std::uint32_t> expected_;
   std::vector<std::size_t> first_expected_;
   std::vector<std::vector<std::uint32_t>>

@@ -1,5 +1,5 @@
-// Touches both libraries without a device: a plan is compiled, settings are made, and kernels on no
-// device are an error value.
+// Uses both libraries without a device: compiles a plan, makes settings, and checks that creating
+// kernels on a null device returns an error.
 #include <alcove/framegraph/framegraph.h>
 #include <alcove/passes/occlusion.h>
 
