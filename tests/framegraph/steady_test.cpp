@@ -145,8 +145,7 @@ TEST(Steady, AccessLeftFromALongerEarlierFrameIsNotReused) {
   EXPECT_EQ(read.range, (Range{0, 2, 0, 1}));
 }
 
-// The caller makes a handle by incrementing the index of another handle. It must be invalid until
-// its resource is declared, even if the previous frame declared such a resource.
+// The previous frame's access to one mip must not be taken for the access to all mips.
 TEST(Steady, AccessToAllMipsIsNotReusedFromAnAccessToOneMip) {
   Graph graph;
   for (const Range range : {Range::mip(0), Range{}}) {
@@ -159,6 +158,8 @@ TEST(Steady, AccessToAllMipsIsNotReusedFromAnAccessToOneMip) {
   }
 }
 
+// The caller makes a handle by incrementing the index of another handle. It must be invalid until
+// its resource is declared, even if the previous frame declared such a resource.
 TEST(Steady, HandleMadeUpByTheCallerIsRefused) {
   Graph graph;
   for (int frame = 0; frame < 3; ++frame) {

@@ -330,8 +330,8 @@ TEST_F(GtaoTruth, OccludersBeyondTheRadiusDoNotOcclude) {
         run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, exact(estimator, radius));
     for (std::uint32_t x = 0; x < 64; ++x) {
       // `across` and `distance` lead to the nearest sample on the platform's edge, within half a
-      // pixel. With connected samples, a slope connects floor and platform. Its foot is nearer than
-      // the wall by up to one step between samples, which is why `across` is divided by 1.15.
+      // pixel. With connected samples, a slope connects floor and platform. The foot of the slope
+      // is nearer than the wall by the wall's height and one step.
       const double across = (63.5 - x) * 8.0 / 128;
       const double distance = std::hypot(across, height);
       if ((estimator == Estimator::connected ? across / 1.15 : distance) > radius) {
