@@ -248,7 +248,7 @@ PFN_vkVoidFunction VKAPI_CALL get_instance_proc_addr_1_2(VkInstance instance, co
   return vkGetInstanceProcAddr(instance, name);
 }
 
-TEST_F(ExecutorTest, Vulkan12WithSynchronization2Suffices) {
+TEST_F(ExecutorTest, ExecutorRunsOnVulkan12WithSynchronization2) {
   VkPhysicalDeviceSynchronization2Features synchronization{};
   synchronization.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES;
   synchronization.synchronization2 = VK_TRUE;
@@ -295,7 +295,7 @@ TEST_F(ExecutorTest, Vulkan12WithSynchronization2Suffices) {
 
 // Declares in turn a transient without a device address, a transient with an address in the same
 // heap, and a history.
-TEST_F(ExecutorTest, BuffersWithADeviceAddressHaveMemoryForIt) {
+TEST_F(ExecutorTest, BuffersWithADeviceAddressGetMemoryThatAllowsIt) {
   VkPhysicalDeviceVulkan12Features v12{};
   v12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
   v12.bufferDeviceAddress = v12.timelineSemaphore = VK_TRUE;

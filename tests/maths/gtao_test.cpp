@@ -254,7 +254,7 @@ TEST(Gtao, UniformVisibilityIsTheSolidAngleAboveHorizonsAndTangentPlane) {
   }
 }
 
-TEST(Gtao, FalloffIsZeroAtTheRadius) {
+TEST(Gtao, OccluderWeightFallsToZeroAtTheRadius) {
   EXPECT_EQ(maths::radius_weight(1.0f, 2.0f, 0.5f), 1.0f);
   EXPECT_FLOAT_EQ(maths::radius_weight(1.5f, 2.0f, 0.5f), 0.5f);
   EXPECT_EQ(maths::radius_weight(2.0f, 2.0f, 0.5f), 0.0f);

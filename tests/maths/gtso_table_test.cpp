@@ -67,7 +67,7 @@ TEST(GtsoTable, TableIsCloseToTheIntegral) {
   EXPECT_LT(rmse, 0.008);
 }
 
-TEST(GtsoTable, FullyOpenFullyOccludedAndMirrorsAreExact) {
+TEST(GtsoTable, FullyOpenFullyOccludedAndMirrorSurfacesAreExact) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
     const float mirror_from_normal = random.uniform(0.0f, maths::kHalfPi);
@@ -119,7 +119,7 @@ TEST(GtsoTable, UnsqueezeInvertsSqueezeForEveryCoordinate) {
 
 // Compares the errors of the table and of the cones. Bent normals are at random azimuths around the
 // mirror direction.
-TEST(GtsoTable, HasLessThanHalfTheErrorOfTheCone) {
+TEST(GtsoTable, TableHasLessThanHalfTheErrorOfTheCones) {
   RandomInput random;
   double by_table = 0.0, by_cone = 0.0;
   for (int i = 0; i < 600; ++i) {

@@ -103,7 +103,7 @@ TEST(Gtso, MirrorIsVisibleExactlyInsideTheCone) {
   EXPECT_EQ(maths::specular_occlusion(0.5f, kNormal, kNormal, outside, 0.0f), 0.0f);
 }
 
-TEST(Gtso, IncreasesWithVisibilityAndIsInRange) {
+TEST(Gtso, SpecularVisibilityIncreasesWithVisibilityAndIsInRange) {
   RandomInput random;
   for (int i = 0; i < 500; ++i) {
     const vec3 bent = random.facing(kNormal), reflection = random.facing(kNormal);

@@ -7,14 +7,14 @@
 namespace alcove::maths_test {
 namespace {
 
-TEST(MultiBounce, KeepsVisibilityZeroAndOne) {
+TEST(MultiBounce, VisibilityZeroAndOneAreUnchanged) {
   for (float albedo = 0.0f; albedo <= 1.0f; albedo += 0.01f) {
     EXPECT_EQ(maths::multi_bounce_channel(1.0f, albedo), 1.0f);
     EXPECT_EQ(maths::multi_bounce_channel(0.0f, albedo), 0.0f);
   }
 }
 
-TEST(MultiBounce, NeverDarkensAndIncreasesWithVisibilityAndAlbedo) {
+TEST(MultiBounce, ResultIsAtLeastVisibilityAndIncreasesWithVisibilityAndAlbedo) {
   for (float albedo = 0.0f; albedo <= 1.0f; albedo += 0.02f) {
     float before = 0.0f;
     for (float v = 0.0f; v <= 1.0f; v += 0.005f) {

@@ -232,7 +232,7 @@ TEST(Projection, ViewDirectionIsConstantOnlyInOrthographicViews) {
       1e-6f);
 }
 
-TEST(Projection, NarrowPerspectiveFromAfarApproachesTheOrthographic) {
+TEST(Projection, NarrowPerspectiveFromAfarApproachesAnOrthographicView) {
   Frustum narrow;
   const double distance_away = 1e4;
   narrow.left = narrow.bottom = -1 / distance_away;
@@ -266,7 +266,7 @@ TEST(Projection, FirstRowIsTheTopOfTheView) {
 
 // Elements that are zero in the exact matrix get random rounding errors, as products and inverses
 // of matrices in floats have them.
-TEST(MakeProjection, AcceptsRoundingErrorsAndRemovesThem) {
+TEST(MakeProjection, RoundingErrorsInTheMatrixAreAcceptedAndRemoved) {
   RandomInput random;
   for (int i = 0; i < 20000; ++i) {
     const Frustum f = random_frustum(random);
@@ -295,7 +295,7 @@ TEST(MakeProjection, AcceptsRoundingErrorsAndRemovesThem) {
   }
 }
 
-TEST(MakeProjection, RefusesInvalidProjectionsAndSaysWhy) {
+TEST(MakeProjection, InvalidProjectionsAreRefusedWithAReason) {
   const mat4 good = matrix_of(Frustum{});
   const auto fault = [](const mat4& m) {
     const auto p = maths::make_projection(m, 16, 16);

@@ -116,7 +116,7 @@ TEST(Octahedral, EncodingThenDecodingKeepsEveryDirection) {
   }
 }
 
-TEST(Octahedral, AxesAndFoldsAreExact) {
+TEST(Octahedral, AxesAndFoldsAreEncodedExactly) {
   for (const vec3 axis : {vec3(1, 0, 0), vec3(-1, 0, 0), vec3(0, 1, 0), vec3(0, -1, 0),
                           vec3(0, 0, 1), vec3(0, 0, -1)})
     EXPECT_EQ(maths::octahedral_decode(maths::octahedral_encode(axis)), axis);
@@ -129,7 +129,7 @@ TEST(Octahedral, EncodingIgnoresLengthAndAcceptsZero) {
   EXPECT_EQ(maths::octahedral_decode(maths::octahedral_encode(vec3(0))), vec3(0, 0, 1));
 }
 
-TEST(Octahedral, DecodesAnyPointToAUnitVector) {
+TEST(Octahedral, AnyPointIsDecodedToAUnitVector) {
   RandomInput random;
   for (int i = 0; i < 10000; ++i) {
     const vec2 point(random.uniform(-2, 2), random.uniform(-2, 2));
@@ -150,7 +150,7 @@ vec3 facing_normal(RandomInput& random) {
   return normal;
 }
 
-TEST(QuantisedNormal, DecodesCloseToTheOriginal) {
+TEST(QuantisedNormal, DecodedNormalIsCloseToTheOriginal) {
   RandomInput random;
   for (int i = 0; i < 100000; ++i) {
     const vec3 normal = facing_normal(random);

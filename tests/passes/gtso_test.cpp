@@ -222,7 +222,7 @@ TEST_F(GtsoPass, UnoccludedSurfaceStaysUnoccludedAtAnyRoughness) {
   }
 }
 
-TEST_F(GtsoPass, RotatesWorldSpaceNormalsIntoViewSpace) {
+TEST_F(GtsoPass, WorldSpaceNormalsAreRotatedIntoViewSpace) {
   const Inputs inputs = random_inputs();
   const auto with = [&](View view, bool in_view_space) {
     run([&](Graph& graph) {
