@@ -35,7 +35,7 @@ RawOcclusionTextures create_raw_occlusion(const Frame& frame, Texture depth,
   return result;
 }
 
-// Which optional inputs the shader reads with the given settings.
+// The optional inputs that the shader reads with the given settings.
 struct Reads {
   bool roughness = false;
   bool back_faces = false;

@@ -20,8 +20,8 @@ namespace {
 // Static frames after which every pixel of a tile of 4x4 has been traced once.
 constexpr std::uint32_t kConvergedFrames = 16;
 
-// What history a frame can use. The pipeline depends on it, and also on the settings, the inputs
-// and the kind of projection.
+// The kind of history that a frame can use. The pipeline depends on it, and also on the settings,
+// the inputs and the kind of projection.
 enum class Past : std::uint8_t {
   none,  // no history, or none that can be read
   moving,

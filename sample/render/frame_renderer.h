@@ -16,7 +16,8 @@
 
 namespace alcove::sample {
 
-// What a frame computes from visibility besides the occlusion itself, if its images are read back.
+// The images that a frame computes from visibility besides the occlusion itself, if its images are
+// read back.
 struct IndirectRequest {
   std::vector<float> roughness;  // perceptual; one specular occlusion image for each; empty: one
                                  // image with the materials' roughness
@@ -53,7 +54,7 @@ struct LitImages {
                                 // IndirectRequest::lit_steps
   Image<glm::vec3> unbent;      // diffuse light from along the normal, times visibility
   Image<glm::vec3> occluded;    // diffuse light from along the bent normal, times visibility
-  // As `occluded`, with multi-bounce, and specular light times visibility.
+  // The light of `occluded` with multi-bounce, and specular light times visibility.
   Image<glm::vec3> bounced;
 };
 

@@ -14,7 +14,7 @@ namespace alcove::sample {
 // write depth, and also normal, albedo, motion and emission if these targets are attached.
 class GbufferPipelines {
  public:
-  // What a pipeline writes: all targets of the g-buffer, or only the depth of the second layer.
+  // The targets of a pipeline: all targets of the g-buffer, or only the depth of the second layer.
   enum class Kind : std::uint8_t { all, second_layer };
 
   // `device` must outlive the pipelines.

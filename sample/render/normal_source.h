@@ -1,4 +1,4 @@
-// Where the occlusion's normals come from.
+// The source of the normals that the occlusion passes use.
 #pragma once
 
 #include <array>

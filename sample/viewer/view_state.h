@@ -26,7 +26,7 @@ inline constexpr std::array<std::string_view, 9> kPictureNames{
     "visibility", "lit",   "multi-bounce", "bent normal", "specular occlusion",
     "normals",    "depth", "albedo",       "motion"};
 
-// What the right part of the window shows for comparison: other settings, or nothing.
+// The settings that the right part of the window shows for comparison, if any.
 enum class Comparison : std::uint8_t { kNone, kHorizons, kReference, kKept };
 inline constexpr std::array<std::string_view, 4> kComparisonNames{
     "nothing", "estimator horizons", "preset reference", "kept settings"};

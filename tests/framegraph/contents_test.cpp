@@ -292,7 +292,8 @@ class FrameMaker {
 
 enum class Path { record, submit, submit_to_three };
 
-// How frames are run.
+// The way in which frames are run: recorded or submitted, with how many threads, and with or
+// without aliasing.
 struct Way {
   Path path = Path::record;
   bool alias = true;

@@ -274,7 +274,7 @@ TEST_F(Scenario, WritingTheStencilLeavesTheDepthReadable) {
   }
 }
 
-// Both aspects change in the same way and share one barrier.
+// The depth and the stencil of a texture change in the same way and share one barrier.
 TEST_F(Scenario, DepthAndStencilWithTheSameTransitionShareABarrier) {
   Texture depth =
       graph_.create_texture("depth", {VK_FORMAT_D24_UNORM_S8_UINT, Extent::absolute(64, 64), 1, 2});

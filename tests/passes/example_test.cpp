@@ -5,7 +5,7 @@
 #include <array>
 #include <utility>
 
-// What the example includes comes first in it.
+// The includes of the example come first, as in the README.
 #include <alcove/passes/occlusion.h>
 
 #include "c_interface_fixture.h"

@@ -13,7 +13,8 @@ const uint kShowColour = 1u;     // three channels, unchanged
 const uint kShowDirection = 2u;  // a unit vector: each component from -1..1 to 0..1
 const uint kShowDepth = 3u;      // a distance: 0 at the eye, 0.5 at `scale`
 const uint kShowMotion = 4u;     // in uv: red to the right, green downwards, 0.5 without motion
-// As `alcove render` writes lit.png, with the environment as background.
+// Radiance, displayed as in the lit.png that `alcove render` writes, with the environment as
+// background.
 const uint kShowRadiance = 5u;
 
 struct PictureParameters {

@@ -9,10 +9,10 @@
 
 namespace alcove::framegraph {
 
-// Both accesses combined. If their layouts differ, the result has VK_IMAGE_LAYOUT_GENERAL, which
-// allows every access except presentation (VK_IMAGE_LAYOUT_PRESENT_SRC_KHR). Exception:
-// DEPTH_STENCIL_READ_ONLY_OPTIMAL with SHADER_READ_ONLY_OPTIMAL gives
-// DEPTH_STENCIL_READ_ONLY_OPTIMAL, which also allows sampling.
+// Returns the combination of two accesses. If their layouts differ, the result has
+// VK_IMAGE_LAYOUT_GENERAL, which allows every access except presentation
+// (VK_IMAGE_LAYOUT_PRESENT_SRC_KHR). Exception: DEPTH_STENCIL_READ_ONLY_OPTIMAL with
+// SHADER_READ_ONLY_OPTIMAL gives DEPTH_STENCIL_READ_ONLY_OPTIMAL, which also allows sampling.
 constexpr Access operator|(const Access& a, const Access& b) {
   constexpr auto kDepth = VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL;
   constexpr auto kSampled = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;

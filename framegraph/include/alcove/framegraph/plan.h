@@ -111,7 +111,7 @@ enum ContentFlags : std::uint8_t {
   kIsNeeded = 2,     // a later pass, or whoever comes after the frame, needs what the access leaves
 };
 
-// How many of the mips and layers of a history slot the live passes wrote.
+// Whether the live passes wrote no, some, or all mips and layers of a history slot.
 enum class Written : std::uint8_t { nothing, part, whole };
 
 // The state in which the frame leaves a history slot, and from which the next frame starts. If the

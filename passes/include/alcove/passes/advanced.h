@@ -17,8 +17,9 @@ enum class Estimator : std::uint8_t {
   // Every sample is a separate occluder whose thickness is OcclusionSettings::thickness: the
   // visibility bitmask of Therrien et al. 2023, with exact cosine weights.
   bitmask,
-  // As `bitmask`, but the space between two consecutive samples of one surface is occluded too
-  // (shaders/maths/connected_samples.h). It suits both thin objects and walls.
+  // Every sample is a separate occluder, as with `bitmask`, but the space between two consecutive
+  // samples of one surface is occluded too (shaders/maths/connected_samples.h). It suits both thin
+  // objects and walls.
   connected,
 };
 

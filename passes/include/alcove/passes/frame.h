@@ -46,8 +46,8 @@ enum class NormalEncoding : std::uint8_t {
   unsigned_octahedral,  // the same packed into [0,1]
 };
 
-// What the passes of one frame are added to: the graph, the kernels and the view. The referenced
-// objects must stay alive until the frame is recorded.
+// The arguments of every function that adds a pass to a frame: the graph, the kernels and the view.
+// The referenced objects must stay alive until the frame is recorded.
 struct Frame {
   framegraph::Graph& graph;
   Kernels& kernels;

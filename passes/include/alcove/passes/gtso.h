@@ -9,7 +9,7 @@
 
 namespace alcove::passes {
 
-// All of one size.
+// The inputs of add_gtso(). All textures must have the same size.
 struct GtsoInputs {
   framegraph::Texture visibility;   // one channel, [0,1], 1 open
   framegraph::Texture bent_normal;  // xyz unit, in the space of the normals
