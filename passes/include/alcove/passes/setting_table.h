@@ -64,24 +64,23 @@ void for_each_setting(Settings& settings, const Visit& visit) {
                   "filter and the history fill the others. 1 traces every pixel.",
           .range = {.minimum = 1, .maximum = 8, .power_of_two = true}},
       settings.tile_size);
-  visit(
-      SettingInfo{.name = "slices",
-                  .help = "Slices (planes through the view direction) that are searched per traced "
-                          "pixel and frame. More slices reduce noise and cost time in proportion.",
-                  .range = {.minimum = 1, .maximum = 64}},
-      settings.slices);
+  visit(SettingInfo{.name = "slices",
+                    .help =
+                        "Slices (planes through the view direction) that are searched per traced "
+                        "pixel and frame. More slices reduce noise; the time grows in proportion.",
+                    .range = {.minimum = 1, .maximum = 64}},
+        settings.slices);
   visit(SettingInfo{.name = "steps",
                     .help = "Depth samples in each of the two directions of a slice. More samples "
                             "find thinner occluders.",
                     .range = {.minimum = 2, .maximum = 64}},
         settings.steps);
-  visit(
-      SettingInfo{.name = "thickness",
-                  .help = "Assumed thickness of occluders, in the unit that thickness_unit "
-                          "selects: by default a fraction of the radius. Thicker occluders darken.",
-                  .slider = {.maximum = 1.0f},
-                  .matters = has_thickness},
-      settings.thickness);
+  visit(SettingInfo{.name = "thickness",
+                    .help = "Assumed thickness of occluders, in the unit that thickness_unit "
+                            "selects: by default a fraction of the radius. Larger values darken.",
+                    .slider = {.maximum = 1.0f},
+                    .matters = has_thickness},
+        settings.thickness);
   visit(SettingInfo{.name = "hidden_occlusion",
                     .help =
                         "Average fraction of the volume hidden behind occluders that is treated as "
@@ -108,15 +107,17 @@ void for_each_setting(Settings& settings, const Visit& visit) {
                     .matters = [](S s) { return s.tile_size > 1; }},
         settings.half_resolution);
   visit(SettingInfo{.name = "specular",
-                    .help =
-                        "Method of specular occlusion: none, integration over the slices (smallest "
-                        "error), or from visibility and the bent normal with a table or with "
-                        "cones."},
+                    .help = "Method of specular occlusion: none, integration over the slices "
+                            "(slices, smallest error), or from visibility and the bent normal with "
+                            "a table (table) or with cones (cone)."},
         settings.specular);
-  visit(SettingInfo{.name = "precision",
-                    .help = "Format of intermediate results, and of outputs for which the caller "
-                            "gives no texture: 8-bit UNORM, 16-bit or 32-bit floats."},
-        settings.precision);
+  visit(
+      SettingInfo{
+          .name = "precision",
+          .help =
+              "Format of intermediate results, and of outputs for which the caller gives no "
+              "texture: 8-bit UNORM (unorm8), 16-bit floats (float16) or 32-bit floats (float32)."},
+      settings.precision);
   visit(SettingInfo{.name = "power",
                     .help = "Exponent that is applied to visibility before it is written. Above 1 "
                             "darkens; 1 changes nothing.",
@@ -177,8 +178,8 @@ void for_each_setting(Settings& settings, const Visit& visit) {
                     .matters = [](S s) { return s.advanced.estimator == Estimator::heuristic; }},
         settings.advanced.blend);
   visit(SettingInfo{.name = "falloff",
-                    .help = "For horizons and heuristic: occluders fade out over this last "
-                            "fraction of the radius. 0 turns fading off.",
+                    .help = "For horizons and heuristic: fraction of the radius, at its outer end, "
+                            "over which occluders fade out. 0 turns fading off.",
                     .group = advanced,
                     .range = {.maximum = 1.0f},
                     .matters = [](S s) { return !passes::has_thickness(s.advanced.estimator); }},
@@ -186,10 +187,10 @@ void for_each_setting(Settings& settings, const Visit& visit) {
   visit(
       SettingInfo{
           .name = "pattern",
-          .help = "How slice directions and step offsets vary over pixels and frames: lattices "
-                  "without a period (golden), the R2 sequence along a Hilbert curve (hilbert), or "
-                  "tiles of 4x4 pixels that repeat after six frames, as in Jimenez et al. 2016 "
-                  "(paper).",
+          .help =
+              "How slice directions and step offsets vary over pixels and frames: lattices without "
+              "a period (golden), the R2 sequence along a Hilbert curve (hilbert), or tiles of 4x4 "
+              "pixels whose directions repeat every six frames, as in Jimenez et al. 2016 (paper).",
           .group = advanced},
       settings.advanced.pattern);
   visit(SettingInfo{.name = "filter_radius",
