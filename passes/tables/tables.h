@@ -1,6 +1,5 @@
 // Computes the lookup tables of the passes by numerical integration. The build and the tests use
 // it.
-// the tests.
 #pragma once
 
 #include <cstdint>

@@ -19,8 +19,9 @@ namespace alcove::sample {
 // The images that a frame computes from visibility besides the occlusion itself, if its images are
 // read back.
 struct IndirectRequest {
-  std::vector<float> roughness;  // perceptual; one specular occlusion image for each; empty: one
-                                 // image with the materials' roughness
+  // Perceptual; one specular occlusion image for each; empty: one image with the materials'
+  // roughness.
+  std::vector<float> roughness;
   // The environment that lights the scene; empty: the scene is not lit.
   EnvironmentImage environment;
   bool lit_steps = false;  // also render the lit images with less of the occlusion (LitImages)
@@ -50,10 +51,10 @@ struct LitImages {
   Image<glm::vec3> all;  // with all effects of the occlusion
   Image<glm::vec3> diffuse;
   Image<glm::vec3> specular;
-  Image<glm::vec3> unoccluded;  // without occlusion; this and the following images only if
-                                // IndirectRequest::lit_steps
-  Image<glm::vec3> unbent;      // diffuse light from along the normal, times visibility
-  Image<glm::vec3> occluded;    // diffuse light from along the bent normal, times visibility
+  // Without occlusion; this and the following images only if IndirectRequest::lit_steps.
+  Image<glm::vec3> unoccluded;
+  Image<glm::vec3> unbent;    // diffuse light from along the normal, times visibility
+  Image<glm::vec3> occluded;  // diffuse light from along the bent normal, times visibility
   // The light of `occluded` with multi-bounce, and specular light times visibility.
   Image<glm::vec3> bounced;
 };

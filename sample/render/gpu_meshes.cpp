@@ -84,9 +84,9 @@ class PartBuilder {
   std::vector<std::uint32_t> of_vertex_;
   // The copies of corners that differ in their tangents.
   std::unordered_map<Corner, std::uint32_t, CornerHash> of_corner_;
-  std::vector<bool> is_first_;  // for each vertex of the part, whether it is already the first
-                                // vertex of a triangle
-  std::size_t at_ = 0;          // position of the next triangle's indices
+  // For each vertex of the part, whether it is already the first vertex of a triangle.
+  std::vector<bool> is_first_;
+  std::size_t at_ = 0;  // position of the next triangle's indices
 };
 
 std::uint32_t PartBuilder::vertex_of(std::size_t index, Part& part) {

@@ -32,7 +32,6 @@ class SceneFrame {
                                                                        const ViewState& state);
   // Call it after the declared frame was submitted. That frame then is the previous frame of the
   // next one.
-  // one.
   void advance();
 
  private:

@@ -50,7 +50,6 @@ class SceneView {
   SceneView& operator=(const SceneView&) = delete;
 
   // Processes input and draws a frame. If the window was closed, draws nothing and returns false.
-  // drawn.
   [[nodiscard]] tl::expected<bool, std::string> draw();
   // The number of presented frames. It does not grow while the window is minimised.
   std::uint32_t drawn_frames() const { return drawn_frames_; }

@@ -212,7 +212,7 @@ TEST_F(Reconstruct, LeakAcrossACreaseDecreasesWithSlicesAndFrames) {
   EXPECT_GT(first, 1.0) << "sum over all pixels";
   EXPECT_LT(after(4, 1), 0.35 * first);
   // Dithering of the stored visibilities alone adds 0.16 to the sum over all pixels, which is 3e-4
-  // per pixel. pixels.
+  // per pixel.
   EXPECT_LT(after(1, 48), 0.2 * first);
 }
 

@@ -9,9 +9,9 @@ ALCOVE_MATHS_BEGIN
 // Parameters that are the same for all draws of a frame.
 struct GbufferParameters {
   mat4 clip_from_world;
-  mat4 previous_clip_from_world;  // with the jitter of this frame, so that motion is that of
-                                  // surfaces only
-  mat4 world_from_moving;         // placement of draws that move; rotation and translation
+  // With the jitter of this frame, so that motion is that of surfaces only.
+  mat4 previous_clip_from_world;
+  mat4 world_from_moving;  // placement of draws that move; rotation and translation
   mat4 previous_world_from_moving;
   // Linear depth is (x * depth_ndc + y) / (z * depth_ndc + w), as Projection has it.
   vec4 depth_unproject;

@@ -9,7 +9,6 @@
 // Frame slots are numbered 0 to frames_in_flight - 1; each frame in flight uses another one. Plans
 // and physical resources are cached: for a frame that was declared before, the executor compiles
 // and allocates nothing. Only one thread at a time may call an executor.
-// allocates nothing. Only one thread at a time may call an executor.
 #pragma once
 
 #include <cstdint>
