@@ -9,7 +9,8 @@ ALCOVE_MATHS_BEGIN
 // Parameters that are the same for all draws of a frame.
 struct GbufferParameters {
   mat4 clip_from_world;
-  // With the jitter of this frame, so that motion is that of surfaces only.
+  // The matrix of the previous frame, without a difference of jitter to this frame, so that motion
+  // vectors contain only the motion of surfaces.
   mat4 previous_clip_from_world;
   mat4 world_from_moving;  // placement of draws that move; rotation and translation
   mat4 previous_world_from_moving;
