@@ -25,15 +25,15 @@ class Engine {
 
   AlcoveContextInfo context_info() const;
 
-  // An image that rests as fragment shaders read it; its contents are undefined so far.
+  // Creates an image in the state kResting with undefined contents.
   AlcoveImage make_image(VkFormat format, std::uint32_t width, std::uint32_t height,
                          VkImageUsageFlags usage, std::uint32_t layers = 1);
 
-  // The device has finished with it.
+  // Destroys an image that make_image() returned. The device must have finished with it.
   void destroy_image(const AlcoveImage& image);
 
-  // Has `record` record into the commands of `slot`, whose frame before has finished, and submits
-  // them, whatever was recorded; does not wait.
+  // Waits for the previous frame of `slot`, calls `record` with the command buffer of the slot, and
+  // submits it even if `record` fails. Does not wait for the new frame.
   void submit(std::uint32_t slot, const std::function<void(VkCommandBuffer)>& record);
   void wait();
 
@@ -48,10 +48,10 @@ class Engine {
   std::vector<std::unique_ptr<sample::GpuImage>> images_;
 };
 
-// So that nothing is submitted of what was recorded.
+// Resets a command buffer and begins it again, so that nothing that was recorded is submitted.
 void throw_away(VkCommandBuffer commands);
 
-// How an engine's images rest between frames.
+// The state of an engine's images between frames: fragment shaders sample them.
 inline constexpr AlcoveState kResting{VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
                                       VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
                                       VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
