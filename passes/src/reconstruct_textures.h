@@ -46,7 +46,7 @@ void declare_reconstruct_accesses(const framegraph::Graph& graph, framegraph::Pa
                                   ReconstructTextures& textures);
 
 // A view for each image binding that a variant of the shader can have.
-using ReconstructViews = std::array<NamedView, 18>;
+using ReconstructViews = std::array<NamedView, 19>;
 
 // Returns the views of a dispatch. Images that this variant of the shader does not use are replaced
 // by others of their kind, because every binding needs a view. Bindings that the variant does not

@@ -16,10 +16,12 @@ struct UpsampleInputs {
   bool normals_in_view_space = false;
   NormalEncoding normal_encoding = NormalEncoding::signed_xyz;
   bool normals_forward_z = false;
+  VisibilityChannel visibility_channel = VisibilityChannel::all;  // as ReconstructInputs has it
+  bool half_size_results = false;  // as ReconstructInputs has it: nothing is upsampled
 };
 
-// Adds the pass that writes `result`, whose textures of the depth's size were made but not yet
-// written. A result that is null is not written.
+// Adds the pass that writes `result`, whose textures were made but not yet written. A result that
+// is null is not written.
 //
 // Errors: a view that cannot be used, a pipeline that cannot be made.
 [[nodiscard]] tl::expected<Occlusion, Error> add_upsample(const Frame& frame,

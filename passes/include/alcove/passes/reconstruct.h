@@ -22,7 +22,7 @@ struct MotionConvention {
 };
 
 struct Occlusion {
-  // One channel, [0,1], 1 is open, of the depth's size. Null if it is not wanted.
+  // One channel, [0,1], 1 is open. Null if it is not wanted.
   framegraph::Texture visibility;
   // Unit vectors in xyz, in the space of the normals. Null without bent normals.
   framegraph::Texture bent_normal;
@@ -40,19 +40,27 @@ struct ReconstructInputs {
   // surfaces that stand still: history is held to what the last few frames say.
   framegraph::Texture motion;
   framegraph::Texture roughness;  // as GtaoInputs::roughness
-  // Textures of the caller's, of the depth's size, that results are written to completely. If null,
-  // the result is a transient of OcclusionSettings::precision. Read only if the result is wanted.
+  // Textures of the caller's, of the results' size, that results are written to completely. If
+  // null, the result is a transient of OcclusionSettings::precision. Read only if the result is
+  // wanted.
   Occlusion into;
   NormalEncoding normal_encoding = NormalEncoding::signed_xyz;
   bool normals_forward_z = false;  // see OcclusionInputs
   MotionConvention motion_convention;
+  // The channel of `into.visibility` that is written; `all` if that is null.
+  VisibilityChannel visibility_channel = VisibilityChannel::all;
+  // Results have half the depth's size, rounded up, and are not upsampled. Needs half_resolution.
+  // The texel at (x, y) belongs to one of the 2x2 pixels from (2x, 2y) on: to the nearest of them
+  // if x + y is even, and otherwise to the farthest that is not the sky.
+  bool half_size_results = false;
 };
 
 // Adds the reconstruction. Each view of a graph needs a `history_name` of its own. A history starts
 // anew when the size or the contents of the raw occlusion change, when history or bent normals were
 // off in the previous frame, and after Graph::reset_history(history_name).
 //
-// Errors: an input that is missing or whose size differs from the depth's, raw occlusion
+// Errors: an input that is missing or whose size is not the expected one, a texture for visibility
+// whose other channels cannot be kept, results of half size without half_resolution, raw occlusion
 // with another number of tiles, a view or previous view that cannot be used, sizes above the
 // largest, settings that validate() refuses, nothing to write.
 [[nodiscard]] tl::expected<Occlusion, Error> add_reconstruct(
