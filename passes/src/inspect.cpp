@@ -85,10 +85,9 @@ class Inspector {
       found.at(static_cast<std::size_t>(mistake)) = is;
     };
     set(Mistake::image_too_small, is_too_small());
-    const bool reversed = is_depth_reversed();
-    set(Mistake::depth_reversed, reversed);
-    if (reversed) {
-      return found;  // the other checks would fail because of it
+    set(Mistake::depth_reversed, is_depth_reversed());
+    if (is_too_small() || is_depth_reversed()) {
+      return found;  // other checks would find mistakes that are consequences of this one
     }
     const bool from_minus_one = is_depth_from_minus_one();
     set(Mistake::depth_from_minus_one, from_minus_one);

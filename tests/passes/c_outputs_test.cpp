@@ -262,7 +262,8 @@ TEST_F(COutputs, ImagesOfWhichOneChannelCannotBeWrittenAreRefused) {
   const auto error = [&](VkFormat format, AlcoveChannel channel, VkImageUsageFlags usage,
                          VkImageLayout layout) {
     AlcoveView view = good;
-    view.visibility = engine().make_image(format, 16, 12, usage);
+    view.visibility = engine().make_image(format, 16, 12, kSharedUsage);
+    view.visibility.usage = usage;
     view.visibility.initial_state.layout = layout;
     view.visibility_channel = channel;
     return error_of(view);
